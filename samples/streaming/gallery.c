@@ -105,7 +105,7 @@ static bool open_views(struct gallery *gallery)
     const struct settings *settings = &gallery->settings;
     struct view_request request = {
         .gpu = &gallery->gpu,
-        .renderer = &gallery->renderer,
+        .room = &gallery->room,
         .target = &gallery->target,
         .settings = settings,
         .pictures = &gallery->pictures,
@@ -117,9 +117,6 @@ static bool open_views(struct gallery *gallery)
     };
     if (!target_create(&gallery->gpu, settings->size[0], settings->size[1], settings->samples,
                        &gallery->target) ||
-        !renderer_create(&gallery->gpu, &gallery->room, &gallery->target, settings->anisotropy,
-                         request.counting, request.needs,
-                         request.mode == SLUICE_RESIDENCY_MODE_PAGED, &gallery->renderer) ||
         !view_create(&request, settings->record, &gallery->streamed) || !warm_up(gallery))
         return false;
     if (!settings->compare)
@@ -128,13 +125,6 @@ static bool open_views(struct gallery *gallery)
     request.counting = false;
     request.needs = false;
     request.mode = gallery->gpu.modes[1];
-    bool paged = request.mode == SLUICE_RESIDENCY_MODE_PAGED;
-    if (paged != gallery->renderer.paged) {
-        request.renderer = &gallery->truth_renderer;
-        if (!renderer_create(&gallery->gpu, &gallery->room, &gallery->target, settings->anisotropy,
-                             false, false, paged, &gallery->truth_renderer))
-            return false;
-    }
     return view_create(&request, NULL, &gallery->truth) &&
            gallery_fill(&gallery->truth, &gallery->room);
 }
@@ -197,11 +187,8 @@ bool gallery_close(struct gallery *gallery)
     bool recorded = view_destroy(&gallery->streamed);
     view_destroy(&gallery->truth);
     reference_close(&gallery->reference);
-    if (gallery->gpu.device) {
-        renderer_destroy(&gallery->renderer);
-        renderer_destroy(&gallery->truth_renderer);
+    if (gallery->gpu.device)
         target_destroy(&gallery->gpu, &gallery->target);
-    }
     room_finish(&gallery->room);
     sluiceDestroyImageSource(gallery->floor);
     sluiceDestroyImageSource(gallery->wall);

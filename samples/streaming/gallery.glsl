@@ -1,32 +1,17 @@
-/* Buffers of the gallery's shaders, and how its surfaces are lit. Included by the entry points. */
+/*
+ * Buffers of the gallery's shaders, and how its surfaces are lit. Included by the entry points. Set
+ * 0 is the streamer's, set 1 has the textures of a surface.
+ */
 #ifndef GALLERY_GLSL
 #define GALLERY_GLSL
 
-#ifdef SLUICE_PAGED
-#extension GL_EXT_nonuniform_qualifier : require
-#endif
-
 #include "gallery_shared.h"
-#include "sluice/shared/texture_table.h"
+#define SLUICE_SET 0
+#include "sluice/bindings.glsl"
 
-layout(set = 0, binding = 0, std430) readonly buffer Frame { GalleryFrame frame; };
-layout(set = 0, binding = 1, std430) readonly buffer Lights { GalleryLight lights[]; };
-layout(set = 0, binding = 2, std430) readonly buffer TextureTable { SluiceTextureEntry entries[]; } textureTable;
-layout(set = 0, binding = 3, std430) buffer Feedback { uint words[]; } feedback;
-layout(set = 0, binding = 4, std430) readonly buffer MinMip { uint words[]; } minMip;
-layout(set = 0, binding = 5, std430) buffer Counts { GalleryCounts counts; };
-
-/* Defined where these are compiled for paged residency. */
-#ifdef SLUICE_PAGED
-layout(set = 0, binding = 6, std430) readonly buffer PageTable { uint words[]; } pageTable;
-layout(set = 0, binding = 7) uniform sampler2DArray pages[GALLERY_PAGE_CHUNKS];
-#define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]
-#define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
-#endif
-
-#define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
-#define SLUICE_MIN_MIP_WORD(i) minMip.words[i]
-#define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
+layout(set = 2, binding = GALLERY_BINDING_FRAME, std430) readonly buffer Frame { GalleryFrame frame; };
+layout(set = 2, binding = GALLERY_BINDING_LIGHTS, std430) readonly buffer Lights { GalleryLight lights[]; };
+layout(set = 2, binding = GALLERY_BINDING_COUNTS, std430) buffer Counts { GalleryCounts counts; };
 
 layout(push_constant) uniform Draw { GalleryDraw draw; };
 

@@ -13,7 +13,6 @@ struct gallery {
     struct pattern_image floor_pattern, wall_pattern;
     SluiceImageSource *floor, *wall;
     struct target target;
-    struct renderer renderer, truth_renderer; ///< the latter where the truth needs its own
     struct view streamed;
     struct view truth;          ///< only with --compare
     struct reference reference; ///< only with --reference

@@ -7,7 +7,12 @@
 #define GALLERY_NO_TEXTURE 0xffffffffu
 #define GALLERY_LIGHTS_PER_DRAW 3
 
-#define GALLERY_PAGE_CHUNKS 64 /* descriptors of page images */
+/* Storage buffers of set 2. */
+#define GALLERY_BINDING_FRAME 0
+#define GALLERY_BINDING_LIGHTS 1
+#define GALLERY_BINDING_COUNTS 2
+#define GALLERY_BINDING_REQUIRED 3 /* the pass of needs.frag writes its feedback here */
+#define GALLERY_BINDING_COUNT 4
 
 /* Draw flags. */
 #define GALLERY_GRAY 1u    /* one channel, shown as gray */

@@ -5,7 +5,13 @@
 /* As where they are drawn: what is hidden counts as little here as there. */
 layout(early_fragment_tests) in;
 
-#include "gallery.glsl" /* its feedback buffer is not the streamer's here */
+#include "gallery.glsl"
+
+/* The streamer must not see this feedback. */
+layout(set = 2, binding = GALLERY_BINDING_REQUIRED, std430) buffer Required { uint words[]; } required;
+#undef SLUICE_FEEDBACK_WORD
+#define SLUICE_FEEDBACK_WORD(i) required.words[i]
+
 #include "sluice/feedback.glsl"
 #include "sluice/sample.glsl"
 

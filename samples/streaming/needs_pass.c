@@ -39,9 +39,8 @@ void needs_pass_destroy(struct needs_pass *pass)
 bool needs_slot_create(const struct needs_pass *pass, VkDescriptorSet frame_set, VkBuffer frame,
                        struct needs_slot *slot)
 {
-    SluiceVulkanBuffers buffers = pass->buffers;
-    buffers.feedback = pass->feedback.buffer;
-    renderer_write_frame_set(pass->renderer, frame_set, frame, pass->counts.buffer, &buffers);
+    renderer_write_frame_set(pass->renderer, frame_set, frame, pass->counts.buffer,
+                             pass->feedback.buffer);
     slot->frame_set = frame_set;
     VkDeviceSize size = sizeof(struct GalleryCounts) + table_size(pass) +
                         2 * (VkDeviceSize)pass->word_count * sizeof(uint32_t);
@@ -71,9 +70,10 @@ static void record_copies(const struct needs_pass *pass, const struct needs_slot
 }
 
 void needs_pass_record(const struct needs_pass *pass, const struct target *target,
-                       const struct renderer_surface *surfaces, struct needs_slot *slot,
-                       VkCommandBuffer commands)
+                       const struct renderer_surface *surfaces, VkDescriptorSet streamer_set,
+                       struct needs_slot *slot, VkCommandBuffer commands)
 {
+    const struct renderer_sets sets = {streamer_set, slot->frame_set};
     static const float black[4] = {0, 0, 0, 0};
     slot->word_count = pass->word_count;
     /* The frame before has copied what is cleared now. */
@@ -86,7 +86,7 @@ void needs_pass_record(const struct needs_pass *pass, const struct target *targe
                 VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                 VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
     target_begin(target, commands, black);
-    renderer_draw(pass->renderer, commands, slot->frame_set, surfaces, RENDERER_NEEDS);
+    renderer_draw(pass->renderer, commands, &sets, surfaces, RENDERER_NEEDS);
     target_end(target, commands);
     /* The streamer has copied to its buffers. */
     gpu_barrier(commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,

@@ -36,10 +36,11 @@ bool needs_slot_create(const struct needs_pass *pass, VkDescriptorSet frame_set,
                        struct needs_slot *slot);
 void needs_slot_destroy(const struct needs_pass *pass, struct needs_slot *slot);
 
-/** Between sluiceEndStreamingFrame and submission. The target is drawn over. */
+/** Between sluiceEndStreamingFrame and submission. The target is drawn over. `streamer_set` is the
+ *  frame's. */
 void needs_pass_record(const struct needs_pass *pass, const struct target *target,
-                       const struct renderer_surface *surfaces, struct needs_slot *slot,
-                       VkCommandBuffer commands);
+                       const struct renderer_surface *surfaces, VkDescriptorSet streamer_set,
+                       struct needs_slot *slot, VkCommandBuffer commands);
 
 /** Of a slot whose frame was waited for; valid until the slot's next frame. */
 struct needs_words needs_pass_words(struct needs_pass *pass, const struct needs_slot *slot,

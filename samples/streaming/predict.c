@@ -19,22 +19,18 @@ static bool create_pipelines(struct predict *predict)
 
 static bool create_pool(struct predict *predict)
 {
-    /* The layout has descriptors of pages, too, which nothing here looks at. */
-    const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 7 * PREDICT_SLOTS},
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, GALLERY_PAGE_CHUNKS * PREDICT_SLOTS},
-    };
+    const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                       GALLERY_BINDING_COUNT * PREDICT_SLOTS};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .maxSets = PREDICT_SLOTS,
-                                       .poolSizeCount = 2,
-                                       .pPoolSizes = sizes};
+                                       .poolSizeCount = 1,
+                                       .pPoolSizes = &size};
     return gpu_check(
         vkCreateDescriptorPool(predict->renderer->gpu->device, &info, NULL, &predict->pool),
         "vkCreateDescriptorPool");
 }
 
-static bool create_slot(const struct predict *predict, const SluiceVulkanBuffers *buffers,
-                        struct predict_slot *slot)
+static bool create_slot(const struct predict *predict, struct predict_slot *slot)
 {
     const struct renderer *renderer = predict->renderer;
     VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
@@ -47,7 +43,8 @@ static bool create_slot(const struct predict *predict, const SluiceVulkanBuffers
                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &slot->frame))
         return false;
     /* Nothing is counted: any buffer will do. */
-    renderer_write_frame_set(renderer, slot->set, slot->frame.buffer, slot->frame.buffer, buffers);
+    renderer_write_frame_set(renderer, slot->set, slot->frame.buffer, slot->frame.buffer,
+                             slot->frame.buffer);
     return true;
 }
 
@@ -57,14 +54,14 @@ static uint32_t shrunk(uint32_t size)
 }
 
 bool predict_create(const struct renderer *renderer, const struct target *picture,
-                    const SluiceVulkanBuffers *buffers, struct predict *predict)
+                    struct predict *predict)
 {
     *predict = (struct predict){.renderer = renderer};
     bool created = target_create(renderer->gpu, shrunk(picture->width), shrunk(picture->height), 1,
                                  &predict->target) &&
                    create_pipelines(predict) && create_pool(predict);
     for (uint32_t i = 0; created && i < PREDICT_SLOTS; i++)
-        created = create_slot(predict, buffers, &predict->slots[i]);
+        created = create_slot(predict, &predict->slots[i]);
     if (!created)
         predict_destroy(predict);
     return created;
@@ -103,19 +100,18 @@ static void draw_part(const struct predict *predict, VkCommandBuffer commands,
     vkCmdDraw(commands, part->vertex_count, 1, part->first_vertex, 0);
 }
 
-void predict_record(const struct predict *predict, VkCommandBuffer commands, uint32_t slot,
-                    const struct GalleryFrame *frame, const struct renderer_surface *surfaces)
+void predict_record(const struct predict *predict, VkCommandBuffer commands,
+                    VkDescriptorSet streamer_set, uint32_t slot, const struct GalleryFrame *frame,
+                    const struct renderer_surface *surfaces)
 {
     const struct renderer *renderer = predict->renderer;
     const struct room *room = renderer->room;
     static const float black[4] = {0, 0, 0, 0};
-    const VkDeviceSize offset = 0;
+    const struct renderer_sets sets = {streamer_set, predict->slots[slot].set};
     VkPipeline bound = VK_NULL_HANDLE;
     memcpy(predict->slots[slot].frame.mapped, frame, sizeof *frame);
     target_begin(&predict->target, commands, black);
-    vkCmdBindVertexBuffers(commands, 0, 1, &renderer->vertices.buffer, &offset);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, renderer->pipeline_layout, 0,
-                            1, &predict->slots[slot].set, 0, NULL);
+    renderer_bind(renderer, commands, &sets);
     for (uint32_t i = 0; i < room->part_count; i++) {
         const struct room_part *part = &room->parts[i];
         const struct renderer_surface *surface = renderer_surface_of(part, surfaces);

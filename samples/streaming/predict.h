@@ -26,7 +26,7 @@ struct predict {
 
 /** `picture`: what the frames are drawn to. Says on stderr what is wrong. */
 bool predict_create(const struct renderer *renderer, const struct target *picture,
-                    const SluiceVulkanBuffers *buffers, struct predict *predict);
+                    struct predict *predict);
 /** How far a frame looks ahead, of `seconds`: all the way and half of it, in turns. */
 double predict_horizon(double seconds, uint32_t frame);
 
@@ -34,11 +34,12 @@ double predict_horizon(double seconds, uint32_t frame);
 void predict_destroy(struct predict *predict);
 
 /**
- * Outside a render pass, between the begin and the end of a streaming frame. `frame` is that of the
- * picture but for the camera, `frame->eye` and `viewProjection` are those of the camera ahead;
- * surfaces as for renderer_draw.
+ * Outside a render pass, between the begin and the end of a streaming frame, whose set is
+ * `streamer_set`. `frame` is that of the picture but for the camera, `frame->eye` and
+ * `viewProjection` are those of the camera ahead; surfaces as for renderer_draw.
  */
-void predict_record(const struct predict *predict, VkCommandBuffer commands, uint32_t slot,
-                    const struct GalleryFrame *frame, const struct renderer_surface *surfaces);
+void predict_record(const struct predict *predict, VkCommandBuffer commands,
+                    VkDescriptorSet streamer_set, uint32_t slot, const struct GalleryFrame *frame,
+                    const struct renderer_surface *surfaces);
 
 #endif /* SAMPLES_STREAMING_PREDICT_H */

@@ -20,7 +20,6 @@ struct drawing {
     const struct gallery *gallery;
     struct settings settings; ///< those of the truth
     struct target target;
-    struct renderer renderer;
     struct view view;
     uint32_t first; ///< frames that it was filled in
     struct supersample tables;
@@ -43,7 +42,7 @@ static bool open_view(struct drawing *drawing)
         return false;
     }
     struct view_request request = {.gpu = gpu,
-                                   .renderer = &drawing->renderer,
+                                   .room = &gallery->room,
                                    .target = &drawing->target,
                                    .settings = settings,
                                    .pictures = &gallery->pictures,
@@ -52,9 +51,6 @@ static bool open_view(struct drawing *drawing)
                                    .mode = gpu->modes[1],
                                    .everything = true};
     return target_create(gpu, width, height, settings->samples, &drawing->target) &&
-           renderer_create(gpu, &gallery->room, &drawing->target, settings->anisotropy, false,
-                           false, request.mode == SLUICE_RESIDENCY_MODE_PAGED,
-                           &drawing->renderer) &&
            view_create(&request, NULL, &drawing->view) &&
            gallery_fill(&drawing->view, &gallery->room);
 }
@@ -62,7 +58,6 @@ static bool open_view(struct drawing *drawing)
 static void close_view(struct drawing *drawing)
 {
     view_destroy(&drawing->view);
-    renderer_destroy(&drawing->renderer);
     target_destroy(&drawing->gallery->gpu, &drawing->target);
 }
 

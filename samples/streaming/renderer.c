@@ -13,43 +13,41 @@
 #include "surface_frag.h"
 #include "surface_paged_frag.h"
 
-static bool create_layouts(struct renderer *renderer)
+/** `count` descriptors of one type, at bindings 0, 1, ... */
+static bool create_set_layout(const struct gpu *gpu, VkDescriptorType type, uint32_t count,
+                              VkDescriptorSetLayout *layout)
 {
-    VkDevice device = renderer->gpu->device;
-    VkDescriptorSetLayoutBinding frame_bindings[8], texture_bindings[4];
-    for (uint32_t i = 0; i < 7; i++) /* alike, so that one write fills all */
-        frame_bindings[i] = (VkDescriptorSetLayoutBinding){
-            i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    frame_bindings[7] =
-        (VkDescriptorSetLayoutBinding){7, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                       GALLERY_PAGE_CHUNKS, VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    for (uint32_t i = 0; i < 4; i++)
-        texture_bindings[i] = (VkDescriptorSetLayoutBinding){
-            i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    VkDescriptorSetLayoutCreateInfo frame = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = 8,
-        .pBindings = frame_bindings};
-    VkDescriptorSetLayoutCreateInfo texture = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = 4,
-        .pBindings = texture_bindings};
-    if (!gpu_check(vkCreateDescriptorSetLayout(device, &frame, NULL, &renderer->frame_layout),
-                   "vkCreateDescriptorSetLayout") ||
-        !gpu_check(vkCreateDescriptorSetLayout(device, &texture, NULL, &renderer->texture_layout),
-                   "vkCreateDescriptorSetLayout"))
+    VkDescriptorSetLayoutBinding bindings[4];
+    for (uint32_t i = 0; i < count; i++)
+        bindings[i] = (VkDescriptorSetLayoutBinding){
+            i, type, 1, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
+    VkDescriptorSetLayoutCreateInfo info = {.sType =
+                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                            .bindingCount = count,
+                                            .pBindings = bindings};
+    return gpu_check(vkCreateDescriptorSetLayout(gpu->device, &info, NULL, layout),
+                     "vkCreateDescriptorSetLayout");
+}
+
+static bool create_layouts(struct renderer *renderer, VkDescriptorSetLayout streamer_layout)
+{
+    const struct gpu *gpu = renderer->gpu;
+    if (!create_set_layout(gpu, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4,
+                           &renderer->texture_layout) ||
+        !create_set_layout(gpu, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, GALLERY_BINDING_COUNT,
+                           &renderer->frame_layout))
         return false;
 
-    const VkDescriptorSetLayout sets[] = {renderer->frame_layout, renderer->texture_layout};
+    const VkDescriptorSetLayout sets[] = {streamer_layout, renderer->texture_layout,
+                                          renderer->frame_layout};
     const VkPushConstantRange constants = {VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                                            sizeof(struct GalleryDraw)};
     VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                       .setLayoutCount = 2,
+                                       .setLayoutCount = 3,
                                        .pSetLayouts = sets,
                                        .pushConstantRangeCount = 1,
                                        .pPushConstantRanges = &constants};
-    return gpu_check(vkCreatePipelineLayout(device, &info, NULL, &renderer->pipeline_layout),
+    return gpu_check(vkCreatePipelineLayout(gpu->device, &info, NULL, &renderer->pipeline_layout),
                      "vkCreatePipelineLayout");
 }
 
@@ -123,8 +121,7 @@ bool renderer_create_pipeline(const struct renderer *renderer, const struct targ
     return draw_pipeline_create(renderer->gpu, &info, pipeline);
 }
 
-static bool create_pipelines(struct renderer *renderer, const struct target *target, bool counting,
-                             bool needs)
+static bool create_pipelines(struct renderer *renderer, const struct renderer_request *request)
 {
     const struct gpu *gpu = renderer->gpu;
     const struct {
@@ -146,27 +143,27 @@ static bool create_pipelines(struct renderer *renderer, const struct target *tar
     renderer->vertex = gpu_create_shader(gpu, gallery_vert, sizeof gallery_vert);
     bool created = renderer->vertex != VK_NULL_HANDLE;
     for (int i = 0; created && i < RENDERER_PASS_COUNT; i++) {
-        if ((i == RENDERER_COUNT && !counting) || (i == RENDERER_NEEDS && !needs))
+        if ((i == RENDERER_COUNT && !request->counting) || (i == RENDERER_NEEDS && !request->needs))
             continue;
         VkShaderModule fragment =
-            renderer->paged
+            request->paged
                 ? gpu_create_shader(gpu, paged_fragments[i].words, paged_fragments[i].size)
                 : gpu_create_shader(gpu, fragments[i].words, fragments[i].size);
         created = fragment != VK_NULL_HANDLE &&
-                  renderer_create_pipeline(renderer, target, fragment, i < RENDERER_COUNT,
+                  renderer_create_pipeline(renderer, request->target, fragment, i < RENDERER_COUNT,
                                            &renderer->pipelines[i]);
         vkDestroyShaderModule(gpu->device, fragment, NULL);
     }
     return created;
 }
 
-bool renderer_create(const struct gpu *gpu, const struct room *room, const struct target *target,
-                     uint32_t anisotropy, bool counting, bool needs, bool paged,
+bool renderer_create(const struct gpu *gpu, const struct renderer_request *request,
                      struct renderer *renderer)
 {
-    *renderer = (struct renderer){.gpu = gpu, .room = room, .paged = paged};
-    if (create_layouts(renderer) && create_samplers(renderer, anisotropy) &&
-        create_buffers(renderer) && create_pipelines(renderer, target, counting, needs))
+    *renderer = (struct renderer){.gpu = gpu, .room = request->room};
+    if (create_layouts(renderer, request->streamer_layout) &&
+        create_samplers(renderer, request->anisotropy) && create_buffers(renderer) &&
+        create_pipelines(renderer, request))
         return true;
     renderer_destroy(renderer);
     return false;
@@ -193,38 +190,19 @@ void renderer_destroy(struct renderer *renderer)
 }
 
 void renderer_write_frame_set(const struct renderer *renderer, VkDescriptorSet set, VkBuffer frame,
-                              VkBuffer counts, const SluiceVulkanBuffers *buffers)
+                              VkBuffer counts, VkBuffer required)
 {
-    const VkDescriptorBufferInfo infos[7] = {
-        {frame, 0, VK_WHOLE_SIZE},
-        {renderer->lights.buffer, 0, VK_WHOLE_SIZE},
-        {buffers->textureTable, 0, VK_WHOLE_SIZE},
-        {buffers->feedback, 0, VK_WHOLE_SIZE},
-        {buffers->minMip, 0, VK_WHOLE_SIZE},
-        {counts, 0, VK_WHOLE_SIZE},
-        {buffers->pageTable, 0, VK_WHOLE_SIZE},
+    const VkDescriptorBufferInfo infos[GALLERY_BINDING_COUNT] = {
+        [GALLERY_BINDING_FRAME] = {frame, 0, VK_WHOLE_SIZE},
+        [GALLERY_BINDING_LIGHTS] = {renderer->lights.buffer, 0, VK_WHOLE_SIZE},
+        [GALLERY_BINDING_COUNTS] = {counts, 0, VK_WHOLE_SIZE},
+        [GALLERY_BINDING_REQUIRED] = {required, 0, VK_WHOLE_SIZE},
     };
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                   .dstSet = set,
-                                  .descriptorCount = 7,
+                                  .descriptorCount = GALLERY_BINDING_COUNT,
                                   .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                   .pBufferInfo = infos};
-    vkUpdateDescriptorSets(renderer->gpu->device, 1, &write, 0, NULL);
-}
-
-void renderer_write_pages(const struct renderer *renderer, VkDescriptorSet set,
-                          const SluiceVulkanPages *pages)
-{
-    VkDescriptorImageInfo infos[GALLERY_PAGE_CHUNKS];
-    for (uint32_t i = 0; i < GALLERY_PAGE_CHUNKS; i++)
-        infos[i] =
-            (VkDescriptorImageInfo){pages->sampler, pages->pViews[i], VK_IMAGE_LAYOUT_GENERAL};
-    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                  .dstSet = set,
-                                  .dstBinding = 7,
-                                  .descriptorCount = GALLERY_PAGE_CHUNKS,
-                                  .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                  .pImageInfo = infos};
     vkUpdateDescriptorSets(renderer->gpu->device, 1, &write, 0, NULL);
 }
 
@@ -282,15 +260,24 @@ static struct GalleryDraw draw_of(const struct room_part *part,
     return draw;
 }
 
-void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands, VkDescriptorSet frame,
-                   const struct renderer_surface *surfaces, enum renderer_pass pass)
+void renderer_bind(const struct renderer *renderer, VkCommandBuffer commands,
+                   const struct renderer_sets *sets)
 {
-    const struct room *room = renderer->room;
     const VkDeviceSize offset = 0;
-    VkPipeline bound = VK_NULL_HANDLE;
     vkCmdBindVertexBuffers(commands, 0, 1, &renderer->vertices.buffer, &offset);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, renderer->pipeline_layout, 0,
-                            1, &frame, 0, NULL);
+                            1, &sets->streamer, 0, NULL);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, renderer->pipeline_layout, 2,
+                            1, &sets->frame, 0, NULL);
+}
+
+void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands,
+                   const struct renderer_sets *sets, const struct renderer_surface *surfaces,
+                   enum renderer_pass pass)
+{
+    const struct room *room = renderer->room;
+    VkPipeline bound = VK_NULL_HANDLE;
+    renderer_bind(renderer, commands, sets);
     for (uint32_t i = 0; i < room->part_count; i++) {
         const struct room_part *part = &room->parts[i];
         const struct renderer_surface *surface = renderer_surface_of(part, surfaces);

@@ -18,7 +18,6 @@ enum renderer_pass {
 struct renderer {
     const struct gpu *gpu;   ///< borrowed
     const struct room *room; ///< borrowed
-    bool paged;              ///< its shaders are for paged residency
     VkDescriptorSetLayout frame_layout, texture_layout;
     VkPipelineLayout pipeline_layout;
     VkShaderModule vertex;                     ///< of all pipelines
@@ -38,19 +37,29 @@ struct renderer_surface {
     bool missing; ///< left out: drawn like a plain part
 };
 
-/** `pass` of a target that is compatible with those drawn to. */
-bool renderer_create(const struct gpu *gpu, const struct room *room, const struct target *target,
-                     uint32_t anisotropy, bool counting, bool needs, bool paged,
+struct renderer_request {
+    const struct room *room;     ///< must outlive the renderer
+    const struct target *target; ///< compatible with those drawn to
+    VkDescriptorSetLayout streamer_layout;
+    uint32_t anisotropy;
+    bool counting, needs; ///< create the pipelines of these passes, too
+    bool paged;           ///< shaders for paged residency
+};
+
+/** What is bound for a frame, besides the textures of each surface in set 1. */
+struct renderer_sets {
+    VkDescriptorSet streamer; ///< set 0; the streamer's for this frame
+    VkDescriptorSet frame;    ///< set 2; of `frame_layout`
+};
+
+bool renderer_create(const struct gpu *gpu, const struct renderer_request *request,
                      struct renderer *renderer);
 /** A zeroed struct is fine. */
 void renderer_destroy(struct renderer *renderer);
 
-/** Descriptors of set 0. */
+/** Descriptors of set 2. Buffers that no pass with this set uses may be any. */
 void renderer_write_frame_set(const struct renderer *renderer, VkDescriptorSet set, VkBuffer frame,
-                              VkBuffer counts, const SluiceVulkanBuffers *buffers);
-/** The pages in set 0, as they are now. */
-void renderer_write_pages(const struct renderer *renderer, VkDescriptorSet set,
-                          const SluiceVulkanPages *pages);
+                              VkBuffer counts, VkBuffer required);
 /** Descriptors of set 1; without a relief, pass the color's view twice. */
 void renderer_write_texture_set(const struct renderer *renderer, VkDescriptorSet set,
                                 VkImageView color, VkImageView relief, bool repeat);
@@ -65,9 +74,14 @@ bool renderer_create_pipeline(const struct renderer *renderer, const struct targ
 const struct renderer_surface *renderer_surface_of(const struct room_part *part,
                                                    const struct renderer_surface *surfaces);
 
+/** Binds vertices and sets. Done by renderer_draw. */
+void renderer_bind(const struct renderer *renderer, VkCommandBuffer commands,
+                   const struct renderer_sets *sets);
+
 /** `surfaces`: floor, wall, then one per picture; `pass` is how they are drawn. Inside a render
  * pass. */
-void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands, VkDescriptorSet frame,
-                   const struct renderer_surface *surfaces, enum renderer_pass pass);
+void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands,
+                   const struct renderer_sets *sets, const struct renderer_surface *surfaces,
+                   enum renderer_pass pass);
 
 #endif /* SAMPLES_STREAMING_RENDERER_H */

@@ -51,7 +51,6 @@ static bool create_context(struct view *view)
         .sparseQueueFamilyIndex = gpu->sparse_family,
         .log = {NULL, log_say},
         .loaderThreadCount = view->request.settings->threads,
-        .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
     };
     if (view->slowness.on) /* two attempts per read; later frames request the tile again */
         info.readRetry = (SluiceTileRetryPolicy){2, 1000000, 1000000};
@@ -94,6 +93,20 @@ static bool create_streamer(struct view *view)
                  "sluiceCreateVulkanStreamer") &&
            check(sluiceGetVulkanStreamerManager(view->streamer, &view->manager),
                  "sluiceGetVulkanStreamerManager");
+}
+
+static bool create_renderer(struct view *view)
+{
+    const struct view_request *request = &view->request;
+    struct renderer_request info = {.room = request->room,
+                                    .target = request->target,
+                                    .anisotropy = request->settings->anisotropy,
+                                    .counting = request->counting,
+                                    .needs = request->needs,
+                                    .paged = request->mode == SLUICE_RESIDENCY_MODE_PAGED};
+    return check(sluiceGetVulkanDescriptorSetLayout(view->streamer, &info.streamer_layout),
+                 "sluiceGetVulkanDescriptorSetLayout") &&
+           renderer_create(request->gpu, &info, &view->renderer);
 }
 
 static SluiceResult add_texture(struct view *view, SluiceImageSource *source,
@@ -148,9 +161,8 @@ static bool create_descriptor_pool(struct view *view)
 {
     uint32_t surface_count = 2 + view->request.pictures->count;
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * 7 * VIEW_FRAMES_IN_FLIGHT},
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-         4 * surface_count + 2 * GALLERY_PAGE_CHUNKS * VIEW_FRAMES_IN_FLIGHT},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * GALLERY_BINDING_COUNT * VIEW_FRAMES_IN_FLIGHT},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4 * surface_count},
     };
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .maxSets = 2 * VIEW_FRAMES_IN_FLIGHT + surface_count,
@@ -170,8 +182,8 @@ static bool create_tiled_surface(struct view *view, SluiceImageSource *source,
         return false;
     surface->color_index = surface->relief_index = color.tableIndex;
     surface->exposure = 1.0f;
-    renderer_write_texture_set(view->request.renderer, surface->textures, color.imageView,
-                               color.imageView, true);
+    renderer_write_texture_set(&view->renderer, surface->textures, color.imageView, color.imageView,
+                               true);
     return true;
 }
 
@@ -196,7 +208,7 @@ static SluiceResult create_picture_surface(struct view *view, const struct pictu
     surface->relief_scale = 0.0012f; /* meters from the deepest to the highest paint */
     surface->gray = picture->gray;
     surface->painted = true;
-    renderer_write_texture_set(view->request.renderer, surface->textures, color.imageView,
+    renderer_write_texture_set(&view->renderer, surface->textures, color.imageView,
                                relief.imageView, false);
     return SLUICE_SUCCESS;
 }
@@ -241,7 +253,7 @@ static bool create_surfaces(struct view *view)
     if (!view->surfaces || !view->texture_ids || !view->sources)
         return false;
     for (uint32_t i = 0; i < count; i++)
-        if (!view_allocate_sets(view, request->renderer->texture_layout, 1,
+        if (!view_allocate_sets(view, view->renderer.texture_layout, 1,
                                 &view->surfaces[i].textures))
             return false;
     if (!create_tiled_surface(view, request->floor, &view->surfaces[0]) ||
@@ -267,13 +279,11 @@ static bool create_slot(struct view *view, struct view_slot *slot)
                            &slot->counts) ||
         !gpu_create_buffer(gpu, (VkDeviceSize)target->width * target->height * 4,
                            VK_BUFFER_USAGE_TRANSFER_DST_BIT, &slot->pixels) ||
-        !view_allocate_sets(view, view->request.renderer->frame_layout, 1, &slot->frame_set))
+        !view_allocate_sets(view, view->renderer.frame_layout, 1, &slot->frame_set))
         return false;
     memset(slot->counts.mapped, 0, sizeof(struct GalleryCounts));
-    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
-    sluiceGetVulkanBuffers(view->streamer, &buffers);
-    renderer_write_frame_set(view->request.renderer, slot->frame_set, slot->frame.buffer,
-                             slot->counts.buffer, &buffers);
+    renderer_write_frame_set(&view->renderer, slot->frame_set, slot->frame.buffer,
+                             slot->counts.buffer, slot->counts.buffer);
     return true;
 }
 
@@ -295,15 +305,14 @@ static bool create_prediction(struct view *view)
     const struct view_request *request = &view->request;
     if (request->settings->predict <= 0.0 || request->everything)
         return true;
-    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
-    sluiceGetVulkanBuffers(view->streamer, &buffers);
-    return predict_create(request->renderer, request->target, &buffers, &view->predict);
+    return predict_create(&view->renderer, request->target, &view->predict);
 }
 
 bool view_create(const struct view_request *request, const char *record_path, struct view *view)
 {
     *view = (struct view){.request = *request};
-    bool created = begin_slowness(view) && create_context(view) && create_streamer(view);
+    bool created = begin_slowness(view) && create_context(view) && create_streamer(view) &&
+                   create_renderer(view);
     /* Before the first texture, so that the recording is complete. */
     const SluiceFileRecordingInfo recording = {
         .structSize = sizeof recording, .pPath = record_path, .log = {.pfnLog = log_say}};
@@ -335,6 +344,7 @@ bool view_destroy(struct view *view)
     }
     predict_destroy(&view->predict);
     needs_pass_destroy(&view->needs);
+    renderer_destroy(&view->renderer);
     vkDestroyQueryPool(gpu->device, view->timestamps, NULL);
     vkDestroyDescriptorPool(gpu->device, view->descriptor_pool, NULL);
     free(view->surfaces);
@@ -352,7 +362,7 @@ static void write_frame_data(const struct view *view, const struct camera *camer
 {
     const struct settings *settings = view->request.settings;
     const struct target *target = view->request.target;
-    const struct room *room = view->request.renderer->room;
+    const struct room *room = view->request.room;
     struct mat4 look = mat4_look_at(camera->eye, camera->target);
     struct mat4 lens = mat4_perspective(
         WALK_FIELD_OF_VIEW, (float)target->width / (float)target->height, 0.05f, 200.0f);
@@ -375,19 +385,21 @@ static void write_frame_data(const struct view *view, const struct camera *camer
 }
 
 /** Feedback, and nothing else, from where the camera will be. */
-static void record_prediction(const struct view *view, VkCommandBuffer commands)
+static void record_prediction(const struct view *view, VkDescriptorSet streamer_set,
+                              VkCommandBuffer commands)
 {
     const struct camera *now = &view->motion.past[MOTION_FRAMES - 1];
     struct GalleryFrame frame;
     write_frame_data(view, &view->ahead, &frame);
     memcpy(frame.presentEye, &now->eye, sizeof frame.presentEye);
     frame.pixelScale = (float)view->predict.target.height / (float)view->request.target->height;
-    predict_record(&view->predict, commands, view->frame_index % VIEW_FRAMES_IN_FLIGHT, &frame,
-                   view->surfaces);
+    predict_record(&view->predict, commands, streamer_set,
+                   view->frame_index % VIEW_FRAMES_IN_FLIGHT, &frame, view->surfaces);
 }
 
 /** The room once more, only to count what its samples would read. */
-static void record_counting(const struct view *view, const struct view_slot *slot)
+static void record_counting(const struct view *view, const struct view_slot *slot,
+                            const struct renderer_sets *sets)
 {
     const struct view_request *request = &view->request;
     static const float black[4] = {0, 0, 0, 0};
@@ -396,8 +408,7 @@ static void record_counting(const struct view *view, const struct view_slot *slo
                 VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                 VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
     target_begin(request->target, slot->commands, black);
-    renderer_draw(request->renderer, slot->commands, slot->frame_set, view->surfaces,
-                  RENDERER_COUNT);
+    renderer_draw(&view->renderer, slot->commands, sets, view->surfaces, RENDERER_COUNT);
     target_end(request->target, slot->commands);
     gpu_barrier(slot->commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
@@ -423,26 +434,21 @@ static bool begin_frame(struct view *view, struct view_slot *slot, uint64_t time
 }
 
 /* One frame of an application that streams; what is behind the last time stamp is no part of it. */
-static bool record_frame(struct view *view, struct view_slot *slot, double *needs_seconds)
+static bool record_frame(struct view *view, struct view_slot *slot,
+                         const SluiceStreamingFrame *frame, double *needs_seconds)
 {
     const struct view_request *request = &view->request;
     static const float background[4] = {0.02f, 0.02f, 0.02f, 1.0f};
+    const struct renderer_sets sets = {frame->descriptorSet, slot->frame_set};
     VkCommandBuffer commands = slot->commands;
 
-    /* Images that hold pages come and go in there; this slot's set is in no frame under way. */
-    SluiceVulkanPages pages = {.structSize = sizeof pages};
-    sluiceGetVulkanPages(view->streamer, &pages);
-    if (slot->page_generation != pages.generation)
-        renderer_write_pages(request->renderer, slot->frame_set, &pages);
-    slot->page_generation = pages.generation;
-
     if (request->counting)
-        record_counting(view, slot);
+        record_counting(view, slot, &sets);
     if (view->looks_ahead)
-        record_prediction(view, commands);
+        record_prediction(view, frame->descriptorSet, commands);
 
     target_begin(request->target, commands, background);
-    renderer_draw(request->renderer, commands, slot->frame_set, view->surfaces, RENDERER_SURFACE);
+    renderer_draw(&view->renderer, commands, &sets, view->surfaces, RENDERER_SURFACE);
     target_end(request->target, commands);
 
     /* Takes down what the shaders wanted. */
@@ -454,7 +460,8 @@ static bool record_frame(struct view *view, struct view_slot *slot, double *need
                         first_query(view) + 1);
     double start = clock_seconds();
     if (request->needs)
-        needs_pass_record(&view->needs, request->target, view->surfaces, &slot->needs, commands);
+        needs_pass_record(&view->needs, request->target, view->surfaces, frame->descriptorSet,
+                          &slot->needs, commands);
     *needs_seconds = clock_seconds() - start;
     return true;
 }
@@ -501,7 +508,7 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
     if (!gpu_check(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer") ||
         !begin_frame(view, slot, time_stamp, &frame))
         return false;
-    if (!record_frame(view, slot, &needs_seconds) ||
+    if (!record_frame(view, slot, &frame, &needs_seconds) ||
         !gpu_check(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer") ||
         !submit(view, slot, &frame)) {
         sluiceAbandonStreamingFrame(view->streamer, &frame); /* the next one uploads what it had */

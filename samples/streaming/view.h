@@ -18,7 +18,7 @@
 /** What is the same for both views. */
 struct view_request {
     const struct gpu *gpu;
-    const struct renderer *renderer;
+    const struct room *room;
     const struct target *target;
     const struct settings *settings;
     const struct picture_list *pictures;
@@ -33,7 +33,6 @@ struct view_request {
 struct view_slot {
     VkCommandBuffer commands;
     VkDescriptorSet frame_set;
-    uint64_t page_generation; ///< of the pages in it
     struct gpu_buffer frame, counts, pixels;
     struct needs_slot needs;
     VkSemaphore semaphore; ///< of the streamer
@@ -52,6 +51,7 @@ struct view {
     SluiceVulkanStreamer *streamer;        ///< owned
     SluiceStreamedTextureManager *manager; ///< the streamer's
     SluiceRecorder *recorder;              ///< owned
+    struct renderer renderer;              ///< its pipelines have the streamer's set layout
     struct slowness slowness;              ///< of its sources; the truth has none
     VkDescriptorPool descriptor_pool;
     struct renderer_surface *surfaces; ///< owned; floor, wall, pictures

@@ -7,12 +7,12 @@ bool view_needs_create(struct view *view)
     sluiceGetVulkanBuffers(view->streamer, &buffers);
     if (!request->needs)
         return true;
-    if (!needs_pass_create(request->gpu, request->renderer, &buffers, VIEW_MAX_REGIONS,
+    if (!needs_pass_create(request->gpu, &view->renderer, &buffers, VIEW_MAX_REGIONS,
                            view->texture_count, &view->needs))
         return false;
     for (uint32_t i = 0; i < VIEW_FRAMES_IN_FLIGHT; i++) {
         VkDescriptorSet set;
-        if (!view_allocate_sets(view, request->renderer->frame_layout, 1, &set) ||
+        if (!view_allocate_sets(view, view->renderer.frame_layout, 1, &set) ||
             !needs_slot_create(&view->needs, set, view->slots[i].frame.buffer,
                                &view->slots[i].needs))
             return false;
