@@ -127,15 +127,22 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
     }
 }
 
-/* Makes heaps smaller if one heap of heapTileCapacity tiles is larger than any limit allows. */
+/* The largest heap that can be allocated. Heaps that are slots without memory end at the device. */
+static uint64_t largest_heap(const SluiceVulkanStreamer *s)
+{
+    uint64_t limit = slc_device_memory_size(&s->caps);
+    if (!s->residency->interface->going_size)
+        return limit;
+    limit = slc_min_u64(limit, slc_memory_budget_limit(&s->context->budget));
+    return s->caps.max_allocation_size ? slc_min_u64(limit, s->caps.max_allocation_size) : limit;
+}
+
+/* Makes heaps smaller if none of heapTileCapacity tiles can be allocated. */
 static void fit_heaps(SluiceVulkanStreamer *s)
 {
-    uint64_t limit =
-        slc_min_u64(slc_device_memory_size(&s->caps), slc_memory_budget_limit(&s->context->budget));
-    if (s->caps.max_allocation_size)
-        limit = slc_min_u64(limit, s->caps.max_allocation_size);
+    uint64_t limit = largest_heap(s);
     uint64_t most = limit / SLC_TILE_SIZE, given = s->info.heapTileCapacity;
-    if (!s->residency->interface->going_size || given <= most)
+    if (given <= most)
         return;
     uint32_t fitting = slc_max_u32(1, (uint32_t)(most / 4));
     s->info.heapTileCapacity = slc_min_u32(SLUICE_DEFAULT_HEAP_TILE_CAPACITY, fitting);

@@ -7,6 +7,7 @@
 #include "support/test.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const struct scene_aim fine = {0.05, 0.05, 0.9, 0.9, 0.2, 0.3, 0, 0};
 
@@ -231,7 +232,7 @@ static void working_set_beyond_the_heaps_is_coarser_but_right(void **state)
     scene_finish(&scene);
 }
 
-static void heap_that_the_device_cannot_have_is_smaller_or_an_empty_budget(void **state)
+static void heap_that_the_device_cannot_have_is_smaller(void **state)
 {
     struct harness *h = *state;
     uint64_t largest = 0;
@@ -242,18 +243,20 @@ static void heap_that_the_device_cannot_have_is_smaller_or_an_empty_budget(void 
     if (largest >= (uint64_t)capacity * 65536)
         SKIP_TEST("the device has memory for the largest heap that can be asked for");
     struct scene scene;
+    uint32_t warnings = h->log_count[SLUICE_LOG_WARNING];
+    h->quiet = true;
     scene_init(
         &scene, h,
         (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
                                          .heapTileCapacity = capacity});
+    h->quiet = false;
+    assert_int_equal(h->log_count[SLUICE_LOG_WARNING], warnings + 1);
+    assert_non_null(strstr(h->last_message, "heapTileCapacity is 1048576"));
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 512, 512, SLUICE_FORMAT_R8G8B8A8_UNORM));
     scene_aim(&scene, t, 100, &fine);
     scene_settle(&scene, 6);
-    if (h->mode == SLUICE_RESIDENCY_MODE_SPARSE)
-        assert_int_equal(scene_missing(&scene), 0); /* heaps are smaller instead */
-    else
-        check_fallback(&scene, t, 100);
+    assert_int_equal(scene_missing(&scene), 0);
     scene_finish(&scene);
 }
 
@@ -475,7 +478,7 @@ int main(void)
         cmocka_unit_test(texture_can_be_removed_after_any_number_of_frames),
         cmocka_unit_test(loads_nobody_wants_any_more_are_canceled),
         cmocka_unit_test(working_set_beyond_the_heaps_is_coarser_but_right),
-        cmocka_unit_test(heap_that_the_device_cannot_have_is_smaller_or_an_empty_budget),
+        cmocka_unit_test(heap_that_the_device_cannot_have_is_smaller),
         cmocka_unit_test(creation_survives_every_allocation_failure),
         cmocka_unit_test(adding_and_streaming_survive_every_allocation_failure),
         cmocka_unit_test(wrong_arguments_are_refused_and_change_nothing),
