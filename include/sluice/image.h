@@ -73,11 +73,17 @@ typedef enum SluiceFormat {
     SLUICE_FORMAT_ASTC_4x4_UNORM_BLOCK = 43, ///< LDR
     SLUICE_FORMAT_ASTC_4x4_SRGB_BLOCK = 44,
     SLUICE_FORMAT_ASTC_8x8_UNORM_BLOCK = 45, ///< LDR, blocks of 8x8 texels
-    SLUICE_FORMAT_ASTC_8x8_SRGB_BLOCK = 46
+    SLUICE_FORMAT_ASTC_8x8_SRGB_BLOCK = 46,
+    SLUICE_FORMAT_R8_SNORM = 47,
+    SLUICE_FORMAT_R8G8_SNORM = 48,
+    SLUICE_FORMAT_R8G8B8A8_SNORM = 49,
+    SLUICE_FORMAT_R16_SNORM = 50,
+    SLUICE_FORMAT_R16G16_SNORM = 51,
+    SLUICE_FORMAT_R16G16B16A16_SNORM = 52
 } SluiceFormat;
 
 /** Number of enumerators. Every format is below it. */
-#define SLUICE_FORMAT_COUNT 47
+#define SLUICE_FORMAT_COUNT 53
 
 /** Memory layout of a format: blocks of texels. Blocks of uncompressed formats are 1x1. */
 typedef struct SluiceFormatInfo {
@@ -272,7 +278,7 @@ typedef struct SluiceProceduralImage {
  *
  * `pInfo->pName` is copied. A mipLevelCount of 0 means the full chain. Colors are converted to the
  * format like those of OpenEXR files (exr.h):
- * - Half floats saturate. 8, 10 and 16 bit integers clamp and round. sRGB formats encode.
+ * - Half floats saturate. UNORM and SNORM formats clamp and round. sRGB formats encode.
  * - NaN becomes 0, except in 32-bit float formats.
  * - Unsigned float formats round to nearest, ties to even, and saturate. E5B9G9R9 rounds ties up,
  *   as its specification says. Negative values become 0.

@@ -21,6 +21,7 @@ static SluiceFormat d3d_format(uint32_t number)
 {
     switch (number) {
     case 36: return SLUICE_FORMAT_R16G16B16A16_UNORM;
+    case 110: return SLUICE_FORMAT_R16G16B16A16_SNORM;
     case 111: return SLUICE_FORMAT_R16_SFLOAT;
     case 112: return SLUICE_FORMAT_R16G16_SFLOAT;
     case 113: return SLUICE_FORMAT_R16G16B16A16_SFLOAT;
@@ -94,18 +95,24 @@ SluiceFormat slc_dxgi_format(uint32_t number, unsigned *changes)
     case 2: return SLUICE_FORMAT_R32G32B32A32_SFLOAT;
     case 10: return SLUICE_FORMAT_R16G16B16A16_SFLOAT;
     case 11: return SLUICE_FORMAT_R16G16B16A16_UNORM;
+    case 13: return SLUICE_FORMAT_R16G16B16A16_SNORM;
     case 16: return SLUICE_FORMAT_R32G32_SFLOAT;
     case 24: return SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32;
     case 26: return SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32;
     case 28: return SLUICE_FORMAT_R8G8B8A8_UNORM;
     case 29: return SLUICE_FORMAT_R8G8B8A8_SRGB;
+    case 31: return SLUICE_FORMAT_R8G8B8A8_SNORM;
     case 34: return SLUICE_FORMAT_R16G16_SFLOAT;
     case 35: return SLUICE_FORMAT_R16G16_UNORM;
+    case 37: return SLUICE_FORMAT_R16G16_SNORM;
     case 41: return SLUICE_FORMAT_R32_SFLOAT;
     case 49: return SLUICE_FORMAT_R8G8_UNORM;
+    case 51: return SLUICE_FORMAT_R8G8_SNORM;
     case 54: return SLUICE_FORMAT_R16_SFLOAT;
     case 56: return SLUICE_FORMAT_R16_UNORM;
+    case 58: return SLUICE_FORMAT_R16_SNORM;
     case 61: return SLUICE_FORMAT_R8_UNORM;
+    case 63: return SLUICE_FORMAT_R8_SNORM;
     case 67: return SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32;
     case 71: return SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK;
     case 72: return SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK;

@@ -31,17 +31,23 @@ static SluiceFormat vulkan_format(uint32_t number, unsigned *changes)
 {
     switch (number) {
     case 9: return SLUICE_FORMAT_R8_UNORM;
+    case 10: return SLUICE_FORMAT_R8_SNORM;
     case 16: return SLUICE_FORMAT_R8G8_UNORM;
+    case 17: return SLUICE_FORMAT_R8G8_SNORM;
     case 37: return SLUICE_FORMAT_R8G8B8A8_UNORM;
+    case 38: return SLUICE_FORMAT_R8G8B8A8_SNORM;
     case 43: return SLUICE_FORMAT_R8G8B8A8_SRGB;
     case 44: *changes = SLC_SWAP_RED_BLUE; return SLUICE_FORMAT_R8G8B8A8_UNORM;
     case 50: *changes = SLC_SWAP_RED_BLUE; return SLUICE_FORMAT_R8G8B8A8_SRGB;
     case 64: return SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32;
     case 70: return SLUICE_FORMAT_R16_UNORM;
+    case 71: return SLUICE_FORMAT_R16_SNORM;
     case 76: return SLUICE_FORMAT_R16_SFLOAT;
     case 77: return SLUICE_FORMAT_R16G16_UNORM;
+    case 78: return SLUICE_FORMAT_R16G16_SNORM;
     case 83: return SLUICE_FORMAT_R16G16_SFLOAT;
     case 91: return SLUICE_FORMAT_R16G16B16A16_UNORM;
+    case 92: return SLUICE_FORMAT_R16G16B16A16_SNORM;
     case 97: return SLUICE_FORMAT_R16G16B16A16_SFLOAT;
     case 100: return SLUICE_FORMAT_R32_SFLOAT;
     case 103: return SLUICE_FORMAT_R32G32_SFLOAT;

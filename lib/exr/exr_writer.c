@@ -138,8 +138,7 @@ static void convert_texels(SluiceFormat format, const char *texels, uint16_t (*h
 {
     enum { BATCH = 64 };
     uint32_t texel_size = sluiceGetFormatTexelSize(format);
-    uint32_t channels = slc_format_channel_count(format);
-    if (texel_size == 2 * channels && !slc_format_is_unorm16(format)) {
+    if (slc_format_is_half(format)) {
         for (uint32_t i = 0; i < count; i++)
             memcpy(halves[i], texels + (size_t)i * texel_size, texel_size);
         return;

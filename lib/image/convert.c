@@ -6,6 +6,7 @@
 #include "image/srgb.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 uint32_t slc_format_channel_count(SluiceFormat format)
@@ -44,6 +45,21 @@ static void unorm16_from_rgba(uint32_t channels, const float *rgba, char *out, s
         for (uint32_t c = 0; c < channels; c++, out += 2) {
             uint16_t word = (uint16_t)unorm_from_float(rgba[4 * i + c], 65535);
             memcpy(out, &word, 2);
+        }
+}
+
+/* SNORM of 1 or 2 bytes: -1 is -127 or -32767. */
+static void snorm_from_rgba(uint32_t channels, uint32_t size, const float *rgba, char *out,
+                            size_t count)
+{
+    const double max = size == 1 ? 127 : 32767;
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t c = 0; c < channels; c++, out += size) {
+            float value = rgba[4 * i + c];
+            double clamped = isnan(value) ? 0.0 : fmin(fmax(value, -1.0), 1.0);
+            int16_t word = (int16_t)lround(clamped * max);
+            int8_t byte = (int8_t)word;
+            memcpy(out, size == 1 ? (const void *)&byte : &word, size);
         }
 }
 
@@ -102,6 +118,14 @@ void slc_texels_from_rgba(SluiceFormat format, const float *rgba, void *texels, 
     case SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32:
     case SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32:
     case SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32: words_from_rgba(format, rgba, texels, count); return;
+    case SLUICE_FORMAT_R8_SNORM:
+    case SLUICE_FORMAT_R8G8_SNORM:
+    case SLUICE_FORMAT_R8G8B8A8_SNORM: snorm_from_rgba(channels, 1, rgba, texels, count); return;
+    case SLUICE_FORMAT_R16_SNORM:
+    case SLUICE_FORMAT_R16G16_SNORM:
+    case SLUICE_FORMAT_R16G16B16A16_SNORM:
+        snorm_from_rgba(channels, 2, rgba, texels, count);
+        return;
     default: assert(!"a format without texels"); /* sources refuse it */
     }
 }
@@ -150,6 +174,22 @@ static void rgba_from_unorm16(uint32_t channels, const char *in, float *rgba, si
             uint16_t word;
             memcpy(&word, in, 2);
             rgba[c] = (float)word / 65535.0f;
+        }
+    }
+}
+
+/* The least value, -128 or -32768, is -1 too. */
+static void rgba_from_snorm(uint32_t channels, uint32_t size, const char *in, float *rgba,
+                            size_t count)
+{
+    const float max = size == 1 ? 127.0f : 32767.0f;
+    for (size_t i = 0; i < count; i++, rgba += 4) {
+        set_defaults(rgba);
+        for (uint32_t c = 0; c < channels; c++, in += size) {
+            int8_t byte;
+            int16_t word;
+            memcpy(size == 1 ? (void *)&byte : &word, in, size);
+            rgba[c] = fmaxf((float)(size == 1 ? byte : word) / max, -1.0f);
         }
     }
 }
@@ -207,6 +247,14 @@ void slc_texels_to_rgba(SluiceFormat format, const void *texels, float *rgba, si
     case SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32:
     case SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32:
     case SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32: rgba_from_words(format, texels, rgba, count); return;
+    case SLUICE_FORMAT_R8_SNORM:
+    case SLUICE_FORMAT_R8G8_SNORM:
+    case SLUICE_FORMAT_R8G8B8A8_SNORM: rgba_from_snorm(channels, 1, texels, rgba, count); return;
+    case SLUICE_FORMAT_R16_SNORM:
+    case SLUICE_FORMAT_R16G16_SNORM:
+    case SLUICE_FORMAT_R16G16B16A16_SNORM:
+        rgba_from_snorm(channels, 2, texels, rgba, count);
+        return;
     default: assert(!"a format without texels");
     }
 }

@@ -1,9 +1,9 @@
 /**
  * Texels of any format that is not compressed from and to linear RGBA floats.
  *
- * Halves saturate at +-65504. Integers of 8, 10 and 16 bits are clamped to [0, 1] and rounded to
- * nearest; sRGB formats encode R, G and B. small_float.h has the rules of small floats. NaN becomes
- * 0 in all of these. 32-bit floats are stored unchanged.
+ * Halves saturate at +-65504. UNORM is clamped to [0, 1] and SNORM to [-1, 1], and both are rounded
+ * to nearest; sRGB formats encode R, G and B. small_float.h has the rules of small floats. NaN
+ * becomes 0 in all of these. 32-bit floats are stored unchanged.
  */
 #ifndef SLC_IMAGE_CONVERT_H
 #define SLC_IMAGE_CONVERT_H

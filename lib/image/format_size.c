@@ -61,6 +61,12 @@ static const struct format formats[SLUICE_FORMAT_COUNT] = {
     BLOCKS_OF(ASTC_4x4_SRGB, 4, 16, 4),
     BLOCKS_OF(ASTC_8x8_UNORM, 8, 16, 4),
     BLOCKS_OF(ASTC_8x8_SRGB, 8, 16, 4),
+    TEXELS(R8_SNORM, 1, 1),
+    TEXELS(R8G8_SNORM, 2, 2),
+    TEXELS(R8G8B8A8_SNORM, 4, 4),
+    TEXELS(R16_SNORM, 2, 1),
+    TEXELS(R16G16_SNORM, 4, 2),
+    TEXELS(R16G16B16A16_SNORM, 8, 4),
 };
 
 /* Pairs of formats that differ only in the transfer function: linear, sRGB. */

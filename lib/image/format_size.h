@@ -38,6 +38,19 @@ static inline bool slc_format_is_unorm16(SluiceFormat format)
            format == SLUICE_FORMAT_R16G16B16A16_UNORM;
 }
 
+/** Whether channels are SNORM, of 8 or 16 bits. Blocks are not. */
+static inline bool slc_format_is_snorm(SluiceFormat format)
+{
+    return format >= SLUICE_FORMAT_R8_SNORM && format <= SLUICE_FORMAT_R16G16B16A16_SNORM;
+}
+
+/** Whether channels are halves. */
+static inline bool slc_format_is_half(SluiceFormat format)
+{
+    return format == SLUICE_FORMAT_R16_SFLOAT || format == SLUICE_FORMAT_R16G16_SFLOAT ||
+           format == SLUICE_FORMAT_R16G16B16A16_SFLOAT;
+}
+
 /** Returns the sRGB or the linear format with the same bytes; `format` itself if there is none. */
 SluiceFormat slc_format_twin(SluiceFormat format, bool srgb);
 bool slc_format_has_srgb_twin(SluiceFormat format);

@@ -49,6 +49,12 @@ static const VkFormat vk_formats[SLUICE_FORMAT_COUNT] = {
     SAME(ASTC_4x4_SRGB_BLOCK),
     SAME(ASTC_8x8_UNORM_BLOCK),
     SAME(ASTC_8x8_SRGB_BLOCK),
+    SAME(R8_SNORM),
+    SAME(R8G8_SNORM),
+    SAME(R8G8B8A8_SNORM),
+    SAME(R16_SNORM),
+    SAME(R16G16_SNORM),
+    SAME(R16G16B16A16_SNORM),
 };
 
 VkFormat slc_vk_format(SluiceFormat format)

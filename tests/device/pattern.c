@@ -19,7 +19,8 @@ void pattern_texel(enum pattern_kind kind, uint32_t level, uint32_t x, uint32_t 
     for (uint32_t channel = 0; channel < 4; channel++) {
         uint32_t value =
             kind == PATTERN_LEVEL ? mix(level, x / 64, y / 64, channel) : mix(level, x, y, channel);
-        rgba[channel] = (float)(value & 255) / 255.0f;
+        rgba[channel] = kind == PATTERN_SIGNED_HASH ? (float)(value % 255) / 127.0f - 1.0f
+                                                    : (float)(value & 255) / 255.0f;
     }
     if (kind == PATTERN_LEVEL) {
         rgba[0] = (float)(level + 1) / 16.0f;
@@ -45,8 +46,8 @@ static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t w
         pattern_texel(*(enum pattern_kind *)user, level, x, y, rgba);
 }
 
-static enum pattern_kind kinds[] = {PATTERN_LEVEL, PATTERN_WAVES,
-                                    PATTERN_HASH}; /* never written to */
+static enum pattern_kind kinds[] = {PATTERN_LEVEL, PATTERN_WAVES, PATTERN_HASH,
+                                    PATTERN_SIGNED_HASH}; /* never written to */
 
 struct SluiceImageSource *pattern_source(enum pattern_kind kind, uint32_t width, uint32_t height,
                                          SluiceFormat format)

@@ -9,6 +9,7 @@ enum pattern_kind {
                    ///< the 64-texel block; alpha 1
     PATTERN_WAVES, ///< smooth, and about the same picture in every level
     PATTERN_HASH,  ///< all channels: hashes of level and texel, k / 255
+    PATTERN_SIGNED_HASH ///< all channels: hashes of level and texel, k / 127 - 1
 };
 
 struct SluiceImageSource *pattern_source(enum pattern_kind kind, uint32_t width, uint32_t height,

@@ -23,7 +23,7 @@ static bool is_usable(SluiceFormat format)
 static bool is_decoded(SluiceFormat format)
 {
     return format != SLUICE_FORMAT_BC6H_UFLOAT_BLOCK && format != SLUICE_FORMAT_BC6H_SFLOAT_BLOCK &&
-           format < SLUICE_FORMAT_ETC2_R8G8B8_UNORM_BLOCK;
+           (format < SLUICE_FORMAT_ETC2_R8G8B8_UNORM_BLOCK || format >= SLUICE_FORMAT_R8_SNORM);
 }
 
 static bool is_signed(SluiceFormat format)
@@ -39,9 +39,10 @@ static bool is_srgb(SluiceFormat format)
 static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
 {
-    (void)user, (void)width, (void)height;
+    const float *low = user;
+    (void)width, (void)height;
     for (uint32_t i = 0; i < 4; i++)
-        rgba[i] = (float)((x * (7 + i) + y * (13 - i) + level * 31) % 64) / 64;
+        rgba[i] = *low + (1 - *low) * (float)((x * (7 + i) + y * (13 - i) + level * 31) % 64) / 64;
 }
 
 static SluiceImageSource *create_source(SluiceFormat format)
@@ -49,7 +50,9 @@ static SluiceImageSource *create_source(SluiceFormat format)
     SluiceImageSource *source;
     if (sluiceGetFormatTexelSize(format) == 0)
         return block_source(WIDTH, HEIGHT, format);
-    const SluiceProceduralImage image = {NULL, texel};
+    static float lowest[] = {0, -1};
+    bool has_sign = strstr(sluiceGetFormatName(format), "SNORM") != NULL;
+    const SluiceProceduralImage image = {&lowest[has_sign], texel};
     const SluiceImageInfo info = {sizeof info, WIDTH,  HEIGHT,
                                   0,           format, sluiceGetFormatName(format)};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));

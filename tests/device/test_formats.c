@@ -9,6 +9,7 @@
 #include "support/test.h"
 
 #include <math.h>
+#include <string.h>
 
 struct fetch {
     struct scene *scene;
@@ -109,12 +110,18 @@ static bool is_compared(struct harness *h, SluiceFormat format)
     return is_decoded && is_sampled(h, format);
 }
 
+static SluiceImageSource *texel_source(uint32_t width, uint32_t height, SluiceFormat format)
+{
+    bool is_signed = strstr(sluiceGetFormatName(format), "SNORM") != NULL;
+    return pattern_source(is_signed ? PATTERN_SIGNED_HASH : PATTERN_HASH, width, height, format);
+}
+
 static void add_format(struct scene *scene, SluiceFormat format, const uint32_t (*sizes)[2],
                        uint32_t size_count)
 {
     for (uint32_t s = 0; s < size_count; s++)
         scene_add(scene, sluiceGetFormatTexelSize(format)
-                             ? pattern_source(PATTERN_HASH, sizes[s][0], sizes[s][1], format)
+                             ? texel_source(sizes[s][0], sizes[s][1], format)
                              : block_source(sizes[s][0], sizes[s][1], format));
 }
 

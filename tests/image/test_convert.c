@@ -22,6 +22,12 @@ static const SluiceFormat all_formats[] = {
     SLUICE_FORMAT_R16_UNORM,
     SLUICE_FORMAT_R16G16_UNORM,
     SLUICE_FORMAT_R16G16B16A16_UNORM,
+    SLUICE_FORMAT_R8_SNORM,
+    SLUICE_FORMAT_R8G8_SNORM,
+    SLUICE_FORMAT_R8G8B8A8_SNORM,
+    SLUICE_FORMAT_R16_SNORM,
+    SLUICE_FORMAT_R16G16_SNORM,
+    SLUICE_FORMAT_R16G16B16A16_SNORM,
 };
 
 static long double encode(long double x)
@@ -95,6 +101,42 @@ static void words_of_16_bits_come_back_exactly(void **state)
     }
 }
 
+/* Vulkan specification, "Conversion from Normalized Fixed-Point to Floating-Point". */
+static void signed_words_come_back_exactly(void **state)
+{
+    (void)state;
+    for (int word = -32768; word <= 32767; word++) {
+        int16_t given[4] = {(int16_t)word, 32767, -32768, 0}, back[4];
+        float rgba[4];
+        slc_texels_to_rgba(SLUICE_FORMAT_R16G16B16A16_SNORM, given, rgba, 1);
+        assert_true(fabs((double)rgba[0] - fmax(word / 32767.0, -1)) < 1e-7);
+        assert_true(rgba[1] == 1 && rgba[2] == -1 && rgba[3] == 0);
+        slc_texels_from_rgba(SLUICE_FORMAT_R16G16B16A16_SNORM, rgba, back, 1);
+        assert_int_equal(back[0], word == -32768 ? -32767 : word);
+    }
+    for (int byte = -128; byte <= 127; byte++) {
+        int8_t given[2] = {(int8_t)byte, -128}, back[2];
+        float rgba[4];
+        slc_texels_to_rgba(SLUICE_FORMAT_R8G8_SNORM, given, rgba, 1);
+        assert_true(fabs((double)rgba[0] - fmax(byte / 127.0, -1)) < 1e-7);
+        assert_true(rgba[1] == -1 && rgba[2] == 0 && rgba[3] == 1);
+        slc_texels_from_rgba(SLUICE_FORMAT_R8G8_SNORM, rgba, back, 1);
+        assert_int_equal(back[0], byte == -128 ? -127 : byte);
+    }
+}
+
+static void snorm_rounds_to_the_nearest_step_and_clamps(void **state)
+{
+    (void)state;
+    const float given[][4] = {{NAN, INFINITY, -INFINITY, -0.0f},
+                              {1.5f, -1.5f, 0.499f / 127, 0.501f / 127},
+                              {-0.499f / 127, -0.501f / 127, 1, -1}};
+    const int8_t expected[][4] = {{0, 127, -127, 0}, {127, -127, 0, 1}, {0, -1, 127, -127}};
+    int8_t bytes[3][4];
+    slc_texels_from_rgba(SLUICE_FORMAT_R8G8B8A8_SNORM, given[0], bytes, 3);
+    assert_memory_equal(bytes, expected, sizeof expected);
+}
+
 /* What a format can hold comes back; what it lacks is black and opaque. */
 static void texels_survive_a_round_trip_in_every_format(void **state)
 {
@@ -145,6 +187,8 @@ int main(void)
         cmocka_unit_test(srgb_encodes_to_the_nearest_value),
         cmocka_unit_test(unorm_rounds_to_the_nearest_step_and_clamps),
         cmocka_unit_test(words_of_16_bits_come_back_exactly),
+        cmocka_unit_test(signed_words_come_back_exactly),
+        cmocka_unit_test(snorm_rounds_to_the_nearest_step_and_clamps),
         cmocka_unit_test(texels_survive_a_round_trip_in_every_format),
         cmocka_unit_test(infinities_and_nan_follow_the_header),
     };

@@ -63,6 +63,12 @@ static const struct expected all[] = {
     EXPECT(ASTC_4x4_SRGB_BLOCK, 8, 256, 256, 4),
     EXPECT(ASTC_8x8_UNORM_BLOCK, 2, 512, 512, 4),
     EXPECT(ASTC_8x8_SRGB_BLOCK, 2, 512, 512, 4),
+    EXPECT(R8_SNORM, 8, 256, 256, 1),
+    EXPECT(R8G8_SNORM, 16, 256, 128, 2),
+    EXPECT(R8G8B8A8_SNORM, 32, 128, 128, 4),
+    EXPECT(R16_SNORM, 16, 256, 128, 1),
+    EXPECT(R16G16_SNORM, 32, 128, 128, 2),
+    EXPECT(R16G16B16A16_SNORM, 64, 128, 64, 4),
 };
 #define COUNT (sizeof all / sizeof all[0])
 

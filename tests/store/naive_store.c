@@ -35,12 +35,14 @@ static void describe_format(struct naive_store *store)
         0, 1, 4, 4, 2,  4,  8,  4,  8,  16, 2,  4,  4,  4,          /* to E5B9G9R9 */
         8, 8, 8, 8, 16, 16, 16, 16, 8,  8,  16, 16, 16, 16, 16, 16, /* BC1 to BC7 */
         2, 4, 8,                                                    /* R16, R16G16, R16G16B16A16 */
-        8, 8, 8, 8, 16, 16, 8,  8,  16, 16, 16, 16, 16, 16          /* ETC2, EAC, ASTC */
+        8, 8, 8, 8, 16, 16, 8,  8,  16, 16, 16, 16, 16, 16,         /* ETC2, EAC, ASTC */
+        1, 2, 4, 2, 4,  8                                           /* SNORM */
     };
     store->block_size = store->format < SLUICE_FORMAT_COUNT ? sizes[store->format] : 0;
     bool is_plain = store->format < SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK ||
                     (store->format >= SLUICE_FORMAT_R16_UNORM &&
-                     store->format <= SLUICE_FORMAT_R16G16B16A16_UNORM);
+                     store->format <= SLUICE_FORMAT_R16G16B16A16_UNORM) ||
+                    store->format >= SLUICE_FORMAT_R8_SNORM;
     store->block_extent = is_plain                                              ? 1
                           : store->format >= SLUICE_FORMAT_ASTC_8x8_UNORM_BLOCK ? 8
                                                                                 : 4;
