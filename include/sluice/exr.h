@@ -49,7 +49,7 @@ typedef struct SluiceExrImageSourceCreateInfo {
      * format by the widest channel of the file: R16_SFLOAT or R32_SFLOAT for one channel,
      * R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT for more.
      *
-     * Half formats saturate at +-65504. 8-bit formats clamp to [0, 1] and sRGB formats encode; NaN
+     * Half formats saturate at +-65504. UNORM formats clamp to [0, 1] and sRGB formats encode; NaN
      * becomes 0. Float formats keep infinities and NaN of the file; half formats do if the file's
      * channels are half. Mip levels built here treat NaN as 0.
      */
@@ -105,11 +105,11 @@ typedef struct SluiceExrImageSourceCreateInfo {
  * Returns SLUICE_NOT_READY, without a source, while the process has too few file descriptors.
  * Sluice leaves the last 16 below the soft limit to others. Close files and call again.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown, compressed and
- *         PACK32 formats; SLUICE_ERROR_FILE_NOT_FOUND, SLUICE_ERROR_IO, SLUICE_ERROR_CORRUPT_DATA;
- *         SLUICE_ERROR_UNSUPPORTED for deep data, subsampling, luminance-chroma, more than 1024
- *         channels, files with only layers or other channel names, and multi-part files whose first
- *         part is unsupported; SLUICE_ERROR_LIMIT_EXCEEDED if more memory is needed than
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown, compressed, PACK32
+ *         and SNORM formats; SLUICE_ERROR_FILE_NOT_FOUND, SLUICE_ERROR_IO,
+ * SLUICE_ERROR_CORRUPT_DATA; SLUICE_ERROR_UNSUPPORTED for deep data, subsampling, luminance-chroma,
+ * more than 1024 channels, files with only layers or other channel names, and multi-part files
+ * whose first part is unsupported; SLUICE_ERROR_LIMIT_EXCEEDED if more memory is needed than
  *         maxMemorySize or memoryBudget allow; SLUICE_ERROR_OUT_OF_HOST_MEMORY. The log message
  *         names the file, the value and a remedy.
  * Thread safety: any thread.

@@ -2,6 +2,7 @@
 
 #include "base/checked.h"
 #include "image/convert.h"
+#include "image/format_size.h"
 #include "image/half.h"
 #include "image/srgb.h"
 
@@ -73,19 +74,44 @@ static void load_span(exr_pixel_type_t type, const unsigned char *source, float 
     }
 }
 
-static void store_span(uint32_t component_size, bool encode, const float *values, char *result,
-                       size_t stride, uint32_t count)
+/* How a component is stored. */
+enum encoding { ENCODE_FLOAT, ENCODE_HALF, ENCODE_UNORM8, ENCODE_UNORM16, ENCODE_SRGB };
+
+/* Of component `c`: alpha is linear. */
+static enum encoding encoding_of(SluiceFormat format, uint32_t c)
+{
+    if (format == SLUICE_FORMAT_R8G8B8A8_SRGB)
+        return c < 3 ? ENCODE_SRGB : ENCODE_UNORM8;
+    if (slc_format_is_unorm16(format))
+        return ENCODE_UNORM16;
+    if (slc_format_is_half(format))
+        return ENCODE_HALF;
+    return sluiceGetFormatTexelSize(format) / slc_format_channel_count(format) == 1 ? ENCODE_UNORM8
+                                                                                    : ENCODE_FLOAT;
+}
+
+static void store_span(enum encoding encoding, const float *values, char *result, size_t stride,
+                       uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++, result += stride) {
-        if (component_size == 4) {
-            memcpy(result, &values[i], 4);
-        } else if (component_size == 2) {
-            uint16_t half = slc_half_from_float(values[i]);
-            memcpy(result, &half, 2);
-        } else {
-            uint8_t step =
-                encode ? slc_srgb_from_linear(values[i]) : slc_unorm8_from_float(values[i]);
+        uint16_t word;
+        uint8_t step;
+        switch (encoding) {
+        case ENCODE_FLOAT: memcpy(result, &values[i], 4); break;
+        case ENCODE_HALF:
+            word = slc_half_from_float(values[i]);
+            memcpy(result, &word, 2);
+            break;
+        case ENCODE_UNORM16:
+            word = slc_unorm16_from_float(values[i]);
+            memcpy(result, &word, 2);
+            break;
+        case ENCODE_UNORM8:
+        case ENCODE_SRGB:
+            step = encoding == ENCODE_SRGB ? slc_srgb_from_linear(values[i])
+                                           : slc_unorm8_from_float(values[i]);
             memcpy(result, &step, 1);
+            break;
         }
     }
 }
@@ -102,7 +128,7 @@ static void copy_half_span(const unsigned char *source, char *result, size_t str
 /* How one component of the target is filled. */
 struct component {
     uint32_t size;
-    bool encode; ///< to sRGB
+    enum encoding encoding;
     size_t stride;
 };
 
@@ -111,14 +137,14 @@ static void convert_span(exr_pixel_type_t type, const unsigned char *source,
 {
     float values[BATCH];
     uint32_t size = type == EXR_PIXEL_HALF ? 2 : 4;
-    if (type == EXR_PIXEL_HALF && component->size == 2) {
+    if (type == EXR_PIXEL_HALF && component->encoding == ENCODE_HALF) {
         copy_half_span(source, result, component->stride, count);
         return;
     }
     for (uint32_t done = 0; done < count; done += BATCH) {
         uint32_t step = slc_min_u32(BATCH, count - done);
         load_span(type, source + (size_t)done * size, values, step);
-        store_span(component->size, component->encode, values, result + done * component->stride,
+        store_span(component->encoding, values, result + done * component->stride,
                    component->stride, step);
     }
 }
@@ -126,7 +152,7 @@ static void convert_span(exr_pixel_type_t type, const unsigned char *source,
 static void fill_span(float value, const struct component *component, char *result, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++, result += component->stride)
-        store_span(component->size, component->encode, &value, result, component->stride, 1);
+        store_span(component->encoding, &value, result, component->stride, 1);
 }
 
 /* The channel that a component comes from, -1 for none. One to one, names do not matter. */
@@ -169,7 +195,7 @@ static void deliver_colors(struct slc_exr_file *file, const unsigned char *row,
     uint32_t component_count = slc_min_u32(3, slc_format_channel_count(target->format));
     size_t texel_size = sluiceGetFormatTexelSize(target->format);
     uint32_t size = (uint32_t)texel_size / slc_format_channel_count(target->format);
-    bool encode = target->format == SLUICE_FORMAT_R8G8B8A8_SRGB;
+    enum encoding encoding = encoding_of(target->format, 0);
     for (uint32_t done = 0; done < shared->width; done += BATCH, result += BATCH * texel_size) {
         float colors[3 * BATCH], values[BATCH];
         uint32_t count = slc_min_u32(BATCH, shared->width - done);
@@ -178,10 +204,10 @@ static void deliver_colors(struct slc_exr_file *file, const unsigned char *row,
         for (uint32_t c = 0; c < component_count; c++) {
             for (uint32_t i = 0; i < count; i++)
                 values[i] = colors[3 * i + c];
-            if (size == 2 && file->channels[file->rgba[c]].type == EXR_PIXEL_HALF)
+            if (encoding == ENCODE_HALF && file->channels[file->rgba[c]].type == EXR_PIXEL_HALF)
                 store_kept_halves(values, result + c * size, texel_size, count);
             else
-                store_span(size, encode, values, result + c * size, texel_size, count);
+                store_span(encoding, values, result + c * size, texel_size, count);
         }
     }
 }
@@ -193,11 +219,11 @@ static void deliver_row(struct slc_exr_file *file, const unsigned char *row,
 {
     uint32_t component_count = slc_format_channel_count(target->format);
     size_t texel_size = sluiceGetFormatTexelSize(target->format);
-    struct component component = {(uint32_t)texel_size / component_count, false, texel_size};
+    struct component component = {(uint32_t)texel_size / component_count, ENCODE_FLOAT, texel_size};
     if (file->converts)
         deliver_colors(file, row, chunk, shared, target, result);
     for (uint32_t c = 0; c < component_count; c++, result += component.size) {
-        component.encode = target->format == SLUICE_FORMAT_R8G8B8A8_SRGB && c < 3;
+        component.encoding = encoding_of(target->format, c);
         if (file->converts && c < 3)
             continue;
         int32_t index = find_channel(file, component_count, c);

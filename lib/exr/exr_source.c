@@ -268,7 +268,7 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
         return result;
     if (info.format != SLUICE_FORMAT_UNDEFINED &&
         (sluiceGetFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format) ||
-         slc_format_is_unorm16(info.format) || slc_format_is_snorm(info.format)))
+         slc_format_is_snorm(info.format)))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     struct exr_source *source = slc_calloc(&cb, 1, sizeof *source);

@@ -43,7 +43,7 @@ static void unorm16_from_rgba(uint32_t channels, const float *rgba, char *out, s
 {
     for (size_t i = 0; i < count; i++)
         for (uint32_t c = 0; c < channels; c++, out += 2) {
-            uint16_t word = (uint16_t)unorm_from_float(rgba[4 * i + c], 65535);
+            uint16_t word = slc_unorm16_from_float(rgba[4 * i + c]);
             memcpy(out, &word, 2);
         }
 }

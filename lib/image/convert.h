@@ -22,6 +22,14 @@ static inline uint8_t slc_unorm8_from_float(float value)
     return value >= 1.0f ? 255 : (uint8_t)((double)value * 255.0 + 0.5);
 }
 
+/** Nearest of the 65536 steps; clamps to [0, 1], NaN becomes 0. */
+static inline uint16_t slc_unorm16_from_float(float value)
+{
+    if (!(value > 0.0f))
+        return 0;
+    return value >= 1.0f ? 65535 : (uint16_t)((double)value * 65535.0 + 0.5);
+}
+
 /** `count` texels of `format` from [count][4] floats; channels that the format lacks are dropped.
  */
 void slc_texels_from_rgba(SluiceFormat format, const float *rgba, void *texels, size_t count);

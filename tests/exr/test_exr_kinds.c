@@ -182,7 +182,8 @@ static void every_texel_of_every_level_is_what_was_written(void **state)
         SLUICE_FORMAT_UNDEFINED,           SLUICE_FORMAT_R8_UNORM,   SLUICE_FORMAT_R8G8B8A8_UNORM,
         SLUICE_FORMAT_R8G8B8A8_SRGB,       SLUICE_FORMAT_R16_SFLOAT, SLUICE_FORMAT_R16G16_SFLOAT,
         SLUICE_FORMAT_R16G16B16A16_SFLOAT, SLUICE_FORMAT_R32_SFLOAT, SLUICE_FORMAT_R32G32_SFLOAT,
-        SLUICE_FORMAT_R32G32B32A32_SFLOAT};
+        SLUICE_FORMAT_R32G32B32A32_SFLOAT, SLUICE_FORMAT_R16_UNORM,  SLUICE_FORMAT_R16G16_UNORM,
+        SLUICE_FORMAT_R16G16B16A16_UNORM};
     for (int i = 0; i < KIND_COUNT; i++)
         for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++) {
             if (kinds[i].result != SLUICE_SUCCESS || kinds[i].is_lossy)
@@ -394,9 +395,14 @@ static void what_is_no_file_gets_its_own_result(void **state)
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceCreateExrImageSource(NULL, &source), SLUICE_ERROR_NULL_POINTER);
     create = (SluiceExrImageSourceCreateInfo){.structSize = sizeof(SluiceExrImageSourceCreateInfo),
-                                              .pPath = "x",
-                                              .format = (SluiceFormat)77};
-    CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_INVALID_ARGUMENT);
+                                              .pPath = "x"};
+    const SluiceFormat wrong[] = {SLUICE_FORMAT_COUNT, SLUICE_FORMAT_BC7_UNORM_BLOCK,
+                                  SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32, SLUICE_FORMAT_R8G8_SNORM,
+                                  SLUICE_FORMAT_R16_SNORM};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        create.format = wrong[i];
+        CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_INVALID_ARGUMENT);
+    }
     assert_null(source);
 }
 
