@@ -71,7 +71,7 @@ static SluiceResult fail_tile(SluiceVulkanStreamer *s, uint32_t index, SluiceRes
     return slc_streamer_check(s, result, "sluiceReportFailedTiles");
 }
 
-static SluiceResult fail_packed(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
+static SluiceResult fail_packed(SluiceVulkanStreamer *s, uint32_t index)
 {
     uint32_t at = s->units[index].texture;
     struct slc_texture *texture = &s->textures[at];
@@ -79,19 +79,30 @@ static SluiceResult fail_packed(SluiceVulkanStreamer *s, uint32_t index, SluiceR
         discard(s, at, &texture->packed_tiles[i]);
     s->units[index].next = SLC_NONE;
     texture->packed_first_unit = index;
-    texture->packed_result = answer;
     return slc_packed_fail(s, at);
 }
 
-/* Moves a unit on as the producer's answer says: recorded, asked again later, or failed. */
+static bool is_removed(const SluiceVulkanStreamer *s, uint32_t index)
+{
+    const struct slc_unit *unit = &s->units[index];
+    return unit->dropped || s->textures[unit->texture].state == SLC_TEXTURE_REMOVED;
+}
+
+static void await_frame(SluiceVulkanStreamer *s, uint32_t index)
+{
+    s->units[index].state = SLC_UNIT_UPLOADED;
+    s->units[index].value = s->frame;
+    slc_unit_list_append(s, &s->produced, index);
+}
+
+/* Moves a unit on as the producer's answer says: recorded, asked again later, or failed. A mip tail
+ * that failed keeps its pages until the frame is complete, because finer levels may be recorded. */
 static SluiceResult answered(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
 {
     struct slc_unit *unit = &s->units[index];
     uint32_t timeout = s->textures[unit->texture].producer.timeout_frames;
-    if (answer == SLUICE_SUCCESS) {
-        unit->state = SLC_UNIT_UPLOADED;
-        unit->value = s->frame;
-        slc_unit_list_append(s, &s->produced, index);
+    if (answer == SLUICE_SUCCESS || is_removed(s, index)) {
+        await_frame(s, index);
         return SLUICE_SUCCESS;
     }
     if (unit->asked_frame == 0)
@@ -101,8 +112,11 @@ static SluiceResult answered(SluiceVulkanStreamer *s, uint32_t index, SluiceResu
         slc_unit_list_append(s, &s->unproduced, index);
         return SLUICE_SUCCESS;
     }
-    return unit->packed_unit == SLC_NONE ? fail_tile(s, index, answer)
-                                         : fail_packed(s, index, answer);
+    if (unit->packed_unit == SLC_NONE)
+        return fail_tile(s, index, answer);
+    s->textures[unit->texture].packed_result = answer;
+    await_frame(s, index);
+    return SLUICE_SUCCESS;
 }
 
 static void barrier(const SluiceVulkanStreamer *s, VkCommandBuffer commands, bool before)
@@ -195,6 +209,12 @@ static uint64_t batch_key(const SluiceVulkanStreamer *s, uint32_t index)
     return (uint64_t)unit->texture << 32 | part;
 }
 
+/* Returns the first error of two results. */
+static SluiceResult first_error(SluiceResult a, SluiceResult b)
+{
+    return a < 0 ? a : b;
+}
+
 /* Records units of one key in one batch. Reports failures to the manager. */
 static SluiceResult record_tiles(SluiceVulkanStreamer *s, struct recording *r,
                                  const uint32_t *units, uint32_t count)
@@ -206,8 +226,8 @@ static SluiceResult record_tiles(SluiceVulkanStreamer *s, struct recording *r,
     for (uint32_t i = 0; i < count; i++)
         place(s, &s->units[units[i]], &batch, &targets[i]);
     ask(s, r, s->units[units[0]].texture, &batch, results);
-    for (uint32_t i = 0; i < count && result >= 0; i++)
-        result = answered(s, units[i], results[i]);
+    for (uint32_t i = 0; i < count; i++)
+        result = first_error(result, answered(s, units[i], results[i]));
     return result;
 }
 
@@ -219,7 +239,9 @@ static SluiceResult record_packed(SluiceVulkanStreamer *s, struct recording *r, 
     const struct slc_packed_rect *rects = texture->packed.rects;
     SluiceTileTarget targets[BATCH];
     SluiceResult results[BATCH], answer = SLUICE_SUCCESS;
-    for (uint32_t i = 0; i < texture->packed.rect_count && answer == SLUICE_SUCCESS;) {
+    s->textures[at].packed_result = SLUICE_SUCCESS;
+    for (uint32_t i = 0; i < texture->packed.rect_count && answer == SLUICE_SUCCESS &&
+                         texture->state == SLC_TEXTURE_LIVE;) {
         SluiceTileBatch batch = {.pTiles = targets};
         uint32_t level = rects[i].region.mipLevel;
         for (; i < texture->packed.rect_count && rects[i].region.mipLevel == level &&
@@ -240,11 +262,10 @@ static SluiceResult take(SluiceVulkanStreamer *s, uint32_t *count)
     SluiceResult result = SLUICE_SUCCESS;
     *count = 0;
     for (uint32_t at; (at = slc_unit_list_pop(s, &s->unproduced)) != SLC_NONE;) {
-        const struct slc_unit *unit = &s->units[at];
-        if (unit->dropped || s->textures[unit->texture].state == SLC_TEXTURE_REMOVED)
+        if (is_removed(s, at))
             slc_unit_free(s, at);
-        else if (unit->canceled)
-            result = result < 0 ? result : give_back(s, at);
+        else if (s->units[at].canceled)
+            result = first_error(result, give_back(s, at));
         else if (*count < s->info.tilesPerFrame)
             s->frame_units[(*count)++] = at;
         else
@@ -261,39 +282,49 @@ SluiceResult slc_productions_record(SluiceVulkanStreamer *s, VkCommandBuffer com
     uint32_t count;
     SluiceResult result = take(s, &count);
     slc_sort_units(s, s->frame_units, count, batch_key);
-    for (uint32_t i = 0, next; i < count && result >= 0; i = next) {
+    for (uint32_t i = 0, next; i < count; i = next) {
         next = i + 1;
+        if (is_removed(s, units[i])) { /* by a callback of this frame */
+            slc_unit_free(s, units[i]);
+            continue;
+        }
         if (s->units[units[i]].packed_unit != SLC_NONE) {
-            result = record_packed(s, &r, units[i]);
+            result = first_error(result, record_packed(s, &r, units[i]));
             continue;
         }
         uint64_t key = batch_key(s, units[i]);
         while (next < count && next - i < BATCH && batch_key(s, units[next]) == key)
             next++;
-        result = record_tiles(s, &r, &units[i], next - i);
+        result = first_error(result, record_tiles(s, &r, &units[i], next - i));
     }
     if (r.image)
         barrier(s, commands, false);
     return result;
 }
 
-static SluiceResult publish_tile(SluiceVulkanStreamer *s, const struct slc_unit *unit)
+static SluiceResult publish_tile(SluiceVulkanStreamer *s, uint32_t index)
 {
+    const struct slc_unit *unit = &s->units[index];
     if (s->residency->interface->show)
         s->residency->interface->show(s->residency, unit->texture, &unit->tile);
     s->counts.tilesMapped++;
     s->counts.tilesProduced++;
     slc_read_trouble_delivered(s, unit->texture, unit->tile.tileIndex);
-    return slc_streamer_check(s,
-                              sluiceUpdateTilesMapping(s->manager, s->textures[unit->texture].id, 1,
-                                                       &unit->tile.tileIndex),
-                              "sluiceUpdateTilesMapping");
+    SluiceResult result = sluiceUpdateTilesMapping(s->manager, s->textures[unit->texture].id, 1,
+                                                   &unit->tile.tileIndex);
+    slc_unit_forget_tile(s, unit);
+    slc_unit_free(s, index);
+    return slc_streamer_check(s, result, "sluiceUpdateTilesMapping");
 }
 
 static SluiceResult publish_packed(SluiceVulkanStreamer *s, uint32_t index)
 {
-    slc_read_trouble_delivered(s, index, s->textures[index].packed_tiles[0].tileIndex);
-    return slc_packed_publish(s, index);
+    uint32_t at = s->units[index].texture;
+    if (s->textures[at].packed_result != SLUICE_SUCCESS)
+        return fail_packed(s, index);
+    slc_unit_free(s, index);
+    slc_read_trouble_delivered(s, at, s->textures[at].packed_tiles[0].tileIndex);
+    return slc_packed_publish(s, at);
 }
 
 SluiceResult slc_productions_publish(SluiceVulkanStreamer *s)
@@ -302,12 +333,11 @@ SluiceResult slc_productions_publish(SluiceVulkanStreamer *s)
     while (s->produced.first != SLC_NONE &&
            s->units[s->produced.first].value <= s->completed_frame && result >= 0) {
         uint32_t at = slc_unit_list_pop(s, &s->produced);
-        const struct slc_unit *unit = &s->units[at];
-        if (!unit->dropped && s->textures[unit->texture].state == SLC_TEXTURE_LIVE)
-            result = unit->packed_unit == SLC_NONE ? publish_tile(s, unit)
-                                                   : publish_packed(s, unit->texture);
-        slc_unit_forget_tile(s, unit);
-        slc_unit_free(s, at);
+        if (is_removed(s, at))
+            slc_unit_free(s, at);
+        else
+            result =
+                s->units[at].packed_unit == SLC_NONE ? publish_tile(s, at) : publish_packed(s, at);
     }
     return result;
 }

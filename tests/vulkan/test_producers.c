@@ -34,8 +34,10 @@ struct fixture {
     uint64_t time;
     uint32_t warnings;
     char last_warning[256];
-    uint8_t wanted; ///< level, of all regions
-    bool stuck;     ///< the GPU completes no more frames
+    uint8_t wanted;         ///< level, of all regions
+    bool stuck;             ///< the GPU completes no more frames
+    bool removes;           ///< the callback removes the texture, which it must not
+    uint32_t failing_level; ///< of the mip tail; 0: none
     /** The answer for tiles of level 0 of the upper left quarter, and for all other texels. */
     SluiceResult first_answer, answer, batch_answer;
     struct call calls[CALLS];
@@ -76,12 +78,16 @@ static SluiceResult record_tiles(void *user, const SluiceTileBatch *batch, Sluic
         const SluiceTileTarget *target = &batch->pTiles[i];
         assert_int_equal(results[i], SLUICE_SUCCESS);
         results[i] = is_first(&target->region) ? f->first_answer : f->answer;
+        if (f->failing_level && target->region.mipLevel == f->failing_level)
+            results[i] = SLUICE_ERROR_IO;
         SluiceResult answer = f->batch_answer != SLUICE_SUCCESS ? f->batch_answer : results[i];
         assert_true(f->call_count < CALLS);
         f->calls[f->call_count++] = (struct call){
             batch->textureId, batch->image, batch->imageView, batch->mipLevel, batch->frameIndex,
             *target,          answer};
     }
+    if (f->removes)
+        CHECK_OK(sluiceRemoveVulkanTexture(f->streamer, batch->textureId));
     return f->batch_answer;
 }
 
@@ -365,6 +371,39 @@ static void a_batch_fails_as_a_whole(void **state)
     }
 }
 
+/* Finer levels of the tail are recorded when a coarser one fails. */
+static void a_mip_tail_that_failed_keeps_its_pages_until_its_frame_is_complete(void **state)
+{
+    (void)state;
+    for (int m = 0; m < MODES; m++) {
+        static struct fixture f; /* large */
+        setup(&f, modes[m]);
+        f.failing_level = LEVELS - 1;
+        CHECK_OK(add(&f, &f.texture));
+        while (f.call_count == 0) {
+            f.stuck = true;
+            run_frames(&f, 1);
+            if (f.call_count == 0)
+                f.fake.frame_value = f.frame.signalValue;
+        }
+        uint32_t packed = statistics(&f).tileCount - 1;
+        uint64_t produced = f.frame.signalValue;
+        assert_true(f.calls[0].answer == SLUICE_SUCCESS);
+        run_frames(&f, 1);
+        assert_int_equal(state_of(&f, packed), SLUICE_TILE_STATE_ALLOCATED);
+        assert_int_equal(statistics(&f).tilesFailed, 0);
+        f.fake.frame_value = produced;
+        run_frames(&f, 1);
+        assert_true(statistics(&f).tilesFailed > 0);
+        f.failing_level = 0;
+        f.stuck = false;
+        run_frames(&f, 20);
+        assert_int_equal(count_states(&f, SLUICE_TILE_STATE_MAPPED), statistics(&f).tileCount);
+        assert_int_equal(statistics(&f).loadsInFlight, 0);
+        teardown(&f);
+    }
+}
+
 static uint32_t count_calls(const struct fixture *f, SluiceResult answer)
 {
     uint32_t count = 0;
@@ -523,6 +562,27 @@ static void a_texture_is_removed_while_it_is_produced(void **state)
         }
 }
 
+/* The callback must not do it, but no tile or page is lost. */
+static void a_texture_may_be_removed_by_its_producer(void **state)
+{
+    (void)state;
+    static const SluiceResult answers[] = {SLUICE_SUCCESS, SLUICE_NOT_READY, SLUICE_ERROR_IO};
+    for (uint32_t n = 0; n < 2 * MODES * 3; n++) {
+        static struct fixture f; /* large */
+        bool after_tail = n >= MODES * 3;
+        setup(&f, modes[n % MODES]);
+        CHECK_OK(add(&f, &f.texture));
+        while (after_tail && f.call_count == 0)
+            run_frames(&f, 1);
+        f.removes = true;
+        f.batch_answer = answers[n / MODES % 3];
+        run_frames(&f, 8);
+        assert_int_equal(statistics(&f).textureCount, 0);
+        assert_int_equal(statistics(&f).loadsInFlight, 0);
+        teardown(&f);
+    }
+}
+
 static void without_memory_for_pages_tiles_wait_and_come_later(void **state)
 {
     (void)state;
@@ -651,12 +711,14 @@ int main(void)
         cmocka_unit_test(frames_hold_no_more_tiles_than_they_may),
         cmocka_unit_test(tiles_of_a_producer_that_fails_stay_coarser_and_are_reported),
         cmocka_unit_test(a_batch_fails_as_a_whole),
+        cmocka_unit_test(a_mip_tail_that_failed_keeps_its_pages_until_its_frame_is_complete),
         cmocka_unit_test(tiles_that_are_not_ready_are_asked_for_again),
         cmocka_unit_test(tiles_that_are_never_ready_fail),
         cmocka_unit_test(tiles_that_are_not_ready_and_not_wanted_are_given_back),
         cmocka_unit_test(tiles_of_abandoned_frames_are_asked_for_again),
         cmocka_unit_test(a_producer_may_fail_after_its_frame_was_abandoned),
         cmocka_unit_test(a_texture_is_removed_while_it_is_produced),
+        cmocka_unit_test(a_texture_may_be_removed_by_its_producer),
         cmocka_unit_test(without_memory_for_pages_tiles_wait_and_come_later),
         cmocka_unit_test(two_textures_with_producers_share_no_tiles),
         cmocka_unit_test(wrong_producers_are_refused),
