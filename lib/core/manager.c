@@ -126,6 +126,7 @@ SluiceResult sluiceSetConfig(SluiceStreamedTextureManager *manager,
         if (result != SLUICE_SUCCESS)
             return result; /* a recording has no form for it */
         manager->config = config;
+        manager->config_count++;
         set_limits(manager);
         slc_evict_standby(&manager->residency, config.numExtraStandbyTiles);
     }

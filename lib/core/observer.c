@@ -24,6 +24,11 @@ slc_manager_config(const SluiceStreamedTextureManager *manager)
     return &manager->config;
 }
 
+uint64_t slc_manager_config_count(const SluiceStreamedTextureManager *manager)
+{
+    return manager->config_count;
+}
+
 void slc_notify(slc_manager *m, const struct slc_call *call)
 {
     /* The configuration can be asked for at any time, so it alone hides nothing from a recorder. */

@@ -21,4 +21,7 @@ slc_manager_create_info(const SluiceStreamedTextureManager *manager);
 const SluiceStreamedTextureManagerConfig *
 slc_manager_config(const SluiceStreamedTextureManager *manager);
 
+/** Returns how often sluiceSetConfig succeeded. */
+uint64_t slc_manager_config_count(const SluiceStreamedTextureManager *manager);
+
 #endif /* SLC_CORE_OBSERVER_H */

@@ -184,6 +184,7 @@ struct SluiceStreamedTextureManager {
     SluiceAllocationCallbacks cb; ///< counts into host_memory_size, hands on to `given`
     uint64_t host_memory_size;
     SluiceStreamedTextureManagerConfig config;
+    uint64_t config_count; ///< calls of sluiceSetConfig that succeeded
     struct slc_observer observer;
     bool used; ///< a call was made that changed something
 

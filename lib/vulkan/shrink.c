@@ -49,21 +49,35 @@ static uint32_t choose_target(const SluiceVulkanStreamer *s,
     return target ? (uint32_t)target : 1;
 }
 
+static void note_own_target(SluiceVulkanStreamer *s)
+{
+    if (slc_manager_config_count(s->manager) != s->shrink.config_count)
+        s->shrink.own_target = slc_manager_config(s->manager)->targetHeapCount;
+}
+
+SluiceResult slc_shrink_set_config(SluiceVulkanStreamer *s,
+                                   const SluiceStreamedTextureManagerConfig *config)
+{
+    note_own_target(s);
+    SluiceResult result = sluiceSetConfig(s->manager, config);
+    s->shrink.config_count = slc_manager_config_count(s->manager);
+    return slc_streamer_check(s, result, "sluiceSetConfig");
+}
+
 /* Sets the smaller one of this target and the application's own target. */
 static SluiceResult set_target(SluiceVulkanStreamer *s, uint32_t target)
 {
     struct slc_shrink *shrink = &s->shrink;
     SluiceStreamedTextureManagerConfig config = *slc_manager_config(s->manager);
     config.structSize = sizeof config;
-    if (config.targetHeapCount != shrink->target)
-        shrink->own_target = config.targetHeapCount;
+    note_own_target(s);
     if (shrink->own_target && (!target || target > shrink->own_target))
         target = shrink->own_target;
     shrink->target = target;
     if (config.targetHeapCount == target)
         return SLUICE_SUCCESS;
     config.targetHeapCount = target;
-    return slc_streamer_check(s, sluiceSetConfig(s->manager, &config), "sluiceSetConfig");
+    return slc_shrink_set_config(s, &config);
 }
 
 static uint32_t count_evicted(SluiceVulkanStreamer *s)

@@ -11,4 +11,9 @@
 /** Empties and releases heaps. Call it when a frame begins, after completed work is collected. */
 SluiceResult slc_shrink_step(SluiceVulkanStreamer *s);
 
+/** Sets the manager's configuration. Takes a targetHeapCount that the application has set for its
+ * own target, even if it is equal to the target that memory pressure set. */
+SluiceResult slc_shrink_set_config(SluiceVulkanStreamer *s,
+                                   const SluiceStreamedTextureManagerConfig *config);
+
 #endif /* SLC_VULKAN_SHRINK_H */

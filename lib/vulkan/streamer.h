@@ -119,9 +119,10 @@ struct slc_unit_list {
 
 /** See shrink.h. */
 struct slc_shrink {
-    uint32_t own_target; ///< targetHeapCount that the application has set; 0: none
-    uint32_t target;     ///< targetHeapCount that the manager has
-    bool compacting;     ///< heaps that become empty are released without any pressure
+    uint32_t own_target;   ///< targetHeapCount that the application has set; 0: none
+    uint32_t target;       ///< targetHeapCount that the streamer chose
+    uint64_t config_count; ///< slc_manager_config_count behind the streamer's last sluiceSetConfig
+    bool compacting;       ///< heaps that become empty are released without any pressure
 };
 
 struct SluiceVulkanStreamer {

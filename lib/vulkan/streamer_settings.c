@@ -5,6 +5,7 @@
 #include "base/struct_size.h"
 #include "core/observer.h"
 #include "vulkan/create_checks.h"
+#include "vulkan/shrink.h"
 
 /* What is allocated for tilesPerFrame. */
 struct tile_arrays {
@@ -116,7 +117,7 @@ static SluiceResult set_config(SluiceVulkanStreamer *s,
     config.givenUpRetryDelayTicks = settings->givenUpRetryDelayTicks;
     config.noEviction = settings->noEviction;
     config.noMipBias = settings->noMipBias;
-    return slc_streamer_check(s, sluiceSetConfig(s->manager, &config), "sluiceSetConfig");
+    return slc_shrink_set_config(s, &config);
 }
 
 SluiceResult sluiceSetVulkanStreamerSettings(SluiceVulkanStreamer *streamer,

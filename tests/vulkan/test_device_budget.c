@@ -2,6 +2,8 @@
  * without the extension. */
 #include "vulkan/fake_vulkan.h"
 
+#include "core/observer.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #define MIB (UINT64_C(1) << 20)
@@ -163,6 +165,36 @@ static void the_smaller_of_both_budgets_counts(void **state)
     close_streamer();
 }
 
+static SluiceStreamedTextureManagerConfig config(void)
+{
+    return *slc_manager_config(manager_of(streamer));
+}
+
+/* The application sets the number that memory pressure has just set, or settings without it. */
+static void a_target_of_the_application_stays_when_the_pressure_is_over(void **state)
+{
+    (void)state;
+    for (uint32_t own = 0; own < 2; own++) {
+        open_streamer(false, false, 0);
+        CHECK_OK(sluiceSetVulkanMemoryBudget(context, 64 * MIB));
+        run_frames(1);
+        SluiceStreamedTextureManagerConfig set = config();
+        assert_in_range(set.targetHeapCount, 8, 16);
+        SluiceVulkanStreamerSettings settings = {.structSize = sizeof settings};
+        CHECK_OK(sluiceGetVulkanStreamerSettings(streamer, &settings));
+        if (own)
+            CHECK_OK(sluiceSetConfig(manager_of(streamer), &set));
+        CHECK_OK(sluiceSetVulkanStreamerSettings(streamer, &settings));
+        run_frames(FRAMES_PER_POLL);
+        assert_true(statistics().tileMemorySize <= 64 * MIB);
+        CHECK_OK(sluiceSetVulkanMemoryBudget(context, UINT64_MAX));
+        run_frames(4 * FRAMES_PER_POLL);
+        assert_int_equal(config().targetHeapCount, own ? set.targetHeapCount : 0);
+        assert_int_equal(statistics().tileMemorySize <= 64 * MIB, own);
+        close_streamer();
+    }
+}
+
 static void the_device_is_asked_now_and_then(void **state)
 {
     (void)state;
@@ -196,6 +228,7 @@ int main(void)
         cmocka_unit_test(tile_memory_follows_the_budget_down_and_up),
         cmocka_unit_test(small_changes_are_ignored),
         cmocka_unit_test(the_smaller_of_both_budgets_counts),
+        cmocka_unit_test(a_target_of_the_application_stays_when_the_pressure_is_over),
         cmocka_unit_test(the_device_is_asked_now_and_then),
         cmocka_unit_test(without_the_extension_nothing_is_asked),
     };
