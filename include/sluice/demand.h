@@ -78,8 +78,9 @@ typedef struct SluiceDemandLoaderCreateInfo {
      * tiles get the rest, of which they need at least 4 MiB. Hard limit. At least 2 MiB, at most
      * memoryBudget. Default: a quarter of memoryBudget.
      *
-     * Tiles may fill memoryBudget when the first such resource is added. They are then evicted as
-     * their images run empty. Until then tiles and byte pages together may exceed memoryBudget.
+     * Tiles may fill memoryBudget when the first such resource is added. The next launches then
+     * evict tiles and free their images (with noEviction: only images that run empty). Until then
+     * tiles and byte pages together may exceed memoryBudget.
      */
     uint64_t byteMemoryBudget;
     /**

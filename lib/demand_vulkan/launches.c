@@ -198,6 +198,16 @@ static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer com
     return tiles;
 }
 
+/* Pages beyond their share must go, too: byte pages may have taken their part of the budget. */
+static void note_pressure(SluiceDemandLoader *loader)
+{
+    struct slc_memory_pressure *pressure = &loader->memory_pressure;
+    uint64_t excess = slc_page_pool_excess(loader->pages);
+    *pressure = slc_memory_client_begin(&loader->memory);
+    if (excess > pressure->beyond)
+        pressure->beyond = excess;
+}
+
 SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer commandBuffer,
                                      SluiceDemandLaunch *pLaunch)
 {
@@ -221,7 +231,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     slc_loader_settings_apply(loader);
     bool tracking = wants_used(loader);
     slc_device_budget_turn(&loader->context->device_budget, &loader->context->budget);
-    loader->memory_pressure = slc_memory_client_begin(&loader->memory);
+    note_pressure(loader);
     end_retired(loader);
     slc_byte_pages_begin(loader, launch);
     slc_relieve_memory(loader);
@@ -231,10 +241,8 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     gather(loader, launch, tracking);
     SluiceResult result =
         slc_page_directory_record(&loader->directory, commandBuffer, slot_of(loader, launch));
-    if (result != SLUICE_SUCCESS) {
-        slc_uploads_drop(loader); /* before launches under way can make them go */
-        return result;
-    }
+    if (result != SLUICE_SUCCESS)
+        return result; /* admitted uploads wait for the next launch */
     loader->launch = launch;
     loader->tracked[slot_of(loader, launch)] = tracking;
     SluiceDemandLaunch begun = {.structSize = sizeof begun,

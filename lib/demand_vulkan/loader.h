@@ -500,8 +500,6 @@ void slc_tile_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, S
 /* uploads.c */
 /** Tiles that arrived are resident; before the page table is recorded. */
 void slc_uploads_admit(SluiceDemandLoader *loader);
-/** What was admitted will not be copied: it is as if it had never been read. */
-void slc_uploads_drop(SluiceDemandLoader *loader);
 /** Copies what was admitted; how many tiles. */
 uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands);
 /** What launches from this one on copied is admitted again. */

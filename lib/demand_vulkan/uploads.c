@@ -60,16 +60,6 @@ void slc_uploads_admit(SluiceDemandLoader *loader)
     }
 }
 
-void slc_uploads_drop(SluiceDemandLoader *loader)
-{
-    for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->admitted));) {
-        if (!job->stale) /* a stale job's page waits for another job */
-            slc_residency_forget(loader->residency, job->page, 1);
-        release(loader, job);
-        slc_job_free(loader, job);
-    }
-}
-
 static void flush(struct copies *c)
 {
     if (c->count)
@@ -131,8 +121,8 @@ static void record_bytes(struct byte_copies *c, const struct slc_demand_job *job
         loader->counts.bytesUploaded += copy.size;
 }
 
-/* False: forgotten since it was admitted, because the page table had no room, or while its launch
- * was abandoned; then even its place may be another's. */
+/* False: forgotten since it was admitted: because the page table had no room, because its launch
+ * was abandoned, or because its launch could not begin. Then even its place may be another's. */
 static bool is_wanted(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
     if (job->image)

@@ -441,6 +441,14 @@ void slc_page_pool_ask_again(struct slc_page_pool *pool)
     pthread_mutex_unlock(&pool->mutex);
 }
 
+uint64_t slc_page_pool_excess(struct slc_page_pool *pool)
+{
+    pthread_mutex_lock(&pool->mutex);
+    uint64_t limit = pool->chunks.max_size, size = pool->chunks.memory.total_size;
+    pthread_mutex_unlock(&pool->mutex);
+    return limit && size > limit ? size - limit : 0;
+}
+
 uint64_t slc_page_pool_going_size(struct slc_page_pool *pool)
 {
     uint64_t pages = 0;

@@ -504,6 +504,115 @@ static void a_launch_that_cannot_be_prepared_takes_nothing_with_it(void **state)
     runner_image_finish(&image);
 }
 
+static uint32_t hash_of(const uint8_t *bytes, uint32_t count)
+{
+    uint32_t sum = 2166136261u;
+    for (uint32_t i = 0; i < count; i++)
+        sum = (sum ^ bytes[i]) * 16777619u;
+    return sum;
+}
+
+static void bytes_that_were_set_survive_a_launch_that_cannot_be_prepared(void **state)
+{
+    (void)state;
+    enum { PAGES = 8, BYTES = 256 };
+    if (!h.reads_bytes)
+        skip();
+    struct runner r;
+    SluiceDemandLoader *loader;
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                         .memoryBudget = 16u << 20,
+                                         .maxTextureCount = 64,
+                                         .pageCapacity = 1u << 16};
+    poor.left = UINT64_MAX;
+    CHECK_OK(harness_set_context(&h, &poor_context));
+    runner_fill(&h, &info);
+    CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
+    h.runs_bytes = true;
+    runner_init_with(&r, &h, loader);
+    const SluiceDemandResourceCreateInfo create = {
+        .structSize = sizeof create, .pageCount = PAGES, .rank = 1, .pageSize = BYTES};
+    SluiceDemandResourceId id;
+    uint32_t first;
+    CHECK_OK(sluiceAddDemandResource(loader, &create, &id, &first));
+    uint8_t bytes[PAGES][BYTES];
+    h.quiet = true;
+    for (uint32_t i = 0; i < PAGES; i++) {
+        memset(bytes[i], (int)(7 * i + 1), BYTES);
+        CHECK_OK(sluiceSetDemandPageBytes(loader, id, i, bytes[i], false));
+        runner_add(&r, (struct RunnerInput){
+                           .kind = RUNNER_BYTES, .index = first + i, .dx = {(float)BYTES}});
+        poor.refuses = true;
+        CHECK_RESULT(runner_submit(&r), SLUICE_ERROR_OUT_OF_DEVICE_MEMORY);
+        poor.refuses = false;
+    }
+    memset(bytes[1], 200, BYTES); /* before the first bytes were copied */
+    CHECK_OK(sluiceSetDemandPageBytes(loader, id, 1, bytes[1], false));
+    h.quiet = false;
+    runner_load(&r, 3);
+    for (uint32_t i = 0; i < PAGES; i++) {
+        assert_true(runner_output(&r, i).resident);
+        assert_int_equal(runner_output(&r, i).value[0], hash_of(bytes[i], BYTES));
+    }
+    runner_finish(&r);
+    h.runs_bytes = false;
+    CHECK_OK(harness_set_context(&h, NULL));
+}
+
+static SluiceResult read_byte_page(void *user, uint32_t page, uint32_t size, void *bytes)
+{
+    (void)user;
+    memset(bytes, (int)page, size);
+    return SLUICE_SUCCESS;
+}
+
+static void tiles_give_the_share_of_byte_pages_up_while_they_are_sampled(void **state)
+{
+    (void)state;
+    if (!h.reads_bytes)
+        skip();
+    const uint64_t budget = 32u << 20, share = 12u << 20;
+    struct runner r;
+    struct runner_image image;
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .memoryBudget = budget,
+                                               .byteMemoryBudget = share,
+                                               .maxTextureCount = 64,
+                                               .pageCapacity = 1u << 16};
+    h.runs_bytes = true;
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    add_tiles(&r, runner_add_texture(&r, &image), 0, 15);
+    runner_load(&r, 60);
+    assert_true(runner_statistics(&r).tileMemorySize > budget - share);
+    const SluiceDemandResourceCreateInfo create = {.structSize = sizeof create,
+                                                   .pageCount = 160,
+                                                   .rank = 1,
+                                                   .pageSize = 65536,
+                                                   .pfnRead = read_byte_page};
+    SluiceDemandResourceId id;
+    uint32_t first;
+    CHECK_OK(sluiceAddDemandResource(r.loader, &create, &id, &first));
+    for (uint32_t i = 0; i < create.pageCount; i++)
+        runner_add(&r, (struct RunnerInput){
+                           .kind = RUNNER_BYTES, .index = first + i, .dx = {(float)65536}});
+    for (uint32_t i = 0; i < 16; i++) {
+        runner_launch(&r);
+        CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
+    }
+    SluiceDemandStatistics after = runner_statistics(&r);
+    print_message("# shareOfBytes tiles %llu, byte pages %llu of %llu bytes\n",
+                  (unsigned long long)after.tileMemorySize,
+                  (unsigned long long)after.byteMemorySize, (unsigned long long)budget);
+    assert_true(after.tileMemorySize <= budget - share);
+    assert_true(runner_load(&r, 60) < 60);
+    assert_true(runner_all_resident(&r));
+    assert_true(runner_statistics(&r).tileMemorySize <= budget - share);
+    runner_finish(&r);
+    h.runs_bytes = false;
+    runner_image_finish(&image);
+}
+
 static void page_tables_of_64_mi_pages_cost_at_most_64_megabytes(void **state)
 {
     (void)state;
@@ -612,6 +721,8 @@ int main(void)
         cmocka_unit_test(what_finds_no_memory_is_left_out_of_a_preload),
         cmocka_unit_test(a_device_without_memory_is_a_smaller_budget),
         cmocka_unit_test(a_launch_that_cannot_be_prepared_takes_nothing_with_it),
+        cmocka_unit_test(bytes_that_were_set_survive_a_launch_that_cannot_be_prepared),
+        cmocka_unit_test(tiles_give_the_share_of_byte_pages_up_while_they_are_sampled),
         cmocka_unit_test(page_tables_of_64_mi_pages_cost_at_most_64_megabytes),
         cmocka_unit_test(a_loader_survives_every_refused_allocation),
     };
