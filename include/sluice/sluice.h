@@ -6,6 +6,7 @@
 #include <sluice/feedback_rate.h>
 #include <sluice/heap.h>
 #include <sluice/image.h>
+#include <sluice/input.h>
 #include <sluice/loader.h>
 #include <sluice/manager.h>
 #include <sluice/metrics.h>

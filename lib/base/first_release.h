@@ -65,6 +65,9 @@
 #define SLC_FIRST_SluiceDemandRequests SLC_UP_TO(SluiceDemandRequests, lodBias)
 #define SLC_FIRST_SluiceDemandTicketStatus SLC_UP_TO(SluiceDemandTicketStatus, failedCount)
 #define SLC_FIRST_SluiceDemandStatistics SLC_UP_TO(SluiceDemandStatistics, byteChunkCount)
+#define SLC_FIRST_SluiceInput SLC_UP_TO(SluiceInput, pfnRead)
+#define SLC_FIRST_SluiceFilePoolCreateInfo SLC_UP_TO(SluiceFilePoolCreateInfo, pAllocator)
+#define SLC_FIRST_SluiceFilePoolStatistics SLC_UP_TO(SluiceFilePoolStatistics, replacedTotal)
 #define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
     SLC_UP_TO(SluiceVulkanDeviceCapabilities, deviceLocalMemorySize)
 #define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \

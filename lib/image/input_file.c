@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "base/system.h"
 
 #include <errno.h>
@@ -59,10 +60,66 @@ SluiceResult slc_input_file_init(struct slc_input_file *file, const char *path,
     return file->path && file->said ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-static SluiceResult check_status(struct slc_input_file *file)
+static SluiceResult check_input(struct slc_input_file *file, const SluiceInput *input)
+{
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceInput), &file->input, input, &file->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!file->input.pBytes && !file->input.pfnRead)
+        return slc_input_fail(file, SLUICE_ERROR_NULL_POINTER,
+                              "SluiceInput has neither pBytes nor pfnRead");
+    if (file->input.size == 0 || file->input.size > INT64_MAX)
+        return slc_input_fail(file, SLUICE_ERROR_INVALID_ARGUMENT,
+                              "SluiceInput::size is %llu, not 1 to 2^63 - 1",
+                              (unsigned long long)file->input.size);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_input_file_init_choice(struct slc_input_file *file,
+                                        const struct slc_input_choice *choice,
+                                        const SluiceAllocationCallbacks *cb,
+                                        const SluiceLogCallback *log)
+{
+    if (!choice->path && !choice->input) {
+        *file = (struct slc_input_file){.allocator = *cb, .descriptor = -1};
+        return SLUICE_ERROR_NULL_POINTER;
+    }
+    SluiceResult result =
+        slc_input_file_init(file, choice->path ? choice->path : "(memory)", cb, log);
+    if (result == SLUICE_SUCCESS && choice->input)
+        return check_input(file, choice->input);
+    if (result != SLUICE_SUCCESS || !choice->pool)
+        return result;
+    file->pool = choice->pool;
+    file->pooled = slc_alloc(cb, 1, sizeof *file->pooled);
+    if (!file->pooled)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    *file->pooled = SLC_POOLED_FILE_CLOSED;
+    return SLUICE_SUCCESS;
+}
+
+static bool is_in_file(const struct slc_input_file *file)
+{
+    return file->input.size == 0;
+}
+
+/* Until returned: a descriptor, or -1 with errno set. */
+static int borrow_descriptor(const struct slc_input_file *file)
+{
+    return file->pool ? slc_file_pool_acquire(file->pool, file->pooled, file->path)
+                      : file->descriptor;
+}
+
+static void return_descriptor(const struct slc_input_file *file)
+{
+    if (file->pool)
+        slc_file_pool_release(file->pool, file->pooled);
+}
+
+static SluiceResult check_status(struct slc_input_file *file, int descriptor)
 {
     struct stat status;
-    if (fstat(file->descriptor, &status) != 0)
+    if (fstat(descriptor, &status) != 0)
         return slc_input_fail(file, slc_system_result(errno), "cannot stat: %s", strerror(errno));
     if (!S_ISREG(status.st_mode))
         return slc_input_fail(file, SLUICE_ERROR_IO, "is not a regular file");
@@ -70,14 +127,27 @@ static SluiceResult check_status(struct slc_input_file *file)
     return SLUICE_SUCCESS;
 }
 
+static SluiceResult open_descriptor(struct slc_input_file *file)
+{
+    if (!file->pool)
+        file->descriptor = slc_open_input(file->path);
+    int descriptor = borrow_descriptor(file);
+    if (descriptor < 0)
+        return slc_input_fail(file, slc_system_result(errno), "cannot open: %s", strerror(errno));
+    SluiceResult result = check_status(file, descriptor);
+    return_descriptor(file);
+    return result;
+}
+
 SluiceResult slc_input_file_open(struct slc_input_file *file)
 {
-    if (file->descriptor >= 0)
+    if (file->is_open)
         return SLUICE_SUCCESS;
-    file->descriptor = slc_open_input(file->path);
-    if (file->descriptor < 0)
-        return slc_input_fail(file, slc_system_result(errno), "cannot open: %s", strerror(errno));
-    SluiceResult result = check_status(file);
+    file->is_open = true;
+    file->size = file->input.size;
+    if (!is_in_file(file))
+        return SLUICE_SUCCESS;
+    SluiceResult result = open_descriptor(file);
     if (result != SLUICE_SUCCESS)
         slc_input_file_close(file);
     return result;
@@ -87,7 +157,10 @@ void slc_input_file_close(struct slc_input_file *file)
 {
     if (file->descriptor >= 0)
         close(file->descriptor);
+    else if (file->is_open && file->pool)
+        slc_file_pool_remove(file->pool, file->pooled);
     file->descriptor = -1;
+    file->is_open = false;
 }
 
 void slc_input_file_finish(struct slc_input_file *file)
@@ -96,20 +169,49 @@ void slc_input_file_finish(struct slc_input_file *file)
         slc_input_file_close(file);
         slc_free(&file->allocator, file->path, strlen(file->path) + 1, 1);
     }
-    if (file->said)
-        slc_free(&file->allocator, file->said, 1, sizeof *file->said);
+    slc_free(&file->allocator, file->said, 1, sizeof *file->said);
+    slc_free(&file->allocator, file->pooled, 1, sizeof *file->pooled);
     file->path = NULL;
+    file->pooled = NULL;
     file->said = NULL;
 }
 
-int64_t slc_input_file_read_some(const struct slc_input_file *file, uint64_t offset, void *bytes,
-                                 uint64_t size)
+/* What a callback returned, as a value of errno that slc_system_result turns back. */
+static int callback_error(SluiceResult result)
+{
+    return result == SLUICE_NOT_READY                  ? EAGAIN
+           : result == SLUICE_ERROR_OUT_OF_HOST_MEMORY ? ENOMEM
+                                                       : EIO;
+}
+
+static int64_t read_input(const struct slc_input_file *file, uint64_t offset, void *bytes,
+                          uint64_t size)
+{
+    const SluiceInput *input = &file->input;
+    if (offset >= input->size)
+        return 0;
+    if (size > input->size - offset)
+        size = input->size - offset;
+    if (input->pBytes) {
+        memcpy(bytes, (const char *)input->pBytes + offset, (size_t)size);
+        return (int64_t)size;
+    }
+    SluiceResult result = SLUICE_SUCCESS;
+    if (size > 0)
+        result = input->pfnRead(input->pUserData, offset, bytes, (size_t)size);
+    if (result == SLUICE_SUCCESS)
+        return (int64_t)size;
+    errno = callback_error(result);
+    return -1;
+}
+
+static int64_t read_descriptor(int descriptor, uint64_t offset, void *bytes, uint64_t size)
 {
     uint64_t done = 0;
     while (done < size) {
         uint64_t rest = size - done;
         size_t step = rest < 1u << 30 ? (size_t)rest : 1u << 30; /* a read is at most 2^31 */
-        ssize_t got = pread(file->descriptor, (char *)bytes + done, step, (off_t)(offset + done));
+        ssize_t got = pread(descriptor, (char *)bytes + done, step, (off_t)(offset + done));
         if (got == 0)
             break;
         if (got > 0)
@@ -118,6 +220,28 @@ int64_t slc_input_file_read_some(const struct slc_input_file *file, uint64_t off
             return -1;
     }
     return (int64_t)done;
+}
+
+int64_t slc_input_file_read_some(const struct slc_input_file *file, uint64_t offset, void *bytes,
+                                 uint64_t size)
+{
+    if (!is_in_file(file))
+        return read_input(file, offset, bytes, size);
+    int descriptor = borrow_descriptor(file);
+    if (descriptor < 0)
+        return -1;
+    int64_t got = read_descriptor(descriptor, offset, bytes, size);
+    int error = errno;
+    return_descriptor(file);
+    errno = error;
+    return got;
+}
+
+const char *slc_input_error_text(int error)
+{
+    return error == ESTALE ? "another file has taken its place since it was opened, or it was "
+                             "written again; open it again"
+                           : strerror(error);
 }
 
 SluiceResult slc_input_file_read(const struct slc_input_file *file, uint64_t offset, void *bytes,
@@ -131,14 +255,25 @@ SluiceResult slc_input_file_read(const struct slc_input_file *file, uint64_t off
     if (got == (int64_t)size)
         return SLUICE_SUCCESS;
     if (got < 0)
-        return fail_read(file, slc_system_result(errno), offset, size, strerror(errno));
+        return fail_read(file, slc_system_result(errno), offset, size, slc_input_error_text(errno));
     return fail_read(file, SLUICE_ERROR_IO, offset, size, "the file has become shorter");
+}
+
+SluiceResult slc_input_fail_at(const struct slc_input_file *file, SluiceResult result,
+                               uint64_t offset, const char *text)
+{
+    return slc_input_fail(file, result, "at %llu: %s", (unsigned long long)offset, text);
 }
 
 struct slc_file_stamp slc_input_file_stamp(const struct slc_input_file *file)
 {
     struct stat status;
-    if (fstat(file->descriptor, &status) != 0)
+    int descriptor = is_in_file(file) ? borrow_descriptor(file) : -1;
+    if (descriptor < 0)
+        return (struct slc_file_stamp){0};
+    bool is_known = fstat(descriptor, &status) == 0;
+    return_descriptor(file);
+    if (!is_known)
         return (struct slc_file_stamp){0};
     return (struct slc_file_stamp){{status.st_mtim.tv_sec, status.st_ctim.tv_sec},
                                    {status.st_mtim.tv_nsec, status.st_ctim.tv_nsec},

@@ -2,6 +2,7 @@
 #include "core/sound.h"
 #include "extremes/note.h"
 
+#include <sluice/input.h>
 #include <sluice/loader.h>
 
 #include <stdlib.h>
@@ -114,12 +115,31 @@ static void a_loader_takes_no_memory_once_it_is_there(void **state)
     sluiceDestroyImageSource(source);
 }
 
+static void questions_about_a_file_pool_take_no_memory(void **state)
+{
+    (void)state;
+    struct failing_allocator memory;
+    SluiceFilePool *pool;
+    SluiceFilePoolStatistics statistics = {.structSize = sizeof statistics};
+    failing_allocator_init(&memory, UINT64_MAX);
+    SluiceFilePoolCreateInfo info = {
+        .structSize = sizeof info, .maxOpenFileCount = 5, .pAllocator = &memory.callbacks};
+    CHECK_OK(sluiceCreateFilePool(&info, &pool));
+    memory.refuse_from = memory.calls;
+    CHECK_OK(sluiceGetFilePoolStatistics(pool, &statistics));
+    assert_int_equal(statistics.maxOpenFileCount, 5);
+    assert_int_equal(memory.calls, memory.refuse_from);
+    sluiceDestroyFilePool(pool);
+    assert_int_equal(memory.live_count, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(questions_about_a_manager_take_no_memory),
         cmocka_unit_test(reads_of_what_is_in_memory_take_none),
         cmocka_unit_test(a_loader_takes_no_memory_once_it_is_there),
+        cmocka_unit_test(questions_about_a_file_pool_take_no_memory),
     };
     return RUN_TESTS(tests);
 }

@@ -140,6 +140,7 @@ static void pipes_and_devices_are_refused_without_waiting(void **state)
     CHECK_RESULT(slc_input_file_open(&f.file), SLUICE_ERROR_IO);
     assert_non_null(strstr(f.last, "is not a regular file"));
     assert_int_equal(f.file.descriptor, -1);
+    assert_false(f.file.is_open);
     teardown(&f);
 }
 
@@ -186,6 +187,120 @@ static void a_file_that_found_no_descriptor_opens_later(void **state)
     teardown(&f);
 }
 
+struct bytes {
+    const uint8_t *bytes;
+    SluiceResult result; ///< of the next call, which reads nothing unless it is SUCCESS
+    uint32_t calls;
+    uint64_t furthest;
+};
+
+static SluiceResult read_bytes(void *user, uint64_t offset, void *bytes, size_t size)
+{
+    struct bytes *from = user;
+    from->calls++;
+    if (offset + size > from->furthest)
+        from->furthest = offset + size;
+    if (from->result == SLUICE_SUCCESS)
+        memcpy(bytes, from->bytes + offset, size);
+    return from->result;
+}
+
+static void bytes_in_memory_and_of_a_callback_are_read_like_a_file(void **state)
+{
+    (void)state;
+    SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    struct fixture f = {0};
+    SluiceLogCallback log = {&f, on_log};
+    uint8_t bytes[FILE_SIZE];
+    for (uint32_t i = 0; i < FILE_SIZE; i++)
+        bytes[i] = byte_at(i);
+    struct bytes from = {.bytes = bytes};
+    for (int calls_back = 0; calls_back < 2; calls_back++) {
+        SluiceInput input = {.structSize = sizeof input,
+                             .pBytes = calls_back ? NULL : bytes,
+                             .size = FILE_SIZE,
+                             .pUserData = &from,
+                             .pfnRead = read_bytes};
+        struct slc_input_choice choice = {calls_back ? NULL : "a name", &input, NULL};
+        uint8_t read[FILE_SIZE];
+        CHECK_OK(slc_input_file_init_choice(&f.file, &choice, &cb, &log));
+        CHECK_OK(slc_input_file_open(&f.file));
+        assert_int_equal(f.file.size, FILE_SIZE);
+        CHECK_OK(slc_input_file_read(&f.file, 0, read, FILE_SIZE));
+        assert_memory_equal(read, bytes, FILE_SIZE);
+        CHECK_OK(slc_input_file_read(&f.file, FILE_SIZE - 3, read, 3));
+        assert_memory_equal(read, bytes + FILE_SIZE - 3, 3);
+        CHECK_OK(slc_input_file_read(&f.file, FILE_SIZE, read, 0));
+        CHECK_RESULT(slc_input_file_read(&f.file, FILE_SIZE - 3, read, 4),
+                     SLUICE_ERROR_CORRUPT_DATA);
+        assert_non_null(strstr(f.last, calls_back ? "(memory)" : "a name"));
+        assert_int_equal(slc_input_file_read_some(&f.file, 950, read, 100), 50);
+        assert_int_equal(slc_input_file_read_some(&f.file, UINT64_MAX, read, 100), 0);
+        struct slc_file_stamp none = {0}, stamp = slc_input_file_stamp(&f.file);
+        assert_memory_equal(&stamp, &none, sizeof none);
+        slc_input_file_finish(&f.file);
+    }
+    assert_int_equal(from.calls, 3);
+    assert_int_equal(from.furthest, FILE_SIZE);
+}
+
+static void results_of_a_callback_are_passed_on_or_count_as_io(void **state)
+{
+    (void)state;
+    static const SluiceResult results[][2] = {
+        {SLUICE_NOT_READY, SLUICE_NOT_READY},
+        {SLUICE_ERROR_OUT_OF_HOST_MEMORY, SLUICE_ERROR_OUT_OF_HOST_MEMORY},
+        {SLUICE_ERROR_IO, SLUICE_ERROR_IO},
+        {SLUICE_ERROR_CANCELED, SLUICE_ERROR_IO},
+        {SLUICE_INCOMPLETE, SLUICE_ERROR_IO},
+    };
+    SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    SluiceLogCallback log = {0};
+    struct slc_input_file file;
+    struct bytes from = {0};
+    SluiceInput input = {
+        .structSize = sizeof input, .size = 10, .pUserData = &from, .pfnRead = read_bytes};
+    struct slc_input_choice choice = {"x", &input, NULL};
+    CHECK_OK(slc_input_file_init_choice(&file, &choice, &cb, &log));
+    CHECK_OK(slc_input_file_open(&file));
+    for (size_t i = 0; i < sizeof results / sizeof results[0]; i++) {
+        uint8_t byte;
+        from.result = results[i][0];
+        CHECK_RESULT(slc_input_file_read(&file, 0, &byte, 1), results[i][1]);
+    }
+    slc_input_file_finish(&file);
+}
+
+static void inputs_without_bytes_are_refused(void **state)
+{
+    (void)state;
+    static const uint8_t byte;
+    static const struct {
+        SluiceInput input;
+        SluiceResult result;
+    } inputs[] = {
+        {{.structSize = sizeof(SluiceInput), .size = 1}, SLUICE_ERROR_NULL_POINTER},
+        {{.structSize = sizeof(SluiceInput), .pBytes = &byte}, SLUICE_ERROR_INVALID_ARGUMENT},
+        {{.structSize = sizeof(SluiceInput), .pBytes = &byte, .size = (uint64_t)1 << 63},
+         SLUICE_ERROR_INVALID_ARGUMENT},
+        {{.pBytes = &byte, .size = 1}, SLUICE_ERROR_INVALID_ARGUMENT},
+    };
+    SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    for (size_t i = 0; i < sizeof inputs / sizeof inputs[0]; i++) {
+        struct fixture f = {0};
+        SluiceLogCallback log = {&f, on_log};
+        struct slc_input_choice choice = {"x", &inputs[i].input, NULL};
+        CHECK_RESULT(slc_input_file_init_choice(&f.file, &choice, &cb, &log), inputs[i].result);
+        assert_int_equal(f.errors, 1);
+        slc_input_file_finish(&f.file);
+    }
+    struct slc_input_file file;
+    struct slc_input_choice nothing = {0};
+    SluiceLogCallback log = {0};
+    CHECK_RESULT(slc_input_file_init_choice(&file, &nothing, &cb, &log), SLUICE_ERROR_NULL_POINTER);
+    slc_input_file_finish(&file);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -196,6 +311,9 @@ int main(void)
         cmocka_unit_test(nothing_is_left_of_what_was_never_begun),
         cmocka_unit_test(words_of_a_file_become_printable),
         cmocka_unit_test(a_file_that_found_no_descriptor_opens_later),
+        cmocka_unit_test(bytes_in_memory_and_of_a_callback_are_read_like_a_file),
+        cmocka_unit_test(results_of_a_callback_are_passed_on_or_count_as_io),
+        cmocka_unit_test(inputs_without_bytes_are_refused),
     };
     return RUN_TESTS(tests);
 }

@@ -3,6 +3,7 @@
 
 #include <sluice/feedback_rate.h>
 #include <sluice/image.h>
+#include <sluice/input.h>
 #include <sluice/loader.h>
 #include <sluice/manager.h>
 #include <sluice/metrics.h>
@@ -31,6 +32,10 @@ sluiceReadImageRegionLocated(f->source, &f->region, f->out.texels, sizeof f->out
 sluiceCreateProceduralImageSource(&f->image, &f->info, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceCreateMemoryImageSource(f->texels, &f->info, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceCreateArrayImageSource(&f->source, 1, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
+
+sluiceCreateFilePool(?&f->pool_info, &f->out.pool) => sluiceDestroyFilePool(f->out.pool)
+!sluiceDestroyFilePool(f->pool)
+sluiceGetFilePoolStatistics(f->pool, &f->out.pool_statistics)
 
 sluiceCreateTileLoader(&f->loader_info, &f->out.loader) => sluiceDestroyTileLoader(f->out.loader)
 !sluiceDestroyTileLoader(f->loader)
@@ -92,6 +97,8 @@ struct fixture {
     SluiceImageSource *source;
     SluiceImageRegion region;
     uint8_t texels[4 * 256 * 256];
+    SluiceFilePoolCreateInfo pool_info;
+    SluiceFilePool *pool;
     SluiceTileLoaderCreateInfo loader_info;
     SluiceTileLoader *loader;
     void *read_texels;
@@ -122,6 +129,8 @@ struct fixture {
         uint8_t texels[64];
         SluiceImageFault fault;
         SluiceImageSource *source;
+        SluiceFilePool *pool;
+        SluiceFilePoolStatistics pool_statistics;
         SluiceTileLoader *loader;
         uint64_t ticket;
         SluiceTileReadResult read;
@@ -217,6 +226,8 @@ static void fixture_init(struct fixture *f, void **state)
     f->region = (SluiceImageRegion){.width = 4, .height = 4};
     f->loader_info = (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
                                                   .threadCount = 1};
+    f->pool_info.structSize = sizeof f->pool_info;
+    CHECK_OK(sluiceCreateFilePool(&f->pool_info, &f->pool));
     CHECK_OK(sluiceCreateTileLoader(&f->loader_info, &f->loader));
     f->read_texels = f->read_room;
     f->read = (SluiceTileRead){
@@ -239,6 +250,7 @@ static void fixture_init(struct fixture *f, void **state)
 static void fixture_finish(struct fixture *f)
 {
     sluiceDestroyTileLoader(f->loader);
+    sluiceDestroyFilePool(f->pool);
     sluiceDestroyStreamedTextureManager(f->manager);
     sluiceDestroyStreamedTextureManager(f->fresh);
     sluiceDestroyImageSource(f->source);

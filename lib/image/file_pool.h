@@ -1,0 +1,43 @@
+/** Files that are read through a SluiceFilePool: opened when they are read, closed for others. */
+#ifndef SLC_IMAGE_FILE_POOL_H
+#define SLC_IMAGE_FILE_POOL_H
+
+#include <sluice/input.h>
+
+#include <sys/stat.h>
+
+/** Tells a file from another one that took its name, and from itself with other contents. */
+struct slc_file_identity {
+    uint64_t device, inode, size;
+    int64_t seconds, nanoseconds; ///< of the last change of contents; chmod and links change others
+};
+
+/** Of a file that fstat described. */
+struct slc_file_identity slc_file_identity(const struct stat *status);
+
+/** One file of a pool. The pool's mutex guards all of it. Starts as SLC_POOLED_FILE_CLOSED. */
+struct slc_pooled_file {
+    struct slc_pooled_file *newer, *older; ///< by last use; while it is open
+    int descriptor;                        ///< -1: closed
+    uint32_t user_count;                   ///< reads under way
+    bool is_opening;
+    bool is_known; ///< `identity` is that of the first opening
+    struct slc_file_identity identity;
+};
+
+#define SLC_POOLED_FILE_CLOSED ((struct slc_pooled_file){.descriptor = -1})
+
+/**
+ * Returns the file's descriptor, open until slc_file_pool_release, or -1 with errno set. A thread
+ * holds one file at a time, because it may wait for others to release theirs.
+ *
+ * errno: ESTALE if another file has taken its place; EMFILE or ENFILE if no descriptor is left
+ * though no file of the pool could be closed; what open says. Any thread.
+ */
+int slc_file_pool_acquire(SluiceFilePool *pool, struct slc_pooled_file *file, const char *path);
+void slc_file_pool_release(SluiceFilePool *pool, struct slc_pooled_file *file);
+
+/** Closes the file and forgets its identity. No read is under way. */
+void slc_file_pool_remove(SluiceFilePool *pool, struct slc_pooled_file *file);
+
+#endif /* SLC_IMAGE_FILE_POOL_H */
