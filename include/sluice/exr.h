@@ -10,6 +10,7 @@
 #define SLUICE_EXR_H
 
 #include <sluice/image.h>
+#include <sluice/input.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -43,7 +44,7 @@ SLUICE_API void sluiceDestroyExrMemoryBudget(SluiceExrMemoryBudget *budget);
 /** Settings of a source. A field of zero selects its default. */
 typedef struct SluiceExrImageSourceCreateInfo {
     uint32_t structSize; ///< sizeof(SluiceExrImageSourceCreateInfo).
-    const char *pPath;   ///< Required. Copied.
+    const char *pPath;   ///< Required without pInput. Copied.
     /**
      * Format of the texels that the source returns. Default: UNDEFINED, which selects a float
      * format by the widest channel of the file: R16_SFLOAT or R32_SFLOAT for one channel,
@@ -82,6 +83,12 @@ typedef struct SluiceExrImageSourceCreateInfo {
      * data, and for programs that convert colors themselves.
      */
     bool keepPrimaries;
+    /** Reads these bytes instead of the file. pPath is a name for messages then, and may be NULL.
+     */
+    const SluiceInput *pInput;
+    /** Pool that opens the file when it is read. Must outlive the source. Default: NULL, the file
+     *  stays open. */
+    SluiceFilePool *filePool;
 } SluiceExrImageSourceCreateInfo;
 
 /**

@@ -5,6 +5,7 @@
 #define SLUICE_KTX2_H
 
 #include <sluice/image.h>
+#include <sluice/input.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -13,7 +14,7 @@ extern "C" {
 /** Settings of a source. A field of zero selects its default. */
 typedef struct SluiceKtx2ImageSourceCreateInfo {
     uint32_t structSize; ///< sizeof(SluiceKtx2ImageSourceCreateInfo).
-    const char *pPath;   ///< Required. Copied.
+    const char *pPath;   ///< Required without pInput. Copied.
     /**
      * Format to return. Default: the file's. Another value must name the same bytes: UNORM for
      * SRGB, BC1_RGB for BC1_RGBA, or the reverse.
@@ -24,11 +25,18 @@ typedef struct SluiceKtx2ImageSourceCreateInfo {
     SluiceLogCallback log; ///< Problems of a file, with their position.
     /** Most bytes of decompressed levels kept in memory. For Zstandard files. Default: 2^29. */
     uint64_t maxCacheSize;
+    /** Reads these bytes instead of the file. pPath is a name for messages then, and may be NULL.
+     */
+    const SluiceInput *pInput;
+    /** Pool that opens the file when it is read. Must outlive the source. Default: NULL, the file
+     *  stays open. */
+    SluiceFilePool *filePool;
 } SluiceKtx2ImageSourceCreateInfo;
 
 /**
  * Creates a source for a file, without opening it. The first sluiceGetImageInfo or
- * sluiceReadImageRegion opens the file; it stays open. An unused source costs no file descriptor.
+ * sluiceReadImageRegion opens the file; it stays open, unless it has a filePool. An unused source
+ * costs no file descriptor.
  *
  * vkFormat: any SluiceFormat, or B8G8R8A8_UNORM or _SRGB, which is converted to R8G8B8A8 when read.
  * Array layers become layers; cube maps have six layers each. Rows are in the file's order.
@@ -48,7 +56,8 @@ typedef struct SluiceKtx2ImageSourceCreateInfo {
  * Queries and reads return SLUICE_NOT_READY while the process has too few file descriptors to open
  * the file. Sluice leaves the last 16 below the soft limit to others.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown formats;
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown formats and a pInput
+ *         without bytes;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Errors of queries and reads: SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO;
  *         SLUICE_ERROR_CORRUPT_DATA for contradictory headers, truncated files and levels that

@@ -30,6 +30,7 @@
 #define SLUICE_STORE_H
 
 #include <sluice/image.h>
+#include <sluice/input.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -295,7 +296,7 @@ SLUICE_API void sluiceDestroyStoreReadPool(SluiceStoreReadPool *pool);
 /** Settings of a source. A field of zero selects its default. */
 typedef struct SluiceStoreImageSourceCreateInfo {
     uint32_t structSize;                         ///< sizeof(SluiceStoreImageSourceCreateInfo).
-    const char *pPath;                           ///< Required. Copied.
+    const char *pPath;                           ///< Required without pInput. Copied.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     SluiceLogCallback log;                       ///< Problems of the file, with the byte offset.
     /**
@@ -312,6 +313,12 @@ typedef struct SluiceStoreImageSourceCreateInfo {
      * Compressed tiles are always verified.
      */
     bool alwaysCheckRawTiles;
+    /** Reads these bytes instead of the file. pPath is a name for messages then, and may be NULL.
+     */
+    const SluiceInput *pInput;
+    /** Pool that opens the file when it is read. Must outlive the source. Default: NULL, the file
+     *  stays open. */
+    SluiceFilePool *filePool;
 } SluiceStoreImageSourceCreateInfo;
 
 /**
@@ -327,7 +334,8 @@ typedef struct SluiceStoreImageSourceCreateInfo {
  * SLUICE_ERROR_CORRUPT_DATA if a checksum is wrong or the data is inconsistent, SLUICE_ERROR_IO if
  * the system cannot read or the file was truncated, and SLUICE_ERROR_OUT_OF_HOST_MEMORY. The log
  * names file, offset and cause: each fault once, at most 16 per file. Later reads are not affected.
- * If another file replaces this one under its name, the source continues with the old file.
+ * If another file replaces this one under its name, the source continues with the old file;
+ * with a filePool, reads return SLUICE_ERROR_IO then.
  *
  * Returns SLUICE_NOT_READY, without a source, while the process has too few file descriptors.
  * Sluice leaves the last 16 below the soft limit to others. Close files and call again.

@@ -34,16 +34,15 @@
 #define SLC_FIRST_SluiceFeedbackRate SLC_UP_TO(SluiceFeedbackRate, timeoutSeconds)
 #define SLC_FIRST_SluiceFeedbackDelay SLC_UP_TO(SluiceFeedbackDelay, percentile99)
 #define SLC_FIRST_SluicePicturePair SLC_UP_TO(SluicePicturePair, peak)
-#define SLC_FIRST_SluiceExrImageSourceCreateInfo                                                   \
-    SLC_UP_TO(SluiceExrImageSourceCreateInfo, keepPrimaries)
+#define SLC_FIRST_SluiceExrImageSourceCreateInfo SLC_UP_TO(SluiceExrImageSourceCreateInfo, filePool)
 #define SLC_FIRST_SluiceExrInfo SLC_UP_TO(SluiceExrInfo, chromaticities)
 #define SLC_FIRST_SluiceExrWriteInfo SLC_UP_TO(SluiceExrWriteInfo, pfnProgress)
-#define SLC_FIRST_SluiceDdsImageSourceCreateInfo SLC_UP_TO(SluiceDdsImageSourceCreateInfo, log)
+#define SLC_FIRST_SluiceDdsImageSourceCreateInfo SLC_UP_TO(SluiceDdsImageSourceCreateInfo, filePool)
 #define SLC_FIRST_SluiceKtx2ImageSourceCreateInfo                                                  \
-    SLC_UP_TO(SluiceKtx2ImageSourceCreateInfo, maxCacheSize)
+    SLC_UP_TO(SluiceKtx2ImageSourceCreateInfo, filePool)
 #define SLC_FIRST_SluiceStoreCreateInfo SLC_UP_TO(SluiceStoreCreateInfo, log)
 #define SLC_FIRST_SluiceStoreImageSourceCreateInfo                                                 \
-    SLC_UP_TO(SluiceStoreImageSourceCreateInfo, alwaysCheckRawTiles)
+    SLC_UP_TO(SluiceStoreImageSourceCreateInfo, filePool)
 #define SLC_FIRST_SluiceStoreInfo SLC_UP_TO(SluiceStoreInfo, fileSize)
 #define SLC_FIRST_SluiceStoreDefect SLC_UP_TO(SluiceStoreDefect, result)
 #define SLC_FIRST_SluiceStoreVerifyInfo SLC_UP_TO(SluiceStoreVerifyInfo, pfnProgress)

@@ -197,7 +197,8 @@ static const SluiceImageSourceInterface container_interface = {.structSize =
 SluiceResult slc_container_source_create(const struct slc_container_create_info *info,
                                          SluiceImageSource **source_out)
 {
-    if (!info->path || !source_out || !slc_allocator_is_valid(info->allocator))
+    if ((!info->choice.path && !info->choice.input) || !source_out ||
+        !slc_allocator_is_valid(info->allocator))
         return SLUICE_ERROR_NULL_POINTER;
     if ((uint32_t)info->format >= SLUICE_FORMAT_COUNT)
         return SLUICE_ERROR_INVALID_ARGUMENT;
@@ -210,7 +211,7 @@ SluiceResult slc_container_source_create(const struct slc_container_create_info 
     source->read_header = info->read_header;
     pthread_mutex_init(&source->mutex, NULL);
     slc_level_cache_init(&source->cache, &source->file, info->max_cache_size);
-    SluiceResult result = slc_input_file_init(&source->file, info->path, &cb, info->log);
+    SluiceResult result = slc_input_file_init_choice(&source->file, &info->choice, &cb, info->log);
     if (result != SLUICE_SUCCESS) {
         destroy(&source->base);
         return result;

@@ -7,7 +7,7 @@
 #include "container/container_layout.h"
 
 struct slc_container_create_info {
-    const char *path;
+    struct slc_input_choice choice;
     SluiceFormat format; ///< asked for; UNDEFINED: the file's
     const SluiceAllocationCallbacks *allocator;
     const SluiceLogCallback *log;

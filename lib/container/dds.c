@@ -182,7 +182,7 @@ SluiceResult sluiceCreateDdsImageSource(const SluiceDdsImageSourceCreateInfo *pI
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_container_create_info info = {
-        .path = given.pPath,
+        .choice = {given.pPath, given.pInput, given.filePool},
         .format = given.format,
         .allocator = given.pAllocator,
         .log = &given.log,

@@ -194,7 +194,7 @@ SluiceResult sluiceCreateKtx2ImageSource(const SluiceKtx2ImageSourceCreateInfo *
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_container_create_info info = {
-        .path = given.pPath,
+        .choice = {given.pPath, given.pInput, given.filePool},
         .format = given.format,
         .allocator = given.pAllocator,
         .log = &given.log,

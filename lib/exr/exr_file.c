@@ -1,6 +1,7 @@
 #include "exr/exr_file.h"
 
 #include "base/log.h"
+#include "base/system.h"
 
 #include <errno.h>
 #include <string.h>
@@ -11,8 +12,10 @@ SluiceResult slc_exr_result(const struct slc_exr_file *file, exr_result_t result
     case EXR_ERR_SUCCESS: return SLUICE_SUCCESS;
     case EXR_ERR_OUT_OF_MEMORY: return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     case EXR_ERR_FEATURE_NOT_IMPLEMENTED: return SLUICE_ERROR_UNSUPPORTED;
-    case EXR_ERR_READ_IO:
-        return atomic_load(&file->system_failed) ? SLUICE_ERROR_IO : SLUICE_ERROR_CORRUPT_DATA;
+    case EXR_ERR_READ_IO: {
+        SluiceResult failure = (SluiceResult)atomic_load(&file->system_failure);
+        return failure != SLUICE_SUCCESS ? failure : SLUICE_ERROR_CORRUPT_DATA;
+    }
     default: return SLUICE_ERROR_CORRUPT_DATA;
     }
 }
@@ -26,9 +29,10 @@ static int64_t on_read(exr_const_context_t context, void *user, void *buffer, ui
         return -1;
     int64_t got = slc_input_file_read_some(&file->input, offset, buffer, size);
     if (got < 0) {
-        atomic_store(&file->system_failed, true);
+        int why = errno;
+        atomic_store(&file->system_failure, slc_system_result(why));
         error(context, EXR_ERR_READ_IO, "cannot read %llu bytes at %llu: %s",
-              (unsigned long long)size, (unsigned long long)offset, strerror(errno));
+              (unsigned long long)size, (unsigned long long)offset, slc_input_error_text(why));
     }
     return got;
 }
@@ -70,11 +74,11 @@ static SluiceResult open_context(struct slc_exr_file *file)
                           exr_get_default_error_message(result));
 }
 
-SluiceResult slc_exr_file_open(struct slc_exr_file *file, const char *path,
+SluiceResult slc_exr_file_open(struct slc_exr_file *file, const struct slc_input_choice *choice,
                                const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log)
 {
     memset(file, 0, sizeof *file);
-    SluiceResult result = slc_input_file_init(&file->input, path, cb, log);
+    SluiceResult result = slc_input_file_init_choice(&file->input, choice, cb, log);
     if (result == SLUICE_SUCCESS)
         result = slc_input_file_open(&file->input);
     if (result == SLUICE_SUCCESS)

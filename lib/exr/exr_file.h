@@ -38,7 +38,8 @@ struct slc_exr_channel {
 
 struct slc_exr_file {
     struct slc_input_file input;
-    atomic_bool system_failed; ///< a read failed for another reason than the file's end
+    /** SluiceResult of the last read that failed for another reason than the file's end. */
+    atomic_int system_failure;
     exr_context_t context;
 
     enum slc_exr_layout layout;
@@ -69,7 +70,7 @@ struct slc_exr_file {
  * Opens a file and checks its header. Errors as sluiceCreateExrImageSource has them; each one is
  * logged once, with the path and what to do.
  */
-SluiceResult slc_exr_file_open(struct slc_exr_file *file, const char *path,
+SluiceResult slc_exr_file_open(struct slc_exr_file *file, const struct slc_input_choice *choice,
                                const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log);
 
 /** Also after a failed open. */

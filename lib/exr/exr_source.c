@@ -259,13 +259,15 @@ static SluiceResult describe(struct exr_source *source, SluiceFormat format, uin
 SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pInfo,
                                         SluiceImageSource **pSource)
 {
-    if (!pInfo || !pSource || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
+    if (!pInfo || !pSource)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info};
     SluiceResult result =
         slc_struct_read(SLC_STRUCT(SluiceExrImageSourceCreateInfo), &info, pInfo, &pInfo->log);
     if (result != SLUICE_SUCCESS)
         return result;
+    if ((!info.pPath && !info.pInput) || !slc_allocator_is_valid(info.pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
     if (info.format != SLUICE_FORMAT_UNDEFINED &&
         (sluiceGetFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format) ||
          slc_format_is_snorm(info.format)))
@@ -276,7 +278,8 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     source->base.pInterface = &exr_interface;
     pthread_mutex_init(&source->mutex, NULL);
-    result = slc_exr_file_open(&source->file, info.pPath, &cb, &info.log);
+    struct slc_input_choice choice = {info.pPath, info.pInput, info.filePool};
+    result = slc_exr_file_open(&source->file, &choice, &cb, &info.log);
     if (info.keepPrimaries && source->file.converts) {
         source->file.converts = false;
         source->file.is_foreign = true;

@@ -7,24 +7,24 @@
 
 static SluiceResult read_header(struct slc_store_reader *reader)
 {
-    const struct slc_store_file *file = &reader->file;
+    const struct slc_input_file *file = &reader->file;
     if (file->size < SLC_STORE_HEADER_SIZE)
-        return slc_store_fail_at(file, SLUICE_ERROR_CORRUPT_DATA, file->size,
+        return slc_input_fail_at(file, SLUICE_ERROR_CORRUPT_DATA, file->size,
                                  "is shorter than the header of a tile store");
     SluiceResult result =
-        slc_store_file_read(file, 0, reader->header_bytes, sizeof reader->header_bytes);
+        slc_input_file_read(file, 0, reader->header_bytes, sizeof reader->header_bytes);
     if (result != SLUICE_SUCCESS)
         return result;
     uint32_t offset;
     const char *message;
     result = slc_store_header_read(&reader->header, reader->header_bytes, &offset, &message);
     if (result != SLUICE_SUCCESS)
-        return slc_store_fail_at(file, result, offset, message);
+        return slc_input_fail_at(file, result, offset, message);
     if (reader->header.file_size < file->size)
-        return slc_store_fail_at(file, SLUICE_ERROR_CORRUPT_DATA, reader->header.file_size,
+        return slc_input_fail_at(file, SLUICE_ERROR_CORRUPT_DATA, reader->header.file_size,
                                  "the file goes on behind its end");
     if (reader->header.file_size > file->size || reader->header.data_offset > file->size)
-        return slc_store_fail_at(file, SLUICE_ERROR_CORRUPT_DATA, file->size,
+        return slc_input_fail_at(file, SLUICE_ERROR_CORRUPT_DATA, file->size,
                                  "the file is cut off here; copy it again");
     return SLUICE_SUCCESS;
 }
@@ -33,10 +33,12 @@ SluiceResult slc_store_reader_open(struct slc_store_reader *reader,
                                    const SluiceStoreImageSourceCreateInfo *info)
 {
     SluiceAllocationCallbacks cb = slc_allocator(info->pAllocator);
-    *reader = (struct slc_store_reader){
-        .file.descriptor = -1, .pool = info->readPool, .checks_always = info->alwaysCheckRawTiles};
-    SluiceResult result = slc_store_file_open(&reader->file, info->pPath, &cb, &info->log);
-    reader->file.said = &reader->said;
+    *reader = (struct slc_store_reader){.pool = info->readPool,
+                                        .checks_always = info->alwaysCheckRawTiles};
+    struct slc_input_choice choice = {info->pPath, info->pInput, info->filePool};
+    SluiceResult result = slc_input_file_init_choice(&reader->file, &choice, &cb, &info->log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_input_file_open(&reader->file);
     if (result == SLUICE_SUCCESS)
         result = read_header(reader);
     if (result == SLUICE_SUCCESS && !reader->pool) {
@@ -56,7 +58,7 @@ void slc_store_reader_close(struct slc_store_reader *reader)
     if (reader->has_mutex)
         pthread_mutex_destroy(&reader->mutex);
     sluiceDestroyStoreReadPool(reader->own_pool);
-    slc_store_file_close(&reader->file);
+    slc_input_file_finish(&reader->file);
 }
 
 static bool find_in_kept(struct slc_store_reader *reader, uint64_t block,
@@ -95,11 +97,11 @@ static SluiceResult find_in_file(struct slc_store_reader *reader, uint64_t block
 {
     unsigned char bytes[SLC_STORE_BLOCK_SIZE];
     find->offset = slc_store_block_offset(block);
-    SluiceResult result = slc_store_file_read(&reader->file, find->offset, bytes, sizeof bytes);
+    SluiceResult result = slc_input_file_read(&reader->file, find->offset, bytes, sizeof bytes);
     if (result != SLUICE_SUCCESS)
         return result;
     if (!slc_store_block_is_sound(&reader->header, block, bytes))
-        return slc_store_fail_at(&reader->file, SLUICE_ERROR_CORRUPT_DATA, find->offset,
+        return slc_input_fail_at(&reader->file, SLUICE_ERROR_CORRUPT_DATA, find->offset,
                                  "the checksum of a part of the index is wrong");
     find->entry = slc_store_entry_read(bytes + slc_store_entry_offset(find->number));
     keep_block(reader, block, bytes);
@@ -119,7 +121,7 @@ SluiceResult slc_store_find_chunk(struct slc_store_reader *reader, struct slc_st
                                                 &find->place, &find->entry);
     find->offset = slc_store_block_offset(block) + slc_store_entry_offset(find->number);
     if (defect)
-        return slc_store_fail_at(&reader->file, SLUICE_ERROR_CORRUPT_DATA, find->offset, defect);
+        return slc_input_fail_at(&reader->file, SLUICE_ERROR_CORRUPT_DATA, find->offset, defect);
     find->offset = find->entry.offset;
     return SLUICE_SUCCESS;
 }
@@ -139,13 +141,13 @@ static SluiceResult read_stored(struct slc_store_reader *reader, const struct sl
                                 void *bytes)
 {
     size_t size = find->entry.size;
-    SluiceResult result = slc_store_file_read(&reader->file, find->offset, bytes, size);
+    SluiceResult result = slc_input_file_read(&reader->file, find->offset, bytes, size);
     if (result != SLUICE_SUCCESS)
         return result;
     if (slc_store_chunk_checksum(&reader->header, find->number, bytes, size) ==
         find->entry.checksum)
         return SLUICE_SUCCESS;
-    return slc_store_fail_at(&reader->file, SLUICE_ERROR_CORRUPT_DATA, find->offset,
+    return slc_input_fail_at(&reader->file, SLUICE_ERROR_CORRUPT_DATA, find->offset,
                              "the checksum of a tile is wrong");
 }
 
@@ -153,7 +155,7 @@ static SluiceResult read_raw(struct slc_store_reader *reader, const struct slc_s
                              void *texels)
 {
     if (!reader->checks_always && find->is_checked)
-        return slc_store_file_read(&reader->file, find->offset, texels, find->entry.size);
+        return slc_input_file_read(&reader->file, find->offset, texels, find->entry.size);
     SluiceResult result = read_stored(reader, find, texels);
     if (!reader->checks_always && result == SLUICE_SUCCESS)
         note_checked(reader, find);
@@ -175,7 +177,7 @@ static SluiceResult read_compressed(struct slc_store_reader *reader,
     result = slc_store_decompress(decompressor, bench->stored, find->entry.size, texels, texel_size,
                                   &message);
     if (result == SLUICE_ERROR_CORRUPT_DATA)
-        slc_store_fail_at(&reader->file, result, find->offset, message);
+        slc_input_fail_at(&reader->file, result, find->offset, message);
     return result;
 }
 

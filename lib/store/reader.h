@@ -2,7 +2,7 @@
 #ifndef SLC_STORE_READER_H
 #define SLC_STORE_READER_H
 
-#include "store/store_file.h"
+#include "image/input_file.h"
 #include "store/store_layout.h"
 #include "store/store_read_pool.h"
 
@@ -12,8 +12,7 @@
 #define SLC_STORE_KEPT_BLOCKS 64u
 
 struct slc_store_reader {
-    struct slc_store_file file;
-    struct slc_said said;           ///< of the file
+    struct slc_input_file file;
     struct slc_store_header header; ///< constant
     unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
     SluiceStoreReadPool *pool, *own_pool; ///< the second NULL where the first is the caller's

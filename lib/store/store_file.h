@@ -1,31 +1,17 @@
-/** Files by position: whole reads and writes, whatever the system does in between. */
+/** A store that is being written: whole reads and writes, whatever the system does in between. */
 #ifndef SLC_STORE_STORE_FILE_H
 #define SLC_STORE_STORE_FILE_H
 
 #include <sluice/base.h>
 
-#include "base/said.h"
-
-/** What messages and reads need of an open file. */
+/** What messages, reads and writes need of a file that is being written. */
 struct slc_store_file {
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;
-    char *path; ///< owned
+    const char *path;
     int descriptor;
-    uint64_t size;         ///< when it was opened
-    struct slc_said *said; ///< of faults that are read again and again; NULL: all are logged
+    uint64_t size; ///< when it was opened
 };
-
-/**
- * Opens a regular file for reading. Logs every failure of the system.
- *
- * Returns SLUICE_NOT_READY for want of file descriptors: close the file and open it again later.
- * Errors: FILE_NOT_FOUND, IO, OUT_OF_HOST_MEMORY.
- */
-SluiceResult slc_store_file_open(struct slc_store_file *file, const char *path,
-                                 const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log);
-/** Also after a failed open. */
-void slc_store_file_close(struct slc_store_file *file);
 
 /** Reads all of `size` bytes. Returns SLUICE_NOT_READY if the system says "try again". Errors: IO,
  *  also beyond the end; OUT_OF_HOST_MEMORY. Logs every failure. Any thread. */
@@ -38,7 +24,5 @@ SluiceResult slc_store_file_write(const struct slc_store_file *file, uint64_t of
 /** Logs an error with the path and the offset in front and returns `result`. */
 SluiceResult slc_store_fail_at(const struct slc_store_file *file, SluiceResult result,
                                uint64_t offset, const char *what);
-/** The same for a call of the system that failed: IO, with what errno says. */
-SluiceResult slc_store_fail_system(const struct slc_store_file *file, const char *what);
 
 #endif /* SLC_STORE_STORE_FILE_H */

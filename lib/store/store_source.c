@@ -152,13 +152,15 @@ static const SluiceImageSourceInterface store_interface = {.structSize = sizeof 
 SluiceResult sluiceCreateStoreImageSource(const SluiceStoreImageSourceCreateInfo *pInfo,
                                           SluiceImageSource **pSource)
 {
-    if (!pInfo || !pSource || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
+    if (!pInfo || !pSource)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info};
     SluiceResult result =
         slc_struct_read(SLC_STRUCT(SluiceStoreImageSourceCreateInfo), &info, pInfo, &pInfo->log);
     if (result != SLUICE_SUCCESS)
         return result;
+    if ((!info.pPath && !info.pInput) || !slc_allocator_is_valid(info.pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     struct store_source *source = slc_calloc(&cb, 1, sizeof *source);
     if (!source)

@@ -9,13 +9,10 @@
  *
  * In the ordinary test run standalone.c plays the corpus.
  */
-#define _XOPEN_SOURCE 700
-
 #include <sluice/dds.h>
 #include <sluice/ktx2.h>
 
 #include <stdlib.h>
-#include <unistd.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -53,27 +50,16 @@ static void read_source(SluiceImageSource *source)
     sluiceDestroyImageSource(source);
 }
 
-static void read_file(const char *path)
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    SluiceDdsImageSourceCreateInfo dds = {.structSize = sizeof dds, .pPath = path};
+    SluiceInput input = {.structSize = sizeof input, .pBytes = data, .size = size};
+    SluiceDdsImageSourceCreateInfo dds = {.structSize = sizeof dds, .pInput = &input};
     SluiceKtx2ImageSourceCreateInfo ktx2 = {
-        .structSize = sizeof ktx2, .pPath = path, .maxCacheSize = MAX_LEVEL_SIZE};
+        .structSize = sizeof ktx2, .pInput = &input, .maxCacheSize = MAX_LEVEL_SIZE};
     SluiceImageSource *source;
     if (sluiceCreateDdsImageSource(&dds, &source) == SLUICE_SUCCESS)
         read_source(source);
     if (sluiceCreateKtx2ImageSource(&ktx2, &source) == SLUICE_SUCCESS)
         read_source(source);
-}
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
-{
-    char path[] = "/tmp/fuzz-container-XXXXXX";
-    int descriptor = mkstemp(path);
-    if (descriptor < 0)
-        return 0;
-    if (write(descriptor, data, size) == (ssize_t)size)
-        read_file(path);
-    close(descriptor);
-    unlink(path);
     return 0;
 }

@@ -2,12 +2,9 @@
  * Any bytes as an OpenEXR file: an error or an image, all of whose levels can be asked for. Link it
  * with -fsanitize=fuzzer, or with standalone.c to replay inputs.
  */
-#define _XOPEN_SOURCE 700
-
 #include <sluice/exr.h>
 
 #include <stdlib.h>
-#include <unistd.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -28,10 +25,10 @@ static void read_level(SluiceImageSource *source, const SluiceImageInfo *info, u
     free(texels);
 }
 
-static void read_file(const char *path, SluiceFormat format)
+static void read_file(const SluiceInput *input, SluiceFormat format)
 {
     SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
-                                             .pPath = path,
+                                             .pInput = input,
                                              .format = format,
                                              .maxImageSize = 1 << 26,
                                              .maxMemorySize = 1 << 28};
@@ -51,15 +48,8 @@ static void read_file(const char *path, SluiceFormat format)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/fuzz-exr-XXXXXX";
-    int descriptor = mkstemp(path);
-    if (descriptor < 0)
-        return 0;
-    if (write(descriptor, data, size) == (ssize_t)size) {
-        read_file(path, SLUICE_FORMAT_UNDEFINED);
-        read_file(path, SLUICE_FORMAT_R8G8B8A8_SRGB);
-    }
-    close(descriptor);
-    unlink(path);
+    SluiceInput input = {.structSize = sizeof input, .pBytes = data, .size = size};
+    read_file(&input, SLUICE_FORMAT_UNDEFINED);
+    read_file(&input, SLUICE_FORMAT_R8G8B8A8_SRGB);
     return 0;
 }

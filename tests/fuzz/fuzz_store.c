@@ -114,12 +114,27 @@ static void read_file(const char *path, const char *part_path, bool finishes)
     sluiceDestroyImageSource(source);
 }
 
+/* Of the exact size, so that reading beyond it is seen. */
+static void read_memory(const uint8_t *bytes, size_t size)
+{
+    SluiceInput input = {.structSize = sizeof input, .pBytes = bytes, .size = size};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pInput = &input};
+    SluiceImageSource *source;
+    SluiceStoreInfo info = {.structSize = sizeof info};
+    if (sluiceCreateStoreImageSource(&create, &source) != SLUICE_SUCCESS)
+        return;
+    if (sluiceGetStoreInfo(source, &info) != SLUICE_SUCCESS)
+        abort();
+    read_tiles(source, &info);
+    sluiceDestroyImageSource(source);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char path[] = "/tmp/fuzz-store-XXXXXX", part_path[sizeof path + sizeof ".sluice-part"];
     if (size < 1)
         return 0;
-    uint8_t *copy = malloc(size);
+    uint8_t *copy = malloc(size > 1 ? size - 1 : 1);
     int descriptor = mkstemp(path);
     if (copy && descriptor >= 0) {
         snprintf(part_path, sizeof part_path, "%s.sluice-part", path);
@@ -128,6 +143,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             naive_store_reseal(copy, size - 1);
         if (write(descriptor, copy, size - 1) == (ssize_t)(size - 1))
             read_file(path, part_path, data[0] & 2);
+        read_memory(copy, size - 1);
         close(descriptor);
         unlink(path);
         unlink(part_path);

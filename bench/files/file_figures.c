@@ -1,0 +1,224 @@
+/*
+ * How many tile stores can be in use under a limit of file descriptors, and how fast they are read,
+ * with a pool of open files and without.
+ *
+ *     file_figures [--json] [--quick] [--stores N] [--limit N] FOLDER
+ *
+ * FOLDER takes copies of a store of 64 x 64 texels, one per store, which are removed at the end.
+ * The files are in the page cache. One thread.
+ */
+#define _XOPEN_SOURCE 700
+
+#include "../../tools/common/shared_options.h"
+
+#include <sluice/store.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { SIZE = 64 };
+
+static struct {
+    bool json, quick;
+    uint32_t store_count, limit;
+    const char *folder;
+    SluiceStoreReadPool *read_pool;
+    SluiceImageSource **sources;
+} run;
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+static void figure(const char *name, double value, const char *unit)
+{
+    if (run.json)
+        printf("{\"name\": \"%s\", \"value\": %.6g, \"unit\": \"%s\"}\n", name, value, unit);
+    else
+        printf("%-40s %12.6g %s\n", name, value, unit);
+}
+
+static void fail(const char *what)
+{
+    fprintf(stderr, "file_figures: %s failed\n", what);
+    exit(1);
+}
+
+static void path_of(uint32_t i, char path[512])
+{
+    snprintf(path, 512, "%s/%u" SLUICE_STORE_EXTENSION, run.folder, i);
+}
+
+static void write_first(void)
+{
+    static unsigned char texels[SIZE * SIZE * 4];
+    const void *levels[7];
+    char path[512];
+    SluiceStoreWriter *writer;
+    path_of(0, path);
+    for (uint32_t i = 0; i < sizeof texels; i++)
+        texels[i] = (unsigned char)(i * 7);
+    for (uint32_t l = 0; l < 7; l++)
+        levels[l] = texels;
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .pPath = path,
+                                  .width = SIZE,
+                                  .height = SIZE,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
+    if (sluiceCreateStoreWriter(&info, &writer) || sluiceWriteStoreTail(writer, 0, levels, NULL) ||
+        sluiceFinishStore(writer))
+        fail("writing a store");
+    sluiceDestroyStoreWriter(writer);
+}
+
+/* Not the library's writer, which waits for the disk each time. */
+static void copy_stores(void)
+{
+    static char bytes[1 << 18];
+    char path[512];
+    path_of(0, path);
+    FILE *file = fopen(path, "rb");
+    size_t size = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+    if (size == 0 || size == sizeof bytes)
+        fail("reading a store");
+    fclose(file);
+    for (uint32_t i = 1; i < run.store_count; i++) {
+        path_of(i, path);
+        file = fopen(path, "wb");
+        if (!file || fwrite(bytes, 1, size, file) != size || fclose(file) != 0)
+            fail("copying a store");
+    }
+}
+
+static void remove_stores(void)
+{
+    char path[512];
+    for (uint32_t i = 0; i < run.store_count; i++) {
+        path_of(i, path);
+        unlink(path);
+    }
+}
+
+static void set_limit(uint64_t limit)
+{
+    struct rlimit now;
+    if (getrlimit(RLIMIT_NOFILE, &now) != 0)
+        fail("getrlimit");
+    now.rlim_cur = limit < now.rlim_max ? limit : now.rlim_max;
+    if (setrlimit(RLIMIT_NOFILE, &now) != 0)
+        fail("setrlimit");
+}
+
+/* The number that could be opened. */
+static uint32_t open_stores(SluiceFilePool *pool)
+{
+    uint32_t count = 0;
+    for (; count < run.store_count; count++) {
+        char path[512];
+        path_of(count, path);
+        SluiceStoreImageSourceCreateInfo info = {
+            .structSize = sizeof info, .pPath = path, .readPool = run.read_pool, .filePool = pool};
+        SluiceResult result = sluiceCreateStoreImageSource(&info, &run.sources[count]);
+        if (result == SLUICE_NOT_READY)
+            break;
+        if (result != SLUICE_SUCCESS)
+            fail("opening a store");
+    }
+    return count;
+}
+
+static void close_stores(uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        sluiceDestroyImageSource(run.sources[i]);
+}
+
+/* Reads of level 0, of `count` stores in an order that visits all before one comes again. */
+static double reads_per_second(uint32_t count)
+{
+    static unsigned char texels[SIZE * SIZE * 4];
+    SluiceImageRegion region = {0, 0, 0, SIZE, SIZE, 0};
+    uint64_t reads = 0, most = run.quick ? 2000 : 100000;
+    for (uint32_t i = 0; i < count; i++) /* the index is read once */
+        if (sluiceReadImageRegion(run.sources[i], &region, texels, 4 * SIZE))
+            fail("reading a store");
+    double start = now();
+    for (uint32_t at = 0; reads < most; reads++, at = (at + 1) % count)
+        if (sluiceReadImageRegion(run.sources[at], &region, texels, 4 * SIZE))
+            fail("reading a store");
+    return (double)reads / (now() - start);
+}
+
+static void measure_with_pool(void)
+{
+    SluiceFilePool *pool;
+    SluiceFilePoolStatistics statistics = {.structSize = sizeof statistics};
+    set_limit(run.limit);
+    if (sluiceCreateFilePool(NULL, &pool))
+        fail("creating a pool");
+    double start = now();
+    uint32_t count = open_stores(pool);
+    figure("pool.stores", count, "stores");
+    figure("pool.opening", 1e6 * (now() - start) / count, "us/store");
+    figure("pool.reads.all", reads_per_second(count), "reads/s");
+    if (sluiceGetFilePoolStatistics(pool, &statistics))
+        fail("asking the pool");
+    uint32_t hot = statistics.maxOpenFileCount < count ? statistics.maxOpenFileCount : count;
+    figure("pool.reads.open", reads_per_second(hot), "reads/s");
+    figure("pool.open_files", statistics.openFilePeak, "files");
+    close_stores(count);
+    sluiceDestroyFilePool(pool);
+}
+
+static void measure_without_pool(void)
+{
+    set_limit(run.limit);
+    uint32_t count = open_stores(NULL);
+    figure("no_pool.stores", count, "stores");
+    close_stores(count);
+    set_limit((uint64_t)run.store_count + 64);
+    count = open_stores(NULL);
+    figure("no_pool.unlimited.stores", count, "stores");
+    figure("no_pool.reads.all", reads_per_second(count), "reads/s");
+    figure("no_pool.reads.open", reads_per_second(count < 64 ? count : 64), "reads/s");
+    close_stores(count);
+}
+
+int main(int argc, char **argv)
+{
+    const struct option rows[] = {
+        {OPTION_WORD, .operand = "FOLDER", .value = &run.folder, .minimum = 1, .help = "a folder"},
+        option_json(&run.json),
+        {OPTION_FLAG, "quick", .value = &run.quick, .help = "300 stores, few reads"},
+        {OPTION_UINT, "stores", "N", "10000", &run.store_count, "stores in use", 1, 1 << 20},
+        {OPTION_UINT, "limit", "N", "256", &run.limit, "file descriptors of the process", 64,
+         1 << 20},
+    };
+    const struct option_table table = {"file_figures", "usage: file_figures [options] FOLDER\n",
+                                       NULL, rows, sizeof rows / sizeof *rows};
+    switch (options_parse(&table, argc, argv)) {
+    case OPTIONS_RUN: break;
+    case OPTIONS_HELP: return 0;
+    case OPTIONS_ERROR: return 2;
+    }
+    if (run.quick && run.store_count > 300)
+        run.store_count = 300;
+    run.sources = calloc(run.store_count, sizeof(SluiceImageSource *));
+    if (!run.sources || sluiceCreateStoreReadPool(NULL, &run.read_pool))
+        fail("finding memory");
+    write_first();
+    copy_stores();
+    measure_with_pool();
+    measure_without_pool();
+    remove_stores();
+    sluiceDestroyStoreReadPool(run.read_pool);
+    free(run.sources);
+    return 0;
+}
