@@ -715,6 +715,7 @@ typedef struct SluiceDemandStatistics {
     uint64_t residentBytePageCount; ///< Byte pages; not part of residentResourcePageCount.
     uint64_t byteMemorySize;        ///< Bytes of device memory for byte pages.
     uint32_t byteChunkCount;        ///< Buffers that hold byte pages.
+    uint64_t tailPageCount;         ///< Pages of 64 KiB that resident mip tails share.
 } SluiceDemandStatistics;
 
 /**

@@ -1,23 +1,32 @@
 /**
- * The tail of a texture: its levels that fit into half a tile, in one tile. The first of them is at
- * the left, those after it below one another at the right, none over another:
+ * The tail of a texture: its levels that fit into half a tile. Tails share pages. A page is cut
+ * into equal cells, and a cell into slots, one for each tail. The first levels of three tails are
+ * quarters of the cell. The fourth quarter is cut in the same way for their next levels, and so on:
  *
+ *     +-------+-------+
+ *     |       |       |
+ *     |  A0   |  B0   |     three tails A, B and C of 64x64 RGBA8 texels
+ *     |       |       |     take a page of 128x128 texels but for one texel
  *     +-------+---+---+
- *     |       | 1 |   |     0: the first level of the tail
- *     |   0   +-+-+   |
- *     |       |2|     |
- *     |       +-+     |
- *     +-------+-------+
- *     |       | *     |     *: levels lower than a block, where texels come in blocks
- *     +-------+-------+
+ *     |       |A1 |B1 |
+ *     |  C0   +---+-+-+
+ *     |       |C1 +-+-+
+ *     +-------+---+-+-+
  *
- * All functions: for the shapes of sluiceGetStandardTileShape. GLSL twin: sluiceDemandTailPlace in
- * shaders/include/sluice/demand_texels.glsl.
+ * The quarters end at one texel, or one block. Tails with levels beyond that leave slot C empty,
+ * and have those levels at the beginning of C0.
+ *
+ * All functions: for the shapes of sluiceGetStandardTileShape, which are squares or twice as wide
+ * as high. GLSL twin: sluiceDemandTailPlace in shaders/include/sluice/demand_texels.glsl.
  */
 #ifndef SLC_DEMAND_TAIL_PLACE_H
 #define SLC_DEMAND_TAIL_PLACE_H
 
 #include "base/checked.h"
+
+#include <sluice/shared/demand.h>
+
+#include <stdbool.h>
 
 /** How many levels have tiles of their own: those wider or higher than half a tile. So it is the
  *  first level of the tail, too, which always has one: the last level is 1x1. */
@@ -31,21 +40,84 @@ static inline uint32_t slc_demand_regular_count(uint32_t width, uint32_t height,
     return count;
 }
 
-struct slc_demand_place {
-    uint32_t x, y; ///< texels from the tile's corner; in block-compressed formats multiples of 4
+/** How a page is cut for a tail. */
+struct slc_tail_cut {
+    uint32_t cell;                    ///< 0: the page is one cell; 1 to 3: SLUICE_DEMAND_CELL_SIDE
+    uint32_t slots;                   ///< of a cell: 2 or 3
+    uint32_t columns, rows;           ///< of cells
+    uint32_t cell_width, cell_height; ///< texels
 };
 
-/** Where level `k` of the tail begins: 0 is its first. `blocks`: texels come in blocks of 4x4. */
-static inline struct slc_demand_place
-slc_demand_tail_place(uint32_t tile_width, uint32_t tile_height, bool blocks, uint32_t k)
+/** Levels that lie in quarters of a cell. */
+static inline uint32_t slc_tail_quarters(uint32_t cell_height, bool blocks)
 {
-    if (k == 0)
-        return (struct slc_demand_place){0, 0};
-    uint32_t half = tile_height / 2;
-    uint32_t y = half - (half >> (k - 1));
-    if (blocks && half >> k < 4)
-        y = half + 4 * (k - (slc_log2_u32(half) - 1)); /* 4 rows for each level below 4 */
-    return (struct slc_demand_place){tile_width / 2, y};
+    return slc_log2_u32(cell_height / (blocks ? 4 : 1));
+}
+
+/** The smallest cells for a tail of `levels` levels, whose first has these texels. */
+static inline struct slc_tail_cut slc_tail_cut(uint32_t tile_width, uint32_t tile_height,
+                                               bool blocks, uint32_t width, uint32_t height,
+                                               uint32_t levels)
+{
+    struct slc_tail_cut cut = {.cell_width = tile_width, .cell_height = tile_height};
+    while (cut.cell < 3 && slc_max_u32(width, height) <= tile_height >> (cut.cell + 1)) {
+        cut.cell++;
+        cut.cell_width = cut.cell_height = SLUICE_DEMAND_CELL_SIDE(tile_height, cut.cell);
+    }
+    cut.columns = tile_width / cut.cell_width;
+    cut.rows = tile_height / cut.cell_height;
+    cut.slots = levels > slc_tail_quarters(cut.cell_height, blocks) ? 2 : 3;
+    return cut;
+}
+
+static inline uint32_t slc_tail_slot_count(const struct slc_tail_cut *cut)
+{
+    return cut->columns * cut->rows * cut->slots;
+}
+
+/** What the word of a page has of its slot, besides chunk and layer. Not 0. */
+static inline uint32_t slc_tail_slot_bits(const struct slc_tail_cut *cut, uint32_t slot)
+{
+    uint32_t cell = slot / cut->slots;
+    return (1 + slot % cut->slots) << SLUICE_DEMAND_SLOT_SHIFT |
+           cut->cell << SLUICE_DEMAND_CELL_SHIFT |
+           cell % cut->columns << SLUICE_DEMAND_CELL_X_SHIFT |
+           cell / cut->columns << SLUICE_DEMAND_CELL_Y_SHIFT;
+}
+
+static inline uint32_t slc_tail_slot_of(const struct slc_tail_cut *cut, uint32_t word)
+{
+    uint32_t x = word >> SLUICE_DEMAND_CELL_X_SHIFT & 7, y = word >> SLUICE_DEMAND_CELL_Y_SHIFT & 3;
+    return (y * cut->columns + x) * cut->slots + (word >> SLUICE_DEMAND_SLOT_SHIFT & 3) - 1;
+}
+
+static inline bool slc_is_tail_word(uint32_t word)
+{
+    return (word >> SLUICE_DEMAND_SLOT_SHIFT & 3) != 0;
+}
+
+struct slc_demand_place {
+    uint32_t x, y; ///< texels from the page's corner; in block-compressed formats multiples of 4
+};
+
+/** Where level `k` of the tail begins: 0 is its first. `word` has the slot bits. `blocks`: texels
+ *  come in blocks of 4x4. */
+static inline struct slc_demand_place slc_demand_tail_place(uint32_t tile_width,
+                                                            uint32_t tile_height, bool blocks,
+                                                            uint32_t word, uint32_t k)
+{
+    uint32_t n = word >> SLUICE_DEMAND_CELL_SHIFT & 3, block = blocks ? 4 : 1;
+    uint32_t height = n ? SLUICE_DEMAND_CELL_SIDE(tile_height, n) : tile_height;
+    uint32_t width = n ? height : tile_width;
+    uint32_t slot = (word >> SLUICE_DEMAND_SLOT_SHIFT & 3) - 1;
+    uint32_t x = (word >> SLUICE_DEMAND_CELL_X_SHIFT & 7) * width;
+    uint32_t y = (word >> SLUICE_DEMAND_CELL_Y_SHIFT & 3) * height;
+    if (height >> (k + 1) >= block)
+        return (struct slc_demand_place){x + width - (width >> k) + (slot & 1) * (width >> (k + 1)),
+                                         y + height - (height >> k) +
+                                             (slot >> 1) * (height >> (k + 1))};
+    return (struct slc_demand_place){x + (4 * slot + k - slc_tail_quarters(height, blocks)) * block,
+                                     y + height / 2};
 }
 
 #endif /* SLC_DEMAND_TAIL_PLACE_H */

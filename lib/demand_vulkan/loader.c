@@ -190,11 +190,8 @@ static SluiceResult create_pages(SluiceDemandLoader *loader)
     if (result != SLUICE_SUCCESS)
         return result;
     loader->tile_interface = slc_tile_memory_interface(&loader->tiles);
-    result =
-        slc_residency_set_class(loader->residency, SLC_CLASS_TILES,
-                                slc_tile_memory_limit(&loader->tiles), &loader->tile_interface);
-    if (result == SLUICE_SUCCESS)
-        result = slc_residency_set_class(loader->residency, SLC_CLASS_UNBOUND, UINT64_MAX, NULL);
+    slc_tiles_limit(loader);
+    result = slc_residency_set_class(loader->residency, SLC_CLASS_UNBOUND, UINT64_MAX, NULL);
     if (result == SLUICE_SUCCESS)
         result = slc_residency_set_class(loader->residency, SLC_CLASS_BYTES, UINT64_MAX,
                                          &loader->byte_interface);
@@ -209,9 +206,8 @@ static SluiceResult create_memory(SluiceDemandLoader *loader)
                                         &loader->memory, &loader->page_user);
     if (result != SLUICE_SUCCESS)
         return result;
-    slc_tile_memory_init(&loader->tiles, loader->pages, loader->page_user,
-                         loader->info.memoryBudget);
-    return SLUICE_SUCCESS;
+    return slc_tile_memory_init(&loader->tiles, loader->pages, loader->page_user,
+                                loader->info.memoryBudget, &loader->cb);
 }
 
 static void fill_buffers(const SluiceDemandLoader *loader, SluiceDemandBuffers *buffers)
@@ -330,6 +326,7 @@ static void destroy_device_parts(SluiceDemandLoader *loader)
 {
     slc_descriptors_finish(&loader->descriptors, &loader->vk);
     slc_byte_memory_finish(&loader->bytes);
+    slc_tile_memory_finish(&loader->tiles);
     slc_page_directory_finish(&loader->directory);
     slc_demand_scan_finish(&loader->scan, &loader->vk);
     if (loader->page_user < SLC_MAX_PAGE_USERS)
@@ -414,6 +411,7 @@ SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
     statistics.evictedCount = tiles.evicted + loader->counts.evictedCount;
     statistics.virtualPageCount = slc_page_space_used(loader->space);
     statistics.residentTileCount = tiles.resident;
+    statistics.tailPageCount = loader->tiles.tails.page_count;
     statistics.residentResourcePageCount = loader->held_count;
     slc_byte_pages_count(loader, &statistics);
     struct slc_page_pool_counts pool = slc_page_pool_get_counts(loader->pages);

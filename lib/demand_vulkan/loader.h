@@ -255,6 +255,7 @@ struct SluiceDemandLoader {
     struct slc_page_space *space;
     struct slc_demand_residency *residency;
     struct slc_page_memory tile_interface;
+    uint64_t tile_limit; ///< of the class of tiles
     uint32_t *owners; ///< owned; whose pages a block of SLUICE_DEMAND_BLOCK_PAGES has, see pages.h
     uint32_t owner_capacity;
     bool has_shared;    ///< pages of other front ends are shown from the next launch on
@@ -490,6 +491,8 @@ static inline uint32_t slc_job_index(const SluiceDemandLoader *loader,
 }
 
 /* tiles.c */
+/** The class of tiles gets the limit of slc_tile_memory_limit as it is now. */
+void slc_tiles_limit(SluiceDemandLoader *loader);
 /** `page` is one of the image's. */
 enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_demand_image *image,
                                          uint32_t page, SluiceDemandTicket ticket,

@@ -20,10 +20,15 @@ struct survey {
     uint32_t pages[SLC_PAGE_CHUNK_LAYERS], count; ///< pages of `chunk`
 };
 
+static uint32_t chunk_of(const struct slc_placed_page *page)
+{
+    return (page->place & SLUICE_DEMAND_PLACE_MASK) >> 16;
+}
+
 static void count_page(void *user, const struct slc_placed_page *page)
 {
     struct survey *survey = user;
-    struct chunk_use *use = &survey->chunks[page->place >> 16];
+    struct chunk_use *use = &survey->chunks[chunk_of(page)];
     use->held++;
     use->in_use += page->in_use;
     use->stays |= page->stays;
@@ -32,7 +37,7 @@ static void count_page(void *user, const struct slc_placed_page *page)
 static void list_page(void *user, const struct slc_placed_page *page)
 {
     struct survey *survey = user;
-    if (page->place >> 16 == survey->chunk && survey->count < SLC_PAGE_CHUNK_LAYERS)
+    if (chunk_of(page) == survey->chunk && survey->count < SLC_PAGE_CHUNK_LAYERS)
         survey->pages[survey->count++] = page->page;
 }
 

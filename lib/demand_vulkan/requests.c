@@ -12,7 +12,9 @@ enum slc_request_answer slc_page_request_any(SluiceDemandLoader *loader, uint32_
 {
     uint32_t index;
     switch (slc_pages_find(loader, page, &index)) {
-    case SLC_OWNER_OPENING: return slc_image_request(loader, index, ticket, result);
+    case SLC_OWNER_OPENING:
+        loader->unasked_count++; /* takes no tile */
+        return slc_image_request(loader, index, ticket, result);
     case SLC_OWNER_TAIL: index = SLUICE_DEMAND_BLOCK_PAGES * index + page % 32u; break;
     case SLC_OWNER_LEVEL: break;
     case SLC_OWNER_RESOURCE: return slc_resource_request(loader, index, page, ticket, result);
@@ -70,8 +72,7 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     SluiceDemandRequests now = {.structSize = sizeof now,
                                 .missingCount = scan.requestCount,
                                 .postponedCount = scan.postponedCount};
-    slc_residency_set_class(loader->residency, SLC_CLASS_TILES,
-                            slc_tile_memory_limit(&loader->tiles), &loader->tile_interface);
+    slc_tiles_limit(loader);
     slc_residency_begin(loader->residency, launch);
     if (loader->tracked[slot])
         feed_used(loader, slot);

@@ -5,6 +5,7 @@
 #define SLC_DEMAND_VULKAN_TILE_MEMORY_H
 
 #include "demand/page_residency.h"
+#include "demand_vulkan/tail_pages.h"
 #include "vulkan/page_sharing.h"
 
 struct slc_tile_memory {
@@ -14,13 +15,18 @@ struct slc_tile_memory {
     const struct slc_tile_key *offered; ///< the page that is requested has this page to share
     bool offer_taken;
     uint32_t retaken; ///< the page that was given back last and taken again
-    bool short_of;    ///< a place was asked for and not there since the last look
-    uint32_t wanted;  ///< the format it was asked for
+    struct slc_tail_pages tails;
+    const struct slc_tail_cut *tail; ///< the page that is requested is a tail; NULL: a tile
+    bool tail_has_room;              ///< the tail that is requested needs no page of its own
+    bool short_of;                   ///< a place was asked for and not there since the last look
+    uint32_t wanted;                 ///< the format it was asked for
 };
 
-/** `user` of the pool was added with `budget`, bytes. */
-void slc_tile_memory_init(struct slc_tile_memory *memory, struct slc_page_pool *pool, uint32_t user,
-                          uint64_t budget);
+/** `user` of the pool was added with `budget`, bytes. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_tile_memory_init(struct slc_tile_memory *memory, struct slc_page_pool *pool,
+                                  uint32_t user, uint64_t budget,
+                                  const SluiceAllocationCallbacks *cb);
+void slc_tile_memory_finish(struct slc_tile_memory *memory);
 
 /** Sets the budget, in bytes. */
 void slc_tile_memory_set_budget(struct slc_tile_memory *memory, uint64_t budget);
@@ -28,8 +34,9 @@ void slc_tile_memory_set_budget(struct slc_tile_memory *memory, uint64_t budget)
 /** For slc_residency_set_class: the kind of a page is its format. */
 struct slc_page_memory slc_tile_memory_interface(struct slc_tile_memory *memory);
 
-/** Tiles that may be resident at once: fewer than the budget holds where images are larger than
- *  their tiles, or the device has no memory. */
+/** Tiles and tails that may be resident at once: fewer tiles than the budget holds where images are
+ *  larger than their tiles, or the device has no memory. More, by the tails that share pages: all
+ *  but one of each page, and the tail that is requested if a page has a slot for it. */
 uint64_t slc_tile_memory_limit(const struct slc_tile_memory *memory);
 
 #endif /* SLC_DEMAND_VULKAN_TILE_MEMORY_H */

@@ -23,7 +23,15 @@ static uint32_t find_level(const struct slc_demand_image *image, uint32_t page, 
     return image->regular_count; /* the tail */
 }
 
-static uint32_t write_tail(const struct slc_demand_image *image,
+static struct slc_tail_cut tail_cut(const struct slc_demand_image *image)
+{
+    return slc_tail_cut(image->tile_width, image->tile_height, image->blocks,
+                        slc_mip_size(image->info.width, image->regular_count),
+                        slc_mip_size(image->info.height, image->regular_count),
+                        image->info.mipLevelCount - image->regular_count);
+}
+
+static uint32_t write_tail(const struct slc_demand_image *image, uint32_t place,
                            struct slc_tile_part parts[SLC_TILE_MAX_PARTS])
 {
     uint32_t count = image->info.mipLevelCount - image->regular_count, offset = 0;
@@ -32,21 +40,21 @@ static uint32_t write_tail(const struct slc_demand_image *image,
         uint32_t level = image->regular_count + k;
         uint32_t width = slc_mip_size(image->info.width, level);
         uint32_t height = slc_mip_size(image->info.height, level);
-        struct slc_demand_place place =
-            slc_demand_tail_place(image->tile_width, image->tile_height, image->blocks, k);
-        parts[k] = (struct slc_tile_part){{level, 0, 0, width, height}, offset, place.x, place.y};
+        struct slc_demand_place at =
+            slc_demand_tail_place(image->tile_width, image->tile_height, image->blocks, place, k);
+        parts[k] = (struct slc_tile_part){{level, 0, 0, width, height}, offset, at.x, at.y};
         uint32_t size = (uint32_t)sluiceGetFormatRegionSize(image->info.format, width, height);
         offset += (size + STAGING_ALIGNMENT - 1) / STAGING_ALIGNMENT * STAGING_ALIGNMENT;
     }
     return count;
 }
 
-uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page,
+uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page, uint32_t place,
                         struct slc_tile_part parts[SLC_TILE_MAX_PARTS])
 {
     uint32_t index, level = find_level(image, page, &index);
     if (level == image->regular_count)
-        return write_tail(image, parts);
+        return write_tail(image, place, parts);
     uint32_t x = index % slc_image_level_width(image, level) * image->tile_width;
     uint32_t y = index / slc_image_level_width(image, level) * image->tile_height;
     parts[0] = (struct slc_tile_part){
@@ -64,7 +72,7 @@ static SluiceResult submit(SluiceDemandLoader *loader, struct slc_demand_image *
     struct slc_tile_part parts[SLC_TILE_MAX_PARTS];
     SluiceImageRegion regions[SLC_TILE_MAX_PARTS];
     void *texels[SLC_TILE_MAX_PARTS];
-    uint32_t count = slc_tile_parts(image, job->page, parts);
+    uint32_t count = slc_tile_parts(image, job->page, job->place, parts);
     for (uint32_t i = 0; i < count; i++) {
         regions[i] = parts[i].region;
         texels[i] = slc_job_memory(loader, job) + parts[i].offset;
@@ -153,6 +161,33 @@ static enum slc_request_answer request_page(SluiceDemandLoader *loader,
     return SLC_REQUEST_POSTPONED;
 }
 
+void slc_tiles_limit(SluiceDemandLoader *loader)
+{
+    uint64_t limit = slc_tile_memory_limit(&loader->tiles);
+    if (limit == loader->tile_limit)
+        return;
+    loader->tile_limit = limit;
+    slc_residency_set_class(loader->residency, SLC_CLASS_TILES, limit, &loader->tile_interface);
+}
+
+/* Streamers keep their packed levels in images of their own, so tails are not shared. */
+static enum slc_request_answer request_tail(SluiceDemandLoader *loader,
+                                            struct slc_demand_image *image,
+                                            const struct slc_page_request *request,
+                                            SluiceDemandTicket ticket, SluiceResult *result)
+{
+    struct slc_tile_memory *tiles = &loader->tiles;
+    struct slc_tail_cut cut = tail_cut(image);
+    tiles->tail = &cut;
+    tiles->tail_has_room = slc_tail_pages_has_room(&tiles->tails, image->info.format, &cut);
+    slc_tiles_limit(loader);
+    enum slc_request_answer answer = request_page(loader, image, request, NULL, ticket, result);
+    tiles->tail = NULL;
+    tiles->tail_has_room = false;
+    slc_tiles_limit(loader);
+    return answer;
+}
+
 enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_demand_image *image,
                                          uint32_t page, SluiceDemandTicket ticket,
                                          SluiceResult *result)
@@ -172,8 +207,8 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
         .rank = (uint8_t)(tail ? 0 : slc_image_level_rank(image, level)),
         .pinned = tail,
         .kind = image->info.format};
-    if (tail) /* streamers keep their packed levels in images of their own */
-        return request_page(loader, image, &request, NULL, ticket, result);
+    if (tail)
+        return request_tail(loader, image, &request, ticket, result);
     const struct slc_tile_key key = key_of(image, level, index);
     return request_page(loader, image, &request, &key, ticket, result);
 }

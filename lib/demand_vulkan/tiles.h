@@ -17,8 +17,8 @@ struct slc_tile_part {
     uint32_t x, y;   ///< texels in the page's layer
 };
 
-/** How many parts: 1 but for tails. */
-uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page,
+/** Returns how many parts: 1 but for tails. `place`: of the page. */
+uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page, uint32_t place,
                         struct slc_tile_part parts[SLC_TILE_MAX_PARTS]);
 
 #endif /* SLC_DEMAND_VULKAN_TILES_H */

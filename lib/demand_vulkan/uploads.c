@@ -76,7 +76,8 @@ static uint32_t round_up(uint32_t size, uint32_t to)
 static void add(struct copies *c, const struct slc_demand_job *job,
                 const struct slc_tile_part *part)
 {
-    VkImage target = slc_page_image(c->loader->pages, job->place);
+    uint32_t place = job->place & SLUICE_DEMAND_PLACE_MASK;
+    VkImage target = slc_page_image(c->loader->pages, place);
     uint32_t block = job->image->blocks ? 4 : 1;
     uint64_t offset;
     VkBuffer source = slc_job_buffer(c->loader, job, &offset);
@@ -85,12 +86,12 @@ static void add(struct copies *c, const struct slc_demand_job *job,
     c->target = target;
     c->source = source;
     /* A level may end inside the page, where only whole blocks may end. */
-    c->list[c->count++] = (VkBufferImageCopy){
-        .bufferOffset = offset + part->offset,
-        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, job->place & 0xFFFFu, 1},
-        .imageOffset = {(int32_t)part->x, (int32_t)part->y, 0},
-        .imageExtent = {round_up(part->region.width, block), round_up(part->region.height, block),
-                        1}};
+    c->list[c->count++] =
+        (VkBufferImageCopy){.bufferOffset = offset + part->offset,
+                            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, place & 0xFFFFu, 1},
+                            .imageOffset = {(int32_t)part->x, (int32_t)part->y, 0},
+                            .imageExtent = {round_up(part->region.width, block),
+                                            round_up(part->region.height, block), 1}};
     if (!job->counted)
         c->loader->counts.bytesUploaded += sluiceGetFormatRegionSize(
             job->image->info.format, part->region.width, part->region.height);
@@ -136,8 +137,9 @@ static void record_tile(struct copies *copies, struct slc_demand_job *job)
 {
     SluiceDemandLoader *loader = copies->loader;
     struct slc_tile_part parts[SLC_TILE_MAX_PARTS];
-    slc_page_share_written(loader->pages, loader->page_user, job->place, loader->launch);
-    uint32_t part_count = slc_tile_parts(job->image, job->page, parts);
+    if (!slc_is_tail_word(job->place))
+        slc_page_share_written(loader->pages, loader->page_user, job->place, loader->launch);
+    uint32_t part_count = slc_tile_parts(job->image, job->page, job->place, parts);
     for (uint32_t i = 0; i < part_count; i++)
         add(copies, job, &parts[i]);
 }

@@ -164,8 +164,25 @@ static uint32_t texel_bits(const struct demand_scene *s, uint32_t index, uint32_
     return word;
 }
 
+static uint32_t word_of(const struct demand_scene *s, uint32_t page)
+{
+    uint32_t block = ((const uint32_t *)s->directory.mapped)[page / SLUICE_DEMAND_BLOCK_PAGES];
+    return ((const uint32_t *)s->blocks
+                .mapped)[block * SLUICE_DEMAND_BLOCK_WORDS + page % SLUICE_DEMAND_BLOCK_PAGES];
+}
+
+/* Slot bits of the tail of a texture: another slot for each texture. */
+static uint32_t choose_slot(const struct demand_scene *s, const struct SluiceDemandTexture *e,
+                            uint32_t index, uint32_t regular, uint32_t levels)
+{
+    struct slc_tail_cut cut = slc_tail_cut(
+        1u << s->tile_shift[0], 1u << s->tile_shift[1], (e->shape & SLUICE_DEMAND_BLOCKS) != 0,
+        slc_mip_size(e->width, regular), slc_mip_size(e->height, regular), levels - regular);
+    return slc_tail_slot_bits(&cut, index * 7 % slc_tail_slot_count(&cut));
+}
+
 /* The layer of a page, which it gets if it has none and is wanted; NULL if it is not. */
-static uint32_t *layer_of(struct demand_scene *s, uint32_t page,
+static uint32_t *layer_of(struct demand_scene *s, uint32_t page, uint32_t slot,
                           bool (*wanted)(void *user, uint32_t page), void *user)
 {
     if (demand_refused(s, page))
@@ -175,12 +192,10 @@ static uint32_t *layer_of(struct demand_scene *s, uint32_t page,
             return NULL;
         assert_true(s->layer_count < LAYERS);
         uint32_t layer = s->layers[s->layer_count++];
-        demand_scene_set_page(s, page, layer / DEMAND_LAYERS << 16 | layer % DEMAND_LAYERS, 0);
+        demand_scene_set_page(s, page, layer / DEMAND_LAYERS << 16 | layer % DEMAND_LAYERS | slot,
+                              0);
     }
-    uint32_t block = ((const uint32_t *)s->directory.mapped)[page / SLUICE_DEMAND_BLOCK_PAGES];
-    uint32_t word =
-        ((const uint32_t *)s->blocks
-             .mapped)[block * SLUICE_DEMAND_BLOCK_WORDS + page % SLUICE_DEMAND_BLOCK_PAGES];
+    uint32_t word = word_of(s, page) & SLUICE_DEMAND_PLACE_MASK;
     uint32_t layer = (word >> 16) * DEMAND_LAYERS + (word & 0xffff);
     return (uint32_t *)s->staging.mapped + (size_t)layer * tile_texels(s);
 }
@@ -208,16 +223,19 @@ void demand_images_load(struct demand_scene *s, uint32_t index,
     for (uint32_t l = 0; l < regular; l++)
         for (uint32_t y = 0; y < slc_mip_size(e->height, l); y += tile[1])
             for (uint32_t x = 0; x < slc_mip_size(e->width, l); x += tile[0]) {
-                uint32_t *texels = layer_of(s, demand_scene_page(s, index, l, x, y), wanted, user);
+                uint32_t *texels =
+                    layer_of(s, demand_scene_page(s, index, l, x, y), 0, wanted, user);
                 if (texels)
                     write_tile(s, index, l, x, y, (struct slc_demand_place){0, 0}, texels);
             }
-    uint32_t *texels = layer_of(s, e->tailPage, wanted, user);
-    for (uint32_t l = regular; texels && l < levels; l++) {
-        bool blocks = e->shape & SLUICE_DEMAND_BLOCKS;
-        write_tile(s, index, l, 0, 0, slc_demand_tail_place(tile[0], tile[1], blocks, l - regular),
-                   texels);
-    }
+    bool blocks = e->shape & SLUICE_DEMAND_BLOCKS;
+    uint32_t slot = choose_slot(s, e, index, regular, levels);
+    uint32_t *texels = layer_of(s, e->tailPage, slot, wanted, user);
+    for (uint32_t l = regular; texels && l < levels; l++)
+        write_tile(
+            s, index, l, 0, 0,
+            slc_demand_tail_place(tile[0], tile[1], blocks, word_of(s, e->tailPage), l - regular),
+            texels);
 }
 
 struct copy {

@@ -169,55 +169,103 @@ static void lod_is_that_of_long_double(void **state)
     assert_true(worst < 1e-4);
 }
 
-/* Every format's tile, and the largest texture that is all tail. */
-static void levels_of_a_tail_fit_side_by_side(void **state)
+/* Marks the texels of all tails of a page, each as large as its cut allows. */
+static void fill_page(const SluiceFormatInfo *info, const uint32_t tile[2], uint32_t width,
+                      uint32_t height, uint32_t levels)
 {
-    (void)state;
     static uint8_t taken[512][512];
-    for (uint32_t format = 1; format < SLUICE_FORMAT_COUNT; format++) {
-        SluiceFormatInfo info = {.structSize = sizeof info};
-        uint32_t width, height;
-        CHECK_OK(sluiceGetFormatInfo((SluiceFormat)format, &info));
-        CHECK_OK(sluiceGetStandardTileShape((SluiceFormat)format, &width, &height));
-        bool blocks = info.blockWidth > 1;
-        if (info.blockWidth > 4)
-            continue; /* refused by demand loaders */
-        memset(taken, 0, sizeof taken);
-        for (uint32_t k = 0; k < slc_mip_count(slc_max_u32(width, height) / 2); k++) {
-            struct slc_demand_place at = slc_demand_tail_place(width, height, blocks, k);
-            assert_true(!blocks || (at.x % 4 == 0 && at.y % 4 == 0));
-            uint32_t w = slc_mip_size(width / 2, k), h = slc_mip_size(height / 2, k);
-            w = slc_div_up_u32(w, info.blockWidth) * info.blockWidth;
-            h = slc_div_up_u32(h, info.blockHeight) * info.blockHeight;
-            assert_true(at.x + w <= width && at.y + h <= height);
-            for (uint32_t i = 0; i < w * h; i++)
-                assert_int_equal(taken[at.y + i / w][at.x + i % w]++, 0);
-        }
+    bool blocks = info->blockWidth > 1;
+    struct slc_tail_cut cut = slc_tail_cut(tile[0], tile[1], blocks, width, height, levels);
+    memset(taken, 0, sizeof taken);
+    for (uint32_t i = 0; i < slc_tail_slot_count(&cut) * levels; i++) {
+        uint32_t slot = i / levels, k = i % levels, word = slc_tail_slot_bits(&cut, slot);
+        assert_int_equal(slc_tail_slot_of(&cut, word), slot);
+        assert_int_equal(word & SLUICE_DEMAND_PLACE_MASK, 0);
+        assert_true(slc_is_tail_word(word));
+        struct slc_demand_place at = slc_demand_tail_place(tile[0], tile[1], blocks, word, k);
+        assert_true(!blocks || (at.x % 4 == 0 && at.y % 4 == 0));
+        uint32_t w = slc_div_up_u32(slc_mip_size(width, k), info->blockWidth) * info->blockWidth;
+        uint32_t h = slc_div_up_u32(slc_mip_size(height, k), info->blockHeight) * info->blockHeight;
+        assert_true(at.x + w <= tile[0] && at.y + h <= tile[1]);
+        for (uint32_t j = 0; j < w * h; j++)
+            assert_int_equal(taken[at.y + j / w][at.x + j % w]++, 0);
     }
 }
 
+/* Every format's tile, and sizes up to half a tile with full and with cut chains. */
+static void tails_fit_side_by_side(void **state)
+{
+    (void)state;
+    for (uint32_t format = 1; format < SLUICE_FORMAT_COUNT; format++) {
+        SluiceFormatInfo info = {.structSize = sizeof info};
+        uint32_t tile[2];
+        CHECK_OK(sluiceGetFormatInfo((SluiceFormat)format, &info));
+        CHECK_OK(sluiceGetStandardTileShape((SluiceFormat)format, &tile[0], &tile[1]));
+        if (info.blockWidth > 4)
+            continue; /* refused by demand loaders */
+        for (uint32_t w = 0; tile[0] / 2 >> w; w++)
+            for (uint32_t h = 0; tile[1] / 2 >> h; h++) {
+                uint32_t width = tile[0] / 2 >> w, height = tile[1] / 2 >> h;
+                uint32_t levels = slc_mip_count(slc_max_u32(width, height));
+                fill_page(&info, tile, width, height, levels);
+                fill_page(&info, tile, width, height, (levels + 1) / 2);
+                fill_page(
+                    &info, tile, slc_max_u32(1, width - 1), height,
+                    levels - (width > 1 && slc_mip_count(slc_max_u32(width - 1, height)) < levels));
+            }
+    }
+}
+
+static void three_tails_of_64x64_fill_a_page_of_128x128(void **state)
+{
+    (void)state;
+    const struct {
+        uint32_t width, height;
+        bool blocks;
+        uint32_t size, slots;
+    } cases[] = {{128, 128, false, 64, 3},  {128, 128, false, 32, 12}, {128, 128, false, 33, 3},
+                 {128, 128, false, 16, 48}, {128, 128, false, 1, 48},  {256, 128, false, 64, 6},
+                 {256, 256, true, 64, 8},   {512, 256, true, 64, 16},  {512, 256, true, 128, 4}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct slc_tail_cut cut =
+            slc_tail_cut(cases[i].width, cases[i].height, cases[i].blocks, cases[i].size,
+                         cases[i].size, slc_mip_count(cases[i].size));
+        assert_int_equal(slc_tail_slot_count(&cut), cases[i].slots);
+    }
+}
+
+/* Cuts and slots at random: probe i asks for one level. */
 static void shaders_find_the_same_places_in_a_tail(void **state)
 {
     struct demand_scene *scene = *state;
     demand_scene_clear(scene);
     const uint32_t shapes[][3] = {{8, 8, 0}, {8, 7, 0}, {7, 7, 0}, {7, 6, 0},
                                   {6, 6, 0}, {9, 8, 1}, {8, 8, 1}};
-    const uint32_t count = sizeof shapes / sizeof shapes[0], levels = 9;
-    for (uint32_t i = 0; i < count * levels; i++) {
-        const uint32_t *shape = shapes[i / levels];
-        demand_scene_entry(scene, i / levels)->shape = shape[0] |
-                                                       shape[1] << SLUICE_DEMAND_TILE_HEIGHT_SHIFT |
-                                                       (shape[2] ? SLUICE_DEMAND_BLOCKS : 0);
-        demand_inputs(scene)[i] = (struct DemandInput){
-            .kind = DEMAND_PLACE, .index = i / levels, .lod = (float)(i % levels)};
+    const uint32_t count = sizeof shapes / sizeof shapes[0], levels = 9, words = 12;
+    for (uint32_t i = 0; i < count; i++)
+        demand_scene_entry(scene, i)->shape = shapes[i][0] |
+                                              shapes[i][1] << SLUICE_DEMAND_TILE_HEIGHT_SHIFT |
+                                              (shapes[i][2] ? SLUICE_DEMAND_BLOCKS : 0);
+    for (uint32_t i = 0; i < count * levels * words; i++) {
+        const uint32_t *shape = shapes[i % count];
+        uint32_t half = 1u << (shape[0] - 1), size = half >> roll() % 6;
+        size = slc_max_u32(1, size);
+        struct slc_tail_cut cut =
+            slc_tail_cut(1u << shape[0], 1u << shape[1], shape[2], size,
+                         slc_min_u32(size, 1u << (shape[1] - 1)), slc_mip_count(size));
+        uint32_t slot = roll() % slc_tail_slot_count(&cut);
+        demand_inputs(scene)[i] =
+            (struct DemandInput){.kind = DEMAND_PLACE,
+                                 .index = i % count,
+                                 .word = slc_tail_slot_bits(&cut, slot),
+                                 .lod = (float)(i / count % slc_mip_count(size))};
     }
-    demand_scene_run(scene, DEMAND_SHADER_COMPUTE, count * levels);
-    for (uint32_t i = 0; i < count * levels; i++) {
-        const uint32_t *shape = shapes[i / levels];
-        if (i % levels >= slc_max_u32(shape[0], shape[1]))
-            continue; /* beyond the last */
-        struct slc_demand_place place =
-            slc_demand_tail_place(1u << shape[0], 1u << shape[1], shape[2], i % levels);
+    demand_scene_run(scene, DEMAND_SHADER_COMPUTE, count * levels * words);
+    for (uint32_t i = 0; i < count * levels * words; i++) {
+        const uint32_t *shape = shapes[i % count];
+        const struct DemandInput *in = &demand_inputs(scene)[i];
+        struct slc_demand_place place = slc_demand_tail_place(
+            1u << shape[0], 1u << shape[1], shape[2], in->word, (uint32_t)in->lod);
         assert_int_equal(demand_outputs(scene)[i].value[0], place.x);
         assert_int_equal(demand_outputs(scene)[i].value[1], place.y);
     }
@@ -247,7 +295,8 @@ int main(void)
     struct CMUnitTest tests[] = {
         cmocka_unit_test(samples_ask_for_all_that_they_touch_and_no_more),
         cmocka_unit_test(lod_is_that_of_long_double),
-        cmocka_unit_test(levels_of_a_tail_fit_side_by_side),
+        cmocka_unit_test(tails_fit_side_by_side),
+        cmocka_unit_test(three_tails_of_64x64_fill_a_page_of_128x128),
         cmocka_unit_test(shaders_find_the_same_places_in_a_tail),
         cmocka_unit_test(every_level_with_tiles_is_larger_than_half_a_tile),
     };

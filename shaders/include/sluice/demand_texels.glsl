@@ -53,17 +53,24 @@ ivec2 sluiceDemandTileShift(uint shape)
 }
 
 /**
- * Returns where level `k` of a mip tail begins, in texels. 0 is the first level without tiles of
- * its own. C twin: slc_demand_tail_place.
+ * Returns where level `k` of a mip tail begins in its page, in texels. `word` is the page's word. 0
+ * is the first level without tiles of its own. C twin: slc_demand_tail_place.
  */
-ivec2 sluiceDemandTailPlace(uint shape, uint k)
+ivec2 sluiceDemandTailPlace(uint shape, uint word, uint k)
 {
-    ivec2 shift = sluiceDemandTileShift(shape) - 1; /* of half a tile */
-    int middle = 1 << shift.y, level = int(k);
-    int y = middle - (middle >> max(level - 1, 0));
-    if ((shape & SLUICE_DEMAND_BLOCKS) != 0u && level > shift.y - 2)
-        y = middle + 4 * (level - (shift.y - 1));
-    return level == 0 ? ivec2(0) : ivec2(1 << shift.x, y);
+    ivec2 cell = ivec2(1) << sluiceDemandTileShift(shape);
+    uint n = bitfieldExtract(word, SLUICE_DEMAND_CELL_SHIFT, 2);
+    if (n != 0u)
+        cell = ivec2(SLUICE_DEMAND_CELL_SIDE(cell.y, n));
+    int slot = int(bitfieldExtract(word, SLUICE_DEMAND_SLOT_SHIFT, 2)) - 1;
+    int block = (shape & SLUICE_DEMAND_BLOCKS) != 0u ? 4 : 1, level = int(k);
+    ivec2 corner = cell * ivec2(bitfieldExtract(word, SLUICE_DEMAND_CELL_X_SHIFT, 3),
+                                bitfieldExtract(word, SLUICE_DEMAND_CELL_Y_SHIFT, 2));
+    ivec2 quarter = cell >> (level + 1);
+    if (quarter.y >= block)
+        return corner + cell - (cell >> level) + ivec2(slot & 1, slot >> 1) * quarter;
+    int cuts = findMSB(cell.y / block);
+    return corner + ivec2((4 * slot + level - cuts) * block, cell.y >> 1);
 }
 
 vec4 sluiceDemandBaseColor(uint index)
@@ -103,12 +110,19 @@ uint sluiceFindDemandTile(inout SluiceDemandState s, uint page, bool ask)
     return word;
 }
 
-/** Tiles of a level. Levels of the mip tail begin at `origin` of the tile that they share. */
+/** Tiles of a level. */
 struct SluiceDemandLevel {
-    ivec2 size, origin;
+    ivec2 size;
     uint firstPage;
     int columns;
+    int tail; /* level of the mip tail; below 0: the level has tiles */
 };
+
+/** Returns where the level begins in the page of `word`. */
+ivec2 sluiceDemandOrigin(uint shape, SluiceDemandLevel l, uint word)
+{
+    return l.tail < 0 ? ivec2(0) : sluiceDemandTailPlace(shape, word, uint(l.tail));
+}
 
 SluiceDemandLevel sluiceReadDemandLevel(SluiceDemandState s, uint level)
 {
@@ -117,13 +131,11 @@ SluiceDemandLevel sluiceReadDemandLevel(SluiceDemandState s, uint level)
     SluiceDemandLevel l;
     l.size = max(ivec2(s.size >> level), ivec2(1));
     l.columns = (l.size.x + (1 << shift) - 1) >> shift;
-    if (level < regular) {
+    l.tail = int(level) - int(regular);
+    if (level < regular)
         l.firstPage = SLUICE_DEMAND_LEVEL_WORD(s.levels + level);
-        l.origin = ivec2(0);
-    } else {
+    else
         l.firstPage = s.tailPage;
-        l.origin = sluiceDemandTailPlace(s.shape, level - regular);
-    }
     return l;
 }
 
@@ -153,9 +165,11 @@ vec4 sluiceGatherDemand(inout SluiceDemandState s, SluiceDemandLevel l, bool las
             ivec2 tile = texel >> shift;
             uint word = sluiceFindDemandTile(s, l.firstPage + uint(tile.y * l.columns + tile.x), ask);
             worst = max(worst, word);
-            ivec3 at = ivec3(texel - (tile << shift) + l.origin, word & 0xFFFFu);
+            texel += sluiceDemandOrigin(s.shape, l, word) - (tile << shift);
+            uint place = word & SLUICE_DEMAND_PLACE_MASK;
+            ivec3 at = ivec3(texel, place & 0xFFFFu);
             if (word < SLUICE_DEMAND_PAGE_REFUSED)
-                SLUICE_WITH_PAGE(word, color = texelFetch(SLUICE_DEMAND_PAGE_TEXTURE(chunk), at, 0))
+                SLUICE_WITH_PAGE(place, color = texelFetch(SLUICE_DEMAND_PAGE_TEXTURE(chunk), at, 0))
         }
         sum += weight * color;
     }
@@ -191,12 +205,14 @@ vec4 sluiceDemandBilinear(inout SluiceDemandState s, uint level, vec2 uv, bool a
         min(low.x, low.y) < 0)
         return sluiceGatherDemand(s, l, level == sluiceDemandLastLevel(s.shape), x, y, ask, worst);
     worst = sluiceFindDemandTile(s, l.firstPage + uint(tile.y * l.columns + tile.x), ask);
-    vec2 local = vec2(low - (tile << shift) + l.origin) + vec2(x.weight, y.weight) + 0.5;
+    low += sluiceDemandOrigin(s.shape, l, worst) - (tile << shift);
+    vec2 local = vec2(low) + vec2(x.weight, y.weight) + 0.5;
     vec2 scale = uintBitsToFloat(uvec2(127 - shift) << 23u); /* 1 / the tile's size */
-    vec3 at = vec3(local * scale, float(worst & 0xFFFFu));
+    uint place = worst & SLUICE_DEMAND_PLACE_MASK;
+    vec3 at = vec3(local * scale, float(place & 0xFFFFu));
     vec4 color = vec4(0.0);
     if (worst < SLUICE_DEMAND_PAGE_REFUSED)
-        SLUICE_WITH_PAGE(worst, color = textureLod(SLUICE_DEMAND_PAGE_TEXTURE(chunk), at, 0.0))
+        SLUICE_WITH_PAGE(place, color = textureLod(SLUICE_DEMAND_PAGE_TEXTURE(chunk), at, 0.0))
     return color;
 }
 

@@ -61,7 +61,7 @@ void probeDemand(uint at)
     else if (kind == DEMAND_HARDWARE)
         color = textureGrad(plain, uv, dx, dy);
     else if (kind == DEMAND_PLACE)
-        value = uvec2(sluiceDemandTailPlace(textures.entries[inputs[at].index].shape,
+        value = uvec2(sluiceDemandTailPlace(textures.entries[inputs[at].index].shape, inputs[at].word,
                                             uint(inputs[at].lod)));
     else
         color = sampleDemand(at, uv, dx, dy, resident);

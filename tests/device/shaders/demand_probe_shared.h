@@ -26,7 +26,8 @@ struct DemandInput {
     float lod;
     uint kind;
     uint index; /* of a texture */
-    uint reserved[3];
+    uint word;  /* DEMAND_PLACE: of the page of the tail */
+    uint reserved[2];
 };
 SLUICE_SHARED_SIZE(struct DemandInput, 48)
 

@@ -31,6 +31,18 @@
 #define SLUICE_DEMAND_BLOCK_WORDS 64
 
 /*
+ * Word of a mip tail: also the slot of the page that it has. A page of tails is cut into cells,
+ * each of two or three slots. See demand_texels.glsl.
+ */
+#define SLUICE_DEMAND_SLOT_SHIFT 11   /* 2 bits: 1 + slot in the cell; 0 in words of tiles */
+#define SLUICE_DEMAND_CELL_SHIFT 13   /* 2 bits: 0: the cell is the page, else see SIDE below */
+#define SLUICE_DEMAND_CELL_X_SHIFT 26 /* 3 bits: column of the cell in the page */
+#define SLUICE_DEMAND_CELL_Y_SHIFT 29 /* 2 bits: row */
+#define SLUICE_DEMAND_PLACE_MASK 0x03FF07FFu /* chunk << 16 | layer */
+/* Cell n from 1 to 3 is a square of this side, in texels. */
+#define SLUICE_DEMAND_CELL_SIDE(tileHeight, n) ((tileHeight) >> ((n)-1))
+
+/*
  * Word of a tile that will not become resident: do not request it, use a coarser level.
  * (SLUICE_PAGE_NONE and a cleared bit of the mask mean not resident.)
  */
