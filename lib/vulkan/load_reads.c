@@ -23,6 +23,21 @@ SluiceImageRegion slc_tile_region(const struct slc_texture *texture, const Sluic
         texture->layer};
 }
 
+void slc_fill_tile_read(SluiceVulkanStreamer *s, uint32_t index, SluiceTileRead *read,
+                        SluiceImageRegion *region, void **texels)
+{
+    const struct slc_unit *unit = &s->units[index];
+    const struct slc_texture *texture = &s->textures[unit->texture];
+    *region = slc_tile_region(texture, &unit->tile);
+    *texels = unit_memory(s, index);
+    *read = (SluiceTileRead){.source = texture->source,
+                             .regionCount = 1,
+                             .pRegions = region,
+                             .ppTexels = texels,
+                             .priority = unit->tile.mipLevel, /* coarse first */
+                             .userValue = index};
+}
+
 /* Gives a unit to the loader; also again, for a source that was not ready. */
 SluiceResult slc_unit_submit(SluiceVulkanStreamer *s, uint32_t index)
 {
@@ -31,19 +46,16 @@ SluiceResult slc_unit_submit(SluiceVulkanStreamer *s, uint32_t index)
     SluiceImageRegion regions[SLUICE_MAX_READ_REGIONS];
     void *texels[SLUICE_MAX_READ_REGIONS];
     SluiceTileRead read = {.source = texture->source,
-                           .regionCount = 1,
                            .pRegions = regions,
                            .ppTexels = texels,
+                           .priority = SLUICE_MAX_MIP_LEVELS,
                            .userValue = index};
     if (unit->packed_unit == SLC_NONE) {
-        regions[0] = slc_tile_region(texture, &unit->tile);
-        texels[0] = unit_memory(s, index);
-        read.priority = unit->tile.mipLevel; /* coarse first */
+        slc_fill_tile_read(s, index, &read, regions, texels);
     } else {
         const struct slc_packed_unit *packed = &texture->packed.units[unit->packed_unit];
         assert(packed->rect_count <= SLUICE_MAX_READ_REGIONS);
         read.regionCount = packed->rect_count;
-        read.priority = SLUICE_MAX_MIP_LEVELS;
         for (uint32_t i = 0; i < packed->rect_count; i++) {
             regions[i] = texture->packed.rects[packed->first_rect + i].region;
             regions[i].arrayLayer = texture->layer;

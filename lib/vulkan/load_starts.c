@@ -6,6 +6,7 @@
 #include "vulkan/load_productions.h"
 #include "vulkan/load_reads.h"
 #include "vulkan/load_units.h"
+#include "vulkan/read_batch.h"
 
 /* Before anything is read for it: the tile cannot ever be bound. */
 static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
@@ -43,7 +44,8 @@ static bool units_are_ready(SluiceVulkanStreamer *s, uint32_t texture, uint32_t 
                                              : slc_units_are_ready(s, count);
 }
 
-static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+static SluiceResult start_tile(SluiceVulkanStreamer *s, struct slc_read_batch *batch,
+                               uint32_t texture, const SluiceTile *tile)
 {
     const struct slc_residency_interface *interface = s->residency->interface;
     SluiceResult result = SLUICE_SUCCESS;
@@ -73,13 +75,12 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
     if (interface->announce)
         interface->announce(s->residency, texture, tile);
-    result = slc_unit_submit(s, unit);
-    return result == SLUICE_SUCCESS ? result : slc_tile_back(s, unit, result);
+    return slc_read_batch_add(s, batch, unit);
 }
 
 /* Starts deferred tiles that can have a page now, coarse tiles first. At most maxLoadsInFlight per
  * call: shared tiles take no unit, so units do not bound their number. */
-static SluiceResult start_deferred(SluiceVulkanStreamer *s)
+static SluiceResult start_deferred(SluiceVulkanStreamer *s, struct slc_read_batch *batch)
 {
     SluiceResult result = SLUICE_SUCCESS;
     uint32_t left = s->info.maxLoadsInFlight;
@@ -94,7 +95,7 @@ static SluiceResult start_deferred(SluiceVulkanStreamer *s)
             }
             slc_deferred_tiles_remove_at(&s->deferred, i);
             left--;
-            result = start_tile(s, deferred.texture, &deferred.tile);
+            result = start_tile(s, batch, deferred.texture, &deferred.tile);
         }
     return result;
 }
@@ -112,7 +113,7 @@ static void check_packed(SluiceVulkanStreamer *s, uint32_t index)
 }
 
 /* Those that another front end has now, or will not have. The others go on waiting. */
-static SluiceResult start_awaited(SluiceVulkanStreamer *s)
+static SluiceResult start_awaited(SluiceVulkanStreamer *s, struct slc_read_batch *batch)
 {
     SluiceResult result = SLUICE_SUCCESS;
     uint32_t left =
@@ -120,7 +121,7 @@ static SluiceResult start_awaited(SluiceVulkanStreamer *s)
     for (; left > 0 && result >= 0; left--) {
         struct slc_deferred_tile awaited = s->awaited.tiles[0];
         slc_deferred_tiles_remove_at(&s->awaited, 0);
-        result = start_tile(s, awaited.texture, &awaited.tile);
+        result = start_tile(s, batch, awaited.texture, &awaited.tile);
     }
     return result;
 }
@@ -181,15 +182,15 @@ static SluiceResult start_packed_queue(SluiceVulkanStreamer *s, bool *waits)
     return SLUICE_SUCCESS;
 }
 
-SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
+static SluiceResult start_loads(SluiceVulkanStreamer *s, struct slc_read_batch *batch)
 {
     bool waits;
     SluiceResult result = start_packed_queue(s, &waits);
     slc_pages_left_forget(s);
     if (result >= 0 && !waits)
-        result = start_deferred(s);
+        result = start_deferred(s, batch);
     if (result >= 0 && !waits)
-        result = start_awaited(s);
+        result = start_awaited(s, batch);
     uint32_t count = slc_min_u32(s->info.tilesPerFrame, s->free_unit_count);
     if (result < 0 || waits || count == 0)
         return result;
@@ -204,9 +205,18 @@ SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
         if (slc_tile_is_packed(s, index, &s->tiles[i]))
             result = collect_packed_tile(s, index, &s->tiles[i]);
         else
-            result = start_tile(s, index, &s->tiles[i]);
+            result = start_tile(s, batch, index, &s->tiles[i]);
         if (result < 0)
             return result;
     }
     return start_packed_queue(s, &waits);
+}
+
+SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
+{
+    struct slc_read_batch batch;
+    batch.count = 0;
+    SluiceResult result = start_loads(s, &batch);
+    SluiceResult submitted = slc_read_batch_submit(s, &batch); /* also after an error */
+    return result < 0 ? result : submitted;
 }
