@@ -774,7 +774,7 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesUploaded; ///< Bytes of texels copied to images.
     uint64_t tilesMapped, tilesUnmapped, tilesCanceled, tilesFailed;
     uint64_t bindCalls;    ///< Calls of vkQueueBindSparse.
-    uint64_t bindRuns;     ///< Runs of neighboring tiles of a row, bound in them.
+    uint64_t bindRuns;     ///< Rectangles of tiles with consecutive pages, bound in them.
     uint64_t unbinds;      ///< Tiles whose memory was unbound.
     uint64_t unbindsSaved; ///< Unmapped tiles bound again, or removed, before their unbind.
     uint64_t feedbackMaps; ///< Maps resolved and passed to the manager.

@@ -58,13 +58,38 @@ static int compare_binds(const void *left, const void *right)
     return order ? order : compare_u32(a->sequence, b->sequence);
 }
 
-static bool extends_run(const struct slc_bind_run *run, const struct slc_bind *bind)
+static bool slots_follow(const struct slc_bind_run *run, uint32_t slot)
 {
-    if (run->image != bind->image || run->place.level != bind->place.level ||
-        run->place.y != bind->place.y || run->place.x + run->count != bind->place.x ||
-        run->heap_id != bind->heap_id || run->place.level == SLC_TAIL_LEVEL)
-        return false;
-    return run->heap_id == SLC_UNBIND || run->slot + run->count == bind->slot;
+    return run->heap_id == SLC_UNBIND || run->slot + run->column_count * run->row_count == slot;
+}
+
+static bool extends_row(const struct slc_bind_run *row, const struct slc_bind *bind)
+{
+    return row->image == bind->image && row->place.level == bind->place.level &&
+           row->place.level != SLC_TAIL_LEVEL && row->place.y == bind->place.y &&
+           row->place.x + row->column_count == bind->place.x && row->heap_id == bind->heap_id &&
+           slots_follow(row, bind->slot);
+}
+
+static bool is_next_row(const struct slc_bind_run *run, const struct slc_bind_run *row)
+{
+    return run->image == row->image && run->place.level == row->place.level &&
+           row->place.level != SLC_TAIL_LEVEL && run->place.x == row->place.x &&
+           run->column_count == row->column_count &&
+           run->place.y + run->row_count == row->place.y && run->heap_id == row->heap_id &&
+           slots_follow(run, row->slot);
+}
+
+/* The last run is a whole row of neighbors: it joins the run before it if it lies below that. */
+static void end_row(struct slc_bind_list *list)
+{
+    if (list->run_count < 2)
+        return;
+    struct slc_bind_run *run = &list->runs[list->run_count - 2];
+    if (!is_next_row(run, run + 1))
+        return;
+    run->row_count += run[1].row_count;
+    list->run_count--;
 }
 
 void slc_bind_list_build_runs(struct slc_bind_list *list)
@@ -81,13 +106,16 @@ void slc_bind_list_build_runs(struct slc_bind_list *list)
     for (uint32_t i = 0; i < kept; i++) {
         const struct slc_bind *bind = &list->binds[i];
         assert(i == 0 || compare_places(bind - 1, bind) < 0);
-        if (list->run_count && extends_run(&list->runs[list->run_count - 1], bind)) {
-            list->runs[list->run_count - 1].count++;
+        struct slc_bind_run *row = list->run_count ? &list->runs[list->run_count - 1] : NULL;
+        if (row && row->row_count == 1 && extends_row(row, bind)) {
+            row->column_count++;
             continue;
         }
+        end_row(list);
         list->runs[list->run_count++] =
-            (struct slc_bind_run){bind->image, bind->place, 1, bind->heap_id, bind->slot};
+            (struct slc_bind_run){bind->image, bind->place, 1, 1, bind->heap_id, bind->slot};
     }
+    end_row(list);
 }
 
 void slc_bind_list_clear(struct slc_bind_list *list)

@@ -377,8 +377,11 @@ static VkSparseImageMemoryBind tile_bind(const struct sparse_residency *s,
         .subresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, image->layer},
         .offset = {(int32_t)x, (int32_t)y, 0},
         /* A tile at the edge ends with the level. */
-        .extent = {slc_min_u32(run->count * desc->tileWidth, slc_mip_size(desc->width, level) - x),
-                   slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, level) - y), 1},
+        .extent = {slc_min_u32(run->column_count * desc->tileWidth,
+                               slc_mip_size(desc->width, level) - x),
+                   slc_min_u32(run->row_count * desc->tileHeight,
+                               slc_mip_size(desc->height, level) - y),
+                   1},
         .memory = heap.memory,
         .memoryOffset = heap.offset};
 }

@@ -61,13 +61,17 @@ static void note_tiles(struct fake_vulkan *fake, VkImage image, const VkSparseIm
     uint32_t width = object->extent.width >> level ? object->extent.width >> level : 1;
     uint32_t height = object->extent.height >> level ? object->extent.height >> level : 1;
     uint32_t x = (uint32_t)b->offset.x, y = (uint32_t)b->offset.y;
-    /* whole tiles, or up to the edge; one row */
+    /* whole tiles, or up to the edge */
     assert_true(x % FAKE_TILE == 0 && y % FAKE_TILE == 0);
     assert_true(b->extent.width % FAKE_TILE == 0 || x + b->extent.width == width);
-    assert_true(b->extent.height == FAKE_TILE || y + b->extent.height == height);
-    for (uint32_t i = 0; i * FAKE_TILE < b->extent.width; i++)
-        note_bind(fake, &(struct fake_bind){image, level, x / FAKE_TILE + i, y / FAKE_TILE,
-                                            b->memory, b->memoryOffset + i * 65536ull});
+    assert_true(b->extent.height % FAKE_TILE == 0 || y + b->extent.height == height);
+    uint32_t columns = (b->extent.width + FAKE_TILE - 1) / FAKE_TILE;
+    uint32_t rows = (b->extent.height + FAKE_TILE - 1) / FAKE_TILE;
+    assert_true(columns > 0 && rows > 0);
+    for (uint32_t i = 0; i < columns * rows; i++)
+        note_bind(fake, &(struct fake_bind){image, level, x / FAKE_TILE + i % columns,
+                                            y / FAKE_TILE + i / columns, b->memory,
+                                            b->memoryOffset + i * 65536ull});
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,

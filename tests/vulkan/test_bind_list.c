@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CAPACITY 512u
+#define CAPACITY 1024u
 
 static struct slc_tile_place place(uint32_t level, uint32_t x, uint32_t y)
 {
@@ -64,7 +64,8 @@ static void row_neighbors_with_consecutive_slots_are_one_run(void **state)
     slc_bind_list_build_runs(list);
     assert_int_equal(list->run_count, 1);
     assert_int_equal(list->runs[0].place.x, 4);
-    assert_int_equal(list->runs[0].count, 3);
+    assert_int_equal(list->runs[0].column_count, 3);
+    assert_int_equal(list->runs[0].row_count, 1);
     assert_int_equal(list->runs[0].slot, 10);
 }
 
@@ -91,7 +92,42 @@ static void unbinds_of_a_row_are_one_run_but_not_with_binds(void **state)
     slc_bind_list_put(list, 0, place(0, 3, 0), SLC_UNBIND, 5);
     slc_bind_list_build_runs(list);
     assert_int_equal(list->run_count, 3);
-    assert_int_equal(list->runs[0].count, 2);
+    assert_int_equal(list->runs[0].column_count, 2);
+}
+
+static void put_row(struct slc_bind_list *list, uint32_t y, uint32_t count, uint32_t slot)
+{
+    for (uint32_t x = 0; x < count; x++)
+        slc_bind_list_put(list, 0, place(0, 2 + x, y), slot == SLC_UNBIND ? slot : 1, slot + x);
+}
+
+static void rows_with_consecutive_slots_are_one_run(void **state)
+{
+    struct slc_bind_list *list = &((struct fixture *)*state)->list;
+    put_row(list, 5, 3, 16);
+    put_row(list, 3, 3, 10);
+    put_row(list, 4, 3, 13);
+    slc_bind_list_build_runs(list);
+    assert_int_equal(list->run_count, 1);
+    assert_int_equal(list->runs[0].place.x, 2);
+    assert_int_equal(list->runs[0].place.y, 3);
+    assert_int_equal(list->runs[0].column_count, 3);
+    assert_int_equal(list->runs[0].row_count, 3);
+    assert_int_equal(list->runs[0].slot, 10);
+}
+
+static void rows_stay_apart_where_width_slot_or_a_gap_is_between_them(void **state)
+{
+    struct slc_bind_list *list = &((struct fixture *)*state)->list;
+    put_row(list, 0, 3, 10);
+    put_row(list, 1, 2, 13); /* width */
+    put_row(list, 2, 2, 16); /* slot */
+    put_row(list, 4, 2, 18); /* gap */
+    put_row(list, 5, 2, SLC_UNBIND);
+    put_row(list, 6, 2, SLC_UNBIND); /* unbinds need no order of slots */
+    slc_bind_list_build_runs(list);
+    assert_int_equal(list->run_count, 5);
+    assert_int_equal(list->runs[4].row_count, 2);
 }
 
 static void pages_of_a_tail_stay_single(void **state)
@@ -126,19 +162,23 @@ static void random_changes_end_in_the_same_bindings_as_one_by_one(void **state)
         memset(wanted, 0x7F, sizeof wanted);
         memset(got, 0x7F, sizeof got);
         slc_bind_list_clear(list);
-        for (int i = roll() % 200; i >= 0; i--) {
+        for (int i = roll() % (round % 2 ? 1000 : 200); i >= 0; i--) {
             uint32_t image = (uint32_t)roll() % IMAGES, level = (uint32_t)roll() % LEVELS;
             uint32_t x = (uint32_t)roll() % SIZE, y = (uint32_t)roll() % SIZE;
             uint32_t heap = roll() % 3 ? (uint32_t)roll() % 2 : SLC_UNBIND;
-            uint32_t slot = roll() % 2 ? x : (uint32_t)roll() % 50;
+            if (round % 2) /* whole rows */
+                heap = image;
+            uint32_t slot = roll() % 4 ? y * SIZE + x : (uint32_t)roll() % 50;
             assert_true(slc_bind_list_put(list, image, place(level, x, y), heap, slot));
             wanted[image][level][y][x] = heap == SLC_UNBIND ? -1 : (int64_t)heap << 32 | slot;
         }
         slc_bind_list_build_runs(list);
         for (uint32_t i = 0; i < list->run_count; i++) {
             const struct slc_bind_run *run = &list->runs[i];
-            for (uint32_t j = 0; j < run->count; j++) {
-                int64_t *tile = &got[run->image][run->place.level][run->place.y][run->place.x + j];
+            for (uint32_t j = 0; j < run->column_count * run->row_count; j++) {
+                uint32_t x = run->place.x + j % run->column_count;
+                uint32_t y = run->place.y + j / run->column_count;
+                int64_t *tile = &got[run->image][run->place.level][y][x];
                 assert_int_equal(*tile, 0x7F7F7F7F7F7F7F7F); /* no range twice */
                 *tile =
                     run->heap_id == SLC_UNBIND ? -1 : (int64_t)run->heap_id << 32 | (run->slot + j);
@@ -175,6 +215,9 @@ int main(void)
                                         teardown),
         cmocka_unit_test_setup_teardown(unbinds_of_a_row_are_one_run_but_not_with_binds, setup,
                                         teardown),
+        cmocka_unit_test_setup_teardown(rows_with_consecutive_slots_are_one_run, setup, teardown),
+        cmocka_unit_test_setup_teardown(rows_stay_apart_where_width_slot_or_a_gap_is_between_them,
+                                        setup, teardown),
         cmocka_unit_test_setup_teardown(pages_of_a_tail_stay_single, setup, teardown),
         cmocka_unit_test_setup_teardown(full_list_refuses, setup, teardown),
         cmocka_unit_test_setup_teardown(random_changes_end_in_the_same_bindings_as_one_by_one,

@@ -90,7 +90,7 @@ static void neighbors_that_were_given_up_are_unbound_in_the_same_run(void **stat
     const struct slc_bind_run *run = &f->list.runs[0]; /* up to the neighbor that is not evicted */
     assert_int_equal(run->heap_id, SLC_UNBIND);
     assert_int_equal(run->place.x, 2);
-    assert_int_equal(run->count, 5);
+    assert_int_equal(run->column_count, 5);
     assert_int_equal(f->bindings.unbind_count, 5);
     assert_int_equal(bind(f, 3, 0, 1, 13 - 2 * 6), SLC_NO_IMAGE);
     assert_int_equal(bind(f, 3, 1, 1, 13), 0);
@@ -246,7 +246,8 @@ static void execute(struct fixture *f, struct model *m)
     slc_bind_list_build_runs(&f->list);
     for (uint32_t r = 0; r < f->list.run_count; r++) {
         const struct slc_bind_run *run = &f->list.runs[r];
-        for (uint32_t i = 0; i < run->count; i++)
+        assert_int_equal(run->row_count, 1);
+        for (uint32_t i = 0; i < run->column_count; i++)
             m->device[run->image][run->place.x + i] =
                 run->heap_id == SLC_UNBIND ? -1 : (int)(run->heap_id * HEAP + run->slot + i);
     }
