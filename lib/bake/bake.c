@@ -42,10 +42,8 @@ static SluiceResult look_at_input(struct bake *bake)
         slc_log(&bake->baker->log, SLUICE_LOG_ERROR, "%s: %s", path, strerror(errno));
         return errno == ENOENT || errno == ENOTDIR ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
     }
-    if (slc_output_replaces_input(bake->info->pOutputPath, path)) {
-        slc_log(&bake->baker->log, SLUICE_LOG_ERROR, "%s: the store would take its place", path);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (slc_output_replaces_input(bake->info->pOutputPath, path))
+        return slc_log_refusal(&bake->baker->log, "%s: the store would take its place", path);
     bake->source_size = (uint64_t)status.st_size;
     bake->source_time =
         (int64_t)status.st_mtim.tv_sec * INT64_C(1000000000) + status.st_mtim.tv_nsec;
@@ -316,7 +314,7 @@ SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
     if (result == SLUICE_SUCCESS && pReport)
         result = slc_struct_check(SLC_STRUCT(SluiceBakeReport), pReport, &baker->log);
     if (result == SLUICE_SUCCESS)
-        result = slc_check_settings(&bake.settings);
+        result = slc_check_settings(&bake.settings, &baker->log);
     if (result != SLUICE_SUCCESS)
         return result;
     result = bake_file(&bake);

@@ -2,6 +2,7 @@
 
 #include "bake/blocks.h"
 #include "base/checked.h"
+#include "base/limits.h"
 #include "base/log.h"
 #include "image/format_size.h"
 
@@ -11,18 +12,26 @@
 #define HALF_LIMIT 65504.0f
 #define FLOAT_INFINITY 0x1p120f /* a shader's filter may weigh a few of them and stays finite */
 
-SluiceResult slc_check_settings(const SluiceBakeSettings *s)
+SluiceResult slc_check_settings(const SluiceBakeSettings *s, const SluiceLogCallback *log)
 {
-    bool is_fine = (unsigned)s->format < SLUICE_FORMAT_COUNT &&
-                   (unsigned)s->quality <= SLUICE_BAKE_QUALITY_BEST &&
-                   (unsigned)s->transfer <= SLUICE_BAKE_TRANSFER_LINEAR &&
-                   (unsigned)s->alpha <= SLUICE_BAKE_ALPHA_PREMULTIPLIED &&
-                   (unsigned)s->filter <= SLUICE_BAKE_FILTER_KAISER &&
-                   (unsigned)s->wrapX <= SLUICE_BAKE_WRAP_MIRROR &&
-                   (unsigned)s->wrapY <= SLUICE_BAKE_WRAP_MIRROR && s->cutout >= 0.0f &&
-                   s->cutout <= 1.0f && s->compressionLevel <= SLUICE_STORE_MAX_COMPRESSION_LEVEL &&
-                   !(s->normalMap && s->transfer == SLUICE_BAKE_TRANSFER_SRGB);
-    return is_fine ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
+    const struct slc_limit limits[] = {
+        {"format", (uint32_t)s->format, 0, SLUICE_FORMAT_COUNT - 1},
+        {"quality", (uint32_t)s->quality, 0, SLUICE_BAKE_QUALITY_BEST},
+        {"transfer", (uint32_t)s->transfer, 0, SLUICE_BAKE_TRANSFER_LINEAR},
+        {"alpha", (uint32_t)s->alpha, 0, SLUICE_BAKE_ALPHA_PREMULTIPLIED},
+        {"filter", (uint32_t)s->filter, 0, SLUICE_BAKE_FILTER_KAISER},
+        {"wrapX", (uint32_t)s->wrapX, 0, SLUICE_BAKE_WRAP_MIRROR},
+        {"wrapY", (uint32_t)s->wrapY, 0, SLUICE_BAKE_WRAP_MIRROR},
+        {"compressionLevel", s->compressionLevel, 0, SLUICE_STORE_MAX_COMPRESSION_LEVEL},
+    };
+    SluiceResult result = slc_check_limits(log, limits, sizeof limits / sizeof limits[0]);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!(s->cutout >= 0.0f && s->cutout <= 1.0f))
+        return slc_log_refusal(log, "cutout is %g; it must be from 0 to 1", (double)s->cutout);
+    if (s->normalMap && s->transfer == SLUICE_BAKE_TRANSFER_SRGB)
+        return slc_log_refusal(log, "transfer is SRGB; with normalMap it must be AUTO or LINEAR");
+    return SLUICE_SUCCESS;
 }
 
 static SluiceFormat byte_format(const struct slc_picture *picture, bool normals)

@@ -18,8 +18,8 @@ struct slc_plan {
     float threshold;     ///< that alpha has to reach before it is rounded; 0: no cut-out
 };
 
-/** Errors: INVALID_ARGUMENT for values out of their ranges. */
-SluiceResult slc_check_settings(const SluiceBakeSettings *settings);
+/** Errors, logged: INVALID_ARGUMENT for values out of their ranges. */
+SluiceResult slc_check_settings(const SluiceBakeSettings *settings, const SluiceLogCallback *log);
 
 /** Errors: UNSUPPORTED for formats that cannot be made, logged. `decoded16` may be NULL. */
 SluiceResult slc_plan_make(const struct slc_picture *picture, const SluiceBakeSettings *settings,

@@ -3,14 +3,29 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-void slc_log(const SluiceLogCallback *log, SluiceLogSeverity severity, const char *format, ...)
+static void log_list(const SluiceLogCallback *log, SluiceLogSeverity severity, const char *format,
+                     va_list arguments)
 {
+    char message[1024];
     if (!log || !log->pfnLog)
         return;
-    char message[1024];
+    vsnprintf(message, sizeof message, format, arguments);
+    log->pfnLog(log->pUserData, severity, message);
+}
+
+void slc_log(const SluiceLogCallback *log, SluiceLogSeverity severity, const char *format, ...)
+{
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
+    log_list(log, severity, format, arguments);
     va_end(arguments);
-    log->pfnLog(log->pUserData, severity, message);
+}
+
+SluiceResult slc_log_refusal(const SluiceLogCallback *log, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    log_list(log, SLUICE_LOG_ERROR, format, arguments);
+    va_end(arguments);
+    return SLUICE_ERROR_INVALID_ARGUMENT;
 }

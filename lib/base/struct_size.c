@@ -11,10 +11,9 @@ SluiceResult slc_struct_check(const struct slc_struct *type, const void *out,
     memcpy(&size, out, sizeof size);
     if (size >= type->least && size <= SLC_MAX_STRUCT_SIZE)
         return SLUICE_SUCCESS;
-    slc_log(log, SLUICE_LOG_ERROR,
-            "%s: structSize is %u; it must be sizeof(%s), here %u, and %u to %u", type->name, size,
-            type->name, type->size, type->least, SLC_MAX_STRUCT_SIZE);
-    return SLUICE_ERROR_INVALID_ARGUMENT;
+    return slc_log_refusal(
+        log, "%s: structSize is %u; it must be sizeof(%s), here %u, and %u to %u", type->name, size,
+        type->name, type->size, type->least, SLC_MAX_STRUCT_SIZE);
 }
 
 SluiceResult slc_struct_read(const struct slc_struct *type, void *to, const void *from,

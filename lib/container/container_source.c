@@ -3,6 +3,7 @@
 #include "container/container_source.h"
 
 #include "base/alloc.h"
+#include "base/log.h"
 #include "container/level_cache.h"
 #include "image/format_size.h"
 
@@ -201,7 +202,8 @@ SluiceResult slc_container_source_create(const struct slc_container_create_info 
         !slc_allocator_is_valid(info->allocator))
         return SLUICE_ERROR_NULL_POINTER;
     if ((uint32_t)info->format >= SLUICE_FORMAT_COUNT)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_log_refusal(info->log, "format is %d; it must be from 0 to %d",
+                               (int)info->format, SLUICE_FORMAT_COUNT - 1);
     SluiceAllocationCallbacks cb = slc_allocator(info->allocator);
     struct container_source *source = slc_calloc(&cb, 1, sizeof *source);
     if (!source)

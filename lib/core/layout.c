@@ -63,9 +63,10 @@ SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct sl
     return SLUICE_SUCCESS;
 }
 
-SluiceResult slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *out)
+SluiceResult slc_write_layout(const struct slc_shape *s, const SluiceLogCallback *log,
+                              SluiceStreamedTextureLayout *out)
 {
-    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceStreamedTextureLayout), out, NULL);
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceStreamedTextureLayout), out, log);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceStreamedTextureLayout layout = {
@@ -94,7 +95,7 @@ SluiceResult sluiceGetStreamedTextureLayout(const SluiceStreamedTextureDesc *pDe
         return SLUICE_ERROR_NULL_POINTER;
     struct slc_shape shape = {0};
     SluiceResult result = slc_layout_texture(pDesc, &shape);
-    return result == SLUICE_SUCCESS ? slc_write_layout(&shape, pLayout) : result;
+    return result == SLUICE_SUCCESS ? slc_write_layout(&shape, NULL, pLayout) : result;
 }
 
 struct slc_place slc_tile_place(const struct slc_managed_texture *t, uint32_t tile)

@@ -5,8 +5,9 @@
 #include "core/state.h"
 
 SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_shape *s);
-/** Errors: SLUICE_ERROR_INVALID_ARGUMENT for the structSize of `out`. */
-SluiceResult slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *out);
+/** Errors, logged: SLUICE_ERROR_INVALID_ARGUMENT for the structSize of `out`. `log` may be NULL. */
+SluiceResult slc_write_layout(const struct slc_shape *s, const SluiceLogCallback *log,
+                              SluiceStreamedTextureLayout *out);
 /** `level` is regularMipCount for packed tiles. */
 struct slc_place slc_tile_place(const struct slc_managed_texture *t, uint32_t tile);
 

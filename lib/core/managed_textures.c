@@ -217,7 +217,8 @@ SluiceResult sluiceGetTextureLayout(const SluiceStreamedTextureManager *manager,
         return SLUICE_ERROR_NULL_POINTER;
     struct slc_managed_texture *t;
     SluiceResult result = slc_find_texture(manager, textureId, &t);
-    return result == SLUICE_SUCCESS ? slc_write_layout(t->shape, pLayout) : result;
+    return result == SLUICE_SUCCESS ? slc_write_layout(t->shape, &manager->info.log, pLayout)
+                                    : result;
 }
 
 SluiceResult sluiceGetTileState(const SluiceStreamedTextureManager *manager,

@@ -33,15 +33,11 @@ static SluiceResult check_create_info(const SluiceStreamedTextureManagerCreateIn
         return SLUICE_ERROR_NULL_POINTER;
     if (info->heapTileCapacity == 0 || info->tileSize == 0)
         return SLUICE_ERROR_ZERO_HEAP_CAPACITY;
-    if (info->heapTileCapacity > MAX_HEAP_CAPACITY) {
-        slc_log(&info->log, SLUICE_LOG_ERROR, "heapTileCapacity %" PRIu32 " is above %u",
-                info->heapTileCapacity, MAX_HEAP_CAPACITY);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
-    if (!slc_allocator_is_valid(info->pAllocator)) {
-        slc_log(&info->log, SLUICE_LOG_ERROR, "pAllocator lacks pfnAllocate or pfnFree");
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (info->heapTileCapacity > MAX_HEAP_CAPACITY)
+        return slc_log_refusal(&info->log, "heapTileCapacity %" PRIu32 " is above %u",
+                               info->heapTileCapacity, MAX_HEAP_CAPACITY);
+    if (!slc_allocator_is_valid(info->pAllocator))
+        return slc_log_refusal(&info->log, "pAllocator lacks pfnAllocate or pfnFree");
     return SLUICE_SUCCESS;
 }
 

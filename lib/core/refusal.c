@@ -12,8 +12,7 @@ SluiceResult slc_refuse(const slc_manager *m, const char *function, const char *
     va_start(args, format);
     vsnprintf(why, sizeof why, format, args);
     va_end(args);
-    slc_log(&m->info.log, SLUICE_LOG_ERROR, "%s: %s", function, why);
-    return SLUICE_ERROR_INVALID_ARGUMENT;
+    return slc_log_refusal(&m->info.log, "%s: %s", function, why);
 }
 
 SluiceResult slc_refuse_locked(const slc_manager *m, const char *function)

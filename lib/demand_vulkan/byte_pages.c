@@ -37,12 +37,11 @@ SluiceResult slc_byte_pages_init(SluiceDemandLoader *loader)
     }
     if (info->byteMemoryBudget == 0)
         info->byteMemoryBudget = quarter ? quarter : SLC_BYTE_SLAB_SIZE;
-    if (info->byteMemoryBudget > info->memoryBudget) {
-        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-                "byteMemoryBudget is %llu; it can be at most memoryBudget, which is %llu",
-                (unsigned long long)info->byteMemoryBudget, (unsigned long long)info->memoryBudget);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (info->byteMemoryBudget > info->memoryBudget)
+        return slc_log_refusal(
+            &loader->vk.log,
+            "byteMemoryBudget is %llu; it can be at most memoryBudget, which is %llu",
+            (unsigned long long)info->byteMemoryBudget, (unsigned long long)info->memoryBudget);
     slc_byte_memory_init(&loader->bytes, &loader->vk, &loader->caps, &loader->cb,
                          info->byteMemoryBudget, info->bufferDeviceAddress);
     loader->byte_interface = slc_byte_memory_interface(&loader->bytes);
@@ -72,11 +71,9 @@ static SluiceResult prepare_large(SluiceDemandLoader *loader)
 
 SluiceResult slc_byte_pages_prepare(SluiceDemandLoader *loader, uint32_t page_size)
 {
-    if (page_size > SLC_MAX_BYTE_PAGE_SIZE) {
-        slc_log(&loader->vk.log, SLUICE_LOG_ERROR, "pageSize is %u; it can be 0 to %u", page_size,
-                SLC_MAX_BYTE_PAGE_SIZE);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (page_size > SLC_MAX_BYTE_PAGE_SIZE)
+        return slc_log_refusal(&loader->vk.log, "pageSize is %u; it can be 0 to %u", page_size,
+                               SLC_MAX_BYTE_PAGE_SIZE);
     uint32_t kind;
     if (!slc_byte_memory_kind(&loader->bytes, slc_byte_stride(page_size), &kind)) {
         slc_log(&loader->vk.log, SLUICE_LOG_ERROR,

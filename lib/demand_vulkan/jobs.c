@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "demand_vulkan/refused_arguments.h"
 #include "vulkan/shared_parts.h"
 #include "vulkan/sparse_layout.h"
 
@@ -420,7 +421,7 @@ SluiceResult sluiceCancelDemandTicket(SluiceDemandLoader *loader, SluiceDemandTi
     pthread_mutex_unlock(&loader->tickets.mutex);
     if (found)
         cancel_jobs(loader, ticket);
-    return known ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
+    return known ? SLUICE_SUCCESS : slc_demand_refuse_ticket(loader, __func__, ticket);
 }
 
 SluiceResult sluiceAbortDemandLoader(SluiceDemandLoader *loader)

@@ -217,12 +217,11 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
         slc_struct_check(SLC_STRUCT(SluiceDemandLaunch), pLaunch, &loader->vk.log);
     if (checked != SLUICE_SUCCESS)
         return checked;
-    if (loader->launch > loader->ended) {
-        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-                "launch %llu was neither ended nor abandoned: no other one can be begun",
-                (unsigned long long)loader->launch);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (loader->launch > loader->ended)
+        return slc_log_refusal(
+            &loader->vk.log,
+            "launch %llu was neither ended nor abandoned: no other one can be begun",
+            (unsigned long long)loader->launch);
     if (is_aborted(loader))
         return SLUICE_ERROR_CANCELED;
     if (loader->launch - loader->processed >= loader->info.launchesInFlight)
@@ -263,12 +262,11 @@ SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer c
 {
     if (!loader || !commandBuffer)
         return SLUICE_ERROR_NULL_POINTER;
-    if (loader->launch == loader->ended) {
-        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-                "no launch can be ended: none was begun since the last one was ended or "
-                "abandoned");
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (loader->launch == loader->ended)
+        return slc_log_refusal(
+            &loader->vk.log,
+            "no launch can be ended: none was begun since the last one was ended or "
+            "abandoned");
     uint32_t slot = slot_of(loader, loader->launch);
     if (loader->tracked[slot])
         slc_page_directory_record_used(&loader->directory, commandBuffer, slot);
@@ -320,10 +318,10 @@ static SluiceResult check_abandoned(SluiceDemandLoader *loader, uint64_t launch)
         return result;
     if (launch > loader->processed && launch <= loader->launch && value < launch)
         return SLUICE_SUCCESS;
-    slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-            "launch %llu cannot be abandoned: it is over, was abandoned or never begun",
-            (unsigned long long)launch);
-    return SLUICE_ERROR_INVALID_ARGUMENT;
+    return slc_log_refusal(
+        &loader->vk.log,
+        "launch %llu cannot be abandoned: it is over, was abandoned or never begun",
+        (unsigned long long)launch);
 }
 
 SluiceResult sluiceAbandonDemandLaunch(SluiceDemandLoader *loader,
@@ -416,10 +414,10 @@ SluiceResult sluiceGetDemandTicketStatus(SluiceDemandLoader *loader, SluiceDeman
     if (checked != SLUICE_SUCCESS)
         return checked;
     SluiceDemandTicketStatus status = {.structSize = sizeof status};
-    SluiceResult result = slc_ticket_get_status(&loader->tickets, ticket, &status);
-    if (result == SLUICE_SUCCESS)
-        slc_struct_write(SLC_STRUCT(SluiceDemandTicketStatus), pStatus, &status);
-    return result;
+    if (slc_ticket_get_status(&loader->tickets, ticket, &status) != SLUICE_SUCCESS)
+        return slc_demand_refuse_ticket(loader, __func__, ticket);
+    slc_struct_write(SLC_STRUCT(SluiceDemandTicketStatus), pStatus, &status);
+    return SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader, SluiceDemandTicket ticket,
@@ -435,7 +433,9 @@ SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader, SluiceDemandTick
     }
     SluiceDemandTicketStatus status = {.structSize = sizeof status};
     SluiceResult result = slc_ticket_wait(&loader->tickets, ticket, timeoutNs, &status);
-    if (pStatus && result != SLUICE_ERROR_INVALID_ARGUMENT)
+    if (result == SLUICE_ERROR_INVALID_ARGUMENT)
+        return slc_demand_refuse_ticket(loader, __func__, ticket);
+    if (pStatus)
         slc_struct_write(SLC_STRUCT(SluiceDemandTicketStatus), pStatus, &status);
     return result;
 }

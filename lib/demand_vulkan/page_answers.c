@@ -56,16 +56,13 @@ static SluiceResult find(SluiceDemandLoader *loader, SluiceDemandResourceId id, 
     if (result != SLUICE_SUCCESS)
         return result;
     const SluiceDemandResourceCreateInfo *info = &(*resource)->info;
-    if (page >= info->pageCount) {
-        slc_log(&loader->vk.log, SLUICE_LOG_ERROR, "page is %u; the resource has %u pages", page,
-                info->pageCount);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (page >= info->pageCount)
+        return slc_log_refusal(&loader->vk.log, "page is %u; the resource has %u pages", page,
+                               info->pageCount);
     if (bytes == (info->pageSize > 0))
         return SLUICE_SUCCESS;
-    slc_log(&loader->vk.log, SLUICE_LOG_ERROR, "pageSize is %u: the resource's pages have %s",
-            info->pageSize, bytes ? "values" : "bytes");
-    return SLUICE_ERROR_INVALID_ARGUMENT;
+    return slc_log_refusal(&loader->vk.log, "pageSize is %u: the resource's pages have %s",
+                           info->pageSize, bytes ? "values" : "bytes");
 }
 
 /* Makes the page loading, without a reader: a missed page as it is, any other after it is

@@ -14,12 +14,18 @@ SluiceResult slc_demand_refuse(const SluiceDemandLoader *loader, const char *fun
     va_start(args, format);
     vsnprintf(why, sizeof why, format, args);
     va_end(args);
-    slc_log(&loader->vk.log, SLUICE_LOG_ERROR, "%s: %s", function, why);
-    return SLUICE_ERROR_INVALID_ARGUMENT;
+    return slc_log_refusal(&loader->vk.log, "%s: %s", function, why);
 }
 
 SluiceResult slc_demand_refuse_grid(const SluiceDemandLoader *loader, const char *function,
                                     SluiceDemandTextureId id)
 {
     return slc_demand_refuse(loader, function, "texture %#" PRIx64 " is a grid", id);
+}
+
+SluiceResult slc_demand_refuse_ticket(const SluiceDemandLoader *loader, const char *function,
+                                      SluiceDemandTicket ticket)
+{
+    return slc_demand_refuse(loader, function,
+                             "ticket is %" PRIu64 "; the loader has not handed it out", ticket);
 }

@@ -11,6 +11,10 @@ __attribute__((format(printf, 3, 4)))
 SluiceResult
 slc_demand_refuse(const SluiceDemandLoader *loader, const char *function, const char *format, ...);
 
+/** Refuses a ticket that the loader has not handed out. */
+SluiceResult slc_demand_refuse_ticket(const SluiceDemandLoader *loader, const char *function,
+                                      SluiceDemandTicket ticket);
+
 /** Refuses a grid in calls that do not accept grids. */
 SluiceResult slc_demand_refuse_grid(const SluiceDemandLoader *loader, const char *function,
                                     SluiceDemandTextureId id);

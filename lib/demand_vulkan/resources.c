@@ -150,13 +150,12 @@ static SluiceResult check(const SluiceDemandLoader *loader,
         slc_check_limits(&loader->vk.log, limits, sizeof limits / sizeof limits[0]);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (info->pageSize ? info->pfnFill || info->pfnEvict : (bool)info->pfnRead) {
-        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-                "pageSize is %u: pfnFill and pfnEvict are for pages of 0 bytes, pfnRead is for "
-                "larger ones",
-                info->pageSize);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (info->pageSize ? info->pfnFill || info->pfnEvict : (bool)info->pfnRead)
+        return slc_log_refusal(
+            &loader->vk.log,
+            "pageSize is %u: pfnFill and pfnEvict are for pages of 0 bytes, pfnRead is for "
+            "larger ones",
+            info->pageSize);
     return info->pageCount > loader->info.pageCapacity ? SLUICE_ERROR_LIMIT_EXCEEDED
                                                        : SLUICE_SUCCESS;
 }

@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/log.h"
 #include "base/struct_size.h"
 #include "exr/decode.h"
 #include "exr/exr_memory_budget.h"
@@ -271,7 +272,10 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
     if (info.format != SLUICE_FORMAT_UNDEFINED &&
         (sluiceGetFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format) ||
          slc_format_is_snorm(info.format)))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_log_refusal(&info.log,
+                               "format is %s (%d); block-compressed, packed and SNORM formats are "
+                               "refused",
+                               sluiceGetFormatName(info.format), (int)info.format);
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     struct exr_source *source = slc_calloc(&cb, 1, sizeof *source);
     if (!source)
@@ -323,7 +327,7 @@ SluiceResult sluiceGetExrInfo(SluiceImageSource *source, SluiceExrInfo *pInfo)
     if (source->pInterface != &exr_interface)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     const struct exr_source *exr = (const struct exr_source *)source;
-    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceExrInfo), pInfo, NULL);
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceExrInfo), pInfo, &exr->file.input.log);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceExrInfo info = {

@@ -54,14 +54,13 @@ SluiceResult slc_image_info_check(const SluiceImageInfo *info, enum slc_image_le
     const char *trouble = slc_image_info_trouble(info, levels);
     if (!trouble)
         return SLUICE_SUCCESS;
-    if (log)
-        slc_log(log, SLUICE_LOG_ERROR,
-                "%s: the source's %s: width %u, height %u, mipLevelCount %u, format %s (%d), "
-                "arrayLayerCount %u",
-                info->pName && info->pName[0] ? info->pName : "image", trouble, info->width,
-                info->height, info->mipLevelCount, sluiceGetFormatName(info->format),
-                (int)info->format, info->arrayLayerCount);
-    return SLUICE_ERROR_INVALID_ARGUMENT;
+    return slc_log_refusal(
+        log,
+        "%s: the source's %s: width %u, height %u, mipLevelCount %u, format %s (%d), "
+        "arrayLayerCount %u",
+        info->pName && info->pName[0] ? info->pName : "image", trouble, info->width, info->height,
+        info->mipLevelCount, sluiceGetFormatName(info->format), (int)info->format,
+        info->arrayLayerCount);
 }
 
 void slc_image_info_finish(const SluiceAllocationCallbacks *cb, SluiceImageInfo *info)

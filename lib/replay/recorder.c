@@ -1,6 +1,7 @@
 #include "replay/recorder.h"
 
 #include "base/alloc.h"
+#include "core/refusal.h"
 #include "replay/decisions.h"
 #include "replay/record.h"
 
@@ -70,9 +71,11 @@ SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manager,
         *pRecorder = NULL;
     if (!manager || !pWriter || !pWriter->pfnWrite || !pRecorder)
         return SLUICE_ERROR_NULL_POINTER;
+    if (!slc_allocator_is_valid(pAllocator))
+        return slc_refuse(manager, __func__, "pAllocator lacks pfnAllocate or pfnFree");
     /* What a manager that was used before decides from is not in the trace. */
-    if (!slc_allocator_is_valid(pAllocator) || slc_manager_is_used(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (slc_manager_is_used(manager))
+        return slc_refuse(manager, __func__, "the manager was used before or is being recorded");
 
     SluiceAllocationCallbacks cb = slc_allocator(pAllocator);
     SluiceRecorder *recorder = slc_recorder_create(&cb, manager, stop);

@@ -104,7 +104,7 @@ SluiceResult sluiceReplay(const SluiceReplayInfo *pInfo, SluiceReplayResult *pRe
     if (result != SLUICE_SUCCESS)
         return result;
     if (!slc_allocator_is_valid(info.pAllocator))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_log_refusal(&info.log, "pAllocator lacks pfnAllocate or pfnFree");
     const SluiceStreamedTextureStatistics none = {.structSize = sizeof none};
     if (info.pStatistics)
         slc_struct_write(SLC_STRUCT(SluiceStreamedTextureStatistics), info.pStatistics, &none);

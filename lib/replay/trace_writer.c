@@ -106,13 +106,12 @@ SluiceResult slc_recorder_read_info(const SluiceFileRecordingInfo *given, const 
     if (result != SLUICE_SUCCESS)
         return result;
     if (!slc_allocator_is_valid(info->pAllocator))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_log_refusal(&info->log, "pAllocator lacks pfnAllocate or pfnFree");
     if (!used)
         return SLUICE_SUCCESS;
-    slc_log(&info->log, SLUICE_LOG_ERROR,
-            "%s: cannot record: the %s was used before or is being recorded already", info->pPath,
-            name);
-    return SLUICE_ERROR_INVALID_ARGUMENT;
+    return slc_log_refusal(&info->log,
+                           "%s: cannot record: the %s was used before or is being recorded already",
+                           info->pPath, name);
 }
 
 SluiceResult slc_recorder_open_file(SluiceRecorder *recorder, const SluiceFileRecordingInfo *info)

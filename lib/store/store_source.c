@@ -183,8 +183,9 @@ SluiceResult sluiceGetStoreInfo(SluiceImageSource *source, SluiceStoreInfo *pInf
         return SLUICE_ERROR_NULL_POINTER;
     if (source->pInterface != &store_interface)
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    const struct slc_store_header *header = &((struct store_source *)source)->reader.header;
-    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceStoreInfo), pInfo, NULL);
+    const struct slc_store_reader *reader = &((struct store_source *)source)->reader;
+    const struct slc_store_header *header = &reader->header;
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceStoreInfo), pInfo, &reader->file.log);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceStoreInfo info = {

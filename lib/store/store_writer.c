@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/limits.h"
 #include "base/log.h"
 #include "base/struct_size.h"
 #include "store/resume.h"
@@ -26,20 +27,31 @@ static SluiceResult describe(const SluiceStoreCreateInfo *info, struct slc_store
         .name_size = (uint32_t)name_size,
         .name = name,
     };
-    SluiceResult result = slc_store_grid_init(&header->grid, info->width, info->height,
-                                              info->format, slc_max_u32(1, info->arrayLayerCount));
+    const struct slc_limit limits[] = {
+        {"width", info->width, 1, SLUICE_STORE_MAX_SIZE},
+        {"height", info->height, 1, SLUICE_STORE_MAX_SIZE},
+        {"arrayLayerCount", info->arrayLayerCount, 0, SLUICE_STORE_MAX_ARRAY_LAYERS},
+        {"length of pSourceName", name_size, 0, SLUICE_STORE_MAX_SOURCE_NAME},
+        {"colorSpace", (uint32_t)info->colorSpace, 0, SLUICE_STORE_COLOR_SPACE_ACESCG},
+        {"meaning", (uint32_t)info->meaning, 0, SLUICE_STORE_MEANING_DATA},
+        {"addressModeU", (uint32_t)info->addressModeU, 0,
+         SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER},
+        {"addressModeV", (uint32_t)info->addressModeV, 0,
+         SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER},
+        {"compressionLevel", info->compressionLevel, 0, SLUICE_STORE_MAX_COMPRESSION_LEVEL},
+        {"flags", info->flags, 0, SLUICE_STORE_WRITER_RESUME},
+    };
+    SluiceResult result = slc_check_limits(&info->log, limits, sizeof limits / sizeof limits[0]);
+    if (result == SLUICE_SUCCESS)
+        result = slc_store_grid_init(&header->grid, info->width, info->height, info->format,
+                                     slc_max_u32(1, info->arrayLayerCount));
     if (result != SLUICE_SUCCESS)
         return result;
-    bool is_in_range =
-        name_size <= SLUICE_STORE_MAX_SOURCE_NAME &&
-        (uint32_t)info->colorSpace <= SLUICE_STORE_COLOR_SPACE_ACESCG &&
-        (uint32_t)info->meaning <= SLUICE_STORE_MEANING_DATA &&
-        (uint32_t)info->addressModeU <= SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER &&
-        (uint32_t)info->addressModeV <= SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER &&
-        info->compressionLevel <= SLUICE_STORE_MAX_COMPRESSION_LEVEL &&
-        (info->flags & ~(uint32_t)SLUICE_STORE_WRITER_RESUME) == 0 &&
-        (info->mipLevelCount == 0 || info->mipLevelCount == header->grid.layout.mipLevelCount);
-    return is_in_range ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
+    uint32_t levels = header->grid.layout.mipLevelCount;
+    if (info->mipLevelCount == 0 || info->mipLevelCount == levels)
+        return SLUICE_SUCCESS;
+    return slc_log_refusal(&info->log, "mipLevelCount is %u; it must be 0 or %u",
+                           info->mipLevelCount, levels);
 }
 
 /* Whether what is there is of the same create-info. */
@@ -178,6 +190,25 @@ SluiceResult sluiceGetStoreProgress(SluiceStoreWriter *writer, uint64_t *pWritte
     return SLUICE_SUCCESS;
 }
 
+SluiceResult slc_store_writer_find(const SluiceStoreWriter *writer, uint32_t layer, uint32_t level,
+                                   uint32_t x, uint32_t y, struct slc_store_place *place)
+{
+    const struct slc_store_grid *grid = &writer->header.grid;
+    const SluiceStoreLayout *layout = &grid->layout;
+    if (slc_store_grid_find(grid, layer, level, x, y, place))
+        return SLUICE_SUCCESS;
+    const struct slc_limit limits[] = {
+        {"arrayLayer", layer, 0, grid->layer_count - 1},
+        {"mipLevel", level, 0, layout->mipLevelCount - 1},
+    };
+    SluiceResult result = slc_check_limits(&writer->file.log, limits, 2);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    return slc_log_refusal(&writer->file.log,
+                           "tile %u, %u of level %u: the level has %u x %u tiles", x, y, level,
+                           layout->levelWidthInTiles[level], layout->levelHeightInTiles[level]);
+}
+
 SluiceResult sluiceIsStoreTileWritten(SluiceStoreWriter *writer, uint32_t arrayLayer,
                                       uint32_t mipLevel, uint32_t tileX, uint32_t tileY,
                                       bool *pWritten)
@@ -186,11 +217,11 @@ SluiceResult sluiceIsStoreTileWritten(SluiceStoreWriter *writer, uint32_t arrayL
         return SLUICE_ERROR_NULL_POINTER;
     const struct slc_store_grid *grid = &writer->header.grid;
     struct slc_store_place place;
-    if (!slc_store_grid_find(grid, arrayLayer, mipLevel, tileX, tileY, &place))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = slc_store_writer_find(writer, arrayLayer, mipLevel, tileX, tileY, &place);
+    if (result != SLUICE_SUCCESS)
+        return result;
     struct slc_store_entry entry;
-    SluiceResult result =
-        slc_store_writer_entry(writer, slc_store_chunk_number(grid, &place), &entry);
+    result = slc_store_writer_entry(writer, slc_store_chunk_number(grid, &place), &entry);
     if (result == SLUICE_SUCCESS)
         *pWritten = slc_store_entry_is_written(&entry);
     return result;

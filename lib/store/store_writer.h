@@ -38,6 +38,10 @@ struct SluiceStoreWriter {
     struct slc_store_bench *idle;
 };
 
+/** Finds the chunk of a tile, or of a level of the tail. Errors, logged: INVALID_ARGUMENT. */
+SluiceResult slc_store_writer_find(const SluiceStoreWriter *writer, uint32_t layer, uint32_t level,
+                                   uint32_t x, uint32_t y, struct slc_store_place *place);
+
 /** The entry of a chunk as it is in the file now. Errors: IO, logged. */
 SluiceResult slc_store_writer_entry(const SluiceStoreWriter *writer, uint64_t number,
                                     struct slc_store_entry *entry);

@@ -1,5 +1,6 @@
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/log.h"
 #include "image/format_size.h"
 #include "store/store_writer.h"
 
@@ -201,14 +202,19 @@ SluiceResult sluiceWriteStoreTile(SluiceStoreWriter *writer, uint32_t arrayLayer
         return SLUICE_ERROR_NULL_POINTER;
     const struct slc_store_grid *grid = &writer->header.grid;
     struct slc_store_place place;
-    if (!slc_store_grid_find(grid, arrayLayer, mipLevel, tileX, tileY, &place) ||
-        slc_store_is_tail(grid, &place))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = slc_store_writer_find(writer, arrayLayer, mipLevel, tileX, tileY, &place);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (slc_store_is_tail(grid, &place))
+        return slc_log_refusal(&writer->file.log,
+                               "mipLevel is %u; levels from %u are the tail (sluiceWriteStoreTail)",
+                               mipLevel, grid->layout.tailFirstLevel);
     SluiceImageRegion region = slc_store_chunk_region(grid, &place);
     size_t row_size = slc_format_row_size(&grid->format, region.width);
     if (rowPitch < row_size)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    SluiceResult result = check_unwritten(writer, &place);
+        return slc_log_refusal(&writer->file.log, "rowPitch is %zu; it must be at least %zu",
+                               rowPitch, row_size);
+    result = check_unwritten(writer, &place);
     struct slc_store_bench *bench;
     if (result == SLUICE_SUCCESS)
         result = take_bench(writer, &bench);
@@ -240,16 +246,19 @@ static struct tail_level tail_level(const struct slc_store_grid *grid, uint32_t 
         slc_format_row_count(&grid->format, slc_mip_size(grid->layout.height, level))};
 }
 
-static SluiceResult check_tail(const struct slc_store_grid *grid, const void *const *levels,
+static SluiceResult check_tail(const SluiceStoreWriter *writer, const void *const *levels,
                                const size_t *pitches)
 {
+    const struct slc_store_grid *grid = &writer->header.grid;
     uint32_t count = grid->layout.mipLevelCount - grid->layout.tailFirstLevel;
     for (uint32_t i = 0; i < count; i++) {
         if (!levels[i])
             return SLUICE_ERROR_NULL_POINTER;
         struct tail_level level = tail_level(grid, i, pitches);
         if (level.pitch < level.row_size)
-            return SLUICE_ERROR_INVALID_ARGUMENT;
+            return slc_log_refusal(&writer->file.log,
+                                   "pRowPitches[%u] is %zu; it must be at least %zu", i,
+                                   level.pitch, level.row_size);
     }
     return SLUICE_SUCCESS;
 }
@@ -262,9 +271,9 @@ SluiceResult sluiceWriteStoreTail(SluiceStoreWriter *writer, uint32_t arrayLayer
     const struct slc_store_grid *grid = &writer->header.grid;
     uint32_t first = grid->layout.tailFirstLevel;
     struct slc_store_place place;
-    if (!slc_store_grid_find(grid, arrayLayer, first, 0, 0, &place))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    SluiceResult result = check_tail(grid, ppLevels, pRowPitches);
+    SluiceResult result = slc_store_writer_find(writer, arrayLayer, first, 0, 0, &place);
+    if (result == SLUICE_SUCCESS)
+        result = check_tail(writer, ppLevels, pRowPitches);
     if (result == SLUICE_SUCCESS)
         result = check_unwritten(writer, &place);
     struct slc_store_bench *bench;

@@ -273,7 +273,8 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
     if (!instance || !physicalDevice || !pfnGetInstanceProcAddr || !pFeatures || !pVulkan12)
         return SLUICE_ERROR_NULL_POINTER;
     if (!slc_mode_is_known(mode))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_log_refusal(pLog, "mode is %d; it must be from %d to %d", (int)mode,
+                               SLUICE_RESIDENCY_MODE_AUTO, SLUICE_RESIDENCY_MODE_DENSE);
     struct slc_vk vk;
     SluiceResult result =
         slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, pLog);

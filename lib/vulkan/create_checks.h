@@ -2,6 +2,7 @@
 #ifndef SLC_VULKAN_CREATE_CHECKS_H
 #define SLC_VULKAN_CREATE_CHECKS_H
 
+#include "base/limits.h"
 #include "vulkan/dispatch.h"
 
 /** A field of a create-info that must not be NULL, and whether it is there. */
@@ -13,16 +14,6 @@ struct slc_required {
 /** Logs the first field that is NULL. Errors: NULL_POINTER. */
 SluiceResult slc_check_required(const SluiceLogCallback *log, const struct slc_required *fields,
                                 size_t count);
-
-/** A field of a create-info, defaults filled in. */
-struct slc_limit {
-    const char *field;
-    uint64_t value, least, most;
-};
-
-/** Logs the first field that is outside its limits. Errors: INVALID_ARGUMENT. */
-SluiceResult slc_check_limits(const SluiceLogCallback *log, const struct slc_limit *limits,
-                              size_t count);
 
 /**
  * Needs only the instance functions. Logs a family that the device has not, or that has none of the

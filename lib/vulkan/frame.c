@@ -203,12 +203,10 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                 (unsigned long long)timeStamp, (unsigned long long)s->time_stamp);
         return SLUICE_ERROR_TIME_BACKWARDS;
     }
-    if (s->ended_frame != s->frame) {
-        slc_log(&s->vk.log, SLUICE_LOG_ERROR,
-                "frame %llu was neither ended nor abandoned: no other one can be begun",
-                (unsigned long long)s->frame);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (s->ended_frame != s->frame)
+        return slc_log_refusal(
+            &s->vk.log, "frame %llu was neither ended nor abandoned: no other one can be begun",
+            (unsigned long long)s->frame);
     SluiceResult result = poll_frames(s);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -246,11 +244,10 @@ SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer, VkCommandBu
 {
     if (!streamer || !commandBuffer)
         return SLUICE_ERROR_NULL_POINTER;
-    if (streamer->ended_frame == streamer->frame) {
-        slc_log(&streamer->vk.log, SLUICE_LOG_ERROR,
-                "no frame can be ended: none was begun since the last one was ended or abandoned");
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (streamer->ended_frame == streamer->frame)
+        return slc_log_refusal(
+            &streamer->vk.log,
+            "no frame can be ended: none was begun since the last one was ended or abandoned");
     streamer->ended_frame = streamer->frame;
     streamer->submittable[streamer->slot] = true;
     slc_feedback_record(streamer, commandBuffer);
@@ -295,12 +292,10 @@ SluiceResult sluiceAbandonStreamingFrame(SluiceVulkanStreamer *streamer,
     if (result != SLUICE_SUCCESS)
         return result;
     uint64_t frame = given.frameIndex;
-    if (!is_in_flight(s, frame)) {
-        slc_log(&s->vk.log, SLUICE_LOG_ERROR,
-                "frame %llu cannot be abandoned: it is over, was abandoned or never begun",
-                (unsigned long long)frame);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (!is_in_flight(s, frame))
+        return slc_log_refusal(
+            &s->vk.log, "frame %llu cannot be abandoned: it is over, was abandoned or never begun",
+            (unsigned long long)frame);
     give_slots_back(s, frame);
     s->ended_frame = s->frame;
     s->buffers_cleared &= s->cleared_frame < frame;

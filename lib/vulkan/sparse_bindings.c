@@ -69,8 +69,7 @@ SluiceResult slc_sparse_bindings_add_heap(struct slc_sparse_bindings *bindings,
     const uint64_t limit = (1u << 30) - 1; /* of the hash map */
     if (bindings->heap_page_count == 0)
         bindings->heap_page_count = page_count;
-    if (page_count == 0 || page_count != bindings->heap_page_count)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    assert(page_count > 0 && page_count == bindings->heap_page_count);
     uint64_t needed = ((uint64_t)heap_id + 1) * page_count;
     if (needed <= bindings->page_count)
         return SLUICE_SUCCESS;

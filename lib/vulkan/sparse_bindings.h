@@ -54,8 +54,7 @@ void slc_sparse_bindings_finish(struct slc_sparse_bindings *bindings,
                                 const SluiceAllocationCallbacks *cb);
 
 /**
- * Makes room for a heap. All heaps have the same number of pages. Errors: OUT_OF_HOST_MEMORY,
- * INVALID_ARGUMENT for another number of pages.
+ * Makes room for a heap. All heaps have the same number of pages. Errors: OUT_OF_HOST_MEMORY.
  */
 SluiceResult slc_sparse_bindings_add_heap(struct slc_sparse_bindings *bindings,
                                           const SluiceAllocationCallbacks *cb, uint32_t heap_id,

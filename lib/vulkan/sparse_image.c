@@ -222,7 +222,8 @@ SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDev
     if (checked != SLUICE_SUCCESS)
         return checked;
     if (pImage->width == 0 || pImage->height == 0)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_log_refusal(pLog, "width is %u and height is %u; both must be above 0",
+                               pImage->width, pImage->height);
     struct slc_vk vk;
     struct slc_caps caps;
     struct slc_sparse_image image;

@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/limits.h"
 #include "base/log.h"
 #include "image/info.h"
 #include "vulkan/address_mode.h"
@@ -16,6 +17,7 @@
 #include <sluice/shared/bindings.h>
 
 #define MAX_ANISOTROPY 16.0f /* of sample.glsl */
+#define LAST_ADDRESS_MODE VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE
 
 /* The first of `count` free ones side by side. */
 static uint32_t find_free(const SluiceVulkanStreamer *s, uint32_t count)
@@ -29,16 +31,16 @@ static uint32_t find_free(const SluiceVulkanStreamer *s, uint32_t count)
 static SluiceResult check_create_info(const SluiceVulkanStreamer *s,
                                       const SluiceVulkanTextureCreateInfo *info)
 {
-    if (!(info->maxAnisotropy >= 0.0f && info->maxAnisotropy <= MAX_ANISOTROPY)) {
-        slc_log(&s->vk.log, SLUICE_LOG_ERROR, "maxAnisotropy is %g; it must be 0 to %g",
-                (double)info->maxAnisotropy, (double)MAX_ANISOTROPY);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
-    if (info->addressModeU > VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE ||
-        info->addressModeV > VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (info->primaryId == SLUICE_NO_TEXTURE)
-        return SLUICE_SUCCESS;
+    if (!(info->maxAnisotropy >= 0.0f && info->maxAnisotropy <= MAX_ANISOTROPY))
+        return slc_log_refusal(&s->vk.log, "maxAnisotropy is %g; it must be 0 to %g",
+                               (double)info->maxAnisotropy, (double)MAX_ANISOTROPY);
+    const struct slc_limit limits[] = {
+        {"addressModeU", (uint32_t)info->addressModeU, 0, LAST_ADDRESS_MODE},
+        {"addressModeV", (uint32_t)info->addressModeV, 0, LAST_ADDRESS_MODE},
+    };
+    SluiceResult result = slc_check_limits(&s->vk.log, limits, 2);
+    if (result != SLUICE_SUCCESS || info->primaryId == SLUICE_NO_TEXTURE)
+        return result;
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     return sluiceGetTextureLayout(s->manager, info->primaryId, &layout);
 }
@@ -313,8 +315,7 @@ static SluiceResult describe(const SluiceVulkanStreamer *s,
         return info->source ? sluiceGetImageInfo(info->source, image) : SLUICE_ERROR_NULL_POINTER;
     if (!info->source)
         return slc_tile_producer_read(producer, image, info->pProducer, &s->vk.log);
-    slc_log(&s->vk.log, SLUICE_LOG_ERROR, "a texture has either a source or a producer, not both");
-    return SLUICE_ERROR_INVALID_ARGUMENT;
+    return slc_log_refusal(&s->vk.log, "a texture has either a source or a producer, not both");
 }
 
 SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
@@ -337,8 +338,10 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
         result = slc_image_info_check(&image, SLC_LEVELS_ALL, &s->vk.log);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (layerCount != (image.arrayLayerCount ? image.arrayLayerCount : 1))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    uint32_t layers = image.arrayLayerCount ? image.arrayLayerCount : 1;
+    if (layerCount != layers)
+        return slc_log_refusal(&s->vk.log, "layerCount is %u; the source has %u layers", layerCount,
+                               layers);
     uint32_t first = find_free(s, layerCount);
     if (first == SLC_NONE)
         return SLUICE_ERROR_LIMIT_EXCEEDED;

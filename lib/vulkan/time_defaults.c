@@ -11,12 +11,6 @@ uint64_t slc_time_stamps(const SluiceVulkanStreamerCreateInfo *info, uint64_t mi
     return product / 1000 + (product % 1000 != 0);
 }
 
-static SluiceResult refuse(const SluiceLogCallback *log, const char *why)
-{
-    slc_log(log, SLUICE_LOG_ERROR, "%s", why);
-    return SLUICE_ERROR_INVALID_ARGUMENT;
-}
-
 static void set_default(uint64_t *value, uint64_t otherwise)
 {
     if (*value == 0)
@@ -26,11 +20,16 @@ static void set_default(uint64_t *value, uint64_t otherwise)
 SluiceResult slc_fill_in_times(SluiceVulkanStreamerCreateInfo *info, const SluiceLogCallback *log)
 {
     if (info->ticksPerSecond > SLC_MAX_TIME_STAMPS_PER_SECOND)
-        return refuse(log, "ticksPerSecond is above 10^12");
+        return slc_log_refusal(log, "ticksPerSecond is %llu; it must be at most 10^12",
+                               (unsigned long long)info->ticksPerSecond);
     if (info->newestFeedbackMapOnly && info->feedbackTimeoutTicks)
-        return refuse(log, "newestFeedbackMapOnly contradicts a feedbackTimeoutTicks above 0");
+        return slc_log_refusal(log,
+                               "feedbackTimeoutTicks is %llu; with newestFeedbackMapOnly it must "
+                               "be 0",
+                               (unsigned long long)info->feedbackTimeoutTicks);
     if (info->noStandbyTiles && info->numExtraStandbyTiles)
-        return refuse(log, "noStandbyTiles contradicts numExtraStandbyTiles above 0");
+        return slc_log_refusal(log, "numExtraStandbyTiles is %u; with noStandbyTiles it must be 0",
+                               info->numExtraStandbyTiles);
     set_default(&info->ticksPerSecond, 1000000000);
     if (!info->newestFeedbackMapOnly)
         set_default(&info->feedbackTimeoutTicks, slc_time_stamps(info, 1000));

@@ -78,7 +78,20 @@ names_in_two_places() {
     files 'lib/*.c' 'lib/*.h' | sed 's,.*/,,' | sort | uniq -d
 }
 
-echo 1..13
+# Functions of lib that return INVALID_ARGUMENT themselves. slc_log_refusal says why; functions
+# without a log are listed in silent_refusals.txt, with the reason.
+unlisted_refusals() {
+    local -a sources
+    mapfile -t sources < <(files 'lib/*.c')
+    diff <(awk '
+        /^[A-Za-z].*\(/ { match($0, /[A-Za-z0-9_]+\(/); name = substr($0, RSTART, RLENGTH - 1) }
+        /(return|[?:]|[^=!]=) SLUICE_ERROR_INVALID_ARGUMENT/ { print FILENAME, name }' "${sources[@]}" |
+        sed 's,^\./,,' | sort -u) \
+        <(sed -E '/^(#|$)/d; s/^([^ ]+ [^ ]+) .*/\1/' scripts/dev/silent_refusals.txt | sort -u) |
+        sed -n 's/^< \(.*\)/\1: use slc_log_refusal/p; s/^> \(.*\)/\1: no longer there/p'
+}
+
+echo 1..14
 search $'\t' "${code[@]}" | report sources_hold_no_tabs
 search '[[:blank:]]+$' "${text[@]}" | report lines_have_no_trailing_blanks
 search $'\r' "${text[@]}" | report lines_end_with_a_newline_alone
@@ -100,6 +113,7 @@ search '\b(bur[y]|burie[ds]|exhum[e]|ghos[t]s?|displac(e[ds]?|ing))\b' "${text[@
     grep -v '^CHANGELOG.md:' | report memory_is_retired_and_tiles_are_evicted
 
 names_in_two_places | report names_of_lib_are_unique
+unlisted_refusals | report refused_arguments_are_logged
 
 if command -v shellcheck >/dev/null; then
     files '*.sh' '*.ci/run' | tr '\n' '\0' | xargs -0 shellcheck -x 2>&1 | report scripts_pass_shellcheck

@@ -248,20 +248,29 @@ static void what_is_no_tile_is_not_written(void **state)
     struct scratch scratch;
     scratch_init(&scratch);
     SluiceStoreCreateInfo info = describe(&scratch, 1);
+    struct messages messages = {0};
+    const char *line = messages.last;
+    info.log = messages_log(&messages);
     SluiceStoreWriter *writer;
     SluiceStoreLayout layout;
     CHECK_OK(sluiceCreateStoreWriter(&info, &writer));
     CHECK_OK(sluiceGetStoreWriterLayout(writer, &layout));
+    static const char *const lines[] = {"arrayLayer is 1; it must be from 0 to 0", "tile 3, 0 of",
+                                        "tile 0, 3 of level 0: the level has", "mipLevel is 9",
+                                        "are the tail"};
     static const char texels[65536];
     const uint32_t bad[][4] = {
         {1, 0, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 3}, {0, 9, 0, 0}, {0, layout.tailFirstLevel, 0, 0}};
     bool is_written;
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         CHECK_RESULT(
             sluiceWriteStoreTile(writer, bad[i][0], bad[i][1], bad[i][2], bad[i][3], texels, 512),
             SLUICE_ERROR_INVALID_ARGUMENT);
+        assert_non_null(strstr(line, lines[i]));
+    }
     CHECK_RESULT(sluiceWriteStoreTile(writer, 0, 0, 0, 0, texels, 511),
                  SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_string_equal(line, "rowPitch is 511; it must be at least 512");
     CHECK_RESULT(sluiceWriteStoreTile(writer, 0, 0, 0, 0, NULL, 512), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceIsStoreTileWritten(writer, 0, 9, 0, 0, &is_written),
                  SLUICE_ERROR_INVALID_ARGUMENT);
@@ -271,6 +280,7 @@ static void what_is_no_tile_is_not_written(void **state)
         levels[i] = texels;
     const size_t pitches[SLUICE_STORE_MAX_MIP_LEVELS] = {512, 3};
     CHECK_RESULT(sluiceWriteStoreTail(writer, 0, levels, pitches), SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(line, "pRowPitches[1] is 3; it must be at least"));
     CHECK_RESULT(sluiceWriteStoreTail(writer, 1, levels, NULL), SLUICE_ERROR_INVALID_ARGUMENT);
     uint64_t written, total;
     CHECK_OK(sluiceGetStoreProgress(writer, &written, &total));

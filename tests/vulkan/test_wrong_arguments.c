@@ -290,6 +290,64 @@ static void sparse_mode_needs_a_context_with_a_sparse_queue(void **state)
     }
 }
 
+static void texture_fields_out_of_range_are_named(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    static const SluiceImageSourceInterface interface = {sizeof interface, lie, read_nothing, NULL,
+                                                         NULL};
+    struct liar source = {
+        {&interface}, {sizeof(SluiceImageInfo), 512, 512, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}};
+    struct lines lines = {0};
+    SluiceVulkanStreamer *streamer;
+    SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
+    const SluiceResult refused = SLUICE_ERROR_INVALID_ARGUMENT;
+    const SluiceVulkanTextureCreateInfo good = {.structSize = sizeof good, .source = &source.base};
+    SluiceVulkanTextureCreateInfo create = good;
+    SluiceVulkanTexture textures[2];
+    create.addressModeU = (VkSamplerAddressMode)5;
+    CHECK_RESULT(sluiceAddVulkanTexture(streamer, &create, textures), refused);
+    check_line(&lines, "addressModeU is 5; it must be from 0 to 4");
+    create = good;
+    create.addressModeV = (VkSamplerAddressMode)-1;
+    CHECK_RESULT(sluiceAddVulkanTexture(streamer, &create, textures), refused);
+    check_line(&lines, "addressModeV is 4294967295; it must be from 0 to 4");
+    create = good;
+    create.maxAnisotropy = 17;
+    CHECK_RESULT(sluiceAddVulkanTexture(streamer, &create, textures), refused);
+    check_line(&lines, "maxAnisotropy is 17; it must be 0 to 16");
+    CHECK_RESULT(sluiceAddVulkanTextureArray(streamer, &good, 2, textures), refused);
+    check_line(&lines, "layerCount is 2; the source has 1 layers");
+    fake_vulkan_destroy(streamer);
+}
+
+static void contradictory_times_are_named(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    struct lines lines;
+    SluiceVulkanContext *context = create_context(&fake, &lines);
+    const SluiceVulkanStreamerCreateInfo good = {.structSize = sizeof good, .context = context};
+    const SluiceResult refused = SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceVulkanStreamerCreateInfo info = good;
+    SluiceVulkanStreamer *streamer;
+    info.ticksPerSecond = UINT64_C(1000000000001);
+    CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), refused);
+    check_line(&lines, "ticksPerSecond is 1000000000001; it must be at most 10^12");
+    info = good;
+    info.newestFeedbackMapOnly = true;
+    info.feedbackTimeoutTicks = 9;
+    CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), refused);
+    check_line(&lines, "feedbackTimeoutTicks is 9;");
+    info = good;
+    info.noStandbyTiles = true;
+    info.numExtraStandbyTiles = 8;
+    CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), refused);
+    check_line(&lines, "numExtraStandbyTiles is 8;");
+    sluiceDestroyVulkanContext(context);
+}
+
 static void without_a_context_nothing_is_created(void **state)
 {
     (void)state;
@@ -362,6 +420,14 @@ static void what_demand_loading_refuses_is_named(void **state)
     check_line(&lines, "sluicePreloadDemandTexture: texture 0x");
     CHECK_RESULT(sluiceRetryDemandTexture(loader, SLUICE_NO_DEMAND_TEXTURE), refused);
     check_line(&lines, "SLUICE_ALL_DEMAND_TEXTURES");
+    const SluiceDemandTicket foreign = (UINT64_C(3) << 32) + 7;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
+    CHECK_RESULT(sluiceGetDemandTicketStatus(loader, foreign, &status), refused);
+    check_line(&lines, "sluiceGetDemandTicketStatus: ticket is 12884901895;");
+    CHECK_RESULT(sluiceWaitDemandTicket(loader, foreign, 0, NULL), refused);
+    check_line(&lines, "sluiceWaitDemandTicket: ticket is 12884901895;");
+    CHECK_RESULT(sluiceCancelDemandTicket(loader, foreign), refused);
+    check_line(&lines, "sluiceCancelDemandTicket: ticket is 12884901895;");
     CHECK_OK(sluiceRetryDemandTexture(loader, SLUICE_ALL_DEMAND_TEXTURES));
     sluiceDestroyDemandLoader(loader);
     sluiceDestroyVulkanContext(demand.context);
@@ -436,6 +502,8 @@ int main(void)
         cmocka_unit_test(contexts_take_every_limit_of_the_header_and_nothing_beyond),
         cmocka_unit_test(demand_loaders_take_every_limit_of_the_header_and_nothing_beyond),
         cmocka_unit_test(sparse_mode_needs_a_context_with_a_sparse_queue),
+        cmocka_unit_test(texture_fields_out_of_range_are_named),
+        cmocka_unit_test(contradictory_times_are_named),
         cmocka_unit_test(without_a_context_nothing_is_created),
         cmocka_unit_test(what_is_ended_without_a_begin_and_time_that_runs_back_are_named),
         cmocka_unit_test(what_demand_loading_refuses_is_named),
