@@ -13,9 +13,10 @@ static const struct {
 } measurements[] = {
     {"create", measure_create}, {"fill", measure_fill},     {"sampling", measure_sampling},
     {"trips", measure_trips},   {"budget", measure_budget}, {"bytes", measure_bytes},
+    {"small", measure_small},
 };
 #define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
-#define MEASUREMENT_NAMES "create,fill,sampling,trips,budget,bytes"
+#define MEASUREMENT_NAMES "create,fill,sampling,trips,budget,bytes,small"
 
 bool check(SluiceResult result, const char *what)
 {

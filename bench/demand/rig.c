@@ -32,6 +32,7 @@ static bool create_loader(struct rig *rig, const SluiceDemandLoaderCreateInfo *g
                                                    .device = gpu->device,
                                                    .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
                                                    .log = {.pfnLog = print_log},
+                                                   .pAllocator = rig->bench->allocator,
                                                    .loaderThreadCount = rig->bench->threads,
                                                    .maxPageChunkCount = DEMAND_BENCH_CHUNKS,
                                                    .minStagingSize = rig->bench->min_staging_size};

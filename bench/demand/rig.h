@@ -19,7 +19,8 @@ struct bench {
     uint32_t columns;      ///< columns x columns textures
     uint32_t threads;      ///< that load; 0: as the library does
     uint64_t min_staging_size;
-    bool wall; ///< measures wall time: time stamps are unusable
+    const SluiceAllocationCallbacks *allocator; ///< of the context; NULL: malloc
+    bool wall;                                  ///< measures wall time: time stamps are unusable
 };
 
 /** Says on stderr what it is about, and returns false unless `result` is a success or news. */
@@ -99,6 +100,6 @@ uint32_t rig_load(struct rig *rig, uint32_t limit);
 
 typedef bool measurement(const struct bench *bench);
 measurement measure_bytes, measure_create, measure_fill, measure_sampling, measure_trips,
-    measure_budget;
+    measure_budget, measure_small;
 
 #endif /* BENCH_DEMAND_RIG_H */

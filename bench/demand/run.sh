@@ -5,7 +5,7 @@
 #   bench/demand/run.sh [options]
 #
 #   --device NAME     an index or a part of a name; --list-devices prints them (default: the best)
-#   --only NAMES      some of create,fill,sampling,trips,budget,bytes (default: all)
+#   --only NAMES      some of create,fill,sampling,trips,budget,bytes,small (default: all)
 #   --json            one object per line (name, value, unit) instead of the table, and more of them
 #   --quick           few and small textures: to see that everything works
 #   --threads N       that load tiles (default: all processors but one)
@@ -62,6 +62,10 @@ budget.lod_bias|... levels coarser||
 bytes.rate|cold fill of byte pages of 64 KiB, pages/s||
 bytes.tiles.rate|... of tiles, tiles/s||
 bytes.of_tiles|... byte pages per tile||
+small.of_texels|100 000 textures of 64x64, all resident: memory per texel||1.2
+small.host_open|... host memory of an open texture, bytes||
+small.once.launches|... sampled once each in 512 MiB: launches for 16||
+small.once.refused|... pages that were refused||0
 END
 }
 

@@ -105,6 +105,14 @@ typedef struct SluiceDemandLoaderCreateInfo {
      * 30 s. UINT64_MAX: never.
      */
     uint64_t failureRetryDelayNs;
+    /**
+     * A texture that no launch has sampled for so many launches is forgotten: its tiles and its mip
+     * tail are evicted, and an image that a callback opened is closed. Shaders that sample it again
+     * open it again. Costs each launch a little, because shaders then always report what they use.
+     * Default: 0, which forgets textures only when memory is short, those that were sampled longest
+     * ago first. With noEviction no texture is forgotten.
+     */
+    uint32_t forgetAfterLaunches;
 } SluiceDemandLoaderCreateInfo;
 
 /**
@@ -144,6 +152,7 @@ typedef struct SluiceDemandLoaderSettings {
     uint64_t failureRetryDelayNs;  ///< Nanoseconds. 0: at once. UINT64_MAX: never.
     bool noEviction;               ///< The LOD bias becomes 0, too.
     bool noLodBias;                ///< The LOD bias becomes 0 with the next launch.
+    uint32_t forgetAfterLaunches;  ///< 0: only when memory is short.
 } SluiceDemandLoaderSettings;
 
 /**
@@ -716,6 +725,7 @@ typedef struct SluiceDemandStatistics {
     uint64_t byteMemorySize;        ///< Bytes of device memory for byte pages.
     uint32_t byteChunkCount;        ///< Buffers that hold byte pages.
     uint64_t tailPageCount;         ///< Pages of 64 KiB that resident mip tails share.
+    uint64_t texturesForgotten;     ///< See forgetAfterLaunches. They count as opened again later.
 } SluiceDemandStatistics;
 
 /**

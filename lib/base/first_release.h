@@ -52,8 +52,9 @@
 #define SLC_FIRST_SluiceBakeInfo SLC_UP_TO(SluiceBakeInfo, pfnProgress)
 #define SLC_FIRST_SluiceBakeReport SLC_UP_TO(SluiceBakeReport, clampedTexelCount)
 #define SLC_FIRST_SluiceDemandLoaderCreateInfo                                                     \
-    SLC_UP_TO(SluiceDemandLoaderCreateInfo, failureRetryDelayNs)
-#define SLC_FIRST_SluiceDemandLoaderSettings SLC_UP_TO(SluiceDemandLoaderSettings, noLodBias)
+    SLC_UP_TO(SluiceDemandLoaderCreateInfo, forgetAfterLaunches)
+#define SLC_FIRST_SluiceDemandLoaderSettings                                                       \
+    SLC_UP_TO(SluiceDemandLoaderSettings, forgetAfterLaunches)
 #define SLC_FIRST_SluiceDemandSampler SLC_UP_TO(SluiceDemandSampler, explicitAddressModes)
 #define SLC_FIRST_SluiceDemandTextureCreateInfo                                                    \
     SLC_UP_TO(SluiceDemandTextureCreateInfo, failureColor)
@@ -63,7 +64,7 @@
 #define SLC_FIRST_SluiceDemandLaunch SLC_UP_TO(SluiceDemandLaunch, descriptorSet)
 #define SLC_FIRST_SluiceDemandRequests SLC_UP_TO(SluiceDemandRequests, lodBias)
 #define SLC_FIRST_SluiceDemandTicketStatus SLC_UP_TO(SluiceDemandTicketStatus, failedCount)
-#define SLC_FIRST_SluiceDemandStatistics SLC_UP_TO(SluiceDemandStatistics, tailPageCount)
+#define SLC_FIRST_SluiceDemandStatistics SLC_UP_TO(SluiceDemandStatistics, texturesForgotten)
 #define SLC_FIRST_SluiceInput SLC_UP_TO(SluiceInput, pfnRead)
 #define SLC_FIRST_SluiceFilePoolCreateInfo SLC_UP_TO(SluiceFilePoolCreateInfo, pAllocator)
 #define SLC_FIRST_SluiceFilePoolStatistics SLC_UP_TO(SluiceFilePoolStatistics, replacedTotal)

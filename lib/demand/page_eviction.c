@@ -68,6 +68,21 @@ bool slc_residency_evict(struct slc_demand_residency *r, uint32_t class_index, u
     return true;
 }
 
+uint64_t slc_residency_oldest_use(const struct slc_demand_residency *residency,
+                                  uint32_t class_index)
+{
+    const struct slc_demand_residency *r = residency;
+    uint64_t oldest = UINT64_MAX;
+    if (r->no_eviction)
+        return oldest;
+    for (uint32_t p = r->classes[class_index].first_lru; p != SLC_NO_LRU; p = r->lrus[p].next) {
+        uint32_t head = r->lrus[p].pages.head;
+        if (head != SLC_NO_NODE && r->nodes.at[head].last_use < oldest)
+            oldest = r->nodes.at[head].last_use;
+    }
+    return oldest < r->launch ? oldest : UINT64_MAX;
+}
+
 void slc_residency_trim(struct slc_demand_residency *r, uint32_t class_index)
 {
     struct slc_page_class *c = &r->classes[class_index];

@@ -259,6 +259,12 @@ enum slc_request_answer slc_residency_request(struct slc_demand_residency *resid
     return given;
 }
 
+bool slc_residency_is_absent(const struct slc_demand_residency *residency, uint32_t page)
+{
+    uint32_t index = slc_page_nodes_find(&residency->nodes, page);
+    return index == SLC_NO_NODE || residency->nodes.at[index].state == SLC_PAGE_ABSENT;
+}
+
 uint32_t slc_residency_place(const struct slc_demand_residency *residency, uint32_t page)
 {
     uint32_t index = slc_page_nodes_find(&residency->nodes, page);

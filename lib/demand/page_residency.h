@@ -101,6 +101,12 @@ SluiceResult slc_residency_set_class(struct slc_demand_residency *residency, uin
 void slc_residency_set_switches(struct slc_demand_residency *residency, bool no_eviction,
                                 bool no_lod_bias);
 
+/** Whether a request for the page would need a place. */
+bool slc_residency_is_absent(const struct slc_demand_residency *residency, uint32_t page);
+/** The last use of the page of the class that would be evicted first; UINT64_MAX if none can be. */
+uint64_t slc_residency_oldest_use(const struct slc_demand_residency *residency,
+                                  uint32_t class_index);
+
 /** `launch` is larger than before. */
 void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch);
 /** Of a page that is not resident any more: ignored. */

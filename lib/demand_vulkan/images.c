@@ -163,6 +163,7 @@ static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image 
     memcpy(words, image->first_pages, sizeof image->first_pages);
     memcpy(image->base_color, image->read_color, sizeof image->base_color);
     image->state = SLC_IMAGE_OPEN;
+    slc_image_enter_order(loader, image);
     slc_texture_show_image(loader, image);
     loader->counts.texturesOpened++;
     note_opened(loader, image);
@@ -276,6 +277,15 @@ static void leave_refresh_list(SluiceDemandLoader *loader, struct slc_demand_ima
     loader->images[at]->next = image->next;
 }
 
+/* The image is no texture's any more, and has no pages. */
+static void end_use(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    slc_image_forget(loader, image);
+    if (image->state == SLC_IMAGE_OPEN)
+        slc_image_leave_order(loader, image);
+    loader->textures[image->texture].image = SLC_NONE;
+}
+
 void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     leave_refresh_list(loader, image);
@@ -288,12 +298,31 @@ void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image
         slc_jobs_wait(loader, SLC_JOB_TILE, image->slot);
         slc_jobs_wait(loader, SLC_JOB_OPEN, image->slot);
     }
-    slc_image_forget(loader, image);
     slc_image_forget_requests(loader, image);
-    loader->textures[image->texture].image = SLC_NONE;
+    end_use(loader, image);
     image->state = SLC_IMAGE_DETACHED;
     if (image->job_count == 0)
         retire(loader, image);
+}
+
+bool slc_image_is_idle(const SluiceDemandLoader *loader, const struct slc_demand_image *image)
+{
+    return image->state == SLC_IMAGE_OPEN && image->job_count == 0 && !image->refresh &&
+           image->last_use < loader->processed;
+}
+
+/* No copy of its tiles is under way: last_use is the launch of the last one, or later. What shaders
+ * left behind of requests loads at worst a page that nobody asked for. */
+void slc_image_forget_texture(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    assert(slc_image_is_idle(loader, image));
+    slc_page_share_leave(loader->pages, loader->page_user, image->source);
+    slc_retries_all(loader, &image->retry_group);
+    slc_preloads_detach(loader, image->texture);
+    slc_texture_show_unknown(loader, image->texture);
+    end_use(loader, image);
+    retire(loader, image);
+    loader->counts.texturesForgotten++;
 }
 
 void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image)

@@ -61,13 +61,15 @@ static void end_retired(SluiceDemandLoader *loader)
  * Whether shaders are to say what they use: as soon as the tiles that may be loaded until a launch
  * that says so is over could fill the memory.
  */
-static bool wants_used(const SluiceDemandLoader *loader)
+static bool wants_used(SluiceDemandLoader *loader)
 {
     struct slc_residency_counts counts;
     uint64_t limit = slc_tile_memory_limit(&loader->tiles);
     uint64_t soon = (uint64_t)loader->info.maxTilesInFlight * (loader->info.launchesInFlight + 1);
     if (loader->info.noEviction)
         return false;
+    if (loader->info.forgetAfterLaunches)
+        return true;
     slc_residency_get_counts(loader->residency, SLC_CLASS_TILES, &counts);
     uint64_t held = counts.resident + counts.loading;
     if (loader->memory_pressure.beyond + loader->memory_pressure.refused)

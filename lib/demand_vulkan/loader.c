@@ -190,6 +190,7 @@ static SluiceResult create_pages(SluiceDemandLoader *loader)
     if (result != SLUICE_SUCCESS)
         return result;
     loader->tile_interface = slc_tile_memory_interface(&loader->tiles);
+    (void)slc_tile_memory_limit(&loader->tiles);
     slc_tiles_limit(loader);
     result = slc_residency_set_class(loader->residency, SLC_CLASS_UNBOUND, UINT64_MAX, NULL);
     if (result == SLUICE_SUCCESS)
@@ -268,6 +269,7 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     loader->texture_high = 1; /* 0 is no texture's */
     loader->free_texture = loader->first_retired_texture = SLC_NONE;
     loader->free_image = loader->first_retired_image = loader->first_refresh = SLC_NONE;
+    loader->oldest_image = loader->newest_image = SLC_NONE;
     loader->free_resource = SLC_NONE;
     slc_image_opener_init(&loader->opener);
     if (slc_tickets_init(&loader->tickets, &loader->cb) != SLUICE_SUCCESS) {
@@ -307,7 +309,8 @@ SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreat
                                      .maxRequestsPerLaunch = info.maxRequestsPerLaunch,
                                      .failureRetryDelayNs = info.failureRetryDelayNs,
                                      .noEviction = info.noEviction,
-                                     .noLodBias = info.noLodBias};
+                                     .noLodBias = info.noLodBias,
+                                     .forgetAfterLaunches = info.forgetAfterLaunches};
     *pLoader = loader;
     return SLUICE_SUCCESS;
 }

@@ -74,6 +74,8 @@ struct slc_demand_image {
     bool refresh;  ///< it is in that list
     uint32_t job_count;
     uint64_t launch;          ///< RETIRED: the last that may name its pages
+    uint64_t last_use;        ///< launch that used it, missed a page of it or copied one
+    uint32_t older, newer;    ///< OPEN: in the order of use
     SluiceDemandImage origin; ///< as the texture had it when it was opened
     SluiceDemandTicket ticket;
 
@@ -272,6 +274,9 @@ struct SluiceDemandLoader {
     struct slc_demand_image **images; ///< owned, by slot
     uint32_t image_high, image_capacity, free_image, first_retired_image, last_retired_image;
     uint32_t first_refresh;
+    uint32_t oldest_image, newest_image; ///< open ones in the order of use
+    uint64_t known_since;                ///< processed launches after this one told what they used
+    bool knows_use;                      ///< the launch that is being processed did
     uint32_t *tail_blocks; ///< owned; by slot / SLUICE_DEMAND_BLOCK_PAGES: the first tail page
     uint32_t tail_block_count, tail_block_capacity;
     SluiceImageSource opener; ///< an image whose texels are base colors
@@ -383,6 +388,10 @@ void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *imag
 void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image);
 /** No texture's any more: its pages are forgotten, it is closed when its reads are over. */
 void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image);
+/** Whether the image is open, and no launch since the one before the last processed one used it. */
+bool slc_image_is_idle(const SluiceDemandLoader *loader, const struct slc_demand_image *image);
+/** Closes an idle image. Its texture is as if nobody had asked for it. */
+void slc_image_forget_texture(SluiceDemandLoader *loader, struct slc_demand_image *image);
 /** Its texels have changed. */
 void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *image);
 void slc_images_refresh(SluiceDemandLoader *loader);
@@ -490,8 +499,23 @@ static inline uint32_t slc_job_index(const SluiceDemandLoader *loader,
     return (uint32_t)(job - loader->jobs);
 }
 
+/* forgetting.c */
+/** The image was opened. */
+void slc_image_enter_order(SluiceDemandLoader *loader, struct slc_demand_image *image);
+/** The image is open no more. */
+void slc_image_leave_order(SluiceDemandLoader *loader, struct slc_demand_image *image);
+/** `launch` uses the image. */
+void slc_image_touch(SluiceDemandLoader *loader, struct slc_demand_image *image, uint64_t launch);
+/** `launch`, which is being processed, uses a page, or misses it. */
+void slc_image_touch_page(SluiceDemandLoader *loader, uint32_t page, uint64_t launch);
+/** Forgets images for a page that is requested, if no place is free: those that were used before
+ *  any tile that could be evicted. */
+void slc_images_make_room(SluiceDemandLoader *loader, uint32_t page);
+/** A launch was processed: forgets images that were not used for forgetAfterLaunches. */
+void slc_images_forget_old(SluiceDemandLoader *loader);
+
 /* tiles.c */
-/** The class of tiles gets the limit of slc_tile_memory_limit as it is now. */
+/** The class of tiles gets the limit of slc_tile_memory_limit_now. */
 void slc_tiles_limit(SluiceDemandLoader *loader);
 /** `page` is one of the image's. */
 enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_demand_image *image,

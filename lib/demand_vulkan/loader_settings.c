@@ -39,6 +39,7 @@ void slc_loader_settings_apply(SluiceDemandLoader *loader)
     const SluiceDemandLoaderSettings *settings = &loader->settings;
     loader->requests_per_launch = settings->maxRequestsPerLaunch;
     loader->info.failureRetryDelayNs = settings->failureRetryDelayNs;
+    loader->info.forgetAfterLaunches = settings->forgetAfterLaunches;
     if (loader->info.noEviction == settings->noEviction &&
         loader->info.noLodBias == settings->noLodBias)
         return;

@@ -121,7 +121,7 @@ static bool next_page(struct slc_preload *preload, const struct slc_demand_image
 }
 
 /* What is there is not evicted for what nobody has asked for. */
-static bool has_room(const SluiceDemandLoader *loader)
+static bool has_room(SluiceDemandLoader *loader)
 {
     struct slc_residency_counts counts;
     slc_residency_get_counts(loader->residency, SLC_CLASS_TILES, &counts);

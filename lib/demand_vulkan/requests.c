@@ -49,8 +49,10 @@ static void feed_used(SluiceDemandLoader *loader, uint32_t slot)
 {
     struct slc_page_used_iterator iterator = {0};
     uint32_t page;
-    while (slc_page_directory_next_used(&loader->directory, slot, &iterator, &page))
+    while (slc_page_directory_next_used(&loader->directory, slot, &iterator, &page)) {
         slc_residency_use(loader->residency, page);
+        slc_image_touch_page(loader, page, loader->processed);
+    }
 }
 
 static void add_counts(SluiceDemandStatistics *counts, const SluiceDemandRequests *requests)
@@ -72,10 +74,16 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     SluiceDemandRequests now = {.structSize = sizeof now,
                                 .missingCount = scan.requestCount,
                                 .postponedCount = scan.postponedCount};
+    (void)slc_tile_memory_limit(&loader->tiles); /* the pool may have more pages now, or fewer */
     slc_tiles_limit(loader);
     slc_residency_begin(loader->residency, launch);
     if (loader->tracked[slot])
         feed_used(loader, slot);
+    else
+        loader->known_since = launch;
+    for (uint32_t i = 0; i < scan.listedCount; i++)
+        slc_image_touch_page(loader, pages[i], launch);
+    loader->knows_use = loader->tracked[slot];
     loader->unasked_count = 0;
     slc_jobs_begin_batch(loader);
     for (uint32_t i = 0; i < scan.listedCount; i++) {
@@ -85,6 +93,8 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
         now.missingCount -= answer == SLC_REQUEST_REFUSED && is_resource(loader, pages[i]);
     }
     slc_jobs_end_batch(loader);
+    slc_images_forget_old(loader);
+    loader->knows_use = false;
     /* The residency counts requests that did not reach it as tiles; unasked pages are no tiles. */
     slc_residency_settle(loader->residency, scan.requestCount - loader->unasked_count);
     slc_evicted_take(loader);

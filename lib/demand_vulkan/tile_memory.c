@@ -90,10 +90,17 @@ struct slc_page_memory slc_tile_memory_interface(struct slc_tile_memory *memory)
     return (struct slc_page_memory){memory, take, give, retake};
 }
 
-uint64_t slc_tile_memory_limit(const struct slc_tile_memory *memory)
+uint64_t slc_tile_memory_limit(struct slc_tile_memory *memory)
 {
     uint64_t capacity = slc_page_pool_capacity(memory->pool, memory->user);
+    memory->page_limit = capacity < memory->limit ? capacity : memory->limit;
+    return slc_tile_memory_limit_now(memory);
+}
+
+uint64_t slc_tile_memory_limit_now(const struct slc_tile_memory *memory)
+{
     const struct slc_tail_pages *tails = &memory->tails;
-    uint64_t limit = capacity < memory->limit ? capacity : memory->limit;
-    return limit + tails->tail_count - tails->page_count + memory->tail_has_room;
+    bool has_room =
+        memory->tail && slc_tail_pages_has_room(tails, memory->tail_format, memory->tail);
+    return memory->page_limit + tails->tail_count - tails->page_count + has_room;
 }

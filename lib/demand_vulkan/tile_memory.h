@@ -11,13 +11,14 @@
 struct slc_tile_memory {
     struct slc_page_pool *pool;         ///< borrowed
     uint32_t user;                      ///< of the pool
+    uint64_t page_limit;                ///< pages, as of the last slc_tile_memory_limit
     uint64_t limit;                     ///< tiles that the budget and the chunks hold
     const struct slc_tile_key *offered; ///< the page that is requested has this page to share
     bool offer_taken;
     uint32_t retaken; ///< the page that was given back last and taken again
     struct slc_tail_pages tails;
     const struct slc_tail_cut *tail; ///< the page that is requested is a tail; NULL: a tile
-    bool tail_has_room;              ///< the tail that is requested needs no page of its own
+    SluiceFormat tail_format;        ///< its format
     bool short_of;                   ///< a place was asked for and not there since the last look
     uint32_t wanted;                 ///< the format it was asked for
 };
@@ -37,6 +38,8 @@ struct slc_page_memory slc_tile_memory_interface(struct slc_tile_memory *memory)
 /** Tiles and tails that may be resident at once: fewer tiles than the budget holds where images are
  *  larger than their tiles, or the device has no memory. More, by the tails that share pages: all
  *  but one of each page, and the tail that is requested if a page has a slot for it. */
-uint64_t slc_tile_memory_limit(const struct slc_tile_memory *memory);
+uint64_t slc_tile_memory_limit(struct slc_tile_memory *memory);
+/** slc_tile_memory_limit with the pages of its last call, and the tails of now. Takes no lock. */
+uint64_t slc_tile_memory_limit_now(const struct slc_tile_memory *memory);
 
 #endif /* SLC_DEMAND_VULKAN_TILE_MEMORY_H */

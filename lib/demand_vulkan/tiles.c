@@ -140,6 +140,7 @@ static enum slc_request_answer request_page(SluiceDemandLoader *loader,
                                             SluiceDemandTicket ticket, SluiceResult *result)
 {
     struct slc_page_pool *pool = loader->pages;
+    slc_images_make_room(loader, request->page);
     enum slc_share share = key ? slc_page_share_look(pool, loader->page_user, key) : SLC_SHARE_NONE;
     if (share == SLC_SHARE_WAIT)
         return SLC_REQUEST_POSTPONED;
@@ -163,7 +164,7 @@ static enum slc_request_answer request_page(SluiceDemandLoader *loader,
 
 void slc_tiles_limit(SluiceDemandLoader *loader)
 {
-    uint64_t limit = slc_tile_memory_limit(&loader->tiles);
+    uint64_t limit = slc_tile_memory_limit_now(&loader->tiles);
     if (limit == loader->tile_limit)
         return;
     loader->tile_limit = limit;
@@ -179,11 +180,10 @@ static enum slc_request_answer request_tail(SluiceDemandLoader *loader,
     struct slc_tile_memory *tiles = &loader->tiles;
     struct slc_tail_cut cut = tail_cut(image);
     tiles->tail = &cut;
-    tiles->tail_has_room = slc_tail_pages_has_room(&tiles->tails, image->info.format, &cut);
+    tiles->tail_format = image->info.format;
     slc_tiles_limit(loader);
     enum slc_request_answer answer = request_page(loader, image, request, NULL, ticket, result);
     tiles->tail = NULL;
-    tiles->tail_has_room = false;
     slc_tiles_limit(loader);
     return answer;
 }

@@ -137,6 +137,7 @@ static void record_tile(struct copies *copies, struct slc_demand_job *job)
 {
     SluiceDemandLoader *loader = copies->loader;
     struct slc_tile_part parts[SLC_TILE_MAX_PARTS];
+    slc_image_touch(loader, job->image, loader->launch);
     if (!slc_is_tail_word(job->place))
         slc_page_share_written(loader->pages, loader->page_user, job->place, loader->launch);
     uint32_t part_count = slc_tile_parts(job->image, job->page, job->place, parts);

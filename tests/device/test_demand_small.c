@@ -1,4 +1,4 @@
-/* Small textures: mip tails that share pages. */
+/* Small textures: mip tails that share pages, and textures that are forgotten. */
 #include "device/demand_runner.h"
 
 #include "support/test.h"
@@ -157,6 +157,118 @@ static void tails_beyond_the_budget_are_refused_when_every_slot_is_taken(void **
     small_destroy(s);
 }
 
+static uint32_t open_count(struct small *s)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < COUNT; i++)
+        count += atomic_load(&s->images[i].opened) - atomic_load(&s->images[i].closed);
+    return count;
+}
+
+/* Half of the textures is sampled by every launch, the others only by the first ones. */
+static void textures_without_use_are_forgotten_and_come_back(void **state)
+{
+    (void)state;
+    enum { USED = 50, ALL = 100, LAUNCHES = 8 };
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .forgetAfterLaunches = LAUNCHES};
+    struct small *s = small_create(&info);
+    for (uint32_t i = 0; i < ALL; i++)
+        add(s, i, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE);
+    add_samples(s, 0, ALL, 1);
+    assert_in_range(runner_load(&s->r, 20), 1, 19);
+    runner_launch(&s->r);
+    assert_int_equal(open_count(s), ALL);
+    runner_clear(&s->r);
+    add_samples(s, 0, USED, 1);
+    for (uint32_t i = 0; i + 1 < LAUNCHES; i++)
+        runner_launch(&s->r);
+    assert_int_equal(runner_statistics(&s->r).texturesForgotten, 0);
+    for (uint32_t i = 0; i < 2; i++)
+        runner_launch(&s->r);
+    SluiceDemandStatistics statistics = runner_statistics(&s->r);
+    assert_int_equal(statistics.texturesForgotten, ALL - USED);
+    assert_int_equal(statistics.residentTileCount, USED);
+    assert_int_equal(open_count(s), USED);
+    check_samples(s, 0, 0, USED, 1);
+    add_samples(s, USED, ALL, 2);
+    assert_in_range(runner_load(&s->r, 20), 2, 19);
+    check_samples(s, USED, USED, ALL, 2);
+    assert_int_equal(open_count(s), ALL);
+    assert_int_equal(runner_statistics(&s->r).texturesOpened, 2 * ALL - USED);
+    small_destroy(s);
+}
+
+/* 4 MiB hold 192 of 600 textures. Each is sampled for a while, a few at a time. */
+static void textures_sampled_once_each_need_no_more_than_the_budget(void **state)
+{
+    (void)state;
+    enum { STEP = 60 };
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = 4u << 20};
+    struct small *s = small_create(&info);
+    for (uint32_t i = 0; i < COUNT; i++)
+        add(s, i, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE);
+    for (uint32_t pass = 0; pass < 2; pass++)
+        for (uint32_t first = 0; first < COUNT; first += STEP) {
+            runner_clear(&s->r);
+            add_samples(s, first, first + STEP, 0);
+            assert_in_range(runner_load(&s->r, 20), 1, 19);
+            check_samples(s, 0, first, first + STEP, 0);
+            assert_in_range(open_count(s), STEP, 192);
+        }
+    SluiceDemandStatistics statistics = runner_statistics(&s->r);
+    assert_true(statistics.tileMemorySize <= info.memoryBudget);
+    assert_int_equal(statistics.refusedCount, 0);
+    assert_true(statistics.lodBias == 0);
+    assert_int_equal(statistics.texturesOpened - statistics.texturesForgotten, open_count(s));
+    assert_in_range(statistics.texturesForgotten, 2 * COUNT - 192, 2 * COUNT);
+    small_destroy(s);
+}
+
+/* Small textures come and go beside a large one whose tiles take most of the memory. */
+static void textures_go_before_tiles_that_were_used_later(void **state)
+{
+    (void)state;
+    enum { STEP = 30, LARGE = 1024, TILES = 40 };
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = 4u << 20};
+    struct small *s = small_create(&info);
+    add(s, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, LARGE, LARGE);
+    for (uint32_t i = 1; i < COUNT; i++)
+        add(s, i, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE);
+    for (uint32_t first = 1; first + STEP <= COUNT; first += STEP) {
+        runner_clear(&s->r);
+        for (uint32_t i = 0; i < TILES; i++)
+            runner_add_texel(&s->r, s->ids[0], LARGE, LARGE, 0, i % 8 * 128, i / 8 * 128);
+        add_samples(s, first, first + STEP, 0);
+        assert_in_range(runner_load(&s->r, 20), 1, 19);
+        check_samples(s, TILES, first, first + STEP, 0);
+        for (uint32_t i = 0; i < TILES; i++)
+            runner_check_texel(&s->r, i, &s->images[0], 0, i % 8 * 128, i / 8 * 128);
+    }
+    assert_int_equal(runner_statistics(&s->r).evictedCount, 0);
+    assert_int_equal(atomic_load(&s->images[0].opened), 1);
+    small_destroy(s);
+}
+
+/* Without eviction nothing is forgotten, whatever the setting says. */
+static void nothing_is_forgotten_without_eviction(void **state)
+{
+    (void)state;
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .noEviction = true, .forgetAfterLaunches = 1};
+    struct small *s = small_create(&info);
+    for (uint32_t i = 0; i < 10; i++)
+        add(s, i, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE);
+    add_samples(s, 0, 10, 1);
+    assert_in_range(runner_load(&s->r, 20), 1, 19);
+    runner_clear(&s->r);
+    for (uint32_t i = 0; i < 10; i++)
+        runner_launch(&s->r);
+    assert_int_equal(runner_statistics(&s->r).texturesForgotten, 0);
+    assert_int_equal(open_count(s), 10);
+    small_destroy(s);
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -167,6 +279,10 @@ int main(void)
         cmocka_unit_test(slots_of_removed_textures_are_taken_again),
         cmocka_unit_test(textures_of_all_sizes_keep_their_texels),
         cmocka_unit_test(tails_beyond_the_budget_are_refused_when_every_slot_is_taken),
+        cmocka_unit_test(textures_without_use_are_forgotten_and_come_back),
+        cmocka_unit_test(textures_sampled_once_each_need_no_more_than_the_budget),
+        cmocka_unit_test(textures_go_before_tiles_that_were_used_later),
+        cmocka_unit_test(nothing_is_forgotten_without_eviction),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }

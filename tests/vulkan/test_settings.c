@@ -351,13 +351,14 @@ static void settings_of_a_loader_take_no_memory(void **state)
                                             .maxRequestsPerLaunch = 1,
                                             .failureRetryDelayNs = UINT64_MAX,
                                             .noEviction = true,
-                                            .noLodBias = true};
+                                            .noLodBias = true,
+                                            .forgetAfterLaunches = 7};
     uint64_t calls = s->memory.calls;
     s->memory.refuse_from = 0;
     CHECK_OK(sluiceSetDemandLoaderSettings(s->loader, &settings));
     SluiceDemandLoaderSettings set = get_of_loader(s);
     assert_true(set.maxRequestsPerLaunch == 1 && set.failureRetryDelayNs == UINT64_MAX);
-    assert_true(set.noEviction && set.noLodBias);
+    assert_true(set.noEviction && set.noLodBias && set.forgetAfterLaunches == 7);
     assert_int_equal(s->memory.calls, calls);
     s->memory.refuse_from = UINT64_MAX;
     for (int i = 0; i < 2; i++) {
