@@ -134,6 +134,12 @@ typedef struct SluiceStreamedTextureManagerConfig {
      */
     bool noEviction;
     bool noMipBias; ///< The global mip bias becomes 0 and stays 0.
+    /**
+     * Packed tiles get heaps of their own, if the allocator and the limits grant one. Packed tiles
+     * stay while their texture does, so heaps of regular tiles can run empty. Costs at most one
+     * heap that is not full. Other tiles take slots of these heaps before requests are refused.
+     */
+    bool separatePackedTiles;
 } SluiceStreamedTextureManagerConfig;
 
 /**

@@ -229,11 +229,32 @@ static const char *check_visited(const slc_manager *m)
     return NULL;
 }
 
-/** Every living heap is in the bucket of its free slots, or loose; none has fewer than the open
- * one. */
+/** Heaps for packed tiles are in no bucket and not empty, and their free slots are counted. Returns
+ *  their number, UINT32_MAX if something is wrong. */
+static uint32_t count_packed_heaps(const struct slc_tile_heaps *h)
+{
+    uint64_t free_slots = 0;
+    uint32_t count = 0, empty = 0;
+    for (uint32_t i = 0; i < h->end; i++) {
+        const struct slc_tile_heap *heap = &h->heaps[i];
+        empty += heap->free_count == h->capacity;
+        if (!heap->packed)
+            continue;
+        if (heap->loose || heap->free_count >= h->capacity ||
+            (heap->free_count && i < h->packed_from))
+            return UINT32_MAX;
+        free_slots += heap->free_count;
+        count++;
+    }
+    return free_slots == h->packed_free && empty == h->empty_count ? count : UINT32_MAX;
+}
+
+/** Every other living heap is in the bucket of its free slots, or loose; none has fewer than the
+ * open one. */
 static const char *check_buckets(const struct slc_tile_heaps *h)
 {
-    uint32_t count = 0, fewest = UINT32_MAX;
+    uint32_t count = 0, fewest = UINT32_MAX, packed = count_packed_heaps(h);
+    REQUIRE(packed != UINT32_MAX);
     for (uint32_t i = h->loose; i != UINT32_MAX && count <= h->end; i = h->heaps[i].next, count++)
         REQUIRE(h->heaps[i].loose);
     for (uint32_t b = 0; b <= h->capacity; b++) {
@@ -243,9 +264,9 @@ static const char *check_buckets(const struct slc_tile_heaps *h)
             REQUIRE(!h->heaps[i].loose && h->heaps[i].free_count == b);
         }
     }
-    REQUIRE(count == h->live_count);
+    REQUIRE(count + packed == h->live_count);
     for (uint32_t i = 0; i < h->end; i++)
-        if (h->heaps[i].free_count > 0 && h->heaps[i].free_count < fewest)
+        if (!h->heaps[i].packed && h->heaps[i].free_count > 0 && h->heaps[i].free_count < fewest)
             fewest = h->heaps[i].free_count;
     if (h->open != UINT32_MAX && h->heaps[h->open].free_count > 0)
         REQUIRE(h->heaps[h->open].loose && h->heaps[h->open].free_count == fewest);

@@ -32,6 +32,21 @@ uint64_t slc_kept_slots(const slc_manager *m)
     return slc_tile_heaps_reserved(&m->residency.heaps) + slc_surplus_slots(m);
 }
 
+bool slc_has_own_slot(const slc_manager *m)
+{
+    const struct slc_tile_heaps *heaps = &m->residency.heaps;
+    return heaps->free_total > heaps->packed_free || (heaps->packed_free && slc_surplus_slots(m));
+}
+
+bool slc_take_own_slot(slc_manager *m, uint32_t node)
+{
+    struct slc_tile_heaps *heaps = &m->residency.heaps;
+    struct slc_node *n = slc_node_at(&m->residency, node);
+    if (heaps->packed_free && slc_surplus_slots(m))
+        return slc_tile_heaps_take_packed(heaps, node, &n->heap, &n->slot);
+    return slc_tile_heaps_take(heaps, node, &n->heap, &n->slot);
+}
+
 /** Tiles that one call looks at for one that is not seen any more. */
 enum { MAX_LOOKED_FOR = 1024 };
 

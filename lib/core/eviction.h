@@ -9,6 +9,11 @@ uint64_t slc_surplus_slots(const slc_manager *m);
 /** Free slots that regular tiles must not take: reserved ones for packed tiles, and surplus ones.
  */
 uint64_t slc_kept_slots(const slc_manager *m);
+/** True if a tile need not share a heap for packed tiles: another heap has a free slot, or heaps
+ * for packed tiles are to be filled, because they stay while the number of heaps falls. */
+bool slc_has_own_slot(const slc_manager *m);
+/** Takes a slot for a tile that needs no heap for packed tiles. False if there is none. */
+bool slc_take_own_slot(slc_manager *m, uint32_t node);
 /**
  * Evicts tiles on standby, and wanted ones of textures that get no maps, for `unserved` requests.
  * Returns whether such a texture was dropped and requests with it.

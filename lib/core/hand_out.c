@@ -34,7 +34,7 @@ static uint64_t owed_slots(const slc_manager *m, uint32_t level)
 
 /** Takes a slot from a new heap. BUDGET_REACHED if there is none to be had. */
 static SluiceResult take_from_new_heap(slc_manager *m, struct slc_node *n, uint32_t node,
-                                       bool *refused)
+                                       bool separate, bool *refused)
 {
     if (*refused || !may_add_heap(m))
         return SLUICE_BUDGET_REACHED;
@@ -46,25 +46,34 @@ static SluiceResult take_from_new_heap(slc_manager *m, struct slc_node *n, uint3
     *refused = m->refused = result != SLUICE_SUCCESS;
     if (*refused)
         return SLUICE_BUDGET_REACHED;
-    slc_tile_heaps_take(&m->residency.heaps, node, &n->heap, &n->slot);
+    if (separate)
+        slc_tile_heaps_take_packed(&m->residency.heaps, node, &n->heap, &n->slot);
+    else
+        slc_tile_heaps_take(&m->residency.heaps, node, &n->heap, &n->slot);
     return SLUICE_SUCCESS;
 }
 
 /** Takes a free slot for the node, from a new heap if need be. The last ones are for packed tiles.
- */
+ *  Slots in heaps of the other kind come last. */
 static SluiceResult take_slot(slc_manager *m, const struct slc_managed_texture *scope,
                               uint32_t node, bool *refused)
 {
     struct slc_node *n = slc_node_at(&m->residency, node);
+    struct slc_tile_heaps *heaps = &m->residency.heaps;
     bool packed = n->level == SLC_PACKED_CLASS;
+    bool separate = packed && m->config.separatePackedTiles;
     uint64_t kept = slc_kept_slots(m) + (scope ? owed_slots(m, n->level) : 0);
-    if ((packed || m->residency.heaps.free_total > kept) &&
-        slc_tile_heaps_take(&m->residency.heaps, node, &n->heap, &n->slot))
+    bool may_take = packed || heaps->free_total > kept;
+    if (separate ? slc_tile_heaps_take_packed(heaps, node, &n->heap, &n->slot)
+                 : may_take && slc_has_own_slot(m) && slc_take_own_slot(m, node))
         return SLUICE_SUCCESS;
-    SluiceResult result = take_from_new_heap(m, n, node, refused);
+    SluiceResult result = take_from_new_heap(m, n, node, separate, refused);
+    if (result == SLUICE_BUDGET_REACHED && may_take &&
+        slc_tile_heaps_take(heaps, node, &n->heap, &n->slot))
+        return SLUICE_SUCCESS;
     /* Not before the answer: a call that fails leaves equal heaps in their order. */
     if (result == SLUICE_BUDGET_REACHED && packed)
-        slc_tile_heaps_settle(&m->residency.heaps);
+        slc_tile_heaps_settle(heaps);
     return result;
 }
 

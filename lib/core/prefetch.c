@@ -37,8 +37,7 @@ static SluiceResult prefetch_level(slc_manager *m, struct slc_managed_texture *t
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         }
         uint32_t node = slc_tile_prefetch(m, t, tile, level);
-        struct slc_node *n = slc_node_at(&m->residency, node);
-        slc_tile_heaps_take(&m->residency.heaps, node, &n->heap, &n->slot);
+        slc_take_own_slot(m, node);
         tiles[(*written)++] = slc_node_tile(m, node);
     }
     return SLUICE_SUCCESS;

@@ -142,7 +142,8 @@ static void add_config(struct slc_dump *dump, const SluiceStreamedTextureManager
         add(dump, " given-up-retry-delay=%" PRIu64, c->givenUpRetryDelayTicks);
     if (c->targetHeapCount)
         add(dump, " target-heaps=%" PRIu32, c->targetHeapCount);
-    add(dump, "%s%s", c->noEviction ? " no-eviction" : "", c->noMipBias ? " no-mip-bias" : "");
+    add(dump, "%s%s%s", c->noEviction ? " no-eviction" : "", c->noMipBias ? " no-mip-bias" : "",
+        c->separatePackedTiles ? " separate-packed-tiles" : "");
 }
 
 static void add_feedback(struct slc_dump *dump, const SluiceFeedbackDesc *f)

@@ -61,7 +61,7 @@ static void put_id(struct slc_bytes *out, SluiceTextureId id)
 #define CONFIG_WITH_RETRIES (SLC_INPUT_PRESENT + 2)
 #define CONFIG_WITH_SWITCHES (SLC_INPUT_PRESENT + 3)
 
-enum { SWITCH_NO_EVICTION = 1, SWITCH_NO_MIP_BIAS = 2 };
+enum { SWITCH_NO_EVICTION = 1, SWITCH_NO_MIP_BIAS = 2, SWITCH_SEPARATE_PACKED = 4 };
 
 /* What the managers did that could not be told: with no retryDelayTicks, 0 means the same. */
 static uint64_t untold_retries(const SluiceStreamedTextureManagerConfig *config)
@@ -72,7 +72,8 @@ static uint64_t untold_retries(const SluiceStreamedTextureManagerConfig *config)
 static void put_config(struct slc_bytes *out, const SluiceStreamedTextureManagerConfig *config)
 {
     bool more = config && (config->missesToExpire || config->prefetchLevels);
-    bool switches = config && (config->targetHeapCount || config->noEviction || config->noMipBias);
+    bool switches = config && (config->targetHeapCount || config->noEviction || config->noMipBias ||
+                               config->separatePackedTiles);
     bool retries = config && (switches || config->givenUpRetryDelayTicks != untold_retries(config));
     slc_put_u8(out, !config    ? SLC_INPUT_NULL
                     : switches ? CONFIG_WITH_SWITCHES
@@ -95,7 +96,8 @@ static void put_config(struct slc_bytes *out, const SluiceStreamedTextureManager
         return;
     slc_put_varint(out, config->targetHeapCount);
     slc_put_u8(out, (config->noEviction ? SWITCH_NO_EVICTION : 0) |
-                        (config->noMipBias ? SWITCH_NO_MIP_BIAS : 0));
+                        (config->noMipBias ? SWITCH_NO_MIP_BIAS : 0) |
+                        (config->separatePackedTiles ? SWITCH_SEPARATE_PACKED : 0));
 }
 
 static void put_desc(struct slc_bytes *out, const struct slc_call *call)
@@ -229,10 +231,11 @@ static void get_switches(struct slc_cursor *in, SluiceStreamedTextureManagerConf
     config->targetHeapCount = slc_get_varint32(in);
     size_t start = in->pos;
     uint8_t switches = slc_get_u8(in);
-    if (switches > (SWITCH_NO_EVICTION | SWITCH_NO_MIP_BIAS))
+    if (switches > (SWITCH_NO_EVICTION | SWITCH_NO_MIP_BIAS | SWITCH_SEPARATE_PACKED))
         slc_cursor_fail(in, start, "a configuration has unknown switches");
     config->noEviction = switches & SWITCH_NO_EVICTION;
     config->noMipBias = switches & SWITCH_NO_MIP_BIAS;
+    config->separatePackedTiles = switches & SWITCH_SEPARATE_PACKED;
 }
 
 static void get_config(struct slc_cursor *in, struct slc_record *record)

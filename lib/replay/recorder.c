@@ -41,7 +41,7 @@ static void write_configuration(SluiceRecorder *recorder,
         config->missesToExpire != none.missesToExpire ||
         config->prefetchLevels != none.prefetchLevels ||
         config->givenUpRetryDelayTicks != none.givenUpRetryDelayTicks || config->targetHeapCount ||
-        config->noEviction || config->noMipBias)
+        config->noEviction || config->noMipBias || config->separatePackedTiles)
         notify(recorder, manager,
                &(struct slc_call){.kind = SLC_CALL_SET_CONFIG, .config = config});
 }

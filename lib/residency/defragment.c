@@ -183,7 +183,8 @@ static uint32_t next_source(struct slc_machine *r, struct survey *s)
             return heap;
         }
         s->standing[heap] = STANDING_STAYS;
-        s->peer_room += own;
+        if (!s->evicts || !r->heaps.heaps[heap].packed) /* evicted tiles may go to such a heap */
+            s->peer_room += own;
     }
     return SLC_NONE;
 }

@@ -193,20 +193,26 @@ SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, 
     slc_map_add(&h->ids, heap.id, index);
     bucket_insert(h, index);
     h->live_count++;
+    h->empty_count++;
     h->free_total += h->capacity;
     return SLUICE_SUCCESS;
+}
+
+static void add_loose(struct slc_tile_heaps *h, uint32_t index)
+{
+    h->heaps[index].loose = true;
+    h->heaps[index].next = h->loose;
+    h->loose = index;
 }
 
 /** Takes the heap out of its bucket until the buckets are looked at again. */
 static void loosen(struct slc_tile_heaps *h, uint32_t index)
 {
-    struct slc_tile_heap *heap = &h->heaps[index];
-    if (heap->loose)
+    const struct slc_tile_heap *heap = &h->heaps[index];
+    if (heap->loose || heap->packed)
         return;
     bucket_remove(h, index);
-    heap->loose = true;
-    heap->next = h->loose;
-    h->loose = index;
+    add_loose(h, index);
 }
 
 static void put_loose_back(struct slc_tile_heaps *h)
@@ -231,9 +237,11 @@ static void take_slot(struct slc_tile_heaps *h, struct slc_tile_heap *heap, uint
                       uint32_t node)
 {
     heap->free[slot / 64] &= ~(UINT64_C(1) << slot % 64);
+    h->empty_count -= heap->free_count == h->capacity;
     heap->free_count--;
     heap->nodes[slot] = node;
     h->free_total--;
+    h->packed_free -= heap->packed;
 }
 
 /** The index of a heap with the fewest free slots but not none. There is one. */
@@ -249,6 +257,26 @@ static uint32_t fullest(struct slc_tile_heaps *h)
     return h->open = found;
 }
 
+/** The first heap for packed tiles that has a free slot. There is one. */
+static uint32_t first_packed(struct slc_tile_heaps *h)
+{
+    const struct slc_tile_heap *heaps = h->heaps;
+    while (!heaps[h->packed_from].packed || heaps[h->packed_from].free_count == 0)
+        h->packed_from++;
+    return h->packed_from;
+}
+
+/** Makes an empty heap one for packed tiles. There is one. */
+static void separate(struct slc_tile_heaps *h)
+{
+    put_loose_back(h);
+    uint32_t index = h->buckets[h->capacity];
+    bucket_remove(h, index);
+    h->heaps[index].packed = true;
+    h->packed_free += h->capacity;
+    h->packed_from = index < h->packed_from ? index : h->packed_from;
+}
+
 void slc_tile_heaps_settle(struct slc_tile_heaps *h)
 {
     put_loose_back(h);
@@ -258,7 +286,20 @@ bool slc_tile_heaps_take(struct slc_tile_heaps *h, uint32_t node, uint32_t *heap
 {
     if (h->free_total == 0)
         return false; /* equal heaps keep their order: the caller's call may still fail */
-    *heap = fullest(h);
+    *heap = h->free_total > h->packed_free ? fullest(h) : first_packed(h);
+    *slot = lowest_free(&h->heaps[*heap]);
+    take_slot(h, &h->heaps[*heap], *slot, node);
+    return true;
+}
+
+bool slc_tile_heaps_take_packed(struct slc_tile_heaps *h, uint32_t node, uint32_t *heap,
+                                uint32_t *slot)
+{
+    if (h->packed_free == 0 && h->empty_count == 0)
+        return false;
+    if (h->packed_free == 0)
+        separate(h);
+    *heap = first_packed(h);
     *slot = lowest_free(&h->heaps[*heap]);
     take_slot(h, &h->heaps[*heap], *slot, node);
     return true;
@@ -288,6 +329,16 @@ void slc_tile_heaps_give(struct slc_tile_heaps *h, uint32_t heap_index, uint32_t
     heap->free_count++;
     heap->nodes[slot] = 0;
     h->free_total++;
+    h->empty_count += heap->free_count == h->capacity;
+    if (!heap->packed)
+        return;
+    h->packed_free++;
+    h->packed_from = heap_index < h->packed_from ? heap_index : h->packed_from;
+    if (heap->free_count < h->capacity)
+        return;
+    h->packed_free -= h->capacity;
+    heap->packed = false;
+    add_loose(h, heap_index);
 }
 
 uint32_t slc_tile_heaps_find(const struct slc_tile_heaps *h, uint32_t id)
@@ -307,6 +358,7 @@ void slc_tile_heaps_release(struct slc_tile_heaps *h, uint32_t heap_index)
     *heap = (struct slc_tile_heap){.free_count = SLC_HEAP_DEAD};
     h->dead_from = heap_index < h->dead_from ? heap_index : h->dead_from;
     h->live_count--;
+    h->empty_count--;
     h->free_total -= h->capacity;
 }
 

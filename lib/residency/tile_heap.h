@@ -13,6 +13,7 @@ struct slc_tile_heap {
     uint32_t retiring_count;
     uint32_t prev, next; ///< among heaps with equally many free slots, UINT32_MAX ends
     bool loose;          ///< in no bucket until one has to be found
+    bool packed;         ///< for packed tiles, in no bucket; until it is empty
     uint32_t low;        ///< in words below this one no slot is free
     uint64_t *free;      ///< owned, a bit per slot
     uint32_t *nodes;     ///< owned, [capacity]: who lives in the slot, 0: nobody
@@ -35,6 +36,9 @@ struct slc_tile_heaps {
     uint64_t *bits;    ///< owned: which buckets are not empty, and words over words of that
     uint32_t bit_words;
     uint64_t free_total;
+    uint64_t packed_free; ///< free slots of heaps for packed tiles
+    uint32_t packed_from; ///< no heap for packed tiles before this one has a free slot
+    uint32_t empty_count; ///< heaps with all slots free
 };
 
 SluiceResult slc_tile_heaps_init(struct slc_tile_heaps *h, const SluiceAllocationCallbacks *cb,
@@ -50,10 +54,17 @@ void slc_tile_heaps_finish(struct slc_tile_heaps *h);
 SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, uint32_t *heap_id);
 
 /**
- * Takes the lowest slot of a heap with the fewest free ones and writes heap index and slot. Returns
- * false, with nothing changed, if no slot is free.
+ * Takes the lowest slot of a heap with the fewest free ones and writes heap index and slot. Takes
+ * from heaps for packed tiles if no other has a free slot. Returns false, with nothing changed, if
+ * no slot is free.
  */
 bool slc_tile_heaps_take(struct slc_tile_heaps *h, uint32_t node, uint32_t *heap, uint32_t *slot);
+/**
+ * Takes the lowest slot of a heap for packed tiles. Makes an empty heap one if they are full.
+ * Returns false, with nothing changed, if no heap is empty either.
+ */
+bool slc_tile_heaps_take_packed(struct slc_tile_heaps *h, uint32_t node, uint32_t *heap,
+                                uint32_t *slot);
 /**
  * Sorts heaps whose slots were taken or given since the last sort back among heaps with equally
  * many free slots. Which of equal heaps slc_tile_heaps_take prefers depends on when heaps are

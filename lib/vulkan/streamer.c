@@ -175,6 +175,7 @@ static SluiceResult create_manager(SluiceVulkanStreamer *s)
         .maxHeapCount = s->info.maxHeapCount,
         .retryDelayTicks = s->info.retryDelayTicks,
         .givenUpRetryDelayTicks = s->info.givenUpRetryDelayTicks,
+        .separatePackedTiles = true,
     };
     return sluiceSetConfig(s->manager, &config);
 }

@@ -215,8 +215,8 @@ void call_print(FILE *file, const struct call *c)
                 c->config.missesToExpire, c->config.prefetchLevels,
                 c->config.givenUpRetryDelayTicks);
     if (c->kind == CALL_SET_CONFIG)
-        fprintf(file, " target %" PRIu32 " switches %d%d", c->config.targetHeapCount,
-                c->config.noEviction, c->config.noMipBias);
+        fprintf(file, " target %" PRIu32 " switches %d%d%d", c->config.targetHeapCount,
+                c->config.noEviction, c->config.noMipBias, c->config.separatePackedTiles);
     fprintf(file, " time %" PRIu64 " timeout %" PRIu64 " retire %" PRIu64 " room %" PRIu32, c->time,
             c->timeout, c->retire, c->room);
     fprintf(file, " keep %" PRIu32 " heap %" PRIu32 " tile %" PRIu32, c->keep, c->heap, c->tile);

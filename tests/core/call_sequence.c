@@ -239,6 +239,7 @@ static void make_config(struct call_sequence *s, struct call *call)
     config->targetHeapCount = choice_once_in(c, 4) ? choice_range(c, 1, 3) : 0;
     config->noEviction = choice_once_in(c, 8);
     config->noMipBias = choice_once_in(c, 8);
+    config->separatePackedTiles = choice_once_in(c, 2);
 }
 
 static void make_add(struct call_sequence *s, const struct naive_manager *n, struct call *call)

@@ -52,15 +52,19 @@ static void check_sources_are_empty(struct naive_manager *n, const struct outcom
     }
 }
 
-/* Whether all tiles of the heap could be moved to heaps that are at least as full. */
-static bool could_be_emptied(const struct naive_manager *n, const struct naive_heap *heap)
+/* Whether all tiles of the heap could be moved to heaps that are at least as full, or, if they are
+ * to be evicted, to heaps for packed tiles. */
+static bool could_be_emptied(const struct naive_manager *n, const struct naive_heap *heap,
+                             bool evicts)
 {
     const uint32_t used = naive_count_slots(n, heap, NAIVE_SLOT_USED);
     uint64_t room = 0;
     uint32_t movable = 0;
-    for (uint32_t i = 0; i < n->heap_count; i++)
-        if (&n->heaps[i] != heap && naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_USED) >= used)
+    for (uint32_t i = 0; i < n->heap_count; i++) {
+        const uint32_t there = naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_USED);
+        if (&n->heaps[i] != heap && (there >= used || (evicts && there && n->heaps[i].packed)))
             room += naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_FREE);
+    }
     for (uint32_t i = 0; i < n->texture_room; i++)
         for (uint32_t k = 0; n->textures[i] && k < n->textures[i]->layout.tileCount; k++) {
             const struct naive_tile *tile = &n->textures[i]->tiles[k];
@@ -101,7 +105,7 @@ static const struct naive_heap *heap_to_evacuate(const struct naive_manager *n)
         const struct naive_heap *heap = &n->heaps[i];
         const uint32_t used = naive_count_slots(n, heap, NAIVE_SLOT_USED);
         if (used > fewest || (best && used == fewest && heap->number < best->number) ||
-            !could_be_emptied(n, heap) || has_packed_tile(n, heap))
+            !could_be_emptied(n, heap, true) || has_packed_tile(n, heap))
             continue;
         best = heap;
         fewest = used;
@@ -153,7 +157,7 @@ SluiceResult naive_defragment(struct naive_manager *n, const struct call *call,
     if (seen->count < call->room) { /* there are no more moves to make */
         check_sources_are_empty(n, seen);
         for (uint32_t i = 0; i < n->heap_count; i++)
-            if (could_be_emptied(n, &n->heaps[i]))
+            if (could_be_emptied(n, &n->heaps[i], false))
                 naive_complain(n, "heap %u could be emptied", n->heaps[i].id);
     }
     return out->count > call->room ? SLUICE_ERROR_INVALID_ARGUMENT : SLUICE_SUCCESS;

@@ -16,19 +16,65 @@ static uint64_t max_u64(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
-/* A heap that the rules allow a slot to be taken from; NULL: there is none. */
-static const struct naive_heap *fullest_heap(const struct naive_manager *n)
+/* A heap for packed tiles is one until it is empty. */
+static void note_empty_heaps(struct naive_manager *n)
 {
-    const struct naive_heap *best = NULL;
+    for (uint32_t i = 0; i < n->heap_count; i++)
+        if (naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_FREE) == n->capacity)
+            n->heaps[i].packed = false;
+}
+
+/* The heap for regular tiles with the fewest free slots, or the one with the most; NULL: all are
+ * full. */
+static struct naive_heap *regular_heap(const struct naive_manager *n, bool fullest)
+{
+    struct naive_heap *best = NULL;
     uint32_t best_free = 0;
     for (uint32_t i = 0; i < n->heap_count; i++) {
         uint32_t free_slots = naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_FREE);
-        if (free_slots > 0 && (!best || free_slots < best_free)) {
+        if (!n->heaps[i].packed && free_slots > 0 &&
+            (!best || (fullest ? free_slots < best_free : free_slots > best_free))) {
             best = &n->heaps[i];
             best_free = free_slots;
         }
     }
     return best;
+}
+
+static struct naive_heap *empty_heap(const struct naive_manager *n)
+{
+    struct naive_heap *heap = regular_heap(n, false);
+    return heap && naive_count_slots(n, heap, NAIVE_SLOT_FREE) == n->capacity ? heap : NULL;
+}
+
+/* The first heap for packed tiles with a free slot; NULL: there is none. */
+static struct naive_heap *packed_heap(const struct naive_manager *n)
+{
+    struct naive_heap *best = NULL;
+    for (uint32_t i = 0; i < n->heap_count; i++)
+        if (n->heaps[i].packed && naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_FREE) > 0 &&
+            (!best || n->heaps[i].number < best->number))
+            best = &n->heaps[i];
+    return best;
+}
+
+static bool is_separate(const struct naive_manager *n, const struct naive_tile *tile)
+{
+    return tile->packed && n->config.separatePackedTiles;
+}
+
+/* A heap that the rules allow a slot to be taken from. There is a free slot. */
+static const struct naive_heap *choose_heap(struct naive_manager *n, const struct naive_tile *tile)
+{
+    struct naive_heap *heap = packed_heap(n), *regular = regular_heap(n, true);
+    const bool separate = is_separate(n, tile);
+    n->events[NAIVE_SEPARATED] += separate && !heap && empty_heap(n);
+    n->events[NAIVE_MIXED] += separate ? !heap && !empty_heap(n) : !regular;
+    if (!separate)
+        return regular && !(heap && naive_surplus(n)) ? regular : heap;
+    if (heap)
+        return heap;
+    return empty_heap(n) ? empty_heap(n) : regular;
 }
 
 static uint32_t lowest_free_number(const struct naive_manager *n)
@@ -58,14 +104,16 @@ static void ask_for_heap(struct naive_manager *n, const struct outcome *seen, st
     if (!n->heaps)
         abort();
     const uint32_t number = lowest_free_number(n);
-    n->heaps[n->heap_count++] =
-        (struct naive_heap){answer.id, number, naive_alloc(n->capacity, sizeof(struct naive_slot))};
+    n->heaps[n->heap_count++] = (struct naive_heap){
+        answer.id, number, naive_alloc(n->capacity, sizeof(struct naive_slot)), false};
 }
 
 /* Takes the slot that the other manager took for its tile number `i`, if that is allowed. */
 static void take_slot(struct naive_manager *n, const struct outcome *seen, uint32_t i,
-                      const struct naive_heap *fullest, struct naive_tile *tile)
+                      struct naive_tile *tile)
 {
+    const struct naive_heap *best = choose_heap(n, tile);
+    const uint32_t free_slots = naive_count_slots(n, best, NAIVE_SLOT_FREE);
     if (i >= seen->count) {
         naive_complain(n, "tile %u of the list is missing", i);
         return;
@@ -78,10 +126,12 @@ static void take_slot(struct naive_manager *n, const struct outcome *seen, uint3
     }
     if (heap->slots[other->slot].use != NAIVE_SLOT_FREE)
         naive_complain(n, "tile %u: slot %u of heap %u is not free", i, other->slot, heap->id);
-    if (naive_count_slots(n, heap, NAIVE_SLOT_FREE) !=
-        naive_count_slots(n, fullest, NAIVE_SLOT_FREE))
-        naive_complain(n, "tile %u: heap %u has more free slots than heap %u", i, heap->id,
-                       fullest->id);
+    if (heap->packed != best->packed || (best->packed && heap != best) ||
+        naive_count_slots(n, heap, NAIVE_SLOT_FREE) != free_slots)
+        naive_complain(n, "tile %u: a slot of heap %u was due, or of an equal one, not of %u", i,
+                       best->id, heap->id);
+    if (is_separate(n, tile) && free_slots == n->capacity)
+        heap->packed = true;
     tile->heap = other->heapId;
     tile->slot = other->slot;
     heap->slots[other->slot].use = NAIVE_SLOT_USED;
@@ -91,7 +141,7 @@ static void take_slot(struct naive_manager *n, const struct outcome *seen, uint3
 static bool hand_out(struct naive_manager *n, struct naive_texture *t, struct naive_tile *tile,
                      const struct outcome *seen, struct outcome *out)
 {
-    take_slot(n, seen, out->count, fullest_heap(n), tile);
+    take_slot(n, seen, out->count, tile);
     if (n->complaint[0])
         return false;
     n->totals.handedOutTotal++;
@@ -130,16 +180,22 @@ static bool find_slot(struct naive_manager *n, const struct call *call,
                       struct outcome *out)
 {
     const uint32_t owed = owed_slots(n, call, tile);
-    if (slot_for(n, tile->packed) &&
-        (tile->packed || naive_count_all(n, NAIVE_SLOT_FREE) > naive_kept(n) + owed))
+    const bool may_take = tile->packed ? naive_count_all(n, NAIVE_SLOT_FREE) > 0
+                                       : naive_count_all(n, NAIVE_SLOT_FREE) > naive_kept(n) + owed;
+    const bool own_kind = is_separate(n, tile)
+                              ? packed_heap(n) || empty_heap(n)
+                              : regular_heap(n, true) || (packed_heap(n) && naive_surplus(n));
+    if (may_take && own_kind)
         return true;
-    n->events[NAIVE_SLOT_OWED] += slot_for(n, tile->packed);
+    n->events[NAIVE_SLOT_OWED] += !may_take && slot_for(n, tile->packed);
     if (!*refused && may_have_more_heaps(n)) {
         ask_for_heap(n, seen, out);
         *refused = n->heap_refused;
         if (!*refused)
             return true;
     }
+    if (may_take)
+        return true;
     n->events[NAIVE_RESERVE_KEPT] += slot_for(n, true);
     return false;
 }
@@ -334,6 +390,7 @@ SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call
     if (result != SLUICE_SUCCESS)
         return result;
     uint32_t count;
+    note_empty_heaps(n);
     struct naive_ref *refs = request_queue(n, only, &count);
     if (call->null == NULL_SECOND) {
         out->count = count;

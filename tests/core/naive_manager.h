@@ -79,6 +79,7 @@ struct naive_slot {
 struct naive_heap {
     uint32_t id, number;
     struct naive_slot *slots;
+    bool packed; ///< for packed tiles, until it is empty
 };
 
 struct naive_given_up {
@@ -99,6 +100,8 @@ enum naive_event {
     NAIVE_PREFETCHED,
     NAIVE_SPAN_THINNED, ///< levels were deleted, others stayed
     NAIVE_SPANS_FULL,
+    NAIVE_SEPARATED,    ///< a heap became one for packed tiles
+    NAIVE_MIXED,        ///< a tile got a slot in a heap of the other kind
     NAIVE_RESERVE_KEPT, ///< a regular tile got no slot though some were free
     NAIVE_SLOT_OWED,    ///< or more than the reserve, but coarser ones are requested
     NAIVE_RETURNS,      ///< maps with returns while misses are learned

@@ -170,6 +170,76 @@ static void heaps_with_packed_tiles_are_not_evacuated(void **state)
     fixture_close(&f);
 }
 
+/* Textures come one by one, while others stream. Then nothing is seen any more. Returns how many
+ * heaps stay. */
+static uint32_t heaps_that_stay(bool separate)
+{
+    enum { TEXTURES = 48 };
+    SluiceTextureId ids[TEXTURES];
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                 .separatePackedTiles = separate};
+    fixture_open(&f, CAPACITY, true);
+    configure(&config);
+    now = 1;
+    for (uint32_t i = 0; i < TEXTURES; i++) { /* 21 regular tiles and a packed one each */
+        SluiceStreamedTextureDesc desc = full_chain(512, 512, 128, 128);
+        ids[i] = fixture_add(&f, &desc);
+        fixture_feed(&f, ids[i], 0, now, 1000000);
+        fixture_load(&f);
+    }
+    assert_int_equal(fixture_statistics(&f).mappedTileCount, 22 * TEXTURES);
+    assert_in_range(f.heaps.living_count, 66, 71); /* with the reserve of 64 slots, and one more */
+    config.targetHeapCount = 1;
+    configure(&config);
+    for (uint32_t i = 0; i < 200; i++) {
+        ++now;
+        for (uint32_t k = 0; k < TEXTURES; k++)
+            fixture_feed(&f, ids[k], SLUICE_MIP_UNTOUCHED, now, 0);
+        CHECK_OK(sluiceCompleteRetireValue(f.manager, now - 2));
+        CHECK_OK(sluiceEvacuateHeaps(f.manager, 8));
+        assert_true(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, now) >= 0);
+        release_empty_heaps();
+    }
+    for (uint32_t i = 0; i < TEXTURES; i++)
+        assert_int_equal(count_mapped(ids[i], 21, 1), 1);
+    uint32_t count = f.heaps.living_count;
+    fixture_close(&f);
+    return count;
+}
+
+static void packed_tiles_in_heaps_of_their_own_let_the_others_go(void **state)
+{
+    (void)state;
+    assert_true(heaps_that_stay(false) >= 40);
+    assert_int_equal(heaps_that_stay(true), 48 / CAPACITY);
+}
+
+/* What is scarce is shared: no slot is free while a request waits. */
+static void tiles_take_slots_of_the_other_kind_before_they_wait(void **state)
+{
+    (void)state;
+    SluiceStreamedTextureDesc desc = full_chain(1024, 1024, 128, 128);
+    fixture_open(&f, CAPACITY, true);
+    configure(&(SluiceStreamedTextureManagerConfig){.structSize =
+                                                        sizeof(SluiceStreamedTextureManagerConfig),
+                                                    .maxHeapCount = 2,
+                                                    .separatePackedTiles = true});
+    now = 1;
+    SluiceTextureId id = fixture_add(&f, &desc);
+    fixture_feed(&f, id, 0, now, 1000000);
+    fixture_load(&f);
+    SluiceStreamedTextureStatistics stats = fixture_statistics(&f);
+    assert_int_equal(stats.heapCount, 2);
+    assert_int_equal(stats.freeSlotCount, stats.reservedSlotCount);
+    for (uint32_t i = 0; i < stats.freeSlotCount; i++) {
+        SluiceTextureId other = fixture_add(&f, &desc);
+        fixture_load(&f);
+        assert_int_equal(fixture_state(&f, other, 85), SLUICE_TILE_STATE_MAPPED);
+    }
+    assert_int_equal(fixture_statistics(&f).freeSlotCount, 0);
+    fixture_close(&f);
+}
+
 static void without_eviction_requests_wait(void **state)
 {
     (void)state;
@@ -230,6 +300,8 @@ int main(void)
         cmocka_unit_test(evacuation_evicts_no_more_tiles_than_asked_and_ends),
         cmocka_unit_test(evacuation_survives_a_refused_allocation),
         cmocka_unit_test(heaps_with_packed_tiles_are_not_evacuated),
+        cmocka_unit_test(packed_tiles_in_heaps_of_their_own_let_the_others_go),
+        cmocka_unit_test(tiles_take_slots_of_the_other_kind_before_they_wait),
         cmocka_unit_test(without_eviction_requests_wait),
         cmocka_unit_test(without_mip_bias_it_is_0_at_once),
     };

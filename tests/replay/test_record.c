@@ -41,6 +41,7 @@ static void fill_inputs(struct example *e, uint64_t *seed)
     e->config.targetHeapCount = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
     e->config.noEviction = next_random(seed) % 4 == 0;
     e->config.noMipBias = next_random(seed) % 4 == 0;
+    e->config.separatePackedTiles = next_random(seed) % 4 == 0;
     e->feedback.width = 1 + next_random(seed) % 8;
     e->feedback.height = 1 + next_random(seed) % 8;
     e->feedback.mipBias = (int32_t)next_random(seed);
@@ -148,6 +149,7 @@ static void check_same(const struct example *e, struct slc_record *back)
             assert_int_equal(a->config->targetHeapCount, b->config->targetHeapCount);
             assert_int_equal(a->config->noEviction, b->config->noEviction);
             assert_int_equal(a->config->noMipBias, b->config->noMipBias);
+            assert_int_equal(a->config->separatePackedTiles, b->config->separatePackedTiles);
         }
     }
     if (fields & SLC_FIELD_DESC) {

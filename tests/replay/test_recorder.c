@@ -120,7 +120,8 @@ static void what_changes_while_running_is_replayed(void **state)
                                                      .numExtraStandbyTiles = i % 20,
                                                      .targetHeapCount = i % 4,
                                                      .noEviction = i % 3 == 0,
-                                                     .noMipBias = i % 5 == 0};
+                                                     .noMipBias = i % 5 == 0,
+                                                     .separatePackedTiles = i % 7 == 0};
         random_app_run(&app, 50);
         CHECK_OK(sluiceSetConfig(app.manager, &config));
         CHECK_OK(sluiceEvacuateHeaps(app.manager, i));

@@ -247,7 +247,7 @@ static void frames_survive_every_failing_call(void **state)
     (void)state;
     mode = SLUICE_RESIDENCY_MODE_SPARSE;
     frames_survive(1,
-                   STAGING_CALLS + 1); /* a heap that the device refuses is only a smaller budget */
+                   STAGING_CALLS + 2); /* heaps that the device refuses are only a smaller budget */
     mode = SLUICE_RESIDENCY_MODE_PAGED;
     /* Packed levels fill two tiles; a chunk that is refused is tried again with half of the pages.
      */
