@@ -31,7 +31,7 @@ double median(struct samples *samples);
 double typical(const struct bench *bench, struct samples *samples);
 
 typedef bool measurement(const struct bench *bench);
-measurement measure_sampling, measure_feedback, measure_fill, measure_budget, measure_resolve,
-    measure_host, measure_sharp, measure_unseen;
+measurement measure_sampling, measure_feedback, measure_fill, measure_produce, measure_budget,
+    measure_resolve, measure_host, measure_sharp, measure_unseen;
 
 #endif /* BENCH_VULKAN_BENCH_H */

@@ -1,6 +1,7 @@
 /* Cold fill, and a working set larger than the memory for it. */
+#include "fill.h"
+
 #include "floors.h"
-#include "rig.h"
 
 #include "../../tools/common/clock.h"
 
@@ -25,7 +26,7 @@ struct fill {
     uint64_t tile_count; ///< wanted: regular and packed ones
 };
 
-static struct rig_info fill_info(const struct bench *bench, uint32_t tiles_per_frame)
+struct rig_info fill_info(const struct bench *bench, uint32_t tiles_per_frame)
 {
     uint32_t size = options.quick ? 4096 : 8192, count = options.quick ? 4 : 16;
     return (struct rig_info){.bench = bench,
@@ -68,11 +69,6 @@ static bool fill_create(struct fill *fill, const struct rig_info *info)
     fill->tile_count = wanted_tiles(&layout, patch) * rig->texture_count;
     return true;
 }
-
-struct fill_times {
-    double seconds, host_seconds, host_cpu_seconds, gpu_seconds;
-    uint64_t frames, binds;
-};
 
 static bool fill_run(struct fill *fill, struct fill_times *times)
 {
@@ -117,8 +113,7 @@ static const char *bound_of(const struct fill_times *times)
                                      : "bound by reads, bindings and frames in flight";
 }
 
-/* The best of three. */
-static bool fill_best(const struct rig_info *info, struct fill_times *times, uint64_t *tile_count)
+bool fill_best(const struct rig_info *info, struct fill_times *times, uint64_t *tile_count)
 {
     bool done = true;
     *times = (struct fill_times){.seconds = INFINITY};

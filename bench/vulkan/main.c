@@ -14,11 +14,11 @@ static const struct {
     measurement *measure;
 } measurements[] = {
     {"sampling", measure_sampling}, {"feedback", measure_feedback}, {"fill", measure_fill},
-    {"budget", measure_budget},     {"resolve", measure_resolve},   {"host", measure_host},
-    {"sharp", measure_sharp},       {"unseen", measure_unseen},
+    {"produce", measure_produce},   {"budget", measure_budget},     {"resolve", measure_resolve},
+    {"host", measure_host},         {"sharp", measure_sharp},       {"unseen", measure_unseen},
 };
 #define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
-#define MEASUREMENT_NAMES "sampling,feedback,fill,budget,resolve,host,sharp,unseen"
+#define MEASUREMENT_NAMES "sampling,feedback,fill,produce,budget,resolve,host,sharp,unseen"
 
 static const char *const mode_names[] = {"auto", "sparse", "paged", "dense"};
 

@@ -62,6 +62,10 @@ static bool add_textures(struct rig *rig, const struct rig_info *info)
         return false;
     SluiceVulkanTextureCreateInfo create = {
         .structSize = sizeof create, .source = &rig->source.base, .primaryId = SLUICE_NO_TEXTURE};
+    if (info->producer) {
+        create.source = NULL;
+        create.pProducer = info->producer;
+    }
     for (; rig->texture_count < info->texture_count; rig->texture_count++)
         if (!check(
                 sluiceAddVulkanTexture(rig->streamer, &create, &rig->textures[rig->texture_count]),

@@ -21,10 +21,11 @@ struct rig_info {
     SluiceVulkanStreamerCreateInfo streamer;
     SluiceFormat format;
     uint32_t texture_size, texture_count;
-    uint32_t output_words;  ///< of a buffer that shaders write to and the host reads
-    uint32_t picture_words; ///< of a buffer that they write to, in device memory
-    float anisotropy;       ///< of the samplers; 1: none
-    VkImageView plain_view; ///< VK_NULL_HANDLE: that of the first texture
+    uint32_t output_words;              ///< of a buffer that shaders write to and the host reads
+    uint32_t picture_words;             ///< of a buffer that they write to, in device memory
+    float anisotropy;                   ///< of the samplers; 1: none
+    const SluiceTileProducer *producer; ///< makes the tiles of all textures; NULL: they are read
+    VkImageView plain_view;             ///< VK_NULL_HANDLE: that of the first texture
 };
 
 /** Seconds, in a frame's three parts. Any may be NULL: then nothing is timed. */

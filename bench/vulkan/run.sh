@@ -6,7 +6,7 @@
 #
 #   --device NAME     an index or a part of a name; --list-devices prints them (default: the best)
 #   --residency MODE  sparse, paged, dense or all (default: all that the device has)
-#   --only NAMES      some of sampling,feedback,fill,budget,resolve,host,sharp,unseen (default: all)
+#   --only NAMES      some of sampling,feedback,fill,produce,budget,resolve,host,sharp,unseen (default: all)
 #   --json            one object per line (name, value, unit) instead of the table, and more of them
 #   --quick           small pictures, few and small textures: to see that everything works
 #   --size WxH        of pictures in pixels (default: 1920x1080, on software devices 640x360, with
@@ -105,6 +105,12 @@ fill.floor.copy|the driver's copies alone|
 fill.floor.bind|the driver's binds alone, tile by tile|
 fill.floor.bind_runs_of_16|the driver's binds alone, runs of 16|
 fill.of_copy|cold fill, share of the copies alone|
+produce.cheap.rate|tiles of a producer, cheap shader|
+produce.cheap.floor|... one dispatch alone that writes the same texels|
+produce.cheap.of_dispatch|... share of the dispatch alone|
+produce.dear.rate|tiles of a producer, 255 steps per texel|
+produce.dear.floor|... one dispatch alone that writes the same texels|
+produce.dear.of_dispatch|... share of the dispatch alone|0.8 at least
 budget.missing|too large a working set: samples without any level|0
 budget.coarser|... samples coarser than wanted|
 budget.uploads_per_frame|... uploads after 100 frames|at most 1

@@ -52,4 +52,25 @@ struct BenchParams {
 };
 SLUICE_SHARED_SIZE(struct BenchParams, 60)
 
+#define BENCH_MAKE_GROUP 8
+
+/* make.comp: texels that a tile producer writes */
+struct BenchTile {
+    uint level;
+    uint x; /* of the texture's level */
+    uint y;
+    uint width;
+    uint height;
+    uint targetX;
+    uint targetY;
+    uint layer;
+};
+SLUICE_SHARED_SIZE(struct BenchTile, 32)
+
+struct BenchMake {
+    uint firstTile;
+    uint steps; /* per texel */
+};
+SLUICE_SHARED_SIZE(struct BenchMake, 8)
+
 #endif
