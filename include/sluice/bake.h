@@ -13,6 +13,7 @@
 #define SLUICE_BAKE_H
 
 #include <sluice/image.h>
+#include <sluice/input.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -149,10 +150,10 @@ SLUICE_API void sluiceDestroyBaker(SluiceBaker *baker);
 /** Input and output of one bake. A field of zero selects its default. */
 typedef struct SluiceBakeInfo {
     uint32_t structSize; ///< sizeof(SluiceBakeInfo).
-    /** Path of the picture. NULL: bake `source`. */
+    /** Path of the picture. NULL: bake pInput or `source`. */
     const char *pInputPath;
-    /** Source to bake if pInputPath is NULL: level 0, or all levels unchanged if they are
-     *  block-compressed. Not owned. */
+    /** Source to bake if pInputPath and pInput are NULL: level 0, or all levels unchanged if they
+     * are block-compressed. Not owned. */
     SluiceImageSource *source;
     const char *pOutputPath;             ///< Required.
     const SluiceBakeSettings *pSettings; ///< Default: every setting has its default.
@@ -162,6 +163,12 @@ typedef struct SluiceBakeInfo {
     /** Reports progress on the caller's thread. Return false to stop with
      *  SLUICE_ERROR_CANCELED. May be NULL. */
     bool (*pfnProgress)(void *pUserData, uint64_t doneTexels, uint64_t totalTexels);
+    /**
+     * Bakes these bytes instead of the file: a picture of any kind that is read from files.
+     * pInputPath is then a name for messages, and may be NULL. The output is always baked anew.
+     * Bytes of pfnRead are copied to memory first, unless they are OpenEXR, DDS or KTX2.
+     */
+    const SluiceInput *pInput;
 } SluiceBakeInfo;
 
 /** Result of one bake. */
@@ -170,7 +177,7 @@ typedef struct SluiceBakeReport {
     bool skipped;        ///< Output was up to date: same size, time and settings hash of the input.
     uint32_t width, height, mipLevelCount, arrayLayerCount;
     SluiceFormat format;
-    uint64_t inputSize, outputSize; ///< Bytes of the files. 0 for a source.
+    uint64_t inputSize, outputSize; ///< Bytes of the files. 0 for a source and pInput.
     uint64_t replacedTexelCount;    ///< Texels in one or more of the last three counts.
     uint64_t resumedTileCount;      ///< Tiles reused from an interrupted bake.
     uint64_t memorySize;            ///< Bytes reserved for this picture.

@@ -32,11 +32,16 @@ struct bake {
     SluiceStoreWriter *writer;
 };
 
+static bool is_file(const struct bake *bake)
+{
+    return bake->info->pInputPath && !bake->info->pInput;
+}
+
 static SluiceResult look_at_input(struct bake *bake)
 {
     struct stat status;
     const char *path = bake->info->pInputPath;
-    if (!path)
+    if (!is_file(bake))
         return SLUICE_SUCCESS;
     if (stat(path, &status) != 0) {
         slc_log(&bake->baker->log, SLUICE_LOG_ERROR, "%s: %s", path, strerror(errno));
@@ -67,7 +72,7 @@ static bool is_up_to_date(struct bake *bake)
                                              .pAllocator = &bake->baker->allocator};
     SluiceImageSource *source;
     SluiceStoreInfo store = {.structSize = sizeof store};
-    if (!bake->info->pInputPath || bake->info->force ||
+    if (!is_file(bake) || bake->info->force ||
         sluiceCreateStoreImageSource(&info, &source) != SLUICE_SUCCESS)
         return false;
     bool is_same = sluiceGetStoreInfo(source, &store) == SLUICE_SUCCESS &&
@@ -90,9 +95,11 @@ static SluiceResult open_picture(struct bake *bake)
     struct slc_picture_opening opening = {
         .max_memory = bake->baker->max_memory,
         .keep_primaries = bake->settings.keepPrimaries || bake->settings.normalMap,
+        .input = info->pInput,
     };
-    if (info->pInputPath)
-        return slc_picture_open(info->pInputPath, &opening, cb, &bake->baker->log, &bake->picture);
+    if (info->pInputPath || info->pInput)
+        return slc_picture_open(info->pInputPath ? info->pInputPath : "(memory)", &opening, cb,
+                                &bake->baker->log, &bake->picture);
     return slc_picture_of_source(info->source, false, info->pOutputPath, cb, &bake->baker->log,
                                  &bake->picture);
 }
@@ -132,7 +139,7 @@ static void describe_store(struct bake *bake, const SluiceImageInfo *image)
         .compressionLevel = settings->uncompressed       ? 0
                             : settings->compressionLevel ? settings->compressionLevel
                                                          : SLUICE_BAKE_DEFAULT_COMPRESSION,
-        .flags = bake->info->pInputPath ? SLUICE_STORE_WRITER_RESUME : 0,
+        .flags = is_file(bake) ? SLUICE_STORE_WRITER_RESUME : 0,
         .pAllocator = &bake->baker->allocator,
         .log = bake->baker->log,
     };
@@ -303,7 +310,7 @@ static const SluiceBakeSettings default_settings = {.structSize = sizeof default
 SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
                             SluiceBakeReport *pReport)
 {
-    if (!baker || !pInfo || !pInfo->pOutputPath || (!pInfo->pInputPath && !pInfo->source))
+    if (!baker || !pInfo)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceBakeInfo info = {.structSize = sizeof info};
     struct bake bake = {.baker = baker, .info = &info, .settings = default_settings};
@@ -317,6 +324,8 @@ SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
         result = slc_check_settings(&bake.settings, &baker->log);
     if (result != SLUICE_SUCCESS)
         return result;
+    if (!info.pOutputPath || (!info.pInputPath && !info.pInput && !info.source))
+        return SLUICE_ERROR_NULL_POINTER;
     result = bake_file(&bake);
     if (pReport)
         slc_struct_write(SLC_STRUCT(SluiceBakeReport), pReport, &bake.report);

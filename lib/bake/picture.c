@@ -18,11 +18,12 @@
 enum kind { OTHER, EXR, DDS, KTX2 };
 
 /* Fewer bytes if the file has no more. A pipe or a device is refused: libvips would wait for it. */
-static SluiceResult read_start(const char *path, const SluiceAllocationCallbacks *cb,
-                               const SluiceLogCallback *log, char *bytes, size_t size)
+static SluiceResult read_start(const struct slc_input_choice *choice,
+                               const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
+                               char *bytes, size_t size)
 {
     struct slc_input_file file;
-    SluiceResult result = slc_input_file_init(&file, path, cb, log);
+    SluiceResult result = slc_input_file_init_choice(&file, choice, cb, log);
     if (result == SLUICE_SUCCESS)
         result = slc_input_file_open(&file);
     if (result == SLUICE_SUCCESS && slc_input_file_read_some(&file, 0, bytes, size) < 0)
@@ -32,12 +33,13 @@ static SluiceResult read_start(const char *path, const SluiceAllocationCallbacks
     return result;
 }
 
-static SluiceResult look_inside(const char *path, const SluiceAllocationCallbacks *cb,
-                                const SluiceLogCallback *log, enum kind *kind)
+static SluiceResult look_inside(const struct slc_input_choice *choice,
+                                const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
+                                enum kind *kind)
 {
     static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n";
     char bytes[12] = {0};
-    SluiceResult result = read_start(path, cb, log, bytes, sizeof bytes);
+    SluiceResult result = read_start(choice, cb, log, bytes, sizeof bytes);
     *kind = OTHER;
     if (memcmp(bytes, "\x76\x2F\x31\x01", 4) == 0)
         *kind = EXR;
@@ -61,7 +63,8 @@ static SluiceResult open_exr(const char *path, const struct slc_picture_opening 
                                            .maxImageSize = UINT64_MAX,
                                            .levelZeroAlone = true,
                                            .maxMemorySize = opening->max_memory,
-                                           .keepPrimaries = opening->keep_primaries};
+                                           .keepPrimaries = opening->keep_primaries,
+                                           .pInput = opening->input};
     return sluiceCreateExrImageSource(&info, source);
 #else
     (void)cb, (void)source, (void)opening;
@@ -83,21 +86,24 @@ static void describe_exr(SluiceImageSource *source, struct slc_picture *picture)
 #endif
 }
 
-static SluiceResult open_container(const char *path, enum kind kind,
+static SluiceResult open_container(const char *path, const SluiceInput *input, enum kind kind,
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, SluiceImageSource **source)
 {
 #ifdef SLC_HAVE_CONTAINER
     if (kind == DDS) {
-        SluiceDdsImageSourceCreateInfo info = {
-            .structSize = sizeof info, .pPath = path, .pAllocator = cb, .log = *log};
+        SluiceDdsImageSourceCreateInfo info = {.structSize = sizeof info,
+                                               .pPath = path,
+                                               .pInput = input,
+                                               .pAllocator = cb,
+                                               .log = *log};
         return sluiceCreateDdsImageSource(&info, source);
     }
     SluiceKtx2ImageSourceCreateInfo info = {
-        .structSize = sizeof info, .pPath = path, .pAllocator = cb, .log = *log};
+        .structSize = sizeof info, .pPath = path, .pInput = input, .pAllocator = cb, .log = *log};
     return sluiceCreateKtx2ImageSource(&info, source);
 #else
-    (void)cb, (void)source;
+    (void)cb, (void)source, (void)input;
     slc_log(log, SLUICE_LOG_ERROR, "%s: this build reads no %s files", path,
             kind == DDS ? "DDS" : "KTX2");
     return SLUICE_ERROR_UNSUPPORTED;
@@ -110,15 +116,16 @@ SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening
 {
     SluiceImageSource *source = NULL;
     enum kind kind = OTHER;
-    SluiceResult result = look_inside(path, cb, log, &kind);
+    struct slc_input_choice choice = {.path = path, .input = opening->input};
+    SluiceResult result = look_inside(&choice, cb, log, &kind);
     if (result != SLUICE_SUCCESS)
         return result;
     if (kind == OTHER)
-        return slc_picture_open_vips(path, cb, log, picture);
+        return slc_picture_open_vips(path, opening->input, cb, log, picture);
     if (kind == EXR)
         result = open_exr(path, opening, cb, log, &source);
     else
-        result = open_container(path, kind, cb, log, &source);
+        result = open_container(path, opening->input, kind, cb, log, &source);
     if (result == SLUICE_SUCCESS)
         result = slc_picture_of_source(source, true, path, cb, log, picture);
     if (result == SLUICE_SUCCESS && kind == EXR)

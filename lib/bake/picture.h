@@ -35,8 +35,9 @@ struct slc_picture {
 };
 
 struct slc_picture_opening {
-    uint64_t max_memory; ///< bytes that reading may take at most
-    bool keep_primaries; ///< of OpenEXR files
+    uint64_t max_memory;      ///< bytes that reading may take at most
+    bool keep_primaries;      ///< of OpenEXR files
+    const SluiceInput *input; ///< NULL: the file; else the path is a name
 };
 
 /**
@@ -52,7 +53,9 @@ SluiceResult slc_picture_of_source(SluiceImageSource *source, bool owned, const 
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, struct slc_picture **picture);
 
-SluiceResult slc_picture_open_vips(const char *path, const SluiceAllocationCallbacks *cb,
+/** `input` may be NULL. */
+SluiceResult slc_picture_open_vips(const char *path, const SluiceInput *input,
+                                   const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, struct slc_picture **picture);
 
 /** NULL is allowed. */

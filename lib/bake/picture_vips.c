@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "image/input_file.h"
 
 #include <string.h>
 
@@ -14,6 +15,9 @@
 struct vips_picture {
     struct slc_picture base;
     char *path;
+    const void *bytes; ///< NULL: the file; borrowed, or `copy`
+    void *copy;        ///< owned; bytes that a callback read
+    size_t size;
     VipsImage *image;
     VipsRegion *region;
     uint32_t first, count; ///< rows in the region
@@ -81,6 +85,15 @@ static bool convert(VipsImage **image, bool *was_short)
     return is_kept || replace(image, vips_cast_float(*image, &made, NULL), &made);
 }
 
+static VipsImage *open_image(const struct vips_picture *picture, VipsAccess access)
+{
+    if (picture->bytes)
+        return vips_image_new_from_buffer(picture->bytes, picture->size, "", "access", access,
+                                          "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
+    return vips_image_new_from_file(picture->path, "access", access, "fail_on",
+                                    VIPS_FAIL_ON_TRUNCATED, NULL);
+}
+
 /* Turns the picture as its EXIF tag says. It is opened again, because turning reads in any order.
  */
 static bool turn(struct vips_picture *picture)
@@ -89,16 +102,14 @@ static bool turn(struct vips_picture *picture)
     picture->orientation = vips_image_get_orientation(picture->image);
     if (picture->orientation <= 1)
         return true;
-    VipsImage *whole = vips_image_new_from_file(picture->path, "access", VIPS_ACCESS_RANDOM,
-                                                "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
+    VipsImage *whole = open_image(picture, VIPS_ACCESS_RANDOM);
     return whole && replace(&picture->image, 0, &whole) &&
            replace(&picture->image, vips_autorot(picture->image, &made, NULL), &made);
 }
 
 static SluiceResult load(struct vips_picture *picture)
 {
-    picture->image = vips_image_new_from_file(picture->path, "access", VIPS_ACCESS_SEQUENTIAL,
-                                              "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
+    picture->image = open_image(picture, VIPS_ACCESS_SEQUENTIAL);
     if (!picture->image)
         return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
     if (!turn(picture))
@@ -153,6 +164,7 @@ static void close_picture(struct slc_picture *base)
     struct vips_picture *picture = (struct vips_picture *)base;
     SluiceAllocationCallbacks cb = base->allocator;
     unload(picture);
+    slc_free(&cb, picture->copy, picture->size, 1);
     slc_free(&cb, picture->path, picture->path ? strlen(picture->path) + 1 : 0, 1);
     slc_free(&cb, picture, 1, sizeof *picture);
 }
@@ -213,10 +225,31 @@ static void describe(struct vips_picture *picture)
     uint32_t times = times_unpacked(image) + (picture->orientation > 1);
     base->unpacked_size = times * (uint64_t)base->width * base->height * base->channels *
                           slc_sample_size(base->sample);
-    base->memory += base->unpacked_size;
+    base->memory += base->unpacked_size + (picture->copy ? picture->size : 0);
 }
 
-SluiceResult slc_picture_open_vips(const char *path, const SluiceAllocationCallbacks *cb,
+/* libvips reads bytes as they lie. Sluice has checked the input. */
+static SluiceResult take_bytes(struct vips_picture *picture, const SluiceInput *input)
+{
+    const struct slc_input_choice choice = {.path = picture->path, .input = input};
+    const SluiceAllocationCallbacks *cb = &picture->base.allocator;
+    struct slc_input_file file;
+    SluiceResult result = slc_input_file_init_choice(&file, &choice, cb, &picture->base.log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_input_file_open(&file);
+    picture->bytes = file.input.pBytes;
+    picture->size = (size_t)file.input.size;
+    if (result == SLUICE_SUCCESS && !picture->bytes) {
+        picture->bytes = picture->copy = slc_alloc(cb, picture->size, 1);
+        result = picture->copy ? slc_input_file_read(&file, 0, picture->copy, picture->size)
+                               : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    slc_input_file_finish(&file);
+    return result;
+}
+
+SluiceResult slc_picture_open_vips(const char *path, const SluiceInput *input,
+                                   const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, struct slc_picture **opened)
 {
     struct vips_picture *picture = slc_calloc(cb, 1, sizeof *picture);
@@ -227,7 +260,11 @@ SluiceResult slc_picture_open_vips(const char *path, const SluiceAllocationCallb
     picture->base.log = *log;
     picture->path = slc_strdup(cb, path);
     picture->base.name = picture->path;
-    SluiceResult result = picture->path ? load(picture) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    SluiceResult result = picture->path ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (result == SLUICE_SUCCESS && input)
+        result = take_bytes(picture, input);
+    if (result == SLUICE_SUCCESS)
+        result = load(picture);
     if (result != SLUICE_SUCCESS) {
         close_picture(&picture->base);
         return result;
