@@ -169,6 +169,14 @@ typedef struct SluiceBakeInfo {
      * Bytes of pfnRead are copied to memory first, unless they are OpenEXR, DDS or KTX2.
      */
     const SluiceInput *pInput;
+    /**
+     * Bakes the levels from this one on, as a store whose level 0 is this one: a preview. The
+     * picture is shrunk while it is read, so a JPEG file takes a small part of the time. Texels
+     * differ slightly from those of the whole chain, because gamma is ignored. The output is always
+     * baked anew. Below the number of levels; 0 for OpenEXR, DDS and KTX2 files and sources, which
+     * are refused otherwise with SLUICE_ERROR_UNSUPPORTED. Default: 0, the whole chain.
+     */
+    uint32_t firstLevel;
 } SluiceBakeInfo;
 
 /** Result of one bake. */
@@ -219,6 +227,15 @@ typedef struct SluiceBakeReport {
  */
 SLUICE_API SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
                                        SluiceBakeReport *pReport);
+
+/**
+ * Describes the store that sluiceBakeFile would write, without writing it: size, format, levels and
+ * layers. Reads the header of the picture. pOutputPath is not used.
+ *
+ * Errors, thread safety: as sluiceBakeFile.
+ */
+SLUICE_API SluiceResult sluiceDescribeBake(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
+                                           SluiceBakeReport *pReport);
 
 /**
  * Computes the hash of all settings that determine the texels, as recorded in stores.

@@ -34,20 +34,20 @@ struct bake {
 
 static bool is_file(const struct bake *bake)
 {
-    return bake->info->pInputPath && !bake->info->pInput;
+    return bake->info->pInputPath && !bake->info->pInput && bake->info->firstLevel == 0;
 }
 
 static SluiceResult look_at_input(struct bake *bake)
 {
     struct stat status;
     const char *path = bake->info->pInputPath;
-    if (!is_file(bake))
+    if (!path || bake->info->pInput)
         return SLUICE_SUCCESS;
     if (stat(path, &status) != 0) {
         slc_log(&bake->baker->log, SLUICE_LOG_ERROR, "%s: %s", path, strerror(errno));
         return errno == ENOENT || errno == ENOTDIR ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
     }
-    if (slc_output_replaces_input(bake->info->pOutputPath, path))
+    if (bake->info->pOutputPath && slc_output_replaces_input(bake->info->pOutputPath, path))
         return slc_log_refusal(&bake->baker->log, "%s: the store would take its place", path);
     bake->source_size = (uint64_t)status.st_size;
     bake->source_time =
@@ -96,12 +96,18 @@ static SluiceResult open_picture(struct bake *bake)
         .max_memory = bake->baker->max_memory,
         .keep_primaries = bake->settings.keepPrimaries || bake->settings.normalMap,
         .input = info->pInput,
+        .first_level = info->firstLevel,
     };
     if (info->pInputPath || info->pInput)
         return slc_picture_open(info->pInputPath ? info->pInputPath : "(memory)", &opening, cb,
                                 &bake->baker->log, &bake->picture);
-    return slc_picture_of_source(info->source, false, info->pOutputPath, cb, &bake->baker->log,
-                                 &bake->picture);
+    const char *name = info->pOutputPath ? info->pOutputPath : "(source)";
+    if (info->firstLevel > 0) {
+        slc_log(&bake->baker->log, SLUICE_LOG_ERROR,
+                "%s: firstLevel is %u; sources are baked with all levels", name, info->firstLevel);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    return slc_picture_of_source(info->source, false, name, cb, &bake->baker->log, &bake->picture);
 }
 
 static SluiceStoreAddressMode address_mode(SluiceBakeWrap wrap)
@@ -294,7 +300,9 @@ static SluiceResult bake_file(struct bake *bake)
     SluiceResult result = look_at_input(bake);
     if (result != SLUICE_SUCCESS)
         return result;
-    bake->settings_hash = slc_hash_settings(&bake->settings);
+    /* A preview is no store of the picture. */
+    bake->settings_hash =
+        slc_hash_settings(&bake->settings) ^ bake->info->firstLevel * UINT64_C(0x9E3779B97F4A7C15);
     bake->report.inputSize = bake->source_size;
     if (is_up_to_date(bake))
         return SLUICE_SUCCESS;
@@ -303,6 +311,26 @@ static SluiceResult bake_file(struct bake *bake)
         result = bake_picture(bake);
     slc_picture_close(bake->picture);
     return result;
+}
+
+/* What sluiceBakeFile and sluiceDescribeBake begin with. */
+static SluiceResult read_arguments(struct bake *bake, SluiceBakeInfo *info,
+                                   const SluiceBakeInfo *given, const SluiceBakeReport *report)
+{
+    const SluiceLogCallback *log = &bake->baker->log;
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceBakeInfo), info, given, log);
+    if (result == SLUICE_SUCCESS && info->pSettings)
+        result =
+            slc_struct_read(SLC_STRUCT(SluiceBakeSettings), &bake->settings, info->pSettings, log);
+    if (result == SLUICE_SUCCESS && report)
+        result = slc_struct_check(SLC_STRUCT(SluiceBakeReport), report, log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_check_settings(&bake->settings, log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!info->pInputPath && !info->pInput && !info->source)
+        return SLUICE_ERROR_NULL_POINTER;
+    return SLUICE_SUCCESS;
 }
 
 static const SluiceBakeSettings default_settings = {.structSize = sizeof default_settings};
@@ -314,20 +342,40 @@ SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
         return SLUICE_ERROR_NULL_POINTER;
     SluiceBakeInfo info = {.structSize = sizeof info};
     struct bake bake = {.baker = baker, .info = &info, .settings = default_settings};
-    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceBakeInfo), &info, pInfo, &baker->log);
-    if (result == SLUICE_SUCCESS && info.pSettings)
-        result = slc_struct_read(SLC_STRUCT(SluiceBakeSettings), &bake.settings, info.pSettings,
-                                 &baker->log);
-    if (result == SLUICE_SUCCESS && pReport)
-        result = slc_struct_check(SLC_STRUCT(SluiceBakeReport), pReport, &baker->log);
-    if (result == SLUICE_SUCCESS)
-        result = slc_check_settings(&bake.settings, &baker->log);
+    SluiceResult result = read_arguments(&bake, &info, pInfo, pReport);
+    if (result == SLUICE_SUCCESS && !info.pOutputPath)
+        result = SLUICE_ERROR_NULL_POINTER;
     if (result != SLUICE_SUCCESS)
         return result;
-    if (!info.pOutputPath || (!info.pInputPath && !info.pInput && !info.source))
-        return SLUICE_ERROR_NULL_POINTER;
     result = bake_file(&bake);
     if (pReport)
         slc_struct_write(SLC_STRUCT(SluiceBakeReport), pReport, &bake.report);
+    return result;
+}
+
+SluiceResult sluiceDescribeBake(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
+                                SluiceBakeReport *pReport)
+{
+    if (!baker || !pInfo || !pReport)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceBakeInfo info = {.structSize = sizeof info};
+    struct bake bake = {.baker = baker, .info = &info, .settings = default_settings};
+    SluiceStoreLayout layout;
+    SluiceResult result = read_arguments(&bake, &info, pInfo, pReport);
+    if (result == SLUICE_SUCCESS)
+        result = look_at_input(&bake);
+    if (result == SLUICE_SUCCESS)
+        result = open_picture(&bake);
+    if (result == SLUICE_SUCCESS)
+        result = describe_picture(&bake);
+    if (result == SLUICE_SUCCESS)
+        result =
+            sluiceGetStoreLayout(bake.store.width, bake.store.height, bake.store.format, &layout);
+    if (result == SLUICE_SUCCESS) {
+        bake.report.inputSize = bake.source_size;
+        report_image(&bake, &layout, bake.store.arrayLayerCount);
+        slc_struct_write(SLC_STRUCT(SluiceBakeReport), pReport, &bake.report);
+    }
+    slc_picture_close(bake.picture);
     return result;
 }

@@ -121,7 +121,13 @@ SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening
     if (result != SLUICE_SUCCESS)
         return result;
     if (kind == OTHER)
-        return slc_picture_open_vips(path, opening->input, cb, log, picture);
+        return slc_picture_open_vips(path, opening, cb, log, picture);
+    if (opening->first_level > 0) {
+        slc_log(log, SLUICE_LOG_ERROR,
+                "%s: firstLevel is %u; OpenEXR, DDS and KTX2 files are baked with all levels", path,
+                opening->first_level);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
     if (kind == EXR)
         result = open_exr(path, opening, cb, log, &source);
     else

@@ -38,6 +38,7 @@ struct slc_picture_opening {
     uint64_t max_memory;      ///< bytes that reading may take at most
     bool keep_primaries;      ///< of OpenEXR files
     const SluiceInput *input; ///< NULL: the file; else the path is a name
+    uint32_t first_level;     ///< of pictures that libvips reads
 };
 
 /**
@@ -53,8 +54,7 @@ SluiceResult slc_picture_of_source(SluiceImageSource *source, bool owned, const 
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, struct slc_picture **picture);
 
-/** `input` may be NULL. */
-SluiceResult slc_picture_open_vips(const char *path, const SluiceInput *input,
+SluiceResult slc_picture_open_vips(const char *path, const struct slc_picture_opening *opening,
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, struct slc_picture **picture);
 

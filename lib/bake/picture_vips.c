@@ -18,6 +18,7 @@ struct vips_picture {
     const void *bytes; ///< NULL: the file; borrowed, or `copy`
     void *copy;        ///< owned; bytes that a callback read
     size_t size;
+    uint32_t first_level;
     VipsImage *image;
     VipsRegion *region;
     uint32_t first, count; ///< rows in the region
@@ -85,13 +86,45 @@ static bool convert(VipsImage **image, bool *was_short)
     return is_kept || replace(image, vips_cast_float(*image, &made, NULL), &made);
 }
 
+/* The decoder of JPEG makes an eighth of the size in a part of the time; all else is read whole. */
+static const char *loader_options(const struct vips_picture *picture)
+{
+    static const char *const shrinks[] = {"", "[shrink=2]", "[shrink=4]", "[shrink=8]"};
+    const char *loader = picture->bytes
+                             ? vips_foreign_find_load_buffer(picture->bytes, picture->size)
+                             : vips_foreign_find_load(picture->path);
+    bool is_jpeg = loader && strncmp(loader, "VipsForeignLoadJpeg", 19) == 0;
+    return shrinks[is_jpeg ? slc_min_u32(picture->first_level, 3) : 0];
+}
+
 static VipsImage *open_image(const struct vips_picture *picture, VipsAccess access)
 {
+    const char *options = loader_options(picture);
     if (picture->bytes)
-        return vips_image_new_from_buffer(picture->bytes, picture->size, "", "access", access,
+        return vips_image_new_from_buffer(picture->bytes, picture->size, options, "access", access,
                                           "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
+    if (*options) {
+        VipsImage *image = NULL;
+        int shrink = options[8] - '0';
+        if (vips_jpegload(picture->path, &image, "shrink", shrink, "access", access, "fail_on",
+                          VIPS_FAIL_ON_TRUNCATED, NULL) != 0)
+            return NULL;
+        return image;
+    }
     return vips_image_new_from_file(picture->path, "access", access, "fail_on",
                                     VIPS_FAIL_ON_TRUNCATED, NULL);
+}
+
+/* Makes the image as large as its level `first_level` is. `width` and `height` are level 0's. */
+static bool shrink_image(struct vips_picture *picture, uint32_t width, uint32_t height)
+{
+    VipsImage *made = NULL, *image = picture->image;
+    double x = slc_mip_size(width, picture->first_level);
+    double y = slc_mip_size(height, picture->first_level);
+    int status = vips_resize(image, &made, x / vips_image_get_width(image), "vscale",
+                             y / vips_image_get_height(image), "kernel", VIPS_KERNEL_LINEAR, NULL);
+    return replace(&picture->image, status, &made) && vips_image_get_width(picture->image) == x &&
+           vips_image_get_height(picture->image) == y;
 }
 
 /* Turns the picture as its EXIF tag says. It is opened again, because turning reads in any order.
@@ -107,8 +140,31 @@ static bool turn(struct vips_picture *picture)
            replace(&picture->image, vips_autorot(picture->image, &made, NULL), &made);
 }
 
+/* Size of the picture before it is shrunk, turned as it will be. Reads its header. */
+static bool find_whole_size(const struct vips_picture *picture, uint32_t *width, uint32_t *height)
+{
+    struct vips_picture whole = {
+        .path = picture->path, .bytes = picture->bytes, .size = picture->size};
+    whole.image = open_image(&whole, VIPS_ACCESS_SEQUENTIAL);
+    if (!whole.image)
+        return false;
+    bool is_turned = vips_image_get_orientation_swap(whole.image);
+    uint32_t x = (uint32_t)vips_image_get_width(whole.image);
+    uint32_t y = (uint32_t)vips_image_get_height(whole.image);
+    g_object_unref(whole.image);
+    *width = is_turned ? y : x;
+    *height = is_turned ? x : y;
+    return true;
+}
+
 static SluiceResult load(struct vips_picture *picture)
 {
+    uint32_t width = 0, height = 0;
+    if (picture->first_level > 0 && !find_whole_size(picture, &width, &height))
+        return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
+    if (picture->first_level > 0 &&
+        picture->first_level >= slc_mip_count(slc_max_u32(width, height)))
+        return unsupported(picture, "it has no level firstLevel");
     picture->image = open_image(picture, VIPS_ACCESS_SEQUENTIAL);
     if (!picture->image)
         return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
@@ -117,6 +173,8 @@ static SluiceResult load(struct vips_picture *picture)
     if (vips_band_format_iscomplex(vips_image_get_format(picture->image)))
         return unsupported(picture, "complex numbers are no colors");
     if (!convert(&picture->image, &picture->base.halves_suffice))
+        return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
+    if (picture->first_level > 0 && !shrink_image(picture, width, height))
         return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
     if (vips_image_get_bands(picture->image) > 4)
         return unsupported(picture, "it has more than four channels");
@@ -248,7 +306,7 @@ static SluiceResult take_bytes(struct vips_picture *picture, const SluiceInput *
     return result;
 }
 
-SluiceResult slc_picture_open_vips(const char *path, const SluiceInput *input,
+SluiceResult slc_picture_open_vips(const char *path, const struct slc_picture_opening *opening,
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, struct slc_picture **opened)
 {
@@ -260,9 +318,10 @@ SluiceResult slc_picture_open_vips(const char *path, const SluiceInput *input,
     picture->base.log = *log;
     picture->path = slc_strdup(cb, path);
     picture->base.name = picture->path;
+    picture->first_level = opening->first_level;
     SluiceResult result = picture->path ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    if (result == SLUICE_SUCCESS && input)
-        result = take_bytes(picture, input);
+    if (result == SLUICE_SUCCESS && opening->input)
+        result = take_bytes(picture, opening->input);
     if (result == SLUICE_SUCCESS)
         result = load(picture);
     if (result != SLUICE_SUCCESS) {

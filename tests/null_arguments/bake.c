@@ -9,6 +9,7 @@
 sluiceCreateBaker(&f->create, &f->out.baker) => sluiceDestroyBaker(f->out.baker)
 !sluiceDestroyBaker(f->baker)
 sluiceBakeFile(f->baker, &f->bake, ?&f->out.report)
+sluiceDescribeBake(f->baker, &f->bake, &f->out.report)
 sluiceHashBakeSettings(&f->settings, &f->out.hash)
 */
 /* clang-format on */
