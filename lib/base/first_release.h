@@ -68,6 +68,8 @@
 #define SLC_FIRST_SluiceInput SLC_UP_TO(SluiceInput, pfnRead)
 #define SLC_FIRST_SluiceFilePoolCreateInfo SLC_UP_TO(SluiceFilePoolCreateInfo, pAllocator)
 #define SLC_FIRST_SluiceFilePoolStatistics SLC_UP_TO(SluiceFilePoolStatistics, replacedTotal)
+#define SLC_FIRST_SluiceImageOpenerCreateInfo SLC_UP_TO(SluiceImageOpenerCreateInfo, log)
+#define SLC_FIRST_SluiceOpenedImageInfo SLC_UP_TO(SluiceOpenedImageInfo, totalTexels)
 #define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
     SLC_UP_TO(SluiceVulkanDeviceCapabilities, deviceLocalMemorySize)
 #define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \

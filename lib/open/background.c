@@ -1,0 +1,178 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "open/background.h"
+
+#include "base/alloc.h"
+
+#include <time.h>
+
+struct worker {
+    struct slc_background *background;
+    enum slc_stream_job_kind kind;
+    pthread_t thread;
+    bool has_started;
+    struct slc_picture_stream *first, *last; ///< its queue
+};
+
+struct slc_background {
+    SluiceAllocationCallbacks allocator;
+    SluiceBaker *baker;
+    pthread_mutex_t mutex; ///< around what follows, and around the jobs of streams
+    pthread_cond_t changed;
+    bool is_ending;
+    struct worker workers[SLC_JOB_KIND_COUNT];
+};
+
+/* With the mutex held. */
+static struct slc_picture_stream *take_first(struct worker *worker)
+{
+    struct slc_picture_stream *stream = worker->first;
+    if (!stream)
+        return NULL;
+    struct slc_stream_job *job = &stream->jobs[worker->kind];
+    worker->first = job->next;
+    if (!worker->first)
+        worker->last = NULL;
+    *job = (struct slc_stream_job){.is_running = true};
+    return stream;
+}
+
+static void *work(void *argument)
+{
+    struct worker *worker = argument;
+    struct slc_background *background = worker->background;
+    pthread_mutex_lock(&background->mutex);
+    while (!background->is_ending) {
+        struct slc_picture_stream *stream = take_first(worker);
+        if (!stream) {
+            pthread_cond_wait(&background->changed, &background->mutex);
+            continue;
+        }
+        pthread_mutex_unlock(&background->mutex);
+        if (worker->kind == SLC_JOB_PREVIEW)
+            slc_make_preview(background, stream);
+        else
+            slc_make_store(background, stream);
+        pthread_mutex_lock(&background->mutex);
+        stream->jobs[worker->kind].is_running = false;
+        pthread_cond_broadcast(&background->changed);
+    }
+    pthread_mutex_unlock(&background->mutex);
+    return NULL;
+}
+
+SluiceResult slc_background_create(SluiceImageOpener *opener, struct slc_background **out)
+{
+    struct slc_background *background = slc_calloc(&opener->allocator, 1, sizeof *background);
+    if (!background)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    background->allocator = opener->allocator;
+    pthread_mutex_init(&background->mutex, NULL);
+    pthread_cond_init(&background->changed, NULL);
+    SluiceBakerCreateInfo info = {.structSize = sizeof info,
+                                  .threadCount = opener->bake_thread_count,
+                                  .maxMemory = opener->max_bake_memory,
+                                  .pAllocator = &opener->allocator,
+                                  .log = opener->log};
+    SluiceResult result = sluiceCreateBaker(&info, &background->baker);
+    for (int i = 0; i < SLC_JOB_KIND_COUNT && result == SLUICE_SUCCESS; i++) {
+        struct worker *worker = &background->workers[i];
+        worker->background = background;
+        worker->kind = (enum slc_stream_job_kind)i;
+        worker->has_started = pthread_create(&worker->thread, NULL, work, worker) == 0;
+        result = worker->has_started ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    if (result != SLUICE_SUCCESS) {
+        slc_background_destroy(background);
+        return result;
+    }
+    *out = background;
+    return SLUICE_SUCCESS;
+}
+
+void slc_background_destroy(struct slc_background *background)
+{
+    if (!background)
+        return;
+    SluiceAllocationCallbacks cb = background->allocator;
+    pthread_mutex_lock(&background->mutex);
+    background->is_ending = true;
+    pthread_cond_broadcast(&background->changed);
+    pthread_mutex_unlock(&background->mutex);
+    for (int i = 0; i < SLC_JOB_KIND_COUNT; i++)
+        if (background->workers[i].has_started)
+            pthread_join(background->workers[i].thread, NULL);
+    sluiceDestroyBaker(background->baker);
+    pthread_cond_destroy(&background->changed);
+    pthread_mutex_destroy(&background->mutex);
+    slc_free(&cb, background, 1, sizeof *background);
+}
+
+SluiceBaker *slc_background_baker(struct slc_background *background)
+{
+    return background->baker;
+}
+
+void slc_background_queue(struct slc_background *background, struct slc_picture_stream *stream,
+                          enum slc_stream_job_kind kind)
+{
+    struct worker *worker = &background->workers[kind];
+    struct slc_stream_job *job = &stream->jobs[kind];
+    pthread_mutex_lock(&background->mutex);
+    if (!job->is_queued) {
+        job->is_queued = true;
+        job->next = NULL;
+        if (worker->last)
+            worker->last->jobs[kind].next = stream;
+        else
+            worker->first = stream;
+        worker->last = stream;
+        pthread_cond_broadcast(&background->changed);
+    }
+    pthread_mutex_unlock(&background->mutex);
+}
+
+static void take_out(struct worker *worker, struct slc_picture_stream *stream)
+{
+    struct slc_picture_stream *before = NULL;
+    for (struct slc_picture_stream *s = worker->first; s; s = s->jobs[worker->kind].next) {
+        if (s == stream) {
+            struct slc_picture_stream *next = s->jobs[worker->kind].next;
+            *(before ? &before->jobs[worker->kind].next : &worker->first) = next;
+            if (worker->last == s)
+                worker->last = before;
+            break;
+        }
+        before = s;
+    }
+    stream->jobs[worker->kind].is_queued = false;
+}
+
+void slc_background_cancel(struct slc_background *background, struct slc_picture_stream *stream)
+{
+    pthread_mutex_lock(&background->mutex);
+    atomic_store(&stream->is_canceled, true);
+    pthread_cond_broadcast(&background->changed);
+    for (int kind = 0; kind < SLC_JOB_KIND_COUNT; kind++) {
+        if (stream->jobs[kind].is_queued)
+            take_out(&background->workers[kind], stream);
+        while (stream->jobs[kind].is_running)
+            pthread_cond_wait(&background->changed, &background->mutex);
+    }
+    pthread_mutex_unlock(&background->mutex);
+}
+
+void slc_background_pause(struct slc_background *background)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += 50000000;
+    if (until.tv_nsec >= 1000000000) {
+        until.tv_nsec -= 1000000000;
+        until.tv_sec++;
+    }
+    pthread_mutex_lock(&background->mutex);
+    if (!background->is_ending)
+        pthread_cond_timedwait(&background->changed, &background->mutex, &until);
+    pthread_mutex_unlock(&background->mutex);
+}

@@ -1,0 +1,31 @@
+/** Two threads that make previews and stores of pictures, one thread each. */
+#ifndef SLC_OPEN_BACKGROUND_H
+#define SLC_OPEN_BACKGROUND_H
+
+#include <sluice/bake.h>
+
+#include "open/picture_stream.h"
+
+/** Starts libvips and the threads. Errors: UNSUPPORTED, OUT_OF_HOST_MEMORY. */
+SluiceResult slc_background_create(SluiceImageOpener *opener, struct slc_background **background);
+/** No job is left. NULL is allowed. */
+void slc_background_destroy(struct slc_background *background);
+
+SluiceBaker *slc_background_baker(struct slc_background *background);
+
+void slc_background_queue(struct slc_background *background, struct slc_picture_stream *stream,
+                          enum slc_stream_job_kind kind);
+/** Takes the stream's jobs out of the queues, or waits until they have ended. */
+void slc_background_cancel(struct slc_background *background, struct slc_picture_stream *stream);
+/** Waits for a while, less if somebody cancels. */
+void slc_background_pause(struct slc_background *background);
+
+/** What the threads do; picture_jobs.c. */
+void slc_make_preview(struct slc_background *background, struct slc_picture_stream *stream);
+void slc_make_store(struct slc_background *background, struct slc_picture_stream *stream);
+
+/** Opens the picture's store if it was made of this picture. Errors: CORRUPT_DATA also for a store
+ *  of something else, not logged; others logged. */
+SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceImageSource **store);
+
+#endif /* SLC_OPEN_BACKGROUND_H */

@@ -1,0 +1,183 @@
+#define _POSIX_C_SOURCE 200809L
+#define _FILE_OFFSET_BITS 64
+
+#include "open/file_kind.h"
+
+#include "base/log.h"
+#include "base/system.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+#ifdef SLC_HAVE_CONTAINER
+#include <sluice/dds.h>
+#include <sluice/ktx2.h>
+#endif
+
+SluiceResult slc_shared_files_init(struct slc_shared_files *files, uint32_t max_open_file_count,
+                                   const SluiceAllocationCallbacks *cb)
+{
+    SluiceFilePoolCreateInfo info = {
+        .structSize = sizeof info, .maxOpenFileCount = max_open_file_count, .pAllocator = cb};
+    SluiceResult result = sluiceCreateFilePool(&info, &files->pool);
+#ifdef SLC_HAVE_STORE
+    if (result == SLUICE_SUCCESS)
+        result = sluiceCreateStoreReadPool(cb, &files->read_pool);
+#endif
+#ifdef SLC_HAVE_EXR
+    if (result == SLUICE_SUCCESS)
+        result = sluiceCreateExrMemoryBudget(0, cb, &files->exr_memory);
+#endif
+    return result;
+}
+
+void slc_shared_files_finish(struct slc_shared_files *files)
+{
+#ifdef SLC_HAVE_EXR
+    sluiceDestroyExrMemoryBudget(files->exr_memory);
+#endif
+#ifdef SLC_HAVE_STORE
+    sluiceDestroyStoreReadPool(files->read_pool);
+#endif
+    sluiceDestroyFilePool(files->pool);
+}
+
+static SluiceImageFileKind kind_of(const char bytes[12])
+{
+    static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n", store[] = "\x89SLS\r\n\x1A\n";
+    if (memcmp(bytes, store, 8) == 0)
+        return SLUICE_IMAGE_FILE_KIND_STORE;
+    if (memcmp(bytes, "\x76\x2F\x31\x01", 4) == 0)
+        return SLUICE_IMAGE_FILE_KIND_EXR;
+    if (memcmp(bytes, "DDS ", 4) == 0)
+        return SLUICE_IMAGE_FILE_KIND_DDS;
+    return memcmp(bytes, ktx2, 12) == 0 ? SLUICE_IMAGE_FILE_KIND_KTX2
+                                        : SLUICE_IMAGE_FILE_KIND_PICTURE;
+}
+
+/* Returns 0, or errno; EINVAL for what is no regular file. */
+static int look_at(int descriptor, char bytes[12], struct slc_file_identity *identity)
+{
+    struct stat status;
+    if (fstat(descriptor, &status) != 0)
+        return errno;
+    if (!S_ISREG(status.st_mode))
+        return EINVAL;
+    *identity = slc_file_identity(&status);
+    ssize_t got;
+    do
+        got = pread(descriptor, bytes, 12, 0);
+    while (got < 0 && errno == EINTR);
+    return got < 0 ? errno : 0;
+}
+
+SluiceResult slc_file_kind_find(const char *path, const SluiceLogCallback *log,
+                                SluiceImageFileKind *kind, struct slc_file_identity *identity)
+{
+    char bytes[12] = {0};
+    int descriptor = slc_open_input(path);
+    int error = descriptor < 0 ? errno : look_at(descriptor, bytes, identity);
+    if (descriptor >= 0)
+        close(descriptor);
+    if (error == 0) {
+        *kind = kind_of(bytes);
+        return SLUICE_SUCCESS;
+    }
+    slc_log(log, SLUICE_LOG_ERROR, "%s: cannot open: %s", path,
+            error == EINVAL ? "is not a regular file" : strerror(error));
+    return slc_system_result(error);
+}
+
+#if !defined(SLC_HAVE_STORE) || !defined(SLC_HAVE_EXR) || !defined(SLC_HAVE_CONTAINER)
+static SluiceResult refuse(const char *path, const SluiceLogCallback *log, const char *kind,
+                           const char *library)
+{
+    slc_log(log, SLUICE_LOG_ERROR, "%s: is %s; this build of Sluice was made without %s", path,
+            kind, library);
+    return SLUICE_ERROR_UNSUPPORTED;
+}
+#endif
+
+static SluiceResult open_store(const char *path, const struct slc_shared_files *files,
+                               const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
+                               SluiceImageSource **source)
+{
+#ifdef SLC_HAVE_STORE
+    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info,
+                                             .pPath = path,
+                                             .pAllocator = cb,
+                                             .log = *log,
+                                             .readPool = files->read_pool,
+                                             .filePool = files->pool};
+    return sluiceCreateStoreImageSource(&info, source);
+#else
+    (void)files, (void)cb, (void)source;
+    return refuse(path, log, "a tile store", "sluice-store");
+#endif
+}
+
+static SluiceResult open_exr(const char *path, const struct slc_shared_files *files,
+                             const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
+                             SluiceImageSource **source)
+{
+#ifdef SLC_HAVE_EXR
+    SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info,
+                                           .pPath = path,
+                                           .pAllocator = cb,
+                                           .log = *log,
+                                           .memoryBudget = files->exr_memory,
+                                           .filePool = files->pool};
+    return sluiceCreateExrImageSource(&info, source);
+#else
+    (void)files, (void)cb, (void)source;
+    return refuse(path, log, "an OpenEXR file", "sluice-exr");
+#endif
+}
+
+static SluiceResult open_container(const char *path, bool is_dds,
+                                   const struct slc_shared_files *files,
+                                   const SluiceAllocationCallbacks *cb,
+                                   const SluiceLogCallback *log, SluiceImageSource **source)
+{
+#ifdef SLC_HAVE_CONTAINER
+    SluiceDdsImageSourceCreateInfo dds = {.structSize = sizeof dds,
+                                          .pPath = path,
+                                          .pAllocator = cb,
+                                          .log = *log,
+                                          .filePool = files->pool};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.structSize = sizeof ktx2,
+                                            .pPath = path,
+                                            .pAllocator = cb,
+                                            .log = *log,
+                                            .filePool = files->pool};
+    return is_dds ? sluiceCreateDdsImageSource(&dds, source)
+                  : sluiceCreateKtx2ImageSource(&ktx2, source);
+#else
+    (void)files, (void)cb, (void)source;
+    return refuse(path, log, is_dds ? "a DDS file" : "a KTX2 file", "sluice-container");
+#endif
+}
+
+SluiceResult slc_file_kind_open(SluiceImageFileKind kind, const char *path,
+                                const struct slc_shared_files *files,
+                                const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
+                                SluiceImageSource **source)
+{
+    SluiceImageInfo image = {.structSize = sizeof image};
+    SluiceResult result;
+    *source = NULL;
+    if (kind == SLUICE_IMAGE_FILE_KIND_STORE)
+        result = open_store(path, files, cb, log, source);
+    else if (kind == SLUICE_IMAGE_FILE_KIND_EXR)
+        result = open_exr(path, files, cb, log, source);
+    else
+        result = open_container(path, kind == SLUICE_IMAGE_FILE_KIND_DDS, files, cb, log, source);
+    if (result == SLUICE_SUCCESS) /* some sources open their file now */
+        result = sluiceGetImageInfo(*source, &image);
+    if (result != SLUICE_SUCCESS) {
+        sluiceDestroyImageSource(*source);
+        *source = NULL;
+    }
+    return result;
+}

@@ -1,0 +1,33 @@
+/** What a file is, by its first bytes, and the source that reads it in place. */
+#ifndef SLC_OPEN_FILE_KIND_H
+#define SLC_OPEN_FILE_KIND_H
+
+#include <sluice/exr.h>
+#include <sluice/open.h>
+#include <sluice/store.h>
+
+#include "image/file_pool.h"
+
+/** What all files of an opener share. A member that this build cannot use is NULL. */
+struct slc_shared_files {
+    SluiceFilePool *pool;
+    SluiceStoreReadPool *read_pool;
+    SluiceExrMemoryBudget *exr_memory;
+};
+
+SluiceResult slc_shared_files_init(struct slc_shared_files *files, uint32_t max_open_file_count,
+                                   const SluiceAllocationCallbacks *cb);
+void slc_shared_files_finish(struct slc_shared_files *files);
+
+/** Reads the first bytes, and tells which file it is. Errors: IO, FILE_NOT_FOUND,
+ *  OUT_OF_HOST_MEMORY; NOT_READY for want of descriptors. Logged. */
+SluiceResult slc_file_kind_find(const char *path, const SluiceLogCallback *log,
+                                SluiceImageFileKind *kind, struct slc_file_identity *identity);
+
+/** Opens any kind but PICTURE. Errors: as sluiceOpenImageSource, logged. */
+SluiceResult slc_file_kind_open(SluiceImageFileKind kind, const char *path,
+                                const struct slc_shared_files *files,
+                                const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
+                                SluiceImageSource **source);
+
+#endif /* SLC_OPEN_FILE_KIND_H */

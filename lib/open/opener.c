@@ -1,0 +1,238 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "open/opener.h"
+
+#include "base/alloc.h"
+#include "base/log.h"
+#include "base/said.h"
+#include "base/struct_size.h"
+#ifdef SLC_HAVE_BAKE
+#include "open/background.h"
+#endif
+
+#include <string.h>
+
+SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
+                                     SluiceImageOpener **pOpener)
+{
+    if (!pInfo || !pOpener)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceImageOpenerCreateInfo), &info, pInfo, &pInfo->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!slc_allocator_is_valid(info.pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
+    SluiceImageOpener *opener = slc_calloc(&cb, 1, sizeof *opener);
+    if (!opener)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    opener->allocator = cb;
+    opener->log = info.log;
+    opener->max_cache_size = info.maxCacheSize ? info.maxCacheSize : SLUICE_OPEN_DEFAULT_CACHE_SIZE;
+    opener->max_bake_memory = info.maxBakeMemory;
+    opener->bake_thread_count = info.bakeThreadCount;
+    pthread_mutex_init(&opener->mutex, NULL);
+    if (info.pCacheFolder) {
+        opener->cache_folder = slc_strdup(&cb, info.pCacheFolder);
+        result = opener->cache_folder ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    if (result == SLUICE_SUCCESS)
+        result = slc_shared_files_init(&opener->files, info.maxOpenFileCount, &opener->allocator);
+    if (result != SLUICE_SUCCESS) {
+        sluiceDestroyImageOpener(opener);
+        return result;
+    }
+    *pOpener = opener;
+    return SLUICE_SUCCESS;
+}
+
+void sluiceDestroyImageOpener(SluiceImageOpener *opener)
+{
+    if (!opener)
+        return;
+    SluiceAllocationCallbacks cb = opener->allocator;
+#ifdef SLC_HAVE_BAKE
+    slc_background_destroy(opener->background);
+#endif
+    slc_shared_files_finish(&opener->files);
+    if (opener->cache_folder)
+        slc_free(&cb, opener->cache_folder, strlen(opener->cache_folder) + 1, 1);
+    pthread_mutex_destroy(&opener->mutex);
+    slc_free(&cb, opener, 1, sizeof *opener);
+}
+
+#ifndef SLC_HAVE_BAKE
+SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *path,
+                                       const struct slc_file_identity *identity,
+                                       struct slc_picture_stream **stream);
+
+SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *path,
+                                       const struct slc_file_identity *identity,
+                                       struct slc_picture_stream **stream)
+{
+    (void)identity, (void)stream;
+    slc_log(
+        &opener->log, SLUICE_LOG_ERROR,
+        "%s: is no tile store, OpenEXR, DDS or KTX2 file; this build of Sluice was made without "
+        "sluice-bake, which reads other pictures with libvips",
+        path);
+    return SLUICE_ERROR_UNSUPPORTED;
+}
+#endif
+
+static void free_image(struct slc_opened_image *image)
+{
+    SluiceAllocationCallbacks cb = image->opener->allocator;
+#ifdef SLC_HAVE_BAKE
+    slc_picture_stream_destroy(image->stream);
+#endif
+    sluiceDestroyImageSource(image->source);
+    if (image->path)
+        slc_free(&cb, image->path, strlen(image->path) + 1, 1);
+    slc_free(&cb, image, 1, sizeof *image);
+}
+
+static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    struct slc_opened_image *image = (struct slc_opened_image *)base;
+#ifdef SLC_HAVE_BAKE
+    if (image->stream) {
+        *info = image->stream->info;
+        return SLUICE_SUCCESS;
+    }
+#endif
+    return sluiceGetImageInfo(image->source, info);
+}
+
+static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
+                                void *texels, size_t row_pitch, SluiceImageFault *fault)
+{
+    struct slc_opened_image *image = (struct slc_opened_image *)base;
+#ifdef SLC_HAVE_BAKE
+    if (image->stream)
+        return slc_picture_stream_read(image->stream, region, texels, row_pitch, fault);
+#endif
+    return sluiceReadImageRegionLocated(image->source, region, texels, row_pitch, fault);
+}
+
+static struct slc_opened_image **find_bucket(SluiceImageOpener *opener, const char *path)
+{
+    return &opener->buckets[slc_said_key(path) % SLC_OPENER_BUCKETS];
+}
+
+static void destroy(SluiceImageSource *base)
+{
+    struct slc_opened_image *image = (struct slc_opened_image *)base;
+    SluiceImageOpener *opener = image->opener;
+    pthread_mutex_lock(&opener->mutex);
+    bool is_last = --image->reference_count == 0;
+    if (is_last) {
+        struct slc_opened_image **link = find_bucket(opener, image->path);
+        while (*link != image)
+            link = &(*link)->next;
+        *link = image->next;
+    }
+    pthread_mutex_unlock(&opener->mutex);
+    if (is_last)
+        free_image(image);
+}
+
+static const SluiceImageSourceInterface opened_interface = {.structSize = sizeof opened_interface,
+                                                            .pfnGetInfo = get_info,
+                                                            .pfnDestroy = destroy,
+                                                            .pfnReadRegionLocated = read_region};
+
+/* With the mutex held. */
+static struct slc_opened_image *find_image(SluiceImageOpener *opener, const char *path,
+                                           const struct slc_file_identity *identity)
+{
+    struct slc_opened_image *image = *find_bucket(opener, path);
+    while (image && (strcmp(image->path, path) != 0 ||
+                     memcmp(&image->identity, identity, sizeof *identity) != 0))
+        image = image->next;
+    return image;
+}
+
+/* With the mutex held. Not in a bucket yet. */
+static SluiceResult open_image(SluiceImageOpener *opener, const char *path,
+                               SluiceImageFileKind kind, const struct slc_file_identity *identity,
+                               struct slc_opened_image **opened)
+{
+    struct slc_opened_image *image = slc_calloc(&opener->allocator, 1, sizeof *image);
+    if (!image)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    image->base.pInterface = &opened_interface;
+    image->opener = opener;
+    image->reference_count = 1;
+    image->kind = kind;
+    image->identity = *identity;
+    image->path = slc_strdup(&opener->allocator, path);
+    SluiceResult result = image->path ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (result == SLUICE_SUCCESS && kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
+        result = slc_picture_stream_create(opener, image->path, identity, &image->stream);
+    else if (result == SLUICE_SUCCESS)
+        result = slc_file_kind_open(kind, path, &opener->files, &opener->allocator, &opener->log,
+                                    &image->source);
+    if (result != SLUICE_SUCCESS) {
+        free_image(image);
+        return result;
+    }
+    *opened = image;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
+                                   SluiceImageSource **pSource)
+{
+    if (!opener || !path || !pSource)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceImageFileKind kind;
+    struct slc_file_identity identity = {0};
+    SluiceResult result = slc_file_kind_find(path, &opener->log, &kind, &identity);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    pthread_mutex_lock(&opener->mutex);
+    struct slc_opened_image *image = find_image(opener, path, &identity);
+    if (image) {
+        image->reference_count++;
+    } else {
+        result = open_image(opener, path, kind, &identity, &image);
+        if (result == SLUICE_SUCCESS) {
+            struct slc_opened_image **bucket = find_bucket(opener, path);
+            image->next = *bucket;
+            *bucket = image;
+        }
+    }
+    pthread_mutex_unlock(&opener->mutex);
+    if (result == SLUICE_SUCCESS)
+        *pSource = &image->base;
+    return result;
+}
+
+SluiceResult sluiceGetOpenedImageInfo(SluiceImageSource *source, SluiceOpenedImageInfo *pInfo)
+{
+    if (!source || !pInfo)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (source->pInterface != &opened_interface)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceOpenedImageInfo), pInfo, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_opened_image *image = (struct slc_opened_image *)source;
+    SluiceOpenedImageInfo info = {.structSize = sizeof info,
+                                  .kind = image->kind,
+                                  .source = image->source,
+                                  .previewReady = true,
+                                  .ready = true};
+    pthread_mutex_lock(&image->opener->mutex);
+    info.openCount = image->reference_count;
+    pthread_mutex_unlock(&image->opener->mutex);
+#ifdef SLC_HAVE_BAKE
+    if (image->stream)
+        slc_picture_stream_describe(image->stream, &info);
+#endif
+    slc_struct_write(SLC_STRUCT(SluiceOpenedImageInfo), pInfo, &info);
+    return SLUICE_SUCCESS;
+}

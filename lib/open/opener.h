@@ -1,0 +1,42 @@
+/** Files that are open, by path, and what they share. */
+#ifndef SLC_OPEN_OPENER_H
+#define SLC_OPEN_OPENER_H
+
+#include <sluice/open.h>
+
+#include "image/file_pool.h"
+#include "open/file_kind.h"
+
+#include <pthread.h>
+
+#define SLC_OPENER_BUCKETS 1024u
+
+struct slc_picture_stream;
+struct slc_background;
+
+/** One open file. Its opener's mutex guards `next` and `reference_count`; the rest is constant. */
+struct slc_opened_image {
+    SluiceImageSource base;
+    SluiceImageOpener *opener;
+    struct slc_opened_image *next; ///< in the same bucket
+    uint32_t reference_count;
+    char *path; ///< owned
+    struct slc_file_identity identity;
+    SluiceImageFileKind kind;
+    SluiceImageSource *source;         ///< owned; NULL for pictures
+    struct slc_picture_stream *stream; ///< owned; of pictures
+};
+
+struct SluiceImageOpener {
+    SluiceAllocationCallbacks allocator;
+    SluiceLogCallback log;
+    char *cache_folder; ///< owned; NULL: none
+    uint64_t max_cache_size, max_bake_memory;
+    uint32_t bake_thread_count;
+    struct slc_shared_files files;
+    pthread_mutex_t mutex;             ///< around what follows
+    struct slc_background *background; ///< owned; NULL: no picture was opened yet
+    struct slc_opened_image *buckets[SLC_OPENER_BUCKETS];
+};
+
+#endif /* SLC_OPEN_OPENER_H */

@@ -1,0 +1,207 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "base/alloc.h"
+#include "base/log.h"
+#include "image/input_file.h"
+#include "open/background.h"
+#include "open/store_cache.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool note_progress(void *user, uint64_t done, uint64_t total)
+{
+    struct slc_picture_stream *stream = user;
+    atomic_store(&stream->total_texels, total);
+    atomic_store(&stream->done_texels, done);
+    return !atomic_load(&stream->is_canceled);
+}
+
+static bool keep_going(void *user, uint64_t done, uint64_t total)
+{
+    (void)done, (void)total;
+    return !atomic_load(&((struct slc_picture_stream *)user)->is_canceled);
+}
+
+/* Bytes of the file at `path`, which goes. NULL if they cannot be had. */
+static void *take_file(const struct slc_picture_stream *stream, const char *path, size_t *size)
+{
+    const SluiceAllocationCallbacks *cb = &stream->opener->allocator;
+    struct slc_input_file file;
+    void *bytes = NULL;
+    SluiceResult result = slc_input_file_init(&file, path, cb, &stream->opener->log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_input_file_open(&file);
+    if (result == SLUICE_SUCCESS)
+        bytes = slc_alloc(cb, (size_t)file.size, 1);
+    if (bytes && slc_input_file_read(&file, 0, bytes, (size_t)file.size) != SLUICE_SUCCESS) {
+        slc_free(cb, bytes, (size_t)file.size, 1);
+        bytes = NULL;
+    }
+    *size = (size_t)file.size;
+    slc_input_file_finish(&file);
+    unlink(path);
+    return bytes;
+}
+
+/* Shows it unless the store is there. */
+static void show_preview(struct slc_picture_stream *stream, void *bytes, size_t size)
+{
+    SluiceImageOpener *opener = stream->opener;
+    SluiceInput input = {.structSize = sizeof input, .pBytes = bytes, .size = size};
+    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info,
+                                             .pPath = stream->path,
+                                             .pInput = &input,
+                                             .pAllocator = &opener->allocator,
+                                             .log = opener->log,
+                                             .readPool = opener->files.read_pool};
+    SluiceImageSource *preview = NULL;
+    bool is_shown = false;
+    SluiceResult result = sluiceCreateStoreImageSource(&info, &preview);
+    pthread_rwlock_wrlock(&stream->lock);
+    if (result == SLUICE_SUCCESS && !stream->store && !stream->preview) {
+        stream->preview = preview;
+        stream->preview_bytes = bytes;
+        stream->preview_size = size;
+        is_shown = true;
+    }
+    pthread_rwlock_unlock(&stream->lock);
+    if (is_shown)
+        return;
+    sluiceDestroyImageSource(preview);
+    slc_free(&opener->allocator, bytes, size, 1);
+}
+
+/* Through a file of its own, because that is what a bake writes. Without one nothing is lost. */
+void slc_make_preview(struct slc_background *background, struct slc_picture_stream *stream)
+{
+    char path[1024];
+    size_t size;
+    int length = snprintf(path, sizeof path, "%s.%ld-%p.preview.store", stream->store_path,
+                          (long)getpid(), (void *)stream);
+    if (length < 0 || (size_t)length >= sizeof path)
+        return;
+    SluiceBakeInfo info = {.structSize = sizeof info,
+                           .pInputPath = stream->path,
+                           .pOutputPath = path,
+                           .pUserData = stream,
+                           .pfnProgress = keep_going,
+                           .firstLevel = stream->preview_level};
+    SluiceResult result = sluiceBakeFile(slc_background_baker(background), &info, NULL);
+    if (result != SLUICE_SUCCESS)
+        return;
+    void *bytes = take_file(stream, path, &size);
+    if (bytes)
+        show_preview(stream, bytes, size);
+}
+
+SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceImageSource **store)
+{
+    static const SluiceLogCallback silent;
+    SluiceImageOpener *opener = stream->opener;
+    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info,
+                                             .pPath = stream->store_path,
+                                             .pAllocator = &opener->allocator,
+                                             .log = silent,
+                                             .readPool = opener->files.read_pool,
+                                             .filePool = opener->files.pool};
+    SluiceStoreInfo found = {.structSize = sizeof found};
+    SluiceBakeSettings settings = {.structSize = sizeof settings};
+    uint64_t hash = 0;
+    *store = NULL;
+    SluiceResult result = sluiceHashBakeSettings(&settings, &hash);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceCreateStoreImageSource(&info, store);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceGetStoreInfo(*store, &found);
+    const struct slc_file_identity *identity = &stream->identity;
+    bool is_same = found.sourceSize == identity->size && found.settingsHash == hash &&
+                   found.sourceModifiedTimeNs ==
+                       identity->seconds * INT64_C(1000000000) + identity->nanoseconds;
+    if (result == SLUICE_SUCCESS && is_same) {
+        slc_store_cache_touch(stream->store_path);
+        return SLUICE_SUCCESS;
+    }
+    sluiceDestroyImageSource(*store);
+    *store = NULL;
+    return result == SLUICE_SUCCESS ? SLUICE_ERROR_CORRUPT_DATA : result;
+}
+
+/* Whether the opener has a source that reads it. */
+static bool is_in_use(void *user, const char *name)
+{
+    SluiceImageOpener *opener = user;
+    bool is_used = false;
+    pthread_mutex_lock(&opener->mutex);
+    for (uint32_t b = 0; b < SLC_OPENER_BUCKETS && !is_used; b++)
+        for (struct slc_opened_image *i = opener->buckets[b]; i && !is_used; i = i->next) {
+            const char *path = i->stream ? strrchr(i->stream->store_path, '/') : NULL;
+            is_used = path && strcmp(path + 1, name) == 0;
+        }
+    pthread_mutex_unlock(&opener->mutex);
+    return is_used;
+}
+
+/* Another process may write the same store now; then this one waits and uses it. */
+static SluiceResult bake_store(struct slc_background *background, struct slc_picture_stream *stream,
+                               bool force)
+{
+    SluiceBakeInfo info = {.structSize = sizeof info,
+                           .pInputPath = stream->path,
+                           .pOutputPath = stream->store_path,
+                           .force = force,
+                           .pUserData = stream,
+                           .pfnProgress = note_progress};
+    SluiceResult result;
+    for (;;) {
+        result = sluiceBakeFile(slc_background_baker(background), &info, NULL);
+        bool is_later = result == SLUICE_ERROR_BUSY || result == SLUICE_NOT_READY;
+        if (!is_later || atomic_load(&stream->is_canceled))
+            return result;
+        slc_background_pause(background);
+        info.force = false;
+    }
+}
+
+static bool is_as_described(const struct slc_picture_stream *stream, SluiceImageSource *store)
+{
+    SluiceImageInfo info = {.structSize = sizeof info};
+    return sluiceGetImageInfo(store, &info) == SLUICE_SUCCESS && info.width == stream->info.width &&
+           info.height == stream->info.height && info.format == stream->info.format &&
+           info.mipLevelCount == stream->info.mipLevelCount;
+}
+
+void slc_make_store(struct slc_background *background, struct slc_picture_stream *stream)
+{
+    SluiceImageOpener *opener = stream->opener;
+    SluiceImageSource *store = NULL, *preview = NULL;
+    SluiceResult result = bake_store(background, stream, stream->rebuild_count > 0);
+    if (result == SLUICE_SUCCESS) {
+        result = slc_open_picture_store(stream, &store);
+        if (result == SLUICE_ERROR_CORRUPT_DATA ||
+            (result == SLUICE_SUCCESS && !is_as_described(stream, store))) {
+            slc_log(&opener->log, SLUICE_LOG_ERROR,
+                    "%s: has changed while it was baked; open it again", stream->path);
+            result = SLUICE_ERROR_IO;
+        }
+    }
+    if (result != SLUICE_SUCCESS) {
+        sluiceDestroyImageSource(store);
+        if (!atomic_load(&stream->is_canceled))
+            atomic_store(&stream->failure, result);
+        return;
+    }
+    pthread_rwlock_wrlock(&stream->lock);
+    preview = stream->preview;
+    void *bytes = stream->preview_bytes;
+    size_t size = stream->preview_size;
+    stream->store = store;
+    stream->preview = NULL;
+    stream->preview_bytes = NULL;
+    pthread_rwlock_unlock(&stream->lock);
+    sluiceDestroyImageSource(preview);
+    slc_free(&opener->allocator, bytes, size, 1);
+    slc_store_cache_trim(opener->cache_folder, opener->max_cache_size, &opener->allocator,
+                         is_in_use, opener);
+}

@@ -1,0 +1,179 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "open/picture_stream.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "open/background.h"
+#include "open/store_cache.h"
+
+#include <string.h>
+
+/* Size and format of a picture that is yet to be baked. */
+static SluiceResult describe(struct slc_picture_stream *stream)
+{
+    SluiceBakeInfo info = {.structSize = sizeof info, .pInputPath = stream->path};
+    SluiceBakeReport report = {.structSize = sizeof report};
+    SluiceResult result =
+        sluiceDescribeBake(slc_background_baker(stream->opener->background), &info, &report);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    stream->info = (SluiceImageInfo){
+        .structSize = sizeof(SluiceImageInfo),
+        .width = report.width,
+        .height = report.height,
+        .mipLevelCount = report.mipLevelCount,
+        .format = report.format,
+        .arrayLayerCount = 1,
+        .addressModeU = SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE,
+        .addressModeV = SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE,
+    };
+    return SLUICE_SUCCESS;
+}
+
+static uint32_t find_preview_level(const SluiceImageInfo *info)
+{
+    uint32_t size = slc_max_u32(info->width, info->height), level = 0;
+    while (slc_mip_size(size, level) > SLC_PREVIEW_SIZE)
+        level++;
+    return level;
+}
+
+static void queue_jobs(struct slc_picture_stream *stream)
+{
+    struct slc_background *background = stream->opener->background;
+    if (stream->preview_level > 0)
+        slc_background_queue(background, stream, SLC_JOB_PREVIEW);
+    slc_background_queue(background, stream, SLC_JOB_BAKE);
+}
+
+static SluiceResult init(struct slc_picture_stream *stream)
+{
+    SluiceImageOpener *opener = stream->opener;
+    SluiceResult result = slc_store_cache_make(opener->cache_folder, &opener->log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_store_cache_path(opener->cache_folder, stream->path, &opener->allocator,
+                                      &stream->store_path);
+    if (result == SLUICE_SUCCESS && !opener->background)
+        result = slc_background_create(opener, &opener->background);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = slc_open_picture_store(stream, &stream->store);
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
+        return result;
+    stream->info.structSize = sizeof stream->info;
+    result = stream->store ? sluiceGetImageInfo(stream->store, &stream->info) : describe(stream);
+    stream->info.pName = stream->path;
+    stream->preview_level = find_preview_level(&stream->info);
+    if (result == SLUICE_SUCCESS && !stream->store)
+        queue_jobs(stream);
+    return result;
+}
+
+SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *path,
+                                       const struct slc_file_identity *identity,
+                                       struct slc_picture_stream **out)
+{
+    if (!opener->cache_folder) {
+        slc_log(&opener->log, SLUICE_LOG_ERROR,
+                "%s: is no tile store, OpenEXR, DDS or KTX2 file; set pCacheFolder, where the "
+                "stores of such pictures are kept",
+                path);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    struct slc_picture_stream *stream = slc_calloc(&opener->allocator, 1, sizeof *stream);
+    if (!stream)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    stream->opener = opener;
+    stream->path = path;
+    stream->identity = *identity;
+    pthread_rwlock_init(&stream->lock, NULL);
+    SluiceResult result = init(stream);
+    if (result != SLUICE_SUCCESS) {
+        slc_picture_stream_destroy(stream);
+        return result;
+    }
+    *out = stream;
+    return SLUICE_SUCCESS;
+}
+
+void slc_picture_stream_destroy(struct slc_picture_stream *stream)
+{
+    if (!stream)
+        return;
+    SluiceAllocationCallbacks cb = stream->opener->allocator;
+    if (stream->opener->background)
+        slc_background_cancel(stream->opener->background, stream);
+    sluiceDestroyImageSource(stream->store);
+    sluiceDestroyImageSource(stream->preview);
+    slc_free(&cb, stream->preview_bytes, stream->preview_size, 1);
+    slc_free(&cb, stream->store_path, stream->store_path ? strlen(stream->store_path) + 1 : 0, 1);
+    pthread_rwlock_destroy(&stream->lock);
+    slc_free(&cb, stream, 1, sizeof *stream);
+}
+
+/* Whether another bake may help. */
+static bool is_lost(SluiceResult result)
+{
+    return result == SLUICE_ERROR_CORRUPT_DATA || result == SLUICE_ERROR_FILE_NOT_FOUND ||
+           result == SLUICE_ERROR_IO;
+}
+
+/* Bakes again. False if that was done often enough. */
+static bool rebuild(struct slc_picture_stream *stream, const SluiceImageSource *failed)
+{
+    SluiceImageOpener *opener = stream->opener;
+    SluiceImageSource *store = NULL;
+    bool is_rebuilt = true;
+    pthread_rwlock_wrlock(&stream->lock);
+    if (stream->store == failed) { /* otherwise another reader was here first */
+        is_rebuilt = stream->rebuild_count < SLC_MOST_REBUILDS;
+        if (is_rebuilt) {
+            stream->rebuild_count++;
+            store = stream->store;
+            stream->store = NULL;
+        }
+    }
+    pthread_rwlock_unlock(&stream->lock);
+    if (!store)
+        return is_rebuilt;
+    sluiceDestroyImageSource(store);
+    slc_log(&opener->log, SLUICE_LOG_WARNING, "%s: its store %s cannot be read; baking it again",
+            stream->path, stream->store_path);
+    queue_jobs(stream);
+    return true;
+}
+
+SluiceResult slc_picture_stream_read(struct slc_picture_stream *stream,
+                                     const SluiceImageRegion *region, void *texels,
+                                     size_t row_pitch, SluiceImageFault *fault)
+{
+    SluiceImageRegion part = *region;
+    SluiceResult result = (SluiceResult)atomic_load(&stream->failure);
+    pthread_rwlock_rdlock(&stream->lock);
+    const SluiceImageSource *store = stream->store;
+    if (store) {
+        result = sluiceReadImageRegionLocated(stream->store, region, texels, row_pitch, fault);
+    } else if (stream->preview && region->mipLevel >= stream->preview_level) {
+        part.mipLevel -= stream->preview_level;
+        result = sluiceReadImageRegionLocated(stream->preview, &part, texels, row_pitch, fault);
+    } else if (result == SLUICE_SUCCESS) {
+        result = SLUICE_NOT_READY;
+    }
+    pthread_rwlock_unlock(&stream->lock);
+    if (store && is_lost(result) && rebuild(stream, store))
+        return SLUICE_NOT_READY;
+    return result;
+}
+
+void slc_picture_stream_describe(struct slc_picture_stream *stream, SluiceOpenedImageInfo *info)
+{
+    pthread_rwlock_rdlock(&stream->lock);
+    info->ready = stream->store != NULL;
+    info->previewReady = stream->store || stream->preview;
+    pthread_rwlock_unlock(&stream->lock);
+    info->failure = (SluiceResult)atomic_load(&stream->failure);
+    info->totalTexels = atomic_load(&stream->total_texels);
+    info->doneTexels = atomic_load(&stream->done_texels);
+}

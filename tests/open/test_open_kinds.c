@@ -1,0 +1,315 @@
+/* Files are opened by what is in them, once while they stay the same, and refused by name. */
+#define _XOPEN_SOURCE 700
+
+#include <sluice/open.h>
+#include <sluice/store.h>
+
+#include "bake/baked.h"
+#include "support/failing_allocator.h"
+#include "support/few_descriptors.h"
+#include "support/test.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct fixture {
+    struct bake_folder folder;
+    SluiceImageOpener *opener;
+    int errors;
+    char last[1024];
+};
+
+static void on_log(void *user, SluiceLogSeverity severity, const char *message)
+{
+    struct fixture *f = user;
+    if (severity != SLUICE_LOG_ERROR)
+        return;
+    f->errors++;
+    snprintf(f->last, sizeof f->last, "%s", message);
+}
+
+static void setup(struct fixture *f)
+{
+    memset(f, 0, sizeof *f);
+    bake_folder_init(&f->folder);
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info, .log = {f, on_log}};
+    CHECK_OK(sluiceCreateImageOpener(&info, &f->opener));
+}
+
+static void teardown(struct fixture *f)
+{
+    sluiceDestroyImageOpener(f->opener);
+    bake_folder_finish(&f->folder);
+}
+
+static void own_file(const char *name, char path[1024])
+{
+    const char *root = getenv("SLUICE_SOURCE_ROOT");
+    snprintf(path, 1024, "%s/tests/%s", root ? root : ".", name);
+}
+
+static void copy_file(const char *from, const char *to)
+{
+    char command[2048];
+    snprintf(command, sizeof command, "cp '%s' '%s'", from, to);
+    assert_int_equal(system(command), 0);
+}
+
+static void write_store(const char *path, uint32_t width)
+{
+    struct plain_source source;
+    uint8_t *texels = calloc(width, 100);
+    plain_source_init(&source, SLUICE_FORMAT_R8_UNORM, width, 100, texels);
+    bake_source(&source.base, path, NULL);
+    free(texels);
+}
+
+static SluiceOpenedImageInfo state_of(SluiceImageSource *source)
+{
+    SluiceOpenedImageInfo info = {.structSize = sizeof info};
+    CHECK_OK(sluiceGetOpenedImageInfo(source, &info));
+    return info;
+}
+
+/* Names say nothing: all of them end in .png. */
+static void files_are_known_by_their_contents(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file;
+        SluiceImageFileKind kind;
+    } files[] = {
+        {"exr/data/mip_zip.exr", SLUICE_IMAGE_FILE_KIND_EXR},
+        {"exr/data/scan_mixed.exr", SLUICE_IMAGE_FILE_KIND_EXR},
+        {"container/data/nvtt_bc1.dds", SLUICE_IMAGE_FILE_KIND_DDS},
+        {NULL, SLUICE_IMAGE_FILE_KIND_STORE},
+    };
+    struct fixture f;
+    setup(&f);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        char path[256], from[1024];
+        SluiceImageSource *source;
+        SluiceImageInfo image = {.structSize = sizeof image};
+        bake_folder_file(&f.folder, "a.png", path);
+        if (files[i].file) {
+            own_file(files[i].file, from);
+            copy_file(from, path);
+        } else {
+            write_store(path, 300);
+        }
+        CHECK_OK(sluiceOpenImageSource(f.opener, path, &source));
+        SluiceOpenedImageInfo info = state_of(source);
+        assert_int_equal(info.kind, files[i].kind);
+        assert_true(info.ready && info.previewReady && info.source);
+        CHECK_OK(sluiceGetImageInfo(source, &image));
+        SluiceImageRegion region = {image.mipLevelCount - 1, 0, 0, 1, 1, 0};
+        uint8_t texel[16];
+        CHECK_OK(sluiceReadImageRegion(source, &region, texel, sizeof texel));
+        sluiceDestroyImageSource(source);
+        unlink(path);
+    }
+    assert_int_equal(f.errors, 0);
+    teardown(&f);
+}
+
+static void a_file_is_open_once_until_it_changes(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[256], other[256];
+    SluiceImageSource *first, *again, *changed;
+    SluiceImageInfo image = {.structSize = sizeof image};
+    setup(&f);
+    bake_folder_file(&f.folder, "a.store", path);
+    bake_folder_file(&f.folder, "b.store", other);
+    write_store(path, 300);
+    write_store(other, 300);
+    CHECK_OK(sluiceOpenImageSource(f.opener, path, &first));
+    CHECK_OK(sluiceOpenImageSource(f.opener, path, &again));
+    assert_ptr_equal(first, again);
+    assert_int_equal(state_of(first).openCount, 2);
+    CHECK_OK(sluiceOpenImageSource(f.opener, other, &changed));
+    assert_ptr_not_equal(first, changed);
+    sluiceDestroyImageSource(changed);
+    write_store(path, 200);
+    CHECK_OK(sluiceOpenImageSource(f.opener, path, &changed));
+    assert_ptr_not_equal(first, changed);
+    CHECK_OK(sluiceGetImageInfo(changed, &image));
+    assert_int_equal(image.width, 200);
+    sluiceDestroyImageSource(again);
+    CHECK_OK(sluiceGetImageInfo(first, &image));
+    assert_int_equal(image.width, 300);
+    sluiceDestroyImageSource(first);
+    sluiceDestroyImageSource(changed);
+    teardown(&f);
+}
+
+static void what_cannot_be_opened_is_refused_by_name(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[256];
+    SluiceImageSource *source = NULL;
+    setup(&f);
+    bake_folder_file(&f.folder, "x", path);
+    CHECK_RESULT(sluiceOpenImageSource(f.opener, path, &source), SLUICE_ERROR_FILE_NOT_FOUND);
+    assert_non_null(strstr(f.last, path));
+    CHECK_RESULT(sluiceOpenImageSource(f.opener, f.folder.path, &source), SLUICE_ERROR_IO);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    CHECK_RESULT(sluiceOpenImageSource(f.opener, path, &source), SLUICE_ERROR_IO);
+    assert_non_null(strstr(f.last, "is not a regular file"));
+    unlink(path);
+    static const char *const starts[] = {"\x76\x2F\x31\x01", "DDS ", "\xABKTX 20\xBB\r\n\x1A\n",
+                                         "\x89SLS\r\n\x1A\n"};
+    for (size_t i = 0; i < sizeof starts / sizeof starts[0]; i++) {
+        FILE *file = fopen(path, "wb");
+        fputs(starts[i], file);
+        fclose(file);
+        int before = f.errors;
+        CHECK_RESULT(sluiceOpenImageSource(f.opener, path, &source), SLUICE_ERROR_CORRUPT_DATA);
+        assert_true(f.errors > before);
+        assert_non_null(strstr(f.last, path));
+        unlink(path);
+    }
+    FILE *file = fopen(path, "wb");
+    fclose(file);
+    CHECK_RESULT(sluiceOpenImageSource(f.opener, path, &source), SLUICE_ERROR_UNSUPPORTED);
+    assert_non_null(strstr(f.last, "pCacheFolder"));
+    assert_null(source);
+    if (getuid() != 0) {
+        chmod(path, 0);
+        CHECK_RESULT(sluiceOpenImageSource(f.opener, path, &source), SLUICE_ERROR_IO);
+    }
+    teardown(&f);
+}
+
+static void three_hundred_files_are_open_with_sixty_descriptors(void **state)
+{
+    (void)state;
+    enum { COUNT = 300 };
+    struct bake_folder folder;
+    SluiceImageSource *sources[COUNT];
+    char first[256], path[256];
+    bake_folder_init(&folder);
+    bake_folder_file(&folder, "first.store", first);
+    write_store(first, 64);
+    for (int i = 0; i < COUNT; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "%d.store", i);
+        assert_int_equal(link(first, bake_folder_file(&folder, name, path)), 0);
+    }
+    struct few_descriptors few;
+    SluiceImageOpener *opener;
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info};
+    few_descriptors_begin(&few, 40);
+    SluiceResult result = sluiceCreateImageOpener(&info, &opener);
+    for (int i = 0; i < COUNT && result == SLUICE_SUCCESS; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "%d.store", i);
+        result = sluiceOpenImageSource(opener, bake_folder_file(&folder, name, path), &sources[i]);
+    }
+    uint8_t texel;
+    SluiceImageRegion region = {0, 5, 5, 1, 1, 0};
+    for (int i = 0; i < 2 * COUNT && result == SLUICE_SUCCESS; i++)
+        result = sluiceReadImageRegion(sources[i % COUNT], &region, &texel, 1);
+    few_descriptors_end(&few);
+    CHECK_OK(result);
+    for (int i = 0; i < COUNT; i++)
+        sluiceDestroyImageSource(sources[i]);
+    sluiceDestroyImageOpener(opener);
+    bake_folder_finish(&folder);
+}
+
+struct opening {
+    SluiceImageOpener *opener;
+    char path[256];
+    int failures;
+};
+
+static void *open_and_close(void *argument)
+{
+    struct opening *opening = argument;
+    for (int i = 0; i < 100; i++) {
+        SluiceImageSource *source;
+        uint8_t texel;
+        SluiceImageRegion region = {0, 5, 5, 1, 1, 0};
+        if (sluiceOpenImageSource(opening->opener, opening->path, &source) != SLUICE_SUCCESS ||
+            sluiceReadImageRegion(source, &region, &texel, 1) != SLUICE_SUCCESS)
+            opening->failures++;
+        else
+            sluiceDestroyImageSource(source);
+    }
+    return NULL;
+}
+
+static void threads_share_a_source(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct opening openings[4] = {0};
+    pthread_t threads[4];
+    setup(&f);
+    for (int i = 0; i < 4; i++) {
+        openings[i].opener = f.opener;
+        bake_folder_file(&f.folder, i < 3 ? "a.store" : "b.store", openings[i].path);
+        write_store(openings[i].path, 64);
+    }
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, open_and_close, &openings[i]), 0);
+    for (int i = 0; i < 4; i++) {
+        pthread_join(threads[i], NULL);
+        assert_int_equal(openings[i].failures, 0);
+    }
+    teardown(&f);
+}
+
+static void every_refused_allocation_is_survived(void **state)
+{
+    (void)state;
+    struct bake_folder folder;
+    char path[256];
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    bake_folder_init(&folder);
+    bake_folder_file(&folder, "a.store", path);
+    write_store(path, 64);
+    for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+        struct failing_allocator a;
+        SluiceImageOpener *opener = NULL;
+        SluiceImageSource *source = NULL;
+        failing_allocator_init(&a, n);
+        SluiceImageOpenerCreateInfo info = {
+            .structSize = sizeof info, .pCacheFolder = folder.path, .pAllocator = &a.callbacks};
+        result = sluiceCreateImageOpener(&info, &opener);
+        if (result == SLUICE_SUCCESS)
+            result = sluiceOpenImageSource(opener, path, &source);
+        if (result == SLUICE_SUCCESS) {
+            uint64_t calls = a.calls;
+            a.refuse_from = 0;
+            assert_int_equal(state_of(source).openCount, 1);
+            assert_int_equal(a.calls, calls);
+        }
+        sluiceDestroyImageSource(source);
+        sluiceDestroyImageOpener(opener);
+        if (result != SLUICE_SUCCESS)
+            CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        assert_int_equal(a.live_bytes, 0);
+    }
+    bake_folder_finish(&folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(files_are_known_by_their_contents),
+        cmocka_unit_test(a_file_is_open_once_until_it_changes),
+        cmocka_unit_test(what_cannot_be_opened_is_refused_by_name),
+        cmocka_unit_test(three_hundred_files_are_open_with_sixty_descriptors),
+        cmocka_unit_test(threads_share_a_source),
+        cmocka_unit_test(every_refused_allocation_is_survived),
+    };
+    return RUN_TESTS(tests);
+}

@@ -1,0 +1,454 @@
+/* Pictures without tiles: coarse levels first, then the store of a bake, which is kept. */
+#define _XOPEN_SOURCE 700
+
+#include <sluice/open.h>
+#include <sluice/store.h>
+
+#include "bake/baked.h"
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "open/store_cache.h"
+#include "support/failing_allocator.h"
+#include "support/test.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { WIDTH = 1300, HEIGHT = 700 };
+
+struct fixture {
+    struct bake_folder folder;
+    char cache[400], png[256];
+    SluiceImageOpener *opener;
+    atomic_int errors, warnings;
+    char last[1024];
+};
+
+static void on_log(void *user, SluiceLogSeverity severity, const char *message)
+{
+    struct fixture *f = user;
+    f->errors += severity == SLUICE_LOG_ERROR;
+    f->warnings += severity == SLUICE_LOG_WARNING;
+    if (severity == SLUICE_LOG_ERROR)
+        snprintf(f->last, sizeof f->last, "%s", message);
+}
+
+static void write_picture(const char *path, uint32_t width, uint32_t height, uint32_t seed)
+{
+    uint8_t *samples = malloc((size_t)width * height * 3);
+    for (uint32_t i = 0; i < width * height * 3; i++)
+        samples[i] = (uint8_t)(i / 3 % width / 7 + seed + i % 3 * 40);
+    write_png(path, samples, width, height, 3, false);
+    free(samples);
+}
+
+static void open_opener(struct fixture *f, uint64_t max_cache_size)
+{
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                        .maxOpenFileCount = 1,
+                                        .pCacheFolder = f->cache,
+                                        .maxCacheSize = max_cache_size,
+                                        .bakeThreadCount = 1,
+                                        .log = {f, on_log}};
+    CHECK_OK(sluiceCreateImageOpener(&info, &f->opener));
+}
+
+static void setup(struct fixture *f)
+{
+    memset(f, 0, sizeof *f);
+    bake_folder_init(&f->folder);
+    snprintf(f->cache, sizeof f->cache, "%s/cache", f->folder.path);
+    bake_folder_file(&f->folder, "a.png", f->png);
+    write_picture(f->png, WIDTH, HEIGHT, 1);
+    open_opener(f, 0);
+}
+
+static void teardown(struct fixture *f)
+{
+    char command[500];
+    sluiceDestroyImageOpener(f->opener);
+    snprintf(command, sizeof command, "rm -rf '%s'", f->cache);
+    assert_int_equal(system(command), 0);
+    bake_folder_finish(&f->folder);
+}
+
+static void store_path(const struct fixture *f, const char *picture, char path[512])
+{
+    SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    char *made;
+    CHECK_OK(slc_store_cache_path(f->cache, picture, &cb, &made));
+    snprintf(path, 512, "%s", made);
+    slc_free(&cb, made, strlen(made) + 1, 1);
+}
+
+static SluiceOpenedImageInfo state_of(SluiceImageSource *source)
+{
+    SluiceOpenedImageInfo info = {.structSize = sizeof info};
+    CHECK_OK(sluiceGetOpenedImageInfo(source, &info));
+    return info;
+}
+
+static void wait_a_little(void)
+{
+    const struct timespec time = {0, 2000000};
+    nanosleep(&time, NULL);
+}
+
+/* Until a bake has ended, one way or the other; two minutes at most. */
+static SluiceOpenedImageInfo wait_for(SluiceImageSource *source)
+{
+    SluiceOpenedImageInfo info = state_of(source);
+    for (int i = 0; !info.ready && info.failure == SLUICE_SUCCESS && i < 60000; i++) {
+        wait_a_little();
+        info = state_of(source);
+    }
+    return info;
+}
+
+static SluiceResult read_texel(SluiceImageSource *source, uint32_t level, uint8_t texel[4])
+{
+    SluiceImageRegion region = {level, 0, 0, 1, 1, 0};
+    return sluiceReadImageRegion(source, &region, texel, 4);
+}
+
+/* Every level is that of a bake of our own. */
+static void check_baked(struct fixture *f, SluiceImageSource *source, const char *picture)
+{
+    char baked[256];
+    SluiceImageInfo info = {.structSize = sizeof info};
+    bake_folder_file(&f->folder, "baked.store", baked);
+    bake_picture_file(picture, baked, NULL);
+    CHECK_OK(sluiceGetImageInfo(source, &info));
+    assert_string_equal(info.pName, picture);
+    for (uint32_t level = 0; level < info.mipLevelCount; level++) {
+        size_t size;
+        uint8_t *expected = read_bytes(baked, level, &size), *texels = malloc(size);
+        SluiceImageRegion region = {level, 0, 0, slc_mip_size(info.width, level),
+                                    slc_mip_size(info.height, level)};
+        CHECK_OK(sluiceReadImageRegion(source, &region, texels, (size_t)region.width * 4));
+        assert_memory_equal(texels, expected, size);
+        free(expected);
+        free(texels);
+    }
+    unlink(baked);
+}
+
+/* Takes the store as another process would that bakes the same picture. */
+static SluiceStoreWriter *begin_writing(const char *path)
+{
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .pPath = path,
+                                  .width = 16,
+                                  .height = 16,
+                                  .format = SLUICE_FORMAT_R8_UNORM};
+    SluiceStoreWriter *writer;
+    CHECK_OK(sluiceCreateStoreWriter(&info, &writer));
+    return writer;
+}
+
+static void coarse_levels_come_first_and_all_of_them_in_the_end(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[512];
+    uint8_t texel[4];
+    SluiceImageSource *source;
+    SluiceImageInfo image = {.structSize = sizeof image};
+    setup(&f);
+    CHECK_OK(slc_store_cache_make(f.cache, NULL));
+    store_path(&f, f.png, path);
+    SluiceStoreWriter *writer = begin_writing(path); /* while it is there no bake can begin */
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+    CHECK_OK(sluiceGetImageInfo(source, &image));
+    assert_int_equal(image.width, WIDTH);
+    assert_int_equal(image.height, HEIGHT);
+    assert_int_equal(image.mipLevelCount, 11);
+    assert_int_equal(image.format, SLUICE_FORMAT_R8G8B8A8_SRGB);
+    for (int i = 0; !state_of(source).previewReady && i < 60000; i++)
+        wait_a_little();
+    assert_true(state_of(source).previewReady);
+    assert_false(state_of(source).ready);
+    CHECK_RESULT(read_texel(source, 0, texel), SLUICE_NOT_READY);
+    CHECK_RESULT(read_texel(source, 1, texel), SLUICE_NOT_READY); /* 650 x 350 */
+    for (uint32_t level = 2; level < 11; level++)
+        CHECK_OK(read_texel(source, level, texel));
+    CHECK_OK(read_texel(source, 2, texel));
+    assert_in_range(texel[0], 0, 4); /* about 1 */
+    assert_in_range(texel[2], 78, 84);
+    sluiceDestroyStoreWriter(writer);
+    assert_true(wait_for(source).ready);
+    check_baked(&f, source, f.png);
+    sluiceDestroyImageSource(source);
+    teardown(&f);
+}
+
+static void the_store_is_kept_for_the_next_time(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[512];
+    struct stat before, after;
+    SluiceImageSource *source;
+    setup(&f);
+    store_path(&f, f.png, path);
+    for (int again = 0; again < 2; again++) {
+        CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+        if (again)
+            assert_true(state_of(source).ready);
+        else
+            assert_true(wait_for(source).ready);
+        check_baked(&f, source, f.png);
+        sluiceDestroyImageSource(source);
+        assert_int_equal(stat(path, again ? &after : &before), 0);
+        sluiceDestroyImageOpener(f.opener);
+        open_opener(&f, 0);
+    }
+    assert_int_equal(before.st_ino, after.st_ino);
+    assert_int_equal(f.errors, 0);
+    teardown(&f);
+}
+
+static void a_picture_that_changed_is_baked_again(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceImageSource *first, *changed;
+    SluiceImageInfo image = {.structSize = sizeof image};
+    setup(&f);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &first));
+    assert_true(wait_for(first).ready);
+    write_picture(f.png, 600, 500, 9);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &changed));
+    assert_ptr_not_equal(first, changed);
+    assert_true(wait_for(changed).ready);
+    CHECK_OK(sluiceGetImageInfo(changed, &image));
+    assert_int_equal(image.width, 600);
+    check_baked(&f, changed, f.png);
+    sluiceDestroyImageSource(first);
+    sluiceDestroyImageSource(changed);
+    teardown(&f);
+}
+
+static void damage(const char *path, long from, long to)
+{
+    FILE *file = fopen(path, "r+b");
+    assert_non_null(file);
+    for (long at = from; at < to; at++) {
+        fseek(file, at, SEEK_SET);
+        int byte = fgetc(file);
+        fseek(file, at, SEEK_SET);
+        fputc(byte ^ 0x55, file);
+    }
+    fclose(file);
+}
+
+static void a_damaged_store_is_baked_again(void **state)
+{
+    (void)state;
+    static const long parts[][2] = {{0, 200}, {4096, 8192}, {8192, 0}}; /* header, index, tiles */
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        struct fixture f;
+        char path[512];
+        struct stat status;
+        SluiceImageSource *source;
+        uint8_t texel[4];
+        setup(&f);
+        store_path(&f, f.png, path);
+        CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+        assert_true(wait_for(source).ready);
+        sluiceDestroyImageSource(source);
+        assert_int_equal(stat(path, &status), 0);
+        damage(path, parts[i][0], parts[i][1] ? parts[i][1] : (long)status.st_size);
+        CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+        SluiceResult result = read_texel(source, 0, texel);
+        assert_true(result == SLUICE_NOT_READY || (i == 0 && result == SLUICE_SUCCESS));
+        assert_true(wait_for(source).ready);
+        check_baked(&f, source, f.png);
+        assert_int_equal(f.errors, 0);
+        assert_int_equal(f.warnings, i > 0);
+        sluiceDestroyImageSource(source);
+        teardown(&f);
+    }
+}
+
+static void a_store_that_vanishes_is_baked_again_but_not_forever(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[512], other[256];
+    uint8_t texel[4];
+    SluiceImageSource *source, *closer;
+    setup(&f);
+    store_path(&f, f.png, path);
+    bake_folder_file(&f.folder, "b.png", other);
+    write_picture(other, 64, 64, 5);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+    CHECK_OK(sluiceOpenImageSource(f.opener, other, &closer)); /* the pool has one file open */
+    assert_true(wait_for(source).ready);
+    assert_true(wait_for(closer).ready);
+    for (int i = 0; i < 3; i++) {
+        CHECK_OK(read_texel(closer, 0, texel));
+        unlink(path);
+        CHECK_RESULT(read_texel(source, 0, texel),
+                     i < 2 ? SLUICE_NOT_READY : SLUICE_ERROR_FILE_NOT_FOUND);
+        if (i < 2)
+            assert_true(wait_for(source).ready);
+    }
+    sluiceDestroyImageSource(source);
+    sluiceDestroyImageSource(closer);
+    teardown(&f);
+}
+
+static void a_source_that_goes_cancels_its_bake(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f);
+    for (int i = 0; i < 5; i++) {
+        SluiceImageSource *source;
+        CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+        for (int k = 0; k < i * 3; k++)
+            wait_a_little();
+        sluiceDestroyImageSource(source);
+    }
+    SluiceImageSource *source;
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+    assert_true(wait_for(source).ready);
+    check_baked(&f, source, f.png);
+    sluiceDestroyImageSource(source);
+    assert_int_equal(f.errors, 0);
+    teardown(&f);
+}
+
+static void old_stores_make_room_and_those_in_use_stay(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char paths[3][512], pictures[3][256];
+    SluiceImageSource *kept = NULL, *source;
+    setup(&f);
+    sluiceDestroyImageOpener(f.opener);
+    open_opener(&f, 1);
+    for (int i = 0; i < 3; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "%d.png", i);
+        bake_folder_file(&f.folder, name, pictures[i]);
+        write_picture(pictures[i], 100, 100, (uint32_t)i);
+        store_path(&f, pictures[i], paths[i]);
+        CHECK_OK(sluiceOpenImageSource(f.opener, pictures[i], &source));
+        assert_true(wait_for(source).ready);
+        if (i == 0)
+            kept = source;
+        else
+            sluiceDestroyImageSource(source); /* waits for the end of its bake */
+    }
+    assert_int_equal(access(paths[0], F_OK), 0);
+    assert_int_equal(access(paths[1], F_OK), -1);
+    check_baked(&f, kept, pictures[0]);
+    sluiceDestroyImageSource(kept);
+    teardown(&f);
+}
+
+static void pictures_that_are_broken_are_refused_or_fail_in_the_end(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[256];
+    uint8_t texel[4];
+    SluiceImageSource *source = NULL;
+    setup(&f);
+    bake_folder_file(&f.folder, "x.png", path);
+    FILE *file = fopen(path, "wb");
+    fputs("not a picture at all", file);
+    fclose(file);
+    CHECK_RESULT(sluiceOpenImageSource(f.opener, path, &source), SLUICE_ERROR_CORRUPT_DATA);
+    assert_non_null(strstr(f.last, path));
+    assert_null(source);
+    struct stat status;
+    assert_int_equal(stat(f.png, &status), 0);
+    assert_int_equal(truncate(f.png, status.st_size / 2), 0);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+    SluiceOpenedImageInfo info = wait_for(source);
+    assert_false(info.ready);
+    assert_int_equal(info.failure, SLUICE_ERROR_CORRUPT_DATA);
+    CHECK_RESULT(read_texel(source, 0, texel), SLUICE_ERROR_CORRUPT_DATA);
+    sluiceDestroyImageSource(source);
+    teardown(&f);
+}
+
+static void a_cache_folder_that_cannot_be_made_is_an_error(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceImageSource *source = NULL;
+    setup(&f);
+    sluiceDestroyImageOpener(f.opener);
+    snprintf(f.cache, sizeof f.cache, "%s/cache", f.png); /* in a file */
+    open_opener(&f, 0);
+    CHECK_RESULT(sluiceOpenImageSource(f.opener, f.png, &source), SLUICE_ERROR_IO);
+    assert_non_null(strstr(f.last, f.cache));
+    assert_null(source);
+    teardown(&f);
+}
+
+/* One call is refused; those of the background make the bake fail or nothing. */
+static void every_refused_allocation_is_survived(void **state)
+{
+    (void)state;
+    struct bake_folder folder;
+    char path[256], cache[256], command[400];
+    bake_folder_init(&folder);
+    bake_folder_file(&folder, "a.png", path);
+    bake_folder_file(&folder, "cache", cache);
+    write_picture(path, 40, 30, 3); /* has no preview, so that one thread allocates at a time */
+    bool has_refused = true;
+    for (uint64_t n = 0; has_refused; n++) {
+        struct failing_allocator a;
+        SluiceImageOpener *opener = NULL;
+        SluiceImageSource *source = NULL;
+        failing_allocator_init(&a, n);
+        a.refuse_count = 1;
+        SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                            .pCacheFolder = cache,
+                                            .bakeThreadCount = 1,
+                                            .pAllocator = &a.callbacks};
+        SluiceResult result = sluiceCreateImageOpener(&info, &opener);
+        if (result == SLUICE_SUCCESS)
+            result = sluiceOpenImageSource(opener, path, &source);
+        if (result == SLUICE_SUCCESS) {
+            SluiceOpenedImageInfo opened = wait_for(source);
+            assert_true(opened.ready || opened.failure == SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        } else {
+            CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        }
+        sluiceDestroyImageSource(source);
+        sluiceDestroyImageOpener(opener);
+        assert_int_equal(a.live_bytes, 0);
+        has_refused = a.calls > n;
+        snprintf(command, sizeof command, "rm -rf '%s'", cache);
+        assert_int_equal(system(command), 0);
+    }
+    bake_folder_finish(&folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(coarse_levels_come_first_and_all_of_them_in_the_end),
+        cmocka_unit_test(the_store_is_kept_for_the_next_time),
+        cmocka_unit_test(a_picture_that_changed_is_baked_again),
+        cmocka_unit_test(a_damaged_store_is_baked_again),
+        cmocka_unit_test(a_store_that_vanishes_is_baked_again_but_not_forever),
+        cmocka_unit_test(a_source_that_goes_cancels_its_bake),
+        cmocka_unit_test(old_stores_make_room_and_those_in_use_stay),
+        cmocka_unit_test(pictures_that_are_broken_are_refused_or_fail_in_the_end),
+        cmocka_unit_test(a_cache_folder_that_cannot_be_made_is_an_error),
+        cmocka_unit_test(every_refused_allocation_is_survived),
+    };
+    return RUN_TESTS(tests);
+}
