@@ -403,7 +403,7 @@ typedef struct SluiceStoreReport {
     uint32_t structSize;   ///< sizeof(SluiceStoreReport).
     uint64_t tileCount;    ///< Tiles checked, mip tails included.
     uint64_t defectCount;  ///< Tiles that cannot be read.
-    uint64_t storedSize;   ///< Bytes of the good tiles in the file.
+    uint64_t storedSize;   ///< Bytes of the good tiles as stored. Equal tiles count once each.
     uint64_t texelSize;    ///< Bytes of the good tiles, decompressed.
     uint64_t rawTileCount; ///< Good tiles that are stored uncompressed.
 } SluiceStoreReport;

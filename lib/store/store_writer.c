@@ -164,6 +164,7 @@ void sluiceDestroyStoreWriter(SluiceStoreWriter *writer)
         slc_part_file_remove(&writer->part);
     slc_part_file_close(&writer->part);
     slc_store_writer_free_benches(writer);
+    slc_free(&writer->allocator, writer->repeats, 1, sizeof *writer->repeats);
     if (writer->has_mutex)
         pthread_mutex_destroy(&writer->mutex);
     SluiceAllocationCallbacks cb = writer->allocator;

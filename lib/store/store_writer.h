@@ -4,6 +4,7 @@
 
 #include "base/part_file.h"
 #include "store/codec.h"
+#include "store/repeats.h"
 #include "store/store_file.h"
 #include "store/store_layout.h"
 
@@ -36,6 +37,7 @@ struct SluiceStoreWriter {
     uint64_t end; ///< where the next compressed chunk goes
     uint64_t written_count;
     struct slc_store_bench *idle;
+    struct slc_store_repeats *repeats; ///< owned; NULL before the first chunk
 };
 
 /** Finds the chunk of a tile, or of a level of the tail. Errors, logged: INVALID_ARGUMENT. */

@@ -59,13 +59,24 @@ void slc_store_writer_free_benches(SluiceStoreWriter *writer)
     }
 }
 
+/* With the lock held. Makes them if the file is compressed. Returns false without host memory. */
+static bool has_repeats(SluiceStoreWriter *writer)
+{
+    if (writer->header.compression_level && !writer->repeats)
+        writer->repeats = slc_calloc(&writer->allocator, 1, sizeof *writer->repeats);
+    return writer->header.compression_level == 0 || writer->repeats;
+}
+
 static SluiceResult take_bench(SluiceStoreWriter *writer, struct slc_store_bench **out)
 {
     pthread_mutex_lock(&writer->mutex);
-    struct slc_store_bench *bench = writer->idle;
+    bool ready = has_repeats(writer);
+    struct slc_store_bench *bench = ready ? writer->idle : NULL;
     if (bench)
         writer->idle = bench->next;
     pthread_mutex_unlock(&writer->mutex);
+    if (!ready)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (!bench) {
         bench = slc_alloc(&writer->allocator, 1, sizeof *bench);
         if (!bench)
@@ -134,6 +145,33 @@ static SluiceResult write_entry(SluiceStoreWriter *writer, uint64_t number,
     return result;
 }
 
+/* Whether an earlier chunk has the same bytes: `entry` then has their place. Chunks of uncompressed
+ * files have places of their own. */
+static bool find_repeat(SluiceStoreWriter *writer, uint64_t hash, const void *bytes,
+                        struct slc_store_entry *entry)
+{
+    struct slc_store_repeat repeat = {.size = 0};
+    pthread_mutex_lock(&writer->mutex);
+    const struct slc_store_repeat *found =
+        slc_store_repeats_find(writer->repeats, hash, entry->size);
+    if (found && writer->state == SLC_STORE_WRITING)
+        repeat = *found;
+    pthread_mutex_unlock(&writer->mutex);
+    if (repeat.size == 0 || !slc_store_repeat_is_equal(&writer->file, &repeat, bytes))
+        return false;
+    entry->offset = repeat.offset;
+    return true;
+}
+
+static void note_repeat(SluiceStoreWriter *writer, uint64_t hash,
+                        const struct slc_store_entry *entry)
+{
+    const struct slc_store_repeat repeat = {hash, entry->offset, entry->size};
+    pthread_mutex_lock(&writer->mutex);
+    slc_store_repeats_add(writer->repeats, &repeat);
+    pthread_mutex_unlock(&writer->mutex);
+}
+
 static SluiceResult write_stored(SluiceStoreWriter *writer, const struct slc_store_place *place,
                                  const void *bytes, size_t size)
 {
@@ -142,6 +180,10 @@ static SluiceResult write_stored(SluiceStoreWriter *writer, const struct slc_sto
         .checksum = slc_store_chunk_checksum(&writer->header, number, bytes, size),
         .size = (uint32_t)size,
     };
+    bool compressed = writer->header.compression_level != 0;
+    uint64_t hash = compressed ? slc_store_repeat_hash(bytes, size) : 0;
+    if (compressed && find_repeat(writer, hash, bytes, &entry))
+        return write_entry(writer, number, &entry);
     SluiceResult result = take_place(writer, place, &entry);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -150,6 +192,8 @@ static SluiceResult write_stored(SluiceStoreWriter *writer, const struct slc_sto
         return_place(writer, &entry);
         return result;
     }
+    if (compressed)
+        note_repeat(writer, hash, &entry);
     return write_entry(writer, number, &entry);
 }
 

@@ -241,6 +241,67 @@ static void the_same_calls_give_the_same_bytes(void **state)
     }
 }
 
+/* Writes a chain whose tiles have one of two contents, and constant tails. */
+static void write_repeats(const SluiceStoreCreateInfo *info, const unsigned char *tiles[2],
+                          SluiceStoreLayout *layout)
+{
+    static const unsigned char tail[1 << 17];
+    SluiceStoreWriter *writer;
+    CHECK_OK(sluiceCreateStoreWriter(info, &writer));
+    CHECK_OK(sluiceGetStoreWriterLayout(writer, layout));
+    for (uint32_t l = 0; l < layout->tailFirstLevel; l++)
+        for (uint32_t y = 0; y < layout->levelHeightInTiles[l]; y++)
+            for (uint32_t x = 0; x < layout->levelWidthInTiles[l]; x++)
+                CHECK_OK(sluiceWriteStoreTile(writer, 0, l, x, y, tiles[(x ^ y) & 1], 128 * 4));
+    const void *levels[16];
+    for (uint32_t i = 0; i < 16; i++)
+        levels[i] = tail;
+    CHECK_OK(sluiceWriteStoreTail(writer, 0, levels, NULL));
+    CHECK_OK(sluiceFinishStore(writer));
+    sluiceDestroyStoreWriter(writer);
+}
+
+static void tiles_with_equal_bytes_are_stored_once(void **state)
+{
+    (void)state;
+    static unsigned char noise[65536], constant[65536];
+    const unsigned char *tiles[2] = {noise, constant};
+    const SluiceImageRegion all = {.width = 128, .height = 128};
+    paint(PICTURE_NOISE, SLUICE_FORMAT_R8G8B8A8_UNORM, &all, noise, 512);
+    memset(constant, 7, sizeof constant);
+    for (uint32_t compression = 0; compression <= 3; compression += 3) {
+        struct scratch scratch;
+        scratch_init(&scratch);
+        SluiceStoreLayout layout;
+        const SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                            .pPath = scratch.path,
+                                            .width = 2048,
+                                            .height = 2048,
+                                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                            .compressionLevel = compression};
+        write_repeats(&info, tiles, &layout);
+        struct naive_store store;
+        assert_null(naive_store_load(&store, scratch.path));
+        uint64_t places[2] = {naive_store_chunk(&store, 0).offset,
+                              naive_store_chunk(&store, 1).offset};
+        for (uint64_t i = 0; compression && i < 256; i++)
+            assert_int_equal(naive_store_chunk(&store, i).offset, places[(i % 16 ^ i / 16) & 1]);
+        if (compression)
+            assert_in_range(store.size - store.data, 65536, 65536 + 4096);
+        else
+            assert_true(store.size >= layout.tileCount / 2 * 65536);
+        uint8_t *texels = malloc(naive_store_level_size(&store, 0));
+        assert_null(naive_store_level(&store, 0, 0, texels));
+        for (uint32_t y = 0; y < 2048; y++)
+            for (uint32_t x = 0; x < 2048; x += 128)
+                assert_memory_equal(texels + (y * 2048u + x) * 4u,
+                                    tiles[(x / 128 ^ y / 128) & 1] + y % 128 * 512, 512);
+        free(texels);
+        naive_store_finish(&store);
+        scratch_finish(&scratch);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -252,6 +313,7 @@ int main(void)
         cmocka_unit_test(what_a_file_says_of_itself_comes_back),
         cmocka_unit_test(tiles_that_do_not_shrink_are_stored_as_they_are),
         cmocka_unit_test(the_same_calls_give_the_same_bytes),
+        cmocka_unit_test(tiles_with_equal_bytes_are_stored_once),
     };
     return RUN_TESTS(tests);
 }

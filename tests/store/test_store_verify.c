@@ -50,6 +50,15 @@ static void write_picture(const struct scratch *scratch, enum picture picture, u
     CHECK_OK(write_store(&info, picture));
 }
 
+/* Whether an earlier chunk lies there: tiles with equal bytes share a place. */
+static bool is_repeat(const struct naive_store *store, uint64_t number)
+{
+    for (uint64_t i = 0; i < number; i++)
+        if (naive_store_chunk(store, i).offset == naive_store_chunk(store, number).offset)
+            return true;
+    return false;
+}
+
 static void a_sound_file_has_no_defects_and_its_sizes_add_up(void **state)
 {
     (void)state;
@@ -64,10 +73,11 @@ static void a_sound_file_has_no_defects_and_its_sizes_add_up(void **state)
         assert_true(found.progress_calls > 1);
         struct naive_store store;
         assert_null(naive_store_load(&store, scratch.path));
-        uint64_t stored = 0, texels = 0, raw = 0;
+        uint64_t stored = 0, texels = 0, raw = 0, places = 0;
         for (uint64_t i = 0; i < store.chunks; i++) {
             struct naive_chunk chunk = naive_store_chunk(&store, i);
             stored += chunk.size;
+            places += is_repeat(&store, i) ? 0 : chunk.size;
             texels += chunk.texel_size;
             raw += chunk.size == chunk.texel_size;
         }
@@ -78,7 +88,7 @@ static void a_sound_file_has_no_defects_and_its_sizes_add_up(void **state)
         assert_int_equal(report.texelSize, texels);
         assert_int_equal(report.rawTileCount, raw);
         if (compression > 0)
-            assert_int_equal(store.data + stored, store.size);
+            assert_int_equal(store.data + places, store.size);
         naive_store_finish(&store);
         scratch_finish(&scratch);
     }
@@ -93,26 +103,32 @@ static void every_damaged_tile_is_named_with_its_place(void **state)
     write_picture(&scratch, PICTURE_SMOOTH, 3);
     struct naive_store store;
     assert_null(naive_store_load(&store, scratch.path));
+    uint64_t damaged[16];
+    uint32_t count = 0;
+    for (uint64_t i = 0; i < store.chunks; i++)
+        for (size_t j = 0; j < 4; j++) /* tiles with equal bytes share a place */
+            if (naive_store_chunk(&store, i).offset == naive_store_chunk(&store, bad[j]).offset) {
+                assert_true(count < 16);
+                damaged[count++] = i;
+            }
     for (size_t i = 0; i < 4; i++)
         store.bytes[naive_store_chunk(&store, bad[i]).offset + 5] ^= 0x10;
     write_bytes(scratch.path, store.bytes, store.size);
     struct found found = {0};
     SluiceStoreReport report = {.structSize = sizeof report};
     CHECK_RESULT(verify(scratch.path, &found, &report), SLUICE_ERROR_CORRUPT_DATA);
-    assert_int_equal(found.count, 4);
-    assert_int_equal(report.defectCount, 4);
+    assert_int_equal(found.count, count);
+    assert_int_equal(report.defectCount, count);
     assert_int_equal(report.tileCount, store.chunks);
-    /* level 0 has 11 x 8 tiles */
-    const uint32_t places[][4] = {{0, 0, 0, 0}, {0, 0, 6, 1}};
-    for (size_t i = 0; i < 4; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         const SluiceStoreDefect *defect = &found.defects[i];
-        assert_int_equal(defect->offset, naive_store_chunk(&store, bad[i]).offset);
+        assert_int_equal(defect->offset, naive_store_chunk(&store, damaged[i]).offset);
         assert_int_equal(defect->result, SLUICE_ERROR_CORRUPT_DATA);
-        if (i < 2) {
-            const uint32_t got[] = {defect->arrayLayer, defect->mipLevel, defect->tileX,
-                                    defect->tileY};
-            assert_memory_equal(got, places[i], sizeof got);
-        }
+        if (damaged[i] >= 88) /* level 0 has 11 x 8 tiles */
+            continue;
+        const uint32_t place[] = {0, 0, (uint32_t)damaged[i] % 11, (uint32_t)damaged[i] / 11};
+        const uint32_t got[] = {defect->arrayLayer, defect->mipLevel, defect->tileX, defect->tileY};
+        assert_memory_equal(got, place, sizeof got);
     }
     naive_store_finish(&store);
     scratch_finish(&scratch);

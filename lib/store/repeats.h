@@ -1,0 +1,35 @@
+/**
+ * Chunks of a compressed store that were written lately, by their stored bytes: a chunk with the
+ * same bytes is not written again, and both entries of the index name the same place. Constant and
+ * repeated tiles are the usual case. Not thread-safe: the writer locks.
+ */
+#ifndef SLC_STORE_REPEATS_H
+#define SLC_STORE_REPEATS_H
+
+#include "store/store_file.h"
+
+#include <stdbool.h>
+
+#define SLC_STORE_REPEATS 4096u /* places; a newer chunk takes the place of an older one */
+
+struct slc_store_repeat {
+    uint64_t hash, offset;
+    uint32_t size; ///< 0: empty
+};
+
+struct slc_store_repeats {
+    struct slc_store_repeat at[SLC_STORE_REPEATS];
+};
+
+uint64_t slc_store_repeat_hash(const void *bytes, size_t size);
+/** A chunk that may have the same bytes: NULL if there is none. */
+const struct slc_store_repeat *slc_store_repeats_find(const struct slc_store_repeats *repeats,
+                                                      uint64_t hash, size_t size);
+/** The bytes are in the file. */
+void slc_store_repeats_add(struct slc_store_repeats *repeats,
+                           const struct slc_store_repeat *repeat);
+/** Whether the file has these bytes there. False if it cannot be read. */
+bool slc_store_repeat_is_equal(const struct slc_store_file *file,
+                               const struct slc_store_repeat *repeat, const void *bytes);
+
+#endif /* SLC_STORE_REPEATS_H */
