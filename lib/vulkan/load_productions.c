@@ -21,11 +21,15 @@ struct recording {
 
 void slc_production_start(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
+    const struct slc_residency_interface *interface = s->residency->interface;
     uint32_t unit = slc_unit_take_empty(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
-    s->units[unit].state = SLC_UNIT_ARRIVED;
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
-    slc_unit_list_append(s, &s->arrived, unit);
+    /* Without bindings that take time, this frame can record the tile. */
+    bool at_once =
+        !interface->going_size && interface->map(s->residency, texture, tile) == SLUICE_SUCCESS;
+    s->units[unit].state = at_once ? SLC_UNIT_BINDING : SLC_UNIT_ARRIVED;
+    slc_unit_list_append(s, at_once ? &s->unproduced : &s->arrived, unit);
 }
 
 /* All levels are one unit: no staging slot limits its size. */

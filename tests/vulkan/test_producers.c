@@ -289,6 +289,35 @@ static void a_tile_is_shown_when_its_frame_is_complete(void **state)
     }
 }
 
+static uint64_t first_frame_asked(const struct fixture *f)
+{
+    for (uint32_t i = 0; i < f->call_count; i++)
+        if (f->calls[i].target.region.mipLevel < 2)
+            return f->calls[i].frame;
+    return 0;
+}
+
+static void without_bindings_a_tile_is_asked_for_when_it_gets_its_slot(void **state)
+{
+    (void)state;
+    for (int m = 0; m < MODES; m++) {
+        static struct fixture f; /* large */
+        setup_with_texture(&f, modes[m]);
+        uint64_t handed_out = 0;
+        for (uint32_t i = 0; i < 12; i++) {
+            run_frames(&f, 1);
+            bool is_waiting = state_of(&f, 0) == SLUICE_TILE_STATE_ALLOCATED ||
+                              state_of(&f, TILES * TILES) == SLUICE_TILE_STATE_ALLOCATED;
+            handed_out = !handed_out && is_waiting ? f.frame.frameIndex : handed_out;
+        }
+        bool binds = modes[m] == SLUICE_RESIDENCY_MODE_SPARSE;
+        assert_true(handed_out > 0);
+        assert_true(binds ? first_frame_asked(&f) > handed_out
+                          : first_frame_asked(&f) == handed_out);
+        teardown(&f);
+    }
+}
+
 static void frames_hold_no_more_tiles_than_they_may(void **state)
 {
     (void)state;
@@ -572,11 +601,13 @@ static void a_texture_may_be_removed_by_its_producer(void **state)
         bool after_tail = n >= MODES * 3;
         setup(&f, modes[n % MODES]);
         CHECK_OK(add(&f, &f.texture));
+        f.wanted = after_tail ? LEVELS - 1 : 0;
         while (after_tail && f.call_count == 0)
             run_frames(&f, 1);
+        f.wanted = 0;
         f.removes = true;
         f.batch_answer = answers[n / MODES % 3];
-        run_frames(&f, 8);
+        run_frames(&f, 12);
         assert_int_equal(statistics(&f).textureCount, 0);
         assert_int_equal(statistics(&f).loadsInFlight, 0);
         teardown(&f);
@@ -708,6 +739,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_texel_is_produced_once_and_none_is_read),
         cmocka_unit_test(a_tile_is_shown_when_its_frame_is_complete),
+        cmocka_unit_test(without_bindings_a_tile_is_asked_for_when_it_gets_its_slot),
         cmocka_unit_test(frames_hold_no_more_tiles_than_they_may),
         cmocka_unit_test(tiles_of_a_producer_that_fails_stay_coarser_and_are_reported),
         cmocka_unit_test(a_batch_fails_as_a_whole),
