@@ -250,6 +250,33 @@ static void textures_go_before_tiles_that_were_used_later(void **state)
     small_destroy(s);
 }
 
+/* Tiles of a large texture that were used before the small textures were. */
+static void tiles_go_before_textures_that_were_used_later(void **state)
+{
+    (void)state;
+    enum { FIRST = 30, MORE = 60, LARGE = 1024, TILES = 40 };
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = 4u << 20};
+    struct small *s = small_create(&info);
+    add(s, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, LARGE, LARGE);
+    for (uint32_t i = 1; i <= FIRST + MORE; i++)
+        add(s, i, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE);
+    for (uint32_t i = 0; i < TILES; i++)
+        runner_add_texel(&s->r, s->ids[0], LARGE, LARGE, 0, i % 8 * 128, i / 8 * 128);
+    assert_in_range(runner_load(&s->r, 20), 1, 19);
+    const uint32_t first[] = {1, 1 + FIRST}, end[] = {1 + FIRST, 1 + FIRST + MORE};
+    for (uint32_t i = 0; i < 2; i++) {
+        runner_clear(&s->r);
+        runner_add_texel(&s->r, s->ids[0], LARGE, LARGE, 0, 0, 0);
+        add_samples(s, first[i], end[i], 0);
+        assert_in_range(runner_load(&s->r, 20), 1, 19);
+        check_samples(s, 1, first[i], end[i], 0);
+    }
+    SluiceDemandStatistics statistics = runner_statistics(&s->r);
+    assert_in_range(statistics.evictedCount, 6, TILES);
+    assert_int_equal(statistics.texturesForgotten, 0);
+    small_destroy(s);
+}
+
 /* Without eviction nothing is forgotten, whatever the setting says. */
 static void nothing_is_forgotten_without_eviction(void **state)
 {
@@ -282,6 +309,7 @@ int main(void)
         cmocka_unit_test(textures_without_use_are_forgotten_and_come_back),
         cmocka_unit_test(textures_sampled_once_each_need_no_more_than_the_budget),
         cmocka_unit_test(textures_go_before_tiles_that_were_used_later),
+        cmocka_unit_test(tiles_go_before_textures_that_were_used_later),
         cmocka_unit_test(nothing_is_forgotten_without_eviction),
     };
     return harness_finish(&h, RUN_TESTS(tests));
