@@ -85,6 +85,61 @@ static void a_recorded_run_replays_to_the_same_decisions(void **state)
     assert_true(statistics.evictedCount > 20); /* or the run shows little */
 }
 
+enum { SMALL = 300, SMALL_SIZE = 64, SMALL_STEP = 20, SMALL_LAUNCHES = 60 };
+
+/* More mip tails than 4 MiB hold: textures are forgotten for others, by age, and opened again. */
+static void render_small(struct runner *r, struct runner_image *images)
+{
+    SluiceDemandTextureId ids[SMALL];
+    for (uint32_t i = 0; i < SMALL; i++) {
+        runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, SMALL_SIZE, SMALL_SIZE, i);
+        ids[i] = runner_add_texture(r, &images[i]);
+    }
+    for (uint32_t launch = 0; launch < SMALL_LAUNCHES; launch++) {
+        runner_clear(r);
+        for (uint32_t i = 0; i < SMALL_STEP; i++)
+            runner_add_texel(r, ids[(launch / 3 * SMALL_STEP + i) % SMALL], SMALL_SIZE, SMALL_SIZE,
+                             1, i, 5);
+        runner_launch(r);
+        CHECK_OK(sluiceWaitDemandTicket(r->loader, r->ticket, UINT64_MAX, NULL));
+    }
+}
+
+static void forgotten_textures_replay_to_the_same_decisions(void **state)
+{
+    (void)state;
+    static struct runner_image images[SMALL];
+    for (uint32_t age = 0; age <= 5; age += 5) {
+        struct runner r;
+        SluiceRecorder *recorder;
+        SluiceReplayResult replayed = {.structSize = sizeof replayed};
+        const SluiceDemandLoaderCreateInfo small = {
+            .structSize = sizeof small, .memoryBudget = 4 << 20, .forgetAfterLaunches = age};
+        const SluiceFileRecordingInfo recording = {.structSize = sizeof recording, .pPath = path};
+        h.abandon_one_in = 5;
+        runner_init(&r, &h, &small);
+        CHECK_OK(sluiceBeginDemandRecording(r.loader, &recording, &recorder));
+        render_small(&r, images);
+        CHECK_OK(sluiceEndRecording(recorder));
+        SluiceDemandStatistics statistics = runner_statistics(&r);
+        h.abandon_one_in = 0;
+        runner_finish(&r);
+        for (uint32_t i = 0; i < SMALL; i++)
+            runner_image_finish(&images[i]);
+        SluiceReplayInfo info = {.structSize = sizeof info, .size = 0};
+        void *data = read_file(&info.size);
+        info.pData = data;
+        CHECK_OK(sluiceReplay(&info, &replayed));
+        free(data);
+        remove(path);
+        assert_int_equal(replayed.divergedEvent, 0);
+        assert_true(replayed.decisionHash == replayed.recordedHash);
+        assert_int_equal(replayed.demand.launchCount, SMALL_LAUNCHES);
+        assert_int_equal(statistics.refusedCount, 0);
+        assert_true(statistics.texturesForgotten > SMALL / 2);
+    }
+}
+
 static SluiceResult read_bytes(void *user, uint32_t page, uint32_t size, void *bytes)
 {
     (void)user;
@@ -204,6 +259,7 @@ int main(void)
         return status;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_recorded_run_replays_to_the_same_decisions),
+        cmocka_unit_test(forgotten_textures_replay_to_the_same_decisions),
         cmocka_unit_test(byte_pages_and_answers_replay_to_the_same_decisions),
         cmocka_unit_test(a_loader_that_was_used_is_not_recorded),
         cmocka_unit_test(a_recording_survives_every_refused_allocation),
