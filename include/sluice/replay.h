@@ -97,12 +97,14 @@ typedef struct SluiceReplayInfo {
     /** Receives each line of the text dump, without a newline. May be NULL. */
     void (*pfnLine)(void *pUserData, const char *pLine);
     /* For SLTRACE1 only, which has feedback but no frame loop: */
-    uint32_t heapTileCapacity; ///< Slots per heap, 1 to 2^20. Default: 256.
-    uint32_t maxHeapCount;     ///< Default: no limit.
-    uint32_t standbyTileCount; ///< numExtraStandbyTiles of the manager.
-    uint32_t tilesPerFrame;    ///< Most tiles answered per frame. Default: 256.
-    uint32_t latency;          ///< Frames from hand-out to answer. 0: at once.
-    uint64_t timeoutMicros;    ///< Microseconds. Default: 1 000 000.
+    uint32_t heapTileCapacity;     ///< Slots per heap, 1 to 2^20. Default: 256.
+    uint32_t maxHeapCount;         ///< Default: no limit.
+    uint32_t numExtraStandbyTiles; ///< Unwanted tiles that stay mapped. Default: 1024.
+    bool noStandbyTiles;           ///< No tile stays. numExtraStandbyTiles must be 0.
+    uint32_t tilesPerFrame;        ///< Most tiles answered per frame. Default: 256.
+    uint32_t latency;              ///< Frames from hand-out to answer. Default: 2.
+    bool noLatency;                ///< Answers in the frame of the hand-out. latency must be 0.
+    uint64_t timeoutMicros;        ///< Microseconds. Default: 1 000 000.
     /* For all kinds: */
     /** File to record the replay into, like sluiceBeginFileRecording. May be NULL. */
     const char *pRecordPath;
@@ -156,9 +158,10 @@ typedef struct SluiceReplayResult {
  * it. A malicious trace can request much memory: limit it in pAllocator.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if only one of pAllocator's
- *         functions is set; SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_UNSUPPORTED for a newer
- *         version; SLUICE_ERROR_IO and SLUICE_ERROR_BUSY for pRecordPath; SLUICE_ERROR_CORRUPT_DATA
- *         for a truncated or damaged trace (errorOffset says where).
+ *         functions is set, or for a value beside noStandbyTiles or noLatency;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_UNSUPPORTED for a newer version;
+ *         SLUICE_ERROR_IO and SLUICE_ERROR_BUSY for pRecordPath; SLUICE_ERROR_CORRUPT_DATA for a
+ *         truncated or damaged trace (errorOffset says where).
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceReplay(const SluiceReplayInfo *pInfo, SluiceReplayResult *pResult);

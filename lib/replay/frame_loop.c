@@ -81,7 +81,7 @@ static SluiceResult start(struct frame_loop *loop)
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
-                                                 .numExtraStandbyTiles = info->standbyTileCount,
+                                                 .numExtraStandbyTiles = info->numExtraStandbyTiles,
                                                  .maxHeapCount = info->maxHeapCount};
     struct slc_call call = {.kind = SLC_CALL_SET_CONFIG, .config = &config};
     result = make_call(loop, &call);

@@ -10,6 +10,9 @@
 #include <inttypes.h>
 #include <string.h>
 
+#define DEFAULT_STANDBY_TILES 1024 /* as of streamers */
+#define DEFAULT_LATENCY 2
+
 SluiceResult slc_replay_start(struct slc_replay *replay,
                               const SluiceStreamedTextureManagerCreateInfo *info, bool scripted)
 {
@@ -90,6 +93,23 @@ static SluiceResult finish(struct slc_replay *replay, SluiceResult result)
     return result == SLUICE_SUCCESS ? recorded : result;
 }
 
+/* Settings of feedback traces for which zero is a value, too. */
+static SluiceResult fill_in(SluiceReplayInfo *info)
+{
+    if (info->noStandbyTiles && info->numExtraStandbyTiles)
+        return slc_log_refusal(&info->log,
+                               "numExtraStandbyTiles is %u; with noStandbyTiles it must be 0",
+                               info->numExtraStandbyTiles);
+    if (info->noLatency && info->latency)
+        return slc_log_refusal(&info->log, "latency is %u; with noLatency it must be 0",
+                               info->latency);
+    if (!info->noStandbyTiles && info->numExtraStandbyTiles == 0)
+        info->numExtraStandbyTiles = DEFAULT_STANDBY_TILES;
+    if (!info->noLatency && info->latency == 0)
+        info->latency = DEFAULT_LATENCY;
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult sluiceReplay(const SluiceReplayInfo *pInfo, SluiceReplayResult *pResult)
 {
     if (!pInfo || !pResult || !pInfo->pData)
@@ -105,6 +125,9 @@ SluiceResult sluiceReplay(const SluiceReplayInfo *pInfo, SluiceReplayResult *pRe
         return result;
     if (!slc_allocator_is_valid(info.pAllocator))
         return slc_log_refusal(&info.log, "pAllocator lacks pfnAllocate or pfnFree");
+    result = fill_in(&info);
+    if (result != SLUICE_SUCCESS)
+        return result;
     const SluiceStreamedTextureStatistics none = {.structSize = sizeof none};
     if (info.pStatistics)
         slc_struct_write(SLC_STRUCT(SluiceStreamedTextureStatistics), info.pStatistics, &none);

@@ -84,7 +84,7 @@ SluiceResult play_damaged(const void *data, size_t size, SluiceReplayResult *res
                                    .pfnLine = ignore_line,
                                    .heapTileCapacity = 16,
                                    .maxHeapCount = 8,
-                                   .standbyTileCount = 8,
+                                   .numExtraStandbyTiles = 8,
                                    .tilesPerFrame = 8,
                                    .latency = 1};
     SluiceResult status = sluiceReplay(&info, result);

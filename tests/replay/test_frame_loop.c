@@ -17,6 +17,7 @@ static SluiceReplayInfo replay_info(const struct trace_buffer *trace)
     return (SluiceReplayInfo){.structSize = sizeof(SluiceReplayInfo),
                               .pData = trace->data,
                               .size = trace->size,
+                              .noStandbyTiles = true,
                               .latency = 2,
                               .timeoutMicros = 300000,
                               .tilesPerFrame = 40};
@@ -128,6 +129,38 @@ static void recorded_run_has_the_same_decisions(void **state)
     remove(path);
 }
 
+static void zero_selects_the_documented_defaults(void **state)
+{
+    (void)state;
+    struct trace_buffer trace;
+    make_feedback_scene(&trace);
+    SluiceReplayInfo info = {.structSize = sizeof info, .pData = trace.data, .size = trace.size};
+    SluiceReplayInfo written = info;
+    written.heapTileCapacity = 256;
+    written.numExtraStandbyTiles = 1024;
+    written.tilesPerFrame = 256;
+    written.latency = 2;
+    written.timeoutMicros = 1000000;
+    SluiceReplayResult plain = {.structSize = sizeof plain}, full = {.structSize = sizeof full};
+    CHECK_OK(sluiceReplay(&info, &plain));
+    CHECK_OK(sluiceReplay(&written, &full));
+    assert_true(plain.decisionHash == full.decisionHash);
+    written.latency = 0;
+    written.noLatency = true;
+    CHECK_OK(sluiceReplay(&written, &full));
+    assert_true(plain.decisionHash != full.decisionHash);
+    written.latency = 1;
+    CHECK_RESULT(sluiceReplay(&written, &full), SLUICE_ERROR_INVALID_ARGUMENT);
+    info.timeoutMicros = 300000; /* within the trace */
+    CHECK_OK(sluiceReplay(&info, &plain));
+    info.noStandbyTiles = true;
+    CHECK_OK(sluiceReplay(&info, &full));
+    assert_true(plain.decisionHash != full.decisionHash);
+    info.numExtraStandbyTiles = 1;
+    CHECK_RESULT(sluiceReplay(&info, &full), SLUICE_ERROR_INVALID_ARGUMENT);
+    trace_buffer_free(&trace);
+}
+
 static void every_truncation_is_found_at_or_before_the_cut(void **state)
 {
     (void)state;
@@ -229,6 +262,7 @@ int main(void)
         cmocka_unit_test(cap_and_latency_change_the_decisions),
         cmocka_unit_test(heaps_have_the_recommended_size_by_default),
         cmocka_unit_test(recorded_run_has_the_same_decisions),
+        cmocka_unit_test(zero_selects_the_documented_defaults),
         cmocka_unit_test(every_truncation_is_found_at_or_before_the_cut),
         cmocka_unit_test(changed_bytes_are_found_or_played),
         cmocka_unit_test(contradictions_are_named_at_their_record),
