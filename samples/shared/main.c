@@ -3,6 +3,7 @@
  * streamer for the raster pass and a demand loader for the rays, of one context, which read each
  * tile once and keep it on one page. --apart gives each a context of its own, to compare.
  */
+#include "../../tools/common/log.h"
 #include "../../tools/common/output_file.h"
 #include "../../tools/common/shared_options.h"
 #include "../../tools/common/text.h"
@@ -44,13 +45,6 @@ static bool sluice(SluiceResult result, const char *what)
     return result == SLUICE_SUCCESS;
 }
 
-static void print_message(void *pUserData, SluiceLogSeverity severity, const char *pMessage)
-{
-    (void)pUserData;
-    if (severity != SLUICE_LOG_INFO)
-        text_say("%s", pMessage);
-}
-
 /* Tiles, bricks or panels, in [0, 1) of u and v; the same picture in every level. */
 static void paint(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
@@ -84,7 +78,7 @@ static bool create_context(struct app *app, SluiceVulkanContext **context)
                                                 .physicalDevice = app->gpu.physical_device,
                                                 .device = app->gpu.device,
                                                 .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-                                                .log = {NULL, print_message}};
+                                                .log = {NULL, log_say}};
     return sluice(sluiceCreateVulkanContext(&info, context), "context");
 }
 

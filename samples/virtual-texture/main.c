@@ -2,6 +2,7 @@
  * Zooms into a texture of 2^20 x 2^20 texels without a file: a compute shader makes the tiles that
  * are looked at. At the end the program compares every texel shown with the function that makes it.
  */
+#include "../../tools/common/log.h"
 #include "../../tools/common/output_file.h"
 #include "../../tools/common/shared_options.h"
 #include "../../tools/common/text.h"
@@ -42,13 +43,6 @@ static bool sluice(SluiceResult result, const char *what)
     return result == SLUICE_SUCCESS;
 }
 
-static void print_message(void *pUserData, SluiceLogSeverity severity, const char *pMessage)
-{
-    (void)pUserData;
-    if (severity != SLUICE_LOG_INFO)
-        text_say("%s", pMessage);
-}
-
 /* The tables have an entry for each tile of level 0. */
 static bool create_streamer(struct app *app)
 {
@@ -59,7 +53,7 @@ static bool create_streamer(struct app *app)
                                                    .physicalDevice = app->gpu.physical_device,
                                                    .device = app->gpu.device,
                                                    .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-                                                   .log = {NULL, print_message}};
+                                                   .log = {NULL, log_say}};
     const SluiceVulkanStreamerCreateInfo streamer = {.structSize = sizeof streamer,
                                                      .residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
                                                      .framesInFlight = 1,
