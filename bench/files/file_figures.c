@@ -2,15 +2,17 @@
  * How many tile stores can be in use under a limit of file descriptors, and how fast they are read,
  * with a pool of open files and without.
  *
- *     file_figures [--json] [--quick] [--stores N] [--limit N] FOLDER
+ *     file_figures [--json] [--quick] [--stores N] [--limit N] [--picture FILE] FOLDER
  *
  * FOLDER takes copies of a store of 64 x 64 texels, one per store, which are removed at the end.
- * The files are in the page cache. One thread.
+ * The files are in the page cache. One thread. With --picture also how long a picture that is no
+ * tile store takes from opening to its preview and to its store.
  */
 #define _XOPEN_SOURCE 700
 
 #include "../../tools/common/shared_options.h"
 
+#include <sluice/open.h>
 #include <sluice/store.h>
 
 #include <stdio.h>
@@ -25,7 +27,7 @@ enum { SIZE = 64 };
 static struct {
     bool json, quick;
     uint32_t store_count, limit;
-    const char *folder;
+    const char *folder, *picture;
     SluiceStoreReadPool *read_pool;
     SluiceImageSource **sources;
 } run;
@@ -191,6 +193,47 @@ static void measure_without_pool(void)
     close_stores(count);
 }
 
+static void wait_for(SluiceImageSource *source, bool preview)
+{
+    const struct timespec step = {0, 1000000};
+    SluiceOpenedImageInfo info = {.structSize = sizeof info};
+    do {
+        nanosleep(&step, NULL);
+        if (sluiceGetOpenedImageInfo(source, &info) || info.failure != SLUICE_SUCCESS)
+            fail("baking the picture");
+    } while (!(preview ? info.previewReady : info.ready));
+}
+
+/* With an empty cache, which goes at the end. */
+static void measure_picture(void)
+{
+    SluiceImageOpener *opener;
+    SluiceImageSource *source, *again;
+    char cache[512], command[600];
+    snprintf(cache, sizeof cache, "%s/cache", run.folder);
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info, .pCacheFolder = cache};
+    if (sluiceCreateImageOpener(&info, &opener))
+        fail("creating an opener");
+    double start = now();
+    if (sluiceOpenImageSource(opener, run.picture, &source))
+        fail("opening the picture");
+    figure("picture.open", 1e3 * (now() - start), "ms");
+    wait_for(source, true);
+    figure("picture.preview", 1e3 * (now() - start), "ms");
+    wait_for(source, false);
+    figure("picture.store", 1e3 * (now() - start), "ms");
+    sluiceDestroyImageSource(source);
+    start = now();
+    if (sluiceOpenImageSource(opener, run.picture, &again))
+        fail("opening the picture again");
+    figure("picture.open_again", 1e3 * (now() - start), "ms");
+    sluiceDestroyImageSource(again);
+    sluiceDestroyImageOpener(opener);
+    snprintf(command, sizeof command, "rm -rf '%s'", cache);
+    if (system(command) != 0)
+        fail("removing the cache");
+}
+
 int main(int argc, char **argv)
 {
     const struct option rows[] = {
@@ -198,6 +241,7 @@ int main(int argc, char **argv)
         option_json(&run.json),
         {OPTION_FLAG, "quick", .value = &run.quick, .help = "300 stores, few reads"},
         {OPTION_UINT, "stores", "N", "10000", &run.store_count, "stores in use", 1, 1 << 20},
+        {OPTION_TEXT, "picture", "FILE", NULL, &run.picture, "a picture that libvips reads"},
         {OPTION_UINT, "limit", "N", "256", &run.limit, "file descriptors of the process", 64,
          1 << 20},
     };
@@ -218,6 +262,8 @@ int main(int argc, char **argv)
     measure_with_pool();
     measure_without_pool();
     remove_stores();
+    if (run.picture)
+        measure_picture();
     sluiceDestroyStoreReadPool(run.read_pool);
     free(run.sources);
     return 0;

@@ -49,10 +49,12 @@ static void *work(void *argument)
             continue;
         }
         pthread_mutex_unlock(&background->mutex);
-        if (worker->kind == SLC_JOB_PREVIEW)
+        if (worker->kind == SLC_JOB_PREVIEW) {
             slc_make_preview(background, stream);
-        else
+            slc_background_queue(background, stream, SLC_JOB_BAKE);
+        } else {
             slc_make_store(background, stream);
+        }
         pthread_mutex_lock(&background->mutex);
         stream->jobs[worker->kind].is_running = false;
         pthread_cond_broadcast(&background->changed);
@@ -119,7 +121,7 @@ void slc_background_queue(struct slc_background *background, struct slc_picture_
     struct worker *worker = &background->workers[kind];
     struct slc_stream_job *job = &stream->jobs[kind];
     pthread_mutex_lock(&background->mutex);
-    if (!job->is_queued) {
+    if (!job->is_queued && !atomic_load(&stream->is_canceled)) {
         job->is_queued = true;
         job->next = NULL;
         if (worker->last)

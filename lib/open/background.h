@@ -13,6 +13,7 @@ void slc_background_destroy(struct slc_background *background);
 
 SluiceBaker *slc_background_baker(struct slc_background *background);
 
+/** A stream that is canceled is not queued. The end of a preview queues the bake. */
 void slc_background_queue(struct slc_background *background, struct slc_picture_stream *stream,
                           enum slc_stream_job_kind kind);
 /** Takes the stream's jobs out of the queues, or waits until they have ended. */

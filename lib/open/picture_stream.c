@@ -43,9 +43,9 @@ static uint32_t find_preview_level(const SluiceImageInfo *info)
 static void queue_jobs(struct slc_picture_stream *stream)
 {
     struct slc_background *background = stream->opener->background;
-    if (stream->preview_level > 0)
-        slc_background_queue(background, stream, SLC_JOB_PREVIEW);
-    slc_background_queue(background, stream, SLC_JOB_BAKE);
+    /* One after the other: a bake beside the preview would take its processors. */
+    slc_background_queue(background, stream,
+                         stream->preview_level > 0 ? SLC_JOB_PREVIEW : SLC_JOB_BAKE);
 }
 
 static SluiceResult init(struct slc_picture_stream *stream)

@@ -180,6 +180,9 @@ static void coarse_levels_come_first_and_all_of_them_in_the_end(void **state)
     CHECK_OK(read_texel(source, 2, texel));
     assert_in_range(texel[0], 0, 4); /* about 1 */
     assert_in_range(texel[2], 78, 84);
+    SluiceImageRegion right = {3, 160, 80, 1, 1, 0}; /* texel 1280 of level 0: 1280 / 7 + 1 */
+    CHECK_OK(sluiceReadImageRegion(source, &right, texel, 4));
+    assert_in_range(texel[0], 179, 187);
     sluiceDestroyStoreWriter(writer);
     assert_true(wait_for(source).ready);
     check_baked(&f, source, f.png);
