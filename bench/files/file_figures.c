@@ -241,7 +241,7 @@ int main(int argc, char **argv)
         option_json(&run.json),
         {OPTION_FLAG, "quick", .value = &run.quick, .help = "300 stores, few reads"},
         {OPTION_UINT, "stores", "N", "10000", &run.store_count, "stores in use", 1, 1 << 20},
-        {OPTION_TEXT, "picture", "FILE", NULL, &run.picture, "a picture that libvips reads"},
+        {OPTION_TEXT, "picture", "FILE", "(none)", &run.picture, "a picture that libvips reads"},
         {OPTION_UINT, "limit", "N", "256", &run.limit, "file descriptors of the process", 64,
          1 << 20},
     };
