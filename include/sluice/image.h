@@ -148,8 +148,13 @@ typedef enum SluiceImageAddressMode {
 typedef struct SluiceImageInfo {
     uint32_t structSize;    ///< sizeof(SluiceImageInfo).
     uint32_t width, height; ///< Texels of level 0, 1 to 2^20. Level l has max(1, size >> l).
-    /** Full chain: floor(log2(max(width, height))) + 1. Arrays and the baker also accept 1 (only
-     *  level 0). */
+    /**
+     * 1 to floor(log2(max(width, height))) + 1, the full chain. Streaming requires levels down to
+     * one that fits into a standard tile; demand loading down to one that fits into half a tile in
+     * both directions. Where demand loading is asked for coarser levels than there are, it shows
+     * the mean color of the last one. sluiceCreateCompleteChainSource adds levels that are missing.
+     * The baker accepts the full chain and, for uncompressed formats, 1 (only level 0).
+     */
     uint32_t mipLevelCount;
     SluiceFormat format;      ///< Not UNDEFINED.
     const char *pName;        ///< For messages. May be NULL. Lives as long as the source.
@@ -308,6 +313,42 @@ SLUICE_API SluiceResult sluiceCreateMemoryImageSource(const void *pTexels,
                                                       const SluiceImageInfo *pInfo,
                                                       const SluiceAllocationCallbacks *pAllocator,
                                                       SluiceImageSource **pSource);
+
+/** Default of SluiceCompleteChainSourceCreateInfo.maxMemorySize: 512 MiB. */
+#define SLUICE_COMPLETE_CHAIN_DEFAULT_MEMORY_SIZE ((uint64_t)1 << 29)
+
+/** Settings of a source that completes a mip chain. A field of zero selects its default. */
+typedef struct SluiceCompleteChainSourceCreateInfo {
+    uint32_t structSize;       ///< sizeof(SluiceCompleteChainSourceCreateInfo).
+    SluiceImageSource *source; ///< Required. Must outlive the new source.
+    /**
+     * Most bytes of built levels that are kept. Levels that do not fit are filtered at each read
+     * and take four times their texels from the next finer level. Default:
+     * SLUICE_COMPLETE_CHAIN_DEFAULT_MEMORY_SIZE.
+     */
+    uint64_t maxMemorySize;
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
+    SluiceLogCallback log;                       ///< Refused chains.
+} SluiceCompleteChainSourceCreateInfo;
+
+/**
+ * Creates a source that has all mip levels, from one that lacks coarse ones.
+ *
+ * Levels of `source` are read from `source`. The others are built from its last level by the box
+ * filter of sluiceCreateMemoryImageSource. The first read of a built level builds all levels that
+ * are kept; other readers wait. A read of a tile that is not kept allocates about 2 MiB for each
+ * level between it and `source`, and returns it.
+ *
+ * `source` is asked for its info at the first call on the new source. These calls return
+ * SLUICE_ERROR_UNSUPPORTED if `source` lacks levels of a block-compressed format, and
+ * SLUICE_ERROR_INVALID_ARGUMENT if its info is out of range. A read that fails returns the error of
+ * `source`, with its fault; the next read tries again.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT;
+ * SLUICE_ERROR_OUT_OF_HOST_MEMORY. Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceCreateCompleteChainSource(
+    const SluiceCompleteChainSourceCreateInfo *pInfo, SluiceImageSource **pSource);
 
 /**
  * Creates an array source from `layerCount` sources of the same size, format and level count.

@@ -16,6 +16,8 @@
 #define SLC_FIRST_SluiceImageInfo SLC_UP_TO(SluiceImageInfo, addressModeV)
 #define SLC_FIRST_SluiceImageSourceInterface                                                       \
     SLC_UP_TO(SluiceImageSourceInterface, pfnReadRegionLocated)
+#define SLC_FIRST_SluiceCompleteChainSourceCreateInfo                                              \
+    SLC_UP_TO(SluiceCompleteChainSourceCreateInfo, log)
 #define SLC_FIRST_SluiceTileReadFailure SLC_UP_TO(SluiceTileReadFailure, offset)
 #define SLC_FIRST_SluiceTileLoaderCreateInfo SLC_UP_TO(SluiceTileLoaderCreateInfo, end)
 #define SLC_FIRST_SluiceTileLoaderStatistics                                                       \

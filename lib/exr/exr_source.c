@@ -173,7 +173,7 @@ static uint64_t chain_memory(const struct exr_source *source)
 {
     const SluiceImageInfo *info = &source->info;
     uint64_t size = slc_mip_chain_size(info->format, info->width, info->height);
-    uint64_t meanwhile = slc_mip_chain_build_size(info->width);
+    uint64_t meanwhile = slc_mip_rows_size(info->width);
     return size < UINT64_MAX - meanwhile ? size + meanwhile : UINT64_MAX;
 }
 

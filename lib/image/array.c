@@ -48,7 +48,7 @@ static SluiceResult check_layers(SluiceImageSource *const *layers, uint32_t coun
         SluiceResult result = sluiceGetImageInfo(layers[i], i ? &other : info);
         if (result != SLUICE_SUCCESS)
             return result;
-        result = slc_image_info_check(i ? &other : info, SLC_LEVELS_ALL_OR_ONE, NULL);
+        result = slc_image_info_check(i ? &other : info, SLC_LEVELS_ANY, NULL);
         if (result != SLUICE_SUCCESS)
             return result;
         if (i == 0)

@@ -28,6 +28,35 @@ SluiceResult slc_image_info_init(const SluiceAllocationCallbacks *cb, const Slui
     return SLUICE_SUCCESS;
 }
 
+static bool last_level_fits_into_tile(const SluiceImageInfo *info)
+{
+    uint32_t width = 0, height = 0;
+    return sluiceGetStandardTileShape(info->format, &width, &height) == SLUICE_SUCCESS &&
+           slc_mip_size(info->width, info->mipLevelCount - 1) <= width &&
+           slc_mip_size(info->height, info->mipLevelCount - 1) <= height;
+}
+
+static const char *level_trouble(const SluiceImageInfo *info, enum slc_image_levels levels)
+{
+    uint32_t full = slc_mip_count(slc_max_u32(info->width, info->height));
+    if (info->mipLevelCount == full)
+        return NULL;
+    if (info->mipLevelCount == 0 || info->mipLevelCount > full)
+        return "mipLevelCount is 0 or beyond the full chain's";
+    switch (levels) {
+    case SLC_LEVELS_ALL: return "mipLevelCount is not the full chain's";
+    case SLC_LEVELS_ALL_OR_ONE:
+        return info->mipLevelCount == 1 ? NULL : "mipLevelCount is neither 1 nor the full chain's";
+    case SLC_LEVELS_TO_TAIL:
+        return last_level_fits_into_tile(info)
+                   ? NULL
+                   : "mipLevelCount ends before a level fits into a tile; build the others with "
+                     "sluiceCreateCompleteChainSource";
+    case SLC_LEVELS_ANY: break;
+    }
+    return NULL;
+}
+
 const char *slc_image_info_trouble(const SluiceImageInfo *info, enum slc_image_levels levels)
 {
     SluiceFormatInfo format = {.structSize = sizeof format};
@@ -41,11 +70,7 @@ const char *slc_image_info_trouble(const SluiceImageInfo *info, enum slc_image_l
     if ((uint32_t)info->addressModeU > SLUICE_IMAGE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE ||
         (uint32_t)info->addressModeV > SLUICE_IMAGE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
         return "addressModeU or addressModeV is unknown";
-    if (info->mipLevelCount == slc_mip_count(slc_max_u32(info->width, info->height)))
-        return NULL;
-    if (levels == SLC_LEVELS_ALL_OR_ONE)
-        return info->mipLevelCount == 1 ? NULL : "mipLevelCount is neither 1 nor the full chain's";
-    return "mipLevelCount is not the full chain's";
+    return level_trouble(info, levels);
 }
 
 SluiceResult slc_image_info_check(const SluiceImageInfo *info, enum slc_image_levels levels,

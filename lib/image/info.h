@@ -19,8 +19,10 @@ SluiceResult slc_image_info_init(const SluiceAllocationCallbacks *cb, const Slui
 
 /** Levels that a source may have. */
 enum slc_image_levels {
-    SLC_LEVELS_ALL,       ///< the full chain
-    SLC_LEVELS_ALL_OR_ONE ///< or level 0 alone
+    SLC_LEVELS_ALL,        ///< the full chain
+    SLC_LEVELS_ALL_OR_ONE, ///< or level 0 alone
+    SLC_LEVELS_TO_TAIL,    ///< down to a level that fits into a standard tile, or further
+    SLC_LEVELS_ANY         ///< one or more
 };
 
 /**

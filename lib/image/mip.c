@@ -62,13 +62,6 @@ static struct taps find_taps(uint32_t size, uint32_t i)
     return (struct taps){2 * i, 3, {(n - i) / total, n / total, (i + 1) / total}};
 }
 
-/* Rows of the level above, [width][4], and one row of the level that is made. */
-struct row_buffers {
-    float *source;
-    double *sum;
-    float *result;
-};
-
 static void add_row(const float *source, double weight, double *sum, size_t value_count)
 {
     for (size_t i = 0; i < value_count; i++)
@@ -76,12 +69,13 @@ static void add_row(const float *source, double weight, double *sum, size_t valu
             sum[i] += weight * source[i];
 }
 
-static void filter_along_row(const double *sum, uint32_t source_width, float *result,
-                             uint32_t width)
+/* `sum` begins with texel `first` of the level above, which is `source_width` texels wide. */
+static void filter_along_row(const double *sum, uint32_t first, uint32_t source_width,
+                             float *result, uint32_t x, uint32_t width)
 {
-    for (uint32_t x = 0; x < width; x++, result += 4) {
+    for (uint32_t end = x + width; x < end; x++, result += 4) {
         struct taps taps = find_taps(source_width, x);
-        const double *texel = sum + 4 * (size_t)taps.first;
+        const double *texel = sum + 4 * (size_t)(taps.first - first);
         double mean[4] = {0};
         for (uint32_t t = 0; t < taps.count; t++)
             for (uint32_t c = 0; c < 4; c++)
@@ -91,53 +85,91 @@ static void filter_along_row(const double *sum, uint32_t source_width, float *re
     }
 }
 
-static void build_level(struct slc_mip_chain *chain, uint32_t level,
-                        const struct row_buffers *buffers)
+static void cover(uint32_t size, uint32_t first, uint32_t count, uint32_t *covered,
+                  uint32_t *covered_count)
 {
-    uint32_t source_width = slc_mip_size(chain->width, level - 1);
-    uint32_t source_height = slc_mip_size(chain->height, level - 1);
-    uint32_t width = slc_mip_size(chain->width, level);
-    uint32_t height = slc_mip_size(chain->height, level);
-    size_t texel_size = sluiceGetFormatTexelSize(chain->format);
-    const char *source = slc_mip_chain_level(chain, level - 1);
-    char *result = slc_mip_chain_level(chain, level);
-    for (uint32_t y = 0; y < height; y++) {
-        struct taps taps = find_taps(source_height, y);
-        memset(buffers->sum, 0, 4 * (size_t)source_width * sizeof *buffers->sum);
+    struct taps low = find_taps(size, first), high = find_taps(size, first + count - 1);
+    *covered = low.first;
+    *covered_count = high.first + high.count - low.first;
+}
+
+void slc_mip_part_cover(const struct slc_mip_part *coarse, struct slc_mip_part *fine)
+{
+    cover(fine->level_width, coarse->x, coarse->width, &fine->x, &fine->width);
+    cover(fine->level_height, coarse->y, coarse->height, &fine->y, &fine->height);
+}
+
+uint64_t slc_mip_rows_size(uint32_t width)
+{
+    const struct slc_mip_rows *rows = NULL;
+    return 4 * (uint64_t)width * (sizeof *rows->source + sizeof *rows->sum + sizeof *rows->result);
+}
+
+SluiceResult slc_mip_rows_init(struct slc_mip_rows *rows, const SluiceAllocationCallbacks *cb,
+                               uint32_t width)
+{
+    size_t values = 4 * (size_t)width;
+    *rows = (struct slc_mip_rows){.source = slc_alloc(cb, values, sizeof *rows->source),
+                                  .sum = slc_alloc(cb, values, sizeof *rows->sum),
+                                  .result = slc_alloc(cb, values, sizeof *rows->result),
+                                  .width = width};
+    if (rows->source && rows->sum && rows->result)
+        return SLUICE_SUCCESS;
+    slc_mip_rows_finish(rows, cb);
+    return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+void slc_mip_rows_finish(struct slc_mip_rows *rows, const SluiceAllocationCallbacks *cb)
+{
+    size_t values = 4 * (size_t)rows->width;
+    slc_free(cb, rows->source, values, sizeof *rows->source);
+    slc_free(cb, rows->sum, values, sizeof *rows->sum);
+    slc_free(cb, rows->result, values, sizeof *rows->result);
+    *rows = (struct slc_mip_rows){0};
+}
+
+void slc_mip_filter(SluiceFormat format, const struct slc_mip_part *fine,
+                    const struct slc_mip_part *coarse, const struct slc_mip_rows *rows)
+{
+    for (uint32_t y = 0; y < coarse->height; y++) {
+        struct taps taps = find_taps(fine->level_height, coarse->y + y);
+        memset(rows->sum, 0, 4 * (size_t)fine->width * sizeof *rows->sum);
         for (uint32_t t = 0; t < taps.count; t++) {
-            const char *row = source + (size_t)(taps.first + t) * source_width * texel_size;
-            slc_texels_to_rgba(chain->format, row, buffers->source, source_width);
-            add_row(buffers->source, taps.weights[t], buffers->sum, 4 * (size_t)source_width);
+            slc_texels_to_rgba(format, fine->texels + (taps.first + t - fine->y) * fine->pitch,
+                               rows->source, fine->width);
+            add_row(rows->source, taps.weights[t], rows->sum, 4 * (size_t)fine->width);
         }
-        filter_along_row(buffers->sum, source_width, buffers->result, width);
-        slc_texels_from_rgba(chain->format, buffers->result, result + y * width * texel_size,
-                             width);
+        filter_along_row(rows->sum, fine->x, fine->level_width, rows->result, coarse->x,
+                         coarse->width);
+        slc_texels_from_rgba(format, rows->result, coarse->texels + y * coarse->pitch,
+                             coarse->width);
     }
 }
 
-uint64_t slc_mip_chain_build_size(uint32_t width)
+static struct slc_mip_part whole_level(const struct slc_mip_chain *chain, uint32_t level)
 {
-    const struct row_buffers *buffers = NULL;
-    return 4 * (uint64_t)width *
-           (sizeof *buffers->source + sizeof *buffers->sum + sizeof *buffers->result);
+    uint32_t width = slc_mip_size(chain->width, level), height = slc_mip_size(chain->height, level);
+    return (struct slc_mip_part){.level_width = width,
+                                 .level_height = height,
+                                 .width = width,
+                                 .height = height,
+                                 .texels = slc_mip_chain_level(chain, level),
+                                 .pitch = width * (size_t)sluiceGetFormatTexelSize(chain->format)};
 }
 
 SluiceResult slc_mip_chain_build(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb)
 {
-    size_t values = 4 * (size_t)chain->width;
-    struct row_buffers buffers = {
-        .source = slc_alloc(cb, values, sizeof *buffers.source),
-        .sum = slc_alloc(cb, values, sizeof *buffers.sum),
-        .result = slc_alloc(cb, values, sizeof *buffers.result),
-    };
-    bool complete = buffers.source && buffers.sum && buffers.result;
-    if (complete)
-        for (uint32_t level = 1; level < chain->level_count; level++)
-            build_level(chain, level, &buffers);
-    slc_free(cb, buffers.source, values, sizeof *buffers.source);
-    slc_free(cb, buffers.sum, values, sizeof *buffers.sum);
-    slc_free(cb, buffers.result, values, sizeof *buffers.result);
-    return complete ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    struct slc_mip_rows rows;
+    SluiceResult result = slc_mip_rows_init(&rows, cb, chain->width);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    for (uint32_t level = 1; level < chain->level_count; level++) {
+        struct slc_mip_part fine = whole_level(chain, level - 1);
+        struct slc_mip_part coarse = whole_level(chain, level);
+        slc_mip_filter(chain->format, &fine, &coarse, &rows);
+    }
+    slc_mip_rows_finish(&rows, cb);
+    return SLUICE_SUCCESS;
 }
 
 void slc_mip_chain_read(const struct slc_mip_chain *chain, const SluiceImageRegion *region,

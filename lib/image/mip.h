@@ -19,8 +19,39 @@ struct slc_mip_chain {
 /** Bytes of all levels of a format that is not compressed; UINT64_MAX beyond 64 bits. */
 uint64_t slc_mip_chain_size(SluiceFormat format, uint32_t width, uint32_t height);
 
-/** Bytes that slc_mip_chain_build takes meanwhile, at a width. */
-uint64_t slc_mip_chain_build_size(uint32_t width);
+/** A rectangle of a level, in memory. */
+struct slc_mip_part {
+    uint32_t level_width, level_height; ///< texels of the whole level
+    uint32_t x, y, width, height;       ///< texels
+    char *texels;
+    size_t pitch; ///< bytes
+};
+
+/** Sets the rectangle of `fine`, in the next finer level, to what `coarse` is made from. */
+void slc_mip_part_cover(const struct slc_mip_part *coarse, struct slc_mip_part *fine);
+
+/** Rows of the finer level and of the one that is made, as [width][4]. */
+struct slc_mip_rows {
+    float *source; ///< owned, like the next two
+    double *sum;
+    float *result;
+    uint32_t width;
+};
+
+/** Bytes that rows of a width take, and slc_mip_chain_build meanwhile. */
+uint64_t slc_mip_rows_size(uint32_t width);
+/** Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_mip_rows_init(struct slc_mip_rows *rows, const SluiceAllocationCallbacks *cb,
+                               uint32_t width);
+void slc_mip_rows_finish(struct slc_mip_rows *rows, const SluiceAllocationCallbacks *cb);
+
+/**
+ * Makes `coarse` from `fine`, which slc_mip_part_cover has given its rectangle: each texel is the
+ * mean of the area that it covers, in linear light for sRGB formats; NaN counts as 0. `rows` are at
+ * least as wide as `fine`. The result does not depend on how a level is cut into parts.
+ */
+void slc_mip_filter(SluiceFormat format, const struct slc_mip_part *fine,
+                    const struct slc_mip_part *coarse, const struct slc_mip_rows *rows);
 
 /** Room for all levels; what it holds is undefined. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_mip_chain_init(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb,
@@ -34,9 +65,8 @@ static inline char *slc_mip_chain_level(const struct slc_mip_chain *chain, uint3
 }
 
 /**
- * Makes every level from the stored one above it, each texel the mean of the area that it covers
- * (in linear light for sRGB formats), NaN counting as 0. Only levels below the first can hold fewer
- * infinities than the file: half formats saturate. Errors: OUT_OF_HOST_MEMORY.
+ * Makes every level from the stored one above it with slc_mip_filter. Only levels below the first
+ * can hold fewer infinities than the file: half formats saturate. Errors: OUT_OF_HOST_MEMORY.
  */
 SluiceResult slc_mip_chain_build(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb);
 

@@ -31,6 +31,7 @@ sluiceReadImageRegionLocated(f->source, &f->region, f->out.texels, sizeof f->out
 !sluiceDestroyImageSource(f->source)
 sluiceCreateProceduralImageSource(&f->image, &f->info, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceCreateMemoryImageSource(f->texels, &f->info, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
+sluiceCreateCompleteChainSource(&f->chain, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceCreateArrayImageSource(&f->source, 1, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 
 sluiceCreateFilePool(?&f->pool_info, &f->out.pool) => sluiceDestroyFilePool(f->out.pool)
@@ -93,6 +94,7 @@ sluiceEndRecording(?NULL)
 struct fixture {
     SluiceFeedbackRate rate;
     SluiceProceduralImage image;
+    SluiceCompleteChainSourceCreateInfo chain;
     SluiceImageInfo info;
     SluiceImageSource *source;
     SluiceImageRegion region;
@@ -223,6 +225,8 @@ static void fixture_init(struct fixture *f, void **state)
                                 .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                 .pName = "gray"};
     CHECK_OK(sluiceCreateProceduralImageSource(&f->image, &f->info, NULL, &f->source));
+    f->chain =
+        (SluiceCompleteChainSourceCreateInfo){.structSize = sizeof f->chain, .source = f->source};
     f->region = (SluiceImageRegion){.width = 4, .height = 4};
     f->loader_info = (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
                                                   .threadCount = 1};
