@@ -51,9 +51,9 @@ typedef struct SluiceDdsImageSourceCreateInfo {
  * Arrays become layers. Cube maps become six layers, in the order +X, -X, +Y, -Y, +Z, -Z. At most
  * 2^20 texels in width and height, and 2^16 layers.
  *
- * The mip chain must be full, down to one texel, because streaming falls back to coarse levels. A
- * file with fewer levels is SLUICE_ERROR_UNSUPPORTED: write it again with all levels (texconv -m 0,
- * nvcompress without -nomips).
+ * A file may have any number of levels; mipLevelCount says how many. For streaming, add the levels
+ * that are missing with sluiceCreateCompleteChainSource, or, for BC formats, write the file with
+ * all levels (texconv -m 0, nvcompress without -nomips).
  *
  * Queries and reads return SLUICE_NOT_READY while the process has too few file descriptors to open
  * the file. Sluice leaves the last 16 below the soft limit to others.
@@ -63,8 +63,8 @@ typedef struct SluiceDdsImageSourceCreateInfo {
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Errors of queries and reads: SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO;
  *         SLUICE_ERROR_CORRUPT_DATA for contradictory headers and truncated files;
- *         SLUICE_ERROR_UNSUPPORTED for other formats, a `format` of different bytes, incomplete mip
- *         chains and cube maps, volumes, 1D textures. Each error is logged once, at most 16 per
+ *         SLUICE_ERROR_UNSUPPORTED for other formats, a `format` of different bytes, incomplete
+ *         cube maps, volumes, 1D textures. Each error is logged once, at most 16 per
  *         file, with the file's name and a remedy. The next call tries again.
  * Thread safety: any thread.
  * Source: Microsoft, "Programming Guide for DDS".

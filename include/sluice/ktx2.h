@@ -49,9 +49,10 @@ typedef struct SluiceKtx2ImageSourceCreateInfo {
  * maxCacheSize. During decompression the compressed bytes are in memory as well. For streaming,
  * prefer files without supercompression (`ktx create` without --zstd).
  *
- * The mip chain must be full, down to one texel, because streaming falls back to coarse levels. A
- * file with fewer levels is SLUICE_ERROR_UNSUPPORTED: write it again with all levels (ktx create
- * --generate-mipmap).
+ * A file may have any number of levels; mipLevelCount says how many. A level count of 0 in the file
+ * is one level. For streaming, add the levels that are missing with
+ * sluiceCreateCompleteChainSource, or, for compressed formats, write the file with all levels (ktx
+ * create --generate-mipmap).
  *
  * Queries and reads return SLUICE_NOT_READY while the process has too few file descriptors to open
  * the file. Sluice leaves the last 16 below the soft limit to others.
@@ -62,12 +63,11 @@ typedef struct SluiceKtx2ImageSourceCreateInfo {
  * Errors of queries and reads: SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO;
  *         SLUICE_ERROR_CORRUPT_DATA for contradictory headers, truncated files and levels that
  *         decompress to a wrong size or fail to decompress; SLUICE_ERROR_UNSUPPORTED for Basis
- *         Universal (ETC1S, UASTC), ZLIB, other formats, a `format` of different bytes, incomplete
- *         mip chains, volumes, 1D textures, a level larger than maxCacheSize, and Zstandard in a
- *         build without it; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Each error is logged once, at most 16
- *         per file, with the file's name and a remedy. The next call tries again.
- * Thread safety: any thread.
- * Source: Khronos, "KTX File Format Specification", version 2.0.
+ *         Universal (ETC1S, UASTC), ZLIB, other formats, a `format` of different bytes, volumes, 1D
+ * textures, a level larger than maxCacheSize, and Zstandard in a build without it;
+ * SLUICE_ERROR_OUT_OF_HOST_MEMORY. Each error is logged once, at most 16 per file, with the file's
+ * name and a remedy. The next call tries again. Thread safety: any thread. Source: Khronos, "KTX
+ * File Format Specification", version 2.0.
  */
 SLUICE_API SluiceResult sluiceCreateKtx2ImageSource(const SluiceKtx2ImageSourceCreateInfo *pInfo,
                                                     SluiceImageSource **pSource);

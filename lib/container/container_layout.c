@@ -4,7 +4,7 @@
 #include "image/format_size.h"
 
 SluiceResult slc_layout_check(const struct slc_container_layout *layout,
-                              const struct slc_input_file *file, const char *advice)
+                              const struct slc_input_file *file)
 {
     if (layout->width == 0 || layout->height == 0 || layout->layer_count == 0)
         return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA, "is %u x %u texels, %u layers",
@@ -20,10 +20,6 @@ SluiceResult slc_layout_check(const struct slc_container_layout *layout,
         return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA,
                               "has %u levels, but %u x %u texels have %u", layout->level_count,
                               layout->width, layout->height, full);
-    if (layout->level_count < full)
-        return slc_input_fail(file, SLUICE_ERROR_UNSUPPORTED,
-                              "has %u of %u levels; write it again with all of them (%s)",
-                              layout->level_count, full, advice);
     return SLUICE_SUCCESS;
 }
 

@@ -36,11 +36,11 @@ struct slc_container_layout {
 };
 
 /**
- * Whether the size, the layers and the number of levels are such as can be delivered; `advice` says
- * what writes a full chain. Errors: CORRUPT_DATA, UNSUPPORTED; logged.
+ * Whether the size, the layers and the number of levels are such as can be delivered. Errors:
+ * CORRUPT_DATA, UNSUPPORTED; logged.
  */
 SluiceResult slc_layout_check(const struct slc_container_layout *layout,
-                              const struct slc_input_file *file, const char *advice);
+                              const struct slc_input_file *file);
 
 /** Bytes of one layer of a level. At most 2^44 after the check. */
 uint64_t slc_layout_image_size(const struct slc_container_layout *layout, uint32_t level);

@@ -166,7 +166,7 @@ static SluiceResult read_header(const struct slc_input_file *file,
     layout->level_count = slc_u32_at(header + AT_LEVEL_COUNT);
     if (layout->level_count == 0)
         layout->level_count = 1; /* as writers say that there is no chain */
-    result = slc_layout_check(layout, file, "texconv -m 0, nvcompress without -nomips");
+    result = slc_layout_check(layout, file);
     return result == SLUICE_SUCCESS ? place_images(file, is_dx10 ? DX10_END : HEADER_END, layout)
                                     : result;
 }

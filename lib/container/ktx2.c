@@ -126,7 +126,7 @@ static SluiceResult read_shape(const struct slc_input_file *file, const uint8_t 
     layout->height = slc_u32_at(header + AT_HEIGHT);
     layout->level_count = slc_u32_at(header + AT_LEVEL_COUNT);
     if (layout->level_count == 0)
-        layout->level_count = 1; /* the others are to be made by whoever reads it */
+        layout->level_count = 1; /* whoever reads it should make the others */
     if (layers == 0)
         layers = 1; /* not an array */
     if (slc_u32_at(header + AT_DEPTH) != 0 || (layout->width != 0 && layout->height == 0))
@@ -136,7 +136,7 @@ static SluiceResult read_shape(const struct slc_input_file *file, const uint8_t 
     if (faces != 1 && faces != FACE_COUNT)
         return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has %u faces", faces);
     layout->layer_count = layers > UINT32_MAX / faces ? UINT32_MAX : layers * faces;
-    return slc_layout_check(layout, file, "ktx create --generate-mipmap");
+    return slc_layout_check(layout, file);
 }
 
 /* Level after level, each with all of its layers. `entry`: what the file says of it. */

@@ -29,7 +29,7 @@
 #include <stdbool.h>
 
 /** How many levels have tiles of their own: those wider or higher than half a tile. So it is the
- *  first level of the tail, too, which always has one: the last level is 1x1. */
+ *  first level of the tail, too. A chain must reach it. */
 static inline uint32_t slc_demand_regular_count(uint32_t width, uint32_t height,
                                                 uint32_t tile_width, uint32_t tile_height)
 {

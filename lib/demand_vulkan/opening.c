@@ -4,9 +4,14 @@
  */
 #include "demand_vulkan/opening.h"
 
+#include "base/checked.h"
+#include "demand/tail_place.h"
 #include "image/convert.h"
+#include "image/format_size.h"
 #include "image/info.h"
+#include "vulkan/sparse_layout.h"
 
+#include <assert.h>
 #include <string.h>
 
 static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
@@ -24,15 +29,21 @@ static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
 static const char *find_trouble(const struct slc_demand_image *image)
 {
     const SluiceImageInfo *info = &image->info;
-    const char *trouble = slc_image_info_trouble(info, SLC_LEVELS_ALL);
+    const char *trouble = slc_image_info_trouble(info, SLC_LEVELS_TO_TAIL);
     if (trouble)
         return trouble;
     if (info->arrayLayerCount > 1)
         return "arrayLayerCount is beyond 1";
     if (!image->loader->usable[info->format])
         return "the device does not sample and filter its format";
+    uint32_t tile_width = 0, tile_height = 0;
     SluiceFormatInfo format = {.structSize = sizeof format};
     (void)sluiceGetFormatInfo(info->format, &format);
+    (void)sluiceGetStandardTileShape(info->format, &tile_width, &tile_height);
+    if (slc_demand_regular_count(info->width, info->height, tile_width, tile_height) >=
+        info->mipLevelCount)
+        return "mipLevelCount ends before a level fits into half a tile; build the others with "
+               "sluiceCreateCompleteChainSource";
     if (format.blockWidth > 4) /* levels of a mip tail lie at multiples of 4 texels */
         return "its format has blocks larger than 4x4, which demand loading does not read";
     return NULL;
@@ -58,24 +69,51 @@ static SluiceResult open_source(struct slc_demand_image *image)
     return image->trouble ? SLUICE_ERROR_UNSUPPORTED : SLUICE_SUCCESS;
 }
 
+/* The mean of the last level, by one texel of each block. A full chain has one texel there. */
+static void find_base_color(const SluiceImageInfo *info, const uint8_t *texels, uint32_t count,
+                            float rgba[4])
+{
+    SluiceFormatInfo format = {.structSize = sizeof format};
+    double sum[4] = {0};
+    (void)sluiceGetFormatInfo(info->format, &format);
+    for (uint32_t i = 0; i < count; i++) {
+        slc_base_color(info->format, texels + (size_t)i * format.blockSize, rgba);
+        for (uint32_t c = 0; c < 4; c++)
+            sum[c] += rgba[c];
+    }
+    for (uint32_t c = 0; c < 4 && count > 1; c++)
+        rgba[c] = (float)(sum[c] / count);
+}
+
+static SluiceResult read_base_color(struct slc_demand_image *image)
+{
+    /* The last level fits into half a tile in both directions. */
+    _Alignas(16) uint8_t texels[SLC_TILE_SIZE / 4];
+    const SluiceImageInfo *info = &image->info;
+    SluiceFormatInfo format = {.structSize = sizeof format};
+    (void)sluiceGetFormatInfo(info->format, &format);
+    SluiceImageRegion last = {.mipLevel = info->mipLevelCount - 1};
+    last.width = slc_mip_size(info->width, last.mipLevel);
+    last.height = slc_mip_size(info->height, last.mipLevel);
+    size_t pitch = (size_t)slc_format_row_size(&format, last.width);
+    size_t size = pitch * slc_format_row_count(&format, last.height);
+    assert(size <= sizeof texels);
+    SluiceResult result = sluiceReadImageRegion(image->source, &last, texels, pitch);
+    if (result == SLUICE_SUCCESS)
+        find_base_color(info, texels, (uint32_t)(size / format.blockSize), image->read_color);
+    return result;
+}
+
 static SluiceResult read_region(SluiceImageSource *source, const SluiceImageRegion *region,
                                 void *texels, size_t row_pitch)
 {
     (void)source, (void)region, (void)row_pitch;
     struct slc_demand_image *image =
         (void *)((char *)texels - offsetof(struct slc_demand_image, read_color));
-    _Alignas(16) uint8_t texel[16]; /* of any format, or a block */
     if (image->trouble)
         return SLUICE_ERROR_UNSUPPORTED;
     SluiceResult result = open_source(image);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    const SluiceImageRegion last = {
-        .mipLevel = image->info.mipLevelCount - 1, .width = 1, .height = 1};
-    result = sluiceReadImageRegion(image->source, &last, texel, sizeof texel);
-    if (result == SLUICE_SUCCESS)
-        slc_base_color(image->info.format, texel, image->read_color);
-    return result;
+    return result == SLUICE_SUCCESS ? read_base_color(image) : result;
 }
 
 static void destroy(SluiceImageSource *source)

@@ -198,6 +198,13 @@ static uint32_t choose_modes(SluiceDemandLoader *loader, uint32_t index,
     return mode_bits(u, v);
 }
 
+/* Shaders answer the last level with the base color. Behind a short chain comes a level for it. */
+static uint32_t shown_level_count(const SluiceImageInfo *info)
+{
+    uint32_t full = slc_mip_count(slc_max_u32(info->width, info->height));
+    return slc_min_u32(info->mipLevelCount + 1, full);
+}
+
 static void show_image(SluiceDemandLoader *loader, uint32_t index,
                        const struct slc_demand_image *image)
 {
@@ -210,7 +217,7 @@ static void show_image(SluiceDemandLoader *loader, uint32_t index,
     entry->shape = (entry->shape & SAMPLER_BITS & ~mode_bits(7, 7)) |
                    choose_modes(loader, index, &image->info) | slc_log2_u32(image->tile_width) |
                    slc_log2_u32(image->tile_height) << SLUICE_DEMAND_TILE_HEIGHT_SHIFT |
-                   image->info.mipLevelCount << SLUICE_DEMAND_LEVEL_COUNT_SHIFT |
+                   shown_level_count(&image->info) << SLUICE_DEMAND_LEVEL_COUNT_SHIFT |
                    image->regular_count << SLUICE_DEMAND_REGULAR_SHIFT |
                    format.channelCount << SLUICE_DEMAND_COMPONENTS_SHIFT |
                    (image->blocks ? SLUICE_DEMAND_BLOCKS : 0);

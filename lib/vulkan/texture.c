@@ -335,7 +335,7 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     if (result == SLUICE_SUCCESS)
         result = describe(s, &info, &producer, &image);
     if (result == SLUICE_SUCCESS)
-        result = slc_image_info_check(&image, SLC_LEVELS_ALL, &s->vk.log);
+        result = slc_image_info_check(&image, SLC_LEVELS_TO_TAIL, &s->vk.log);
     if (result != SLUICE_SUCCESS)
         return result;
     uint32_t layers = image.arrayLayerCount ? image.arrayLayerCount : 1;

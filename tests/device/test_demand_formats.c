@@ -225,6 +225,87 @@ static void the_color_of_a_block_is_what_the_device_decodes(void **state)
     }
 }
 
+/* The first levels of another source. */
+struct cut {
+    SluiceImageSource base;
+    SluiceImageSource *whole;
+    uint32_t level_count;
+};
+
+static SluiceResult get_cut_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    SluiceResult result = sluiceGetImageInfo(((struct cut *)base)->whole, info);
+    info->mipLevelCount = ((struct cut *)base)->level_count;
+    return result;
+}
+
+static SluiceResult read_cut(SluiceImageSource *base, const SluiceImageRegion *region, void *texels,
+                             size_t row_pitch)
+{
+    assert_true(region->mipLevel < ((struct cut *)base)->level_count);
+    return sluiceReadImageRegion(((struct cut *)base)->whole, region, texels, row_pitch);
+}
+
+static const SluiceImageSourceInterface cut_interface = {sizeof cut_interface, get_cut_info,
+                                                         read_cut, destroy_block};
+
+/* By one texel of each block, as the library does it. */
+static void mean_color(SluiceImageSource *source, SluiceFormat format, uint32_t level,
+                       double mean[4])
+{
+    uint32_t w = WIDTH >> level, t = HEIGHT >> level, count = 0;
+    uint32_t step = sluiceGetFormatTexelSize(format) ? 1 : 4;
+    for (uint32_t y = 0; y < t; y += step)
+        for (uint32_t x = 0; x < w; x += step, count++) {
+            struct block_range range = expected(source, format, level, x, y);
+            for (uint32_t c = 0; c < 4; c++)
+                mean[c] += (range.low[c] + range.high[c]) / 2;
+        }
+    for (uint32_t c = 0; c < 4; c++)
+        mean[c] /= count;
+}
+
+static void check_short_chain(SluiceFormat format, uint32_t level_count)
+{
+    struct runner r;
+    SluiceDemandTextureId id;
+    struct cut cut = {{&cut_interface}, create_source(format), level_count};
+    uint32_t x, y;
+    runner_init(&r, &h, NULL);
+    const SluiceDemandTextureCreateInfo info = {
+        .structSize = sizeof info, .image.source = &cut.base, .pSampler = &runner_nearest};
+    CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
+    for (uint32_t l = 0; l < level_count; l++)
+        for (uint32_t i = 0; i < 9; i++) {
+            texel_at(l, i, &x, &y);
+            runner_add_texel(&r, id, WIDTH, HEIGHT, l, x, y);
+        }
+    runner_add_texel(&r, id, WIDTH, HEIGHT, LEVELS - 1, 0, 0);
+    runner_load(&r, 20);
+    for (uint32_t l = 0; l < level_count; l++)
+        for (uint32_t i = 0; i < 9; i++) {
+            texel_at(l, i, &x, &y);
+            check(&r, l * 9 + i, cut.whole, format, l, x, y);
+        }
+    struct RunnerOutput out = runner_output(&r, level_count * 9);
+    double mean[4] = {0};
+    mean_color(cut.whole, format, level_count - 1, mean);
+    for (uint32_t c = 0; c < 4; c++)
+        assert_true(fabs((double)out.color[c] - mean[c]) < 0.01);
+    runner_finish(&r);
+    sluiceDestroyImageSource(cut.whole);
+}
+
+static void chains_may_end_in_the_tail(void **state)
+{
+    (void)state;
+    for (uint32_t count = 6; count < LEVELS; count += 2) {
+        check_short_chain(SLUICE_FORMAT_R8G8B8A8_UNORM, count);
+        if (is_usable(SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK))
+            check_short_chain(SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, count);
+    }
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -232,6 +313,7 @@ int main(void)
         return status;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_shows_what_is_in_the_image),
+        cmocka_unit_test(chains_may_end_in_the_tail),
         cmocka_unit_test(the_color_of_a_block_is_what_the_device_decodes),
     };
     return harness_finish(&h, RUN_TESTS(tests));

@@ -221,6 +221,114 @@ static void compressed_textures_are_streamed_by_feedback(void **state)
     scene_finish(&scene);
 }
 
+/* The first levels of another source. */
+struct cut {
+    SluiceImageSource base;
+    SluiceImageSource *whole;
+    uint32_t level_count;
+};
+
+static SluiceResult get_cut_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    SluiceResult result = sluiceGetImageInfo(((struct cut *)base)->whole, info);
+    info->mipLevelCount = ((struct cut *)base)->level_count;
+    return result;
+}
+
+static SluiceResult read_cut(SluiceImageSource *base, const SluiceImageRegion *region, void *texels,
+                             size_t row_pitch)
+{
+    assert_true(region->mipLevel < ((struct cut *)base)->level_count);
+    return sluiceReadImageRegion(((struct cut *)base)->whole, region, texels, row_pitch);
+}
+
+static void destroy_cut(SluiceImageSource *base)
+{
+    sluiceDestroyImageSource(((struct cut *)base)->whole);
+    ((struct cut *)base)->whole = NULL;
+}
+
+static const SluiceImageSourceInterface cut_interface = {sizeof cut_interface, get_cut_info,
+                                                         read_cut, destroy_cut};
+
+struct short_chain {
+    uint32_t width, height;
+    SluiceFormat format;
+    uint32_t level_count;
+};
+
+static void cut_init(struct cut *cut, const struct short_chain *chain)
+{
+    cut->base.pInterface = &cut_interface;
+    cut->whole = sluiceGetFormatTexelSize(chain->format)
+                     ? pattern_source(PATTERN_LEVEL, chain->width, chain->height, chain->format)
+                     : block_source(chain->width, chain->height, chain->format);
+    cut->level_count = chain->level_count;
+}
+
+/* Levels beyond the last are asked for, too. */
+static void chains_may_end_with_any_level_that_fits_into_a_tile(void **state)
+{
+    static const struct short_chain chains[] = {
+        {64, 64, SLUICE_FORMAT_R8G8B8A8_UNORM, 1},
+        {128, 128, SLUICE_FORMAT_R8G8B8A8_UNORM, 1},
+        {1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM, 4},
+        {1000, 700, SLUICE_FORMAT_R8G8B8A8_UNORM, 5},
+        {500, 250, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, 1},
+        {2050, 1100, SLUICE_FORMAT_BC3_UNORM_BLOCK, 5},
+        {1024, 1024, SLUICE_FORMAT_BC5_UNORM_BLOCK, 9},
+    };
+    enum { COUNT = sizeof chains / sizeof chains[0] };
+    const struct scene_aim all = {0, 0, 1, 1, 0, 12, 0, 0};
+    static struct cut cuts[COUNT];
+    struct scene scene;
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo)});
+    roll_seed(6);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        cut_init(&cuts[i], &chains[i]);
+        scene_aim(&scene, scene_add(&scene, &cuts[i].base), 64, &all);
+    }
+    scene_settle(&scene, 24);
+    assert_int_equal(scene_missing(&scene), 0);
+    assert_int_equal(scene_non_resident(&scene), 0);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const struct ProbeOutput *out = scene_outputs(&scene, i);
+        for (uint32_t s = 0; s < 64 && chains[i].format == SLUICE_FORMAT_R8G8B8A8_UNORM; s++)
+            assert_true(out[s].color[0] > 0.06f && out[s].color[3] > 0.99f &&
+                        pattern_level(out[s].color) <
+                            (float)chains[i].level_count - 1 + PATTERN_LEVEL_ERROR);
+    }
+    scene_finish(&scene);
+}
+
+static void chains_that_end_before_are_refused(void **state)
+{
+    static const struct short_chain chains[] = {
+        {256, 256, SLUICE_FORMAT_R8G8B8A8_UNORM, 1},
+        {1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM, 3},
+        {4096, 64, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, 3},
+    };
+    struct harness *h = *state;
+    struct scene scene;
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo)});
+    for (size_t i = 0; i < sizeof chains / sizeof chains[0]; i++) {
+        SluiceVulkanTexture texture;
+        struct cut cut;
+        cut_init(&cut, &chains[i]);
+        SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = &cut.base};
+        h->quiet = true;
+        CHECK_RESULT(sluiceAddVulkanTexture(scene.streamer, &info, &texture),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+        h->quiet = false;
+        sluiceDestroyImageSource(&cut.base);
+    }
+    scene_finish(&scene);
+}
+
 int main(void)
 {
     struct harness h;
@@ -231,6 +339,8 @@ int main(void)
         cmocka_unit_test(texels_of_every_format_are_as_in_the_source),
         cmocka_unit_test(texels_of_every_elongated_format_are_as_in_the_source),
         cmocka_unit_test(formats_that_the_device_lacks_are_refused),
+        cmocka_unit_test(chains_may_end_with_any_level_that_fits_into_a_tile),
+        cmocka_unit_test(chains_that_end_before_are_refused),
         cmocka_unit_test(compressed_textures_are_streamed_by_feedback),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
