@@ -162,6 +162,9 @@ typedef struct SluiceImageInfo {
     /** Address modes that the mip levels were filtered with. Sample with the same modes. Tile
      * stores record them. */
     SluiceImageAddressMode addressModeU, addressModeV;
+    /** The layers are faces of cube maps: six for each cube, in the order +X, -X, +Y, -Y, +Z, -Z,
+     *  as in Vulkan. Faces are square. Default: false. */
+    bool cube;
 } SluiceImageInfo;
 
 /**

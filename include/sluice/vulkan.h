@@ -115,6 +115,11 @@ typedef struct SluiceVulkanDeviceCapabilities {
     float maxSamplerAnisotropy;
     float timestampPeriod;          ///< Nanoseconds per tick. 0: no time stamps.
     uint64_t deviceLocalMemorySize; ///< Bytes of the largest device-local heap.
+    /**
+     * Sparse mode streams cube maps. Software devices sample only the first row of sparse cube
+     * maps.
+     */
+    bool sparseCubes;
 } SluiceVulkanDeviceCapabilities;
 
 /**
@@ -217,8 +222,8 @@ SLUICE_API SluiceResult sluiceGetVulkanSparseImageLayout(
  *
  * Enabled in every mode if available, for shaders that serve all modes and for arrays of textures:
  * shaderSampledImageArrayDynamicIndexing, shaderSampledImageArrayNonUniformIndexing,
- * runtimeDescriptorArray; and for the samplers of textures: samplerAnisotropy,
- * samplerMirrorClampToEdge.
+ * runtimeDescriptorArray; for the samplers of textures: samplerAnisotropy,
+ * samplerMirrorClampToEdge; and for arrays of cube maps: imageCubeArray.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for an unknown mode;
  *         SLUICE_ERROR_UNSUPPORTED if the device lacks a feature (the log names it).
@@ -541,6 +546,11 @@ typedef struct SluiceVulkanTextureCreateInfo {
     float maxAnisotropy;
     /** Fills the tiles in place of `source`, which must be NULL then. Copied. Default: none. */
     const SluiceTileProducer *pProducer;
+    /**
+     * The layers are faces of cube maps, as if SluiceImageInfo.cube of the image were set. Address
+     * modes are ignored: samples cross the edges of faces. Default: as the image says.
+     */
+    bool cube;
 } SluiceVulkanTextureCreateInfo;
 
 /** Texture as the application draws with it. Never grows. */
@@ -560,6 +570,16 @@ typedef struct SluiceVulkanTexture {
     VkImageView arrayView; ///< 2D_ARRAY, all layers and levels. VK_NULL_HANDLE if not an array.
     VkSamplerAddressMode addressModeU, addressModeV; ///< Modes of its sampler.
     float maxAnisotropy; ///< Of its sampler, 1 to 16. Pass it to the shader functions.
+    /**
+     * CUBE, all levels of the six faces of its cube. The faces of a cube have the same one.
+     * VK_NULL_HANDLE if it is not a face.
+     */
+    VkImageView cubeView;
+    /**
+     * CUBE_ARRAY, all cubes and levels. VK_NULL_HANDLE for a single cube, or if the device lacks
+     * the feature imageCubeArray.
+     */
+    VkImageView cubeArrayView;
 } SluiceVulkanTexture;
 
 /**
@@ -586,12 +606,18 @@ SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
  * Each layer is a streamed texture with its own id, feedback and MinMip map. Their table indices
  * are consecutive, and all are layers of one image. Removing one of them removes all.
  *
+ * Cube maps (SluiceImageInfo.cube, SluiceVulkanTextureCreateInfo.cube) have six layers each.
+ * shaders/include/sluice/sample_cube.glsl samples cubeView and cubeArrayView. More than one cube
+ * requires the feature imageCubeArray if the device has it; sluiceRequireVulkanFeatures enables it.
+ *
  * shaders/include/sluice/sample_array.glsl samples arrayView. In paged mode the image and arrayView
  * hold only the packed levels of all layers; the tiles of each layer are pages of its own.
  *
  * Errors: as sluiceAddVulkanTexture; SLUICE_ERROR_INVALID_ARGUMENT if the source has another number
- *         of layers; SLUICE_ERROR_UNSUPPORTED if the device does not support arrays of so many
- *         layers or, in sparse mode, binds all layers of such a small array at once.
+ *         of layers, or for cube maps whose faces are not square or whose layers are no multiple of
+ *         6; SLUICE_ERROR_UNSUPPORTED if the device does not support arrays of so many
+ *         layers or, in sparse mode, binds all layers of such a small array at once, or for cube
+ * maps in sparse mode without SluiceVulkanDeviceCapabilities.sparseCubes.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
     SluiceVulkanStreamer *streamer, const SluiceVulkanTextureCreateInfo *pCreateInfo,

@@ -13,7 +13,7 @@
 #define SLC_UP_TO(type, last) (offsetof(type, last) + sizeof(((type *)0)->last))
 
 #define SLC_FIRST_SluiceFormatInfo SLC_UP_TO(SluiceFormatInfo, channelCount)
-#define SLC_FIRST_SluiceImageInfo SLC_UP_TO(SluiceImageInfo, addressModeV)
+#define SLC_FIRST_SluiceImageInfo SLC_UP_TO(SluiceImageInfo, cube)
 #define SLC_FIRST_SluiceImageSourceInterface                                                       \
     SLC_UP_TO(SluiceImageSourceInterface, pfnReadRegionLocated)
 #define SLC_FIRST_SluiceCompleteChainSourceCreateInfo                                              \
@@ -25,7 +25,7 @@
 #define SLC_FIRST_SluiceStreamedTextureManagerCreateInfo                                           \
     SLC_UP_TO(SluiceStreamedTextureManagerCreateInfo, log)
 #define SLC_FIRST_SluiceStreamedTextureManagerConfig                                               \
-    SLC_UP_TO(SluiceStreamedTextureManagerConfig, noMipBias)
+    SLC_UP_TO(SluiceStreamedTextureManagerConfig, separatePackedTiles)
 #define SLC_FIRST_SluiceStreamedTextureLayout SLC_UP_TO(SluiceStreamedTextureLayout, levelFirstTile)
 #define SLC_FIRST_SluiceFeedbackDesc SLC_UP_TO(SluiceFeedbackDesc, streamedMipLevels)
 #define SLC_FIRST_SluiceStreamedTextureStatistics                                                  \
@@ -73,7 +73,7 @@
 #define SLC_FIRST_SluiceImageOpenerCreateInfo SLC_UP_TO(SluiceImageOpenerCreateInfo, log)
 #define SLC_FIRST_SluiceOpenedImageInfo SLC_UP_TO(SluiceOpenedImageInfo, totalTexels)
 #define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
-    SLC_UP_TO(SluiceVulkanDeviceCapabilities, deviceLocalMemorySize)
+    SLC_UP_TO(SluiceVulkanDeviceCapabilities, sparseCubes)
 #define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \
     SLC_UP_TO(SluiceVulkanFormatCapabilities, maxImageSize)
 #define SLC_FIRST_SluiceVulkanSparseImageLayout                                                    \
@@ -84,7 +84,7 @@
 #define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
 #define SLC_FIRST_SluiceTileBatch SLC_UP_TO(SluiceTileBatch, pTiles)
 #define SLC_FIRST_SluiceTileProducer SLC_UP_TO(SluiceTileProducer, timeoutFrames)
-#define SLC_FIRST_SluiceVulkanTextureCreateInfo SLC_UP_TO(SluiceVulkanTextureCreateInfo, pProducer)
+#define SLC_FIRST_SluiceVulkanTextureCreateInfo SLC_UP_TO(SluiceVulkanTextureCreateInfo, cube)
 #define SLC_FIRST_SluiceVulkanBuffers SLC_UP_TO(SluiceVulkanBuffers, pageTable)
 #define SLC_FIRST_SluiceVulkanPages SLC_UP_TO(SluiceVulkanPages, generation)
 #define SLC_FIRST_SluiceStreamingFrame SLC_UP_TO(SluiceStreamingFrame, descriptorSet)

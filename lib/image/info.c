@@ -14,7 +14,7 @@ SluiceResult slc_image_info_init(const SluiceAllocationCallbacks *cb, const Slui
     if (given->width == 0 || given->height == 0 ||
         sluiceGetFormatInfo(given->format, &format) != SLUICE_SUCCESS)
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (slc_format_is_compressed(&format) || given->arrayLayerCount > 1)
+    if (slc_format_is_compressed(&format) || given->arrayLayerCount > 1 || given->cube)
         return SLUICE_ERROR_UNSUPPORTED;
     uint32_t level_count = slc_mip_count(slc_max_u32(given->width, given->height));
     if (given->mipLevelCount != 0 && given->mipLevelCount != level_count)
@@ -67,6 +67,10 @@ const char *slc_image_info_trouble(const SluiceImageInfo *info, enum slc_image_l
         return "format is unknown";
     if (info->arrayLayerCount > SLC_MAX_IMAGE_LAYERS)
         return "arrayLayerCount is beyond 2^16";
+    if (info->cube && info->width != info->height)
+        return "faces of cube maps are not square";
+    if (info->cube && (info->arrayLayerCount == 0 || info->arrayLayerCount % SLC_CUBE_FACES))
+        return "arrayLayerCount of cube maps is no multiple of 6";
     if ((uint32_t)info->addressModeU > SLUICE_IMAGE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE ||
         (uint32_t)info->addressModeV > SLUICE_IMAGE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
         return "addressModeU or addressModeV is unknown";

@@ -6,6 +6,7 @@
 
 #define SLC_MAX_IMAGE_EXTENT (1u << 20) ///< texels in a direction
 #define SLC_MAX_IMAGE_LAYERS (1u << 16)
+#define SLC_CUBE_FACES 6u
 
 /**
  * Copies `given` with its name ("" for NULL); a level count of 0 becomes the full chain's.

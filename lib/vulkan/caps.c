@@ -67,6 +67,7 @@ static void take_properties(SluiceVulkanDeviceCapabilities *out,
     out->residencyNonResidentStrict = p->sparseProperties.residencyNonResidentStrict;
     out->standardTiles = p->sparseProperties.residencyStandard2DBlockShape;
     out->residencyCodesExact = out->shaderResourceResidency && !software;
+    out->sparseCubes = !software;
     out->sparseAddressSpaceSize = p->limits.sparseAddressSpaceSize;
     out->maxTouchedTiles = software ? find_max_touched_tiles() : 0;
     out->maxImageExtent = p->limits.maxImageDimension2D;
@@ -129,6 +130,7 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
     take_descriptor_limits(caps, &properties.properties.limits);
     take_buffer_limits(caps, &properties.properties.limits);
     caps->buffer_device_address = features12.bufferDeviceAddress;
+    caps->image_cube_array = features.features.imageCubeArray;
     caps->array_dynamic_indexing = features.features.shaderSampledImageArrayDynamicIndexing;
     caps->max_image_array_layers = out->maxImageArrayLayers;
     caps->max_allocation_size = maintenance3.maxMemoryAllocationSize;
@@ -252,7 +254,7 @@ static void require_arrays(const struct slc_caps *caps, VkPhysicalDeviceFeatures
         vulkan12->runtimeDescriptorArray = VK_TRUE;
 }
 
-/* Of textures (sluiceGetVulkanSampler). */
+/* Of textures (sluiceGetVulkanSampler), and their views. */
 static void require_samplers(const VkPhysicalDeviceFeatures *there,
                              const VkPhysicalDeviceVulkan12Features *there12,
                              VkPhysicalDeviceFeatures *features,
@@ -262,6 +264,8 @@ static void require_samplers(const VkPhysicalDeviceFeatures *there,
         features->samplerAnisotropy = VK_TRUE;
     if (there12->samplerMirrorClampToEdge)
         vulkan12->samplerMirrorClampToEdge = VK_TRUE;
+    if (there->imageCubeArray)
+        features->imageCubeArray = VK_TRUE;
 }
 
 SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice physicalDevice,

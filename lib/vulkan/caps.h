@@ -13,7 +13,8 @@ struct slc_caps {
     uint32_t max_stage_samplers, max_stage_images; ///< per shader stage; samplers: also combined
     uint32_t max_stage_storage_buffers;            ///< per shader stage and descriptor set
     bool buffer_device_address;                    ///< the device has the feature
-    bool array_dynamic_indexing;                   ///< shaderSampledImageArrayDynamicIndexing
+    bool image_cube_array;
+    bool array_dynamic_indexing; ///< shaderSampledImageArrayDynamicIndexing
     bool timeline_semaphore;
 };
 

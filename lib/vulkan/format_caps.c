@@ -65,6 +65,15 @@ void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc
                    sluiceGetFormatRegionSize(format, tile.width, tile.height) == SLC_TILE_SIZE;
 }
 
+uint32_t slc_max_sparse_cube_width(const struct slc_vk *vk, SluiceFormat format)
+{
+    SluiceVulkanFormatCapabilities caps = {.structSize = sizeof caps};
+    return get_limits(vk, slc_vk_format(format),
+                      SLC_IMAGE_SPARSE_FLAGS | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT, &caps)
+               ? caps.maxWidth
+               : 0;
+}
+
 bool slc_image_may_store(const struct slc_vk *vk, const VkImageCreateInfo *image)
 {
     VkImageFormatProperties limits;

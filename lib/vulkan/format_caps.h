@@ -9,9 +9,18 @@
 #define SLC_IMAGE_SPARSE_FLAGS                                                                     \
     (VK_IMAGE_CREATE_SPARSE_BINDING_BIT | VK_IMAGE_CREATE_SPARSE_RESIDENCY_BIT)
 
+/** Flags of an image of any residency mode. */
+static inline VkImageCreateFlags slc_image_flags(const SluiceImageInfo *info)
+{
+    return info->cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
+}
+
 /** Needs only the instance functions. All zero for formats without a counterpart in Vulkan. */
 void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc_vk *vk,
                           SluiceFormat format);
+
+/** The largest face of a sparse cube map, in texels. 0: the device has none of this format. */
+uint32_t slc_max_sparse_cube_width(const struct slc_vk *vk, SluiceFormat format);
 
 /** True if the device supports the image with VK_IMAGE_USAGE_STORAGE_BIT added. */
 bool slc_image_may_store(const struct slc_vk *vk, const VkImageCreateInfo *image);

@@ -41,6 +41,7 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
 {
     *image = (struct slc_plain_image){0};
     VkImageCreateInfo create = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                .flags = slc_image_flags(info),
                                 .imageType = VK_IMAGE_TYPE_2D,
                                 .format = slc_vk_format(info->format),
                                 .extent = {slc_mip_size(info->width, first_level),

@@ -78,6 +78,10 @@ static const char *check_format(const struct slc_vk *vk, const struct slc_caps *
         image->mipLevelCount > format.maxMipLevelCount ||
         layer_count(image) > format.maxArrayLayerCount)
         return "is larger than the device allows";
+    if (image->cube && !caps->public.sparseCubes)
+        return "is a cube map, which the device does not sample correctly if it is sparse";
+    if (image->cube && image->width > slc_max_sparse_cube_width(vk, image->format))
+        return "is larger than sparse cube maps of the device are";
     if (texel_bytes(image) > format.maxImageSize ||
         texel_bytes(image) > caps->public.sparseAddressSpaceSize)
         return "is larger than the sparse address space";
@@ -148,6 +152,7 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
     VkImageCreateInfo create =
         image_create_info(slc_vk_format(info->format), info->width, info->height,
                           info->mipLevelCount, layer_count(info));
+    create.flags |= slc_image_flags(info);
     const char *trouble = check_format(vk, caps, info);
     SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
     if (!trouble) {

@@ -21,6 +21,7 @@
 #include "vulkan/resolve.h"
 #include "vulkan/sparse_layout.h"
 #include "vulkan/staging.h"
+#include "vulkan/texture_views.h"
 #include "vulkan/tile_producer.h"
 #include "vulkan/time_defaults.h"
 
@@ -59,8 +60,7 @@ struct slc_texture {
     SluiceImageInfo info;
     struct slc_residency_image image;
     uint32_t first, layer, layer_count; ///< of an array: the index of layer 0; else itself, 0, 1
-    VkImageView view;
-    VkImageView array_view; ///< owned by layer 0, of all layers
+    struct slc_texture_views views;
     SluiceStreamedTextureLayout layout;
     VkSamplerAddressMode address_modes[2];
     float max_anisotropy; ///< of its sampler

@@ -45,23 +45,6 @@ static SluiceResult check_create_info(const SluiceVulkanStreamer *s,
     return sluiceGetTextureLayout(s->manager, info->primaryId, &layout);
 }
 
-static SluiceResult create_view(SluiceVulkanStreamer *s, const struct slc_texture *texture,
-                                VkImageViewType type, uint32_t layer_count, VkImageView *view)
-{
-    VkImageViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                  .image = texture->image.image,
-                                  .viewType = type,
-                                  .format = slc_vk_format(texture->info.format),
-                                  .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0,
-                                                       VK_REMAINING_MIP_LEVELS, texture->layer,
-                                                       layer_count}};
-    SluiceResult result = slc_vk_result(
-        &s->vk, s->vk.CreateImageView(s->vk.device, &info, NULL, view), "vkCreateImageView");
-    if (result == SLUICE_SUCCESS)
-        slc_vk_name(&s->vk, VK_OBJECT_TYPE_IMAGE_VIEW, (uint64_t)*view, "texture");
-    return result;
-}
-
 static SluiceResult take_regions(SluiceVulkanStreamer *s, struct slc_texture *texture)
 {
     const SluiceStreamedTextureLayout *layout = &texture->layout;
@@ -144,10 +127,7 @@ static void remove_primary(SluiceVulkanStreamer *s, uint32_t index)
 static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
 {
     struct slc_texture *texture = &s->textures[index];
-    if (texture->view)
-        s->vk.DestroyImageView(s->vk.device, texture->view, NULL);
-    if (texture->array_view)
-        s->vk.DestroyImageView(s->vk.device, texture->array_view, NULL);
+    slc_texture_views_finish(&texture->views, &s->vk);
     slc_level_views_finish(&texture->level_views, &s->vk, &s->cb, &texture->image);
     /* of an array when its last layer goes */
     if (texture->image.image && texture->layer + 1 == texture->layer_count)
@@ -163,10 +143,9 @@ static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
 /* Views, regions and packed levels of one layer, whose image is there. */
 static SluiceResult build(SluiceVulkanStreamer *s, struct slc_texture *texture)
 {
-    SluiceResult result = create_view(s, texture, VK_IMAGE_VIEW_TYPE_2D, 1, &texture->view);
-    if (result == SLUICE_SUCCESS && texture->layer == 0 && texture->layer_count > 1)
-        result = create_view(s, texture, VK_IMAGE_VIEW_TYPE_2D_ARRAY, texture->layer_count,
-                             &texture->array_view);
+    SluiceResult result =
+        slc_texture_views_init(&texture->views, &s->vk, texture->image.image, &texture->info,
+                               texture->layer, s->caps.image_cube_array);
     if (result == SLUICE_SUCCESS && texture->layer == 0 && texture->producer.pfn)
         result = slc_level_views_init(&texture->level_views, &s->vk, &s->cb, &texture->image,
                                       slc_vk_format(texture->info.format), texture->layer_count);
@@ -206,6 +185,9 @@ static SluiceResult find_sampler(SluiceVulkanStreamer *s, const VkSamplerAddress
 static void choose_modes(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreateInfo *info,
                          const SluiceImageInfo *image, VkSamplerAddressMode modes[2])
 {
+    modes[0] = modes[1] = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE; /* of each face by itself */
+    if (image->cube)
+        return;
     modes[0] =
         slc_address_mode(info->addressModeU, info->explicitAddressModes, image->addressModeU);
     modes[1] =
@@ -277,6 +259,8 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
 static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture *public)
 {
     struct slc_texture *texture = &s->textures[index];
+    const struct slc_texture *first = &s->textures[texture->first];
+    const struct slc_texture *face = texture - texture->layer % SLC_CUBE_FACES;
     texture->state = SLC_TEXTURE_LIVE;
     if (index >= s->texture_high)
         s->texture_high = index + 1;
@@ -289,20 +273,22 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
     *public = (SluiceVulkanTexture){
         .textureId = texture->id,
         .image = texture->image.image,
-        .imageView = texture->view,
+        .imageView = texture->views.layer,
         .format = slc_vk_format(texture->info.format),
         .width = texture->info.width,
         .height = texture->info.height,
         .mipLevelCount = texture->info.mipLevelCount,
         .tableIndex = index,
         .arrayLayer = texture->layer,
-        .arrayView = s->textures[texture->first].array_view,
+        .arrayView = first->views.array,
         .addressModeU = texture->address_modes[0],
         .addressModeV = texture->address_modes[1],
         .maxAnisotropy = texture->max_anisotropy,
+        .cubeView = texture->info.cube ? face->views.cube : VK_NULL_HANDLE,
+        .cubeArrayView = first->views.cube_array,
     };
     if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE)
-        slc_texture_array_set(&s->texture_array, index, texture->view,
+        slc_texture_array_set(&s->texture_array, index, texture->views.layer,
                               s->samplers.list[texture->sampler].sampler);
 }
 
@@ -334,6 +320,7 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
         result = check_create_info(s, &info);
     if (result == SLUICE_SUCCESS)
         result = describe(s, &info, &producer, &image);
+    image.cube |= info.cube;
     if (result == SLUICE_SUCCESS)
         result = slc_image_info_check(&image, SLC_LEVELS_TO_TAIL, &s->vk.log);
     if (result != SLUICE_SUCCESS)

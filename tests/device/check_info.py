@@ -13,7 +13,7 @@ STRINGS = {"deviceName", "deviceType", "driverName", "driverInfo", "apiVersion",
 FLAGS = {
     "streams", "sparse", "dedicatedSparseQueue", "standardTiles", "residencyNonResidentStrict",
     "shaderResourceResidency", "residencyCodesExact", "shaderResourceMinLod",
-    "sparseResidencyAliased", "timelineSemaphore", "fragmentStoresAndAtomics",
+    "sparseResidencyAliased", "sparseCubes", "timelineSemaphore", "fragmentStoresAndAtomics",
     "textureCompressionBC", "samplerAnisotropy",
 }
 

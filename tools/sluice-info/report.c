@@ -68,6 +68,7 @@ static void print_device(const struct device_report *r)
     printf("  device-local memory     ");
     print_bytes(c->deviceLocalMemorySize);
     printf("  standard tile shapes    %s\n", yes_no(c->standardTiles));
+    printf("  sparse cube maps        %s\n", yes_no(c->sparse && c->sparseCubes));
     printf("  unbound texels read 0   %s\n", yes_no(c->residencyNonResidentStrict));
     printf("  residency codes         %s\n", !c->shaderResourceResidency ? "no"
                                              : c->residencyCodesExact    ? "yes"
@@ -156,6 +157,7 @@ static void print_json_device(const struct device_report *r)
     print_number("sparseAddressSpaceSize", c->sparseAddressSpaceSize);
     print_number("deviceLocalMemorySize", c->deviceLocalMemorySize);
     print_flag("standardTiles", c->standardTiles);
+    print_flag("sparseCubes", c->sparseCubes);
     print_flag("residencyNonResidentStrict", c->residencyNonResidentStrict);
     print_flag("shaderResourceResidency", c->shaderResourceResidency);
     print_flag("residencyCodesExact", c->residencyCodesExact);

@@ -1,0 +1,27 @@
+/** Image views of one texture, or of one layer of an array. */
+#ifndef SLC_VULKAN_TEXTURE_VIEWS_H
+#define SLC_VULKAN_TEXTURE_VIEWS_H
+
+#include "vulkan/dispatch.h"
+
+/** Views that do not exist are VK_NULL_HANDLE, so a zeroed one can be finished. */
+struct slc_texture_views {
+    VkImageView layer;      ///< 2D
+    VkImageView array;      ///< 2D_ARRAY; owned by layer 0 of an array
+    VkImageView cube;       ///< owned by the first face of each cube
+    VkImageView cube_array; ///< owned by layer 0 of more than one cube
+};
+
+/**
+ * Creates the views that layer `layer` of `info->arrayLayerCount` owns. All have every level of
+ * `image`. `cube_arrays`: the device has the feature imageCubeArray. After an error they can be
+ * finished.
+ *
+ * Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ */
+SluiceResult slc_texture_views_init(struct slc_texture_views *views, const struct slc_vk *vk,
+                                    VkImage image, const SluiceImageInfo *info, uint32_t layer,
+                                    bool cube_arrays);
+void slc_texture_views_finish(struct slc_texture_views *views, const struct slc_vk *vk);
+
+#endif /* SLC_VULKAN_TEXTURE_VIEWS_H */
