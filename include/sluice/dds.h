@@ -48,8 +48,8 @@ typedef struct SluiceDdsImageSourceCreateInfo {
  *
  * BGRA is converted to RGBA when read, and unused bits become an alpha of 1. Everything else is
  * returned as stored. The pitch in the header is ignored: rows are packed, as every writer does.
- * Arrays become layers. Cube maps become six layers, in the order +X, -X, +Y, -Y, +Z, -Z. At most
- * 2^20 texels in width and height, and 2^16 layers.
+ * Arrays become layers. Cube maps become six layers, and set SluiceImageInfo.cube. At most 2^20
+ * texels in width and height, and 2^16 layers.
  *
  * A file may have any number of levels; mipLevelCount says how many. For streaming, add the levels
  * that are missing with sluiceCreateCompleteChainSource, or, for BC formats, write the file with

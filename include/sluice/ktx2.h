@@ -39,9 +39,9 @@ typedef struct SluiceKtx2ImageSourceCreateInfo {
  * costs no file descriptor.
  *
  * vkFormat: any SluiceFormat, or B8G8R8A8_UNORM or _SRGB, which is converted to R8G8B8A8 when read.
- * Array layers become layers; cube maps have six layers each. Rows are in the file's order.
- * KTXorientation and KTXswizzle are ignored. At most 2^20 texels in width and height, and 2^16
- * layers.
+ * Array layers become layers; cube maps have six layers each, and set SluiceImageInfo.cube. Rows
+ * are in the file's order. KTXorientation and KTXswizzle are ignored. At most 2^20 texels in width
+ * and height, and 2^16 layers.
  *
  * Supercompression: none or Zstandard. Without it, a read touches only its own bytes. Zstandard
  * compresses each level as a whole: the first read of a level decompresses it, while other readers

@@ -15,6 +15,10 @@ SluiceResult slc_layout_check(const struct slc_container_layout *layout,
                               "is %u x %u texels, %u layers; at most %u and %u", layout->width,
                               layout->height, layout->layer_count, SLC_CONTAINER_MAX_SIZE,
                               SLC_CONTAINER_MAX_LAYERS);
+    if (layout->cube && layout->width != layout->height)
+        return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA,
+                              "is a cube map of %u x %u texels; faces are square", layout->width,
+                              layout->height);
     uint32_t full = slc_mip_count(slc_max_u32(layout->width, layout->height));
     if (layout->level_count > full)
         return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA,

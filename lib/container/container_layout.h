@@ -29,6 +29,7 @@ struct slc_container_layout {
     uint32_t width, height;
     uint32_t level_count; ///< in the file; the full chain once it is checked
     uint32_t layer_count;
+    bool cube; ///< layers are faces
     SluiceFormat format;
     unsigned changes;           ///< of enum slc_texel_change
     bool levels_are_compressed; ///< with Zstandard, each as a whole

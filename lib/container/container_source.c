@@ -113,6 +113,7 @@ static SluiceResult read_layout(struct container_source *source)
         .format = layout->format,
         .pName = source->file.path,
         .arrayLayerCount = layout->layer_count,
+        .cube = layout->cube,
     };
     return SLUICE_SUCCESS;
 }

@@ -88,7 +88,8 @@ static SluiceResult read_legacy(const struct slc_input_file *file, const uint8_t
     if ((caps2 & CAPS2_CUBE) && (caps2 & CAPS2_FACES) != CAPS2_FACES)
         return slc_input_fail(file, SLUICE_ERROR_UNSUPPORTED,
                               "is a cube map without all of its faces; write all six");
-    layout->layer_count = caps2 & CAPS2_CUBE ? FACE_COUNT : 1;
+    layout->cube = caps2 & CAPS2_CUBE;
+    layout->layer_count = layout->cube ? FACE_COUNT : 1;
     return SLUICE_SUCCESS;
 }
 
@@ -98,7 +99,8 @@ static SluiceResult read_dx10(const struct slc_input_file *file, const uint8_t *
     uint32_t number = slc_u32_at(header + AT_DXGI_FORMAT);
     uint32_t dimension = slc_u32_at(header + AT_DIMENSION);
     uint32_t array_size = slc_u32_at(header + AT_ARRAY_SIZE);
-    uint32_t faces = slc_u32_at(header + AT_MISC) & MISC_CUBE ? FACE_COUNT : 1;
+    layout->cube = slc_u32_at(header + AT_MISC) & MISC_CUBE;
+    uint32_t faces = layout->cube ? FACE_COUNT : 1;
     layout->format = slc_dxgi_format(number, &layout->changes);
     if (layout->format == SLUICE_FORMAT_UNDEFINED)
         return slc_input_fail(file, SLUICE_ERROR_UNSUPPORTED,

@@ -135,6 +135,7 @@ static SluiceResult read_shape(const struct slc_input_file *file, const uint8_t 
                               "read");
     if (faces != 1 && faces != FACE_COUNT)
         return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has %u faces", faces);
+    layout->cube = faces == FACE_COUNT;
     layout->layer_count = layers > UINT32_MAX / faces ? UINT32_MAX : layers * faces;
     return slc_layout_check(layout, file);
 }

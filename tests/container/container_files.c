@@ -334,6 +334,7 @@ void check_picture(SluiceImageSource *source, const struct picture *p)
     assert_int_equal(info.mipLevelCount, picture_level_count(p));
     assert_int_equal(info.format, p->format->format);
     assert_int_equal(info.arrayLayerCount, picture_layer_count(p));
+    assert_int_equal(info.cube, p->is_cube);
     for (uint32_t layer = 0; layer < info.arrayLayerCount; layer++)
         for (uint32_t level = 0; level < info.mipLevelCount; level++)
             check_level(source, p, layer, level);

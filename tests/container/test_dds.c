@@ -150,6 +150,7 @@ static void what_cannot_be_delivered_is_refused_with_a_reason(void **state)
         {8, 0x821007, SLUICE_ERROR_UNSUPPORTED, "volume", 24, 4},
         {112, 0x200 | 0x400, SLUICE_ERROR_UNSUPPORTED, "all six"},
         {112, 0xFE00, SLUICE_ERROR_CORRUPT_DATA, "6 layers"},
+        {112, 0xFE00, SLUICE_ERROR_CORRUPT_DATA, "16 x 32 texels; faces", 16, 16},
     };
     static const struct refusal dx10[] = {
         {128, 70, SLUICE_ERROR_UNSUPPORTED, "DXGI format 70"},

@@ -104,6 +104,7 @@ static void what_cannot_be_delivered_is_refused_with_a_reason(void **state)
         {36, 0, SLUICE_ERROR_CORRUPT_DATA, "0 faces"},
         {36, 5, SLUICE_ERROR_CORRUPT_DATA, "5 faces"},
         {36, 6, SLUICE_ERROR_CORRUPT_DATA, "its texels need"},
+        {36, 6, SLUICE_ERROR_CORRUPT_DATA, "16 x 32 texels; faces", 20, 16},
         {40, 7, SLUICE_ERROR_CORRUPT_DATA, "has 7 levels"},
         {40, 0xFFFFFFFFu, SLUICE_ERROR_CORRUPT_DATA, "levels"},
         {80, 0, SLUICE_ERROR_CORRUPT_DATA, "lies outside"},
