@@ -12,7 +12,7 @@
 
 #include <sluice/vulkan.h>
 
-#define HARNESS_PROBE_KINDS 16u
+#define HARNESS_PROBE_KINDS 22u ///< 16 of probers, six of cube rigs
 #define HARNESS_PAINT_KINDS 32u
 #define HARNESS_FRAMES 3u
 

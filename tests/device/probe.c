@@ -156,7 +156,7 @@ static VkPipeline shared_pipeline(const struct prober *p)
     const struct harness *h = p->h;
     uint32_t kind =
         (p->paged ? 1 : 0) | (p->codes ? 2 : 0) | (h->page_loop ? 4 : 0) | (h->min_lod ? 8 : 0);
-    static_assert(HARNESS_PROBE_KINDS == 16, "four switches");
+    static_assert(HARNESS_PROBE_KINDS >= 16, "four switches");
     if (!h->probe_pipelines[kind])
         p->h->probe_pipelines[kind] = create_pipeline(p);
     return h->probe_pipelines[kind];
@@ -276,6 +276,17 @@ struct probe_texture prober_layer(struct prober *p, const SluiceVulkanTexture *l
     const VkDescriptorImageInfo images[2] = {{sampler, layer->arrayView, VK_IMAGE_LAYOUT_GENERAL},
                                              {sampler, layer->imageView, VK_IMAGE_LAYOUT_GENERAL}};
     return create_set(p, layer->tableIndex, images);
+}
+
+struct probe_texture prober_cube(struct prober *p, const SluiceVulkanTexture *face,
+                                 float anisotropy)
+{
+    const VkSamplerAddressMode repeat = VK_SAMPLER_ADDRESS_MODE_REPEAT; /* cubes ignore it */
+    VkSampler sampler = prober_sampler(p, repeat, repeat, anisotropy, false);
+    const VkDescriptorImageInfo images[2] = {
+        {sampler, face->cubeView, VK_IMAGE_LAYOUT_GENERAL},
+        {sampler, face->cubeArrayView, VK_IMAGE_LAYOUT_GENERAL}};
+    return create_set(p, face->tableIndex, images);
 }
 
 struct ProbeInput *prober_inputs(struct prober *p)

@@ -54,6 +54,10 @@ struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture 
 struct probe_texture prober_layer(struct prober *p, const SluiceVulkanTexture *layer,
                                   VkSamplerAddressMode u, VkSamplerAddressMode v, float anisotropy);
 
+/** For shaders/cube.comp: the views of its cube and of all cubes. */
+struct probe_texture prober_cube(struct prober *p, const SluiceVulkanTexture *face,
+                                 float anisotropy);
+
 /** The set may be used again; no frame uses it any more once the device was waited for. */
 void prober_release(struct prober *p, struct probe_texture texture);
 

@@ -1,0 +1,75 @@
+/*
+ * Records the levels that samples of cube maps want, like feedback.glsl, on every face that a sample
+ * touches.
+ *
+ * `tableIndex` is SluiceVulkanTexture.tableIndex of the first face of the cube. Derivatives are those
+ * of the direction per pixel. The direction need not have length 1.
+ *
+ * Include it after the definitions of buffers.glsl and feedback.glsl.
+ */
+#ifndef SLUICE_FEEDBACK_CUBE_GLSL
+#define SLUICE_FEEDBACK_CUBE_GLSL
+
+#extension GL_EXT_control_flow_attributes : require
+
+#include "cube.glsl"
+#include "feedback.glsl"
+
+/** Marks the box of a sample of `level` to `coarsest` on the faces beyond the edges that it crosses. */
+void sluiceMarkBeyondEdges(uint tableIndex, SluiceGrid grid, SluiceCubePoint p, vec2 halfBox, uint level,
+                           uint coarsest)
+{
+    vec2 reach = sluiceCubeReach(grid, halfBox, coarsest);
+    [[dont_unroll]] for (uint edge = 0u; edge < 4u; edge++) {
+        if (!sluiceCrossesEdge(p.uv, reach, edge))
+            continue;
+        SluiceCubePart part = sluiceUnfoldEdge(grid, p.face, p.uv, halfBox, reach, edge);
+        if (sluiceTakesPart(tableIndex + part.face))
+            sluiceMarkFootprint(SLUICE_TEXTURE_ENTRY(tableIndex + part.face).feedbackOffset, grid,
+                                sluiceComputeFootprint(grid, part.uv, part.halfBox, coarsest), level);
+    }
+}
+
+/**
+ * Marks every region that a sample of a cube map touches, on all faces, with the finest level that it
+ * may touch there.
+ *
+ * Pass LOD bias and anisotropy of the sample (1: none). If the direction is 0 or not finite, only the
+ * coarsest level of one face is marked.
+ */
+void sluiceWriteCubeFeedback(uint tableIndex, vec3 direction, vec3 dx, vec3 dy, float lodBias,
+                             float maxAnisotropy)
+{
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    SluiceCubePoint p = sluiceFindCubePoint(direction, dx, dy);
+    if (!p.finite) {
+        sluiceWriteFeedbackLod(tableIndex, p.uv, SLUICE_LOD_LIMIT);
+        return;
+    }
+    vec2 tx = p.dx * grid.size, ty = p.dy * grid.size;
+    uvec3 levels = sluiceMarkedLevels(grid, p.uv, tx, ty, lodBias, maxAnisotropy);
+    if (sluiceTakesPart(tableIndex + p.face))
+        sluiceMarkSample(tableIndex + p.face, grid, p.uv, tx, ty, lodBias, maxAnisotropy, levels.x,
+                         levels.y, levels.z);
+    vec2 halfBox = sluiceHalfBox(tx, ty, lodBias, maxAnisotropy);
+    sluiceMarkBeyondEdges(tableIndex, grid, p, halfBox, levels.x, levels.y);
+    if (maxAnisotropy > 1.0 && levels.z > levels.y)
+        sluiceMarkBeyondEdges(tableIndex, grid, p, halfBox, levels.y + 1u, levels.z);
+}
+
+/**
+ * Marks what textureLod of a cube map touches: the level is `lod`, without anisotropy. NaN marks the
+ * coarsest level.
+ */
+void sluiceWriteCubeFeedbackLod(uint tableIndex, vec3 direction, float lod)
+{
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    SluiceCubePoint p = sluiceFindCubePoint(direction, vec3(0.0), vec3(0.0));
+    lod = p.finite ? sluiceClampLod(lod) : SLUICE_LOD_LIMIT;
+    uint count = sluiceMipCount(grid);
+    sluiceWriteFeedbackLod(tableIndex + p.face, p.uv, lod);
+    sluiceMarkBeyondEdges(tableIndex, grid, p, vec2(0.0), sluiceFinestLevel(lod, 0.0, count),
+                          sluiceCoarsestLevel(lod, count));
+}
+
+#endif

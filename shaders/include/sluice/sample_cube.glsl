@@ -1,0 +1,218 @@
+/*
+ * Samples streamed cube maps (SluiceVulkanTextureCreateInfo.cube) where they are resident. Samples near
+ * an edge are filtered with the texels of the faces beyond, and one level is chosen for all faces that
+ * a sample touches, so edges do not show.
+ *
+ * Every function takes the texture first, in one of three forms:
+ *
+ *     samplerCube tex                   SluiceVulkanTexture.cubeView
+ *     samplerCubeArray tex, uint cube   SluiceVulkanTexture.cubeArrayView, and the number of the cube
+ *     uint number                       SLUICE_CUBE_TEXTURE(number) is a samplerCube; need not be uniform
+ *
+ * The third form exists if SLUICE_CUBE_TEXTURE is defined, for an array of cube views of your own. (A
+ * streamer's array of textures has 2D views, of each face by itself.)
+ *
+ *     #define SLUICE_CUBE_TEXTURE(i) cubes[nonuniformEXT(i)]
+ *     vec4 color = sluiceSampleCube(number, tableIndex, direction, 0.0, 1.0, missing);
+ *
+ * `tableIndex` is SluiceVulkanTexture.tableIndex of the first face of the cube. Directions need not have
+ * length 1. The sampler must have no LOD bias, minLod 0 and maxLod VK_LOD_CLAMP_NONE. Its address modes
+ * do not matter. Write feedback by feedback_cube.glsl.
+ *
+ * All samples have explicit derivatives on the plane of a face: devices differ in how they derive the
+ * level of implicit cube samples. In paged mode the sampler sees only the packed levels.
+ *
+ * The functions are long, and compiled where they are called: call one function, in one place. Include
+ * the file after the definitions of buffers.glsl. Requires GL_EXT_control_flow_attributes, an extension of
+ * the compiler only.
+ */
+#ifndef SLUICE_SAMPLE_CUBE_GLSL
+#define SLUICE_SAMPLE_CUBE_GLSL
+
+#extension GL_EXT_control_flow_attributes : require
+
+#include "cube.glsl"
+#include "sample.glsl"
+
+/* Readings of the MinMip buffers of a sample that gets coarser, before packed levels are used. */
+#define SLUICE_CUBE_READINGS 8u
+
+/**
+ * Returns the largest halves of the MinMip words of all faces under a sample of `finest` to `coarsest`
+ * (sluiceMaxMinMip).
+ */
+uint sluiceMaxCubeMinMip(uint tableIndex, SluiceGrid grid, SluiceCubePoint p, vec2 halfBox, uint finest,
+                         uint coarsest)
+{
+    uint words = sluiceMaxMinMip(SLUICE_TEXTURE_ENTRY(tableIndex + p.face).minMipOffset, grid,
+                                 sluiceComputeFootprint(grid, p.uv, halfBox, coarsest), finest);
+    vec2 reach = sluiceCubeReach(grid, halfBox, coarsest);
+    [[dont_unroll]] for (uint edge = 0u; edge < 4u; edge++) {
+        if (!sluiceCrossesEdge(p.uv, reach, edge))
+            continue;
+        SluiceCubePart part = sluiceUnfoldEdge(grid, p.face, p.uv, halfBox, reach, edge);
+        SluiceFootprint footprint = sluiceComputeFootprint(grid, part.uv, part.halfBox, coarsest);
+        words = sluiceMaxHalves(
+            words, sluiceMaxMinMip(SLUICE_TEXTURE_ENTRY(tableIndex + part.face).minMipOffset, grid,
+                                   footprint, finest));
+    }
+    return words;
+}
+
+/** Returns true if a sample certainly touches only resident texels, all on one face. */
+bool sluiceIsCubeSurelyThere(uint tableIndex, SluiceCubePoint p, float lodBias, float maxAnisotropy)
+{
+    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+    vec2 tx = p.dx * size, ty = p.dy * size;
+    float squares = (dot(tx, tx) + dot(ty, ty)) * sluiceBiasScale2(lodBias);
+    vec2 reach = SLUICE_REACH * sqrt(max(squares, 1.0)) / size;
+    return p.finite && all(lessThanEqual(abs(p.uv - 0.5) + reach, vec2(0.5))) && /* false for NaN */
+           sluiceIsSurelyThere(tableIndex + p.face, p.uv, p.dx, p.dy, lodBias, maxAnisotropy);
+}
+
+/**
+ * Determines what a sample may touch, like sluiceResolveSampling. The result is in uv of face p.face.
+ *
+ * The level is coarsened until all regions that the sample touches at that level, on all faces, have
+ * it. It touches more of them as it gets coarser.
+ */
+SluiceSampling sluiceResolveCube(uint tableIndex, SluiceCubePoint p, float lodBias, float maxAnisotropy)
+{
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    uint count = sluiceMipCount(grid);
+    float margin = sluiceLodMargin(maxAnisotropy);
+    float biasScale = exp2(sluiceClampLodBias(lodBias));
+    vec2 largest = vec2(SLUICE_MAX_TEXELS) / (grid.size * max(biasScale, 1.0));
+    bool finite = p.finite && all(lessThanEqual(abs(p.dx), largest)) && all(lessThanEqual(abs(p.dy), largest));
+    vec2 tx = finite ? p.dx * grid.size : vec2(0.0), ty = finite ? p.dy * grid.size : vec2(0.0);
+    vec2 lods = finite ? sluiceComputeLods(tx, ty, lodBias, maxAnisotropy) : vec2(SLUICE_LOD_LIMIT);
+    vec2 halfBox = sluiceHalfBox(tx, ty, lodBias, maxAnisotropy);
+    float reach = finite ? sluiceOverreachedLod(tx, ty, lodBias, maxAnisotropy) : -SLUICE_LOD_LIMIT;
+    float packed = float(SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount) + margin;
+    bool round = false;
+
+    SluiceSampling s;
+    s.uv = p.uv;
+    s.dx = finite ? p.dx * biasScale : vec2(0.0);
+    s.dy = finite ? p.dy * biasScale : vec2(0.0);
+    s.lod = lods.x;
+    s.wantedLevel = sluiceFinestLevel(s.lod, margin, count);
+    s.minLod = 0.0;
+    s.plain = false;
+    uint coarsest = sluiceCoarsestLevel(lods.y, count);
+    [[dont_unroll]] for (uint reading = 0u;; reading++) {
+        uint finest = sluiceFinestLevel(s.lod, margin, count);
+        uint shown = sluiceMaxCubeMinMip(tableIndex, grid, p, halfBox, finest, coarsest) & 0xFFFFu;
+        if (shown >= SLUICE_SHOWN_NOTHING) {
+            s.level = s.missing = SLUICE_MIP_UNTOUCHED;
+            return s;
+        }
+        float limit = sluiceLodLimit(shown, margin);
+        if (!(limit > s.lod)) {
+            uint widest = sluiceCoarsestLevel(reach, count);
+            if (round || widest <= coarsest)
+                break;
+            shown = sluiceMaxCubeMinMip(tableIndex, grid, p, halfBox, coarsest + 1u, widest) & 0xFFFFu;
+            if (sluiceShownLevel(shown) <= coarsest + 1u)
+                break;
+            round = true; /* such a footprint has but one level */
+        } else {
+            s.lod = max(reading < SLUICE_CUBE_READINGS ? min(limit, packed) : packed, s.lod);
+        }
+        if (maxAnisotropy > 1.0)
+            halfBox = max(halfBox, vec2(exp2(s.lod - margin)));
+        coarsest = max(coarsest, sluiceCoarsestLevel(s.lod + margin, count));
+        if (reading > SLUICE_CUBE_READINGS) /* packed levels */
+            break;
+    }
+    bool clamped = s.lod > lods.x;
+    s.level = sluiceFinestLevel(s.lod, margin, count);
+    s.missing = clamped ? max(uint(ceil(max(s.lod - margin, 0.0))) - s.wantedLevel, 1u) : 0u;
+    if (!finite)
+        s.lod = min(s.lod, float(s.level) + margin);
+    bool point = !(s.lod > SLUICE_LOD_POINT) && maxAnisotropy > 1.0;
+    float width = exp2(clamped || round || !finite ? max(s.lod, SLUICE_LOD_POINT) : SLUICE_LOD_POINT);
+    if (round) {
+        s.dx = vec2(width, 0.0) / grid.size;
+        s.dy = vec2(0.0, width) / grid.size;
+    } else if (clamped || point || !finite) {
+        sluiceWiden(s.dx, s.dy, grid.size, width);
+    }
+    return s;
+}
+
+#ifdef SLUICE_PAGED
+/** Fetches a texel of a regular level. Texels beyond one edge are those of the face there. */
+vec4 sluiceFetchCubePaged(uint tableIndex, uint face, uint level, ivec2 texel, int size)
+{
+    bvec2 below = lessThan(texel, ivec2(0)), above = greaterThanEqual(texel, ivec2(size));
+    if (any(below) || any(above)) {
+        uint edge = below.x ? 0u : above.x ? 1u : below.y ? 2u : 3u;
+        vec2 uv = (vec2(texel) + 0.5) / float(size);
+        SluiceCubePart part =
+            sluiceUnfoldEdge(sluiceReadGrid(tableIndex), face, uv, vec2(0.0), vec2(0.0), edge);
+        face = part.face;
+        texel = clamp(ivec2(part.uv * float(size)), ivec2(0), ivec2(size - 1));
+    }
+    return sluiceFetchPaged(SLUICE_TEXTURE_ENTRY(tableIndex + face), level, texel);
+}
+
+/**
+ * Returns a bilinear sample of a regular level. Where three faces meet there is no fourth texel: it is
+ * the mean of the others, as Vulkan recommends.
+ */
+vec4 sluiceSampleCubePages(uint tableIndex, uint face, uint level, vec2 uv)
+{
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex + face);
+    int size = sluiceLevelSize(entry, level).x;
+    vec2 at = floor(uv * float(size) * SLUICE_FILTER_STEPS - (0.5 * SLUICE_FILTER_STEPS - 0.5)) /
+              SLUICE_FILTER_STEPS;
+    ivec2 low = ivec2(floor(at)), shift = sluiceTileShift(entry), tile = low >> shift;
+    vec2 weight = at - floor(at);
+    vec4 sum = vec4(0.0), known = vec4(0.0);
+    if (min(low.x, low.y) >= 0 && max(low.x, low.y) < size - 1 && low + 1 >> shift == tile) {
+        uint page = sluiceReadPage(entry, level, tile);
+        vec3 local = vec3((vec2(low - (tile << shift)) + weight + 0.5) / vec2(ivec2(1) << shift),
+                          float(page & 0xFFFFu));
+        if (page != SLUICE_PAGE_NONE)
+            SLUICE_WITH_PAGE(page, sum = textureLod(SLUICE_PAGE_TEXTURE(chunk), local, 0.0))
+        return sum;
+    }
+    float corner = 0.0;
+    [[dont_unroll]] for (int i = 0; i < 4; i++) {
+        ivec2 side = ivec2(i & 1, i >> 1), texel = low + side;
+        vec2 shares = mix(1.0 - weight, weight, vec2(side));
+        float share = shares.x * shares.y;
+        bvec2 outside = notEqual(texel, clamp(texel, ivec2(0), ivec2(size - 1)));
+        if (all(outside))
+            corner = share;
+        if (all(outside) || !(share > 0.0)) /* texels of weight 0 may be infinite */
+            continue;
+        vec4 color = sluiceFetchCubePaged(tableIndex, face, level, texel, size);
+        sum += share * color;
+        known += color;
+    }
+    return sum + corner * known / 3.0;
+}
+#endif
+
+/* The functions that take a texture, in all forms. */
+#define SLUICE_CUBE_PARAMETERS samplerCube tex
+#define SLUICE_CUBE_ARGUMENTS tex
+#define SLUICE_CUBE_SAMPLER tex
+#define SLUICE_CUBE_COORDINATE(direction) direction
+#include "sample_cube_textures.glsl"
+#define SLUICE_CUBE_PARAMETERS samplerCubeArray tex, uint cube
+#define SLUICE_CUBE_ARGUMENTS tex, cube
+#define SLUICE_CUBE_SAMPLER tex
+#define SLUICE_CUBE_COORDINATE(direction) vec4(direction, float(cube))
+#include "sample_cube_textures.glsl"
+#ifdef SLUICE_CUBE_TEXTURE
+#define SLUICE_CUBE_PARAMETERS uint number
+#define SLUICE_CUBE_ARGUMENTS number
+#define SLUICE_CUBE_SAMPLER SLUICE_CUBE_TEXTURE(number)
+#define SLUICE_CUBE_COORDINATE(direction) direction
+#include "sample_cube_textures.glsl"
+#endif
+
+#endif

@@ -1,0 +1,107 @@
+/*
+ * The functions of sample_cube.glsl that take a texture. Only sample_cube.glsl includes this file, once
+ * for each form of the texture.
+ *
+ * SLUICE_CUBE_PARAMETERS and SLUICE_CUBE_ARGUMENTS pass a texture on, SLUICE_CUBE_SAMPLER turns it into
+ * a sampler, and SLUICE_CUBE_COORDINATE a direction into the sampler's coordinate. All are undefined at
+ * the end.
+ */
+#ifdef SLUICE_PAGED
+/** Returns a bilinear sample of any level. The texture has the packed levels. */
+vec4 sluiceSampleCubeLevel(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, uint level, vec2 uv)
+{
+    uint regular = SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount;
+    if (level >= regular)
+        return textureLod(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, uv)),
+                          float(level - regular));
+    return sluiceSampleCubePages(tableIndex, face, level, uv);
+}
+
+/** Samples like sluiceSamplePaged. Samples of a row that lie beyond an edge are on the face there. */
+vec4 sluiceSampleCubePaged(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, vec2 uv, vec2 dx, vec2 dy,
+                           float lod, float maxAnisotropy)
+{
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex + face);
+    lod = sluiceClampPagedLod(entry, lod);
+    if (lod >= float(entry.regularMipCount)) {
+        vec2 scale = sluiceTailScale(entry);
+        return textureGrad(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, uv)),
+                           sluiceCubeDerivative(face, dx * scale), sluiceCubeDerivative(face, dy * scale));
+    }
+    SluicePagedTaps taps = sluicePlacePagedTaps(entry, dx, dy, lod, maxAnisotropy);
+    vec4 sum = vec4(0.0);
+    [[dont_unroll]] for (uint i = 0u; i < 2u * taps.count; i++) {
+        bool coarse = (i & 1u) != 0u;
+        float share = coarse ? taps.fraction : 1.0 - taps.fraction;
+        if (!(share > 0.0)) /* the level may be infinite */
+            continue;
+        SluiceCubePoint at;
+        at.face = face;
+        at.uv = sluicePagedTap(taps, uv, i >> 1u);
+        if (any(notEqual(at.uv, clamp(at.uv, 0.0, 1.0))))
+            at = sluiceFindCubePoint(sluiceCubeDirection(face, at.uv), vec3(0.0), vec3(0.0));
+        sum += share * sluiceSampleCubeLevel(SLUICE_CUBE_ARGUMENTS, tableIndex, at.face,
+                                             coarse ? taps.coarse : taps.fine, at.uv);
+    }
+    return sum / float(taps.count);
+}
+#endif
+
+/** Samples a face with derivatives of uv that include the LOD bias. `lod` is what they amount to. */
+vec4 sluiceTextureCube(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, vec2 uv, vec2 dx, vec2 dy,
+                       float lod, float maxAnisotropy)
+{
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED)
+        return sluiceSampleCubePaged(SLUICE_CUBE_ARGUMENTS, tableIndex, face, uv, dx, dy, lod, maxAnisotropy);
+#endif
+    return textureGrad(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, uv)),
+                       sluiceCubeDerivative(face, dx), sluiceCubeDerivative(face, dy));
+}
+
+/**
+ * Samples with explicit derivatives of `direction` per pixel. Any stage.
+ *
+ * `missingLevels` is the number of levels by which the sample is too coarse; SLUICE_MIP_UNTOUCHED if it
+ * is SLUICE_FALLBACK_COLOR.
+ */
+vec4 sluiceSampleCubeGrad(SLUICE_CUBE_PARAMETERS, uint tableIndex, vec3 direction, vec3 dx, vec3 dy,
+                          float lodBias, float maxAnisotropy, out uint missingLevels)
+{
+    SluiceCubePoint p = sluiceFindCubePoint(direction, dx, dy);
+    SluiceSampling s;
+    missingLevels = 0u;
+    if (sluiceIsCubeSurelyThere(tableIndex, p, lodBias, maxAnisotropy)) {
+        vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+        float scale = exp2(sluiceClampLodBias(lodBias));
+        s.uv = p.uv;
+        s.dx = p.dx * scale;
+        s.dy = p.dy * scale;
+        s.lod = sluiceComputeLod(p.dx * size, p.dy * size, lodBias, maxAnisotropy);
+    } else {
+        s = sluiceResolveCube(tableIndex, p, lodBias, maxAnisotropy);
+        missingLevels = sluiceMissingLevels(s);
+        if (s.level == SLUICE_MIP_UNTOUCHED)
+            return SLUICE_FALLBACK_COLOR;
+    }
+    return sluiceTextureCube(SLUICE_CUBE_ARGUMENTS, tableIndex, p.face, s.uv, s.dx, s.dy, s.lod,
+                             maxAnisotropy);
+}
+
+#ifdef GL_FRAGMENT_SHADER
+/**
+ * Samples like sluiceSampleCubeGrad with the fragment's own derivatives. Call in control flow that is
+ * uniform over the quad.
+ */
+vec4 sluiceSampleCube(SLUICE_CUBE_PARAMETERS, uint tableIndex, vec3 direction, float lodBias,
+                      float maxAnisotropy, out uint missingLevels)
+{
+    return sluiceSampleCubeGrad(SLUICE_CUBE_ARGUMENTS, tableIndex, direction, dFdx(direction),
+                                dFdy(direction), lodBias, maxAnisotropy, missingLevels);
+}
+#endif
+
+#undef SLUICE_CUBE_PARAMETERS
+#undef SLUICE_CUBE_ARGUMENTS
+#undef SLUICE_CUBE_SAMPLER
+#undef SLUICE_CUBE_COORDINATE
