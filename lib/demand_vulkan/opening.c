@@ -42,8 +42,11 @@ static const char *find_trouble(const struct slc_demand_image *image)
     (void)sluiceGetStandardTileShape(info->format, &tile_width, &tile_height);
     if (slc_demand_regular_count(info->width, info->height, tile_width, tile_height) >=
         info->mipLevelCount)
-        return "mipLevelCount ends before a level fits into half a tile; build the others with "
-               "sluiceCreateCompleteChainSource";
+        return format.blockWidth > 1
+                   ? "mipLevelCount ends before a level fits into half a tile; write the file "
+                     "again with all levels"
+                   : "mipLevelCount ends before a level fits into half a tile; build the others "
+                     "with sluiceCreateCompleteChainSource";
     if (format.blockWidth > 4) /* levels of a mip tail lie at multiples of 4 texels */
         return "its format has blocks larger than 4x4, which demand loading does not read";
     return NULL;

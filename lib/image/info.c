@@ -36,6 +36,18 @@ static bool last_level_fits_into_tile(const SluiceImageInfo *info)
            slc_mip_size(info->height, info->mipLevelCount - 1) <= height;
 }
 
+/* Levels of compressed formats cannot be built. */
+static const char *tail_trouble(const SluiceImageInfo *info)
+{
+    if (last_level_fits_into_tile(info))
+        return NULL;
+    return sluiceGetFormatTexelSize(info->format) == 0
+               ? "mipLevelCount ends before a level fits into a tile; write the file again with "
+                 "all levels"
+               : "mipLevelCount ends before a level fits into a tile; build the others with "
+                 "sluiceCreateCompleteChainSource";
+}
+
 static const char *level_trouble(const SluiceImageInfo *info, enum slc_image_levels levels)
 {
     uint32_t full = slc_mip_count(slc_max_u32(info->width, info->height));
@@ -47,11 +59,7 @@ static const char *level_trouble(const SluiceImageInfo *info, enum slc_image_lev
     case SLC_LEVELS_ALL: return "mipLevelCount is not the full chain's";
     case SLC_LEVELS_ALL_OR_ONE:
         return info->mipLevelCount == 1 ? NULL : "mipLevelCount is neither 1 nor the full chain's";
-    case SLC_LEVELS_TO_TAIL:
-        return last_level_fits_into_tile(info)
-                   ? NULL
-                   : "mipLevelCount ends before a level fits into a tile; build the others with "
-                     "sluiceCreateCompleteChainSource";
+    case SLC_LEVELS_TO_TAIL: return tail_trouble(info);
     case SLC_LEVELS_ANY: break;
     }
     return NULL;
