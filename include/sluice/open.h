@@ -68,6 +68,11 @@ SLUICE_API void sluiceDestroyImageOpener(SluiceImageOpener *opener);
  * same source: as many times as it is opened, it must be destroyed, on any threads. A file that was
  * changed gives a new source; older sources stay as they are.
  *
+ * A DDS or KTX2 file of an uncompressed format that lacks levels gets them as by
+ * sluiceCreateCompleteChainSource with its defaults: the first read of such a level builds them,
+ * and they take up to a third of level 0 in memory, at most 512 MiB. A file of a compressed format
+ * is delivered with the levels that it has.
+ *
  * A picture without tiles gets its final size, format and levels at once. Until its bake has ended,
  * reads of levels of more than 512 texels return SLUICE_NOT_READY, and so do all reads until the
  * preview is there: loaders read again later. Texels of the preview differ slightly from those of
@@ -101,8 +106,8 @@ typedef enum SluiceImageFileKind {
 typedef struct SluiceOpenedImageInfo {
     uint32_t structSize; ///< sizeof(SluiceOpenedImageInfo).
     SluiceImageFileKind kind;
-    /** Source of the file itself, for sluiceGetStoreInfo and sluiceGetExrInfo. NULL for PICTURE. Do
-     *  not destroy it. */
+    /** Source of the file itself, with the levels of the file, for sluiceGetStoreInfo and
+     *  sluiceGetExrInfo. NULL for PICTURE. Do not destroy it. */
     SluiceImageSource *source;
     bool previewReady;    ///< PICTURE: coarse levels can be read. Else true.
     bool ready;           ///< All levels can be read. Always true but for PICTURE.

@@ -3,6 +3,7 @@
 #include "open/opener.h"
 
 #include "base/alloc.h"
+#include "base/checked.h"
 #include "base/log.h"
 #include "base/said.h"
 #include "base/struct_size.h"
@@ -88,10 +89,17 @@ static void free_image(struct slc_opened_image *image)
 #ifdef SLC_HAVE_BAKE
     slc_picture_stream_destroy(image->stream);
 #endif
+    sluiceDestroyImageSource(image->complete);
     sluiceDestroyImageSource(image->source);
     if (image->path)
         slc_free(&cb, image->path, strlen(image->path) + 1, 1);
     slc_free(&cb, image, 1, sizeof *image);
+}
+
+/* Not of pictures. */
+static SluiceImageSource *source_to_read(const struct slc_opened_image *image)
+{
+    return image->complete ? image->complete : image->source;
 }
 
 static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
@@ -103,7 +111,7 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
         return SLUICE_SUCCESS;
     }
 #endif
-    return sluiceGetImageInfo(image->source, info);
+    return sluiceGetImageInfo(source_to_read(image), info);
 }
 
 static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
@@ -114,7 +122,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     if (image->stream)
         return slc_picture_stream_read(image->stream, region, texels, row_pitch, fault);
 #endif
-    return sluiceReadImageRegionLocated(image->source, region, texels, row_pitch, fault);
+    return sluiceReadImageRegionLocated(source_to_read(image), region, texels, row_pitch, fault);
 }
 
 static struct slc_opened_image **find_bucket(SluiceImageOpener *opener, const char *path)
@@ -155,6 +163,23 @@ static struct slc_opened_image *find_image(SluiceImageOpener *opener, const char
     return image;
 }
 
+/* Compressed levels cannot be built; what a chain without them is good for, its user decides. */
+static SluiceResult complete_chain(struct slc_opened_image *image)
+{
+    const SluiceImageOpener *opener = image->opener;
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceResult result = sluiceGetImageInfo(image->source, &info);
+    if (result != SLUICE_SUCCESS || sluiceGetFormatTexelSize(info.format) == 0 ||
+        info.mipLevelCount == slc_mip_count(slc_max_u32(info.width, info.height)))
+        return result;
+    const SluiceCompleteChainSourceCreateInfo complete = {.structSize = sizeof complete,
+                                                          .source = image->source,
+                                                          .pAllocator = &opener->allocator,
+                                                          .log = opener->log};
+    result = sluiceCreateCompleteChainSource(&complete, &image->complete);
+    return result == SLUICE_SUCCESS ? sluiceGetImageInfo(image->complete, &info) : result;
+}
+
 /* With the mutex held. Not in a bucket yet. */
 static SluiceResult open_image(SluiceImageOpener *opener, const char *path,
                                SluiceImageFileKind kind, const struct slc_file_identity *identity,
@@ -175,6 +200,8 @@ static SluiceResult open_image(SluiceImageOpener *opener, const char *path,
     else if (result == SLUICE_SUCCESS)
         result = slc_file_kind_open(kind, path, &opener->files, &opener->allocator, &opener->log,
                                     &image->source);
+    if (result == SLUICE_SUCCESS && image->source)
+        result = complete_chain(image);
     if (result != SLUICE_SUCCESS) {
         free_image(image);
         return result;

@@ -24,6 +24,7 @@ struct slc_opened_image {
     struct slc_file_identity identity;
     SluiceImageFileKind kind;
     SluiceImageSource *source;         ///< owned; NULL for pictures
+    SluiceImageSource *complete;       ///< owned; adds levels to `source`; NULL: it lacks none
     struct slc_picture_stream *stream; ///< owned; of pictures
 };
 
