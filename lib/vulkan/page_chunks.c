@@ -60,17 +60,12 @@ void slc_page_chunks_finish(struct slc_page_chunks *chunks)
     *chunks = (struct slc_page_chunks){0};
 }
 
-static SluiceFormat texel_format(SluiceFormat format)
-{
-    return (SluiceFormat)(format & ~SLC_PAGE_PRODUCED);
-}
-
 static SluiceResult create_chunk(struct slc_page_chunks *chunks, struct slc_page_chunk *chunk,
                                  SluiceFormat format, uint32_t layer_count)
 {
     SluiceImageInfo info = {.structSize = sizeof info,
                             .mipLevelCount = 1,
-                            .format = texel_format(format),
+                            .format = slc_page_texel_format(format),
                             .pName = "pages"};
     SluiceResult result = sluiceGetStandardTileShape(info.format, &info.width, &info.height);
     if (result != SLUICE_SUCCESS)
@@ -151,7 +146,7 @@ static void log_shortage(struct slc_page_chunks *chunks, SluiceFormat format)
                 "all maxPageChunkCount %u images of pages are in use: no more than %u tiles of %s, "
                 "finer ones will not be loaded",
                 chunks->count, chunks->page_count[format],
-                sluiceGetFormatName(texel_format(format)));
+                sluiceGetFormatName(slc_page_texel_format(format)));
 }
 
 /* Tries fewer and fewer layers until the device has memory for them and max_size holds. Returns how

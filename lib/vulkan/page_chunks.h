@@ -72,6 +72,12 @@ static inline SluiceFormat slc_page_format(SluiceFormat format, bool produced)
     return (SluiceFormat)((uint32_t)format | (produced ? SLC_PAGE_PRODUCED : 0u));
 }
 
+/** The format of the texels in a chunk. */
+static inline SluiceFormat slc_page_texel_format(SluiceFormat format)
+{
+    return (SluiceFormat)(format & ~SLC_PAGE_PRODUCED);
+}
+
 /** Most pages that `chunk_count` chunks hold: all chunks are of one format then. */
 uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers);
 

@@ -26,7 +26,10 @@ static void record_copy(const struct slc_page_pool *pool, uint32_t from, uint32_
     VkImageCopy copy = {.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, from & 0xFFFFu, 1},
                         .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, to & 0xFFFFu, 1},
                         .extent = {0, 0, 1}};
-    sluiceGetStandardTileShape(chunk->format, &copy.extent.width, &copy.extent.height);
+    SluiceResult result = sluiceGetStandardTileShape(slc_page_texel_format(chunk->format),
+                                                     &copy.extent.width, &copy.extent.height);
+    assert(result == SLUICE_SUCCESS);
+    (void)result;
     pool->vk.CmdCopyImage(commands, slc_page_image(pool, from), VK_IMAGE_LAYOUT_GENERAL,
                           slc_page_image(pool, to), VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
 }

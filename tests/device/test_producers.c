@@ -182,6 +182,37 @@ static void tiles_are_made_where_samples_are(void **state)
     maker_finish(&maker);
 }
 
+/* A removed texture leaves places in its chunk of pages, which those of the other one fill. */
+static void texels_stay_where_memory_is_compacted(void **state)
+{
+    struct harness *h = *state;
+    struct maker maker;
+    struct scene scene;
+    const SluiceImageInfo image = image_info(SLUICE_FORMAT_R8G8B8A8_UNORM);
+    maker_init(&maker, h, NULL);
+    const SluiceTileProducer producer = maker_producer(&maker, &image);
+    scene_init(&scene, h, everything());
+    uint32_t first = scene_add_produced(&scene, &producer);
+    scene_settle(&scene, 40);
+    uint32_t second = scene_add_produced(&scene, &producer);
+    scene_settle(&scene, 40);
+    scene_remove(&scene, first);
+    for (uint32_t i = 0; i < 8; i++)
+        harness_frame(h, scene.streamer, true, NULL, NULL);
+    uint32_t moved = 0;
+    for (uint32_t i = 0; i < 60; i++) {
+        uint32_t count = 0;
+        CHECK_OK(sluiceCompactVulkanStreamer(scene.streamer, 64, &count));
+        moved += count;
+        harness_frame(h, scene.streamer, true, NULL, NULL);
+    }
+    if (h->mode == SLUICE_RESIDENCY_MODE_PAGED)
+        assert_true(moved > 0);
+    check_texels(&scene, second);
+    scene_finish(&scene);
+    maker_finish(&maker);
+}
+
 int main(void)
 {
     struct harness h;
@@ -189,6 +220,7 @@ int main(void)
     if (status)
         return status;
     struct CMUnitTest tests[] = {
+        cmocka_unit_test(texels_stay_where_memory_is_compacted),
         cmocka_unit_test(texels_are_what_a_shader_stored),
         cmocka_unit_test(texels_are_what_a_command_copied),
         cmocka_unit_test(tiles_come_though_some_are_late_and_some_fail_at_first),

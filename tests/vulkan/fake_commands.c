@@ -36,6 +36,8 @@ static VKAPI_ATTR void VKAPI_CALL copy_image(VkCommandBuffer commands, VkImage f
     assert_true(to_layout == VK_IMAGE_LAYOUT_GENERAL && FAKE_OBJECT(to)->general);
     for (uint32_t i = 0; i < count; i++) {
         assert_true(fake->copy_count < FAKE_EVENTS);
+        assert_int_equal(regions[i].extent.width, FAKE_TILE);
+        assert_int_equal(regions[i].extent.height, FAKE_TILE);
         fake->copies[fake->copy_count++] =
             (struct fake_copy){.image = to,
                                .level = regions[i].dstSubresource.mipLevel,
