@@ -258,6 +258,7 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     SluiceDemandLoader *loader = slc_calloc(&context->cb, 1, sizeof *loader);
     if (!loader)
         return NULL;
+    loader->tile_limit = UINT64_MAX; /* none is set yet, and the first one may be 0 */
     loader->context = context;
     loader->cb = context->cb;
     loader->vk = context->vk;

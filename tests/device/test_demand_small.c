@@ -250,6 +250,32 @@ static void textures_go_before_tiles_that_were_used_later(void **state)
     small_destroy(s);
 }
 
+/* All pages that the context allows belong to another loader. */
+static void loader_without_a_page_waits_for_one(void **state)
+{
+    (void)state;
+    enum { FILL = 192, MORE = 4 };
+    CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.maxPageChunkCount = 1}));
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = 4u << 20};
+    struct small *first = small_create(&info);
+    for (uint32_t i = 0; i < FILL; i++)
+        add(first, i, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE);
+    add_samples(first, 0, FILL, 0);
+    runner_load(&first->r, 20);
+    struct small *second = small_create(&info);
+    for (uint32_t i = 0; i < MORE; i++)
+        add(second, i, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE);
+    add_samples(second, 0, MORE, 0);
+    runner_load(&second->r, 10);
+    assert_int_equal(runner_statistics(&second->r).residentTileCount, 0);
+    small_destroy(first);
+    for (uint32_t i = 0; i < 100; i++) /* until refused pages are tried again */
+        runner_load(&second->r, 20);
+    check_samples(second, 0, 0, MORE, 0);
+    small_destroy(second);
+    CHECK_OK(harness_set_context(&h, NULL));
+}
+
 /* Tiles of a large texture that were used before the small textures were. */
 static void tiles_go_before_textures_that_were_used_later(void **state)
 {
@@ -310,6 +336,7 @@ int main(void)
         cmocka_unit_test(textures_sampled_once_each_need_no_more_than_the_budget),
         cmocka_unit_test(textures_go_before_tiles_that_were_used_later),
         cmocka_unit_test(tiles_go_before_textures_that_were_used_later),
+        cmocka_unit_test(loader_without_a_page_waits_for_one),
         cmocka_unit_test(nothing_is_forgotten_without_eviction),
     };
     return harness_finish(&h, RUN_TESTS(tests));
