@@ -1,6 +1,8 @@
 #define _POSIX_C_SOURCE 200809L
+#define _FILE_OFFSET_BITS 64
 
 #include "base/alloc.h"
+#include "base/checked.h"
 #include "base/log.h"
 #include "image/input_file.h"
 #include "open/background.h"
@@ -8,6 +10,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static bool note_progress(void *user, uint64_t done, uint64_t total)
@@ -45,7 +48,30 @@ static void *take_file(const struct slc_picture_stream *stream, const char *path
     return bytes;
 }
 
-/* Shows it unless the store is there. */
+/* Whether `source` has the levels from `level` on of the image that readers were told of. Buffers
+ * of readers have the size of that image. */
+static bool is_as_described(const struct slc_picture_stream *stream, SluiceImageSource *source,
+                            uint32_t level)
+{
+    SluiceImageInfo info = {.structSize = sizeof info};
+    return sluiceGetImageInfo(source, &info) == SLUICE_SUCCESS &&
+           info.width == slc_mip_size(stream->info.width, level) &&
+           info.height == slc_mip_size(stream->info.height, level) &&
+           info.format == stream->info.format && info.arrayLayerCount <= 1 &&
+           info.mipLevelCount == stream->info.mipLevelCount - level;
+}
+
+static bool is_unchanged(const struct slc_picture_stream *stream)
+{
+    struct stat status;
+    if (stat(stream->path, &status) != 0)
+        return false;
+    struct slc_file_identity now = slc_file_identity(&status);
+    return now.size == stream->identity.size && now.seconds == stream->identity.seconds &&
+           now.nanoseconds == stream->identity.nanoseconds;
+}
+
+/* Shows it unless the store is there, or the file was replaced since it was described. */
 static void show_preview(struct slc_picture_stream *stream, void *bytes, size_t size)
 {
     SluiceImageOpener *opener = stream->opener;
@@ -59,8 +85,10 @@ static void show_preview(struct slc_picture_stream *stream, void *bytes, size_t 
     SluiceImageSource *preview = NULL;
     bool is_shown = false;
     SluiceResult result = sluiceCreateStoreImageSource(&info, &preview);
+    bool is_right = result == SLUICE_SUCCESS &&
+                    is_as_described(stream, preview, stream->preview_level) && is_unchanged(stream);
     pthread_rwlock_wrlock(&stream->lock);
-    if (result == SLUICE_SUCCESS && !stream->store && !stream->preview) {
+    if (is_right && !stream->store && !stream->preview) {
         stream->preview = preview;
         stream->preview_bytes = bytes;
         stream->preview_size = size;
@@ -164,14 +192,6 @@ static SluiceResult bake_store(struct slc_background *background, struct slc_pic
     }
 }
 
-static bool is_as_described(const struct slc_picture_stream *stream, SluiceImageSource *store)
-{
-    SluiceImageInfo info = {.structSize = sizeof info};
-    return sluiceGetImageInfo(store, &info) == SLUICE_SUCCESS && info.width == stream->info.width &&
-           info.height == stream->info.height && info.format == stream->info.format &&
-           info.mipLevelCount == stream->info.mipLevelCount;
-}
-
 void slc_make_store(struct slc_background *background, struct slc_picture_stream *stream)
 {
     SluiceImageOpener *opener = stream->opener;
@@ -180,7 +200,7 @@ void slc_make_store(struct slc_background *background, struct slc_picture_stream
     if (result == SLUICE_SUCCESS) {
         result = slc_open_picture_store(stream, &store);
         if (result == SLUICE_ERROR_CORRUPT_DATA ||
-            (result == SLUICE_SUCCESS && !is_as_described(stream, store))) {
+            (result == SLUICE_SUCCESS && !is_as_described(stream, store, 0))) {
             slc_log(&opener->log, SLUICE_LOG_ERROR,
                     "%s: has changed while it was baked; open it again", stream->path);
             result = SLUICE_ERROR_IO;

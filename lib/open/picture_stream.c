@@ -161,6 +161,7 @@ SluiceResult slc_picture_stream_read(struct slc_picture_stream *stream,
     } else if (result == SLUICE_SUCCESS) {
         result = SLUICE_NOT_READY;
     }
+    fault->pName = stream->path; /* the inner source, which may be destroyed soon, set its own */
     pthread_rwlock_unlock(&stream->lock);
     if (store && is_lost(result) && rebuild(stream, store))
         return SLUICE_NOT_READY;

@@ -11,6 +11,8 @@
 #include "support/failing_allocator.h"
 #include "support/test.h"
 
+#include <fcntl.h>
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -399,6 +401,98 @@ static void a_cache_folder_that_cannot_be_made_is_an_error(void **state)
     teardown(&f);
 }
 
+struct gate {
+    pthread_t opener;
+    atomic_bool is_open;
+};
+
+/* Threads of the background wait at the gate. */
+static void *allocate_behind_gate(void *user, size_t size, size_t alignment)
+{
+    struct gate *gate = user;
+    (void)alignment;
+    while (!pthread_equal(pthread_self(), gate->opener) && !gate->is_open)
+        wait_a_little();
+    return malloc(size);
+}
+
+static void free_behind_gate(void *user, void *memory, size_t size)
+{
+    (void)user, (void)size;
+    free(memory);
+}
+
+static void write_gray_picture(const char *path, uint32_t width, uint32_t height)
+{
+    uint8_t *samples = calloc((size_t)width * height, 1);
+    write_png(path, samples, width, height, 1, false);
+    free(samples);
+}
+
+/* Gives `path` the contents of `other`, and keeps size and time of the last change. */
+static void replace_unnoticed(const char *path, const char *other)
+{
+    struct stat status;
+    assert_int_equal(stat(path, &status), 0);
+    const struct timespec times[2] = {status.st_atim, status.st_mtim};
+    assert_int_equal(utimensat(AT_FDCWD, other, times, 0), 0);
+    assert_int_equal(rename(other, path), 0);
+}
+
+static void a_preview_of_another_format_is_not_shown(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char gray[256];
+    struct stat status;
+    SluiceImageSource *source;
+    struct gate gate = {.opener = pthread_self()};
+    SluiceAllocationCallbacks allocator = {&gate, allocate_behind_gate, free_behind_gate};
+    setup(&f);
+    sluiceDestroyImageOpener(f.opener);
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                        .pCacheFolder = f.cache,
+                                        .bakeThreadCount = 1,
+                                        .pAllocator = &allocator,
+                                        .log = {&f, on_log}};
+    CHECK_OK(sluiceCreateImageOpener(&info, &f.opener));
+    bake_folder_file(&f.folder, "gray.png", gray);
+    write_gray_picture(gray, WIDTH, HEIGHT);
+    assert_int_equal(stat(f.png, &status), 0);
+    assert_int_equal(truncate(gray, status.st_size), 0); /* readers stop at its last chunk */
+    CHECK_OK(sluiceOpenImageSource(f.opener, gray, &source));
+    replace_unnoticed(gray, f.png);
+    gate.is_open = true;
+    SluiceOpenedImageInfo opened = wait_for(source);
+    assert_false(opened.previewReady);
+    assert_int_equal(opened.failure, SLUICE_ERROR_IO);
+    sluiceDestroyImageSource(source);
+    teardown(&f);
+}
+
+static void a_fault_names_the_picture_also_when_its_store_is_gone(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[512];
+    struct stat status;
+    uint8_t texel[4];
+    SluiceImageSource *source;
+    SluiceImageRegion region = {0, 0, 0, 1, 1, 0};
+    SluiceImageFault fault;
+    setup(&f);
+    store_path(&f, f.png, path);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+    assert_true(wait_for(source).ready);
+    assert_int_equal(stat(path, &status), 0);
+    damage(path, 8192, (long)status.st_size);
+    CHECK_RESULT(sluiceReadImageRegionLocated(source, &region, texel, 4, &fault), SLUICE_NOT_READY);
+    assert_true(wait_for(source).ready);
+    assert_string_equal(fault.pName, f.png);
+    sluiceDestroyImageSource(source);
+    teardown(&f);
+}
+
 /* One call is refused; those of the background make the bake fail or nothing. */
 static void every_refused_allocation_is_survived(void **state)
 {
@@ -451,6 +545,8 @@ int main(void)
         cmocka_unit_test(old_stores_make_room_and_those_in_use_stay),
         cmocka_unit_test(pictures_that_are_broken_are_refused_or_fail_in_the_end),
         cmocka_unit_test(a_cache_folder_that_cannot_be_made_is_an_error),
+        cmocka_unit_test(a_preview_of_another_format_is_not_shown),
+        cmocka_unit_test(a_fault_names_the_picture_also_when_its_store_is_gone),
         cmocka_unit_test(every_refused_allocation_is_survived),
     };
     return RUN_TESTS(tests);
