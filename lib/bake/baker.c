@@ -3,6 +3,7 @@
 #include "bake/baker.h"
 
 #include "bake/texels.h"
+#include "bake/vips_warnings.h"
 #include "base/alloc.h"
 #include "base/log.h"
 #include "base/struct_size.h"
@@ -57,6 +58,7 @@ SluiceResult sluiceCreateBaker(const SluiceBakerCreateInfo *pInfo, SluiceBaker *
         slc_free(&cb, baker, 1, sizeof *baker);
         return result;
     }
+    slc_vips_warnings_listen();
     slc_decode_srgb16(decoded16);
     slc_astc_pool_init(&baker->astc, &cb);
     baker->allocator = cb;
@@ -73,6 +75,7 @@ void sluiceDestroyBaker(SluiceBaker *baker)
         return;
     SluiceAllocationCallbacks cb = baker->allocator;
     slc_bake_jobs_finish(&baker->jobs);
+    slc_vips_warnings_end();
     slc_astc_pool_finish(&baker->astc);
     slc_free(&cb, baker->decoded16, 65536, sizeof *baker->decoded16);
     slc_free(&cb, baker, 1, sizeof *baker);

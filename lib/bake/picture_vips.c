@@ -1,5 +1,6 @@
 #include "bake/picture.h"
 
+#include "bake/vips_warnings.h"
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
@@ -23,6 +24,7 @@ struct vips_picture {
     VipsRegion *region;
     uint32_t first, count; ///< rows in the region
     int orientation;       ///< 1 to 8, as EXIF counts them
+    struct slc_vips_warnings warnings;
 };
 
 /* One line of what libvips says of the last failure; its buffer is the whole process's. */
@@ -157,7 +159,7 @@ static bool find_whole_size(const struct vips_picture *picture, uint32_t *width,
     return true;
 }
 
-static SluiceResult load(struct vips_picture *picture)
+static SluiceResult load_image(struct vips_picture *picture)
 {
     uint32_t width = 0, height = 0;
     if (picture->first_level > 0 && !find_whole_size(picture, &width, &height))
@@ -185,12 +187,23 @@ static SluiceResult load(struct vips_picture *picture)
     return picture->region ? SLUICE_SUCCESS : fail(picture, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
 }
 
+static SluiceResult load(struct vips_picture *picture)
+{
+    slc_vips_warnings_enter(&picture->warnings);
+    SluiceResult result = load_image(picture);
+    slc_vips_warnings_leave(&picture->warnings);
+    return result;
+}
+
+/* Warnings of JPEG come here. */
 static void unload(struct vips_picture *picture)
 {
+    slc_vips_warnings_enter(&picture->warnings);
     if (picture->region)
         g_object_unref(picture->region);
     if (picture->image)
         g_object_unref(picture->image);
+    slc_vips_warnings_leave(&picture->warnings);
     picture->region = NULL;
     picture->image = NULL;
     picture->first = picture->count = 0;
@@ -203,8 +216,13 @@ static SluiceResult row(struct slc_picture *base, uint32_t y, const void **sampl
         picture->first = y;
         picture->count = slc_min_u32(STRIP, base->height - y);
         VipsRect rect = {0, (int)y, (int)base->width, (int)picture->count};
+        slc_vips_warnings_enter(&picture->warnings);
+        SluiceResult result = SLUICE_SUCCESS;
         if (vips_region_prepare(picture->region, &rect) != 0)
-            return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
+            result = fail(picture, SLUICE_ERROR_CORRUPT_DATA);
+        slc_vips_warnings_leave(&picture->warnings);
+        if (result != SLUICE_SUCCESS)
+            return result;
     }
     *samples = VIPS_REGION_ADDR(picture->region, 0, (int)y);
     return SLUICE_SUCCESS;
@@ -318,6 +336,8 @@ SluiceResult slc_picture_open_vips(const char *path, const struct slc_picture_op
     picture->base.log = *log;
     picture->path = slc_strdup(cb, path);
     picture->base.name = picture->path;
+    picture->warnings.path = picture->path;
+    picture->warnings.log = &picture->base.log;
     picture->first_level = opening->first_level;
     SluiceResult result = picture->path ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result == SLUICE_SUCCESS && opening->input)

@@ -118,6 +118,7 @@ static void report(const struct bake_job *jobs, size_t count)
         skipped += outcome(&jobs[i]) == SLUICE_SUCCESS && jobs[i].report.skipped;
         if (jobs[i].message[0])
             text_say("%s", jobs[i].message);
+        bake_job_say_warnings(&jobs[i], "");
     }
     fprintf(stderr, "%u pictures baked, %u were up to date\n", baked, skipped);
 }

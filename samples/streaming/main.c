@@ -308,7 +308,6 @@ static int generate_only(const struct settings *settings)
 int main(int argc, char **argv)
 {
     struct gallery gallery = {0};
-    setenv("VIPS_WARNING", "0", 0); /* what matters comes as an error, with the file's name */
     switch (settings_parse(argc, argv, &gallery.settings)) {
     case OPTIONS_HELP: return text_exit_status(EXIT_SUCCESS);
     case OPTIONS_ERROR: return EXIT_USAGE;

@@ -89,6 +89,11 @@ run 1 in -o other.d && grep -q 'in/a.*would both become other.d/a.store' err
 fact two_pictures_for_one_file_are_refused
 rm in/a.tif
 
+mkdir hurt && cp in/d.jpg hurt/a.jpg && cp in/d.jpg hurt/b.jpg && printf 'U%.0s' {1..40} |
+    dd of=hurt/b.jpg bs=1 seek=$(($(stat -c %s hurt/b.jpg) / 2)) conv=notrunc 2>/dev/null
+run 0 hurt -o hurt.d && grep -q '^2 baked' out && grep -q '^sluice-bake: hurt/b.jpg: libvips: ' err && ! grep -q 'hurt/a.jpg' err
+fact a_damaged_picture_that_is_baked_is_named
+
 ln -s absent in/gone.png && mkfifo in/pipe.png && ln -s .. in/sub/circle
 run 1 in -o out.d --wrap repeat && grep -q '^0 baked, 5 unchanged, 0 failed' out && [ "$(count . err)" -eq 1 ] &&
     grep -q 'in/gone.png: No such file' err

@@ -55,6 +55,24 @@ static struct bake_job *job_of(const struct run *run, const char *message)
     return NULL;
 }
 
+/* A picture may be opened twice, which warns twice. */
+static void add_warning(struct bake_job *job, const char *message)
+{
+    size_t used = strlen(job->warnings), size = strlen(message) + 1;
+    if (!strstr(job->warnings, message) && used + size < sizeof job->warnings)
+        snprintf(job->warnings + used, sizeof job->warnings - used, "%s\n", message);
+}
+
+void bake_job_say_warnings(const struct bake_job *job, const char *speaker)
+{
+    const char *line = job->warnings;
+    while (*line && job->result == SLUICE_SUCCESS) {
+        int size = (int)strcspn(line, "\n");
+        text_say("%s%.*s", speaker, size, line);
+        line += size + 1;
+    }
+}
+
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     struct run *run = user;
@@ -68,6 +86,8 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
     pthread_mutex_lock(&run->log_mutex);
     if (severity == SLUICE_LOG_ERROR && !job->message[0])
         snprintf(job->message, sizeof job->message, "%s", message);
+    else if (severity == SLUICE_LOG_WARNING)
+        add_warning(job, message);
     pthread_mutex_unlock(&run->log_mutex);
 }
 

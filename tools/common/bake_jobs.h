@@ -13,7 +13,8 @@ struct bake_job {
     bool is_done; ///< there was a thread for it
     SluiceResult result;
     SluiceBakeReport report;
-    char message[512]; ///< the first thing that was said of it, which names it; "": nothing
+    char message[512];   ///< the first thing that was said of it, which names it; "": nothing
+    char warnings[2048]; ///< lines, each of which names it; those that do not fit are left out
 };
 
 /** Zeros are the baker's defaults. */
@@ -29,5 +30,9 @@ struct bake_conditions {
  * the pictures goes to stderr. False, having said why, if nothing could be begun.
  */
 bool bake_jobs_run(struct bake_job *jobs, size_t count, const struct bake_conditions *conditions);
+
+/** The warnings of a picture that was baked all the same, on stderr; of others the error says why.
+ */
+void bake_job_say_warnings(const struct bake_job *job, const char *speaker);
 
 #endif /* TOOLS_COMMON_BAKE_JOBS_H */

@@ -55,8 +55,7 @@ int main(int argc, char **argv)
     struct options options;
     int status = OK;
     descriptors_raise();
-    signal(SIGXFSZ, SIG_IGN);       /* files that may not grow are an error like a full disk */
-    setenv("VIPS_WARNING", "0", 0); /* what matters comes as an error, with the file's name */
+    signal(SIGXFSZ, SIG_IGN); /* files that may not grow are an error like a full disk */
     enum option_outcome outcome = parse_options(&options, argc, argv);
     if (outcome == OPTIONS_ERROR)
         return WRONG_USAGE;

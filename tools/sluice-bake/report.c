@@ -116,6 +116,7 @@ static void print_remarks(const struct bake_job *job)
 {
     const char *why = reason(job);
     if (status_of(job) != FAILED) {
+        bake_job_say_warnings(job, "sluice-bake: ");
         print_replaced(job->input, &job->report);
     } else if (strncmp(why, job->input, strlen(job->input)) == 0) {
         text_say("sluice-bake: %s", why);
