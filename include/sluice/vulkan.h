@@ -154,7 +154,7 @@ SLUICE_API SluiceResult sluiceChooseVulkanResidencyMode(
 typedef struct SluiceVulkanFormatCapabilities {
     uint32_t structSize; ///< sizeof(SluiceVulkanFormatCapabilities).
     bool sampled;        ///< Can be sampled.
-    bool linearFilter;   ///< Can be sampled with linear filters.
+    bool linearFilter;   ///< Can be sampled with linear filters. Paged mode requires it.
     bool sparse;         ///< Supports sparse residency images of 64 KiB tiles.
     /** Sparse granularity as reported by the driver. 0 without sparse support. */
     uint32_t granularityWidth, granularityHeight;
@@ -539,9 +539,9 @@ typedef struct SluiceVulkanTextureCreateInfo {
     VkSamplerAddressMode addressModeU, addressModeV;
     bool explicitAddressModes; ///< Use the address modes above even if they are 0.
     /**
-     * Anisotropy of its sampler, at most 16. The device's maxSamplerAnisotropy is used if lower;
-     * SluiceVulkanTexture returns the value used. Above 1 requires the feature samplerAnisotropy.
-     * Default: 1, none.
+     * Anisotropy of its sampler, at most 16. The device's maxSamplerAnisotropy is used if lower,
+     * and 1 if the format has no linear filter; SluiceVulkanTexture returns the value used. Above 1
+     * requires the feature samplerAnisotropy. Default: 1, none.
      */
     float maxAnisotropy;
     /** Fills the tiles in place of `source`, which must be NULL then. Copied. Default: none. */
@@ -634,7 +634,8 @@ SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer
 
 /**
  * Gets a sampler for a texture: trilinear, without LOD bias, all levels, with the texture's address
- * modes and maxAnisotropy. Border: transparent black.
+ * modes and maxAnisotropy. Border: transparent black. Formats that the device does not filter
+ * linearly (SluiceVulkanFormatCapabilities) get a sampler of NEAREST texels and NEAREST levels.
  *
  * Textures of one kind share a sampler. The streamer owns it; it lives as long as the streamer.
  *

@@ -39,6 +39,13 @@ static bool get_granularity(const struct slc_vk *vk, VkFormat format, VkExtent3D
     return false;
 }
 
+bool slc_filters_linear(const struct slc_vk *vk, SluiceFormat format)
+{
+    VkFormatProperties features;
+    vk->GetPhysicalDeviceFormatProperties(vk->physical_device, slc_vk_format(format), &features);
+    return features.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+}
+
 void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc_vk *vk,
                           SluiceFormat format)
 {
@@ -48,10 +55,7 @@ void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc
     VkExtent3D granularity;
     if (vk_format == VK_FORMAT_UNDEFINED || sluiceGetFormatInfo(format, &info) != SLUICE_SUCCESS)
         return;
-    VkFormatProperties features;
-    vk->GetPhysicalDeviceFormatProperties(vk->physical_device, vk_format, &features);
-    caps->linearFilter =
-        features.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+    caps->linearFilter = slc_filters_linear(vk, format);
     caps->sampled = get_limits(vk, vk_format, 0, caps);
     if (!caps->sampled || !get_granularity(vk, vk_format, &granularity) ||
         !get_limits(vk, vk_format, SLC_IMAGE_SPARSE_FLAGS, caps))

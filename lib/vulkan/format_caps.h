@@ -19,6 +19,9 @@ static inline VkImageCreateFlags slc_image_flags(const SluiceImageInfo *info)
 void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc_vk *vk,
                           SluiceFormat format);
 
+/** False for formats that the device samples with NEAREST filters only, or not at all. */
+bool slc_filters_linear(const struct slc_vk *vk, SluiceFormat format);
+
 /** The largest face of a sparse cube map, in texels. 0: the device has none of this format. */
 uint32_t slc_max_sparse_cube_width(const struct slc_vk *vk, SluiceFormat format);
 

@@ -78,8 +78,8 @@ static struct slc_around around_of(const SluiceVulkanStreamer *s, const struct s
         .width = texture->layout.minMipWidth,
         .height = texture->layout.minMipHeight,
         .radius = slc_texture_is_ragged(texture) ? SLUICE_AROUND_RAGGED : SLUICE_AROUND,
-        .wraps_x = texture->address_modes[0] == VK_SAMPLER_ADDRESS_MODE_REPEAT,
-        .wraps_y = texture->address_modes[1] == VK_SAMPLER_ADDRESS_MODE_REPEAT};
+        .wraps_x = texture->sampler_kind.modes[0] == VK_SAMPLER_ADDRESS_MODE_REPEAT,
+        .wraps_y = texture->sampler_kind.modes[1] == VK_SAMPLER_ADDRESS_MODE_REPEAT};
 }
 
 /* Whole rows, and as many beside those of the rectangle as their words look around. */

@@ -10,6 +10,8 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/log.h"
+#include "vulkan/format_caps.h"
 #include "vulkan/page_moves.h"
 #include "vulkan/page_pool.h"
 #include "vulkan/page_table.h"
@@ -91,6 +93,18 @@ static void destroy_image(struct slc_residency *residency, uint32_t index)
     count_memory(p);
 }
 
+/* Pages share a sampler, and shaders blend across their edges: both filter linearly. */
+static SluiceResult check_filter(const struct paged_residency *p, const SluiceImageInfo *info)
+{
+    if (slc_filters_linear(p->vk, info->format))
+        return SLUICE_SUCCESS;
+    slc_log(&p->vk->log, SLUICE_LOG_ERROR,
+            "%s: %ux%u %s has no linear filter, which paged mode requires",
+            info->pName ? info->pName : "image", info->width, info->height,
+            sluiceGetFormatName(info->format));
+    return SLUICE_ERROR_UNSUPPORTED;
+}
+
 static SluiceResult create_layer(struct paged_residency *p, uint32_t index, SluiceFormat format,
                                  const SluiceStreamedTextureDesc *desc, VkImage tail)
 {
@@ -120,6 +134,7 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     if (result != SLUICE_SUCCESS)
         return result;
     first->layer_count = layer_count;
+    result = check_filter(p, info);
     for (uint32_t i = 0; i < layer_count && result == SLUICE_SUCCESS; i++)
         result = create_layer(p, index + i, info->format, &layout.desc, first->own_tail.image);
     for (uint32_t i = 0; i < layer_count; i++)

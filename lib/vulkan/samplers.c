@@ -5,18 +5,20 @@
 #define FIRST_CAPACITY 4u
 
 /* Requirements of sample.glsl: no LOD bias, every level, the texture's address modes. */
-static SluiceResult create(const struct slc_vk *vk, const VkSamplerAddressMode modes[2],
-                           float max_anisotropy, VkSampler *sampler)
+static SluiceResult create(const struct slc_vk *vk, const struct slc_sampler_kind *kind,
+                           VkSampler *sampler)
 {
+    VkFilter filter = kind->nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
     VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                .magFilter = VK_FILTER_LINEAR,
-                                .minFilter = VK_FILTER_LINEAR,
-                                .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
-                                .addressModeU = modes[0],
-                                .addressModeV = modes[1],
+                                .magFilter = filter,
+                                .minFilter = filter,
+                                .mipmapMode = kind->nearest ? VK_SAMPLER_MIPMAP_MODE_NEAREST
+                                                            : VK_SAMPLER_MIPMAP_MODE_LINEAR,
+                                .addressModeU = kind->modes[0],
+                                .addressModeV = kind->modes[1],
                                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                .anisotropyEnable = max_anisotropy > 1.0f,
-                                .maxAnisotropy = max_anisotropy,
+                                .anisotropyEnable = kind->max_anisotropy > 1.0f,
+                                .maxAnisotropy = kind->max_anisotropy,
                                 .maxLod = VK_LOD_CLAMP_NONE,
                                 .borderColor = VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK};
     return slc_vk_result(vk, vk->CreateSampler(vk->device, &info, NULL, sampler),
@@ -37,13 +39,12 @@ static SluiceResult grow(struct slc_samplers *samplers, const SluiceAllocationCa
 
 SluiceResult slc_samplers_get(struct slc_samplers *samplers, const struct slc_vk *vk,
                               const SluiceAllocationCallbacks *cb,
-                              const VkSamplerAddressMode modes[2], float max_anisotropy,
-                              uint32_t *index)
+                              const struct slc_sampler_kind *kind, uint32_t *index)
 {
     for (uint32_t i = 0; i < samplers->count; i++) {
-        const struct slc_sampler *known = &samplers->list[i];
-        if (known->modes[0] == modes[0] && known->modes[1] == modes[1] &&
-            known->max_anisotropy == max_anisotropy) {
+        const struct slc_sampler_kind *known = &samplers->list[i].kind;
+        if (known->modes[0] == kind->modes[0] && known->modes[1] == kind->modes[1] &&
+            known->max_anisotropy == kind->max_anisotropy && known->nearest == kind->nearest) {
             *index = i;
             return SLUICE_SUCCESS;
         }
@@ -52,11 +53,10 @@ SluiceResult slc_samplers_get(struct slc_samplers *samplers, const struct slc_vk
         samplers->count < samplers->capacity ? SLUICE_SUCCESS : grow(samplers, cb);
     VkSampler sampler = VK_NULL_HANDLE;
     if (result == SLUICE_SUCCESS)
-        result = create(vk, modes, max_anisotropy, &sampler);
+        result = create(vk, kind, &sampler);
     if (result != SLUICE_SUCCESS)
         return result;
-    samplers->list[samplers->count] = (struct slc_sampler){
-        .modes = {modes[0], modes[1]}, .max_anisotropy = max_anisotropy, .sampler = sampler};
+    samplers->list[samplers->count] = (struct slc_sampler){*kind, sampler};
     *index = samplers->count++;
     return SLUICE_SUCCESS;
 }

@@ -4,9 +4,14 @@
 
 #include "vulkan/dispatch.h"
 
-struct slc_sampler {
+struct slc_sampler_kind {
     VkSamplerAddressMode modes[2];
     float max_anisotropy; ///< 1: none
+    bool nearest;         ///< between texels and levels, for formats without linear filters
+};
+
+struct slc_sampler {
+    struct slc_sampler_kind kind;
     VkSampler sampler;
 };
 
@@ -20,8 +25,7 @@ struct slc_samplers {
  *  VULKAN. */
 SluiceResult slc_samplers_get(struct slc_samplers *samplers, const struct slc_vk *vk,
                               const SluiceAllocationCallbacks *cb,
-                              const VkSamplerAddressMode modes[2], float max_anisotropy,
-                              uint32_t *index);
+                              const struct slc_sampler_kind *kind, uint32_t *index);
 void slc_samplers_finish(struct slc_samplers *samplers, const struct slc_vk *vk,
                          const SluiceAllocationCallbacks *cb);
 

@@ -62,9 +62,8 @@ struct slc_texture {
     uint32_t first, layer, layer_count; ///< of an array: the index of layer 0; else itself, 0, 1
     struct slc_texture_views views;
     SluiceStreamedTextureLayout layout;
-    VkSamplerAddressMode address_modes[2];
-    float max_anisotropy; ///< of its sampler
-    uint32_t sampler;     ///< index in samplers, if there is a texture array
+    struct slc_sampler_kind sampler_kind;
+    uint32_t sampler; ///< index in samplers, if there is a texture array
     uint32_t region_first, region_count;
     struct slc_fade_rect fade;
     uint16_t whole_shown; ///< the largest texel of its MinMip map, as the texture table has it

@@ -10,6 +10,7 @@
 #include "image/info.h"
 #include "vulkan/address_mode.h"
 #include "vulkan/format.h"
+#include "vulkan/format_caps.h"
 #include "vulkan/load_cancels.h"
 
 #include <assert.h>
@@ -159,19 +160,18 @@ static SluiceResult build(SluiceVulkanStreamer *s, struct slc_texture *texture)
     return result;
 }
 
-static float choose_anisotropy(const SluiceVulkanStreamer *s, float wanted)
+static float choose_anisotropy(const SluiceVulkanStreamer *s, float wanted, bool linear)
 {
     const SluiceVulkanDeviceCapabilities *caps = &s->caps.public;
-    float most = caps->samplerAnisotropy ? caps->maxSamplerAnisotropy : 1.0f;
+    float most = caps->samplerAnisotropy && linear ? caps->maxSamplerAnisotropy : 1.0f;
     return fmaxf(fminf(wanted, most), 1.0f);
 }
 
 /* Known by its index before the texture is added: an array of textures shows both at once. */
-static SluiceResult find_sampler(SluiceVulkanStreamer *s, const VkSamplerAddressMode modes[2],
-                                 float max_anisotropy, uint32_t *index)
+static SluiceResult find_sampler(SluiceVulkanStreamer *s, const struct slc_sampler_kind *kind,
+                                 uint32_t *index)
 {
-    SluiceResult result =
-        slc_samplers_get(&s->samplers, &s->vk, &s->cb, modes, max_anisotropy, index);
+    SluiceResult result = slc_samplers_get(&s->samplers, &s->vk, &s->cb, kind, index);
     if (result != SLUICE_SUCCESS || s->info.textureArray != SLUICE_TEXTURE_ARRAY_SEPARATE ||
         *index < SLUICE_SAMPLER_COUNT)
         return result;
@@ -204,6 +204,15 @@ static void choose_modes(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreat
     s->told_of_modes |= differs;
 }
 
+static void choose_kind(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreateInfo *info,
+                        const SluiceImageInfo *image, struct slc_sampler_kind *kind)
+{
+    bool linear = slc_filters_linear(&s->vk, image->format);
+    choose_modes(s, info, image, kind->modes);
+    kind->max_anisotropy = choose_anisotropy(s, info->maxAnisotropy, linear);
+    kind->nearest = !linear;
+}
+
 /* All layers, or none. The manager comes last: what it has got is only given back with a frame. */
 static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                               const SluiceVulkanTextureCreateInfo *info,
@@ -211,13 +220,12 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                               const SluiceImageInfo *image, uint32_t count)
 {
     struct slc_residency_image residency_image;
-    VkSamplerAddressMode modes[2];
+    struct slc_sampler_kind kind;
     uint32_t sampler = 0;
-    const float max_anisotropy = choose_anisotropy(s, info->maxAnisotropy);
     SluiceResult result = SLUICE_SUCCESS;
-    choose_modes(s, info, image, modes);
+    choose_kind(s, info, image, &kind);
     if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE)
-        result = find_sampler(s, modes, max_anisotropy, &sampler);
+        result = find_sampler(s, &kind, &sampler);
     if (result == SLUICE_SUCCESS)
         result = s->residency->interface->create_image(s->residency, first, image, producer->pfn,
                                                        &residency_image);
@@ -235,9 +243,8 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                                  .layer = i,
                                  .layer_count = count,
                                  .added_frame = s->frame,
-                                 .max_anisotropy = max_anisotropy,
-                                 .sampler = sampler,
-                                 .address_modes = {modes[0], modes[1]}};
+                                 .sampler_kind = kind,
+                                 .sampler = sampler};
     for (uint32_t i = 0; i < count && s->residency->interface->set_source; i++)
         s->residency->interface->set_source(s->residency, first + i, info->source, i);
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
@@ -281,9 +288,9 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
         .tableIndex = index,
         .arrayLayer = texture->layer,
         .arrayView = first->views.array,
-        .addressModeU = texture->address_modes[0],
-        .addressModeV = texture->address_modes[1],
-        .maxAnisotropy = texture->max_anisotropy,
+        .addressModeU = texture->sampler_kind.modes[0],
+        .addressModeV = texture->sampler_kind.modes[1],
+        .maxAnisotropy = texture->sampler_kind.max_anisotropy,
         .cubeView = texture->info.cube ? face->views.cube : VK_NULL_HANDLE,
         .cubeArrayView = first->views.cube_array,
     };
@@ -421,7 +428,7 @@ SluiceResult sluiceGetVulkanSampler(SluiceVulkanStreamer *streamer, SluiceTextur
         return result;
     const struct slc_texture *texture = slc_streamer_texture(s, textureId);
     uint32_t index;
-    result = find_sampler(s, texture->address_modes, texture->max_anisotropy, &index);
+    result = find_sampler(s, &texture->sampler_kind, &index);
     if (result == SLUICE_SUCCESS)
         *pSampler = s->samplers.list[index].sampler;
     return result;
@@ -521,8 +528,8 @@ static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint
         .regionCountY = texture->layout.feedbackHeight,
         .feedbackOffset = texture->region_first,
         .minMipOffset = texture->region_first,
-        .addressModeU = (uint)texture->address_modes[0],
-        .addressModeV = (uint)texture->address_modes[1],
+        .addressModeU = (uint)texture->sampler_kind.modes[0],
+        .addressModeV = (uint)texture->sampler_kind.modes[1],
         .pageTableOffset = page_table_offset(s, index),
         .tileShift = slc_log2_u32(desc->tileWidth) | slc_log2_u32(desc->tileHeight) << 8,
         .samplerIndex = texture->sampler,

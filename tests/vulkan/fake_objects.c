@@ -72,6 +72,17 @@ static VKAPI_ATTR VkResult VKAPI_CALL set_name(VkDevice device,
     }
 
 PLAIN_OBJECT(Sampler, VkSamplerCreateInfo)
+
+static VKAPI_ATTR VkResult VKAPI_CALL note_sampler(VkDevice device, const VkSamplerCreateInfo *info,
+                                                   const VkAllocationCallbacks *cb, VkSampler *out)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    fake->newest_sampler = *info;
+    fake->newest_sampler.pNext = NULL;
+    fake->sampler_count++;
+    return create_Sampler(device, info, cb, out);
+}
+
 PLAIN_OBJECT(PipelineCache, VkPipelineCacheCreateInfo)
 PLAIN_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo)
 PLAIN_OBJECT(ShaderModule, VkShaderModuleCreateInfo)
@@ -79,7 +90,7 @@ PLAIN_OBJECT(ShaderModule, VkShaderModuleCreateInfo)
 const struct fake_function fake_object_functions[] = {
     FAKE_FUNCTION(CreatePipelineCache, create_PipelineCache),
     FAKE_FUNCTION(CreatePipelineLayout, create_PipelineLayout),
-    FAKE_FUNCTION(CreateSampler, create_Sampler),
+    FAKE_FUNCTION(CreateSampler, note_sampler),
     FAKE_FUNCTION(CreateShaderModule, create_ShaderModule),
     FAKE_FUNCTION(DestroyPipelineCache, destroy_PipelineCache),
     FAKE_FUNCTION(DestroyPipelineLayout, destroy_PipelineLayout),

@@ -90,8 +90,10 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
 static VKAPI_ATTR void VKAPI_CALL get_format_features(VkPhysicalDevice device, VkFormat format,
                                                       VkFormatProperties *properties)
 {
-    (void)device, (void)format;
+    (void)format;
     *properties = (VkFormatProperties){0};
+    if (!fake_of(device)->no_linear_filter)
+        properties->optimalTilingFeatures = VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL get_format(VkPhysicalDevice device, VkFormat format,

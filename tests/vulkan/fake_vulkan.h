@@ -116,6 +116,10 @@ struct fake_vulkan {
     SluiceTileRetryPolicy readRetry;
     uint64_t minStagingSize;
 
+    bool no_linear_filter;              ///< Its format is sampled with NEAREST filters only.
+    VkSamplerCreateInfo newest_sampler; ///< pNext is NULL
+    uint32_t sampler_count;             ///< created
+
     const char *missing; ///< function that neither instance nor device has; NULL: none
 
     uint64_t live_objects; ///< created and not destroyed
