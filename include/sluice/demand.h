@@ -242,8 +242,9 @@ typedef struct SluiceDemandTextureCreateInfo {
 /**
  * Adds a texture without opening its image.
  *
- * Any format that the device can sample and filter is allowed. An image that has several layers, or
- * whose info is out of range (image.h), shows its failureColor once it was opened.
+ * Any format that the device samples with linear filters is allowed, if its blocks have at most 4x4
+ * texels. An image of another format, with several layers, or whose info is out of range (image.h)
+ * shows its failureColor once it was opened.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown modes, or an
  *         anisotropy or LOD bias out of range; SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount;

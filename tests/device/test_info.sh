@@ -1,7 +1,8 @@
 #!/bin/sh
-# test_info.sh SLUICE_INFO CHECK: what the command line promises, in TAP.
+# test_info.sh SLUICE_INFO CHECK CHECK_FORMATS: what the command line promises, in TAP.
 info=$1
 check=$2
+check_formats=$3
 n=0
 failed=0
 folder=$(mktemp -d) || exit 99
@@ -30,7 +31,7 @@ status 0 "$info" --help && grep -q 'exit status\|Exit status' "$folder/out" &&
 report help_names_defaults $?
 
 wrong=0
-for arguments in '--no-such-option' '--device' '--png x' '--level 1' '--tile 1,1' 'x --device 0' 'x --png y --tile 1' '--image' '--image 0x4' '--image 4' '--image 4x' \
+for arguments in '--no-such-option' '--device' '--png x' '--level 1' '--tile 1,1' 'x --device 0' 'x --formats' 'x --png y --tile 1' '--image' '--image 0x4' '--image 4' '--image 4x' \
     '--image 4x4x4' '--image -4x4' '--image 1048577x1'; do
     # shellcheck disable=SC2086
     status 2 "$info" $arguments && [ -s "$folder/err" ] || wrong=1
@@ -67,6 +68,13 @@ report unknown_device_exits_with_1_and_names_those_there_are $?
 
 status 0 "$info" --image 1x1 && grep -q 'of 1x1$' "$folder/out"
 report layout_of_the_size_asked_for $?
+
+# The header is a row, too, so the count of the rows is one more than that of the formats.
+status 0 "$info" --formats --device 0 && grep -q '^  format  *linear  *sparse  *paged  *dense  *demand$' "$folder/out" &&
+    rows=$(sed '1,/^$/d' "$folder/out" | wc -l) && status 0 "$info" --formats --json --device 0 &&
+    python3 "$check_formats" <"$folder/out" >"$folder/count" 2>"$folder/err" &&
+    [ "$rows" -eq $(($(cat "$folder/count") + 1)) ]
+report formats_has_a_row_for_each_format $?
 
 echo "1..$n"
 exit $failed

@@ -67,15 +67,30 @@ void close_devices(struct devices *d)
 /* The last message says why. */
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
-    struct device_report *report = user;
     (void)severity;
-    snprintf(report->missing, sizeof report->missing, "%s", message);
+    snprintf(user, MAX_REASON, "%s", message);
+}
+
+/* Leaves `missing` empty if the device has the mode. */
+static void ask_mode(const struct devices *d, VkPhysicalDevice physical, enum format_mode mode,
+                     char missing[MAX_REASON])
+{
+    SluiceLogCallback log = {missing, on_log};
+    VkPhysicalDeviceFeatures features = {0};
+    VkPhysicalDeviceVulkan12Features vulkan12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    SluiceResult result = sluiceRequireVulkanFeatures(
+        d->instance, physical, d->get, format_mode_residency(mode), &log, &features, &vulkan12);
+    if (result == SLUICE_SUCCESS)
+        missing[0] = '\0';
+    else if (!missing[0])
+        snprintf(missing, MAX_REASON, "%s", sluiceGetResultName(result));
 }
 
 static VkDevice create_device(const struct devices *d, struct device_report *report)
 {
     VkPhysicalDevice physical = d->devices[report->index];
-    SluiceLogCallback log = {report, on_log};
+    SluiceLogCallback log = {report->missing, on_log};
     VkPhysicalDeviceVulkan12Features vulkan12 = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
@@ -129,6 +144,8 @@ bool ask_device(const struct devices *d, uint32_t index, uint32_t width, uint32_
         text_say("sluice-info: device %u does not answer: %s", index, sluiceGetResultName(result));
         return false;
     }
+    for (uint32_t m = 0; m < FORMAT_MODES; m++)
+        ask_mode(d, d->devices[index], (enum format_mode)m, report->missing_for[m]);
     VkDevice device = create_device(d, report);
     for (uint32_t f = 1; f < SLUICE_FORMAT_COUNT; f++)
         ask_format(d, device, (SluiceFormat)f, report);

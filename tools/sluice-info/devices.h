@@ -2,9 +2,10 @@
 #ifndef TOOLS_SLUICE_INFO_DEVICES_H
 #define TOOLS_SLUICE_INFO_DEVICES_H
 
-#include <sluice/vulkan.h>
+#include "format_modes.h"
 
 #define MAX_DEVICES 16u
+#define MAX_REASON 256u ///< bytes
 
 struct devices {
     void *library;
@@ -27,7 +28,8 @@ struct format_report {
 struct device_report {
     uint32_t index;
     SluiceVulkanDeviceCapabilities capabilities;
-    char missing[256]; ///< what keeps it from streaming; empty: nothing
+    char missing[MAX_REASON];                   ///< what keeps it from streaming; empty: nothing
+    char missing_for[FORMAT_MODES][MAX_REASON]; ///< what keeps it from a mode; empty: nothing
     uint32_t width, height;
     struct format_report formats[SLUICE_FORMAT_COUNT];
 };

@@ -11,6 +11,7 @@ static const char usage[] =
     "usage: sluice-info FILE... [--json]\n"
     "       sluice-info FILE [--level N] [--tile X,Y] --png OUT\n"
     "       sluice-info [--device INDEX|NAME] [--image WxH] [--json]\n"
+    "       sluice-info --formats [--device INDEX|NAME] [--json]\n"
     "       sluice-info --list-devices\n"
     "\n"
     "Says what is in tile stores, OpenEXR, DDS and KTX2 files, or, without a file, what the\n"
@@ -21,6 +22,9 @@ static const char notes[] =
     "the driver says it, and as it is; how many of the image's levels have tiles that come and\n"
     "go one by one, and how many pages hold the others, in the driver's own mip tail or one by\n"
     "one.\n"
+    "\n"
+    "--formats says for sparse, paged and dense mode and for demand loading: yes; nearest only,\n"
+    "where the device has no linear filter for the format; or why the format is refused.\n"
     "\n"
     "Exit status: 0 all is shown; 1 a file cannot be read or written, there is no Vulkan, no\n"
     "device or none of that name; 2 wrong usage.\n";
@@ -42,7 +46,7 @@ static bool is_consistent(const struct option_table *table, const struct options
         return options_refuse(table, "--png takes one file; --help says more");
     if (!o->png && (o->tile.is_given || o->level))
         return options_refuse(table, "--level and --tile go with --png; --help says more");
-    if (o->files.count && (o->device || o->list_devices))
+    if (o->files.count && (o->device || o->list_devices || o->formats))
         return options_refuse(table, "files or devices, not both; --help says more");
     return true;
 }
@@ -63,6 +67,8 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_TEXT, "device", "INDEX|NAME", "(all)", &o->device,
          "one Vulkan device: an index of --list-devices, or part of its name"},
         option_list_devices(&o->list_devices),
+        {OPTION_FLAG, "formats", .value = &o->formats,
+         .help = "only the formats: how each residency mode and demand loading streams them"},
         {OPTION_EXTENT, "image", "WxH", "4096x4096", o->image,
          "size of the image whose layout is shown", 1, MOST},
         {OPTION_SECTION, .help = "Output"},

@@ -19,6 +19,7 @@ struct options {
     const char *device; ///< number or a part of the name; NULL: all
     uint32_t image[2];  ///< width and height of the image whose layout is shown
     bool list_devices, json;
+    bool formats; ///< only the formats, by residency mode
 };
 
 /** Prints the help text if it was asked for. On failure says on standard error what is wrong. */

@@ -10,4 +10,10 @@ void print_table(const struct device_report *report, bool follows);
 /** One line. */
 void print_json(const struct device_report *report);
 
+/** Only the formats: a row for each, a column for each mode and for demand loading. */
+void print_formats(const struct device_report *report, bool follows);
+
+/** The table of print_formats as one line. */
+void print_formats_json(const struct device_report *report);
+
 #endif /* TOOLS_SLUICE_INFO_REPORT_H */

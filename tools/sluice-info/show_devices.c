@@ -25,6 +25,19 @@ static void print_names(const struct devices *devices, FILE *out)
     }
 }
 
+static void print_device(const struct options *options, const struct device_report *report,
+                         bool follows)
+{
+    if (options->formats && options->json)
+        print_formats_json(report);
+    else if (options->formats)
+        print_formats(report, follows);
+    else if (options->json)
+        print_json(report);
+    else
+        print_table(report, follows);
+}
+
 static int print_devices(const struct devices *devices, const struct options *options)
 {
     uint32_t shown = 0;
@@ -33,10 +46,7 @@ static int print_devices(const struct devices *devices, const struct options *op
         if (!ask_device(devices, i, options->image[0], options->image[1], &report) ||
             !is_wanted(options, &report))
             continue;
-        if (options->json)
-            print_json(&report);
-        else
-            print_table(&report, shown > 0);
+        print_device(options, &report, shown > 0);
         shown++;
     }
     if (shown)
