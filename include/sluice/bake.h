@@ -155,7 +155,7 @@ typedef struct SluiceBakeInfo {
     /** Path of the picture. NULL: bake pInput or `source`. */
     const char *pInputPath;
     /** Source to bake if pInputPath and pInput are NULL: level 0, or all levels unchanged if they
-     * are block-compressed. Not owned. */
+     *  are block-compressed. Not owned. */
     SluiceImageSource *source;
     const char *pOutputPath;             ///< Required.
     const SluiceBakeSettings *pSettings; ///< Default: every setting has its default.
@@ -166,17 +166,18 @@ typedef struct SluiceBakeInfo {
      *  SLUICE_ERROR_CANCELED. May be NULL. */
     bool (*pfnProgress)(void *pUserData, uint64_t doneTexels, uint64_t totalTexels);
     /**
-     * Bakes these bytes instead of the file: a picture of any kind that is read from files.
-     * pInputPath is then a name for messages, and may be NULL. The output is always baked anew.
-     * Bytes of pfnRead are copied to memory first, unless they are OpenEXR, DDS or KTX2.
+     * Bakes these bytes instead of a file (input.h). All kinds of pictures can be baked so.
+     * pInputPath is then a name for messages and may be NULL. The output is always baked anew.
+     * Bytes of pfnRead are copied to memory first, unless they are OpenEXR, DDS or KTX2. Keep the
+     * bytes until sluiceBakeFile returns. Default: NULL.
      */
     const SluiceInput *pInput;
     /**
-     * Bakes the levels from this one on, as a store whose level 0 is this one: a preview. The
-     * picture is shrunk while it is read, so a JPEG file takes a small part of the time. Texels
-     * differ slightly from those of the whole chain, because gamma is ignored. The output is always
-     * baked anew. Below the number of levels; 0 for OpenEXR, DDS and KTX2 files and sources, which
-     * are refused otherwise with SLUICE_ERROR_UNSUPPORTED. Default: 0, the whole chain.
+     * First level to bake: a preview. It becomes level 0 of the store. The picture is shrunk while
+     * it is read, so a JPEG file takes a small part of the time. Texels differ slightly from those
+     * of the whole chain, because gamma is ignored. The output is always baked anew. Must be below
+     * the number of levels. OpenEXR, DDS and KTX2 files and sources are refused with
+     * SLUICE_ERROR_UNSUPPORTED unless this is 0. Default: 0, the whole chain.
      */
     uint32_t firstLevel;
 } SluiceBakeInfo;
@@ -187,7 +188,7 @@ typedef struct SluiceBakeReport {
     bool skipped;        ///< Output was up to date: same size, time and settings hash of the input.
     uint32_t width, height, mipLevelCount, arrayLayerCount;
     SluiceFormat format;
-    uint64_t inputSize, outputSize; ///< Bytes of the files. 0 for a source and pInput.
+    uint64_t inputSize, outputSize; ///< Bytes of the files. inputSize: 0 for a source and pInput.
     uint64_t replacedTexelCount;    ///< Texels in one or more of the last three counts.
     uint64_t resumedTileCount;      ///< Tiles reused from an interrupted bake.
     uint64_t memorySize;            ///< Bytes reserved for this picture.

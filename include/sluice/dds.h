@@ -22,11 +22,11 @@ typedef struct SluiceDdsImageSourceCreateInfo {
     SluiceFormat format;
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     SluiceLogCallback log;                       ///< Problems of a file, with their position.
-    /** Reads these bytes instead of the file. pPath is a name for messages then, and may be NULL.
-     */
+    /** Reads these bytes instead of the file (input.h). Copied, but not the bytes. pPath is then a
+     *  name for messages and may be NULL. Default: NULL, the file. */
     const SluiceInput *pInput;
-    /** Pool that opens the file when it is read. Must outlive the source. Default: NULL, the file
-     *  stays open. */
+    /** Pool that opens and closes the file as it is read (input.h). Must outlive the source. Not
+     *  used with pInput. Default: NULL, the file stays open. */
     SluiceFilePool *filePool;
 } SluiceDdsImageSourceCreateInfo;
 
@@ -51,21 +51,20 @@ typedef struct SluiceDdsImageSourceCreateInfo {
  * Arrays become layers. Cube maps become six layers, and set SluiceImageInfo.cube. At most 2^20
  * texels in width and height, and 2^16 layers.
  *
- * A file may have any number of levels; mipLevelCount says how many. For streaming, add the levels
- * that are missing with sluiceCreateCompleteChainSource, or, for BC formats, write the file with
- * all levels (texconv -m 0, nvcompress without -nomips).
+ * A file may have any number of levels; mipLevelCount says how many. SluiceImageInfo says how many
+ * streaming requires. sluiceCreateCompleteChainSource adds missing levels of uncompressed formats.
+ * Write files of BC formats with all levels (texconv -m 0, nvcompress without -nomips).
  *
  * Queries and reads return SLUICE_NOT_READY while the process has too few file descriptors to open
  * the file. Sluice leaves the last 16 below the soft limit to others.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown formats and a pInput
- *         without bytes;
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for an unknown format and a
+ *         pInput whose size is out of range; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Errors of queries and reads: SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO;
  *         SLUICE_ERROR_CORRUPT_DATA for contradictory headers and truncated files;
  *         SLUICE_ERROR_UNSUPPORTED for other formats, a `format` of different bytes, incomplete
- *         cube maps, volumes, 1D textures. Each error is logged once, at most 16 per
- *         file, with the file's name and a remedy. The next call tries again.
+ *         cube maps, volumes, 1D textures. Each error is logged once, at most 16 per file, with the
+ *         file's name and a remedy. The next call tries again.
  * Thread safety: any thread.
  * Source: Microsoft, "Programming Guide for DDS".
  */

@@ -83,11 +83,11 @@ typedef struct SluiceExrImageSourceCreateInfo {
      * data, and for programs that convert colors themselves.
      */
     bool keepPrimaries;
-    /** Reads these bytes instead of the file. pPath is a name for messages then, and may be NULL.
-     */
+    /** Reads these bytes instead of the file (input.h). Copied, but not the bytes. pPath is then a
+     *  name for messages and may be NULL. Default: NULL, the file. */
     const SluiceInput *pInput;
-    /** Pool that opens the file when it is read. Must outlive the source. Default: NULL, the file
-     *  stays open. */
+    /** Pool that opens and closes the file as it is read (input.h). Must outlive the source. Not
+     *  used with pInput. Default: NULL, the file stays open. */
     SluiceFilePool *filePool;
 } SluiceExrImageSourceCreateInfo;
 
@@ -113,10 +113,11 @@ typedef struct SluiceExrImageSourceCreateInfo {
  * Sluice leaves the last 16 below the soft limit to others. Close files and call again.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown, compressed, PACK32
- *         and SNORM formats; SLUICE_ERROR_FILE_NOT_FOUND, SLUICE_ERROR_IO,
- * SLUICE_ERROR_CORRUPT_DATA; SLUICE_ERROR_UNSUPPORTED for deep data, subsampling, luminance-chroma,
- * more than 1024 channels, files with only layers or other channel names, and multi-part files
- * whose first part is unsupported; SLUICE_ERROR_LIMIT_EXCEEDED if more memory is needed than
+ *         and SNORM formats, and for a pInput whose size is out of range;
+ *         SLUICE_ERROR_FILE_NOT_FOUND, SLUICE_ERROR_IO, SLUICE_ERROR_CORRUPT_DATA;
+ *         SLUICE_ERROR_UNSUPPORTED for deep data, subsampling, luminance-chroma, more than 1024
+ *         channels, files with only layers or other channel names, and multi-part files whose first
+ *         part is unsupported; SLUICE_ERROR_LIMIT_EXCEEDED if more memory is needed than
  *         maxMemorySize or memoryBudget allow; SLUICE_ERROR_OUT_OF_HOST_MEMORY. The log message
  *         names the file, the value and a remedy.
  * Thread safety: any thread.

@@ -149,10 +149,10 @@ typedef struct SluiceImageInfo {
     uint32_t structSize;    ///< sizeof(SluiceImageInfo).
     uint32_t width, height; ///< Texels of level 0, 1 to 2^20. Level l has max(1, size >> l).
     /**
-     * 1 to floor(log2(max(width, height))) + 1, the full chain. Streaming requires levels down to
-     * one that fits into a standard tile; demand loading down to one that fits into half a tile in
-     * both directions. Where demand loading is asked for coarser levels than there are, it shows
-     * the mean color of the last one. sluiceCreateCompleteChainSource adds levels that are missing.
+     * 1 to floor(log2(max(width, height))) + 1, the full chain. Streamers require levels down to
+     * one that fits into a standard tile of 64 KiB. Demand loaders require levels down to one of at
+     * most half a tile in both directions; beyond the last level they show its mean color.
+     * sluiceCreateCompleteChainSource adds missing levels of uncompressed formats.
      * The baker accepts the full chain and, for uncompressed formats, 1 (only level 0).
      */
     uint32_t mipLevelCount;
@@ -325,8 +325,8 @@ typedef struct SluiceCompleteChainSourceCreateInfo {
     uint32_t structSize;       ///< sizeof(SluiceCompleteChainSourceCreateInfo).
     SluiceImageSource *source; ///< Required. Must outlive the new source.
     /**
-     * Most bytes of built levels that are kept. Levels that do not fit are filtered at each read
-     * and take four times their texels from the next finer level. Default:
+     * Most bytes of built levels that are kept. The finest levels that do not fit are filtered at
+     * each read, from four times as many texels of the next finer level. Default:
      * SLUICE_COMPLETE_CHAIN_DEFAULT_MEMORY_SIZE.
      */
     uint64_t maxMemorySize;
@@ -337,18 +337,19 @@ typedef struct SluiceCompleteChainSourceCreateInfo {
 /**
  * Creates a source that has all mip levels, from one that lacks coarse ones.
  *
- * Levels of `source` are read from `source`. The others are built from its last level by the box
- * filter of sluiceCreateMemoryImageSource. The first read of a built level builds all levels that
- * are kept; other readers wait. A read of a tile that is not kept allocates about 2 MiB for each
- * level between it and `source`, and returns it.
+ * Levels that `source` has are read from `source`. The others are built from its last level by the
+ * box filter of sluiceCreateMemoryImageSource. The first read of a built level builds all levels
+ * that are kept; other readers wait. A read of a level that is not kept allocates about 2 MiB for
+ * each level between it and the last level of `source`, and frees them before it returns.
  *
- * `source` is asked for its info at the first call on the new source. These calls return
+ * The first call on the new source asks `source` for its info. Calls return
  * SLUICE_ERROR_UNSUPPORTED if `source` lacks levels of a block-compressed format, and
  * SLUICE_ERROR_INVALID_ARGUMENT if its info is out of range. A read that fails returns the error of
  * `source`, with its fault; the next read tries again.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT;
- * SLUICE_ERROR_OUT_OF_HOST_MEMORY. Thread safety: any thread.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateCompleteChainSource(
     const SluiceCompleteChainSourceCreateInfo *pInfo, SluiceImageSource **pSource);

@@ -1,9 +1,9 @@
 /**
- * Where the bytes of an image come from: files, of which a pool keeps a bounded number open;
- * memory; and functions of the application.
+ * Bounds how many files are open (SluiceFilePool), and reads files from memory or through a
+ * function of the application (SluiceInput).
  *
  * The create-infos of tile stores (store.h), DDS, KTX2 and OpenEXR files (dds.h, ktx2.h, exr.h)
- * take a SluiceFilePool and a SluiceInput.
+ * take both. The baker (bake.h) takes a SluiceInput. Openers (open.h) have a pool of their own.
  */
 #ifndef SLUICE_INPUT_H
 #define SLUICE_INPUT_H
@@ -15,20 +15,22 @@ extern "C" {
 #endif
 
 /**
- * Bytes of a file that are not in a file: an archive's entry, a buffer of a .glb, a download.
+ * Contents of an image file that lie elsewhere: an archive's entry, a buffer of a .glb, a download.
  *
- * Set `pBytes`, or `pfnRead`. Sluice copies the struct, not the bytes.
+ * Set `pBytes` or `pfnRead`; otherwise sources refuse it with SLUICE_ERROR_NULL_POINTER. Sluice
+ * copies the struct, not the bytes.
  */
 typedef struct SluiceInput {
     uint32_t structSize; ///< sizeof(SluiceInput).
-    /** The bytes. Not owned: keep them unchanged until the source is destroyed. */
+    /** The bytes, at any alignment. Not owned: keep them unchanged until the source is destroyed,
+     * or the bake returns. */
     const void *pBytes;
-    uint64_t size; ///< Bytes. At least 1.
-    /** Passed to pfnRead. Must outlive the source. */
+    uint64_t size; ///< Bytes. 1 to 2^63 - 1.
+    /** Passed to pfnRead. Must live as long as the bytes. */
     void *pUserData;
     /**
-     * Copies `size` > 0 bytes from `offset` on to `pBytes`. All of them lie below
-     * SluiceInput::size. Used if SluiceInput::pBytes is NULL.
+     * Copies `size` bytes, at least 1, from `offset` on to `pBytes`. Bytes beyond SluiceInput::size
+     * are never asked for. Used if SluiceInput::pBytes is NULL.
      *
      * Returns SLUICE_SUCCESS; SLUICE_NOT_READY to be asked again later;
      * SLUICE_ERROR_OUT_OF_HOST_MEMORY. Every other result counts as SLUICE_ERROR_IO.
@@ -38,14 +40,15 @@ typedef struct SluiceInput {
 } SluiceInput;
 
 /**
- * Files of many sources, of which a bounded number is open at a time.
+ * Bounds how many files of its sources are open at the same time.
  *
  * A read opens its file if the file is closed. If the pool is full, the file that was read longest
- * ago is closed first. So 10 000 tile stores work under a limit of 256 file descriptors.
+ * ago is closed first. So 10 000 tile stores work under a limit of 256 file descriptors. Create one
+ * pool per process and set `filePool` in the create-info of every source.
  *
- * A file that is opened again must still be the file that was opened first: same device, inode,
- * size and time of the last change of its contents. If another file has taken its place, reads
- * return SLUICE_ERROR_IO, and the log says so once. Destroy the source and create it again.
+ * A file that is opened again must be unchanged: same device, inode, size and time of the last
+ * change of its contents. Otherwise reads return SLUICE_ERROR_IO, and the log says so once. Destroy
+ * the source and create it again.
  */
 typedef struct SluiceFilePool SluiceFilePool;
 
@@ -53,15 +56,15 @@ typedef struct SluiceFilePool SluiceFilePool;
 typedef struct SluiceFilePoolCreateInfo {
     uint32_t structSize; ///< sizeof(SluiceFilePoolCreateInfo).
     /**
-     * Most files that are open at the same time. More threads than that wait for one another.
-     * Default: a quarter of the soft limit RLIMIT_NOFILE at creation, 1 to 2^20.
+     * Most files that are open at the same time. At most 2^20. If more threads read, they wait for
+     * one another. Default: a quarter of the soft limit RLIMIT_NOFILE at creation.
      */
     uint32_t maxOpenFileCount;
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
 } SluiceFilePoolCreateInfo;
 
 /**
- * Creates a pool. `pInfo` may be NULL: every setting has its default.
+ * Creates a pool. Opens nothing. `pInfo` may be NULL: every setting has its default.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if maxOpenFileCount is above
  *         2^20; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
@@ -84,10 +87,10 @@ typedef struct SluiceFilePoolStatistics {
     uint32_t openFilePeak;     ///< Most files that were open at the same time.
     uint64_t openTotal;        ///< Files opened, again or for the first time.
     uint64_t closedTotal;      ///< Files closed to make room for others.
-    /** Times that the process or the system had no file descriptor left. Another file of the pool
-     *  was closed and the file opened then, or the read returned SLUICE_NOT_READY. */
+    /** Times that the process or the system had no file descriptor left. The pool then closed
+     *  another of its files; if there was none, the read returned SLUICE_NOT_READY. */
     uint64_t shortageTotal;
-    uint64_t replacedTotal; ///< Reads refused because another file has the name now.
+    uint64_t replacedTotal; ///< Reads refused because the file was changed or replaced.
 } SluiceFilePoolStatistics;
 
 /**

@@ -25,11 +25,11 @@ typedef struct SluiceKtx2ImageSourceCreateInfo {
     SluiceLogCallback log; ///< Problems of a file, with their position.
     /** Most bytes of decompressed levels kept in memory. For Zstandard files. Default: 2^29. */
     uint64_t maxCacheSize;
-    /** Reads these bytes instead of the file. pPath is a name for messages then, and may be NULL.
-     */
+    /** Reads these bytes instead of the file (input.h). Copied, but not the bytes. pPath is then a
+     *  name for messages and may be NULL. Default: NULL, the file. */
     const SluiceInput *pInput;
-    /** Pool that opens the file when it is read. Must outlive the source. Default: NULL, the file
-     *  stays open. */
+    /** Pool that opens and closes the file as it is read (input.h). Must outlive the source. Not
+     *  used with pInput. Default: NULL, the file stays open. */
     SluiceFilePool *filePool;
 } SluiceKtx2ImageSourceCreateInfo;
 
@@ -50,24 +50,24 @@ typedef struct SluiceKtx2ImageSourceCreateInfo {
  * prefer files without supercompression (`ktx create` without --zstd).
  *
  * A file may have any number of levels; mipLevelCount says how many. A level count of 0 in the file
- * is one level. For streaming, add the levels that are missing with
- * sluiceCreateCompleteChainSource, or, for compressed formats, write the file with all levels (ktx
- * create --generate-mipmap).
+ * means one level. SluiceImageInfo says how many levels streaming requires.
+ * sluiceCreateCompleteChainSource adds missing levels of uncompressed formats. Write files of
+ * compressed formats with all levels (ktx create --generate-mipmap).
  *
  * Queries and reads return SLUICE_NOT_READY while the process has too few file descriptors to open
  * the file. Sluice leaves the last 16 below the soft limit to others.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown formats and a pInput
- *         without bytes;
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for an unknown format and a
+ *         pInput whose size is out of range; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Errors of queries and reads: SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO;
  *         SLUICE_ERROR_CORRUPT_DATA for contradictory headers, truncated files and levels that
  *         decompress to a wrong size or fail to decompress; SLUICE_ERROR_UNSUPPORTED for Basis
- *         Universal (ETC1S, UASTC), ZLIB, other formats, a `format` of different bytes, volumes, 1D
- * textures, a level larger than maxCacheSize, and Zstandard in a build without it;
- * SLUICE_ERROR_OUT_OF_HOST_MEMORY. Each error is logged once, at most 16 per file, with the file's
- * name and a remedy. The next call tries again. Thread safety: any thread. Source: Khronos, "KTX
- * File Format Specification", version 2.0.
+ *         Universal (ETC1S, UASTC), ZLIB, other formats, a `format` of different bytes, volumes,
+ *         1D textures, a level larger than maxCacheSize, and Zstandard in a build without it;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. Each error is logged once, at most 16 per file, with the
+ *         file's name and a remedy. The next call tries again.
+ * Thread safety: any thread.
+ * Source: Khronos, "KTX File Format Specification", version 2.0.
  */
 SLUICE_API SluiceResult sluiceCreateKtx2ImageSource(const SluiceKtx2ImageSourceCreateInfo *pInfo,
                                                     SluiceImageSource **pSource);

@@ -1,10 +1,13 @@
 /**
  * Opens image files of all kinds by their contents. Link `sluice-open`.
  *
- * Files that can be streamed are opened in place: tile stores, OpenEXR, DDS and KTX2. Pictures
- * without tiles (JPEG, PNG, TIFF, WebP and whatever else libvips reads) stream at once, too: their
- * coarse levels come first, of a fast preview, and the others when a bake in the background has
- * ended. Its store is kept in a cache folder for the next time.
+ * Tile stores, OpenEXR, DDS and KTX2 files are read in place. Pictures without tiles (JPEG, PNG,
+ * TIFF, WebP and whatever else libvips reads) can be streamed at once, too. Their coarse levels
+ * come first, from a fast preview. The other levels come when a bake in the background has ended.
+ * The bake writes a tile store, which is kept in a cache folder for the next time.
+ *
+ * An opener takes paths and uses defaults. Create sources by store.h, exr.h, dds.h and ktx2.h for
+ * bytes in memory (input.h) and for other settings, such as another format.
  */
 #ifndef SLUICE_OPEN_H
 #define SLUICE_OPEN_H
@@ -18,28 +21,32 @@ extern "C" {
 /** Default limit of the cache folder: 16 GiB. */
 #define SLUICE_OPEN_DEFAULT_CACHE_SIZE ((uint64_t)1 << 34)
 
-/** Opens files and shares what is open. */
+/** Opens files. Its sources share a file pool, memory limits and the cache folder. */
 typedef struct SluiceImageOpener SluiceImageOpener;
 
 /** Settings of an opener. A field of zero selects its default. */
 typedef struct SluiceImageOpenerCreateInfo {
     uint32_t structSize; ///< sizeof(SluiceImageOpenerCreateInfo).
-    /** Most files that are open at the same time, as in SluiceFilePoolCreateInfo. */
+    /**
+     * Most files that are open at the same time. At most 2^20. Default: a quarter of the soft limit
+     * RLIMIT_NOFILE at creation.
+     */
     uint32_t maxOpenFileCount;
     /**
-     * Folder for stores of pictures without tiles, such as "$XDG_CACHE_HOME/sluice"; Sluice reads
-     * no environment variables. Copied. Created if the folder above it exists. Several processes
-     * may use it. NULL: such pictures are refused with SLUICE_ERROR_UNSUPPORTED.
+     * Folder for stores of pictures without tiles. The usual one is $XDG_CACHE_HOME/sluice; Sluice
+     * reads no environment variables. Copied. Created with the first such picture, if its parent
+     * folder exists. Several processes may use it. Default: NULL, such pictures are refused with
+     * SLUICE_ERROR_UNSUPPORTED.
      */
     const char *pCacheFolder;
     /**
-     * Bytes of the stores in the cache folder. After each bake the stores that were opened longest
-     * ago are deleted, until the others fit. Stores of this opener's sources are kept. Default:
-     * SLUICE_OPEN_DEFAULT_CACHE_SIZE.
+     * Most bytes of the stores in the cache folder. After each bake the stores that were opened
+     * longest ago are deleted until the others fit. Stores of this opener's sources are kept, even
+     * beyond the limit. Default: SLUICE_OPEN_DEFAULT_CACHE_SIZE.
      */
     uint64_t maxCacheSize;
     uint32_t bakeThreadCount; ///< Threads of bakes. Default: one per processor.
-    uint64_t maxBakeMemory;   ///< As SluiceBakerCreateInfo::maxMemory.
+    uint64_t maxBakeMemory;   ///< Most bytes for bakes. Default: 2^30 (SluiceBakerCreateInfo).
     /** Default: malloc and free. Called from all threads that use the sources and from bakes. */
     const SluiceAllocationCallbacks *pAllocator;
     SluiceLogCallback log; ///< Problems of files, with their names. Called from any thread.
@@ -62,30 +69,35 @@ SLUICE_API SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInf
 SLUICE_API void sluiceDestroyImageOpener(SluiceImageOpener *opener);
 
 /**
- * Opens an image file by its first bytes. Destroy the source with sluiceDestroyImageSource.
+ * Opens an image file. The first bytes tell its kind, not its name. Blocks while the header is
+ * read.
  *
- * The same path, while the file has the same size, inode and time of the last change, gives the
- * same source: as many times as it is opened, it must be destroyed, on any threads. A file that was
- * changed gives a new source; older sources stay as they are.
+ * Destroy the source with sluiceDestroyImageSource. If the same path is opened again, and the file
+ * has the same device, inode, size and time of the last change of its contents, the same source is
+ * returned. Destroy it as many times as it was opened, on any threads. A file that was changed
+ * gives a new source. Reads of older sources may then return SLUICE_ERROR_IO (SluiceFilePool).
  *
  * A DDS or KTX2 file of an uncompressed format that lacks levels gets them as by
  * sluiceCreateCompleteChainSource with its defaults: the first read of such a level builds them,
  * and they take up to a third of level 0 in memory, at most 512 MiB. A file of a compressed format
  * is delivered with the levels that it has.
  *
- * A picture without tiles gets its final size, format and levels at once. Until its bake has ended,
- * reads of levels of more than 512 texels return SLUICE_NOT_READY, and so do all reads until the
- * preview is there: loaders read again later. Texels of the preview differ slightly from those of
- * the store. If the bake fails, reads of the levels that are missing return its error. Destroying
- * the source cancels the bake; the next one of the same picture goes on where it ended.
+ * A picture without tiles has its final size, format and levels at once. It is baked with default
+ * settings (SluiceBakeSettings). Until the preview is ready, all reads return SLUICE_NOT_READY.
+ * Until the bake has ended, reads of levels wider or higher than 512 texels do. Streamers and
+ * demand loaders read again later, streamers at intervals that double. Call sluiceRetryVulkanSource
+ * when the bake has ended to read at once. Texels of the preview differ slightly from those of the
+ * store. If the bake fails, reads of missing levels return its error. Destroying the source cancels
+ * the bake. The next bake of the same picture goes on where this one ended.
  *
- * A store in the cache folder is used if it was made of a file with this path, size and time. A
- * store that is damaged or vanishes is baked again, at most twice for one source.
+ * A store in the cache folder is used if it was made from a file with this path, size and time. A
+ * store that is damaged or deleted is baked again, at most twice per source.
  *
- * Returns SLUICE_NOT_READY, without a source, for want of file descriptors.
+ * Returns SLUICE_NOT_READY, without a source, while the process has too few file descriptors. Close
+ * files and call again.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO, also for what is
- *         no regular file and for a cache folder that cannot be created; SLUICE_ERROR_CORRUPT_DATA;
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO, also if path is
+ *         no regular file or the cache folder cannot be created; SLUICE_ERROR_CORRUPT_DATA;
  *         SLUICE_ERROR_UNSUPPORTED for kinds that this build does not read (the log names the
  *         missing part); SLUICE_ERROR_LIMIT_EXCEEDED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Thread safety: any thread.
@@ -102,25 +114,26 @@ typedef enum SluiceImageFileKind {
     SLUICE_IMAGE_FILE_KIND_PICTURE = 4 ///< Without tiles; baked in the background.
 } SluiceImageFileKind;
 
-/** State of an opened file. */
+/** State of an opened file at the time of the call. */
 typedef struct SluiceOpenedImageInfo {
     uint32_t structSize; ///< sizeof(SluiceOpenedImageInfo).
     SluiceImageFileKind kind;
     /** Source of the file itself, with the levels of the file, for sluiceGetStoreInfo and
      *  sluiceGetExrInfo. NULL for PICTURE. Do not destroy it. */
     SluiceImageSource *source;
-    bool previewReady;    ///< PICTURE: coarse levels can be read. Else true.
-    bool ready;           ///< All levels can be read. Always true but for PICTURE.
-    SluiceResult failure; ///< Error of the bake. SLUICE_SUCCESS: none.
-    uint32_t openCount;   ///< Times that the source must be destroyed.
-    uint64_t doneTexels;  ///< Progress of the bake.
-    uint64_t totalTexels; ///< 0: the bake has not begun.
+    bool previewReady;    ///< Levels of at most 512 x 512 texels can be read. True unless PICTURE.
+    bool ready;           ///< All levels can be read. True unless PICTURE.
+    SluiceResult failure; ///< Error of the bake. SLUICE_SUCCESS: none so far.
+    uint32_t openCount;   ///< Times that the source must still be destroyed.
+    uint64_t doneTexels;  ///< Texels that the bake has done.
+    uint64_t totalTexels; ///< Texels that the bake has to do. 0: the bake has not begun.
 } SluiceOpenedImageInfo;
 
 /**
  * Gets the state of a source that sluiceOpenImageSource opened.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for other sources.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for other sources and a wrong
+ *         structSize.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceGetOpenedImageInfo(SluiceImageSource *source,

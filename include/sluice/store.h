@@ -313,11 +313,11 @@ typedef struct SluiceStoreImageSourceCreateInfo {
      * Compressed tiles are always verified.
      */
     bool alwaysCheckRawTiles;
-    /** Reads these bytes instead of the file. pPath is a name for messages then, and may be NULL.
-     */
+    /** Reads these bytes instead of the file (input.h). Copied, but not the bytes. pPath is then a
+     *  name for messages and may be NULL. Default: NULL, the file. */
     const SluiceInput *pInput;
-    /** Pool that opens the file when it is read. Must outlive the source. Default: NULL, the file
-     *  stays open. */
+    /** Pool that opens and closes the file as it is read (input.h). Must outlive the source. Not
+     *  used with pInput. Default: NULL, the file stays open. */
     SluiceFilePool *filePool;
 } SluiceStoreImageSourceCreateInfo;
 
@@ -334,8 +334,8 @@ typedef struct SluiceStoreImageSourceCreateInfo {
  * SLUICE_ERROR_CORRUPT_DATA if a checksum is wrong or the data is inconsistent, SLUICE_ERROR_IO if
  * the system cannot read or the file was truncated, and SLUICE_ERROR_OUT_OF_HOST_MEMORY. The log
  * names file, offset and cause: each fault once, at most 16 per file. Later reads are not affected.
- * If another file replaces this one under its name, the source continues with the old file;
- * with a filePool, reads return SLUICE_ERROR_IO then.
+ * If another file takes this file's name, a source without filePool continues with the old file.
+ * With a filePool, reads return SLUICE_ERROR_IO once the old file was closed.
  *
  * Returns SLUICE_NOT_READY, without a source, while the process has too few file descriptors.
  * Sluice leaves the last 16 below the soft limit to others. Close files and call again.

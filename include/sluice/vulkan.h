@@ -115,10 +115,8 @@ typedef struct SluiceVulkanDeviceCapabilities {
     float maxSamplerAnisotropy;
     float timestampPeriod;          ///< Nanoseconds per tick. 0: no time stamps.
     uint64_t deviceLocalMemorySize; ///< Bytes of the largest device-local heap.
-    /**
-     * Sparse mode streams cube maps. Software devices sample only the first row of sparse cube
-     * maps.
-     */
+    /** Sparse mode streams cube maps. False on software devices, which sample only the first row of
+     *  each sparse face. Paged and dense mode stream cube maps on every device. */
     bool sparseCubes;
 } SluiceVulkanDeviceCapabilities;
 
@@ -588,7 +586,7 @@ typedef struct SluiceVulkanTexture {
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for both a source and a
  *         producer, an unknown address mode, a primary that follows another texture, or an image
- *         whose info is out of range (image.h), for example without its full mip chain;
+ *         whose info is out of range (image.h), for example without a level that fits into a tile;
  *         SLUICE_ERROR_UNKNOWN_TEXTURE and SLUICE_ERROR_STALE_TEXTURE for the primary;
  *         SLUICE_ERROR_UNSUPPORTED if the device cannot stream the format or size;
  *         SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount, maxRegionCount or
@@ -606,18 +604,19 @@ SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
  * Each layer is a streamed texture with its own id, feedback and MinMip map. Their table indices
  * are consecutive, and all are layers of one image. Removing one of them removes all.
  *
- * Cube maps (SluiceImageInfo.cube, SluiceVulkanTextureCreateInfo.cube) have six layers each.
- * shaders/include/sluice/sample_cube.glsl samples cubeView and cubeArrayView. More than one cube
- * requires the feature imageCubeArray if the device has it; sluiceRequireVulkanFeatures enables it.
+ * Cube maps (SluiceImageInfo.cube, SluiceVulkanTextureCreateInfo.cube) have six layers each, the
+ * faces. shaders/include/sluice/sample_cube.glsl samples cubeView and cubeArrayView. If the device
+ * has the feature imageCubeArray, enable it for more than one cube. sluiceRequireVulkanFeatures
+ * does. Devices without it have no cubeArrayView.
  *
  * shaders/include/sluice/sample_array.glsl samples arrayView. In paged mode the image and arrayView
  * hold only the packed levels of all layers; the tiles of each layer are pages of its own.
  *
  * Errors: as sluiceAddVulkanTexture; SLUICE_ERROR_INVALID_ARGUMENT if the source has another number
  *         of layers, or for cube maps whose faces are not square or whose layers are no multiple of
- *         6; SLUICE_ERROR_UNSUPPORTED if the device does not support arrays of so many
- *         layers or, in sparse mode, binds all layers of such a small array at once, or for cube
- * maps in sparse mode without SluiceVulkanDeviceCapabilities.sparseCubes.
+ *         6; SLUICE_ERROR_UNSUPPORTED if the device does not support arrays of so many layers or,
+ *         in sparse mode, binds all layers of such a small array at once, or for cube maps in
+ *         sparse mode without SluiceVulkanDeviceCapabilities.sparseCubes.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
     SluiceVulkanStreamer *streamer, const SluiceVulkanTextureCreateInfo *pCreateInfo,
