@@ -16,7 +16,7 @@ static double draw(void)
     return (double)roll() / ROLL_MAX;
 }
 
-/* Anywhere, within two texels of an edge, or of a corner; of a level with `size` texels. */
+/* Anywhere, on an edge, within two texels of one, or of a corner; of a level with `size` texels. */
 static void draw_position(uint32_t index, uint32_t size, uint32_t *face, double uv[2])
 {
     *face = (uint32_t)roll() % CUBE_ORACLE_FACES;
@@ -27,9 +27,14 @@ static void draw_position(uint32_t index, uint32_t size, uint32_t *face, double 
         uv[along] = fmin(draw() * 2 / size, 1);
     if (index % 4 > 2)
         uv[1 - along] = fmin(draw() * 2 / size, 1);
+    if (index % 8 == 5)
+        uv[along] = 0;
     for (uint32_t i = 0; i < 2; i++)
         if (roll() & 1)
             uv[i] = 1 - uv[i];
+    double direction[3]; /* edges belong to one of two faces */
+    cube_oracle_direction(*face, uv[0], uv[1], direction);
+    cube_oracle_position(direction, face, uv);
 }
 
 /* Integer LODs: only their bilinear filter counts. */

@@ -72,7 +72,8 @@ SluiceCubePoint sluiceFindCubePoint(vec3 direction, vec3 dx, vec3 dy)
     /* divided first, because products of long vectors leave the range of float */
     vec3 tx = sluiceToFace(p.face, dx) / at.z, ty = sluiceToFace(p.face, dy) / at.z;
     at.xy /= at.z;
-    p.finite = abs(at.x) <= 1.0 && abs(at.y) <= 1.0 && at.z <= 1.0e33; /* false for NaN */
+    /* false for NaN. On an edge the quotient may be rounded to more than 1. */
+    p.finite = abs(at.x) <= 1.001 && abs(at.y) <= 1.001 && at.z <= 1.0e33;
     p.uv = p.finite ? clamp(0.5 * at.xy + 0.5, 0.0, 1.0) : vec2(0.5);
     p.dx = 0.5 * (tx.xy - at.xy * tx.z);
     p.dy = 0.5 * (ty.xy - at.xy * ty.z);
