@@ -57,12 +57,6 @@ vec3 sluiceCubeDirection(uint face, vec2 uv)
     return sluiceFromFace(face, vec3(2.0 * uv - 1.0, 1.0));
 }
 
-/** Returns the derivative of sluiceCubeDirection for a derivative of uv. */
-vec3 sluiceCubeDerivative(uint face, vec2 uv)
-{
-    return sluiceFromFace(face, vec3(2.0 * uv, 0.0));
-}
-
 /** Returns the position of a direction with derivatives. */
 SluiceCubePoint sluiceFindCubePoint(vec3 direction, vec3 dx, vec3 dy)
 {
@@ -106,7 +100,7 @@ bool sluiceCrossesEdge(vec2 uv, vec2 reach, uint edge)
  * Returns the part of a sample beyond an edge.
  *
  * Seen from the middle of the cube, what is beyond the edge is narrower than unfolded, and nearer to
- * the middle of the edge. Some samplers place anisotropic samples there, so such boxes are enlarged.
+ * the middle of the edge. Samples of a row are there, so boxes of anisotropic samples are enlarged.
  */
 SluiceCubePart sluiceUnfoldEdge(SluiceGrid grid, uint face, vec2 uv, vec2 halfBox, vec2 reach,
                                 uint edge)

@@ -17,10 +17,11 @@
  *
  * `tableIndex` is SluiceVulkanTexture.tableIndex of the first face of the cube. Directions need not have
  * length 1. The sampler must have no LOD bias, minLod 0 and maxLod VK_LOD_CLAMP_NONE. Its address modes
- * do not matter. Write feedback by feedback_cube.glsl.
+ * and its anisotropy do not matter. Write feedback by feedback_cube.glsl.
  *
- * All samples have explicit derivatives on the plane of a face: devices differ in how they derive the
- * level of implicit cube samples. In paged mode the sampler sees only the packed levels.
+ * Samplers are given levels, never derivatives: near edges some devices derive finer levels than
+ * the formula, which may not be resident (docs/drivers.md). Anisotropic samples are rows of samples, in
+ * all modes. In paged mode the sampler sees only the packed levels.
  *
  * The functions are long, and compiled where they are called: call one function, in one place. Include
  * the file after the definitions of buffers.glsl. Requires GL_EXT_control_flow_attributes, an extension of
@@ -32,6 +33,7 @@
 #extension GL_EXT_control_flow_attributes : require
 
 #include "cube.glsl"
+#include "page_filter.glsl"
 #include "sample.glsl"
 
 /* Readings of the MinMip buffers of a sample that gets coarser, before packed levels are used. */
@@ -87,9 +89,7 @@ SluiceSampling sluiceResolveCube(uint tableIndex, SluiceCubePoint p, float lodBi
     vec2 tx = finite ? p.dx * grid.size : vec2(0.0), ty = finite ? p.dy * grid.size : vec2(0.0);
     vec2 lods = finite ? sluiceComputeLods(tx, ty, lodBias, maxAnisotropy) : vec2(SLUICE_LOD_LIMIT);
     vec2 halfBox = sluiceHalfBox(tx, ty, lodBias, maxAnisotropy);
-    float reach = finite ? sluiceOverreachedLod(tx, ty, lodBias, maxAnisotropy) : -SLUICE_LOD_LIMIT;
     float packed = float(SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount) + margin;
-    bool round = false;
 
     SluiceSampling s;
     s.uv = p.uv;
@@ -108,17 +108,9 @@ SluiceSampling sluiceResolveCube(uint tableIndex, SluiceCubePoint p, float lodBi
             return s;
         }
         float limit = sluiceLodLimit(shown, margin);
-        if (!(limit > s.lod)) {
-            uint widest = sluiceCoarsestLevel(reach, count);
-            if (round || widest <= coarsest)
-                break;
-            shown = sluiceMaxCubeMinMip(tableIndex, grid, p, halfBox, coarsest + 1u, widest) & 0xFFFFu;
-            if (sluiceShownLevel(shown) <= coarsest + 1u)
-                break;
-            round = true; /* such a footprint has but one level */
-        } else {
-            s.lod = max(reading < SLUICE_CUBE_READINGS ? min(limit, packed) : packed, s.lod);
-        }
+        if (!(limit > s.lod))
+            break;
+        s.lod = max(reading < SLUICE_CUBE_READINGS ? min(limit, packed) : packed, s.lod);
         if (maxAnisotropy > 1.0)
             halfBox = max(halfBox, vec2(exp2(s.lod - margin)));
         coarsest = max(coarsest, sluiceCoarsestLevel(s.lod + margin, count));
@@ -130,14 +122,6 @@ SluiceSampling sluiceResolveCube(uint tableIndex, SluiceCubePoint p, float lodBi
     s.missing = clamped ? max(uint(ceil(max(s.lod - margin, 0.0))) - s.wantedLevel, 1u) : 0u;
     if (!finite)
         s.lod = min(s.lod, float(s.level) + margin);
-    bool point = !(s.lod > SLUICE_LOD_POINT) && maxAnisotropy > 1.0;
-    float width = exp2(clamped || round || !finite ? max(s.lod, SLUICE_LOD_POINT) : SLUICE_LOD_POINT);
-    if (round) {
-        s.dx = vec2(width, 0.0) / grid.size;
-        s.dy = vec2(0.0, width) / grid.size;
-    } else if (clamped || point || !finite) {
-        sluiceWiden(s.dx, s.dy, grid.size, width);
-    }
     return s;
 }
 

@@ -17,46 +17,54 @@ vec4 sluiceSampleCubeLevel(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, u
     return sluiceSampleCubePages(tableIndex, face, level, uv);
 }
 
-/** Samples like sluiceSamplePaged. Samples of a row that lie beyond an edge are on the face there. */
-vec4 sluiceSampleCubePaged(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, vec2 uv, vec2 dx, vec2 dy,
-                           float lod, float maxAnisotropy)
+/** Returns one sample of a row. Beyond an edge it is on the face there. */
+vec4 sluiceSampleCubePaged(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, vec2 uv, SluicePagedTaps taps)
 {
-    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex + face);
-    lod = sluiceClampPagedLod(entry, lod);
-    if (lod >= float(entry.regularMipCount)) {
-        vec2 scale = sluiceTailScale(entry);
-        return textureGrad(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, uv)),
-                           sluiceCubeDerivative(face, dx * scale), sluiceCubeDerivative(face, dy * scale));
+    if (any(notEqual(uv, clamp(uv, 0.0, 1.0)))) {
+        SluiceCubePoint at = sluiceFindCubePoint(sluiceCubeDirection(face, uv), vec3(0.0), vec3(0.0));
+        face = at.face;
+        uv = at.uv;
     }
-    SluicePagedTaps taps = sluicePlacePagedTaps(entry, dx, dy, lod, maxAnisotropy);
     vec4 sum = vec4(0.0);
-    [[dont_unroll]] for (uint i = 0u; i < 2u * taps.count; i++) {
-        bool coarse = (i & 1u) != 0u;
-        float share = coarse ? taps.fraction : 1.0 - taps.fraction;
-        if (!(share > 0.0)) /* the level may be infinite */
-            continue;
-        SluiceCubePoint at;
-        at.face = face;
-        at.uv = sluicePagedTap(taps, uv, i >> 1u);
-        if (any(notEqual(at.uv, clamp(at.uv, 0.0, 1.0))))
-            at = sluiceFindCubePoint(sluiceCubeDirection(face, at.uv), vec3(0.0), vec3(0.0));
-        sum += share * sluiceSampleCubeLevel(SLUICE_CUBE_ARGUMENTS, tableIndex, at.face,
-                                             coarse ? taps.coarse : taps.fine, at.uv);
+    [[dont_unroll]] for (uint i = 0u; i < 2u; i++) {
+        float share = i > 0u ? taps.fraction : 1.0 - taps.fraction;
+        if (share > 0.0) /* else the level may be infinite */
+            sum += share * sluiceSampleCubeLevel(SLUICE_CUBE_ARGUMENTS, tableIndex, face,
+                                                 i > 0u ? taps.coarse : taps.fine, uv);
     }
-    return sum / float(taps.count);
+    return sum;
 }
 #endif
 
-/** Samples a face with derivatives of uv that include the LOD bias. `lod` is what they amount to. */
+/**
+ * Samples a face at `lod`, as a row of samples along the longer derivative (sluicePlaceTaps). Derivatives
+ * are those of uv and include the LOD bias. The sampler sees no derivatives.
+ */
 vec4 sluiceTextureCube(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, vec2 uv, vec2 dx, vec2 dy,
                        float lod, float maxAnisotropy)
 {
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    uint count = sluiceMipCount(grid), regular = 0u;
 #ifdef SLUICE_PAGED
     if (SLUICE_PAGED)
-        return sluiceSampleCubePaged(SLUICE_CUBE_ARGUMENTS, tableIndex, face, uv, dx, dy, lod, maxAnisotropy);
+        regular = SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount;
 #endif
-    return textureGrad(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, uv)),
-                       sluiceCubeDerivative(face, dx), sluiceCubeDerivative(face, dy));
+    lod = clamp(lod, 0.0, float(count - 1u));
+    SluicePagedTaps taps =
+        sluicePlaceTaps(grid.size, count, dx, dy, lod, sluiceClampAnisotropy(maxAnisotropy));
+    vec4 sum = vec4(0.0);
+    [[dont_unroll]] for (uint i = 0u; i < taps.count; i++) {
+        vec2 at = uv + taps.axis * ((float(i) + 0.5) / float(taps.count) - 0.5);
+#ifdef SLUICE_PAGED
+        if (lod < float(regular)) {
+            sum += sluiceSampleCubePaged(SLUICE_CUBE_ARGUMENTS, tableIndex, face, at, taps);
+            continue;
+        }
+#endif
+        sum += textureLod(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, at)),
+                          lod - float(regular));
+    }
+    return sum / float(taps.count);
 }
 
 /**
