@@ -72,14 +72,18 @@ static int look_at(int descriptor, char bytes[12], struct slc_file_identity *ide
     return got < 0 ? errno : 0;
 }
 
-SluiceResult slc_file_kind_find(const char *path, const SluiceLogCallback *log,
-                                SluiceImageFileKind *kind, struct slc_file_identity *identity)
+SluiceResult slc_file_kind_find(SluiceFilePool *pool, const char *path,
+                                const SluiceLogCallback *log, SluiceImageFileKind *kind,
+                                struct slc_file_identity *identity)
 {
     char bytes[12] = {0};
-    int descriptor = slc_open_input(path);
+    struct slc_pooled_file file = SLC_POOLED_FILE_CLOSED;
+    int descriptor = slc_file_pool_acquire(pool, &file, path);
     int error = descriptor < 0 ? errno : look_at(descriptor, bytes, identity);
-    if (descriptor >= 0)
-        close(descriptor);
+    if (descriptor >= 0) {
+        slc_file_pool_release(pool, &file);
+        slc_file_pool_remove(pool, &file);
+    }
     if (error == 0) {
         *kind = kind_of(bytes);
         return SLUICE_SUCCESS;

@@ -19,10 +19,11 @@ SluiceResult slc_shared_files_init(struct slc_shared_files *files, uint32_t max_
                                    const SluiceAllocationCallbacks *cb);
 void slc_shared_files_finish(struct slc_shared_files *files);
 
-/** Reads the first bytes, and tells which file it is. Errors: IO, FILE_NOT_FOUND,
- *  OUT_OF_HOST_MEMORY; NOT_READY for want of descriptors. Logged. */
-SluiceResult slc_file_kind_find(const char *path, const SluiceLogCallback *log,
-                                SluiceImageFileKind *kind, struct slc_file_identity *identity);
+/** Reads the first bytes, and tells which file it is. For that time the file is one of the pool's.
+ *  Errors: IO, FILE_NOT_FOUND, OUT_OF_HOST_MEMORY; NOT_READY for want of descriptors. Logged. */
+SluiceResult slc_file_kind_find(SluiceFilePool *pool, const char *path,
+                                const SluiceLogCallback *log, SluiceImageFileKind *kind,
+                                struct slc_file_identity *identity);
 
 /** Opens any kind but PICTURE. Errors: as sluiceOpenImageSource, logged. */
 SluiceResult slc_file_kind_open(SluiceImageFileKind kind, const char *path,

@@ -217,7 +217,8 @@ SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
         return SLUICE_ERROR_NULL_POINTER;
     SluiceImageFileKind kind;
     struct slc_file_identity identity = {0};
-    SluiceResult result = slc_file_kind_find(path, &opener->log, &kind, &identity);
+    SluiceResult result =
+        slc_file_kind_find(opener->files.pool, path, &opener->log, &kind, &identity);
     if (result != SLUICE_SUCCESS)
         return result;
     pthread_mutex_lock(&opener->mutex);

@@ -187,40 +187,49 @@ static void what_cannot_be_opened_is_refused_by_name(void **state)
     teardown(&f);
 }
 
+enum { MANY_FILES = 300 };
+
+static void open_and_read_all(const struct bake_folder *folder, uint32_t max_open_file_count)
+{
+    SluiceImageSource *sources[MANY_FILES] = {0};
+    char path[256];
+    struct few_descriptors few;
+    SluiceImageOpener *opener;
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                        .maxOpenFileCount = max_open_file_count};
+    few_descriptors_begin(&few, 40);
+    SluiceResult result = sluiceCreateImageOpener(&info, &opener);
+    for (int i = 0; i < MANY_FILES && result == SLUICE_SUCCESS; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "%d.store", i);
+        result = sluiceOpenImageSource(opener, bake_folder_file(folder, name, path), &sources[i]);
+    }
+    uint8_t texel;
+    SluiceImageRegion region = {0, 5, 5, 1, 1, 0};
+    for (int i = 0; i < 2 * MANY_FILES && result == SLUICE_SUCCESS; i++)
+        result = sluiceReadImageRegion(sources[i % MANY_FILES], &region, &texel, 1);
+    few_descriptors_end(&few);
+    for (int i = 0; i < MANY_FILES; i++)
+        sluiceDestroyImageSource(sources[i]);
+    sluiceDestroyImageOpener(opener);
+    CHECK_OK(result);
+}
+
 static void three_hundred_files_are_open_with_sixty_descriptors(void **state)
 {
     (void)state;
-    enum { COUNT = 300 };
     struct bake_folder folder;
-    SluiceImageSource *sources[COUNT];
     char first[256], path[256];
     bake_folder_init(&folder);
     bake_folder_file(&folder, "first.store", first);
     write_store(first, 64);
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < MANY_FILES; i++) {
         char name[32];
         snprintf(name, sizeof name, "%d.store", i);
         assert_int_equal(link(first, bake_folder_file(&folder, name, path)), 0);
     }
-    struct few_descriptors few;
-    SluiceImageOpener *opener;
-    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info};
-    few_descriptors_begin(&few, 40);
-    SluiceResult result = sluiceCreateImageOpener(&info, &opener);
-    for (int i = 0; i < COUNT && result == SLUICE_SUCCESS; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "%d.store", i);
-        result = sluiceOpenImageSource(opener, bake_folder_file(&folder, name, path), &sources[i]);
-    }
-    uint8_t texel;
-    SluiceImageRegion region = {0, 5, 5, 1, 1, 0};
-    for (int i = 0; i < 2 * COUNT && result == SLUICE_SUCCESS; i++)
-        result = sluiceReadImageRegion(sources[i % COUNT], &region, &texel, 1);
-    few_descriptors_end(&few);
-    CHECK_OK(result);
-    for (int i = 0; i < COUNT; i++)
-        sluiceDestroyImageSource(sources[i]);
-    sluiceDestroyImageOpener(opener);
+    open_and_read_all(&folder, 0);
+    open_and_read_all(&folder, 60); /* more than there are descriptors: idle files are closed */
     bake_folder_finish(&folder);
 }
 
