@@ -136,6 +136,64 @@ static void what_would_be_baked_is_what_is_baked(void **state)
     teardown(&f);
 }
 
+static VipsImage *read_png(const struct fixture *f)
+{
+    VipsImage *image = vips_image_new_from_file(f->png, NULL),
+              *copy = vips_image_copy_memory(image);
+    assert_non_null(copy);
+    g_object_unref(image);
+    return copy;
+}
+
+static uint64_t memory_of(const struct fixture *f, const char *path, uint32_t first)
+{
+    SluiceBakeInfo info = {.structSize = sizeof info,
+                           .pInputPath = path,
+                           .pOutputPath = f->preview,
+                           .force = true,
+                           .firstLevel = first};
+    SluiceBakeReport report = {.structSize = sizeof report};
+    CHECK_OK(sluiceBakeFile(f->baker, &info, &report));
+    return report.memorySize;
+}
+
+/* The first of the two files is read from top to bottom. */
+static void check_more_memory(const struct fixture *f, const char *rows, const char *whole,
+                              uint32_t times)
+{
+    for (uint32_t first = 0; first < LEVELS; first += 2)
+        assert_int_equal(memory_of(f, whole, first) - memory_of(f, rows, first),
+                         times * (WIDTH * HEIGHT * 3));
+}
+
+static void a_preview_of_a_file_that_is_unpacked_whole_counts_all_of_it(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char interlaced[256], progressive[256], webp[256], upright[256], turned[256];
+    setup(&f);
+    VipsImage *image = read_png(&f);
+    bake_folder_file(&f.folder, "interlaced.png", interlaced);
+    assert_int_equal(vips_pngsave(image, interlaced, "interlace", TRUE, NULL), 0);
+    check_more_memory(&f, f.png, interlaced, 1);
+    bake_folder_file(&f.folder, "progressive.jpeg", progressive);
+    assert_int_equal(vips_jpegsave(image, progressive, "interlace", TRUE, NULL), 0);
+    check_more_memory(&f, f.jpeg, progressive, 2);
+    bake_folder_file(&f.folder, "a.webp", webp);
+    if (vips_type_find("VipsOperation", "webpsave")) {
+        assert_int_equal(vips_webpsave(image, webp, NULL), 0);
+        check_more_memory(&f, f.png, webp, 3);
+    }
+    bake_folder_file(&f.folder, "upright.tiff", upright);
+    bake_folder_file(&f.folder, "turned.tiff", turned);
+    assert_int_equal(vips_tiffsave(image, upright, NULL), 0);
+    vips_image_set_int(image, VIPS_META_ORIENTATION, 3);
+    assert_int_equal(vips_tiffsave(image, turned, NULL), 0);
+    check_more_memory(&f, upright, turned, 1);
+    g_object_unref(image);
+    teardown(&f);
+}
+
 static void levels_and_files_that_are_not_there_are_refused(void **state)
 {
     (void)state;
@@ -193,6 +251,7 @@ int main(void)
         cmocka_unit_test(a_preview_looks_like_the_levels_of_the_whole_chain),
         cmocka_unit_test(a_preview_is_never_taken_for_the_whole_store),
         cmocka_unit_test(what_would_be_baked_is_what_is_baked),
+        cmocka_unit_test(a_preview_of_a_file_that_is_unpacked_whole_counts_all_of_it),
         cmocka_unit_test(levels_and_files_that_are_not_there_are_refused),
         cmocka_unit_test(describing_survives_every_refused_allocation),
     };
