@@ -1,6 +1,7 @@
 /* Makes tile stores of pictures. */
 #define _XOPEN_SOURCE 700
 
+#include "../common/clock.h"
 #include "../common/descriptors.h"
 #include "find.h"
 #include "options.h"
@@ -41,8 +42,11 @@ static int bake(const struct options *options)
         return FAILED;
     }
     struct bake_job *jobs = make_jobs(options, &files);
-    if (jobs && bake_jobs_run(jobs, files.count, &conditions))
-        status = print_outcomes(jobs, files.count, options->json) ? FAILED : OK;
+    double start = clock_seconds();
+    if (jobs && bake_jobs_run(jobs, files.count, &conditions)) {
+        double seconds = clock_seconds() - start;
+        status = print_outcomes(jobs, files.count, seconds, options->json) ? FAILED : OK;
+    }
     if (files.unreadable_count > 0)
         status = FAILED;
     free(jobs);

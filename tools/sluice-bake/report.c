@@ -77,18 +77,25 @@ static void print_object(const struct bake_job *job)
            r->nanTexelCount, r->infiniteTexelCount, r->clampedTexelCount);
 }
 
-static void print_totals(const struct bake_job *jobs, size_t count)
+static void print_totals(const struct bake_job *jobs, size_t count, double seconds)
 {
     size_t counts[3] = {0};
+    double texels = 0.0; /* of level 0 of what was baked */
     uint64_t in = 0, out = 0;
     char in_text[16], out_text[16];
     for (size_t i = 0; i < count; i++) {
         counts[status_of(&jobs[i])]++;
         in += jobs[i].size;
         out += jobs[i].report.outputSize;
+        if (status_of(&jobs[i]) == BAKED)
+            texels += (double)jobs[i].report.width * jobs[i].report.height *
+                      jobs[i].report.arrayLayerCount;
     }
-    printf("%zu baked, %zu unchanged, %zu failed; %s in, %s out\n", counts[BAKED],
-           counts[UNCHANGED], counts[FAILED], size_text(in, in_text), size_text(out, out_text));
+    printf("%zu baked, %zu unchanged, %zu failed; %s in, %s out", counts[BAKED], counts[UNCHANGED],
+           counts[FAILED], size_text(in, in_text), size_text(out, out_text));
+    if (counts[BAKED] > 0 && seconds > 0.0)
+        printf("; %.1f s, %.2f Mtexel/s", seconds, texels * 1e-6 / seconds);
+    putchar('\n');
 }
 
 /* "3 texels held NaN, stored as 0; ..." */
@@ -125,7 +132,7 @@ static void print_remarks(const struct bake_job *job)
     }
 }
 
-size_t print_outcomes(const struct bake_job *jobs, size_t count, bool json)
+size_t print_outcomes(const struct bake_job *jobs, size_t count, double seconds, bool json)
 {
     size_t failed = 0;
     bool lacks_memory = false;
@@ -143,6 +150,6 @@ size_t print_outcomes(const struct bake_job *jobs, size_t count, bool json)
     if (lacks_memory)
         text_say("sluice-bake: --memory raises the limit");
     if (!json)
-        print_totals(jobs, count);
+        print_totals(jobs, count, seconds);
     return failed;
 }

@@ -4,8 +4,8 @@
 
 #include "../common/bake_jobs.h"
 
-/** The table on standard output, or an object per line; failures also on standard error. Answers
- *  how many failed. */
-size_t print_outcomes(const struct bake_job *jobs, size_t count, bool json);
+/** The table on standard output, or an object per line; failures also on standard error. All took
+ *  `seconds` of wall time. Answers how many failed. */
+size_t print_outcomes(const struct bake_job *jobs, size_t count, double seconds, bool json);
 
 #endif /* TOOLS_SLUICE_BAKE_REPORT_H */
