@@ -35,8 +35,9 @@ typedef struct SluiceImageOpenerCreateInfo {
     /**
      * Folder for stores of pictures without tiles. The usual one is $XDG_CACHE_HOME/sluice; Sluice
      * reads no environment variables. Copied. Created with the first such picture, if its parent
-     * folder exists. Several processes may use it. Default: NULL, such pictures are refused with
-     * SLUICE_ERROR_UNSUPPORTED.
+     * folder exists. Several processes may use it. The folder belongs to Sluice: files in it with
+     * names such as "0123456789abcdef-2a.store" are replaced and deleted. Sluice leaves files of
+     * other names alone. Default: NULL, such pictures are refused with SLUICE_ERROR_UNSUPPORTED.
      */
     const char *pCacheFolder;
     /**

@@ -106,9 +106,7 @@ void slc_make_preview(struct slc_background *background, struct slc_picture_stre
 {
     char path[1024];
     size_t size;
-    int length = snprintf(path, sizeof path, "%s.%ld-%p.preview.store", stream->store_path,
-                          (long)getpid(), (void *)stream);
-    if (length < 0 || (size_t)length >= sizeof path)
+    if (!slc_store_cache_preview_path(stream->store_path, stream, path, sizeof path))
         return;
     SluiceBakeInfo info = {.structSize = sizeof info,
                            .pInputPath = stream->path,
@@ -156,17 +154,22 @@ SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceIma
     return result == SLUICE_SUCCESS ? SLUICE_ERROR_CORRUPT_DATA : result;
 }
 
+static bool reads(const struct slc_opened_image *image, const struct slc_cached_store *store)
+{
+    const char *path = image->stream ? strrchr(image->stream->store_path, '/') : NULL;
+    return (path && strcmp(path + 1, store->name) == 0) ||
+           (image->identity.device == store->device && image->identity.inode == store->inode);
+}
+
 /* Whether the opener has a source that reads it. */
-static bool is_in_use(void *user, const char *name)
+static bool is_in_use(void *user, const struct slc_cached_store *store)
 {
     SluiceImageOpener *opener = user;
     bool is_used = false;
     pthread_mutex_lock(&opener->mutex);
     for (uint32_t b = 0; b < SLC_OPENER_BUCKETS && !is_used; b++)
-        for (struct slc_opened_image *i = opener->buckets[b]; i && !is_used; i = i->next) {
-            const char *path = i->stream ? strrchr(i->stream->store_path, '/') : NULL;
-            is_used = path && strcmp(path + 1, name) == 0;
-        }
+        for (struct slc_opened_image *i = opener->buckets[b]; i && !is_used; i = i->next)
+            is_used = reads(i, store);
     pthread_mutex_unlock(&opener->mutex);
     return is_used;
 }

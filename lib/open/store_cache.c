@@ -5,11 +5,13 @@
 
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/part_file.h"
 #include "base/said.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Part files that nobody has written for so long were left behind. */
+/* Part files and previews that nobody has written for so long were left behind. */
 #define SECONDS_UNTIL_LEFT (24 * 3600)
 
 SluiceResult slc_store_cache_make(const char *folder, const SluiceLogCallback *log)
@@ -54,38 +56,83 @@ void slc_store_cache_touch(const char *path)
     (void)!utimensat(AT_FDCWD, path, times, 0);
 }
 
-struct cached_store {
-    char name[64];
-    uint64_t size;
-    struct timespec touched;
-};
+#define STORE_SUFFIX ".store"
+#define PREVIEW_SUFFIX ".preview"
+#define PART_SUFFIX ".sluice-part"
+
+bool slc_store_cache_preview_path(const char *store_path, const void *id, char *path, size_t size)
+{
+    int stem = (int)(strlen(store_path) - strlen(STORE_SUFFIX));
+    int length = snprintf(path, size, "%.*s-%llx-%llx" PREVIEW_SUFFIX, stem, store_path,
+                          (unsigned long long)getpid(), (unsigned long long)(uintptr_t)id);
+    return length > 0 && (size_t)length < size;
+}
+
+bool slc_store_cache_is_busy(const char *store_path, const SluiceAllocationCallbacks *cb)
+{
+    static const SluiceLogCallback silent;
+    struct slc_part_file part;
+    SluiceResult result = slc_part_file_open(&part, store_path, SLC_PART_FILE_RESUME, cb, &silent);
+    if (result == SLUICE_SUCCESS && part.size == 0) /* it was not there */
+        slc_part_file_remove(&part);
+    slc_part_file_close(&part);
+    return result == SLUICE_ERROR_BUSY;
+}
 
 struct cached_stores {
-    struct cached_store *items;
+    struct slc_cached_store *items;
     size_t count, capacity;
     uint64_t size; ///< bytes of all, those that are kept included
 };
 
-static bool has_suffix(const char *name, const char *suffix)
+/* Goes behind 1 to `max` hexadecimal digits as printf writes them. False: there are none. */
+static bool skip_digits(const char **text, size_t max)
 {
-    size_t length = strlen(name), suffix_length = strlen(suffix);
-    return length > suffix_length && strcmp(name + length - suffix_length, suffix) == 0;
+    size_t count = strspn(*text, "0123456789abcdef");
+    *text += count;
+    return count > 0 && count <= max;
 }
 
-/* Files of other names are not ours. */
-static bool is_removable(const char *name, const struct stat *status)
+static bool skip_text(const char **text, const char *expected)
 {
-    if (has_suffix(name, ".store"))
-        return true;
-    return has_suffix(name, ".sluice-part") && time(NULL) - status->st_mtime > SECONDS_UNTIL_LEFT;
+    size_t length = strlen(expected);
+    if (strncmp(*text, expected, length) != 0)
+        return false;
+    *text += length;
+    return true;
 }
 
-static bool add(struct cached_stores *stores, const SluiceAllocationCallbacks *cb, const char *name,
-                const struct stat *status)
+/* False: the name is none that this file makes. */
+static bool find_kind(const char *name, struct slc_cached_store *store)
+{
+    bool is_ours = strspn(name, "0123456789abcdef") == 16 && skip_digits(&name, 16) &&
+                   skip_text(&name, "-") && skip_digits(&name, 4);
+    if (!is_ours)
+        return false;
+    store->kind = SLC_CACHED_STORE;
+    if (!skip_text(&name, STORE_SUFFIX)) {
+        store->kind = SLC_CACHED_PREVIEW;
+        if (!skip_text(&name, "-") || !skip_digits(&name, 16) || !skip_text(&name, "-") ||
+            !skip_digits(&name, 16) || !skip_text(&name, PREVIEW_SUFFIX))
+            return false;
+    }
+    if (skip_text(&name, PART_SUFFIX) && store->kind == SLC_CACHED_STORE)
+        store->kind = SLC_CACHED_PART;
+    return *name == '\0';
+}
+
+/* Others may be written now. */
+static bool is_removable(const struct slc_cached_store *store, const struct stat *status)
+{
+    return store->kind == SLC_CACHED_STORE || time(NULL) - status->st_mtime > SECONDS_UNTIL_LEFT;
+}
+
+static bool add(struct cached_stores *stores, const SluiceAllocationCallbacks *cb,
+                const struct slc_cached_store *store)
 {
     if (stores->count == stores->capacity) {
         size_t capacity = stores->capacity ? 2 * stores->capacity : 64;
-        struct cached_store *grown =
+        struct slc_cached_store *grown =
             stores->items ? slc_regrow(cb, stores->items, stores->capacity, capacity, sizeof *grown)
                           : slc_alloc(cb, capacity, sizeof *grown);
         if (!grown)
@@ -93,9 +140,7 @@ static bool add(struct cached_stores *stores, const SluiceAllocationCallbacks *c
         stores->items = grown;
         stores->capacity = capacity;
     }
-    struct cached_store *store = &stores->items[stores->count++];
-    *store = (struct cached_store){.size = (uint64_t)status->st_size, .touched = status->st_atim};
-    memcpy(store->name, name, strlen(name) + 1);
+    stores->items[stores->count++] = *store;
     return true;
 }
 
@@ -105,14 +150,18 @@ static bool list_stores(DIR *folder, struct cached_stores *stores,
     struct dirent *entry;
     while ((entry = readdir(folder))) {
         struct stat status;
-        if (strlen(entry->d_name) >= sizeof stores->items->name ||
+        struct slc_cached_store store;
+        if (strlen(entry->d_name) >= sizeof store.name || !find_kind(entry->d_name, &store) ||
             fstatat(dirfd(folder), entry->d_name, &status, AT_SYMLINK_NOFOLLOW) != 0 ||
             !S_ISREG(status.st_mode))
             continue;
-        if (!has_suffix(entry->d_name, ".store") && !has_suffix(entry->d_name, ".sluice-part"))
-            continue;
-        stores->size += (uint64_t)status.st_size;
-        if (is_removable(entry->d_name, &status) && !add(stores, cb, entry->d_name, &status))
+        memcpy(store.name, entry->d_name, strlen(entry->d_name) + 1);
+        store.device = (uint64_t)status.st_dev;
+        store.inode = (uint64_t)status.st_ino;
+        store.size = (uint64_t)status.st_size;
+        store.touched = status.st_atim;
+        stores->size += store.size;
+        if (is_removable(&store, &status) && !add(stores, cb, &store))
             return false;
     }
     return true;
@@ -120,15 +169,41 @@ static bool list_stores(DIR *folder, struct cached_stores *stores,
 
 static int compare_touched(const void *a, const void *b)
 {
-    const struct timespec *x = &((const struct cached_store *)a)->touched;
-    const struct timespec *y = &((const struct cached_store *)b)->touched;
+    const struct timespec *x = &((const struct slc_cached_store *)a)->touched;
+    const struct timespec *y = &((const struct slc_cached_store *)b)->touched;
     if (x->tv_sec != y->tv_sec)
         return x->tv_sec < y->tv_sec ? -1 : 1;
     return (x->tv_nsec > y->tv_nsec) - (x->tv_nsec < y->tv_nsec);
 }
 
+/* Under its lock: a bake may have begun to continue it. */
+static bool remove_part(const char *folder, const struct slc_cached_store *part,
+                        const SluiceAllocationCallbacks *cb)
+{
+    static const SluiceLogCallback silent;
+    char target[PATH_MAX];
+    struct slc_part_file file;
+    int stem = (int)(strlen(part->name) - strlen(PART_SUFFIX));
+    int length = snprintf(target, sizeof target, "%s/%.*s", folder, stem, part->name);
+    if (length < 0 || (size_t)length >= sizeof target)
+        return false;
+    SluiceResult result = slc_part_file_open(&file, target, SLC_PART_FILE_RESUME, cb, &silent);
+    if (result == SLUICE_SUCCESS)
+        slc_part_file_remove(&file);
+    slc_part_file_close(&file);
+    return result == SLUICE_SUCCESS;
+}
+
+static bool remove_file(const char *path, DIR *folder, const struct slc_cached_store *store,
+                        const SluiceAllocationCallbacks *cb)
+{
+    return store->kind == SLC_CACHED_PART ? remove_part(path, store, cb)
+                                          : unlinkat(dirfd(folder), store->name, 0) == 0;
+}
+
 void slc_store_cache_trim(const char *path, uint64_t max_size, const SluiceAllocationCallbacks *cb,
-                          bool (*is_kept)(void *user, const char *name), void *user)
+                          bool (*is_kept)(void *user, const struct slc_cached_store *store),
+                          void *user)
 {
     struct cached_stores stores = {0};
     DIR *folder = opendir(path);
@@ -137,10 +212,12 @@ void slc_store_cache_trim(const char *path, uint64_t max_size, const SluiceAlloc
     bool is_complete = list_stores(folder, &stores, cb);
     if (is_complete && stores.count > 0)
         qsort(stores.items, stores.count, sizeof *stores.items, compare_touched);
-    for (size_t i = 0; is_complete && i < stores.count && stores.size > max_size; i++)
-        if (!is_kept(user, stores.items[i].name) &&
-            unlinkat(dirfd(folder), stores.items[i].name, 0) == 0)
-            stores.size -= stores.items[i].size;
+    for (size_t i = 0; is_complete && i < stores.count; i++) {
+        const struct slc_cached_store *store = &stores.items[i];
+        bool is_wanted = store->kind == SLC_CACHED_PREVIEW || stores.size > max_size;
+        if (is_wanted && !is_kept(user, store) && remove_file(path, folder, store, cb))
+            stores.size -= store->size;
+    }
     slc_free(cb, stores.items, stores.capacity, sizeof *stores.items);
     closedir(folder);
 }

@@ -4,6 +4,16 @@
 
 #include <sluice/base.h>
 
+#include <time.h>
+
+/** A file of the folder. */
+struct slc_cached_store {
+    char name[96];
+    enum { SLC_CACHED_STORE, SLC_CACHED_PART, SLC_CACHED_PREVIEW } kind;
+    uint64_t device, inode, size;
+    struct timespec touched;
+};
+
 /** Makes the folder unless it is there. Errors: IO, logged. */
 SluiceResult slc_store_cache_make(const char *folder, const SluiceLogCallback *log);
 
@@ -15,12 +25,22 @@ SluiceResult slc_store_cache_path(const char *folder, const char *picture,
 /** Notes that a store was opened now. Its contents and their time stay as they are. */
 void slc_store_cache_touch(const char *path);
 
+/** Writes "FOLDER/HASH-PROCESS-ID.preview" for the picture of that store; no other process uses it.
+ *  `id` is the stream's. False if it does not fit. */
+bool slc_store_cache_preview_path(const char *store_path, const void *id, char *path, size_t size);
+
+/** Whether somebody writes the store now. */
+bool slc_store_cache_is_busy(const char *store_path, const SluiceAllocationCallbacks *cb);
+
 /**
  * Deletes the stores that were touched longest ago until the others have at most `max_size` bytes.
- * Keeps what `is_kept` says, and what is being written. Without memory it does nothing.
+ * Keeps the stores that `is_kept` says, stores that are being written, and files whose names
+ * slc_store_cache_path did not make. Deletes previews that were left behind. Without memory it does
+ * nothing.
  */
 void slc_store_cache_trim(const char *folder, uint64_t max_size,
                           const SluiceAllocationCallbacks *cb,
-                          bool (*is_kept)(void *user, const char *name), void *user);
+                          bool (*is_kept)(void *user, const struct slc_cached_store *store),
+                          void *user);
 
 #endif /* SLC_OPEN_STORE_CACHE_H */

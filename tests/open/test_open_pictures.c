@@ -359,6 +359,37 @@ static void old_stores_make_room_and_those_in_use_stay(void **state)
     teardown(&f);
 }
 
+static void a_store_in_the_folder_that_is_open_by_its_own_name_stays(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[512];
+    uint8_t texel[4];
+    SluiceImageSource *plain, *source;
+    setup(&f);
+    sluiceDestroyImageOpener(f.opener);
+    open_opener(&f, 1);
+    CHECK_OK(slc_store_cache_make(f.cache, NULL));
+    snprintf(path, sizeof path, "%s/0123456789abcdef-2a.store", f.cache);
+    bake_picture_file(f.png, path, NULL);
+    for (int i = 0; i < 2; i++) { /* open, and then no more */
+        char picture[256];
+        bake_folder_file(&f.folder, i == 0 ? "0.png" : "1.png", picture);
+        write_picture(picture, 100, 100, (uint32_t)i);
+        if (i == 0)
+            CHECK_OK(sluiceOpenImageSource(f.opener, path, &plain));
+        CHECK_OK(sluiceOpenImageSource(f.opener, picture, &source));
+        assert_true(wait_for(source).ready);
+        sluiceDestroyImageSource(source); /* waits for the end of its bake */
+        assert_int_equal(access(path, F_OK), i == 0 ? 0 : -1);
+        if (i == 0) {
+            CHECK_OK(read_texel(plain, 0, texel));
+            sluiceDestroyImageSource(plain);
+        }
+    }
+    teardown(&f);
+}
+
 static void pictures_that_are_broken_are_refused_or_fail_in_the_end(void **state)
 {
     (void)state;
@@ -543,6 +574,7 @@ int main(void)
         cmocka_unit_test(a_store_that_vanishes_is_baked_again_but_not_forever),
         cmocka_unit_test(a_source_that_goes_cancels_its_bake),
         cmocka_unit_test(old_stores_make_room_and_those_in_use_stay),
+        cmocka_unit_test(a_store_in_the_folder_that_is_open_by_its_own_name_stays),
         cmocka_unit_test(pictures_that_are_broken_are_refused_or_fail_in_the_end),
         cmocka_unit_test(a_cache_folder_that_cannot_be_made_is_an_error),
         cmocka_unit_test(a_preview_of_another_format_is_not_shown),
