@@ -91,8 +91,10 @@ SLUICE_API void sluiceDestroyImageOpener(SluiceImageOpener *opener);
  * store. If the bake fails, reads of missing levels return its error. Destroying the source cancels
  * the bake. The next bake of the same picture goes on where this one ended.
  *
- * A store in the cache folder is used if it was made from a file with this path, size and time. A
- * store that is damaged or deleted is baked again, at most twice per source.
+ * A store in the cache folder is used if it was made from a file with this path, size and time. If
+ * another opener or process replaces the store, its store is opened. A store that is damaged is
+ * baked again, at most twice per source. A store that is deleted is baked again, at most twice
+ * until a read succeeds.
  *
  * Returns SLUICE_NOT_READY, without a source, while the process has too few file descriptors. Close
  * files and call again.

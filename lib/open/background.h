@@ -25,8 +25,16 @@ void slc_background_pause(struct slc_background *background);
 void slc_make_preview(struct slc_background *background, struct slc_picture_stream *stream);
 void slc_make_store(struct slc_background *background, struct slc_picture_stream *stream);
 
-/** Opens the picture's store if it was made of this picture. Errors: CORRUPT_DATA also for a store
- *  of something else, not logged; others logged. */
-SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceImageSource **store);
+/** Opens the picture's store if it was made of this picture, and tells which file it is. Errors:
+ *  CORRUPT_DATA also for a store of something else, not logged; others logged. */
+SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceImageSource **store,
+                                    struct slc_file_identity *identity);
+/** Whether another file than `identity` has the store's name now. `*is_there`: one has it. */
+bool slc_picture_store_is_replaced(const struct slc_picture_stream *stream,
+                                   const struct slc_file_identity *identity, bool *is_there);
+/** Whether `source` has the levels from `level` on of the image that readers were told of. Buffers
+ *  of readers have the size of that image. */
+bool slc_picture_is_as_described(const struct slc_picture_stream *stream, SluiceImageSource *source,
+                                 uint32_t level);
 
 #endif /* SLC_OPEN_BACKGROUND_H */

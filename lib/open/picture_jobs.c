@@ -48,10 +48,8 @@ static void *take_file(const struct slc_picture_stream *stream, const char *path
     return bytes;
 }
 
-/* Whether `source` has the levels from `level` on of the image that readers were told of. Buffers
- * of readers have the size of that image. */
-static bool is_as_described(const struct slc_picture_stream *stream, SluiceImageSource *source,
-                            uint32_t level)
+bool slc_picture_is_as_described(const struct slc_picture_stream *stream, SluiceImageSource *source,
+                                 uint32_t level)
 {
     SluiceImageInfo info = {.structSize = sizeof info};
     return sluiceGetImageInfo(source, &info) == SLUICE_SUCCESS &&
@@ -86,7 +84,8 @@ static void show_preview(struct slc_picture_stream *stream, void *bytes, size_t 
     bool is_shown = false;
     SluiceResult result = sluiceCreateStoreImageSource(&info, &preview);
     bool is_right = result == SLUICE_SUCCESS &&
-                    is_as_described(stream, preview, stream->preview_level) && is_unchanged(stream);
+                    slc_picture_is_as_described(stream, preview, stream->preview_level) &&
+                    is_unchanged(stream);
     pthread_rwlock_wrlock(&stream->lock);
     if (is_right && !stream->store && !stream->preview) {
         stream->preview = preview;
@@ -122,7 +121,19 @@ void slc_make_preview(struct slc_background *background, struct slc_picture_stre
         show_preview(stream, bytes, size);
 }
 
-SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceImageSource **store)
+bool slc_picture_store_is_replaced(const struct slc_picture_stream *stream,
+                                   const struct slc_file_identity *identity, bool *is_there)
+{
+    struct stat status;
+    *is_there = stat(stream->store_path, &status) == 0;
+    if (!*is_there)
+        return false;
+    struct slc_file_identity now = slc_file_identity(&status);
+    return memcmp(&now, identity, sizeof now) != 0;
+}
+
+SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceImageSource **store,
+                                    struct slc_file_identity *identity)
 {
     static const SluiceLogCallback silent;
     SluiceImageOpener *opener = stream->opener;
@@ -135,16 +146,20 @@ SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceIma
     SluiceStoreInfo found = {.structSize = sizeof found};
     SluiceBakeSettings settings = {.structSize = sizeof settings};
     uint64_t hash = 0;
+    struct stat status;
     *store = NULL;
+    /* Before it is opened: a file that takes its place in between is opened once more, no worse. */
+    if (stat(stream->store_path, &status) == 0)
+        *identity = slc_file_identity(&status);
     SluiceResult result = sluiceHashBakeSettings(&settings, &hash);
     if (result == SLUICE_SUCCESS)
         result = sluiceCreateStoreImageSource(&info, store);
     if (result == SLUICE_SUCCESS)
         result = sluiceGetStoreInfo(*store, &found);
-    const struct slc_file_identity *identity = &stream->identity;
-    bool is_same = found.sourceSize == identity->size && found.settingsHash == hash &&
-                   found.sourceModifiedTimeNs ==
-                       identity->seconds * INT64_C(1000000000) + identity->nanoseconds;
+    const struct slc_file_identity *picture = &stream->identity;
+    bool is_same =
+        found.sourceSize == picture->size && found.settingsHash == hash &&
+        found.sourceModifiedTimeNs == picture->seconds * INT64_C(1000000000) + picture->nanoseconds;
     if (result == SLUICE_SUCCESS && is_same) {
         slc_store_cache_touch(stream->store_path);
         return SLUICE_SUCCESS;
@@ -199,11 +214,17 @@ void slc_make_store(struct slc_background *background, struct slc_picture_stream
 {
     SluiceImageOpener *opener = stream->opener;
     SluiceImageSource *store = NULL, *preview = NULL;
-    SluiceResult result = bake_store(background, stream, stream->rebuild_count > 0);
+    struct slc_file_identity identity = {0};
+    bool is_there, is_damaged = stream->is_damaged;
+    /* Another opener or process may have replaced the damaged one meanwhile. */
+    if (is_damaged)
+        is_damaged =
+            !slc_picture_store_is_replaced(stream, &stream->store_identity, &is_there) && is_there;
+    SluiceResult result = bake_store(background, stream, is_damaged);
     if (result == SLUICE_SUCCESS) {
-        result = slc_open_picture_store(stream, &store);
+        result = slc_open_picture_store(stream, &store, &identity);
         if (result == SLUICE_ERROR_CORRUPT_DATA ||
-            (result == SLUICE_SUCCESS && !is_as_described(stream, store, 0))) {
+            (result == SLUICE_SUCCESS && !slc_picture_is_as_described(stream, store, 0))) {
             slc_log(&opener->log, SLUICE_LOG_ERROR,
                     "%s: has changed while it was baked; open it again", stream->path);
             result = SLUICE_ERROR_IO;
@@ -220,6 +241,7 @@ void slc_make_store(struct slc_background *background, struct slc_picture_stream
     void *bytes = stream->preview_bytes;
     size_t size = stream->preview_size;
     stream->store = store;
+    stream->store_identity = identity;
     stream->preview = NULL;
     stream->preview_bytes = NULL;
     pthread_rwlock_unlock(&stream->lock);

@@ -59,7 +59,7 @@ static SluiceResult init(struct slc_picture_stream *stream)
         result = slc_background_create(opener, &opener->background);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = slc_open_picture_store(stream, &stream->store);
+    result = slc_open_picture_store(stream, &stream->store, &stream->store_identity);
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
         return result;
     stream->info.structSize = sizeof stream->info;
@@ -120,27 +120,70 @@ static bool is_lost(SluiceResult result)
            result == SLUICE_ERROR_IO;
 }
 
-/* Bakes again. False if that was done often enough. */
+/* With the lock held for writing. Exchanges a store whose file was replaced for the new one, of
+ * another opener or process. NOT_READY and OUT_OF_HOST_MEMORY: the next read tries again. */
+static SluiceResult take_replacement(struct slc_picture_stream *stream)
+{
+    SluiceImageSource *store;
+    struct slc_file_identity identity;
+    SluiceResult result = slc_open_picture_store(stream, &store, &identity);
+    if (result == SLUICE_SUCCESS && !slc_picture_is_as_described(stream, store, 0)) {
+        sluiceDestroyImageSource(store);
+        result = SLUICE_ERROR_CORRUPT_DATA;
+    }
+    if (result == SLUICE_SUCCESS) {
+        sluiceDestroyImageSource(stream->store);
+        stream->store = store;
+        stream->store_identity = identity;
+    }
+    return result;
+}
+
+/* With the lock held for writing. Whether a store that is there no more, or is damaged, may be
+ * baked again. */
+static bool count_rebuild(struct slc_picture_stream *stream, bool is_there)
+{
+    bool is_allowed = is_there ? stream->damaged_count < SLC_MOST_REBUILDS
+                               : atomic_load(&stream->vanished_count) < SLC_MOST_REBUILDS;
+    if (is_allowed && is_there)
+        stream->damaged_count++;
+    else if (is_allowed)
+        atomic_fetch_add(&stream->vanished_count, 1);
+    return is_allowed;
+}
+
+enum recovery { RECOVERY_LATER, RECOVERY_BAKE, RECOVERY_NONE };
+
+/* With the lock held for writing. The store is destroyed unless there is no recovery. */
+static enum recovery recover(struct slc_picture_stream *stream)
+{
+    bool is_there;
+    if (slc_picture_store_is_replaced(stream, &stream->store_identity, &is_there)) {
+        SluiceResult result = take_replacement(stream);
+        if (result == SLUICE_SUCCESS || result == SLUICE_NOT_READY ||
+            result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
+            return RECOVERY_LATER;
+    }
+    if (!count_rebuild(stream, is_there))
+        return RECOVERY_NONE;
+    stream->is_damaged = is_there;
+    sluiceDestroyImageSource(stream->store);
+    stream->store = NULL;
+    return RECOVERY_BAKE;
+}
+
+/* Opens the store again or bakes it again. False if that was done often enough. */
 static bool rebuild(struct slc_picture_stream *stream, const SluiceImageSource *failed)
 {
-    SluiceImageOpener *opener = stream->opener;
-    SluiceImageSource *store = NULL;
-    bool is_rebuilt = true;
+    enum recovery recovery = RECOVERY_LATER;
     pthread_rwlock_wrlock(&stream->lock);
-    if (stream->store == failed) { /* otherwise another reader was here first */
-        is_rebuilt = stream->rebuild_count < SLC_MOST_REBUILDS;
-        if (is_rebuilt) {
-            stream->rebuild_count++;
-            store = stream->store;
-            stream->store = NULL;
-        }
-    }
+    if (stream->store == failed) /* otherwise another reader was here first */
+        recovery = recover(stream);
     pthread_rwlock_unlock(&stream->lock);
-    if (!store)
-        return is_rebuilt;
-    sluiceDestroyImageSource(store);
-    slc_log(&opener->log, SLUICE_LOG_WARNING, "%s: its store %s cannot be read; baking it again",
-            stream->path, stream->store_path);
+    if (recovery != RECOVERY_BAKE)
+        return recovery == RECOVERY_LATER;
+    slc_log(&stream->opener->log, SLUICE_LOG_WARNING,
+            "%s: its store %s cannot be read; baking it again", stream->path, stream->store_path);
     queue_jobs(stream);
     return true;
 }
@@ -163,6 +206,8 @@ SluiceResult slc_picture_stream_read(struct slc_picture_stream *stream,
     }
     fault->pName = stream->path; /* the inner source, which may be destroyed soon, set its own */
     pthread_rwlock_unlock(&stream->lock);
+    if (store && result == SLUICE_SUCCESS && atomic_load(&stream->vanished_count) > 0)
+        atomic_store(&stream->vanished_count, 0);
     if (store && is_lost(result) && rebuild(stream, store))
         return SLUICE_NOT_READY;
     return result;

@@ -12,7 +12,7 @@
 
 /** Levels with at most so many texels in a direction are in the preview. */
 #define SLC_PREVIEW_SIZE 512u
-/** Times that a store is baked again because it could not be read. */
+/** Times that a store is baked again because it was damaged, and as many because it vanished. */
 #define SLC_MOST_REBUILDS 2u
 
 /** What a stream waits for. The mutex of the background guards it. */
@@ -34,12 +34,15 @@ struct slc_picture_stream {
     atomic_bool is_canceled;
     atomic_int failure; ///< SluiceResult of the bake
     atomic_uint_fast64_t done_texels, total_texels;
+    atomic_uint vanished_count; ///< stores that vanished since the last good read
     pthread_rwlock_t lock;      ///< around what follows; readers hold it while they read
     SluiceImageSource *store;   ///< owned; NULL: not yet
     SluiceImageSource *preview; ///< owned; NULL: not yet, or not needed
     void *preview_bytes;        ///< owned
     size_t preview_size;
-    uint32_t rebuild_count;
+    struct slc_file_identity store_identity; ///< of the store's file when it was opened
+    uint32_t damaged_count;                  ///< stores that were damaged
+    bool is_damaged;                         ///< the file with `store_identity` is; replace it
 };
 
 /**

@@ -309,6 +309,80 @@ static void a_store_that_vanishes_is_baked_again_but_not_forever(void **state)
     teardown(&f);
 }
 
+/* Each file of a pool of one file is opened again when the other was read. */
+static void openers_do_not_bake_over_the_stores_of_each_other(void **state)
+{
+    (void)state;
+    struct fixture f, g;
+    char other[256], path[512];
+    uint8_t texel[4];
+    SluiceImageSource *sources[2], *closers[2];
+    setup(&f);
+    memset(&g, 0, sizeof g);
+    memcpy(g.cache, f.cache, sizeof f.cache);
+    open_opener(&g, 0);
+    SluiceImageOpener *openers[2] = {f.opener, g.opener};
+    bake_folder_file(&f.folder, "b.png", other);
+    write_picture(other, 64, 64, 5);
+    store_path(&f, f.png, path);
+    for (int i = 0; i < 2; i++) {
+        CHECK_OK(sluiceOpenImageSource(openers[i], f.png, &sources[i]));
+        CHECK_OK(sluiceOpenImageSource(openers[i], other, &closers[i]));
+        assert_true(wait_for(sources[i]).ready);
+        assert_true(wait_for(closers[i]).ready);
+        CHECK_OK(read_texel(closers[i], 0, texel));
+    }
+    unlink(path);
+    CHECK_RESULT(read_texel(sources[0], 0, texel), SLUICE_NOT_READY);
+    assert_true(wait_for(sources[0]).ready);
+    struct stat first, last;
+    assert_int_equal(stat(path, &first), 0);
+    for (int round = 0; round < 4; round++)
+        for (int i = 0; i < 2; i++) {
+            CHECK_OK(read_texel(closers[i], 0, texel));
+            SluiceResult expected =
+                round == 0 && i == 1 ? SLUICE_NOT_READY : SLUICE_SUCCESS; /* opens the new one */
+            CHECK_RESULT(read_texel(sources[i], 0, texel), expected);
+            assert_true(state_of(sources[i]).ready);
+        }
+    assert_int_equal(stat(path, &last), 0);
+    assert_int_equal(first.st_ino, last.st_ino);
+    assert_int_equal(first.st_mtim.tv_nsec, last.st_mtim.tv_nsec);
+    for (int i = 0; i < 2; i++) {
+        sluiceDestroyImageSource(sources[i]);
+        sluiceDestroyImageSource(closers[i]);
+    }
+    sluiceDestroyImageOpener(g.opener);
+    teardown(&f);
+}
+
+static void reads_that_succeed_forgive_stores_that_vanished(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[512], other[256];
+    uint8_t texel[4];
+    SluiceImageSource *source, *closer;
+    setup(&f);
+    store_path(&f, f.png, path);
+    bake_folder_file(&f.folder, "b.png", other);
+    write_picture(other, 64, 64, 5);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+    CHECK_OK(sluiceOpenImageSource(f.opener, other, &closer));
+    assert_true(wait_for(source).ready);
+    assert_true(wait_for(closer).ready);
+    for (int i = 0; i < 5; i++) {
+        CHECK_OK(read_texel(source, 0, texel));
+        CHECK_OK(read_texel(closer, 0, texel));
+        unlink(path);
+        CHECK_RESULT(read_texel(source, 0, texel), SLUICE_NOT_READY);
+        assert_true(wait_for(source).ready);
+    }
+    sluiceDestroyImageSource(source);
+    sluiceDestroyImageSource(closer);
+    teardown(&f);
+}
+
 static void a_source_that_goes_cancels_its_bake(void **state)
 {
     (void)state;
@@ -572,6 +646,8 @@ int main(void)
         cmocka_unit_test(a_picture_that_changed_is_baked_again),
         cmocka_unit_test(a_damaged_store_is_baked_again),
         cmocka_unit_test(a_store_that_vanishes_is_baked_again_but_not_forever),
+        cmocka_unit_test(openers_do_not_bake_over_the_stores_of_each_other),
+        cmocka_unit_test(reads_that_succeed_forgive_stores_that_vanished),
         cmocka_unit_test(a_source_that_goes_cancels_its_bake),
         cmocka_unit_test(old_stores_make_room_and_those_in_use_stay),
         cmocka_unit_test(a_store_in_the_folder_that_is_open_by_its_own_name_stays),
