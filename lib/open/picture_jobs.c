@@ -199,8 +199,16 @@ static SluiceResult bake_store(struct slc_background *background, struct slc_pic
                            .force = force,
                            .pUserData = stream,
                            .pfnProgress = note_progress};
-    SluiceResult result;
+    SluiceResult result = SLUICE_ERROR_BUSY;
+    if (slc_store_cache_is_busy(stream->store_path, &stream->opener->allocator))
+        slc_log(&stream->opener->log, SLUICE_LOG_INFO,
+                "%s: another process bakes it; waiting for its store", stream->path);
     for (;;) {
+        while (slc_store_cache_is_busy(stream->store_path, &stream->opener->allocator) &&
+               !atomic_load(&stream->is_canceled))
+            slc_background_pause(background);
+        if (atomic_load(&stream->is_canceled))
+            return SLUICE_ERROR_CANCELED;
         result = sluiceBakeFile(slc_background_baker(background), &info, NULL);
         bool is_later = result == SLUICE_ERROR_BUSY || result == SLUICE_NOT_READY;
         if (!is_later || atomic_load(&stream->is_canceled))

@@ -60,7 +60,7 @@ static SluiceResult init(struct slc_picture_stream *stream)
     if (result != SLUICE_SUCCESS)
         return result;
     result = slc_open_picture_store(stream, &stream->store, &stream->store_identity);
-    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY || result == SLUICE_NOT_READY)
         return result;
     stream->info.structSize = sizeof stream->info;
     result = stream->store ? sluiceGetImageInfo(stream->store, &stream->info) : describe(stream);

@@ -187,6 +187,7 @@ static void coarse_levels_come_first_and_all_of_them_in_the_end(void **state)
     assert_in_range(texel[0], 179, 187);
     sluiceDestroyStoreWriter(writer);
     assert_true(wait_for(source).ready);
+    assert_int_equal(f.errors, 0); /* to wait for a writer is none */
     check_baked(&f, source, f.png);
     sluiceDestroyImageSource(source);
     teardown(&f);
