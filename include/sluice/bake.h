@@ -163,7 +163,7 @@ typedef struct SluiceBakeInfo {
     bool force;
     void *pUserData;
     /** Reports progress on the caller's thread. Return false to stop with
-     *  SLUICE_ERROR_CANCELED. May be NULL. */
+     *  SLUICE_ERROR_CANCELED. Both numbers are 0 while the bake waits for memory. May be NULL. */
     bool (*pfnProgress)(void *pUserData, uint64_t doneTexels, uint64_t totalTexels);
     /**
      * Bakes these bytes instead of a file (input.h). All kinds of pictures can be baked so.

@@ -263,16 +263,16 @@ static SluiceResult bake_with_memory(struct bake *bake, const SluiceStoreLayout 
                                   : slc_baking_memory(bake->picture, &bake->plan, layout);
     bake->report.memorySize = size;
     bool is_whole = bake->picture->unpacked_size > 0;
-    SluiceResult result = slc_baker_reserve(baker, size);
-    if (result != SLUICE_SUCCESS) {
+    SluiceResult result = slc_baker_reserve(baker, size, bake->info);
+    if (result == SLUICE_ERROR_LIMIT_EXCEEDED)
         slc_log(&baker->log, SLUICE_LOG_ERROR,
                 "%s: baking it takes %llu KiB of memory%s; maxMemory is %llu KiB; raise it%s",
                 bake->picture->name, (unsigned long long)(size >> 10),
                 is_whole ? ", because its file is unpacked as a whole" : "",
                 (unsigned long long)(baker->max_memory >> 10),
                 is_whole ? ", or write the picture as a plain PNG or TIFF file" : "");
+    if (result != SLUICE_SUCCESS)
         return result;
-    }
     result = write_store(bake, layout);
     slc_baker_give_back(baker, size);
     return result;

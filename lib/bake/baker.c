@@ -104,14 +104,16 @@ static bool take(struct reservation *reservation, SluiceBaker *baker)
     return has_room;
 }
 
-SluiceResult slc_baker_reserve(SluiceBaker *baker, uint64_t size)
+SluiceResult slc_baker_reserve(SluiceBaker *baker, uint64_t size, const SluiceBakeInfo *info)
 {
     struct reservation reservation = {baker, size};
     if (size > baker->max_memory)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
-    do {
-        slc_bake_jobs_help_until(&baker->jobs, fits, &reservation);
-    } while (!take(&reservation, baker));
+    while (!take(&reservation, baker)) {
+        if (info->pfnProgress && !info->pfnProgress(info->pUserData, 0, 0))
+            return SLUICE_ERROR_CANCELED;
+        slc_bake_jobs_help_a_while(&baker->jobs, fits, &reservation);
+    }
     return SLUICE_SUCCESS;
 }
 

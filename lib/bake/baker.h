@@ -17,8 +17,9 @@ struct SluiceBaker {
     float *decoded16; ///< 65536 values of sRGB codes
 };
 
-/** Waits until others have given back enough. Errors: LIMIT_EXCEEDED if all would not do. */
-SluiceResult slc_baker_reserve(SluiceBaker *baker, uint64_t size);
+/** Waits until others have given back enough; calls the bake's progress callback meanwhile. Errors:
+ *  LIMIT_EXCEEDED if all would not do; CANCELED. */
+SluiceResult slc_baker_reserve(SluiceBaker *baker, uint64_t size, const SluiceBakeInfo *info);
 void slc_baker_give_back(SluiceBaker *baker, uint64_t size);
 
 #endif /* SLC_BAKE_BAKER_H */

@@ -1,8 +1,13 @@
+#define _POSIX_C_SOURCE 200809L
+
 #include "bake/work_pool.h"
 
 #include "base/alloc.h"
 
 #include <assert.h>
+#include <time.h>
+
+#define A_WHILE 20000000 /* nanoseconds */
 
 static struct slc_job *take(struct slc_bake_jobs *jobs)
 {
@@ -32,6 +37,24 @@ void slc_bake_jobs_help_until(struct slc_bake_jobs *jobs, bool (*is_done)(void *
         else
             pthread_cond_wait(&jobs->changed, &jobs->mutex);
     }
+    pthread_mutex_unlock(&jobs->mutex);
+}
+
+void slc_bake_jobs_help_a_while(struct slc_bake_jobs *jobs, bool (*is_done)(void *user), void *user)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += A_WHILE;
+    if (until.tv_nsec >= 1000000000) {
+        until.tv_nsec -= 1000000000;
+        until.tv_sec++;
+    }
+    pthread_mutex_lock(&jobs->mutex);
+    struct slc_job *job = is_done(user) ? NULL : take(jobs);
+    if (job)
+        run_unlocked(jobs, job);
+    else if (!is_done(user))
+        pthread_cond_timedwait(&jobs->changed, &jobs->mutex, &until);
     pthread_mutex_unlock(&jobs->mutex);
 }
 

@@ -34,6 +34,10 @@ void slc_bake_jobs_submit(struct slc_bake_jobs *jobs, struct slc_job *job);
 void slc_bake_jobs_lock(struct slc_bake_jobs *jobs);
 void slc_bake_jobs_unlock_and_wake(struct slc_bake_jobs *jobs);
 
+/** Runs a job, or waits for a change, some milliseconds at most; does neither if `is_done`, which
+ *  is called under the mutex. */
+void slc_bake_jobs_help_a_while(struct slc_bake_jobs *jobs, bool (*is_done)(void *user),
+                                void *user);
 /** Returns when `is_done`, which is called under the mutex; runs jobs until then. */
 void slc_bake_jobs_help_until(struct slc_bake_jobs *jobs, bool (*is_done)(void *user), void *user);
 

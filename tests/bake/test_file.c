@@ -193,6 +193,64 @@ static void too_little_memory_is_refused_and_the_rest_is_kept_to(void **state)
     bake_folder_finish(&folder);
 }
 
+struct waiting_bake {
+    SluiceBaker *baker;
+    SluiceBakeInfo info;
+    uint32_t calls;
+    SluiceResult result;
+};
+
+static bool cancel_the_third_call(void *user, uint64_t done, uint64_t total)
+{
+    struct waiting_bake *other = user;
+    assert_int_equal(done, 0);
+    assert_int_equal(total, 0);
+    return ++other->calls < 3;
+}
+
+/* Called by the bake that has the memory: the other one cannot have it before this returns. */
+static bool bake_another(void *user, uint64_t done, uint64_t total)
+{
+    struct waiting_bake *other = user;
+    (void)done, (void)total;
+    if (other->calls == 0)
+        other->result = sluiceBakeFile(other->baker, &other->info, NULL);
+    return true;
+}
+
+static void a_bake_that_waits_for_memory_can_be_canceled(void **state)
+{
+    (void)state;
+    struct bake_folder folder;
+    struct plain_source source;
+    char path[256], other_path[256];
+    uint8_t *samples = random_bytes(400 * 16, 5);
+    SluiceBakeReport report = {.structSize = sizeof report};
+    struct waiting_bake other = {.result = SLUICE_SUCCESS};
+    bake_folder_init(&folder);
+    bake_folder_file(&folder, "out.store", path);
+    bake_folder_file(&folder, "other.store", other_path);
+    plain_source_init(&source, SLUICE_FORMAT_R8_UNORM, 400, 16, samples);
+    SluiceBakeInfo info = {.structSize = sizeof info, .source = &source.base, .pOutputPath = path};
+    CHECK_OK(bake(1, 0, &info, &report));
+    SluiceBakerCreateInfo create = {
+        .structSize = sizeof create, .threadCount = 1, .maxMemory = report.memorySize};
+    CHECK_OK(sluiceCreateBaker(&create, &other.baker));
+    other.info = info;
+    other.info.pOutputPath = other_path;
+    other.info.pUserData = &other;
+    other.info.pfnProgress = cancel_the_third_call;
+    info.pUserData = &other;
+    info.pfnProgress = bake_another;
+    CHECK_OK(sluiceBakeFile(other.baker, &info, NULL));
+    CHECK_RESULT(other.result, SLUICE_ERROR_CANCELED);
+    assert_int_equal(other.calls, 3);
+    assert_int_equal(access(other_path, F_OK), -1);
+    sluiceDestroyBaker(other.baker);
+    free(samples);
+    bake_folder_finish(&folder);
+}
+
 /* One thread, because the allocator counts for one. */
 static void run_out_of_memory(const SluiceBakeInfo *info)
 {
@@ -320,6 +378,7 @@ int main(void)
         cmocka_unit_test(a_canceled_bake_is_gone_on_with),
         cmocka_unit_test(what_is_up_to_date_is_skipped_until_something_changes),
         cmocka_unit_test(too_little_memory_is_refused_and_the_rest_is_kept_to),
+        cmocka_unit_test(a_bake_that_waits_for_memory_can_be_canceled),
         cmocka_unit_test(no_memory_is_an_ordinary_result),
         cmocka_unit_test(blocks_are_copied_as_they_are),
         cmocka_unit_test(wrong_settings_are_refused),
