@@ -2,7 +2,10 @@
  * Textures that nobody samples are forgotten: their pages are evicted and their images closed, as
  * if they had never been opened. docs/decisions/0067-textures-without-use-are-forgotten.md.
  *
- * Open images are in the order of their last use. Only launches that told what they used change it.
+ * Open images are in the order of their last use: those whose mip tail has a place in one order,
+ * all others in another. Only launches that told what they used change it. A sample that needs no
+ * page, but only the color of the last level, marks the tail as used; so its block of the page
+ * table stays while the image is open.
  */
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
@@ -13,33 +16,57 @@
 #define MOST_PER_PAGE 64u
 #define MOST_PER_LAUNCH 4096u
 
-static void append(SluiceDemandLoader *loader, struct slc_demand_image *image)
+static struct slc_image_order *order_of(SluiceDemandLoader *loader,
+                                        const struct slc_demand_image *image)
 {
-    image->older = loader->newest_image;
-    image->newer = SLC_NONE;
-    if (image->older == SLC_NONE)
-        loader->oldest_image = image->slot;
-    else
-        loader->images[image->older]->newer = image->slot;
-    loader->newest_image = image->slot;
+    return &loader->orders[image->has_tail];
 }
 
+static void append(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    struct slc_image_order *order = order_of(loader, image);
+    image->older = order->newest;
+    image->newer = SLC_NONE;
+    if (image->older == SLC_NONE)
+        order->oldest = image->slot;
+    else
+        loader->images[image->older]->newer = image->slot;
+    order->newest = image->slot;
+}
+
+static void leave(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    struct slc_image_order *order = order_of(loader, image);
+    if (image->older == SLC_NONE)
+        order->oldest = image->newer;
+    else
+        loader->images[image->older]->newer = image->newer;
+    if (image->newer == SLC_NONE)
+        order->newest = image->older;
+    else
+        loader->images[image->newer]->older = image->older;
+}
+
+static void change_order(SluiceDemandLoader *loader, struct slc_demand_image *image, bool has_tail)
+{
+    leave(loader, image);
+    image->has_tail = has_tail;
+    append(loader, image);
+}
+
+/* Without a block for its tail, only pages that are looked up or missed tell of its use. */
 void slc_image_enter_order(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     image->last_use = loader->launch + loader->info.launchesInFlight; /* it is to be used yet */
+    image->has_tail = false;
     append(loader, image);
+    (void)slc_page_directory_keep(&loader->directory, image->tail_page);
 }
 
 void slc_image_leave_order(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
-    if (image->older == SLC_NONE)
-        loader->oldest_image = image->newer;
-    else
-        loader->images[image->older]->newer = image->newer;
-    if (image->newer == SLC_NONE)
-        loader->newest_image = image->older;
-    else
-        loader->images[image->newer]->older = image->older;
+    leave(loader, image);
+    slc_page_directory_unkeep(&loader->directory, image->tail_page);
 }
 
 void slc_image_touch(SluiceDemandLoader *loader, struct slc_demand_image *image, uint64_t launch)
@@ -47,10 +74,15 @@ void slc_image_touch(SluiceDemandLoader *loader, struct slc_demand_image *image,
     if (image->state != SLC_IMAGE_OPEN || image->last_use >= launch)
         return;
     image->last_use = launch;
-    if (image->newer == SLC_NONE)
-        return;
-    slc_image_leave_order(loader, image);
-    append(loader, image);
+    if (image->newer != SLC_NONE)
+        change_order(loader, image, image->has_tail);
+}
+
+void slc_image_gets_tail(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    slc_image_touch(loader, image, loader->processed);
+    if (!image->has_tail)
+        change_order(loader, image, true);
 }
 
 void slc_image_touch_page(SluiceDemandLoader *loader, uint32_t page, uint64_t launch)
@@ -69,11 +101,12 @@ void slc_image_touch_page(SluiceDemandLoader *loader, uint32_t page, uint64_t la
         slc_image_touch(loader, loader->images[index], launch);
 }
 
-/* The image that was used longest ago, if it is idle. Images that are being read are in use. */
-static struct slc_demand_image *find_oldest(SluiceDemandLoader *loader)
+/* The image that was used longest ago, if it is idle. Others are in use, as by the last launch. */
+static struct slc_demand_image *find_oldest(SluiceDemandLoader *loader,
+                                            const struct slc_image_order *order)
 {
-    while (loader->oldest_image != SLC_NONE) {
-        struct slc_demand_image *image = loader->images[loader->oldest_image];
+    while (order->oldest != SLC_NONE) {
+        struct slc_demand_image *image = loader->images[order->oldest];
         if (slc_image_is_idle(loader, image))
             return image;
         if (image->last_use >= loader->processed)
@@ -90,6 +123,7 @@ static bool has_place(const SluiceDemandLoader *loader)
     return counts.resident + counts.loading < loader->tile_limit;
 }
 
+/* Only tails are freed by this and by nothing else: tiles that were used no later are evicted. */
 void slc_images_make_room(SluiceDemandLoader *loader, uint32_t page)
 {
     if (!loader->knows_use || loader->info.noEviction || has_place(loader) ||
@@ -97,25 +131,39 @@ void slc_images_make_room(SluiceDemandLoader *loader, uint32_t page)
         return;
     uint64_t oldest_tile = slc_residency_oldest_use(loader->residency, SLC_CLASS_TILES);
     for (uint32_t i = 0; i < MOST_PER_PAGE && !has_place(loader); i++) {
-        struct slc_demand_image *image = find_oldest(loader);
+        struct slc_demand_image *image = find_oldest(loader, &loader->orders[1]);
         if (!image || image->last_use > oldest_tile)
             return;
+        if (slc_residency_is_absent(loader->residency, image->tail_page)) { /* not any more */
+            change_order(loader, image, false);
+            continue;
+        }
         slc_image_forget_texture(loader, image);
         slc_tiles_limit(loader);
     }
 }
 
+static uint32_t forget_old(SluiceDemandLoader *loader, const struct slc_image_order *order,
+                           uint32_t most)
+{
+    uint32_t count = 0;
+    while (count < most) {
+        struct slc_demand_image *image = find_oldest(loader, order);
+        if (!image || loader->processed - image->last_use < loader->info.forgetAfterLaunches)
+            break;
+        slc_image_forget_texture(loader, image);
+        count++;
+    }
+    return count;
+}
+
 void slc_images_forget_old(SluiceDemandLoader *loader)
 {
-    uint64_t most = loader->info.forgetAfterLaunches;
-    if (most == 0 || !loader->knows_use || loader->info.noEviction)
+    uint64_t after = loader->info.forgetAfterLaunches;
+    if (after == 0 || !loader->knows_use || loader->info.noEviction ||
+        loader->processed - loader->known_since < after)
         return;
-    for (uint32_t i = 0; i < MOST_PER_LAUNCH; i++) {
-        struct slc_demand_image *image = find_oldest(loader);
-        if (!image || loader->processed - image->last_use < most ||
-            loader->processed - loader->known_since < most)
-            return;
-        slc_image_forget_texture(loader, image);
-    }
+    uint32_t count = forget_old(loader, &loader->orders[1], MOST_PER_LAUNCH);
+    forget_old(loader, &loader->orders[0], MOST_PER_LAUNCH - count);
     slc_tiles_limit(loader);
 }

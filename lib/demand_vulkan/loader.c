@@ -270,7 +270,7 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     loader->texture_high = 1; /* 0 is no texture's */
     loader->free_texture = loader->first_retired_texture = SLC_NONE;
     loader->free_image = loader->first_retired_image = loader->first_refresh = SLC_NONE;
-    loader->oldest_image = loader->newest_image = SLC_NONE;
+    loader->orders[0] = loader->orders[1] = (struct slc_image_order){SLC_NONE, SLC_NONE};
     loader->free_resource = SLC_NONE;
     slc_image_opener_init(&loader->opener);
     if (slc_tickets_init(&loader->tickets, &loader->cb) != SLUICE_SUCCESS) {

@@ -76,6 +76,7 @@ struct slc_demand_image {
     uint64_t launch;          ///< RETIRED: the last that may name its pages
     uint64_t last_use;        ///< launch that used it, missed a page of it or copied one
     uint32_t older, newer;    ///< OPEN: in the order of use
+    bool has_tail;            ///< OPEN: which of the orders; may be out of date if true
     SluiceDemandImage origin; ///< as the texture had it when it was opened
     SluiceDemandTicket ticket;
 
@@ -93,6 +94,11 @@ struct slc_demand_image {
     float base_color[4];
     uint32_t retry_group; ///< tiles that could not be read; 0: none
     bool told;            ///< that tiles cannot be read; until one comes that could not
+};
+
+/** Images by last use. */
+struct slc_image_order {
+    uint32_t oldest, newest;
 };
 
 enum slc_resource_state { SLC_RESOURCE_FREE = 0, SLC_RESOURCE_LIVE, SLC_RESOURCE_DESTROYED };
@@ -274,9 +280,9 @@ struct SluiceDemandLoader {
     struct slc_demand_image **images; ///< owned, by slot
     uint32_t image_high, image_capacity, free_image, first_retired_image, last_retired_image;
     uint32_t first_refresh;
-    uint32_t oldest_image, newest_image; ///< open ones in the order of use
-    uint64_t known_since;                ///< processed launches after this one told what they used
-    bool knows_use;                      ///< the launch that is being processed did
+    struct slc_image_order orders[2]; ///< open ones; second: their tails have places
+    uint64_t known_since;             ///< processed launches after this one told what they used
+    bool knows_use;                   ///< the launch that is being processed did
     uint32_t *tail_blocks; ///< owned; by slot / SLUICE_DEMAND_BLOCK_PAGES: the first tail page
     uint32_t tail_block_count, tail_block_capacity;
     SluiceImageSource opener; ///< an image whose texels are base colors
@@ -504,6 +510,8 @@ static inline uint32_t slc_job_index(const SluiceDemandLoader *loader,
 void slc_image_enter_order(SluiceDemandLoader *loader, struct slc_demand_image *image);
 /** The image is open no more. */
 void slc_image_leave_order(SluiceDemandLoader *loader, struct slc_demand_image *image);
+/** A place was taken for the tail, which is being read. */
+void slc_image_gets_tail(SluiceDemandLoader *loader, struct slc_demand_image *image);
 /** `launch` uses the image. */
 void slc_image_touch(SluiceDemandLoader *loader, struct slc_demand_image *image, uint64_t launch);
 /** `launch`, which is being processed, uses a page, or misses it. */

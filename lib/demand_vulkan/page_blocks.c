@@ -110,7 +110,7 @@ SluiceResult slc_page_blocks_take(struct slc_page_blocks *blocks, uint32_t entry
     }
     struct slc_page_block *b = &blocks->table[found];
     b->entry = entry;
-    b->resident = b->device_resident = b->changed = b->changed_wide = 0;
+    b->resident = b->kept = b->device_resident = b->changed = b->changed_wide = 0;
     b->fresh = true;
     clear_bit(blocks->free, found);
     set_bit(blocks->changed, found);

@@ -14,6 +14,7 @@
 struct slc_page_block {
     uint32_t entry;           ///< of the directory
     uint32_t resident;        ///< a bit per page that is shown or refused
+    uint32_t kept;            ///< a bit per page that the block stays for, shown or not
     uint32_t device_resident; ///< what the device has of it
     uint32_t changed;         ///< a bit per page whose word the device does not have
     uint32_t changed_wide;    ///< the same of second words

@@ -228,6 +228,41 @@ bool slc_page_directory_shows_wide(const struct slc_page_directory *dir, uint32_
                (uint32_t)(value >> 32);
 }
 
+/* Nothing is in it, and nobody keeps it. */
+static void give_if_empty(struct slc_page_directory *d, uint32_t entry)
+{
+    uint32_t index = d->entries[entry];
+    if (d->pool.table[index].resident | d->pool.table[index].kept)
+        return;
+    slc_page_blocks_give(&d->pool, index);
+    set_entry(d, entry, SLUICE_DEMAND_NO_BLOCK);
+    d->changed = true;
+}
+
+SluiceResult slc_page_directory_keep(struct slc_page_directory *dir, uint32_t page)
+{
+    assert(page < dir->page_capacity);
+    uint32_t index;
+    SluiceResult result = find_block(dir, page / SLUICE_DEMAND_BLOCK_PAGES, &index);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_page_block *block = &dir->pool.table[index];
+    block->kept |= 1u << page % SLUICE_DEMAND_BLOCK_PAGES;
+    dir->changed |= block->fresh;
+    return SLUICE_SUCCESS;
+}
+
+void slc_page_directory_unkeep(struct slc_page_directory *dir, uint32_t page)
+{
+    assert(page < dir->page_capacity);
+    const uint32_t entry = page / SLUICE_DEMAND_BLOCK_PAGES, index = dir->entries[entry];
+    const uint32_t bit = 1u << page % SLUICE_DEMAND_BLOCK_PAGES;
+    if (index == SLUICE_DEMAND_NO_BLOCK || !(dir->pool.table[index].kept & bit))
+        return;
+    dir->pool.table[index].kept &= ~bit;
+    give_if_empty(dir, entry);
+}
+
 void slc_page_directory_hide(struct slc_page_directory *dir, uint32_t page)
 {
     if (!slc_page_directory_has(dir, page))
@@ -240,8 +275,5 @@ void slc_page_directory_hide(struct slc_page_directory *dir, uint32_t page)
     block->changed_wide &= ~bit;
     slc_page_blocks_mark(&dir->pool, index);
     dir->changed = true;
-    if (block->resident)
-        return;
-    slc_page_blocks_give(&dir->pool, index);
-    set_entry(dir, entry, SLUICE_DEMAND_NO_BLOCK);
+    give_if_empty(dir, entry);
 }

@@ -6,10 +6,10 @@
  * through memory that the host writes, one slot per launch in flight, and one dispatch puts them in
  * their places, whatever their number. Nothing is recorded where nothing changed.
  *
- * A block is taken when the first of its 32 pages is shown or refused, and free again when the last
- * is hidden: at once, because words and directory change together. So there is always a block if
- * block_capacity is at least the number of pages that are shown or refused at any time, and pages
- * are hidden before others are shown.
+ * A block is taken when the first of its 32 pages is shown, refused or kept, and free again when
+ * the last is hidden and not kept: at once, because words and directory change together. So there
+ * is always a block if block_capacity is at least the number of pages that are shown, refused or
+ * kept at any time, and pages are hidden before others are shown.
  *
  * Host memory: a word and a bit per 32 pages (8.3 MiB for 64 Mi; looking a page up is one load,
  * where a map would cost more for all of its entries as soon as one in ten has a block), and 290
@@ -87,6 +87,11 @@ SluiceResult slc_page_directory_refuse(struct slc_page_directory *dir, uint32_t 
 /** Absent: its bit in the mask is cleared, its words stay what they are. Of a page that is neither
  *  shown nor refused: nothing. */
 void slc_page_directory_hide(struct slc_page_directory *dir, uint32_t page);
+/** Shaders may set the page's used bit from the next record on, even while it is not shown: its
+ *  block stays. Errors: as slc_page_directory_show. */
+SluiceResult slc_page_directory_keep(struct slc_page_directory *dir, uint32_t page);
+/** Of a page that is not kept: nothing. */
+void slc_page_directory_unkeep(struct slc_page_directory *dir, uint32_t page);
 /** Shown with this value, of which the low 32 bits count. */
 bool slc_page_directory_shows(const struct slc_page_directory *dir, uint32_t page, uint32_t value);
 /** True if shaders see the page with this 64-bit value. */

@@ -8,10 +8,10 @@
 
 #define FIRST_UPLOAD 8192u /* patches */
 
-/* Always so of a fresh block: it has a page, and nothing is known of what the device has. */
+/* Nothing is known of what the device has of a fresh block. */
 static bool mask_changed(const struct slc_page_block *block)
 {
-    return block->resident != block->device_resident;
+    return block->fresh || block->resident != block->device_resident;
 }
 
 static uint64_t count_patches(const struct slc_page_directory *d)

@@ -184,6 +184,8 @@ static enum slc_request_answer request_tail(SluiceDemandLoader *loader,
     slc_tiles_limit(loader);
     enum slc_request_answer answer = request_page(loader, image, request, NULL, ticket, result);
     tiles->tail = NULL;
+    if (answer == SLC_REQUEST_LOAD)
+        slc_image_gets_tail(loader, image);
     slc_tiles_limit(loader);
     return answer;
 }

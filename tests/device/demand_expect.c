@@ -79,6 +79,7 @@ static void add_tap(void *user, const struct demand_tap *tap)
     uint32_t last = field(e->entry->shape, SLUICE_DEMAND_LEVEL_COUNT_SHIFT) - 1;
     bool ask = true;
     e->sure = e->sure && tap->sure;
+    e->finest = tap->level < e->finest ? tap->level : e->finest;
     e->tap = *tap;
     for (;;) {
         e->ask = ask || e->tap.level >= regular;
@@ -100,9 +101,12 @@ void demand_expect(struct demand_expectation *e, const struct DemandInput *in, u
 {
     e->resident = e->sure = true;
     e->noted_count = 0;
+    e->finest = UINT32_MAX;
     memset(e->color, 0, sizeof e->color);
     if (!demand_oracle_taps(e->entry, in, e->loader_bias, add_tap, e))
         e->sure = false;
+    if (e->finest == field(e->entry->shape, SLUICE_DEMAND_LEVEL_COUNT_SHIFT) - 1)
+        note(e, e->entry->tailPage, DEMAND_MARKED);
     if (!e->resident && !e->preview)
         memset(e->color, 0, sizeof e->color);
     for (uint32_t i = 0; i < e->noted_count; i++) {

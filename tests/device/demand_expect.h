@@ -8,6 +8,7 @@
 #define DEMAND_EXPECT_PAGES 65536u
 #define DEMAND_ASKED 1u
 #define DEMAND_USED 2u
+#define DEMAND_MARKED 4u /* as used, if the page has a block: a tail that is not looked up */
 
 struct demand_expectation {
     struct demand_scene *scene;
@@ -20,6 +21,7 @@ struct demand_expectation {
     bool sure; ///< float cannot come to anything else
 
     struct demand_tap tap; ///< private, as the rest
+    uint32_t finest;       ///< level
     double sum[4];
     uint32_t worst; ///< 0: all are there, 1: one is refused, 2: one is missing
     uint32_t here[4], here_count;
@@ -29,7 +31,7 @@ struct demand_expectation {
     uint32_t noted[4096], noted_count;
 };
 
-/** Fills in the results; and adds to pages[], if sure, DEMAND_ASKED and _USED of those that are.
+/** Fills in the results; and adds to pages[], if sure, DEMAND_ASKED, _USED and _MARKED.
  *  Cubic samples must have nothing refused, and no preview. */
 void demand_expect(struct demand_expectation *e, const struct DemandInput *in, uint8_t *pages);
 

@@ -305,6 +305,12 @@ void demand_scene_run(struct demand_scene *s, enum demand_shader shader, uint32_
     conform_run_job(s->h, &job);
 }
 
+bool demand_has_block(const struct demand_scene *s, uint32_t page)
+{
+    return ((const uint32_t *)s->directory.mapped)[page / SLUICE_DEMAND_BLOCK_PAGES] !=
+           SLUICE_DEMAND_NO_BLOCK;
+}
+
 static bool mask_bit(const struct demand_scene *s, uint32_t page, bool used)
 {
     uint32_t block = ((const uint32_t *)s->directory.mapped)[page / SLUICE_DEMAND_BLOCK_PAGES];

@@ -86,6 +86,7 @@ void demand_scene_run(struct demand_scene *s, enum demand_shader shader, uint32_
 bool demand_resident(const struct demand_scene *s, uint32_t page);
 bool demand_refused(const struct demand_scene *s, uint32_t page);
 bool demand_used(const struct demand_scene *s, uint32_t page);
+bool demand_has_block(const struct demand_scene *s, uint32_t page);
 bool demand_requested(const struct demand_scene *s, uint32_t page);
 /** Fails the test if the bit of a section is not set exactly where a page of it is asked for. */
 void demand_check_sections(const struct demand_scene *s);

@@ -258,6 +258,61 @@ static void sixty_four_mi_pages_have_both_ends_and_fit_into_64_megabytes(void **
     harness_check_silence(h);
 }
 
+struct few {
+    struct slc_vk vk;
+    struct slc_page_directory dir;
+    struct harness_buffer directory, masks;
+};
+
+static void record_few(void *user, VkCommandBuffer commands)
+{
+    struct few *f = user;
+    CHECK_OK(slc_page_directory_record(&f->dir, commands, 0));
+    demand_rig_record_download(&f->vk, commands, &f->dir.directory, &f->directory);
+    demand_rig_record_download(&f->vk, commands, &f->dir.masks, &f->masks);
+}
+
+static void a_block_that_is_kept_shows_nothing_and_stays(void **state)
+{
+    struct harness *h = *state;
+    struct few f;
+    struct slc_caps caps;
+    const struct slc_page_directory_create_info info = {1024, 1, 1};
+    demand_rig_init(h, &f.vk, &caps);
+    CHECK_OK(slc_page_directory_init(&f.dir, &f.vk, &caps, &cb, &info));
+    harness_buffer_init(h, &f.directory, f.dir.directory.size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    harness_buffer_init(h, &f.masks, f.dir.masks.size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    const uint32_t *directory = f.directory.mapped;
+    const struct SluiceDemandBlockMasks *masks = f.masks.mapped;
+    CHECK_OK(slc_page_directory_show(&f.dir, 3, 77, false));
+    harness_run(h, record_few, &f);
+    assert_int_equal(directory[0], 1);
+    assert_int_equal(masks[1].resident, 8);
+    slc_page_directory_hide(&f.dir, 3);
+    CHECK_OK(slc_page_directory_keep(&f.dir, 70)); /* it gets the only block */
+    CHECK_OK(slc_page_directory_keep(&f.dir, 71));
+    harness_run(h, record_few, &f);
+    assert_int_equal(directory[0], SLUICE_DEMAND_NO_BLOCK);
+    assert_int_equal(directory[2], 1);
+    assert_int_equal(masks[1].resident, 0);
+    assert_int_equal(masks[1].used, 0);
+    CHECK_RESULT(slc_page_directory_keep(&f.dir, 0), SLUICE_ERROR_LIMIT_EXCEEDED);
+    slc_page_directory_unkeep(&f.dir, 0); /* is not kept */
+    CHECK_OK(slc_page_directory_show(&f.dir, 70, 5, false));
+    slc_page_directory_unkeep(&f.dir, 70);
+    slc_page_directory_hide(&f.dir, 70);
+    harness_run(h, record_few, &f);
+    assert_int_equal(directory[2], 1);
+    assert_int_equal(masks[1].resident, 0);
+    slc_page_directory_unkeep(&f.dir, 71);
+    harness_run(h, record_few, &f);
+    assert_int_equal(directory[2], SLUICE_DEMAND_NO_BLOCK);
+    slc_page_directory_finish(&f.dir);
+    harness_buffer_finish(h, &f.directory);
+    harness_buffer_finish(h, &f.masks);
+    harness_check_silence(h);
+}
+
 /* All that allocates, with nothing changed where there is no memory; true: nothing failed. */
 static bool show_with_little_memory(struct directory_rig *r, uint64_t refuse_from)
 {
@@ -326,6 +381,7 @@ int main(void)
     struct CMUnitTest tests[] = {
         cmocka_unit_test(the_device_shows_what_a_naive_table_shows),
         cmocka_unit_test(a_block_is_there_again_as_soon_as_its_last_page_is_hidden),
+        cmocka_unit_test(a_block_that_is_kept_shows_nothing_and_stays),
         cmocka_unit_test(used_bits_arrive_whoever_has_the_blocks_by_then),
         cmocka_unit_test(nobody_inherits_the_used_bits_of_a_block),
         cmocka_unit_test(used_bits_of_an_empty_table_are_none),

@@ -322,6 +322,52 @@ static void nothing_is_forgotten_without_eviction(void **state)
     small_destroy(s);
 }
 
+/* Their colors are in the table of textures: no page is looked up, and none is ever resident. */
+static void textures_whose_last_level_is_sampled_are_in_use(void **state)
+{
+    (void)state;
+    enum { USED = 10, ALL = 20, LAUNCHES = 8 };
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .forgetAfterLaunches = LAUNCHES};
+    struct small *s = small_create(&info);
+    for (uint32_t i = 0; i < ALL; i++)
+        add(s, i, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE);
+    add_samples(s, 0, ALL, LEVELS - 1);
+    assert_in_range(runner_load(&s->r, 20), 1, 19);
+    runner_clear(&s->r);
+    add_samples(s, 0, USED, LEVELS - 1);
+    for (uint32_t i = 0; i < 8 * LAUNCHES; i++) {
+        runner_launch(&s->r);
+        assert_true(runner_all_resident(&s->r));
+    }
+    assert_int_equal(runner_statistics(&s->r).texturesOpened, ALL);
+    assert_int_equal(runner_statistics(&s->r).texturesForgotten, ALL - USED);
+    assert_int_equal(runner_statistics(&s->r).residentTileCount, 0);
+    small_destroy(s);
+}
+
+/* Far textures are sampled by every launch, near ones a few at a time: memory is short. */
+static void far_textures_stay_open_while_near_ones_come_and_go(void **state)
+{
+    (void)state;
+    enum { FAR = 100, STEP = 60 };
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = 4u << 20};
+    struct small *s = small_create(&info);
+    for (uint32_t i = 0; i < COUNT; i++)
+        add(s, i, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE);
+    for (uint32_t first = FAR; first + STEP <= COUNT; first += STEP) {
+        runner_clear(&s->r);
+        add_samples(s, 0, FAR, LEVELS - 1);
+        add_samples(s, first, first + STEP, 0);
+        assert_in_range(runner_load(&s->r, 20), 1, 19);
+        check_samples(s, FAR, first, first + STEP, 0);
+    }
+    for (uint32_t i = 0; i < FAR; i++)
+        assert_int_equal(atomic_load(&s->images[i].opened), 1);
+    assert_in_range(runner_statistics(&s->r).texturesForgotten, 1, COUNT - FAR);
+    small_destroy(s);
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -338,6 +384,8 @@ int main(void)
         cmocka_unit_test(tiles_go_before_textures_that_were_used_later),
         cmocka_unit_test(loader_without_a_page_waits_for_one),
         cmocka_unit_test(nothing_is_forgotten_without_eviction),
+        cmocka_unit_test(textures_whose_last_level_is_sampled_are_in_use),
+        cmocka_unit_test(far_textures_stay_open_while_near_ones_come_and_go),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }

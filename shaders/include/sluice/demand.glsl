@@ -181,8 +181,10 @@ vec4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, fl
     uvec2 modes = sluiceDemandModes(s.shape);
     bool beyond = !(lod < float(last)); /* NaN */
     if (beyond && modes.x != SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
-        modes.y != SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER)
+        modes.y != SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER) {
+        sluiceMarkDemandPage(s.tailPage);
         return sluiceDemandBaseColor(s.index);
+    }
     lod = beyond ? float(last) : max(lod, 0.0);
     SluicePagedTaps taps =
         sluicePlaceTaps(vec2(s.size), last + 1u, dx, dy, lod, beyond ? 1.0 : maxTaps);
@@ -190,6 +192,8 @@ vec4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, fl
         taps.fine = uint(max(ceil(lod - 0.5), 0.0));
         taps.fraction = 0.0;
     }
+    if (taps.fine == last) /* it has no page */
+        sluiceMarkDemandPage(s.tailPage);
     if (taps.count > 1u || cubic) /* steps of a row are small beside some coordinates */
         uv = vec2(sluiceNearCoordinate(uv.x, modes.x), sluiceNearCoordinate(uv.y, modes.y));
     if (cubic)

@@ -61,6 +61,17 @@ bool sluiceFindDemandPage(uint page, out uint at, out uint word)
     return true;
 }
 
+/** Marks a page as used without looking it up: the tail of a texture whose color was enough. */
+void sluiceMarkDemandPage(uint page)
+{
+    if (SLUICE_DEMAND_LEVEL_WORD(SLUICE_DEMAND_PARAMETER_TRACKING) == 0u)
+        return;
+    uint block = SLUICE_DEMAND_DIRECTORY_WORD(page / SLUICE_DEMAND_BLOCK_PAGES);
+    uint bit = 1u << (page % SLUICE_DEMAND_BLOCK_PAGES);
+    if (block != SLUICE_DEMAND_NO_BLOCK && (SLUICE_DEMAND_MASKS(block).used & bit) == 0u)
+        atomicOr(SLUICE_DEMAND_MASKS(block).used, bit);
+}
+
 /**
  * Gets the value of a page of a resource: its low 32 bits, then its high 32 bits. Returns false if
  * the page is not resident; it is then requested, and `value` is 0.

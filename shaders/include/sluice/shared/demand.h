@@ -50,7 +50,8 @@
 
 struct SluiceDemandBlockMasks {
     uint resident; /* a bit per page: its words are valid. Written by the host */
-    uint used;     /* a bit per page: looked up since the host read the bits. Written by shaders */
+    uint used; /* a bit per page: looked up since the host read the bits, or a tail whose texture
+                  was sampled. Written by shaders */
 };
 SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
 
