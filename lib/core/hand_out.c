@@ -64,8 +64,14 @@ static SluiceResult take_slot(slc_manager *m, const struct slc_managed_texture *
     bool separate = packed && m->config.separatePackedTiles;
     uint64_t kept = slc_kept_slots(m) + (scope ? owed_slots(m, n->level) : 0);
     bool may_take = packed || heaps->free_total > kept;
-    if (separate ? slc_tile_heaps_take_packed(heaps, node, &n->heap, &n->slot)
-                 : may_take && slc_has_own_slot(m) && slc_take_own_slot(m, node))
+    bool taken;
+    if (separate)
+        taken = slc_tile_heaps_take_packed(heaps, node, &n->heap, &n->slot);
+    else if (heaps->packed_free) /* rare, so kept out of the way */
+        taken = may_take && slc_has_own_slot(m) && slc_take_own_slot(m, node);
+    else
+        taken = may_take && slc_tile_heaps_take(heaps, node, &n->heap, &n->slot);
+    if (taken)
         return SLUICE_SUCCESS;
     SluiceResult result = take_from_new_heap(m, n, node, separate, refused);
     if (result == SLUICE_BUDGET_REACHED && may_take &&
