@@ -1,4 +1,4 @@
-/* What docs/frame-loop.md says on descriptor sets of an engine's own. Compiled, not run. */
+/* Descriptor sets of an engine's own, as docs/frame-loop.md shows them. Compiled, not run. */
 #include <sluice/vulkan.h>
 
 #define PAGE_IMAGES 64 /* maxPageChunkCount of the context */

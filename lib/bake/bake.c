@@ -313,7 +313,7 @@ static SluiceResult bake_file(struct bake *bake)
     return result;
 }
 
-/* What sluiceBakeFile and sluiceDescribeBake begin with. */
+/* Checks the arguments that sluiceBakeFile and sluiceDescribeBake share. */
 static SluiceResult read_arguments(struct bake *bake, SluiceBakeInfo *info,
                                    const SluiceBakeInfo *given, const SluiceBakeReport *report)
 {

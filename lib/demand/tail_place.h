@@ -75,7 +75,7 @@ static inline uint32_t slc_tail_slot_count(const struct slc_tail_cut *cut)
     return cut->columns * cut->rows * cut->slots;
 }
 
-/** What the word of a page has of its slot, besides chunk and layer. Not 0. */
+/** The bits of a page's word that name the slot. The other bits name chunk and layer. Not 0. */
 static inline uint32_t slc_tail_slot_bits(const struct slc_tail_cut *cut, uint32_t slot)
 {
     uint32_t cell = slot / cut->slots;

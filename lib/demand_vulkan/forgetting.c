@@ -54,7 +54,7 @@ static void change_order(SluiceDemandLoader *loader, struct slc_demand_image *im
     append(loader, image);
 }
 
-/* Without a block for its tail, only pages that are looked up or missed tell of its use. */
+/* If the page table has no block for the tail, only lookups and misses of pages count as use. */
 void slc_image_enter_order(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     image->last_use = loader->launch + loader->info.launchesInFlight; /* it is to be used yet */

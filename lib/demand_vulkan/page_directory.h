@@ -90,7 +90,7 @@ void slc_page_directory_hide(struct slc_page_directory *dir, uint32_t page);
 /** Shaders may set the page's used bit from the next record on, even while it is not shown: its
  *  block stays. Errors: as slc_page_directory_show. */
 SluiceResult slc_page_directory_keep(struct slc_page_directory *dir, uint32_t page);
-/** Of a page that is not kept: nothing. */
+/** Ends slc_page_directory_keep. Does nothing if the page is not kept. */
 void slc_page_directory_unkeep(struct slc_page_directory *dir, uint32_t page);
 /** Shown with this value, of which the low 32 bits count. */
 bool slc_page_directory_shows(const struct slc_page_directory *dir, uint32_t page, uint32_t value);

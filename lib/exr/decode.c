@@ -77,7 +77,7 @@ static void load_span(exr_pixel_type_t type, const unsigned char *source, float 
 /* How a component is stored. */
 enum encoding { ENCODE_FLOAT, ENCODE_HALF, ENCODE_UNORM8, ENCODE_UNORM16, ENCODE_SRGB };
 
-/* Of component `c`: alpha is linear. */
+/* The encoding of component `c`. Alpha is linear in every format. */
 static enum encoding encoding_of(SluiceFormat format, uint32_t c)
 {
     if (format == SLUICE_FORMAT_R8G8B8A8_SRGB)

@@ -12,7 +12,7 @@ struct slc_file_identity {
     int64_t seconds, nanoseconds; ///< of the last change of contents; chmod and links change others
 };
 
-/** Of a file that fstat described. */
+/** The identity in the answer of fstat. */
 struct slc_file_identity slc_file_identity(const struct stat *status);
 
 /** One file of a pool. The pool's mutex guards all of it. Starts as SLC_POOLED_FILE_CLOSED. */

@@ -176,7 +176,7 @@ void slc_input_file_finish(struct slc_input_file *file)
     file->said = NULL;
 }
 
-/* What a callback returned, as a value of errno that slc_system_result turns back. */
+/* Turns a callback's result into a value of errno. slc_system_result turns it back. */
 static int callback_error(SluiceResult result)
 {
     return result == SLUICE_NOT_READY                  ? EAGAIN

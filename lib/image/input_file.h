@@ -37,8 +37,8 @@ struct slc_input_choice {
     SluiceFilePool *pool; ///< NULL: the file stays open; without effect on `input`
 };
 
-/** As slc_input_file_init. Errors: also NULL_POINTER, INVALID_ARGUMENT, UNSUPPORTED of `input`,
- *  logged. */
+/** Opens a path or an input. Errors: those of slc_input_file_init; NULL_POINTER, INVALID_ARGUMENT
+ *  and UNSUPPORTED if `input` is wrong. All are logged. */
 SluiceResult slc_input_file_init_choice(struct slc_input_file *file,
                                         const struct slc_input_choice *choice,
                                         const SluiceAllocationCallbacks *cb,
@@ -88,11 +88,11 @@ __attribute__((format(printf, 3, 4)))
 SluiceResult
 slc_input_fail(const struct slc_input_file *file, SluiceResult result, const char *format, ...);
 
-/** As slc_input_fail, with "at OFFSET: " before the text. */
+/** Fails like slc_input_fail, with "at OFFSET: " before the text. */
 SluiceResult slc_input_fail_at(const struct slc_input_file *file, SluiceResult result,
                                uint64_t offset, const char *text);
 
-/** What errno says of a read that failed. */
+/** The reason for a failed read in words. `error` is a value of errno. */
 const char *slc_input_error_text(int error);
 
 /** Copies as much of a file's own words as fits, with ? for what may not stand in a message. */

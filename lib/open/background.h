@@ -21,7 +21,7 @@ void slc_background_cancel(struct slc_background *background, struct slc_picture
 /** Waits for a while, less if somebody cancels. */
 void slc_background_pause(struct slc_background *background);
 
-/** What the threads do; picture_jobs.c. */
+/** The two jobs of the threads. They are in picture_jobs.c. */
 void slc_make_preview(struct slc_background *background, struct slc_picture_stream *stream);
 void slc_make_store(struct slc_background *background, struct slc_picture_stream *stream);
 

@@ -1,4 +1,4 @@
-/** What a file is, by its first bytes, and the source that reads it in place. */
+/** Finds the kind of a file by its first bytes, and makes the source that reads it in place. */
 #ifndef SLC_OPEN_FILE_KIND_H
 #define SLC_OPEN_FILE_KIND_H
 
@@ -8,7 +8,7 @@
 
 #include "image/file_pool.h"
 
-/** What all files of an opener share. A member that this build cannot use is NULL. */
+/** Pools and budgets that all files of an opener share. NULL where the build lacks the kind. */
 struct slc_shared_files {
     SluiceFilePool *pool;
     SluiceStoreReadPool *read_pool;

@@ -15,7 +15,7 @@
 /** Times that a store is baked again because it was damaged, and as many because it vanished. */
 #define SLC_MOST_REBUILDS 2u
 
-/** What a stream waits for. The mutex of the background guards it. */
+/** A stream's place in the queue of jobs. The mutex of the background guards it. */
 struct slc_stream_job {
     struct slc_picture_stream *next; ///< in the queue
     bool is_queued, is_running;

@@ -4,7 +4,7 @@
 
 #include <sluice/base.h>
 
-/** What messages, reads and writes need of a file that is being written. */
+/** A file that is being written: its path, log and allocator. */
 struct slc_store_file {
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;

@@ -254,7 +254,7 @@ static void require_arrays(const struct slc_caps *caps, VkPhysicalDeviceFeatures
         vulkan12->runtimeDescriptorArray = VK_TRUE;
 }
 
-/* Of textures (sluiceGetVulkanSampler), and their views. */
+/* Features for the samplers of sluiceGetVulkanSampler and for the views of textures. */
 static void require_samplers(const VkPhysicalDeviceFeatures *there,
                              const VkPhysicalDeviceVulkan12Features *there12,
                              VkPhysicalDeviceFeatures *features,

@@ -25,7 +25,7 @@ void slc_production_start(SluiceVulkanStreamer *s, uint32_t texture, const Sluic
     uint32_t unit = slc_unit_take_empty(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
-    /* Without bindings that take time, this frame can record the tile. */
+    /* In paged and dense mode a page is there at once, so this frame can record the tile. */
     bool at_once =
         !interface->going_size && interface->map(s->residency, texture, tile) == SLUICE_SUCCESS;
     s->units[unit].state = at_once ? SLC_UNIT_BINDING : SLC_UNIT_ARRIVED;

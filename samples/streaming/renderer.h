@@ -46,7 +46,7 @@ struct renderer_request {
     bool paged;           ///< shaders for paged residency
 };
 
-/** What is bound for a frame, besides the textures of each surface in set 1. */
+/** Sets of a frame. Set 1 has the textures of a surface and is bound for each surface. */
 struct renderer_sets {
     VkDescriptorSet streamer; ///< set 0; the streamer's for this frame
     VkDescriptorSet frame;    ///< set 2; of `frame_layout`

@@ -214,7 +214,7 @@ static void packed_tiles_in_heaps_of_their_own_let_the_others_go(void **state)
     assert_int_equal(heaps_that_stay(true), 48 / CAPACITY);
 }
 
-/* What is scarce is shared: no slot is free while a request waits. */
+/* Both kinds of tiles use the last slots: none stays free while a request waits. */
 static void tiles_take_slots_of_the_other_kind_before_they_wait(void **state)
 {
     (void)state;

@@ -33,7 +33,7 @@ void cube_rig_finish(struct cube_rig *rig);
 /** Samples in this form from here on; at first CUBE_FORM_CUBE. */
 void cube_rig_use(struct cube_rig *rig, enum cube_form form);
 
-/** What the sources give for a texel. Red is (level + 1) / 16, so 0 is not resident. */
+/** The texel of the sources. Red is (level + 1) / 16, so red 0 means not resident. */
 void cube_rig_texel(uint32_t cube, uint32_t face, uint32_t level, uint32_t x, uint32_t y,
                     float rgba[4]);
 
@@ -50,7 +50,7 @@ void cube_rig_settle(struct cube_rig *rig, uint32_t frame_count, uint32_t cube, 
  *  has a random length, which also changes from pixel to pixel. */
 struct CubeInput cube_rig_input(const struct cube_rig *rig, uint32_t face, double u, double v,
                                 double texels);
-/** The same with other derivatives of (u, v), in texels. */
+/** Like cube_rig_input, with derivatives of (u, v) in texels. */
 struct CubeInput cube_rig_input_with(const struct cube_rig *rig, uint32_t face, double u, double v,
                                      const double dx[2], const double dy[2]);
 

@@ -303,7 +303,6 @@ static void tiles_go_before_textures_that_were_used_later(void **state)
     small_destroy(s);
 }
 
-/* Without eviction nothing is forgotten, whatever the setting says. */
 static void nothing_is_forgotten_without_eviction(void **state)
 {
     (void)state;

@@ -114,7 +114,7 @@ static void read_file(const char *path, const char *part_path, bool finishes)
     sluiceDestroyImageSource(source);
 }
 
-/* Of the exact size, so that reading beyond it is seen. */
+/* The bytes have the exact size, so a sanitizer sees reads beyond the end. */
 static void read_memory(const uint8_t *bytes, size_t size)
 {
     SluiceInput input = {.structSize = sizeof input, .pBytes = bytes, .size = size};

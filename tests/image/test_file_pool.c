@@ -211,7 +211,7 @@ static void set_time(const char *path, long seconds, long nanoseconds)
     assert_int_equal(utimensat(AT_FDCWD, path, times, 0), 0);
 }
 
-/* The same size, and where it can be, the same time: replaced by rename, or written in place. */
+/* A file is replaced by rename, or written in place. Its size stays, and its time if possible. */
 static void another_file_is_not_mistaken_for_the_first(void **state)
 {
     (void)state;
@@ -261,7 +261,7 @@ static void the_first_file_with_other_permissions_is_read_on(void **state)
     teardown(&f);
 }
 
-/* As files come and go before they were ever read. */
+/* A closed file may become another one: its size and kind are taken when it is opened again. */
 static void a_closed_file_forgets_what_it_was(void **state)
 {
     (void)state;

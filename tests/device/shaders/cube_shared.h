@@ -13,7 +13,7 @@
 #define CUBE_WORDS 32u /* copies feedback words instead */
 #define CUBE_INDEX_SHIFT 16u
 
-/* As long as two ProbeInputs, in the same buffer. */
+/* Its size is that of two ProbeInputs, because both lie in one buffer. */
 struct CubeInput {
     float direction[3];
     float dx[3];
