@@ -155,23 +155,10 @@ VkPipeline rig_pipeline(struct rig *rig, uint32_t kind)
     if (rig->pipelines[kind])
         return rig->pipelines[kind];
     const struct gpu *gpu = &rig->bench->gpu;
-    VkShaderModule module = gpu_create_shader(gpu, demand_samples_comp, sizeof demand_samples_comp);
-    if (!module)
-        return VK_NULL_HANDLE;
     VkSpecializationMapEntry entry = {.constantID = 0, .offset = 0, .size = 4};
     VkSpecializationInfo constants = {1, &entry, sizeof kind, &kind};
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = STAGE,
-                  .module = module,
-                  .pName = "main",
-                  .pSpecializationInfo = &constants},
-        .layout = rig->layout};
-    if (!gpu_check(vkCreateComputePipelines(gpu->device, VK_NULL_HANDLE, 1, &info, NULL,
-                                            &rig->pipelines[kind]),
-                   "vkCreateComputePipelines"))
+    if (!gpu_create_compute_pipeline(gpu, rig->layout, demand_samples_comp,
+                                     sizeof demand_samples_comp, &constants, &rig->pipelines[kind]))
         rig->pipelines[kind] = VK_NULL_HANDLE;
-    vkDestroyShaderModule(gpu->device, module, NULL);
     return rig->pipelines[kind];
 }

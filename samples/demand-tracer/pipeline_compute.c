@@ -11,20 +11,8 @@ bool compute_pipeline_create(const struct gpu *gpu, VkPipelineLayout layout, boo
         {TRACER_CONSTANT_NEEDS, sizeof values[0], sizeof values[1]},
         {TRACER_CONSTANT_SCENE_ROOT, 2 * sizeof values[0], sizeof values[2]}};
     const VkSpecializationInfo constants = {3, entries, sizeof values, values};
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = gpu_create_shader(gpu, trace_comp, sizeof trace_comp),
-                  .pName = "main",
-                  .pSpecializationInfo = &constants},
-        .layout = layout};
-    bool done =
-        info.stage.module != VK_NULL_HANDLE &&
-        gpu_check(vkCreateComputePipelines(gpu->device, VK_NULL_HANDLE, 1, &info, NULL, pipeline),
-                  "vkCreateComputePipelines");
-    vkDestroyShaderModule(gpu->device, info.stage.module, NULL);
-    return done;
+    return gpu_create_compute_pipeline(gpu, layout, trace_comp, sizeof trace_comp, &constants,
+                                       pipeline);
 }
 
 void compute_pipeline_record(VkPipeline pipeline, VkCommandBuffer commands, uint32_t pixel_count)

@@ -83,23 +83,14 @@ static bool create_pipelines(struct passes *p)
     VkDevice device = p->gpu->device;
     VkShaderModule vertex = gpu_create_shader(p->gpu, room_vert, sizeof room_vert);
     VkShaderModule fragment = gpu_create_shader(p->gpu, room_frag, sizeof room_frag);
-    VkShaderModule compute = gpu_create_shader(p->gpu, reflections_comp, sizeof reflections_comp);
     const struct draw_pipeline_info room = {
         .target = &p->target, .layout = p->room_layout, .vertex = vertex, .fragment = fragment};
-    const VkComputePipelineCreateInfo reflections = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = compute,
-                  .pName = "main"},
-        .layout = p->reflections_layout};
-    bool created = vertex && fragment && compute && draw_pipeline_create(p->gpu, &room, &p->room) &&
-                   gpu_check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &reflections, NULL,
-                                                      &p->reflections_pipeline),
-                             "pipeline");
+    bool created =
+        vertex && fragment && draw_pipeline_create(p->gpu, &room, &p->room) &&
+        gpu_create_compute_pipeline(p->gpu, p->reflections_layout, reflections_comp,
+                                    sizeof reflections_comp, NULL, &p->reflections_pipeline);
     vkDestroyShaderModule(device, vertex, NULL);
     vkDestroyShaderModule(device, fragment, NULL);
-    vkDestroyShaderModule(device, compute, NULL);
     return created;
 }
 

@@ -22,19 +22,8 @@ static bool create_pipeline(struct maker *m)
     if (!gpu_check(vkCreateDescriptorSetLayout(device, &sets, NULL, &m->set_layout), "layout") ||
         !gpu_check(vkCreatePipelineLayout(device, &layout, NULL, &m->layout), "layout"))
         return false;
-    VkShaderModule shader = gpu_create_shader(m->gpu, make_comp, sizeof make_comp);
-    const VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = shader,
-                  .pName = "main"},
-        .layout = m->layout};
-    bool created = shader && gpu_check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info,
-                                                                NULL, &m->pipeline),
-                                       "pipeline");
-    vkDestroyShaderModule(device, shader, NULL);
-    return created;
+    return gpu_create_compute_pipeline(m->gpu, m->layout, make_comp, sizeof make_comp, NULL,
+                                       &m->pipeline);
 }
 
 static bool create_sets(struct maker *m)

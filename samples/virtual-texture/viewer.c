@@ -51,19 +51,8 @@ static bool create_pipeline(struct viewer *v, VkDescriptorSetLayout streamer_lay
                                                .pPushConstantRanges = &range};
     if (!gpu_check(vkCreatePipelineLayout(device, &layout, NULL, &v->layout), "layout"))
         return false;
-    VkShaderModule shader = gpu_create_shader(v->gpu, view_comp, sizeof view_comp);
-    const VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = shader,
-                  .pName = "main"},
-        .layout = v->layout};
-    bool created = shader && gpu_check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info,
-                                                                NULL, &v->pipeline),
-                                       "pipeline");
-    vkDestroyShaderModule(device, shader, NULL);
-    return created;
+    return gpu_create_compute_pipeline(v->gpu, v->layout, view_comp, sizeof view_comp, NULL,
+                                       &v->pipeline);
 }
 
 bool viewer_create(struct viewer *v, const struct gpu *gpu, uint32_t width, uint32_t height,

@@ -82,14 +82,15 @@ void conform_write_buffers(struct harness *h, const struct conform_set *set, uin
 }
 
 VkPipeline conform_compute_pipeline(struct harness *h, VkPipelineLayout layout,
-                                    VkShaderModule compute)
+                                    VkShaderModule compute, const VkSpecializationInfo *constants)
 {
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = compute,
-                  .pName = "main"},
+                  .pName = "main",
+                  .pSpecializationInfo = constants},
         .layout = layout};
     VkPipeline pipeline;
     assert_int_equal(
@@ -187,7 +188,7 @@ void conform_init(struct conform *c, struct harness *h)
         h, &c->set, BUFFERS,
         (const struct harness_buffer *const[]){&c->table, &c->feedback, &c->inputs});
     c->pipelines[CONFORM_STAGE_COMPUTE] = conform_compute_pipeline(
-        h, c->set.layout, conform_module(h, conform_comp, sizeof conform_comp));
+        h, c->set.layout, conform_module(h, conform_comp, sizeof conform_comp), NULL);
     conform_create_target(h, &c->pass, &c->framebuffer);
     c->pipelines[CONFORM_STAGE_FRAGMENT] =
         conform_graphics_pipeline(h, c->set.layout, c->pass, conform_vertex_module(h),

@@ -73,9 +73,9 @@ void conform_create_target(struct harness *h, VkRenderPass *pass, VkFramebuffer 
 void conform_record(struct harness *h, VkCommandBuffer commands, const struct conform_job *job);
 void conform_run_job(struct harness *h, const struct conform_job *job);
 
-/** Consumes the module, as the next. */
+/** Consumes the module, as the next. `constants` may be NULL. */
 VkPipeline conform_compute_pipeline(struct harness *h, VkPipelineLayout layout,
-                                    VkShaderModule compute);
+                                    VkShaderModule compute, const VkSpecializationInfo *constants);
 
 /** For a target of CONFORM_TARGET_SIZE. */
 VkPipeline conform_graphics_pipeline(struct harness *h, VkPipelineLayout layout, VkRenderPass pass,

@@ -41,21 +41,8 @@ static VkPipeline create_pipeline(const struct prober *p, enum cube_form form)
 {
     struct harness *h = p->h;
     struct prober_specialization specialization;
-    VkShaderModule module = create_module(h, form);
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module,
-                  .pName = "main",
-                  .pSpecializationInfo = prober_specialize(p, &specialization)},
-        .layout = p->layout};
-    VkPipeline pipeline;
-    assert_int_equal(
-        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline),
-        VK_SUCCESS);
-    h->DestroyShaderModule(h->device, module, NULL);
-    return pipeline;
+    return conform_compute_pipeline(h, p->layout, create_module(h, form),
+                                    prober_specialize(p, &specialization));
 }
 
 /* The harness's, as those of probers. */

@@ -1,5 +1,6 @@
 #include "device/demand_runner.h"
 
+#include "device/conform.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -51,23 +52,12 @@ static void create_layouts(struct runner *r)
 static void create_pipeline(struct runner *r)
 {
     struct harness *h = r->h;
-    VkShaderModuleCreateInfo code = {
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = r->reads_bytes ? sizeof demand_runner_bytes_comp : sizeof demand_runner_comp,
-        .pCode = r->reads_bytes ? demand_runner_bytes_comp : demand_runner_comp};
-    VkShaderModule module;
-    assert_int_equal(h->CreateShaderModule(h->device, &code, NULL, &module), VK_SUCCESS);
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module,
-                  .pName = "main"},
-        .layout = r->layout};
-    assert_int_equal(
-        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &r->pipeline),
-        VK_SUCCESS);
-    h->DestroyShaderModule(h->device, module, NULL);
+    r->pipeline = conform_compute_pipeline(
+        h, r->layout,
+        conform_module(h, r->reads_bytes ? demand_runner_bytes_comp : demand_runner_comp,
+                       r->reads_bytes ? sizeof demand_runner_bytes_comp
+                                      : sizeof demand_runner_comp),
+        NULL);
 }
 
 static void write_buffers(struct runner *r, VkDescriptorSet set)

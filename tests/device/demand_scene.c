@@ -79,20 +79,8 @@ static VkPipeline preview_pipeline(struct demand_scene *s)
     VkBool32 preview = VK_TRUE;
     VkSpecializationMapEntry entry = {0, 0, sizeof preview};
     VkSpecializationInfo special = {1, &entry, sizeof preview, &preview};
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = conform_module(h, demand_probe_comp, sizeof demand_probe_comp),
-                  .pName = "main",
-                  .pSpecializationInfo = &special},
-        .layout = s->layout};
-    VkPipeline pipeline;
-    assert_int_equal(
-        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline),
-        VK_SUCCESS);
-    h->DestroyShaderModule(h->device, info.stage.module, NULL);
-    return pipeline;
+    return conform_compute_pipeline(
+        h, s->layout, conform_module(h, demand_probe_comp, sizeof demand_probe_comp), &special);
 }
 
 /* Drivers take seconds to compile one, so only those that are used. */
@@ -103,13 +91,14 @@ static VkPipeline create_pipeline(struct demand_scene *s, enum demand_shader sha
         return preview_pipeline(s);
     if (shader == DEMAND_SHADER_LOOP)
         return conform_compute_pipeline(
-            h, s->layout, conform_module(h, demand_probe_loop_comp, sizeof demand_probe_loop_comp));
+            h, s->layout, conform_module(h, demand_probe_loop_comp, sizeof demand_probe_loop_comp),
+            NULL);
     if (shader == DEMAND_SHADER_FRAGMENT)
         return conform_graphics_pipeline(
             h, s->layout, s->pass, conform_vertex_module(h),
             conform_module(h, demand_probe_frag, sizeof demand_probe_frag), 0);
-    return conform_compute_pipeline(h, s->layout,
-                                    conform_module(h, demand_probe_comp, sizeof demand_probe_comp));
+    return conform_compute_pipeline(
+        h, s->layout, conform_module(h, demand_probe_comp, sizeof demand_probe_comp), NULL);
 }
 
 void demand_scene_init(struct demand_scene *s, struct harness *h, VkFormat format,

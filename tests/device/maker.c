@@ -1,5 +1,6 @@
 #include "device/maker.h"
 
+#include "device/conform.h"
 #include "support/test.h"
 
 #include "maker_comp.h"
@@ -27,22 +28,8 @@ static void create_pipeline(struct maker *m)
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
     assert_int_equal(h->CreatePipelineLayout(h->device, &layout, NULL, &m->layout), VK_SUCCESS);
-    VkShaderModuleCreateInfo module_info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                            .codeSize = sizeof maker_comp,
-                                            .pCode = maker_comp};
-    VkShaderModule module;
-    assert_int_equal(h->CreateShaderModule(h->device, &module_info, NULL, &module), VK_SUCCESS);
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module,
-                  .pName = "main"},
-        .layout = m->layout};
-    assert_int_equal(
-        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &m->pipeline),
-        VK_SUCCESS);
-    h->DestroyShaderModule(h->device, module, NULL);
+    m->pipeline = conform_compute_pipeline(h, m->layout,
+                                           conform_module(h, maker_comp, sizeof maker_comp), NULL);
 }
 
 static void create_sets(struct maker *m)

@@ -1,5 +1,6 @@
 #include "device/probe.h"
 
+#include "device/conform.h"
 #include "support/test.h"
 
 #include "probe_codes_comp.h"
@@ -132,22 +133,9 @@ static VkPipeline create_pipeline(const struct prober *p)
         module_info.codeSize = codes ? sizeof probe_min_lod_codes_comp : sizeof probe_min_lod_comp;
         module_info.pCode = codes ? probe_min_lod_codes_comp : probe_min_lod_comp;
     }
-    VkPipeline pipeline;
     VkShaderModule module;
     assert_int_equal(h->CreateShaderModule(h->device, &module_info, NULL, &module), VK_SUCCESS);
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module,
-                  .pName = "main",
-                  .pSpecializationInfo = prober_specialize(p, &specialization)},
-        .layout = p->layout};
-    assert_int_equal(
-        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline),
-        VK_SUCCESS);
-    h->DestroyShaderModule(h->device, module, NULL);
-    return pipeline;
+    return conform_compute_pipeline(h, p->layout, module, prober_specialize(p, &specialization));
 }
 
 /* The layout that it was made with may be gone: that of each prober is defined alike. */

@@ -32,23 +32,9 @@ static VkShaderModule create_module(const struct prober *p)
 
 static VkPipeline create_pipeline(struct prober *p)
 {
-    struct harness *h = p->h;
     struct prober_specialization specialization;
-    VkShaderModule module = create_module(p);
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module,
-                  .pName = "main",
-                  .pSpecializationInfo = prober_specialize(p, &specialization)},
-        .layout = p->layout};
-    VkPipeline pipeline;
-    assert_int_equal(
-        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline),
-        VK_SUCCESS);
-    h->DestroyShaderModule(h->device, module, NULL);
-    return pipeline;
+    return conform_compute_pipeline(p->h, p->layout, create_module(p),
+                                    prober_specialize(p, &specialization));
 }
 
 static void probe_init(struct array_probe *p, struct harness *h, const uint32_t size[2],

@@ -499,7 +499,7 @@ static void caller_init(struct caller *c, struct harness *h)
     conform_create_set(h, 1, 0, sizeof(struct TwinParams), &c->set);
     conform_write_buffers(h, &c->set, 1, (const struct harness_buffer *const[]){&c->calls});
     c->pipeline = conform_compute_pipeline(h, c->set.layout,
-                                           conform_module(h, twins_comp, sizeof twins_comp));
+                                           conform_module(h, twins_comp, sizeof twins_comp), NULL);
 }
 
 static void caller_finish(struct caller *c)

@@ -139,7 +139,7 @@ void truth_init(struct truth *t, struct harness *h, const struct SluiceTextureEn
                           (const struct harness_buffer *const[]){&t->inputs, &t->touched});
     conform_create_target(h, &t->pass, &t->framebuffer);
     t->pipelines[CONFORM_STAGE_COMPUTE] = conform_compute_pipeline(
-        h, t->set.layout, conform_module(h, truth_comp, sizeof truth_comp));
+        h, t->set.layout, conform_module(h, truth_comp, sizeof truth_comp), NULL);
     t->pipelines[CONFORM_STAGE_FRAGMENT] =
         conform_graphics_pipeline(h, t->set.layout, t->pass, conform_vertex_module(h),
                                   conform_module(h, truth_frag, sizeof truth_frag), 0);

@@ -1,5 +1,6 @@
 #include "device/writer.h"
 
+#include "device/conform.h"
 #include "support/test.h"
 
 #include "writer_comp.h"
@@ -42,22 +43,8 @@ static void create_pipeline(struct writer *w, enum writer_kind kind)
                  {writer_masks_comp, sizeof writer_masks_comp},
                  {writer_turns_comp, sizeof writer_turns_comp}};
     struct harness *h = w->h;
-    VkShaderModuleCreateInfo module_info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                            .codeSize = codes[kind].size,
-                                            .pCode = codes[kind].code};
-    VkShaderModule module;
-    assert_int_equal(h->CreateShaderModule(h->device, &module_info, NULL, &module), VK_SUCCESS);
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module,
-                  .pName = "main"},
-        .layout = w->layout};
-    assert_int_equal(
-        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &w->pipeline),
-        VK_SUCCESS);
-    h->DestroyShaderModule(h->device, module, NULL);
+    w->pipeline = conform_compute_pipeline(
+        h, w->layout, conform_module(h, codes[kind].code, codes[kind].size), NULL);
 }
 
 static void create_set(struct writer *w)

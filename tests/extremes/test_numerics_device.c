@@ -25,8 +25,8 @@ static void caller_init(struct caller *c, struct harness *h)
                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     conform_create_set(h, 1, 0, sizeof(struct NumericsParams), &c->set);
     conform_write_buffers(h, &c->set, 1, (const struct harness_buffer *const[]){&c->calls});
-    c->pipeline = conform_compute_pipeline(h, c->set.layout,
-                                           conform_module(h, numerics_comp, sizeof numerics_comp));
+    c->pipeline = conform_compute_pipeline(
+        h, c->set.layout, conform_module(h, numerics_comp, sizeof numerics_comp), NULL);
 }
 
 static void caller_finish(struct caller *c)

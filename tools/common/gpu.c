@@ -378,6 +378,28 @@ VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, s
     return module;
 }
 
+bool gpu_create_compute_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
+                                 const uint32_t *words, size_t size,
+                                 const VkSpecializationInfo *constants, VkPipeline *pipeline)
+{
+    VkShaderModule module = gpu_create_shader(gpu, words, size);
+    if (!module)
+        return false;
+    VkComputePipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = module,
+                  .pName = "main",
+                  .pSpecializationInfo = constants},
+        .layout = layout};
+    bool created =
+        gpu_check(vkCreateComputePipelines(gpu->device, VK_NULL_HANDLE, 1, &info, NULL, pipeline),
+                  "vkCreateComputePipelines");
+    vkDestroyShaderModule(gpu->device, module, NULL);
+    return created;
+}
+
 void gpu_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
                  VkPipelineStageFlags to, VkAccessFlags to_access)
 {

@@ -88,6 +88,10 @@ bool gpu_create_texture(const struct gpu *gpu, VkFormat format, uint32_t width, 
 void gpu_destroy_image(const struct gpu *gpu, struct gpu_image *image);
 
 VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, size_t size);
+/** A compute pipeline of SPIR-V of `size` bytes. `constants` may be NULL. */
+bool gpu_create_compute_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
+                                 const uint32_t *words, size_t size,
+                                 const VkSpecializationInfo *constants, VkPipeline *pipeline);
 
 /** Of all memory. */
 void gpu_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
