@@ -10,6 +10,7 @@
  */
 #define _XOPEN_SOURCE 700
 
+#include "../../tools/common/clock.h"
 #include "../../tools/common/shared_options.h"
 
 #include <sluice/open.h>
@@ -31,13 +32,6 @@ static struct {
     SluiceStoreReadPool *read_pool;
     SluiceImageSource **sources;
 } run;
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
 
 static void figure(const char *name, double value, const char *unit)
 {
@@ -151,11 +145,11 @@ static double reads_per_second(uint32_t count)
     for (uint32_t i = 0; i < count; i++) /* the index is read once */
         if (sluiceReadImageRegion(run.sources[i], &region, texels, 4 * SIZE))
             fail("reading a store");
-    double start = now();
+    double start = clock_seconds();
     for (uint32_t at = 0; reads < most; reads++, at = (at + 1) % count)
         if (sluiceReadImageRegion(run.sources[at], &region, texels, 4 * SIZE))
             fail("reading a store");
-    return (double)reads / (now() - start);
+    return (double)reads / (clock_seconds() - start);
 }
 
 static void measure_with_pool(void)
@@ -165,10 +159,10 @@ static void measure_with_pool(void)
     set_limit(run.limit);
     if (sluiceCreateFilePool(NULL, &pool))
         fail("creating a pool");
-    double start = now();
+    double start = clock_seconds();
     uint32_t count = open_stores(pool);
     figure("pool.stores", count, "stores");
-    figure("pool.opening", 1e6 * (now() - start) / count, "us/store");
+    figure("pool.opening", 1e6 * (clock_seconds() - start) / count, "us/store");
     figure("pool.reads.all", reads_per_second(count), "reads/s");
     if (sluiceGetFilePoolStatistics(pool, &statistics))
         fail("asking the pool");
@@ -214,19 +208,19 @@ static void measure_picture(void)
     SluiceImageOpenerCreateInfo info = {.structSize = sizeof info, .pCacheFolder = cache};
     if (sluiceCreateImageOpener(&info, &opener))
         fail("creating an opener");
-    double start = now();
+    double start = clock_seconds();
     if (sluiceOpenImageSource(opener, run.picture, &source))
         fail("opening the picture");
-    figure("picture.open", 1e3 * (now() - start), "ms");
+    figure("picture.open", 1e3 * (clock_seconds() - start), "ms");
     wait_for(source, true);
-    figure("picture.preview", 1e3 * (now() - start), "ms");
+    figure("picture.preview", 1e3 * (clock_seconds() - start), "ms");
     wait_for(source, false);
-    figure("picture.store", 1e3 * (now() - start), "ms");
+    figure("picture.store", 1e3 * (clock_seconds() - start), "ms");
     sluiceDestroyImageSource(source);
-    start = now();
+    start = clock_seconds();
     if (sluiceOpenImageSource(opener, run.picture, &again))
         fail("opening the picture again");
-    figure("picture.open_again", 1e3 * (now() - start), "ms");
+    figure("picture.open_again", 1e3 * (clock_seconds() - start), "ms");
     sluiceDestroyImageSource(again);
     sluiceDestroyImageOpener(opener);
     snprintf(command, sizeof command, "rm -rf '%s'", cache);

@@ -1,5 +1,6 @@
 /* Every format: tiles, tails, cut blocks, and the color of the last level. */
 #include "device/blocks.h"
+#include "device/cut_source.h"
 #include "device/demand_runner.h"
 
 #include "image/convert.h"
@@ -225,30 +226,6 @@ static void the_color_of_a_block_is_what_the_device_decodes(void **state)
     }
 }
 
-/* The first levels of another source. */
-struct cut {
-    SluiceImageSource base;
-    SluiceImageSource *whole;
-    uint32_t level_count;
-};
-
-static SluiceResult get_cut_info(SluiceImageSource *base, SluiceImageInfo *info)
-{
-    SluiceResult result = sluiceGetImageInfo(((struct cut *)base)->whole, info);
-    info->mipLevelCount = ((struct cut *)base)->level_count;
-    return result;
-}
-
-static SluiceResult read_cut(SluiceImageSource *base, const SluiceImageRegion *region, void *texels,
-                             size_t row_pitch)
-{
-    assert_true(region->mipLevel < ((struct cut *)base)->level_count);
-    return sluiceReadImageRegion(((struct cut *)base)->whole, region, texels, row_pitch);
-}
-
-static const SluiceImageSourceInterface cut_interface = {sizeof cut_interface, get_cut_info,
-                                                         read_cut, destroy_block};
-
 /* By one texel of each block, as the library does it. */
 static void mean_color(SluiceImageSource *source, SluiceFormat format, uint32_t level,
                        double mean[4])
@@ -269,8 +246,9 @@ static void check_short_chain(SluiceFormat format, uint32_t level_count)
 {
     struct runner r;
     SluiceDemandTextureId id;
-    struct cut cut = {{&cut_interface}, create_source(format), level_count};
+    struct cut_source cut;
     uint32_t x, y;
+    cut_source_init(&cut, create_source(format), level_count);
     runner_init(&r, &h, NULL);
     const SluiceDemandTextureCreateInfo info = {
         .structSize = sizeof info, .image.source = &cut.base, .pSampler = &runner_nearest};
@@ -293,7 +271,7 @@ static void check_short_chain(SluiceFormat format, uint32_t level_count)
     for (uint32_t c = 0; c < 4; c++)
         assert_true(fabs((double)out.color[c] - mean[c]) < 0.01);
     runner_finish(&r);
-    sluiceDestroyImageSource(cut.whole);
+    sluiceDestroyImageSource(&cut.base);
 }
 
 static void chains_may_end_in_the_tail(void **state)

@@ -49,36 +49,51 @@ static void *read_file(size_t *size)
     return data;
 }
 
-static void a_recorded_run_replays_to_the_same_decisions(void **state)
+/* Records a run in which one launch in five is abandoned. */
+static SluiceDemandStatistics record(const SluiceDemandLoaderCreateInfo *create,
+                                     void (*run)(struct runner *, struct runner_image *),
+                                     struct runner_image *images, uint32_t image_count)
 {
-    (void)state;
     struct runner r;
-    struct runner_image images[IMAGES];
     SluiceRecorder *recorder;
-    SluiceReplayResult replayed = {.structSize = sizeof replayed};
-    const SluiceDemandLoaderCreateInfo small = {.structSize = sizeof small,
-                                                .memoryBudget = 4 << 20};
     const SluiceFileRecordingInfo recording = {.structSize = sizeof recording, .pPath = path};
     h.abandon_one_in = 5;
-    runner_init(&r, &h, &small);
+    runner_init(&r, &h, create);
     CHECK_OK(sluiceBeginDemandRecording(r.loader, &recording, &recorder));
-    render(&r, images);
+    run(&r, images);
     CHECK_OK(sluiceEndRecording(recorder));
     SluiceDemandStatistics statistics = runner_statistics(&r);
     h.abandon_one_in = 0;
     runner_finish(&r);
-    for (uint32_t i = 0; i < IMAGES; i++)
+    for (uint32_t i = 0; i < image_count; i++)
         runner_image_finish(&images[i]);
+    return statistics;
+}
 
+/* Plays the recording, which must not diverge, and removes it. */
+static SluiceReplayResult replay(void)
+{
+    SluiceReplayResult replayed = {.structSize = sizeof replayed};
     SluiceReplayInfo info = {.structSize = sizeof info, .size = 0};
     void *data = read_file(&info.size);
     info.pData = data;
     CHECK_OK(sluiceReplay(&info, &replayed));
     free(data);
     remove(path);
-    assert_int_equal(replayed.kind, SLUICE_TRACE_KIND_DEMAND_RECORDING);
     assert_int_equal(replayed.divergedEvent, 0);
     assert_true(replayed.decisionHash == replayed.recordedHash);
+    return replayed;
+}
+
+static void a_recorded_run_replays_to_the_same_decisions(void **state)
+{
+    (void)state;
+    struct runner_image images[IMAGES];
+    const SluiceDemandLoaderCreateInfo small = {.structSize = sizeof small,
+                                                .memoryBudget = 4 << 20};
+    SluiceDemandStatistics statistics = record(&small, render, images, IMAGES);
+    SluiceReplayResult replayed = replay();
+    assert_int_equal(replayed.kind, SLUICE_TRACE_KIND_DEMAND_RECORDING);
     assert_int_equal(replayed.demand.launchCount, 24);
     assert_int_equal(replayed.demand.loadCount + statistics.texturesOpened, statistics.servedCount);
     assert_true(replayed.demand.evictedCount >= statistics.evictedCount);
@@ -110,30 +125,10 @@ static void forgotten_textures_replay_to_the_same_decisions(void **state)
     (void)state;
     static struct runner_image images[SMALL];
     for (uint32_t age = 0; age <= 5; age += 5) {
-        struct runner r;
-        SluiceRecorder *recorder;
-        SluiceReplayResult replayed = {.structSize = sizeof replayed};
         const SluiceDemandLoaderCreateInfo small = {
             .structSize = sizeof small, .memoryBudget = 4 << 20, .forgetAfterLaunches = age};
-        const SluiceFileRecordingInfo recording = {.structSize = sizeof recording, .pPath = path};
-        h.abandon_one_in = 5;
-        runner_init(&r, &h, &small);
-        CHECK_OK(sluiceBeginDemandRecording(r.loader, &recording, &recorder));
-        render_small(&r, images);
-        CHECK_OK(sluiceEndRecording(recorder));
-        SluiceDemandStatistics statistics = runner_statistics(&r);
-        h.abandon_one_in = 0;
-        runner_finish(&r);
-        for (uint32_t i = 0; i < SMALL; i++)
-            runner_image_finish(&images[i]);
-        SluiceReplayInfo info = {.structSize = sizeof info, .size = 0};
-        void *data = read_file(&info.size);
-        info.pData = data;
-        CHECK_OK(sluiceReplay(&info, &replayed));
-        free(data);
-        remove(path);
-        assert_int_equal(replayed.divergedEvent, 0);
-        assert_true(replayed.decisionHash == replayed.recordedHash);
+        SluiceDemandStatistics statistics = record(&small, render_small, images, SMALL);
+        SluiceReplayResult replayed = replay();
         assert_int_equal(replayed.demand.launchCount, SMALL_LAUNCHES);
         assert_int_equal(statistics.refusedCount, 0);
         assert_true(statistics.texturesForgotten > SMALL / 2);

@@ -1,5 +1,6 @@
 /* Every format, from its source through staging memory and bindings to what a shader fetches. */
 #include "device/blocks.h"
+#include "device/cut_source.h"
 #include "device/scene.h"
 
 #include "base/checked.h"
@@ -221,49 +222,19 @@ static void compressed_textures_are_streamed_by_feedback(void **state)
     scene_finish(&scene);
 }
 
-/* The first levels of another source. */
-struct cut {
-    SluiceImageSource base;
-    SluiceImageSource *whole;
-    uint32_t level_count;
-};
-
-static SluiceResult get_cut_info(SluiceImageSource *base, SluiceImageInfo *info)
-{
-    SluiceResult result = sluiceGetImageInfo(((struct cut *)base)->whole, info);
-    info->mipLevelCount = ((struct cut *)base)->level_count;
-    return result;
-}
-
-static SluiceResult read_cut(SluiceImageSource *base, const SluiceImageRegion *region, void *texels,
-                             size_t row_pitch)
-{
-    assert_true(region->mipLevel < ((struct cut *)base)->level_count);
-    return sluiceReadImageRegion(((struct cut *)base)->whole, region, texels, row_pitch);
-}
-
-static void destroy_cut(SluiceImageSource *base)
-{
-    sluiceDestroyImageSource(((struct cut *)base)->whole);
-    ((struct cut *)base)->whole = NULL;
-}
-
-static const SluiceImageSourceInterface cut_interface = {sizeof cut_interface, get_cut_info,
-                                                         read_cut, destroy_cut};
-
 struct short_chain {
     uint32_t width, height;
     SluiceFormat format;
     uint32_t level_count;
 };
 
-static void cut_init(struct cut *cut, const struct short_chain *chain)
+static void cut_init(struct cut_source *cut, const struct short_chain *chain)
 {
-    cut->base.pInterface = &cut_interface;
-    cut->whole = sluiceGetFormatTexelSize(chain->format)
-                     ? pattern_source(PATTERN_LEVEL, chain->width, chain->height, chain->format)
-                     : block_source(chain->width, chain->height, chain->format);
-    cut->level_count = chain->level_count;
+    cut_source_init(cut,
+                    sluiceGetFormatTexelSize(chain->format)
+                        ? pattern_source(PATTERN_LEVEL, chain->width, chain->height, chain->format)
+                        : block_source(chain->width, chain->height, chain->format),
+                    chain->level_count);
 }
 
 /* Levels beyond the last are asked for, too. */
@@ -280,7 +251,7 @@ static void chains_may_end_with_any_level_that_fits_into_a_tile(void **state)
     };
     enum { COUNT = sizeof chains / sizeof chains[0] };
     const struct scene_aim all = {0, 0, 1, 1, 0, 12, 0, 0};
-    static struct cut cuts[COUNT];
+    static struct cut_source cuts[COUNT];
     struct scene scene;
     scene_init(
         &scene, *state,
@@ -317,7 +288,7 @@ static void chains_that_end_before_are_refused(void **state)
         (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo)});
     for (size_t i = 0; i < sizeof chains / sizeof chains[0]; i++) {
         SluiceVulkanTexture texture;
-        struct cut cut;
+        struct cut_source cut;
         cut_init(&cut, &chains[i]);
         SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = &cut.base};
         h->quiet = true;
