@@ -189,6 +189,8 @@ static bool is_in_use(void *user, const struct slc_cached_store *store)
     return is_used;
 }
 
+enum { MAX_STORE_TRIES = 10 }; /* 50 ms apart */
+
 /* Another process may write the same store now; then this one waits and uses it. */
 static SluiceResult bake_store(struct slc_background *background, struct slc_picture_stream *stream,
                                bool force)
@@ -218,6 +220,41 @@ static SluiceResult bake_store(struct slc_background *background, struct slc_pic
     }
 }
 
+static SluiceResult open_baked(struct slc_picture_stream *stream, SluiceImageSource **store,
+                               struct slc_file_identity *identity)
+{
+    SluiceResult result = slc_open_picture_store(stream, store, identity);
+    bool is_another = result == SLUICE_ERROR_CORRUPT_DATA ||
+                      (result == SLUICE_SUCCESS && !slc_picture_is_as_described(stream, *store, 0));
+    if (!is_another)
+        return result;
+    sluiceDestroyImageSource(*store);
+    *store = NULL;
+    slc_log(&stream->opener->log, SLUICE_LOG_ERROR,
+            "%s: has changed while it was baked; open it again", stream->path);
+    return SLUICE_ERROR_IO;
+}
+
+/* Another process may delete the store before it is opened, and memory or descriptors may be short
+ * for a moment. Then both are tried again; baking does nothing if the store is there. */
+static SluiceResult bake_and_open(struct slc_background *background,
+                                  struct slc_picture_stream *stream, bool force,
+                                  SluiceImageSource **store, struct slc_file_identity *identity)
+{
+    for (uint32_t tries = 1;; tries++) {
+        SluiceResult result = bake_store(background, stream, force && tries == 1);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        result = open_baked(stream, store, identity);
+        bool is_momentary = result == SLUICE_NOT_READY ||
+                            result == SLUICE_ERROR_OUT_OF_HOST_MEMORY ||
+                            result == SLUICE_ERROR_FILE_NOT_FOUND;
+        if (!is_momentary || (result != SLUICE_NOT_READY && tries == MAX_STORE_TRIES))
+            return result;
+        slc_background_pause(background);
+    }
+}
+
 void slc_make_store(struct slc_background *background, struct slc_picture_stream *stream)
 {
     SluiceImageOpener *opener = stream->opener;
@@ -228,18 +265,8 @@ void slc_make_store(struct slc_background *background, struct slc_picture_stream
     if (is_damaged)
         is_damaged =
             !slc_picture_store_is_replaced(stream, &stream->store_identity, &is_there) && is_there;
-    SluiceResult result = bake_store(background, stream, is_damaged);
-    if (result == SLUICE_SUCCESS) {
-        result = slc_open_picture_store(stream, &store, &identity);
-        if (result == SLUICE_ERROR_CORRUPT_DATA ||
-            (result == SLUICE_SUCCESS && !slc_picture_is_as_described(stream, store, 0))) {
-            slc_log(&opener->log, SLUICE_LOG_ERROR,
-                    "%s: has changed while it was baked; open it again", stream->path);
-            result = SLUICE_ERROR_IO;
-        }
-    }
+    SluiceResult result = bake_and_open(background, stream, is_damaged, &store, &identity);
     if (result != SLUICE_SUCCESS) {
-        sluiceDestroyImageSource(store);
         if (!atomic_load(&stream->is_canceled))
             atomic_store(&stream->failure, result);
         return;

@@ -253,6 +253,52 @@ static void damage(const char *path, long from, long to)
     fclose(file);
 }
 
+/* Refuses the first allocations after the store is there. */
+struct shortage {
+    char path[512];
+    atomic_int left;
+};
+
+static void *allocate_in_shortage(void *user, size_t size, size_t alignment)
+{
+    struct shortage *shortage = user;
+    (void)alignment;
+    if (shortage->path[0] && access(shortage->path, F_OK) == 0 &&
+        atomic_fetch_sub(&shortage->left, 1) > 0)
+        return NULL;
+    return malloc(size);
+}
+
+static void free_in_shortage(void *user, void *memory, size_t size)
+{
+    (void)user, (void)size;
+    free(memory);
+}
+
+static void a_shortage_of_memory_after_a_bake_is_not_kept(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct shortage shortage = {"", 3};
+    SluiceImageSource *source;
+    setup(&f);
+    sluiceDestroyImageOpener(f.opener);
+    const SluiceAllocationCallbacks callbacks = {&shortage, allocate_in_shortage, free_in_shortage};
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                        .pCacheFolder = f.cache,
+                                        .bakeThreadCount = 1,
+                                        .pAllocator = &callbacks,
+                                        .log = {&f, on_log}};
+    CHECK_OK(sluiceCreateImageOpener(&info, &f.opener));
+    store_path(&f, f.png, shortage.path);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+    assert_true(wait_for(source).ready);
+    assert_true(atomic_load(&shortage.left) <= 0); /* or nothing was refused */
+    check_baked(&f, source, f.png);
+    sluiceDestroyImageSource(source);
+    teardown(&f);
+}
+
 static void a_damaged_store_is_baked_again(void **state)
 {
     (void)state;
@@ -645,6 +691,7 @@ int main(void)
         cmocka_unit_test(coarse_levels_come_first_and_all_of_them_in_the_end),
         cmocka_unit_test(the_store_is_kept_for_the_next_time),
         cmocka_unit_test(a_picture_that_changed_is_baked_again),
+        cmocka_unit_test(a_shortage_of_memory_after_a_bake_is_not_kept),
         cmocka_unit_test(a_damaged_store_is_baked_again),
         cmocka_unit_test(a_store_that_vanishes_is_baked_again_but_not_forever),
         cmocka_unit_test(openers_do_not_bake_over_the_stores_of_each_other),
