@@ -394,7 +394,8 @@ void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *imag
 void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image);
 /** No texture's any more: its pages are forgotten, it is closed when its reads are over. */
 void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image);
-/** Whether the image is open, and no launch since the one before the last processed one used it. */
+/** True if the image is open, has no reads, and the last processed launch did not use it. Launches
+ *  in flight may use it. */
 bool slc_image_is_idle(const SluiceDemandLoader *loader, const struct slc_demand_image *image);
 /** Closes an idle image. Its texture is as if nobody had asked for it. */
 void slc_image_forget_texture(SluiceDemandLoader *loader, struct slc_demand_image *image);

@@ -72,7 +72,7 @@ SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
 #define SLUICE_DEMAND_COMPONENTS_SHIFT 26       /* 3 bits: of the format */
 #define SLUICE_DEMAND_NEAREST 0x20000000u       /* no filter between texels */
 #define SLUICE_DEMAND_NEAREST_LEVEL 0x40000000u /* none between levels */
-#define SLUICE_DEMAND_BLOCKS 0x80000000u /* block-compressed: the tail begins at multiples of 4 */
+#define SLUICE_DEMAND_BLOCKS 0x80000000u /* block-compressed: tail levels lie at multiples of 4 */
 
 /* No texture at this position of a UDIM grid: samples are the grid's baseColor. */
 #define SLUICE_DEMAND_NO_TEXTURE 0xFFFFFFFFu
@@ -82,7 +82,7 @@ struct SluiceDemandTexture {
     uint width, height; /* texels of level 0; level l has max(1, size >> l) */
     uint shape;
     uint levels;   /* first word in the buffer of levels: the first page of each regular level */
-    uint tailPage; /* one tile with all other levels: see demand_texels.glsl */
+    uint tailPage; /* all other levels: a slot of a page, see demand_texels.glsl */
     float maxAnisotropy; /* 1 to 64 */
     float lodBias;
     float baseColor[4]; /* of the last level, where a texture fits inside a pixel */
