@@ -2,6 +2,7 @@
 
 #include "base/log.h"
 #include "base/system.h"
+#include "image/file_signature.h"
 #include "image/input_file.h"
 
 #include <errno.h>
@@ -14,8 +15,6 @@
 #include <sluice/dds.h>
 #include <sluice/ktx2.h>
 #endif
-
-enum kind { OTHER, EXR, DDS, KTX2 };
 
 /* Fewer bytes if the file has no more. A pipe or a device is refused: libvips would wait for it. */
 static SluiceResult read_start(const struct slc_input_choice *choice,
@@ -35,18 +34,11 @@ static SluiceResult read_start(const struct slc_input_choice *choice,
 
 static SluiceResult look_inside(const struct slc_input_choice *choice,
                                 const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
-                                enum kind *kind)
+                                enum slc_file_signature *kind)
 {
-    static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n";
-    char bytes[12] = {0};
+    char bytes[SLC_SIGNATURE_SIZE] = {0};
     SluiceResult result = read_start(choice, cb, log, bytes, sizeof bytes);
-    *kind = OTHER;
-    if (memcmp(bytes, "\x76\x2F\x31\x01", 4) == 0)
-        *kind = EXR;
-    else if (memcmp(bytes, "DDS ", 4) == 0)
-        *kind = DDS;
-    else if (memcmp(bytes, ktx2, 12) == 0)
-        *kind = KTX2;
+    *kind = slc_file_signature(bytes);
     return result;
 }
 
@@ -86,12 +78,13 @@ static void describe_exr(SluiceImageSource *source, struct slc_picture *picture)
 #endif
 }
 
-static SluiceResult open_container(const char *path, const SluiceInput *input, enum kind kind,
+static SluiceResult open_container(const char *path, const SluiceInput *input,
+                                   enum slc_file_signature kind,
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, SluiceImageSource **source)
 {
 #ifdef SLC_HAVE_CONTAINER
-    if (kind == DDS) {
+    if (kind == SLC_SIGNATURE_DDS) {
         SluiceDdsImageSourceCreateInfo info = {.structSize = sizeof info,
                                                .pPath = path,
                                                .pInput = input,
@@ -105,7 +98,7 @@ static SluiceResult open_container(const char *path, const SluiceInput *input, e
 #else
     (void)cb, (void)source, (void)input;
     slc_log(log, SLUICE_LOG_ERROR, "%s: this build reads no %s files", path,
-            kind == DDS ? "DDS" : "KTX2");
+            kind == SLC_SIGNATURE_DDS ? "DDS" : "KTX2");
     return SLUICE_ERROR_UNSUPPORTED;
 #endif
 }
@@ -115,12 +108,12 @@ SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening
                               struct slc_picture **picture)
 {
     SluiceImageSource *source = NULL;
-    enum kind kind = OTHER;
+    enum slc_file_signature kind = SLC_SIGNATURE_OTHER;
     struct slc_input_choice choice = {.path = path, .input = opening->input};
     SluiceResult result = look_inside(&choice, cb, log, &kind);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (kind == OTHER)
+    if (kind == SLC_SIGNATURE_OTHER || kind == SLC_SIGNATURE_STORE) /* libvips refuses stores */
         return slc_picture_open_vips(path, opening, cb, log, picture);
     if (opening->first_level > 0) {
         slc_log(log, SLUICE_LOG_ERROR,
@@ -128,13 +121,13 @@ SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening
                 opening->first_level);
         return SLUICE_ERROR_UNSUPPORTED;
     }
-    if (kind == EXR)
+    if (kind == SLC_SIGNATURE_EXR)
         result = open_exr(path, opening, cb, log, &source);
     else
         result = open_container(path, opening->input, kind, cb, log, &source);
     if (result == SLUICE_SUCCESS)
         result = slc_picture_of_source(source, true, path, cb, log, picture);
-    if (result == SLUICE_SUCCESS && kind == EXR)
+    if (result == SLUICE_SUCCESS && kind == SLC_SIGNATURE_EXR)
         describe_exr(source, *picture);
     else if (result == SLUICE_SUCCESS)
         (*picture)->premultiplied = false;

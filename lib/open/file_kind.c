@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "base/system.h"
+#include "image/file_signature.h"
 
 #include <errno.h>
 #include <string.h>
@@ -43,21 +44,21 @@ void slc_shared_files_finish(struct slc_shared_files *files)
     sluiceDestroyFilePool(files->pool);
 }
 
-static SluiceImageFileKind kind_of(const char bytes[12])
+static SluiceImageFileKind kind_of(const char bytes[SLC_SIGNATURE_SIZE])
 {
-    static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n", store[] = "\x89SLS\r\n\x1A\n";
-    if (memcmp(bytes, store, 8) == 0)
-        return SLUICE_IMAGE_FILE_KIND_STORE;
-    if (memcmp(bytes, "\x76\x2F\x31\x01", 4) == 0)
-        return SLUICE_IMAGE_FILE_KIND_EXR;
-    if (memcmp(bytes, "DDS ", 4) == 0)
-        return SLUICE_IMAGE_FILE_KIND_DDS;
-    return memcmp(bytes, ktx2, 12) == 0 ? SLUICE_IMAGE_FILE_KIND_KTX2
-                                        : SLUICE_IMAGE_FILE_KIND_PICTURE;
+    switch (slc_file_signature(bytes)) {
+    case SLC_SIGNATURE_STORE: return SLUICE_IMAGE_FILE_KIND_STORE;
+    case SLC_SIGNATURE_EXR: return SLUICE_IMAGE_FILE_KIND_EXR;
+    case SLC_SIGNATURE_DDS: return SLUICE_IMAGE_FILE_KIND_DDS;
+    case SLC_SIGNATURE_KTX2: return SLUICE_IMAGE_FILE_KIND_KTX2;
+    case SLC_SIGNATURE_OTHER: break;
+    }
+    return SLUICE_IMAGE_FILE_KIND_PICTURE;
 }
 
 /* Returns 0, or errno; EINVAL for what is no regular file. */
-static int look_at(int descriptor, char bytes[12], struct slc_file_identity *identity)
+static int look_at(int descriptor, char bytes[SLC_SIGNATURE_SIZE],
+                   struct slc_file_identity *identity)
 {
     struct stat status;
     if (fstat(descriptor, &status) != 0)
@@ -67,7 +68,7 @@ static int look_at(int descriptor, char bytes[12], struct slc_file_identity *ide
     *identity = slc_file_identity(&status);
     ssize_t got;
     do
-        got = pread(descriptor, bytes, 12, 0);
+        got = pread(descriptor, bytes, SLC_SIGNATURE_SIZE, 0);
     while (got < 0 && errno == EINTR);
     return got < 0 ? errno : 0;
 }
@@ -76,7 +77,7 @@ SluiceResult slc_file_kind_find(SluiceFilePool *pool, const char *path,
                                 const SluiceLogCallback *log, SluiceImageFileKind *kind,
                                 struct slc_file_identity *identity)
 {
-    char bytes[12] = {0};
+    char bytes[SLC_SIGNATURE_SIZE] = {0};
     struct slc_pooled_file file = SLC_POOLED_FILE_CLOSED;
     int descriptor = slc_file_pool_acquire(pool, &file, path);
     int error = descriptor < 0 ? errno : look_at(descriptor, bytes, identity);
