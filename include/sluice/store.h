@@ -39,7 +39,7 @@ extern "C" {
 #define SLUICE_STORE_EXTENSION ".store"
 /** Version of written files. Files of the same major version can be read. */
 #define SLUICE_STORE_VERSION_MAJOR 1
-#define SLUICE_STORE_VERSION_MINOR 0
+#define SLUICE_STORE_VERSION_MINOR 1
 
 /** Levels of the longest mip chain (2^20 texels). */
 #define SLUICE_STORE_MAX_MIP_LEVELS 21
@@ -156,6 +156,9 @@ typedef struct SluiceStoreCreateInfo {
      */
     const SluiceAllocationCallbacks *pAllocator;
     SluiceLogCallback log; ///< Failures with their position; what was resumed.
+    /** The layers are faces of cube maps, as SluiceImageInfo.cube says: square, six for each cube.
+     *  Default: false. */
+    bool cube;
 } SluiceStoreCreateInfo;
 
 typedef struct SluiceStoreWriter SluiceStoreWriter;
@@ -175,7 +178,8 @@ typedef struct SluiceStoreWriter SluiceStoreWriter;
  * Returns SLUICE_NOT_READY, without a writer, if no file descriptor is free. Close files and call
  * again.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range;
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range and
+ *         for cube maps whose faces are not square or whose layers are no multiple of 6;
  *         SLUICE_ERROR_UNSUPPORTED for unknown formats; SLUICE_ERROR_FILE_NOT_FOUND if the folder
  *         does not exist; SLUICE_ERROR_BUSY if another writer has the file open; SLUICE_ERROR_IO,
  *         also if `pPath` is a link, a read-only file or not a regular file (it is kept);
@@ -367,6 +371,7 @@ typedef struct SluiceStoreInfo {
     uint64_t settingsHash;
     uint32_t compressionLevel;
     uint64_t fileSize; ///< Bytes.
+    bool cube;         ///< The layers are faces of cube maps. False for files before version 1.1.
 } SluiceStoreInfo;
 
 /**

@@ -148,6 +148,7 @@ static void describe_store(struct bake *bake, const SluiceImageInfo *image)
         .flags = is_file(bake) ? SLUICE_STORE_WRITER_RESUME : 0,
         .pAllocator = &bake->baker->allocator,
         .log = bake->baker->log,
+        .cube = image->cube,
     };
 }
 

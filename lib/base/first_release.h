@@ -42,10 +42,10 @@
 #define SLC_FIRST_SluiceDdsImageSourceCreateInfo SLC_UP_TO(SluiceDdsImageSourceCreateInfo, filePool)
 #define SLC_FIRST_SluiceKtx2ImageSourceCreateInfo                                                  \
     SLC_UP_TO(SluiceKtx2ImageSourceCreateInfo, filePool)
-#define SLC_FIRST_SluiceStoreCreateInfo SLC_UP_TO(SluiceStoreCreateInfo, log)
+#define SLC_FIRST_SluiceStoreCreateInfo SLC_UP_TO(SluiceStoreCreateInfo, cube)
 #define SLC_FIRST_SluiceStoreImageSourceCreateInfo                                                 \
     SLC_UP_TO(SluiceStoreImageSourceCreateInfo, filePool)
-#define SLC_FIRST_SluiceStoreInfo SLC_UP_TO(SluiceStoreInfo, fileSize)
+#define SLC_FIRST_SluiceStoreInfo SLC_UP_TO(SluiceStoreInfo, cube)
 #define SLC_FIRST_SluiceStoreDefect SLC_UP_TO(SluiceStoreDefect, result)
 #define SLC_FIRST_SluiceStoreVerifyInfo SLC_UP_TO(SluiceStoreVerifyInfo, pfnProgress)
 #define SLC_FIRST_SluiceStoreReport SLC_UP_TO(SluiceStoreReport, rawTileCount)

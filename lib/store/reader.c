@@ -18,6 +18,9 @@ static SluiceResult read_header(struct slc_store_reader *reader)
     uint32_t offset;
     const char *message;
     result = slc_store_header_read(&reader->header, reader->header_bytes, &offset, &message);
+    uint32_t number;
+    if (result != SLUICE_SUCCESS && slc_store_header_number(reader->header_bytes, offset, &number))
+        return slc_input_fail(file, result, "at %u: %s; the number is %u", offset, message, number);
     if (result != SLUICE_SUCCESS)
         return slc_input_fail_at(file, result, offset, message);
     if (reader->header.file_size < file->size)

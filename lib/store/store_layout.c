@@ -1,5 +1,6 @@
 #include "store/store_layout.h"
 
+#include "image/info.h"
 #include "store/little_endian.h"
 
 #include <string.h>
@@ -29,6 +30,7 @@ enum {
     AT_SETTINGS = 88,
     AT_CHUNK_COUNT = 96,
     AT_DATA_OFFSET = 104,
+    AT_CUBE = 112,
     AT_NAME = SLC_STORE_NAME_OFFSET,
     AT_IDENTITY = 4064, /* of everything before it */
     AT_FILE_SIZE = 4072,
@@ -75,6 +77,7 @@ void slc_store_header_write(struct slc_store_header *header,
     slc_put_u64(bytes + AT_SETTINGS, header->settings_hash);
     slc_put_u64(bytes + AT_CHUNK_COUNT, header->grid.chunk_count);
     slc_put_u64(bytes + AT_DATA_OFFSET, header->data_offset);
+    slc_put_u32(bytes + AT_CUBE, header->cube);
     memcpy(bytes + AT_NAME, header->name, header->name_size);
     header->identity = XXH3_64bits(bytes, AT_IDENTITY);
     slc_put_u64(bytes + AT_IDENTITY, header->identity);
@@ -170,9 +173,11 @@ static SluiceResult read_choices(struct slc_store_header *header, const unsigned
         {AT_ADDRESS_U, SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER,
          SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE},
         {AT_ADDRESS_V, SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER,
-         SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE}};
+         SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE},
+        {AT_CUBE, true, false}};
     uint32_t values[sizeof choices / sizeof choices[0]];
-    *message = "color space, meaning or address mode has a value that this version does not have";
+    *message = "color space, meaning, address mode or cube flag has a value that this version does "
+               "not have";
     for (size_t i = 0; i < sizeof choices / sizeof choices[0]; i++) {
         *offset = choices[i].at;
         values[i] = slc_get_u32(bytes + choices[i].at);
@@ -185,6 +190,22 @@ static SluiceResult read_choices(struct slc_store_header *header, const unsigned
     header->meaning = (SluiceStoreMeaning)values[1];
     header->address_mode_u = (SluiceStoreAddressMode)values[2];
     header->address_mode_v = (SluiceStoreAddressMode)values[3];
+    header->cube = values[4];
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult check_cube(const struct slc_store_header *header, uint32_t *offset,
+                               const char **message)
+{
+    const SluiceStoreLayout *layout = &header->grid.layout;
+    *offset = AT_HEIGHT;
+    *message = "faces of cube maps are not square";
+    if (header->cube && layout->width != layout->height)
+        return SLUICE_ERROR_CORRUPT_DATA;
+    *offset = AT_LAYER_COUNT;
+    *message = "the number of layers of cube maps is no multiple of 6";
+    if (header->cube && header->grid.layer_count % SLC_CUBE_FACES)
+        return SLUICE_ERROR_CORRUPT_DATA;
     return SLUICE_SUCCESS;
 }
 
@@ -222,8 +243,19 @@ SluiceResult slc_store_header_read(struct slc_store_header *header,
     if (result == SLUICE_SUCCESS)
         result = read_choices(header, bytes, offset, message);
     if (result == SLUICE_SUCCESS)
+        result = check_cube(header, offset, message);
+    if (result == SLUICE_SUCCESS)
         result = read_properties(header, bytes, offset, message);
     return result;
+}
+
+bool slc_store_header_number(const unsigned char bytes[SLC_STORE_HEADER_SIZE], uint32_t offset,
+                             uint32_t *value)
+{
+    if (offset != AT_CUBE && (offset < AT_MAJOR || offset > AT_NAME_SIZE))
+        return false;
+    *value = slc_get_u32(bytes + offset);
+    return true;
 }
 
 void slc_store_entry_write(const struct slc_store_entry *entry,

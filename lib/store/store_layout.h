@@ -20,6 +20,7 @@ struct slc_store_header {
     uint64_t source_size;
     int64_t source_time;
     uint64_t settings_hash;
+    bool cube;
     uint32_t compression_level;
     uint32_t name_size;
     const char *name;     ///< name_size bytes without a zero; borrowed
@@ -50,6 +51,10 @@ bool slc_store_header_matches(const unsigned char a[SLC_STORE_HEADER_SIZE],
 SluiceResult slc_store_header_read(struct slc_store_header *header,
                                    const unsigned char bytes[SLC_STORE_HEADER_SIZE],
                                    uint32_t *offset, const char **message);
+
+/** Whether a number of 4 bytes is at `offset` of the header; then `value` is the number. */
+bool slc_store_header_number(const unsigned char bytes[SLC_STORE_HEADER_SIZE], uint32_t offset,
+                             uint32_t *value);
 
 /** Where the block is that holds a chunk's entry. */
 static inline uint64_t slc_store_block_offset(uint64_t block)

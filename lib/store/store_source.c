@@ -32,6 +32,7 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
         .arrayLayerCount = grid->layer_count,
         .addressModeU = image_mode(reader->header.address_mode_u),
         .addressModeV = image_mode(reader->header.address_mode_v),
+        .cube = reader->header.cube,
     };
     return SLUICE_SUCCESS;
 }
@@ -204,6 +205,7 @@ SluiceResult sluiceGetStoreInfo(SluiceImageSource *source, SluiceStoreInfo *pInf
         .settingsHash = header->settings_hash,
         .compressionLevel = header->compression_level,
         .fileSize = header->file_size,
+        .cube = header->cube,
     };
     slc_struct_write(SLC_STRUCT(SluiceStoreInfo), pInfo, &info);
     return SLUICE_SUCCESS;

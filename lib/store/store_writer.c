@@ -5,6 +5,7 @@
 #include "base/limits.h"
 #include "base/log.h"
 #include "base/struct_size.h"
+#include "image/info.h"
 #include "store/resume.h"
 
 #include <string.h>
@@ -23,6 +24,7 @@ static SluiceResult describe(const SluiceStoreCreateInfo *info, struct slc_store
         .source_size = info->sourceSize,
         .source_time = info->sourceModifiedTimeNs,
         .settings_hash = info->settingsHash,
+        .cube = info->cube,
         .compression_level = info->compressionLevel,
         .name_size = (uint32_t)name_size,
         .name = name,
@@ -47,6 +49,16 @@ static SluiceResult describe(const SluiceStoreCreateInfo *info, struct slc_store
                                      slc_max_u32(1, info->arrayLayerCount));
     if (result != SLUICE_SUCCESS)
         return result;
+    if (info->cube && info->width != info->height)
+        return slc_log_refusal(&info->log,
+                               "cube is set and width is %u, height %u; faces of cube "
+                               "maps are square",
+                               info->width, info->height);
+    if (info->cube && header->grid.layer_count % SLC_CUBE_FACES)
+        return slc_log_refusal(&info->log,
+                               "cube is set and arrayLayerCount is %u; cube maps have "
+                               "%u layers each",
+                               header->grid.layer_count, SLC_CUBE_FACES);
     uint32_t levels = header->grid.layout.mipLevelCount;
     if (info->mipLevelCount == 0 || info->mipLevelCount == levels)
         return SLUICE_SUCCESS;

@@ -85,6 +85,7 @@ static void resume(const char *path, const SluiceStoreInfo *info, bool finishes)
         .settingsHash = info->settingsHash,
         .compressionLevel = info->compressionLevel,
         .flags = SLUICE_STORE_WRITER_RESUME,
+        .cube = info->cube,
     };
     SluiceStoreWriter *writer;
     uint64_t written, count;
@@ -105,6 +106,8 @@ static void read_file(const char *path, const char *part_path, bool finishes)
     if (sluiceCreateStoreImageSource(&create, &source) != SLUICE_SUCCESS)
         return;
     if (sluiceGetStoreInfo(source, &info) != SLUICE_SUCCESS)
+        abort();
+    if (info.cube && (info.layout.width != info.layout.height || info.arrayLayerCount % 6))
         abort();
     SluiceStoreVerifyInfo verify = {.structSize = sizeof verify, .pPath = path};
     sluiceVerifyStore(&verify, NULL);

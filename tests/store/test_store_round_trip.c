@@ -154,7 +154,7 @@ static void what_a_file_says_of_itself_comes_back(void **state)
     CHECK_OK(sluiceGetStoreLayout(300, 130, SLUICE_FORMAT_R8_UNORM, &layout));
     assert_memory_equal(&got.layout, &layout, sizeof layout);
     assert_int_equal(got.versionMajor, 1);
-    assert_int_equal(got.versionMinor, 0);
+    assert_int_equal(got.versionMinor, SLUICE_STORE_VERSION_MINOR);
     assert_int_equal(got.arrayLayerCount, 2);
     assert_int_equal(got.colorSpace, info.colorSpace);
     assert_int_equal(got.meaning, info.meaning);

@@ -63,11 +63,11 @@ static void choices_that_a_newer_minor_version_adds_are_what_says_least(void **s
     (void)state;
     struct scratch scratch;
     scratch_init(&scratch);
-    const struct change changes[] = {{12, 1}, {48, 5}, {52, 77}, {56, 4}, {63, 0x80}};
+    const struct change changes[] = {{12, 2}, {48, 5}, {52, 77}, {56, 4}, {63, 0x80}};
     write_changed(&scratch, changes, 5, true);
     CHECK_OK(read_store(scratch.path, PICTURE_MIXED, NULL));
     SluiceStoreInfo info = info_of(scratch.path);
-    assert_int_equal(info.versionMinor, 1);
+    assert_int_equal(info.versionMinor, 2);
     assert_int_equal(info.colorSpace, SLUICE_STORE_COLOR_SPACE_UNDEFINED);
     assert_int_equal(info.meaning, SLUICE_STORE_MEANING_DATA);
     assert_int_equal(info.addressModeU, SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE);
@@ -80,7 +80,7 @@ static void choices_that_are_known_are_kept_whatever_the_minor_version(void **st
     (void)state;
     struct scratch scratch;
     scratch_init(&scratch);
-    const struct change changes[] = {{12, 1}, {52, 5}}; /* the meaning alone is new */
+    const struct change changes[] = {{12, 2}, {52, 5}}; /* the meaning alone is new */
     write_changed(&scratch, changes, 2, true);
     SluiceStoreInfo info = info_of(scratch.path);
     assert_int_equal(info.colorSpace, SLUICE_STORE_COLOR_SPACE_SRGB);
@@ -102,7 +102,7 @@ static void what_a_newer_minor_version_adds_is_passed_over(void **state)
 {
     (void)state;
     struct messages messages;
-    CHECK_OK(read_changed(112, 1, true, &messages));  /* behind the data offset */
+    CHECK_OK(read_changed(116, 1, true, &messages));  /* behind the cube flag */
     CHECK_OK(read_changed(4063, 1, true, &messages)); /* behind the longest name */
 }
 

@@ -200,6 +200,8 @@ static void print_file(const struct texture_file *file, const char *path)
     printf("  size                    %u x %u texels, %u levels, %u layers\n", image->width,
            image->height, image->mipLevelCount,
            image->arrayLayerCount ? image->arrayLayerCount : 1);
+    if (image->cube)
+        printf("  cube maps               %u of six faces each\n", image->arrayLayerCount / 6);
     printf("  format                  %s\n", sluiceGetFormatName(image->format));
     printf("  texels                  %" PRIu64 " bytes\n", texel_size(image));
     printf("  file                    %" PRIu64 " bytes\n", file_size(path));
@@ -213,11 +215,11 @@ static void print_file_json(const struct texture_file *file, const char *path)
     printf("{\"file\": ");
     text_write_json(stdout, path);
     printf(", \"kind\": \"%s\", \"width\": %u, \"height\": %u, \"mipLevelCount\": %u"
-           ", \"arrayLayerCount\": %u, \"format\": \"%s\", \"texelSize\": %" PRIu64
+           ", \"arrayLayerCount\": %u, \"cube\": %s, \"format\": \"%s\", \"texelSize\": %" PRIu64
            ", \"fileSize\": %" PRIu64,
            file->kind, image->width, image->height, image->mipLevelCount,
-           image->arrayLayerCount ? image->arrayLayerCount : 1, sluiceGetFormatName(image->format),
-           texel_size(image), file_size(path));
+           image->arrayLayerCount ? image->arrayLayerCount : 1, image->cube ? "true" : "false",
+           sluiceGetFormatName(image->format), texel_size(image), file_size(path));
     show_what_is_in_a_store(file, true);
     show_what_is_in_an_exr(file, true);
     printf("}\n");
