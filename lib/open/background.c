@@ -24,11 +24,22 @@ struct slc_background {
 };
 
 /* With the mutex held. */
+static void append(struct worker *worker, struct slc_picture_stream *stream)
+{
+    struct slc_stream_job *job = &stream->jobs[worker->kind];
+    job->is_queued = true;
+    job->next = NULL;
+    if (worker->last)
+        worker->last->jobs[worker->kind].next = stream;
+    else
+        worker->first = stream;
+    worker->last = stream;
+}
+
+/* With the mutex held. */
 static struct slc_picture_stream *take_first(struct worker *worker)
 {
     struct slc_picture_stream *stream = worker->first;
-    if (!stream)
-        return NULL;
     struct slc_stream_job *job = &stream->jobs[worker->kind];
     worker->first = job->next;
     if (!worker->first)
@@ -37,27 +48,66 @@ static struct slc_picture_stream *take_first(struct worker *worker)
     return stream;
 }
 
+/* With the mutex held. Less if a stream is queued or canceled meanwhile. */
+static void wait_a_while(struct slc_background *background)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += 50000000;
+    if (until.tv_nsec >= 1000000000) {
+        until.tv_nsec -= 1000000000;
+        until.tv_sec++;
+    }
+    pthread_cond_timedwait(&background->changed, &background->mutex, &until);
+}
+
+/* With the mutex held. Whether a job can begin now; otherwise some time has passed. */
+static bool wait_for_job(struct worker *worker)
+{
+    struct slc_background *background = worker->background;
+    struct slc_picture_stream *first = worker->first;
+    if (!first) {
+        pthread_cond_wait(&background->changed, &background->mutex);
+        return false;
+    }
+    if (!first->jobs[worker->kind].is_later)
+        return true;
+    wait_a_while(background);
+    if (worker->first == first)
+        first->jobs[worker->kind].is_later = false;
+    return false;
+}
+
+/* False: try again later. */
+static bool run(struct worker *worker, struct slc_picture_stream *stream)
+{
+    if (worker->kind == SLC_JOB_BAKE)
+        return slc_make_store(worker->background, stream);
+    slc_make_preview(worker->background, stream);
+    slc_background_queue(worker->background, stream, SLC_JOB_BAKE);
+    return true;
+}
+
 static void *work(void *argument)
 {
     struct worker *worker = argument;
     struct slc_background *background = worker->background;
     pthread_mutex_lock(&background->mutex);
     while (!background->is_ending) {
-        struct slc_picture_stream *stream = take_first(worker);
-        if (!stream) {
-            pthread_cond_wait(&background->changed, &background->mutex);
+        if (!wait_for_job(worker))
             continue;
-        }
+        struct slc_picture_stream *stream = take_first(worker);
+        struct slc_stream_job *job = &stream->jobs[worker->kind];
         pthread_mutex_unlock(&background->mutex);
-        if (worker->kind == SLC_JOB_PREVIEW) {
-            slc_make_preview(background, stream);
-            slc_background_queue(background, stream, SLC_JOB_BAKE);
-        } else {
-            slc_make_store(background, stream);
-        }
+        bool has_ended = run(worker, stream);
         pthread_mutex_lock(&background->mutex);
-        stream->jobs[worker->kind].is_running = false;
-        pthread_cond_broadcast(&background->changed);
+        job->is_running = false;
+        if (!has_ended && !atomic_load(&stream->is_canceled)) {
+            append(worker, stream);
+            job->is_later = true;
+        } else {
+            pthread_cond_broadcast(&background->changed);
+        }
     }
     pthread_mutex_unlock(&background->mutex);
     return NULL;
@@ -118,17 +168,9 @@ SluiceBaker *slc_background_baker(struct slc_background *background)
 void slc_background_queue(struct slc_background *background, struct slc_picture_stream *stream,
                           enum slc_stream_job_kind kind)
 {
-    struct worker *worker = &background->workers[kind];
-    struct slc_stream_job *job = &stream->jobs[kind];
     pthread_mutex_lock(&background->mutex);
-    if (!job->is_queued && !atomic_load(&stream->is_canceled)) {
-        job->is_queued = true;
-        job->next = NULL;
-        if (worker->last)
-            worker->last->jobs[kind].next = stream;
-        else
-            worker->first = stream;
-        worker->last = stream;
+    if (!stream->jobs[kind].is_queued && !atomic_load(&stream->is_canceled)) {
+        append(&background->workers[kind], stream);
         pthread_cond_broadcast(&background->changed);
     }
     pthread_mutex_unlock(&background->mutex);
@@ -161,20 +203,5 @@ void slc_background_cancel(struct slc_background *background, struct slc_picture
         while (stream->jobs[kind].is_running)
             pthread_cond_wait(&background->changed, &background->mutex);
     }
-    pthread_mutex_unlock(&background->mutex);
-}
-
-void slc_background_pause(struct slc_background *background)
-{
-    struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_nsec += 50000000;
-    if (until.tv_nsec >= 1000000000) {
-        until.tv_nsec -= 1000000000;
-        until.tv_sec++;
-    }
-    pthread_mutex_lock(&background->mutex);
-    if (!background->is_ending)
-        pthread_cond_timedwait(&background->changed, &background->mutex, &until);
     pthread_mutex_unlock(&background->mutex);
 }

@@ -18,12 +18,11 @@ void slc_background_queue(struct slc_background *background, struct slc_picture_
                           enum slc_stream_job_kind kind);
 /** Takes the stream's jobs out of the queues, or waits until they have ended. */
 void slc_background_cancel(struct slc_background *background, struct slc_picture_stream *stream);
-/** Waits for a while, less if somebody cancels. */
-void slc_background_pause(struct slc_background *background);
 
-/** The two jobs of the threads. They are in picture_jobs.c. */
+/** The two jobs of the threads. They are in picture_jobs.c. A store that cannot be made now returns
+ *  false: other pictures are baked first, and then it is tried again. */
 void slc_make_preview(struct slc_background *background, struct slc_picture_stream *stream);
-void slc_make_store(struct slc_background *background, struct slc_picture_stream *stream);
+bool slc_make_store(struct slc_background *background, struct slc_picture_stream *stream);
 
 /** Opens the picture's store if it was made of this picture, and tells which file it is. Errors:
  *  CORRUPT_DATA also for a store of something else, not logged; others logged. */

@@ -189,9 +189,7 @@ static bool is_in_use(void *user, const struct slc_cached_store *store)
     return is_used;
 }
 
-enum { MAX_STORE_TRIES = 10 }; /* 50 ms apart */
-
-/* Another process may write the same store now; then this one waits and uses it. */
+/* NOT_READY: later. Another process may write the same store now; then its store is used. */
 static SluiceResult bake_store(struct slc_background *background, struct slc_picture_stream *stream,
                                bool force)
 {
@@ -201,23 +199,15 @@ static SluiceResult bake_store(struct slc_background *background, struct slc_pic
                            .force = force,
                            .pUserData = stream,
                            .pfnProgress = note_progress};
-    SluiceResult result = SLUICE_ERROR_BUSY;
-    if (slc_store_cache_is_busy(stream->store_path, &stream->opener->allocator))
-        slc_log(&stream->opener->log, SLUICE_LOG_INFO,
-                "%s: another process bakes it; waiting for its store", stream->path);
-    for (;;) {
-        while (slc_store_cache_is_busy(stream->store_path, &stream->opener->allocator) &&
-               !atomic_load(&stream->is_canceled))
-            slc_background_pause(background);
-        if (atomic_load(&stream->is_canceled))
-            return SLUICE_ERROR_CANCELED;
-        result = sluiceBakeFile(slc_background_baker(background), &info, NULL);
-        bool is_later = result == SLUICE_ERROR_BUSY || result == SLUICE_NOT_READY;
-        if (!is_later || atomic_load(&stream->is_canceled))
-            return result;
-        slc_background_pause(background);
-        info.force = false;
+    if (slc_store_cache_is_busy(stream->store_path, &stream->opener->allocator)) {
+        if (!stream->has_said_busy)
+            slc_log(&stream->opener->log, SLUICE_LOG_INFO,
+                    "%s: another process bakes it; waiting for its store", stream->path);
+        stream->has_said_busy = true;
+        return SLUICE_NOT_READY;
     }
+    SluiceResult result = sluiceBakeFile(slc_background_baker(background), &info, NULL);
+    return result == SLUICE_ERROR_BUSY ? SLUICE_NOT_READY : result;
 }
 
 static SluiceResult open_baked(struct slc_picture_stream *stream, SluiceImageSource **store,
@@ -235,30 +225,43 @@ static SluiceResult open_baked(struct slc_picture_stream *stream, SluiceImageSou
     return SLUICE_ERROR_IO;
 }
 
+enum { MAX_OPEN_TRIES = 10 };
+
 /* Another process may delete the store before it is opened, and memory or descriptors may be short
- * for a moment. Then both are tried again; baking does nothing if the store is there. */
+ * for a moment. Then both are tried later; baking does nothing if the store is there. */
 static SluiceResult bake_and_open(struct slc_background *background,
                                   struct slc_picture_stream *stream, bool force,
                                   SluiceImageSource **store, struct slc_file_identity *identity)
 {
-    for (uint32_t tries = 1;; tries++) {
-        SluiceResult result = bake_store(background, stream, force && tries == 1);
-        if (result != SLUICE_SUCCESS)
-            return result;
-        result = open_baked(stream, store, identity);
-        bool is_momentary = result == SLUICE_NOT_READY ||
-                            result == SLUICE_ERROR_OUT_OF_HOST_MEMORY ||
-                            result == SLUICE_ERROR_FILE_NOT_FOUND;
-        if (!is_momentary || (result != SLUICE_NOT_READY && tries == MAX_STORE_TRIES))
-            return result;
-        slc_background_pause(background);
-    }
+    SluiceResult result = bake_store(background, stream, force);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = open_baked(stream, store, identity);
+    bool is_momentary =
+        result == SLUICE_ERROR_OUT_OF_HOST_MEMORY || result == SLUICE_ERROR_FILE_NOT_FOUND;
+    return is_momentary && ++stream->open_tries < MAX_OPEN_TRIES ? SLUICE_NOT_READY : result;
 }
 
-void slc_make_store(struct slc_background *background, struct slc_picture_stream *stream)
+static void show_store(struct slc_picture_stream *stream, SluiceImageSource *store,
+                       const struct slc_file_identity *identity)
+{
+    pthread_rwlock_wrlock(&stream->lock);
+    SluiceImageSource *preview = stream->preview;
+    void *bytes = stream->preview_bytes;
+    size_t size = stream->preview_size;
+    stream->store = store;
+    stream->store_identity = *identity;
+    stream->preview = NULL;
+    stream->preview_bytes = NULL;
+    pthread_rwlock_unlock(&stream->lock);
+    sluiceDestroyImageSource(preview);
+    slc_free(&stream->opener->allocator, bytes, size, 1);
+}
+
+bool slc_make_store(struct slc_background *background, struct slc_picture_stream *stream)
 {
     SluiceImageOpener *opener = stream->opener;
-    SluiceImageSource *store = NULL, *preview = NULL;
+    SluiceImageSource *store = NULL;
     struct slc_file_identity identity = {0};
     bool is_there, is_damaged = stream->is_damaged;
     /* Another opener or process may have replaced the damaged one meanwhile. */
@@ -266,22 +269,20 @@ void slc_make_store(struct slc_background *background, struct slc_picture_stream
         is_damaged =
             !slc_picture_store_is_replaced(stream, &stream->store_identity, &is_there) && is_there;
     SluiceResult result = bake_and_open(background, stream, is_damaged, &store, &identity);
-    if (result != SLUICE_SUCCESS) {
-        if (!atomic_load(&stream->is_canceled))
-            atomic_store(&stream->failure, result);
-        return;
+    if (atomic_load(&stream->is_canceled)) {
+        sluiceDestroyImageSource(store);
+        return true;
     }
-    pthread_rwlock_wrlock(&stream->lock);
-    preview = stream->preview;
-    void *bytes = stream->preview_bytes;
-    size_t size = stream->preview_size;
-    stream->store = store;
-    stream->store_identity = identity;
-    stream->preview = NULL;
-    stream->preview_bytes = NULL;
-    pthread_rwlock_unlock(&stream->lock);
-    sluiceDestroyImageSource(preview);
-    slc_free(&opener->allocator, bytes, size, 1);
+    if (result == SLUICE_NOT_READY)
+        return false;
+    stream->open_tries = 0;
+    stream->has_said_busy = false;
+    if (result == SLUICE_SUCCESS)
+        show_store(stream, store, &identity);
+    else
+        atomic_store(&stream->failure, result);
+    /* After a failure too: its part file takes room. */
     slc_store_cache_trim(opener->cache_folder, opener->max_cache_size, &opener->allocator,
                          is_in_use, opener);
+    return true;
 }

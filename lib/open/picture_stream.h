@@ -19,6 +19,7 @@
 struct slc_stream_job {
     struct slc_picture_stream *next; ///< in the queue
     bool is_queued, is_running;
+    bool is_later; ///< It was tried, and could not be done then.
 };
 
 enum slc_stream_job_kind { SLC_JOB_PREVIEW, SLC_JOB_BAKE, SLC_JOB_KIND_COUNT };
@@ -43,6 +44,8 @@ struct slc_picture_stream {
     struct slc_file_identity store_identity; ///< of the store's file when it was opened
     uint32_t damaged_count;                  ///< stores that were damaged
     bool is_damaged;                         ///< the file with `store_identity` is; replace it
+    uint32_t open_tries;  ///< baked stores that could not be opened; only the bake's thread uses it
+    bool has_said_busy;   ///< that another process bakes it; only the bake's thread uses it
 };
 
 /**

@@ -1,6 +1,7 @@
 /* Pictures without tiles: coarse levels first, then the store of a bake, which is kept. */
 #define _XOPEN_SOURCE 700
 
+#include <sluice/bake.h>
 #include <sluice/open.h>
 #include <sluice/store.h>
 
@@ -434,50 +435,132 @@ static void a_source_that_goes_cancels_its_bake(void **state)
 {
     (void)state;
     struct fixture f;
-    setup(&f);
-    for (int i = 0; i < 5; i++) {
-        SluiceImageSource *source;
-        CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
-        for (int k = 0; k < i * 3; k++)
-            wait_a_little();
-        sluiceDestroyImageSource(source);
-    }
+    char path[512];
     SluiceImageSource *source;
+    SluiceBaker *baker;
+    SluiceBakerCreateInfo baker_info = {.structSize = sizeof baker_info, .threadCount = 1};
+    SluiceBakeReport report = {.structSize = sizeof report};
+    setup(&f);
+    write_picture(f.png, 4096, 3000, 1); /* baked in seconds */
+    store_path(&f, f.png, path);
+    SluiceBakeInfo info = {.structSize = sizeof info, .pInputPath = f.png, .pOutputPath = path};
     CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
-    assert_true(wait_for(source).ready);
+    SluiceOpenedImageInfo opened = state_of(source);
+    for (int i = 0; i < 60000 && 4 * opened.doneTexels <= opened.totalTexels; i++) {
+        wait_a_little();
+        opened = state_of(source);
+    }
+    assert_false(opened.ready);
+    sluiceDestroyImageSource(source);
+    assert_int_equal(access(path, F_OK), -1);
+    assert_int_equal(f.errors, 0);
+    CHECK_OK(sluiceCreateBaker(&baker_info, &baker));
+    CHECK_OK(sluiceBakeFile(baker, &info, &report));
+    assert_true(report.resumedTileCount > 0);
+    sluiceDestroyBaker(baker);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+    assert_true(state_of(source).ready);
     check_baked(&f, source, f.png);
     sluiceDestroyImageSource(source);
-    assert_int_equal(f.errors, 0);
     teardown(&f);
 }
 
-static void old_stores_make_room_and_those_in_use_stay(void **state)
+static void a_store_that_another_process_writes_holds_up_no_other(void **state)
 {
     (void)state;
     struct fixture f;
-    char paths[3][512], pictures[3][256];
-    SluiceImageSource *kept = NULL, *source;
+    char path[512], others[2][256];
+    SluiceImageSource *waiting, *sources[2];
     setup(&f);
-    sluiceDestroyImageOpener(f.opener);
-    open_opener(&f, 1);
-    for (int i = 0; i < 3; i++) {
-        char name[16];
-        snprintf(name, sizeof name, "%d.png", i);
-        bake_folder_file(&f.folder, name, pictures[i]);
-        write_picture(pictures[i], 100, 100, (uint32_t)i);
-        store_path(&f, pictures[i], paths[i]);
-        CHECK_OK(sluiceOpenImageSource(f.opener, pictures[i], &source));
-        assert_true(wait_for(source).ready);
-        if (i == 0)
-            kept = source;
-        else
-            sluiceDestroyImageSource(source); /* waits for the end of its bake */
+    CHECK_OK(slc_store_cache_make(f.cache, NULL));
+    store_path(&f, f.png, path);
+    SluiceStoreWriter *writer = begin_writing(path);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &waiting));
+    for (int i = 0; i < 2; i++) {
+        bake_folder_file(&f.folder, i == 0 ? "b.png" : "c.png", others[i]);
+        write_picture(others[i], 600, 40, 3);
+        CHECK_OK(sluiceOpenImageSource(f.opener, others[i], &sources[i]));
+        assert_true(wait_for(sources[i]).ready);
+        assert_false(state_of(waiting).ready);
     }
-    assert_int_equal(access(paths[0], F_OK), 0);
-    assert_int_equal(access(paths[1], F_OK), -1);
-    check_baked(&f, kept, pictures[0]);
-    sluiceDestroyImageSource(kept);
+    sluiceDestroyStoreWriter(writer);
+    assert_true(wait_for(waiting).ready);
+    check_baked(&f, waiting, f.png);
+    assert_int_equal(f.errors, 0);
+    for (int i = 0; i < 2; i++)
+        sluiceDestroyImageSource(sources[i]);
+    sluiceDestroyImageSource(waiting);
     teardown(&f);
+}
+
+static void a_source_that_waits_for_another_process_can_go(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[512];
+    SluiceImageSource *source;
+    setup(&f);
+    CHECK_OK(slc_store_cache_make(f.cache, NULL));
+    store_path(&f, f.png, path);
+    SluiceStoreWriter *writer = begin_writing(path);
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
+    while (!state_of(source).previewReady)
+        wait_a_little();
+    for (int i = 0; i < 50; i++) /* the bake was tried more than once */
+        wait_a_little();
+    sluiceDestroyImageSource(source);
+    sluiceDestroyStoreWriter(writer);
+    assert_int_equal(access(path, F_OK), -1);
+    teardown(&f);
+}
+
+static void set_used(const char *path, time_t seconds)
+{
+    const struct timespec times[2] = {{.tv_sec = seconds}, {.tv_nsec = UTIME_OMIT}};
+    assert_int_equal(utimensat(AT_FDCWD, path, times, 0), 0);
+}
+
+/* Two stores of equal size are there; there is room for one beside that of a third picture. */
+static void old_stores_make_room_and_those_in_use_stay(void **state)
+{
+    (void)state;
+    for (int run = 0; run < 4; run++) {
+        struct fixture f;
+        char paths[3][512], pictures[3][256];
+        SluiceImageSource *kept = NULL, *source;
+        struct stat status;
+        int older = run % 2;
+        bool is_older_open = run >= 2;
+        setup(&f);
+        for (int i = 0; i < 3; i++) {
+            bake_folder_file(&f.folder, (const char *[]){"0.png", "1.png", "2.png"}[i], pictures[i]);
+            write_picture(pictures[i], 100, 100, (uint32_t)i);
+            store_path(&f, pictures[i], paths[i]);
+        }
+        for (int i = 0; i < 2; i++) {
+            CHECK_OK(sluiceOpenImageSource(f.opener, pictures[i], &source));
+            assert_true(wait_for(source).ready);
+            sluiceDestroyImageSource(source); /* waits for the end of its bake */
+            assert_int_equal(access(paths[i], F_OK), 0);
+        }
+        sluiceDestroyImageOpener(f.opener);
+        assert_int_equal(stat(paths[0], &status), 0);
+        open_opener(&f, (uint64_t)status.st_size * 5 / 2);
+        if (is_older_open)
+            CHECK_OK(sluiceOpenImageSource(f.opener, pictures[older], &kept));
+        set_used(paths[older], 1000000000);
+        set_used(paths[!older], 1000000001);
+        CHECK_OK(sluiceOpenImageSource(f.opener, pictures[2], &source));
+        assert_true(wait_for(source).ready);
+        sluiceDestroyImageSource(source);
+        assert_int_equal(access(paths[older], F_OK), is_older_open ? 0 : -1);
+        assert_int_equal(access(paths[!older], F_OK), is_older_open ? -1 : 0);
+        assert_int_equal(access(paths[2], F_OK), 0);
+        if (kept)
+            check_baked(&f, kept, pictures[older]);
+        sluiceDestroyImageSource(kept);
+        teardown(&f);
+    }
 }
 
 static void a_store_in_the_folder_that_is_open_by_its_own_name_stays(void **state)
@@ -697,6 +780,8 @@ int main(void)
         cmocka_unit_test(openers_do_not_bake_over_the_stores_of_each_other),
         cmocka_unit_test(reads_that_succeed_forgive_stores_that_vanished),
         cmocka_unit_test(a_source_that_goes_cancels_its_bake),
+        cmocka_unit_test(a_store_that_another_process_writes_holds_up_no_other),
+        cmocka_unit_test(a_source_that_waits_for_another_process_can_go),
         cmocka_unit_test(old_stores_make_room_and_those_in_use_stay),
         cmocka_unit_test(a_store_in_the_folder_that_is_open_by_its_own_name_stays),
         cmocka_unit_test(pictures_that_are_broken_are_refused_or_fail_in_the_end),
