@@ -25,7 +25,8 @@ void slc_make_preview(struct slc_background *background, struct slc_picture_stre
 bool slc_make_store(struct slc_background *background, struct slc_picture_stream *stream);
 
 /** Opens the picture's store if it was made of this picture, and tells which file it is. Errors:
- *  CORRUPT_DATA also for a store of something else, not logged; others logged. */
+ *  FILE_NOT_FOUND if there is none, and CORRUPT_DATA for a store of something else, not logged;
+ *  others, logged as warnings. */
 SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceImageSource **store,
                                     struct slc_file_identity *identity);
 /** Whether another file than `identity` has the store's name now. `*is_there`: one has it. */

@@ -13,6 +13,14 @@
 
 #include <string.h>
 
+/* A store that is damaged or cannot be read is baked again. */
+static void log_cached_store(void *user, SluiceLogSeverity severity, const char *message)
+{
+    const SluiceImageOpener *opener = user;
+    slc_log(&opener->log, severity == SLUICE_LOG_ERROR ? SLUICE_LOG_WARNING : severity, "%s",
+            message);
+}
+
 SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
                                      SluiceImageOpener **pOpener)
 {
@@ -31,6 +39,7 @@ SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     opener->allocator = cb;
     opener->log = info.log;
+    opener->cache_log = (SluiceLogCallback){opener, log_cached_store};
     opener->max_cache_size = info.maxCacheSize ? info.maxCacheSize : SLUICE_OPEN_DEFAULT_CACHE_SIZE;
     opener->max_bake_memory = info.maxBakeMemory;
     opener->bake_thread_count = info.bakeThreadCount;

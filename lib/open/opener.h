@@ -31,6 +31,7 @@ struct slc_opened_image {
 struct SluiceImageOpener {
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;
+    SluiceLogCallback cache_log; ///< for stores of the cache folder: errors are warnings
     char *cache_folder; ///< owned; NULL: none
     uint64_t max_cache_size, max_bake_memory;
     uint32_t bake_thread_count;

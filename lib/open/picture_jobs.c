@@ -135,12 +135,11 @@ bool slc_picture_store_is_replaced(const struct slc_picture_stream *stream,
 SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceImageSource **store,
                                     struct slc_file_identity *identity)
 {
-    static const SluiceLogCallback silent;
     SluiceImageOpener *opener = stream->opener;
     SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info,
                                              .pPath = stream->store_path,
                                              .pAllocator = &opener->allocator,
-                                             .log = silent,
+                                             .log = opener->cache_log,
                                              .readPool = opener->files.read_pool,
                                              .filePool = opener->files.pool};
     SluiceStoreInfo found = {.structSize = sizeof found};
@@ -149,8 +148,9 @@ SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceIma
     struct stat status;
     *store = NULL;
     /* Before it is opened: a file that takes its place in between is opened once more, no worse. */
-    if (stat(stream->store_path, &status) == 0)
-        *identity = slc_file_identity(&status);
+    if (stat(stream->store_path, &status) != 0)
+        return SLUICE_ERROR_FILE_NOT_FOUND;
+    *identity = slc_file_identity(&status);
     SluiceResult result = sluiceHashBakeSettings(&settings, &hash);
     if (result == SLUICE_SUCCESS)
         result = sluiceCreateStoreImageSource(&info, store);
