@@ -71,7 +71,7 @@ SLUICE_API void sluiceDestroyImageOpener(SluiceImageOpener *opener);
 
 /**
  * Opens an image file. The first bytes tell its kind, not its name. Blocks while the header is
- * read.
+ * read, or while another thread opens the same file; other calls do not wait for it.
  *
  * Destroy the source with sluiceDestroyImageSource. If the same path is opened again, and the file
  * has the same device, inode, size and time of the last change of its contents, the same source is

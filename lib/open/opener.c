@@ -44,6 +44,7 @@ SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
     opener->max_bake_memory = info.maxBakeMemory;
     opener->bake_thread_count = info.bakeThreadCount;
     pthread_mutex_init(&opener->mutex, NULL);
+    pthread_cond_init(&opener->opened, NULL);
     if (info.pCacheFolder) {
         opener->cache_folder = slc_strdup(&cb, info.pCacheFolder);
         result = opener->cache_folder ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -69,6 +70,7 @@ void sluiceDestroyImageOpener(SluiceImageOpener *opener)
     slc_shared_files_finish(&opener->files);
     if (opener->cache_folder)
         slc_free(&cb, opener->cache_folder, strlen(opener->cache_folder) + 1, 1);
+    pthread_cond_destroy(&opener->opened);
     pthread_mutex_destroy(&opener->mutex);
     slc_free(&cb, opener, 1, sizeof *opener);
 }
@@ -139,18 +141,39 @@ static struct slc_opened_image **find_bucket(SluiceImageOpener *opener, const ch
     return &opener->buckets[slc_said_key(path) % SLC_OPENER_BUCKETS];
 }
 
+/* With the mutex held. */
+static void add_to_bucket(struct slc_opened_image *image)
+{
+    struct slc_opened_image **bucket = find_bucket(image->opener, image->path);
+    image->next = *bucket;
+    *bucket = image;
+}
+
+/* With the mutex held. Nothing if it is in none. */
+static void take_from_bucket(struct slc_opened_image *image)
+{
+    struct slc_opened_image **link = find_bucket(image->opener, image->path);
+    while (*link && *link != image)
+        link = &(*link)->next;
+    if (*link)
+        *link = image->next;
+}
+
+/* With the mutex held. Whether it was the last one; then the image is in no bucket. */
+static bool drop_reference(struct slc_opened_image *image)
+{
+    bool is_last = --image->reference_count == 0;
+    if (is_last)
+        take_from_bucket(image);
+    return is_last;
+}
+
 static void destroy(SluiceImageSource *base)
 {
     struct slc_opened_image *image = (struct slc_opened_image *)base;
     SluiceImageOpener *opener = image->opener;
     pthread_mutex_lock(&opener->mutex);
-    bool is_last = --image->reference_count == 0;
-    if (is_last) {
-        struct slc_opened_image **link = find_bucket(opener, image->path);
-        while (*link != image)
-            link = &(*link)->next;
-        *link = image->next;
-    }
+    bool is_last = drop_reference(image);
     pthread_mutex_unlock(&opener->mutex);
     if (is_last)
         free_image(image);
@@ -189,34 +212,59 @@ static SluiceResult complete_chain(struct slc_opened_image *image)
     return result == SLUICE_SUCCESS ? sluiceGetImageInfo(image->complete, &info) : result;
 }
 
-/* With the mutex held. Not in a bucket yet. */
-static SluiceResult open_image(SluiceImageOpener *opener, const char *path,
-                               SluiceImageFileKind kind, const struct slc_file_identity *identity,
-                               struct slc_opened_image **opened)
+/* NULL: no memory. */
+static struct slc_opened_image *create_image(SluiceImageOpener *opener, const char *path,
+                                             SluiceImageFileKind kind,
+                                             const struct slc_file_identity *identity)
 {
     struct slc_opened_image *image = slc_calloc(&opener->allocator, 1, sizeof *image);
     if (!image)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        return NULL;
     image->base.pInterface = &opened_interface;
     image->opener = opener;
     image->reference_count = 1;
+    image->is_opening = true;
     image->kind = kind;
     image->identity = *identity;
     image->path = slc_strdup(&opener->allocator, path);
-    SluiceResult result = image->path ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    if (result == SLUICE_SUCCESS && kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
-        result = slc_picture_stream_create(opener, image->path, identity, &image->stream);
-    else if (result == SLUICE_SUCCESS)
-        result = slc_file_kind_open(kind, path, &opener->files, &opener->allocator, &opener->log,
-                                    &image->source);
-    if (result == SLUICE_SUCCESS && image->source)
-        result = complete_chain(image);
-    if (result != SLUICE_SUCCESS) {
-        free_image(image);
-        return result;
-    }
-    *opened = image;
-    return SLUICE_SUCCESS;
+    if (image->path)
+        return image;
+    free_image(image);
+    return NULL;
+}
+
+static SluiceResult open_image(struct slc_opened_image *image)
+{
+    SluiceImageOpener *opener = image->opener;
+    SluiceResult result;
+    if (image->kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
+        return slc_picture_stream_create(opener, image->path, &image->identity, &image->stream);
+    result = slc_file_kind_open(image->kind, image->path, &opener->files, &opener->allocator,
+                                &opener->log, &image->source);
+    return result == SLUICE_SUCCESS ? complete_chain(image) : result;
+}
+
+/* With the mutex held, but not while the file is opened. Other threads that open it wait. */
+static void open_for_all(struct slc_opened_image *image)
+{
+    SluiceImageOpener *opener = image->opener;
+    add_to_bucket(image);
+    pthread_mutex_unlock(&opener->mutex);
+    SluiceResult result = open_image(image);
+    pthread_mutex_lock(&opener->mutex);
+    image->result = result;
+    image->is_opening = false;
+    if (result != SLUICE_SUCCESS)
+        take_from_bucket(image); /* who opens it next tries again */
+    pthread_cond_broadcast(&opener->opened);
+}
+
+/* With the mutex held, but not while it waits. Counts the image. */
+static void wait_until_open(struct slc_opened_image *image)
+{
+    image->reference_count++;
+    while (image->is_opening)
+        pthread_cond_wait(&image->opener->opened, &image->opener->mutex);
 }
 
 SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
@@ -232,17 +280,15 @@ SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
         return result;
     pthread_mutex_lock(&opener->mutex);
     struct slc_opened_image *image = find_image(opener, path, &identity);
-    if (image) {
-        image->reference_count++;
-    } else {
-        result = open_image(opener, path, kind, &identity, &image);
-        if (result == SLUICE_SUCCESS) {
-            struct slc_opened_image **bucket = find_bucket(opener, path);
-            image->next = *bucket;
-            *bucket = image;
-        }
-    }
+    if (image)
+        wait_until_open(image);
+    else if ((image = create_image(opener, path, kind, &identity)))
+        open_for_all(image);
+    result = image ? image->result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    bool is_unused = image && result != SLUICE_SUCCESS && drop_reference(image);
     pthread_mutex_unlock(&opener->mutex);
+    if (is_unused)
+        free_image(image);
     if (result == SLUICE_SUCCESS)
         *pSource = &image->base;
     return result;

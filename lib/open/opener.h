@@ -14,13 +14,16 @@
 struct slc_picture_stream;
 struct slc_background;
 
-/** One open file. Its opener's mutex guards `next` and `reference_count`; the rest is constant. */
+/** One file. Its opener's mutex guards what comes before `path`. The rest is constant once it is
+ *  open; before, only the thread that opens it uses `source`, `complete` and `stream`. */
 struct slc_opened_image {
     SluiceImageSource base;
     SluiceImageOpener *opener;
     struct slc_opened_image *next; ///< in the same bucket
-    uint32_t reference_count;
-    char *path; ///< owned
+    uint32_t reference_count;      ///< threads that wait until it is open included
+    bool is_opening;
+    SluiceResult result; ///< of opening it
+    char *path;          ///< owned
     struct slc_file_identity identity;
     SluiceImageFileKind kind;
     SluiceImageSource *source;         ///< owned; NULL for pictures
@@ -32,11 +35,12 @@ struct SluiceImageOpener {
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;
     SluiceLogCallback cache_log; ///< for stores of the cache folder: errors are warnings
-    char *cache_folder; ///< owned; NULL: none
+    char *cache_folder;          ///< owned; NULL: none
     uint64_t max_cache_size, max_bake_memory;
     uint32_t bake_thread_count;
     struct slc_shared_files files;
-    pthread_mutex_t mutex;             ///< around what follows
+    pthread_mutex_t mutex;             ///< around what follows; never held while files are read
+    pthread_cond_t opened;             ///< an image is open, or could not be opened
     struct slc_background *background; ///< owned; NULL: no picture was opened yet
     struct slc_opened_image *buckets[SLC_OPENER_BUCKETS];
 };

@@ -16,7 +16,7 @@ static SluiceResult describe(struct slc_picture_stream *stream)
     SluiceBakeInfo info = {.structSize = sizeof info, .pInputPath = stream->path};
     SluiceBakeReport report = {.structSize = sizeof report};
     SluiceResult result =
-        sluiceDescribeBake(slc_background_baker(stream->opener->background), &info, &report);
+        sluiceDescribeBake(slc_background_baker(stream->background), &info, &report);
     if (result != SLUICE_SUCCESS)
         return result;
     stream->info = (SluiceImageInfo){
@@ -42,10 +42,23 @@ static uint32_t find_preview_level(const SluiceImageInfo *info)
 
 static void queue_jobs(struct slc_picture_stream *stream)
 {
-    struct slc_background *background = stream->opener->background;
+    struct slc_background *background = stream->background;
     /* One after the other: a bake beside the preview would take its processors. */
     slc_background_queue(background, stream,
                          stream->preview_level > 0 ? SLC_JOB_PREVIEW : SLC_JOB_BAKE);
+}
+
+/* The first stream of an opener starts it. */
+static SluiceResult need_background(struct slc_picture_stream *stream)
+{
+    SluiceImageOpener *opener = stream->opener;
+    SluiceResult result = SLUICE_SUCCESS;
+    pthread_mutex_lock(&opener->mutex);
+    if (!opener->background)
+        result = slc_background_create(opener, &opener->background);
+    stream->background = opener->background;
+    pthread_mutex_unlock(&opener->mutex);
+    return result;
 }
 
 static SluiceResult init(struct slc_picture_stream *stream)
@@ -55,8 +68,8 @@ static SluiceResult init(struct slc_picture_stream *stream)
     if (result == SLUICE_SUCCESS)
         result = slc_store_cache_path(opener->cache_folder, stream->path, &opener->allocator,
                                       &stream->store_path);
-    if (result == SLUICE_SUCCESS && !opener->background)
-        result = slc_background_create(opener, &opener->background);
+    if (result == SLUICE_SUCCESS)
+        result = need_background(stream);
     if (result != SLUICE_SUCCESS)
         return result;
     result = slc_open_picture_store(stream, &stream->store, &stream->store_identity);
@@ -94,7 +107,9 @@ SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *pa
         slc_picture_stream_destroy(stream);
         return result;
     }
+    pthread_mutex_lock(&opener->mutex); /* bakes of others look which stores are in use */
     *out = stream;
+    pthread_mutex_unlock(&opener->mutex);
     return SLUICE_SUCCESS;
 }
 
@@ -103,8 +118,8 @@ void slc_picture_stream_destroy(struct slc_picture_stream *stream)
     if (!stream)
         return;
     SluiceAllocationCallbacks cb = stream->opener->allocator;
-    if (stream->opener->background)
-        slc_background_cancel(stream->opener->background, stream);
+    if (stream->background)
+        slc_background_cancel(stream->background, stream);
     sluiceDestroyImageSource(stream->store);
     sluiceDestroyImageSource(stream->preview);
     slc_free(&cb, stream->preview_bytes, stream->preview_size, 1);

@@ -26,7 +26,8 @@ enum slc_stream_job_kind { SLC_JOB_PREVIEW, SLC_JOB_BAKE, SLC_JOB_KIND_COUNT };
 
 struct slc_picture_stream {
     SluiceImageOpener *opener;
-    const char *path; ///< borrowed
+    struct slc_background *background; ///< borrowed from the opener; NULL: it has no jobs yet
+    const char *path;                  ///< borrowed
     struct slc_file_identity identity;
     char *store_path; ///< owned
     SluiceImageInfo info;
@@ -44,13 +45,14 @@ struct slc_picture_stream {
     struct slc_file_identity store_identity; ///< of the store's file when it was opened
     uint32_t damaged_count;                  ///< stores that were damaged
     bool is_damaged;                         ///< the file with `store_identity` is; replace it
-    uint32_t open_tries;  ///< baked stores that could not be opened; only the bake's thread uses it
-    bool has_said_busy;   ///< that another process bakes it; only the bake's thread uses it
+    uint32_t open_tries; ///< baked stores that could not be opened; only the bake's thread uses it
+    bool has_said_busy;  ///< that another process bakes it; only the bake's thread uses it
 };
 
 /**
  * Opens the picture's store, or describes the picture and queues its bake. `path` lives as long as
- * the stream. Call with the opener's mutex held. Errors: as sluiceOpenImageSource, logged.
+ * the stream. The opener's mutex is not held. Writes `*stream` with the mutex. Errors: as
+ * sluiceOpenImageSource, logged.
  */
 SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *path,
                                        const struct slc_file_identity *identity,

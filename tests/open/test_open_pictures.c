@@ -536,7 +536,8 @@ static void old_stores_make_room_and_those_in_use_stay(void **state)
         bool is_older_open = run >= 2;
         setup(&f);
         for (int i = 0; i < 3; i++) {
-            bake_folder_file(&f.folder, (const char *[]){"0.png", "1.png", "2.png"}[i], pictures[i]);
+            bake_folder_file(&f.folder, (const char *[]){"0.png", "1.png", "2.png"}[i],
+                             pictures[i]);
             write_picture(pictures[i], 100, 100, (uint32_t)i);
             store_path(&f, pictures[i], paths[i]);
         }
@@ -658,6 +659,105 @@ static void free_behind_gate(void *user, void *memory, size_t size)
 {
     (void)user, (void)size;
     free(memory);
+}
+
+/* Its thread stops at the gate after it has copied `path`, which is then in the opener. */
+struct slow_open {
+    SluiceImageOpener *opener;
+    const char *path;
+    pthread_t thread;
+    SluiceImageSource *source;
+    SluiceResult result;
+    atomic_bool has_thread, is_at_gate, is_open;
+};
+
+static void *allocate_for_slow_open(void *user, size_t size, size_t alignment)
+{
+    struct slow_open *slow = user;
+    (void)alignment;
+    if (slow->has_thread && pthread_equal(pthread_self(), slow->thread)) {
+        while (slow->is_at_gate && !slow->is_open)
+            wait_a_little();
+        slow->is_at_gate = slow->is_at_gate || size == strlen(slow->path) + 1;
+    }
+    return malloc(size);
+}
+
+static void *open_slowly(void *argument)
+{
+    struct slow_open *slow = argument;
+    slow->thread = pthread_self();
+    slow->has_thread = true;
+    slow->result = sluiceOpenImageSource(slow->opener, slow->path, &slow->source);
+    return NULL;
+}
+
+struct second_open {
+    const struct slow_open *first;
+    SluiceImageSource *source;
+    SluiceResult result;
+    atomic_bool has_ended;
+};
+
+static void *open_second(void *argument)
+{
+    struct second_open *second = argument;
+    second->result =
+        sluiceOpenImageSource(second->first->opener, second->first->path, &second->source);
+    second->has_ended = true;
+    return NULL;
+}
+
+static void a_file_that_opens_slowly_holds_up_no_other(void **state)
+{
+    (void)state;
+    for (int is_broken = 0; is_broken < 2; is_broken++) {
+        struct fixture f;
+        char other[256], path[256];
+        pthread_t first, second;
+        struct slow_open slow = {.path = path};
+        struct second_open again = {.first = &slow};
+        SluiceImageSource *source;
+        const SluiceAllocationCallbacks callbacks = {&slow, allocate_for_slow_open,
+                                                     free_behind_gate};
+        setup(&f);
+        sluiceDestroyImageOpener(f.opener);
+        SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                            .pCacheFolder = f.cache,
+                                            .bakeThreadCount = 1,
+                                            .pAllocator = &callbacks,
+                                            .log = {&f, on_log}};
+        CHECK_OK(sluiceCreateImageOpener(&info, &f.opener));
+        slow.opener = f.opener;
+        bake_folder_file(&f.folder, "slow.png", path);
+        bake_folder_file(&f.folder, "b.png", other);
+        write_picture(path, 100, 100, 7);
+        write_picture(other, 64, 64, 5);
+        if (is_broken)
+            assert_int_equal(truncate(path, 20), 0);
+        assert_int_equal(pthread_create(&first, NULL, open_slowly, &slow), 0);
+        while (!slow.is_at_gate)
+            wait_a_little();
+        CHECK_OK(sluiceOpenImageSource(f.opener, other, &source));
+        assert_true(wait_for(source).ready);
+        sluiceDestroyImageSource(source);
+        assert_int_equal(pthread_create(&second, NULL, open_second, &again), 0);
+        for (int i = 0; i < 20; i++)
+            wait_a_little();
+        assert_false(again.has_ended); /* waits for the first */
+        slow.is_open = true;
+        pthread_join(first, NULL);
+        pthread_join(second, NULL);
+        CHECK_RESULT(slow.result, is_broken ? SLUICE_ERROR_CORRUPT_DATA : SLUICE_SUCCESS);
+        CHECK_RESULT(again.result, slow.result);
+        assert_ptr_equal(again.source, slow.source);
+        if (!is_broken) {
+            assert_int_equal(state_of(slow.source).openCount, 2);
+            sluiceDestroyImageSource(slow.source);
+            sluiceDestroyImageSource(slow.source);
+        }
+        teardown(&f);
+    }
 }
 
 static void write_gray_picture(const char *path, uint32_t width, uint32_t height)
@@ -789,6 +889,7 @@ int main(void)
         cmocka_unit_test(a_store_in_the_folder_that_is_open_by_its_own_name_stays),
         cmocka_unit_test(pictures_that_are_broken_are_refused_or_fail_in_the_end),
         cmocka_unit_test(a_cache_folder_that_cannot_be_made_is_an_error),
+        cmocka_unit_test(a_file_that_opens_slowly_holds_up_no_other),
         cmocka_unit_test(a_preview_of_another_format_is_not_shown),
         cmocka_unit_test(a_fault_names_the_picture_also_when_its_store_is_gone),
         cmocka_unit_test(every_refused_allocation_is_survived),
