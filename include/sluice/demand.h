@@ -268,22 +268,31 @@ SLUICE_API SluiceResult sluiceAddDemandTextureVariant(SluiceDemandLoader *loader
                                                       const SluiceDemandSampler *pSampler,
                                                       SluiceDemandTextureId *pTextureId);
 
+/** Settings of a grid: textures with one id, such as a UDIM set or the layers of an array. */
+typedef struct SluiceDemandGridCreateInfo {
+    uint32_t structSize; ///< sizeof(SluiceDemandGridCreateInfo).
+    uint32_t columnCount, rowCount;
+    /**
+     * columnCount * rowCount ids, row by row from v = 0. Read before the call returns.
+     * SLUICE_NO_DEMAND_TEXTURE: an empty cell.
+     */
+    const SluiceDemandTextureId *pTextureIds;
+    float missingColor[4]; ///< Color of samples in empty cells and outside the grid.
+} SluiceDemandGridCreateInfo;
+
 /**
- * Adds a grid of `columns` x `rows` textures that is sampled as one texture: column floor(u),
- * row floor(v).
+ * Adds a grid of textures that is sampled as one texture: column floor(u), row floor(v).
  *
- * `pTextureIds` lists them row by row from v = 0. Samples outside the grid, and where an id is
- * SLUICE_NO_DEMAND_TEXTURE, return `missingColor`. Filters do not reach from one texture into the
- * next.
+ * Cells may differ in size and format. sluiceDemandGrad and sluiceDemandLod do not filter across
+ * the edges of cells. The grid does not own its textures: remove them after it, or earlier, which
+ * leaves empty cells.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
- *         SLUICE_ERROR_INVALID_ARGUMENT for an empty grid or grids within it;
+ *         SLUICE_ERROR_INVALID_ARGUMENT for an empty grid, grids within it, or a wrong structSize;
  *         SLUICE_ERROR_LIMIT_EXCEEDED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
-SLUICE_API SluiceResult sluiceAddDemandUdim(SluiceDemandLoader *loader,
-                                            const SluiceDemandTextureId *pTextureIds,
-                                            uint32_t columns, uint32_t rows,
-                                            const float missingColor[4],
+SLUICE_API SluiceResult sluiceAddDemandGrid(SluiceDemandLoader *loader,
+                                            const SluiceDemandGridCreateInfo *pCreateInfo,
                                             SluiceDemandTextureId *pTextureId);
 
 /**

@@ -1,5 +1,6 @@
-/* UDIM grids: textures that are sampled as one. Their cells are words in the buffer of levels. */
+/* Grids: textures that are sampled as one. Their cells are words in the buffer of levels. */
 #include "base/checked.h"
+#include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/refused_arguments.h"
 
@@ -38,7 +39,7 @@ static SluiceResult check_cells(SluiceDemandLoader *loader, const SluiceDemandTe
         if (result != SLUICE_SUCCESS)
             return result;
         if (loader->textures[index].kind == SLC_TEXTURE_GRID)
-            return slc_demand_refuse_grid(loader, "sluiceAddDemandUdim", ids[i]);
+            return slc_demand_refuse_grid(loader, "sluiceAddDemandGrid", ids[i]);
     }
     return SLUICE_SUCCESS;
 }
@@ -55,54 +56,73 @@ static SluiceResult take_cells(SluiceDemandLoader *loader, uint32_t count, uint3
 }
 
 static void fill_grid(SluiceDemandLoader *loader, uint32_t index, uint32_t first,
-                      const SluiceDemandTextureId *ids, uint32_t columns, uint32_t rows)
+                      const SluiceDemandTextureId *ids, uint32_t count)
 {
     struct slc_demand_texture *texture = &loader->textures[index];
     texture->kind = SLC_TEXTURE_GRID;
     texture->first_element = first;
-    texture->cell_count = columns * rows;
-    for (uint32_t i = 0; i < columns * rows; i++) {
+    texture->cell_count = count;
+    for (uint32_t i = 0; i < count; i++) {
         write_cell(loader, first, i, ids[i] ? (uint32_t)ids[i] : SLUICE_DEMAND_NO_TEXTURE);
         if (ids[i])
             loader->textures[(uint32_t)ids[i]].grid_uses++;
     }
 }
 
-SluiceResult sluiceAddDemandUdim(SluiceDemandLoader *loader,
-                                 const SluiceDemandTextureId *pTextureIds, uint32_t columns,
-                                 uint32_t rows, const float missingColor[4],
-                                 SluiceDemandTextureId *pTextureId)
+static void show_grid(SluiceDemandLoader *loader, uint32_t index,
+                      const SluiceDemandGridCreateInfo *info)
 {
-    uint32_t index, first;
-    if (!loader || !pTextureIds || !missingColor || !pTextureId)
-        return SLUICE_ERROR_NULL_POINTER;
-    if (columns == 0 || rows == 0)
-        return slc_demand_refuse(loader, __func__,
-                                 "a grid of %" PRIu32 " x %" PRIu32 " textures is empty", columns,
-                                 rows);
-    if ((uint64_t)columns * rows > loader->grid_arena.size * (uint64_t)16)
-        return SLUICE_ERROR_LIMIT_EXCEEDED;
-    SluiceResult result = check_cells(loader, pTextureIds, columns * rows);
+    struct SluiceDemandTexture *entry = slc_table_mirror_change(&loader->table, index);
+    uint32_t first = loader->textures[index].first_element;
+    *entry = (struct SluiceDemandTexture){.state = SLUICE_DEMAND_TEXTURE_GRID,
+                                          .width = info->columnCount,
+                                          .height = info->rowCount,
+                                          .levels = SLC_MAX_REGULAR_LEVELS *
+                                                    (1 + loader->max_image_count + first),
+                                          .maxAnisotropy = 1};
+    memcpy(entry->baseColor, info->missingColor, sizeof entry->baseColor);
+}
+
+static SluiceResult add_grid(SluiceDemandLoader *loader, const SluiceDemandGridCreateInfo *info,
+                             SluiceDemandTextureId *id)
+{
+    uint32_t index, first, count = info->columnCount * info->rowCount;
+    SluiceResult result = check_cells(loader, info->pTextureIds, count);
     if (result == SLUICE_SUCCESS)
-        result = take_cells(loader, columns * rows, &first);
+        result = take_cells(loader, count, &first);
     if (result != SLUICE_SUCCESS)
         return result;
     result = slc_texture_take(loader, &index);
     if (result != SLUICE_SUCCESS) {
-        slc_region_arena_give(&loader->grid_arena, first, slc_div_up_u32(columns * rows, 16));
+        slc_region_arena_give(&loader->grid_arena, first, slc_div_up_u32(count, 16));
         return result;
     }
-    fill_grid(loader, index, first, pTextureIds, columns, rows);
-    struct SluiceDemandTexture *entry = slc_table_mirror_change(&loader->table, index);
-    *entry = (struct SluiceDemandTexture){.state = SLUICE_DEMAND_TEXTURE_UDIM,
-                                          .width = columns,
-                                          .height = rows,
-                                          .levels = SLC_MAX_REGULAR_LEVELS *
-                                                    (1 + loader->max_image_count + first),
-                                          .maxAnisotropy = 1};
-    memcpy(entry->baseColor, missingColor, sizeof entry->baseColor);
-    *pTextureId = slc_texture_id(loader, index);
+    fill_grid(loader, index, first, info->pTextureIds, count);
+    show_grid(loader, index, info);
+    *id = slc_texture_id(loader, index);
     return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceAddDemandGrid(SluiceDemandLoader *loader,
+                                 const SluiceDemandGridCreateInfo *pCreateInfo,
+                                 SluiceDemandTextureId *pTextureId)
+{
+    if (!loader || !pCreateInfo || !pTextureId)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceDemandGridCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceDemandGridCreateInfo), &info,
+                                          pCreateInfo, &loader->vk.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!info.pTextureIds)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (info.columnCount == 0 || info.rowCount == 0)
+        return slc_demand_refuse(loader, __func__,
+                                 "a grid of %" PRIu32 " x %" PRIu32 " textures is empty",
+                                 info.columnCount, info.rowCount);
+    if ((uint64_t)info.columnCount * info.rowCount > loader->grid_arena.size * (uint64_t)16)
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    return add_grid(loader, &info, pTextureId);
 }
 
 void slc_grids_leave(SluiceDemandLoader *loader, uint32_t index)

@@ -204,7 +204,7 @@ static void grids_show_their_textures_clamped_and_a_color_beyond(void **state)
     demand_images_upload(scene);
     uint32_t grid = scene->texture_count++;
     *demand_scene_entry(scene, grid) =
-        (struct SluiceDemandTexture){.state = SLUICE_DEMAND_TEXTURE_UDIM,
+        (struct SluiceDemandTexture){.state = SLUICE_DEMAND_TEXTURE_GRID,
                                      .width = 3,
                                      .height = 2,
                                      .levels = scene->level_count,

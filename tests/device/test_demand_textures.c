@@ -215,13 +215,18 @@ static void a_grid_shows_the_texture_of_each_cell(void **state)
     struct runner r;
     struct runner_image images[2];
     SluiceDemandTextureId cells[6] = {0}, grid;
-    const float missing[4] = {0.25f, 0.5f, 0.75f, 1};
+    SluiceDemandGridCreateInfo info = {.structSize = sizeof info,
+                                       .columnCount = 3,
+                                       .rowCount = 2,
+                                       .pTextureIds = cells,
+                                       .missingColor = {0.25f, 0.5f, 0.75f, 1}};
+    const float *missing = info.missingColor;
     runner_init(&r, &h, NULL);
     for (uint32_t i = 0; i < 2; i++)
         runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, 256 << i, 256, i);
     cells[1] = runner_add_texture(&r, &images[0]); /* column 1, row 0 */
     cells[5] = runner_add_texture(&r, &images[1]); /* column 2, row 1 */
-    CHECK_OK(sluiceAddDemandUdim(r.loader, cells, 3, 2, missing, &grid));
+    CHECK_OK(sluiceAddDemandGrid(r.loader, &info, &grid));
     const float at[5][2] = {{1 + 10.5f / 256, 20.5f / 256},
                             {2 + 300.5f / 512, 1 + 20.5f / 256},
                             {0.5f, 0.5f},
@@ -237,15 +242,16 @@ static void a_grid_shows_the_texture_of_each_cell(void **state)
     for (uint32_t i = 2; i < 5; i++) {
         struct RunnerOutput out = runner_output(&r, i);
         assert_true(out.resident);
-        assert_memory_equal(out.color, missing, sizeof missing);
+        assert_memory_equal(out.color, missing, sizeof out.color);
     }
-    CHECK_RESULT(sluiceAddDemandUdim(r.loader, &grid, 1, 1, missing, &cells[0]),
-                 SLUICE_ERROR_INVALID_ARGUMENT);
+    const SluiceDemandGridCreateInfo nested = {
+        .structSize = sizeof nested, .columnCount = 1, .rowCount = 1, .pTextureIds = &grid};
+    CHECK_RESULT(sluiceAddDemandGrid(r.loader, &nested, &cells[0]), SLUICE_ERROR_INVALID_ARGUMENT);
     /* A texture that goes leaves a hole. */
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, cells[1]));
     runner_launch(&r);
     struct RunnerOutput out = runner_output(&r, 0);
-    assert_memory_equal(out.color, missing, sizeof missing);
+    assert_memory_equal(out.color, missing, sizeof out.color);
     runner_check_texel(&r, 1, &images[1], 0, 300, 20);
     /* And a grid that goes shows nothing else any more. */
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, grid));
@@ -254,7 +260,7 @@ static void a_grid_shows_the_texture_of_each_cell(void **state)
     for (uint32_t i = 0; i < 5; i++) {
         out = runner_output(&r, i);
         assert_true(out.resident);
-        assert_memory_equal(out.color, missing, sizeof missing);
+        assert_memory_equal(out.color, missing, sizeof out.color);
     }
     runner_finish(&r);
     for (uint32_t i = 0; i < 2; i++)

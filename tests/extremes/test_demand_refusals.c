@@ -41,10 +41,11 @@ static SluiceResult create_variant(struct life *l)
 static SluiceResult create_grid(struct life *l)
 {
     SluiceDemandTextureId ids[40];
-    const float missing[4] = {1, 0, 1, 1};
+    const SluiceDemandGridCreateInfo info = {
+        .structSize = sizeof info, .columnCount = 8, .rowCount = 5, .pTextureIds = ids};
     for (uint32_t i = 0; i < 40; i++)
         ids[i] = i % 2 ? l->texture : SLUICE_NO_DEMAND_TEXTURE;
-    return sluiceAddDemandUdim(l->r.loader, ids, 8, 5, missing, &l->grid);
+    return sluiceAddDemandGrid(l->r.loader, &info, &l->grid);
 }
 
 static SluiceResult create_resource(struct life *l)

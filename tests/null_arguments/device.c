@@ -43,7 +43,7 @@ sluiceCreateDemandLoader(&f->loader_info, &f->out.loader) => sluiceDestroyDemand
 !sluiceDestroyDemandLoader(f->loader)
 sluiceAddDemandTexture(f->loader, &f->demand_info, &f->out.id)
 sluiceAddDemandTextureVariant(f->loader, f->id, &f->sampler, &f->out.id)
-sluiceAddDemandUdim(f->loader, &f->id, 1, 1, f->color, &f->out.id)
+sluiceAddDemandGrid(f->loader, &f->grid_info, &f->out.id)
 sluiceRemoveDemandTexture(f->loader, f->id)
 sluiceReplaceDemandImage(f->loader, f->id, &f->demand_info.image)
 sluiceInvalidateDemandTexture(f->loader, f->id)
@@ -93,7 +93,7 @@ struct fixture {
     SluiceDemandTextureCreateInfo demand_info;
     SluiceDemandSampler sampler;
     SluiceDemandTextureId id;
-    float color[4];
+    SluiceDemandGridCreateInfo grid_info;
     SluiceDemandResourceCreateInfo resource_info;
     SluiceDemandResourceId resource, bytes;
     SluiceDemandLaunch launch;
@@ -186,6 +186,10 @@ static void init_loader(struct fixture *f)
     f->frame.structSize = sizeof f->frame;
     f->launch.structSize = sizeof f->launch;
     CHECK_OK(sluiceAddDemandTexture(f->loader, &f->demand_info, &f->id));
+    f->grid_info = (SluiceDemandGridCreateInfo){.structSize = sizeof(SluiceDemandGridCreateInfo),
+                                                .columnCount = 1,
+                                                .rowCount = 1,
+                                                .pTextureIds = &f->id};
     f->resource_info = (SluiceDemandResourceCreateInfo){
         .structSize = sizeof(SluiceDemandResourceCreateInfo), .pageCount = 4, .pfnFill = fill};
     uint32_t first;

@@ -402,16 +402,20 @@ static void what_demand_loading_refuses_is_named(void **state)
     const SluiceDemandLoaderCreateInfo demand = {.structSize = sizeof demand,
                                                  .context = create_context(&fake, &lines)};
     const SluiceDemandTextureId none[1] = {SLUICE_NO_DEMAND_TEXTURE};
-    const float color[4] = {0};
     const SluiceDemandSampler sampler = {.structSize = sizeof sampler, .lodBias = 17};
+    SluiceDemandGridCreateInfo cells = {
+        .structSize = sizeof cells, .columnCount = 1, .rowCount = 1, .pTextureIds = none};
     SluiceDemandTextureId grid, id;
     const SluiceResult refused = SLUICE_ERROR_INVALID_ARGUMENT;
     CHECK_OK(sluiceCreateDemandLoader(&demand, &loader));
-    CHECK_OK(sluiceAddDemandUdim(loader, none, 1, 1, color, &grid));
-    CHECK_RESULT(sluiceAddDemandUdim(loader, none, 0, 3, color, &id), refused);
-    check_line(&lines, "sluiceAddDemandUdim: a grid of 0 x 3 textures is empty");
-    CHECK_RESULT(sluiceAddDemandUdim(loader, &grid, 1, 1, color, &id), refused);
-    check_line(&lines, "sluiceAddDemandUdim: texture 0x");
+    CHECK_OK(sluiceAddDemandGrid(loader, &cells, &grid));
+    cells.pTextureIds = &grid;
+    CHECK_RESULT(sluiceAddDemandGrid(loader, &cells, &id), refused);
+    check_line(&lines, "sluiceAddDemandGrid: texture 0x");
+    cells.columnCount = 0;
+    cells.rowCount = 3;
+    CHECK_RESULT(sluiceAddDemandGrid(loader, &cells, &id), refused);
+    check_line(&lines, "sluiceAddDemandGrid: a grid of 0 x 3 textures is empty");
     CHECK_RESULT(sluiceAddDemandTextureVariant(loader, grid, &sampler, &id), refused);
     check_line(&lines, "sluiceAddDemandTextureVariant: texture 0x");
     CHECK_RESULT(sluiceInvalidateDemandTexture(loader, grid), refused);

@@ -137,7 +137,7 @@ bool sluiceOpenDemand(uint index, inout vec2 uv, out SluiceDemandState s, out ve
 {
     s.resident = true;
     uint state = SLUICE_DEMAND_TEXTURE(index).state;
-    bool grid = state == SLUICE_DEMAND_TEXTURE_UDIM;
+    bool grid = state == SLUICE_DEMAND_TEXTURE_GRID;
     uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
     if (grid && sluiceFindInGrid(index, uv))
         state = SLUICE_DEMAND_TEXTURE(index).state;

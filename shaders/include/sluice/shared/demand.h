@@ -61,7 +61,7 @@ SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
        */
 #define SLUICE_DEMAND_TEXTURE_OPEN 1
 #define SLUICE_DEMAND_TEXTURE_FAILED 2 /* its samples are baseColor, and resident */
-#define SLUICE_DEMAND_TEXTURE_UDIM 3   /* a grid: sizes in textures, `levels` has their indices */
+#define SLUICE_DEMAND_TEXTURE_GRID 3   /* sizes in textures, `levels` has their indices */
 
 /* SluiceDemandTexture.shape */
 #define SLUICE_DEMAND_TILE_HEIGHT_SHIFT 5  /* below: log2 of a tile's width; here of its height */
@@ -74,7 +74,7 @@ SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
 #define SLUICE_DEMAND_NEAREST_LEVEL 0x40000000u /* none between levels */
 #define SLUICE_DEMAND_BLOCKS 0x80000000u /* block-compressed: tail levels lie at multiples of 4 */
 
-/* No texture at this position of a UDIM grid: samples are the grid's baseColor. */
+/* No texture in this cell of a grid: samples are the grid's baseColor. */
 #define SLUICE_DEMAND_NO_TEXTURE 0xFFFFFFFFu
 
 struct SluiceDemandTexture {
