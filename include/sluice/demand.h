@@ -214,7 +214,7 @@ typedef struct SluiceDemandImage {
      * SLUICE_NOT_READY, SLUICE_ERROR_IO, SLUICE_ERROR_OUT_OF_HOST_MEMORY and, once,
      * SLUICE_ERROR_CORRUPT_DATA (readRetry); after any failure, when failureRetryDelayNs has
      * passed.
-     * `*pSource` must have one array layer. Ignored if `source` is set.
+     * Ignored if `source` is set.
      */
     SluiceResult (*pfnOpen)(void *pUserData, SluiceImageSource **pSource);
     /**
@@ -227,6 +227,12 @@ typedef struct SluiceDemandImage {
      * image's info, once it is open.
      */
     const char *pName;
+    /**
+     * Layer of the image that the texture shows. Default: 0. An image with fewer layers cannot be
+     * opened. For an array add one texture per layer, and a grid of layerCount x 1 textures
+     * (sluiceAddDemandGrid); they may share `source`.
+     */
+    uint32_t arrayLayer;
 } SluiceDemandImage;
 
 /** Settings of a texture. A field of zero selects its default. */
@@ -245,7 +251,7 @@ typedef struct SluiceDemandTextureCreateInfo {
  * Adds a texture without opening its image.
  *
  * Any format that the device samples with linear filters is allowed, if its blocks have at most 4x4
- * texels. An image of another format, with several layers, or whose info is out of range (image.h)
+ * texels. An image of another format, without the layer, or whose info is out of range (image.h)
  * shows its failureColor once it was opened.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown modes, or an

@@ -32,8 +32,8 @@ static const char *find_trouble(const struct slc_demand_image *image)
     const char *trouble = slc_image_info_trouble(info, SLC_LEVELS_TO_TAIL);
     if (trouble)
         return trouble;
-    if (info->arrayLayerCount > 1)
-        return "arrayLayerCount is beyond 1";
+    if (image->origin.arrayLayer >= slc_max_u32(info->arrayLayerCount, 1))
+        return "arrayLayer is not below its arrayLayerCount";
     if (!image->loader->usable[info->format])
         return "the device does not sample and filter its format";
     uint32_t tile_width = 0, tile_height = 0;
@@ -95,7 +95,8 @@ static SluiceResult read_base_color(struct slc_demand_image *image)
     const SluiceImageInfo *info = &image->info;
     SluiceFormatInfo format = {.structSize = sizeof format};
     (void)sluiceGetFormatInfo(info->format, &format);
-    SluiceImageRegion last = {.mipLevel = info->mipLevelCount - 1};
+    SluiceImageRegion last = {.mipLevel = info->mipLevelCount - 1,
+                              .arrayLayer = image->origin.arrayLayer};
     last.width = slc_mip_size(info->width, last.mipLevel);
     last.height = slc_mip_size(info->height, last.mipLevel);
     size_t pitch = (size_t)slc_format_row_size(&format, last.width);

@@ -42,7 +42,8 @@ static uint32_t write_tail(const struct slc_demand_image *image, uint32_t place,
         uint32_t height = slc_mip_size(image->info.height, level);
         struct slc_demand_place at =
             slc_demand_tail_place(image->tile_width, image->tile_height, image->blocks, place, k);
-        parts[k] = (struct slc_tile_part){{level, 0, 0, width, height}, offset, at.x, at.y};
+        parts[k] = (struct slc_tile_part){
+            {level, 0, 0, width, height, image->origin.arrayLayer}, offset, at.x, at.y};
         uint32_t size = (uint32_t)sluiceGetFormatRegionSize(image->info.format, width, height);
         offset += (size + STAGING_ALIGNMENT - 1) / STAGING_ALIGNMENT * STAGING_ALIGNMENT;
     }
@@ -59,7 +60,8 @@ uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page, uin
     uint32_t y = index / slc_image_level_width(image, level) * image->tile_height;
     parts[0] = (struct slc_tile_part){
         {level, x, y, slc_min_u32(image->tile_width, slc_mip_size(image->info.width, level) - x),
-         slc_min_u32(image->tile_height, slc_mip_size(image->info.height, level) - y)},
+         slc_min_u32(image->tile_height, slc_mip_size(image->info.height, level) - y),
+         image->origin.arrayLayer},
         0,
         0,
         0};
@@ -89,7 +91,8 @@ static struct slc_tile_key key_of(const struct slc_demand_image *image, uint32_t
                                   uint32_t index)
 {
     uint32_t width = slc_image_level_width(image, level);
-    return (struct slc_tile_key){image->source, 0, level, index % width, index / width};
+    return (struct slc_tile_key){image->source, image->origin.arrayLayer, level, index % width,
+                                 index / width};
 }
 
 /* The page has a place. */

@@ -10,6 +10,7 @@
 
 #include "demand_runner_bytes_comp.h"
 #include "demand_runner_comp.h"
+#include "demand_runner_grids_comp.h"
 
 #define BUFFERS 9u
 #define BINDINGS (BUFFERS + 2)
@@ -137,6 +138,15 @@ void runner_init(struct runner *r, struct harness *h, const SluiceDemandLoaderCr
         create.pageCapacity = 1u << 20;
     CHECK_OK(sluiceCreateDemandLoader(&create, &loader));
     runner_init_with(r, h, loader);
+}
+
+void runner_sample_grids(struct runner *r)
+{
+    struct harness *h = r->h;
+    h->DestroyPipeline(h->device, r->pipeline, NULL);
+    r->pipeline = conform_compute_pipeline(
+        h, r->layout, conform_module(h, demand_runner_grids_comp, sizeof demand_runner_grids_comp),
+        NULL);
 }
 
 void runner_finish(struct runner *r)

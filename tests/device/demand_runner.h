@@ -35,6 +35,8 @@ struct runner {
 void runner_init(struct runner *r, struct harness *h, const SluiceDemandLoaderCreateInfo *info);
 /** The same for a loader that is there, which it does not own... but destroys. */
 void runner_init_with(struct runner *r, struct harness *h, SluiceDemandLoader *loader);
+/** From now on RUNNER_LAYER_GRAD and those behind it are allowed; byte pages are not. */
+void runner_sample_grids(struct runner *r);
 void runner_finish(struct runner *r);
 void runner_fill(struct harness *h, SluiceDemandLoaderCreateInfo *info);
 

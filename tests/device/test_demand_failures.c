@@ -135,7 +135,6 @@ static void images_that_no_shader_could_sample_are_refused(void **state)
         {.info = {sizeof(SluiceImageInfo), 16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"}},
         {.info = {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_R8_UNORM,
                   "more layers than any array", UINT32_MAX}},
-        {.info = {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_R8_UNORM, "layers", 2}},
         {.info = {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_UNDEFINED, "no format"}},
         {.info = {sizeof(SluiceImageInfo), 16, 16, 5, (SluiceFormat)99, "unknown format"}},
         {.info = {sizeof(SluiceImageInfo), 1u << 20, 1u << 20, 21, SLUICE_FORMAT_R8_UNORM,

@@ -32,6 +32,16 @@ layout(push_constant) uniform Push { uint count; };
 #define SLUICE_DEMAND_SECTION_WORD(i) sections.words[i]
 #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
 #include "sluice/demand.glsl"
+#ifdef RUNNER_SAMPLES_GRIDS
+#include "sluice/demand_grids.glsl"
+
+vec4 sampleGrid(RunnerInput i, vec2 uv, vec2 dx, vec2 dy, out bool resident)
+{
+    if (i.kind == RUNNER_LAYER_GRAD)
+        return sluiceDemandLayerGrad(i.index, i.cell, uv, dx, dy, resident);
+    return sluiceDemandLayerLod(i.index, i.cell, uv, dx.x, resident);
+}
+#endif
 
 #ifdef RUNNER_READS_BYTES
 layout(std430, binding = 10) readonly buffer Chunk { uint words[]; } chunks[SLUICE_DEMAND_BYTE_CHUNKS];
@@ -79,6 +89,10 @@ void main()
 #ifdef RUNNER_READS_BYTES
     else if (i.kind == RUNNER_BYTES || i.kind == RUNNER_ADDRESS)
         value = readBytes(i.kind, i.index, uint(i.dx[0]), resident);
+#endif
+#ifdef RUNNER_SAMPLES_GRIDS
+    else if (i.kind >= RUNNER_LAYER_GRAD)
+        color = sampleGrid(i, uv, dx, dy, resident);
 #endif
     else if (i.kind == RUNNER_LOD)
         color = sluiceDemandLod(i.index, uv, dx.x, resident);

@@ -6,19 +6,22 @@
 
 #define RUNNER_CHUNKS 64
 
-#define RUNNER_GRAD 0    /* sluiceDemandGrad */
-#define RUNNER_LOD 1     /* sluiceDemandLod with a[0] */
-#define RUNNER_MAP 2     /* sluiceMapOrRequest of the page `index` */
-#define RUNNER_BYTES 3   /* the byte page `index` of dx[0] bytes, by offsets */
-#define RUNNER_ADDRESS 4 /* ... by its address */
+#define RUNNER_GRAD 0       /* sluiceDemandGrad */
+#define RUNNER_LOD 1        /* sluiceDemandLod with a[0] */
+#define RUNNER_MAP 2        /* sluiceMapOrRequest of the page `index` */
+#define RUNNER_BYTES 3      /* the byte page `index` of dx[0] bytes, by offsets */
+#define RUNNER_ADDRESS 4    /* ... by its address */
+#define RUNNER_LAYER_GRAD 5 /* sluiceDemandLayerGrad of layer `cell` */
+#define RUNNER_LAYER_LOD 6  /* sluiceDemandLayerLod with dx[0] */
 
 struct RunnerInput {
     uint kind, index;
     float uv[2];
     float dx[2];
     float dy[2];
+    uint cell;
 };
-SLUICE_SHARED_SIZE(struct RunnerInput, 32)
+SLUICE_SHARED_SIZE(struct RunnerInput, 36)
 
 struct RunnerOutput {
     float color[4];
