@@ -154,8 +154,8 @@ typedef struct SluiceBakeInfo {
     uint32_t structSize; ///< sizeof(SluiceBakeInfo).
     /** Path of the picture. NULL: bake pInput or `source`. */
     const char *pInputPath;
-    /** Source to bake if pInputPath and pInput are NULL: level 0, or all levels unchanged if they
-     *  are block-compressed. Not owned. */
+    /** Source to bake if pInputPath and pInput are NULL: level 0 of all layers, or all levels
+     *  unchanged if they are block-compressed. Not owned. */
     SluiceImageSource *source;
     const char *pOutputPath;             ///< Required.
     const SluiceBakeSettings *pSettings; ///< Default: every setting has its default.
@@ -180,12 +180,26 @@ typedef struct SluiceBakeInfo {
      * SLUICE_ERROR_UNSUPPORTED unless this is 0. Default: 0, the whole chain.
      */
     uint32_t firstLevel;
+    /**
+     * Paths of pictures that become the layers of one store, in this order. pInputPath, pInput and
+     * `source` must be NULL. The pictures must have the same size, and formats that become the same
+     * format (`format` of the settings makes them so). All are opened before anything is written,
+     * one at a time. Files of arrays give all their layers. Default: NULL.
+     */
+    const char *const *ppLayerPaths;
+    uint32_t layerPathCount; ///< At most SLUICE_STORE_MAX_ARRAY_LAYERS. Default: 0.
+    /**
+     * The layers are faces of cube maps: square, six for each cube, in the order of
+     * SluiceImageInfo.cube. Cube maps of DDS files, KTX2 files and sources need not set this.
+     * Default: false.
+     */
+    bool cube;
 } SluiceBakeInfo;
 
 /** Result of one bake. */
 typedef struct SluiceBakeReport {
     uint32_t structSize; ///< sizeof(SluiceBakeReport).
-    bool skipped;        ///< Output was up to date: same size, time and settings hash of the input.
+    bool skipped; ///< Output was up to date: same sizes, times and settings hash of the inputs.
     uint32_t width, height, mipLevelCount, arrayLayerCount;
     SluiceFormat format;
     uint64_t inputSize, outputSize; ///< Bytes of the files. inputSize: 0 for a source and pInput.
@@ -219,10 +233,11 @@ typedef struct SluiceBakeReport {
  * again.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range,
- *         including the source's info, and if the output or its .sluice-part file is the input,
- *         also through links; SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO; SLUICE_ERROR_BUSY if
- *         another writer has the output open; SLUICE_ERROR_CORRUPT_DATA for truncated files and
- *         files that no reader understands; SLUICE_ERROR_UNSUPPORTED for more than four channels,
+ *         including the source's info, if the output or its .sluice-part file is an input, also
+ *         through links, if layers differ in size or format, and if faces of cube maps are not
+ *         square or not six for each cube; SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO;
+ * SLUICE_ERROR_BUSY if another writer has the output open; SLUICE_ERROR_CORRUPT_DATA for truncated
+ * files and files that no reader understands; SLUICE_ERROR_UNSUPPORTED for more than four channels,
  *         complex numbers, and formats that Sluice cannot encode; SLUICE_ERROR_LIMIT_EXCEEDED if
  *         maxMemory is too small for the picture; SLUICE_ERROR_CANCELED;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.

@@ -1,17 +1,14 @@
-#define _XOPEN_SOURCE 700
-
 #include "bake/baker.h"
 #include "bake/copy.h"
+#include "bake/inputs.h"
 #include "bake/levels.h"
 #include "bake/settings.h"
 #include "base/alloc.h"
 #include "base/log.h"
 #include "base/part_file.h"
-#include "base/same_file.h"
 #include "base/struct_size.h"
+#include "image/info.h"
 
-#include <errno.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -24,36 +21,16 @@ struct bake {
     const SluiceBakeInfo *info;
     SluiceBakeSettings settings; ///< of `info`
     SluiceBakeReport report;
-    uint64_t source_size, settings_hash;
-    int64_t source_time;
+    struct slc_bake_inputs inputs;
+    uint64_t settings_hash;
+    uint32_t index; ///< of the picture in `inputs`
     struct slc_picture *picture;
-    struct slc_plan plan;
+    struct slc_plan plan; ///< of the picture
     SluiceStoreCreateInfo store;
+    SluiceImageInfo image; ///< of the first picture, as it is stored
+    uint64_t memory;       ///< bytes, for any of the pictures
     SluiceStoreWriter *writer;
 };
-
-static bool is_file(const struct bake *bake)
-{
-    return bake->info->pInputPath && !bake->info->pInput && bake->info->firstLevel == 0;
-}
-
-static SluiceResult look_at_input(struct bake *bake)
-{
-    struct stat status;
-    const char *path = bake->info->pInputPath;
-    if (!path || bake->info->pInput)
-        return SLUICE_SUCCESS;
-    if (stat(path, &status) != 0) {
-        slc_log(&bake->baker->log, SLUICE_LOG_ERROR, "%s: %s", path, strerror(errno));
-        return errno == ENOENT || errno == ENOTDIR ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
-    }
-    if (bake->info->pOutputPath && slc_output_replaces_input(bake->info->pOutputPath, path))
-        return slc_log_refusal(&bake->baker->log, "%s: the store would take its place", path);
-    bake->source_size = (uint64_t)status.st_size;
-    bake->source_time =
-        (int64_t)status.st_mtim.tv_sec * INT64_C(1000000000) + status.st_mtim.tv_nsec;
-    return SLUICE_SUCCESS;
-}
 
 static void report_image(struct bake *bake, const SluiceStoreLayout *layout, uint32_t layer_count)
 {
@@ -72,12 +49,12 @@ static bool is_up_to_date(struct bake *bake)
                                              .pAllocator = &bake->baker->allocator};
     SluiceImageSource *source;
     SluiceStoreInfo store = {.structSize = sizeof store};
-    if (!is_file(bake) || bake->info->force ||
+    if (!slc_bake_inputs_are_files(&bake->inputs) || bake->info->force ||
         sluiceCreateStoreImageSource(&info, &source) != SLUICE_SUCCESS)
         return false;
     bool is_same = sluiceGetStoreInfo(source, &store) == SLUICE_SUCCESS &&
-                   store.sourceSize == bake->source_size &&
-                   store.sourceModifiedTimeNs == bake->source_time &&
+                   store.sourceSize == bake->inputs.size &&
+                   store.sourceModifiedTimeNs == bake->inputs.time &&
                    store.settingsHash == bake->settings_hash;
     if (is_same) {
         report_image(bake, &store.layout, store.arrayLayerCount);
@@ -98,9 +75,10 @@ static SluiceResult open_picture(struct bake *bake)
         .input = info->pInput,
         .first_level = info->firstLevel,
     };
-    if (info->pInputPath || info->pInput)
-        return slc_picture_open(info->pInputPath ? info->pInputPath : "(memory)", &opening, cb,
-                                &bake->baker->log, &bake->picture);
+    const char *path = slc_bake_input_path(&bake->inputs, bake->index);
+    if (path || info->pInput)
+        return slc_picture_open(path ? path : "(memory)", &opening, cb, &bake->baker->log,
+                                &bake->picture);
     const char *name = info->pOutputPath ? info->pOutputPath : "(source)";
     if (info->firstLevel > 0) {
         slc_log(&bake->baker->log, SLUICE_LOG_ERROR,
@@ -117,38 +95,32 @@ static SluiceStoreAddressMode address_mode(SluiceBakeWrap wrap)
                                              : SLUICE_STORE_ADDRESS_MODE_MIRRORED_REPEAT;
 }
 
-/* The name without its folders: stores are moved together with what they were made from. */
-static const char *base_name(const char *path)
-{
-    const char *slash = path ? strrchr(path, '/') : NULL;
-    return slash ? slash + 1 : path;
-}
-
-static void describe_store(struct bake *bake, const SluiceImageInfo *image)
+static void describe_store(struct bake *bake)
 {
     const SluiceBakeSettings *settings = &bake->settings;
+    const SluiceImageInfo *image = &bake->image;
     bake->store = (SluiceStoreCreateInfo){
         .structSize = sizeof(SluiceStoreCreateInfo),
         .pPath = bake->info->pOutputPath,
         .width = image->width,
         .height = image->height,
-        .arrayLayerCount = image->arrayLayerCount ? image->arrayLayerCount : 1,
+        .arrayLayerCount = image->arrayLayerCount * bake->inputs.count,
         .format = image->format,
         .colorSpace = bake->plan.color_space,
         .meaning = bake->plan.meaning,
         .addressModeU = address_mode(settings->wrapX),
         .addressModeV = address_mode(settings->wrapY),
-        .pSourceName = base_name(bake->info->pInputPath),
-        .sourceSize = bake->source_size,
-        .sourceModifiedTimeNs = bake->source_time,
+        .pSourceName = slc_base_name(slc_bake_input_path(&bake->inputs, 0)),
+        .sourceSize = bake->inputs.size,
+        .sourceModifiedTimeNs = bake->inputs.time,
         .settingsHash = bake->settings_hash,
         .compressionLevel = settings->uncompressed       ? 0
                             : settings->compressionLevel ? settings->compressionLevel
                                                          : SLUICE_BAKE_DEFAULT_COMPRESSION,
-        .flags = is_file(bake) ? SLUICE_STORE_WRITER_RESUME : 0,
+        .flags = slc_bake_inputs_are_files(&bake->inputs) ? SLUICE_STORE_WRITER_RESUME : 0,
         .pAllocator = &bake->baker->allocator,
         .log = bake->baker->log,
-        .cube = image->cube,
+        .cube = image->cube || bake->info->cube,
     };
 }
 
@@ -165,70 +137,176 @@ static SluiceStoreMeaning meaning_of_blocks(SluiceFormat format, bool normals)
 }
 
 /* Many files of blocks do not know whether they hold sRGB; the settings may say so. */
-static SluiceResult describe_blocks(struct bake *bake)
+static SluiceResult describe_blocks(struct bake *bake, SluiceImageInfo *image)
 {
     const SluiceBakeSettings *settings = &bake->settings;
-    SluiceImageInfo image = {.structSize = sizeof image};
-    SluiceResult result = sluiceGetImageInfo(bake->picture->blocks, &image);
+    SluiceResult result = sluiceGetImageInfo(bake->picture->blocks, image);
     if (result != SLUICE_SUCCESS)
         return result;
     if (settings->transfer != SLUICE_BAKE_TRANSFER_AUTO)
-        image.format =
-            slc_format_twin(image.format, settings->transfer == SLUICE_BAKE_TRANSFER_SRGB);
-    bake->plan.meaning = meaning_of_blocks(image.format, settings->normalMap);
-    if (slc_format_is_srgb(image.format))
+        image->format =
+            slc_format_twin(image->format, settings->transfer == SLUICE_BAKE_TRANSFER_SRGB);
+    bake->plan =
+        (struct slc_plan){.meaning = meaning_of_blocks(image->format, settings->normalMap)};
+    if (slc_format_is_srgb(image->format))
         bake->plan.color_space = SLUICE_STORE_COLOR_SPACE_SRGB;
-    describe_store(bake, &image);
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult describe_picture(struct bake *bake)
+static SluiceResult describe_picture(struct bake *bake, SluiceImageInfo *image)
 {
-    struct slc_picture *picture = bake->picture;
-    SluiceImageInfo image = {
-        .structSize = sizeof image, .width = picture->width, .height = picture->height};
+    const struct slc_picture *picture = bake->picture;
     if (picture->blocks)
-        return describe_blocks(bake);
+        return describe_blocks(bake, image);
     SluiceResult result =
         slc_plan_make(picture, &bake->settings, bake->baker->decoded16, &bake->plan);
-    image.format = bake->plan.format;
-    if (result == SLUICE_SUCCESS)
-        describe_store(bake, &image);
+    image->width = picture->width;
+    image->height = picture->height;
+    image->format = bake->plan.format;
+    image->cube = picture->cube;
     return result;
 }
 
-static SluiceResult filter_levels(struct bake *bake, const SluiceStoreLayout *layout)
+/* The picture that says more of its colors decides: of five opaque faces and one with alpha, that
+ * one. */
+static void merge_meanings(struct bake *bake)
+{
+    if (bake->store.meaning == SLUICE_STORE_MEANING_COLOR)
+        bake->store.meaning = bake->plan.meaning;
+    if (bake->store.colorSpace != bake->plan.color_space)
+        bake->store.colorSpace = SLUICE_STORE_COLOR_SPACE_UNDEFINED;
+}
+
+static SluiceResult check_cube(const struct bake *bake)
+{
+    const SluiceLogCallback *log = &bake->baker->log;
+    uint32_t layers = bake->store.arrayLayerCount;
+    if (!bake->store.cube)
+        return SLUICE_SUCCESS;
+    if (bake->image.width != bake->image.height)
+        return slc_log_refusal(log, "%s: is %u x %u texels; faces of cube maps are square",
+                               bake->picture->name, bake->image.width, bake->image.height);
+    if (layers % SLC_CUBE_FACES)
+        return slc_log_refusal(log, "%s: %u layers are no cube maps, which have %u faces each",
+                               bake->picture->name, layers, SLC_CUBE_FACES);
+    return SLUICE_SUCCESS;
+}
+
+/* Whether the picture's layers can stand beside those of the first picture. */
+static SluiceResult check_layers(const struct bake *bake, const SluiceImageInfo *image)
+{
+    const SluiceImageInfo *first = &bake->image;
+    if (image->width == first->width && image->height == first->height &&
+        image->format == first->format && image->arrayLayerCount == first->arrayLayerCount)
+        return SLUICE_SUCCESS;
+    return slc_log_refusal(&bake->baker->log,
+                           "%s: is %u x %u texels, %s, %u layers; %s is %u x %u texels, %s, %u "
+                           "layers; layers of a store are alike",
+                           bake->picture->name, image->width, image->height,
+                           sluiceGetFormatName(image->format), image->arrayLayerCount,
+                           slc_bake_input_path(&bake->inputs, 0), first->width, first->height,
+                           sluiceGetFormatName(first->format), first->arrayLayerCount);
+}
+
+/* Opens the picture `index` and plans how it becomes layers of the store. */
+static SluiceResult begin_picture(struct bake *bake, uint32_t index)
+{
+    SluiceImageInfo image = {.structSize = sizeof image};
+    bake->index = index;
+    SluiceResult result = open_picture(bake);
+    if (result == SLUICE_SUCCESS)
+        result = describe_picture(bake, &image);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    image.arrayLayerCount = bake->picture->layer_count;
+    if (bake->image.width > 0) /* not the first time */
+        return check_layers(bake, &image);
+    uint64_t layers = (uint64_t)image.arrayLayerCount * bake->inputs.count;
+    if (layers > SLUICE_STORE_MAX_ARRAY_LAYERS)
+        return slc_log_refusal(&bake->baker->log, "%s: %llu layers are baked; at most %u can be",
+                               bake->picture->name, (unsigned long long)layers,
+                               SLUICE_STORE_MAX_ARRAY_LAYERS);
+    bake->image = image;
+    describe_store(bake);
+    return check_cube(bake);
+}
+
+static void end_picture(struct bake *bake)
+{
+    slc_picture_close(bake->picture);
+    bake->picture = NULL;
+}
+
+static SluiceResult filter_levels(struct bake *bake, const SluiceStoreLayout *layout,
+                                  uint32_t layer)
 {
     struct slc_baking baking = {.allocator = bake->baker->allocator,
                                 .picture = bake->picture,
                                 .astc = &bake->baker->astc,
                                 .plan = bake->plan,
+                                .layer = layer,
+                                .layer_count = bake->store.arrayLayerCount,
                                 .user = bake->info->pUserData,
                                 .progress = bake->info->pfnProgress};
     SluiceResult result = slc_baking_init(&baking, &bake->baker->jobs, layout);
     if (result == SLUICE_SUCCESS)
         result = slc_baking_run(&baking, bake->writer);
-    bake->report.replacedTexelCount = baking.replaced.texels;
-    bake->report.nanTexelCount = baking.replaced.nan;
-    bake->report.infiniteTexelCount = baking.replaced.infinite;
-    bake->report.clampedTexelCount = baking.replaced.clamped;
+    bake->report.replacedTexelCount += baking.replaced.texels;
+    bake->report.nanTexelCount += baking.replaced.nan;
+    bake->report.infiniteTexelCount += baking.replaced.infinite;
+    bake->report.clampedTexelCount += baking.replaced.clamped;
     slc_baking_finish(&baking);
-    bake->report.resumedTileCount = baking.tiler.found_tile_count;
+    bake->report.resumedTileCount += baking.tiler.found_tile_count;
     return result;
 }
 
-static SluiceResult copy_levels(struct bake *bake, const SluiceStoreLayout *layout)
+static SluiceResult copy_levels(struct bake *bake, const SluiceStoreLayout *layout,
+                                uint32_t first_layer)
 {
     struct slc_copy copy = {.allocator = bake->baker->allocator,
                             .jobs = &bake->baker->jobs,
                             .source = bake->picture->blocks,
                             .writer = bake->writer,
                             .layout = *layout,
-                            .layer_count = bake->store.arrayLayerCount,
+                            .first_layer = first_layer,
+                            .layer_count = bake->image.arrayLayerCount,
+                            .all_layer_count = bake->store.arrayLayerCount,
                             .user = bake->info->pUserData,
                             .progress = bake->info->pfnProgress};
     SluiceResult result = slc_copy_run(&copy);
-    bake->report.resumedTileCount = copy.found_tile_count;
+    bake->report.resumedTileCount += copy.found_tile_count;
+    return result;
+}
+
+/* All layers of the picture. */
+static SluiceResult write_layers(struct bake *bake, const SluiceStoreLayout *layout)
+{
+    struct slc_picture *picture = bake->picture;
+    uint32_t first = bake->index * bake->image.arrayLayerCount;
+    SluiceResult result = SLUICE_SUCCESS;
+    if (picture->blocks)
+        return copy_levels(bake, layout, first);
+    for (uint32_t i = 0; i < picture->layer_count && result == SLUICE_SUCCESS; i++) {
+        picture->layer = i;
+        if (i > 0)
+            result = picture->implementation->rewind(picture);
+        if (result == SLUICE_SUCCESS)
+            result = filter_levels(bake, layout, first + i);
+    }
+    return result;
+}
+
+static SluiceResult write_pictures(struct bake *bake, const SluiceStoreLayout *layout)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t i = 0; i < bake->inputs.count && result == SLUICE_SUCCESS; i++) {
+        if (bake->inputs.count > 1) {
+            end_picture(bake);
+            result = begin_picture(bake, i);
+        }
+        if (result == SLUICE_SUCCESS)
+            result = write_layers(bake, layout);
+    }
     return result;
 }
 
@@ -247,7 +325,7 @@ static SluiceResult write_store(struct bake *bake, const SluiceStoreLayout *layo
 {
     SluiceResult result = sluiceCreateStoreWriter(&bake->store, &bake->writer);
     if (result == SLUICE_SUCCESS)
-        result = bake->picture->blocks ? copy_levels(bake, layout) : filter_levels(bake, layout);
+        result = write_pictures(bake, layout);
     if (result == SLUICE_SUCCESS)
         result = sluiceFinishStore(bake->writer);
     sluiceDestroyStoreWriter(bake->writer);
@@ -256,62 +334,80 @@ static SluiceResult write_store(struct bake *bake, const SluiceStoreLayout *layo
     return result;
 }
 
+/* Bytes for the picture, with what is taken beside it. */
+static uint64_t memory_for_picture(const struct bake *bake, const SluiceStoreLayout *layout)
+{
+    const struct slc_bake_jobs *jobs = &bake->baker->jobs;
+    uint64_t size = bake->picture->memory + MEMORY_PER_THREAD * (jobs->thread_count + 1);
+    return size + (bake->picture->blocks ? slc_copy_memory(layout, jobs->thread_count)
+                                         : slc_baking_memory(bake->picture, &bake->plan, layout));
+}
+
+/* Begins all pictures, one after the other, before anything is written. A single one stays. */
+static SluiceResult look_at_pictures(struct bake *bake, SluiceStoreLayout *layout)
+{
+    uint64_t memory = 0;
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t i = 0; i < bake->inputs.count && result == SLUICE_SUCCESS; i++) {
+        end_picture(bake);
+        result = begin_picture(bake, i);
+        if (result == SLUICE_SUCCESS && i == 0)
+            result = sluiceGetStoreLayout(bake->store.width, bake->store.height, bake->store.format,
+                                          layout);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        merge_meanings(bake);
+        memory = memory_for_picture(bake, layout);
+        bake->memory = memory > bake->memory ? memory : bake->memory;
+    }
+    bake->report.inputSize = bake->inputs.size;
+    report_image(bake, layout, bake->store.arrayLayerCount);
+    return result;
+}
+
 static SluiceResult bake_with_memory(struct bake *bake, const SluiceStoreLayout *layout)
 {
     SluiceBaker *baker = bake->baker;
-    uint64_t size = bake->picture->memory + MEMORY_PER_THREAD * (baker->jobs.thread_count + 1);
-    size += bake->picture->blocks ? slc_copy_memory(layout, baker->jobs.thread_count)
-                                  : slc_baking_memory(bake->picture, &bake->plan, layout);
-    bake->report.memorySize = size;
+    bake->report.memorySize = bake->memory;
     bool is_whole = bake->picture->unpacked_size > 0;
-    SluiceResult result = slc_baker_reserve(baker, size, bake->info);
+    SluiceResult result = slc_baker_reserve(baker, bake->memory, bake->info);
     if (result == SLUICE_ERROR_LIMIT_EXCEEDED)
         slc_log(&baker->log, SLUICE_LOG_ERROR,
                 "%s: baking it takes %llu KiB of memory%s; maxMemory is %llu KiB; raise it%s",
-                bake->picture->name, (unsigned long long)(size >> 10),
+                bake->picture->name, (unsigned long long)(bake->memory >> 10),
                 is_whole ? ", because its file is unpacked as a whole" : "",
                 (unsigned long long)(baker->max_memory >> 10),
                 is_whole ? ", or write the picture as a plain PNG or TIFF file" : "");
     if (result != SLUICE_SUCCESS)
         return result;
     result = write_store(bake, layout);
-    slc_baker_give_back(baker, size);
+    slc_baker_give_back(baker, bake->memory);
     return result;
 }
 
-static SluiceResult bake_picture(struct bake *bake)
+static SluiceResult bake_pictures(struct bake *bake)
 {
     struct stat status;
     SluiceStoreLayout layout;
-    SluiceResult result = describe_picture(bake);
+    SluiceResult result = look_at_pictures(bake, &layout);
     if (result == SLUICE_SUCCESS)
-        result = sluiceGetStoreLayout(bake->store.width, bake->store.height, bake->store.format,
-                                      &layout);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    report_image(bake, &layout, bake->store.arrayLayerCount);
-    result = bake_with_memory(bake, &layout);
+        result = bake_with_memory(bake, &layout);
     if (result == SLUICE_SUCCESS && stat(bake->info->pOutputPath, &status) == 0)
         bake->report.outputSize = (uint64_t)status.st_size;
+    end_picture(bake);
     return result;
 }
 
 static SluiceResult bake_file(struct bake *bake)
 {
-    SluiceResult result = look_at_input(bake);
+    SluiceResult result = slc_bake_inputs_init(&bake->inputs, bake->info, &bake->baker->log);
     if (result != SLUICE_SUCCESS)
         return result;
     /* A preview is no store of the picture. */
-    bake->settings_hash =
-        slc_hash_settings(&bake->settings) ^ bake->info->firstLevel * UINT64_C(0x9E3779B97F4A7C15);
-    bake->report.inputSize = bake->source_size;
-    if (is_up_to_date(bake))
-        return SLUICE_SUCCESS;
-    result = open_picture(bake);
-    if (result == SLUICE_SUCCESS)
-        result = bake_picture(bake);
-    slc_picture_close(bake->picture);
-    return result;
+    bake->settings_hash = slc_hash_settings(&bake->settings) ^ bake->inputs.hash ^
+                          bake->info->firstLevel * UINT64_C(0x9E3779B97F4A7C15);
+    bake->report.inputSize = bake->inputs.size;
+    return is_up_to_date(bake) ? SLUICE_SUCCESS : bake_pictures(bake);
 }
 
 /* Checks the arguments that sluiceBakeFile and sluiceDescribeBake share. */
@@ -327,11 +423,7 @@ static SluiceResult read_arguments(struct bake *bake, SluiceBakeInfo *info,
         result = slc_struct_check(SLC_STRUCT(SluiceBakeReport), report, log);
     if (result == SLUICE_SUCCESS)
         result = slc_check_settings(&bake->settings, log);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    if (!info->pInputPath && !info->pInput && !info->source)
-        return SLUICE_ERROR_NULL_POINTER;
-    return SLUICE_SUCCESS;
+    return result;
 }
 
 static const SluiceBakeSettings default_settings = {.structSize = sizeof default_settings};
@@ -364,19 +456,11 @@ SluiceResult sluiceDescribeBake(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
     SluiceStoreLayout layout;
     SluiceResult result = read_arguments(&bake, &info, pInfo, pReport);
     if (result == SLUICE_SUCCESS)
-        result = look_at_input(&bake);
+        result = slc_bake_inputs_init(&bake.inputs, &info, &baker->log);
     if (result == SLUICE_SUCCESS)
-        result = open_picture(&bake);
+        result = look_at_pictures(&bake, &layout);
     if (result == SLUICE_SUCCESS)
-        result = describe_picture(&bake);
-    if (result == SLUICE_SUCCESS)
-        result =
-            sluiceGetStoreLayout(bake.store.width, bake.store.height, bake.store.format, &layout);
-    if (result == SLUICE_SUCCESS) {
-        bake.report.inputSize = bake.source_size;
-        report_image(&bake, &layout, bake.store.arrayLayerCount);
         slc_struct_write(SLC_STRUCT(SluiceBakeReport), pReport, &bake.report);
-    }
-    slc_picture_close(bake.picture);
+    end_picture(&bake);
     return result;
 }

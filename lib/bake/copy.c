@@ -35,8 +35,8 @@ static SluiceResult copy_tile(struct slot *slot, bool *found)
 {
     struct slc_copy *copy = slot->run->copy;
     SluiceImageRegion region;
-    SluiceResult result =
-        sluiceIsStoreTileWritten(copy->writer, slot->layer, slot->level, slot->x, slot->y, found);
+    SluiceResult result = sluiceIsStoreTileWritten(copy->writer, copy->first_layer + slot->layer,
+                                                   slot->level, slot->x, slot->y, found);
     if (result != SLUICE_SUCCESS || *found)
         return result;
     result = sluiceGetStoreTileRegion(&copy->layout, slot->level, slot->x, slot->y, &region);
@@ -47,8 +47,8 @@ static SluiceResult copy_tile(struct slot *slot, bool *found)
     result = sluiceReadImageRegion(copy->source, &region, slot->texels, pitch);
     if (result != SLUICE_SUCCESS)
         return result;
-    return sluiceWriteStoreTile(copy->writer, slot->layer, slot->level, slot->x, slot->y,
-                                slot->texels, pitch);
+    return sluiceWriteStoreTile(copy->writer, copy->first_layer + slot->layer, slot->level, slot->x,
+                                slot->y, slot->texels, pitch);
 }
 
 static void run_slot(struct slc_job *base)
@@ -116,8 +116,8 @@ static SluiceResult copy_tail(struct slc_copy *copy, uint32_t layer, char *texel
     const SluiceStoreLayout *layout = &copy->layout;
     const void *levels[SLUICE_STORE_MAX_MIP_LEVELS];
     bool found = false;
-    SluiceResult result =
-        sluiceIsStoreTileWritten(copy->writer, layer, layout->tailFirstLevel, 0, 0, &found);
+    SluiceResult result = sluiceIsStoreTileWritten(copy->writer, copy->first_layer + layer,
+                                                   layout->tailFirstLevel, 0, 0, &found);
     slc_bake_jobs_lock(copy->jobs); /* tiles are still being copied */
     copy->found_tile_count += found;
     pthread_mutex_unlock(&copy->jobs->mutex);
@@ -133,8 +133,9 @@ static SluiceResult copy_tail(struct slc_copy *copy, uint32_t layer, char *texel
         levels[l - layout->tailFirstLevel] = texels;
         texels += sluiceGetFormatRegionSize(layout->format, region.width, region.height);
     }
-    return result == SLUICE_SUCCESS ? sluiceWriteStoreTail(copy->writer, layer, levels, NULL)
-                                    : result;
+    return result == SLUICE_SUCCESS
+               ? sluiceWriteStoreTail(copy->writer, copy->first_layer + layer, levels, NULL)
+               : result;
 }
 
 static SluiceResult copy_layer(struct run *run, uint32_t layer, char *tail)
@@ -152,7 +153,8 @@ SluiceResult slc_copy_run(struct slc_copy *copy)
 {
     const SluiceAllocationCallbacks *cb = &copy->allocator;
     struct run run = {.copy = copy, .slot_count = count_slots(copy->jobs->thread_count)};
-    run.total = copy->layout.tileCount * copy->layer_count;
+    run.done = copy->layout.tileCount * copy->first_layer;
+    run.total = copy->layout.tileCount * copy->all_layer_count;
     char *tail = slc_alloc(cb, copy->layout.tailSize, 1);
     run.slots = slc_alloc(cb, run.slot_count, sizeof *run.slots);
     SluiceResult result = tail && run.slots ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;

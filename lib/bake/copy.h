@@ -12,7 +12,9 @@ struct slc_copy {
     SluiceImageSource *source;
     SluiceStoreWriter *writer;
     SluiceStoreLayout layout;
-    uint32_t layer_count;
+    uint32_t first_layer;      ///< of the store: where the source's first layer goes
+    uint32_t layer_count;      ///< of the source
+    uint32_t all_layer_count;  ///< of the store, for the progress
     uint64_t found_tile_count; ///< written by an earlier run
     void *user;
     bool (*progress)(void *user, uint64_t done, uint64_t total); ///< in tiles; NULL: none

@@ -131,9 +131,12 @@ SluiceResult slc_baking_run(struct slc_baking *baking, SluiceStoreWriter *writer
     SluiceResult result = SLUICE_SUCCESS;
     uint64_t texels = (uint64_t)baking->picture->width * baking->picture->height;
     baking->tiler.writer = writer;
+    baking->tiler.layer = baking->layer;
     baking->tiler.encoder = (struct slc_block_encoder){baking->plan.format,
                                                        baking->plan.settings.quality, baking->astc};
-    baking->total = baking->plan.threshold > 0.0f ? 2 * texels : texels;
+    texels = baking->plan.threshold > 0.0f ? 2 * texels : texels;
+    baking->done = baking->layer * texels;
+    baking->total = baking->layer_count * texels;
     if (baking->plan.threshold > 0.0f)
         result = count_alpha(baking);
     if (result == SLUICE_SUCCESS)

@@ -12,6 +12,8 @@ struct slc_baking {
     struct slc_picture *picture;
     struct slc_astc_pool *astc;
     struct slc_plan plan;
+    uint32_t layer;       ///< of the store
+    uint32_t layer_count; ///< of the store, for the progress
     struct slc_pyramid pyramid;
     struct slc_tiler tiler;
     struct slc_coverage coverage;
@@ -19,7 +21,7 @@ struct slc_baking {
     float alpha_scales[SLC_MAX_LEVELS];
     float *row;                   ///< [width][4]
     struct slc_replaced replaced; ///< of level 0
-    uint64_t done, total;         ///< texels of level 0, of all passes
+    uint64_t done, total;         ///< texels of level 0, of all passes and layers
     void *user;
     bool (*progress)(void *user, uint64_t done, uint64_t total); ///< NULL: none
 };
@@ -29,7 +31,8 @@ uint64_t slc_baking_memory(const struct slc_picture *picture, const struct slc_p
                            const SluiceStoreLayout *layout);
 
 /**
- * Initializes the other fields. Set allocator, picture, astc, plan, user and progress first. Finish
+ * Initializes the other fields. Set allocator, picture, astc, plan, layer,
+ * layer_count, user and progress first. Finish
  * it even after an error. Errors: OUT_OF_HOST_MEMORY.
  */
 SluiceResult slc_baking_init(struct slc_baking *baking, struct slc_bake_jobs *jobs,

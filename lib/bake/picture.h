@@ -21,6 +21,9 @@ struct slc_picture {
     SluiceLogCallback log;
     const char *name; ///< for messages; lives as long as the picture
     uint32_t width, height;
+    uint32_t layer_count; ///< at least 1
+    uint32_t layer;       ///< whose rows are read; set it, then rewind
+    bool cube;            ///< the layers are faces of cube maps
     enum slc_sample sample;
     uint32_t channels;      ///< 1 to 4
     bool alpha;             ///< the last of 2 or 4 channels is alpha

@@ -24,7 +24,7 @@ static SluiceResult row(struct slc_picture *base, uint32_t y, const void **sampl
     struct source_picture *picture = (struct source_picture *)base;
     if (y >= picture->first + picture->count || y < picture->first) {
         uint32_t count = slc_min_u32(STRIP, base->height - y);
-        SluiceImageRegion region = {0, 0, y, base->width, count, 0};
+        SluiceImageRegion region = {0, 0, y, base->width, count, base->layer};
         SluiceResult result =
             sluiceReadImageRegion(picture->source, &region, picture->rows, picture->pitch);
         if (result != SLUICE_SUCCESS)
@@ -38,7 +38,7 @@ static SluiceResult row(struct slc_picture *base, uint32_t y, const void **sampl
 
 static SluiceResult rewind_picture(struct slc_picture *base)
 {
-    (void)base;
+    ((struct source_picture *)base)->count = 0;
     return SLUICE_SUCCESS;
 }
 
@@ -89,6 +89,8 @@ static SluiceResult describe(struct source_picture *picture, const SluiceImageIn
         return result;
     base->width = info->width;
     base->height = info->height;
+    base->layer_count = slc_max_u32(1, info->arrayLayerCount);
+    base->cube = info->cube;
     base->channels = format.channelCount;
     base->alpha = format.channelCount == 4;
     base->premultiplied = true;
@@ -104,8 +106,6 @@ static SluiceResult describe(struct source_picture *picture, const SluiceImageIn
     }
     if (!find_sample(info->format, &base->sample))
         return unsupported(picture, "packed formats are not baked");
-    if (info->arrayLayerCount > 1)
-        return unsupported(picture, "arrays are baked only of block-compressed data");
     picture->pitch = (size_t)slc_format_row_size(&format, info->width);
     base->memory = STRIP * (uint64_t)picture->pitch;
     picture->rows = slc_alloc(&base->allocator, STRIP * picture->pitch, 1);

@@ -301,6 +301,7 @@ static void describe(struct vips_picture *picture)
     struct slc_picture *base = &picture->base;
     VipsImage *image = picture->image;
     VipsBandFormat format = vips_image_get_format(image);
+    base->layer_count = 1;
     base->width = (uint32_t)vips_image_get_width(image);
     base->height = (uint32_t)vips_image_get_height(image);
     base->channels = (uint32_t)vips_image_get_bands(image);

@@ -102,7 +102,8 @@ static SluiceResult write_encoded(struct slc_tiler *tiler, const SluiceImageRegi
 {
     SluiceFormat format = tiler->layout.format;
     if (format == tiler->texel_format)
-        return sluiceWriteStoreTile(tiler->writer, 0, region->mipLevel, x, y, texels, pitch);
+        return sluiceWriteStoreTile(tiler->writer, tiler->layer, region->mipLevel, x, y, texels,
+                                    pitch);
     size_t size = (size_t)sluiceGetFormatRegionSize(format, region->width, region->height);
     void *blocks = slc_alloc(&tiler->allocator, size, 1);
     if (!blocks)
@@ -110,7 +111,7 @@ static SluiceResult write_encoded(struct slc_tiler *tiler, const SluiceImageRegi
     SluiceResult result =
         slc_encode_blocks(&tiler->encoder, texels, pitch, region->width, region->height, blocks);
     if (result == SLUICE_SUCCESS)
-        result = sluiceWriteStoreTile(tiler->writer, 0, region->mipLevel, x, y, blocks,
+        result = sluiceWriteStoreTile(tiler->writer, tiler->layer, region->mipLevel, x, y, blocks,
                                       (size_t)sluiceGetFormatRegionSize(format, region->width, 1));
     slc_free(&tiler->allocator, blocks, size, 1);
     return result;
@@ -122,7 +123,7 @@ static SluiceResult write_tile(struct slc_tile_job *job, bool *found)
     struct slc_tiler *tiler = band->tiler;
     SluiceImageRegion region;
     SluiceResult result =
-        sluiceIsStoreTileWritten(tiler->writer, 0, band->level, job->x, band->y, found);
+        sluiceIsStoreTileWritten(tiler->writer, tiler->layer, band->level, job->x, band->y, found);
     if (result != SLUICE_SUCCESS || *found)
         return result;
     result = sluiceGetStoreTileRegion(&tiler->layout, band->level, job->x, band->y, &region);
@@ -246,7 +247,7 @@ static SluiceResult encode_tail(struct slc_tiler *tiler, const void **levels, ch
         }
         levels[l - layout->tailFirstLevel] = texels;
     }
-    return sluiceWriteStoreTail(tiler->writer, 0, levels, NULL);
+    return sluiceWriteStoreTail(tiler->writer, tiler->layer, levels, NULL);
 }
 
 static SluiceResult write_tail(struct slc_tiler *tiler)
@@ -255,7 +256,7 @@ static SluiceResult write_tail(struct slc_tiler *tiler)
     const void *levels[SLUICE_STORE_MAX_MIP_LEVELS];
     bool found = false;
     SluiceResult result =
-        sluiceIsStoreTileWritten(tiler->writer, 0, layout->tailFirstLevel, 0, 0, &found);
+        sluiceIsStoreTileWritten(tiler->writer, tiler->layer, layout->tailFirstLevel, 0, 0, &found);
     if (result != SLUICE_SUCCESS || found)
         return result;
     if (layout->format == tiler->texel_format)

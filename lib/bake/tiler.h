@@ -47,6 +47,7 @@ struct slc_tiler {
     SluiceFormat texel_format; ///< texels in rows: the layout's format, or the encoder's input
     struct slc_block_encoder encoder; ///< set it after init
     SluiceStoreWriter *writer;
+    uint32_t layer;            ///< of the store; set it after init
     SluiceResult result;       ///< the first failure; under the pool's mutex
     uint64_t found_tile_count; ///< written by an earlier run; under the pool's mutex
     char *tail;                ///< texels of the tail's levels, one after the other

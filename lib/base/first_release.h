@@ -51,7 +51,7 @@
 #define SLC_FIRST_SluiceStoreReport SLC_UP_TO(SluiceStoreReport, rawTileCount)
 #define SLC_FIRST_SluiceBakeSettings SLC_UP_TO(SluiceBakeSettings, keepPrimaries)
 #define SLC_FIRST_SluiceBakerCreateInfo SLC_UP_TO(SluiceBakerCreateInfo, log)
-#define SLC_FIRST_SluiceBakeInfo SLC_UP_TO(SluiceBakeInfo, firstLevel)
+#define SLC_FIRST_SluiceBakeInfo SLC_UP_TO(SluiceBakeInfo, cube)
 #define SLC_FIRST_SluiceBakeReport SLC_UP_TO(SluiceBakeReport, clampedTexelCount)
 #define SLC_FIRST_SluiceDemandLoaderCreateInfo                                                     \
     SLC_UP_TO(SluiceDemandLoaderCreateInfo, forgetAfterLaunches)
