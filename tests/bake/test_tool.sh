@@ -24,6 +24,21 @@ run 2 in/a.png -o picture.PNG && grep -q 'a tile store is written, not a picture
     [ ! -e picture.PNG ] && mkdir folder.png && run 0 in/a.png -o folder.png && [ -s folder.png/a.store ]
 fact an_output_named_as_a_picture_is_refused_unless_it_is_a_folder
 
+mkdir sky.d && for face in px nx py ny pz nz; do "$make" rgb 64 64 "$((++seed))" sky.d/$face.png; done
+run 0 --cube sky.d/{px,nx,py,ny,pz,nz}.png -o sky.store && grep -q '^baked .*64x64 .*sky.store$' out &&
+    run 0 --verify sky.store && run 0 --cube sky.d/{px,nx,py,ny,pz,nz}.png -o sky.store --json &&
+    grep -q '"status": "unchanged".*"layers": 6' out && run 0 --cube sky.d/{nx,px,py,ny,pz,nz}.png -o sky.store &&
+    grep -q '^1 baked' out && run 0 --array sky.d/{px,nx}.png -o two.store --json && grep -q '"layers": 2' out
+fact six_pictures_become_one_store
+
+run 1 --cube sky.d/{px,nx,py,ny,pz}.png -o no.store && grep -q '^failed .*no.store: sky.d/px.png: 5 layers' out &&
+    "$make" rgb 64 63 1 sky.d/low.png && run 1 --cube sky.d/{px,nx,py,ny,pz,low}.png -o no.store &&
+    grep -q 'sky.d/low.png: is 64 x 63 texels, .*sky.d/px.png is 64 x 64 texels' out &&
+    run 2 --cube sky.d -o no.store && run 2 --cube sky.d/px.png -o made.d/ && grep -q 'is a folder' err &&
+    run 2 --cube --array sky.d/px.png -o no.store && run 2 --cube --verify sky.store -o no.store && [ ! -e no.store ]
+fact pictures_that_make_no_cube_are_refused
+rm -r sky.d
+
 echo junk >junk.png
 run 1 in/a.png junk.png -o junk.d && grep -q '^failed .*junk.store: junk.png: ' out
 fact a_failed_row_says_why

@@ -43,13 +43,21 @@ static bool is_of_file(const char *message, const char *path, const char *ending
     return strncmp(message, path, size) == 0 && strncmp(message + size, ending, ending_size) == 0;
 }
 
+static bool is_of_layer(const struct bake_job *job, const char *message)
+{
+    for (uint32_t i = 0; i < job->layer_count; i++)
+        if (is_of_file(message, job->layers[i], ":"))
+            return true;
+    return false;
+}
+
 /* Messages begin with a file's name. They come from any thread, because each helps all pictures. */
 static struct bake_job *job_of(const struct run *run, const char *message)
 {
     for (size_t i = 0; i < run->count; i++) {
         const struct bake_job *job = &run->jobs[i];
         if (is_of_file(message, job->input, ":") || is_of_file(message, job->output, ":") ||
-            is_of_file(message, job->output, ".sluice-part:"))
+            is_of_layer(job, message) || is_of_file(message, job->output, ".sluice-part:"))
             return &run->jobs[i];
     }
     return NULL;
@@ -110,7 +118,10 @@ static void bake(struct run *run, struct bake_job *job)
     job->settings.structSize = sizeof job->settings;
     job->report.structSize = sizeof job->report;
     SluiceBakeInfo info = {.structSize = sizeof info,
-                           .pInputPath = job->input,
+                           .pInputPath = job->layers ? NULL : job->input,
+                           .ppLayerPaths = job->layers,
+                           .layerPathCount = job->layer_count,
+                           .cube = job->cube,
                            .pOutputPath = job->output,
                            .pSettings = &job->settings,
                            .force = job->force,

@@ -7,7 +7,10 @@
 /** A picture, where its store goes, and then what became of it. */
 struct bake_job {
     const char *input, *output; ///< borrowed; folders are made
-    uint64_t size;              ///< bytes of the input, its share of the progress bar
+    const char *const *layers;  ///< pictures that become its layers; NULL: `input` alone
+    uint32_t layer_count;
+    bool cube;     ///< the layers are faces of cube maps
+    uint64_t size; ///< bytes of all inputs, its share of the progress bar
     SluiceBakeSettings settings;
     bool force;
     bool is_done; ///< there was a thread for it

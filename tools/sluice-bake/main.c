@@ -12,6 +12,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 enum { OK = 0, FAILED = 1, WRONG_USAGE = 2 };
 
@@ -29,13 +30,43 @@ static struct bake_job *make_jobs(const struct options *options, const struct fi
     return jobs;
 }
 
+static uint64_t file_size(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 ? (uint64_t)status.st_size : 0;
+}
+
+static struct bake_conditions conditions_of(const struct options *options)
+{
+    return (struct bake_conditions){.threads = options->threads,
+                                    .memory = options->memory,
+                                    .quiet = true,
+                                    .speaker = "sluice-bake: "};
+}
+
+/* One store, whose layers are the inputs. */
+static int bake_layers(const struct options *options)
+{
+    struct bake_conditions conditions = conditions_of(options);
+    struct bake_job job = {.input = options->inputs.items[0],
+                           .output = options->output,
+                           .layers = (const char *const *)options->inputs.items,
+                           .layer_count = (uint32_t)options->inputs.count,
+                           .cube = options->cube,
+                           .settings = options->settings,
+                           .force = options->force};
+    for (uint32_t i = 0; i < job.layer_count; i++)
+        job.size += file_size(job.layers[i]);
+    double start = clock_seconds();
+    if (!bake_jobs_run(&job, 1, &conditions))
+        return FAILED;
+    return print_outcomes(&job, 1, clock_seconds() - start, options->json) ? FAILED : OK;
+}
+
 static int bake(const struct options *options)
 {
     struct files files;
-    struct bake_conditions conditions = {.threads = options->threads,
-                                         .memory = options->memory,
-                                         .quiet = true,
-                                         .speaker = "sluice-bake: "};
+    struct bake_conditions conditions = conditions_of(options);
     int status = FAILED;
     if (!find_files(&files, &options->inputs, options->output)) {
         free_files(&files);
@@ -68,6 +99,6 @@ int main(int argc, char **argv)
     else if (options.verify)
         status = verify_files(&options.inputs, options.json) ? OK : FAILED;
     else
-        status = bake(&options);
+        status = options.cube || options.array ? bake_layers(&options) : bake(&options);
     return text_flush("sluice-bake: ") ? status : FAILED;
 }

@@ -10,6 +10,8 @@
 
 static const char usage[] =
     "usage: sluice-bake IN... -o OUT|DIR [options]\n"
+    "       sluice-bake --cube PX NX PY NY PZ NZ -o OUT [options]\n"
+    "       sluice-bake --array IN... -o OUT [options]\n"
     "       sluice-bake --verify FILE|DIR... [--json]\n"
     "\n"
     "Makes tile stores of pictures: anything that libvips reads, OpenEXR, DDS, KTX2, larger\n"
@@ -117,6 +119,28 @@ static bool is_named_as_picture(const char *output)
     return files_has_suffix(output, PICTURE_SUFFIXES) && !is_folder;
 }
 
+static bool is_folder(const char *path)
+{
+    struct stat status;
+    return path[0] &&
+           (path[strlen(path) - 1] == '/' || (stat(path, &status) == 0 && S_ISDIR(status.st_mode)));
+}
+
+/* Layers make one store of pictures that are named. */
+static bool has_one_output(const struct option_table *table, const struct options *o)
+{
+    const char *option = o->cube ? "--cube" : "--array";
+    if (o->verify)
+        return options_refuse(table, "%s or --verify, not both; --help says more", option);
+    if (is_folder(o->output))
+        return options_refuse(table, "-o %s: is a folder; %s makes one file", o->output, option);
+    for (size_t i = 0; i < o->inputs.count; i++)
+        if (is_folder(o->inputs.items[i]))
+            return options_refuse(table, "%s: is a folder; %s takes pictures", o->inputs.items[i],
+                                  option);
+    return true;
+}
+
 static bool is_complete(const struct option_table *table, const struct options *o,
                         const struct choices *c)
 {
@@ -133,7 +157,9 @@ static bool is_complete(const struct option_table *table, const struct options *
     if (c->srgb && (c->linear || o->settings.normalMap))
         return options_refuse(table, "--srgb or --%s, not both; --help says more",
                               c->linear ? "linear" : "normal");
-    return true;
+    if (o->cube && o->array)
+        return options_refuse(table, "--cube or --array, not both; --help says more");
+    return !(o->cube || o->array) || has_one_output(table, o);
 }
 
 enum option_outcome parse_options(struct options *o, int argc, char **argv)
@@ -145,6 +171,11 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_WORDS, .value = &o->inputs},
         {OPTION_TEXT, "output", "OUT|DIR", "(required)", &o->output,
          "tile store, or folder for tile stores", .letter = 'o'},
+        {OPTION_FLAG, "cube", .value = &o->cube,
+         .help = "the pictures are faces of a cube map: right, left, top, bottom, front and back "
+                 "(+X -X +Y -Y +Z -Z); 12 of two cubes, and so on"},
+        {OPTION_FLAG, "array", .value = &o->array,
+         .help = "the pictures become layers of one store, in this order"},
         {OPTION_SECTION, .help = "Texels"},
         {OPTION_CHOICE, "format", format_names, "auto", &c.format,
          "format of the texels; auto: by channels, bit depth and meaning."},

@@ -13,6 +13,7 @@ struct options {
     uint64_t memory;  ///< bytes
     uint32_t threads; ///< 0: all processors
     bool force, verify, json;
+    bool cube, array; ///< the inputs become layers of one store
 };
 
 /** Prints the help text if it was asked for. On failure says on standard error what is wrong. */
