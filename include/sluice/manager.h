@@ -159,6 +159,12 @@ typedef struct SluiceStreamedTextureDesc {
     uint32_t tileWidth, tileHeight; ///< Texels, above 0.
     /** Texels of level 0 per feedback texel. Default: the tile size. */
     uint32_t feedbackRegionWidth, feedbackRegionHeight;
+    /**
+     * Packed tiles take no slots, because their memory is outside the heaps. They are handed out
+     * and answered like other tiles, with heapId and slot 0, even if no slot is free. The global
+     * mip bias does not count them. Default: false.
+     */
+    bool packedTilesOutside;
 } SluiceStreamedTextureDesc;
 
 /** Layout computed from a SluiceStreamedTextureDesc. */

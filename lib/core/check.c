@@ -3,6 +3,7 @@
 #include "core/follower.h"
 #include "core/layout.h"
 #include "core/reports.h"
+#include "core/texture_tiles.h"
 #include "residency/due.h"
 
 /* Each function answers NULL or the first thing that is wrong. */
@@ -109,9 +110,9 @@ static const char *check_node(const slc_manager *m, const struct slc_managed_tex
     REQUIRE(n->tile < t->shape->tile_count);
     REQUIRE(slc_find_node(t, n->tile) == node);
     bool regular = n->tile < t->shape->regular_tile_count;
-    REQUIRE(n->level == (regular ? slc_tile_place(t, n->tile).level : SLC_PACKED_CLASS));
+    REQUIRE(n->level == (regular ? slc_tile_place(t, n->tile).level : slc_packed_class(t)));
     REQUIRE(n->state != SLUICE_TILE_STATE_FREE && n->state != SLC_NODE_RETIRING);
-    REQUIRE(has_slot(n->state) == (n->heap != SLC_NONE));
+    REQUIRE((has_slot(n->state) && n->level != SLC_OUTSIDE_CLASS) == (n->heap != SLC_NONE));
     if (n->heap != SLC_NONE)
         REQUIRE(m->residency.heaps.heaps[n->heap].nodes[n->slot] == node);
     bool wanted = n->state != SLUICE_TILE_STATE_STANDBY && n->state != SLUICE_TILE_STATE_CANCELED;
@@ -347,6 +348,12 @@ static const char *check_heaps(const slc_manager *m)
     return check_buckets(&m->residency.heaps);
 }
 
+static bool wants_outside(const slc_manager *m, const struct slc_managed_texture *t)
+{
+    return t->shape->desc.packedTilesOutside &&
+           (m->info.alwaysMapPackedTiles || t->held_regions > 0);
+}
+
 const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
 {
     const slc_manager *m = manager;
@@ -357,7 +364,7 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
         wrong = check_visited(m);
     if (!wrong)
         wrong = check_troubles(m);
-    uint64_t nodes = 0, tiles = 0;
+    uint64_t nodes = 0, tiles = 0, outside = 0;
     uint32_t textures = 0;
     for (uint32_t i = 0; i < m->texture_end && !wrong; i++) {
         const struct slc_managed_texture *t = slc_texture_at(m, i);
@@ -367,11 +374,13 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
         if (!wrong)
             wrong = check_users(m, t);
         tiles += t->shape->tile_count;
+        outside += wants_outside(m, t) ? t->shape->desc.packedTileCount : 0;
         textures++;
     }
     if (wrong)
         return wrong;
     REQUIRE(textures == m->texture_count && tiles == m->tile_count);
+    REQUIRE(outside == m->outside_wanted);
     uint64_t states = 0;
     for (uint32_t s = 0; s < 8; s++)
         states += m->residency.state_counts[s];

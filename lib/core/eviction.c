@@ -102,7 +102,7 @@ static void evict_wanted(slc_manager *m, struct eviction *d, uint32_t node)
 static uint32_t victim_for(slc_manager *m, struct eviction *d, uint32_t request)
 {
     const struct slc_node *n = slc_node_at(&m->residency, request);
-    if (n->level == SLC_PACKED_CLASS)
+    if (slc_is_packed_class(n->level))
         return finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
     bool waited = n->order < m->round.waited, waited_long = n->order < m->round.waited_long;
     uint32_t node = unseen_mapped(m, d, n->level + waited);

@@ -69,7 +69,7 @@ static struct slc_managed_texture *first_due(const slc_manager *m, enum slc_trou
 
 static bool is_packed(const slc_manager *m, uint32_t node)
 {
-    return slc_node_at(&m->residency, node)->level == SLC_PACKED_CLASS;
+    return slc_is_packed_class(slc_node_at(&m->residency, node)->level);
 }
 
 /* They keep their failures: one more and they are given up again. Packed tiles are loaded together,

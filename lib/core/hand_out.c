@@ -60,6 +60,8 @@ static SluiceResult take_slot(slc_manager *m, const struct slc_managed_texture *
 {
     struct slc_node *n = slc_node_at(&m->residency, node);
     struct slc_tile_heaps *heaps = &m->residency.heaps;
+    if (n->level == SLC_OUTSIDE_CLASS)
+        return SLUICE_SUCCESS;
     bool packed = n->level == SLC_PACKED_CLASS;
     bool separate = packed && m->config.separatePackedTiles;
     uint64_t kept = slc_kept_slots(m) + (scope ? owed_slots(m, n->level) : 0);
@@ -96,7 +98,8 @@ static void prefetch_request(const slc_manager *m, uint32_t node)
     const struct slc_node *n = slc_node_at(&m->residency, node);
     const struct slc_managed_texture *t = slc_texture_at(m, n->owner);
     __builtin_prefetch(t);
-    __builtin_prefetch(&t->shape->levels[n->level]);
+    if (!slc_is_packed_class(n->level))
+        __builtin_prefetch(&t->shape->levels[n->level]);
     __builtin_prefetch(slc_node_at(&m->residency, n->next));
 }
 

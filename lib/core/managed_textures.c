@@ -133,9 +133,7 @@ static SluiceResult add_texture(slc_manager *m, const SluiceStreamedTextureDesc 
     m->tile_count += t->shape->tile_count;
     slc_min_mip_dirty_all(m, t);
     if (m->info.alwaysMapPackedTiles)
-        for (uint32_t i = 0; i < desc->packedTileCount; i++)
-            slc_tile_wanted(m, t, &t->packed_nodes[i], t->shape->regular_tile_count + i,
-                            SLC_PACKED_CLASS);
+        slc_packed_tiles_wanted(m, t);
     *id = slc_texture_id(t);
     return SLUICE_SUCCESS;
 }
@@ -181,6 +179,8 @@ static SluiceResult remove_texture(slc_manager *m, SluiceTextureId id, uint64_t 
          tile++)
         if (slc_find_node(t, tile))
             slc_node_retire(&m->residency, slc_find_node(t, tile), retire_value);
+    if (t->shape->desc.packedTilesOutside && (m->info.alwaysMapPackedTiles || t->held_regions > 0))
+        m->outside_wanted -= t->shape->desc.packedTileCount;
     slc_reports_drop(m, t);
     slc_trouble_move(m, t, SLC_TROUBLE_NONE);
     slc_visit(m, t, false);

@@ -23,7 +23,8 @@ static uint32_t hash_of(const SluiceStreamedTextureDesc *d)
                               d->tileWidth,
                               d->tileHeight,
                               d->feedbackRegionWidth,
-                              d->feedbackRegionHeight};
+                              d->feedbackRegionHeight,
+                              d->packedTilesOutside};
     uint32_t hash = 2166136261u;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         hash = (hash ^ words[i]) * 0x9E3779B1u;
@@ -36,7 +37,8 @@ static bool are_equal(const SluiceStreamedTextureDesc *a, const SluiceStreamedTe
            a->regularMipCount == b->regularMipCount && a->packedTileCount == b->packedTileCount &&
            a->tileWidth == b->tileWidth && a->tileHeight == b->tileHeight &&
            a->feedbackRegionWidth == b->feedbackRegionWidth &&
-           a->feedbackRegionHeight == b->feedbackRegionHeight;
+           a->feedbackRegionHeight == b->feedbackRegionHeight &&
+           a->packedTilesOutside == b->packedTilesOutside;
 }
 
 size_t slc_shape_rows_size(const struct slc_shape *s)

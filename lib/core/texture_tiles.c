@@ -26,7 +26,7 @@ static void tile_released(void *user, const struct slc_node *n)
 {
     struct slc_managed_texture *t = slc_texture_at(user, n->owner);
     *slc_node_cell(t, n->tile) = 0;
-    t->regular_nodes -= n->level != SLC_PACKED_CLASS;
+    t->regular_nodes -= !slc_is_packed_class(n->level);
 }
 
 struct slc_machine_user slc_tiles_user(slc_manager *m)
@@ -39,7 +39,7 @@ void slc_tile_requested(slc_manager *m, struct slc_managed_texture *t, uint32_t 
                         uint32_t tile, uint32_t level, uint32_t need)
 {
     *cell = slc_node_request(&m->residency, t->index, tile, level, need);
-    t->regular_nodes += level != SLC_PACKED_CLASS;
+    t->regular_nodes += !slc_is_packed_class(level);
 }
 
 void slc_tile_wanted(slc_manager *m, struct slc_managed_texture *t, uint32_t *cell, uint32_t tile,
@@ -50,6 +50,22 @@ void slc_tile_wanted(slc_manager *m, struct slc_managed_texture *t, uint32_t *ce
         slc_node_wanted(&m->residency, node);
     else
         slc_tile_requested(m, t, cell, tile, level, 0);
+}
+
+void slc_packed_tiles_wanted(slc_manager *m, struct slc_managed_texture *t)
+{
+    uint32_t count = t->shape->desc.packedTileCount, first = t->shape->regular_tile_count;
+    for (uint32_t i = 0; i < count; i++)
+        slc_tile_wanted(m, t, &t->packed_nodes[i], first + i, slc_packed_class(t));
+    m->outside_wanted += t->shape->desc.packedTilesOutside ? count : 0;
+}
+
+void slc_packed_tiles_unwanted(slc_manager *m, struct slc_managed_texture *t)
+{
+    uint32_t count = t->shape->desc.packedTileCount;
+    for (uint32_t i = 0; i < count; i++)
+        slc_node_unwanted(&m->residency, t->packed_nodes[i]);
+    m->outside_wanted -= t->shape->desc.packedTilesOutside ? count : 0;
 }
 
 uint32_t slc_tile_prefetch(slc_manager *m, struct slc_managed_texture *t, uint32_t tile,

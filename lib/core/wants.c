@@ -198,19 +198,6 @@ void slc_wants_abandon(slc_manager *m, struct slc_managed_texture *t)
 
 /* Committing -------------------------------------------------------------------------------- */
 
-static void packed_wanted(slc_manager *m, struct slc_managed_texture *t)
-{
-    for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
-        slc_tile_wanted(m, t, &t->packed_nodes[i], t->shape->regular_tile_count + i,
-                        SLC_PACKED_CLASS);
-}
-
-static void packed_unwanted(slc_manager *m, struct slc_managed_texture *t)
-{
-    for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
-        slc_node_unwanted(&m->residency, t->packed_nodes[i]);
-}
-
 /* A tile of level l is wanted if a region under it holds l or a finer level. So the least level
  * held under each tile says it all, level by level from the one below: where nothing changes in a
  * level, nothing does above it, and how many regions changed matters to no one.
@@ -435,13 +422,13 @@ static struct slc_range settle_level(slc_manager *m, struct slc_managed_texture 
 static void packed_before(slc_manager *m, struct slc_managed_texture *t, bool held_before)
 {
     if (!m->info.alwaysMapPackedTiles && !held_before && t->held_regions > 0)
-        packed_wanted(m, t);
+        slc_packed_tiles_wanted(m, t);
 }
 
 static void packed_after(slc_manager *m, struct slc_managed_texture *t, bool held_before)
 {
     if (!m->info.alwaysMapPackedTiles && held_before && t->held_regions == 0)
-        packed_unwanted(m, t);
+        slc_packed_tiles_unwanted(m, t);
 }
 
 /** Some region holds another level. Returns whether some tile of level 0 does. */

@@ -125,6 +125,8 @@ static void add_desc(struct slc_dump *dump, const SluiceStreamedTextureDesc *d)
         d->regularMipCount, d->packedTileCount);
     add(dump, " tile=%" PRIu32 "x%" PRIu32, d->tileWidth, d->tileHeight);
     add(dump, " region=%" PRIu32 "x%" PRIu32, d->feedbackRegionWidth, d->feedbackRegionHeight);
+    if (d->packedTilesOutside)
+        add(dump, " packed-tiles-outside");
 }
 
 static void add_config(struct slc_dump *dump, const SluiceStreamedTextureManagerConfig *c)

@@ -60,6 +60,8 @@ static void put_id(struct slc_bytes *out, SluiceTextureId id)
 #define CONFIG_WITH_MORE (SLC_INPUT_PRESENT + 1)
 #define CONFIG_WITH_RETRIES (SLC_INPUT_PRESENT + 2)
 #define CONFIG_WITH_SWITCHES (SLC_INPUT_PRESENT + 3)
+/** In place of SLC_INPUT_PRESENT: a texture whose packed tiles take no slots. */
+#define DESC_WITH_TILES_OUTSIDE (SLC_INPUT_PRESENT + 1)
 
 enum { SWITCH_NO_EVICTION = 1, SWITCH_NO_MIP_BIAS = 2, SWITCH_SEPARATE_PACKED = 4 };
 
@@ -103,7 +105,9 @@ static void put_config(struct slc_bytes *out, const SluiceStreamedTextureManager
 static void put_desc(struct slc_bytes *out, const struct slc_call *call)
 {
     const SluiceStreamedTextureDesc *desc = call->desc;
-    slc_put_u8(out, desc ? SLC_INPUT_PRESENT : SLC_INPUT_NULL);
+    slc_put_u8(out, !desc                      ? SLC_INPUT_NULL
+                    : desc->packedTilesOutside ? DESC_WITH_TILES_OUTSIDE
+                                               : SLC_INPUT_PRESENT);
     if (!desc)
         return;
     slc_put_varint(out, desc->width);
@@ -265,9 +269,14 @@ static void get_config(struct slc_cursor *in, struct slc_record *record)
 
 static void get_desc(struct slc_cursor *in, struct slc_record *record)
 {
-    if (get_input(in) == SLC_INPUT_NULL)
+    size_t start = in->pos;
+    uint8_t mark = slc_get_u8(in);
+    if (mark > DESC_WITH_TILES_OUTSIDE)
+        slc_cursor_fail(in, start, "a texture's mark of presence is above 3");
+    if (in->why || mark == SLC_INPUT_NULL)
         return;
     SluiceStreamedTextureDesc *desc = &record->desc;
+    desc->packedTilesOutside = mark == DESC_WITH_TILES_OUTSIDE;
     desc->width = slc_get_varint32(in);
     desc->height = slc_get_varint32(in);
     desc->mipLevelCount = slc_get_varint32(in);

@@ -34,7 +34,7 @@ struct slc_node {
     uint32_t heap, slot; ///< heap is an index, SLC_NONE without memory
     uint32_t failures;
     uint8_t state;
-    uint8_t level; ///< 0 is the finest; SLC_PACKED_CLASS
+    uint8_t level; ///< 0 is the finest; SLC_PACKED_CLASS, SLC_OUTSIDE_CLASS
     uint8_t need;  ///< log2 of the tiles of level 0 that want it
     uint8_t flags;
     /** REQUESTED: sequence; FAILED: due; GIVEN_UP: the user's; retiring: retire value. */
@@ -46,9 +46,11 @@ struct slc_list {
     uint32_t count;
 };
 
-#define SLC_REQUEST_CLASSES (SLUICE_MAX_MIP_LEVELS + 1) ///< a class per level and one for packed
+#define SLC_REQUEST_CLASSES (SLUICE_MAX_MIP_LEVELS + 2) ///< a class per level and two for packed
 /** Loaded before all levels, and not evicted while wanted: packed mips. */
 #define SLC_PACKED_CLASS SLUICE_MAX_MIP_LEVELS
+/** The same, but without slots. First of all, so that no request waits for a slot before them. */
+#define SLC_OUTSIDE_CLASS (SLUICE_MAX_MIP_LEVELS + 1)
 /** What a tile of level 0 to 20 can be needed by is 2^0 to 2^40 tiles of level 0, 2^30 at most. */
 #define SLC_REQUEST_NEEDS 31
 
@@ -103,7 +105,7 @@ struct slc_machine {
     struct slc_requests requests;
     struct slc_list standby, evicted, canceled, given_up, retiring;
     struct slc_due_tree failed;
-    /** MAPPED tiles by level, oldest first. Those of SLC_PACKED_CLASS are in none. */
+    /** MAPPED tiles by level, oldest first. Packed ones are in none. */
     struct slc_list mapped[SLUICE_MAX_MIP_LEVELS];
     uint32_t evicted_wanted; ///< evicted tiles that are wanted
 
@@ -112,6 +114,11 @@ struct slc_machine {
     uint64_t restored_total; ///< from STANDBY to MAPPED
     uint64_t steps;          ///< of searches whose length tests bound
 };
+
+static inline bool slc_is_packed_class(uint32_t level)
+{
+    return level >= SLC_PACKED_CLASS;
+}
 
 static inline struct slc_node *slc_node_at(const struct slc_machine *r, uint32_t node)
 {

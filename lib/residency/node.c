@@ -11,7 +11,7 @@
 /** Packed tiles are not evicted while they are wanted, so no list has them. */
 static bool is_regular(const struct slc_node *n)
 {
-    return n->level != SLC_PACKED_CLASS;
+    return !slc_is_packed_class(n->level);
 }
 
 static void enter_given_up(struct slc_machine *r, uint32_t node)
@@ -136,7 +136,7 @@ void slc_node_evict_wanted(struct slc_machine *r, uint32_t node)
 bool slc_node_unmap_wanted(struct slc_machine *r, uint32_t node, uint64_t retire_value)
 {
     struct slc_node *n = slc_node_at(r, node);
-    if (retire_value <= r->completed_retire) {
+    if (n->heap == SLC_NONE || retire_value <= r->completed_retire) {
         slc_node_free_slot(r, node);
     } else {
         if (!slc_reserve_nodes(r, 1))

@@ -179,9 +179,10 @@ static void print_desc(FILE *file, const SluiceStreamedTextureDesc *d)
 {
     fprintf(file,
             " %" PRIu32 "x%" PRIu32 " levels %" PRIu32 " regular %" PRIu32 " packed %" PRIu32
-            " tile %" PRIu32 "x%" PRIu32 " region %" PRIu32 "x%" PRIu32,
+            " tile %" PRIu32 "x%" PRIu32 " region %" PRIu32 "x%" PRIu32 "%s",
             d->width, d->height, d->mipLevelCount, d->regularMipCount, d->packedTileCount,
-            d->tileWidth, d->tileHeight, d->feedbackRegionWidth, d->feedbackRegionHeight);
+            d->tileWidth, d->tileHeight, d->feedbackRegionWidth, d->feedbackRegionHeight,
+            d->packedTilesOutside ? " outside" : "");
 }
 
 static void print_map(FILE *file, const struct call *c)

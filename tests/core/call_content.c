@@ -61,6 +61,7 @@ static SluiceStreamedTextureDesc random_desc(struct choice *c)
         if (choice_once_in(c, 3))
             d.regularMipCount = choice_below(c, d.mipLevelCount);
         d.packedTileCount = choice_range(c, 1, 3);
+        d.packedTilesOutside = choice_once_in(c, 3);
     }
     d.feedbackRegionWidth = random_region(c, d.tileWidth);
     d.feedbackRegionHeight =

@@ -110,6 +110,15 @@ uint64_t naive_count_holding(const struct naive_manager *n)
     return holding;
 }
 
+static uint64_t count_outside(const struct naive_manager *n)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < n->texture_room; i++)
+        for (uint32_t k = 0; n->textures[i] && k < n->textures[i]->layout.tileCount; k++)
+            count += n->textures[i]->tiles[k].outside && n->textures[i]->tiles[k].wanted;
+    return count;
+}
+
 void naive_look_at_bias(struct naive_manager *n)
 {
     SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
@@ -126,8 +135,10 @@ void naive_look_at_bias(struct naive_manager *n)
     const uint64_t holding = naive_count_holding(n);
     naive_statistics(n, &s);
     const uint64_t limit = wanted_limit(n);
-    const uint64_t wanted = (uint64_t)s.requestedTileCount + s.allocatedTileCount +
-                            s.mappedTileCount + count_evicted(n);
+    uint64_t wanted = (uint64_t)s.requestedTileCount + s.allocatedTileCount + s.mappedTileCount +
+                      count_evicted(n);
+    const uint64_t outside = count_outside(n);
+    wanted -= outside < wanted ? outside : wanted;
     if ((b->value == 0 && wanted <= limit) || b->maps < holding)
         return;
     b->maps = 0;

@@ -68,8 +68,9 @@ static bool could_be_emptied(const struct naive_manager *n, const struct naive_h
     for (uint32_t i = 0; i < n->texture_room; i++)
         for (uint32_t k = 0; n->textures[i] && k < n->textures[i]->layout.tileCount; k++) {
             const struct naive_tile *tile = &n->textures[i]->tiles[k];
-            movable += tile->heap == heap->id && (tile->state == SLUICE_TILE_STATE_MAPPED ||
-                                                  tile->state == SLUICE_TILE_STATE_STANDBY);
+            movable += naive_has_slot(tile) && tile->heap == heap->id &&
+                       (tile->state == SLUICE_TILE_STATE_MAPPED ||
+                        tile->state == SLUICE_TILE_STATE_STANDBY);
         }
     return used > 0 && movable == used && room >= used;
 }

@@ -141,7 +141,10 @@ static void take_slot(struct naive_manager *n, const struct outcome *seen, uint3
 static bool hand_out(struct naive_manager *n, struct naive_texture *t, struct naive_tile *tile,
                      const struct outcome *seen, struct outcome *out)
 {
-    take_slot(n, seen, out->count, tile);
+    if (tile->outside && out->count >= seen->count)
+        naive_complain(n, "tile %u of the list is missing", out->count);
+    else if (!tile->outside)
+        take_slot(n, seen, out->count, tile);
     if (n->complaint[0])
         return false;
     n->totals.handedOutTotal++;
@@ -179,6 +182,8 @@ static bool find_slot(struct naive_manager *n, const struct call *call,
                       const struct naive_tile *tile, bool *refused, const struct outcome *seen,
                       struct outcome *out)
 {
+    if (tile->outside)
+        return true;
     const uint32_t owed = owed_slots(n, call, tile);
     const bool may_take = tile->packed ? naive_count_all(n, NAIVE_SLOT_FREE) > 0
                                        : naive_count_all(n, NAIVE_SLOT_FREE) > naive_kept(n) + owed;
@@ -293,7 +298,7 @@ static struct naive_ref *request_queue(const struct naive_manager *n,
     for (uint32_t i = 0; i < *count; i++) {
         const struct naive_tile *tile = refs[i].tile;
         uint64_t *key = refs[i].key;
-        key[0] = tile->packed ? 0 : 1;
+        key[0] = tile->outside ? 0 : tile->packed ? 1 : 2;
         key[1] = tile->packed ? 0 : SLUICE_MAX_MIP_LEVELS - tile->level;
         key[2] = tile->packed ? 0 : 64 - tile->need;
         key[3] = tile->requested_at;

@@ -174,7 +174,10 @@ static struct naive_texture *make_texture(struct naive_manager *n,
             for (uint32_t x = 0; x < l->levelWidthInTiles[level]; x++)
                 t->tiles[i++] = (struct naive_tile){.level = level, .x = x, .y = y};
     for (uint32_t x = 0; x < l->desc.packedTileCount; x++) {
-        t->tiles[i] = (struct naive_tile){.level = l->desc.regularMipCount, .x = x, .packed = true};
+        t->tiles[i] = (struct naive_tile){.level = l->desc.regularMipCount,
+                                          .x = x,
+                                          .packed = true,
+                                          .outside = l->desc.packedTilesOutside};
         if (n->always_packed)
             naive_become_wanted(n, &t->tiles[i], 0);
         i++;

@@ -15,6 +15,7 @@
 struct naive_tile {
     uint32_t level, x, y;
     bool packed;
+    bool outside; ///< takes no slot
     SluiceTileState state;
     bool wanted;
     bool cancel_handed_out;

@@ -5,8 +5,9 @@
 
 bool naive_has_slot(const struct naive_tile *tile)
 {
-    return tile->state == SLUICE_TILE_STATE_ALLOCATED || tile->state == SLUICE_TILE_STATE_MAPPED ||
-           tile->state == SLUICE_TILE_STATE_STANDBY || tile->state == SLUICE_TILE_STATE_CANCELED;
+    return !tile->outside &&
+           (tile->state == SLUICE_TILE_STATE_ALLOCATED || tile->state == SLUICE_TILE_STATE_MAPPED ||
+            tile->state == SLUICE_TILE_STATE_STANDBY || tile->state == SLUICE_TILE_STATE_CANCELED);
 }
 
 SluiceTile naive_tile_info(const struct naive_texture *t, uint32_t index)
@@ -68,12 +69,15 @@ static struct naive_slot *slot_of(struct naive_manager *n, const struct naive_ti
 
 void naive_free_slot(struct naive_manager *n, struct naive_tile *tile)
 {
-    slot_of(n, tile)->use = NAIVE_SLOT_FREE;
+    if (!tile->outside)
+        slot_of(n, tile)->use = NAIVE_SLOT_FREE;
 }
 
 void naive_retire_slot(struct naive_manager *n, struct naive_tile *tile, uint64_t retire)
 {
     bool over = retire <= n->completed;
+    if (tile->outside)
+        return;
     *slot_of(n, tile) =
         (struct naive_slot){over ? NAIVE_SLOT_FREE : NAIVE_SLOT_RETIRING, over ? 0 : retire};
 }

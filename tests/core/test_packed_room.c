@@ -1,4 +1,5 @@
 /** Packed tiles come first and have room, also where wanted tiles hold every slot. */
+#include "core/check.h"
 #include "core/scene.h"
 
 enum { CAPACITY = 16 };
@@ -167,6 +168,45 @@ static void every_texture_shows_something_as_long_as_packed_tiles_fit(void **sta
     }
 }
 
+static void packed_tiles_outside_of_heaps_need_no_slot(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, CAPACITY, true);
+    f.heaps.limit = 1;
+    fixture_configure(&f, 0, 1, 5, 1);
+    SluiceStreamedTextureDesc desc = {.width = 64,
+                                      .height = 64,
+                                      .mipLevelCount = 7,
+                                      .packedTileCount = 1,
+                                      .tileWidth = 128,
+                                      .tileHeight = 128,
+                                      .feedbackRegionWidth = 64,
+                                      .feedbackRegionHeight = 64,
+                                      .packedTilesOutside = true};
+    SluiceTextureId ids[1000];
+    for (uint32_t i = 0; i < 1000; i++)
+        ids[i] = fixture_add(&f, &desc);
+    fixture_load(&f);
+    SluiceStreamedTextureStatistics now = fixture_statistics(&f);
+    assert_int_equal(now.heapCount, 0);
+    assert_int_equal(now.mappedTileCount, 1000);
+    SluiceTextureId regular = fixture_add_small(&f);
+    for (uint32_t time = 1; time < 40; time++) {
+        fixture_feed(&f, ids[time], 0, time, 1000);
+        fixture_feed(&f, regular, 0, time, 1000);
+        fixture_load(&f);
+    }
+    CHECK_STATE(&f, regular, 0, MAPPED);
+    now = fixture_statistics(&f);
+    assert_int_equal(now.freeSlotCount, CAPACITY - 6);
+    assert_int_equal(now.globalMipBias, 0); /* 16 slots are enough for 6 tiles */
+    for (uint32_t i = 0; i < 1000; i++)
+        CHECK_OK(sluiceRemoveStreamedTexture(f.manager, ids[i], 1));
+    assert_null(slc_manager_check(f.manager));
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -177,6 +217,7 @@ int main(void)
         cmocka_unit_test(the_reserve_fills_up_again_before_regular_tiles_are_loaded),
         cmocka_unit_test(packed_tiles_stand_first_in_every_list),
         cmocka_unit_test(every_texture_shows_something_as_long_as_packed_tiles_fit),
+        cmocka_unit_test(packed_tiles_outside_of_heaps_need_no_slot),
     };
     return RUN_TESTS(tests);
 }

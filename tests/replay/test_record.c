@@ -4,6 +4,7 @@
 #include "replay/runs.h"
 #include "support/test.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #define KIND_COUNT 21
@@ -14,6 +15,8 @@ static uint64_t next_random(uint64_t *seed)
     uint64_t bits = *seed >> 11 ^ *seed << 40;
     return bits >> (*seed >> 58); /* of every magnitude */
 }
+
+#define DESC_NUMBERS (offsetof(SluiceStreamedTextureDesc, packedTilesOutside) / sizeof(uint32_t))
 
 struct example {
     struct slc_call call;
@@ -29,8 +32,9 @@ static void fill_inputs(struct example *e, uint64_t *seed)
 {
     uint64_t r = next_random(seed);
     uint32_t *desc = (uint32_t *)&e->desc;
-    for (size_t i = 0; i < sizeof e->desc / sizeof *desc; i++)
+    for (size_t i = 0; i < DESC_NUMBERS; i++)
         desc[i] = (uint32_t)next_random(seed);
+    e->desc.packedTilesOutside = next_random(seed) & 1;
     e->config.numExtraStandbyTiles = (uint32_t)next_random(seed);
     e->config.maxHeapCount = (uint32_t)next_random(seed);
     e->config.maxLoadAttempts = (uint32_t)next_random(seed);
@@ -155,7 +159,9 @@ static void check_same(const struct example *e, struct slc_record *back)
     if (fields & SLC_FIELD_DESC) {
         assert_true(!a->desc == !b->desc);
         if (a->desc)
-            assert_memory_equal(a->desc, b->desc, sizeof *a->desc);
+            assert_memory_equal(a->desc, b->desc, DESC_NUMBERS * sizeof(uint32_t));
+        if (a->desc)
+            assert_int_equal(a->desc->packedTilesOutside, b->desc->packedTilesOutside);
         if (a->desc && a->result >= 0)
             assert_true(a->texture_id == b->texture_id);
     }
