@@ -254,6 +254,23 @@ static void try_ends(const struct effort *effort, const struct texels *texels, i
     }
 }
 
+/* Colors that differ by little more than mode 14 can hold are nearer to their mean in that mode
+ * than to the coarse steps of the other modes. */
+static void try_mean(const struct texels *texels, struct candidate *best)
+{
+    struct candidate candidate = {.mode = &slc_bc6h_modes[0]};
+    float ends[4][3] = {{0}};
+    for (int c = 0; c < 3; c++) {
+        int32_t sum = 0;
+        for (int i = 0; i < 16; i++)
+            sum += texels->steps[i][c];
+        ends[0][c] = ends[1][c] = (float)sum / 16.0f;
+    }
+    if (make_candidate(texels, (const float(*)[3])ends, &candidate) &&
+        candidate.error < best->error)
+        *best = candidate;
+}
+
 /* SLC_LANES blocks. Each block's first texel is subtracted from its channels, so that sums stay
  * precise. */
 struct lanes {
@@ -289,6 +306,8 @@ static void encode_lanes(const struct effort *effort, const struct lanes *lanes,
     for (int l = 0; l < count; l++) {
         best[l].error = -1;
         try_ends(effort, &lanes->texels[l], 1, 0, ends[l], &best[l]);
+        if (best[l].error > 0)
+            try_mean(&lanes->texels[l], &best[l]);
         any |= best[l].error > effort->enough;
     }
     if (!any)
