@@ -40,13 +40,26 @@ static void read_level(SluiceImageSource *source, const SluiceImageInfo *info, u
     free(texels);
 }
 
-static void read_source(SluiceImageSource *source)
+static void read_levels(SluiceImageSource *source)
 {
     SluiceImageInfo info = {.structSize = sizeof info};
     if (sluiceGetImageInfo(source, &info) == SLUICE_SUCCESS)
         for (uint32_t layer = 0; layer < info.arrayLayerCount && layer < 16; layer++)
             for (uint32_t level = 0; level < info.mipLevelCount; level++)
                 read_level(source, &info, layer, level);
+}
+
+/* As it is, and with all levels if it lacks some that can be built. */
+static void read_source(SluiceImageSource *source)
+{
+    SluiceCompleteChainSourceCreateInfo create = {
+        .structSize = sizeof create, .source = source, .maxMemorySize = 4 * MAX_LEVEL_SIZE};
+    SluiceImageSource *complete;
+    read_levels(source);
+    if (sluiceCreateCompleteChainSource(&create, &complete) == SLUICE_SUCCESS) {
+        read_levels(complete);
+        sluiceDestroyImageSource(complete);
+    }
     sluiceDestroyImageSource(source);
 }
 

@@ -51,5 +51,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     SluiceInput input = {.structSize = sizeof input, .pBytes = data, .size = size};
     read_file(&input, SLUICE_FORMAT_UNDEFINED);
     read_file(&input, SLUICE_FORMAT_R8G8B8A8_SRGB);
+    read_file(&input, SLUICE_FORMAT_R16G16_UNORM);
     return 0;
 }
