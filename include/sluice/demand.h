@@ -175,10 +175,23 @@ SLUICE_API SluiceResult sluiceGetDemandLoaderSettings(const SluiceDemandLoader *
 SLUICE_API SluiceResult sluiceSetDemandLoaderSettings(SluiceDemandLoader *loader,
                                                       const SluiceDemandLoaderSettings *pSettings);
 
-/** Filter between texels or between mip levels. */
+/**
+ * Filter between texels or between mip levels. Between levels only LINEAR and NEAREST.
+ *
+ * Shaders must define SLUICE_DEMAND_CUBIC as true to sample with CUBIC and SMART_CUBIC
+ * (shaders/include/sluice/demand.glsl); otherwise sluiceDemandGrad and sluiceDemandLod sample with
+ * LINEAR. docs/sampling.md compares the filters.
+ */
 typedef enum SluiceDemandFilter {
     SLUICE_DEMAND_FILTER_LINEAR = 0,
-    SLUICE_DEMAND_FILTER_NEAREST = 1
+    SLUICE_DEMAND_FILTER_NEAREST = 1,
+    SLUICE_DEMAND_FILTER_CUBIC = 2, ///< Bicubic B-spline in every level. Blurs slightly.
+    /**
+     * CUBIC where the texture is magnified to twice its size or more, LINEAR where it is not
+     * magnified, and a blend of both between. A coarser level that stands in for a missing one
+     * counts as magnified.
+     */
+    SLUICE_DEMAND_FILTER_SMART_CUBIC = 3
 } SluiceDemandFilter;
 
 /** How a texture is sampled. All zero: trilinear, with the source's address modes. */

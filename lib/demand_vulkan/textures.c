@@ -17,7 +17,7 @@
 /* Of the shape: what the sampler says, not the image. */
 #define SAMPLER_BITS                                                                               \
     (7u << SLUICE_DEMAND_MODE_U_SHIFT | 7u << SLUICE_DEMAND_MODE_V_SHIFT | SLUICE_DEMAND_NEAREST | \
-     SLUICE_DEMAND_NEAREST_LEVEL)
+     SLUICE_DEMAND_NEAREST_LEVEL | SLUICE_DEMAND_SPLINE | SLUICE_DEMAND_SMART)
 
 static_assert(sizeof(struct SluiceDemandTexture) == SLC_MIRROR_ELEMENT, "elements of the table");
 
@@ -42,7 +42,7 @@ static bool sampler_is_valid(const SluiceDemandSampler *s)
 {
     bool modes = (uint32_t)s->addressModeU <= VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE &&
                  (uint32_t)s->addressModeV <= VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE;
-    bool filters = (uint32_t)s->filter <= SLUICE_DEMAND_FILTER_NEAREST &&
+    bool filters = (uint32_t)s->filter <= SLUICE_DEMAND_FILTER_SMART_CUBIC &&
                    (uint32_t)s->mipmapFilter <= SLUICE_DEMAND_FILTER_NEAREST;
     return modes && filters && s->maxAnisotropy >= 0 && s->maxAnisotropy <= 64 &&
            s->lodBias >= -16 && s->lodBias <= 16;
@@ -54,7 +54,7 @@ static SluiceResult refuse_sampler(const SluiceDemandLoader *loader, const char 
     return slc_demand_refuse(
         loader, function,
         "sampler with address modes %d and %d, filters %d and %d, "
-        "maxAnisotropy %g, lodBias %g: a mode is unknown, maxAnisotropy is not "
+        "maxAnisotropy %g, lodBias %g: a mode or filter is unknown, maxAnisotropy is not "
         "0 to 64, or lodBias is not -16 to 16",
         (int)s->addressModeU, (int)s->addressModeV, (int)s->filter, (int)s->mipmapFilter,
         (double)s->maxAnisotropy, (double)s->lodBias);
@@ -70,6 +70,16 @@ static uint32_t mode_bits(VkSamplerAddressMode u, VkSamplerAddressMode v)
     return (uint32_t)u << SLUICE_DEMAND_MODE_U_SHIFT | (uint32_t)v << SLUICE_DEMAND_MODE_V_SHIFT;
 }
 
+static uint32_t filter_bits(const SluiceDemandSampler *s)
+{
+    static const uint32_t bits[] = {[SLUICE_DEMAND_FILTER_NEAREST] = SLUICE_DEMAND_NEAREST,
+                                    [SLUICE_DEMAND_FILTER_CUBIC] = SLUICE_DEMAND_SPLINE,
+                                    [SLUICE_DEMAND_FILTER_SMART_CUBIC] =
+                                        SLUICE_DEMAND_SPLINE | SLUICE_DEMAND_SMART};
+    return bits[s->filter] |
+           (s->mipmapFilter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST_LEVEL : 0);
+}
+
 static void write_sampler(SluiceDemandLoader *loader, uint32_t index, const SluiceDemandSampler *s)
 {
     struct SluiceDemandTexture *entry = change_entry(loader, index);
@@ -77,14 +87,11 @@ static void write_sampler(SluiceDemandLoader *loader, uint32_t index, const Slui
     texture->modes[0] = s->addressModeU;
     texture->modes[1] = s->addressModeV;
     texture->explicit_modes = s->explicitAddressModes;
-    *entry = (struct SluiceDemandTexture){
-        .state = SLUICE_DEMAND_TEXTURE_UNKNOWN,
-        .shape =
-            mode_bits(s->addressModeU, s->addressModeV) |
-            (s->filter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST : 0) |
-            (s->mipmapFilter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST_LEVEL : 0),
-        .maxAnisotropy = fmaxf(1, s->maxAnisotropy),
-        .lodBias = s->lodBias};
+    *entry = (struct SluiceDemandTexture){.state = SLUICE_DEMAND_TEXTURE_UNKNOWN,
+                                          .shape = mode_bits(s->addressModeU, s->addressModeV) |
+                                                   filter_bits(s),
+                                          .maxAnisotropy = fmaxf(1, s->maxAnisotropy),
+                                          .lodBias = s->lodBias};
     memcpy(entry->borderColor, s->borderColor, sizeof entry->borderColor);
 }
 

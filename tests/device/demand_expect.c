@@ -2,6 +2,7 @@
 
 #include "device/demand_images.h"
 
+#include <math.h>
 #include <string.h>
 
 static uint32_t field(uint32_t shape, uint32_t shift)
@@ -14,8 +15,16 @@ static void add_page(uint32_t *pages, uint32_t *count, uint32_t page)
     for (uint32_t i = 0; i < *count; i++)
         if (pages[i] == page)
             return;
-    if (*count < 4)
+    if (*count < DEMAND_TAP_PAGES)
         pages[(*count)++] = page;
+}
+
+static void add_to_sums(struct demand_expectation *e, const struct demand_touch *touch,
+                        uint32_t channel, double value)
+{
+    e->sum[0][channel] += touch->weight * value;
+    e->sum[1][channel] += touch->du * value;
+    e->sum[2][channel] += touch->dv * value;
 }
 
 static void add_touch(void *user, const struct demand_touch *touch)
@@ -25,16 +34,15 @@ static void add_touch(void *user, const struct demand_touch *touch)
     uint32_t components = e->entry->shape >> SLUICE_DEMAND_COMPONENTS_SHIFT & 7;
     if (touch->x < 0) {
         for (uint32_t i = 0; i < 4; i++)
-            e->sum[i] +=
-                touch->weight * (i < components ? (double)e->entry->borderColor[i] : i == 3);
+            add_to_sums(e, touch, i, i < components ? (double)e->entry->borderColor[i] : i == 3);
         return;
     }
     uint32_t x = (uint32_t)touch->x, y = (uint32_t)touch->y;
     uint32_t page = demand_scene_page(e->scene, e->index, e->tap.level, x, y);
     demand_texel(e->scene, e->index, e->tap.level, x, y, texel);
     for (uint32_t i = 0; i < 4; i++)
-        e->sum[i] +=
-            touch->weight * (double)(page == DEMAND_NO_PAGE ? e->entry->baseColor[i] : texel[i]);
+        add_to_sums(e, touch, i,
+                    (double)(page == DEMAND_NO_PAGE ? e->entry->baseColor[i] : texel[i]));
     if (page == DEMAND_NO_PAGE)
         return;
     if (touch->sure)
@@ -92,9 +100,14 @@ static void add_tap(void *user, const struct demand_tap *tap)
         if (e->worst == 0)
             break;
         e->tap.level = e->tap.level < regular ? e->tap.level + 1 : last;
+        e->tap.cubic = fmax(e->tap.cubic, demand_oracle_share(&e->tap, e->tap.level));
     }
-    for (int i = 0; i < 4; i++)
-        e->color[i] += tap->weight * e->sum[i];
+    e->jumps = e->jumps || demand_oracle_jumps(e->entry, &e->tap);
+    for (int i = 0; i < 4; i++) {
+        e->color[i] += tap->weight * e->sum[0][i];
+        e->du[i] += tap->weight * e->sum[1][i];
+        e->dv[i] += tap->weight * e->sum[2][i];
+    }
 }
 
 void demand_expect(struct demand_expectation *e, const struct DemandInput *in, uint8_t *pages)
@@ -102,13 +115,19 @@ void demand_expect(struct demand_expectation *e, const struct DemandInput *in, u
     e->resident = e->sure = true;
     e->noted_count = 0;
     e->finest = UINT32_MAX;
+    e->jumps = false;
     memset(e->color, 0, sizeof e->color);
+    memset(e->du, 0, sizeof e->du);
+    memset(e->dv, 0, sizeof e->dv);
     if (!demand_oracle_taps(e->entry, in, e->loader_bias, add_tap, e))
         e->sure = false;
     if (e->finest == field(e->entry->shape, SLUICE_DEMAND_LEVEL_COUNT_SHIFT) - 1)
         note(e, e->entry->tailPage, DEMAND_MARKED);
-    if (!e->resident && !e->preview)
+    if (!e->resident && !e->preview) {
         memset(e->color, 0, sizeof e->color);
+        memset(e->du, 0, sizeof e->du);
+        memset(e->dv, 0, sizeof e->dv);
+    }
     for (uint32_t i = 0; i < e->noted_count; i++) {
         if (e->sure && pages)
             pages[e->noted[i]] |= e->notes[e->noted[i]];

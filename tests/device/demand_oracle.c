@@ -44,8 +44,15 @@ struct split {
     void (*visit)(void *user, const struct demand_tap *tap);
     void *user;
     long double uv[2], axis[2]; ///< the row: in uv
+    double shown, wanted;       ///< LODs
     bool sure;
 };
+
+double demand_oracle_share(const struct demand_tap *tap, double shown_lod)
+{
+    double magnified = fmin(fmax(shown_lod - tap->wanted_lod, 0), 1);
+    return !tap->spline ? 0 : tap->smart ? magnified : 1;
+}
 
 /* A row of `count`, at one level. */
 static void visit_row(const struct split *s, uint32_t level, double weight, uint32_t count,
@@ -53,14 +60,19 @@ static void visit_row(const struct split *s, uint32_t level, double weight, uint
 {
     for (uint32_t i = 0; i < count; i++) {
         long double at = (i + 0.5L) / count - 0.5L;
+        bool forced = s->in->kind == DEMAND_CUBIC;
         struct demand_tap tap = {.level = level,
                                  .u = s->uv[0] + at * s->axis[0],
                                  .v = s->uv[1] + at * s->axis[1],
                                  .weight = s->sure ? weight / count : 0,
-                                 .cubic = s->in->kind == DEMAND_CUBIC && level == 0,
-                                 .nearest = s->texture->shape & SLUICE_DEMAND_NEAREST &&
-                                            s->in->kind != DEMAND_CUBIC,
+                                 .spline = forced || s->texture->shape & SLUICE_DEMAND_SPLINE,
+                                 .smart = forced || s->texture->shape & SLUICE_DEMAND_SMART,
+                                 .wanted_lod = s->wanted,
+                                 .nearest = s->texture->shape & SLUICE_DEMAND_NEAREST && !forced,
                                  .sure = sure && s->sure};
+        tap.cubic = demand_oracle_share(&tap, s->shown);
+        bool edge = fabs(s->wanted) < 1e-3 || (tap.cubic > 0 && tap.cubic < 1e-3);
+        tap.sure = tap.sure && !(tap.spline && tap.smart && edge);
         s->visit(s->user, &tap);
     }
 }
@@ -126,6 +138,8 @@ bool demand_oracle_taps(const struct SluiceDemandTexture *t, const struct Demand
     long double lod = in->kind == DEMAND_LOD ? isnan(in->lod) ? INFINITY : in->lod
                                              : demand_oracle_lod(d[0], d[1], t->maxAnisotropy);
     double clamped = (double)fminl(fmaxl(lod + bias, 0), last);
+    s.shown = clamped;
+    s.wanted = (double)(lod + t->lodBias);
     bool row = in->kind != DEMAND_LOD && t->maxAnisotropy > 1;
     if (row && lod + bias < last)
         visit_rows(&s, clamped, last, bias, d);
@@ -162,23 +176,37 @@ static double spline(double x)
     return x >= 1 ? (2 - x) * (2 - x) * (2 - x) / 6 : (3 * x * x * x - 6 * x * x + 4) / 6;
 }
 
+/* Its derivative. */
+static double spline_slope(double x)
+{
+    double a = fabs(x), slope = a >= 2 ? 0 : a >= 1 ? -(2 - a) * (2 - a) / 2 : (3 * a - 4) * a / 2;
+    return x < 0 ? -slope : slope;
+}
+
 struct axis_texels {
     int32_t at[8];
-    double weight[8];
+    double weight[8], slope[8]; ///< slopes are per unit of the coordinate
     bool sure[8];
 };
 
+static double axis_blur(const struct SluiceDemandTexture *t, int axis, const struct demand_tap *tap,
+                        long double coordinate)
+{
+    uint32_t size = slc_mip_size(axis ? t->height : t->width, tap->level), mode = mode_of(t, axis);
+    bool periodic =
+        mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
+    /* How far off float may be: periods are exact, but for what is left. */
+    double reach = periodic ? 4 : fmin(fabs((double)coordinate) + 2, 64);
+    return (tap->nearest ? 1e-6 : STEP / 2) + reach * FLOAT_STEP * size;
+}
+
 /* How far inside its filter's reach texel `i` is from `at`, and its weight. */
 static struct axis_texels filter_axis(const struct SluiceDemandTexture *t, int axis,
-                                      const struct demand_tap *tap)
+                                      const struct demand_tap *tap, bool cubic)
 {
     uint32_t size = slc_mip_size(axis ? t->height : t->width, tap->level), mode = mode_of(t, axis);
     long double coordinate = axis ? tap->v : tap->u;
-    /* How far off float may be: periods are exact, but for what is left. */
-    bool periodic =
-        mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
-    double reach = periodic ? 4 : fmin(fabs((double)coordinate) + 2, 64);
-    double blur = (tap->nearest ? 1e-6 : STEP / 2) + reach * FLOAT_STEP * size;
+    double blur = axis_blur(t, axis, tap, coordinate);
     /* beyond, all is edge or border; and neighbors must differ */
     coordinate = fminl(fmaxl(coordinate, -1e9L), 1e9L);
     long double place = coordinate * size - 0.5L, low = floorl(place);
@@ -186,32 +214,58 @@ static struct axis_texels filter_axis(const struct SluiceDemandTexture *t, int a
     for (int k = 0; k < 8; k++) {
         long double i = low + k - 3;
         double distance = (double)fabsl(i - place);
-        double width = tap->cubic ? 2 : tap->nearest ? 0.5 : 1;
+        double width = cubic ? 2 : tap->nearest ? 0.5 : 1;
         a.at[k] = NOWHERE;
         if (width - distance < -blur)
             continue;
         a.at[k] = wrap(mode, i, size);
-        a.weight[k] = tap->cubic     ? spline(distance)
+        a.weight[k] = cubic          ? spline(distance)
                       : tap->nearest ? distance < 0.5 || i == place + 0.5L
                                      : fmax(1 - distance, 0);
-        a.sure[k] = tap->cubic ? a.weight[k] > 2 * blur : width - distance > blur;
+        a.slope[k] = cubic          ? size * spline_slope((double)(place - i))
+                     : tap->nearest ? 0
+                                    : (i == low ? -1.0 : i == low + 1) * size;
+        a.sure[k] = cubic ? a.weight[k] > 2 * blur : width - distance > blur;
         if (tap->nearest && i == place + 0.5L && blur < 0.01)
             a.sure[k] = false;
     }
     return a;
 }
 
+bool demand_oracle_jumps(const struct SluiceDemandTexture *t, const struct demand_tap *tap)
+{
+    if (tap->nearest || tap->cubic >= 1)
+        return false;
+    for (int axis = 0; axis < 2; axis++) {
+        long double coordinate = axis ? tap->v : tap->u;
+        long double place = coordinate * slc_mip_size(axis ? t->height : t->width, tap->level);
+        double blur = axis_blur(t, axis, tap, coordinate);
+        if (fabsl(place - 0.5L - roundl(place - 0.5L)) < 2 * blur)
+            return true;
+    }
+    return false;
+}
+
 void demand_oracle_touches(const struct SluiceDemandTexture *t, const struct demand_tap *tap,
                            void (*visit)(void *user, const struct demand_touch *touch), void *user)
 {
-    struct axis_texels x = filter_axis(t, 0, tap), y = filter_axis(t, 1, tap);
-    for (int j = 0; j < 8; j++)
-        for (int i = 0; i < 8; i++) {
-            if (x.at[i] == NOWHERE || y.at[j] == NOWHERE)
-                continue;
-            bool border = x.at[i] < 0 || y.at[j] < 0;
-            struct demand_touch touch = {border ? -1 : x.at[i], border ? -1 : y.at[j],
-                                         x.weight[i] * y.weight[j], x.sure[i] && y.sure[j]};
-            visit(user, &touch);
-        }
+    for (int cubic = 0; cubic < 2; cubic++) {
+        double share = cubic ? tap->cubic : 1 - tap->cubic;
+        if (!(share > 0))
+            continue;
+        struct axis_texels x = filter_axis(t, 0, tap, cubic), y = filter_axis(t, 1, tap, cubic);
+        for (int j = 0; j < 8; j++)
+            for (int i = 0; i < 8; i++) {
+                if (x.at[i] == NOWHERE || y.at[j] == NOWHERE)
+                    continue;
+                bool border = x.at[i] < 0 || y.at[j] < 0;
+                struct demand_touch touch = {.x = border ? -1 : x.at[i],
+                                             .y = border ? -1 : y.at[j],
+                                             .weight = share * x.weight[i] * y.weight[j],
+                                             .du = share * x.slope[i] * y.weight[j],
+                                             .dv = share * x.weight[i] * y.slope[j],
+                                             .sure = x.sure[i] && y.sure[j]};
+                visit(user, &touch);
+            }
+    }
 }

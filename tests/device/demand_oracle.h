@@ -19,14 +19,18 @@ struct demand_tap {
     uint32_t level;
     long double u, v;
     double weight; ///< 0 for what may count, but should not
-    bool cubic, nearest;
+    double cubic;  ///< share of the bicubic filter; the rest is linear
+    bool nearest;
     bool sure;
+    bool spline, smart; ///< of the texture, or of DEMAND_CUBIC
+    double wanted_lod;
 };
 
 /** One texel of a tap; x -1: the border. */
 struct demand_touch {
     int32_t x, y;
     double weight;
+    double du, dv; ///< weights of derivatives
     bool sure;
 };
 
@@ -38,6 +42,12 @@ bool demand_oracle_taps(const struct SluiceDemandTexture *texture, const struct 
 
 void demand_oracle_touches(const struct SluiceDemandTexture *texture, const struct demand_tap *tap,
                            void (*visit)(void *user, const struct demand_touch *touch), void *user);
+
+/** How much of a level is bicubic that is shown in place of `tap->level`. */
+double demand_oracle_share(const struct demand_tap *tap, double shown_lod);
+
+/** Whether derivatives of a linear part jump here. */
+bool demand_oracle_jumps(const struct SluiceDemandTexture *texture, const struct demand_tap *tap);
 
 /** Without bias; derivatives in texels. INFINITY where they are not finite. */
 long double demand_oracle_lod(const float dx[2], const float dy[2], double anisotropy);

@@ -27,6 +27,14 @@ struct demand_texture demand_random_texture(uint32_t width, uint32_t height)
     return t;
 }
 
+void demand_randomize_filter(struct demand_texture *t)
+{
+    int kind = roll() % 3;
+    t->cubic = kind == 1;
+    t->smart = kind == 2;
+    t->nearest = t->nearest && kind == 0;
+}
+
 float demand_random_coordinate(uint32_t size, bool wild)
 {
     static const float ends[] = {0,  1,    0x1.fffffep-1f, -0x1p-24f,   -0.0f, 2,

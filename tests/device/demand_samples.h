@@ -15,6 +15,9 @@ struct demand_texture demand_random_texture(uint32_t width, uint32_t height);
 float demand_random_coordinate(uint32_t size, bool wild);
 
 /** Of any kind that samples; LODs from -10 to 40. */
+/** Gives one texture in three a bicubic filter, one a smart bicubic one. */
+void demand_randomize_filter(struct demand_texture *texture);
+
 struct DemandInput demand_random_input(uint32_t index, const struct demand_texture *texture,
                                        bool wild);
 

@@ -73,12 +73,14 @@ static void create_set(struct demand_scene *s)
     h->UpdateDescriptorSets(h->device, 1, &write, 0, NULL);
 }
 
-static VkPipeline preview_pipeline(struct demand_scene *s)
+static VkPipeline probe_pipeline(struct demand_scene *s, enum demand_shader shader)
 {
     struct harness *h = s->h;
-    VkBool32 preview = VK_TRUE;
-    VkSpecializationMapEntry entry = {0, 0, sizeof preview};
-    VkSpecializationInfo special = {1, &entry, sizeof preview, &preview};
+    VkBool32 values[2] = {shader == DEMAND_SHADER_PREVIEW || shader == DEMAND_SHADER_CUBIC_PREVIEW,
+                          shader == DEMAND_SHADER_CUBIC || shader == DEMAND_SHADER_CUBIC_PREVIEW};
+    VkSpecializationMapEntry entries[2] = {{0, 0, sizeof(VkBool32)},
+                                           {1, sizeof(VkBool32), sizeof(VkBool32)}};
+    VkSpecializationInfo special = {2, entries, sizeof values, values};
     return conform_compute_pipeline(
         h, s->layout, conform_module(h, demand_probe_comp, sizeof demand_probe_comp), &special);
 }
@@ -87,8 +89,6 @@ static VkPipeline preview_pipeline(struct demand_scene *s)
 static VkPipeline create_pipeline(struct demand_scene *s, enum demand_shader shader)
 {
     struct harness *h = s->h;
-    if (shader == DEMAND_SHADER_PREVIEW)
-        return preview_pipeline(s);
     if (shader == DEMAND_SHADER_LOOP)
         return conform_compute_pipeline(
             h, s->layout, conform_module(h, demand_probe_loop_comp, sizeof demand_probe_loop_comp),
@@ -97,8 +97,7 @@ static VkPipeline create_pipeline(struct demand_scene *s, enum demand_shader sha
         return conform_graphics_pipeline(
             h, s->layout, s->pass, conform_vertex_module(h),
             conform_module(h, demand_probe_frag, sizeof demand_probe_frag), 0);
-    return conform_compute_pipeline(
-        h, s->layout, conform_module(h, demand_probe_comp, sizeof demand_probe_comp), NULL);
+    return probe_pipeline(s, shader);
 }
 
 void demand_scene_init(struct demand_scene *s, struct harness *h, VkFormat format,
@@ -216,7 +215,9 @@ uint32_t demand_scene_add(struct demand_scene *s, const struct demand_texture *t
                  components << SLUICE_DEMAND_COMPONENTS_SHIFT |
                  (t->nearest ? SLUICE_DEMAND_NEAREST : 0) |
                  (t->nearest_level ? SLUICE_DEMAND_NEAREST_LEVEL : 0) |
-                 (t->blocks ? SLUICE_DEMAND_BLOCKS : 0),
+                 (t->blocks ? SLUICE_DEMAND_BLOCKS : 0) |
+                 (t->cubic || t->smart ? SLUICE_DEMAND_SPLINE : 0) |
+                 (t->smart ? SLUICE_DEMAND_SMART : 0),
         .levels = s->level_count,
         .maxAnisotropy = t->anisotropy,
         .lodBias = t->bias};

@@ -25,6 +25,7 @@ struct demand_texture {
     uint32_t width, height;
     uint32_t mode_u, mode_v; ///< VkSamplerAddressMode
     bool nearest, nearest_level, blocks;
+    bool cubic, smart; ///< bicubic filter: always, or where it is magnified
     float anisotropy, bias;
     float base_color[4], border_color[4];
 };
@@ -33,6 +34,8 @@ struct demand_texture {
 enum demand_shader {
     DEMAND_SHADER_COMPUTE,
     DEMAND_SHADER_PREVIEW,
+    DEMAND_SHADER_CUBIC, ///< knows bicubic filters of textures
+    DEMAND_SHADER_CUBIC_PREVIEW,
     DEMAND_SHADER_LOOP, ///< finds array images by a loop
     DEMAND_SHADER_FRAGMENT,
     DEMAND_SHADERS,

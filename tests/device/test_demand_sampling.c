@@ -6,6 +6,7 @@
 #include "device/demand_images.h"
 #include "device/demand_samples.h"
 
+#include "base/checked.h"
 #include "support/roll.h"
 #include "support/test.h"
 
@@ -15,6 +16,7 @@
 #define TOLERANCE (2.0 / 255.0)
 
 static struct demand_expectation expectation;
+static uint32_t derivatives_checked;
 static uint8_t expected_pages[DEMAND_EXPECT_PAGES];
 
 static void set_word(struct harness_buffer *levels, uint32_t word, uint32_t value)
@@ -33,6 +35,7 @@ static void set_loader_bias(struct demand_scene *scene, float bias)
 struct chance {
     struct demand_scene *scene;
     double resident, refused;
+    bool filters; ///< some textures have bicubic ones
 };
 
 static bool by_chance(void *user, uint32_t page)
@@ -55,6 +58,8 @@ static void fill(struct demand_scene *scene, struct demand_texture textures[SIZE
     chance.scene = scene;
     for (uint32_t t = 0; t < SIZES; t++) {
         textures[t] = demand_random_texture(sizes[t][0], sizes[t][1]);
+        if (chance.filters)
+            demand_randomize_filter(&textures[t]);
         demand_images_load(scene, demand_scene_add(scene, &textures[t]), by_chance, &chance);
     }
     demand_images_upload(scene);
@@ -68,18 +73,29 @@ static void expect(const struct DemandInput *in, uint8_t *pages)
     demand_expect(&expectation, in, pages);
 }
 
-/* One whose result is sure; without cubic ones where something may stand in for what is missing. */
-static struct DemandInput sure_input(const struct demand_texture textures[SIZES], bool cubic)
+/* One whose result is sure. */
+static struct DemandInput sure_input(const struct demand_texture textures[SIZES], bool slopes)
 {
     for (;;) {
         uint32_t t = (uint32_t)roll() % SIZES;
         struct DemandInput in = demand_random_input(t, &textures[t], false);
-        if (in.kind == DEMAND_CUBIC && !cubic)
-            continue;
+        if (slopes && in.kind == DEMAND_GRAD && roll() % 2)
+            in.kind = DEMAND_SLOPES;
         expect(&in, NULL);
         if (expectation.sure)
             return in;
     }
+}
+
+static void check_derivative(const struct DemandInput *in, const char *name, const float found[4],
+                             const double expected[4], uint32_t size)
+{
+    uint32_t level = expectation.finest < 31 ? expectation.finest : 31;
+    double texels = slc_max_u32(size >> level, 1); /* from texel to texel, times them */
+    for (int c = 0; c < 4; c++)
+        if (!(fabs(found[c] - expected[c]) < 0.03 * texels))
+            fail_msg("texture %u, uv %.9g %.9g: channel %d of d%s is %g, not %g", in->index,
+                     (double)in->uv[0], (double)in->uv[1], c, name, (double)found[c], expected[c]);
 }
 
 static void check_sample(struct demand_scene *scene, uint32_t i)
@@ -93,6 +109,11 @@ static void check_sample(struct demand_scene *scene, uint32_t i)
             fail_msg("texture %u, kind %u, uv %.9g %.9g: channel %d is %g, not %g", in->index,
                      in->kind, (double)in->uv[0], (double)in->uv[1], c, (double)out->color[c],
                      expectation.color[c]);
+    if (in->kind != DEMAND_SLOPES || expectation.jumps)
+        return;
+    check_derivative(in, "u", out->du, expectation.du, expectation.entry->width);
+    check_derivative(in, "v", out->dv, expectation.dv, expectation.entry->height);
+    derivatives_checked++;
 }
 
 static void check_pages(struct demand_scene *scene, bool tracks)
@@ -115,12 +136,12 @@ static uint32_t try_residency(struct demand_scene *scene, enum demand_shader sha
                               struct chance chance)
 {
     struct demand_texture textures[SIZES];
-    bool stands_in = shader == DEMAND_SHADER_PREVIEW || chance.refused > 0;
     expectation.scene = scene;
-    expectation.preview = shader == DEMAND_SHADER_PREVIEW;
+    expectation.preview = shader == DEMAND_SHADER_PREVIEW || shader == DEMAND_SHADER_CUBIC_PREVIEW;
+    chance.filters = shader == DEMAND_SHADER_CUBIC || shader == DEMAND_SHADER_CUBIC_PREVIEW;
     fill(scene, textures, chance);
     for (uint32_t i = 0; i < DEMAND_SAMPLES; i++)
-        demand_inputs(scene)[i] = sure_input(textures, !stands_in);
+        demand_inputs(scene)[i] = sure_input(textures, chance.filters);
     demand_scene_run(scene, shader, DEMAND_SAMPLES);
     uint32_t resident = 0;
     for (uint32_t i = 0; i < DEMAND_SAMPLES; i++) {
@@ -164,6 +185,30 @@ static void coarser_levels_stand_in_for_what_is_refused_and_count_as_resident(vo
                      DEMAND_SAMPLES);
 }
 
+static void bicubic_samples_ask_for_all_their_texels(void **state)
+{
+    roll_seed(31);
+    derivatives_checked = 0;
+    for (int round = 0; round < 4; round++) {
+        uint32_t resident = try_residency(*state, DEMAND_SHADER_CUBIC,
+                                          (struct chance){.resident = 0.4 + 0.2 * round});
+        assert_in_range(resident, DEMAND_SAMPLES / 4, DEMAND_SAMPLES);
+    }
+    assert_true(derivatives_checked > DEMAND_SAMPLES);
+}
+
+static void coarser_levels_stand_in_for_all_of_a_bicubic_sample(void **state)
+{
+    roll_seed(32);
+    assert_int_equal(try_residency(*state, DEMAND_SHADER_CUBIC,
+                                   (struct chance){.resident = 0.5, .refused = 0.5}),
+                     DEMAND_SAMPLES);
+    try_residency(*state, DEMAND_SHADER_CUBIC, (struct chance){.resident = 0.4, .refused = 0.3});
+    for (int round = 0; round < 4; round++)
+        try_residency(*state, DEMAND_SHADER_CUBIC_PREVIEW,
+                      (struct chance){.resident = 0.2 + 0.2 * round, .refused = 0.05 * round});
+}
+
 static void bias_of_the_loader_adds_to_that_of_the_texture(void **state)
 {
     struct demand_scene *scene = *state;
@@ -171,11 +216,11 @@ static void bias_of_the_loader_adds_to_that_of_the_texture(void **state)
     roll_seed(24);
     expectation.scene = scene;
     expectation.preview = false;
-    fill(scene, textures, (struct chance){.resident = 1});
+    fill(scene, textures, (struct chance){.resident = 1, .filters = true});
     set_loader_bias(scene, 1.75f);
     for (uint32_t i = 0; i < DEMAND_SAMPLES; i++)
         demand_inputs(scene)[i] = sure_input(textures, true);
-    demand_scene_run(scene, DEMAND_SHADER_COMPUTE, DEMAND_SAMPLES);
+    demand_scene_run(scene, DEMAND_SHADER_CUBIC, DEMAND_SAMPLES);
     for (uint32_t i = 0; i < DEMAND_SAMPLES; i++)
         check_sample(scene, i);
     check_pages(scene, true);
@@ -189,7 +234,7 @@ static void nothing_is_marked_as_used_while_that_is_not_wanted(void **state)
     fill(scene, textures, (struct chance){.resident = 0.5});
     set_word(&scene->levels, SLUICE_DEMAND_PARAMETER_TRACKING, 0);
     for (uint32_t i = 0; i < DEMAND_SAMPLES; i++)
-        demand_inputs(scene)[i] = sure_input(textures, true);
+        demand_inputs(scene)[i] = sure_input(textures, false);
     demand_scene_run(scene, DEMAND_SHADER_COMPUTE, DEMAND_SAMPLES);
     for (uint32_t i = 0; i < DEMAND_SAMPLES; i++)
         check_sample(scene, i);
@@ -304,6 +349,8 @@ int main(void)
         cmocka_unit_test(samples_show_and_use_what_is_there_and_ask_for_the_rest),
         cmocka_unit_test(previews_show_the_finest_coarser_level_that_is_there),
         cmocka_unit_test(coarser_levels_stand_in_for_what_is_refused_and_count_as_resident),
+        cmocka_unit_test(bicubic_samples_ask_for_all_their_texels),
+        cmocka_unit_test(coarser_levels_stand_in_for_all_of_a_bicubic_sample),
         cmocka_unit_test(bias_of_the_loader_adds_to_that_of_the_texture),
         cmocka_unit_test(nothing_is_marked_as_used_while_that_is_not_wanted),
         cmocka_unit_test(unknown_textures_ask_to_be_opened_and_failed_ones_have_one_color),

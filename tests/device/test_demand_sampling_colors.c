@@ -13,6 +13,7 @@
 #define STEP (1.0 / 255.0)
 
 static struct demand_expectation expectation;
+static bool knows_no_cubic; /* the shader */
 
 /* Its last level is its base color. */
 static uint32_t add_whole(struct demand_scene *scene, const struct demand_texture *texture)
@@ -32,7 +33,10 @@ static double largest_difference(struct demand_scene *scene, uint32_t count, uin
     for (uint32_t i = 0; i < count; i++) {
         const struct DemandInput *in = &demand_inputs(scene)[i];
         const struct DemandOutput *out = &demand_outputs(scene)[i];
-        expectation.entry = demand_scene_entry(scene, in->index);
+        struct SluiceDemandTexture entry = *demand_scene_entry(scene, in->index);
+        if (knows_no_cubic)
+            entry.shape &= ~(SLUICE_DEMAND_SPLINE | SLUICE_DEMAND_SMART);
+        expectation.entry = &entry;
         expectation.index = in->index;
         demand_expect(&expectation, in, NULL);
         assert_int_equal(out->resident, 1);
@@ -57,6 +61,8 @@ static double try_samplers(struct demand_scene *scene, enum demand_shader shader
     for (uint32_t t = 0; t < SIZES; t++) {
         textures[t] = demand_random_texture(sizes[t][0], sizes[t][1]);
         textures[t].blocks = blocks;
+        if (shader == DEMAND_SHADER_CUBIC || knows_no_cubic)
+            demand_randomize_filter(&textures[t]);
         add_whole(scene, &textures[t]);
     }
     demand_images_upload(scene);
@@ -81,6 +87,21 @@ static void colors_are_those_of_the_filter(void **state)
     print_message("# at most %.2f steps of 255 off, %u samples\n", worst / STEP, sure);
     assert_true(worst < 2 * STEP);
     assert_true(sure > 6 * DEMAND_SAMPLES / 2);
+}
+
+static void textures_with_bicubic_filters_need_shaders_that_know_them(void **state)
+{
+    uint32_t sure = 0;
+    roll_seed(16);
+    for (int round = 0; round < 6; round++) {
+        double worst = try_samplers(*state, DEMAND_SHADER_CUBIC, false, &sure);
+        print_message("# at most %.2f steps of 255 off\n", worst / STEP);
+        assert_true(worst < 2 * STEP);
+    }
+    knows_no_cubic = true;
+    assert_true(try_samplers(*state, DEMAND_SHADER_COMPUTE, false, &sure) < 2 * STEP);
+    knows_no_cubic = false;
+    assert_true(sure > 7 * DEMAND_SAMPLES / 2);
 }
 
 static void tails_of_compressed_formats_are_found_in_their_places(void **state)
@@ -236,6 +257,7 @@ int main(void)
     demand_scene_init(&scene, &h, VK_FORMAT_R8G8B8A8_UNORM, 7, 7);
     struct CMUnitTest tests[] = {
         cmocka_unit_test(colors_are_those_of_the_filter),
+        cmocka_unit_test(textures_with_bicubic_filters_need_shaders_that_know_them),
         cmocka_unit_test(tails_of_compressed_formats_are_found_in_their_places),
         cmocka_unit_test(images_found_by_a_loop_are_those_found_by_an_index),
         cmocka_unit_test(isotropic_samples_are_those_of_a_sampler),

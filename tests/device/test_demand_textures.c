@@ -1,5 +1,6 @@
 /* Textures: what a launch shows of them, what is opened and read for it, and what becomes of ids.
  */
+#include "demand_vulkan/loader.h"
 #include "device/demand_runner.h"
 
 #include "support/test.h"
@@ -165,6 +166,39 @@ static void a_variant_shares_tiles_and_not_the_sampler(void **state)
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, late));
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, id));
     CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, variant), SLUICE_ERROR_STALE_TEXTURE);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static uint32_t filter_bits(const struct runner *r, SluiceDemandTextureId id)
+{
+    const struct SluiceDemandTexture *entry = slc_table_mirror_get(&r->loader->table, (uint32_t)id);
+    return entry->shape & (SLUICE_DEMAND_NEAREST | SLUICE_DEMAND_SPLINE | SLUICE_DEMAND_SMART);
+}
+
+static void shaders_see_the_filter_before_and_after_a_texture_is_opened(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    runner_init(&r, &h, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 512, 512, 3);
+    SluiceDemandTextureId ids[4], base = runner_add_texture(&r, &image);
+    const uint32_t expected[4] = {[SLUICE_DEMAND_FILTER_NEAREST] = SLUICE_DEMAND_NEAREST,
+                                  [SLUICE_DEMAND_FILTER_CUBIC] = SLUICE_DEMAND_SPLINE,
+                                  [SLUICE_DEMAND_FILTER_SMART_CUBIC] =
+                                      SLUICE_DEMAND_SPLINE | SLUICE_DEMAND_SMART};
+    for (uint32_t i = 0; i < 4; i++) {
+        SluiceDemandSampler sampler = {.structSize = sizeof sampler,
+                                       .filter = (SluiceDemandFilter)i};
+        CHECK_OK(sluiceAddDemandTextureVariant(r.loader, base, &sampler, &ids[i]));
+        assert_int_equal(filter_bits(&r, ids[i]), expected[i]);
+        runner_add_texel(&r, ids[i], 512, 512, 0, 511, 0);
+    }
+    runner_load(&r, 9);
+    assert_true(runner_all_resident(&r));
+    for (uint32_t i = 0; i < 4; i++)
+        assert_int_equal(filter_bits(&r, ids[i]), expected[i]);
     runner_finish(&r);
     runner_image_finish(&image);
 }
@@ -416,7 +450,10 @@ static void wrong_arguments_are_refused(void **state)
         &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler), .lodBias = -17};
     CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
     create.pSampler = &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler),
-                                             .filter = (SluiceDemandFilter)2};
+                                             .filter = (SluiceDemandFilter)4};
+    CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
+    create.pSampler = &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler),
+                                             .mipmapFilter = SLUICE_DEMAND_FILTER_CUBIC};
     CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
     create.image = (SluiceDemandImage){0};
     CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_NULL_POINTER);
@@ -475,6 +512,7 @@ int main(void)
         cmocka_unit_test(only_what_is_sampled_is_opened_and_only_its_tiles_are_read),
         cmocka_unit_test(a_texture_smaller_than_a_pixel_needs_no_tile),
         cmocka_unit_test(a_variant_shares_tiles_and_not_the_sampler),
+        cmocka_unit_test(shaders_see_the_filter_before_and_after_a_texture_is_opened),
         cmocka_unit_test(address_modes_are_those_of_the_image_unless_they_are_explicit),
         cmocka_unit_test(a_grid_shows_the_texture_of_each_cell),
         cmocka_unit_test(another_image_takes_a_textures_place_while_it_is_sampled),

@@ -289,7 +289,7 @@ const struct numerics_function numerics_pages[NUMERICS_PAGE_COUNT] = {
                          make_taps,
                          NULL,
                          check_taps},
-    AT(NUMERICS_SPLINE) = {"spline_half",
+    AT(NUMERICS_SPLINE) = {"filter_axis",
                            {{"weight", "weight", NO_C, 2e-3}},
                            100000,
                            10000000,

@@ -40,10 +40,21 @@
  * missing levels are replaced by the finest coarser level that is resident, or by the color of the
  * last level. Samples still return not resident, and request what they miss. Requires
  * GL_EXT_control_flow_attributes, an extension of the compiler only.
+ *
+ * Textures with a bicubic filter (SLUICE_DEMAND_FILTER_CUBIC, _SMART_CUBIC of sluice/demand.h) require
+ *
+ *     #define SLUICE_DEMAND_CUBIC true                         // or a constant_id constant
+ *
+ * Default: false. They are then sampled with a linear filter, and shaders have no code for others.
  */
 #ifndef SLUICE_DEMAND_GLSL
 #define SLUICE_DEMAND_GLSL
 
+#ifndef SLUICE_DEMAND_CUBIC
+#define SLUICE_DEMAND_CUBIC false
+#endif
+
+#include "demand_filters.glsl"
 #include "demand_texels.glsl"
 #include "lod.glsl"
 
@@ -60,42 +71,8 @@ float sluiceNearCoordinate(float coordinate, uint addressMode)
     return coordinate;
 }
 
-/**
- * Returns the weights of a cubic B-spline for texels -1 and 0. `t` runs from texel 0 to texel 1.
- */
-vec2 sluiceSplineWeights(float t)
-{
-    float back = 1.0 - t;
-    return vec2(back * back * back, 3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0;
-}
-
-/**
- * Returns one half of an axis of a bicubic sample as a linear sample: coordinate x, weight y.
- * `second` selects the half.
- */
-vec2 sluiceSplineHalf(float coordinate, float n, bool second)
-{
-    float at = clamp(coordinate, -1.0e9, 1.0e9) * n - 0.5; /* beyond, nothing changes */
-    float low = floor(at), t = at - low;
-    vec2 w = second ? sluiceSplineWeights(1.0 - t).yx : sluiceSplineWeights(t);
-    float sum = w.x + w.y;
-    return vec2((low + (second ? 1.5 : -0.5) + w.y / sum) / n, sum);
-}
-
-/**
- * Returns the coordinate of part 0 to 3 of a bicubic sample of level 0, a bilinear sample.
- * Multiplies `weight` by its weight.
- */
-vec2 sluiceCubicPart(SluiceDemandState s, vec2 uv, uint part, inout float weight)
-{
-    vec2 x = sluiceSplineHalf(uv.x, float(s.size.x), (part & 1u) != 0u);
-    vec2 y = sluiceSplineHalf(uv.y, float(s.size.y), (part & 2u) != 0u);
-    weight *= x.y * y.y;
-    return vec2(x.x, y.x);
-}
-
-/** Sums all bilinear samples of one sample. Only samples of level 0 are bicubic. */
-vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv, bool cubic)
+/** Sums all bilinear samples of one sample without bicubic filter and derivatives. */
+vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv)
 {
     vec4 sum = vec4(0.0);
     float step = 1.0 / float(taps.count);
@@ -104,16 +81,30 @@ vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv, b
         if (!(share > 0.0))
             continue;
         uint level = pass == 0u ? taps.fine : taps.coarse;
-        uint parts = cubic && level == 0u ? 2u : 0u; /* log2 */
-        for (uint i = 0u; i < taps.count << parts; i++) {
-            vec2 at = uv + taps.axis * ((float(i >> parts) + 0.5) * step - 0.5);
-            float weight = share;
-            if (parts != 0u)
-                at = sluiceCubicPart(s, at, i & 3u, weight);
-            sum += weight * sluiceDemandTexels(s, level, at);
+        for (uint i = 0u; i < taps.count; i++) {
+            vec2 at = uv + taps.axis * ((float(i) + 0.5) * step - 0.5);
+            sum += share * sluiceDemandTexels(s, level, at);
         }
     }
     return sum * step;
+}
+
+/** Sums all samples of one sample in any filter: color and derivatives. */
+mat3x4 sluiceSumKernels(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv,
+                        SluiceDemandKernel kernel, float lod)
+{
+    mat3x4 sum = mat3x4(0.0);
+    float step = 1.0 / float(taps.count);
+    [[dont_unroll]] for (uint i = 0u; i < 2u * taps.count; i++) {
+        bool coarse = i >= taps.count;
+        float share = coarse ? taps.fraction : 1.0 - taps.fraction;
+        if (!(share > 0.0))
+            continue;
+        vec2 at = uv + taps.axis * ((float(coarse ? i - taps.count : i) + 0.5) * step - 0.5);
+        sum += share * step * sluiceFilterDemand(s, coarse ? taps.coarse : taps.fine, at, kernel,
+                                                 sluiceDemandShare(kernel, lod));
+    }
+    return sum;
 }
 
 /** Finds the texture of a grid at `uv`. False if there is none. */
@@ -164,18 +155,19 @@ bool sluiceOpenDemand(uint index, inout vec2 uv, out SluiceDemandState s, out ve
     return true;
 }
 
-float sluiceDemandLodBias(uint index)
+/** Returns the LOD bias of all textures, while memory is short. */
+float sluiceLoaderLodBias()
 {
-    return SLUICE_DEMAND_TEXTURE(index).lodBias +
-           uintBitsToFloat(SLUICE_DEMAND_LEVEL_WORD(SLUICE_DEMAND_PARAMETER_LOD_BIAS));
+    return uintBitsToFloat(SLUICE_DEMAND_LEVEL_WORD(SLUICE_DEMAND_PARAMETER_LOD_BIAS));
 }
 
 /**
- * Samples at `lod`, bias included. `dx` and `dy` include all LOD bias. A row has up to `maxTaps`
- * samples.
+ * Samples at `lod`, bias included: color and derivatives. `dx` and `dy` include all LOD bias. A row
+ * has up to `maxTaps` samples. `kernel` matters if `any` is true; else the color is linear or
+ * nearest, and the derivatives are 0.
  */
-vec4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, float lod,
-                        float maxTaps, bool cubic)
+mat3x4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, float lod,
+                          float maxTaps, bool any, SluiceDemandKernel kernel)
 {
     uint last = sluiceDemandLastLevel(s.shape);
     uvec2 modes = sluiceDemandModes(s.shape);
@@ -183,7 +175,7 @@ vec4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, fl
     if (beyond && modes.x != SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
         modes.y != SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER) {
         sluiceMarkDemandPage(s.tailPage);
-        return sluiceDemandBaseColor(s.index);
+        return mat3x4(sluiceDemandBaseColor(s.index), vec4(0.0), vec4(0.0));
     }
     lod = beyond ? float(last) : max(lod, 0.0);
     SluicePagedTaps taps =
@@ -194,12 +186,14 @@ vec4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, fl
     }
     if (taps.fine == last) /* it has no page */
         sluiceMarkDemandPage(s.tailPage);
-    if (taps.count > 1u || cubic) /* steps of a row are small beside some coordinates */
+    if (taps.count > 1u || any) /* steps of a row are small beside some coordinates */
         uv = vec2(sluiceNearCoordinate(uv.x, modes.x), sluiceNearCoordinate(uv.y, modes.y));
-    if (cubic)
-        s.shape &= ~SLUICE_DEMAND_NEAREST;
-    vec4 color = sluiceSumDemand(s, taps, uv, cubic);
-    return s.resident || SLUICE_DEMAND_PREVIEW ? color : vec4(0.0);
+    mat3x4 sum = mat3x4(0.0);
+    if (any)
+        sum = sluiceSumKernels(s, taps, uv, kernel, lod);
+    else
+        sum[0] = sluiceSumDemand(s, taps, uv);
+    return s.resident || SLUICE_DEMAND_PREVIEW ? sum : mat3x4(0.0);
 }
 
 /**
@@ -229,45 +223,79 @@ float sluiceDemandComputeLod(vec2 dx, vec2 dy, float maxAnisotropy)
     return 0.5 * log2(max(minor2, 1.0e-12)) + float(exponent);
 }
 
-/** Samples in any way: at `lod`, or at the LOD of the derivatives. */
-vec4 sluiceDemandSample(uint index, vec2 uv, vec2 dx, vec2 dy, bool atLod, float lod, bool cubic,
-                        out bool resident)
+/* How sluiceDemandSample filters within a level. */
+#define SLUICE_DEMAND_AS_TEXTURE 0u /* as the texture's sampler says */
+#define SLUICE_DEMAND_AS_SMART 1u   /* SLUICE_DEMAND_FILTER_SMART_CUBIC whatever it says */
+#define SLUICE_DEMAND_AS_SLOPES 2u  /* as the sampler says, with derivatives */
+
+/**
+ * Samples in any way, at `lod`, or at the LOD of the derivatives: color, and derivatives by u and v.
+ * `way` must be a constant.
+ */
+mat3x4 sluiceDemandSample(uint index, vec2 uv, vec2 dx, vec2 dy, bool atLod, float lod, uint way,
+                          out bool resident)
 {
     SluiceDemandState s;
-    vec4 color;
-    if (sluiceOpenDemand(index, uv, s, color)) {
+    mat3x4 sum = mat3x4(0.0);
+    if (sluiceOpenDemand(index, uv, s, sum[0])) {
         vec2 size = vec2(s.size);
-        float bias = sluiceDemandLodBias(s.index), scale = exp2(bias), n = 1.0;
+        float n = 1.0, loader = sluiceLoaderLodBias();
         if (!atLod) {
             n = clamp(SLUICE_DEMAND_TEXTURE(s.index).maxAnisotropy, 1.0, SLUICE_DEMAND_MAX_ANISOTROPY);
             lod = sluiceDemandComputeLod(dx * size, dy * size, n);
         }
-        color = sluiceSampleDemand(s, uv, dx * scale, dy * scale, lod + bias, n, cubic);
+        float bias = SLUICE_DEMAND_TEXTURE(s.index).lodBias, scale = exp2(bias + loader);
+        SluiceDemandKernel kernel = sluiceDemandKernel(s.shape, way == SLUICE_DEMAND_AS_SLOPES, lod + bias);
+        if (way == SLUICE_DEMAND_AS_SMART) {
+            kernel.spline = kernel.smart = true;
+            s.shape &= ~SLUICE_DEMAND_NEAREST;
+        }
+        sum = sluiceSampleDemand(s, uv, dx * scale, dy * scale, lod + (bias + loader), n,
+                                 SLUICE_DEMAND_CUBIC || way != SLUICE_DEMAND_AS_TEXTURE, kernel);
     }
     resident = s.resident;
-    return color;
+    return sum;
 }
 
 /** Samples with derivatives of `uv` per pixel, like textureGrad: trilinear or anisotropic. */
 vec4 sluiceDemandGrad(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
-    return sluiceDemandSample(index, uv, dx, dy, false, 0.0, false, resident);
-}
-
-/**
- * Samples like sluiceDemandGrad, with a bicubic B-spline where the texture is magnified. The spline
- * is smooth and does not interpolate the texels. It blends gradually into the trilinear filter,
- * which applies from level 1 on. The texture's filter within a level is ignored.
- */
-vec4 sluiceDemandCubic(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
-{
-    return sluiceDemandSample(index, uv, dx, dy, false, 0.0, true, resident);
+    return sluiceDemandSample(index, uv, dx, dy, false, 0.0, SLUICE_DEMAND_AS_TEXTURE, resident)[0];
 }
 
 /** Samples at `lod` plus both LOD biases, like textureLod: without anisotropy. */
 vec4 sluiceDemandLod(uint index, vec2 uv, float lod, out bool resident)
 {
-    return sluiceDemandSample(index, uv, vec2(0.0), vec2(0.0), true, lod, false, resident);
+    return sluiceDemandSample(index, uv, vec2(0.0), vec2(0.0), true, lod, SLUICE_DEMAND_AS_TEXTURE,
+                              resident)[0];
+}
+
+/**
+ * Samples like sluiceDemandGrad, with SLUICE_DEMAND_FILTER_SMART_CUBIC whatever filter the texture
+ * has: bicubic where the texture is magnified to twice its size or more, trilinear or anisotropic
+ * where it is not magnified, and a blend between. Does not need SLUICE_DEMAND_CUBIC.
+ */
+vec4 sluiceDemandCubic(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
+{
+    return sluiceDemandSample(index, uv, dx, dy, false, 0.0, SLUICE_DEMAND_AS_SMART, resident)[0];
+}
+
+/**
+ * Samples like sluiceDemandGrad, and returns the derivatives of the color by u and by v, for example of a
+ * height for bump mapping. Does not need SLUICE_DEMAND_CUBIC.
+ *
+ * `du` and `dv` are per unit of uv: the change across the whole texture. They are exact derivatives of
+ * the color at an unchanged LOD. So with a linear filter they are constant between texels and jump
+ * at their centers; with a bicubic filter they are continuous. They are 0 for NEAREST, and where the
+ * color is 0 because it is not resident.
+ */
+vec4 sluiceDemandDerivatives(uint index, vec2 uv, vec2 dx, vec2 dy, out vec4 du, out vec4 dv,
+                             out bool resident)
+{
+    mat3x4 sum = sluiceDemandSample(index, uv, dx, dy, false, 0.0, SLUICE_DEMAND_AS_SLOPES, resident);
+    du = sum[1];
+    dv = sum[2];
+    return sum[0];
 }
 
 #endif

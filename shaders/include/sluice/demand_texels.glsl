@@ -1,6 +1,6 @@
 /*
  * Takes one bilinear sample of one level of a texture that is loaded on demand. The part of
- * demand.glsl that reads pages; only demand.glsl includes it.
+ * demand.glsl that reads pages; only demand.glsl and demand_filters.glsl include it.
  */
 #ifndef SLUICE_DEMAND_TEXELS_GLSL
 #define SLUICE_DEMAND_TEXELS_GLSL
@@ -48,8 +48,8 @@ uvec2 sluiceDemandModes(uint shape)
 /** Returns log2 of a tile's width and height. */
 ivec2 sluiceDemandTileShift(uint shape)
 {
-    return ivec2(bitfieldExtract(shape, 0, 5),
-                 bitfieldExtract(shape, SLUICE_DEMAND_TILE_HEIGHT_SHIFT, 5));
+    return ivec2(bitfieldExtract(shape, 0, 4),
+                 bitfieldExtract(shape, SLUICE_DEMAND_TILE_HEIGHT_SHIFT, 4));
 }
 
 /**

@@ -14,6 +14,7 @@ layout(std430, binding = 8) buffer Outputs { DemandOutput outputs[]; };
 layout(binding = 9) uniform sampler2DArray pages[DEMAND_CHUNKS];
 layout(binding = 10) uniform sampler2D plain;
 layout(constant_id = 0) const bool preview = false;
+layout(constant_id = 1) const bool cubic = false;
 layout(push_constant) uniform Push { uint count; };
 
 #define SLUICE_DEMAND_TEXTURE(i) textures.entries[i]
@@ -24,6 +25,7 @@ layout(push_constant) uniform Push { uint count; };
 #define SLUICE_DEMAND_REQUEST_WORD(i) requests.words[i]
 #define SLUICE_DEMAND_SECTION_WORD(i) sections.words[i]
 #define SLUICE_DEMAND_PREVIEW preview
+#define SLUICE_DEMAND_CUBIC cubic
 #ifdef DEMAND_PAGE_LOOP
 #define SLUICE_PAGE_TEXTURE(i) pages[i]
 #define SLUICE_PAGE_LOOP DEMAND_CHUNKS
@@ -33,15 +35,19 @@ layout(push_constant) uniform Push { uint count; };
 #include "sluice/demand.glsl"
 
 /* One call for all: each is compiled anew, and drivers take seconds for each. */
-vec4 sampleDemand(uint at, vec2 uv, vec2 dx, vec2 dy, out bool resident)
+mat3x4 sampleDemand(uint at, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
     uint index = inputs[at].index;
 #ifdef DEMAND_FUNCTION
-    return DEMAND_FUNCTION;
+    vec4 du = vec4(0.0), dv = vec4(0.0);
+    vec4 color = DEMAND_FUNCTION;
+    return mat3x4(color, du, dv);
 #else
     uint kind = inputs[at].kind;
-    return sluiceDemandSample(index, uv, dx, dy, kind == DEMAND_LOD, inputs[at].lod,
-                              kind == DEMAND_CUBIC, resident);
+    uint way = kind == DEMAND_CUBIC    ? SLUICE_DEMAND_AS_SMART
+               : kind == DEMAND_SLOPES ? SLUICE_DEMAND_AS_SLOPES
+                                       : SLUICE_DEMAND_AS_TEXTURE;
+    return sluiceDemandSample(index, uv, dx, dy, kind == DEMAND_LOD, inputs[at].lod, way, resident);
 #endif
 }
 
@@ -52,21 +58,24 @@ void probeDemand(uint at)
     vec2 dy = vec2(inputs[at].dy[0], inputs[at].dy[1]);
     uint kind = inputs[at].kind;
     uvec2 value = uvec2(0u);
-    vec4 color = vec4(0.0);
+    mat3x4 color = mat3x4(0.0);
     bool resident = true;
     if (kind == DEMAND_MAP)
         resident = sluiceMapOrRequest(inputs[at].index, value);
     else if (kind == DEMAND_FORMULA)
         outputs[at].lod = sluiceDemandComputeLod(dx, dy, inputs[at].lod);
     else if (kind == DEMAND_HARDWARE)
-        color = textureGrad(plain, uv, dx, dy);
+        color[0] = textureGrad(plain, uv, dx, dy);
     else if (kind == DEMAND_PLACE)
         value = uvec2(sluiceDemandTailPlace(textures.entries[inputs[at].index].shape, inputs[at].word,
                                             uint(inputs[at].lod)));
     else
         color = sampleDemand(at, uv, dx, dy, resident);
-    for (uint i = 0u; i < 4u; i++)
-        outputs[at].color[i] = color[i];
+    for (uint i = 0u; i < 4u; i++) {
+        outputs[at].color[i] = color[0][i];
+        outputs[at].du[i] = color[1][i];
+        outputs[at].dv[i] = color[2][i];
+    }
     outputs[at].resident = resident ? 1u : 0u;
     outputs[at].value[0] = value.x;
     outputs[at].value[1] = value.y;

@@ -16,6 +16,7 @@
 #define DEMAND_FORMULA 4u  /* the LOD alone; dx and dy in texels, maxAnisotropy in `lod` */
 #define DEMAND_HARDWARE 5u /* an ordinary image, by its sampler, with dx and dy */
 #define DEMAND_PLACE 6u    /* of tail level `lod`, of a texture's shape */
+#define DEMAND_SLOPES 7u   /* as DEMAND_GRAD, with derivatives */
 
 #define DEMAND_CHUNKS 2 /* array images */
 
@@ -36,7 +37,9 @@ struct DemandOutput {
     uint resident;
     float lod;
     uint value[2];
+    float du[4];
+    float dv[4];
 };
-SLUICE_SHARED_SIZE(struct DemandOutput, 32)
+SLUICE_SHARED_SIZE(struct DemandOutput, 64)
 
 #endif

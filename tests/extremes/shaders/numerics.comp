@@ -153,10 +153,12 @@ void callPages()
         break;
     }
     case NUMERICS_TAPS: callTaps(); break;
-    case NUMERICS_SPLINE:
-        result(0u, sluiceSplineHalf(real(0u), float(argument(1u)), false));
-        result(2u, sluiceSplineHalf(real(0u), float(argument(1u)), true));
+    case NUMERICS_SPLINE: {
+        SluiceFilterAxis axis = sluiceFilterAxis(real(0u), float(argument(1u)), true, false);
+        result(0u, vec2(axis.at.x, axis.weight.x));
+        result(2u, vec2(axis.at.y, axis.weight.y));
         break;
+    }
     case NUMERICS_DEMAND_LOD:
         result(0u, sluiceDemandComputeLod(real2(0u), real2(2u), real(4u)));
         break;

@@ -63,8 +63,10 @@ SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
 #define SLUICE_DEMAND_TEXTURE_FAILED 2 /* its samples are baseColor, and resident */
 #define SLUICE_DEMAND_TEXTURE_GRID 3   /* sizes in textures, `levels` has their indices */
 
-/* SluiceDemandTexture.shape */
-#define SLUICE_DEMAND_TILE_HEIGHT_SHIFT 5  /* below: log2 of a tile's width; here of its height */
+/* SluiceDemandTexture.shape. 4 bits from bit 0: log2 of a tile's width. */
+#define SLUICE_DEMAND_SPLINE 0x10u         /* bicubic filter between texels */
+#define SLUICE_DEMAND_TILE_HEIGHT_SHIFT 5  /* 4 bits: log2 of a tile's height */
+#define SLUICE_DEMAND_SMART 0x200u         /* ... only where the texture is magnified */
 #define SLUICE_DEMAND_LEVEL_COUNT_SHIFT 10 /* 5 bits */
 #define SLUICE_DEMAND_REGULAR_SHIFT 15     /* 5 bits: how many levels have tiles */
 #define SLUICE_DEMAND_MODE_U_SHIFT 20      /* 3 bits, SLUICE_ADDRESS_MODE_... */
