@@ -103,7 +103,6 @@ uint8_t slc_srgb_from_linear(float value)
     /* A search instead of a power: exact, and the same on every machine. NaN compares as below. */
     uint32_t below = 0;
     for (uint32_t step = 128; step; step >>= 1)
-        if (value >= smallest[below + step - 1])
-            below += step;
+        below += step * (value >= smallest[below + step - 1]); /* a branch is mispredicted often */
     return (uint8_t)below;
 }
