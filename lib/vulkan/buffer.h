@@ -8,6 +8,7 @@
 enum slc_buffer_kind {
     SLC_BUFFER_DEVICE,   ///< the GPU's own
     SLC_BUFFER_UPLOAD,   ///< written by the host, mapped, coherent
+    SLC_BUFFER_STAGING,  ///< as UPLOAD, but the GPU's own if the host sees all of its memory
     SLC_BUFFER_TABLE,    ///< small, written by the host, mapped, coherent; the GPU's if possible
     SLC_BUFFER_READBACK, ///< read by the host, mapped, cached where there is such memory
 };
@@ -18,6 +19,9 @@ struct slc_buffer {
     uint64_t size;
     void *mapped; ///< NULL for DEVICE
 };
+
+/** True if the host reads STAGING buffers slowly: they are the GPU's, and not cached. */
+bool slc_staging_is_uncached(const struct slc_caps *caps);
 
 /** A zeroed buffer is finished with nothing to do. Errors: OUT_OF_DEVICE_MEMORY, VULKAN, ... */
 SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,

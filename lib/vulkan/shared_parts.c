@@ -98,10 +98,12 @@ SluiceResult slc_create_shared_loader(struct slc_shared_parts *shared,
         result = slc_read_pool_create(&create, &shared->threads);
     if (result == SLUICE_SUCCESS)
         result = slc_create_pool_loader(shared->threads, &create, loader);
-    if (result == SLUICE_SUCCESS)
+    if (result == SLUICE_SUCCESS) {
+        (*loader)->uncached = slc_staging_is_uncached(shared->caps);
         shared->loader_count++;
-    else
+    } else {
         drop_threads(shared);
+    }
     pthread_mutex_unlock(&shared->mutex);
     return result;
 }

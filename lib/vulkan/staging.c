@@ -60,7 +60,7 @@ static SluiceResult make_block(struct slc_staging *s, uint32_t index)
     s->blocks[index].idle_since = s->tick;
     SluiceResult result =
         slc_buffer_init(&s->blocks[index].buffer, s->vk, s->caps, block_size(s, index),
-                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
+                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_STAGING);
     if (result == SLUICE_SUCCESS)
         s->group->size += block_size(s, index);
     return result;

@@ -4,6 +4,8 @@
 #include "support/fault_source.h"
 #include "support/test.h"
 
+#include <string.h>
+
 enum { SIZE = 64, LOADERS = 3, MOST = 64 };
 
 static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
@@ -249,6 +251,91 @@ static void a_source_is_forgotten_by_one_loader_alone(void **state)
     finish(&r);
 }
 
+/* Writes a pattern, reads it again, and tells where it wrote. */
+struct picky_source {
+    SluiceImageSource base; ///< must be first
+    const void *texels;     ///< of the last read
+    SluiceResult answer;
+};
+
+static SluiceResult picky_info(SluiceImageSource *source, SluiceImageInfo *info)
+{
+    (void)source;
+    *info = (SluiceImageInfo){.structSize = sizeof *info,
+                              .width = 256,
+                              .height = 256,
+                              .mipLevelCount = 1,
+                              .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult picky_read(SluiceImageSource *base, const SluiceImageRegion *region,
+                               void *texels, size_t row_pitch)
+{
+    struct picky_source *source = (struct picky_source *)base;
+    size_t size = row_pitch * region->height;
+    source->texels = texels;
+    memset(texels, 0x5a, size);
+    for (size_t i = 1; i < size; i++)
+        ((unsigned char *)texels)[i] = (unsigned char)(((unsigned char *)texels)[i - 1] + 1);
+    return source->answer;
+}
+
+static void picky_destroy(SluiceImageSource *source)
+{
+    (void)source;
+}
+
+static const SluiceImageSourceInterface picky = {sizeof picky, picky_info, picky_read,
+                                                 picky_destroy};
+
+static SluiceResult read_picky(SluiceTileLoader *loader, struct picky_source *source, uint32_t rows,
+                               unsigned char *texels)
+{
+    const SluiceImageRegion region = {.width = 256, .height = rows};
+    void *to = texels;
+    const SluiceTileRead read = {
+        .source = &source->base, .regionCount = 1, .pRegions = &region, .ppTexels = &to};
+    SluiceTileReadResult result;
+    uint32_t count = 1;
+    uint64_t ticket;
+    CHECK_OK(sluiceSubmitTileRead(loader, &read, &ticket));
+    sluiceWaitTileLoaderIdle(loader);
+    CHECK_OK(sluiceCollectTileReads(loader, &count, &result));
+    assert_int_equal(count, 1);
+    return result.result;
+}
+
+static void sources_never_read_from_memory_that_is_not_cached(void **state)
+{
+    (void)state;
+    enum { ROW = 1024, TILE = 64 * ROW };
+    static unsigned char texels[2 * TILE];
+    struct rig r;
+    struct picky_source source = {.base = {&picky}, .answer = SLUICE_SUCCESS};
+    init(&r, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                          .threadCount = 1});
+    CHECK_OK(read_picky(r.loaders[0], &source, 64, texels));
+    assert_ptr_equal(source.texels, texels); /* as usual */
+    r.loaders[0]->uncached = true;
+    memset(texels, 0, sizeof texels);
+    CHECK_OK(read_picky(r.loaders[0], &source, 64, texels));
+    assert_ptr_not_equal(source.texels, texels);
+    for (uint32_t i = 0; i < sizeof texels; i++)
+        assert_int_equal(texels[i], i < TILE ? (unsigned char)(0x5a + i) : 0);
+    /* A failed read changes nothing. */
+    memset(texels, 7, sizeof texels);
+    source.answer = SLUICE_ERROR_CORRUPT_DATA;
+    assert_int_equal(read_picky(r.loaders[0], &source, 64, texels), SLUICE_ERROR_CORRUPT_DATA);
+    for (uint32_t i = 0; i < sizeof texels; i++)
+        assert_int_equal(texels[i], 7);
+    /* Only tiles are read through the cache. */
+    source.answer = SLUICE_SUCCESS;
+    CHECK_OK(read_picky(r.loaders[0], &source, 65, texels));
+    assert_ptr_equal(source.texels, texels);
+    finish(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -259,6 +346,7 @@ int main(void)
         cmocka_unit_test(a_loader_is_destroyed_while_others_read),
         cmocka_unit_test(statistics_are_of_one_loader),
         cmocka_unit_test(a_source_is_forgotten_by_one_loader_alone),
+        cmocka_unit_test(sources_never_read_from_memory_that_is_not_cached),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
