@@ -11,6 +11,7 @@
 #include <sluice/manager.h>
 #include <sluice/metrics.h>
 #include <sluice/replay.h>
+#include <sluice/udim.h>
 #include <sluice/version.h>
 
 #endif /* SLUICE_SLUICE_H */

@@ -8,6 +8,7 @@
 #include <sluice/manager.h>
 #include <sluice/metrics.h>
 #include <sluice/replay.h>
+#include <sluice/udim.h>
 
 #include <stdio.h>
 #include <unistd.h>
@@ -37,6 +38,8 @@ sluiceCreateArrayImageSource(&f->source, 1, ?NULL, &f->out.source) => sluiceDest
 sluiceCreateFilePool(?&f->pool_info, &f->out.pool) => sluiceDestroyFilePool(f->out.pool)
 !sluiceDestroyFilePool(f->pool)
 sluiceGetFilePoolStatistics(f->pool, &f->out.pool_statistics)
+sluiceFindUdimFiles(f->pattern, ?NULL, &f->out.room, ?NULL)
+sluiceWriteUdimPath(f->pattern, 1001, ?NULL, sizeof f->out.path, f->out.path)
 
 sluiceCreateTileLoader(&f->loader_info, &f->out.loader) => sluiceDestroyTileLoader(f->out.loader)
 !sluiceDestroyTileLoader(f->loader)
@@ -120,8 +123,9 @@ struct fixture {
     SluiceRecordWriter writer;
     SluiceFileRecordingInfo recording;
     SluiceReplayInfo replay;
-    char path[64];
+    char path[64], pattern[64], cell[64];
     struct {
+        char path[64];
         double number;
         float probability;
         SluiceFeedbackDelay delay;
@@ -248,6 +252,11 @@ static void fixture_init(struct fixture *f, void **state)
     f->replay =
         (SluiceReplayInfo){.structSize = sizeof(SluiceReplayInfo), .pData = f->texels, .size = 16};
     snprintf(f->path, sizeof f->path, "/tmp/sluice-null-%ld.rec", (long)getpid());
+    snprintf(f->pattern, sizeof f->pattern, "/tmp/sluice-null-%ld.<UDIM>", (long)getpid());
+    snprintf(f->cell, sizeof f->cell, "/tmp/sluice-null-%ld.1001", (long)getpid());
+    FILE *cell = fopen(f->cell, "w");
+    assert_non_null(cell);
+    fclose(cell);
     init_manager(f);
 }
 
@@ -259,6 +268,7 @@ static void fixture_finish(struct fixture *f)
     sluiceDestroyStreamedTextureManager(f->fresh);
     sluiceDestroyImageSource(f->source);
     remove(f->path);
+    remove(f->cell);
 }
 
 #include "core_calls.h"
