@@ -297,14 +297,20 @@ typedef struct SluiceDemandGridCreateInfo {
      */
     const SluiceDemandTextureId *pTextureIds;
     float missingColor[4]; ///< Color of samples in empty cells and outside the grid.
+    /**
+     * Texture of all cells together, such as a UDIM set scaled to one small image.
+     * sluiceDemandUdimGrad shows it in empty cells, and wherever it is sharp enough: no cell is
+     * opened or read there. Default: none.
+     */
+    SluiceDemandTextureId baseId;
 } SluiceDemandGridCreateInfo;
 
 /**
  * Adds a grid of textures that is sampled as one texture: column floor(u), row floor(v).
  *
- * Cells may differ in size and format. sluiceDemandGrad and sluiceDemandLod do not filter across
- * the edges of cells. The grid does not own its textures: remove them after it, or earlier, which
- * leaves empty cells.
+ * Cells may differ in size and format. sluiceDemandUdimGrad (demand_grids.glsl) filters across the
+ * edges of cells; sluiceDemandGrad and sluiceDemandLod do not. The grid does not own its textures:
+ * remove them after it, or earlier, which leaves empty cells.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_INVALID_ARGUMENT for an empty grid, grids within it, or a wrong structSize;

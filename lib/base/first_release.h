@@ -60,7 +60,7 @@
 #define SLC_FIRST_SluiceDemandSampler SLC_UP_TO(SluiceDemandSampler, explicitAddressModes)
 #define SLC_FIRST_SluiceDemandTextureCreateInfo                                                    \
     SLC_UP_TO(SluiceDemandTextureCreateInfo, failureColor)
-#define SLC_FIRST_SluiceDemandGridCreateInfo SLC_UP_TO(SluiceDemandGridCreateInfo, missingColor)
+#define SLC_FIRST_SluiceDemandGridCreateInfo SLC_UP_TO(SluiceDemandGridCreateInfo, baseId)
 #define SLC_FIRST_SluiceDemandResourceCreateInfo SLC_UP_TO(SluiceDemandResourceCreateInfo, pfnRead)
 #define SLC_FIRST_SluiceDemandBuffers SLC_UP_TO(SluiceDemandBuffers, sections)
 #define SLC_FIRST_SluiceDemandByteBuffers SLC_UP_TO(SluiceDemandByteBuffers, generation)

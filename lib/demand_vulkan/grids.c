@@ -28,18 +28,24 @@ static uint32_t read_cell(const SluiceDemandLoader *loader, uint32_t first_eleme
     return element->words[cell % 16];
 }
 
+static SluiceResult check_member(SluiceDemandLoader *loader, SluiceDemandTextureId id)
+{
+    uint32_t index;
+    if (id == SLUICE_NO_DEMAND_TEXTURE)
+        return SLUICE_SUCCESS;
+    SluiceResult result = slc_texture_find(loader, id, &index);
+    if (result == SLUICE_SUCCESS && loader->textures[index].kind == SLC_TEXTURE_GRID)
+        return slc_demand_refuse_grid(loader, "sluiceAddDemandGrid", id);
+    return result;
+}
+
 static SluiceResult check_cells(SluiceDemandLoader *loader, const SluiceDemandTextureId *ids,
                                 uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t index;
-        if (ids[i] == SLUICE_NO_DEMAND_TEXTURE)
-            continue;
-        SluiceResult result = slc_texture_find(loader, ids[i], &index);
+        SluiceResult result = check_member(loader, ids[i]);
         if (result != SLUICE_SUCCESS)
             return result;
-        if (loader->textures[index].kind == SLC_TEXTURE_GRID)
-            return slc_demand_refuse_grid(loader, "sluiceAddDemandGrid", ids[i]);
     }
     return SLUICE_SUCCESS;
 }
@@ -79,6 +85,7 @@ static void show_grid(SluiceDemandLoader *loader, uint32_t index,
                                           .height = info->rowCount,
                                           .levels = SLC_MAX_REGULAR_LEVELS *
                                                     (1 + loader->max_image_count + first),
+                                          .tailPage = (uint32_t)info->baseId,
                                           .maxAnisotropy = 1};
     memcpy(entry->baseColor, info->missingColor, sizeof entry->baseColor);
 }
@@ -89,6 +96,8 @@ static SluiceResult add_grid(SluiceDemandLoader *loader, const SluiceDemandGridC
     uint32_t index, first, count = info->columnCount * info->rowCount;
     SluiceResult result = check_cells(loader, info->pTextureIds, count);
     if (result == SLUICE_SUCCESS)
+        result = check_member(loader, info->baseId);
+    if (result == SLUICE_SUCCESS)
         result = take_cells(loader, count, &first);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -98,6 +107,8 @@ static SluiceResult add_grid(SluiceDemandLoader *loader, const SluiceDemandGridC
         return result;
     }
     fill_grid(loader, index, first, info->pTextureIds, count);
+    if (info->baseId != SLUICE_NO_DEMAND_TEXTURE)
+        loader->textures[(uint32_t)info->baseId].grid_uses++;
     show_grid(loader, index, info);
     *id = slc_texture_id(loader, index);
     return SLUICE_SUCCESS;
@@ -125,23 +136,44 @@ SluiceResult sluiceAddDemandGrid(SluiceDemandLoader *loader,
     return add_grid(loader, &info, pTextureId);
 }
 
-void slc_grids_leave(SluiceDemandLoader *loader, uint32_t index)
+static uint32_t read_base(const SluiceDemandLoader *loader, uint32_t index)
 {
-    for (uint32_t i = 1; i < loader->texture_high && loader->textures[index].grid_uses; i++) {
-        const struct slc_demand_texture *grid = &loader->textures[i];
-        for (uint32_t c = 0; grid->kind == SLC_TEXTURE_GRID && c < grid->cell_count; c++)
-            if (read_cell(loader, grid->first_element, c) == index) {
-                write_cell(loader, grid->first_element, c, SLUICE_DEMAND_NO_TEXTURE);
-                loader->textures[index].grid_uses--;
-            }
-    }
+    const struct SluiceDemandTexture *entry = slc_table_mirror_get(&loader->table, index);
+    return entry->tailPage;
 }
 
-void slc_grid_empty(SluiceDemandLoader *loader, const struct slc_demand_texture *grid)
+/* The texture leaves the cells of a grid, and may be its base. */
+static void leave_grid(SluiceDemandLoader *loader, uint32_t index, uint32_t at)
 {
-    for (uint32_t c = 0; c < grid->cell_count; c++) {
-        uint32_t index = read_cell(loader, grid->first_element, c);
-        if (index != SLUICE_DEMAND_NO_TEXTURE)
+    const struct slc_demand_texture *grid = &loader->textures[at];
+    for (uint32_t c = 0; c < grid->cell_count; c++)
+        if (read_cell(loader, grid->first_element, c) == index) {
+            write_cell(loader, grid->first_element, c, SLUICE_DEMAND_NO_TEXTURE);
             loader->textures[index].grid_uses--;
+        }
+    if (read_base(loader, at) != index)
+        return;
+    struct SluiceDemandTexture *entry = slc_table_mirror_change(&loader->table, at);
+    entry->tailPage = 0;
+    loader->textures[index].grid_uses--;
+}
+
+void slc_grids_leave(SluiceDemandLoader *loader, uint32_t index)
+{
+    for (uint32_t i = 1; i < loader->texture_high && loader->textures[index].grid_uses; i++)
+        if (loader->textures[i].kind == SLC_TEXTURE_GRID)
+            leave_grid(loader, index, i);
+}
+
+void slc_grid_empty(SluiceDemandLoader *loader, uint32_t index)
+{
+    const struct slc_demand_texture *grid = &loader->textures[index];
+    uint32_t base = read_base(loader, index);
+    for (uint32_t c = 0; c < grid->cell_count; c++) {
+        uint32_t member = read_cell(loader, grid->first_element, c);
+        if (member != SLUICE_DEMAND_NO_TEXTURE)
+            loader->textures[member].grid_uses--;
     }
+    if (base)
+        loader->textures[base].grid_uses--;
 }

@@ -379,7 +379,7 @@ void slc_retries_finish(SluiceDemandLoader *loader);
 /** Cells that name the texture show their grid's own color. */
 void slc_grids_leave(SluiceDemandLoader *loader, uint32_t index);
 /** The grid names nothing any more; its cells stay what they are for launches under way. */
-void slc_grid_empty(SluiceDemandLoader *loader, const struct slc_demand_texture *grid);
+void slc_grid_empty(SluiceDemandLoader *loader, uint32_t index);
 
 /* images.c */
 /** Begins to open the image of a texture, unless that is done. */

@@ -295,7 +295,7 @@ static void retire(SluiceDemandLoader *loader, uint32_t index, const float color
     if (texture->grid_uses)
         slc_grids_leave(loader, index);
     if (texture->kind == SLC_TEXTURE_GRID)
-        slc_grid_empty(loader, texture);
+        slc_grid_empty(loader, index);
     show_failed(loader, index, color);
     slc_pages_forget_requests(loader, index, 1);
     texture->kind = SLC_TEXTURE_RETIRED;

@@ -412,6 +412,12 @@ static void what_demand_loading_refuses_is_named(void **state)
     cells.pTextureIds = &grid;
     CHECK_RESULT(sluiceAddDemandGrid(loader, &cells, &id), refused);
     check_line(&lines, "sluiceAddDemandGrid: texture 0x");
+    cells.pTextureIds = none;
+    cells.baseId = grid;
+    CHECK_RESULT(sluiceAddDemandGrid(loader, &cells, &id), refused);
+    check_line(&lines, "sluiceAddDemandGrid: texture 0x");
+    cells.baseId = 12345;
+    CHECK_RESULT(sluiceAddDemandGrid(loader, &cells, &id), SLUICE_ERROR_UNKNOWN_TEXTURE);
     cells.columnCount = 0;
     cells.rowCount = 3;
     CHECK_RESULT(sluiceAddDemandGrid(loader, &cells, &id), refused);

@@ -1,14 +1,32 @@
 /*
- * Samples grids of textures that are loaded on demand (sluiceAddDemandGrid): the layers of an array.
+ * Samples grids of textures that are loaded on demand (sluiceAddDemandGrid).
  *
- *     bool resident;
- *     vec4 color = sluiceDemandLayerGrad(index, layer, uv, dx, dy, resident);
- *
- * `index` is that of a grid of layerCount x 1 textures; add one texture per layer
+ * Layers of an array: `index` is that of a grid of layerCount x 1 textures; add one texture per layer
  * (SluiceDemandImage.arrayLayer). The layer may differ between invocations. Layers beyond the last
  * are the last one, as in Vulkan. Samplers and special cases are those of the layer's texture
  * (demand.glsl). An empty cell returns the grid's missingColor, resident. A texture that is no grid is
  * an array of one layer.
+ *
+ *     bool resident;
+ *     vec4 color = sluiceDemandLayerGrad(index, layer, uv, dx, dy, resident);
+ *
+ * UDIM sets: sampled like sluiceDemandGrad on the grid, but filtered across the edges of cells, and
+ * with the grid's base texture.
+ *
+ *     vec4 color = sluiceDemandUdimGrad(index, uv, dx, dy, resident);
+ *
+ *     at the edge of two cells              each has the weight that it has in one large image
+ *     cells of different sizes              each at the level that has the sample's LOD; they blend
+ *                                           within half a texel of the finer one
+ *     LOD beyond a cell's last level        its last level, still blended with that of its neighbors
+ *     edge to an empty or failed cell       clamped
+ *     base texture not coarser than needed  the base texture alone; no cell is opened or read
+ *     empty cell                            the base texture; without one, missingColor, resident
+ *     cell that cannot be opened            its failureColor, resident
+ *     outside the grid                      missingColor, resident
+ *
+ * The anisotropy and LOD bias are those of the cell at `uv`. Bicubic filters are linear here. Address
+ * modes of cells are ignored.
  *
  * Include it after the definitions of demand.glsl, which it includes.
  */
@@ -47,6 +65,248 @@ vec4 sluiceDemandLayerLod(uint index, uint layer, vec2 uv, float lod, out bool r
     if (!sluiceFindDemandLayer(index, layer))
         return sluiceDemandBaseColor(index);
     return sluiceDemandLod(index, uv, lod, resident);
+}
+
+/** Returns the texture of a cell. SLUICE_DEMAND_NO_TEXTURE in empty cells and outside the grid. */
+uint sluiceDemandCell(uint grid, vec2 cell)
+{
+    uvec2 size = uvec2(SLUICE_DEMAND_TEXTURE(grid).width, SLUICE_DEMAND_TEXTURE(grid).height);
+    if (any(lessThan(cell, vec2(0.0))) || any(greaterThanEqual(cell, vec2(size))))
+        return SLUICE_DEMAND_NO_TEXTURE;
+    return SLUICE_DEMAND_LEVEL_WORD(SLUICE_DEMAND_TEXTURE(grid).levels + uint(cell.y) * size.x +
+                                    uint(cell.x));
+}
+
+/**
+ * Returns whether a cell's texture is open. If nobody has opened it, requests that and sets
+ * `resident` to false.
+ */
+bool sluiceIsDemandCellOpen(uint index, inout bool resident)
+{
+    if (index == SLUICE_DEMAND_NO_TEXTURE)
+        return false;
+    uint state = SLUICE_DEMAND_TEXTURE(index).state;
+    if (state == SLUICE_DEMAND_TEXTURE_UNKNOWN) {
+        sluiceRequestDemandPage(index);
+        resident = false;
+    }
+    return state == SLUICE_DEMAND_TEXTURE_OPEN;
+}
+
+vec2 sluiceDemandSize(uint index)
+{
+    return vec2(SLUICE_DEMAND_TEXTURE(index).width, SLUICE_DEMAND_TEXTURE(index).height);
+}
+
+/** Returns the levels of a texture that would be at `lod` if it had one texel. */
+SluicePagedTaps sluiceDemandLevels(uint index, float lod)
+{
+    vec2 size = sluiceDemandSize(index);
+    uint shape = SLUICE_DEMAND_TEXTURE(index).shape, last = sluiceDemandLastLevel(shape);
+    lod += log2(max(size.x, size.y));
+    lod = lod < float(last) ? max(lod, 0.0) : float(last); /* NaN: last */
+    SluicePagedTaps taps = sluicePlaceTaps(size, last + 1u, vec2(0.0), vec2(0.0), lod, 1.0);
+    if ((shape & SLUICE_DEMAND_NEAREST_LEVEL) != 0u) {
+        taps.fine = uint(max(ceil(lod - 0.5), 0.0));
+        taps.fraction = 0.0;
+    }
+    taps.coarse = taps.fraction > 0.0 ? taps.coarse : taps.fine;
+    return taps;
+}
+
+/** Opens a texture for texels between its edges. */
+SluiceDemandState sluiceOpenDemandCell(uint index)
+{
+    SluiceDemandState s;
+    s.index = index;
+    s.size = uvec2(SLUICE_DEMAND_TEXTURE(index).width, SLUICE_DEMAND_TEXTURE(index).height);
+    s.shape = SLUICE_DEMAND_TEXTURE(index).shape;
+    s.levels = SLUICE_DEMAND_TEXTURE(index).levels;
+    s.tailPage = SLUICE_DEMAND_TEXTURE(index).tailPage;
+    s.shape = bitfieldInsert(s.shape, SLUICE_ADDRESS_MODE_CLAMP_TO_EDGE, SLUICE_DEMAND_MODE_U_SHIFT, 3);
+    s.shape = bitfieldInsert(s.shape, SLUICE_ADDRESS_MODE_CLAMP_TO_EDGE, SLUICE_DEMAND_MODE_V_SHIFT, 3);
+    s.resident = true;
+    s.page = SLUICE_PAGE_NONE;
+    s.word = SLUICE_PAGE_NONE;
+    return s;
+}
+
+/** Returns the sizes of the fine (x) and the coarse level (y) along an axis. */
+vec2 sluiceDemandExtent(uint index, SluicePagedTaps taps, uint axis)
+{
+    uint size = axis == 0u ? SLUICE_DEMAND_TEXTURE(index).width : SLUICE_DEMAND_TEXTURE(index).height;
+    return vec2(max(uvec2(size >> taps.fine, size >> taps.coarse), uvec2(1u)));
+}
+
+/** Weights of the next cells in x and y. */
+struct SluiceDemandBeyond {
+    vec2 fine, coarse; /* at each level, 0 to 1/2 */
+};
+
+/** Texture or texture grid that a sample of a UDIM grid is taken of. */
+struct SluiceDemandUdim {
+    uint grid, index; /* index: of the base texture, or of the cell at the middle of the sample */
+    bool base;
+    vec2 cell;
+    float lod; /* of a texture of one texel */
+};
+
+/**
+ * Returns how much the next cells count at `at`, 0 to 1: within half a texel of the edge, of the
+ * finer of both cells.
+ */
+SluiceDemandBeyond sluiceFindDemandNeighbors(SluiceDemandUdim u, uint home, vec2 cell, vec2 at,
+                                             vec2 side, SluicePagedTaps taps, inout bool resident)
+{
+    SluiceDemandBeyond beyond = SluiceDemandBeyond(vec2(0.0), vec2(0.0));
+    if (u.base || (SLUICE_DEMAND_TEXTURE(home).shape & SLUICE_DEMAND_NEAREST) != 0u)
+        return beyond;
+    [[dont_unroll]] for (uint axis = 0u; axis < 2u; axis++) {
+        vec2 step = axis == 0u ? vec2(side.x, 0.0) : vec2(0.0, side.y);
+        float distance = axis == 0u ? min(at.x, 1.0 - at.x) : min(at.y, 1.0 - at.y);
+        vec2 extent = sluiceDemandExtent(home, taps, axis);
+        if (distance * extent.y >= 0.5) /* of the coarse level, whose texels are larger */
+            continue;
+        uint next = sluiceDemandCell(u.grid, cell + step);
+        if (sluiceIsDemandCellOpen(next, resident))
+            extent = max(extent, sluiceDemandExtent(next, sluiceDemandLevels(next, u.lod), axis));
+        vec2 weights = floor((0.5 - distance * extent) * SLUICE_FILTER_STEPS + 0.5) / SLUICE_FILTER_STEPS;
+        weights = max(weights, 0.0);
+        beyond.fine += abs(step) * weights.x;
+        beyond.coarse += abs(step) * weights.y;
+    }
+    return beyond;
+}
+
+/**
+ * Returns one sample of a row: a sample of the cell at `uv` and, near its edges, of up to three
+ * more.
+ */
+vec4 sluiceSumDemandCells(SluiceDemandUdim u, vec2 uv, inout bool resident)
+{
+    vec2 cell = u.base ? vec2(0.0) : floor(uv);
+    uint home = u.index;
+    if (u.base) {
+        uv /= sluiceDemandSize(u.grid);
+    } else if (any(notEqual(cell, u.cell))) {
+        home = sluiceDemandCell(u.grid, cell);
+        if (!sluiceIsDemandCellOpen(home, resident)) {
+            home = u.index;
+            cell = u.cell;
+        }
+    }
+    vec2 at = clamp(uv - cell, 0.0, 1.0);
+    vec2 side = mix(vec2(1.0), vec2(-1.0), lessThan(at, vec2(0.5)));
+    SluicePagedTaps taps = sluiceDemandLevels(home, u.lod);
+    SluiceDemandBeyond beyond = sluiceFindDemandNeighbors(u, home, cell, at, side, taps, resident);
+    vec2 reach = max(beyond.fine, beyond.coarse);
+    vec4 sum = vec4(0.0);
+    float total = 0.0;
+    [[dont_unroll]] for (uint corner = 0u; corner < 4u; corner++) {
+        bvec2 next = notEqual(uvec2(corner) & uvec2(1u, 2u), uvec2(0u));
+        uint index = home;
+        if ((next.x && reach.x == 0.0) || (next.y && reach.y == 0.0))
+            continue;
+        if (corner != 0u) {
+            index = sluiceDemandCell(u.grid, cell + mix(vec2(0.0), side, next));
+            if (!sluiceIsDemandCellOpen(index, resident))
+                continue;
+            taps = sluiceDemandLevels(index, u.lod);
+        }
+        SluiceDemandState s = sluiceOpenDemandCell(index);
+        if (taps.fine == sluiceDemandLastLevel(s.shape)) /* it has no page */
+            sluiceMarkDemandPage(s.tailPage);
+        [[dont_unroll]] for (uint pass = 0u; pass < 2u; pass++) {
+            vec2 weights = pass == 0u ? beyond.fine : beyond.coarse;
+            weights = mix(1.0 - weights, weights, next);
+            float weight = (pass == 0u ? 1.0 - taps.fraction : taps.fraction) * weights.x * weights.y;
+            if (!(weight > 0.0))
+                continue;
+            sum += weight * sluiceDemandTexels(s, pass == 0u ? taps.fine : taps.coarse,
+                                               mix(at, 0.5 - 0.5 * side, next));
+            total += weight;
+        }
+        resident = resident && s.resident;
+    }
+    return sum / total;
+}
+
+/** Returns both LOD biases. */
+float sluiceDemandUdimBias(uint index)
+{
+    return SLUICE_DEMAND_TEXTURE(index).lodBias + sluiceLoaderLodBias();
+}
+
+/** Returns the LOD of a texture that covers `extent` cells, LOD bias included. */
+float sluiceDemandUdimLod(uint index, vec2 extent, vec2 dx, vec2 dy, float maxAnisotropy)
+{
+    vec2 size = sluiceDemandSize(index) / extent;
+    return sluiceDemandComputeLod(dx * size, dy * size, maxAnisotropy) + sluiceDemandUdimBias(index);
+}
+
+float sluiceDemandAnisotropy(uint index)
+{
+    return clamp(SLUICE_DEMAND_TEXTURE(index).maxAnisotropy, 1.0, SLUICE_DEMAND_MAX_ANISOTROPY);
+}
+
+/**
+ * Chooses the base texture or the cell at `uv`. False if there is neither: `color` is the sample.
+ */
+bool sluiceChooseDemandCell(inout SluiceDemandUdim u, vec2 uv, vec2 dx, vec2 dy, inout bool resident,
+                            out vec4 color)
+{
+    vec2 extent = sluiceDemandSize(u.grid);
+    uint base = SLUICE_DEMAND_TEXTURE(u.grid).tailPage;
+    u.cell = floor(uv);
+    u.index = sluiceDemandCell(u.grid, u.cell);
+    u.base = false;
+    color = sluiceDemandBaseColor(u.grid);
+    if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, extent)))
+        return false;
+    bool based = base != 0u && sluiceIsDemandCellOpen(base, resident);
+    if (!resident) /* the base may be sharp enough */
+        return false;
+    if (based) {
+        float lod = sluiceDemandUdimLod(base, extent, dx, dy, sluiceDemandAnisotropy(base));
+        u.base = u.index == SLUICE_DEMAND_NO_TEXTURE || !(lod < 0.0);
+    }
+    if (!u.base && u.index != SLUICE_DEMAND_NO_TEXTURE && !sluiceIsDemandCellOpen(u.index, resident)) {
+        color = sluiceDemandBaseColor(u.index);
+        u.base = based && SLUICE_DEMAND_PREVIEW &&
+                 SLUICE_DEMAND_TEXTURE(u.index).state == SLUICE_DEMAND_TEXTURE_UNKNOWN;
+        if (!u.base)
+            return false;
+    }
+    u.index = u.base ? base : u.index;
+    return u.index != SLUICE_DEMAND_NO_TEXTURE;
+}
+
+/** Samples a UDIM grid with derivatives of `uv` per pixel, in units of one cell. */
+vec4 sluiceDemandUdimGrad(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
+{
+    SluiceDemandUdim u;
+    vec4 color;
+    resident = true;
+    u.grid = index;
+    uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
+    if (SLUICE_DEMAND_TEXTURE(index).state != SLUICE_DEMAND_TEXTURE_GRID)
+        return sluiceDemandBaseColor(index); /* removed */
+    if (!sluiceChooseDemandCell(u, uv, dx, dy, resident, color))
+        return resident || SLUICE_DEMAND_PREVIEW ? color : vec4(0.0);
+    vec2 extent = u.base ? sluiceDemandSize(index) : vec2(1.0), size = sluiceDemandSize(u.index);
+    float n = sluiceDemandAnisotropy(u.index);
+    float lod = sluiceDemandUdimLod(u.index, extent, dx, dy, n);
+    float last = float(sluiceDemandLastLevel(SLUICE_DEMAND_TEXTURE(u.index).shape));
+    float scale = exp2(sluiceDemandUdimBias(u.index));
+    bool beyond = !(lod < last);
+    u.lod = lod - log2(max(size.x, size.y));
+    SluicePagedTaps taps = sluicePlaceTaps(size / extent, uint(last) + 1u, dx * scale, dy * scale,
+                                           beyond ? last : max(lod, 0.0), beyond ? 1.0 : n);
+    vec4 sum = vec4(0.0);
+    float step = 1.0 / float(taps.count);
+    [[dont_unroll]] for (uint i = 0u; i < taps.count; i++)
+        sum += sluiceSumDemandCells(u, uv + taps.axis * ((float(i) + 0.5) * step - 0.5), resident);
+    return resident || SLUICE_DEMAND_PREVIEW ? sum * step : vec4(0.0);
 }
 
 #endif

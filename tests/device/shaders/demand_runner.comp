@@ -39,6 +39,8 @@ vec4 sampleGrid(RunnerInput i, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
     if (i.kind == RUNNER_LAYER_GRAD)
         return sluiceDemandLayerGrad(i.index, i.cell, uv, dx, dy, resident);
+    if (i.kind == RUNNER_UDIM_GRAD)
+        return sluiceDemandUdimGrad(i.index, uv, dx, dy, resident);
     return sluiceDemandLayerLod(i.index, i.cell, uv, dx.x, resident);
 }
 #endif

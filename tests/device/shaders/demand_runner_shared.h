@@ -13,6 +13,7 @@
 #define RUNNER_ADDRESS 4    /* ... by its address */
 #define RUNNER_LAYER_GRAD 5 /* sluiceDemandLayerGrad of layer `cell` */
 #define RUNNER_LAYER_LOD 6  /* sluiceDemandLayerLod with dx[0] */
+#define RUNNER_UDIM_GRAD 7  /* sluiceDemandUdimGrad */
 
 struct RunnerInput {
     uint kind, index;

@@ -84,7 +84,8 @@ struct SluiceDemandTexture {
     uint width, height; /* texels of level 0; level l has max(1, size >> l) */
     uint shape;
     uint levels;   /* first word in the buffer of levels: the first page of each regular level */
-    uint tailPage; /* all other levels: a slot of a page, see demand_texels.glsl */
+    uint tailPage; /* all other levels: a slot of a page, see demand_texels.glsl. Grid: index of its
+                      base texture; 0: none */
     float maxAnisotropy; /* 1 to 64 */
     float lodBias;
     float baseColor[4]; /* of the last level, where a texture fits inside a pixel */
