@@ -221,6 +221,17 @@ typedef struct SluiceImageSourceInterface {
     SluiceResult (*pfnReadRegionLocated)(SluiceImageSource *source,
                                          const SluiceImageRegion *pRegion, void *pTexels,
                                          size_t rowPitch, SluiceImageFault *pFault);
+    /**
+     * Writes a number that stands for the texels of a region, and returns true. Two regions of
+     * the source with the same number, width and height have equal texels. Tiles with one number
+     * are resident once: in paged mode and demand loading they have one page. May be NULL.
+     *
+     * Returns false if the source knows of no equal region. The answer for a region never changes.
+     * Must not wait and must not read files: a frame asks several times for each tile.
+     * Thread safety: any thread, several calls at the same time.
+     */
+    bool (*pfnIdentifyRegion)(SluiceImageSource *source, const SluiceImageRegion *pRegion,
+                              uint64_t *pIdentity);
 } SluiceImageSourceInterface;
 
 /** Base of every source: the first member of the implementation's struct. */

@@ -15,7 +15,7 @@
 #define SLC_FIRST_SluiceFormatInfo SLC_UP_TO(SluiceFormatInfo, channelCount)
 #define SLC_FIRST_SluiceImageInfo SLC_UP_TO(SluiceImageInfo, cube)
 #define SLC_FIRST_SluiceImageSourceInterface                                                       \
-    SLC_UP_TO(SluiceImageSourceInterface, pfnReadRegionLocated)
+    SLC_UP_TO(SluiceImageSourceInterface, pfnIdentifyRegion)
 #define SLC_FIRST_SluiceCompleteChainSourceCreateInfo                                              \
     SLC_UP_TO(SluiceCompleteChainSourceCreateInfo, log)
 #define SLC_FIRST_SluiceTileReadFailure SLC_UP_TO(SluiceTileReadFailure, offset)

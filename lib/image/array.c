@@ -1,8 +1,11 @@
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "image/identity.h"
 #include "image/info.h"
 
 #include <sluice/image.h>
+
+#define LAYER_SHIFT 48u /* the layer is in the upper bits of an identity */
 
 struct array_source {
     SluiceImageSource base;
@@ -26,6 +29,20 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
                                         &inner, texels, row_pitch, fault);
 }
 
+/* Regions of different layers are not compared. */
+static bool identify(SluiceImageSource *base, const SluiceImageRegion *region, uint64_t *identity)
+{
+    SluiceImageRegion inner = *region;
+    inner.arrayLayer = 0;
+    uint64_t number = 0;
+    if (!slc_identify_region(((struct array_source *)base)->layers[region->arrayLayer], &inner,
+                             &number) ||
+        number >> LAYER_SHIFT != 0)
+        return false;
+    *identity = (uint64_t)region->arrayLayer << LAYER_SHIFT | number;
+    return true;
+}
+
 static void destroy(SluiceImageSource *base)
 {
     struct array_source *source = (struct array_source *)base;
@@ -37,7 +54,8 @@ static void destroy(SluiceImageSource *base)
 static const SluiceImageSourceInterface array_interface = {.structSize = sizeof array_interface,
                                                            .pfnGetInfo = get_info,
                                                            .pfnDestroy = destroy,
-                                                           .pfnReadRegionLocated = read_region};
+                                                           .pfnReadRegionLocated = read_region,
+                                                           .pfnIdentifyRegion = identify};
 
 static SluiceResult check_layers(SluiceImageSource *const *layers, uint32_t count,
                                  SluiceImageInfo *info)

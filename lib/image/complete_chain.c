@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/struct_size.h"
 #include "image/format_size.h"
+#include "image/identity.h"
 #include "image/info.h"
 #include "image/mip.h"
 
@@ -233,6 +234,14 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     return SLUICE_SUCCESS;
 }
 
+static bool identify(SluiceImageSource *base, const SluiceImageRegion *region, uint64_t *identity)
+{
+    struct complete_source *source = (struct complete_source *)base;
+    return atomic_load_explicit(&source->is_open, memory_order_acquire) &&
+           region->mipLevel < source->inner_count &&
+           slc_identify_region(source->inner, region, identity);
+}
+
 static void destroy(SluiceImageSource *base)
 {
     struct complete_source *source = (struct complete_source *)base;
@@ -248,7 +257,8 @@ static const SluiceImageSourceInterface complete_interface = {.structSize =
                                                                   sizeof complete_interface,
                                                               .pfnGetInfo = get_info,
                                                               .pfnDestroy = destroy,
-                                                              .pfnReadRegionLocated = read_region};
+                                                              .pfnReadRegionLocated = read_region,
+                                                              .pfnIdentifyRegion = identify};
 
 SluiceResult sluiceCreateCompleteChainSource(const SluiceCompleteChainSourceCreateInfo *pInfo,
                                              SluiceImageSource **pSource)

@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/said.h"
 #include "base/struct_size.h"
+#include "image/identity.h"
 #ifdef SLC_HAVE_BAKE
 #include "open/background.h"
 #endif
@@ -136,6 +137,17 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     return sluiceReadImageRegionLocated(source_to_read(image), region, texels, row_pitch, fault);
 }
 
+/* Tiles of pictures get other texels when the bake is done. */
+static bool identify(SluiceImageSource *base, const SluiceImageRegion *region, uint64_t *identity)
+{
+    struct slc_opened_image *image = (struct slc_opened_image *)base;
+#ifdef SLC_HAVE_BAKE
+    if (image->stream)
+        return false;
+#endif
+    return slc_identify_region(source_to_read(image), region, identity);
+}
+
 static struct slc_opened_image **find_bucket(SluiceImageOpener *opener, const char *path)
 {
     return &opener->buckets[slc_said_key(path) % SLC_OPENER_BUCKETS];
@@ -182,7 +194,8 @@ static void destroy(SluiceImageSource *base)
 static const SluiceImageSourceInterface opened_interface = {.structSize = sizeof opened_interface,
                                                             .pfnGetInfo = get_info,
                                                             .pfnDestroy = destroy,
-                                                            .pfnReadRegionLocated = read_region};
+                                                            .pfnReadRegionLocated = read_region,
+                                                            .pfnIdentifyRegion = identify};
 
 /* With the mutex held. */
 static struct slc_opened_image *find_image(SluiceImageOpener *opener, const char *path,

@@ -48,6 +48,8 @@ SluiceResult slc_store_reader_open(struct slc_store_reader *reader,
         result = sluiceCreateStoreReadPool(info->pAllocator, &reader->own_pool);
         reader->pool = reader->own_pool;
     }
+    if (result == SLUICE_SUCCESS)
+        result = slc_store_equal_chunks_find(&reader->equal, &reader->file, &reader->header);
     if (result != SLUICE_SUCCESS)
         return result;
     reader->has_mutex = pthread_mutex_init(&reader->mutex, NULL) == 0;
@@ -58,6 +60,7 @@ void slc_store_reader_close(struct slc_store_reader *reader)
 {
     for (uint32_t i = 0; i < SLC_STORE_KEPT_BLOCKS; i++)
         slc_free(&reader->file.allocator, reader->kept[i].bytes, SLC_STORE_BLOCK_SIZE, 1);
+    slc_store_equal_chunks_finish(&reader->equal, &reader->file.allocator);
     if (reader->has_mutex)
         pthread_mutex_destroy(&reader->mutex);
     sluiceDestroyStoreReadPool(reader->own_pool);

@@ -3,6 +3,7 @@
 #define SLC_STORE_READER_H
 
 #include "image/input_file.h"
+#include "store/equal_chunks.h"
 #include "store/store_layout.h"
 #include "store/store_read_pool.h"
 
@@ -13,7 +14,8 @@
 
 struct slc_store_reader {
     struct slc_input_file file;
-    struct slc_store_header header; ///< constant
+    struct slc_store_header header;      ///< constant
+    struct slc_store_equal_chunks equal; ///< constant
     unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
     SluiceStoreReadPool *pool, *own_pool; ///< the second NULL where the first is the caller's
     bool checks_always;                   ///< raw chunks; else once while their block is kept

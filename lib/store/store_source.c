@@ -100,16 +100,22 @@ static SluiceResult read_from_tiles(struct slc_store_reader *reader,
     return SLUICE_SUCCESS;
 }
 
-/* Whether the caller's memory can take a tile as it is. */
-static bool is_one_tile(const struct slc_store_grid *grid, const SluiceImageRegion *region,
-                        size_t row_pitch, struct slc_store_place *place)
+static bool covers_tile(const struct slc_store_grid *grid, const SluiceImageRegion *region,
+                        struct slc_store_place *place)
 {
     *place = (struct slc_store_place){region->arrayLayer, region->mipLevel,
                                       region->x / grid->layout.tileWidth,
                                       region->y / grid->layout.tileHeight};
     SluiceImageRegion whole = slc_store_chunk_region(grid, place);
     return whole.x == region->x && whole.y == region->y && whole.width == region->width &&
-           whole.height == region->height &&
+           whole.height == region->height;
+}
+
+/* Whether the caller's memory can take a tile as it is. */
+static bool is_one_tile(const struct slc_store_grid *grid, const SluiceImageRegion *region,
+                        size_t row_pitch, struct slc_store_place *place)
+{
+    return covers_tile(grid, region, place) &&
            (row_pitch == slc_format_row_size(&grid->format, region->width) ||
             slc_format_row_count(&grid->format, region->height) == 1);
 }
@@ -137,6 +143,18 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     return result;
 }
 
+static bool identify(SluiceImageSource *base, const SluiceImageRegion *region, uint64_t *identity)
+{
+    const struct slc_store_reader *reader = &((struct store_source *)base)->reader;
+    const struct slc_store_grid *grid = &reader->header.grid;
+    struct slc_store_place place;
+    if (reader->equal.count == 0 || region->mipLevel >= grid->layout.tailFirstLevel ||
+        !covers_tile(grid, region, &place))
+        return false;
+    *identity = slc_store_equal_chunks_get(&reader->equal, slc_store_chunk_number(grid, &place));
+    return *identity != 0;
+}
+
 static void destroy(SluiceImageSource *base)
 {
     struct store_source *source = (struct store_source *)base;
@@ -148,7 +166,8 @@ static void destroy(SluiceImageSource *base)
 static const SluiceImageSourceInterface store_interface = {.structSize = sizeof store_interface,
                                                            .pfnGetInfo = get_info,
                                                            .pfnDestroy = destroy,
-                                                           .pfnReadRegionLocated = read_region};
+                                                           .pfnReadRegionLocated = read_region,
+                                                           .pfnIdentifyRegion = identify};
 
 SluiceResult sluiceCreateStoreImageSource(const SluiceStoreImageSourceCreateInfo *pInfo,
                                           SluiceImageSource **pSource)
