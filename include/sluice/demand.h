@@ -756,8 +756,9 @@ typedef struct SluiceDemandStatistics {
     uint64_t hostVisibleMemorySize;
     uint32_t pageChunkCount;     ///< As in SluiceVulkanStreamerStatistics.
     uint64_t pageChunkShortages; ///< As in SluiceVulkanStreamerStatistics.
-    uint64_t
-        sharedCount; ///< Tiles that another front end of the context had: resident without a read.
+    /** Tiles resident without a read: another front end of the context had them, or an equal tile
+     *  was resident. */
+    uint64_t sharedCount;
     uint64_t residentBytePageCount; ///< Byte pages; not part of residentResourcePageCount.
     uint64_t byteMemorySize;        ///< Bytes of device memory for byte pages.
     uint32_t byteChunkCount;        ///< Buffers that hold byte pages.

@@ -655,7 +655,8 @@ typedef struct SluiceVulkanStreamerStatistics {
      * counted at most once in 60 frames. The first is logged. Such tiles show coarser levels.
      */
     uint64_t pageChunkShortages;
-    /** Paged: tiles mapped without a read, because another front end of the context had them. */
+    /** Paged: tiles mapped without a read, because another front end of the context had them or an
+     *  equal tile was resident. */
     uint64_t tilesShared;
     uint64_t tilesProduced; ///< Tiles that producers wrote, without those of mip tails.
 } SluiceVulkanStreamerStatistics;

@@ -142,9 +142,14 @@ static bool advance(SluiceDemandLoader *loader, struct slc_preload *preload)
         SluiceResult result;
         if (!has_room(loader) || !next_page(preload, image, &page))
             return true;
+        enum slc_request_answer answer =
+            slc_tile_request(loader, loader->images[image->slot], page, preload->ticket, &result);
+        if (answer == SLC_REQUEST_POSTPONED && loader->tiles.awaits) {
+            preload->next_page--;
+            return false; /* an equal tile is on its way */
+        }
         if (preload->planned_count)
             drop_planned(loader, preload, 1);
-        slc_tile_request(loader, loader->images[image->slot], page, preload->ticket, &result);
     }
     return false;
 }

@@ -15,6 +15,7 @@ struct slc_tile_memory {
     uint64_t limit;                     ///< tiles that the budget and the chunks hold
     const struct slc_tile_key *offered; ///< the page that is requested has this page to share
     bool offer_taken;
+    bool awaits;      ///< the page that was requested last waits for an equal tile
     uint32_t retaken; ///< the page that was given back last and taken again
     struct slc_tail_pages tails;
     const struct slc_tail_cut *tail; ///< the page that is requested is a tail; NULL: a tile

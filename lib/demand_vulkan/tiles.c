@@ -50,21 +50,27 @@ static uint32_t write_tail(const struct slc_demand_image *image, uint32_t place,
     return count;
 }
 
+static SluiceImageRegion tile_region(const struct slc_demand_image *image, uint32_t level,
+                                     uint32_t index)
+{
+    uint32_t x = index % slc_image_level_width(image, level) * image->tile_width;
+    uint32_t y = index / slc_image_level_width(image, level) * image->tile_height;
+    return (SluiceImageRegion){
+        .mipLevel = level,
+        .x = x,
+        .y = y,
+        .width = slc_min_u32(image->tile_width, slc_mip_size(image->info.width, level) - x),
+        .height = slc_min_u32(image->tile_height, slc_mip_size(image->info.height, level) - y),
+        .arrayLayer = image->origin.arrayLayer};
+}
+
 uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page, uint32_t place,
                         struct slc_tile_part parts[SLC_TILE_MAX_PARTS])
 {
     uint32_t index, level = find_level(image, page, &index);
     if (level == image->regular_count)
         return write_tail(image, place, parts);
-    uint32_t x = index % slc_image_level_width(image, level) * image->tile_width;
-    uint32_t y = index / slc_image_level_width(image, level) * image->tile_height;
-    parts[0] = (struct slc_tile_part){
-        {level, x, y, slc_min_u32(image->tile_width, slc_mip_size(image->info.width, level) - x),
-         slc_min_u32(image->tile_height, slc_mip_size(image->info.height, level) - y),
-         image->origin.arrayLayer},
-        0,
-        0,
-        0};
+    parts[0] = (struct slc_tile_part){.region = tile_region(image, level, index)};
     return 1;
 }
 
@@ -87,14 +93,6 @@ static SluiceResult submit(SluiceDemandLoader *loader, struct slc_demand_image *
     return slc_job_submit(loader, job, &read, ticket);
 }
 
-static struct slc_tile_key key_of(const struct slc_demand_image *image, uint32_t level,
-                                  uint32_t index)
-{
-    uint32_t width = slc_image_level_width(image, level);
-    return (struct slc_tile_key){image->source, image->origin.arrayLayer, level, index % width,
-                                 index / width};
-}
-
 /* The page has a place. */
 static SluiceResult begin_read(SluiceDemandLoader *loader, struct slc_demand_image *image,
                                const struct slc_page_request *request, SluiceDemandTicket ticket)
@@ -115,7 +113,7 @@ static SluiceResult begin_read(SluiceDemandLoader *loader, struct slc_demand_ima
     return result;
 }
 
-/* A page that another front end has, if there is a key. */
+/* A page that has the texels already, if there is a key. */
 static enum slc_request_answer request_shared(SluiceDemandLoader *loader,
                                               const struct slc_page_request *request,
                                               const struct slc_tile_key *key, SluiceResult *result)
@@ -135,7 +133,7 @@ static enum slc_request_answer request_shared(SluiceDemandLoader *loader,
     return SLC_REQUEST_RESTORED;
 }
 
-/* `key`: of tiles that others may have; or NULL. */
+/* `key`: of tiles that may be on a page; or NULL. */
 static enum slc_request_answer request_page(SluiceDemandLoader *loader,
                                             struct slc_demand_image *image,
                                             const struct slc_page_request *request,
@@ -144,7 +142,10 @@ static enum slc_request_answer request_page(SluiceDemandLoader *loader,
 {
     struct slc_page_pool *pool = loader->pages;
     slc_images_make_room(loader, request->page);
-    enum slc_share share = key ? slc_page_share_look(pool, loader->page_user, key) : SLC_SHARE_NONE;
+    enum slc_share share = SLC_SHARE_NONE;
+    if (key && slc_residency_is_absent(loader->residency, request->page))
+        share = slc_page_share_look(pool, loader->page_user, key);
+    loader->tiles.awaits = share == SLC_SHARE_WAIT;
     if (share == SLC_SHARE_WAIT)
         return SLC_REQUEST_POSTPONED;
     enum slc_request_answer answer =
@@ -198,6 +199,7 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
                                          SluiceResult *result)
 {
     *result = SLUICE_SUCCESS;
+    loader->tiles.awaits = false;
     if (image->state != SLC_IMAGE_OPEN)
         return SLC_REQUEST_RESIDENT; /* what it was asked for is gone */
     if (!slc_job_is_ready(loader, SLC_JOB_TILE))
@@ -214,7 +216,8 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
         .kind = image->info.format};
     if (tail)
         return request_tail(loader, image, &request, ticket, result);
-    const struct slc_tile_key key = key_of(image, level, index);
+    const SluiceImageRegion region = tile_region(image, level, index);
+    const struct slc_tile_key key = slc_tile_key(image->source, &region);
     return request_page(loader, image, &request, &key, ticket, result);
 }
 

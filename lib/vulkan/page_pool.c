@@ -221,11 +221,14 @@ static void end_shared(struct slc_page_pool *pool, uint32_t index, uint32_t owne
               owner);
 }
 
+/* The user has no tile on the page any more. */
 static void release_shared(struct slc_page_pool *pool, uint32_t user, uint32_t index,
                            uint32_t owner)
 {
     struct slc_shared_tile *tile = &pool->shared.entries[index];
     assert(tile->users & 1u << user);
+    pool->users[user].held_count--;
+    tile->holds[user] = 0;
     tile->users &= ~(1u << user);
     if (tile->users) { /* who took it after the writer saw its copy complete */
         if (tile->writer == user)
@@ -247,11 +250,14 @@ static void release_shared(struct slc_page_pool *pool, uint32_t user, uint32_t i
 static void give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner)
 {
     uint32_t shared = slc_page_layer(&pool->chunks, page)->shared;
-    pool->users[user].held_count--;
-    if (shared)
+    if (shared && --pool->shared.entries[shared - 1].holds[user] > 0)
+        return; /* other tiles of the user are equal */
+    if (shared) {
         release_shared(pool, user, shared - 1, owner);
-    else
-        free_page(pool, page, user, pool->timelines.of[user].recorded, owner);
+        return;
+    }
+    pool->users[user].held_count--;
+    free_page(pool, page, user, pool->timelines.of[user].recorded, owner);
 }
 
 static void end_going(struct slc_page_pool *pool)
@@ -289,10 +295,8 @@ static void leave_shared(struct slc_page_pool *pool, uint32_t user)
         struct slc_shared_tile *tile = &pool->shared.entries[i];
         if (tile->listed && tile->page == SLC_NONE && tile->writer == user)
             slc_shared_tiles_remove(&pool->shared, i);
-        if (tile->users & 1u << user) {
-            pool->users[user].held_count--;
+        if (tile->users & 1u << user)
             release_shared(pool, user, i, SLC_NO_OWNER);
-        }
         if (tile->writer == user)
             tile->writer = SLC_MAX_PAGE_USERS;
         if (tile->going && tile->last_user == user)
@@ -343,21 +347,30 @@ void slc_page_pool_hurry(struct slc_page_pool *pool)
     pthread_mutex_unlock(&pool->mutex);
 }
 
-/* Number of held pages of the chunk; SLC_NONE if another user holds any of them. */
+/* How many tiles of the user are on the page; 0 if another user holds it. */
+static uint32_t count_tiles(const struct slc_page_pool *pool, const struct slc_page_layer *layer,
+                            uint32_t user)
+{
+    if (!layer->shared)
+        return layer->user == user;
+    const struct slc_shared_tile *tile = &pool->shared.entries[layer->shared - 1];
+    return tile->users == 1u << user ? tile->holds[user] : 0;
+}
+
+/* Number of tiles on the pages of the chunk; SLC_NONE if another user holds any of them, or if a
+ * page has more than `most` tiles. */
 static uint32_t count_own(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk,
-                          uint32_t user)
+                          uint32_t user, uint32_t most)
 {
     uint32_t count = 0;
     for (uint32_t i = 0; i < chunk->layer_count; i++) {
         const struct slc_page_layer *layer = &chunk->layers[i];
         if (!layer->held)
             continue;
-        bool own = layer->user == user;
-        if (layer->shared)
-            own = pool->shared.entries[layer->shared - 1].users == 1u << user;
-        if (!own)
+        uint32_t tiles = count_tiles(pool, layer, user);
+        if (tiles == 0 || tiles > most)
             return SLC_NONE;
-        count++;
+        count += tiles;
     }
     return count;
 }
@@ -370,7 +383,7 @@ static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user)
         uint32_t held = chunk->layer_count - chunk->free_count;
         if (chunk->state != SLC_CHUNK_LIVE || chunk->fresh || held == 0 || held >= fewest ||
             !slc_page_chunk_is_ready(chunk, &pool->timelines, user) ||
-            count_own(pool, chunk, user) == SLC_NONE)
+            count_own(pool, chunk, user, 1) == SLC_NONE)
             continue;
         best = i;
         fewest = held;
@@ -398,7 +411,7 @@ uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32
 {
     pthread_mutex_lock(&pool->mutex);
     const struct slc_page_chunk *c = &pool->chunks.at[chunk];
-    uint32_t held = c->state == SLC_CHUNK_LIVE ? count_own(pool, c, user) : 0;
+    uint32_t held = c->state == SLC_CHUNK_LIVE ? count_own(pool, c, user, UINT32_MAX) : 0;
     pthread_mutex_unlock(&pool->mutex);
     return held;
 }
@@ -407,7 +420,7 @@ uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32
 static void choose_leaving(struct slc_page_pool *pool, uint32_t user)
 {
     if (pool->leaving != SLC_NONE && pool->leaving_user == user &&
-        count_own(pool, &pool->chunks.at[pool->leaving], user) == SLC_NONE)
+        count_own(pool, &pool->chunks.at[pool->leaving], user, 1) == SLC_NONE)
         stay(pool);
     if (pool->leaving != SLC_NONE)
         return;
@@ -482,7 +495,7 @@ bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from
     struct slc_shared_tile *tile = shared ? &pool->shared.entries[shared - 1] : NULL;
     *to = SLUICE_PAGE_NONE;
     *readers = (struct slc_page_readers){tile ? tile->readers : 0, pool->timelines.tick};
-    if (!tile || tile->users == 1u << user)
+    if (!tile || (tile->users == 1u << user && tile->holds[user] == 1))
         *to = slc_page_chunks_find(&pool->chunks, &pool->timelines, user,
                                    pool->chunks.at[from >> 16].format);
     /* Another thread may have made the image ready since this frame's array of views was filled. */

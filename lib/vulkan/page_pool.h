@@ -30,7 +30,7 @@ struct slc_page_user {
      *  with the frame that records its layout transition, and other arrays when that frame is
      *  complete. A retired image leaves with the user's next frame. */
     struct slc_page_views shown;
-    uint32_t held_count;  ///< pages
+    uint32_t held_count;  ///< pages, each once
     uint64_t max_size;    ///< bytes; 0: no limit of its own
     uint64_t empty_frame; ///< that put the image of empty places into its layout; 0: none did
 };
@@ -104,23 +104,24 @@ uint32_t slc_page_pool_free_count(struct slc_page_pool *pool, uint32_t user, Slu
 /** SLUICE_PAGE_NONE if there is neither a free page nor room for another chunk. Take pages before
  *  the slc_page_pool_record of the frame that shows them: its array of views has their images. */
 uint32_t slc_page_pool_take(struct slc_page_pool *pool, uint32_t user, SluiceFormat format);
-/** `owner` may ask for it again; or SLC_NO_OWNER. A page that others hold, too, stays theirs. */
+/** One tile less is on the page. `owner` may ask for it again; or SLC_NO_OWNER. A page with other
+ *  tiles, of this user or of others, stays theirs. */
 void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);
 /** True: nobody has taken the page since `owner` of this user gave it, and now the user has it
  *  again. */
 bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);
 /**
  * Chooses the chunk to be emptied next, if none is yet: the one with the fewest pages, if the user
- * alone holds them. Nobody takes pages of it any more. Returns how many pages of its format the
- * user must give back until the others have room for its pages; SLC_NONE if no chunk can be
- * emptied. `*held`: pages that are held in it.
+ * alone holds them and no page has two tiles. Nobody takes pages of it any more. Returns how many
+ * pages of its format the user must give back until the others have room for its pages; SLC_NONE if
+ * no chunk can be emptied. `*held`: pages that are held in it.
  */
 uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user, uint32_t *held);
 /** Stops emptying the chunk that the user chose, if any. */
 void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user);
 /** The chunk that the user empties; SLC_NONE if there is none. */
 uint32_t slc_page_pool_leaving(struct slc_page_pool *pool, uint32_t user);
-/** Number of held pages of a chunk; SLC_NONE if another user holds any of them. */
+/** Number of tiles on the pages of a chunk; SLC_NONE if another user holds any of the pages. */
 uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32_t chunk);
 /** Lets the next shortage ask the device again: it or the budget may have memory now. */
 void slc_page_pool_ask_again(struct slc_page_pool *pool);

@@ -7,19 +7,21 @@
 #define STALLED_FRAMES 8u /* of the one that waits, without any of the other: it is not coming */
 
 /* SLC_NONE: read it. Else the entry, and whether its texels are there. */
-static uint32_t find(const struct slc_page_pool *pool, uint32_t user,
-                     const struct slc_tile_key *key, bool *ready)
+static uint32_t find(const struct slc_page_pool *pool, const struct slc_tile_key *key, bool *ready)
 {
     uint32_t index = slc_shared_tiles_find(&pool->shared, key);
     if (index == SLC_NONE)
         return SLC_NONE;
     const struct slc_shared_tile *tile = &pool->shared.entries[index];
-    if (tile->writer == user || tile->users & 1u << user)
-        return SLC_NONE;
     *ready =
         tile->written && (tile->writer == SLC_MAX_PAGE_USERS ||
                           slc_page_timelines_reached(&pool->timelines, tile->writer, tile->value));
     return index;
+}
+
+static bool is_stalled(const struct slc_page_pool *pool, uint32_t user, uint32_t writer)
+{
+    return writer != user && pool->timelines.of[user].still[writer] >= STALLED_FRAMES;
 }
 
 enum slc_share slc_page_share_look(struct slc_page_pool *pool, uint32_t user,
@@ -27,12 +29,11 @@ enum slc_share slc_page_share_look(struct slc_page_pool *pool, uint32_t user,
 {
     bool ready = false;
     pthread_mutex_lock(&pool->mutex);
-    uint32_t index = find(pool, user, key, &ready);
+    uint32_t index = find(pool, key, &ready);
     enum slc_share share = index == SLC_NONE ? SLC_SHARE_NONE
                            : ready           ? SLC_SHARE_READY
                                              : SLC_SHARE_WAIT;
-    if (share == SLC_SHARE_WAIT &&
-        pool->timelines.of[user].still[pool->shared.entries[index].writer] >= STALLED_FRAMES)
+    if (share == SLC_SHARE_WAIT && is_stalled(pool, user, pool->shared.entries[index].writer))
         share = SLC_SHARE_NONE;
     pthread_mutex_unlock(&pool->mutex);
     return share;
@@ -44,12 +45,12 @@ uint32_t slc_page_share_take(struct slc_page_pool *pool, uint32_t user,
     bool ready = false;
     uint32_t page = SLUICE_PAGE_NONE;
     pthread_mutex_lock(&pool->mutex);
-    uint32_t index = find(pool, user, key, &ready);
+    uint32_t index = find(pool, key, &ready);
     if (ready) {
         struct slc_shared_tile *tile = &pool->shared.entries[index];
+        pool->users[user].held_count += tile->holds[user]++ == 0;
         tile->users |= 1u << user;
         tile->readers |= 1u << user;
-        pool->users[user].held_count++;
         page = tile->page;
     }
     pthread_mutex_unlock(&pool->mutex);
@@ -71,6 +72,7 @@ static void place(struct slc_page_pool *pool, uint32_t user, uint32_t index, uin
     struct slc_shared_tile *tile = &pool->shared.entries[index];
     tile->page = page;
     tile->users = tile->readers = 1u << user;
+    tile->holds[user] = 1;
     slc_page_layer(&pool->chunks, page)->shared = index + 1;
 }
 

@@ -1,8 +1,9 @@
 /**
- * One page for a tile that several users of a pool show. A user that reads a tile announces it.
- * Others wait for the tile instead of reading it, and hold the same page once its texels are there:
- * once the frame that copies them is complete. The page is free when nobody holds it and no frame
- * can read it.
+ * One page for tiles that are equal: a tile that several users of a pool show, and tiles that the
+ * source says have equal texels, of one user or of several. A user that reads a tile announces it.
+ * Whoever wants an equal one waits instead of reading it, and holds the same page once its texels
+ * are there: once the frame that copies them is complete. The page is free when no tile is on it
+ * and no frame can read it.
  */
 #ifndef SLC_VULKAN_PAGE_SHARING_H
 #define SLC_VULKAN_PAGE_SHARING_H
@@ -11,11 +12,12 @@
 
 enum slc_share {
     SLC_SHARE_NONE,  ///< read it
-    SLC_SHARE_WAIT,  ///< another user reads or copies it: ask again in the next frame
+    SLC_SHARE_WAIT,  ///< it is being read or copied: ask again in the next frame
     SLC_SHARE_READY, ///< its texels are there: take its page
 };
 
-/** Whether another user has the tile. WAIT ends, if that user begins no frames, after a while. */
+/** Whether the tile, or an equal one, is on a page. WAIT for another user that begins no frames
+ *  ends after a while. */
 enum slc_share slc_page_share_look(struct slc_page_pool *pool, uint32_t user,
                                    const struct slc_tile_key *key);
 /** Holds the page of a tile that is READY; until slc_page_pool_give. SLUICE_PAGE_NONE if it is not.

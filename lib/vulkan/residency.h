@@ -62,12 +62,13 @@ struct slc_residency_interface {
      *  by this frame at the earliest. Asked before its texels are read. NULL: they never are. */
     bool (*revive)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
 
-    /** The texels of an image's layer come from this layer of the source: another front end may
-     * show the same tiles. NULL, as the next four are then: no tile is shared. */
-    void (*set_source)(struct slc_residency *residency, uint32_t index,
-                       const SluiceImageSource *source, uint32_t layer);
-    /** SLC_SHARE_READY: another front end has the tile, and it is mapped, as by revive; asked
-     * before that. SLC_SHARE_WAIT: it will have it. Of regular tiles. */
+    /** The texels of an image's layer come from this layer of the source: tiles that are equal, or
+     *  that another front end shows, may have one page. NULL, as the next four are then: no tile is
+     * shared. */
+    void (*set_source)(struct slc_residency *residency, uint32_t index, SluiceImageSource *source,
+                       uint32_t layer);
+    /** SLC_SHARE_READY: the tile or an equal one is on a page, and it is mapped, as by revive;
+     *  asked before that. SLC_SHARE_WAIT: it will be. Of regular tiles. */
     enum slc_share (*share)(struct slc_residency *residency, uint32_t index,
                             const SluiceTile *tile);
     /** A read of the tile begins. */

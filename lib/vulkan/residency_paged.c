@@ -27,8 +27,8 @@
 struct paged_image {
     struct slc_plain_image own_tail; ///< the packed levels; owned by layer 0, of all layers
     VkImage tail;
-    uint32_t layer_count;            ///< of layer 0; 0 in all others
-    const SluiceImageSource *source; ///< borrowed
+    uint32_t layer_count;      ///< of layer 0; 0 in all others
+    SluiceImageSource *source; ///< borrowed
     uint32_t source_layer;
     SluiceFormat page_format;           ///< may have SLC_PAGE_PRODUCED
     uint32_t block_width, block_height; ///< texels
@@ -220,14 +220,24 @@ static SluiceResult update(struct slc_residency *residency, uint64_t frame,
     return SLUICE_SUCCESS;
 }
 
-static struct slc_tile_key key_of(const struct paged_image *image, const SluiceTile *tile)
+static struct slc_tile_key key_of(const struct paged_residency *p, uint32_t index,
+                                  const SluiceTile *tile)
 {
-    return (struct slc_tile_key){image->source, image->source_layer, tile->mipLevel, tile->x,
-                                 tile->y};
+    const struct paged_image *image = &p->images[index];
+    const SluiceStreamedTextureDesc *desc = &p->table.parts[index].desc;
+    SluiceImageRegion region = {.mipLevel = tile->mipLevel,
+                                .x = tile->x * desc->tileWidth,
+                                .y = tile->y * desc->tileHeight,
+                                .arrayLayer = image->source_layer};
+    region.width =
+        slc_min_u32(desc->tileWidth, slc_mip_size(desc->width, tile->mipLevel) - region.x);
+    region.height =
+        slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, tile->mipLevel) - region.y);
+    return slc_tile_key(image->source, &region);
 }
 
-static void set_source(struct slc_residency *residency, uint32_t index,
-                       const SluiceImageSource *source, uint32_t layer)
+static void set_source(struct slc_residency *residency, uint32_t index, SluiceImageSource *source,
+                       uint32_t layer)
 {
     struct paged_image *image = &paged(residency)->images[index];
     image->source = source;
@@ -237,14 +247,14 @@ static void set_source(struct slc_residency *residency, uint32_t index,
 static void announce(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct paged_residency *p = paged(residency);
-    const struct slc_tile_key key = key_of(&p->images[index], tile);
+    const struct slc_tile_key key = key_of(p, index, tile);
     slc_page_share_announce(p->pool, p->user, &key);
 }
 
 static void withdraw(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct paged_residency *p = paged(residency);
-    const struct slc_tile_key key = key_of(&p->images[index], tile);
+    const struct slc_tile_key key = key_of(p, index, tile);
     slc_page_share_withdraw(p->pool, p->user, &key);
 }
 
@@ -266,7 +276,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     count_memory(p);
     if (*page == SLUICE_PAGE_NONE)
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
-    const struct slc_tile_key key = key_of(image, tile);
+    const struct slc_tile_key key = key_of(p, index, tile);
     slc_page_share_place(p->pool, p->user, &key, *page);
     return SLUICE_SUCCESS;
 }
@@ -331,7 +341,7 @@ static bool revive(struct slc_residency *residency, uint32_t index, const Sluice
     *entry = there ? page | SLC_PAGE_SHOWN : SLUICE_PAGE_NONE;
     if (!there)
         return false;
-    const struct slc_tile_key key = key_of(&p->images[index], tile);
+    const struct slc_tile_key key = key_of(p, index, tile);
     if (key.source)
         slc_page_share_adopt(p->pool, p->user, &key, page);
     slc_page_table_store(&p->table, index, word, p->frame);
@@ -341,7 +351,7 @@ static bool revive(struct slc_residency *residency, uint32_t index, const Sluice
 static enum slc_share share(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct paged_residency *p = paged(residency);
-    const struct slc_tile_key key = key_of(&p->images[index], tile);
+    const struct slc_tile_key key = key_of(p, index, tile);
     enum slc_share answer = slc_page_share_look(p->pool, p->user, &key);
     if (answer != SLC_SHARE_READY)
         return answer;

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "image/identity.h"
 
 #include <assert.h>
 
@@ -10,6 +11,18 @@ void slc_shared_tiles_finish(struct slc_shared_tiles *tiles, const SluiceAllocat
     slc_map_finish(&tiles->by_hash, cb);
     slc_free(cb, tiles->entries, tiles->capacity, sizeof *tiles->entries);
     *tiles = (struct slc_shared_tiles){.free = SLC_NONE};
+}
+
+#define KEY_IDENTITY UINT32_MAX /* a layer that no source has */
+
+struct slc_tile_key slc_tile_key(SluiceImageSource *source, const SluiceImageRegion *region)
+{
+    uint64_t identity = 0;
+    if (!source || !slc_identify_region(source, region, &identity))
+        return (struct slc_tile_key){source, region->arrayLayer, region->mipLevel, region->x,
+                                     region->y};
+    return (struct slc_tile_key){source, KEY_IDENTITY, region->width << 16 | region->height,
+                                 (uint32_t)(identity >> 32), (uint32_t)identity};
 }
 
 static uint64_t hash_of(const struct slc_tile_key *key)

@@ -7,21 +7,29 @@
 
 #include "base/map.h"
 #include "base/none.h"
+#include "vulkan/page_timelines.h"
 
 #include <sluice/image.h>
 
+/** Names a tile of a source. Equal tiles that the source knows of have equal keys. */
 struct slc_tile_key {
     const SluiceImageSource *source;
-    uint32_t layer, level, x, y; ///< x, y in tiles
+    uint32_t layer, level, x, y; ///< see slc_tile_key
 };
+
+/** The key of the tile that is this region. Its parts are layer, level, x, y in texels; or the
+ *  number that the source gives to the texels, with width and height of the region. A `source` of
+ *  NULL is allowed. */
+struct slc_tile_key slc_tile_key(SluiceImageSource *source, const SluiceImageRegion *region);
 
 struct slc_shared_tile {
     struct slc_tile_key key;
-    uint32_t page;     ///< SLC_NONE: it is being read
-    uint32_t next;     ///< of equal hash, or of free entries
-    uint64_t value;    ///< `written`: the writer's frame that copies it; `going`: a tick
-    uint32_t users;    ///< bits: hold the page
-    uint32_t readers;  ///< bits: have held it
+    uint32_t page;  ///< SLC_NONE: it is being read
+    uint32_t next;  ///< of equal hash, or of free entries
+    uint64_t value; ///< `written`: the writer's frame that copies it; `going`: a tick
+    uint32_t users; ///< bits: hold the page
+    uint32_t holds[SLC_MAX_PAGE_USERS]; ///< by user: how many of its tiles are on the page
+    uint32_t readers;                   ///< bits: have held it
     uint8_t writer;    ///< user that reads and copies it; SLC_MAX_PAGE_USERS: its texels are there
     uint8_t last_user; ///< `going`: that held it last
     bool listed;       ///< it can be found by its key

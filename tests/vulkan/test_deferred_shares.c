@@ -125,7 +125,7 @@ static uint32_t copy_all(struct stage *s)
     for (uint32_t level = 0; SIDE >> level > 0; level++)
         for (uint32_t y = 0; y < SIDE >> level; y++)
             for (uint32_t x = 0; x < SIDE >> level; x++) {
-                const struct slc_tile_key key = {s->source, 0, level, x, y};
+                const struct slc_tile_key key = {s->source, 0, level, x * 128, y * 128};
                 copy_tile(s, &key, s->pages[count++]);
             }
     slc_page_pool_record(pool, s->other, 2, 1, commands);

@@ -352,20 +352,27 @@ static void a_shared_page_is_free_when_no_frame_of_any_reader_is_left(void **sta
     finish(&r);
 }
 
-/* For another texture of the same source. */
-static void a_user_that_holds_a_shared_page_reads_the_tile_itself(void **state)
+/* Two textures of one source, in each of two users. */
+static void a_page_is_held_once_for_all_tiles_on_it(void **state)
 {
     (void)state;
     struct rig r;
     const struct slc_tile_key key = key_of(1);
     init(&r, 0);
     uint32_t page = copy_tile(&r, &key);
-    assert_int_equal(slc_page_share_take(&r.pool, r.users[1], &key), page);
     for (uint32_t i = 0; i < USERS; i++) {
-        assert_int_equal(slc_page_share_look(&r.pool, r.users[i], &key), SLC_SHARE_NONE);
-        assert_int_equal(slc_page_share_take(&r.pool, r.users[i], &key), SLUICE_PAGE_NONE);
+        assert_int_equal(slc_page_share_look(&r.pool, r.users[i], &key), SLC_SHARE_READY);
+        assert_int_equal(slc_page_share_take(&r.pool, r.users[i], &key), page);
     }
     assert_int_equal(r.pool.held_count, 1);
+    for (uint32_t i = 0; i < USERS; i++) {
+        assert_int_equal(r.pool.users[r.users[i]].held_count, 1);
+        slc_page_pool_give(&r.pool, r.users[i], page, 7);
+        assert_false(slc_page_pool_retake(&r.pool, r.users[i], page, 7));
+        assert_int_equal(r.pool.users[r.users[i]].held_count, 1 - i);
+    }
+    slc_page_pool_give(&r.pool, r.users[0], page, 7);
+    assert_int_equal(r.pool.users[r.users[0]].held_count, 0);
     finish(&r);
 }
 
@@ -516,7 +523,7 @@ int main(void)
         cmocka_unit_test(a_page_that_came_back_is_shared_when_its_copy_is_complete),
         cmocka_unit_test(a_new_user_is_waited_for_in_the_place_of_an_idle_one),
         cmocka_unit_test(a_shared_page_is_free_when_no_frame_of_any_reader_is_left),
-        cmocka_unit_test(a_user_that_holds_a_shared_page_reads_the_tile_itself),
+        cmocka_unit_test(a_page_is_held_once_for_all_tiles_on_it),
         cmocka_unit_test(a_texture_that_goes_takes_no_read_of_others_away),
         cmocka_unit_test(an_abandoned_frame_leaves_the_texels_that_came_back),
         cmocka_unit_test(a_page_that_was_left_waits_for_frames_of_all_readers),
