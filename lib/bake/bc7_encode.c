@@ -167,21 +167,49 @@ static void pack(struct slc_bc7_block *block, uint8_t out[16])
     slc_store_bits(&bits, out);
 }
 
-/* Encodes a block of one color exactly: in mode 5, every value of R, G and B is a third of the way
- * between two ends of 7 bits. */
+/* One color, exact: in mode 5, every value of R, G and B is a third of the way between two ends of
+ * 7 bits. */
+static void make_plain(const uint8_t color[4], struct slc_bc7_block *block)
+{
+    *block = (struct slc_bc7_block){.mode = 5};
+    for (int c = 0; c < 3; c++) {
+        block->ends[0][0][c] = color[c] >> 1;
+        block->ends[0][1][c] = (uint8_t)((color[c] < 128 ? color[c] + 1 : color[c] - 1) >> 1);
+    }
+    block->ends[0][0][3] = block->ends[0][1][3] = color[3];
+    memset(block->indices[0], 1, 16);
+}
+
 static bool find_plain(const uint8_t rgba[64], struct slc_bc7_block *block)
 {
     for (int i = 1; i < 16; i++)
         if (memcmp(rgba, rgba + 4 * i, 4) != 0)
             return false;
-    *block = (struct slc_bc7_block){.mode = 5};
-    for (int c = 0; c < 3; c++) {
-        block->ends[0][0][c] = rgba[c] >> 1;
-        block->ends[0][1][c] = (uint8_t)((rgba[c] < 128 ? rgba[c] + 1 : rgba[c] - 1) >> 1);
-    }
-    block->ends[0][0][3] = block->ends[0][1][3] = rgba[3];
-    memset(block->indices[0], 1, 16);
+    make_plain(rgba, block);
     return true;
+}
+
+/* Texels that differ by a step or two may be nearer to their mean, which is exact, than to the ends
+ * of other modes. */
+#define MOST_ERROR_OF_ENDS 64.0f
+
+static void try_mean(const uint8_t rgba[64], struct slc_bc7_block *block)
+{
+    uint8_t mean[4];
+    int error = 0;
+    if (block->error == 0.0f || block->error > MOST_ERROR_OF_ENDS)
+        return;
+    for (int c = 0; c < 4; c++) {
+        int sum = 8, squares = 0;
+        for (int i = c; i < 64; i += 4)
+            sum += rgba[i];
+        mean[c] = (uint8_t)(sum / 16);
+        for (int i = c; i < 64; i += 4)
+            squares += (rgba[i] - mean[c]) * (rgba[i] - mean[c]);
+        error += squares;
+    }
+    if ((float)error < block->error)
+        make_plain(mean, block);
 }
 
 /* Whether to try modes other than 6. The p bits of mode 6 cannot store opaque black, nor alpha 0 or
@@ -227,8 +255,10 @@ static void encode_batch(const struct effort *effort, const uint8_t (*rgba)[64],
                 which[poor++] = which[i];
         left = poor;
     }
-    for (size_t b = 0; b < count; b++)
+    for (size_t b = 0; b < count; b++) {
+        try_mean(rgba[b], &blocks[b]);
         pack(&blocks[b], out + 16 * b);
+    }
 }
 
 void slc_encode_bc7(SluiceBakeQuality quality, const uint8_t (*rgba)[64], size_t count,
