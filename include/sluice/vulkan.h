@@ -345,6 +345,24 @@ typedef struct SluiceTileProducer {
     uint32_t timeoutFrames;
 } SluiceTileProducer;
 
+/**
+ * Filter within a level. Levels are always filtered linearly.
+ *
+ * Shaders must define SLUICE_CUBIC as true to sample with CUBIC and SMART_CUBIC
+ * (shaders/include/sluice/sample.glsl); otherwise sluiceSample and sluiceSampleGrad sample with
+ * LINEAR. Feedback marks the wider footprint in any case. docs/sampling.md compares the filters.
+ */
+typedef enum SluiceTextureFilter {
+    SLUICE_TEXTURE_FILTER_LINEAR = 0,
+    SLUICE_TEXTURE_FILTER_CUBIC = 1, ///< Bicubic B-spline in every level. Blurs slightly.
+    /**
+     * CUBIC where the texture is magnified to twice its size or more, LINEAR where it is not
+     * magnified, and a blend of both between. Where fine levels are not resident yet, the level
+     * that is shown counts as magnified.
+     */
+    SLUICE_TEXTURE_FILTER_SMART_CUBIC = 2
+} SluiceTextureFilter;
+
 /** Settings of a texture. A field of zero selects its default. */
 typedef struct SluiceVulkanTextureCreateInfo {
     uint32_t structSize; ///< sizeof(SluiceVulkanTextureCreateInfo).
@@ -375,6 +393,13 @@ typedef struct SluiceVulkanTextureCreateInfo {
      * modes are ignored: samples cross the edges of faces. Default: as the image says.
      */
     bool cube;
+    /**
+     * Filter of its samples; the sampler is linear in any case. LINEAR is used if the format has no
+     * linear filter; SluiceVulkanTexture returns the filter used. Cube maps must have LINEAR.
+     * sample_array.glsl samples the layers of arrays with LINEAR. If a texture follows a primary,
+     * give the primary a bicubic filter, too: its feedback counts. Default: LINEAR.
+     */
+    SluiceTextureFilter filter;
 } SluiceVulkanTextureCreateInfo;
 
 /** Texture as the application draws with it. Never grows. */
@@ -404,6 +429,7 @@ typedef struct SluiceVulkanTexture {
      * the feature imageCubeArray.
      */
     VkImageView cubeArrayView;
+    SluiceTextureFilter filter; ///< Filter of its samples.
 } SluiceVulkanTexture;
 
 /**
@@ -411,8 +437,8 @@ typedef struct SluiceVulkanTexture {
  * is that of the source, or of SluiceTileProducer.pImage.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for both a source and a
- *         producer, an unknown address mode, a primary that follows another texture, or an image
- *         whose info is out of range (image.h), for example without a level that fits into a tile;
+ *         producer, an unknown address mode or filter, a primary that follows another texture, or
+ * an image whose info is out of range (image.h), for example without a level that fits into a tile;
  *         SLUICE_ERROR_UNKNOWN_TEXTURE and SLUICE_ERROR_STALE_TEXTURE for the primary;
  *         SLUICE_ERROR_UNSUPPORTED if the device cannot stream the format or size;
  *         SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount, maxRegionCount or

@@ -198,6 +198,7 @@ static inline uint32_t slc_twin_shown_level(uint32_t shown)
 
 #define SLC_TWIN_APRON 0.5625f
 #define SLC_TWIN_APRON_UNEVEN 1.5625f
+#define SLC_TWIN_APRON_SPLINE 1.0f
 
 #define SLC_TWIN_FOOTPRINT_STEPS_LOG2 6
 
@@ -264,7 +265,9 @@ slc_twin_compute_footprint(const struct SluiceTextureEntry *entry, struct slc_tw
                            struct slc_twin_vec2 half_box, uint32_t coarsest_level)
 {
     bool uneven = entry->flags & SLUICE_TEXTURE_FLAG_UNEVEN;
-    float below = uneven ? SLC_TWIN_APRON_UNEVEN : SLC_TWIN_APRON;
+    float more = entry->flags & SLUICE_TEXTURE_FLAG_SPLINE ? SLC_TWIN_APRON_SPLINE : 0;
+    float below = (uneven ? SLC_TWIN_APRON_UNEVEN : SLC_TWIN_APRON) + more;
+    float above = SLC_TWIN_APRON + more;
     struct slc_twin_footprint footprint;
     for (int axis = 0; axis < 2; axis++) {
         uint32_t size = axis ? entry->height : entry->width, level_size = size >> coarsest_level;
@@ -272,8 +275,7 @@ slc_twin_compute_footprint(const struct SluiceTextureEntry *entry, struct slc_tw
                              : fminf(ldexpf(1.0f, (int)coarsest_level), (float)size);
         float half = axis ? half_box.y : half_box.x;
         uint32_t range[2];
-        slc_twin_region_range(axis ? uv.y : uv.x, below * texel + half,
-                              SLC_TWIN_APRON * texel + half,
+        slc_twin_region_range(axis ? uv.y : uv.x, below * texel + half, above * texel + half,
                               axis ? entry->addressModeV : entry->addressModeU, (float)size,
                               slc_twin_shift(axis ? entry->regionHeight : entry->regionWidth),
                               (axis ? entry->regionCountY : entry->regionCountX) - 1, range);

@@ -63,6 +63,7 @@ struct slc_texture {
     struct slc_texture_views views;
     SluiceStreamedTextureLayout layout;
     struct slc_sampler_kind sampler_kind;
+    SluiceTextureFilter filter;
     uint32_t sampler; ///< index in samplers, if there is a texture array
     uint32_t region_first, region_count;
     struct slc_fade_rect fade;

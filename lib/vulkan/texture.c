@@ -38,8 +38,9 @@ static SluiceResult check_create_info(const SluiceVulkanStreamer *s,
     const struct slc_limit limits[] = {
         {"addressModeU", (uint32_t)info->addressModeU, 0, LAST_ADDRESS_MODE},
         {"addressModeV", (uint32_t)info->addressModeV, 0, LAST_ADDRESS_MODE},
+        {"filter", (uint32_t)info->filter, 0, SLUICE_TEXTURE_FILTER_SMART_CUBIC},
     };
-    SluiceResult result = slc_check_limits(&s->vk.log, limits, 2);
+    SluiceResult result = slc_check_limits(&s->vk.log, limits, 3);
     if (result != SLUICE_SUCCESS || info->primaryId == SLUICE_NO_TEXTURE)
         return result;
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
@@ -232,19 +233,20 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
     if (result != SLUICE_SUCCESS)
         return result;
     for (uint32_t i = 0; i < count; i++)
-        s->textures[first + i] =
-            (struct slc_texture){.source = info->source,
-                                 .producer = *producer,
-                                 .whole_shown = slc_settled_texel(SLUICE_MIP_UNTOUCHED),
-                                 .primary_id = info->primaryId,
-                                 .info = *image,
-                                 .image = residency_image,
-                                 .first = first,
-                                 .layer = i,
-                                 .layer_count = count,
-                                 .added_frame = s->frame,
-                                 .sampler_kind = kind,
-                                 .sampler = sampler};
+        s->textures[first + i] = (struct slc_texture){
+            .source = info->source,
+            .producer = *producer,
+            .whole_shown = slc_settled_texel(SLUICE_MIP_UNTOUCHED),
+            .primary_id = info->primaryId,
+            .info = *image,
+            .image = residency_image,
+            .first = first,
+            .layer = i,
+            .layer_count = count,
+            .added_frame = s->frame,
+            .sampler_kind = kind,
+            .filter = kind.nearest ? SLUICE_TEXTURE_FILTER_LINEAR : info->filter,
+            .sampler = sampler};
     for (uint32_t i = 0; i < count && s->residency->interface->set_source; i++)
         s->residency->interface->set_source(s->residency, first + i, info->source, i);
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
@@ -293,6 +295,7 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
         .maxAnisotropy = texture->sampler_kind.max_anisotropy,
         .cubeView = texture->info.cube ? face->views.cube : VK_NULL_HANDLE,
         .cubeArrayView = first->views.cube_array,
+        .filter = texture->filter,
     };
     if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE)
         slc_texture_array_set(&s->texture_array, index, texture->views.layer,
@@ -328,6 +331,9 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     if (result == SLUICE_SUCCESS)
         result = describe(s, &info, &producer, &image);
     image.cube |= info.cube;
+    if (result == SLUICE_SUCCESS && image.cube && info.filter != SLUICE_TEXTURE_FILTER_LINEAR)
+        result = slc_log_refusal(&s->vk.log, "%s: cube maps have no bicubic filter (filter is %d)",
+                                 image.pName ? image.pName : "image", (int)info.filter);
     if (result == SLUICE_SUCCESS)
         result = slc_image_info_check(&image, SLC_LEVELS_TO_TAIL, &s->vk.log);
     if (result != SLUICE_SUCCESS)
@@ -495,12 +501,14 @@ static float quick_packed2(const SluiceStreamedTextureDesc *desc)
 }
 
 /* Regions are tiles, and where all levels are packed there is one. */
-static float quick_reach2(const SluiceStreamedTextureDesc *desc)
+static float quick_reach2(const struct slc_texture *texture)
 {
+    const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
+    bool spline = texture->filter != SLUICE_TEXTURE_FILTER_LINEAR;
     if (desc->regularMipCount == 0)
         return 1e17f; /* samplers are not trusted with derivatives beyond 1e9 texels */
-    float reach =
-        (float)slc_min_u32(desc->feedbackRegionWidth, desc->feedbackRegionHeight) / SLUICE_REACH;
+    float reach = (float)slc_min_u32(desc->feedbackRegionWidth, desc->feedbackRegionHeight) /
+                  (spline ? SLUICE_REACH_SPLINE : SLUICE_REACH);
     return reach * reach;
 }
 
@@ -533,10 +541,14 @@ static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint
         .pageTableOffset = page_table_offset(s, index),
         .tileShift = slc_log2_u32(desc->tileWidth) | slc_log2_u32(desc->tileHeight) << 8,
         .samplerIndex = texture->sampler,
-        .quickReach2 = quick_reach2(desc),
+        .quickReach2 = quick_reach2(texture),
         .quickPacked2 = quick_packed2(desc),
-        .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
-                 format.channelCount << SLUICE_TEXTURE_COMPONENTS_SHIFT,
+        .flags =
+            (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
+            (texture->filter != SLUICE_TEXTURE_FILTER_LINEAR ? SLUICE_TEXTURE_FLAG_SPLINE : 0u) |
+            (texture->filter == SLUICE_TEXTURE_FILTER_SMART_CUBIC ? SLUICE_TEXTURE_FLAG_SMART
+                                                                  : 0u) |
+            format.channelCount << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
     slc_texture_entry_complete(&entry);
     return entry;

@@ -12,7 +12,9 @@
 
 #include <sluice/vulkan.h>
 
-#define HARNESS_PROBE_KINDS 22u ///< 16 of probers, six of cube rigs
+#define HARNESS_CUBIC_KINDS 22u
+#define HARNESS_PROBE_KINDS                                                                        \
+    38u ///< 16 of probers, six of cube rigs, 16 of probers that know cubic filters
 #define HARNESS_PAINT_KINDS 32u
 #define HARNESS_FRAMES 3u
 
@@ -64,6 +66,7 @@ struct harness {
     const char *mode_name;
     SluiceVulkanContext *context;
     bool min_lod;                  ///< probers have samplers clamp: caps.shaderResourceMinLod
+    bool cubic;                    ///< probers know bicubic filters
     bool page_loop;                ///< probers find pages by a loop instead of an index
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
     bool reads_bytes;              ///< features for addresses and arrays of buffers

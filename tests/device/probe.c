@@ -110,9 +110,12 @@ void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBin
 const VkSpecializationInfo *prober_specialize(const struct prober *p,
                                               struct prober_specialization *s)
 {
-    s->paged = p->paged;
-    s->entry = (VkSpecializationMapEntry){0, 0, sizeof s->paged};
-    s->info = (VkSpecializationInfo){1, &s->entry, sizeof s->paged, &s->paged};
+    s->values[0] = p->paged;
+    s->values[1] = p->h->cubic;
+    for (uint32_t i = 0; i < 2; i++)
+        s->entries[i] =
+            (VkSpecializationMapEntry){i, i * (uint32_t)sizeof s->values[0], sizeof s->values[0]};
+    s->info = (VkSpecializationInfo){2, s->entries, sizeof s->values, s->values};
     return &s->info;
 }
 
@@ -144,7 +147,8 @@ static VkPipeline shared_pipeline(const struct prober *p)
     const struct harness *h = p->h;
     uint32_t kind =
         (p->paged ? 1 : 0) | (p->codes ? 2 : 0) | (h->page_loop ? 4 : 0) | (h->min_lod ? 8 : 0);
-    static_assert(HARNESS_PROBE_KINDS >= 16, "four switches");
+    kind += h->cubic ? HARNESS_CUBIC_KINDS : 0;
+    static_assert(HARNESS_PROBE_KINDS >= HARNESS_CUBIC_KINDS + 16, "four switches");
     if (!h->probe_pipelines[kind])
         p->h->probe_pipelines[kind] = create_pipeline(p);
     return h->probe_pipelines[kind];

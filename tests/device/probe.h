@@ -75,10 +75,10 @@ void prober_record(struct prober *p, VkCommandBuffer commands, struct probe_text
 /** Set 1, with the pages as they are now. */
 void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBindPoint point);
 
-/** What makes one shader serve every mode: the constant `paged`. */
+/** What makes one shader serve every mode: the constants `paged` and `cubic`. */
 struct prober_specialization {
-    VkBool32 paged;
-    VkSpecializationMapEntry entry;
+    VkBool32 values[2]; ///< paged, cubic
+    VkSpecializationMapEntry entries[2];
     VkSpecializationInfo info;
 };
 const VkSpecializationInfo *prober_specialize(const struct prober *p,

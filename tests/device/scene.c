@@ -69,7 +69,8 @@ uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerA
                                           .source = source,
                                           .primaryId = primary,
                                           .addressModeU = u,
-                                          .addressModeV = v};
+                                          .addressModeV = v,
+                                          .filter = scene->filter};
     CHECK_OK(sluiceAddVulkanTexture(scene->streamer, &info, &texture->texture));
     texture->probe = prober_texture(&scene->prober, &texture->texture, u, v, anisotropy);
     return index;

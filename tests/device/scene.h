@@ -25,6 +25,7 @@ struct scene {
     struct harness *h;
     SluiceVulkanStreamer *streamer;
     struct prober prober;
+    SluiceTextureFilter filter; ///< of textures that are added
     struct scene_texture textures[SCENE_TEXTURES];
 };
 

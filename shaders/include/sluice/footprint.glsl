@@ -20,6 +20,7 @@
  */
 #define SLUICE_APRON 0.5625
 #define SLUICE_APRON_UNEVEN 1.5625
+#define SLUICE_APRON_SPLINE 1.0 /* more of both for textures with a bicubic filter */
 
 /*
  * Along an axis of more than 64 tiles steps are longer, and some tiles are skipped. That takes a
@@ -64,6 +65,12 @@ vec2 sluiceRegionSize(SluiceGrid grid)
 uvec2 sluiceAddressModes(SluiceGrid grid)
 {
     return uvec2(grid.shape >> SLUICE_SHAPE_MODE_U_SHIFT, grid.shape >> SLUICE_SHAPE_MODE_V_SHIFT) & 7u;
+}
+
+/** Returns the apron of bilinear or bicubic samples, in texels of the coarser level. */
+float sluiceApron(SluiceGrid grid)
+{
+    return (grid.shape & SLUICE_SHAPE_SPLINE) != 0u ? SLUICE_APRON + SLUICE_APRON_SPLINE : SLUICE_APRON;
 }
 
 /** Columns and rows of a footprint. If the first is after the last, it wraps around at 0. */
@@ -123,15 +130,15 @@ uvec2 sluiceRegionRange(float coordinate, float below, float above, uint address
 SluiceFootprint sluiceComputeFootprint(SluiceGrid grid, vec2 uv, vec2 halfBox, uint coarsestLevel)
 {
     vec2 texel = min(vec2(uintBitsToFloat((coarsestLevel + 127u) << 23u)), grid.size); /* 2 to the level */
-    float below = SLUICE_APRON;
+    float above = sluiceApron(grid), below = above;
     if ((grid.shape & SLUICE_SHAPE_UNEVEN) != 0u) {
         texel = grid.size / vec2(max(uvec2(grid.size) >> coarsestLevel, 1u));
-        below = SLUICE_APRON_UNEVEN;
+        below = above + (SLUICE_APRON_UNEVEN - SLUICE_APRON);
     }
     uvec2 shift = sluiceRegionShift(grid), modes = sluiceAddressModes(grid);
-    uvec2 x = sluiceRegionRange(uv.x, below * texel.x + halfBox.x, SLUICE_APRON * texel.x + halfBox.x,
+    uvec2 x = sluiceRegionRange(uv.x, below * texel.x + halfBox.x, above * texel.x + halfBox.x,
                                 modes.x, grid.size.x, shift.x, grid.last.x);
-    uvec2 y = sluiceRegionRange(uv.y, below * texel.y + halfBox.y, SLUICE_APRON * texel.y + halfBox.y,
+    uvec2 y = sluiceRegionRange(uv.y, below * texel.y + halfBox.y, above * texel.y + halfBox.y,
                                 modes.y, grid.size.y, shift.y, grid.last.y);
     return SluiceFootprint(uvec2(x.x, y.x), uvec2(x.y, y.y));
 }

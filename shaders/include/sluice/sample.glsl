@@ -17,13 +17,22 @@
  * In paged mode the sampler sees only the packed levels; paged.glsl samples the others. In other
  * modes a sample that needs no clamping uses the texture like one that is not streamed, so the
  * settled picture equals that of a fully resident texture.
+ *
+ * Textures with a bicubic filter (SluiceVulkanTextureCreateInfo.filter) require
+ *
+ *     #define SLUICE_CUBIC true   // or a constant_id constant
+ *
+ * Default: false. They are then sampled with a linear filter, and shaders have no code for others.
+ * Bicubic samples have computed levels, like those of paged mode, and rows of samples for anisotropy.
  */
 #ifndef SLUICE_SAMPLE_GLSL
 #define SLUICE_SAMPLE_GLSL
 
 #include "buffers.glsl"
+#include "cubic.glsl"
 #include "footprint.glsl"
 #include "lod.glsl"
+#include "page_filter.glsl"
 #include "quick.glsl"
 #ifdef SLUICE_PAGED
 #include "paged.glsl"
@@ -37,6 +46,10 @@
  */
 #ifdef SLUICE_MIN_LOD
 #extension GL_ARB_sparse_texture_clamp : require
+#endif
+
+#ifndef SLUICE_CUBIC
+#define SLUICE_CUBIC false
 #endif
 
 /* Color where not even the packed levels are resident. Define it before to change it. */
@@ -225,7 +238,8 @@ float sluiceLodAround(uint tableIndex, SluiceGrid grid, uint words, uint coarses
     lod = min(sluiceLodLimit(words >> 16u, margin), packed);
     uint level = sluiceClampedBox(lod, margin, coarsestLod, maxAnisotropy, count, grown);
     bool uneven = (grid.shape & SLUICE_SHAPE_UNEVEN) != 0u;
-    vec2 more = grown - halfBox + (uneven ? SLUICE_APRON_UNEVEN : SLUICE_APRON) * exp2(float(level));
+    float apron = sluiceApron(grid) + (uneven ? SLUICE_APRON_UNEVEN - SLUICE_APRON : 0.0);
+    vec2 more = grown - halfBox + apron * exp2(float(level));
     return all(lessThan(more, sluiceRegionSize(grid))) ? lod : packed;
 }
 
@@ -353,6 +367,37 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
 uint sluiceMissingLevels(SluiceSampling s)
 {
     return s.missing;
+}
+
+/** Determines what a sample may touch, the short way if possible. */
+SluiceSampling sluiceFindSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                                  float maxAnisotropy)
+{
+    if (!sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy))
+        return sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+    float scale = exp2(sluiceClampLodBias(lodBias));
+    float lod = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
+    return SluiceSampling(uv, dx * scale, dy * scale, lod, 0u, 0u, 0u, 0.0, false);
+}
+
+bool sluiceHasSpline(uint tableIndex)
+{
+    return (SLUICE_TEXTURE_ENTRY(tableIndex).shape & SLUICE_SHAPE_SPLINE) != 0u;
+}
+
+/**
+ * Returns how much of a sample that shows s.lod is bicubic. The other arguments are those of the
+ * sample.
+ */
+float sluiceSplineShare(uint tableIndex, SluiceSampling s, vec2 dx, vec2 dy, float lodBias,
+                        float maxAnisotropy)
+{
+    uint shape = SLUICE_TEXTURE_ENTRY(tableIndex).shape;
+    if ((shape & SLUICE_SHAPE_SMART) == 0u)
+        return (shape & SLUICE_SHAPE_SPLINE) != 0u ? 1.0 : 0.0;
+    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+    return sluiceCubicShare(max(s.lod, 0.0) - sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy));
 }
 
 #ifdef GL_FRAGMENT_SHADER

@@ -59,6 +59,110 @@ vec4 sluiceTextureGrad(SLUICE_FORM tex, SluiceSampling s)
 #endif
 }
 
+/** Samples after sluiceResolveSampling with a linear filter, in any mode. */
+vec4 sluiceSampleResolved(SLUICE_FORM tex, uint tableIndex, SluiceSampling s, float maxAnisotropy)
+{
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED)
+        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
+                                 maxAnisotropy);
+#endif
+    return sluiceTextureGrad(tex, s);
+}
+
+/** Returns a bilinear sample of one level, in any mode. */
+vec4 sluiceSampleAtLevel(SLUICE_FORM tex, uint tableIndex, uint level, vec2 uv)
+{
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED)
+        return sluiceSampleLevel(tex, SLUICE_TEXTURE_ENTRY(tableIndex), level, uv);
+#endif
+    return textureLod(SLUICE_FORM_TEXTURE(tex), uv, float(level));
+}
+
+/**
+ * Sums color and derivatives of a sample of s.lod, of which `share` is bicubic. With `slopes` false the
+ * bicubic color alone.
+ */
+mat3x4 sluiceSampleKernels(SLUICE_FORM tex, uint tableIndex, SluiceSampling s, float maxAnisotropy,
+                           float share, bool slopes)
+{
+    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+    uint count = SLUICE_TEXTURE_ENTRY(tableIndex).mipLevelCount;
+    SluicePagedTaps taps = sluicePlaceTaps(size, count, s.dx, s.dy, clamp(s.lod, 0.0, float(count - 1u)),
+                                           sluiceClampAnisotropy(maxAnisotropy));
+    uint parts = slopes ? 12u : 4u;
+    uint first = slopes && share < 1.0 ? 0u : parts, end = share > 0.0 ? 2u * parts : parts;
+    mat3x4 sum = mat3x4(0.0);
+    for (uint i = 0u; i < 2u * taps.count; i++) {
+        bool coarse = i >= taps.count;
+        float levelWeight = (coarse ? taps.fraction : 1.0 - taps.fraction) / float(taps.count);
+        if (!(levelWeight > 0.0))
+            continue;
+        uint level = coarse ? taps.coarse : taps.fine;
+        vec2 levelSize = vec2(max(uvec2(size) >> level, uvec2(1u)));
+        float along = (float(coarse ? i - taps.count : i) + 0.5) / float(taps.count) - 0.5;
+        for (uint j = first; j < end; j++) {
+            bool cubic = j >= parts;
+            uint part = cubic ? j - parts : j;
+            SluiceFilterPart at = sluiceFindFilterPart(s.uv + taps.axis * along, levelSize, cubic, part);
+            float weight = at.weight * levelWeight;
+            if (slopes)
+                weight *= cubic ? share : 1.0 - share;
+            if (weight == 0.0)
+                continue;
+            vec4 color = weight * sluiceSampleAtLevel(tex, tableIndex, level, at.uv);
+            if (part < 4u)
+                sum[0] += color;
+            else if (part < 8u)
+                sum[1] += color;
+            else
+                sum[2] += color;
+        }
+    }
+    return sum;
+}
+
+/** Samples a texture with a bicubic filter. */
+vec4 sluiceSampleSpline(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                        float maxAnisotropy, out uint missingLevels)
+{
+    SluiceSampling s = sluiceFindSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    missingLevels = sluiceMissingLevels(s);
+    if (s.level == SLUICE_MIP_UNTOUCHED)
+        return SLUICE_FALLBACK_COLOR;
+    float share = sluiceSplineShare(tableIndex, s, dx, dy, lodBias, maxAnisotropy);
+    vec4 color = vec4(0.0);
+    if (share < 1.0)
+        color = (1.0 - share) * sluiceSampleResolved(tex, tableIndex, s, maxAnisotropy);
+    if (share > 0.0)
+        color += share * sluiceSampleKernels(tex, tableIndex, s, maxAnisotropy, 1.0, false)[0];
+    return color;
+}
+
+/**
+ * Samples like sluiceSampleGrad, and returns the derivatives of the color by u and by v, for example of a
+ * height for bump mapping. Any stage. Filters as the texture says; does not need SLUICE_CUBIC.
+ *
+ * `du` and `dv` are per unit of uv: the change across the whole texture. They are exact derivatives of
+ * the color at an unchanged LOD. So with a linear filter they are constant between texels and jump
+ * at their centers; with a bicubic filter they are continuous. They are 0 where nothing is resident. All
+ * samples have computed levels, as in paged mode. Formats without a linear filter have no derivatives.
+ */
+vec4 sluiceSampleDerivatives(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                             float maxAnisotropy, out vec4 du, out vec4 dv, out uint missingLevels)
+{
+    SluiceSampling s = sluiceFindSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    missingLevels = sluiceMissingLevels(s);
+    mat3x4 sum = mat3x4(SLUICE_FALLBACK_COLOR, vec4(0.0), vec4(0.0));
+    if (s.level != SLUICE_MIP_UNTOUCHED)
+        sum = sluiceSampleKernels(tex, tableIndex, s, maxAnisotropy,
+                                  sluiceSplineShare(tableIndex, s, dx, dy, lodBias, maxAnisotropy), true);
+    du = sum[1];
+    dv = sum[2];
+    return sum[0];
+}
+
 #ifdef SLUICE_PAGED
 /** Samples in paged mode if everything is resident. */
 vec4 sluiceSampleAsPages(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
@@ -81,6 +185,8 @@ vec4 sluiceSampleAsPages(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec
 vec4 sluiceSampleGrad(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                       float maxAnisotropy, out uint missingLevels)
 {
+    if (SLUICE_CUBIC && sluiceHasSpline(tableIndex))
+        return sluiceSampleSpline(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy, missingLevels);
     if (sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy)) {
         float scale = exp2(sluiceClampLodBias(lodBias));
         missingLevels = 0u;
@@ -132,6 +238,9 @@ vec4 sluiceSample(SLUICE_FORM tex, uint tableIndex, vec2 uv, float lodBias, floa
         return sluiceSampleGrad(tex, tableIndex, uv, dFdx(uv), dFdy(uv), lodBias, maxAnisotropy,
                                 missingLevels);
 #endif
+    if (SLUICE_CUBIC && sluiceHasSpline(tableIndex))
+        return sluiceSampleSpline(tex, tableIndex, uv, dFdx(uv), dFdy(uv), lodBias, maxAnisotropy,
+                                  missingLevels);
     missingLevels = 0u;
     if (sluiceIsWhole(tableIndex, lodBias, maxAnisotropy)) {
         bool finite = sluiceIsFinite(uv);

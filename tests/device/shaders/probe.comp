@@ -19,12 +19,14 @@ layout(binding = 6) uniform sampler2D nearestMipTex;
 layout(std430, set = 1, binding = 0) readonly buffer PageTable { uint words[]; } pageTable;
 layout(set = 1, binding = 1) uniform sampler2DArray pages[PROBE_PAGE_CHUNKS];
 layout(constant_id = 0) const bool paged = false;
+layout(constant_id = 1) const bool cubic = false;
 layout(push_constant) uniform Push { ProbeParams params; };
 
 #define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
 #define SLUICE_MIN_MIP_WORD(i) minMip.words[i]
 #define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
 #define SLUICE_PAGED paged
+#define SLUICE_CUBIC cubic
 #define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]
 #ifdef PROBE_PAGE_LOOP
 #define SLUICE_PAGE_TEXTURE(i) pages[i]
@@ -126,6 +128,16 @@ void main()
         outputs[at].footprint[2] = floatBitsToUint(s.dy.x);
         outputs[at].footprint[3] = floatBitsToUint(s.dy.y);
         outputs[at].minLod = s.minLod;
+    }
+    if (cubic && (params.flags & PROBE_SLOPES) != 0u) {
+        uint missing;
+        vec4 du, dv;
+        writeColor(at, sluiceSampleDerivatives(tex, params.tableIndex, uv, dx, dy, bias, anisotropy, du, dv,
+                                               missing));
+        for (uint i = 0u; i < 3u; i++) {
+            outputs[at].footprint[i] = floatBitsToUint(du[i]);
+            outputs[at].footprint[3u + i] = floatBitsToUint(dv[i]);
+        }
     }
     if ((params.flags & PROBE_RESIDENCY) != 0u)
         outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,

@@ -31,6 +31,7 @@
  * level up to 1.125 levels coarser than its LOD.
  */
 #define SLUICE_REACH 2.25
+#define SLUICE_REACH_SPLINE 4.5 /* of textures with a bicubic filter: 1.5625 texels */
 /* Reach of "around" in regions, and for ragged regions. */
 #define SLUICE_AROUND 1
 #define SLUICE_AROUND_RAGGED 2
@@ -44,6 +45,8 @@
 
 /* Some level's size is not half of the next finer one's, so tiles do not cover regions exactly. */
 #define SLUICE_TEXTURE_FLAG_UNEVEN 1
+#define SLUICE_TEXTURE_FLAG_SPLINE 2 /* bicubic filter */
+#define SLUICE_TEXTURE_FLAG_SMART 4  /* ... only where the texture is magnified */
 /* Three bits of the flags: number of components of the format. */
 #define SLUICE_TEXTURE_COMPONENTS_SHIFT 8
 
@@ -64,6 +67,8 @@
 #define SLUICE_SHAPE_UNEVEN 0x200000u  /* as SLUICE_TEXTURE_FLAG_UNEVEN */
 #define SLUICE_SHAPE_REPEATS 0x400000u /* along both axes */
 #define SLUICE_SHAPE_QUICK 0x800000u   /* powers of two that repeat or clamp along both axes */
+#define SLUICE_SHAPE_SPLINE 0x1000000u /* as SLUICE_TEXTURE_FLAG_SPLINE */
+#define SLUICE_SHAPE_SMART 0x2000000u
 
 struct SluiceTextureEntry {
     /* Members that most samples read: */
