@@ -112,8 +112,8 @@ typedef struct SluiceExrImageSourceCreateInfo {
  * Returns SLUICE_NOT_READY, without a source, while the process has too few file descriptors.
  * Sluice leaves the last 16 below the soft limit to others. Close files and call again.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown, compressed, PACK32
- *         and SNORM formats, and for a pInput whose size is out of range;
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown, compressed, PACK32,
+ *         SNORM and integer formats, and for a pInput whose size is out of range;
  *         SLUICE_ERROR_FILE_NOT_FOUND, SLUICE_ERROR_IO, SLUICE_ERROR_CORRUPT_DATA;
  *         SLUICE_ERROR_UNSUPPORTED for deep data, subsampling, luminance-chroma, more than 1024
  *         channels, files with only layers or other channel names, and multi-part files whose first

@@ -23,6 +23,7 @@ extern "C" {
  * - No suffix: channels in memory order.
  * - PACK32: little-endian words of 32 bits. The channel named last is in the lowest bits.
  * - SRGB: sRGB-encoded color and linear alpha.
+ * - UINT, SINT: integers, which are never filtered. Coarser levels hold texels of the finer ones.
  * - BLOCK: compressed blocks of 8 bytes (BC1, BC4, ETC2_R8G8B8, ETC2_R8G8B8A1, EAC_R11) or 16
  *   bytes (the others). Blocks are 4x4 texels unless the name says another size.
  */
@@ -79,11 +80,29 @@ typedef enum SluiceFormat {
     SLUICE_FORMAT_R8G8B8A8_SNORM = 49,
     SLUICE_FORMAT_R16_SNORM = 50,
     SLUICE_FORMAT_R16G16_SNORM = 51,
-    SLUICE_FORMAT_R16G16B16A16_SNORM = 52
+    SLUICE_FORMAT_R16G16B16A16_SNORM = 52,
+    SLUICE_FORMAT_R8_UINT = 53,
+    SLUICE_FORMAT_R8G8_UINT = 54,
+    SLUICE_FORMAT_R8G8B8A8_UINT = 55,
+    SLUICE_FORMAT_R16_UINT = 56,
+    SLUICE_FORMAT_R16G16_UINT = 57,
+    SLUICE_FORMAT_R16G16B16A16_UINT = 58,
+    SLUICE_FORMAT_R32_UINT = 59,
+    SLUICE_FORMAT_R32G32_UINT = 60,
+    SLUICE_FORMAT_R32G32B32A32_UINT = 61,
+    SLUICE_FORMAT_R8_SINT = 62,
+    SLUICE_FORMAT_R8G8_SINT = 63,
+    SLUICE_FORMAT_R8G8B8A8_SINT = 64,
+    SLUICE_FORMAT_R16_SINT = 65,
+    SLUICE_FORMAT_R16G16_SINT = 66,
+    SLUICE_FORMAT_R16G16B16A16_SINT = 67,
+    SLUICE_FORMAT_R32_SINT = 68,
+    SLUICE_FORMAT_R32G32_SINT = 69,
+    SLUICE_FORMAT_R32G32B32A32_SINT = 70
 } SluiceFormat;
 
 /** Number of enumerators. Every format is below it. */
-#define SLUICE_FORMAT_COUNT 53
+#define SLUICE_FORMAT_COUNT 71
 
 /** Memory layout of a format: blocks of texels. Blocks of uncompressed formats are 1x1. */
 typedef struct SluiceFormatInfo {
@@ -91,6 +110,7 @@ typedef struct SluiceFormatInfo {
     uint32_t blockSize;               ///< Bytes.
     uint32_t blockWidth, blockHeight; ///< Texels.
     uint32_t channelCount;            ///< 1 to 4. Missing G and B read as 0, missing A as 1.
+    bool integer; ///< UINT or SINT: sampled with sample_integer.glsl, without filters.
 } SluiceFormatInfo;
 
 /**

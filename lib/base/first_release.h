@@ -12,7 +12,7 @@
 
 #define SLC_UP_TO(type, last) (offsetof(type, last) + sizeof(((type *)0)->last))
 
-#define SLC_FIRST_SluiceFormatInfo SLC_UP_TO(SluiceFormatInfo, channelCount)
+#define SLC_FIRST_SluiceFormatInfo SLC_UP_TO(SluiceFormatInfo, integer)
 #define SLC_FIRST_SluiceImageInfo SLC_UP_TO(SluiceImageInfo, cube)
 #define SLC_FIRST_SluiceImageSourceInterface                                                       \
     SLC_UP_TO(SluiceImageSourceInterface, pfnIdentifyRegion)

@@ -271,10 +271,10 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
         return SLUICE_ERROR_NULL_POINTER;
     if (info.format != SLUICE_FORMAT_UNDEFINED &&
         (sluiceGetFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format) ||
-         slc_format_is_snorm(info.format)))
+         slc_format_is_snorm(info.format) || slc_format_is_integer(info.format)))
         return slc_log_refusal(&info.log,
-                               "format is %s (%d); block-compressed, packed and SNORM formats are "
-                               "refused",
+                               "format is %s (%d); block-compressed, packed, SNORM and integer "
+                               "formats are refused",
                                sluiceGetFormatName(info.format), (int)info.format);
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     struct exr_source *source = slc_calloc(&cb, 1, sizeof *source);

@@ -63,6 +63,38 @@ static void snorm_from_rgba(uint32_t channels, uint32_t size, const float *rgba,
         }
 }
 
+/* Little endian, as the machines that Vulkan runs on. */
+static void integers_from_rgba(SluiceFormat format, uint32_t channels, const float *rgba, char *out,
+                               size_t count)
+{
+    uint32_t size = sluiceGetFormatTexelSize(format) / channels;
+    bool is_signed = slc_format_is_sint(format);
+    double span = ldexp(1.0, 8 * (int)size), least = is_signed ? -span / 2 : 0;
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t c = 0; c < channels; c++, out += size) {
+            double value = isnan(rgba[4 * i + c]) ? 0 : (double)rgba[4 * i + c];
+            int64_t integer = llround(fmin(fmax(value, least), least + span - 1));
+            uint32_t word = (uint32_t)integer;
+            memcpy(out, &word, size);
+        }
+}
+
+static void rgba_from_integers(SluiceFormat format, uint32_t channels, const char *in, float *rgba,
+                               size_t count)
+{
+    uint32_t size = sluiceGetFormatTexelSize(format) / channels;
+    uint32_t sign = slc_format_is_sint(format) ? 1u << (8 * size - 1) : 0;
+    for (size_t i = 0; i < count; i++, rgba += 4) {
+        rgba[0] = rgba[1] = rgba[2] = 0.0f;
+        rgba[3] = 1.0f;
+        for (uint32_t c = 0; c < channels; c++, in += size) {
+            uint32_t word = 0;
+            memcpy(&word, in, size);
+            rgba[c] = (float)((int64_t)(word ^ sign) - (int64_t)sign);
+        }
+    }
+}
+
 /* Half and float texels go through memcpy: a caller's row pitch may leave them unaligned. */
 static void half_from_rgba(uint32_t channels, const float *rgba, char *out, size_t count)
 {
@@ -101,6 +133,10 @@ static void words_from_rgba(SluiceFormat format, const float *rgba, char *out, s
 void slc_texels_from_rgba(SluiceFormat format, const float *rgba, void *texels, size_t count)
 {
     uint32_t channels = slc_format_channel_count(format);
+    if (slc_format_is_integer(format)) {
+        integers_from_rgba(format, channels, rgba, texels, count);
+        return;
+    }
     switch (format) {
     case SLUICE_FORMAT_R8_UNORM:
     case SLUICE_FORMAT_R8G8_UNORM:
@@ -230,6 +266,10 @@ static void rgba_from_words(SluiceFormat format, const char *in, float *rgba, si
 void slc_texels_to_rgba(SluiceFormat format, const void *texels, float *rgba, size_t count)
 {
     uint32_t channels = slc_format_channel_count(format);
+    if (slc_format_is_integer(format)) {
+        rgba_from_integers(format, channels, texels, rgba, count);
+        return;
+    }
     switch (format) {
     case SLUICE_FORMAT_R8_UNORM:
     case SLUICE_FORMAT_R8G8_UNORM:

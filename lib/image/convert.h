@@ -3,7 +3,8 @@
  *
  * Halves saturate at +-65504. UNORM is clamped to [0, 1] and SNORM to [-1, 1], and both are rounded
  * to nearest; sRGB formats encode R, G and B. small_float.h has the rules of small floats. NaN
- * becomes 0 in all of these. 32-bit floats are stored unchanged.
+ * becomes 0 in all of these. 32-bit floats are stored unchanged. Integers are rounded to nearest
+ * and clamped to their range; NaN becomes 0. Floats hold integers up to 2^24 exactly.
  */
 #ifndef SLC_IMAGE_CONVERT_H
 #define SLC_IMAGE_CONVERT_H

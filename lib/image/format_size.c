@@ -7,10 +7,12 @@ struct format {
 };
 
 #define TEXELS(name, size, channels)                                                               \
-    [SLUICE_FORMAT_##name] = {#name, {sizeof(SluiceFormatInfo), size, 1, 1, channels}}
+    [SLUICE_FORMAT_##name] = {#name, {sizeof(SluiceFormatInfo), size, 1, 1, channels, false}}
+#define INTEGERS(name, size, channels)                                                             \
+    [SLUICE_FORMAT_##name] = {#name, {sizeof(SluiceFormatInfo), size, 1, 1, channels, true}}
 #define BLOCKS_OF(name, extent, size, channels)                                                    \
-    [SLUICE_FORMAT_##name##                                                                        \
-        _BLOCK] = {#name "_BLOCK", {sizeof(SluiceFormatInfo), size, extent, extent, channels}}
+    [SLUICE_FORMAT_##name##_BLOCK] = {                                                             \
+        #name "_BLOCK", {sizeof(SluiceFormatInfo), size, extent, extent, channels, false}}
 #define BLOCKS(name, size, channels) BLOCKS_OF(name, 4, size, channels)
 
 static const struct format formats[SLUICE_FORMAT_COUNT] = {
@@ -67,6 +69,24 @@ static const struct format formats[SLUICE_FORMAT_COUNT] = {
     TEXELS(R16_SNORM, 2, 1),
     TEXELS(R16G16_SNORM, 4, 2),
     TEXELS(R16G16B16A16_SNORM, 8, 4),
+    INTEGERS(R8_UINT, 1, 1),
+    INTEGERS(R8G8_UINT, 2, 2),
+    INTEGERS(R8G8B8A8_UINT, 4, 4),
+    INTEGERS(R16_UINT, 2, 1),
+    INTEGERS(R16G16_UINT, 4, 2),
+    INTEGERS(R16G16B16A16_UINT, 8, 4),
+    INTEGERS(R32_UINT, 4, 1),
+    INTEGERS(R32G32_UINT, 8, 2),
+    INTEGERS(R32G32B32A32_UINT, 16, 4),
+    INTEGERS(R8_SINT, 1, 1),
+    INTEGERS(R8G8_SINT, 2, 2),
+    INTEGERS(R8G8B8A8_SINT, 4, 4),
+    INTEGERS(R16_SINT, 2, 1),
+    INTEGERS(R16G16_SINT, 4, 2),
+    INTEGERS(R16G16B16A16_SINT, 8, 4),
+    INTEGERS(R32_SINT, 4, 1),
+    INTEGERS(R32G32_SINT, 8, 2),
+    INTEGERS(R32G32B32A32_SINT, 16, 4),
 };
 
 /* Pairs of formats that differ only in the transfer function: linear, sRGB. */

@@ -44,6 +44,17 @@ static inline bool slc_format_is_snorm(SluiceFormat format)
     return format >= SLUICE_FORMAT_R8_SNORM && format <= SLUICE_FORMAT_R16G16B16A16_SNORM;
 }
 
+/** Whether channels are integers, UINT or SINT. */
+static inline bool slc_format_is_integer(SluiceFormat format)
+{
+    return format >= SLUICE_FORMAT_R8_UINT && format <= SLUICE_FORMAT_R32G32B32A32_SINT;
+}
+
+static inline bool slc_format_is_sint(SluiceFormat format)
+{
+    return format >= SLUICE_FORMAT_R8_SINT && format <= SLUICE_FORMAT_R32G32B32A32_SINT;
+}
+
 /** Whether channels are halves. */
 static inline bool slc_format_is_half(SluiceFormat format)
 {

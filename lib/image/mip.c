@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "image/convert.h"
+#include "image/format_size.h"
 
 #include <math.h>
 #include <string.h>
@@ -128,9 +129,34 @@ void slc_mip_rows_finish(struct slc_mip_rows *rows, const SluiceAllocationCallba
     *rows = (struct slc_mip_rows){0};
 }
 
+/* Of 2n or 2n + 1 texels on n, the one at the center of texel `i` is number 2i + 1. */
+static uint32_t find_center(uint32_t size, uint32_t i)
+{
+    return size == 1 ? 0 : 2 * i + 1;
+}
+
+/* Means of numbers that name things would name others. */
+static void pick_texels(size_t texel_size, const struct slc_mip_part *fine,
+                        const struct slc_mip_part *coarse)
+{
+    for (uint32_t y = 0; y < coarse->height; y++) {
+        uint32_t row = find_center(fine->level_height, coarse->y + y) - fine->y;
+        char *to = coarse->texels + y * coarse->pitch;
+        for (uint32_t x = 0; x < coarse->width; x++) {
+            uint32_t column = find_center(fine->level_width, coarse->x + x) - fine->x;
+            memcpy(to + x * texel_size, fine->texels + row * fine->pitch + column * texel_size,
+                   texel_size);
+        }
+    }
+}
+
 void slc_mip_filter(SluiceFormat format, const struct slc_mip_part *fine,
                     const struct slc_mip_part *coarse, const struct slc_mip_rows *rows)
 {
+    if (slc_format_is_integer(format)) {
+        pick_texels(sluiceGetFormatTexelSize(format), fine, coarse);
+        return;
+    }
     for (uint32_t y = 0; y < coarse->height; y++) {
         struct taps taps = find_taps(fine->level_height, coarse->y + y);
         memset(rows->sum, 0, 4 * (size_t)fine->width * sizeof *rows->sum);

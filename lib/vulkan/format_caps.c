@@ -2,6 +2,7 @@
 
 #include "base/struct_size.h"
 #include "vulkan/caps.h"
+#include "image/format_size.h"
 #include "vulkan/format.h"
 #include "vulkan/sparse_layout.h"
 
@@ -42,6 +43,8 @@ static bool get_granularity(const struct slc_vk *vk, VkFormat format, VkExtent3D
 bool slc_filters_linear(const struct slc_vk *vk, SluiceFormat format)
 {
     VkFormatProperties features;
+    if (slc_format_is_integer(format)) /* Vulkan has none for them */
+        return false;
     vk->GetPhysicalDeviceFormatProperties(vk->physical_device, slc_vk_format(format), &features);
     return features.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
 }

@@ -20,7 +20,9 @@ static SluiceResult create(const struct slc_vk *vk, const struct slc_sampler_kin
                                 .anisotropyEnable = kind->max_anisotropy > 1.0f,
                                 .maxAnisotropy = kind->max_anisotropy,
                                 .maxLod = VK_LOD_CLAMP_NONE,
-                                .borderColor = VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK};
+                                .borderColor = kind->integer
+                                                   ? VK_BORDER_COLOR_INT_TRANSPARENT_BLACK
+                                                   : VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK};
     return slc_vk_result(vk, vk->CreateSampler(vk->device, &info, NULL, sampler),
                          "vkCreateSampler");
 }
@@ -44,7 +46,8 @@ SluiceResult slc_samplers_get(struct slc_samplers *samplers, const struct slc_vk
     for (uint32_t i = 0; i < samplers->count; i++) {
         const struct slc_sampler_kind *known = &samplers->list[i].kind;
         if (known->modes[0] == kind->modes[0] && known->modes[1] == kind->modes[1] &&
-            known->max_anisotropy == kind->max_anisotropy && known->nearest == kind->nearest) {
+            known->max_anisotropy == kind->max_anisotropy && known->nearest == kind->nearest &&
+            known->integer == kind->integer) {
             *index = i;
             return SLUICE_SUCCESS;
         }

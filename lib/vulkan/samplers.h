@@ -8,6 +8,7 @@ struct slc_sampler_kind {
     VkSamplerAddressMode modes[2];
     float max_anisotropy; ///< 1: none
     bool nearest;         ///< between texels and levels, for formats without linear filters
+    bool integer;         ///< of border colors
 };
 
 struct slc_sampler {

@@ -7,6 +7,7 @@
 #include "base/checked.h"
 #include "base/limits.h"
 #include "base/log.h"
+#include "image/format_size.h"
 #include "image/info.h"
 #include "vulkan/address_mode.h"
 #include "vulkan/format.h"
@@ -212,6 +213,7 @@ static void choose_kind(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreate
     choose_modes(s, info, image, kind->modes);
     kind->max_anisotropy = choose_anisotropy(s, info->maxAnisotropy, linear);
     kind->nearest = !linear;
+    kind->integer = slc_format_is_integer(image->format);
 }
 
 /* All layers, or none. The manager comes last: what it has got is only given back with a frame. */
@@ -297,7 +299,9 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
         .cubeArrayView = first->views.cube_array,
         .filter = texture->filter,
     };
-    if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE)
+    /* Samplers of the array are not those of integers: their elements stay empty. */
+    if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE &&
+        !slc_format_is_integer(texture->info.format))
         slc_texture_array_set(&s->texture_array, index, texture->views.layer,
                               s->samplers.list[texture->sampler].sampler);
 }

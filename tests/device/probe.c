@@ -281,6 +281,29 @@ struct probe_texture prober_cube(struct prober *p, const SluiceVulkanTexture *fa
     return create_set(p, face->tableIndex, images);
 }
 
+/* Under a key that no other sampler has. */
+static VkSampler nearest_sampler(struct prober *p)
+{
+    for (uint32_t i = 0; i < p->sampler_count; i++)
+        if (p->sampler_keys[i].anisotropy == 0)
+            return p->samplers[i];
+    assert_true(p->sampler_count < PROBE_MAX_SAMPLERS);
+    const VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                      .maxLod = VK_LOD_CLAMP_NONE}; /* NEAREST, REPEAT */
+    uint32_t at = p->sampler_count++;
+    assert_int_equal(p->h->CreateSampler(p->h->device, &info, NULL, &p->samplers[at]), VK_SUCCESS);
+    p->sampler_keys[at].anisotropy = 0;
+    return p->samplers[at];
+}
+
+struct probe_texture prober_nearest(struct prober *p, const SluiceVulkanTexture *texture)
+{
+    const VkDescriptorImageInfo image = {nearest_sampler(p), texture->imageView,
+                                         VK_IMAGE_LAYOUT_GENERAL};
+    const VkDescriptorImageInfo images[2] = {image, image};
+    return create_set(p, texture->tableIndex, images);
+}
+
 struct ProbeInput *prober_inputs(struct prober *p)
 {
     return p->inputs.mapped;

@@ -58,6 +58,9 @@ struct probe_texture prober_layer(struct prober *p, const SluiceVulkanTexture *l
 struct probe_texture prober_cube(struct prober *p, const SluiceVulkanTexture *face,
                                  float anisotropy);
 
+/** For shaders/integer.comp: samplers without filters. */
+struct probe_texture prober_nearest(struct prober *p, const SluiceVulkanTexture *texture);
+
 /** The set may be used again; no frame uses it any more once the device was waited for. */
 void prober_release(struct prober *p, struct probe_texture texture);
 

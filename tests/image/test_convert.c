@@ -179,6 +179,45 @@ static void infinities_and_nan_follow_the_header(void **state)
     assert_memory_equal(wide, given, sizeof given);
 }
 
+static void integers_are_rounded_and_clamped_to_their_range(void **state)
+{
+    (void)state;
+    const float given[2][4] = {{0.5f, 254.6f, NAN, 300.0f}, {-0.6f, -127.6f, 1e30f, -INFINITY}};
+    uint8_t bytes[8];
+    slc_texels_from_rgba(SLUICE_FORMAT_R8G8B8A8_UINT, given[0], bytes, 2);
+    assert_memory_equal(bytes, ((uint8_t[8]){1, 255, 0, 255, 0, 0, 255, 0}), 8);
+    int8_t chars[8];
+    slc_texels_from_rgba(SLUICE_FORMAT_R8G8B8A8_SINT, given[0], chars, 2);
+    assert_memory_equal(chars, ((int8_t[8]){1, 127, 0, 127, -1, -128, 127, -128}), 8);
+    int32_t words[8];
+    slc_texels_from_rgba(SLUICE_FORMAT_R32G32B32A32_SINT, given[0], words, 2);
+    assert_memory_equal(words, ((int32_t[8]){1, 255, 0, 300, -1, -128, INT32_MAX, INT32_MIN}),
+                        sizeof words);
+}
+
+static void integers_up_to_24_bits_survive_a_round_trip(void **state)
+{
+    (void)state;
+    static const int32_t numbers[] = {0, 1, -1, 100, -128, 127, -32768, 32767, 16777216, -16777216};
+    for (uint32_t f = SLUICE_FORMAT_R8_UINT; f <= SLUICE_FORMAT_R32G32B32A32_SINT; f++) {
+        size_t size = sluiceGetFormatTexelSize((SluiceFormat)f);
+        size_t channels = slc_format_channel_count((SluiceFormat)f);
+        for (size_t n = 0; n < sizeof numbers / sizeof numbers[0]; n++) {
+            char given[16] = {0}, back[16] = {0};
+            float rgba[4];
+            for (size_t c = 0; c < channels; c++) /* unsigned: at most 24 bits of it */
+                memcpy(given + c * (size / channels),
+                       &(int32_t){numbers[n] & (f < SLUICE_FORMAT_R8_SINT ? 0x1FFFFFF : -1)},
+                       size / channels);
+            slc_texels_to_rgba((SluiceFormat)f, given, rgba, 1);
+            slc_texels_from_rgba((SluiceFormat)f, rgba, back, 1);
+            if (numbers[n] >= 0 || f >= SLUICE_FORMAT_R8_SINT)
+                assert_memory_equal(given, back, size);
+            assert_true(channels == 4 || rgba[3] == 1.0f);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -191,6 +230,8 @@ int main(void)
         cmocka_unit_test(snorm_rounds_to_the_nearest_step_and_clamps),
         cmocka_unit_test(texels_survive_a_round_trip_in_every_format),
         cmocka_unit_test(infinities_and_nan_follow_the_header),
+        cmocka_unit_test(integers_are_rounded_and_clamped_to_their_range),
+        cmocka_unit_test(integers_up_to_24_bits_survive_a_round_trip),
     };
     return RUN_TESTS(tests);
 }

@@ -116,6 +116,54 @@ static void every_texel_is_the_mean_of_its_area(void **state)
             check_chain(formats[f], sizes[s][0], sizes[s][1]);
 }
 
+/* The source texel whose center is nearest to that of texel `i` of the level below: brute force. Of
+ * two the later one. */
+static uint32_t nearest_center(uint32_t size, uint32_t below, uint32_t i)
+{
+    uint32_t best = 0;
+    double center = (i + 0.5) * size / below, distance = size;
+    for (uint32_t s = 0; s < size; s++)
+        if (fabs(s + 0.5 - center) <= distance + 1e-9) {
+            distance = fabs(s + 0.5 - center);
+            best = s;
+        }
+    return best;
+}
+
+static void check_picked(SluiceFormat format, uint32_t width, uint32_t height)
+{
+    SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    struct slc_mip_chain chain;
+    uint32_t random = width * 31 + height;
+    size_t size = sluiceGetFormatTexelSize(format);
+    CHECK_OK(slc_mip_chain_init(&chain, &cb, format, width, height));
+    for (size_t i = 0; i < size * width * height; i++)
+        chain.texels[i] = (char)(next_random(&random) >> 24);
+    CHECK_OK(slc_mip_chain_build(&chain, &cb));
+    for (uint32_t level = 1; level < chain.level_count; level++) {
+        uint32_t w = slc_mip_size(width, level), fine_w = slc_mip_size(width, level - 1);
+        uint32_t h = slc_mip_size(height, level), fine_h = slc_mip_size(height, level - 1);
+        for (uint32_t y = 0; y < h; y++)
+            for (uint32_t x = 0; x < w; x++) {
+                size_t at = (size_t)nearest_center(fine_h, h, y) * fine_w;
+                at += nearest_center(fine_w, w, x);
+                assert_memory_equal(slc_mip_chain_level(&chain, level) + (y * w + x) * size,
+                                    slc_mip_chain_level(&chain, level - 1) + at * size, size);
+            }
+    }
+    slc_mip_chain_finish(&chain, &cb);
+}
+
+static void integers_are_those_at_the_center_of_their_area(void **state)
+{
+    (void)state;
+    const uint32_t sizes[][2] = {{1, 1}, {2, 2}, {1, 37},  {64, 1},
+                                 {3, 3}, {5, 7}, {29, 23}, {16, 8}};
+    for (uint32_t f = SLUICE_FORMAT_R8_UINT; f <= SLUICE_FORMAT_R32G32B32A32_SINT; f++)
+        for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++)
+            check_picked((SluiceFormat)f, sizes[s][0], sizes[s][1]);
+}
+
 static void srgb_averages_light_not_codes(void **state)
 {
     (void)state;
@@ -186,6 +234,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_texel_is_the_mean_of_its_area),
+        cmocka_unit_test(integers_are_those_at_the_center_of_their_area),
         cmocka_unit_test(srgb_averages_light_not_codes),
         cmocka_unit_test(nan_counts_as_zero_and_no_level_below_holds_one),
         cmocka_unit_test(running_out_of_memory_is_a_result_and_leaves_nothing),

@@ -36,7 +36,9 @@ static void describe_format(struct naive_store *store)
         8, 8, 8, 8, 16, 16, 16, 16, 8,  8,  16, 16, 16, 16, 16, 16, /* BC1 to BC7 */
         2, 4, 8,                                                    /* R16, R16G16, R16G16B16A16 */
         8, 8, 8, 8, 16, 16, 8,  8,  16, 16, 16, 16, 16, 16,         /* ETC2, EAC, ASTC */
-        1, 2, 4, 2, 4,  8                                           /* SNORM */
+        1, 2, 4, 2, 4,  8,                                          /* SNORM */
+        1, 2, 4, 2, 4,  8,  4,  8,  16,                             /* UINT */
+        1, 2, 4, 2, 4,  8,  4,  8,  16                              /* SINT */
     };
     store->block_size = store->format < SLUICE_FORMAT_COUNT ? sizes[store->format] : 0;
     bool is_plain = store->format < SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK ||
