@@ -121,7 +121,7 @@ bool rig_create_descriptors(struct rig *rig)
 void rig_destroy_descriptors(struct rig *rig)
 {
     VkDevice device = rig->bench->gpu.device;
-    for (uint32_t i = 0; i < 4; i++)
+    for (uint32_t i = 0; i < DEMAND_BENCH_KINDS; i++)
         vkDestroyPipeline(device, rig->pipelines[i], NULL);
     vkDestroyDescriptorPool(device, rig->descriptor_pool, NULL);
     vkDestroyPipelineLayout(device, rig->layout, NULL);

@@ -48,8 +48,9 @@ static bool create_textures(struct rig *rig)
 {
     const struct bench *bench = rig->bench;
     free_source_init(&rig->source, SLUICE_FORMAT_R8G8B8A8_UNORM, bench->texture_size);
-    SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
-                                          .image.source = &rig->source.base};
+    SluiceDemandSampler sampler = {.structSize = sizeof sampler, .filter = bench->filter};
+    SluiceDemandTextureCreateInfo info = {
+        .structSize = sizeof info, .image.source = &rig->source.base, .pSampler = &sampler};
     uint32_t count = bench->columns * bench->columns;
     for (; rig->texture_count < count; rig->texture_count++) {
         SluiceDemandTextureId *id = &rig->ids[rig->texture_count];
@@ -261,8 +262,9 @@ bool rig_launch(struct rig *rig, uint32_t kind, struct rig_outcome *outcome)
 bool rig_warm_up(struct rig *rig)
 {
     struct DemandBenchParams params = rig->params;
-    SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
-                                          .image.source = &rig->source.base};
+    SluiceDemandSampler sampler = {.structSize = sizeof sampler, .filter = rig->bench->filter};
+    SluiceDemandTextureCreateInfo info = {
+        .structSize = sizeof info, .image.source = &rig->source.base, .pSampler = &sampler};
     SluiceDemandTextureId id;
     if (!check(sluiceAddDemandTexture(rig->loader, &info, &id), "sluiceAddDemandTexture"))
         return false;

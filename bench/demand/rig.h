@@ -14,10 +14,11 @@
 
 struct bench {
     struct gpu gpu;
-    uint32_t edge;         ///< samples of a launch: edge x edge
-    uint32_t texture_size; ///< texels
-    uint32_t columns;      ///< columns x columns textures
-    uint32_t threads;      ///< that load; 0: as the library does
+    uint32_t edge;             ///< samples of a launch: edge x edge
+    uint32_t texture_size;     ///< texels
+    uint32_t columns;          ///< columns x columns textures
+    SluiceDemandFilter filter; ///< of textures
+    uint32_t threads;          ///< that load; 0: as the library does
     uint64_t min_staging_size;
     const SluiceAllocationCallbacks *allocator; ///< of the context; NULL: malloc
     bool wall;                                  ///< measures wall time: time stamps are unusable
@@ -51,7 +52,8 @@ struct rig {
     VkPipelineLayout layout;
     VkDescriptorPool descriptor_pool;
     VkDescriptorSet set;
-    VkPipeline pipelines[4]; ///< by DEMAND_BENCH_NOTHING and so on; VK_NULL_HANDLE until used
+    VkPipeline pipelines[DEMAND_BENCH_KINDS]; ///< by DEMAND_BENCH_NOTHING and so on; VK_NULL_HANDLE
+                                              ///< until used
     VkQueryPool queries;
     struct rig_slot slots[RIG_SLOTS];
     uint64_t begun, ended; ///< launches

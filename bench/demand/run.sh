@@ -50,6 +50,11 @@ sampling.untracked.rate|... demand loaded, without tracking for eviction|16.3|at
 sampling.untracked.of_plain|... of textureGrad||
 sampling.tracked.rate|... with tracking|14.1|at least 14
 sampling.tracked.of_plain|... of textureGrad||
+sampling.linear_of_cubic.of_plain|... linear filter, shader that knows bicubic filters||
+sampling.smart.of_plain|... smart cubic, not magnified||
+sampling.cubic.of_plain|... cubic, two levels||
+sampling.linear_slopes.of_plain|... linear, with derivatives||
+sampling.cubic_slopes.of_plain|... cubic, two levels, with derivatives||
 trip.floor|empty submission and wait, us||
 trip.64.median|launch that misses nothing, 64 requests at most, us|72|at most 50
 trip.512.median|... 512|64|at most 50

@@ -16,7 +16,8 @@ static bool add_times(struct rig *rig, uint32_t kind, struct samples *samples)
     return true;
 }
 
-static bool measure(const struct bench *bench, bool tracking, double *plain, double *sampled)
+static bool measure(const struct bench *bench, bool tracking, uint32_t kind, double *plain,
+                    double *sampled)
 {
     SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .noEviction = !tracking};
     struct rig rig;
@@ -26,8 +27,7 @@ static bool measure(const struct bench *bench, bool tracking, double *plain, dou
     bool done = rig_create(&rig, bench, &info, true) && rig_load(&rig, 1000) > 0;
     rig.timed = true;
     for (uint32_t i = 0; done && i < repetitions(TURNS); i++)
-        done = add_times(&rig, DEMAND_BENCH_PLAIN, &times[0]) &&
-               add_times(&rig, DEMAND_BENCH_SAMPLED, &times[1]);
+        done = add_times(&rig, DEMAND_BENCH_PLAIN, &times[0]) && add_times(&rig, kind, &times[1]);
     double share = bench->wall ? 0.0 : 0.5; /* what disturbs wall times only makes them longer */
     if (done) {
         *plain = samples_quantile(&times[0], share);
@@ -39,18 +39,43 @@ static bool measure(const struct bench *bench, bool tracking, double *plain, dou
     return done;
 }
 
+/* None of the samples is magnified, so smart ones are trilinear. */
+static bool measure_filters(const struct bench *bench)
+{
+    static const struct {
+        const char *name;
+        SluiceDemandFilter filter;
+        uint32_t kind;
+    } variants[] = {
+        {"sampling.linear_of_cubic", SLUICE_DEMAND_FILTER_LINEAR, DEMAND_BENCH_CUBIC},
+        {"sampling.smart", SLUICE_DEMAND_FILTER_SMART_CUBIC, DEMAND_BENCH_CUBIC},
+        {"sampling.cubic", SLUICE_DEMAND_FILTER_CUBIC, DEMAND_BENCH_CUBIC},
+        {"sampling.linear_slopes", SLUICE_DEMAND_FILTER_LINEAR, DEMAND_BENCH_SLOPES},
+        {"sampling.cubic_slopes", SLUICE_DEMAND_FILTER_CUBIC, DEMAND_BENCH_SLOPES},
+    };
+    for (uint32_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+        struct bench filtered = *bench;
+        double plain, sampled;
+        filtered.filter = variants[i].filter;
+        if (!measure(&filtered, false, variants[i].kind, &plain, &sampled))
+            return false;
+        figure(variants[i].name, "of_plain", plain / sampled, "of textureGrad");
+    }
+    return true;
+}
+
 bool measure_sampling(const struct bench *bench)
 {
     double count = (double)bench->edge * bench->edge; /* per ns: G/s */
     static const char *const names[2] = {"sampling.untracked", "sampling.tracked"};
     for (int tracking = 0; tracking < 2; tracking++) {
         double plain, sampled;
-        if (!measure(bench, tracking, &plain, &sampled))
+        if (!measure(bench, tracking, DEMAND_BENCH_SAMPLED, &plain, &sampled))
             return false;
         figure(names[tracking], "rate", count / sampled, "Gsamples/s");
         figure(names[tracking], "of_plain", plain / sampled, "of textureGrad");
         if (!tracking)
             figure("sampling.plain", "rate", count / plain, "Gsamples/s");
     }
-    return true;
+    return measure_filters(bench);
 }

@@ -15,6 +15,9 @@
 #define DEMAND_BENCH_SAMPLED 1 /* through the demand loader */
 #define DEMAND_BENCH_PLAIN 2   /* textureGrad of an ordinary image */
 #define DEMAND_BENCH_BYTES 3   /* looks up byte pages, one per invocation */
+#define DEMAND_BENCH_CUBIC 4   /* as _SAMPLED, by a shader that knows bicubic filters */
+#define DEMAND_BENCH_SLOPES 5  /* with derivatives of the texture */
+#define DEMAND_BENCH_KINDS 6
 
 /* Words that shaders write for the host. */
 #define DEMAND_BENCH_MISSING 0 /* samples that were not resident */

@@ -30,6 +30,7 @@ layout(push_constant) uniform Push { DemandBenchParams params; };
 #define SLUICE_DEMAND_REQUEST_WORD(i) requests[i]
 #define SLUICE_DEMAND_SECTION_WORD(i) sections[i]
 #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
+#define SLUICE_DEMAND_CUBIC (kind == DEMAND_BENCH_CUBIC)
 #include "sluice/demand.glsl"
 
 void main()
@@ -45,9 +46,13 @@ void main()
     vec2 dx = vec2(step, 0.0), dy = vec2(0.0, step);
     vec4 color = vec4(uv, step, 1.0);
     bool resident = true;
-    if (kind == DEMAND_BENCH_SAMPLED)
+    if (kind == DEMAND_BENCH_SAMPLED || kind == DEMAND_BENCH_CUBIC)
         color = sluiceDemandGrad(params.textures[which], uv, dx, dy, resident);
-    else if (kind == DEMAND_BENCH_BYTES) {
+    else if (kind == DEMAND_BENCH_SLOPES) {
+        vec4 du, dv;
+        color = sluiceDemandDerivatives(params.textures[which], uv, dx, dy, du, dv, resident);
+        color.xy = (du.xy + dv.xy) / params.textureSize;
+    } else if (kind == DEMAND_BENCH_BYTES) {
         uvec2 value;
         uint page = at.y * params.edge + at.x;
         resident = page >= params.pageCount || sluiceMapOrRequest(params.firstPage + page, value);
