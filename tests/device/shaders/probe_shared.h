@@ -18,7 +18,8 @@
  * lodBias >= 0 that many levels coarse, in a row of samples along the longer
  * derivative, as paged residency takes them */
 #define PROBE_TRUTH 64u
-#define PROBE_SLOPES 128u /* sluiceSampleDerivatives: red, green and blue of both go to footprint */
+/* sluiceSampleDerivatives: red, green and blue of both derivatives go to footprint */
+#define PROBE_SLOPES 128u
 
 #define PROBE_PAGE_CHUNKS 64 /* descriptors of page images */
 
