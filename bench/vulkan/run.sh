@@ -100,7 +100,7 @@ feedback.fragment.floor.quads_64.added|feedback, p = 1/64, fragment, floor|at mo
 feedback.fragment.floor.lattice_64.added|feedback, lattice, fragment, floor|
 fill.rate|cold fill, source free|paged 120 000, sparse 60 000 at least
 fill.256_per_frame.rate|... with the default of 256 tiles per frame|
-fill.growing.rate|... while staging memory grows, as by default|
+fill.growing.rate|... while memory grows, as by default|
 fill.floor.copy|the driver's copies alone|
 fill.floor.bind|the driver's binds alone, tile by tile|
 fill.floor.bind_runs_of_16|the driver's binds alone, runs of 16|

@@ -163,12 +163,23 @@ typedef struct SluiceVulkanContextCreateInfo {
      * maxLoadsInFlight or maxTilesInFlight. Reads that need more get it in blocks of 4 MiB: an idle
      * block of another front end, or a new one that is freed after 120 idle frames or launches.
      *
-     * Making blocks halves the rate of the first fill of a streamer on an H200 (bench/vulkan,
-     * fill.growing.rate), and costs that of a demand loader a third (bench/demand,
-     * fill.defaults.rate). UINT64_MAX makes all staging memory of each front end at its creation.
-     * Default: 4 MiB.
+     * Staging memory is device memory if the host sees all of it (resizable BAR), else host memory.
+     * Making a block takes 0.3 ms on an H200, and about 2 ms in host memory. UINT64_MAX makes all
+     * staging memory of each front end at its creation. Default: 4 MiB.
      */
     uint64_t minStagingSize;
+    /**
+     * Bytes of device memory for tiles that are made before tiles need them, and kept while empty.
+     *
+     * Images of pages are made when a streamer in paged mode gets its first texture, or a demand
+     * loader opens its first one, for the texel format of that texture. Heaps are made when a
+     * streamer in sparse mode is created. Dense images need no memory later. A budget or device
+     * with less memory gets less. Memory beyond the budget is freed, empty or not.
+     *
+     * A frame that makes memory takes 32 us per MiB longer on an H200. Leave memory for everything
+     * else: images and buffers of the application are not counted. Default: 0.
+     */
+    uint64_t minTileMemorySize;
 } SluiceVulkanContextCreateInfo;
 
 /**

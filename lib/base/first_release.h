@@ -93,7 +93,7 @@
     SLC_UP_TO(SluiceVulkanStreamerStatistics, tilesProduced)
 #define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, deviceAddress)
 #define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
-    SLC_UP_TO(SluiceVulkanContextCreateInfo, minStagingSize)
+    SLC_UP_TO(SluiceVulkanContextCreateInfo, minTileMemorySize)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
     SLC_UP_TO(SluiceVulkanContextStatistics, deviceMemoryBudget)
 

@@ -163,6 +163,7 @@ static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image 
     memcpy(words, image->first_pages, sizeof image->first_pages);
     memcpy(image->base_color, image->read_color, sizeof image->base_color);
     image->state = SLC_IMAGE_OPEN;
+    slc_page_pool_prepare(loader->pages, loader->page_user, image->info.format);
     slc_image_enter_order(loader, image);
     slc_texture_show_image(loader, image);
     loader->counts.texturesOpened++;

@@ -167,15 +167,15 @@ static uint32_t create_largest(struct slc_page_chunks *chunks, struct slc_page_c
     return 0;
 }
 
-bool slc_page_chunks_grow(struct slc_page_chunks *chunks, uint64_t tick, uint32_t user,
-                          SluiceFormat format)
+/* Makes a chunk of `wanted` layers or fewer. */
+static bool make_chunk(struct slc_page_chunks *chunks, uint64_t tick, uint32_t user,
+                       SluiceFormat format, uint32_t wanted)
 {
     uint32_t at = find_free_chunk(chunks), layers = 0;
     if (at == chunks->count) {
         log_shortage(chunks, format);
     } else {
-        layers = slc_max_u32(MIN_LAYERS, chunks->page_count[format]);
-        layers = slc_min_u32(layers, slc_min_u32(layers_left(chunks), chunks->max_layer_count));
+        layers = slc_min_u32(wanted, slc_min_u32(layers_left(chunks), chunks->max_layer_count));
         layers = create_largest(chunks, &chunks->at[at], format, layers);
     }
     if (layers == 0) {
@@ -190,6 +190,29 @@ bool slc_page_chunks_grow(struct slc_page_chunks *chunks, uint64_t tick, uint32_
     chunks->last[format] = at;
     chunks->refused_tick = 0;
     return true;
+}
+
+bool slc_page_chunks_grow(struct slc_page_chunks *chunks, uint64_t tick, uint32_t user,
+                          SluiceFormat format)
+{
+    return make_chunk(chunks, tick, user, format,
+                      slc_max_u32(MIN_LAYERS, chunks->page_count[format]));
+}
+
+void slc_page_chunks_prepare(struct slc_page_chunks *chunks, uint64_t tick, uint32_t user,
+                             SluiceFormat format)
+{
+    uint32_t layers = 0, made = 0;
+    while (made == layers && chunks->memory.total_size < chunks->kept_size &&
+           find_free_chunk(chunks) < chunks->count && slc_page_chunks_can_grow(chunks, tick)) {
+        uint64_t left = (chunks->kept_size - chunks->memory.total_size) / SLC_TILE_SIZE;
+        layers = (uint32_t)slc_min_u64(left, chunks->max_layer_count);
+        layers = slc_min_u32(slc_max_u32(layers, MIN_LAYERS), layers_left(chunks));
+        made = make_chunk(chunks, tick, user, format, layers)
+                   ? chunks->at[chunks->last[format]].layer_count
+                   : 0;
+    }
+    chunks->refused_tick = 0; /* whoever needs a page asks the device again */
 }
 
 bool slc_page_chunk_is_ready(const struct slc_page_chunk *chunk,
@@ -337,7 +360,10 @@ void slc_page_chunks_retire(struct slc_page_chunks *chunks, uint32_t index,
         return;
     if (chunk->free_count < chunk->layer_count || chunk->tick == 0) /* 0: new, and still empty */
         chunk->tick = timelines->tick;
-    if (timelines->tick - chunk->tick < (hurry ? 1 : IDLE_TICKS))
+    uint64_t size = (uint64_t)chunk->layer_count * SLC_TILE_SIZE;
+    bool kept =
+        chunks->memory.total_size < size || chunks->memory.total_size - size < chunks->kept_size;
+    if (timelines->tick - chunk->tick < (hurry ? 1 : IDLE_TICKS) || (kept && !hurry))
         return;
     chunk->state = SLC_CHUNK_RETIRING;
     for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++)

@@ -62,6 +62,7 @@ struct slc_page_chunks {
     bool has_freed;        ///< a chunk was freed since then: the device may be asked at once
     uint32_t max_layer_count;
     uint64_t max_size;    ///< bytes of device memory, a hard limit; 0: none
+    uint64_t kept_size;   ///< bytes of chunks that stay while they are empty, unless in a hurry
     uint32_t image_count; ///< chunks that have an image
     uint64_t shortages;   ///< pages that were missing because all chunks were in use
 };
@@ -120,6 +121,11 @@ bool slc_page_chunks_can_grow(const struct slc_page_chunks *chunks, uint64_t tic
 bool slc_page_chunks_grow(struct slc_page_chunks *chunks, uint64_t tick, uint32_t user,
                           SluiceFormat format);
 
+/** Makes chunks for the user, as large as they can be, until there are kept_size bytes or the
+ * device has no more. */
+void slc_page_chunks_prepare(struct slc_page_chunks *chunks, uint64_t tick, uint32_t user,
+                             SluiceFormat format);
+
 void slc_page_chunks_take(struct slc_page_chunks *chunks, uint32_t page, uint32_t user);
 /** True if the page is free and still has the texels of `owner` of this user. */
 bool slc_page_chunks_is_left(const struct slc_page_chunks *chunks, uint32_t page, uint32_t user,
@@ -128,8 +134,8 @@ bool slc_page_chunks_is_left(const struct slc_page_chunks *chunks, uint32_t page
 void slc_page_chunks_free(struct slc_page_chunks *chunks, uint32_t page, uint32_t user,
                           uint64_t value, uint32_t owner);
 
-/** Retires the chunk if it has been empty for a while, or just now if `hurry`. No frame that is
- *  recorded from then on may see it. */
+/** Retires the chunk if it has been empty for a while and kept_size holds without it, or just now
+ * if `hurry`. No frame that is recorded from then on may see it. */
 void slc_page_chunks_retire(struct slc_page_chunks *chunks, uint32_t index,
                             const struct slc_page_timelines *timelines, bool hurry);
 /** Destroys the chunk if it is retiring and no frame that sees it is left. */

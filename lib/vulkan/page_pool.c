@@ -204,6 +204,15 @@ uint32_t slc_page_pool_take(struct slc_page_pool *pool, uint32_t user, SluiceFor
     return page;
 }
 
+/* Pages that are made ahead are nobody's shortage. */
+void slc_page_pool_prepare(struct slc_page_pool *pool, uint32_t user, SluiceFormat format)
+{
+    pthread_mutex_lock(&pool->mutex);
+    slc_page_chunks_prepare(&pool->chunks, pool->timelines.tick, user, format);
+    slc_memory_client_blame(&pool->client, NULL);
+    pthread_mutex_unlock(&pool->mutex);
+}
+
 static void free_page(struct slc_page_pool *pool, uint32_t page, uint32_t user, uint64_t value,
                       uint32_t owner)
 {

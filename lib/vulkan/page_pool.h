@@ -104,6 +104,15 @@ uint32_t slc_page_pool_free_count(struct slc_page_pool *pool, uint32_t user, Slu
 /** SLUICE_PAGE_NONE if there is neither a free page nor room for another chunk. Take pages before
  *  the slc_page_pool_record of the frame that shows them: its array of views has their images. */
 uint32_t slc_page_pool_take(struct slc_page_pool *pool, uint32_t user, SluiceFormat format);
+/** Keeps images of pages of `size` bytes, in all, while they are empty. Default: 0. Call it before
+ *  there are users. */
+static inline void slc_page_pool_keep(struct slc_page_pool *pool, uint64_t size)
+{
+    pool->chunks.kept_size = size;
+}
+
+/** Makes images of pages of the format until the pool has what it keeps, or there is no memory. */
+void slc_page_pool_prepare(struct slc_page_pool *pool, uint32_t user, SluiceFormat format);
 /** One tile less is on the page. `owner` may ask for it again; or SLC_NO_OWNER. A page with other
  *  tiles, of this user or of others, stays theirs. */
 void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);

@@ -99,6 +99,11 @@ struct slc_residency_interface {
     SluiceResult (*allocate_heap)(struct slc_residency *residency, uint64_t size,
                                   uint32_t *heap_id);
     void (*release_heap)(struct slc_residency *residency, uint32_t heap_id);
+    /** Makes heaps of `size` bytes ahead, at most `max_count`; 0: any number. NULL: heaps have no
+     *  memory, as in the next two. */
+    void (*prepare_heaps)(struct slc_residency *residency, uint64_t size, uint32_t max_count);
+    /** Frees up to `wanted` bytes, in whole heaps, that hold no tiles. Returns how many. */
+    uint64_t (*free_spare)(struct slc_residency *residency, uint64_t wanted);
     /** Bytes of heaps that were released and are not freed yet. NULL: heaps have no memory. */
     uint64_t (*going_size)(const struct slc_residency *residency);
 
@@ -175,6 +180,7 @@ struct slc_residency_create_info {
     uint32_t max_changes;       ///< maps and unmaps per frame
     uint32_t max_touched_tiles; ///< 0: no limit
     uint32_t max_region_count;
+    uint64_t kept_heap_size;     ///< bytes of heaps that are kept while empty
     struct slc_page_pool *pages; ///< borrowed
     uint32_t page_user;          ///< of these
 };

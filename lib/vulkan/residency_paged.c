@@ -143,6 +143,7 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
         destroy_image(residency, index);
         return result;
     }
+    slc_page_pool_prepare(p->pool, p->user, slc_page_format(info->format, produced));
     count_memory(p);
     *out = (struct slc_residency_image){.image = first->tail,
                                         .desc = layout.desc,

@@ -130,6 +130,10 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     assert(!sparse_image->image);
     SluiceResult result =
         slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info, produced);
+    if (result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY &&
+        slc_device_heaps_free_spare(&s->heaps, s->vk, UINT64_MAX))
+        result =
+            slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info, produced);
     for (uint32_t i = 0; result == SLUICE_SUCCESS && i < sparse_image->layer_count; i++)
         result = reserve_packed(s, &sparse_image[i], info);
     if (result != SLUICE_SUCCESS) {
@@ -237,6 +241,18 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
     assert(s->dying_count < s->dying_capacity);
     /* Tiles that lay there may have been bound elsewhere by what is still under way. */
     s->dying[s->dying_count++] = (struct dying_heap){heap_id, 0, last_value(s), false};
+}
+
+static void prepare_heaps(struct slc_residency *residency, uint64_t size, uint32_t max_count)
+{
+    struct sparse_residency *s = sparse(residency);
+    slc_device_heaps_prepare(&s->heaps, s->vk, s->cb, size, s->memory_type, max_count);
+}
+
+static uint64_t free_spare(struct slc_residency *residency, uint64_t wanted)
+{
+    struct sparse_residency *s = sparse(residency);
+    return slc_device_heaps_free_spare(&s->heaps, s->vk, wanted);
 }
 
 static uint64_t going_size(const struct slc_residency *residency)
@@ -360,7 +376,7 @@ static struct slot_memory slot_memory(const struct sparse_residency *s,
 {
     if (run->heap_id == SLC_UNBIND)
         return (struct slot_memory){0};
-    const struct slc_memory *heap = &s->heaps.memory[run->heap_id];
+    const struct slc_memory *heap = &s->heaps.at[run->heap_id].memory;
     return (struct slot_memory){heap->memory,
                                 heap->offset + (VkDeviceSize)run->slot * SLC_TILE_SIZE};
 }
@@ -528,6 +544,8 @@ static const struct slc_residency_interface sparse_interface = {
     .reserve = reserve,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
+    .prepare_heaps = prepare_heaps,
+    .free_spare = free_spare,
     .going_size = going_size,
     .update = update,
     .map = map,
@@ -581,6 +599,7 @@ SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info 
     s->max_image_count = info->max_image_count;
     s->max_changes = info->max_changes;
     s->touched.limit = info->max_touched_tiles;
+    s->heaps.kept_size = info->kept_heap_size;
     SluiceResult result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
         result = slc_timeline_create(s->vk, "binds", &s->semaphore);

@@ -18,6 +18,7 @@ void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk 
     shared->max_reads_per_source = info->maxReadsPerSource;
     shared->max_page_chunks =
         info->maxPageChunkCount ? info->maxPageChunkCount : DEFAULT_PAGE_CHUNKS;
+    shared->min_tile_memory = info->minTileMemorySize;
     shared->retry = info->readRetry;
     pthread_mutex_init(&shared->mutex, NULL);
     slc_staging_group_init(&shared->staging, info->minStagingSize);
@@ -38,6 +39,7 @@ static SluiceResult create_pages(struct slc_shared_parts *shared)
     SluiceResult result =
         slc_page_pool_init(pool, shared->vk, shared->caps, shared->cb, shared->max_page_chunks);
     if (result == SLUICE_SUCCESS) {
+        slc_page_pool_keep(pool, shared->min_tile_memory);
         shared->pages = pool;
         return SLUICE_SUCCESS;
     }

@@ -22,6 +22,7 @@ struct slc_shared_parts {
     uint32_t thread_count;         ///< 0: the default of tile loaders
     uint32_t max_reads_per_source; ///< 0: the default of tile loaders
     uint32_t max_page_chunks;      ///< images of pages
+    uint64_t min_tile_memory;      ///< bytes that are made ahead
     SluiceTileRetryPolicy retry;   ///< of failed reads
     pthread_mutex_t mutex;         ///< around the next four
     struct slc_page_pool *pages;

@@ -159,10 +159,23 @@ static SluiceResult shrink_pages(SluiceVulkanStreamer *s,
     return result >= 0 ? release_empty_heaps(s) : result;
 }
 
+/* Heaps that were made ahead go before any tile does. */
+static void free_spare_heaps(SluiceVulkanStreamer *s)
+{
+    struct slc_memory_pressure *pressure = &s->memory_pressure;
+    uint64_t size = pressure->beyond + pressure->refused;
+    if (size == 0)
+        return;
+    uint64_t freed = s->residency->interface->free_spare(s->residency, size);
+    pressure->refused = without(pressure->refused, without(freed, pressure->beyond));
+    pressure->beyond = without(pressure->beyond, freed);
+}
+
 static SluiceResult shrink_heaps(SluiceVulkanStreamer *s,
                                  const SluiceStreamedTextureStatistics *stats)
 {
     struct slc_shrink *shrink = &s->shrink;
+    free_spare_heaps(s);
     SluiceResult result = set_target(s, choose_target(s, stats));
     bool too_many = shrink->target && stats->heapCount > shrink->target;
     if (result >= 0 && (too_many || shrink->compacting))

@@ -117,6 +117,7 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .max_touched_tiles =
             s->info.maxTouchedTiles ? s->info.maxTouchedTiles : s->caps.public.maxTouchedTiles,
         .max_region_count = s->info.maxRegionCount,
+        .kept_heap_size = s->context->shared.min_tile_memory,
         .pages = s->pages,
         .page_user = s->page_user,
     };
@@ -177,7 +178,11 @@ static SluiceResult create_manager(SluiceVulkanStreamer *s)
         .givenUpRetryDelayTicks = s->info.givenUpRetryDelayTicks,
         .separatePackedTiles = true,
     };
-    return sluiceSetConfig(s->manager, &config);
+    result = sluiceSetConfig(s->manager, &config);
+    if (result == SLUICE_SUCCESS && s->residency->interface->prepare_heaps)
+        s->residency->interface->prepare_heaps(
+            s->residency, (uint64_t)s->info.heapTileCapacity * SLC_TILE_SIZE, s->info.maxHeapCount);
+    return result;
 }
 
 static SluiceResult create_arrays(SluiceVulkanStreamer *s)

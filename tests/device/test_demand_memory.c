@@ -71,6 +71,30 @@ static void a_loader_makes_the_staging_memory_that_it_is_asked_for(void **state)
     assert_int_equal(sizes[1] - sizes[0], 60u << 20); /* 1024 tiles in flight, less 4 MiB */
 }
 
+static void images_of_pages_are_made_when_the_first_texture_opens(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    const SluiceVulkanContextCreateInfo context = {.minTileMemorySize = 64u << 20};
+    CHECK_OK(harness_set_context(&h, &context));
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .memoryBudget = 40u << 20};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    add_tiles(&r, runner_add_texture(&r, &image), 0, 2);
+    runner_load(&r, 60);
+    SluiceDemandStatistics statistics = runner_statistics(&r);
+    assert_int_equal(statistics.pageChunkCount, 1);
+    assert_in_range(statistics.tileMemorySize, 39u << 20, 40u << 20); /* all of the budget */
+    for (uint32_t i = 0; i < 100; i++)
+        runner_launch(&r);
+    assert_int_equal(runner_statistics(&r).tileMemorySize, statistics.tileMemorySize);
+    runner_finish(&r);
+    runner_image_finish(&image);
+    CHECK_OK(harness_set_context(&h, NULL));
+}
+
 static void a_working_set_beyond_the_budget_ends_complete_and_blurrier(void **state)
 {
     (void)state;
@@ -709,6 +733,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_new_loader_takes_little_staging_memory_and_more_when_it_reads),
         cmocka_unit_test(a_loader_makes_the_staging_memory_that_it_is_asked_for),
+        cmocka_unit_test(images_of_pages_are_made_when_the_first_texture_opens),
         cmocka_unit_test(a_working_set_beyond_the_budget_ends_complete_and_blurrier),
         cmocka_unit_test(without_a_bias_some_tiles_stay_away_and_coarser_ones_are_shown_there),
         cmocka_unit_test(tiles_that_nobody_uses_make_room_and_come_back_unread),

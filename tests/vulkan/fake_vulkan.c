@@ -69,7 +69,8 @@ SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake)
         .loaderThreadCount = fake->loaderThreadCount ? fake->loaderThreadCount : 1,
         .readRetry = fake->readRetry,
         .maxPageChunkCount = fake->maxPageChunkCount,
-        .minStagingSize = fake->minStagingSize};
+        .minStagingSize = fake->minStagingSize,
+        .minTileMemorySize = fake->minTileMemorySize};
 }
 
 SluiceResult fake_vulkan_create(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info,

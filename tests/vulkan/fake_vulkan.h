@@ -114,7 +114,7 @@ struct fake_vulkan {
     const SluiceAllocationCallbacks *pAllocator;
     uint32_t loaderThreadCount, maxPageChunkCount;
     SluiceTileRetryPolicy readRetry;
-    uint64_t minStagingSize;
+    uint64_t minStagingSize, minTileMemorySize;
 
     bool no_linear_filter;              ///< Its format is sampled with NEAREST filters only.
     VkSamplerCreateInfo newest_sampler; ///< pNext is NULL

@@ -48,10 +48,14 @@ static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
     return stats;
 }
 
+/* Of the next stage, in bytes. */
+static uint64_t tile_memory_ahead, device_memory_limit, layer_size = MIB;
+
 static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_staging_size)
 {
     static struct stage s; /* large */
-    s = (struct stage){.fake = {.tail_page_count = 1, .layer_size = MIB, .want = want, .user = &s}};
+    s = (struct stage){
+        .fake = {.tail_page_count = 1, .layer_size = layer_size, .want = want, .user = &s}};
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = SIZE,
@@ -63,8 +67,18 @@ static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_stag
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
     s.fake.minStagingSize = min_staging_size;
+    s.fake.minTileMemorySize = tile_memory_ahead;
+    s.fake.memory_limit = device_memory_limit;
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
     return &s;
+}
+
+static struct stage *stage_init_limited(SluiceResidencyMode mode, uint64_t memory_limit)
+{
+    device_memory_limit = memory_limit;
+    struct stage *s = stage_init_with(mode, 0);
+    device_memory_limit = 0;
+    return s;
 }
 
 static struct stage *stage_init(SluiceResidencyMode mode)
@@ -175,6 +189,109 @@ static void without_memory_for_more_staging_loads_are_slower_and_all_arrive(void
     }
 }
 
+/* Frames until all tiles are mapped. */
+static uint32_t fill(struct stage *s)
+{
+    uint32_t frames = 0;
+    s->looks = true;
+    for (; statistics(s).mappedTileCount < statistics(s).tileCount; frames++) {
+        assert_true(frames < 100);
+        frame(s);
+    }
+    return frames;
+}
+
+static void idle(struct stage *s, int frames)
+{
+    s->looks = false;
+    for (int f = 0; f < frames; f++)
+        frame(s);
+}
+
+static uint64_t tile_memory(const struct stage *s)
+{
+    return statistics(s).tileMemorySize;
+}
+
+/* All tiles take 64 MiB, in heaps of 16 MiB. */
+static void memory_for_tiles_is_there_before_they_need_it_and_stays(void **state)
+{
+    (void)state;
+    layer_size = 65536;
+    for (int i = 0; i < 2; i++) { /* sparse and paged */
+        tile_memory_ahead = 0;
+        struct stage *s = stage_init(modes[i]);
+        add_textures(s);
+        uint64_t little = tile_memory(s);
+        assert_true(little < 32 * MIB);
+        uint32_t frames = fill(s);
+        stage_finish(s);
+
+        tile_memory_ahead = 128 * MIB;
+        s = stage_init(modes[i]);
+        add_textures(s);
+        uint64_t ahead = tile_memory(s);
+        assert_in_range(ahead, 128 * MIB, 128 * MIB + little);
+        assert_int_equal(fill(s), frames); /* nothing is decided otherwise */
+        assert_true(tile_memory(s) == ahead);
+        for (int t = 0; t < TEXTURES; t++)
+            CHECK_OK(sluiceRemoveVulkanTexture(s->streamer, s->textures[t].textureId));
+        idle(s, 140);
+        assert_in_range(tile_memory(s), 128 * MIB, 128 * MIB + little);
+        stage_finish(s);
+    }
+    layer_size = MIB;
+    tile_memory_ahead = 0;
+}
+
+static void a_budget_that_falls_frees_memory_without_tiles_first(void **state)
+{
+    (void)state;
+    layer_size = 65536;
+    for (int i = 0; i < 2; i++) {
+        tile_memory_ahead = 256 * MIB;
+        struct stage *s = stage_init(modes[i]);
+        add_textures(s);
+        fill(s);
+        uint32_t mapped = (uint32_t)statistics(s).mappedTileCount;
+        assert_true(tile_memory(s) >= 256 * MIB);
+        CHECK_OK(sluiceSetVulkanMemoryBudget(s->streamer->context, 192 * MIB));
+        for (int f = 0; f < 20; f++)
+            frame(s);
+        assert_true(tile_memory(s) <= 192 * MIB);
+        assert_int_equal(statistics(s).mappedTileCount, mapped);
+        stage_finish(s);
+    }
+    layer_size = MIB;
+    tile_memory_ahead = 0;
+}
+
+static void a_device_with_less_memory_makes_less_ahead(void **state)
+{
+    (void)state;
+    layer_size = 65536;
+    for (int i = 0; i < 2; i++) {
+        tile_memory_ahead = 0;
+        struct stage *s = stage_init(modes[i]);
+        add_textures(s);
+        uint64_t little = s->fake.live_memory;
+        stage_finish(s);
+
+        tile_memory_ahead = UINT64_MAX;
+        s = stage_init_limited(modes[i], little + 100 * MIB);
+        add_textures(s);
+        assert_in_range(s->fake.live_memory, little + 64 * MIB, little + 100 * MIB);
+        SluiceVulkanContextStatistics all = {.structSize = sizeof all};
+        CHECK_OK(sluiceGetVulkanContextStatistics(s->streamer->context, &all));
+        assert_true(all.memoryBlockCount < 40);
+        fill(s);
+        assert_int_equal(statistics(s).failedTileCount, 0);
+        stage_finish(s);
+    }
+    layer_size = MIB;
+    tile_memory_ahead = 0;
+}
+
 struct order {
     uint32_t tiles[1024], count;
 };
@@ -228,6 +345,9 @@ int main(void)
         cmocka_unit_test(staging_grows_with_the_loads_and_shrinks_when_idle),
         cmocka_unit_test(staging_that_was_asked_for_is_there_from_the_start_and_stays),
         cmocka_unit_test(without_memory_for_more_staging_loads_are_slower_and_all_arrive),
+        cmocka_unit_test(memory_for_tiles_is_there_before_they_need_it_and_stays),
+        cmocka_unit_test(a_budget_that_falls_frees_memory_without_tiles_first),
+        cmocka_unit_test(a_device_with_less_memory_makes_less_ahead),
         cmocka_unit_test(tiles_are_told_in_the_order_of_their_arrival_whatever_their_slots),
     };
     return RUN_TESTS(tests);

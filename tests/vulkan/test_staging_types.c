@@ -123,5 +123,5 @@ int main(void)
         cmocka_unit_test(staging_memory_is_the_hosts_if_the_gpus_is_full),
         cmocka_unit_test(the_gpus_memory_is_slow_to_read_unless_it_is_cached),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(tests);
 }
