@@ -96,5 +96,12 @@
     SLC_UP_TO(SluiceVulkanContextCreateInfo, minTileMemorySize)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
     SLC_UP_TO(SluiceVulkanContextStatistics, deviceMemoryBudget)
+#define SLC_FIRST_SluicePbrtSceneCreateInfo SLC_UP_TO(SluicePbrtSceneCreateInfo, maxMeshSize)
+#define SLC_FIRST_SluicePbrtSceneInfo SLC_UP_TO(SluicePbrtSceneInfo, focalDistance)
+#define SLC_FIRST_SluicePbrtTexture SLC_UP_TO(SluicePbrtTexture, worldToTexture)
+#define SLC_FIRST_SluicePbrtMaterial SLC_UP_TO(SluicePbrtMaterial, amount)
+#define SLC_FIRST_SluicePbrtLight SLC_UP_TO(SluicePbrtLight, isTwoSided)
+#define SLC_FIRST_SluicePbrtShape SLC_UP_TO(SluicePbrtShape, levels)
+#define SLC_FIRST_SluicePbrtMesh SLC_UP_TO(SluicePbrtMesh, bytesRead)
 
 #endif /* SLC_BASE_FIRST_RELEASE_H */

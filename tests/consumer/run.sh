@@ -86,7 +86,7 @@ every_public_header_is_installed() {
         name=$(basename "$header" .h)
         case $name in
         dds | ktx2) [ -f "$PKG_CONFIG_PATH/sluice-container.pc" ] || continue ;;
-        exr | store | bake | vulkan) [ -f "$PKG_CONFIG_PATH/sluice-$name.pc" ] || continue ;;
+        exr | store | bake | vulkan | pbrt) [ -f "$PKG_CONFIG_PATH/sluice-$name.pc" ] || continue ;;
         esac
         [ -f "$prefix/include/sluice/$name.h" ] || { echo "$name.h is missing"; return 1; }
     done

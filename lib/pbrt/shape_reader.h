@@ -1,0 +1,19 @@
+/** Triangles of shapes that are no PLY files. */
+#ifndef SLC_PBRT_SHAPE_READER_H
+#define SLC_PBRT_SHAPE_READER_H
+
+#include "pbrt/parsed_scene.h"
+
+/** Reads the numbers of a mesh from the text again. Errors, logged: those of
+ *  sluiceReadPbrtShape; *mesh is zeroed then, but for structSize. */
+SluiceResult slc_pbrt_read_inline_mesh(const SluicePbrtScene *scene,
+                                       const struct slc_pbrt_shape_entry *shape,
+                                       SluicePbrtMesh *mesh);
+
+/** A sphere, disk or cylinder as triangles. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_pbrt_build_quadric(const SluicePbrtScene *scene,
+                                    const struct slc_pbrt_shape_entry *shape, SluicePbrtMesh *mesh);
+/** Its box before the transform. */
+SluicePbrtBounds slc_pbrt_quadric_bounds(const struct slc_pbrt_shape_entry *shape);
+
+#endif /* SLC_PBRT_SHAPE_READER_H */

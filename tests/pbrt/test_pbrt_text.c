@@ -1,0 +1,398 @@
+/* What the text of a scene means: transforms against a naive model, cameras, scopes, materials. */
+#include "pbrt/pbrt_files.h"
+#include "support/roll.h"
+#include "support/test.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define HEADER "WorldBegin\n"
+
+static struct pbrt_files files;
+
+static int init(void **state)
+{
+    (void)state;
+    pbrt_files_init(&files);
+    return 0;
+}
+
+static int finish(void **state)
+{
+    (void)state;
+    pbrt_files_finish(&files);
+    return 0;
+}
+
+/* The naive model: 4 x 4 matrices, multiplied as in a textbook. */
+
+typedef double matrix[4][4];
+
+static void multiply(matrix a, matrix b)
+{
+    matrix c;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++) {
+            c[i][j] = 0;
+            for (int k = 0; k < 4; k++)
+                c[i][j] += a[i][k] * b[k][j];
+        }
+    memcpy(a, c, sizeof c);
+}
+
+static void set_identity(matrix m)
+{
+    memset(m, 0, sizeof(matrix));
+    for (int i = 0; i < 4; i++)
+        m[i][i] = 1;
+}
+
+/* Rodrigues: v cos + (k x v) sin + k (k . v)(1 - cos) on each unit vector. */
+static void set_rotation(matrix m, double degrees, const double axis[3])
+{
+    double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    double k[3] = {axis[0] / length, axis[1] / length, axis[2] / length};
+    double s = sin(degrees * acos(-1) / 180), c = cos(degrees * acos(-1) / 180);
+    set_identity(m);
+    for (int column = 0; column < 3; column++) {
+        double v[3] = {column == 0, column == 1, column == 2};
+        double cross[3] = {k[1] * v[2] - k[2] * v[1], k[2] * v[0] - k[0] * v[2],
+                           k[0] * v[1] - k[1] * v[0]};
+        double dot = k[column];
+        for (int row = 0; row < 3; row++)
+            m[row][column] = v[row] * c + cross[row] * s + k[row] * dot * (1 - c);
+    }
+}
+
+/* Appends a random directive to the text, and to the model. */
+static void add_directive(char *text, size_t size, matrix model)
+{
+    double n[16];
+    matrix m;
+    size_t length = strlen(text);
+    for (int i = 0; i < 16; i++) {
+        uint32_t drawn = (uint32_t)roll() % 4001;
+        n[i] = ((double)drawn - 2000) / 1000;
+    }
+    if (fabs(n[1]) + fabs(n[2]) + fabs(n[3]) == 0)
+        n[1] = 1;
+    set_identity(m);
+    switch ((uint32_t)roll() % 5) {
+    case 0:
+        snprintf(text + length, size - length, "Translate %.3f %.3f %.3f\n", n[0], n[1], n[2]);
+        for (int i = 0; i < 3; i++)
+            m[i][3] = n[i];
+        break;
+    case 1:
+        snprintf(text + length, size - length, "Scale %.3f %.3f %.3f\n", n[0], n[1], n[2]);
+        for (int i = 0; i < 3; i++)
+            m[i][i] = n[i];
+        break;
+    case 2:
+        snprintf(text + length, size - length, "Rotate %.3f %.3f %.3f %.3f\n", 100 * n[0], n[1],
+                 n[2], n[3]);
+        set_rotation(m, 100 * n[0], n + 1);
+        break;
+    default: {
+        bool replaces = n[12] > 1;
+        int at = snprintf(text + length, size - length, "%s [",
+                          replaces ? "Transform" : "ConcatTransform");
+        length += (size_t)at;
+        for (int i = 0; i < 16; i++) {
+            m[i % 4][i / 4] = i % 4 == 3 ? i == 15 : n[i];
+            at = snprintf(text + length, size - length, " %.3f", m[i % 4][i / 4]);
+            length += (size_t)at;
+        }
+        snprintf(text + length, size - length, " ]\n");
+        if (replaces)
+            set_identity(model);
+    }
+    }
+    multiply(model, m);
+}
+
+static void transforms_are_those_of_a_naive_model(void **state)
+{
+    (void)state;
+    roll_seed(18);
+    for (int round = 0; round < 200; round++) {
+        char text[8192] = HEADER;
+        matrix model;
+        double size = 1e-3;
+        set_identity(model);
+        uint32_t count = (uint32_t)roll() % 8;
+        for (uint32_t i = 0; i <= count; i++)
+            add_directive(text, sizeof text, model);
+        strcat(text, "Shape \"sphere\"\n");
+        CHECK_OK(pbrt_open_text(&files, text));
+        SluicePbrtShape shape = pbrt_shape(&files, 0);
+        for (int i = 0; i < 12; i++)
+            size = fmax(size, fabs(model[i / 4][i % 4]));
+        for (int i = 0; i < 12; i++)
+            if (fabs(shape.transform[i] - model[i / 4][i % 4]) > 1e-6 * size)
+                fail_msg("%s element %d is %g, not %g", text, i, (double)shape.transform[i],
+                         model[i / 4][i % 4]);
+    }
+}
+
+static void look_at_makes_a_left_handed_camera(void **state)
+{
+    (void)state;
+    CHECK_OK(
+        pbrt_open_text(&files, "LookAt 0 -5 0  0 0 0  0 0 1\nCamera \"perspective\"\n" HEADER));
+    SluicePbrtSceneInfo info = pbrt_info(&files);
+    /* Right is -x, up +z, forward +y. */
+    static const float EXPECTED[12] = {-1, 0, 0, 0, 0, 0, 1, -5, 0, 1, 0, 0};
+    for (int i = 0; i < 12; i++)
+        assert_true(fabsf(info.cameraToWorld[i] - EXPECTED[i]) < 1e-6f);
+    assert_true(info.fieldOfView == 90);
+    assert_int_equal(info.filmWidth, 1280);
+    assert_true(fabsf(info.screenWindow[1] - 1280.0f / 720) < 1e-6f);
+    assert_true(info.screenWindow[3] == 1);
+}
+
+static void a_matrix_and_look_at_make_the_same_camera(void **state)
+{
+    (void)state;
+    CHECK_OK(pbrt_open_text(
+        &files, "LookAt 0 -4 0  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 60\n" HEADER));
+    SluicePbrtSceneInfo a = pbrt_info(&files);
+    CHECK_OK(pbrt_open_text(&files, "Transform [ -1 0 0 0  0 0 1 0  0 1 0 0  0 0 4 1 ]\n"
+                                    "Camera \"perspective\" \"float halffov\" 30\n" HEADER));
+    SluicePbrtSceneInfo b = pbrt_info(&files);
+    for (int i = 0; i < 12; i++)
+        assert_true(fabsf(a.cameraToWorld[i] - b.cameraToWorld[i]) < 1e-6f);
+    assert_true(a.fieldOfView == b.fieldOfView);
+}
+
+static void parameters_go_on_after_an_included_file(void **state)
+{
+    (void)state;
+    pbrt_write(&files, "part.pbrt", "Shape \"sphere\"", 14);
+    CHECK_OK(pbrt_open_text(&files, HEADER
+                            "Include \"part.pbrt\" \"float radius\" 3 \"rgb Kd\" [0 1 0]\n"));
+    SluicePbrtShape shape = pbrt_shape(&files, 0);
+    assert_true(shape.radius == 3);
+    SluicePbrtMaterial material = pbrt_material(&files, shape.material);
+    assert_true(material.diffuse.value[0] == 0 && material.diffuse.value[1] == 1);
+}
+
+static void an_import_leaves_the_state_as_it_was(void **state)
+{
+    (void)state;
+    static const char PART[] =
+        "Translate 9 9 9\nMakeNamedMaterial \"m\" \"string type\" \"diffuse\" "
+        "\"rgb reflectance\" [0 0 1]\nAttributeBegin\nShape \"sphere\"";
+    pbrt_write(&files, "part.pbrt", PART, sizeof PART - 1);
+    CHECK_OK(pbrt_open_text(&files, HEADER
+                            "Import \"part.pbrt\"\nNamedMaterial \"m\"\nShape \"sphere\"\n"));
+    assert_int_equal(pbrt_info(&files).shapeCount, 2);
+    assert_true(pbrt_shape(&files, 0).transform[3] == 9);
+    SluicePbrtShape shape = pbrt_shape(&files, 1);
+    assert_true(shape.transform[3] == 0);
+    assert_true(pbrt_material(&files, shape.material).diffuse.value[2] == 1);
+}
+
+static void a_named_material_may_be_made_later(void **state)
+{
+    (void)state;
+    CHECK_OK(pbrt_open_text(&files, HEADER "NamedMaterial \"m\"\nShape \"sphere\"\n"
+                                           "NamedMaterial \"n\"\nShape \"sphere\"\n"
+                                           "MakeNamedMaterial \"m\" \"string type\" \"mirror\"\n"));
+    assert_int_equal(pbrt_material(&files, pbrt_shape(&files, 0).material).kind,
+                     SLUICE_PBRT_MATERIAL_MIRROR);
+    /* "n" is never made, so the one before stays, which is "m". */
+    assert_int_equal(pbrt_material(&files, pbrt_shape(&files, 1).material).kind,
+                     SLUICE_PBRT_MATERIAL_MIRROR);
+    assert_non_null(strstr(files.log, "scene.pbrt:4:1: no material has the name \"n\""));
+}
+
+static void mixtures_of_themselves_end(void **state)
+{
+    (void)state;
+    CHECK_OK(pbrt_open_text(
+        &files, HEADER
+        "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"b\" \"b\"]\n"
+        "MakeNamedMaterial \"b\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"]\n"
+        "NamedMaterial \"a\"\nShape \"sphere\"\n"));
+    assert_int_equal(pbrt_material(&files, pbrt_shape(&files, 0).material).kind,
+                     SLUICE_PBRT_MATERIAL_DIFFUSE);
+    assert_true(files.errors > 0);
+}
+
+static void both_versions_weigh_mixtures_their_way(void **state)
+{
+    (void)state;
+    static const char *const MIXTURES[2] = {
+        "\"string namedmaterial1\" \"red\" \"string namedmaterial2\" \"blue\" \"rgb amount\" [.25 "
+        ".25 .25]",
+        "\"string materials\" [\"red\" \"blue\"] \"float amount\" .75"};
+    for (int i = 0; i < 2; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 HEADER "MakeNamedMaterial \"red\" \"string type\" \"matte\" \"rgb Kd\" [1 0 0]\n"
+                        "MakeNamedMaterial \"blue\" \"string type\" \"matte\" \"rgb Kd\" [0 0 1]\n"
+                        "Material \"mix\" %s\nShape \"sphere\"\n",
+                 MIXTURES[i]);
+        CHECK_OK(pbrt_open_text(&files, text));
+        SluicePbrtMaterial mix = pbrt_material(&files, pbrt_shape(&files, 0).material);
+        assert_int_equal(mix.kind, SLUICE_PBRT_MATERIAL_MIX);
+        float red = 0;
+        for (int j = 0; j < 2; j++)
+            red += (j ? mix.amount.value[0] : 1 - mix.amount.value[0]) *
+                   pbrt_material(&files, mix.materials[j]).diffuse.value[0];
+        assert_true(fabsf(red - 0.25f) < 1e-6f);
+    }
+}
+
+static void equal_materials_are_one(void **state)
+{
+    (void)state;
+    CHECK_OK(pbrt_open_text(&files,
+                            HEADER "Material \"matte\" \"rgb Kd\" [.1 .2 .3]\nShape \"sphere\"\n"
+                                   "Material \"plastic\"\nShape \"sphere\"\n"
+                                   "Material \"matte\" \"rgb Kd\" [.1 .2 .3]\nShape \"sphere\"\n"));
+    assert_int_equal(pbrt_shape(&files, 0).material, pbrt_shape(&files, 2).material);
+    assert_true(pbrt_shape(&files, 0).material != pbrt_shape(&files, 1).material);
+}
+
+static void reverse_orientation_is_toggled(void **state)
+{
+    (void)state;
+    CHECK_OK(pbrt_open_text(
+        &files,
+        HEADER "ReverseOrientation\nShape \"sphere\"\nReverseOrientation\nShape \"sphere\"\n"));
+    assert_true(pbrt_shape(&files, 0).reverseOrientation);
+    assert_false(pbrt_shape(&files, 1).reverseOrientation);
+}
+
+static void a_later_object_replaces_one_of_its_name(void **state)
+{
+    (void)state;
+    const SluicePbrtInstance *instances;
+    CHECK_OK(pbrt_open_text(
+        &files, HEADER
+        "ObjectBegin \"o\"\nShape \"sphere\"\nObjectEnd\nObjectInstance \"o\"\n"
+        "ObjectBegin \"o\"\nShape \"disk\"\nShape \"disk\"\nObjectEnd\nObjectInstance \"o\"\n"));
+    CHECK_OK(sluiceGetPbrtInstances(files.scene, &instances));
+    assert_int_equal(pbrt_info(&files).instanceCount, 2);
+    SluicePbrtObject first, second;
+    CHECK_OK(sluiceGetPbrtObject(files.scene, instances[0].object, &first));
+    CHECK_OK(sluiceGetPbrtObject(files.scene, instances[1].object, &second));
+    assert_int_equal(first.shapeCount, 1);
+    assert_int_equal(second.shapeCount, 2);
+    assert_int_equal(second.firstShape, 1);
+}
+
+static void inline_meshes_are_read_again_from_their_place(void **state)
+{
+    (void)state;
+    CHECK_OK(pbrt_open_text(
+        &files, HEADER "Shape \"trianglemesh\" # a comment\n\"normal N\" [0 0 1 0 0 1 0 0 1 0 0 1]"
+                       "\"point P\" [ # another one [ 7\n 0 0 0 1e0 0 0 +1 1. 0 0,  1, -.5e-1 ]\n"
+                       "\"float st\" [0 0 1 0 1 1 0 1] \"integer indices\"[0 1 2 0 2 3]\n"));
+    SluicePbrtMesh mesh = {.structSize = sizeof mesh};
+    CHECK_OK(sluiceReadPbrtShape(files.scene, 0, &mesh));
+    static const float POSITIONS[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, -.05f};
+    static const uint32_t INDICES[6] = {0, 1, 2, 0, 2, 3};
+    assert_int_equal(mesh.vertexCount, 4);
+    assert_int_equal(mesh.triangleCount, 2);
+    assert_memory_equal(mesh.pPositions, POSITIONS, sizeof POSITIONS);
+    assert_memory_equal(mesh.pIndices, INDICES, sizeof INDICES);
+    assert_true(mesh.pNormals[2] == 1 && mesh.pUvs[2] == 1);
+    sluiceFreePbrtMesh(files.scene, &mesh);
+    pbrt_write(&files, "scene.pbrt", HEADER, strlen(HEADER));
+    CHECK_RESULT(sluiceReadPbrtShape(files.scene, 0, &mesh), SLUICE_ERROR_IO);
+    sluiceFreePbrtMesh(files.scene, &mesh);
+}
+
+static void numbers_are_those_of_the_c_library(void **state)
+{
+    (void)state;
+    roll_seed(7);
+    for (int i = 0; i < 500; i++) {
+        char text[256], number[64];
+        uint32_t digits = (uint32_t)roll() % 1000000000, more = (uint32_t)roll() % 1000000,
+                 exponent = (uint32_t)roll() % 60;
+        snprintf(number, sizeof number, "%u.%06ue%d", digits, more, (int)exponent - 35);
+        snprintf(text, sizeof text, HEADER "Shape \"sphere\" \"float radius\" %s\n", number);
+        float expected = strtof(number, NULL);
+        if (!(expected > 0))
+            continue;
+        CHECK_OK(pbrt_open_text(&files, text));
+        float found = pbrt_shape(&files, 0).radius;
+        if (found != expected && found != nextafterf(expected, 0) &&
+            found != nextafterf(expected, HUGE_VALF))
+            fail_msg("%s is %.9g, not %.9g", number, (double)found, (double)expected);
+    }
+}
+
+static void limits_stop_the_reader(void **state)
+{
+    (void)state;
+    char text[64 * 20 + 64] = HEADER;
+    for (int i = 0; i < 20; i++)
+        strcat(text, "AttributeBegin\n");
+    pbrt_write(&files, "scene.pbrt", text, strlen(text));
+    SluicePbrtSceneCreateInfo info = {
+        .structSize = sizeof info, .pPath = pbrt_path(&files, "scene.pbrt"), .maxBlockDepth = 19};
+    CHECK_RESULT(sluiceOpenPbrtScene(&info, &files.scene), SLUICE_ERROR_LIMIT_EXCEEDED);
+    info.maxBlockDepth = 20;
+    CHECK_OK(sluiceOpenPbrtScene(&info, &files.scene));
+}
+
+static void bounds_are_remembered_in_a_file(void **state)
+{
+    (void)state;
+    static const char PLY[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                              "property float y\nproperty float z\nelement face 1\n"
+                              "property list uchar int vertex_indices\nend_header\n"
+                              "0 0 0\n1 0 0\n0 2 3\n3 0 1 2\n";
+    SluicePbrtBounds before, after;
+    char ply[600], remembered[600], path[600];
+    pbrt_write(&files, "a.ply", PLY, sizeof PLY - 1);
+    CHECK_OK(pbrt_open_text(&files, HEADER "Shape \"plymesh\" \"string filename\" \"a.ply\"\n"));
+    CHECK_OK(sluiceGetPbrtShapeBounds(files.scene, 0, &before));
+    assert_true(before.most[1] == 2 && before.most[2] == 3);
+    strcpy(remembered, pbrt_path(&files, "bounds"));
+    strcpy(ply, pbrt_path(&files, "a.ply"));
+    strcpy(path, pbrt_path(&files, "scene.pbrt"));
+    CHECK_OK(sluiceWritePbrtBounds(files.scene, remembered));
+    SluicePbrtSceneCreateInfo info = {
+        .structSize = sizeof info, .pPath = path, .pBoundsPath = remembered};
+    sluiceDestroyPbrtScene(files.scene);
+    CHECK_OK(sluiceOpenPbrtScene(&info, &files.scene));
+    pbrt_write(&files, "a.ply", "not a PLY file", 14); /* is not looked at */
+    CHECK_OK(sluiceGetPbrtShapeBounds(files.scene, 0, &after));
+    assert_memory_equal(&before, &after, sizeof before);
+    /* It has changed since, so it is read again. */
+    sluiceDestroyPbrtScene(files.scene);
+    CHECK_OK(sluiceOpenPbrtScene(&info, &files.scene));
+    CHECK_RESULT(sluiceGetPbrtShapeBounds(files.scene, 0, &after), SLUICE_ERROR_CORRUPT_DATA);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, init, finish)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(transforms_are_those_of_a_naive_model),
+        TEST(look_at_makes_a_left_handed_camera),
+        TEST(a_matrix_and_look_at_make_the_same_camera),
+        TEST(parameters_go_on_after_an_included_file),
+        TEST(an_import_leaves_the_state_as_it_was),
+        TEST(a_named_material_may_be_made_later),
+        TEST(mixtures_of_themselves_end),
+        TEST(both_versions_weigh_mixtures_their_way),
+        TEST(equal_materials_are_one),
+        TEST(reverse_orientation_is_toggled),
+        TEST(a_later_object_replaces_one_of_its_name),
+        TEST(inline_meshes_are_read_again_from_their_place),
+        TEST(numbers_are_those_of_the_c_library),
+        TEST(limits_stop_the_reader),
+        TEST(bounds_are_remembered_in_a_file),
+    };
+    return RUN_TESTS(tests);
+}
