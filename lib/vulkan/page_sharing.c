@@ -155,10 +155,12 @@ void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,
                           const SluiceImageSource *source)
 {
     pthread_mutex_lock(&pool->mutex);
-    for (uint32_t i = 0; i < pool->shared.high; i++) {
+    for (uint32_t next, i = slc_shared_tiles_first_of(&pool->shared, source); i != SLC_NONE;
+         i = next) {
         const struct slc_shared_tile *tile = &pool->shared.entries[i];
         bool own = tile->page == SLC_NONE ? tile->writer == user : !(tile->users & ~(1u << user));
-        if (tile->listed && tile->key.source == source && own)
+        next = tile->after;
+        if (own)
             unlist(pool, i);
     }
     pthread_mutex_unlock(&pool->mutex);
@@ -167,8 +169,8 @@ void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,
 void slc_page_share_drop(struct slc_page_pool *pool, const SluiceImageSource *source)
 {
     pthread_mutex_lock(&pool->mutex);
-    for (uint32_t i = 0; i < pool->shared.high; i++)
-        if (pool->shared.entries[i].listed && pool->shared.entries[i].key.source == source)
-            unlist(pool, i);
+    uint32_t first;
+    while ((first = slc_shared_tiles_first_of(&pool->shared, source)) != SLC_NONE)
+        unlist(pool, first);
     pthread_mutex_unlock(&pool->mutex);
 }

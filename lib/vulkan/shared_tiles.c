@@ -9,6 +9,7 @@
 void slc_shared_tiles_finish(struct slc_shared_tiles *tiles, const SluiceAllocationCallbacks *cb)
 {
     slc_map_finish(&tiles->by_hash, cb);
+    slc_map_finish(&tiles->by_source, cb);
     slc_free(cb, tiles->entries, tiles->capacity, sizeof *tiles->entries);
     *tiles = (struct slc_shared_tiles){.free = SLC_NONE};
 }
@@ -54,20 +55,66 @@ uint32_t slc_shared_tiles_find(const struct slc_shared_tiles *tiles, const struc
     return at;
 }
 
+static uint64_t source_key(const SluiceImageSource *source)
+{
+    return (uint64_t)(uintptr_t)source;
+}
+
+uint32_t slc_shared_tiles_first_of(const struct slc_shared_tiles *tiles,
+                                   const SluiceImageSource *source)
+{
+    return tiles->by_source.count ? slc_map_get(&tiles->by_source, source_key(source)) : SLC_NONE;
+}
+
+static void set_first_of(struct slc_shared_tiles *tiles, const SluiceImageSource *source,
+                         uint32_t first)
+{
+    slc_map_remove(&tiles->by_source, source_key(source));
+    if (first != SLC_NONE)
+        slc_map_add(&tiles->by_source, source_key(source), first);
+}
+
+static void join_source(struct slc_shared_tiles *tiles, uint32_t index)
+{
+    struct slc_shared_tile *entry = &tiles->entries[index];
+    entry->before = SLC_NONE;
+    entry->after = slc_shared_tiles_first_of(tiles, entry->key.source);
+    if (entry->after != SLC_NONE)
+        tiles->entries[entry->after].before = index;
+    set_first_of(tiles, entry->key.source, index);
+}
+
+static void leave_source(struct slc_shared_tiles *tiles, uint32_t index)
+{
+    const struct slc_shared_tile *entry = &tiles->entries[index];
+    if (entry->after != SLC_NONE)
+        tiles->entries[entry->after].before = entry->before;
+    if (entry->before != SLC_NONE)
+        tiles->entries[entry->before].after = entry->after;
+    else
+        set_first_of(tiles, entry->key.source, entry->after);
+}
+
+static SluiceResult grow_maps(struct slc_shared_tiles *tiles, const SluiceAllocationCallbacks *cb,
+                              uint32_t capacity)
+{
+    struct slc_map *maps[] = {&tiles->by_hash, &tiles->by_source};
+    SluiceResult result = SLUICE_SUCCESS;
+    for (int i = 0; i < 2 && result == SLUICE_SUCCESS; i++)
+        result = maps[i]->place_count ? slc_map_reserve(maps[i], cb, capacity)
+                                      : slc_map_init(maps[i], cb, capacity);
+    return result;
+}
+
 static bool grow(struct slc_shared_tiles *tiles, const SluiceAllocationCallbacks *cb)
 {
     uint32_t old = tiles->capacity, capacity = slc_max_u32(64, 2 * old);
-    SluiceResult result = old ? slc_map_reserve(&tiles->by_hash, cb, capacity)
-                              : slc_map_init(&tiles->by_hash, cb, capacity);
-    if (result != SLUICE_SUCCESS)
+    if (grow_maps(tiles, cb, capacity) != SLUICE_SUCCESS)
         return false;
     struct slc_shared_tile *entries =
         slc_regrow(cb, tiles->entries, old, capacity, sizeof *entries);
-    if (!entries) {
-        if (old == 0)
-            slc_map_finish(&tiles->by_hash, cb);
+    if (!entries)
         return false;
-    }
     tiles->entries = entries;
     tiles->capacity = capacity;
     return true;
@@ -89,6 +136,7 @@ uint32_t slc_shared_tiles_add(struct slc_shared_tiles *tiles, const SluiceAlloca
     slc_map_add(&tiles->by_hash, hash, index);
     tiles->entries[index] =
         (struct slc_shared_tile){.key = *key, .page = SLC_NONE, .next = first, .listed = true};
+    join_source(tiles, index);
     return index;
 }
 
@@ -108,6 +156,7 @@ void slc_shared_tiles_unlist(struct slc_shared_tiles *tiles, uint32_t index)
             first = tiles->entries[first].next;
         tiles->entries[first].next = entry->next;
     }
+    leave_source(tiles, index);
     entry->listed = false;
 }
 

@@ -24,10 +24,11 @@ struct slc_tile_key slc_tile_key(SluiceImageSource *source, const SluiceImageReg
 
 struct slc_shared_tile {
     struct slc_tile_key key;
-    uint32_t page;  ///< SLC_NONE: it is being read
-    uint32_t next;  ///< of equal hash, or of free entries
-    uint64_t value; ///< `written`: the writer's frame that copies it; `going`: a tick
-    uint32_t users; ///< bits: hold the page
+    uint32_t page;          ///< SLC_NONE: it is being read
+    uint32_t next;          ///< of equal hash, or of free entries
+    uint32_t before, after; ///< `listed`: of the same source; SLC_NONE: none
+    uint64_t value;         ///< `written`: the writer's frame that copies it; `going`: a tick
+    uint32_t users;         ///< bits: hold the page
     uint32_t holds[SLC_MAX_PAGE_USERS]; ///< by user: how many of its tiles are on the page
     uint32_t readers;                   ///< bits: have held it
     uint8_t writer;    ///< user that reads and copies it; SLC_MAX_PAGE_USERS: its texels are there
@@ -42,7 +43,8 @@ struct slc_shared_tiles {
     struct slc_shared_tile *entries; ///< owned
     uint32_t high, capacity, free;   ///< `free`: the first free entry, SLC_NONE for none
     uint32_t going_count;
-    struct slc_map by_hash; ///< hash of a key -> the first entry
+    struct slc_map by_hash;   ///< hash of a key -> the first entry
+    struct slc_map by_source; ///< source -> its first entry that is listed
 };
 
 /** A zeroed struct is empty but for `free`: SLC_NONE. */
@@ -51,6 +53,9 @@ void slc_shared_tiles_finish(struct slc_shared_tiles *tiles, const SluiceAllocat
 /** SLC_NONE if it is not listed. */
 uint32_t slc_shared_tiles_find(const struct slc_shared_tiles *tiles,
                                const struct slc_tile_key *key);
+/** An entry of the source that is listed; others by `after`. SLC_NONE if there is none. */
+uint32_t slc_shared_tiles_first_of(const struct slc_shared_tiles *tiles,
+                                   const SluiceImageSource *source);
 /** A new entry, listed; the key is not. SLC_NONE without host memory. */
 uint32_t slc_shared_tiles_add(struct slc_shared_tiles *tiles, const SluiceAllocationCallbacks *cb,
                               const struct slc_tile_key *key);

@@ -62,8 +62,26 @@ static void finish(struct model *m)
     assert_int_equal(m->memory.live_bytes, 0);
 }
 
+/* The entries of a source are chained, all of them and no others. */
+static void check_source(const struct model *m, const SluiceImageSource *source)
+{
+    uint32_t expected = 0, count = 0, before = SLC_NONE;
+    for (uint32_t i = 0; i < KEYS; i++)
+        expected += m->listed[i] != SLC_NONE && m->keys[i].source == source;
+    for (uint32_t i = slc_shared_tiles_first_of(&m->tiles, source); i != SLC_NONE;
+         i = m->tiles.entries[i].after) {
+        assert_true(m->tiles.entries[i].listed && m->tiles.entries[i].key.source == source);
+        assert_int_equal(m->tiles.entries[i].before, before);
+        before = i;
+        assert_in_range(++count, 1, expected);
+    }
+    assert_int_equal(count, expected);
+}
+
 static void check(const struct model *m)
 {
+    for (uint32_t i = 0; i < 3; i++)
+        check_source(m, source_of(i));
     for (uint32_t i = 0; i < KEYS; i++)
         assert_int_equal(slc_shared_tiles_find(&m->tiles, &m->keys[i]), m->listed[i]);
     for (uint32_t i = 0; i < m->unlisted_count; i++)
