@@ -173,8 +173,10 @@ static int compare_words(const void *key, const void *member)
 {
     const struct slc_pbrt_token *token = key;
     const struct directive *directive = member;
-    int order = strncmp(token->text, directive->word, token->length);
-    return order ? order : directive->word[token->length] ? -1 : 0;
+    size_t length = strlen(directive->word); /* the token may have bytes of 0 */
+    int order =
+        memcmp(token->text, directive->word, length < token->length ? length : token->length);
+    return order ? order : (token->length > length) - (token->length < length);
 }
 
 /* Skips values behind a word that is not known: everything up to the next word that is no value. */

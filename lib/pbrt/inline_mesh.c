@@ -16,7 +16,7 @@ static bool read_one(struct slc_pbrt_lexer *lexer, double *number)
     struct slc_pbrt_window *window = &lexer->window;
     if (slc_pbrt_skip_blanks(lexer) == 0)
         return false;
-    if (window->end - window->cursor < NUMBER_REACH && !window->is_over)
+    while (window->end - window->cursor < NUMBER_REACH && !window->is_over)
         slc_pbrt_window_refill(window, window->cursor);
     struct slc_pbrt_token token;
     const unsigned char *text = window->bytes + window->cursor;

@@ -8,6 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#if TEST_HAS_ZLIB
+#include <zlib.h>
+#endif
+
 #define HEADER "WorldBegin\n"
 
 static struct pbrt_files files;
@@ -373,6 +377,55 @@ static void bounds_are_remembered_in_a_file(void **state)
     CHECK_RESULT(sluiceGetPbrtShapeBounds(files.scene, 0, &after), SLUICE_ERROR_CORRUPT_DATA);
 }
 
+static void compressed_files_are_read_like_plain_ones(void **state)
+{
+    (void)state;
+#if TEST_HAS_ZLIB
+    enum { COUNT = 60000 };
+    static const char HEAD[] = "ply\nformat ascii 1.0\nelement vertex 60000\nproperty float x\n"
+                               "property float y\nproperty float z\nelement face 1\n"
+                               "property list uchar int vertex_indices\nend_header\n";
+    char path[600];
+    strcpy(path, pbrt_path(&files, "scene.pbrt.gz"));
+    gzFile scene = gzopen(path, "wb"), ply = gzopen(pbrt_path(&files, "a.ply.gz"), "wb");
+    gzputs(scene, HEADER "Shape \"plymesh\" \"string filename\" \"a.ply.gz\"\n"
+                         "Shape \"trianglemesh\" \"integer indices\" [0 1 59999] \"point P\" [\n");
+    gzputs(ply, HEAD);
+    for (int i = 0; i < COUNT; i++) {
+        gzprintf(scene, "%d %d.5 -%d\n", i, i, i);
+        gzprintf(ply, "%d %d.5 -%d\n", i, i, i);
+    }
+    gzputs(scene, "]\n");
+    gzputs(ply, "3 0 1 59999\n");
+    assert_int_equal(gzclose(scene), Z_OK);
+    assert_int_equal(gzclose(ply), Z_OK);
+    CHECK_OK(pbrt_open(&files, path));
+    assert_int_equal(pbrt_read_all(&files), 2);
+    for (uint32_t shape = 0; shape < 2; shape++) {
+        SluicePbrtMesh mesh = {.structSize = sizeof mesh};
+        CHECK_OK(sluiceReadPbrtShape(files.scene, shape, &mesh));
+        assert_int_equal(mesh.vertexCount, COUNT);
+        assert_int_equal(mesh.pIndices[2], COUNT - 1);
+        for (int i = 0; i < COUNT; i++)
+            assert_true(mesh.pPositions[3 * i] == (float)i &&
+                        mesh.pPositions[3 * i + 1] == (float)i + 0.5f &&
+                        mesh.pPositions[3 * i + 2] == (float)-i);
+        CHECK_OK(sluiceFreePbrtMesh(files.scene, &mesh));
+    }
+#else
+    SKIP_TEST("Sluice is built without zlib");
+#endif
+}
+
+static void options_of_both_forms_are_skipped(void **state)
+{
+    (void)state;
+    CHECK_OK(pbrt_open_text(&files, "Option \"disablepixeljitter\" true\nOption \"string r\" "
+                                    "[\"world\"]\n" HEADER "Shape \"sphere\"\n"));
+    assert_int_equal(pbrt_info(&files).shapeCount, 1);
+    assert_string_equal(files.log, "");
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, init, finish)
 
 int main(void)
@@ -393,6 +446,8 @@ int main(void)
         TEST(numbers_are_those_of_the_c_library),
         TEST(limits_stop_the_reader),
         TEST(bounds_are_remembered_in_a_file),
+        TEST(compressed_files_are_read_like_plain_ones),
+        TEST(options_of_both_forms_are_skipped),
     };
     return RUN_TESTS(tests);
 }
