@@ -151,6 +151,10 @@ static uint32_t forget_old(SluiceDemandLoader *loader, const struct slc_image_or
         struct slc_demand_image *image = find_oldest(loader, order);
         if (!image || loader->processed - image->last_use < loader->info.forgetAfterLaunches)
             break;
+        if (image->retry_group) { /* tiles that failed would be read again before their time */
+            slc_image_touch(loader, image, loader->processed);
+            continue;
+        }
         slc_image_forget_texture(loader, image);
         count++;
     }

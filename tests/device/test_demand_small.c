@@ -367,6 +367,41 @@ static void far_textures_stay_open_while_near_ones_come_and_go(void **state)
     small_destroy(s);
 }
 
+/* A tile that failed is not to be read again. */
+static void failed_tiles_are_not_read_again_because_of_age(void **state)
+{
+    (void)state;
+    enum { LARGE = 1024, LAUNCHES = 4 };
+    static const SluiceResult script[] = {SLUICE_SUCCESS, SLUICE_ERROR_CORRUPT_DATA,
+                                          SLUICE_ERROR_CORRUPT_DATA};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .forgetAfterLaunches = LAUNCHES,
+                                               .failureRetryDelayNs = UINT64_MAX};
+    struct small *s = small_create(&info);
+    add(s, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, LARGE, LARGE);
+    s->images[0].source.script = script;
+    s->images[0].source.script_length = 3;
+    h.quiet = true;
+    runner_add_texel(&s->r, s->ids[0], LARGE, LARGE, 0, 1, 1);
+    assert_in_range(runner_load(&s->r, 20), 1, 19);
+    uint64_t reads = atomic_load(&s->images[0].source.read_count);
+    assert_int_equal(runner_statistics(&s->r).failedCount, 1);
+    runner_clear(&s->r);
+    for (uint32_t i = 0; i < 4 * LAUNCHES; i++)
+        runner_launch(&s->r);
+    runner_add_texel(&s->r, s->ids[0], LARGE, LARGE, 0, 1, 1);
+    assert_in_range(runner_load(&s->r, 20), 1, 19);
+    assert_int_equal(atomic_load(&s->images[0].source.read_count), reads);
+    assert_int_equal(runner_statistics(&s->r).texturesForgotten, 0);
+    runner_clear(&s->r);
+    CHECK_OK(sluiceRetryDemandTexture(s->r.loader, s->ids[0]));
+    for (uint32_t i = 0; i < 4 * LAUNCHES; i++)
+        runner_launch(&s->r);
+    assert_int_equal(runner_statistics(&s->r).texturesForgotten, 1);
+    h.quiet = false;
+    small_destroy(s);
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -385,6 +420,7 @@ int main(void)
         cmocka_unit_test(nothing_is_forgotten_without_eviction),
         cmocka_unit_test(textures_whose_last_level_is_sampled_are_in_use),
         cmocka_unit_test(far_textures_stay_open_while_near_ones_come_and_go),
+        cmocka_unit_test(failed_tiles_are_not_read_again_because_of_age),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }
