@@ -109,11 +109,11 @@ typedef struct SluiceDemandLoaderCreateInfo {
      * Launches without a sample of a texture after which the texture is forgotten. Its tiles and
      * its mip tail are evicted, and an image that a callback opened is closed. Shaders that sample
      * the texture again open it again; its id stays valid. Samples of only the last level's color
-     * count as samples. A texture is kept while tiles that failed
-     * wait for their retry. A value above 0 makes shaders report
-     * what they use in every launch, which costs 13 to 21 ns per page on the host
-     * (docs/decisions/0067). Default: 0, textures are forgotten only when memory is short, least
-     * recently used first. With noEviction no texture is forgotten.
+     * count as samples. A texture is kept while a preload of it runs, and while tiles that failed
+     * wait for their retry. A value above 0 makes shaders report what they use in every launch,
+     * which costs 13 to 21 ns per page on the host (docs/decisions/0067). Default: 0, textures are
+     * forgotten only when memory is short, least recently used first. With noEviction no texture is
+     * forgotten.
      */
     uint32_t forgetAfterLaunches;
 } SluiceDemandLoaderCreateInfo;

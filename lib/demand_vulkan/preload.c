@@ -137,6 +137,8 @@ static bool advance(SluiceDemandLoader *loader, struct slc_preload *preload)
         return over;
     if (!preload->planned)
         plan(loader, preload, image);
+    /* It is in use: the next launch counts as one that samples it. */
+    slc_image_touch(loader, loader->images[image->slot], loader->launch + 1);
     while (slc_job_is_ready(loader, SLC_JOB_TILE)) {
         uint32_t page;
         SluiceResult result;

@@ -402,6 +402,48 @@ static void failed_tiles_are_not_read_again_because_of_age(void **state)
     small_destroy(s);
 }
 
+/* Reads of another texture have all the memory for reads, and wait. */
+static void a_texture_stays_open_while_its_preload_waits(void **state)
+{
+    (void)state;
+    enum { LARGE = 1024, LAUNCHES = 4, TILES = 64, PRELOADED = 64 + 16 + 4 + 1 + 1 };
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .memoryBudget = 32u << 20,
+                                               .forgetAfterLaunches = LAUNCHES,
+                                               .maxTilesInFlight = 16};
+    struct small *s = small_create(&info);
+    SluiceDemandTicket ticket;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status, .remainingCount = 1};
+    for (uint32_t i = 0; i < 2; i++) {
+        add(s, i, SLUICE_FORMAT_R8G8B8A8_UNORM, LARGE, LARGE);
+        runner_add_texel(&s->r, s->ids[i], LARGE, LARGE, 3, 1, 1);
+    }
+    assert_in_range(runner_load(&s->r, 20), 1, 19);
+    runner_clear(&s->r);
+    s->images[0].source.holds = true;
+    for (uint32_t i = 0; i < TILES; i++)
+        runner_add_texel(&s->r, s->ids[0], LARGE, LARGE, 0, i % 8 * 128, i / 8 * 128);
+    runner_launch(&s->r);
+    CHECK_OK(sluicePreloadDemandTexture(s->r.loader, s->ids[1], 0, &ticket));
+    for (uint32_t i = 0; i < 4 * LAUNCHES; i++)
+        runner_launch(&s->r);
+    assert_int_equal(runner_statistics(&s->r).texturesForgotten, 0);
+    fault_source_release(&s->images[0].source);
+    for (uint32_t i = 0; i < 100 && status.remainingCount; i++) {
+        runner_launch(&s->r);
+        CHECK_OK(sluiceWaitDemandTicket(s->r.loader, ticket, UINT64_MAX, &status));
+    }
+    assert_int_equal(status.remainingCount + status.failedCount, 0);
+    runner_launch(&s->r); /* shows the last of them */
+    assert_int_equal(runner_statistics(&s->r).texturesForgotten, 0);
+    uint64_t resident = runner_statistics(&s->r).residentTileCount;
+    for (uint32_t i = 0; i < 4 * LAUNCHES; i++)
+        runner_launch(&s->r);
+    assert_int_equal(runner_statistics(&s->r).texturesForgotten, 1);
+    assert_int_equal(resident - runner_statistics(&s->r).residentTileCount, PRELOADED);
+    small_destroy(s);
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -421,6 +463,7 @@ int main(void)
         cmocka_unit_test(textures_whose_last_level_is_sampled_are_in_use),
         cmocka_unit_test(far_textures_stay_open_while_near_ones_come_and_go),
         cmocka_unit_test(failed_tiles_are_not_read_again_because_of_age),
+        cmocka_unit_test(a_texture_stays_open_while_its_preload_waits),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }
