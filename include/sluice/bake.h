@@ -46,7 +46,8 @@ typedef enum SluiceBakeTransfer {
 
 /** Meaning of the picture's alpha. The store keeps the same meaning. */
 typedef enum SluiceBakeAlpha {
-    SLUICE_BAKE_ALPHA_AUTO = 0, ///< PREMULTIPLIED for OpenEXR files and sources, else STRAIGHT.
+    /** PREMULTIPLIED for OpenEXR files, sources and SNORM formats; else STRAIGHT. */
+    SLUICE_BAKE_ALPHA_AUTO = 0,
     /**
      * Coverage, clamped to [0, 1], that colors are weighted by. Alpha 0 counts a little (2^-24), so
      * an uncovered texel is the mean of its colors. Filters with negative lobes fade colors to
@@ -68,9 +69,10 @@ typedef enum SluiceBakeQuality {
 typedef struct SluiceBakeSettings {
     uint32_t structSize; ///< sizeof(SluiceBakeSettings).
     /**
-     * Format of the store: any but BC2, ETC2, EAC and the signed BC4 and BC5. Of a format and its
-     * sRGB twin, `transfer` selects one, whichever you name. Formats without a twin hold linear
-     * light.
+     * Format of the store: any but BC2, ETC2, EAC and the signed BC4 and BC5. Integer pictures
+     * (UINT, SINT) have their own format alone, and other pictures have no integer format. Of a
+     * format and its sRGB twin, `transfer` selects one, whichever you name. Formats without a twin
+     * hold linear light.
      *
      * Default (UNDEFINED): the format that fits the picture.
      * - 8-bit integers: R8 for one channel; R8G8 for two that are not gray and alpha; else
@@ -78,6 +80,7 @@ typedef struct SluiceBakeSettings {
      * - 16-bit integers: R16, R16G16 or R16G16B16A16 UNORM, chosen like those of 8 bits. Colors
      *   become linear light.
      * - 16- and 32-bit floats: same type, one or four channels.
+     * - SNORM, packed and integer formats (DDS, KTX2, sources): the picture's format.
      */
     SluiceFormat format;
     SluiceBakeQuality quality;   ///< Default: NORMAL.
@@ -86,7 +89,7 @@ typedef struct SluiceBakeSettings {
     SluiceBakeFilter filter;     ///< Default: BOX.
     SluiceBakeWrap wrapX, wrapY; ///< Recorded as address modes. Default: CLAMP.
     /**
-     * R, G and B are unit vectors; integers hold (n + 1) / 2. Vectors of every level are
+     * R, G and B are unit vectors; UNORM formats hold (n + 1) / 2. Vectors of every level are
      * normalized. Vectors that cancel out become (0, 0, 1). For pictures of two channels z >= 0 is
      * computed.
      */
@@ -155,7 +158,7 @@ typedef struct SluiceBakeInfo {
     /** Path of the picture. NULL: bake pInput or `source`. */
     const char *pInputPath;
     /** Source to bake if pInputPath and pInput are NULL: level 0 of all layers, or all levels
-     *  unchanged if they are block-compressed. Not owned. */
+     *  unchanged if they are block-compressed or integers. Not owned. */
     SluiceImageSource *source;
     const char *pOutputPath;             ///< Required.
     const SluiceBakeSettings *pSettings; ///< Default: every setting has its default.
@@ -221,9 +224,11 @@ typedef struct SluiceBakeReport {
  * Level 0 is stored byte for byte if the format holds the picture's samples. Block-compressed
  * pictures (DDS, KTX2) keep all their levels and must have the full chain. Of the settings, only
  * these apply to them: transfer (selects the sRGB twin of the format or the reverse), normalMap,
- * wraps, compression. ICC profiles are not applied. CMYK, Lab and similar become sRGB. Pictures are
- * turned as their EXIF orientation says, with a message of SLUICE_LOG_INFO, and are then unpacked
- * as a whole.
+ * wraps, compression. Integer pictures (UINT, SINT) keep their format and the levels that they
+ * have. Texels of missing levels are picked from the next finer level. Of the settings, only wraps
+ * and compression apply to them. SNORM pictures are averaged as signed numbers. ICC profiles are
+ * not applied. CMYK, Lab and similar become sRGB. Pictures are turned as their EXIF orientation
+ * says, with a message of SLUICE_LOG_INFO, and are then unpacked as a whole.
  *
  * The output is complete or absent. An interrupted bake leaves the output path + ".sluice-part";
  * the next bake resumes it. `pReport` may be NULL.
@@ -238,7 +243,8 @@ typedef struct SluiceBakeReport {
  *         square or not six for each cube; SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO;
  * SLUICE_ERROR_BUSY if another writer has the output open; SLUICE_ERROR_CORRUPT_DATA for truncated
  * files and files that no reader understands; SLUICE_ERROR_UNSUPPORTED for more than four channels,
- *         complex numbers, and formats that Sluice cannot encode; SLUICE_ERROR_LIMIT_EXCEEDED if
+ *         complex numbers, formats that Sluice cannot encode, integer pictures with another
+ *         `format`, and integer formats of other pictures; SLUICE_ERROR_LIMIT_EXCEEDED if
  *         maxMemory is too small for the picture; SLUICE_ERROR_CANCELED;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Thread safety: any thread, several calls at the same time, but only one per output.

@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/part_file.h"
 #include "base/struct_size.h"
+#include "image/format_size.h"
 #include "image/info.h"
 
 #include <string.h>
@@ -125,10 +126,12 @@ static void describe_store(struct bake *bake)
 }
 
 /* By the channels alone: nobody says more. */
-static SluiceStoreMeaning meaning_of_blocks(SluiceFormat format, bool normals)
+static SluiceStoreMeaning meaning_of_levels(SluiceFormat format, bool normals)
 {
     SluiceFormatInfo info = {.structSize = sizeof info};
     (void)sluiceGetFormatInfo(format, &info);
+    if (slc_format_is_integer(format))
+        return SLUICE_STORE_MEANING_DATA;
     if (normals)
         return SLUICE_STORE_MEANING_NORMAL;
     return info.channelCount < 3    ? SLUICE_STORE_MEANING_DATA
@@ -136,18 +139,33 @@ static SluiceStoreMeaning meaning_of_blocks(SluiceFormat format, bool normals)
                                     : SLUICE_STORE_MEANING_COLOR_ALPHA;
 }
 
+/* Integers are numbers of things: no other format can hold them all. */
+static SluiceResult check_integers(const struct bake *bake, const SluiceImageInfo *image)
+{
+    SluiceFormat format = bake->settings.format;
+    if (!slc_format_is_integer(image->format) || format == SLUICE_FORMAT_UNDEFINED ||
+        format == image->format)
+        return SLUICE_SUCCESS;
+    slc_log(&bake->baker->log, SLUICE_LOG_ERROR,
+            "%s: format is %s; integers are stored as they are: it must be %s or UNDEFINED",
+            bake->picture->name, sluiceGetFormatName(format), sluiceGetFormatName(image->format));
+    return SLUICE_ERROR_UNSUPPORTED;
+}
+
 /* Many files of blocks do not know whether they hold sRGB; the settings may say so. */
-static SluiceResult describe_blocks(struct bake *bake, SluiceImageInfo *image)
+static SluiceResult describe_levels(struct bake *bake, SluiceImageInfo *image)
 {
     const SluiceBakeSettings *settings = &bake->settings;
-    SluiceResult result = sluiceGetImageInfo(bake->picture->blocks, image);
+    SluiceResult result = sluiceGetImageInfo(bake->picture->levels, image);
+    if (result == SLUICE_SUCCESS)
+        result = check_integers(bake, image);
     if (result != SLUICE_SUCCESS)
         return result;
     if (settings->transfer != SLUICE_BAKE_TRANSFER_AUTO)
         image->format =
             slc_format_twin(image->format, settings->transfer == SLUICE_BAKE_TRANSFER_SRGB);
     bake->plan =
-        (struct slc_plan){.meaning = meaning_of_blocks(image->format, settings->normalMap)};
+        (struct slc_plan){.meaning = meaning_of_levels(image->format, settings->normalMap)};
     if (slc_format_is_srgb(image->format))
         bake->plan.color_space = SLUICE_STORE_COLOR_SPACE_SRGB;
     return SLUICE_SUCCESS;
@@ -156,8 +174,8 @@ static SluiceResult describe_blocks(struct bake *bake, SluiceImageInfo *image)
 static SluiceResult describe_picture(struct bake *bake, SluiceImageInfo *image)
 {
     const struct slc_picture *picture = bake->picture;
-    if (picture->blocks)
-        return describe_blocks(bake, image);
+    if (picture->levels)
+        return describe_levels(bake, image);
     SluiceResult result =
         slc_plan_make(picture, &bake->settings, bake->baker->decoded16, &bake->plan);
     image->width = picture->width;
@@ -265,7 +283,7 @@ static SluiceResult copy_levels(struct bake *bake, const SluiceStoreLayout *layo
 {
     struct slc_copy copy = {.allocator = bake->baker->allocator,
                             .jobs = &bake->baker->jobs,
-                            .source = bake->picture->blocks,
+                            .source = bake->picture->levels,
                             .writer = bake->writer,
                             .layout = *layout,
                             .first_layer = first_layer,
@@ -284,7 +302,7 @@ static SluiceResult write_layers(struct bake *bake, const SluiceStoreLayout *lay
     struct slc_picture *picture = bake->picture;
     uint32_t first = bake->index * bake->image.arrayLayerCount;
     SluiceResult result = SLUICE_SUCCESS;
-    if (picture->blocks)
+    if (picture->levels)
         return copy_levels(bake, layout, first);
     for (uint32_t i = 0; i < picture->layer_count && result == SLUICE_SUCCESS; i++) {
         picture->layer = i;
@@ -339,7 +357,7 @@ static uint64_t memory_for_picture(const struct bake *bake, const SluiceStoreLay
 {
     const struct slc_bake_jobs *jobs = &bake->baker->jobs;
     uint64_t size = bake->picture->memory + MEMORY_PER_THREAD * (jobs->thread_count + 1);
-    return size + (bake->picture->blocks ? slc_copy_memory(layout, jobs->thread_count)
+    return size + (bake->picture->levels ? slc_copy_memory(layout, jobs->thread_count)
                                          : slc_baking_memory(bake->picture, &bake->plan, layout));
 }
 

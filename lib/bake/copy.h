@@ -1,4 +1,4 @@
-/** Block-compressed levels from a source into a store, as they are. */
+/** Levels from a source into a store, as they are: blocks and integers. */
 #ifndef SLC_BAKE_COPY_H
 #define SLC_BAKE_COPY_H
 

@@ -25,6 +25,7 @@ struct slc_picture {
     uint32_t layer;       ///< whose rows are read; set it, then rewind
     bool cube;            ///< the layers are faces of cube maps
     enum slc_sample sample;
+    SluiceFormat texels;    ///< of SLC_SAMPLE_TEXELS
     uint32_t channels;      ///< 1 to 4
     bool alpha;             ///< the last of 2 or 4 channels is alpha
     bool premultiplied;     ///< where nobody says otherwise
@@ -33,8 +34,9 @@ struct slc_picture {
     uint64_t memory;        ///< bytes that reading takes, roughly
     uint64_t unpacked_size; ///< of these, for a file that is unpacked as a whole
     bool foreign_primaries; ///< colors are in other primaries than those of Rec. 709
-    /** Set for block-compressed data: all levels are read from here and nothing is filtered. */
-    SluiceImageSource *blocks;
+    /** Set for block-compressed data and for integers: all levels are read from here, and nothing
+     *  is filtered. */
+    SluiceImageSource *levels;
 };
 
 struct slc_picture_opening {
@@ -52,7 +54,10 @@ SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening
                               const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
                               struct slc_picture **picture);
 
-/** Level 0 of a source, or all of it if it is block-compressed. `owned`: closing destroys it. */
+/**
+ * Level 0 of a source, or all levels if it is block-compressed or has integers. Levels of integers
+ * that are missing are picked. `owned`: closing destroys the source.
+ */
 SluiceResult slc_picture_of_source(SluiceImageSource *source, bool owned, const char *name,
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, struct slc_picture **picture);

@@ -5,14 +5,18 @@
 #include "base/log.h"
 #include "image/format_size.h"
 #include "image/info.h"
+#include "image/mip.h"
 
 /* Rows that are read at once: a row of tiles of the files that are meant for this. */
 #define STRIP 128u
+/* Bytes that picked levels of integers may take. Finer levels are picked while they are read. */
+#define PICKED_LEVELS_MEMORY ((uint64_t)64 << 20)
 
 struct source_picture {
     struct slc_picture base;
     SluiceImageSource *source;
     bool owned;
+    SluiceImageSource *chain; ///< owned; of integers: `source` with all levels
     SluiceFormat format;
     char *rows; ///< [STRIP][width]
     size_t pitch;
@@ -46,6 +50,7 @@ static void close_picture(struct slc_picture *base)
 {
     struct source_picture *picture = (struct source_picture *)base;
     SluiceAllocationCallbacks cb = base->allocator;
+    sluiceDestroyImageSource(picture->chain);
     if (picture->owned)
         sluiceDestroyImageSource(picture->source);
     slc_free(&cb, picture->rows, STRIP * picture->pitch, 1);
@@ -54,34 +59,51 @@ static void close_picture(struct slc_picture *base)
 
 static const struct slc_picture_interface source_interface = {row, rewind_picture, close_picture};
 
-static bool find_sample(SluiceFormat format, enum slc_sample *sample)
+/* Formats without samples of their own are read as whole texels. */
+static enum slc_sample find_sample(SluiceFormat format)
 {
+    if (slc_format_is_unorm16(format))
+        return SLC_SAMPLE_U16;
+    if (slc_format_is_half(format))
+        return SLC_SAMPLE_F16;
+    if (slc_format_is_snorm(format) || slc_format_is_packed(format))
+        return SLC_SAMPLE_TEXELS;
     switch (format) {
-    case SLUICE_FORMAT_R8_UNORM:
-    case SLUICE_FORMAT_R8G8_UNORM:
-    case SLUICE_FORMAT_R8G8B8A8_UNORM:
-    case SLUICE_FORMAT_R8G8B8A8_SRGB: *sample = SLC_SAMPLE_U8; return true;
-    case SLUICE_FORMAT_R16_SFLOAT:
-    case SLUICE_FORMAT_R16G16_SFLOAT:
-    case SLUICE_FORMAT_R16G16B16A16_SFLOAT: *sample = SLC_SAMPLE_F16; return true;
     case SLUICE_FORMAT_R32_SFLOAT:
     case SLUICE_FORMAT_R32G32_SFLOAT:
-    case SLUICE_FORMAT_R32G32B32A32_SFLOAT: *sample = SLC_SAMPLE_F32; return true;
-    default: return false;
+    case SLUICE_FORMAT_R32G32B32A32_SFLOAT: return SLC_SAMPLE_F32;
+    default: return SLC_SAMPLE_U8;
     }
 }
 
-static SluiceResult unsupported(const struct source_picture *picture, const char *what)
+/* Bytes that picked levels take in memory. */
+static uint64_t picked_size(const SluiceImageInfo *info)
 {
-    slc_log(&picture->base.log, SLUICE_LOG_ERROR, "%s: %s", picture->base.name, what);
-    return SLUICE_ERROR_UNSUPPORTED;
+    uint64_t size = slc_mip_chain_size(info->format, slc_mip_size(info->width, info->mipLevelCount),
+                                       slc_mip_size(info->height, info->mipLevelCount));
+    return size < PICKED_LEVELS_MEMORY / slc_max_u32(1, info->arrayLayerCount)
+               ? size * slc_max_u32(1, info->arrayLayerCount)
+               : PICKED_LEVELS_MEMORY;
+}
+
+static SluiceResult describe_integers(struct source_picture *picture, const SluiceImageInfo *info)
+{
+    SluiceCompleteChainSourceCreateInfo create = {.structSize = sizeof create,
+                                                  .source = picture->source,
+                                                  .maxMemorySize = PICKED_LEVELS_MEMORY,
+                                                  .pAllocator = &picture->base.allocator,
+                                                  .log = picture->base.log};
+    SluiceResult result = sluiceCreateCompleteChainSource(&create, &picture->chain);
+    picture->base.levels = picture->chain;
+    picture->base.memory = (1 << 20) + picked_size(info);
+    return result;
 }
 
 static SluiceResult describe(struct source_picture *picture, const SluiceImageInfo *info)
 {
     struct slc_picture *base = &picture->base;
     SluiceFormatInfo format = {.structSize = sizeof format};
-    SluiceResult result = slc_image_info_check(info, SLC_LEVELS_ALL_OR_ONE, &base->log);
+    SluiceResult result = slc_image_info_check(info, SLC_LEVELS_ANY, &base->log);
     if (result != SLUICE_SUCCESS)
         return result;
     result = sluiceGetFormatInfo(info->format, &format);
@@ -100,12 +122,14 @@ static SluiceResult describe(struct source_picture *picture, const SluiceImageIn
         result = slc_image_info_check(info, SLC_LEVELS_ALL, &base->log);
         if (result != SLUICE_SUCCESS)
             return result;
-        base->blocks = picture->source;
+        base->levels = picture->source;
         base->memory = 1 << 20;
         return SLUICE_SUCCESS;
     }
-    if (!find_sample(info->format, &base->sample))
-        return unsupported(picture, "packed formats are not baked");
+    if (slc_format_is_integer(info->format))
+        return describe_integers(picture, info);
+    base->sample = find_sample(info->format);
+    base->texels = info->format;
     picture->pitch = (size_t)slc_format_row_size(&format, info->width);
     base->memory = STRIP * (uint64_t)picture->pitch;
     picture->rows = slc_alloc(&base->allocator, STRIP * picture->pitch, 1);

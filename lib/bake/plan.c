@@ -57,6 +57,8 @@ static SluiceFormat natural_format(const struct slc_picture *picture, bool norma
         return is_single && srgb ? SLUICE_FORMAT_R8G8B8A8_UNORM : byte_format(picture, normals);
     if (picture->sample == SLC_SAMPLE_U16)
         return word_format(picture, normals);
+    if (picture->sample == SLC_SAMPLE_TEXELS)
+        return picture->texels;
     if (is_half)
         return is_single ? SLUICE_FORMAT_R16_SFLOAT
                : is_pair ? SLUICE_FORMAT_R16G16_SFLOAT
@@ -82,6 +84,12 @@ static bool is_float32(SluiceFormat format)
            format == SLUICE_FORMAT_R32G32B32A32_SFLOAT;
 }
 
+/* Signed numbers are data: their fourth channel is no coverage. */
+static bool is_signed(const struct slc_picture *picture)
+{
+    return picture->sample == SLC_SAMPLE_TEXELS && slc_format_is_snorm(picture->texels);
+}
+
 static void find_rules(const struct slc_picture *picture, struct slc_plan *plan)
 {
     const SluiceBakeSettings *settings = &plan->settings;
@@ -89,9 +97,10 @@ static void find_rules(const struct slc_picture *picture, struct slc_plan *plan)
     SluiceFormatInfo info = {.structSize = sizeof info};
     (void)sluiceGetFormatInfo(plan->format, &info);
     bool is_straight = settings->alpha == SLUICE_BAKE_ALPHA_AUTO
-                           ? !picture->premultiplied
+                           ? !picture->premultiplied && !is_signed(picture)
                            : settings->alpha == SLUICE_BAKE_ALPHA_STRAIGHT;
     rules->sample = picture->sample;
+    rules->texels = picture->texels;
     rules->channels = picture->channels;
     rules->alpha = picture->alpha;
     rules->straight = picture->alpha && info.channelCount == 4 && is_straight;
@@ -105,7 +114,8 @@ static void find_rules(const struct slc_picture *picture, struct slc_plan *plan)
 static void find_meaning(const struct slc_picture *picture, struct slc_plan *plan)
 {
     const struct slc_rules *rules = &plan->rules;
-    bool is_data = picture->channels == 1 || (picture->channels == 2 && !picture->alpha);
+    bool is_data =
+        picture->channels == 1 || (picture->channels == 2 && !picture->alpha) || is_signed(picture);
     if (rules->normals)
         plan->meaning = SLUICE_STORE_MEANING_NORMAL;
     else if (is_data && !rules->srgb)
@@ -151,6 +161,12 @@ SluiceResult slc_plan_make(const struct slc_picture *picture, const SluiceBakeSe
     if (sluiceGetFormatTexelSize(plan->format) == 0 && !slc_can_encode_blocks(plan->format)) {
         slc_log(&picture->log, SLUICE_LOG_ERROR, "%s: this build cannot encode %s%s", picture->name,
                 sluiceGetFormatName(plan->format), slc_block_encoder_hint(plan->format));
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    if (slc_format_is_integer(plan->format)) {
+        slc_log(&picture->log, SLUICE_LOG_ERROR,
+                "%s: format is %s; integer formats are made from integer pictures alone",
+                picture->name, sluiceGetFormatName(plan->format));
         return SLUICE_ERROR_UNSUPPORTED;
     }
     find_rules(picture, plan);

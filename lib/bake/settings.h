@@ -5,7 +5,7 @@
 #include <sluice/bake.h>
 
 /** Part of every hash; raised when the same settings give other stores. */
-#define SLC_BAKE_REVISION 4
+#define SLC_BAKE_REVISION 5
 
 /** Hash of all settings that determine the texels. */
 uint64_t slc_hash_settings(const SluiceBakeSettings *settings);

@@ -2,6 +2,7 @@
 
 #include "base/checked.h"
 #include "image/convert.h"
+#include "image/format_size.h"
 #include "image/half.h"
 #include "image/srgb.h"
 
@@ -41,6 +42,15 @@ static float sample_value(const struct slc_rules *rules, const char *sample)
     }
 }
 
+/* Decodes sRGB, beyond 1 too. */
+static float decode_float(float value)
+{
+    if (value <= 0.04045f)
+        return value / 12.92f;
+    float decoded = powf((value + 0.055f) / 1.055f, 2.4f);
+    return isinf(decoded) && isfinite(value) ? FLT_MAX : decoded;
+}
+
 /* Of R, G or B. */
 static float color_value(const struct slc_rules *rules, const char *sample)
 {
@@ -53,11 +63,7 @@ static float color_value(const struct slc_rules *rules, const char *sample)
         memcpy(&word, sample, 2);
         return rules->decoded16[word];
     }
-    float value = sample_value(rules, sample); /* encoded floats, beyond 1 too */
-    if (value <= 0.04045f)
-        return value / 12.92f;
-    float decoded = powf((value + 0.055f) / 1.055f, 2.4f);
-    return isinf(decoded) && isfinite(value) ? FLT_MAX : decoded;
+    return decode_float(sample_value(rules, sample));
 }
 
 /* Converts samples to RGBA floats. Gray becomes R, G and B. */
@@ -70,6 +76,18 @@ static void expand(const struct slc_rules *rules, const char *samples, float *rg
             rgba[c] = c < colors ? color_value(rules, samples + c * size)
                                  : (colors == 1 ? rgba[0] : 0.0f);
         rgba[3] = rules->alpha ? sample_value(rules, samples + (channels - 1) * size) : 1.0f;
+    }
+}
+
+static void expand_texels(const struct slc_rules *rules, const void *texels, float *rgba,
+                          uint32_t count)
+{
+    slc_texels_to_rgba(rules->texels, texels, rgba, count);
+    for (uint32_t i = 0; i < count; i++, rgba += 4) {
+        if (rules->channels == 1)
+            rgba[1] = rgba[2] = rgba[0];
+        for (uint32_t c = 0; c < 3 && rules->srgb; c++)
+            rgba[c] = decode_float(rgba[c]);
     }
 }
 
@@ -128,10 +146,23 @@ static void weigh_by_alpha(float *rgba, uint32_t count)
     }
 }
 
-/* Integers hold (n + 1) / 2. */
+static bool is_unorm(SluiceFormat format)
+{
+    return format == SLUICE_FORMAT_R8_UNORM || format == SLUICE_FORMAT_R8G8_UNORM ||
+           format == SLUICE_FORMAT_R8G8B8A8_UNORM ||
+           format == SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32 || slc_format_is_unorm16(format);
+}
+
+/* Whether samples of normal maps are (n + 1) / 2: numbers without sign. */
+static bool has_encoded_normals(const struct slc_rules *rules)
+{
+    return rules->sample == SLC_SAMPLE_U8 || rules->sample == SLC_SAMPLE_U16 ||
+           (rules->sample == SLC_SAMPLE_TEXELS && is_unorm(rules->texels));
+}
+
 static void point_normals(const struct slc_rules *rules, float *rgba, uint32_t count)
 {
-    bool is_encoded = rules->sample == SLC_SAMPLE_U8 || rules->sample == SLC_SAMPLE_U16;
+    bool is_encoded = has_encoded_normals(rules);
     bool is_flat = rules->channels - rules->alpha == 2;
     for (uint32_t i = 0; i < count; i++, rgba += 4) {
         for (uint32_t c = 0; c < 3 && is_encoded; c++)
@@ -141,14 +172,23 @@ static void point_normals(const struct slc_rules *rules, float *rgba, uint32_t c
     }
 }
 
+static bool may_be_infinite(const struct slc_rules *rules)
+{
+    return rules->sample == SLC_SAMPLE_F16 || rules->sample == SLC_SAMPLE_F32 ||
+           (rules->sample == SLC_SAMPLE_TEXELS &&
+            rules->texels == SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32);
+}
+
 void slc_read_texels(const struct slc_rules *rules, const void *samples, float *rgba,
                      uint32_t count, struct slc_replaced *replaced)
 {
     if (rules->sample == SLC_SAMPLE_U8 && rules->srgb && rules->channels >= 3)
         expand_srgb8(samples, rules->channels, rgba, count);
+    else if (rules->sample == SLC_SAMPLE_TEXELS)
+        expand_texels(rules, samples, rgba, count);
     else
         expand(rules, samples, rgba, count);
-    if (rules->sample == SLC_SAMPLE_F16 || rules->sample == SLC_SAMPLE_F32)
+    if (may_be_infinite(rules))
         replace_texels(rules, rgba, count, replaced);
     if (rules->normals)
         point_normals(rules, rgba, count);
@@ -170,7 +210,9 @@ static void unweigh(const struct slc_rules *rules, float *rgba, uint32_t count)
 
 static void normalize(const struct slc_rules *rules, float *rgba, uint32_t count)
 {
-    bool is_encoded = rules->sample == SLC_SAMPLE_U8 || rules->sample == SLC_SAMPLE_U16;
+    /* Floats hold normals as the picture does. */
+    bool is_encoded = is_unorm(rules->format) ||
+                      (has_encoded_normals(rules) && !slc_format_is_snorm(rules->format));
     for (uint32_t i = 0; i < count; i++, rgba += 4) {
         double x = (double)rgba[0], y = (double)rgba[1], z = (double)rgba[2];
         double length = sqrt(x * x + y * y + z * z); /* squares of floats overflow no double */
@@ -245,6 +287,8 @@ bool slc_keeps_samples(const struct slc_rules *rules)
 {
     if (rules->sample == SLC_SAMPLE_U16)
         return !rules->srgb && keeps_words(rules);
+    if (rules->sample == SLC_SAMPLE_TEXELS)
+        return !rules->srgb && rules->format == rules->texels && !may_be_infinite(rules);
     if (rules->sample != SLC_SAMPLE_U8)
         return false;
     switch (rules->format) {
@@ -263,6 +307,10 @@ void slc_copy_samples(const struct slc_rules *rules, const void *samples, void *
     const uint8_t *in = samples;
     uint8_t *out = texels;
     size_t size = slc_sample_size(rules->sample);
+    if (rules->sample == SLC_SAMPLE_TEXELS) {
+        memcpy(out, in, (size_t)count * sluiceGetFormatTexelSize(rules->texels));
+        return;
+    }
     if (rules->channels != 3) {
         memcpy(out, in, (size_t)count * rules->channels * size);
         return;

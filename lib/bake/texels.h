@@ -9,11 +9,18 @@
 
 #include <sluice/bake.h>
 
-enum slc_sample { SLC_SAMPLE_U8, SLC_SAMPLE_U16, SLC_SAMPLE_F16, SLC_SAMPLE_F32 };
+enum slc_sample {
+    SLC_SAMPLE_U8,
+    SLC_SAMPLE_U16,
+    SLC_SAMPLE_F16,
+    SLC_SAMPLE_F32,
+    SLC_SAMPLE_TEXELS ///< whole texels of a format: SNORM, and packed ones
+};
 
 /** How a picture is understood and what becomes of it. */
 struct slc_rules {
     enum slc_sample sample;
+    SluiceFormat texels; ///< of SLC_SAMPLE_TEXELS
     uint32_t channels;   ///< of the picture, 1 to 4: gray, gray and alpha (or RG), RGB, RGBA
     bool alpha;          ///< the last of 2 or 4 channels is alpha
     bool srgb;           ///< R, G and B are encoded
@@ -34,7 +41,7 @@ struct slc_replaced {
     uint64_t clamped;  ///< a finite number was beyond the limit
 };
 
-/** Bytes of a sample. */
+/** Bytes of a sample that is a number. */
 uint32_t slc_sample_size(enum slc_sample sample);
 
 /** Fills 65536 values for `decoded16`. */
@@ -48,7 +55,8 @@ void slc_read_texels(const struct slc_rules *rules, const void *samples, float *
 void slc_write_texels(const struct slc_rules *rules, const float *rgba, float alpha_scale,
                       void *texels, uint32_t count);
 
-/** Whether level 0 stores the samples unchanged: integers. A missing alpha is added. */
+/** Whether level 0 stores the samples unchanged: no floats that may be infinite. A missing alpha is
+ * added. */
 bool slc_keeps_samples(const struct slc_rules *rules);
 
 /** Texels of samples that are kept. */
