@@ -5,6 +5,7 @@
 #define SLUICE_DEMAND_CUBIC true
 #include "sluice/demand_bindings.glsl"
 #include "sluice/demand.glsl"
+#include "sluice/ray_footprint.glsl"
 
 layout(std430, set = 1, binding = 0) buffer Answer { vec4 colors[]; } answer;
 layout(push_constant) uniform Draw { uint index; } draw;
@@ -20,9 +21,45 @@ vec3 bumpNormal(uint index, vec2 uv, vec2 dx, vec2 dy, float height, vec3 tangen
     return normalize(cross(alongU, alongV));
 }
 
+vec4 hitWithCone(uint index, inout SluiceRayCone cone, vec3 p[3], vec3 n[3], vec2 uv[3], vec2 at, vec3 direction,
+                 float distance, vec3 normal)
+{
+    vec2 dx, dy;
+    bool resident;
+    SluiceRayTriangle t = sluiceFindRayTriangle(p[0], p[1], p[2], uv[0], uv[1], uv[2]);
+    cone = sluicePropagateCone(cone, distance);
+    sluiceConeGradients(t, cone, direction, dx, dy);
+    vec4 color = sluiceDemandGrad(index, at, dx, dy, resident);
+    float curvature = sluiceTriangleCurvature(p[0], p[1], p[2], n[0], n[1], n[2]);
+    cone = sluiceReflectCone(cone, direction, normal, curvature);
+    return color;
+}
+
+vec4 hitWithDifferential(uint index, inout SluiceRayDifferential ray, SluiceRayTriangle t, vec3 n[3], vec2 weights,
+                         vec2 at, vec3 direction, float distance, vec3 normal)
+{
+    vec2 dx, dy;
+    bool resident;
+    ray = sluiceTransferDifferential(ray, direction, distance, t.normal);
+    sluiceDifferentialGradients(t, ray, dx, dy);
+    vec3 normalX = sluiceNormalAlong(t, n[0], n[1], n[2], weights, ray.positionX);
+    vec3 normalY = sluiceNormalAlong(t, n[0], n[1], n[2], weights, ray.positionY);
+    ray = sluiceReflectDifferential(ray, direction, normal, normalX, normalY);
+    return sluiceDemandGrad(index, at, dx, dy, resident);
+}
+
 void main()
 {
     vec3 normal = bumpNormal(draw.index, vec2(0.5), vec2(0.01, 0.0), vec2(0.0, 0.01), 0.1, vec3(1.0, 0.0, 0.0),
                              vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0));
     answer.colors[0] = vec4(normal, 1.0);
+    vec3 p[3] = vec3[](vec3(1.0, 0.0, 0.0), vec3(1.0, 1.0, 0.0), vec3(1.0, 0.0, 1.0));
+    vec3 n[3] = vec3[](vec3(-1.0, 0.0, 0.0), vec3(-1.0, 0.0, 0.0), vec3(-1.0, 0.0, 0.0));
+    vec2 uv[3] = vec2[](vec2(0.0), vec2(1.0, 0.0), vec2(0.0, 1.0));
+    vec3 direction = vec3(1.0, 0.0, 0.0);
+    SluiceRayCone cone = SluiceRayCone(0.0, sluicePixelSpread(1.0, 1080.0));
+    answer.colors[1] = hitWithCone(draw.index, cone, p, n, uv, vec2(0.5), direction, 1.0, n[0]);
+    SluiceRayDifferential ray = sluiceCameraDifferential(direction, vec3(0.0, 0.001, 0.0), vec3(0.0, 0.0, 0.001));
+    SluiceRayTriangle t = sluiceFindRayTriangle(p[0], p[1], p[2], uv[0], uv[1], uv[2]);
+    answer.colors[2] = hitWithDifferential(draw.index, ray, t, n, vec2(0.0), uv[0], direction, 1.0, n[0]);
 }
