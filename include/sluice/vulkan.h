@@ -400,6 +400,19 @@ typedef struct SluiceVulkanTextureCreateInfo {
      * give the primary a bicubic filter, too: its feedback counts. Default: LINEAR.
      */
     SluiceTextureFilter filter;
+    /**
+     * Mode of this texture. SluiceVulkanTexture returns the mode used. Shaders sample all of them
+     * alike. Values:
+     * - AUTO: the streamer's mode. If that was left to AUTO, too, textures whose level 0 fits into
+     *   a tile of 64 KiB are dense: there is nothing to stream, and their images share memory.
+     * - DENSE: an ordinary image of all levels, in a streamer of any mode. In other streamers than
+     *   dense ones it is loaded as a whole when it is added, and by maxLoadsInFlight reads of
+     *   64 KiB at most.
+     * - SPARSE, PAGED: that mode, which must be the streamer's.
+     *
+     * Default: AUTO.
+     */
+    SluiceResidencyMode residencyMode;
 } SluiceVulkanTextureCreateInfo;
 
 /** Texture as the application draws with it. Never grows. */
@@ -430,6 +443,9 @@ typedef struct SluiceVulkanTexture {
      */
     VkImageView cubeArrayView;
     SluiceTextureFilter filter; ///< Filter of its samples.
+    /** SPARSE, PAGED or DENSE. DENSE, in a streamer of any mode, for images that have all levels.
+     */
+    SluiceResidencyMode residencyMode;
 } SluiceVulkanTexture;
 
 /**
@@ -440,7 +456,8 @@ typedef struct SluiceVulkanTexture {
  *         producer, an unknown address mode or filter, a primary that follows another texture, or
  * an image whose info is out of range (image.h), for example without a level that fits into a tile;
  *         SLUICE_ERROR_UNKNOWN_TEXTURE and SLUICE_ERROR_STALE_TEXTURE for the primary;
- *         SLUICE_ERROR_UNSUPPORTED if the device cannot stream the format or size;
+ *         SLUICE_ERROR_UNSUPPORTED if the device cannot stream the format or size, or for a
+ *         residencyMode that the streamer does not have;
  *         SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount, maxRegionCount or
  *         feedbackReadbackSize; errors of the source; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
  *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.

@@ -73,19 +73,21 @@
 #define SLC_FIRST_SluiceFilePoolStatistics SLC_UP_TO(SluiceFilePoolStatistics, replacedTotal)
 #define SLC_FIRST_SluiceImageOpenerCreateInfo SLC_UP_TO(SluiceImageOpenerCreateInfo, log)
 #define SLC_FIRST_SluiceOpenedImageInfo SLC_UP_TO(SluiceOpenedImageInfo, totalTexels)
-#define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
-    SLC_UP_TO(SluiceVulkanDeviceCapabilities, sparseCubes)
-#define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \
-    SLC_UP_TO(SluiceVulkanFormatCapabilities, maxImageSize)
-#define SLC_FIRST_SluiceVulkanSparseImageLayout                                                    \
-    SLC_UP_TO(SluiceVulkanSparseImageLayout, memoryTypeBits)
+#define SLC_FIRST_SluicePbrtSceneCreateInfo SLC_UP_TO(SluicePbrtSceneCreateInfo, maxMeshSize)
+#define SLC_FIRST_SluicePbrtSceneInfo SLC_UP_TO(SluicePbrtSceneInfo, focalDistance)
+#define SLC_FIRST_SluicePbrtTexture SLC_UP_TO(SluicePbrtTexture, worldToTexture)
+#define SLC_FIRST_SluicePbrtMaterial SLC_UP_TO(SluicePbrtMaterial, amount)
+#define SLC_FIRST_SluicePbrtLight SLC_UP_TO(SluicePbrtLight, isTwoSided)
+#define SLC_FIRST_SluicePbrtShape SLC_UP_TO(SluicePbrtShape, levels)
+#define SLC_FIRST_SluicePbrtMesh SLC_UP_TO(SluicePbrtMesh, bytesRead)
 #define SLC_FIRST_SluiceVulkanStreamerDebugInfo                                                    \
     SLC_UP_TO(SluiceVulkanStreamerDebugInfo, wholeFeedbackMaps)
 #define SLC_FIRST_SluiceVulkanStreamerCreateInfo SLC_UP_TO(SluiceVulkanStreamerCreateInfo, pDebug)
 #define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
 #define SLC_FIRST_SluiceTileBatch SLC_UP_TO(SluiceTileBatch, pTiles)
 #define SLC_FIRST_SluiceTileProducer SLC_UP_TO(SluiceTileProducer, timeoutFrames)
-#define SLC_FIRST_SluiceVulkanTextureCreateInfo SLC_UP_TO(SluiceVulkanTextureCreateInfo, filter)
+#define SLC_FIRST_SluiceVulkanTextureCreateInfo                                                    \
+    SLC_UP_TO(SluiceVulkanTextureCreateInfo, residencyMode)
 #define SLC_FIRST_SluiceVulkanBuffers SLC_UP_TO(SluiceVulkanBuffers, pageTable)
 #define SLC_FIRST_SluiceVulkanPages SLC_UP_TO(SluiceVulkanPages, generation)
 #define SLC_FIRST_SluiceStreamingFrame SLC_UP_TO(SluiceStreamingFrame, descriptorSet)
@@ -96,12 +98,11 @@
     SLC_UP_TO(SluiceVulkanContextCreateInfo, minTileMemorySize)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
     SLC_UP_TO(SluiceVulkanContextStatistics, deviceMemoryBudget)
-#define SLC_FIRST_SluicePbrtSceneCreateInfo SLC_UP_TO(SluicePbrtSceneCreateInfo, maxMeshSize)
-#define SLC_FIRST_SluicePbrtSceneInfo SLC_UP_TO(SluicePbrtSceneInfo, focalDistance)
-#define SLC_FIRST_SluicePbrtTexture SLC_UP_TO(SluicePbrtTexture, worldToTexture)
-#define SLC_FIRST_SluicePbrtMaterial SLC_UP_TO(SluicePbrtMaterial, amount)
-#define SLC_FIRST_SluicePbrtLight SLC_UP_TO(SluicePbrtLight, isTwoSided)
-#define SLC_FIRST_SluicePbrtShape SLC_UP_TO(SluicePbrtShape, levels)
-#define SLC_FIRST_SluicePbrtMesh SLC_UP_TO(SluicePbrtMesh, bytesRead)
+#define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
+    SLC_UP_TO(SluiceVulkanDeviceCapabilities, sparseCubes)
+#define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \
+    SLC_UP_TO(SluiceVulkanFormatCapabilities, maxImageSize)
+#define SLC_FIRST_SluiceVulkanSparseImageLayout                                                    \
+    SLC_UP_TO(SluiceVulkanSparseImageLayout, memoryTypeBits)
 
 #endif /* SLC_BASE_FIRST_RELEASE_H */

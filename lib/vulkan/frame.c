@@ -58,7 +58,8 @@ static SluiceResult unmap_tiles(SluiceVulkanStreamer *s)
         for (uint32_t i = 0; i < count; i++) {
             uint32_t index = s->by_manager_index[(uint32_t)s->tiles[i].textureId];
             bool filled = slc_loads_unmap(s, index, &s->tiles[i]);
-            s->residency->interface->unmap(s->residency, index, &s->tiles[i], s->frame, filled);
+            struct slc_residency *residency = slc_residency_of(s, index);
+            residency->interface->unmap(residency, index, &s->tiles[i], s->frame, filled);
         }
         s->counts.tilesUnmapped += count;
         if (count < asked)

@@ -5,11 +5,14 @@
 
 #include <string.h>
 
-#define UNIT 1024u
-#define FIRST_UNITS 64u   /* 64 KiB: the first block of a pool */
-#define BLOCK_UNITS 8192u /* 8 MiB: the largest */
-#define SMALL_UNITS 2048u
-#define BLOCK_ALIGNMENT 4096u /* images round their offset up themselves */
+#define UNIT 256u
+#define FIRST_UNITS 256u   /* 64 KiB: the first block of a pool */
+#define BLOCK_UNITS 32768u /* 8 MiB: the largest */
+#define SMALL_UNITS 8192u
+#define BLOCK_ALIGNMENT 4096u
+#define FIRST_RANGES 15u
+/* Ranges begin at multiples of this. Images round up to more themselves. */
+#define RANGE_ALIGNMENT (UNIT * SLC_REGION_ALIGNMENT)
 
 static SluiceResult allocate(const struct slc_image_memory *pool, const struct slc_vk *vk,
                              uint64_t size, uint64_t alignment, uint32_t type,
@@ -60,7 +63,7 @@ static SluiceResult add_block(struct slc_image_memory *pool, const struct slc_vk
         return result;
     struct slc_image_block *block = &pool->blocks[at];
     uint32_t units = next_block_units(pool, needed);
-    result = slc_region_arena_init(&block->arena, cb, units, units / SLC_REGION_ALIGNMENT);
+    result = slc_region_arena_init(&block->arena, cb, units, FIRST_RANGES);
     if (result == SLUICE_SUCCESS)
         result = allocate(pool, vk, (uint64_t)units * UNIT, BLOCK_ALIGNMENT, type, &block->memory);
     if (result != SLUICE_SUCCESS) {
@@ -73,19 +76,35 @@ static SluiceResult add_block(struct slc_image_memory *pool, const struct slc_vk
     return SLUICE_SUCCESS;
 }
 
+static SluiceResult take_from(struct slc_image_memory *pool, const SluiceAllocationCallbacks *cb,
+                              uint32_t block, struct slc_image_place *place)
+{
+    struct slc_region_arena *arena = &pool->blocks[block].arena;
+    if (slc_region_arena_reserve(arena, cb, pool->blocks[block].used + 1) != SLUICE_SUCCESS)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (!slc_region_arena_take(arena, place->count, &place->first))
+        return SLUICE_NOT_READY;
+    place->block = pool->last = block;
+    return SLUICE_SUCCESS;
+}
+
+/* Begins with the block that had room last: those before it are most often full. */
 static SluiceResult take(struct slc_image_memory *pool, const struct slc_vk *vk,
                          const SluiceAllocationCallbacks *cb, uint32_t type,
                          struct slc_image_place *place)
 {
-    for (uint32_t i = 0; i < pool->block_capacity; i++)
-        if (pool->blocks[i].memory.memory && pool->blocks[i].type == type &&
-            slc_region_arena_take(&pool->blocks[i].arena, place->count, &place->first)) {
-            place->block = i;
-            return SLUICE_SUCCESS;
-        }
-    SluiceResult result = add_block(pool, vk, cb, type, place->count, &place->block);
-    if (result == SLUICE_SUCCESS)
-        slc_region_arena_take(&pool->blocks[place->block].arena, place->count, &place->first);
+    SluiceResult result = SLUICE_NOT_READY;
+    for (uint32_t i = 0; i < pool->block_capacity && result == SLUICE_NOT_READY; i++) {
+        uint32_t at = (pool->last + i) % pool->block_capacity;
+        if (pool->blocks[at].memory.memory && pool->blocks[at].type == type)
+            result = take_from(pool, cb, at, place);
+    }
+    uint32_t block;
+    if (result == SLUICE_NOT_READY) {
+        result = add_block(pool, vk, cb, type, place->count, &block);
+        if (result == SLUICE_SUCCESS)
+            result = take_from(pool, cb, block, place);
+    }
     return result;
 }
 
@@ -99,8 +118,9 @@ SluiceResult slc_image_memory_bind(struct slc_image_memory *pool, const struct s
                                          VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
     if (type == UINT32_MAX || memory.size > slc_device_memory_size(caps))
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
-    /* Room to round the offset up: ranges begin at multiples of 4 KiB only. */
-    uint64_t size = memory.size + memory.alignment;
+    uint64_t size = memory.size;
+    if (memory.alignment > RANGE_ALIGNMENT) /* room to round the offset up */
+        size += memory.alignment - RANGE_ALIGNMENT;
     *place = (struct slc_image_place){0};
     SluiceResult result;
     VkDeviceSize offset = 0;

@@ -12,7 +12,7 @@
 struct slc_image_block {
     struct slc_memory memory; ///< none: free
     uint32_t type;
-    struct slc_region_arena arena; ///< in units of 1 KiB
+    struct slc_region_arena arena; ///< in units of 256 bytes
     uint32_t used;                 ///< images
 };
 
@@ -21,6 +21,7 @@ struct slc_image_memory {
     SluiceDeviceMemoryPurpose purpose;
     struct slc_image_block *blocks; ///< owned
     uint32_t block_capacity;
+    uint32_t last;       ///< block that had room last
     uint64_t total_size; ///< bytes allocated
 };
 

@@ -78,8 +78,9 @@ SluiceResult slc_tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult
         slc_unit_list_append(s, &s->arrived, index);
         return SLUICE_SUCCESS;
     }
-    if (s->residency->interface->withdraw)
-        s->residency->interface->withdraw(s->residency, unit->texture, &unit->tile);
+    struct slc_residency *residency = slc_residency_of(s, unit->texture);
+    if (residency->interface->withdraw)
+        residency->interface->withdraw(residency, unit->texture, &unit->tile);
     slc_unit_forget_tile(s, unit);
     slc_unit_free(s, index);
     return result;

@@ -14,8 +14,8 @@ static void bind_packed(SluiceVulkanStreamer *s)
         if (texture->packed_state != SLC_PACKED_MAPPING)
             continue;
         while (texture->packed_done < count &&
-               s->residency->interface->map(s->residency, index,
-                                            &texture->packed_tiles[texture->packed_done]) ==
+               texture->residency->interface->map(texture->residency, index,
+                                                  &texture->packed_tiles[texture->packed_done]) ==
                    SLUICE_SUCCESS)
             texture->packed_done++;
     }
@@ -26,8 +26,9 @@ static void bind_packed(SluiceVulkanStreamer *s)
 static void refuse_unit(SluiceVulkanStreamer *s, uint32_t index)
 {
     const struct slc_unit *unit = &s->units[index];
-    if (s->residency->interface->withdraw)
-        s->residency->interface->withdraw(s->residency, unit->texture, &unit->tile);
+    struct slc_residency *residency = slc_residency_of(s, unit->texture);
+    if (residency->interface->withdraw)
+        residency->interface->withdraw(residency, unit->texture, &unit->tile);
     slc_load_defer(s, unit->texture, &unit->tile);
     slc_unit_forget_tile(s, unit);
     slc_unit_free(s, index);
@@ -50,7 +51,8 @@ void slc_loads_bind(SluiceVulkanStreamer *s)
             slc_unit_free(s, unit);
             continue;
         }
-        SluiceResult result = s->residency->interface->map(s->residency, u->texture, &u->tile);
+        struct slc_residency *residency = slc_residency_of(s, u->texture);
+        SluiceResult result = residency->interface->map(residency, u->texture, &u->tile);
         if (result < 0)
             refuse_unit(s, unit);
         else

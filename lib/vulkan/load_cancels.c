@@ -62,8 +62,9 @@ void slc_loads_drop(SluiceVulkanStreamer *s, uint32_t index)
 {
     slc_deferred_tiles_drop(&s->deferred, index);
     slc_deferred_tiles_drop(&s->awaited, index);
-    if (s->residency->interface->leave_source)
-        s->residency->interface->leave_source(s->residency, index);
+    struct slc_residency *residency = slc_residency_of(s, index);
+    if (residency->interface->leave_source)
+        residency->interface->leave_source(residency, index);
     struct slc_texture *texture = &s->textures[index];
     for (uint32_t i = 0; i < s->packed_queue_count;) {
         if (s->packed_queue[i] == index)

@@ -40,11 +40,11 @@ static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
  * frame. */
 uint32_t slc_pages_left(SluiceVulkanStreamer *s, uint32_t texture)
 {
-    const struct slc_residency_interface *interface = s->residency->interface;
+    struct slc_residency *residency = slc_residency_of(s, texture);
     SluiceFormat format = slc_texture_page_format(&s->textures[texture]);
     uint32_t *left = &s->pages_left[format];
-    if (*left == SLC_NONE && interface->page_room) {
-        uint32_t room = interface->page_room(s->residency, texture);
+    if (*left == SLC_NONE && residency->interface->page_room) {
+        uint32_t room = residency->interface->page_room(residency, texture);
         uint32_t loads = room == UINT32_MAX ? 0 : count_loads(s, format);
         *left = room == UINT32_MAX ? SLC_NONE : room > loads ? room - loads : 0;
     }

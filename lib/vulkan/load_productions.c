@@ -21,13 +21,13 @@ struct recording {
 
 void slc_production_start(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
-    const struct slc_residency_interface *interface = s->residency->interface;
+    struct slc_residency *residency = slc_residency_of(s, texture);
     uint32_t unit = slc_unit_take_empty(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
     /* In paged and dense mode a page is there at once, so this frame can record the tile. */
-    bool at_once =
-        !interface->going_size && interface->map(s->residency, texture, tile) == SLUICE_SUCCESS;
+    bool at_once = !residency->interface->going_size &&
+                   residency->interface->map(residency, texture, tile) == SLUICE_SUCCESS;
     s->units[unit].state = at_once ? SLC_UNIT_BINDING : SLC_UNIT_ARRIVED;
     slc_unit_list_append(s, at_once ? &s->unproduced : &s->arrived, unit);
 }
@@ -48,8 +48,9 @@ void slc_production_start_packed(SluiceVulkanStreamer *s, uint32_t index)
 
 static void discard(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
-    if (s->residency->interface->discard)
-        s->residency->interface->discard(s->residency, texture, tile);
+    struct slc_residency *residency = slc_residency_of(s, texture);
+    if (residency->interface->discard)
+        residency->interface->discard(residency, texture, tile);
 }
 
 static SluiceResult give_back(SluiceVulkanStreamer *s, uint32_t index)
@@ -188,12 +189,12 @@ static void place(const SluiceVulkanStreamer *s, const struct slc_unit *unit,
 {
     const struct slc_texture *texture = &s->textures[unit->texture];
     const SluiceImageRegion region = slc_tile_region(texture, &unit->tile);
-    if (!s->residency->interface->find_page) {
+    if (!texture->residency->interface->find_page) {
         place_in_image(s, texture, &region, batch, target);
         return;
     }
     struct slc_tile_page page =
-        s->residency->interface->find_page(s->residency, unit->texture, &unit->tile);
+        texture->residency->interface->find_page(texture->residency, unit->texture, &unit->tile);
     batch->image = page.image;
     batch->imageView = page.view;
     batch->mipLevel = 0;
@@ -204,10 +205,10 @@ static void place(const SluiceVulkanStreamer *s, const struct slc_unit *unit,
 static uint64_t batch_key(const SluiceVulkanStreamer *s, uint32_t index)
 {
     const struct slc_unit *unit = &s->units[index];
+    const struct slc_residency *residency = slc_residency_of(s, unit->texture);
     uint32_t part = SLC_NONE;
-    if (unit->packed_unit == SLC_NONE && s->residency->interface->find_page)
-        part = s->residency->interface->find_page(s->residency, unit->texture, &unit->tile)
-                   .image_index;
+    if (unit->packed_unit == SLC_NONE && residency->interface->find_page)
+        part = residency->interface->find_page(residency, unit->texture, &unit->tile).image_index;
     else if (unit->packed_unit == SLC_NONE)
         part = unit->tile.mipLevel;
     return (uint64_t)unit->texture << 32 | part;
@@ -309,8 +310,9 @@ SluiceResult slc_productions_record(SluiceVulkanStreamer *s, VkCommandBuffer com
 static SluiceResult publish_tile(SluiceVulkanStreamer *s, uint32_t index)
 {
     const struct slc_unit *unit = &s->units[index];
-    if (s->residency->interface->show)
-        s->residency->interface->show(s->residency, unit->texture, &unit->tile);
+    struct slc_residency *residency = slc_residency_of(s, unit->texture);
+    if (residency->interface->show)
+        residency->interface->show(residency, unit->texture, &unit->tile);
     s->counts.tilesMapped++;
     s->counts.tilesProduced++;
     slc_read_trouble_delivered(s, unit->texture, unit->tile.tileIndex);

@@ -22,9 +22,10 @@ static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const
 static enum slc_share share_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile,
                                  SluiceResult *result)
 {
-    const struct slc_residency_interface *interface = s->residency->interface;
+    struct slc_residency *residency = slc_residency_of(s, texture);
+    const struct slc_residency_interface *interface = residency->interface;
     enum slc_share share =
-        interface->share ? interface->share(s->residency, texture, tile) : SLC_SHARE_NONE;
+        interface->share ? interface->share(residency, texture, tile) : SLC_SHARE_NONE;
     if (share == SLC_SHARE_WAIT)
         *result = slc_load_await(s, texture, tile);
     if (share != SLC_SHARE_READY)
@@ -47,19 +48,20 @@ static bool units_are_ready(SluiceVulkanStreamer *s, uint32_t texture, uint32_t 
 static SluiceResult start_tile(SluiceVulkanStreamer *s, struct slc_read_batch *batch,
                                uint32_t texture, const SluiceTile *tile)
 {
-    const struct slc_residency_interface *interface = s->residency->interface;
+    struct slc_residency *residency = slc_residency_of(s, texture);
+    const struct slc_residency_interface *interface = residency->interface;
     SluiceResult result = SLUICE_SUCCESS;
     bool produced = s->textures[texture].producer.pfn;
     if (!produced && share_tile(s, texture, tile, &result) != SLC_SHARE_NONE)
         return result;
-    if (interface->revive && interface->revive(s->residency, texture, tile)) {
+    if (interface->revive && interface->revive(residency, texture, tile)) {
         s->counts.tilesMapped++;
         s->counts.tilesRestored++;
         return slc_streamer_check(
             s, sluiceUpdateTilesMapping(s->manager, s->textures[texture].id, 1, &tile->tileIndex),
             "sluiceUpdateTilesMapping");
     }
-    if (interface->reserve && !interface->reserve(s->residency, texture, tile))
+    if (interface->reserve && !interface->reserve(residency, texture, tile))
         return refuse_tile(s, texture, tile);
     uint32_t left = slc_pages_left(s, texture);
     if (left == 0 || !units_are_ready(s, texture, 1))
@@ -74,7 +76,7 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, struct slc_read_batch *b
     s->units[unit].tile = *tile;
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
     if (interface->announce)
-        interface->announce(s->residency, texture, tile);
+        interface->announce(residency, texture, tile);
     return slc_read_batch_add(s, batch, unit);
 }
 

@@ -31,6 +31,22 @@ void slc_region_arena_finish(struct slc_region_arena *arena, const SluiceAllocat
     *arena = (struct slc_region_arena){0};
 }
 
+SluiceResult slc_region_arena_reserve(struct slc_region_arena *arena,
+                                      const SluiceAllocationCallbacks *cb, uint32_t max_ranges)
+{
+    if (max_ranges < arena->gap_capacity)
+        return SLUICE_SUCCESS;
+    uint32_t capacity = 2 * max_ranges;
+    struct slc_region_gap *gaps = slc_alloc(cb, capacity, sizeof *gaps);
+    if (!gaps)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    memcpy(gaps, arena->gaps, arena->gap_count * sizeof *gaps);
+    slc_free(cb, arena->gaps, arena->gap_capacity, sizeof *gaps);
+    arena->gaps = gaps;
+    arena->gap_capacity = capacity;
+    return SLUICE_SUCCESS;
+}
+
 static void remove_gap(struct slc_region_arena *arena, uint32_t at)
 {
     arena->gap_count--;

@@ -26,6 +26,10 @@ SluiceResult slc_region_arena_init(struct slc_region_arena *arena,
                                    uint32_t max_ranges);
 void slc_region_arena_finish(struct slc_region_arena *arena, const SluiceAllocationCallbacks *cb);
 
+/** Makes room for more ranges than were said at first. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_region_arena_reserve(struct slc_region_arena *arena,
+                                      const SluiceAllocationCallbacks *cb, uint32_t max_ranges);
+
 /** False if no gap is large enough. */
 bool slc_region_arena_take(struct slc_region_arena *arena, uint32_t count, uint32_t *first);
 /** Exactly what was taken. */

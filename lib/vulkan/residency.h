@@ -181,6 +181,7 @@ struct slc_residency_create_info {
     uint32_t max_touched_tiles; ///< 0: no limit
     uint32_t max_region_count;
     uint64_t kept_heap_size;     ///< bytes of heaps that are kept while empty
+    bool whole;                  ///< dense: textures have packed levels alone
     struct slc_page_pool *pages; ///< borrowed
     uint32_t page_user;          ///< of these
 };

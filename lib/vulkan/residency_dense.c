@@ -28,6 +28,7 @@ struct dense_residency {
     struct dense_image *images; ///< owned
     uint32_t max_image_count;
     uint32_t next_heap;
+    bool whole;
 };
 
 static struct dense_residency *dense(struct slc_residency *residency)
@@ -43,7 +44,8 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     struct dense_image *layers = &d->images[index];
     uint32_t layer_count = slc_max_u32(1, info->arrayLayerCount);
     struct slc_sparse_layout layout;
-    SluiceResult result = slc_standard_layout_init(&layout, info);
+    SluiceResult result =
+        d->whole ? slc_whole_layout_init(&layout, info) : slc_standard_layout_init(&layout, info);
     if (result == SLUICE_SUCCESS)
         result = slc_plain_image_create(&layers[0].own, &d->memory, d->vk, d->caps, d->cb, info, 0,
                                         layer_count, produced);
@@ -189,6 +191,7 @@ SluiceResult slc_create_dense_residency(const struct slc_residency_create_info *
     d->vk = info->vk;
     d->caps = info->caps;
     d->cb = info->cb;
+    d->whole = info->whole;
     d->max_image_count = info->max_image_count;
     d->images = slc_calloc(d->cb, d->max_image_count, sizeof *d->images);
     if (!d->images) {

@@ -24,7 +24,7 @@ static uint64_t needed_heaps(const SluiceVulkanStreamer *s,
     uint64_t tiles = (uint64_t)stats->mappedTileCount + stats->allocatedTileCount +
                      stats->requestedTileCount + stats->canceledTileCount +
                      stats->reservedSlotCount;
-    return div_up(tiles, s->info.heapTileCapacity);
+    return div_up(without(tiles, slc_manager_outside_count(s->manager)), s->info.heapTileCapacity);
 }
 
 /* How many heaps to keep; 0: all. Released heaps count as freed before their memory is. */

@@ -125,7 +125,15 @@ static uint32_t packed_pages(const SluiceStreamedTextureDesc *desc, const Sluice
     return (uint32_t)((size + SLC_TILE_SIZE - 1) / SLC_TILE_SIZE);
 }
 
-SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info)
+/* Their memory is the image's, whatever their number. */
+static void put_outside(SluiceStreamedTextureDesc *desc)
+{
+    desc->regularMipCount = 0;
+    desc->packedTileCount = 1;
+    desc->packedTilesOutside = true;
+}
+
+static SluiceResult init(struct slc_sparse_layout *layout, const SluiceImageInfo *info, bool whole)
 {
     VkExtent3D tile = {.depth = 1};
     SluiceResult result = sluiceGetStandardTileShape(info->format, &tile.width, &tile.height);
@@ -138,10 +146,29 @@ SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout, const Sl
                                                   .tileHeight = tile.height}};
     set_own_packed_levels(&layout->desc, info, tile);
     layout->desc.packedTileCount = packed_pages(&layout->desc, info);
+    if (whole || layout->desc.regularMipCount == 0)
+        put_outside(&layout->desc);
     set_regions(&layout->desc);
     layout->uneven = !halves_evenly(info->width, info->mipLevelCount) ||
                      !halves_evenly(info->height, info->mipLevelCount);
     return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info)
+{
+    return init(layout, info, false);
+}
+
+SluiceResult slc_whole_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info)
+{
+    return init(layout, info, true);
+}
+
+bool slc_fits_into_tile(const SluiceImageInfo *info)
+{
+    VkExtent3D tile;
+    return sluiceGetStandardTileShape(info->format, &tile.width, &tile.height) == SLUICE_SUCCESS &&
+           own_packed_level(info, tile) == 0;
 }
 
 struct slc_tile_place slc_sparse_layout_place(const struct slc_sparse_layout *layout,

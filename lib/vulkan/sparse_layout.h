@@ -44,6 +44,10 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
  */
 SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout,
                                       const SluiceImageInfo *info);
+/** For an image with memory for all levels that is loaded as a whole: all levels are packed. */
+SluiceResult slc_whole_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info);
+/** Whether level 0 is no larger than a tile of the standard shape. */
+bool slc_fits_into_tile(const SluiceImageInfo *info);
 
 /** Where a tile lies: level and tile coordinates, or SLC_TAIL_LEVEL and page number in `x`. */
 struct slc_tile_place {

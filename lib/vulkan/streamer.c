@@ -97,6 +97,7 @@ static SluiceResult check_sparse_queue(const SluiceVulkanStreamer *s)
 
 static SluiceResult create_residency(SluiceVulkanStreamer *s)
 {
+    s->chooses_modes = s->info.residencyMode == SLUICE_RESIDENCY_MODE_AUTO;
     s->info.residencyMode =
         slc_choose_mode(&s->caps, s->info.residencyMode, s->info.maxTextureCount);
     const char *missing = slc_missing_for_mode(&s->caps, s->info.residencyMode);
@@ -121,6 +122,12 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .pages = s->pages,
         .page_user = s->page_user,
     };
+    info.whole = s->info.residencyMode != SLUICE_RESIDENCY_MODE_DENSE;
+    if (info.whole)
+        result = slc_create_dense_residency(&info, &s->plain);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    info.whole = false;
     switch (s->info.residencyMode) {
     case SLUICE_RESIDENCY_MODE_PAGED: return slc_create_paged_residency(&info, &s->residency);
     case SLUICE_RESIDENCY_MODE_DENSE: return slc_create_dense_residency(&info, &s->residency);
@@ -455,6 +462,8 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
     slc_buffer_finish(&s->texture_table, &s->vk);
     if (s->residency)
         s->residency->interface->destroy(s->residency);
+    if (s->plain)
+        s->plain->interface->destroy(s->plain);
     if (s->page_user < SLC_MAX_PAGE_USERS)
         slc_page_pool_remove_user(s->pages, s->page_user);
     slc_drop_pages(&s->context->shared, s->pages);

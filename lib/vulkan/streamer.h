@@ -58,6 +58,7 @@ struct slc_texture {
     struct slc_tile_producer producer;
     VkImageView *level_views; ///< owned by layer 0; levels of `image`, for stores; NULL: none
     SluiceImageInfo info;
+    struct slc_residency *residency; ///< of the streamer: `residency` or `plain`
     struct slc_residency_image image;
     uint32_t first, layer, layer_count; ///< of an array: the index of layer 0; else itself, 0, 1
     struct slc_texture_views views;
@@ -138,6 +139,8 @@ struct SluiceVulkanStreamer {
     struct slc_page_pool *pages; ///< of the context; NULL: not yet
     uint32_t page_user;          ///< user of `pages`; SLC_MAX_PAGE_USERS: not yet
     struct slc_residency *residency;
+    struct slc_residency *plain; ///< of textures that are images with all levels; packed tiles only
+    bool chooses_modes;          ///< small textures are in `plain`
     SluiceStreamedTextureManager *manager;
     bool manager_locked; ///< for the application, but inside of the streamer's own calls
     SluiceTileLoader *loader;
@@ -162,6 +165,7 @@ struct SluiceVulkanStreamer {
 
     struct slc_texture *textures; ///< owned; maxTextureCount
     uint32_t *by_manager_index;   ///< owned; low half of a texture id -> index in textures
+    uint32_t texture_low;         ///< no texture before is free
     uint32_t texture_high;        ///< textures from here on were never used
     uint32_t *primaries;          ///< owned; textures whose feedback is read back
     uint32_t primary_count, primary_cursor;
@@ -219,6 +223,12 @@ struct SluiceVulkanStreamer {
 static inline struct slc_texture *slc_streamer_texture(SluiceVulkanStreamer *s, SluiceTextureId id)
 {
     return &s->textures[s->by_manager_index[(uint32_t)id]];
+}
+
+static inline struct slc_residency *slc_residency_of(const SluiceVulkanStreamer *s,
+                                                     uint32_t texture)
+{
+    return s->textures[texture].residency;
 }
 
 /** Bytes of the bits that say which textures write feedback. */

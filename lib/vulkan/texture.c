@@ -13,6 +13,7 @@
 #include "vulkan/format.h"
 #include "vulkan/format_caps.h"
 #include "vulkan/load_cancels.h"
+#include "vulkan/texture_mode.h"
 
 #include <assert.h>
 #include <math.h>
@@ -22,9 +23,12 @@
 #define LAST_ADDRESS_MODE VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE
 
 /* The first of `count` free ones side by side. */
-static uint32_t find_free(const SluiceVulkanStreamer *s, uint32_t count)
+static uint32_t find_free(SluiceVulkanStreamer *s, uint32_t count)
 {
-    uint32_t run = 0, i = 0;
+    while (s->texture_low < s->texture_high &&
+           s->textures[s->texture_low].state != SLC_TEXTURE_FREE)
+        s->texture_low++;
+    uint32_t run = 0, i = s->texture_low;
     for (; i < s->texture_high && run < count; i++)
         run = s->textures[i].state == SLC_TEXTURE_FREE ? run + 1 : 0;
     return count <= s->info.maxTextureCount - (i - run) ? i - run : SLC_NONE;
@@ -40,8 +44,11 @@ static SluiceResult check_create_info(const SluiceVulkanStreamer *s,
         {"addressModeU", (uint32_t)info->addressModeU, 0, LAST_ADDRESS_MODE},
         {"addressModeV", (uint32_t)info->addressModeV, 0, LAST_ADDRESS_MODE},
         {"filter", (uint32_t)info->filter, 0, SLUICE_TEXTURE_FILTER_SMART_CUBIC},
+        {"residencyMode", (uint32_t)info->residencyMode, 0, SLUICE_RESIDENCY_MODE_DENSE},
     };
-    SluiceResult result = slc_check_limits(&s->vk.log, limits, 3);
+    SluiceResult result = slc_check_limits(&s->vk.log, limits, sizeof limits / sizeof limits[0]);
+    if (result == SLUICE_SUCCESS)
+        result = slc_texture_check_mode(s, info->residencyMode);
     if (result != SLUICE_SUCCESS || info->primaryId == SLUICE_NO_TEXTURE)
         return result;
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
@@ -134,13 +141,14 @@ static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
     slc_level_views_finish(&texture->level_views, &s->vk, &s->cb, &texture->image);
     /* of an array when its last layer goes */
     if (texture->image.image && texture->layer + 1 == texture->layer_count)
-        s->residency->interface->destroy_image(s->residency, texture->first);
+        texture->residency->interface->destroy_image(texture->residency, texture->first);
     if (texture->region_count)
         slc_region_arena_give(&s->regions, texture->region_first, texture->region_count);
     slc_free(&s->cb, texture->packed_tiles, texture->image.desc.packedTileCount,
              sizeof *texture->packed_tiles);
     slc_packed_units_finish(&texture->packed, &s->cb);
     *texture = (struct slc_texture){.state = SLC_TEXTURE_FREE};
+    s->texture_low = slc_min_u32(s->texture_low, index);
 }
 
 /* Views, regions and packed levels of one layer, whose image is there. */
@@ -223,6 +231,7 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                               const SluiceImageInfo *image, uint32_t count)
 {
     struct slc_residency_image residency_image;
+    struct slc_residency *residency = NULL;
     struct slc_sampler_kind kind;
     uint32_t sampler = 0;
     SluiceResult result = SLUICE_SUCCESS;
@@ -230,8 +239,8 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
     if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE)
         result = find_sampler(s, &kind, &sampler);
     if (result == SLUICE_SUCCESS)
-        result = s->residency->interface->create_image(s->residency, first, image, producer->pfn,
-                                                       &residency_image);
+        result = slc_texture_create_image(s, first, info->residencyMode, image, producer->pfn,
+                                          &residency, &residency_image);
     if (result != SLUICE_SUCCESS)
         return result;
     for (uint32_t i = 0; i < count; i++)
@@ -241,6 +250,7 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
             .whole_shown = slc_settled_texel(SLUICE_MIP_UNTOUCHED),
             .primary_id = info->primaryId,
             .info = *image,
+            .residency = residency,
             .image = residency_image,
             .first = first,
             .layer = i,
@@ -249,8 +259,8 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
             .sampler_kind = kind,
             .filter = kind.nearest ? SLUICE_TEXTURE_FILTER_LINEAR : info->filter,
             .sampler = sampler};
-    for (uint32_t i = 0; i < count && s->residency->interface->set_source; i++)
-        s->residency->interface->set_source(s->residency, first + i, info->source, i);
+    for (uint32_t i = 0; i < count && residency->interface->set_source; i++)
+        residency->interface->set_source(residency, first + i, info->source, i);
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = build(s, &s->textures[first + i]);
     uint32_t added = 0;
@@ -298,6 +308,7 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
         .cubeView = texture->info.cube ? face->views.cube : VK_NULL_HANDLE,
         .cubeArrayView = first->views.cube_array,
         .filter = texture->filter,
+        .residencyMode = slc_texture_mode(s, texture),
     };
     /* Samplers of the array are not those of integers: their elements stay empty. */
     if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE &&
@@ -449,7 +460,7 @@ static bool is_over(const SluiceVulkanStreamer *s, const struct slc_texture *fir
     bool over = first->removed_frame <= s->completed_frame;
     for (uint32_t i = 0; i < first->layer_count && over; i++)
         over = first[i].unit_count == 0 &&
-               s->residency->interface->image_is_idle(s->residency, first->first + i);
+               first->residency->interface->image_is_idle(first->residency, first->first + i);
     return over;
 }
 
@@ -518,8 +529,10 @@ static float quick_reach2(const struct slc_texture *texture)
 
 static uint32_t page_table_offset(const SluiceVulkanStreamer *s, uint32_t index)
 {
-    const struct slc_residency_interface *interface = s->residency->interface;
-    return interface->page_table_offset ? interface->page_table_offset(s->residency, index) : 0;
+    const struct slc_residency *residency = slc_residency_of(s, index);
+    return residency->interface->page_table_offset
+               ? residency->interface->page_table_offset(residency, index)
+               : 0;
 }
 
 static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint32_t index)
@@ -552,6 +565,8 @@ static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint
             (texture->filter != SLUICE_TEXTURE_FILTER_LINEAR ? SLUICE_TEXTURE_FLAG_SPLINE : 0u) |
             (texture->filter == SLUICE_TEXTURE_FILTER_SMART_CUBIC ? SLUICE_TEXTURE_FLAG_SMART
                                                                   : 0u) |
+            (slc_texture_mode(s, texture) == SLUICE_RESIDENCY_MODE_DENSE ? SLUICE_TEXTURE_FLAG_DENSE
+                                                                         : 0u) |
             format.channelCount << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
     slc_texture_entry_complete(&entry);

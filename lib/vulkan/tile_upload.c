@@ -106,9 +106,10 @@ static void upload_block(SluiceVulkanStreamer *s, VkCommandBuffer commands, cons
         unit->value = s->frame;
         slc_unit_list_append(s, &s->uploaded, units[i]);
     }
-    s->residency->interface->record_uploads(s->residency, texture, commands,
-                                            slc_staging_buffer(&s->staging, units[0]), copy_count,
-                                            s->copies);
+    struct slc_residency *residency = slc_residency_of(s, texture);
+    residency->interface->record_uploads(residency, texture, commands,
+                                         slc_staging_buffer(&s->staging, units[0]), copy_count,
+                                         s->copies);
 }
 
 static uint64_t by_texture(const SluiceVulkanStreamer *s, uint32_t unit)
@@ -154,7 +155,7 @@ static SluiceResult publish_units(SluiceVulkanStreamer *s, const uint32_t *units
  * an ordinary image as overlapping. */
 static bool needs_barriers(const SluiceVulkanStreamer *s, uint32_t texture)
 {
-    return s->residency->interface->ordinary_images &&
+    return slc_residency_of(s, texture)->interface->ordinary_images &&
            sluiceGetFormatTexelSize(s->textures[texture].info.format) == 0;
 }
 
@@ -231,7 +232,7 @@ SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer co
     uint32_t left = s->info.tilesPerFrame, count;
     SluiceResult result = SLUICE_SUCCESS;
     for (bool first = true; result >= 0 && (count = take_units(s, &left)) > 0; first = false) {
-        if (!first && s->residency->interface->ordinary_images)
+        if (!first && (s->residency->interface->ordinary_images || s->plain))
             wait_for_copies(s, commands); /* see needs_barriers */
         result = record_units(s, commands, count);
     }

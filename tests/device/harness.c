@@ -363,7 +363,7 @@ void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)
 {
     info->structSize = sizeof *info;
     info->context = h->context;
-    if (info->residencyMode == SLUICE_RESIDENCY_MODE_AUTO)
+    if (info->residencyMode == SLUICE_RESIDENCY_MODE_AUTO && !h->leaves_auto)
         info->residencyMode = h->mode;
     info->framesInFlight = HARNESS_FRAMES;
     fill_times(info);

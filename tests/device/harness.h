@@ -53,6 +53,7 @@ struct harness {
     PFN_vkGetInstanceProcAddr get;
     VkInstance instance;
     VkDebugUtilsMessengerEXT messenger;
+    bool leaves_auto; ///< streamers choose their mode, and that of each texture
     bool validates;
     uint32_t message_count; ///< of validation, warnings and errors
     bool failed;            ///< a test did, so what is left behind is no news

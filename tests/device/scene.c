@@ -70,7 +70,8 @@ uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerA
                                           .primaryId = primary,
                                           .addressModeU = u,
                                           .addressModeV = v,
-                                          .filter = scene->filter};
+                                          .filter = scene->filter,
+                                          .residencyMode = scene->texture_mode};
     CHECK_OK(sluiceAddVulkanTexture(scene->streamer, &info, &texture->texture));
     texture->probe = prober_texture(&scene->prober, &texture->texture, u, v, anisotropy);
     return index;

@@ -25,7 +25,8 @@ struct scene {
     struct harness *h;
     SluiceVulkanStreamer *streamer;
     struct prober prober;
-    SluiceTextureFilter filter; ///< of textures that are added
+    SluiceTextureFilter filter;       ///< of textures that are added
+    SluiceResidencyMode texture_mode; ///< of textures that are added
     struct scene_texture textures[SCENE_TEXTURES];
 };
 

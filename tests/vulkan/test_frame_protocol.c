@@ -409,6 +409,7 @@ static void run_plan(uint32_t tail_page_count, uint64_t metadata_size,
                         .abandon_one_in = abandon_one_in,
                         .shrink_one_in = plan->shrink_one_in};
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
                                            .framesInFlight = FRAMES_IN_FLIGHT,
                                            .tilesPerFrame = 24,
                                            .maxTextureCount = 3 * TEXTURES,
@@ -531,8 +532,10 @@ static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
     static struct model model; /* large */
     struct model *m = &model;
     *m = (struct model){.fake = {.tail_page_count = 1, .want = want, .user = m}};
-    SluiceVulkanStreamerCreateInfo info = {
-        .structSize = sizeof info, .maxRegionCount = 1 << 10, .feedbackTimeoutTicks = 2};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
+                                           .maxRegionCount = 1 << 10,
+                                           .feedbackTimeoutTicks = 2};
     fake_vulkan_fill(&info);
     CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
     for (uint64_t i = 1; i <= 3; i++) {

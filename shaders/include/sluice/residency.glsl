@@ -44,6 +44,8 @@ uint sluiceProbeNonResident(sampler2D nearestMipTex, SluiceTextureEntry entry, v
     return 0u;
 #else
     vec4 texel;
+    if ((entry.flags & SLUICE_TEXTURE_FLAG_DENSE) != 0u) /* its image is not sparse */
+        return 0u;
     if (entry.addressModeU == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
         !sluiceStayInside(uv.x, max(entry.width >> uint(level), 1u)))
         return 0u;

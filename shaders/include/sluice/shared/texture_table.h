@@ -47,6 +47,8 @@
 #define SLUICE_TEXTURE_FLAG_UNEVEN 1
 #define SLUICE_TEXTURE_FLAG_SPLINE 2 /* bicubic filter */
 #define SLUICE_TEXTURE_FLAG_SMART 4  /* ... only where the texture is magnified */
+/* An ordinary image with all levels, whatever the mode of the streamer. */
+#define SLUICE_TEXTURE_FLAG_DENSE 8
 /* Three bits of the flags: number of components of the format. */
 #define SLUICE_TEXTURE_COMPONENTS_SHIFT 8
 

@@ -1,0 +1,21 @@
+/** Which residency holds a texture: the streamer's, or that of images with all levels. */
+#ifndef SLC_VULKAN_TEXTURE_MODE_H
+#define SLC_VULKAN_TEXTURE_MODE_H
+
+#include "vulkan/streamer.h"
+
+/** Logs a mode that the streamer does not have. Errors: UNSUPPORTED. */
+SluiceResult slc_texture_check_mode(const SluiceVulkanStreamer *s, SluiceResidencyMode mode);
+
+/** Creates the image of a texture, and of all layers of an array, in the residency that holds it.
+ */
+SluiceResult slc_texture_create_image(SluiceVulkanStreamer *s, uint32_t first,
+                                      SluiceResidencyMode mode, const SluiceImageInfo *image,
+                                      bool produced, struct slc_residency **residency,
+                                      struct slc_residency_image *out);
+
+/** The mode of a texture whose layout is known: DENSE if one image has all of its levels. */
+SluiceResidencyMode slc_texture_mode(const SluiceVulkanStreamer *s,
+                                     const struct slc_texture *texture);
+
+#endif /* SLC_VULKAN_TEXTURE_MODE_H */
