@@ -32,6 +32,6 @@ double typical(const struct bench *bench, struct samples *samples);
 
 typedef bool measurement(const struct bench *bench);
 measurement measure_sampling, measure_feedback, measure_fill, measure_produce, measure_budget,
-    measure_resolve, measure_host, measure_sharp, measure_unseen;
+    measure_resolve, measure_host, measure_sharp, measure_unseen, measure_small;
 
 #endif /* BENCH_VULKAN_BENCH_H */

@@ -16,9 +16,10 @@ static const struct {
     {"sampling", measure_sampling}, {"feedback", measure_feedback}, {"fill", measure_fill},
     {"produce", measure_produce},   {"budget", measure_budget},     {"resolve", measure_resolve},
     {"host", measure_host},         {"sharp", measure_sharp},       {"unseen", measure_unseen},
+    {"small", measure_small},
 };
 #define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
-#define MEASUREMENT_NAMES "sampling,feedback,fill,produce,budget,resolve,host,sharp,unseen"
+#define MEASUREMENT_NAMES "sampling,feedback,fill,produce,budget,resolve,host,sharp,unseen,small"
 
 static const char *const mode_names[] = {"auto", "sparse", "paged", "dense"};
 

@@ -43,7 +43,7 @@ static bool create_streamer(struct rig *rig, const struct rig_info *info)
     SluiceVulkanStreamerCreateInfo create = info->streamer;
     create.structSize = sizeof create;
     create.context = rig->context;
-    if (create.residencyMode == SLUICE_RESIDENCY_MODE_AUTO)
+    if (create.residencyMode == SLUICE_RESIDENCY_MODE_AUTO && !info->chooses_modes)
         create.residencyMode = rig->bench->mode;
     create.framesInFlight = RIG_FRAMES;
     create.ticksPerSecond = 60; /* frames */

@@ -19,6 +19,7 @@ struct rig_info {
     SluiceVulkanContextCreateInfo context;
     /** Set fields that shall differ from their defaults. The rig sets `context`. */
     SluiceVulkanStreamerCreateInfo streamer;
+    bool chooses_modes; ///< the streamer does: it has AUTO instead of the bench's mode
     SluiceFormat format;
     uint32_t texture_size, texture_count;
     uint32_t output_words;              ///< of a buffer that shaders write to and the host reads

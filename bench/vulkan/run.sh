@@ -6,7 +6,7 @@
 #
 #   --device NAME     an index or a part of a name; --list-devices prints them (default: the best)
 #   --residency MODE  sparse, paged, dense or all (default: all that the device has)
-#   --only NAMES      some of sampling,feedback,fill,produce,budget,resolve,host,sharp,unseen (default: all)
+#   --only NAMES      some of sampling,feedback,fill,produce,budget,resolve,host,sharp,unseen,small (default: all)
 #   --json            one object per line (name, value, unit) instead of the table, and more of them
 #   --quick           small pictures, few and small textures: to see that everything works
 #   --size WxH        of pictures in pixels (default: 1920x1080, on software devices 640x360, with
@@ -141,6 +141,14 @@ unseen.on_demand.device_memory|all device memory that is not mapped|
 unseen.on_demand.host_visible|mapped memory|
 unseen.on_demand.read|texels read|
 unseen.on_demand.first_sight|frames of fallback color at first sight|
+small.resident|100 000 textures of 64 x 64 RGBA8: all resident|
+small.tile_memory|device memory for each|at most 26 213
+small.of_texels|... times its texels|at most 1.2
+small.heaps|heaps of tiles that they take|0
+small.host_added|host memory for each when added|
+small.host_loaded|... and when resident|
+small.add|time to add one|
+small.load|time to load one|
 END
 }
 
