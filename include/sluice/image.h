@@ -337,7 +337,8 @@ SLUICE_API SluiceResult sluiceCreateProceduralImageSource(
  *
  * `pTexels` is level 0: [height][width] of pInfo->format, tightly packed. It is copied. Each texel
  * of a coarser level is the mean of the area that it covers in the next finer level. sRGB formats
- * are filtered in linear light. NaN counts as 0.
+ * are filtered in linear light. NaN counts as 0. Integer formats are not filtered: a texel is one
+ * near the center of that area.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT; SLUICE_ERROR_UNSUPPORTED for
  *         compressed formats and arrays; SLUICE_ERROR_OUT_OF_HOST_MEMORY.

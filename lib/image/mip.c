@@ -129,10 +129,14 @@ void slc_mip_rows_finish(struct slc_mip_rows *rows, const SluiceAllocationCallba
     *rows = (struct slc_mip_rows){0};
 }
 
-/* Of 2n or 2n + 1 texels on n, the one at the center of texel `i` is number 2i + 1. */
+/* Of 2n + 1 texels on n, the one at the center of texel `i` is number 2i + 1. Of 2n there are two.
+ * Sizes that halve take the right one and the left one in turns: always the same one would end in a
+ * corner, half a texel off. */
 static uint32_t find_center(uint32_t size, uint32_t i)
 {
-    return size == 1 ? 0 : 2 * i + 1;
+    if (size == 1)
+        return 0;
+    return 2 * i + (size % 2 == 1 || slc_mip_count(size) % 2 == 0);
 }
 
 /* Means of numbers that name things would name others. */
