@@ -233,9 +233,9 @@ typedef struct SluiceBakeReport {
  * The output is complete or absent. An interrupted bake leaves the output path + ".sluice-part";
  * the next bake resumes it. `pReport` may be NULL.
  *
- * Returns SLUICE_NOT_READY, with nothing written, while the process has too few file descriptors
- * for the input. Sluice leaves the last 16 below the soft limit to others. Close files and bake
- * again.
+ * Returns SLUICE_NOT_READY, with no store written, while the process has too few file descriptors
+ * for the input. Finished tiles are kept for the next bake. Sluice leaves the last 16 descriptors
+ * below the soft limit to others. Close files and bake again.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range,
  *         including the source's info, if the output or its .sluice-part file is an input, also

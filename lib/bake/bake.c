@@ -215,8 +215,14 @@ static SluiceResult check_layers(const struct bake *bake, const SluiceImageInfo 
 {
     const SluiceImageInfo *first = &bake->image;
     if (image->width == first->width && image->height == first->height &&
-        image->format == first->format && image->arrayLayerCount == first->arrayLayerCount)
+        image->format == first->format && image->arrayLayerCount == first->arrayLayerCount &&
+        image->cube == first->cube)
         return SLUICE_SUCCESS;
+    if (image->cube != first->cube)
+        return slc_log_refusal(&bake->baker->log,
+                               "%s: is %s, and %s is %s; layers of a store are alike",
+                               bake->picture->name, image->cube ? "a cube map" : "no cube map",
+                               slc_bake_input_path(&bake->inputs, 0), first->cube ? "one" : "none");
     return slc_log_refusal(&bake->baker->log,
                            "%s: is %u x %u texels, %s, %u layers; %s is %u x %u texels, %s, %u "
                            "layers; layers of a store are alike",
@@ -347,7 +353,8 @@ static SluiceResult write_store(struct bake *bake, const SluiceStoreLayout *layo
     if (result == SLUICE_SUCCESS)
         result = sluiceFinishStore(bake->writer);
     sluiceDestroyStoreWriter(bake->writer);
-    if (bake->writer && result != SLUICE_SUCCESS && result != SLUICE_ERROR_CANCELED)
+    bool can_resume = result == SLUICE_ERROR_CANCELED || result == SLUICE_NOT_READY;
+    if (bake->writer && result != SLUICE_SUCCESS && !can_resume)
         remove_part_file(bake);
     return result;
 }

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -317,6 +318,38 @@ static void a_cube_that_was_interrupted_is_gone_on_with(void **state)
     pictures_finish(&p);
 }
 
+/* The process may open no more files after half of the faces. */
+static bool take_descriptors(void *user, uint64_t done, uint64_t total)
+{
+    struct rlimit *before = user, few;
+    if (2 * done >= total && before->rlim_cur == 0) {
+        assert_int_equal(getrlimit(RLIMIT_NOFILE, before), 0);
+        few = (struct rlimit){5, before->rlim_max};
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
+    }
+    return true;
+}
+
+static void finished_faces_outlast_a_want_of_descriptors(void **state)
+{
+    (void)state;
+    struct pictures p;
+    struct rlimit before = {0};
+    SluiceBakeReport report = {.structSize = sizeof report};
+    pictures_init(&p, 256, 256, 4);
+    p.info.pfnProgress = take_descriptors;
+    p.info.pUserData = &before;
+    SluiceResult result = bake(&p, 1, NULL);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
+    CHECK_RESULT(result, SLUICE_NOT_READY);
+    assert_int_equal(access(p.out, F_OK), -1);
+    p.info.pfnProgress = NULL;
+    CHECK_OK(bake(&p, 1, &report));
+    assert_true(report.resumedTileCount >= 2 * 5);
+    check_pictures(&p);
+    pictures_finish(&p);
+}
+
 static void no_memory_is_an_ordinary_result(void **state)
 {
     (void)state;
@@ -354,6 +387,7 @@ int main(void)
         cmocka_unit_test(faces_that_make_no_cube_are_refused_with_their_values),
         cmocka_unit_test(a_cube_is_skipped_until_one_face_changes),
         cmocka_unit_test(a_cube_that_was_interrupted_is_gone_on_with),
+        cmocka_unit_test(finished_faces_outlast_a_want_of_descriptors),
         cmocka_unit_test(no_memory_is_an_ordinary_result),
     };
     return RUN_TESTS(tests);
