@@ -199,10 +199,14 @@ bool slc_page_chunks_grow(struct slc_page_chunks *chunks, uint64_t tick, uint32_
                       slc_max_u32(MIN_LAYERS, chunks->page_count[format]));
 }
 
+/* Nobody lacks a page when this fails, so `refused_tick` stays as it was. */
 void slc_page_chunks_prepare(struct slc_page_chunks *chunks, uint64_t tick, uint32_t user,
                              SluiceFormat format)
 {
+    uint64_t refused_tick = chunks->refused_tick;
     uint32_t layers = 0, made = 0;
+    if (slc_page_chunks_is_refused(chunks, tick) || tick < chunks->next_prepare_tick)
+        return;
     while (made == layers && chunks->memory.total_size < chunks->kept_size &&
            find_free_chunk(chunks) < chunks->count && slc_page_chunks_can_grow(chunks, tick)) {
         uint64_t left = (chunks->kept_size - chunks->memory.total_size) / SLC_TILE_SIZE;
@@ -212,7 +216,9 @@ void slc_page_chunks_prepare(struct slc_page_chunks *chunks, uint64_t tick, uint
                    ? chunks->at[chunks->last[format]].layer_count
                    : 0;
     }
-    chunks->refused_tick = 0; /* whoever needs a page asks the device again */
+    if (layers > 0 && made == 0)
+        chunks->next_prepare_tick = tick + REFUSED_TICKS;
+    chunks->refused_tick = refused_tick;
 }
 
 bool slc_page_chunk_is_ready(const struct slc_page_chunk *chunk,

@@ -58,6 +58,7 @@ struct slc_page_chunks {
     struct slc_image_memory memory;
     uint32_t last[SLC_PAGE_FORMATS];       ///< chunk that the last page was taken from
     uint32_t page_count[SLC_PAGE_FORMATS]; ///< of all live chunks of the format
+    uint64_t next_prepare_tick;            ///< in which the device is asked for memory ahead again
     uint64_t refused_tick; ///< 1 + the tick in which the device refused a chunk; 0: not refused
     bool has_freed;        ///< a chunk was freed since then: the device may be asked at once
     uint32_t max_layer_count;

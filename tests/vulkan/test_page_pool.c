@@ -509,6 +509,46 @@ static void users_may_be_on_threads_of_their_own(void **state)
     finish(&r);
 }
 
+static PFN_vkAllocateMemory real_allocate;
+static uint32_t allocation_count;
+
+static VkResult VKAPI_CALL count_allocation(VkDevice device, const VkMemoryAllocateInfo *info,
+                                            const VkAllocationCallbacks *cb, VkDeviceMemory *memory)
+{
+    allocation_count++;
+    return real_allocate(device, info, cb, memory);
+}
+
+/* In one tick 50 textures are added and 50 pages wanted. */
+static void textures_that_are_added_do_not_make_a_full_device_try_again(void **state)
+{
+    (void)state;
+    uint32_t tries[3];
+    for (int k = 0; k < 3; k++) { /* without preparing; preparing nothing; preparing 4 MiB */
+        struct rig r;
+        init(&r, 0);
+        real_allocate = r.pool.vk.AllocateMemory;
+        r.pool.vk.AllocateMemory = count_allocation;
+        if (k == 2)
+            r.pool.chunks.kept_size = 1 << 22;
+        fake.memory_limit = 1;
+        allocation_count = 0;
+        uint32_t room_count = 0;
+        for (int i = 0; i < 50; i++) {
+            if (k > 0)
+                slc_page_pool_prepare(&r.pool, r.users[0], FORMAT);
+            room_count += slc_page_chunks_room(&r.pool.chunks, r.pool.timelines.tick) > 0;
+            assert_int_equal(slc_page_pool_take(&r.pool, r.users[0], FORMAT), SLC_NONE);
+        }
+        assert_true(room_count <= 1);
+        tries[k] = allocation_count;
+        finish(&r);
+    }
+    assert_true(tries[0] > 0);
+    assert_int_equal(tries[1], tries[0]);
+    assert_true(tries[2] <= 2 * tries[0]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -528,6 +568,7 @@ int main(void)
         cmocka_unit_test(an_abandoned_frame_leaves_the_texels_that_came_back),
         cmocka_unit_test(a_page_that_was_left_waits_for_frames_of_all_readers),
         cmocka_unit_test(users_may_be_on_threads_of_their_own),
+        cmocka_unit_test(textures_that_are_added_do_not_make_a_full_device_try_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
