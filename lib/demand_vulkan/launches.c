@@ -204,7 +204,7 @@ static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer com
 static void note_pressure(SluiceDemandLoader *loader)
 {
     struct slc_memory_pressure *pressure = &loader->memory_pressure;
-    uint64_t excess = slc_page_pool_excess(loader->pages);
+    uint64_t excess = slc_page_pool_excess(loader->pages, loader->page_user);
     *pressure = slc_memory_client_begin(&loader->memory);
     if (excess > pressure->beyond)
         pressure->beyond = excess;

@@ -463,12 +463,35 @@ void slc_page_pool_ask_again(struct slc_page_pool *pool)
     pthread_mutex_unlock(&pool->mutex);
 }
 
-uint64_t slc_page_pool_excess(struct slc_page_pool *pool)
+/* Bytes beyond the user's own limit, of chunks that nobody else has pages in. */
+static uint64_t own_excess(const struct slc_page_pool *pool, uint32_t user)
+{
+    uint64_t size = 0, limit = pool->users[user].max_size;
+    for (uint32_t i = 0; i < pool->chunks.count; i++) {
+        const struct slc_page_chunk *chunk = &pool->chunks.at[i];
+        uint32_t own =
+            chunk->state == SLC_CHUNK_LIVE ? count_own(pool, chunk, user, UINT32_MAX) : 0;
+        if (own != 0 && own != SLC_NONE)
+            size += (uint64_t)chunk->layer_count * SLC_TILE_SIZE;
+    }
+    return limit && size > limit ? size - limit : 0;
+}
+
+static uint64_t share_excess(const struct slc_page_pool *pool, uint32_t user, uint64_t excess)
+{
+    uint64_t all = 0, own = own_excess(pool, user);
+    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++)
+        all += own_excess(pool, i);
+    return slc_min_u64(excess, own + (excess > all ? excess - all : 0));
+}
+
+uint64_t slc_page_pool_excess(struct slc_page_pool *pool, uint32_t user)
 {
     pthread_mutex_lock(&pool->mutex);
     uint64_t limit = pool->chunks.max_size, size = pool->chunks.memory.total_size;
+    uint64_t excess = limit && size > limit ? share_excess(pool, user, size - limit) : 0;
     pthread_mutex_unlock(&pool->mutex);
-    return limit && size > limit ? size - limit : 0;
+    return excess;
 }
 
 uint64_t slc_page_pool_going_size(struct slc_page_pool *pool)

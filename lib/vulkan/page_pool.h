@@ -134,8 +134,10 @@ uint32_t slc_page_pool_leaving(struct slc_page_pool *pool, uint32_t user);
 uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32_t chunk);
 /** Lets the next shortage ask the device again: it or the budget may have memory now. */
 void slc_page_pool_ask_again(struct slc_page_pool *pool);
-/** Bytes of page memory beyond the limits of all users: limits can be lowered. */
-uint64_t slc_page_pool_excess(struct slc_page_pool *pool);
+/** Bytes that the user should free because page memory is beyond the limits of all users: limits
+ * can be lowered. They are those of its chunks beyond its own limit, and all that no user is
+ * beyond. */
+uint64_t slc_page_pool_excess(struct slc_page_pool *pool, uint32_t user);
 /** Bytes of chunks that are empty or retiring: they will be freed. */
 uint64_t slc_page_pool_going_size(struct slc_page_pool *pool);
 

@@ -245,6 +245,33 @@ static void pages_that_others_hold_are_no_capacity(void **state)
     finish(&r);
 }
 
+/* Each has a chunk that its limit allows. One limit falls to a quarter. */
+static void memory_beyond_the_limits_is_for_the_user_beyond_its_own_to_free(void **state)
+{
+    (void)state;
+    enum { BEYOND = LAYERS / 4 * 3 * 65536 };
+    struct rig r;
+    uint32_t pages[LAYERS];
+    init(&r, LAYERS * 65536);
+    take_all(&r, 0, pages);
+    for (uint32_t i = 0; i < LAYERS; i++)
+        assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT) >> 16, 1);
+    record(&r, 1, 1);
+    for (uint32_t i = 0; i < USERS; i++)
+        assert_int_equal(slc_page_pool_excess(&r.pool, r.users[i]), 0);
+    slc_page_pool_set_max_size(&r.pool, r.users[0], LAYERS / 4 * 65536);
+    assert_int_equal(slc_page_pool_excess(&r.pool, r.users[0]), BEYOND);
+    assert_int_equal(slc_page_pool_excess(&r.pool, r.users[1]), 0);
+    for (uint32_t i = 1; i < LAYERS; i++) /* all but one: its chunk does not get smaller */
+        slc_page_pool_give(&r.pool, r.users[0], pages[i], SLC_NO_OWNER);
+    assert_int_equal(slc_page_pool_excess(&r.pool, r.users[0]), BEYOND);
+    assert_int_equal(slc_page_pool_excess(&r.pool, r.users[1]), 0);
+    slc_page_pool_give(&r.pool, r.users[0], pages[0], SLC_NO_OWNER);
+    for (uint32_t i = 0; i < USERS; i++) /* nobody is beyond its limit any more */
+        assert_int_equal(slc_page_pool_excess(&r.pool, r.users[i]), BEYOND);
+    finish(&r);
+}
+
 /* Frames that never run hold nothing back, even if no other frame of the user follows. */
 static void an_abandoned_frame_is_not_waited_for(void **state)
 {
@@ -559,6 +586,7 @@ int main(void)
         cmocka_unit_test(a_retired_image_leaves_the_views_with_the_next_frame),
         cmocka_unit_test(a_user_that_goes_gives_its_pages_back),
         cmocka_unit_test(pages_that_others_hold_are_no_capacity),
+        cmocka_unit_test(memory_beyond_the_limits_is_for_the_user_beyond_its_own_to_free),
         cmocka_unit_test(an_abandoned_frame_is_not_waited_for),
         cmocka_unit_test(a_page_that_came_back_is_shared_when_its_copy_is_complete),
         cmocka_unit_test(a_new_user_is_waited_for_in_the_place_of_an_idle_one),
