@@ -320,6 +320,11 @@ static void feedback_marks_every_face_that_a_sample_touches_and_no_region_far_aw
     check_feedback(*state, CUBE_FEEDBACK_LOD);
 }
 
+static void pixels_of_a_quad_share_the_feedback_of_all_faces(void **state)
+{
+    check_feedback(*state, CUBE_FEEDBACK_QUAD);
+}
+
 static void directions_without_a_face_show_the_coarsest_level(void **state)
 {
     static const float bad[][3] = {{0, 0, 0}, {NAN, 0, 1}, {INFINITY, 1, 0}, {0, -INFINITY, 0}};
@@ -389,6 +394,7 @@ int main(void)
         cmocka_unit_test(anisotropic_samples_touch_only_what_is_resident),
         cmocka_unit_test(edges_between_sharp_and_coarse_faces_do_not_show),
         cmocka_unit_test(feedback_marks_every_face_that_a_sample_touches_and_no_region_far_away),
+        cmocka_unit_test(pixels_of_a_quad_share_the_feedback_of_all_faces),
         cmocka_unit_test(directions_without_a_face_show_the_coarsest_level),
         cmocka_unit_test(images_that_are_no_cubes_are_refused),
     };

@@ -15,19 +15,25 @@
 #include "cube.glsl"
 #include "feedback.glsl"
 
+/** Marks the box of a sample of `level` to `coarsest` on the face beyond an edge if it crosses that edge. */
+void sluiceMarkBeyondEdge(uint tableIndex, SluiceGrid grid, SluiceCubePoint p, vec2 halfBox, uint level,
+                          uint coarsest, uint edge)
+{
+    vec2 reach = sluiceCubeReach(grid, halfBox, coarsest);
+    if (!sluiceCrossesEdge(p.uv, reach, edge))
+        return;
+    SluiceCubePart part = sluiceUnfoldEdge(grid, p.face, p.uv, halfBox, reach, edge);
+    if (sluiceTakesPart(tableIndex + part.face))
+        sluiceMarkFootprint(SLUICE_TEXTURE_ENTRY(tableIndex + part.face).feedbackOffset, grid,
+                            sluiceComputeFootprint(grid, part.uv, part.halfBox, coarsest), level);
+}
+
 /** Marks the box of a sample of `level` to `coarsest` on the faces beyond the edges that it crosses. */
 void sluiceMarkBeyondEdges(uint tableIndex, SluiceGrid grid, SluiceCubePoint p, vec2 halfBox, uint level,
                            uint coarsest)
 {
-    vec2 reach = sluiceCubeReach(grid, halfBox, coarsest);
-    [[dont_unroll]] for (uint edge = 0u; edge < 4u; edge++) {
-        if (!sluiceCrossesEdge(p.uv, reach, edge))
-            continue;
-        SluiceCubePart part = sluiceUnfoldEdge(grid, p.face, p.uv, halfBox, reach, edge);
-        if (sluiceTakesPart(tableIndex + part.face))
-            sluiceMarkFootprint(SLUICE_TEXTURE_ENTRY(tableIndex + part.face).feedbackOffset, grid,
-                                sluiceComputeFootprint(grid, part.uv, part.halfBox, coarsest), level);
-    }
+    [[dont_unroll]] for (uint edge = 0u; edge < 4u; edge++)
+        sluiceMarkBeyondEdge(tableIndex, grid, p, halfBox, level, coarsest, edge);
 }
 
 /**
@@ -55,6 +61,34 @@ void sluiceWriteCubeFeedback(uint tableIndex, vec3 direction, vec3 dx, vec3 dy, 
     sluiceMarkBeyondEdges(tableIndex, grid, p, halfBox, levels.x, levels.y);
     if (maxAnisotropy > 1.0 && levels.z > levels.y)
         sluiceMarkBeyondEdges(tableIndex, grid, p, halfBox, levels.y + 1u, levels.z);
+}
+
+/**
+ * Writes feedback like sluiceWriteCubeFeedback, for 2x2 quads whose pixels are selected together. Each
+ * pixel marks another corner of its footprint on its own face, and what lies beyond another edge of it.
+ *
+ * `pixel` selects corner and edge. The two low bits of `frameSeed` rotate both: see
+ * sluiceWriteQuadFeedback. What only one pixel reaches is marked in one of four frames that select it.
+ */
+void sluiceWriteCubeQuadFeedback(uint tableIndex, vec3 direction, vec3 dx, vec3 dy, float lodBias,
+                                 float maxAnisotropy, uvec2 pixel, uint frameSeed)
+{
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    SluiceCubePoint p = sluiceFindCubePoint(direction, dx, dy);
+    if (!p.finite) {
+        sluiceWriteFeedbackLod(tableIndex, p.uv, SLUICE_LOD_LIMIT);
+        return;
+    }
+    sluiceWriteQuadFeedback(tableIndex + p.face, p.uv, p.dx, p.dy, lodBias, maxAnisotropy, pixel,
+                            frameSeed);
+    vec2 tx = p.dx * grid.size, ty = p.dy * grid.size;
+    uvec3 levels = sluiceMarkedLevels(grid, p.uv, tx, ty, lodBias, maxAnisotropy);
+    vec2 halfBox = sluiceHalfBox(tx, ty, lodBias, maxAnisotropy);
+    uvec2 corner = (pixel ^ uvec2(frameSeed, frameSeed >> 1u)) & 1u;
+    uint edge = corner.x | corner.y << 1u;
+    sluiceMarkBeyondEdge(tableIndex, grid, p, halfBox, levels.x, levels.y, edge);
+    if (maxAnisotropy > 1.0 && levels.z > levels.y)
+        sluiceMarkBeyondEdge(tableIndex, grid, p, halfBox, levels.y + 1u, levels.z, edge);
 }
 
 /**

@@ -70,6 +70,10 @@ void main()
     }
     if ((params.flags & CUBE_FEEDBACK) != 0u)
         sluiceWriteCubeFeedback(tableIndex, direction, dx, dy, bias, anisotropy);
+    for (uint i = 0u; i < 4u && (params.flags & CUBE_FEEDBACK_QUAD) != 0u; i++)
+        sluiceWriteCubeQuadFeedback(tableIndex, direction, dx, dy, bias, anisotropy,
+                                    (at & 1u) != 0u ? uvec2(3u, 6u) : uvec2(i, i >> 1u),
+                                    (at & 1u) != 0u ? i : 5u);
     if ((params.flags & CUBE_FEEDBACK_LOD) != 0u)
         sluiceWriteCubeFeedbackLod(tableIndex, direction, inputs[at].lod);
 }

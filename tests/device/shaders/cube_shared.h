@@ -9,8 +9,9 @@
 #define CUBE_SAMPLE 1u
 #define CUBE_FEEDBACK 2u
 #define CUBE_FEEDBACK_LOD 4u
-#define CUBE_CLEAR 16u /* clears `count` words of feedback instead */
-#define CUBE_WORDS 32u /* copies feedback words instead */
+#define CUBE_FEEDBACK_QUAD 8u /* four pixels in one frame, or one pixel in four, by turns */
+#define CUBE_CLEAR 16u        /* clears `count` words of feedback instead */
+#define CUBE_WORDS 32u        /* copies feedback words instead */
 #define CUBE_INDEX_SHIFT 16u
 
 /* Its size is that of two ProbeInputs, because both lie in one buffer. */
