@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "demand_vulkan/refused_arguments.h"
+#include "image/read_pool.h"
 #include "vulkan/shared_parts.h"
 #include "vulkan/sparse_layout.h"
 
@@ -74,7 +75,13 @@ static SluiceResult create_reader(SluiceDemandLoader *loader)
         .structSize = sizeof create, .requestCapacity = loader->job_count, .end = {loader, on_end}};
     if (loader->info.failure.pfnFailed)
         create.failure = (SluiceTileReadFailureCallback){loader, on_failure};
-    return slc_create_shared_loader(&loader->context->shared, &create, &loader->reader);
+    SluiceResult result =
+        slc_create_shared_loader(&loader->context->shared, &create, &loader->reader);
+    if (result == SLUICE_SUCCESS) { /* before the first read */
+        loader->reader->direct[0] = loader->opener.pInterface;
+        loader->reader->direct[1] = slc_resource_interface();
+    }
+    return result;
 }
 
 /* The free jobs of a kind. */

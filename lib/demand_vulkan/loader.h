@@ -406,6 +406,8 @@ void slc_images_end_retired(SluiceDemandLoader *loader);
 void slc_images_finish(SluiceDemandLoader *loader);
 /** A source whose every texel is an image to be opened: see slc_demand_image.read_color. */
 void slc_image_opener_init(SluiceImageSource *opener);
+/** Of the sources that fill and read the pages of resources. */
+const SluiceImageSourceInterface *slc_resource_interface(void);
 
 /* page_answers.c */
 /** Requests a page of a resource without a callback: the application answers it. */

@@ -43,6 +43,11 @@ static void destroy_source(SluiceImageSource *source)
 static const SluiceImageSourceInterface interface = {sizeof interface, get_info, read_region,
                                                      destroy_source};
 
+const SluiceImageSourceInterface *slc_resource_interface(void)
+{
+    return &interface;
+}
+
 static SluiceDemandResourceId resource_id(const struct slc_demand_resource *resource)
 {
     return (uint64_t)resource->generation << 32 | (resource->index + 1);

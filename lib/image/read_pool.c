@@ -43,6 +43,13 @@ static SluiceResult read_to_cache(SluiceImageSource *source, const SluiceImageRe
     return result;
 }
 
+static bool goes_through_cache(const SluiceTileLoader *loader, const SluiceImageSource *source,
+                               size_t size)
+{
+    return loader->uncached && size <= TILE_SIZE && source->pInterface != loader->direct[0] &&
+           source->pInterface != loader->direct[1];
+}
+
 static SluiceResult read_regions(const SluiceTileLoader *loader, struct slc_read *read,
                                  SluiceImageInfo *info, SluiceImageFault *fault)
 {
@@ -60,7 +67,7 @@ static SluiceResult read_regions(const SluiceTileLoader *loader, struct slc_read
         void *texels = read->texels[read->done_count];
         size_t row_pitch = sluiceGetFormatRegionSize(info->format, region->width, 1);
         size_t size = sluiceGetFormatRegionSize(info->format, region->width, region->height);
-        result = loader->uncached && size <= TILE_SIZE
+        result = goes_through_cache(loader, source, size)
                      ? read_to_cache(source, region, texels, size, row_pitch, fault)
                      : sluiceReadImageRegionLocated(source, region, texels, row_pitch, fault);
         if (result != SLUICE_SUCCESS)

@@ -37,6 +37,9 @@ struct SluiceTileLoader {
     struct slc_read_pool *pool;
     bool owns_pool;
     bool uncached; ///< texels are read to the cache first: the host reads their memory slowly
+    /** Interfaces of sources that are no images: their reads go straight to the memory that was
+     *  given, which may have more bytes than the region. */
+    const SluiceImageSourceInterface *direct[2];
     SluiceTileLoader *next;      ///< of the pool's loaders
     struct slc_read_queue queue; ///< the pool's mutex is around it
 };

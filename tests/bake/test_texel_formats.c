@@ -429,8 +429,10 @@ static void infinities_of_packed_floats_become_numbers(void **state)
 static uint32_t picked(uint32_t size, uint32_t level, uint32_t i)
 {
     for (; level > 0; level--) {
-        uint32_t above = size >> (level - 1);
-        i = above > 1 ? 2 * i + 1 : 0;
+        uint32_t above = size >> (level - 1), right = 0;
+        for (uint32_t k = above; k > 0; k /= 2)
+            right = !right; /* of sizes that halve, every second one takes the right texel */
+        i = above > 1 ? 2 * i + (above % 2 == 1 || right == 0) : 0;
     }
     return i;
 }

@@ -333,6 +333,10 @@ static void sources_never_read_from_memory_that_is_not_cached(void **state)
     source.answer = SLUICE_SUCCESS;
     CHECK_OK(read_picky(r.loaders[0], &source, 65, texels));
     assert_ptr_equal(source.texels, texels);
+    /* Sources that are no images find what they work for by the address. */
+    r.loaders[0]->direct[1] = &picky;
+    CHECK_OK(read_picky(r.loaders[0], &source, 64, texels));
+    assert_ptr_equal(source.texels, texels);
     finish(&r);
 }
 
