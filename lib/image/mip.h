@@ -49,7 +49,8 @@ void slc_mip_rows_finish(struct slc_mip_rows *rows, const SluiceAllocationCallba
  * Makes `coarse` from `fine`, which slc_mip_part_cover has given its rectangle: each texel is the
  * mean of the area that it covers, in linear light for sRGB formats; NaN counts as 0. A texel of an
  * integer format is the fine texel at its center; of two, the right or lower one and the left or
- * upper one in turns of levels. `rows` are at least as wide as `fine`. The result does not depend on how a level is cut into parts.
+ * upper one in turns of levels. `rows` are at least as wide as `fine`. The result does not depend
+ * on how a level is cut into parts.
  */
 void slc_mip_filter(SluiceFormat format, const struct slc_mip_part *fine,
                     const struct slc_mip_part *coarse, const struct slc_mip_rows *rows);
