@@ -253,7 +253,8 @@ SLUICE_API SluiceResult sluiceSetVulkanStreamerSettings(
  * - Sparse mode: a heap. Its standby tiles are evicted. Its wanted tiles are read again; until then
  *   shaders see a coarser level. Heaps with packed tiles stay.
  * - Paged mode: an image of pages. The next frame copies the tiles on the GPU, at most 64, and
- *   shaders see no difference. Tiles that changed in frames under way move later.
+ *   shaders see no difference. Tiles that changed in frames under way move later. Images stay if
+ *   any of their pages holds several equal tiles.
  * - Dense mode: nothing moves.
  *
  * Empty heaps and images are freed in later frames, when the GPU has finished with them. While

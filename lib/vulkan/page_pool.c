@@ -384,7 +384,9 @@ static uint32_t count_own(const struct slc_page_pool *pool, const struct slc_pag
     return count;
 }
 
-static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user)
+/* The chunk with the fewest pages of those that the user alone holds, with at most `most` tiles on
+ * each page. */
+static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user, uint32_t most)
 {
     uint32_t best = SLC_NONE, fewest = SLC_NONE;
     for (uint32_t i = 0; i < pool->chunks.count; i++) {
@@ -392,7 +394,7 @@ static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user)
         uint32_t held = chunk->layer_count - chunk->free_count;
         if (chunk->state != SLC_CHUNK_LIVE || chunk->fresh || held == 0 || held >= fewest ||
             !slc_page_chunk_is_ready(chunk, &pool->timelines, user) ||
-            count_own(pool, chunk, user, 1) == SLC_NONE)
+            count_own(pool, chunk, user, most) == SLC_NONE)
             continue;
         best = i;
         fewest = held;
@@ -433,7 +435,7 @@ static void choose_leaving(struct slc_page_pool *pool, uint32_t user)
         stay(pool);
     if (pool->leaving != SLC_NONE)
         return;
-    pool->leaving = find_leaving(pool, user);
+    pool->leaving = find_leaving(pool, user, 1);
     pool->leaving_user = user;
     if (pool->leaving != SLC_NONE)
         pool->chunks.at[pool->leaving].leaving = true;
@@ -454,6 +456,14 @@ uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user,
     }
     pthread_mutex_unlock(&pool->mutex);
     return lacking;
+}
+
+bool slc_page_pool_has_unmovable(struct slc_page_pool *pool, uint32_t user)
+{
+    pthread_mutex_lock(&pool->mutex);
+    bool has = pool->leaving == SLC_NONE && find_leaving(pool, user, UINT32_MAX) != SLC_NONE;
+    pthread_mutex_unlock(&pool->mutex);
+    return has;
 }
 
 void slc_page_pool_ask_again(struct slc_page_pool *pool)

@@ -113,7 +113,7 @@ static inline void slc_page_pool_keep(struct slc_page_pool *pool, uint64_t size)
 
 /** Makes images of pages of the format until the pool has what it keeps, or there is no memory. */
 void slc_page_pool_prepare(struct slc_page_pool *pool, uint32_t user, SluiceFormat format);
-/** One tile less is on the page. `owner` may ask for it again; or SLC_NO_OWNER. A page with other
+/** Removes one tile from the page. `owner` may ask for it again; or SLC_NO_OWNER. A page with other
  *  tiles, of this user or of others, stays theirs. */
 void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);
 /** True: nobody has taken the page since `owner` of this user gave it, and now the user has it
@@ -126,6 +126,9 @@ bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t pa
  * no chunk can be emptied. `*held`: pages that are held in it.
  */
 uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user, uint32_t *held);
+/** No chunk can be emptied, and slc_page_pool_choose_leaving skips one that the user alone holds
+ *  because pages have two tiles. */
+bool slc_page_pool_has_unmovable(struct slc_page_pool *pool, uint32_t user);
 /** Stops emptying the chunk that the user chose, if any. */
 void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user);
 /** The chunk that the user empties; SLC_NONE if there is none. */

@@ -180,10 +180,11 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
     paged(residency)->heap_count--;
 }
 
-static uint32_t gather(struct slc_residency *residency, uint64_t size)
+static uint32_t gather(struct slc_residency *residency, uint64_t size, bool *must_evict)
 {
     struct paged_residency *p = paged(residency);
     uint32_t held;
+    *must_evict = false;
     if (size)
         slc_page_pool_hurry(p->pool);
     if (size <= slc_page_pool_going_size(p->pool)) {
@@ -191,7 +192,9 @@ static uint32_t gather(struct slc_residency *residency, uint64_t size)
         return SLC_NONE;
     }
     p->moves.left = UINT32_MAX;
-    return slc_page_pool_choose_leaving(p->pool, p->user, &held);
+    uint32_t lacking = slc_page_pool_choose_leaving(p->pool, p->user, &held);
+    *must_evict = lacking == SLC_NONE && slc_page_pool_has_unmovable(p->pool, p->user);
+    return lacking;
 }
 
 static uint32_t compact(struct slc_residency *residency, uint32_t most)
