@@ -42,7 +42,7 @@ static uint64_t list_chunks(struct slc_store_equal_chunks *chunks,
     return sum;
 }
 
-/* Keeps the chunks whose bytes others have, too. */
+/* Keeps the chunks whose bytes other chunks have, too. */
 static void keep_equal(struct slc_store_equal_chunks *chunks)
 {
     struct slc_store_equal_chunk *at = chunks->at;
@@ -69,24 +69,26 @@ static void shrink(struct slc_store_equal_chunks *chunks, const SluiceAllocation
     chunks->capacity = chunks->count;
 }
 
-SluiceResult slc_store_equal_chunks_find(struct slc_store_equal_chunks *chunks,
-                                         const struct slc_input_file *file,
-                                         const struct slc_store_header *header)
+/* Failures are not logged: tiles show whether the index matters. */
+static bool read_index(const struct slc_input_file *file, unsigned char *index, size_t size)
+{
+    return slc_input_file_read_some(file, slc_store_block_offset(0), index, size) == (int64_t)size;
+}
+
+void slc_store_equal_chunks_find(struct slc_store_equal_chunks *chunks,
+                                 const struct slc_input_file *file,
+                                 const struct slc_store_header *header)
 {
     const SluiceAllocationCallbacks *cb = &file->allocator;
-    SluiceResult result = SLUICE_SUCCESS;
     *chunks = (struct slc_store_equal_chunks){0};
     if (header->compression_level == 0 || header->block_count > SLC_STORE_MAX_COMPARED_BLOCKS)
-        return result;
+        return;
     size_t size = (size_t)header->block_count * SLC_STORE_BLOCK_SIZE;
     unsigned char *index = slc_alloc(cb, size, 1);
     chunks->capacity = (uint32_t)header->grid.chunk_count;
     chunks->at = slc_alloc(cb, chunks->capacity, sizeof *chunks->at);
-    bool has_memory = index && chunks->at;
-    if (has_memory)
-        result = slc_input_file_read(file, slc_store_block_offset(0), index, size);
     /* An index with no equal chunks names no more bytes than there are. */
-    if (has_memory && result == SLUICE_SUCCESS &&
+    if (index && chunks->at && read_index(file, index, size) &&
         list_chunks(chunks, header, index) > header->file_size - header->data_offset)
         keep_equal(chunks);
     else
@@ -96,7 +98,6 @@ SluiceResult slc_store_equal_chunks_find(struct slc_store_equal_chunks *chunks,
         shrink(chunks, cb);
     else
         slc_store_equal_chunks_finish(chunks, cb);
-    return result;
 }
 
 void slc_store_equal_chunks_finish(struct slc_store_equal_chunks *chunks,

@@ -22,11 +22,11 @@ struct slc_store_equal_chunks {
     uint32_t count, capacity;
 };
 
-/** Reads the index. Finds nothing without memory for it, and nothing in damaged blocks. Errors:
- *  those of slc_input_file_read. */
-SluiceResult slc_store_equal_chunks_find(struct slc_store_equal_chunks *chunks,
-                                         const struct slc_input_file *file,
-                                         const struct slc_store_header *header);
+/** Reads the index. Finds nothing if there is no memory for it or any part of it cannot be read,
+ *  and nothing in damaged blocks. */
+void slc_store_equal_chunks_find(struct slc_store_equal_chunks *chunks,
+                                 const struct slc_input_file *file,
+                                 const struct slc_store_header *header);
 void slc_store_equal_chunks_finish(struct slc_store_equal_chunks *chunks,
                                    const SluiceAllocationCallbacks *cb);
 

@@ -48,10 +48,9 @@ SluiceResult slc_store_reader_open(struct slc_store_reader *reader,
         result = sluiceCreateStoreReadPool(info->pAllocator, &reader->own_pool);
         reader->pool = reader->own_pool;
     }
-    if (result == SLUICE_SUCCESS)
-        result = slc_store_equal_chunks_find(&reader->equal, &reader->file, &reader->header);
     if (result != SLUICE_SUCCESS)
         return result;
+    slc_store_equal_chunks_find(&reader->equal, &reader->file, &reader->header);
     reader->has_mutex = pthread_mutex_init(&reader->mutex, NULL) == 0;
     return reader->has_mutex ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }

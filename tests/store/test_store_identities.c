@@ -154,6 +154,43 @@ static void a_damaged_index_has_no_numbers(void **state)
     scratch_finish(&scratch);
 }
 
+struct unreadable {
+    unsigned char *bytes;
+    size_t size;
+};
+
+/* Block 0 of the index cannot be read. */
+static SluiceResult read_unreadable(void *user, uint64_t offset, void *bytes, size_t size)
+{
+    const struct unreadable *file = user;
+    if (offset < 8192 && offset + size > 4096)
+        return SLUICE_ERROR_IO;
+    memcpy(bytes, file->bytes + offset, size);
+    return SLUICE_SUCCESS;
+}
+
+static void a_store_with_an_unreadable_index_block_opens_without_numbers(void **state)
+{
+    (void)state;
+    struct scratch scratch;
+    struct unreadable file;
+    SluiceImageSource *source;
+    scratch_init(&scratch);
+    write_file(scratch.path, 3, false);
+    file.bytes = read_bytes(scratch.path, &file.size);
+    const SluiceInput input = {.structSize = sizeof input,
+                               .size = file.size,
+                               .pUserData = &file,
+                               .pfnRead = read_unreadable};
+    const SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info, .pInput = &input};
+    CHECK_OK(sluiceCreateStoreImageSource(&info, &source));
+    SluiceImageRegion region = region_of(0, 0, 0);
+    assert_int_equal(identity_of(source, &region), 0);
+    sluiceDestroyImageSource(source);
+    free(file.bytes);
+    scratch_finish(&scratch);
+}
+
 static void without_memory_tiles_have_no_number(void **state)
 {
     (void)state;
@@ -216,6 +253,7 @@ int main(void)
         cmocka_unit_test(parts_of_tiles_and_tails_have_no_number),
         cmocka_unit_test(stores_without_equal_tiles_have_no_numbers),
         cmocka_unit_test(a_damaged_index_has_no_numbers),
+        cmocka_unit_test(a_store_with_an_unreadable_index_block_opens_without_numbers),
         cmocka_unit_test(without_memory_tiles_have_no_number),
         cmocka_unit_test(wrapped_stores_tell_what_the_stores_know),
     };
