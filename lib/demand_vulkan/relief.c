@@ -17,7 +17,7 @@ struct survey {
     struct chunk_use chunks[SLC_MAX_PAGE_CHUNKS];
     SluiceDemandLoader *loader;
     uint32_t chunk;                               ///< chunk whose pages are listed
-    uint32_t pages[SLC_PAGE_CHUNK_LAYERS], count; ///< pages of `chunk`
+    uint32_t pages[SLC_PAGE_CHUNK_LAYERS], count; ///< some pages of `chunk`
 };
 
 static uint32_t chunk_of(const struct slc_placed_page *page)
@@ -63,10 +63,12 @@ static void empty_chunk(struct survey *survey, uint32_t chunk)
 {
     struct slc_demand_residency *residency = survey->loader->residency;
     survey->chunk = chunk;
-    survey->count = 0;
-    slc_residency_visit_placed(residency, SLC_CLASS_TILES, list_page, survey);
-    for (uint32_t i = 0; i < survey->count; i++)
-        slc_residency_forget(residency, survey->pages[i], 1);
+    do { /* several equal tiles can be on one page */
+        survey->count = 0;
+        slc_residency_visit_placed(residency, SLC_CLASS_TILES, list_page, survey);
+        for (uint32_t i = 0; i < survey->count; i++)
+            slc_residency_forget(residency, survey->pages[i], 1);
+    } while (survey->count == SLC_PAGE_CHUNK_LAYERS);
     survey->chunks[chunk] = (struct chunk_use){0};
 }
 

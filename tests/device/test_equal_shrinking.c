@@ -1,4 +1,5 @@
-/* Memory falls although most pages have several equal tiles, which cannot move. */
+/* Memory falls although most pages have several equal tiles, which cannot move.
+ */
 #include "device/demand_runner.h"
 #include "device/scene.h"
 
@@ -265,6 +266,90 @@ static void unneeded_equal_tiles_give_way_to_a_loader(void **state)
     close_scene();
 }
 
+/* All tiles of the source are equal, if they are whole. */
+static bool identify_all(SluiceImageSource *base, const SluiceImageRegion *region,
+                         uint64_t *identity)
+{
+    (void)base;
+    *identity = 1;
+    return region->width == TILE && region->height == TILE;
+}
+
+static SluiceDemandTextureId add_demand(struct runner *r, struct pairs *source, uint32_t size,
+                                        const SluiceImageSourceInterface *interface)
+{
+    const SluiceProceduralImage image = {NULL, texel};
+    const SluiceImageInfo info = {.structSize = sizeof info,
+                                  .width = size,
+                                  .height = size,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .pName = "equal"};
+    *source = (struct pairs){.base.pInterface = interface};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source->inner));
+    SluiceDemandTextureId id;
+    const SluiceDemandTextureCreateInfo texture = {
+        .structSize = sizeof texture,
+        .image = {.source = &source->base, .pName = "equal"},
+        .pSampler = &runner_nearest};
+    CHECK_OK(sluiceAddDemandTexture(r->loader, &texture, &id));
+    return id;
+}
+
+static void add_tiles(struct runner *r, SluiceDemandTextureId id, uint32_t edge, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        runner_add_texel(r, id, edge * TILE, edge * TILE, 0, i % edge * TILE + 3,
+                         i / edge * TILE + 3);
+}
+
+/* The tails and the distinct tiles of one texture fill the first image of
+ * pages, and stay. */
+static void any_number_of_equal_tiles_leaves_an_image_of_a_loader_at_once(void **state)
+{
+    (void)state;
+    enum { EDGE = 64 };
+    static struct runner r;
+    static struct pairs distinct, equal, more;
+    SluiceImageSourceInterface none = pairs_interface, all = pairs_interface;
+    none.pfnIdentifyRegion = NULL;
+    all.pfnIdentifyRegion = identify_all;
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = 1u << 30};
+    runner_init(&r, &h, &info);
+    SluiceDemandTextureId a = add_demand(&r, &distinct, 1024, &none);
+    SluiceDemandTextureId b = add_demand(&r, &equal, EDGE * TILE, &all);
+    SluiceDemandTextureId c = add_demand(&r, &more, 1024, &none);
+    runner_clear(&r);
+    runner_add_texel(&r, b, EDGE * TILE, EDGE * TILE, 7, 0, 0);
+    runner_add_texel(&r, c, 1024, 1024, 4, 0, 0);
+    runner_add_texel(&r, a, 1024, 1024, 4, 0, 0);
+    assert_true(runner_load(&r, 40) < 40);
+    add_tiles(&r, a, 8, 64);
+    assert_true(runner_load(&r, 40) < 40);
+    add_tiles(&r, c, 8, 24);
+    assert_true(runner_load(&r, 40) < 40);
+    runner_clear(&r);
+    add_tiles(&r, b, EDGE, EDGE * EDGE);
+    assert_true(runner_load(&r, 100) < 100);
+    assert_true(runner_statistics(&r).residentTileCount > EDGE * EDGE);
+    runner_clear(&r);
+    add_tiles(&r, a, 8, 64);
+    assert_true(runner_load(&r, 40) < 40);
+    uint64_t before = tile_memory();
+    CHECK_OK(sluiceSetVulkanMemoryBudget(h.context, 4 * MIB + MIB / 4));
+    for (uint32_t i = 0; i < 2; i++) {
+        runner_launch(&r);
+        CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
+    }
+    printf("# %u of %u KiB after two launches, %u tiles\n", (unsigned)(tile_memory() / 1024),
+           (unsigned)(before / 1024), (unsigned)runner_statistics(&r).residentTileCount);
+    assert_true(tile_memory() <= before / 2);
+    CHECK_OK(sluiceSetVulkanMemoryBudget(h.context, 0));
+    runner_finish(&r);
+    sluiceDestroyImageSource(distinct.inner);
+    sluiceDestroyImageSource(equal.inner);
+    sluiceDestroyImageSource(more.inner);
+}
+
 static void abandoned_frames_keep_no_memory(void **state)
 {
     uint32_t before = h.abandon_one_in;
@@ -280,6 +365,7 @@ int main(void)
         cmocka_unit_test(unneeded_equal_tiles_go_when_the_budget_falls),
         cmocka_unit_test(wanted_equal_tiles_go_when_the_budget_falls_below_them),
         cmocka_unit_test(unneeded_equal_tiles_give_way_to_a_loader),
+        cmocka_unit_test(any_number_of_equal_tiles_leaves_an_image_of_a_loader_at_once),
         cmocka_unit_test(abandoned_frames_keep_no_memory),
     };
     int status = harness_init(&h);
