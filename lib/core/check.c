@@ -348,10 +348,22 @@ static const char *check_heaps(const slc_manager *m)
     return check_buckets(&m->residency.heaps);
 }
 
-static bool wants_outside(const slc_manager *m, const struct slc_managed_texture *t)
+/** The nodes without slots are counted by state. */
+static const char *check_outside(const slc_manager *m)
 {
-    return t->shape->desc.packedTilesOutside &&
-           (m->info.alwaysMapPackedTiles || t->held_regions > 0);
+    uint32_t counts[8] = {0};
+    for (uint32_t i = 0; i < m->texture_end; i++) {
+        const struct slc_managed_texture *t = slc_texture_at(m, i);
+        bool outside = t->live && t->shape->desc.packedTilesOutside;
+        for (uint32_t k = 0; outside && k < t->shape->desc.packedTileCount; k++) {
+            uint32_t node = slc_find_node(t, t->shape->regular_tile_count + k);
+            if (node)
+                counts[slc_node_at(&m->residency, node)->state]++;
+        }
+    }
+    for (uint32_t s = 0; s < 8; s++)
+        REQUIRE(counts[s] == m->residency.outside_counts[s]);
+    return NULL;
 }
 
 const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
@@ -364,7 +376,7 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
         wrong = check_visited(m);
     if (!wrong)
         wrong = check_troubles(m);
-    uint64_t nodes = 0, tiles = 0, outside = 0;
+    uint64_t nodes = 0, tiles = 0;
     uint32_t textures = 0;
     for (uint32_t i = 0; i < m->texture_end && !wrong; i++) {
         const struct slc_managed_texture *t = slc_texture_at(m, i);
@@ -374,13 +386,14 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
         if (!wrong)
             wrong = check_users(m, t);
         tiles += t->shape->tile_count;
-        outside += wants_outside(m, t) ? t->shape->desc.packedTileCount : 0;
         textures++;
     }
     if (wrong)
         return wrong;
     REQUIRE(textures == m->texture_count && tiles == m->tile_count);
-    REQUIRE(outside == m->outside_wanted);
+    wrong = check_outside(m);
+    if (wrong)
+        return wrong;
     uint64_t states = 0;
     for (uint32_t s = 0; s < 8; s++)
         states += m->residency.state_counts[s];

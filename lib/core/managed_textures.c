@@ -179,8 +179,6 @@ static SluiceResult remove_texture(slc_manager *m, SluiceTextureId id, uint64_t 
          tile++)
         if (slc_find_node(t, tile))
             slc_node_retire(&m->residency, slc_find_node(t, tile), retire_value);
-    if (t->shape->desc.packedTilesOutside && (m->info.alwaysMapPackedTiles || t->held_regions > 0))
-        m->outside_wanted -= t->shape->desc.packedTileCount;
     slc_reports_drop(m, t);
     slc_trouble_move(m, t, SLC_TROUBLE_NONE);
     slc_visit(m, t, false);

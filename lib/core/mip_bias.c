@@ -134,12 +134,10 @@ void slc_update_bias(slc_manager *m, uint64_t limit)
         turn_off(m);
         return;
     }
-    uint64_t wanted = (uint64_t)m->residency.state_counts[SLUICE_TILE_STATE_REQUESTED] +
-                      m->residency.state_counts[SLUICE_TILE_STATE_ALLOCATED] +
-                      m->residency.state_counts[SLUICE_TILE_STATE_MAPPED] +
+    uint64_t wanted = (uint64_t)slc_count_with_slots(&m->residency, SLUICE_TILE_STATE_REQUESTED) +
+                      slc_count_with_slots(&m->residency, SLUICE_TILE_STATE_ALLOCATED) +
+                      slc_count_with_slots(&m->residency, SLUICE_TILE_STATE_MAPPED) +
                       m->residency.evicted_wanted;
-    /* Those that failed are in no count of states. */
-    wanted -= slc_min_u64(wanted, m->outside_wanted);
     if ((b->value == 0 && wanted <= limit) || b->maps < m->visited_count)
         return;
     count_round(b);

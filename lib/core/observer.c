@@ -29,11 +29,6 @@ uint64_t slc_manager_config_count(const SluiceStreamedTextureManager *manager)
     return manager->config_count;
 }
 
-uint64_t slc_manager_outside_count(const SluiceStreamedTextureManager *manager)
-{
-    return manager->outside_wanted;
-}
-
 void slc_notify(slc_manager *m, const struct slc_call *call)
 {
     /* The configuration can be asked for at any time, so it alone hides nothing from a recorder. */

@@ -24,7 +24,8 @@ slc_manager_config(const SluiceStreamedTextureManager *manager);
 /** Returns how often sluiceSetConfig succeeded. */
 uint64_t slc_manager_config_count(const SluiceStreamedTextureManager *manager);
 
-/** Returns how many packed tiles that take no slots (packedTilesOutside) are wanted. */
-uint64_t slc_manager_outside_count(const SluiceStreamedTextureManager *manager);
+/** Returns statistics whose counts by state leave out tiles that take no slots. */
+SluiceStreamedTextureStatistics
+slc_manager_slot_statistics(const SluiceStreamedTextureManager *manager);
 
 #endif /* SLC_CORE_OBSERVER_H */

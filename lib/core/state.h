@@ -197,7 +197,6 @@ struct SluiceStreamedTextureManager {
     uint32_t *free_indices; ///< owned min-heap, room for every texture of the chunks
     uint32_t free_index_count, free_index_room;
     uint64_t tile_count;
-    uint64_t outside_wanted; ///< packed tiles without slots that are wanted, in whatever state
 
     struct slc_machine residency;
 

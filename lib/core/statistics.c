@@ -1,4 +1,5 @@
 #include "base/struct_size.h"
+#include "core/observer.h"
 #include "core/state.h"
 
 SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
@@ -41,4 +42,20 @@ SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
     };
     slc_struct_write(SLC_STRUCT(SluiceStreamedTextureStatistics), pStatistics, &statistics);
     return SLUICE_SUCCESS;
+}
+
+SluiceStreamedTextureStatistics
+slc_manager_slot_statistics(const SluiceStreamedTextureManager *manager)
+{
+    const struct slc_machine *r = &manager->residency;
+    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
+    sluiceGetStatistics(manager, &s);
+    s.requestedTileCount = slc_count_with_slots(r, SLUICE_TILE_STATE_REQUESTED);
+    s.allocatedTileCount = slc_count_with_slots(r, SLUICE_TILE_STATE_ALLOCATED);
+    s.mappedTileCount = slc_count_with_slots(r, SLUICE_TILE_STATE_MAPPED);
+    s.standbyTileCount = slc_count_with_slots(r, SLUICE_TILE_STATE_STANDBY);
+    s.canceledTileCount = slc_count_with_slots(r, SLUICE_TILE_STATE_CANCELED);
+    s.failedTileCount = slc_count_with_slots(r, SLUICE_TILE_STATE_FAILED);
+    s.givenUpTileCount = slc_count_with_slots(r, SLUICE_TILE_STATE_GIVEN_UP);
+    return s;
 }

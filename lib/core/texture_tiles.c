@@ -57,7 +57,6 @@ void slc_packed_tiles_wanted(slc_manager *m, struct slc_managed_texture *t)
     uint32_t count = t->shape->desc.packedTileCount, first = t->shape->regular_tile_count;
     for (uint32_t i = 0; i < count; i++)
         slc_tile_wanted(m, t, &t->packed_nodes[i], first + i, slc_packed_class(t));
-    m->outside_wanted += t->shape->desc.packedTilesOutside ? count : 0;
 }
 
 void slc_packed_tiles_unwanted(slc_manager *m, struct slc_managed_texture *t)
@@ -65,7 +64,6 @@ void slc_packed_tiles_unwanted(slc_manager *m, struct slc_managed_texture *t)
     uint32_t count = t->shape->desc.packedTileCount;
     for (uint32_t i = 0; i < count; i++)
         slc_node_unwanted(&m->residency, t->packed_nodes[i]);
-    m->outside_wanted -= t->shape->desc.packedTilesOutside ? count : 0;
 }
 
 uint32_t slc_tile_prefetch(slc_manager *m, struct slc_managed_texture *t, uint32_t tile,

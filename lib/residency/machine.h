@@ -101,7 +101,8 @@ struct slc_machine {
     struct slc_node **node_chunks; ///< owned, [node_chunk_room]; node 0 is unused
     uint32_t node_chunk_count, node_chunk_room;
     uint32_t node_end, free_node, free_node_count;
-    uint32_t state_counts[8]; ///< nodes by SluiceTileState
+    uint32_t state_counts[8];   ///< nodes by SluiceTileState
+    uint32_t outside_counts[8]; ///< those of them that take no slots
     struct slc_requests requests;
     struct slc_list standby, evicted, canceled, given_up, retiring;
     struct slc_due_tree failed;
@@ -118,6 +119,12 @@ struct slc_machine {
 static inline bool slc_is_packed_class(uint32_t level)
 {
     return level >= SLC_PACKED_CLASS;
+}
+
+/** Tiles in a state, without those that take no slots. */
+static inline uint32_t slc_count_with_slots(const struct slc_machine *r, SluiceTileState state)
+{
+    return r->state_counts[state] - r->outside_counts[state];
 }
 
 static inline struct slc_node *slc_node_at(const struct slc_machine *r, uint32_t node)

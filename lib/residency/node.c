@@ -78,6 +78,25 @@ static void detach_node(struct slc_machine *r, uint32_t node)
 
 /* Nodes ------------------------------------------------------------------------------------- */
 
+static void count_node(struct slc_machine *r, const struct slc_node *n)
+{
+    r->state_counts[n->state]++;
+    r->outside_counts[n->state] += n->level == SLC_OUTSIDE_CLASS;
+}
+
+static void uncount_node(struct slc_machine *r, const struct slc_node *n)
+{
+    r->state_counts[n->state]--;
+    r->outside_counts[n->state] -= n->level == SLC_OUTSIDE_CLASS;
+}
+
+static void count_move(struct slc_machine *r, struct slc_node *n, SluiceTileState to)
+{
+    uncount_node(r, n);
+    n->state = (uint8_t)to;
+    count_node(r, n);
+}
+
 static uint32_t take_node(struct slc_machine *r, uint32_t owner, uint32_t tile, uint32_t level,
                           SluiceTileState state)
 {
@@ -87,7 +106,7 @@ static uint32_t take_node(struct slc_machine *r, uint32_t owner, uint32_t tile, 
                                               .heap = SLC_NONE,
                                               .level = (uint8_t)level,
                                               .state = (uint8_t)state};
-    r->state_counts[state]++;
+    count_node(r, slc_node_at(r, node));
     return node;
 }
 
@@ -101,9 +120,7 @@ void slc_node_set_state(struct slc_machine *r, uint32_t node, SluiceTileState st
     struct slc_node *n = slc_node_at(r, node);
     uint8_t old = n->state;
     leave_list(r, node);
-    r->state_counts[old]--;
-    n->state = (uint8_t)state;
-    r->state_counts[state]++;
+    count_move(r, n, state);
     enter_list(r, node);
     if (is_resident(old) != is_resident(n->state))
         r->user.resident(r->user.user, n, is_resident(n->state));
@@ -114,10 +131,8 @@ void slc_node_set_state(struct slc_machine *r, uint32_t node, SluiceTileState st
 void slc_node_request_again(struct slc_machine *r, uint32_t node)
 {
     leave_list(r, node); /* before the need changes: a REQUESTED one is listed by it */
-    r->state_counts[slc_node_at(r, node)->state]--;
-    slc_node_at(r, node)->state = SLUICE_TILE_STATE_REQUESTED;
+    count_move(r, slc_node_at(r, node), SLUICE_TILE_STATE_REQUESTED);
     slc_node_at(r, node)->need = 0;
-    r->state_counts[SLUICE_TILE_STATE_REQUESTED]++;
     enter_list(r, node);
 }
 
@@ -125,9 +140,7 @@ void slc_node_evict_wanted(struct slc_machine *r, uint32_t node)
 {
     struct slc_node *n = slc_node_at(r, node);
     leave_list(r, node);
-    r->state_counts[SLUICE_TILE_STATE_MAPPED]--;
-    r->state_counts[SLUICE_TILE_STATE_STANDBY]++;
-    n->state = SLUICE_TILE_STATE_STANDBY;
+    count_move(r, n, SLUICE_TILE_STATE_STANDBY);
     n->flags = SLC_NODE_LISTED | SLC_NODE_WANTED;
     slc_list_append(r, &r->evicted, node);
     r->evicted_wanted++;
@@ -155,13 +168,6 @@ bool slc_node_unmap_wanted(struct slc_machine *r, uint32_t node, uint64_t retire
  * The moves below are those that a map makes by the thousand, so they do by themselves what
  * slc_node_set_state would do, and not more.
  */
-
-static void count_move(struct slc_machine *r, struct slc_node *n, SluiceTileState to)
-{
-    r->state_counts[n->state]--;
-    r->state_counts[to]++;
-    n->state = (uint8_t)to;
-}
 
 static void restore(struct slc_machine *r, uint32_t node)
 {
@@ -265,9 +271,7 @@ void slc_node_fail(struct slc_machine *r, uint32_t node, uint64_t time)
         return;
     }
     leave_list(r, node); /* the due time is where the node will stand, so it is set in between */
-    r->state_counts[n->state]--;
-    n->state = SLUICE_TILE_STATE_FAILED;
-    r->state_counts[SLUICE_TILE_STATE_FAILED]++;
+    count_move(r, n, SLUICE_TILE_STATE_FAILED);
     n->order = time + delay;
     enter_list(r, node);
 }
@@ -288,7 +292,7 @@ void slc_node_retire(struct slc_machine *r, uint32_t node, uint64_t retire_value
         return;
     }
     slc_node_set_state(r, node, SLUICE_TILE_STATE_FREE);
-    r->state_counts[SLUICE_TILE_STATE_FREE]--;
+    uncount_node(r, slc_node_at(r, node));
     detach_node(r, node);
     struct slc_node *n = slc_node_at(r, node);
     n->owner = SLC_NONE;
@@ -328,7 +332,7 @@ void slc_node_release(struct slc_machine *r, uint32_t node)
 {
     assert(slc_node_at(r, node)->heap == SLC_NONE);
     slc_node_set_state(r, node, SLUICE_TILE_STATE_FREE);
-    r->state_counts[SLUICE_TILE_STATE_FREE]--;
+    uncount_node(r, slc_node_at(r, node));
     detach_node(r, node);
     slc_nodes_give(r, node);
 }

@@ -25,7 +25,7 @@ static uint64_t needed_heaps(const SluiceVulkanStreamer *s,
     uint64_t tiles = (uint64_t)stats->mappedTileCount + stats->allocatedTileCount +
                      stats->requestedTileCount + stats->canceledTileCount +
                      stats->reservedSlotCount;
-    return div_up(without(tiles, slc_manager_outside_count(s->manager)), s->info.heapTileCapacity);
+    return div_up(tiles, s->info.heapTileCapacity);
 }
 
 /* How many heaps to keep; 0: all. Released heaps count as freed before their memory is. */
@@ -207,8 +207,7 @@ SluiceResult slc_shrink_step(SluiceVulkanStreamer *s)
     const struct slc_residency_interface *interface = s->residency->interface;
     if (!interface->going_size && !interface->gather)
         return SLUICE_SUCCESS;
-    SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
-    sluiceGetStatistics(s->manager, &stats);
+    SluiceStreamedTextureStatistics stats = slc_manager_slot_statistics(s->manager);
     return interface->gather ? shrink_pages(s, &stats) : shrink_heaps(s, &stats);
 }
 

@@ -110,18 +110,23 @@ uint64_t naive_count_holding(const struct naive_manager *n)
     return holding;
 }
 
-static uint64_t count_outside(const struct naive_manager *n)
+static uint64_t count_wanted(const struct naive_manager *n)
 {
-    uint64_t count = 0;
-    for (uint32_t i = 0; i < n->texture_room; i++)
-        for (uint32_t k = 0; n->textures[i] && k < n->textures[i]->layout.tileCount; k++)
-            count += n->textures[i]->tiles[k].outside && n->textures[i]->tiles[k].wanted;
-    return count;
+    static const SluiceTileState states[] = {SLUICE_TILE_STATE_REQUESTED,
+                                             SLUICE_TILE_STATE_ALLOCATED, SLUICE_TILE_STATE_MAPPED};
+    uint64_t wanted = count_evicted(n);
+    for (size_t s = 0; s < sizeof states / sizeof *states; s++) {
+        uint32_t count;
+        struct naive_ref *refs = naive_collect(n, NULL, states[s], &count);
+        for (uint32_t i = 0; i < count; i++)
+            wanted += !refs[i].tile->outside;
+        free(refs);
+    }
+    return wanted;
 }
 
 void naive_look_at_bias(struct naive_manager *n)
 {
-    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
     struct naive_bias *b = &n->bias;
     if (n->config.noMipBias) {
         if (b->value > 0) {
@@ -133,12 +138,8 @@ void naive_look_at_bias(struct naive_manager *n)
         return;
     }
     const uint64_t holding = naive_count_holding(n);
-    naive_statistics(n, &s);
     const uint64_t limit = wanted_limit(n);
-    uint64_t wanted = (uint64_t)s.requestedTileCount + s.allocatedTileCount + s.mappedTileCount +
-                      count_evicted(n);
-    const uint64_t outside = count_outside(n);
-    wanted -= outside < wanted ? outside : wanted;
+    const uint64_t wanted = count_wanted(n);
     if ((b->value == 0 && wanted <= limit) || b->maps < holding)
         return;
     b->maps = 0;

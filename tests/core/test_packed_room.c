@@ -168,6 +168,20 @@ static void every_texture_shows_something_as_long_as_packed_tiles_fit(void **sta
     }
 }
 
+/** 64x64, all of it in one packed tile. */
+static SluiceStreamedTextureDesc tiny_texture(bool outside)
+{
+    return (SluiceStreamedTextureDesc){.width = 64,
+                                       .height = 64,
+                                       .mipLevelCount = 7,
+                                       .packedTileCount = 1,
+                                       .tileWidth = 128,
+                                       .tileHeight = 128,
+                                       .feedbackRegionWidth = 64,
+                                       .feedbackRegionHeight = 64,
+                                       .packedTilesOutside = outside};
+}
+
 static void packed_tiles_outside_of_heaps_need_no_slot(void **state)
 {
     (void)state;
@@ -175,15 +189,7 @@ static void packed_tiles_outside_of_heaps_need_no_slot(void **state)
     fixture_open(&f, CAPACITY, true);
     f.heaps.limit = 1;
     fixture_configure(&f, 0, 1, 5, 1);
-    SluiceStreamedTextureDesc desc = {.width = 64,
-                                      .height = 64,
-                                      .mipLevelCount = 7,
-                                      .packedTileCount = 1,
-                                      .tileWidth = 128,
-                                      .tileHeight = 128,
-                                      .feedbackRegionWidth = 64,
-                                      .feedbackRegionHeight = 64,
-                                      .packedTilesOutside = true};
+    SluiceStreamedTextureDesc desc = tiny_texture(true);
     SluiceTextureId ids[1000];
     for (uint32_t i = 0; i < 1000; i++)
         ids[i] = fixture_add(&f, &desc);
@@ -207,6 +213,45 @@ static void packed_tiles_outside_of_heaps_need_no_slot(void **state)
     fixture_close(&f);
 }
 
+/* A texture that wants far more than there are slots, beside textures that cannot be loaded. */
+static void blur_beside(uint32_t failing, SluiceStreamedTextureStatistics *now)
+{
+    struct fixture f;
+    fixture_open(&f, CAPACITY, true);
+    f.heaps.limit = 1;
+    fixture_configure(&f, 0, 1, 1, 1);
+    SluiceStreamedTextureDesc desc = tiny_texture(true);
+    for (uint32_t i = 0; i < failing; i++)
+        fixture_add(&f, &desc);
+    fixture_to_map(&f, SLUICE_ALL_TEXTURES);
+    assert_int_equal(f.count, failing);
+    for (uint32_t i = 0; i < failing; i++)
+        CHECK_OK(
+            sluiceReportFailedTiles(f.manager, f.tiles[i].textureId, 1, &f.tiles[i].tileIndex, 0));
+    SluiceStreamedTextureDesc large = full_chain(4096, 4096, 128, 128);
+    SluiceTextureId id = fixture_add(&f, &large);
+    for (uint32_t time = 1; time < 60; time++) {
+        fixture_feed(&f, id, 0, time, 1000);
+        fixture_load(&f);
+        fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0);
+    }
+    assert_null(slc_manager_check(f.manager));
+    *now = fixture_statistics(&f);
+    assert_int_equal(now->givenUpTileCount, failing);
+    fixture_close(&f);
+}
+
+static void packed_tiles_outside_that_failed_do_not_change_the_bias(void **state)
+{
+    (void)state;
+    SluiceStreamedTextureStatistics none, many;
+    blur_beside(0, &none);
+    blur_beside(1000, &many);
+    assert_true(none.globalMipBias > 0);
+    assert_int_equal(many.globalMipBias, none.globalMipBias);
+    assert_int_equal(many.requestedTileCount, none.requestedTileCount);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +263,7 @@ int main(void)
         cmocka_unit_test(packed_tiles_stand_first_in_every_list),
         cmocka_unit_test(every_texture_shows_something_as_long_as_packed_tiles_fit),
         cmocka_unit_test(packed_tiles_outside_of_heaps_need_no_slot),
+        cmocka_unit_test(packed_tiles_outside_that_failed_do_not_change_the_bias),
     };
     return RUN_TESTS(tests);
 }
