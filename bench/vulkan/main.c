@@ -139,7 +139,9 @@ int main(int argc, char **argv)
         option_device(&a.device),
         {OPTION_CHOICE, "residency", "all|sparse|paged|dense", "all", &a.residency,
          "mode to measure"},
-        option_only(&a.only, "some of " MEASUREMENT_NAMES),
+        option_only(&a.only,
+                    "some of sampling, feedback, fill, produce, budget, resolve, host, sharp, "
+                    "unseen, small; without spaces"),
         {OPTION_EXTENT, "size", "WxH", "0x0", a.size,
          "of pictures in pixels; 0x0: 1920x1080, on software devices 640x360, with --quick 160x90",
          0, 8192},
