@@ -350,15 +350,6 @@ static void any_number_of_equal_tiles_leaves_an_image_of_a_loader_at_once(void *
     sluiceDestroyImageSource(more.inner);
 }
 
-static void abandoned_frames_keep_no_memory(void **state)
-{
-    uint32_t before = h.abandon_one_in;
-    h.abandon_one_in = 2;
-    unneeded_equal_tiles_go_when_the_budget_falls(state);
-    wanted_equal_tiles_go_when_the_budget_falls_below_them(state);
-    h.abandon_one_in = before;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -366,7 +357,6 @@ int main(void)
         cmocka_unit_test(wanted_equal_tiles_go_when_the_budget_falls_below_them),
         cmocka_unit_test(unneeded_equal_tiles_give_way_to_a_loader),
         cmocka_unit_test(any_number_of_equal_tiles_leaves_an_image_of_a_loader_at_once),
-        cmocka_unit_test(abandoned_frames_keep_no_memory),
     };
     int status = harness_init(&h);
     return status ? status : harness_finish(&h, RUN_TESTS(tests));
