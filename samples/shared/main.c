@@ -4,9 +4,8 @@
  * tile once and keep it on one page. --apart gives each a context of its own, to compare.
  */
 #include "../../tools/common/log.h"
-#include "../../tools/common/output_file.h"
 #include "../../tools/common/shared_options.h"
-#include "../../tools/common/text.h"
+#include "../common/paged_sample.h"
 #include "../common/png_file.h"
 #include "passes.h"
 
@@ -17,13 +16,11 @@
 #define TEXTURE_SIZE 2048
 #define BUDGET (UINT64_C(64) << 20) /* bytes of tiles */
 #define HEAP_TILES 64               /* the streamer's share of the budget comes in heaps of 4 MiB */
-#define EXIT_USAGE 2
-#define EXIT_NO_DEVICE 77
 
 struct settings {
-    const char *output, *device;
+    struct paged_sample common;
     uint32_t width, height, frames;
-    bool apart, validation, list_devices;
+    bool apart;
 };
 
 struct app {
@@ -221,7 +218,8 @@ static bool write_picture(const struct app *app)
             picture[k] =
                 (uint8_t)((float)picture[k] * (1 - weight) + (float)reflections[k] * weight + 0.5f);
     }
-    return png_file_write(app->settings.output, picture, app->settings.width, app->settings.height);
+    return png_file_write(app->settings.common.output, picture, app->settings.width,
+                          app->settings.height);
 }
 
 static bool print_counts(const struct app *app, uint32_t missing)
@@ -266,16 +264,16 @@ static enum option_outcome read_settings(struct settings *settings, int argc, ch
 {
     uint32_t size[2];
     const struct option options[] = {
-        {OPTION_TEXT, "output", "FILE", "shared.png", &settings->output, "the picture, as PNG",
-         .letter = 'o'},
+        {OPTION_TEXT, "output", "FILE", "shared.png", &settings->common.output,
+         "the picture, as PNG", .letter = 'o'},
         {OPTION_EXTENT, "size", "WxH", "640x360", size, "pixels", 16, 4096},
         {OPTION_UINT, "frames", "N", "30", &settings->frames, "frames, and as many launches", 1,
          1000000},
         {OPTION_FLAG, "apart", NULL, NULL, &settings->apart,
          "a context for each front end: nothing is shared"},
-        option_device(&settings->device),
-        option_list_devices(&settings->list_devices),
-        option_validation(&settings->validation),
+        option_device(&settings->common.device),
+        option_list_devices(&settings->common.list_devices),
+        option_validation(&settings->common.validation),
     };
     const struct option_table table = {
         "shared-tiles",
@@ -292,26 +290,11 @@ static enum option_outcome read_settings(struct settings *settings, int argc, ch
 int main(int argc, char **argv)
 {
     struct app app = {0};
-    bool unsupported = false;
-    switch (read_settings(&app.settings, argc, argv)) {
-    case OPTIONS_HELP: return text_exit_status(EXIT_SUCCESS);
-    case OPTIONS_ERROR: return EXIT_USAGE;
-    case OPTIONS_RUN: break;
-    }
-    if (app.settings.list_devices)
-        return text_exit_status(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
-    if (!output_can_write(app.settings.output))
-        return EXIT_FAILURE;
-    const struct gpu_request request = {
-        .device = app.settings.device,
-        .validation = app.settings.validation,
-        .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED}};
-    if (!gpu_create(&request, &app.gpu, &unsupported))
-        return unsupported ? EXIT_NO_DEVICE : EXIT_FAILURE;
+    enum option_outcome outcome = read_settings(&app.settings, argc, argv);
+    int status = paged_sample_begin(outcome, &app.settings.common, &app.gpu);
+    if (status != PAGED_SAMPLE_GOES_ON)
+        return status;
     bool good = create(&app) && run(&app);
     destroy(&app);
-    uint32_t messages = atomic_load(&app.gpu.validation_messages);
-    if (messages > 0)
-        fprintf(stderr, "the validation layers had %u messages\n", messages);
-    return good && messages == 0 ? text_exit_status(EXIT_SUCCESS) : EXIT_FAILURE;
+    return paged_sample_end(&app.gpu, good);
 }

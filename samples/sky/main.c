@@ -3,11 +3,10 @@
  * are loaded. The faces are painted, or come from a store of `sluice-bake --cube`.
  */
 #include "../../tools/common/log.h"
-#include "../../tools/common/output_file.h"
 #include "../../tools/common/shared_options.h"
 #include "../../tools/common/target.h"
-#include "../../tools/common/text.h"
 #include "../common/draw_pipeline.h"
+#include "../common/paged_sample.h"
 #include "../common/png_file.h"
 #include "faces.h"
 
@@ -22,14 +21,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define EXIT_USAGE 2
-#define EXIT_NO_DEVICE 77
 #define EDGE_WIDTH 0.006f
 
 struct settings {
-    const char *output, *device, *store;
+    struct paged_sample common;
+    const char *store;
     uint32_t size[2], frames, face_size;
-    bool edges, everything, validation, list_devices;
+    bool edges, everything;
 };
 
 /* Push constants, as in sky.glsl. */
@@ -278,7 +276,7 @@ static bool run(struct app *app)
         return false;
     printf("%llu tiles loaded, %llu KiB read\n", (unsigned long long)statistics.tilesMapped,
            (unsigned long long)(statistics.bytesRead >> 10));
-    return png_file_write(app->settings.output, app->picture.mapped, app->settings.size[0],
+    return png_file_write(app->settings.common.output, app->picture.mapped, app->settings.size[0],
                           app->settings.size[1]);
 }
 
@@ -302,7 +300,7 @@ static void destroy(struct app *app)
 static enum option_outcome read_settings(struct settings *s, int argc, char **argv)
 {
     const struct option options[] = {
-        {OPTION_TEXT, "output", "FILE", "sky.png", &s->output, "the picture, as PNG",
+        {OPTION_TEXT, "output", "FILE", "sky.png", &s->common.output, "the picture, as PNG",
          .letter = 'o'},
         {OPTION_EXTENT, "size", "WxH", "640x360", s->size, "pixels", 16, 4096},
         {OPTION_UINT, "frames", "N", "60", &s->frames, "frames; the view turns in the first half",
@@ -316,9 +314,9 @@ static enum option_outcome read_settings(struct settings *s, int argc, char **ar
         {OPTION_FLAG, "edges", .value = &s->edges, .help = "draw the edges of the cube"},
         {OPTION_FLAG, "everything", .value = &s->everything,
          .help = "load every tile, seen or not, to compare"},
-        option_device(&s->device),
-        option_list_devices(&s->list_devices),
-        option_validation(&s->validation),
+        option_device(&s->common.device),
+        option_list_devices(&s->common.list_devices),
+        option_validation(&s->common.validation),
     };
     const struct option_table table = {
         "cube-sky",
@@ -332,26 +330,11 @@ static enum option_outcome read_settings(struct settings *s, int argc, char **ar
 int main(int argc, char **argv)
 {
     struct app app = {0};
-    bool unsupported = false;
-    switch (read_settings(&app.settings, argc, argv)) {
-    case OPTIONS_HELP: return text_exit_status(EXIT_SUCCESS);
-    case OPTIONS_ERROR: return EXIT_USAGE;
-    case OPTIONS_RUN: break;
-    }
-    if (app.settings.list_devices)
-        return text_exit_status(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
-    if (!output_can_write(app.settings.output))
-        return EXIT_FAILURE;
-    const struct gpu_request request = {
-        .device = app.settings.device,
-        .validation = app.settings.validation,
-        .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED}};
-    if (!gpu_create(&request, &app.gpu, &unsupported))
-        return unsupported ? EXIT_NO_DEVICE : EXIT_FAILURE;
+    enum option_outcome outcome = read_settings(&app.settings, argc, argv);
+    int status = paged_sample_begin(outcome, &app.settings.common, &app.gpu);
+    if (status != PAGED_SAMPLE_GOES_ON)
+        return status;
     bool good = create(&app) && run(&app);
     destroy(&app);
-    uint32_t messages = atomic_load(&app.gpu.validation_messages);
-    if (messages > 0)
-        fprintf(stderr, "the validation layers had %u messages\n", messages);
-    return good && messages == 0 ? text_exit_status(EXIT_SUCCESS) : EXIT_FAILURE;
+    return paged_sample_end(&app.gpu, good);
 }

@@ -3,9 +3,8 @@
  * are looked at. At the end the program compares every texel shown with the function that makes it.
  */
 #include "../../tools/common/log.h"
-#include "../../tools/common/output_file.h"
 #include "../../tools/common/shared_options.h"
-#include "../../tools/common/text.h"
+#include "../common/paged_sample.h"
 #include "../common/png_file.h"
 #include "maker.h"
 #include "viewer.h"
@@ -16,13 +15,11 @@
 
 #define TILE_LOG2 8 /* tiles of bytes have 256 x 256 texels */
 #define SETTLE_FRAMES 200u
-#define EXIT_USAGE 2
-#define EXIT_NO_DEVICE 77
 
 struct settings {
-    const char *output, *device;
+    struct paged_sample common;
     uint32_t width, height, frames, size_log2, tiles_per_frame;
-    bool json, validation, list_devices;
+    bool json;
 };
 
 struct app {
@@ -209,8 +206,8 @@ static bool run(struct app *app)
     if (counts->wrong > 0 || counts->coarse > 0)
         fprintf(stderr, "virtual-texture: %u of %u texels are wrong, %u pixels are too coarse\n",
                 counts->wrong, counts->compared, counts->coarse);
-    return png_file_write(app->settings.output, app->viewer.pixels.mapped, app->settings.width,
-                          app->settings.height) &&
+    return png_file_write(app->settings.common.output, app->viewer.pixels.mapped,
+                          app->settings.width, app->settings.height) &&
            counts->wrong == 0 && counts->coarse == 0;
 }
 
@@ -227,16 +224,16 @@ static enum option_outcome read_settings(struct settings *settings, int argc, ch
 {
     uint32_t size[2];
     const struct option options[] = {
-        {OPTION_TEXT, "output", "FILE", "virtual-texture.png", &settings->output,
+        {OPTION_TEXT, "output", "FILE", "virtual-texture.png", &settings->common.output,
          "the last picture, as PNG", .letter = 'o'},
         {OPTION_EXTENT, "size", "WxH", "640x360", size, "pixels", 16, 4096},
         {OPTION_UINT, "frames", "N", "120", &settings->frames, "frames of the zoom", 1, 1000000},
         {OPTION_UINT, "texture-size-log2", "N", "20", &settings->size_log2,
          "width and height of the texture in texels, as a power of 2", 9, 20},
         option_tiles_per_frame(&settings->tiles_per_frame, 4096),
-        option_device(&settings->device),
-        option_list_devices(&settings->list_devices),
-        option_validation(&settings->validation),
+        option_device(&settings->common.device),
+        option_list_devices(&settings->common.list_devices),
+        option_validation(&settings->common.validation),
         option_json(&settings->json),
     };
     const struct option_table table = {
@@ -255,26 +252,11 @@ static enum option_outcome read_settings(struct settings *settings, int argc, ch
 int main(int argc, char **argv)
 {
     struct app app = {0};
-    bool unsupported = false;
-    switch (read_settings(&app.settings, argc, argv)) {
-    case OPTIONS_HELP: return text_exit_status(EXIT_SUCCESS);
-    case OPTIONS_ERROR: return EXIT_USAGE;
-    case OPTIONS_RUN: break;
-    }
-    if (app.settings.list_devices)
-        return text_exit_status(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
-    if (!output_can_write(app.settings.output))
-        return EXIT_FAILURE;
-    const struct gpu_request request = {
-        .device = app.settings.device,
-        .validation = app.settings.validation,
-        .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED}};
-    if (!gpu_create(&request, &app.gpu, &unsupported))
-        return unsupported ? EXIT_NO_DEVICE : EXIT_FAILURE;
+    enum option_outcome outcome = read_settings(&app.settings, argc, argv);
+    int status = paged_sample_begin(outcome, &app.settings.common, &app.gpu);
+    if (status != PAGED_SAMPLE_GOES_ON)
+        return status;
     bool good = create(&app) && run(&app);
     destroy(&app);
-    uint32_t messages = atomic_load(&app.gpu.validation_messages);
-    if (messages > 0)
-        fprintf(stderr, "the validation layers had %u messages\n", messages);
-    return good && messages == 0 ? text_exit_status(EXIT_SUCCESS) : EXIT_FAILURE;
+    return paged_sample_end(&app.gpu, good);
 }
