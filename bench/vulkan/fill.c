@@ -131,7 +131,7 @@ bool fill_best(const struct rig_info *info, struct fill_times *times, uint64_t *
     return done;
 }
 
-/* As by default: memory for staging and tiles grows with the loads. */
+/* Defaults: memory for staging and tiles grows with the loads. */
 static bool fill_growing(const struct bench *bench)
 {
     struct rig_info info = fill_info(bench, 256);

@@ -45,7 +45,7 @@ bool measure_small(const struct bench *bench)
 {
     const uint32_t count = options.quick ? 1000 : 100000;
     struct host_memory host = {.callbacks = {&host, allocate, release}};
-    /* Where the device's best mode is measured, the streamer finds it itself. */
+    /* The streamer chooses the mode itself when the device's best mode is measured. */
     const struct rig_info info = {.bench = bench,
                                   .context = {.pAllocator = &host.callbacks},
                                   .streamer = {.maxTextureCount = count, .tilesPerFrame = 2048},

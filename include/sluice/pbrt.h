@@ -120,7 +120,7 @@ typedef enum SluicePbrtTextureKind {
     SLUICE_PBRT_TEXTURE_CHECKERBOARD = 4 ///< inputs[(floor(s) + floor(t)) & 1]
 } SluicePbrtTextureKind;
 
-/** What a picture shows outside of [0, 1]. */
+/** Texels outside of [0, 1]. */
 typedef enum SluicePbrtWrap {
     SLUICE_PBRT_WRAP_REPEAT = 0,
     SLUICE_PBRT_WRAP_BLACK = 1,
@@ -128,7 +128,7 @@ typedef enum SluicePbrtWrap {
     SLUICE_PBRT_WRAP_OCTAHEDRAL = 3
 } SluicePbrtWrap;
 
-/** How a picture is filtered. */
+/** Filter of a picture. */
 typedef enum SluicePbrtFilter {
     SLUICE_PBRT_FILTER_DEFAULT = 0, ///< The scene does not say.
     SLUICE_PBRT_FILTER_POINT = 1,
@@ -137,7 +137,7 @@ typedef enum SluicePbrtFilter {
     SLUICE_PBRT_FILTER_EWA = 4 ///< Anisotropic.
 } SluicePbrtFilter;
 
-/** How the numbers of a picture become light. */
+/** Transfer function of a picture's numbers. */
 typedef enum SluicePbrtEncoding {
     SLUICE_PBRT_ENCODING_DEFAULT = 0, ///< sRGB for PNG and TGA with 8 bits, otherwise linear.
     SLUICE_PBRT_ENCODING_SRGB = 1,
@@ -145,7 +145,7 @@ typedef enum SluicePbrtEncoding {
     SLUICE_PBRT_ENCODING_GAMMA = 3 ///< A power: SluicePbrtTexture::gamma.
 } SluicePbrtEncoding;
 
-/** How a point of a surface becomes a place in a texture. */
+/** Mapping of surface points to texture coordinates. */
 typedef enum SluicePbrtMapping {
     SLUICE_PBRT_MAPPING_UV = 0, ///< s = scale[0] * u + delta[0], t = scale[1] * v + delta[1]
     /** s = dot(p, axes[0..2]) + delta[0], t = dot(p, axes[3..5]) + delta[1] */
@@ -189,7 +189,7 @@ typedef struct SluicePbrtTexture {
 SLUICE_API SluiceResult sluiceGetPbrtTexture(const SluicePbrtScene *scene, uint32_t index,
                                              SluicePbrtTexture *pTexture);
 
-/** What a material is reduced to. */
+/** Kind of a reduced material. */
 typedef enum SluicePbrtMaterialKind {
     SLUICE_PBRT_MATERIAL_DIFFUSE = 0,
     SLUICE_PBRT_MATERIAL_GLOSSY = 1, ///< Diffuse below a coat.
@@ -203,7 +203,7 @@ typedef enum SluicePbrtMaterialKind {
 typedef struct SluicePbrtMaterial {
     uint32_t structSize; ///< sizeof(SluicePbrtMaterial).
     SluicePbrtMaterialKind kind;
-    const char *pType;        ///< As the scene says it: "matte", "coateddiffuse".
+    const char *pType;        ///< The scene's word: "matte", "coateddiffuse".
     SluicePbrtValue diffuse;  ///< Reflected in all directions. MIRROR and GLASS: 0.
     SluicePbrtValue specular; ///< Reflected in one direction.
     SluicePbrtValue transmission;
@@ -233,7 +233,7 @@ typedef enum SluicePbrtLightKind {
     SLUICE_PBRT_LIGHT_AREA = 4 ///< Named by shapes that emit light.
 } SluicePbrtLightKind;
 
-/** How the picture of an infinite light covers the sphere. */
+/** Layout of an infinite light's picture on the sphere. */
 typedef enum SluicePbrtSkyLayout {
     /** u = atan2(y, x) / 2 pi, v = acos(z) / pi; row 0 shows +z. */
     SLUICE_PBRT_SKY_LATITUDE_LONGITUDE = 0,

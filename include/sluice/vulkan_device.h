@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/** How a texture occupies device memory. */
+/** Use of device memory by a texture. */
 typedef enum SluiceResidencyMode {
     SLUICE_RESIDENCY_MODE_AUTO = 0,   ///< See sluiceChooseVulkanResidencyMode.
     SLUICE_RESIDENCY_MODE_SPARSE = 1, ///< Sparse residency images.
@@ -46,7 +46,7 @@ typedef struct SluiceVulkanDeviceCapabilities {
     char deviceName[256];
     char driverName[256], driverInfo[256];
     VkPhysicalDeviceType deviceType;
-    uint32_t apiVersion;           ///< As VK_MAKE_API_VERSION.
+    uint32_t apiVersion;           ///< Encoded by VK_MAKE_API_VERSION.
     bool timelineSemaphore;        ///< Required.
     bool fragmentStoresAndAtomics; ///< Required.
     bool textureCompressionBC;     ///< BC formats can be streamed.

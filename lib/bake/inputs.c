@@ -30,7 +30,7 @@ const char *slc_base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-/* The same on every machine. */
+/* Hashes the low byte first, so that all machines get the same hash. */
 static uint64_t hash_number(uint64_t hash, uint64_t number)
 {
     uint8_t bytes[8];

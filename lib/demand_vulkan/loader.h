@@ -406,7 +406,7 @@ void slc_images_end_retired(SluiceDemandLoader *loader);
 void slc_images_finish(SluiceDemandLoader *loader);
 /** A source whose every texel is an image to be opened: see slc_demand_image.read_color. */
 void slc_image_opener_init(SluiceImageSource *opener);
-/** Of the sources that fill and read the pages of resources. */
+/** Returns the interface of sources that fill and read the pages of resources. */
 const SluiceImageSourceInterface *slc_resource_interface(void);
 
 /* page_answers.c */

@@ -4,7 +4,7 @@
 
 #include <sluice/image.h>
 
-/** As pfnIdentifyRegion; false for sources without that function. */
+/** Calls pfnIdentifyRegion. Returns false for sources without it. */
 static inline bool slc_identify_region(SluiceImageSource *source, const SluiceImageRegion *region,
                                        uint64_t *identity)
 {

@@ -129,9 +129,9 @@ void slc_mip_rows_finish(struct slc_mip_rows *rows, const SluiceAllocationCallba
     *rows = (struct slc_mip_rows){0};
 }
 
-/* Of 2n + 1 texels on n, the one at the center of texel `i` is number 2i + 1. Of 2n there are two.
- * Sizes that halve take the right one and the left one in turns: always the same one would end in a
- * corner, half a texel off. */
+/* Returns the fine texel at the center of coarse texel `i`. A size of 2n + 1 has one, 2i + 1. A
+ * size of 2n has two, and levels take the right one and the left one in turns. Always the same one
+ * would end in a corner, half a texel off. */
 static uint32_t find_center(uint32_t size, uint32_t i)
 {
     if (size == 1)

@@ -9,7 +9,7 @@
 
 #define SLC_PBRT_WINDOW_SIZE ((size_t)1 << 17)
 
-/** Which file it was, to see whether it changed. */
+/** Identity of a file's contents: differs when the file has changed. */
 struct slc_pbrt_stamp {
     uint64_t device, inode, size;
     int64_t seconds, nanoseconds;

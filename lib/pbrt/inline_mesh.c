@@ -32,7 +32,7 @@ static bool read_one(struct slc_pbrt_lexer *lexer, double *number)
            fabs(*number) <= FLT_MAX;
 }
 
-/* Where numbers of a span go: floats or indices. */
+/* Array that receives the numbers of a span: floats or indices. */
 struct out {
     float *floats;
     uint32_t *indices;

@@ -191,7 +191,7 @@ static bool apply(struct slc_pbrt_parser *parser, const char *name, bool is_floa
     return true;
 }
 
-/* What a metal reflects straight on, from its index of refraction. */
+/* Computes a metal's reflectance at normal incidence from its index of refraction. */
 static bool apply_metal(struct slc_pbrt_parser *parser, SluicePbrtValue *specular, bool *changed)
 {
     float eta[3], k[3];

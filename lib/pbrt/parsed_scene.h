@@ -38,7 +38,7 @@ struct slc_pbrt_light_entry {
     struct slc_pbrt_place place;
 };
 
-/** Where numbers of a shape begin in its text. */
+/** Place in a file at which the numbers of a shape begin. */
 struct slc_pbrt_span {
     uint64_t offset;
     uint32_t file;
@@ -131,7 +131,7 @@ SluiceResult
 slc_pbrt_fail(const SluicePbrtScene *scene, SluiceResult result, const struct slc_pbrt_place *place,
               const char *format, ...);
 
-/** What a failed reading of a file is called in messages. */
+/** Returns the words that messages use for a file that could not be read. */
 const char *slc_pbrt_failure_text(SluiceResult result);
 
 /** Reads the text of the first file into the scene. */

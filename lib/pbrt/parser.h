@@ -16,7 +16,7 @@ enum slc_pbrt_target {
     SLC_PBRT_TARGET_COUNT
 };
 
-/** What blocks save and restore. */
+/** State that AttributeBegin saves and AttributeEnd restores. */
 struct slc_pbrt_state {
     struct slc_pbrt_affine transform;
     uint32_t material;
@@ -52,7 +52,7 @@ struct slc_pbrt_frame {
     size_t block_count; ///< before it; an import has a block of its own
 };
 
-/** What a name stands for. */
+/** Kind of a named object. */
 enum slc_pbrt_meaning {
     SLC_PBRT_FLOAT_TEXTURE,
     SLC_PBRT_COLOR_TEXTURE,

@@ -15,7 +15,6 @@ struct ply {
     struct slc_pbrt_ply_header header;
     const char *trouble;
     bool has_large_polygons;
-    /* What is collected. */
     const SluiceAllocationCallbacks *cb;
     uint64_t max_size;
     bool bounds_only;
@@ -266,7 +265,7 @@ static SluiceResult read_element(struct ply *ply, const struct slc_pbrt_ply_elem
     return SLUICE_SUCCESS;
 }
 
-/* What must be there as a whole or not at all. */
+/* Ignores normals and uvs of which a component is missing. */
 static void drop_partial_roles(struct slc_pbrt_ply_header *header)
 {
     const uint32_t normals = 7u << SLC_PBRT_PLY_NX, uvs = 3u << SLC_PBRT_PLY_U;

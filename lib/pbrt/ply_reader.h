@@ -6,7 +6,7 @@
 
 #include "pbrt/byte_window.h"
 
-/** What went wrong, in words: static text. After a success: what is approximated, or NULL. */
+/** Message about a file: after an error its cause, after a success an approximation or NULL. */
 struct slc_pbrt_ply_trouble {
     const char *text;
 };

@@ -227,7 +227,7 @@ static enum outcome read_data(struct slc_pbrt_parser *parser, const char *type,
                : STOP;
 }
 
-/* What a shape takes from the state around it. */
+/* Takes transform, material and lights of a shape from the graphics state. */
 static bool read_surroundings(struct slc_pbrt_parser *parser, struct slc_pbrt_shape_entry *shape,
                               const struct slc_pbrt_place *place)
 {

@@ -49,7 +49,7 @@ struct slc_list {
 #define SLC_REQUEST_CLASSES (SLUICE_MAX_MIP_LEVELS + 2) ///< a class per level and two for packed
 /** Loaded before all levels, and not evicted while wanted: packed mips. */
 #define SLC_PACKED_CLASS SLUICE_MAX_MIP_LEVELS
-/** The same, but without slots. First of all, so that no request waits for a slot before them. */
+/** Packed tiles without slots. Their requests come first, because they never wait for a slot. */
 #define SLC_OUTSIDE_CLASS (SLUICE_MAX_MIP_LEVELS + 1)
 /** What a tile of level 0 to 20 can be needed by is 2^0 to 2^40 tiles of level 0, 2^30 at most. */
 #define SLC_REQUEST_NEEDS 31

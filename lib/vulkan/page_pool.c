@@ -356,7 +356,7 @@ void slc_page_pool_hurry(struct slc_page_pool *pool)
     pthread_mutex_unlock(&pool->mutex);
 }
 
-/* How many tiles of the user are on the page; 0 if another user holds it. */
+/* Counts the user's tiles on the page; 0 if another user holds it. */
 static uint32_t count_tiles(const struct slc_page_pool *pool, const struct slc_page_layer *layer,
                             uint32_t user)
 {

@@ -92,7 +92,7 @@ static void decode(const struct kind *kind, const uint8_t *texel, double rgba[4]
     }
 }
 
-/* How far the nearest code of the format may be. */
+/* Largest distance of a value from the nearest code of the format. */
 static double half_step(const struct kind *kind, const double rgba[4], uint32_t c)
 {
     switch (kind->numbers) {
@@ -425,7 +425,7 @@ static void infinities_of_packed_floats_become_numbers(void **state)
     bake_folder_finish(&f.folder);
 }
 
-/* Of a level 0 of that size, the texel that texel `i` of `level` is, along one axis. */
+/* Texel of a level 0 of `size` texels that texel `i` of `level` repeats, along one axis. */
 static uint32_t picked(uint32_t size, uint32_t level, uint32_t i)
 {
     for (; level > 0; level--) {
@@ -554,7 +554,7 @@ static uint8_t *level_of_file(const struct picture *picture, uint32_t level)
 }
 #endif
 
-/* Whatever levels the file has, they are made from its level 0. */
+/* All levels are made from the file's level 0, also if it has others. */
 static void files_become_what_their_level_zero_becomes(void **state)
 {
     (void)state;

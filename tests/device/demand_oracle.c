@@ -195,12 +195,12 @@ static double axis_blur(const struct SluiceDemandTexture *t, int axis, const str
     uint32_t size = slc_mip_size(axis ? t->height : t->width, tap->level), mode = mode_of(t, axis);
     bool periodic =
         mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
-    /* How far off float may be: periods are exact, but for what is left. */
+    /* Error of float: whole periods are exact, and the rest is rounded. */
     double reach = periodic ? 4 : fmin(fabs((double)coordinate) + 2, 64);
     return (tap->nearest ? 1e-6 : STEP / 2) + reach * FLOAT_STEP * size;
 }
 
-/* How far inside its filter's reach texel `i` is from `at`, and its weight. */
+/* Texels that the filter reaches along one axis, with their weights. */
 static struct axis_texels filter_axis(const struct SluiceDemandTexture *t, int axis,
                                       const struct demand_tap *tap, bool cubic)
 {

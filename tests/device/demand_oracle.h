@@ -43,7 +43,7 @@ bool demand_oracle_taps(const struct SluiceDemandTexture *texture, const struct 
 void demand_oracle_touches(const struct SluiceDemandTexture *texture, const struct demand_tap *tap,
                            void (*visit)(void *user, const struct demand_touch *touch), void *user);
 
-/** How much of a level is bicubic that is shown in place of `tap->level`. */
+/** Bicubic share of the level that is shown in place of `tap->level`. */
 double demand_oracle_share(const struct demand_tap *tap, double shown_lod);
 
 /** Whether derivatives of a linear part jump here. */

@@ -78,7 +78,7 @@ void prober_record(struct prober *p, VkCommandBuffer commands, struct probe_text
 /** Set 1, with the pages as they are now. */
 void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBindPoint point);
 
-/** What makes one shader serve every mode: the constants `paged` and `cubic`. */
+/** Specialization constants `paged` and `cubic`, by which one shader serves every mode. */
 struct prober_specialization {
     VkBool32 values[2]; ///< paged, cubic
     VkSpecializationMapEntry entries[2];

@@ -301,7 +301,7 @@ static void edges_between_cells_of_different_sizes_do_not_show(void **state)
     set_finish(&set, &r);
 }
 
-/* The same with sluiceDemandGrad shows the edge, so the test above can fail. */
+/* sluiceDemandGrad shows the edge, so the test above can fail. */
 static void cells_by_themselves_are_clamped(void **state)
 {
     (void)state;
@@ -363,7 +363,7 @@ static void the_base_shows_where_it_is_sharp_enough_and_in_empty_cells(void **st
     check_color(&r, 8, color, TOLERANCE);
     assert_int_equal(set.images[0].opened, 1);
     assert_int_equal(set.images[1].opened, 0);
-    /* Without its base the grid is as if it never had one. */
+    /* The grid loses its base, and is as if it never had one. */
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, set.base_id));
     runner_load(&r, 20);
     expect(&set, 256, &((struct RunnerInput *)r.inputs.mapped)[0], color);

@@ -41,7 +41,7 @@ static SluiceVulkanStreamerStatistics statistics(const SluiceVulkanStreamer *str
     return s;
 }
 
-/* Where the streamer chooses, all of these but the last are images with all levels. */
+/* A streamer that chooses holds all of these but the last as images with all levels. */
 static void small_textures_are_dense(void **state)
 {
     static const struct {

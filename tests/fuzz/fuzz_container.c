@@ -49,7 +49,7 @@ static void read_levels(SluiceImageSource *source)
                 read_level(source, &info, layer, level);
 }
 
-/* As it is, and with all levels if it lacks some that can be built. */
+/* Reads a source as it is, and again with all levels if it lacks some that can be built. */
 static void read_source(SluiceImageSource *source)
 {
     SluiceCompleteChainSourceCreateInfo create = {

@@ -34,7 +34,7 @@ static const char SCENE[] =
     "\"float uv\" [0 0 1 0 1 1] \"integer indices\" [0 1 2]\nImport \"part.pbrt\"\n"
     "Include \"part.pbrt\" \"float radius\" 3\n";
 
-/* What takes no memory. */
+/* Calls the queries that take no memory. */
 static void ask(const SluicePbrtScene *scene)
 {
     SluicePbrtTexture texture = {.structSize = sizeof texture};

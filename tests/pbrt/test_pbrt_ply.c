@@ -25,7 +25,7 @@ static int finish(void **state)
     return 0;
 }
 
-/* What is written, and how. */
+/* Contents and format of the files that are written. */
 static struct model {
     enum { TEXT, LITTLE, BIG } format;
     bool is_double, has_normals, has_uvs, has_extras, faces_first, wide_indices;

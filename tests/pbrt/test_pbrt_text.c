@@ -1,4 +1,4 @@
-/* What the text of a scene means: transforms against a naive model, cameras, scopes, materials. */
+/* Text of scenes: transforms against a naive model, cameras, scopes, materials. */
 #include "pbrt/pbrt_files.h"
 #include "support/roll.h"
 #include "support/test.h"

@@ -69,7 +69,7 @@ static void every_read_that_fails_is_an_error_that_is_logged(void **state)
         SluiceResult result = read_store(scratch.path, PICTURE_MIXED, &messages);
         is_reached = fault_io.count[FAULT_READ] >= n;
         no_faults();
-        /* Without the index no equal tiles are known; nothing is lost. */
+        /* If the index cannot be read, no equal tiles are known; nothing is lost. */
         bool has_failed = is_reached && result != SLUICE_SUCCESS;
         missed_count += is_reached && !has_failed;
         CHECK_RESULT(result, has_failed ? SLUICE_ERROR_IO : SLUICE_SUCCESS);

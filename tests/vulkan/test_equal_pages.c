@@ -218,7 +218,7 @@ static void give(struct model *m, uint32_t user, uint32_t index, bool keep)
     slc_page_pool_give(&m->pool, u->number, page, keep ? index : SLC_NO_OWNER);
 }
 
-/* What was taken, given back or canceled, one tile. */
+/* Takes a page for one tile, or gives it back, or cancels its read. */
 static void change_tile(struct model *m, uint32_t user)
 {
     struct user *u = &m->users[user];

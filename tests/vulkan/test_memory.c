@@ -48,7 +48,7 @@ static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
     return stats;
 }
 
-/* Of the next stage, in bytes. */
+/* Settings of the next stage, in bytes. */
 static uint64_t tile_memory_ahead, device_memory_limit, layer_size = MIB;
 
 static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_staging_size)

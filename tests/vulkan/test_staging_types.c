@@ -33,7 +33,7 @@ static VKAPI_ATTR void VKAPI_CALL requirements(VkDevice device, VkBuffer buffer,
     *memory = (VkMemoryRequirements){4096, 64, 0xF};
 }
 
-/* As an H200 and GeForce with a resizable BAR, GeForce without one, and an integrated GPU. */
+/* Memory of GPUs with a resizable BAR (H200, GeForce), of one without, and of an integrated one. */
 static const VkPhysicalDeviceMemoryProperties
     resizable =
         {.memoryTypeCount = 4,

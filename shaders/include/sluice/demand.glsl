@@ -223,7 +223,7 @@ float sluiceDemandComputeLod(vec2 dx, vec2 dy, float maxAnisotropy)
     return 0.5 * log2(max(minor2, 1.0e-12)) + float(exponent);
 }
 
-/* How sluiceDemandSample filters within a level. */
+/* Filters of sluiceDemandSample within a level. */
 #define SLUICE_DEMAND_AS_TEXTURE 0u /* as the texture's sampler says */
 #define SLUICE_DEMAND_AS_SMART 1u   /* SLUICE_DEMAND_FILTER_SMART_CUBIC whatever it says */
 #define SLUICE_DEMAND_AS_SLOPES 2u  /* as the sampler says, with derivatives */

@@ -10,7 +10,7 @@
 #define RUNNER_LOD 1        /* sluiceDemandLod with a[0] */
 #define RUNNER_MAP 2        /* sluiceMapOrRequest of the page `index` */
 #define RUNNER_BYTES 3      /* the byte page `index` of dx[0] bytes, by offsets */
-#define RUNNER_ADDRESS 4    /* ... by its address */
+#define RUNNER_ADDRESS 4    /* the byte page `index`, by its address */
 #define RUNNER_LAYER_GRAD 5 /* sluiceDemandLayerGrad of layer `cell` */
 #define RUNNER_LAYER_LOD 6  /* sluiceDemandLayerLod with dx[0] */
 #define RUNNER_UDIM_GRAD 7  /* sluiceDemandUdimGrad */

@@ -66,7 +66,7 @@ SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
 /* SluiceDemandTexture.shape. 4 bits from bit 0: log2 of a tile's width. */
 #define SLUICE_DEMAND_SPLINE 0x10u         /* bicubic filter between texels */
 #define SLUICE_DEMAND_TILE_HEIGHT_SHIFT 5  /* 4 bits: log2 of a tile's height */
-#define SLUICE_DEMAND_SMART 0x200u         /* ... only where the texture is magnified */
+#define SLUICE_DEMAND_SMART 0x200u         /* bicubic only where the texture is magnified */
 #define SLUICE_DEMAND_LEVEL_COUNT_SHIFT 10 /* 5 bits */
 #define SLUICE_DEMAND_REGULAR_SHIFT 15     /* 5 bits: how many levels have tiles */
 #define SLUICE_DEMAND_MODE_U_SHIFT 20      /* 3 bits, SLUICE_ADDRESS_MODE_... */

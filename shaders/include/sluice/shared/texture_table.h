@@ -46,7 +46,7 @@
 /* Some level's size is not half of the next finer one's, so tiles do not cover regions exactly. */
 #define SLUICE_TEXTURE_FLAG_UNEVEN 1
 #define SLUICE_TEXTURE_FLAG_SPLINE 2 /* bicubic filter */
-#define SLUICE_TEXTURE_FLAG_SMART 4  /* ... only where the texture is magnified */
+#define SLUICE_TEXTURE_FLAG_SMART 4  /* bicubic only where the texture is magnified */
 /* An ordinary image with all levels, whatever the mode of the streamer. */
 #define SLUICE_TEXTURE_FLAG_DENSE 8
 /* Three bits of the flags: number of components of the format. */
