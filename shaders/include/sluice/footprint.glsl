@@ -22,6 +22,11 @@
 #define SLUICE_APRON_UNEVEN 1.5625
 #define SLUICE_APRON_SPLINE 1.0 /* more of both for textures with a bicubic filter */
 
+/* Whether textures with a bicubic filter are sampled with it (sample.glsl). */
+#ifndef SLUICE_CUBIC
+#define SLUICE_CUBIC false
+#endif
+
 /*
  * Along an axis of more than 64 tiles steps are longer, and some tiles are skipped. That takes a
  * LOD bias below -5 and anisotropy.
@@ -67,10 +72,10 @@ uvec2 sluiceAddressModes(SluiceGrid grid)
     return uvec2(grid.shape >> SLUICE_SHAPE_MODE_U_SHIFT, grid.shape >> SLUICE_SHAPE_MODE_V_SHIFT) & 7u;
 }
 
-/** Returns the apron of bilinear or bicubic samples, in texels of the coarser level. */
-float sluiceApron(SluiceGrid grid)
+/** Returns what bicubic samples add to both aprons, in texels of the coarser level. */
+float sluiceSplineApron(SluiceGrid grid)
 {
-    return (grid.shape & SLUICE_SHAPE_SPLINE) != 0u ? SLUICE_APRON + SLUICE_APRON_SPLINE : SLUICE_APRON;
+    return SLUICE_CUBIC ? ((grid.shape & SLUICE_SHAPE_SPLINE) != 0u ? SLUICE_APRON_SPLINE : 0.0) : 0.0;
 }
 
 /** Columns and rows of a footprint. If the first is after the last, it wraps around at 0. */
@@ -130,10 +135,10 @@ uvec2 sluiceRegionRange(float coordinate, float below, float above, uint address
 SluiceFootprint sluiceComputeFootprint(SluiceGrid grid, vec2 uv, vec2 halfBox, uint coarsestLevel)
 {
     vec2 texel = min(vec2(uintBitsToFloat((coarsestLevel + 127u) << 23u)), grid.size); /* 2 to the level */
-    float above = sluiceApron(grid), below = above;
+    float more = sluiceSplineApron(grid), above = SLUICE_APRON + more, below = above;
     if ((grid.shape & SLUICE_SHAPE_UNEVEN) != 0u) {
         texel = grid.size / vec2(max(uvec2(grid.size) >> coarsestLevel, 1u));
-        below = above + (SLUICE_APRON_UNEVEN - SLUICE_APRON);
+        below = SLUICE_APRON_UNEVEN + more;
     }
     uvec2 shift = sluiceRegionShift(grid), modes = sluiceAddressModes(grid);
     uvec2 x = sluiceRegionRange(uv.x, below * texel.x + halfBox.x, above * texel.x + halfBox.x,

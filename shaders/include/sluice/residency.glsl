@@ -80,15 +80,19 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
         float reach = sluiceOverreachedLod(s.dx * size, s.dy * size, 0.0, maxAnisotropy);
         widest = max(coarse, float(sluiceCoarsestLevel(reach, entry.mipLevelCount)));
     }
+    bool spline = SLUICE_CUBIC && (entry.shape & SLUICE_SHAPE_SPLINE) != 0u;
     uint count = 0u;
     for (uint i = 0u; i < taps; i++) {
         vec2 at = s.uv + (taps > 1u ? axis * (float(i) / float(taps - 1u) - 0.5) : vec2(0.0));
         for (float level = fine; level <= widest; level++) {
+            if (!spline) {
+                count += sluiceProbeNonResident(nearestMipTex, entry, at, level);
+                continue;
+            }
             vec2 texel = 1.0 / vec2(max(uvec2(entry.width, entry.height) >> uint(level), uvec2(1u)));
-            for (uint corner = 0u; corner < ((entry.shape & SLUICE_SHAPE_SPLINE) != 0u ? 4u : 1u); corner++) {
-                vec2 off = texel * (vec2(corner & 1u, corner >> 1u) * 2.0 - 1.0); /* of 4x4 texels */
-                bool spline = (entry.shape & SLUICE_SHAPE_SPLINE) != 0u && SLUICE_CUBIC;
-                count += sluiceProbeNonResident(nearestMipTex, entry, spline ? at + off : at, level);
+            for (uint corner = 0u; corner < 4u; corner++) { /* of 4x4 texels */
+                vec2 off = texel * (vec2(corner & 1u, corner >> 1u) * 2.0 - 1.0);
+                count += sluiceProbeNonResident(nearestMipTex, entry, at + off, level);
             }
         }
     }

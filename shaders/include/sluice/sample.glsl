@@ -22,7 +22,8 @@
  *
  *     #define SLUICE_CUBIC true   // or a constant_id constant
  *
- * Default: false. They are then sampled with a linear filter, and shaders have no code for others.
+ * in all shaders that sample them or write their feedback. Default: false. They are then sampled with
+ * a linear filter, and shaders have no code for others.
  * Bicubic samples have computed levels, like those of paged mode, and rows of samples for anisotropy.
  */
 #ifndef SLUICE_SAMPLE_GLSL
@@ -46,10 +47,6 @@
  */
 #ifdef SLUICE_MIN_LOD
 #extension GL_ARB_sparse_texture_clamp : require
-#endif
-
-#ifndef SLUICE_CUBIC
-#define SLUICE_CUBIC false
 #endif
 
 /* Color where not even the packed levels are resident. Define it before to change it. */
@@ -238,7 +235,7 @@ float sluiceLodAround(uint tableIndex, SluiceGrid grid, uint words, uint coarses
     lod = min(sluiceLodLimit(words >> 16u, margin), packed);
     uint level = sluiceClampedBox(lod, margin, coarsestLod, maxAnisotropy, count, grown);
     bool uneven = (grid.shape & SLUICE_SHAPE_UNEVEN) != 0u;
-    float apron = sluiceApron(grid) + (uneven ? SLUICE_APRON_UNEVEN - SLUICE_APRON : 0.0);
+    float apron = (uneven ? SLUICE_APRON_UNEVEN : SLUICE_APRON) + sluiceSplineApron(grid);
     vec2 more = grown - halfBox + apron * exp2(float(level));
     return all(lessThan(more, sluiceRegionSize(grid))) ? lod : packed;
 }
@@ -394,8 +391,10 @@ float sluiceSplineShare(uint tableIndex, SluiceSampling s, vec2 dx, vec2 dy, flo
                         float maxAnisotropy)
 {
     uint shape = SLUICE_TEXTURE_ENTRY(tableIndex).shape;
+    if (!SLUICE_CUBIC || (shape & SLUICE_SHAPE_SPLINE) == 0u)
+        return 0.0;
     if ((shape & SLUICE_SHAPE_SMART) == 0u)
-        return (shape & SLUICE_SHAPE_SPLINE) != 0u ? 1.0 : 0.0;
+        return 1.0;
     vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
     return sluiceCubicShare(max(s.lod, 0.0) - sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy));
 }

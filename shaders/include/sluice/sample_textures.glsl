@@ -142,7 +142,7 @@ vec4 sluiceSampleSpline(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2
 
 /**
  * Samples like sluiceSampleGrad, and returns the derivatives of the color by u and by v, for example of a
- * height for bump mapping. Any stage. Filters as the texture says; does not need SLUICE_CUBIC.
+ * height for bump mapping. Any stage. Filters as sluiceSampleGrad does.
  *
  * `du` and `dv` are per unit of uv: the change across the whole texture. They are exact derivatives of
  * the color at an unchanged LOD. So with a linear filter they are constant between texels and jump
