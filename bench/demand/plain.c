@@ -75,8 +75,8 @@ bool rig_create_plain(struct rig *rig)
     bool done = gpu_create_buffer(gpu, 1u << 24, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &texels);
     if (done) {
         SluiceImageRegion tile = {.width = 2048, .height = 2048};
-        done = check(rig->source.base.pInterface->pfnReadRegion(&rig->source.base, &tile,
-                                                                texels.mapped, (size_t)4 * 2048),
+        done = check(rig->sources[0].base.pInterface->pfnReadRegion(
+                         &rig->sources[0].base, &tile, texels.mapped, (size_t)4 * 2048),
                      "pfnReadRegion");
     }
     for (uint32_t i = 0; done && i < rig->texture_count; i++)

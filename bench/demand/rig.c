@@ -47,12 +47,13 @@ static bool create_loader(struct rig *rig, const SluiceDemandLoaderCreateInfo *g
 static bool create_textures(struct rig *rig)
 {
     const struct bench *bench = rig->bench;
-    free_source_init(&rig->source, SLUICE_FORMAT_R8G8B8A8_UNORM, bench->texture_size);
     SluiceDemandSampler sampler = {.structSize = sizeof sampler, .filter = bench->filter};
-    SluiceDemandTextureCreateInfo info = {
-        .structSize = sizeof info, .image.source = &rig->source.base, .pSampler = &sampler};
+    SluiceDemandTextureCreateInfo info = {.structSize = sizeof info, .pSampler = &sampler};
     uint32_t count = bench->columns * bench->columns;
+    for (uint32_t i = 0; i <= DEMAND_BENCH_TEXTURES; i++)
+        free_source_init(&rig->sources[i], SLUICE_FORMAT_R8G8B8A8_UNORM, bench->texture_size);
     for (; rig->texture_count < count; rig->texture_count++) {
+        info.image.source = &rig->sources[rig->texture_count].base;
         SluiceDemandTextureId *id = &rig->ids[rig->texture_count];
         if (!check(sluiceAddDemandTexture(rig->loader, &info, id), "sluiceAddDemandTexture"))
             return false;
@@ -263,8 +264,9 @@ bool rig_warm_up(struct rig *rig)
 {
     struct DemandBenchParams params = rig->params;
     SluiceDemandSampler sampler = {.structSize = sizeof sampler, .filter = rig->bench->filter};
-    SluiceDemandTextureCreateInfo info = {
-        .structSize = sizeof info, .image.source = &rig->source.base, .pSampler = &sampler};
+    SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                          .image.source = &rig->sources[DEMAND_BENCH_TEXTURES].base,
+                                          .pSampler = &sampler};
     SluiceDemandTextureId id;
     if (!check(sluiceAddDemandTexture(rig->loader, &info, &id), "sluiceAddDemandTexture"))
         return false;

@@ -42,7 +42,7 @@ struct rig {
     const struct bench *bench;
     SluiceVulkanContext *context;
     SluiceDemandLoader *loader;
-    struct free_source source;
+    struct free_source sources[DEMAND_BENCH_TEXTURES + 1]; ///< of the textures; of rig_warm_up
     SluiceDemandTextureId ids[DEMAND_BENCH_TEXTURES];
     uint32_t texture_count;
     struct gpu_buffer outputs, picture;

@@ -56,21 +56,21 @@ static bool create_streamer(struct rig *rig, const struct rig_info *info)
 
 static bool add_textures(struct rig *rig, const struct rig_info *info)
 {
-    free_source_init(&rig->source, info->format, info->texture_size);
     rig->textures = calloc(info->texture_count, sizeof *rig->textures);
-    if (!rig->textures)
+    rig->sources = calloc(info->texture_count, sizeof *rig->sources);
+    if (!rig->textures || !rig->sources)
         return false;
     SluiceVulkanTextureCreateInfo create = {
-        .structSize = sizeof create, .source = &rig->source.base, .primaryId = SLUICE_NO_TEXTURE};
-    if (info->producer) {
-        create.source = NULL;
-        create.pProducer = info->producer;
-    }
-    for (; rig->texture_count < info->texture_count; rig->texture_count++)
+        .structSize = sizeof create, .pProducer = info->producer, .primaryId = SLUICE_NO_TEXTURE};
+    for (; rig->texture_count < info->texture_count; rig->texture_count++) {
+        struct free_source *source = &rig->sources[rig->texture_count];
+        free_source_init(source, info->format, info->texture_size);
+        create.source = info->producer ? NULL : &source->base;
         if (!check(
                 sluiceAddVulkanTexture(rig->streamer, &create, &rig->textures[rig->texture_count]),
                 "sluiceAddVulkanTexture"))
             return false;
+    }
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     if (!check(sluiceGetTextureLayout(rig->manager, rig->textures[0].textureId, &layout),
                "sluiceGetTextureLayout"))
@@ -146,6 +146,7 @@ void rig_destroy(struct rig *rig)
     sluiceDestroyVulkanStreamer(rig->streamer);
     sluiceDestroyVulkanContext(rig->context);
     free(rig->textures);
+    free(rig->sources);
     *rig = (struct rig){.bench = rig->bench};
 }
 

@@ -47,8 +47,8 @@ struct rig {
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     SluiceStreamedTextureManager *manager; ///< the streamer's
-    struct free_source source;
-    SluiceVulkanTexture *textures; ///< owned
+    struct free_source *sources;           ///< owned; one per texture
+    SluiceVulkanTexture *textures;         ///< owned
     uint32_t texture_count;
     uint32_t map_width, map_height; ///< feedback regions of each texture
     uint64_t frame;                 ///< the last one

@@ -31,7 +31,7 @@ static void release(void *user, void *memory, size_t size)
 static bool add_textures(struct rig *rig, uint32_t count)
 {
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
-                                            .source = &rig->source.base};
+                                            .source = &rig->sources[0].base};
     for (uint32_t i = 1; i < count; i++) {
         SluiceVulkanTexture texture;
         if (!check(sluiceAddVulkanTexture(rig->streamer, &create, &texture),

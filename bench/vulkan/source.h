@@ -9,7 +9,8 @@ struct free_source {
     SluiceImageInfo info;
 };
 
-/** No memory of its own; one serves any number of textures. Square, of a full chain. */
+/** No memory of its own. Square, of a full chain. Textures of one source share pages in paged mode
+ *  and demand loading, so benches give each texture a source. */
 void free_source_init(struct free_source *source, SluiceFormat format, uint32_t size);
 
 #endif /* BENCH_VULKAN_SOURCE_H */
