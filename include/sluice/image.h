@@ -246,7 +246,9 @@ typedef struct SluiceImageSourceInterface {
      * the source with the same number, width and height have equal texels. Tiles with one number
      * are resident once: in paged mode and demand loading they have one page. May be NULL.
      *
-     * Returns false if the source knows of no equal region. The answer for a region never changes.
+     * Returns false if the source knows of no equal region, or if the region's texels may change
+     * (sluiceInvalidateDemandTexture): the answer for a region must never change. In a source of
+     * sluiceCreateArrayImageSource only numbers below 2^48 count.
      * Must not wait and must not read files: a frame asks several times for each tile.
      * Thread safety: any thread, several calls at the same time.
      */

@@ -114,7 +114,8 @@ static void check_packed(SluiceVulkanStreamer *s, uint32_t index)
     s->packed_queue[s->packed_queue_count++] = index;
 }
 
-/* Those that another front end has now, or will not have. The others go on waiting. */
+/* Tries the tiles that wait for the read of an equal or shared tile. They wait again while that
+ * read goes on. */
 static SluiceResult start_awaited(SluiceVulkanStreamer *s, struct slc_read_batch *batch)
 {
     SluiceResult result = SLUICE_SUCCESS;

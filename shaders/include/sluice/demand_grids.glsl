@@ -24,6 +24,7 @@
  *     empty cell                            the base texture; without one, missingColor, resident
  *     cell that cannot be opened            its failureColor, resident
  *     outside the grid                      missingColor, resident
+ *     texture that is no grid               its base color, resident
  *
  * The anisotropy and LOD bias are those of the cell at `uv`. Bicubic filters are linear here. Address
  * modes of cells are ignored.

@@ -147,7 +147,8 @@ vec4 sluiceSampleSpline(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2
  * `du` and `dv` are per unit of uv: the change across the whole texture. They are exact derivatives of
  * the color at an unchanged LOD. So with a linear filter they are constant between texels and jump
  * at their centers; with a bicubic filter they are continuous. They are 0 where nothing is resident. All
- * samples have computed levels, as in paged mode. Formats without a linear filter have no derivatives.
+ * samples have computed levels, as in paged mode. For formats without a linear filter they are
+ * differences of neighboring texels.
  */
 vec4 sluiceSampleDerivatives(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                              float maxAnisotropy, out vec4 du, out vec4 dv, out uint missingLevels)

@@ -41,7 +41,7 @@ struct SluiceUdimPart {
 /** Returns the weights of the next cells in x and y at a level. `edge` is the distance in uv. */
 vec2 sluiceUdimBeyond(vec2 size, vec2 edge, float level)
 {
-    return max(0.5 - edge * max(floor(size * exp2(-level)), 1.0), 0.0);
+    return max(0.5 - edge * vec2(max(uvec2(size) >> uint(level), uvec2(1u))), 0.0);
 }
 
 /**
