@@ -1,6 +1,7 @@
 #include "core/differential.h"
 
 #include "core/check.h"
+#include "core/same_desc.h"
 #include "support/failing_allocator.h"
 
 #include <inttypes.h>
@@ -153,10 +154,10 @@ static void compare_lists(struct differential *d)
 static void compare_layouts(struct differential *d, const SluiceStreamedTextureLayout *a,
                             const SluiceStreamedTextureLayout *b)
 {
-    bool same = memcmp(&a->desc, &b->desc, sizeof a->desc) == 0 &&
-                a->regularTileCount == b->regularTileCount && a->tileCount == b->tileCount &&
-                a->feedbackWidth == b->feedbackWidth && a->feedbackHeight == b->feedbackHeight &&
-                a->minMipWidth == b->minMipWidth && a->minMipHeight == b->minMipHeight;
+    bool same = same_desc(&a->desc, &b->desc) && a->regularTileCount == b->regularTileCount &&
+                a->tileCount == b->tileCount && a->feedbackWidth == b->feedbackWidth &&
+                a->feedbackHeight == b->feedbackHeight && a->minMipWidth == b->minMipWidth &&
+                a->minMipHeight == b->minMipHeight;
     for (uint32_t i = 0; i < b->desc.regularMipCount && same; i++)
         same = a->levelWidthInTiles[i] == b->levelWidthInTiles[i] &&
                a->levelHeightInTiles[i] == b->levelHeightInTiles[i] &&
