@@ -22,9 +22,20 @@
 #define SLUICE_APRON_UNEVEN 1.5625
 #define SLUICE_APRON_SPLINE 1.0 /* more of both for textures with a bicubic filter */
 
-/* Whether textures with a bicubic filter are sampled with it (sample.glsl). */
-#ifndef SLUICE_CUBIC
+/*
+ * SLUICE_CUBIC: whether textures with a bicubic filter are sampled with it (sample.glsl).
+ * SLUICE_SPLINE_APRON: texels that bicubic samples add to both aprons.
+ *
+ * Shaders that do not define SLUICE_CUBIC have no code of bicubic filters at all. Code behind a constant
+ * false costs some compilers speed.
+ */
+#ifdef SLUICE_CUBIC
+#define SLUICE_HAS_CUBIC
+#define SLUICE_SPLINE_APRON(grid) \
+    (SLUICE_CUBIC && (grid.shape & SLUICE_SHAPE_SPLINE) != 0u ? SLUICE_APRON_SPLINE : 0.0)
+#else
 #define SLUICE_CUBIC false
+#define SLUICE_SPLINE_APRON(grid) 0.0
 #endif
 
 /*
@@ -70,12 +81,6 @@ vec2 sluiceRegionSize(SluiceGrid grid)
 uvec2 sluiceAddressModes(SluiceGrid grid)
 {
     return uvec2(grid.shape >> SLUICE_SHAPE_MODE_U_SHIFT, grid.shape >> SLUICE_SHAPE_MODE_V_SHIFT) & 7u;
-}
-
-/** Returns what bicubic samples add to both aprons, in texels of the coarser level. */
-float sluiceSplineApron(SluiceGrid grid)
-{
-    return SLUICE_CUBIC ? ((grid.shape & SLUICE_SHAPE_SPLINE) != 0u ? SLUICE_APRON_SPLINE : 0.0) : 0.0;
 }
 
 /** Columns and rows of a footprint. If the first is after the last, it wraps around at 0. */
@@ -135,7 +140,7 @@ uvec2 sluiceRegionRange(float coordinate, float below, float above, uint address
 SluiceFootprint sluiceComputeFootprint(SluiceGrid grid, vec2 uv, vec2 halfBox, uint coarsestLevel)
 {
     vec2 texel = min(vec2(uintBitsToFloat((coarsestLevel + 127u) << 23u)), grid.size); /* 2 to the level */
-    float more = sluiceSplineApron(grid), above = SLUICE_APRON + more, below = above;
+    float more = SLUICE_SPLINE_APRON(grid), above = SLUICE_APRON + more, below = above;
     if ((grid.shape & SLUICE_SHAPE_UNEVEN) != 0u) {
         texel = grid.size / vec2(max(uvec2(grid.size) >> coarsestLevel, 1u));
         below = SLUICE_APRON_UNEVEN + more;

@@ -186,8 +186,10 @@ vec4 sluiceSampleAsPages(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec
 vec4 sluiceSampleGrad(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                       float maxAnisotropy, out uint missingLevels)
 {
+#ifdef SLUICE_HAS_CUBIC
     if (SLUICE_CUBIC && sluiceHasSpline(tableIndex))
         return sluiceSampleSpline(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy, missingLevels);
+#endif
     if (sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy)) {
         float scale = exp2(sluiceClampLodBias(lodBias));
         missingLevels = 0u;
@@ -239,9 +241,11 @@ vec4 sluiceSample(SLUICE_FORM tex, uint tableIndex, vec2 uv, float lodBias, floa
         return sluiceSampleGrad(tex, tableIndex, uv, dFdx(uv), dFdy(uv), lodBias, maxAnisotropy,
                                 missingLevels);
 #endif
+#ifdef SLUICE_HAS_CUBIC
     if (SLUICE_CUBIC && sluiceHasSpline(tableIndex))
         return sluiceSampleSpline(tex, tableIndex, uv, dFdx(uv), dFdy(uv), lodBias, maxAnisotropy,
                                   missingLevels);
+#endif
     missingLevels = 0u;
     if (sluiceIsWhole(tableIndex, lodBias, maxAnisotropy)) {
         bool finite = sluiceIsFinite(uv);
