@@ -119,6 +119,31 @@ static void modes_that_the_streamer_has_not_are_refused(void **state)
     sluiceDestroyImageSource(source);
 }
 
+static void streamers_of_all_modes_take_integers_that_are_dense(void **state)
+{
+    struct harness *h = *state;
+    struct scene scene;
+    scene_init(&scene, h, settings());
+    static const uint32_t texels[300 * 200];
+    const SluiceImageInfo image = {
+        .structSize = sizeof image, .width = 300, .height = 200, .format = SLUICE_FORMAT_R32_UINT};
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateMemoryImageSource(texels, &image, NULL, &source));
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = source};
+    SluiceVulkanTexture texture;
+    h->quiet = true;
+    CHECK_RESULT(sluiceAddVulkanTexture(scene.streamer, &info, &texture),
+                 h->mode == SLUICE_RESIDENCY_MODE_PAGED ? SLUICE_ERROR_UNSUPPORTED
+                                                        : SLUICE_SUCCESS);
+    h->quiet = false;
+    info.residencyMode = SLUICE_RESIDENCY_MODE_DENSE;
+    CHECK_OK(sluiceAddVulkanTexture(scene.streamer, &info, &texture));
+    assert_int_equal(texture.residencyMode, SLUICE_RESIDENCY_MODE_DENSE);
+    harness_settle(h, scene.streamer, 20, NULL, NULL);
+    scene_finish(&scene);
+    sluiceDestroyImageSource(source);
+}
+
 /* A slot of 64 KiB for each would be three times their texels. */
 static void thousands_of_small_textures_take_what_their_images_take(void **state)
 {
@@ -173,6 +198,7 @@ int main(void)
         cmocka_unit_test(small_textures_are_dense),
         cmocka_unit_test(dense_textures_stand_beside_those_of_the_streamer),
         cmocka_unit_test(modes_that_the_streamer_has_not_are_refused),
+        cmocka_unit_test(streamers_of_all_modes_take_integers_that_are_dense),
         cmocka_unit_test(thousands_of_small_textures_take_what_their_images_take),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
