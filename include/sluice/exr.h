@@ -53,6 +53,10 @@ typedef struct SluiceExrImageSourceCreateInfo {
      * Half formats saturate at +-65504. UNORM formats clamp to [0, 1] and sRGB formats encode; NaN
      * becomes 0. Float formats keep infinities and NaN of the file; half formats do if the file's
      * channels are half. Mip levels built here treat NaN as 0.
+     *
+     * R32_UINT, R32G32_UINT and R32G32B32A32_UINT return the numbers of uint channels exactly, for
+     * ids of objects and materials. Float formats round numbers above 2^24. Integers are never
+     * averaged: a texel of a coarser level is one of the finer texels.
      */
     SluiceFormat format;
     /** Default: malloc and free. OpenEXRCore always uses malloc for its own memory. */
@@ -112,11 +116,12 @@ typedef struct SluiceExrImageSourceCreateInfo {
  * Returns SLUICE_NOT_READY, without a source, while the process has too few file descriptors.
  * Sluice leaves the last 16 below the soft limit to others. Close files and call again.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown, compressed, PACK32,
- *         SNORM and integer formats, and for a pInput whose size is out of range;
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown, compressed, PACK32
+ *         and SNORM formats, for integer formats other than the three above, and for a pInput whose
+ *         size is out of range;
  *         SLUICE_ERROR_FILE_NOT_FOUND, SLUICE_ERROR_IO, SLUICE_ERROR_CORRUPT_DATA;
- *         SLUICE_ERROR_UNSUPPORTED for deep data, subsampling, luminance-chroma, more than 1024
- *         channels, files with only layers or other channel names, and multi-part files whose first
+ *         SLUICE_ERROR_UNSUPPORTED for deep data, subsampling, luminance-chroma, an integer format
+ *         of a file whose channels are not all uint, more than 1024 channels, files with only layers or other channel names, and multi-part files whose first
  *         part is unsupported; SLUICE_ERROR_LIMIT_EXCEEDED if more memory is needed than
  *         maxMemorySize or memoryBudget allow; SLUICE_ERROR_OUT_OF_HOST_MEMORY. The log message
  *         names the file, the value and a remedy.

@@ -74,8 +74,15 @@ static void load_span(exr_pixel_type_t type, const unsigned char *source, float 
     }
 }
 
-/* How a component is stored. */
-enum encoding { ENCODE_FLOAT, ENCODE_HALF, ENCODE_UNORM8, ENCODE_UNORM16, ENCODE_SRGB };
+/* How a component is stored. ENCODE_WORD keeps the 32 bits of the file. */
+enum encoding {
+    ENCODE_FLOAT,
+    ENCODE_HALF,
+    ENCODE_UNORM8,
+    ENCODE_UNORM16,
+    ENCODE_SRGB,
+    ENCODE_WORD
+};
 
 /* The encoding of component `c`. Alpha is linear in every format. */
 static enum encoding encoding_of(SluiceFormat format, uint32_t c)
@@ -86,6 +93,8 @@ static enum encoding encoding_of(SluiceFormat format, uint32_t c)
         return ENCODE_UNORM16;
     if (slc_format_is_half(format))
         return ENCODE_HALF;
+    if (slc_format_is_integer(format))
+        return ENCODE_WORD;
     return sluiceGetFormatTexelSize(format) / slc_format_channel_count(format) == 1 ? ENCODE_UNORM8
                                                                                     : ENCODE_FLOAT;
 }
@@ -97,7 +106,8 @@ static void store_span(enum encoding encoding, const float *values, char *result
         uint16_t word;
         uint8_t step;
         switch (encoding) {
-        case ENCODE_FLOAT: memcpy(result, &values[i], 4); break;
+        case ENCODE_FLOAT:
+        case ENCODE_WORD: memcpy(result, &values[i], 4); break;
         case ENCODE_HALF:
             word = slc_half_from_float(values[i]);
             memcpy(result, &word, 2);
@@ -125,6 +135,16 @@ static void copy_half_span(const unsigned char *source, char *result, size_t str
     }
 }
 
+/* As they are: floats hold integers up to 2^24 only. */
+static void copy_word_span(const unsigned char *source, char *result, size_t stride, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++, source += 4, result += stride) {
+        uint32_t word = source[0] | (uint32_t)source[1] << 8 | (uint32_t)source[2] << 16 |
+                        (uint32_t)source[3] << 24;
+        memcpy(result, &word, 4);
+    }
+}
+
 /* How one component of the target is filled. */
 struct component {
     uint32_t size;
@@ -141,6 +161,10 @@ static void convert_span(exr_pixel_type_t type, const unsigned char *source,
         copy_half_span(source, result, component->stride, count);
         return;
     }
+    if (component->encoding == ENCODE_WORD) {
+        copy_word_span(source, result, component->stride, count);
+        return;
+    }
     for (uint32_t done = 0; done < count; done += BATCH) {
         uint32_t step = slc_min_u32(BATCH, count - done);
         load_span(type, source + (size_t)done * size, values, step);
@@ -149,8 +173,12 @@ static void convert_span(exr_pixel_type_t type, const unsigned char *source,
     }
 }
 
-static void fill_span(float value, const struct component *component, char *result, uint32_t count)
+/* Fills a component that the file lacks with 0, alpha with 1. */
+static void fill_span(bool is_alpha, const struct component *component, char *result,
+                      uint32_t count)
 {
+    bool is_word = component->encoding == ENCODE_WORD;
+    float one = is_word ? slc_float_from_bits(1) : 1.0f, value = is_alpha ? one : 0.0f;
     for (uint32_t i = 0; i < count; i++, result += component->stride)
         store_span(component->encoding, &value, result, component->stride, 1);
 }
@@ -228,7 +256,7 @@ static void deliver_row(struct slc_exr_file *file, const unsigned char *row,
             continue;
         int32_t index = find_channel(file, component_count, c);
         if (index < 0) {
-            fill_span(c == 3 ? 1.0f : 0.0f, &component, result, shared->width);
+            fill_span(c == 3, &component, result, shared->width);
             continue;
         }
         const struct slc_exr_channel *channel = &file->channels[index];

@@ -229,12 +229,29 @@ static SluiceResult reserve_memory(struct exr_source *source,
     return SLUICE_SUCCESS;
 }
 
+/* Integers are delivered bit by bit, so only channels of integers make them. */
+static SluiceResult check_integers(const struct slc_exr_file *file, SluiceFormat format)
+{
+    if (!slc_format_is_integer(format))
+        return SLUICE_SUCCESS;
+    for (uint32_t i = 0; i < file->channel_count; i++)
+        if (file->channels[i].type != EXR_PIXEL_UINT)
+            return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
+                                  "has the channels %s, not all of them uint; %s needs uint "
+                                  "channels, other files need a float format",
+                                  file->channel_names, sluiceGetFormatName(format));
+    return SLUICE_SUCCESS;
+}
+
 static SluiceResult describe(struct exr_source *source, SluiceFormat format, uint64_t max_size,
                              bool level_zero_alone)
 {
     struct slc_exr_file *file = &source->file;
     if (format == SLUICE_FORMAT_UNDEFINED)
         format = slc_exr_natural_format(file);
+    SluiceResult result = check_integers(file, format);
+    if (result != SLUICE_SUCCESS)
+        return result;
     source->info = (SluiceImageInfo){
         .structSize = sizeof(SluiceImageInfo),
         .width = file->width,
@@ -257,6 +274,17 @@ static SluiceResult describe(struct exr_source *source, SluiceFormat format, uin
                           (unsigned long long)max_size);
 }
 
+static bool is_made_of_channels(SluiceFormat format)
+{
+    if (format == SLUICE_FORMAT_UNDEFINED)
+        return true;
+    if (slc_format_is_integer(format))
+        return format == SLUICE_FORMAT_R32_UINT || format == SLUICE_FORMAT_R32G32_UINT ||
+               format == SLUICE_FORMAT_R32G32B32A32_UINT;
+    return sluiceGetFormatTexelSize(format) != 0 && !slc_format_is_packed(format) &&
+           !slc_format_is_snorm(format);
+}
+
 SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pInfo,
                                         SluiceImageSource **pSource)
 {
@@ -269,12 +297,10 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
         return result;
     if ((!info.pPath && !info.pInput) || !slc_allocator_is_valid(info.pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    if (info.format != SLUICE_FORMAT_UNDEFINED &&
-        (sluiceGetFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format) ||
-         slc_format_is_snorm(info.format) || slc_format_is_integer(info.format)))
+    if (!is_made_of_channels(info.format))
         return slc_log_refusal(&info.log,
-                               "format is %s (%d); block-compressed, packed, SNORM and integer "
-                               "formats are refused",
+                               "format is %s (%d); block-compressed, packed and SNORM formats are "
+                               "refused, and integers other than R32, R32G32 and R32G32B32A32_UINT",
                                sluiceGetFormatName(info.format), (int)info.format);
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     struct exr_source *source = slc_calloc(&cb, 1, sizeof *source);
