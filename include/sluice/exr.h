@@ -122,10 +122,11 @@ typedef struct SluiceExrImageSourceCreateInfo {
  *         SLUICE_ERROR_FILE_NOT_FOUND, SLUICE_ERROR_IO, SLUICE_ERROR_CORRUPT_DATA;
  *         SLUICE_ERROR_UNSUPPORTED for deep data, subsampling, luminance-chroma, an integer format
  *         of a file whose channels are not all uint, more than 1024 channels, files with only
- * layers or other channel names, and multi-part files whose first part is unsupported;
- * SLUICE_ERROR_LIMIT_EXCEEDED if more memory is needed than maxMemorySize or memoryBudget allow;
- * SLUICE_ERROR_OUT_OF_HOST_MEMORY. The log message names the file, the value and a remedy. Thread
- * safety: any thread.
+ *         layers or other channel names, and multi-part files whose first part is unsupported;
+ *         SLUICE_ERROR_LIMIT_EXCEEDED if more memory is needed than maxMemorySize or memoryBudget
+ *         allow; SLUICE_ERROR_OUT_OF_HOST_MEMORY. The log message names the file, the value and a
+ *         remedy.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pInfo,
                                                    SluiceImageSource **pSource);
