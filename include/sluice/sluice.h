@@ -10,6 +10,7 @@
 #include <sluice/loader.h>
 #include <sluice/manager.h>
 #include <sluice/metrics.h>
+#include <sluice/proxy.h>
 #include <sluice/replay.h>
 #include <sluice/udim.h>
 #include <sluice/version.h>
