@@ -3,15 +3,16 @@
  * them. Part of `sluice`. Needs no device.
  *
  * A ray tracer adds a proxy for whatever it has not built. Shaders that hit the proxy request it
- * by index. The application gets the requested proxies after a launch,
+ * (shaders/include/sluice/proxy.glsl). The application gets the requested proxies after a launch,
  * builds what they stand for, and removes them:
  *
- *     sluiceAddProxyRequests(set, &requests);
+ *     sluiceProcessDemandRequests(loader, &launch, UINT64_MAX, &requests, NULL);
+ *     sluiceProcessDemandProxies(loader, resource, set);          (vulkan_proxy.h)
  *     sluiceGetRequestedProxies(set, NULL, &count, ids);
  *     for each id: build what it stands for; sluiceRemoveProxy(set, id);
  *
  * A proxy stays requested until it is removed or its request is cleared. A request for a proxy that
- * was removed meanwhile is ignored.
+ * was removed meanwhile is ignored. docs/proxies.md explains each step.
  *
  * The index of a proxy is the low 32 bits of its id. Shaders name proxies by index, and the index
  * is the number of the box among the AABB primitives. Indices are dense: the lowest free one is
@@ -170,7 +171,8 @@ typedef struct SluiceProxyRequests {
 } SluiceProxyRequests;
 
 /**
- * Adds the requests of launches.
+ * Adds the requests of launches. sluiceProcessDemandProxies calls it; call it yourself only if your
+ * shaders report in a way of their own.
  *
  * Live proxies become requested. All other indices are ignored. Removed proxies are noted to be in
  * use until begunLaunch is processed, and indices of those that were in use up to processedLaunch
@@ -237,7 +239,7 @@ typedef struct SluiceProxyBoxWrite {
 
 /**
  * Writes the boxes that have changed, each at its index, so that a buffer holds the primitives of
- * an acceleration structure.
+ * an acceleration structure (sluiceGetProxyGeometry in vulkan_proxy.h).
  *
  * `*pVersion` is the state of your memory: 0 if it has no boxes yet, otherwise what the last call
  * for this memory returned. Keep a version for each buffer. Boxes are written in groups of 64; more

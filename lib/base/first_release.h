@@ -99,6 +99,7 @@
 #define SLC_FIRST_SluiceVulkanStreamerStatistics                                                   \
     SLC_UP_TO(SluiceVulkanStreamerStatistics, tilesProduced)
 #define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, deviceAddress)
+#define SLC_FIRST_SluiceProxyGeometry SLC_UP_TO(SluiceProxyGeometry, range)
 #define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
     SLC_UP_TO(SluiceVulkanContextCreateInfo, minTileMemorySize)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \

@@ -310,11 +310,12 @@ struct SluiceDemandLoader {
     uint32_t preload_count, preload_capacity;
 
     uint64_t launch, ended, processed; ///< the last of each
-    bool cleared;                      ///< the device's buffers
-    uint64_t cleared_launch;           ///< that did
-    bool page_table_was_full;          ///< it was told
-    bool tracked[SLC_MAX_LAUNCHES];    ///< by launch: shaders said what they used
-    uint32_t limited_count;            ///< resources with a limit
+    uint64_t listed_launch;   ///< the last that is processed and left no request to the next scan
+    bool cleared;             ///< the device's buffers
+    uint64_t cleared_launch;  ///< that did
+    bool page_table_was_full; ///< it was told
+    bool tracked[SLC_MAX_LAUNCHES]; ///< by launch: shaders said what they used
+    uint32_t limited_count;         ///< resources with a limit
     struct slc_retries retries;
     SluiceDemandLoaderSettings settings; ///< from the next launch on
     uint32_t requests_per_launch;        ///< of the present one

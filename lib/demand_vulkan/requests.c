@@ -98,6 +98,8 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     /* The residency counts requests that did not reach it as tiles; unasked pages are no tiles. */
     slc_residency_settle(loader->residency, scan.requestCount - loader->unasked_count);
     slc_evicted_take(loader);
+    if (scan.postponedCount == 0)
+        loader->listed_launch = launch;
     add_counts(&loader->counts, &now);
     requests->missingCount += now.missingCount;
     requests->servedCount += now.servedCount;

@@ -3,6 +3,7 @@
 #include "null_arguments/calls.h"
 
 #include <sluice/demand.h>
+#include <sluice/vulkan_proxy.h>
 
 #include <stdio.h>
 
@@ -55,6 +56,9 @@ sluiceInvalidateDemandPages(f->loader, f->resource, 0, 1)
 sluiceGetMissedDemandPages(f->loader, f->resource, &f->out.page_count, &f->out.page)
 sluiceSetDemandPageValue(f->loader, f->resource, 0, ?1, ?true)
 sluiceSetDemandPageBytes(f->loader, f->bytes, 0, &f->out.page, ?true)
+sluiceAddDemandProxies(f->loader, f->set, ?0, &f->out.resource, &f->out.page)
+sluiceProcessDemandProxies(f->loader, f->proxies, f->set)
+sluiceGetProxyGeometry(f->set, 256, &f->out.geometry)
 sluiceGetDemandBuffers(f->loader, &f->out.demand_buffers)
 sluiceGetDemandPages(f->loader, &f->out.pages)
 sluiceGetDemandByteBuffers(f->loader, &f->out.byte_buffers)
@@ -95,7 +99,8 @@ struct fixture {
     SluiceDemandTextureId id;
     SluiceDemandGridCreateInfo grid_info;
     SluiceDemandResourceCreateInfo resource_info;
-    SluiceDemandResourceId resource, bytes;
+    SluiceDemandResourceId resource, bytes, proxies;
+    SluiceProxySet *set;
     SluiceDemandLaunch launch;
     struct {
         SluiceResidencyMode mode;
@@ -119,6 +124,7 @@ struct fixture {
         SluiceDemandTextureId id;
         SluiceDemandTicket ticket;
         SluiceDemandResourceId resource;
+        SluiceProxyGeometry geometry;
         uint32_t page, page_count;
         SluiceDemandBuffers demand_buffers;
         SluiceDemandByteBuffers byte_buffers;
@@ -197,6 +203,12 @@ static void init_loader(struct fixture *f)
     const SluiceDemandResourceCreateInfo bytes = {
         .structSize = sizeof bytes, .pageCount = 4, .pageSize = 4};
     CHECK_OK(sluiceAddDemandResource(f->loader, &bytes, &f->bytes, &first));
+    const SluiceProxySetCreateInfo set = {.structSize = sizeof set, .maxProxyCount = 4};
+    const SluiceProxyBox box = {{0, 0, 0}, {1, 1, 1}};
+    SluiceProxyId proxy;
+    CHECK_OK(sluiceCreateProxySet(&set, &f->set));
+    CHECK_OK(sluiceAddGeometryProxy(f->set, &box, &proxy));
+    CHECK_OK(sluiceAddDemandProxies(f->loader, f->set, 0, &f->proxies, &first));
 }
 
 static void fixture_init(struct fixture *f, void **state)
@@ -224,6 +236,7 @@ static void fixture_finish(struct fixture *f)
 {
     assert_int_equal(h.ResetCommandBuffer(f->commands, 0), VK_SUCCESS);
     sluiceDestroyDemandLoader(f->loader);
+    sluiceDestroyProxySet(f->set);
     sluiceDestroyDemandLoader(f->fresh_loader);
     remove(f->recording.pPath);
     sluiceDestroyVulkanStreamer(f->streamer);
