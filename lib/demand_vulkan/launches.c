@@ -10,6 +10,7 @@
 #include "demand_vulkan/refused_arguments.h"
 #include "image/half.h"
 #include "vulkan/compute.h"
+#include "vulkan/page_leaving.h"
 
 #include <sluice/shared/demand.h>
 

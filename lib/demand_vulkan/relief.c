@@ -5,6 +5,7 @@
  */
 #include "base/alloc.h"
 #include "demand_vulkan/loader.h"
+#include "vulkan/page_leaving.h"
 #include "vulkan/sparse_layout.h"
 
 /* Pages of the loader on one image. */

@@ -8,7 +8,7 @@
 #ifndef SLC_VULKAN_PAGE_MOVES_H
 #define SLC_VULKAN_PAGE_MOVES_H
 
-#include "vulkan/page_pool.h"
+#include "vulkan/page_leaving.h"
 #include "vulkan/page_table.h"
 
 #define SLC_PAGE_MOVES 1024u         /* under way at a time */

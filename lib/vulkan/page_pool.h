@@ -119,46 +119,14 @@ void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page
 /** True: nobody has taken the page since `owner` of this user gave it, and now the user has it
  *  again. */
 bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);
-/**
- * Chooses the chunk to be emptied next, if none is yet: the one with the fewest pages, if the user
- * alone holds them and no page has two tiles. Nobody takes pages of it any more. Returns how many
- * pages of its format the user must give back until the others have room for its pages; SLC_NONE if
- * no chunk can be emptied. `*held`: pages that are held in it.
- */
-uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user, uint32_t *held);
-/** No chunk can be emptied, and slc_page_pool_choose_leaving skips one that the user alone holds
- *  because pages have two tiles. */
-bool slc_page_pool_has_unmovable(struct slc_page_pool *pool, uint32_t user);
-/** Stops emptying the chunk that the user chose, if any. */
-void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user);
-/** The chunk that the user empties; SLC_NONE if there is none. */
-uint32_t slc_page_pool_leaving(struct slc_page_pool *pool, uint32_t user);
-/** Number of tiles on the pages of a chunk; SLC_NONE if another user holds any of the pages. */
-uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32_t chunk);
 /** Lets the next shortage ask the device again: it or the budget may have memory now. */
 void slc_page_pool_ask_again(struct slc_page_pool *pool);
-/** Bytes that the user should free because page memory is beyond the limits of all users: limits
- * can be lowered. They are those of its chunks beyond its own limit, and all that no user is
- * beyond. */
-uint64_t slc_page_pool_excess(struct slc_page_pool *pool, uint32_t user);
-/** Bytes of chunks that are empty or retiring: they will be freed. */
-uint64_t slc_page_pool_going_size(struct slc_page_pool *pool);
-
-/** Users that have held a page, and the tick up to which their frames may read it. */
-struct slc_page_readers {
-    uint32_t users; ///< bits
-    uint64_t tick;
-};
-
-/** Takes a page `*to` for the tile on `from`; `frame` copies it. The user holds both pages until
- *  slc_page_pool_end_move. Returns false if there is no page. */
-bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint64_t frame,
-                        uint32_t *to, struct slc_page_readers *readers);
-/** The copy is complete: gives `from` back. False: frames of other readers are under way. */
-bool slc_page_pool_end_move(struct slc_page_pool *pool, uint32_t user, uint32_t from,
-                            const struct slc_page_readers *readers);
-/** The copy was abandoned: the tile is on `from` alone. */
-void slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint32_t to);
+/** Parts of the calls above for files that lock the pool themselves: the caller has its mutex. */
+void slc_page_pool_hold_locked(struct slc_page_pool *pool, uint32_t user, uint32_t page);
+void slc_page_pool_give_locked(struct slc_page_pool *pool, uint32_t user, uint32_t page,
+                               uint32_t owner);
+/** Stops emptying the chunk that runs empty, if any. */
+void slc_page_pool_stay_locked(struct slc_page_pool *pool);
 
 /** Chunks that are empty may go to another format. */
 void slc_page_pool_hurry(struct slc_page_pool *pool);

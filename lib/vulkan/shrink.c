@@ -2,7 +2,7 @@
 
 #include "base/checked.h"
 #include "core/observer.h"
-#include "vulkan/page_pool.h"
+#include "vulkan/page_leaving.h"
 
 #define HEAPS_AT_ONCE 16u
 /* Few, because a wanted tile that moves shows a coarser level until it is read again. */

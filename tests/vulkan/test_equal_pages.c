@@ -6,6 +6,7 @@
 
 #include "vulkan/context.h"
 #include "vulkan/fake_vulkan.h"
+#include "vulkan/page_leaving.h"
 #include "vulkan/page_sharing.h"
 
 #include <sluice/shared/texture_table.h>
