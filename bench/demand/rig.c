@@ -35,7 +35,9 @@ static bool create_loader(struct rig *rig, const SluiceDemandLoaderCreateInfo *g
                                                    .pAllocator = rig->bench->allocator,
                                                    .loaderThreadCount = rig->bench->threads,
                                                    .maxPageChunkCount = DEMAND_BENCH_CHUNKS,
-                                                   .minStagingSize = rig->bench->min_staging_size};
+                                                   .minStagingSize = rig->bench->min_staging_size,
+                                                   .minTileMemorySize =
+                                                       rig->bench->min_tile_memory_size};
     if (!check(sluiceCreateVulkanContext(&context, &rig->context), "sluiceCreateVulkanContext"))
         return false;
     SluiceDemandLoaderCreateInfo info = *given;

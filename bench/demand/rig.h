@@ -19,7 +19,7 @@ struct bench {
     uint32_t columns;          ///< columns x columns textures
     SluiceDemandFilter filter; ///< of textures
     uint32_t threads;          ///< that load; 0: as the library does
-    uint64_t min_staging_size;
+    uint64_t min_staging_size, min_tile_memory_size;
     const SluiceAllocationCallbacks *allocator; ///< of the context; NULL: malloc
     bool wall;                                  ///< measures wall time: time stamps are unusable
 };

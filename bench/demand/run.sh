@@ -43,8 +43,10 @@ create.seconds|creating 100 000 textures, s|30 for 2 500|at most 2
 create.opened|... images opened|0|0
 create.page_memory|device memory for 64 Mi virtual pages, MiB|64|at most 64
 fill.rate|cold fill, source free, tiles/s|11 000 to 14 000|at least 120 000
-fill.defaults.rate|... while staging memory grows, as by default, tiles/s||
-fill.again.rate|... again, into memory that is there, tiles/s||
+fill.defaults.rate|... while memory grows, as by default, tiles/s||
+fill.again.rate|... again, after all tiles were dropped, tiles/s||
+fill.floor.copy|the driver's copies alone, tiles/s||
+fill.of_copy|cold fill, share of the copies alone||0.9
 sampling.plain.rate|resident sampling, textureGrad, Gsamples/s||
 sampling.untracked.rate|... demand loaded, without tracking for eviction|16.3|at least 16
 sampling.untracked.of_plain|... of textureGrad||
