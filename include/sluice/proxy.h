@@ -90,8 +90,8 @@ typedef struct SluiceProxyBox {
  * Adds a geometry proxy.
  *
  * A box that is too thin to be hit is widened: along each axis where it is thinner than 2^-20 times
- * its largest coordinate (absolute value), it grows at both sides to that thickness. So boxes of
- * zero thickness are allowed in one or two axes. sluiceGetProxyBox returns the box after that.
+ * its largest coordinate (absolute value), both sides move out by half of that. So boxes may have
+ * zero thickness in one or two axes. sluiceGetProxyBox returns the box after that.
  *
  * Errors, with nothing changed: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a
  * log message, if a coordinate is not finite or beyond 2^100, if min is above max, if the box is a

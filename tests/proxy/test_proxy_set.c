@@ -1,4 +1,6 @@
 /* Proxies come, are requested, and go. The first tests are what goes wrong elsewhere. */
+#include "proxy/proxy_set.h"
+
 #include "proxy/naive_set.h"
 #include "support/failing_allocator.h"
 #include "support/test.h"
@@ -165,6 +167,22 @@ static void indices_end_at_the_limit_until_some_are_free(void **state)
     request(set, 0, 0, 0, NULL);
     CHECK_OK(sluiceAddGeometryProxy(set, &unit, &id));
     assert_int_equal((uint32_t)id, 1);
+    sluiceDestroyProxySet(set);
+}
+
+static void an_index_whose_generations_are_used_up_gets_no_proxy(void **state)
+{
+    (void)state;
+    SluiceProxySet *set = create(SLUICE_PROXY_KIND_GEOMETRY, 0);
+    SluiceProxyId id = add(set);
+    slc_proxy_at(set, 0)->generation = UINT32_MAX - 1;
+    CHECK_OK(sluiceRemoveProxy(set, (uint64_t)(UINT32_MAX - 1) << 32 | (uint32_t)id));
+    request(set, 0, 0, 0, NULL);
+    id = add(set);
+    assert_true(id == (uint64_t)UINT32_MAX << 32);
+    CHECK_OK(sluiceRemoveProxy(set, id));
+    request(set, 0, 0, 0, NULL);
+    assert_int_equal((uint32_t)add(set), 1);
     sluiceDestroyProxySet(set);
 }
 
@@ -353,6 +371,7 @@ int main(void)
         cmocka_unit_test(a_request_for_something_removed_meanwhile_is_ignored),
         cmocka_unit_test(an_index_is_not_reused_while_launches_may_name_it),
         cmocka_unit_test(indices_end_at_the_limit_until_some_are_free),
+        cmocka_unit_test(an_index_whose_generations_are_used_up_gets_no_proxy),
         cmocka_unit_test(wrong_settings_and_kinds_are_refused),
         cmocka_unit_test(without_memory_nothing_changes),
         cmocka_unit_test(everything_in_random_order_is_what_a_naive_set_does),
