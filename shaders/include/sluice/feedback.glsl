@@ -137,7 +137,7 @@ void sluiceMarkCorners(uint first, SluiceGrid grid, vec2 low, vec2 high, uint le
 vec2 sluiceBoxReach(SluiceGrid grid, vec2 halfBox, uint coarsest)
 {
     float texel = uintBitsToFloat((coarsest + 127u) << 23u); /* 2 to the power of it */
-    return halfBox + (SLUICE_APRON + SLUICE_SPLINE_APRON(grid)) * min(vec2(texel), grid.size);
+    return halfBox + SLUICE_WIDE_APRON(grid, SLUICE_APRON) * min(vec2(texel), grid.size);
 }
 
 /**

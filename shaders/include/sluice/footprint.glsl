@@ -24,18 +24,18 @@
 
 /*
  * SLUICE_CUBIC: whether textures with a bicubic filter are sampled with it (sample.glsl).
- * SLUICE_SPLINE_APRON: texels that bicubic samples add to both aprons.
+ * SLUICE_WIDE_APRON: an apron, and the texels that bicubic samples add to it.
  *
  * Shaders that do not define SLUICE_CUBIC have no code of bicubic filters at all. Code behind a constant
  * false costs some compilers speed.
  */
 #ifdef SLUICE_CUBIC
 #define SLUICE_HAS_CUBIC
-#define SLUICE_SPLINE_APRON(grid) \
-    (SLUICE_CUBIC && (grid.shape & SLUICE_SHAPE_SPLINE) != 0u ? SLUICE_APRON_SPLINE : 0.0)
+#define SLUICE_WIDE_APRON(grid, apron) \
+    (SLUICE_CUBIC && (grid.shape & SLUICE_SHAPE_SPLINE) != 0u ? (apron) + SLUICE_APRON_SPLINE : (apron))
 #else
 #define SLUICE_CUBIC false
-#define SLUICE_SPLINE_APRON(grid) 0.0
+#define SLUICE_WIDE_APRON(grid, apron) (apron)
 #endif
 
 /*
@@ -140,16 +140,18 @@ uvec2 sluiceRegionRange(float coordinate, float below, float above, uint address
 SluiceFootprint sluiceComputeFootprint(SluiceGrid grid, vec2 uv, vec2 halfBox, uint coarsestLevel)
 {
     vec2 texel = min(vec2(uintBitsToFloat((coarsestLevel + 127u) << 23u)), grid.size); /* 2 to the level */
-    float more = SLUICE_SPLINE_APRON(grid), above = SLUICE_APRON + more, below = above;
+    float below = SLUICE_WIDE_APRON(grid, SLUICE_APRON);
     if ((grid.shape & SLUICE_SHAPE_UNEVEN) != 0u) {
         texel = grid.size / vec2(max(uvec2(grid.size) >> coarsestLevel, 1u));
-        below = SLUICE_APRON_UNEVEN + more;
+        below = SLUICE_WIDE_APRON(grid, SLUICE_APRON_UNEVEN);
     }
     uvec2 shift = sluiceRegionShift(grid), modes = sluiceAddressModes(grid);
-    uvec2 x = sluiceRegionRange(uv.x, below * texel.x + halfBox.x, above * texel.x + halfBox.x,
-                                modes.x, grid.size.x, shift.x, grid.last.x);
-    uvec2 y = sluiceRegionRange(uv.y, below * texel.y + halfBox.y, above * texel.y + halfBox.y,
-                                modes.y, grid.size.y, shift.y, grid.last.y);
+    uvec2 x = sluiceRegionRange(uv.x, below * texel.x + halfBox.x,
+                                SLUICE_WIDE_APRON(grid, SLUICE_APRON) * texel.x + halfBox.x, modes.x,
+                                grid.size.x, shift.x, grid.last.x);
+    uvec2 y = sluiceRegionRange(uv.y, below * texel.y + halfBox.y,
+                                SLUICE_WIDE_APRON(grid, SLUICE_APRON) * texel.y + halfBox.y, modes.y,
+                                grid.size.y, shift.y, grid.last.y);
     return SluiceFootprint(uvec2(x.x, y.x), uvec2(x.y, y.y));
 }
 

@@ -235,8 +235,8 @@ float sluiceLodAround(uint tableIndex, SluiceGrid grid, uint words, uint coarses
     lod = min(sluiceLodLimit(words >> 16u, margin), packed);
     uint level = sluiceClampedBox(lod, margin, coarsestLod, maxAnisotropy, count, grown);
     bool uneven = (grid.shape & SLUICE_SHAPE_UNEVEN) != 0u;
-    float apron = (uneven ? SLUICE_APRON_UNEVEN : SLUICE_APRON) + SLUICE_SPLINE_APRON(grid);
-    vec2 more = grown - halfBox + apron * exp2(float(level));
+    vec2 more = grown - halfBox + SLUICE_WIDE_APRON(grid, uneven ? SLUICE_APRON_UNEVEN : SLUICE_APRON) *
+                                      exp2(float(level));
     return all(lessThan(more, sluiceRegionSize(grid))) ? lod : packed;
 }
 
