@@ -5,6 +5,7 @@
 #define SLUICE_DEMAND_CUBIC true
 #include "sluice/demand_bindings.glsl"
 #include "sluice/demand.glsl"
+#include "sluice/demand_jitter.glsl"
 #include "sluice/ray_footprint.glsl"
 
 layout(std430, set = 1, binding = 0) buffer Answer { vec4 colors[]; } answer;
@@ -19,6 +20,14 @@ vec3 bumpNormal(uint index, vec2 uv, vec2 dx, vec2 dy, float height, vec3 tangen
     /* tangent and bitangent: the change of position per unit of u and v */
     vec3 alongU = tangent + height * du.r * normal, alongV = bitangent + height * dv.r * normal;
     return normalize(cross(alongU, alongV));
+}
+
+vec4 hitJittered(uint index, vec2 at, vec2 dx, vec2 dy, vec2 random)
+{
+    bool resident;
+    vec2 jittered = sluiceDemandJitter(index, at, dx, dy, SLUICE_JITTER_TENT, random);
+    vec4 color = sluiceDemandGrad(index, jittered, dx, dy, resident);
+    return color;
 }
 
 vec4 hitWithCone(uint index, inout SluiceRayCone cone, vec3 p[3], vec3 n[3], vec2 uv[3], vec2 at, vec3 direction,
@@ -60,6 +69,7 @@ void main()
     SluiceRayCone cone = SluiceRayCone(0.0, sluicePixelSpread(1.0, 1080.0));
     answer.colors[1] = hitWithCone(draw.index, cone, p, n, uv, vec2(0.5), direction, 1.0, n[0]);
     SluiceRayDifferential ray = sluiceCameraDifferential(direction, vec3(0.0, 0.001, 0.0), vec3(0.0, 0.0, 0.001));
+    answer.colors[3] = hitJittered(draw.index, uv[0], vec2(0.01, 0.0), vec2(0.0, 0.01), vec2(0.25));
     SluiceRayTriangle t = sluiceFindRayTriangle(p[0], p[1], p[2], uv[0], uv[1], uv[2]);
     answer.colors[2] = hitWithDifferential(draw.index, ray, t, n, vec2(0.0), uv[0], direction, 1.0, n[0]);
 }

@@ -3,6 +3,7 @@
  * of all offsets. The oracle integrates the densities that jitter.glsl states, in double.
  */
 #include "device/conform.h"
+#include "device/demand_runner.h"
 #include "device/scene.h"
 
 #include "base/checked.h"
@@ -132,9 +133,10 @@ static double weigh(enum kernel kernel, bool nearest, double scale, double dista
     return sum;
 }
 
-/* PATTERN_HASH, which repeats. */
+/* Texels of an image that repeats. */
 struct texels {
     uint32_t width, height;
+    struct runner_image *image; ///< NULL: PATTERN_HASH
 };
 
 enum { AROUND = 8 }; /* texels to either side that a sample may weigh */
@@ -168,7 +170,10 @@ static void add_level(double rgba[4], const struct texels *texels, const float u
         float texel[4];
         if (share == 0)
             continue;
-        pattern_texel(PATTERN_HASH, level, x, y, texel);
+        if (texels->image)
+            runner_image_texel(texels->image, level, x, y, texel);
+        else
+            pattern_texel(PATTERN_HASH, level, x, y, texel);
         for (uint32_t c = 0; c < 4; c++)
             rgba[c] += share * (double)texel[c];
     }
@@ -182,7 +187,7 @@ static void check_mean(const struct rig *rig, uint32_t i, double lod, enum kerne
     double shown = fmax(lod, 0), expected[4] = {0};
     uint32_t level = (uint32_t)shown;
     double fraction = shown - level, scale = exp2(fraction);
-    const struct texels texels = {SIZE, SIZE};
+    const struct texels texels = {SIZE, SIZE, NULL};
     add_level(expected, &texels, in->uv, level, 1 - fraction, kernel, nearest, scale);
     if (fraction > 0)
         add_level(expected, &texels, in->uv, level + 1, fraction, kernel, nearest, scale / 2);
@@ -266,6 +271,57 @@ static void feedback_covers_all_offsets(void **state)
     }
 }
 
+enum { PLACES = 24, DRAWS = JITTER_GRID * JITTER_GRID };
+
+static void add_draws(struct runner *r, SluiceDemandTextureId id, uint32_t level, uint32_t kernel)
+{
+    struct RunnerInput in = {.kind = RUNNER_JITTER,
+                             .index = (uint32_t)id,
+                             .uv = {(float)draw(-1, 1), (float)draw(-1, 1)},
+                             .dx = {(float)exp2(level) / SIZE},
+                             .cell = kernel};
+    for (uint32_t i = 0; i < DRAWS; i++) {
+        in.dy[0] = ((float)(i % JITTER_GRID) + 0.5f) / JITTER_GRID - 0.5f;
+        in.dy[1] = ((float)(i / JITTER_GRID) + 0.5f) / JITTER_GRID - 0.5f;
+        runner_add(r, in);
+    }
+}
+
+static void check_draws(const struct runner *r, struct runner_image *image, uint32_t place,
+                        uint32_t level, enum kernel kernel, bool nearest)
+{
+    const struct RunnerInput *in =
+        &((const struct RunnerInput *)r->inputs.mapped)[(size_t)place * DRAWS];
+    const struct texels texels = {SIZE, SIZE, image};
+    double mean[4] = {0}, expected[4] = {0};
+    for (uint32_t i = 0; i < DRAWS; i++)
+        for (uint32_t c = 0; c < 4; c++)
+            mean[c] += (double)runner_output(r, place * DRAWS + i).color[c] / DRAWS;
+    add_level(expected, &texels, in->uv, level, 1, kernel, nearest, 1);
+    for (uint32_t c = 0; c < 4; c++)
+        assert_float_equal(mean[c], expected[c], nearest ? TOLERANCE_NEAREST : TOLERANCE);
+}
+
+static void textures_on_demand_are_jittered_by_their_own_size_and_bias(void **state)
+{
+    static const SluiceDemandSampler linear = {.structSize = sizeof linear, .lodBias = 1};
+    struct runner_image image;
+    struct runner r;
+    runner_init(&r, *state, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 80);
+    SluiceDemandTextureId biased, nearest = runner_add_texture(&r, &image);
+    const SluiceDemandTextureCreateInfo info = {
+        .structSize = sizeof info, .image = runner_image_desc(&image), .pSampler = &linear};
+    CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &biased));
+    for (uint32_t i = 0; i < PLACES; i++)
+        add_draws(&r, i % 2 ? biased : nearest, i % 3, i % KERNELS);
+    assert_in_range(runner_load(&r, 30), 2, 29);
+    for (uint32_t i = 0; i < PLACES; i++)
+        check_draws(&r, &image, i, i % 2 ? i % 3 + 1 : i % 3, i % KERNELS, i % 2 == 0);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
 int main(void)
 {
     struct harness h;
@@ -276,6 +332,7 @@ int main(void)
         cmocka_unit_test(offsets_have_the_distribution_of_their_kernel),
         cmocka_unit_test(means_are_the_filters_of_the_table),
         cmocka_unit_test(feedback_covers_all_offsets),
+        cmocka_unit_test(textures_on_demand_are_jittered_by_their_own_size_and_bias),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;

@@ -32,6 +32,7 @@ layout(push_constant) uniform Push { uint count; };
 #define SLUICE_DEMAND_SECTION_WORD(i) sections.words[i]
 #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
 #include "sluice/demand.glsl"
+#include "sluice/demand_jitter.glsl"
 #ifdef RUNNER_SAMPLES_GRIDS
 #include "sluice/demand_grids.glsl"
 
@@ -86,6 +87,12 @@ void main()
     vec4 color = vec4(0.0);
     uvec2 value = uvec2(0u);
     bool resident;
+#ifndef RUNNER_SAMPLES_GRIDS
+    if (i.kind == RUNNER_JITTER) {
+        uv = sluiceDemandJitter(i.index, uv, dx.xy, dx.yx, i.cell, dy);
+        dy = dx.yx;
+    }
+#endif
     if (i.kind == RUNNER_MAP)
         resident = sluiceMapOrRequest(i.index, value);
 #ifdef RUNNER_READS_BYTES

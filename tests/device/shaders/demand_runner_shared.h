@@ -14,6 +14,7 @@
 #define RUNNER_LAYER_GRAD 5 /* sluiceDemandLayerGrad of layer `cell` */
 #define RUNNER_LAYER_LOD 6  /* sluiceDemandLayerLod with dx[0] */
 #define RUNNER_UDIM_GRAD 7  /* sluiceDemandUdimGrad */
+#define RUNNER_JITTER 8     /* sluiceDemandJitter by kernel `cell`; dx[0]: dx and dy; dy: random */
 
 struct RunnerInput {
     uint kind, index;
