@@ -317,6 +317,24 @@ SLUICE_API SluiceResult sluiceRemoveStreamedTexture(SluiceStreamedTextureManager
                                                     uint64_t retireValue);
 
 /**
+ * Forgets a texture that nothing wants: makes all of its tiles FREE, and drops what its maps asked
+ * for. The texture stays. Its next map requests its tiles as the first one did.
+ *
+ * Its tiles are not listed to be unmapped. They must not be shown from now on, and their slots are
+ * released once `retireValue` has completed. For packed tiles to be forgotten, alwaysMapPackedTiles
+ * must be off.
+ *
+ * Returns SLUICE_NOT_READY, with nothing changed, while any map of it counts, or while any of its
+ * tiles is neither FREE nor STANDBY.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_TIME_BACKWARDS if `retireValue` is below an earlier one.
+ */
+SLUICE_API SluiceResult sluiceForgetStreamedTexture(SluiceStreamedTextureManager *manager,
+                                                    SluiceTextureId textureId,
+                                                    uint64_t retireValue);
+
+/**
  * Gets the layout of a texture.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.

@@ -27,7 +27,8 @@ enum slc_call_kind {
     SLC_CALL_GET_MINMIP_UPDATES = 19,
     /** During GET_TILES_TO_MAP, before that call itself is reported. */
     SLC_CALL_HEAP_ANSWER = 20,
-    SLC_CALL_EVACUATE_HEAPS = 21
+    SLC_CALL_EVACUATE_HEAPS = 21,
+    SLC_CALL_FORGET_TEXTURE = 22
 };
 
 /**
