@@ -49,7 +49,7 @@ static const enum call_null last_pointer[CALL_KIND_COUNT] = {
     [CALL_MINMIP_UPDATES] = NULL_SECOND,  [CALL_WRITE_MINMIP] = NULL_FIRST,
     [CALL_WRITE_RECT] = NULL_SECOND,      [CALL_TILE_STATE] = NULL_SECOND,
     [CALL_LAYOUT] = NULL_SECOND,          [CALL_TEXTURE_LAYOUT] = NULL_FIRST,
-    [CALL_STATISTICS] = NULL_FIRST,
+    [CALL_STATISTICS] = NULL_FIRST,       [CALL_FORGET] = NULL_MANAGER,
 };
 
 void call_sequence_start(struct call_sequence *s, struct choice choice)
@@ -411,11 +411,30 @@ static void make_feedback(struct call_sequence *s, struct naive_manager *n, stru
     }
 }
 
-static void make_trim(struct call_sequence *s, struct call *call)
+/* The first idle one from `at` on, if there is one. */
+static const struct naive_texture *texture_to_forget(const struct naive_manager *n, uint32_t at)
+{
+    const struct naive_texture *any = NULL;
+    for (uint32_t i = 0; i < n->texture_room; i++) {
+        const struct naive_texture *t = n->textures[(at + i) % n->texture_room];
+        if (t && naive_is_idle(t))
+            return t;
+        any = t && !any ? t : any;
+    }
+    return any;
+}
+
+static void make_trim(struct call_sequence *s, const struct naive_manager *n, struct call *call)
 {
     call->keep = choice_once_in(&s->choice, 3) ? 0 : choice_below(&s->choice, 30);
     if (call->keep % 3 == 1) /* no choice of its own: files keep their meaning */
         call->kind = CALL_EVACUATE;
+    if (call->keep % 6 != 5)
+        return;
+    const struct naive_texture *t = texture_to_forget(n, call->keep);
+    call->kind = CALL_FORGET;
+    call->texture = t ? t->id : SLUICE_NO_TEXTURE;
+    call->retire = call->keep == 29 ? 0 : n->last_retire + call->keep % 3;
 }
 
 static uint32_t any_tile(struct call_sequence *s, struct naive_manager *n, SluiceTextureId id)
@@ -465,7 +484,7 @@ static void fill_in(struct call_sequence *s, struct naive_manager *n, struct cal
     case CALL_WRITE_MINMIP:
     case CALL_WRITE_RECT: make_write(s, n, call); break;
     case CALL_RELEASE_HEAP: make_heap(s, n, call); break;
-    case CALL_TRIM: make_trim(s, call); break;
+    case CALL_TRIM: make_trim(s, n, call); break;
     case CALL_COMPLETE: {
         uint64_t ahead = n->last_retire > n->completed ? n->last_retire - n->completed : 0;
         call->retire = n->completed + choice_below(c, ahead < 8 ? (uint32_t)ahead + 1 : 8);

@@ -533,6 +533,7 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_PROBED] = "textures probed for the tiles that they gave up",
     [NAIVE_PROBED_EARLY] = "textures to be probed because another tile came",
     [NAIVE_EVACUATED] = "tiles evacuated",
+    [NAIVE_TEXTURE_FORGOTTEN] = "tiles of textures forgotten",
     [NAIVE_RETRIED_ALL] = "textures whose given-up tiles were all tried again",
 };
 

@@ -79,6 +79,42 @@ static SluiceResult remove_texture(struct naive_manager *n, const struct call *c
     return SLUICE_SUCCESS;
 }
 
+bool naive_is_idle(const struct naive_texture *t)
+{
+    for (uint32_t i = 0; i < t->layout.tileCount; i++)
+        if (t->tiles[i].state != SLUICE_TILE_STATE_FREE &&
+            t->tiles[i].state != SLUICE_TILE_STATE_STANDBY)
+            return false;
+    return !naive_holds_anything(t);
+}
+
+static SluiceResult forget_texture(struct naive_manager *n, const struct call *call)
+{
+    SluiceResult result;
+    if (call->null != NULL_NONE)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct naive_texture *t = naive_find(n, call->texture, &result);
+    if (!t)
+        return result;
+    if (retire_is_backwards(n, call->retire))
+        return SLUICE_ERROR_TIME_BACKWARDS;
+    if (!naive_is_idle(t))
+        return SLUICE_NOT_READY;
+    if (call->retire)
+        n->last_retire = call->retire;
+    for (uint32_t i = 0; i < t->layout.tileCount; i++) {
+        struct naive_tile *tile = &t->tiles[i];
+        if (tile->state == SLUICE_TILE_STATE_FREE)
+            continue;
+        naive_retire_slot(n, tile, call->retire);
+        tile->state = SLUICE_TILE_STATE_FREE;
+        tile->listed = false;
+        t->minmip_stale = true;
+        n->events[NAIVE_TEXTURE_FORGOTTEN]++;
+    }
+    return SLUICE_SUCCESS;
+}
+
 static SluiceResult complete(struct naive_manager *n, const struct call *call)
 {
     if (call->null != NULL_NONE)
@@ -281,6 +317,7 @@ static SluiceResult dispatch(struct naive_manager *n, const struct call *call,
     case CALL_SET_CONFIG: return set_config(n, call);
     case CALL_ADD_TEXTURE: return naive_add_texture(n, call, seen, out);
     case CALL_REMOVE_TEXTURE: return remove_texture(n, call);
+    case CALL_FORGET: return forget_texture(n, call);
     case CALL_FEEDBACK: return naive_feedback(n, call);
     case CALL_MATCH_PRIMARY: return naive_match(n, call);
     case CALL_SET_PRIMARY: return set_primary(n, call);

@@ -115,7 +115,8 @@ enum naive_event {
     NAIVE_PROBED,           ///< a texture, for the tiles that it gave up
     NAIVE_PROBED_EARLY,
     NAIVE_RETRIED_ALL,
-    NAIVE_EVACUATED, ///< tiles
+    NAIVE_EVACUATED,         ///< tiles
+    NAIVE_TEXTURE_FORGOTTEN, ///< tiles
     NAIVE_EVENT_COUNT
 };
 
@@ -207,6 +208,8 @@ bool naive_would_believe(const struct naive_manager *n, const struct naive_textu
 void naive_forget_history(struct naive_texture *t);
 bool naive_has_state(const struct naive_texture *t);
 bool naive_holds_anything(const struct naive_texture *t);
+/** Nothing is wanted, and all tiles are FREE or STANDBY. */
+bool naive_is_idle(const struct naive_texture *t);
 /** The finest wish of each regular tile where the regions hold `levels`. */
 void naive_wishes(const struct naive_texture *t, const uint8_t *levels, uint8_t *wishes);
 /** Makes tiles wanted and unwanted by what the regions hold now. */
