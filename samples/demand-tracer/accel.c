@@ -3,7 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "one_time.h"
+#include "../common/one_time.h"
+#include "../common/ray_table.h"
 
 /* Larger than any device asks for. */
 #define SCRATCH_ALIGNMENT 256u
@@ -18,13 +19,6 @@ struct build {
 static PFN_vkVoidFunction device_function(const struct gpu *gpu, const char *name)
 {
     return vkGetDeviceProcAddr(gpu->device, name);
-}
-
-VkDeviceAddress accel_buffer_address(const struct gpu *gpu, VkBuffer buffer)
-{
-    VkBufferDeviceAddressInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
-                                      .buffer = buffer};
-    return vkGetBufferDeviceAddress(gpu->device, &info);
 }
 
 static void record_build(void *user_data, VkCommandBuffer commands)
@@ -71,7 +65,7 @@ static VkAccelerationStructureBuildSizesInfoKHR get_sizes(const struct gpu *gpu,
 static bool run_build(const struct gpu *gpu, struct build *build, const struct gpu_buffer *scratch)
 {
     const VkDeviceSize mask = SCRATCH_ALIGNMENT - 1;
-    VkDeviceAddress address = accel_buffer_address(gpu, scratch->buffer);
+    VkDeviceAddress address = ray_buffer_address(gpu, scratch->buffer);
     build->info.scratchData.deviceAddress = (address + mask) & ~mask;
     return one_time_run(gpu, record_build, build);
 }
@@ -115,11 +109,11 @@ static bool build_shape(const struct gpu *gpu, const struct scene *scene, enum s
         .geometry.triangles = {
             .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR,
             .vertexFormat = VK_FORMAT_R32G32B32_SFLOAT,
-            .vertexData.deviceAddress = accel_buffer_address(gpu, vertices),
+            .vertexData.deviceAddress = ray_buffer_address(gpu, vertices),
             .vertexStride = sizeof(struct TracerVertex),
             .maxVertex = (uint32_t)scene->mesh.vertex_count - 1,
             .indexType = VK_INDEX_TYPE_UINT32,
-            .indexData.deviceAddress = accel_buffer_address(gpu, indices) +
+            .indexData.deviceAddress = ray_buffer_address(gpu, indices) +
                                        shape->first_index * sizeof *scene->mesh.indices}};
     return build_structure(gpu, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, &geometry,
                            shape->index_count / 3, structure);
@@ -158,7 +152,7 @@ static bool build_scene(const struct gpu *gpu, const struct scene *scene, struct
         .geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR,
         .geometry.instances = {
             .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR,
-            .data.deviceAddress = accel_buffer_address(gpu, accel->instances.buffer)}};
+            .data.deviceAddress = ray_buffer_address(gpu, accel->instances.buffer)}};
     return build_structure(gpu, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, &geometry,
                            scene->instance_count, &accel->scene);
 }

@@ -26,6 +26,4 @@ bool accel_build(const struct gpu *gpu, const struct scene *scene, VkBuffer vert
                  VkBuffer indices, struct accel *accel);
 void accel_finish(const struct gpu *gpu, struct accel *accel);
 
-VkDeviceAddress accel_buffer_address(const struct gpu *gpu, VkBuffer buffer);
-
 #endif /* TRACER_ACCEL_H */

@@ -1,12 +1,9 @@
 #include "bindings.h"
 
+#include "../common/ray_table.h"
 #include "../../tools/common/text.h"
 
 #include <string.h>
-
-#define RAY_STAGES                                                                                 \
-    (VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR |                               \
-     VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR)
 
 static bool create_set_layout(const struct gpu *gpu, bool has_scene, struct bindings *b)
 {

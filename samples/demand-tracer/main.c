@@ -14,7 +14,7 @@
 #include "../../tools/common/log.h"
 #include "../../tools/common/output_file.h"
 #include "../../tools/common/progress.h"
-#include "contact_sheet.h"
+#include "../common/contact_sheet.h"
 #include "history.h"
 #include "summary.h"
 #include "../../tools/common/text.h"

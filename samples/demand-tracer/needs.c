@@ -1,6 +1,6 @@
 #include "needs.h"
 
-#include "one_time.h"
+#include "../common/one_time.h"
 #include "tracer_shared.h"
 
 static void record_clear(void *user_data, VkCommandBuffer commands)

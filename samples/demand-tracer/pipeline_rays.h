@@ -2,14 +2,13 @@
 #ifndef TRACER_PIPELINE_RAYS_H
 #define TRACER_PIPELINE_RAYS_H
 
+#include "../common/ray_table.h"
 #include "bindings.h"
 
 /** Zeroed is empty. */
 struct ray_pipeline {
     VkPipeline pipeline;
-    struct gpu_buffer table;                   ///< of shader groups
-    VkStridedDeviceAddressRegionKHR groups[3]; ///< begin, miss, hit
-    PFN_vkCmdTraceRaysKHR trace;
+    struct ray_table table;
 };
 
 /** `needs`: notes what complete paths sample. Says on stderr why it failed. */

@@ -3,7 +3,7 @@
 #define TRACER_RENDERER_H
 
 #include "accel.h"
-#include "film.h"
+#include "../common/film.h"
 #include "needs.h"
 #include "options.h"
 #include "pipeline_compute.h"

@@ -1,6 +1,6 @@
 /** Words in pictures: capital letters, digits and a few signs, 3 x 5 dots each. */
-#ifndef TRACER_CAPTION_H
-#define TRACER_CAPTION_H
+#ifndef SAMPLES_COMMON_CAPTION_H
+#define SAMPLES_COMMON_CAPTION_H
 
 #include <stdint.h>
 
@@ -17,4 +17,4 @@ struct canvas {
 void caption_draw(const struct canvas *canvas, uint32_t x, uint32_t y, uint32_t scale,
                   const char *text);
 
-#endif /* TRACER_CAPTION_H */
+#endif /* SAMPLES_COMMON_CAPTION_H */

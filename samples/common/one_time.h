@@ -1,6 +1,6 @@
 /** Commands that run once while the host waits. */
-#ifndef TRACER_ONE_TIME_H
-#define TRACER_ONE_TIME_H
+#ifndef SAMPLES_COMMON_ONE_TIME_H
+#define SAMPLES_COMMON_ONE_TIME_H
 
 #include "../../tools/common/gpu.h"
 
@@ -8,4 +8,4 @@
 bool one_time_run(const struct gpu *gpu, void (*record)(void *user_data, VkCommandBuffer commands),
                   void *user_data);
 
-#endif /* TRACER_ONE_TIME_H */
+#endif /* SAMPLES_COMMON_ONE_TIME_H */

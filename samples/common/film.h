@@ -1,15 +1,14 @@
 /** The picture on the device: what was gathered for each pixel, and which are to be traced. */
-#ifndef TRACER_FILM_H
-#define TRACER_FILM_H
+#ifndef SAMPLES_COMMON_FILM_H
+#define SAMPLES_COMMON_FILM_H
 
 #include "../../tools/common/gpu.h"
 #include "picture.h"
-#include "tracer_shared.h"
 
 /** Zeroed is empty. */
 struct film {
     uint32_t width, height;
-    struct gpu_buffer sums, latest, lists, counters; ///< see shaders/film.glsl
+    struct gpu_buffer sums, latest, lists, counters; ///< see film.glsl of demand-tracer
     struct gpu_buffer readback;                      ///< of sums and latest
     uint32_t list_index;                             ///< the list that the next launch reads
     uint32_t missing_count;                          ///< pixels in it
@@ -31,4 +30,4 @@ void film_record_end(VkCommandBuffer commands);
 /** Reads the mean of all complete samples; `picture` has the film's size. */
 bool film_read(const struct gpu *gpu, const struct film *film, struct picture *picture);
 
-#endif /* TRACER_FILM_H */
+#endif /* SAMPLES_COMMON_FILM_H */

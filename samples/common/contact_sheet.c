@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../common/png_file.h"
+#include "png_file.h"
 #include "caption.h"
 
 #define CELL_WIDTH 400u  ///< pixels; smaller pictures are shown as they are

@@ -9,7 +9,7 @@
 #include <sluice/metrics.h>
 
 #include "../../tools/common/output_file.h"
-#include "../common/png_file.h"
+#include "png_file.h"
 #include "../../tools/common/text.h"
 
 bool picture_create(uint32_t width, uint32_t height, struct picture *picture)

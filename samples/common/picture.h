@@ -1,6 +1,6 @@
 /** A picture in memory: linear light, and which pixels are not complete. */
-#ifndef TRACER_PICTURE_H
-#define TRACER_PICTURE_H
+#ifndef SAMPLES_COMMON_PICTURE_H
+#define SAMPLES_COMMON_PICTURE_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -42,4 +42,4 @@ struct picture_place {
 bool picture_compare(const struct picture *picture, double exposure, const char *path,
                      const struct picture_place *place, struct picture_difference *difference);
 
-#endif /* TRACER_PICTURE_H */
+#endif /* SAMPLES_COMMON_PICTURE_H */

@@ -1,8 +1,8 @@
 /** Small pictures of the first launches side by side: how the picture fills. */
-#ifndef TRACER_CONTACT_SHEET_H
-#define TRACER_CONTACT_SHEET_H
+#ifndef SAMPLES_COMMON_CONTACT_SHEET_H
+#define SAMPLES_COMMON_CONTACT_SHEET_H
 
-#include "launches.h"
+#include "picture.h"
 
 #define CONTACT_SHEET_COLUMNS 4u
 #define CONTACT_SHEET_ROWS 3u
@@ -28,4 +28,4 @@ bool contact_sheet_add(struct contact_sheet *sheet, const struct picture *pictur
 bool contact_sheet_write(const struct contact_sheet *sheet, const char *path);
 void contact_sheet_finish(struct contact_sheet *sheet);
 
-#endif /* TRACER_CONTACT_SHEET_H */
+#endif /* SAMPLES_COMMON_CONTACT_SHEET_H */
