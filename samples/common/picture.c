@@ -39,6 +39,12 @@ static float film_curve(float x)
     return fminf(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1.0f);
 }
 
+/* What is not a number is black. */
+static float clamp(float x)
+{
+    return fminf(fmaxf(x, 0.0f), 1.0f);
+}
+
 static uint8_t encode_srgb(float x)
 {
     float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
@@ -47,11 +53,13 @@ static uint8_t encode_srgb(float x)
 
 void picture_develop(const struct picture *picture, double exposure, uint8_t *rgba)
 {
-    const float scale = 0.55f * (float)exp2(exposure);
+    const float scale = (picture->plain ? 1.0f : 0.55f) * (float)exp2(exposure);
     const size_t count = (size_t)picture->width * picture->height;
     for (size_t i = 0; i < count; i++) {
-        for (int c = 0; c < 3; c++)
-            rgba[4 * i + c] = encode_srgb(film_curve(scale * picture->rgba[i][c]));
+        for (int c = 0; c < 3; c++) {
+            const float x = scale * picture->rgba[i][c];
+            rgba[4 * i + c] = encode_srgb(picture->plain ? clamp(x) : film_curve(x));
+        }
         rgba[4 * i + 3] = 255;
     }
 }
@@ -63,7 +71,7 @@ static void print_log(void *user_data, SluiceLogSeverity severity, const char *m
         text_say("%s", message);
 }
 
-static bool write_exr(const struct picture *picture, const char *path)
+bool picture_write_exr(const struct picture *picture, const char *path)
 {
     SluiceImageInfo info = {
         sizeof info, picture->width, picture->height, 0, SLUICE_FORMAT_R32G32B32A32_SFLOAT,
@@ -101,7 +109,7 @@ bool picture_write(const struct picture *picture, double exposure, const char *f
     bool done = rgba && png_file_write(path, rgba, picture->width, picture->height);
     free(rgba);
     snprintf(path, sizeof path, "%s/%s.exr", folder, name);
-    return done && write_exr(picture, path);
+    return done && picture_write_exr(picture, path);
 }
 
 static bool write_numbered(const struct picture_place *place, const char *kind, const uint8_t *rgba,

@@ -10,19 +10,23 @@ struct picture {
     uint32_t width, height;
     float (*rgba)[4]; ///< owned; [height * width], row 0 on top, alpha 1
     bool *missing;    ///< owned; the same
+    bool plain;       ///< developed without a film's curve: values above 1 are white
 };
 
 /** Says on stderr if memory is short. */
 bool picture_create(uint32_t width, uint32_t height, struct picture *picture);
 void picture_destroy(struct picture *picture);
 
-/** What a screen shows of linear light, times 2^exposure: a film's curve, then sRGB. `rgba` has
- *  width * height * 4 bytes. */
+/** What a screen shows of linear light, times 2^exposure: a film's curve unless it is plain, then
+ *  sRGB. `rgba` has width * height * 4 bytes. */
 void picture_develop(const struct picture *picture, double exposure, uint8_t *rgba);
 
 /** FOLDER/NAME.png, developed, and FOLDER/NAME.exr, linear halves. Says on stderr why it failed. */
 bool picture_write(const struct picture *picture, double exposure, const char *folder,
                    const char *name);
+
+/** An EXR file of linear halves. Says on stderr why it failed. */
+bool picture_write_exr(const struct picture *picture, const char *path);
 
 /** Of two developed pictures. */
 struct picture_difference {
