@@ -1,0 +1,124 @@
+#include "options.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "../../tools/common/shared_options.h"
+#include "pbrt_shared.h"
+
+static const char usage[] =
+    "usage: demand-pbrt SCENE [OPTION ...]\n\n"
+    "Renders a scene of pbrt-v3 or pbrt-v4. At first there is one box around the whole scene and\n"
+    "nothing else: what rays enter is built, what they hit gets its material, and what the "
+    "material\n"
+    "shows gets its texels. Launches follow until nothing is missing.\n";
+
+static const char notes[] =
+    "Exit status: 0 for a complete picture; 1 if something failed, or pixels are still missing\n"
+    "after the last launch; 2 for a wrong option; 77 without a Vulkan device that traces rays.\n";
+
+/** "r/g/b" or "r,g,b", none negative. */
+static bool parse_color(const char *text, void *value)
+{
+    float *color = value;
+    char between[2];
+    int end = 0;
+    if (sscanf(text, "%f%c%f%c%f%n", &color[0], &between[0], &color[1], &between[1], &color[2],
+               &end) != 5 ||
+        text[end] != '\0')
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (!(color[i] >= 0.0f) || !isfinite(color[i]))
+            return false;
+    return (between[0] == '/' || between[0] == ',') && between[0] == between[1];
+}
+
+/** "x/y" */
+static bool parse_pixel(const char *text, void *value)
+{
+    uint32_t *pixel = value;
+    int end = 0;
+    return sscanf(text, "%5u/%5u%n", &pixel[0], &pixel[1], &end) == 2 && text[end] == '\0';
+}
+
+static bool check(const struct option_table *table, const struct pbrt_options *o)
+{
+    if (!o->scene && !o->list_devices)
+        return options_refuse(table, "a scene is missing");
+    if (o->texture_budget > 0 && o->texture_budget < 4u << 20)
+        return options_refuse(table, "--texture-budget: wants 4M at least, or 0");
+    if (o->preload && o->budget > 0)
+        return options_refuse(table, "--preload and --budget: give one of them");
+    return true;
+}
+
+enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_options *o)
+{
+    *o = (struct pbrt_options){.debug = {UINT32_MAX, UINT32_MAX}, .warmup = UINT32_MAX};
+    const struct option options[] = {
+        {OPTION_WORD, .operand = "SCENE", .value = &o->scene, .help = "a scene"},
+        {OPTION_SECTION, .help = "Picture"},
+        {OPTION_TEXT, "file", "FILE", "demand-pbrt.png", &o->file,
+         "the picture: .png, .exr with halves, or .pfm with floats"},
+        {OPTION_EXTENT, "dim", "WxH", "(that of the film)", o->dim, "pixels", 1, 16384},
+        {OPTION_CUSTOM, "bg", "R/G/B", "(0/0/0)", o->background,
+         "background, and what reaches surfaces in the modes near, distant and path",
+         .parse = parse_color},
+        {OPTION_CHOICE, "render-mode", "primary|near|distant|path", "primary", &o->mode,
+         "primary: lights without shadows; near, distant: ambient occlusion within 128 and 10^6 "
+         "units; path: paths with shadows"},
+        {OPTION_UINT, "samples", "N", "1", &o->samples, "rays per pixel; the first is its center",
+         1, 65536},
+        {OPTION_UINT, "bounces", "N", "3", &o->bounces, "of paths", 0, PBRT_MAX_BOUNCES},
+        {OPTION_FLAG, "face-forward", .value = &o->face_forward,
+         .help = "turn normals to the viewer in mode primary"},
+        {OPTION_REAL, "exposure", "STOPS", "0", &o->exposure, "of PNG pictures", -16, 16},
+
+        {OPTION_SECTION, .help = "Loading"},
+        {OPTION_FLAG, "preload", .value = &o->preload,
+         .help = "load everything first: the truth to compare with"},
+        {OPTION_CHOICE, "proxy-granularity", "fine|coarse", "fine", &o->granularity,
+         "fine: each shape of an instance has a box; coarse: those that are alike have one"},
+        {OPTION_FLAG, "oneshot-geometry", .value = &o->oneshot_geometry,
+         .help = "one box per launch becomes what is in it"},
+        {OPTION_FLAG, "oneshot-material", .value = &o->oneshot_material,
+         .help = "one material per launch is made"},
+        {OPTION_FLAG, "sort-proxies", .value = &o->sort_proxies,
+         .help = "boxes of the largest volume come first"},
+        {OPTION_UINT, "warmup", "N", "(until nothing is missing)", &o->warmup,
+         "end after N + 1 launches, whatever is missing", 0, 1000000},
+        {OPTION_UINT, "launches", "MAX", "100000", &o->launches, "most launches", 1, 10000000},
+        option_budget(&o->budget, "most device memory for meshes; those that rays have not hit for "
+                                  "longest become boxes again; 0: no limit"),
+        {OPTION_BYTES, "texture-budget", "SIZE", "0", &o->texture_budget,
+         "most device memory for tiles, 4M or more; 0: half of the device's", 0, 1099511627776.0},
+        {OPTION_UINT, "anisotropy", "N", "8", &o->anisotropy, "of textures, at most", 1, 64},
+        {OPTION_TEXT, "bounds", "FILE", "(none)", &o->bounds,
+         "boxes of PLY files: read if there, and written; later runs read no vertex for them"},
+        {OPTION_TEXT, "cache", "DIR", "(beside the picture)", &o->cache,
+         "folder for pictures that are baked to tiles"},
+        option_threads(&o->threads),
+        option_device(&o->device),
+        option_list_devices(&o->list_devices),
+        option_validation(&o->validation),
+
+        {OPTION_SECTION, .help = "What is told"},
+        {OPTION_FLAG, "verbose-loading", .value = &o->verbose_loading,
+         .help = "a line for all that is loaded"},
+        {OPTION_CUSTOM, "debug", "X/Y", "(none)", o->debug,
+         "tell for a pixel of the film what its ray hits, launch by launch", .parse = parse_pixel},
+        {OPTION_TEXT, "dump", "FILE", "(none)", &o->dump,
+         "write a line for each shape: its box in the world, material, diffuse and alpha"},
+        {OPTION_TEXT, "sequence", "DIR", "(none)", &o->sequence,
+         "write the picture after each launch here"},
+        {OPTION_TEXT, "contact-sheet", "FILE", "(none)", &o->contact_sheet,
+         "PNG of small pictures, one for each of the first launches"},
+        {OPTION_TEXT, "statistics", "FILE", "(none)", &o->statistics,
+         "write counts as JSON, under the names of the OptiX Toolkit's DemandPbrtScene"},
+        option_json(&o->json),
+    };
+    const struct option_table table = {"demand-pbrt", usage, notes, options,
+                                       sizeof options / sizeof *options};
+    enum option_outcome outcome = options_parse(&table, argc, argv);
+    return outcome != OPTIONS_RUN || check(&table, o) ? outcome : OPTIONS_ERROR;
+}

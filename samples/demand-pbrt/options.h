@@ -1,0 +1,37 @@
+/** What the command line says. */
+#ifndef DEMAND_PBRT_OPTIONS_H
+#define DEMAND_PBRT_OPTIONS_H
+
+#include "../../tools/common/option_table.h"
+
+struct pbrt_options {
+    const char *scene;
+    const char *file;
+    const char *bounds;
+    const char *cache;
+    const char *dump;
+    const char *statistics;
+    const char *sequence;
+    const char *contact_sheet;
+    const char *device;
+    uint32_t dim[2]; ///< 0: as the film
+    float background[3];
+    uint32_t debug[2]; ///< pixel; UINT32_MAX: none
+    uint32_t samples;
+    uint32_t bounces;
+    uint32_t warmup;   ///< UINT32_MAX: until nothing is missing
+    uint32_t launches; ///< most
+    uint32_t anisotropy;
+    uint32_t threads;
+    double exposure;
+    int mode;        ///< PBRT_MODE_...
+    int granularity; ///< 0: fine
+    uint64_t budget; ///< bytes of geometry; 0: no limit
+    uint64_t texture_budget;
+    bool face_forward, oneshot_geometry, oneshot_material, sort_proxies, verbose_loading;
+    bool preload, json, validation, list_devices;
+};
+
+enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_options *options);
+
+#endif /* DEMAND_PBRT_OPTIONS_H */
