@@ -1,0 +1,50 @@
+/** Acceleration structures: built in batches, with the host waiting. */
+#ifndef DEMAND_PBRT_STRUCTURES_H
+#define DEMAND_PBRT_STRUCTURES_H
+
+#include "arena.h"
+
+/** Zeroed is none. */
+struct structure {
+    VkAccelerationStructureKHR handle;
+    VkDeviceAddress address;
+    struct arena_part storage;
+};
+
+/** Owner of the memory of all structures. Zeroed is empty. */
+struct structures {
+    struct arena arena;
+    struct gpu_buffer scratch;
+    VkDeviceSize scratch_alignment;
+    PFN_vkCreateAccelerationStructureKHR create;
+    PFN_vkDestroyAccelerationStructureKHR destroy;
+    PFN_vkGetAccelerationStructureBuildSizesKHR get_sizes;
+    PFN_vkGetAccelerationStructureDeviceAddressKHR get_address;
+    PFN_vkCmdBuildAccelerationStructuresKHR record;
+};
+
+struct structure_build {
+    VkAccelerationStructureTypeKHR type;
+    VkAccelerationStructureGeometryKHR geometry;
+    uint32_t primitive_count;
+    struct structure *target;  ///< zeroed; filled
+    VkDeviceSize scratch_size; ///< private
+    VkDeviceSize scratch_at;   ///< private
+};
+
+void structures_create(const struct gpu *gpu, struct structures *structures);
+void structures_finish(const struct gpu *gpu, struct structures *structures);
+
+/** Builds them all, or none. Says on stderr why it failed. */
+bool structures_build(const struct gpu *gpu, struct structures *structures,
+                      struct structure_build *builds, uint32_t count);
+/** No launch that uses it is under way. A zeroed one is fine. */
+void structures_give(const struct gpu *gpu, struct structures *structures,
+                     struct structure *structure);
+
+/** Usage of buffers that builds read. */
+#define STRUCTURE_INPUT_USAGE                                                                      \
+    (VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |                        \
+     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT)
+
+#endif /* DEMAND_PBRT_STRUCTURES_H */
