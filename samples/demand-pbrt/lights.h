@@ -1,0 +1,15 @@
+/** The lights of a scene for shaders. */
+#ifndef DEMAND_PBRT_LIGHTS_H
+#define DEMAND_PBRT_LIGHTS_H
+
+#include "pbrt_shared.h"
+#include "scene.h"
+#include "table.h"
+#include "textures.h"
+
+/** Fills a table of struct PbrtLight, in the order of the scene. Pictures of skies are added and
+ *  not opened. `*only_areas`: there are no lights but those that shapes are. */
+bool lights_create(const struct gpu *gpu, const struct scene *scene, struct textures *textures,
+                   struct table *table, bool *only_areas);
+
+#endif /* DEMAND_PBRT_LIGHTS_H */

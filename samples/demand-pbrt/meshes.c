@@ -1,0 +1,205 @@
+#include "meshes.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../tools/common/clock.h"
+#include "../../tools/common/text.h"
+
+/** A PLY file that several shapes have has one pointer as its path. */
+struct known_file {
+    const char *path;
+    uint32_t mesh;
+};
+
+static uint32_t hash_pointer(const void *pointer)
+{
+    uint64_t x = (uint64_t)(uintptr_t)pointer * 0x9e3779b97f4a7c15u;
+    return (uint32_t)(x >> 32);
+}
+
+static struct known_file *find_file(struct known_file *files, uint32_t mask, const char *path)
+{
+    uint32_t at = hash_pointer(path) & mask;
+    while (files[at].path && files[at].path != path)
+        at = (at + 1) & mask;
+    return &files[at];
+}
+
+static void assign(const struct scene *scene, struct known_file *files, uint32_t mask,
+                   struct meshes *m)
+{
+    for (uint32_t i = 0; i < scene->info.shapeCount; i++) {
+        const SluicePbrtShape shape = scene_shape(scene, i);
+        struct known_file *file = shape.pPlyPath ? find_file(files, mask, shape.pPlyPath) : NULL;
+        if (file && file->path) {
+            m->of_shape[i] = file->mesh;
+            continue;
+        }
+        if (file)
+            *file = (struct known_file){shape.pPlyPath, m->count};
+        m->of_shape[i] = m->count;
+        m->items[m->count++].shape = i;
+    }
+}
+
+bool meshes_create(const struct gpu *gpu, const struct scene *scene, struct meshes *m)
+{
+    const uint32_t count = scene->info.shapeCount;
+    uint32_t size = 2;
+    while (size < 2 * (uint64_t)count)
+        size *= 2;
+    *m = (struct meshes){.data = {.usage = STRUCTURE_INPUT_USAGE, .mapped = true},
+                         .table.element = sizeof(struct PbrtMesh)};
+    struct known_file *files = calloc(size, sizeof *files);
+    m->items = calloc(count + 1u, sizeof *m->items);
+    m->of_shape = calloc(count + 1u, sizeof *m->of_shape);
+    bool done = files && m->items && m->of_shape;
+    if (done)
+        assign(scene, files, size - 1, m);
+    else
+        fprintf(stderr, "out of memory\n");
+    free(files);
+    return done && table_grow(gpu, &m->table, m->count + 1u);
+}
+
+void meshes_finish(const struct gpu *gpu, struct structures *structures, struct meshes *m)
+{
+    for (uint32_t i = 0; i < m->count; i++)
+        structures_give(gpu, structures, &m->items[i].structure);
+    arena_finish(gpu, &m->data);
+    if (gpu->device)
+        table_finish(gpu, &m->table);
+    free(m->items);
+    free(m->of_shape);
+    *m = (struct meshes){0};
+}
+
+static void fail(struct meshes *m, struct mesh *mesh)
+{
+    mesh->state = MESH_FAILED;
+    m->failed_count++;
+}
+
+static uint32_t *append(uint32_t *words, const void *values, size_t count)
+{
+    if (values)
+        memcpy(words, values, count * sizeof *words);
+    return values ? words + count : words;
+}
+
+/** Copies a mesh to the device: positions, normals, uvs, indices. */
+static void write_mesh(const SluicePbrtMesh *read, struct arena_part *part, struct PbrtMesh *entry)
+{
+    const size_t count = read->vertexCount;
+    uint32_t *const base = part->mapped;
+    uint32_t *at = append(base, read->pPositions, 3 * count);
+    *entry =
+        (struct PbrtMesh){.address = {(uint32_t)part->address, (uint32_t)(part->address >> 32)}};
+    entry->normals = read->pNormals ? (uint32_t)(at - base) : 0;
+    at = append(at, read->pNormals, 3 * count);
+    entry->uvs = read->pUvs ? (uint32_t)(at - base) : 0;
+    at = append(at, read->pUvs, 2 * count);
+    entry->indices = (uint32_t)(at - base);
+    append(at, read->pIndices, 3 * (size_t)read->triangleCount);
+}
+
+static uint64_t words_of(const SluicePbrtMesh *read)
+{
+    const uint64_t per_vertex = 3u + (read->pNormals ? 3u : 0) + (read->pUvs ? 2u : 0);
+    return per_vertex * read->vertexCount + 3ull * read->triangleCount;
+}
+
+static void set_geometry(const SluicePbrtMesh *read, const struct mesh *mesh,
+                         const struct PbrtMesh *entry, struct structure_build *build)
+{
+    *build = (struct structure_build){
+        .type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
+        .primitive_count = read->triangleCount,
+        .geometry = {
+            .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
+            .geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR,
+            .flags = VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR,
+            .geometry.triangles = {
+                .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR,
+                .vertexFormat = VK_FORMAT_R32G32B32_SFLOAT,
+                .vertexData.deviceAddress = mesh->data.address,
+                .vertexStride = 3 * sizeof(float),
+                .maxVertex = read->vertexCount - 1,
+                .indexType = VK_INDEX_TYPE_UINT32,
+                .indexData.deviceAddress = mesh->data.address + 4ull * entry->indices}}};
+}
+
+/** False: there is nothing to build. */
+static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct meshes *m,
+                      uint32_t index, struct structure_build *build)
+{
+    struct mesh *mesh = &m->items[index];
+    struct PbrtMesh *entry = table_at(&m->table, index);
+    SluicePbrtMesh read = {.structSize = sizeof read};
+    double start = clock_seconds();
+    SluiceResult result = sluiceReadPbrtShape(scene->pbrt, mesh->shape, &read);
+    m->read_seconds += clock_seconds() - start;
+    if (m->says_what_it_reads) {
+        const SluicePbrtShape shape = scene_shape(scene, mesh->shape);
+        text_say("mesh %u: %s: %u triangles", index, shape.pPlyPath ? shape.pPlyPath : shape.pFile,
+                 read.triangleCount);
+    }
+    bool done = result == SLUICE_SUCCESS && read.triangleCount > 0 && read.vertexCount > 0 &&
+                words_of(&read) <= UINT32_MAX &&
+                arena_take(gpu, &m->data, 4 * words_of(&read), &mesh->data);
+    if (done) {
+        write_mesh(&read, &mesh->data, entry);
+        set_geometry(&read, mesh, entry, build);
+        build->target = &mesh->structure;
+        mesh->triangle_count = read.triangleCount;
+        m->triangle_count += read.triangleCount;
+        m->bytes_read += read.bytesRead;
+    } else {
+        fail(m, mesh); /* the library has said why, or the arena */
+    }
+    (void)sluiceFreePbrtMesh(scene->pbrt, &read);
+    return done;
+}
+
+bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct structures *structures,
+                  struct meshes *m, const uint32_t *which, uint32_t count, uint32_t launch)
+{
+    struct structure_build *builds = calloc(count + 1u, sizeof *builds);
+    uint32_t build_count = 0;
+    if (!builds) {
+        fprintf(stderr, "out of memory\n");
+        return false;
+    }
+    for (uint32_t i = 0; i < count; i++)
+        build_count += read_mesh(gpu, scene, m, which[i], &builds[build_count]);
+    double start = clock_seconds();
+    bool done = structures_build(gpu, structures, builds, build_count);
+    m->build_seconds += clock_seconds() - start;
+    free(builds);
+    for (uint32_t i = 0; i < count; i++) {
+        struct mesh *mesh = &m->items[which[i]];
+        if (mesh->state == MESH_FAILED)
+            continue;
+        mesh->state = MESH_BUILT;
+        mesh->built_at = launch;
+        m->built_count++;
+    }
+    return done;
+}
+
+void meshes_evict(const struct gpu *gpu, struct structures *structures, struct meshes *m,
+                  uint32_t index)
+{
+    struct mesh *mesh = &m->items[index];
+    structures_give(gpu, structures, &mesh->structure);
+    arena_give(gpu, &m->data, &mesh->data);
+    mesh->state = MESH_ABSENT;
+    m->evicted_count++;
+}
+
+uint64_t meshes_size(const struct meshes *m, const struct structures *structures)
+{
+    return m->data.used + structures->arena.used;
+}

@@ -1,0 +1,51 @@
+/** Meshes in memory: one for each PLY file and for each mesh in the text, however often placed. */
+#ifndef DEMAND_PBRT_MESHES_H
+#define DEMAND_PBRT_MESHES_H
+
+#include "pbrt_shared.h"
+#include "scene.h"
+#include "structures.h"
+#include "table.h"
+
+enum mesh_state { MESH_ABSENT, MESH_BUILT, MESH_FAILED };
+
+struct mesh {
+    enum mesh_state state;
+    uint32_t shape; ///< one of those that have it
+    uint32_t triangle_count;
+    uint32_t built_at;    ///< launch
+    uint32_t place_count; ///< shapes in the world that use it now
+    struct arena_part data;
+    struct structure structure;
+};
+
+/** Zeroed is empty. */
+struct meshes {
+    struct mesh *items; ///< owned
+    uint32_t count;
+    uint32_t *of_shape; ///< owned; mesh of each shape
+    struct arena data;
+    struct table table; ///< struct PbrtMesh by mesh
+    bool says_what_it_reads;
+    /* Since the beginning. */
+    uint64_t built_count, evicted_count, triangle_count, bytes_read, failed_count;
+    double read_seconds, build_seconds;
+};
+
+/** Says on stderr why it failed. */
+bool meshes_create(const struct gpu *gpu, const struct scene *scene, struct meshes *meshes);
+void meshes_finish(const struct gpu *gpu, struct structures *structures, struct meshes *meshes);
+
+/**
+ * Reads and builds meshes that are absent; no two are equal. A mesh that cannot be read, or for
+ * which there is no memory, becomes MESH_FAILED, and stderr says why. False if nothing can go on.
+ */
+bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct structures *structures,
+                  struct meshes *meshes, const uint32_t *which, uint32_t count, uint32_t launch);
+/** Makes a mesh absent. No launch is under way. */
+void meshes_evict(const struct gpu *gpu, struct structures *structures, struct meshes *meshes,
+                  uint32_t index);
+/** Device memory that meshes take. */
+uint64_t meshes_size(const struct meshes *meshes, const struct structures *structures);
+
+#endif /* DEMAND_PBRT_MESHES_H */
