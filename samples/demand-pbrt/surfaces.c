@@ -1,0 +1,137 @@
+#include "surfaces.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "../../tools/common/text.h"
+#include "programs.h"
+
+#define PICTURE_ROOM 4096u /* of the surfaces that one launch asks for */
+
+bool surfaces_create(const struct gpu *gpu, const struct scene *scene, struct surfaces *s)
+{
+    const uint32_t count = scene->info.materialCount + scene->info.textureCount;
+    *s = (struct surfaces){.table.element = sizeof(struct PbrtSurface),
+                           .ops.element = sizeof(struct PbrtOp),
+                           .wanted.element = sizeof(uint32_t),
+                           .material_count = scene->info.materialCount,
+                           .picture_room = PICTURE_ROOM};
+    s->pictures = calloc(s->picture_room, sizeof *s->pictures);
+    if (!s->pictures)
+        fprintf(stderr, "out of memory\n");
+    return s->pictures && table_grow(gpu, &s->table, count + 1) && table_grow(gpu, &s->ops, 1) &&
+           table_grow(gpu, &s->wanted, count + 1);
+}
+
+void surfaces_finish(const struct gpu *gpu, struct surfaces *s)
+{
+    if (gpu->device) {
+        table_finish(gpu, &s->table);
+        table_finish(gpu, &s->ops);
+        table_finish(gpu, &s->wanted);
+    }
+    free(s->pictures);
+    *s = (struct surfaces){0};
+}
+
+uint32_t surfaces_alpha(const struct surfaces *s, uint32_t texture)
+{
+    return s->material_count + texture;
+}
+
+void surfaces_begin(struct surfaces *s)
+{
+    s->picture_count = 0;
+}
+
+/** Of a mixture: the first that is no mixture. */
+static SluicePbrtMaterial leading_material(const struct scene *scene, uint32_t index)
+{
+    SluicePbrtMaterial m = scene_material(scene, index);
+    while (m.kind == SLUICE_PBRT_MATERIAL_MIX)
+        m = scene_material(scene, m.materials[0]);
+    return m;
+}
+
+static struct PbrtSurface make_material(const struct program *program, uint32_t index)
+{
+    const SluicePbrtMaterial m = leading_material(program->scene, index);
+    struct PbrtSurface surface = {.kind = m.kind, .roughness = m.roughness.value[0], .eta = m.eta};
+    surface.diffuse = program_of_material(program, index, offsetof(SluicePbrtMaterial, diffuse));
+    surface.specular = program_of_material(program, index, offsetof(SluicePbrtMaterial, specular));
+    surface.transmission =
+        program_of_material(program, index, offsetof(SluicePbrtMaterial, transmission));
+    return surface;
+}
+
+static struct PbrtSurface make_alpha(const struct program *program, uint32_t texture)
+{
+    const SluicePbrtTexture t = scene_texture(program->scene, texture);
+    const SluicePbrtValue value = {{t.value[0], t.value[1], t.value[2]}, texture};
+    struct PbrtSurface surface = {
+        .kind = PBRT_SURFACE_ALPHA, .specular = PBRT_NONE, .transmission = PBRT_NONE};
+    surface.diffuse = program_of_value(program, &value);
+    return surface;
+}
+
+static void tell(const struct scene *scene, const struct surfaces *s, uint32_t index)
+{
+    if (index < s->material_count)
+        text_say("material %u: %s", index, scene_material(scene, index).pType);
+    else
+        text_say("alpha texture \"%s\"", scene_texture(scene, index - s->material_count).pName);
+}
+
+bool surfaces_realize(const struct gpu *gpu, const struct scene *scene, struct textures *textures,
+                      struct surfaces *s, uint32_t index)
+{
+    const uint32_t wanted = *(const uint32_t *)table_at(&s->wanted, index);
+    const struct program program = {.gpu = gpu,
+                                    .scene = scene,
+                                    .textures = textures,
+                                    .surfaces = s,
+                                    .wanted = wanted ? exp2f((float)wanted - 1.0f) : 0.0f};
+    struct PbrtSurface surface = index < s->material_count
+                                     ? make_material(&program, index)
+                                     : make_alpha(&program, index - s->material_count);
+    if (surface.diffuse == PBRT_NONE ||
+        (index < s->material_count &&
+         (surface.specular == PBRT_NONE || surface.transmission == PBRT_NONE)))
+        return false;
+    surface.realized = 1;
+    *(struct PbrtSurface *)table_at(&s->table, index) = surface;
+    *(index < s->material_count ? &s->material_realized_count : &s->alpha_realized_count) += 1;
+    if (s->says_what_it_makes)
+        tell(scene, s, index);
+    return true;
+}
+
+static uint32_t encoding_flags(const struct picture_image *image, SluicePbrtEncoding encoding)
+{
+    const SluiceFormat format = image->info.format;
+    const bool is_srgb =
+        encoding == SLUICE_PBRT_ENCODING_DEFAULT || encoding == SLUICE_PBRT_ENCODING_SRGB;
+    if (image->kind != SLUICE_IMAGE_FILE_KIND_PICTURE || image->info.width == 0)
+        return 0;
+    switch (format) { /* as the baker stores pictures: docs/baking.md */
+    case SLUICE_FORMAT_R8_UNORM:
+    case SLUICE_FORMAT_R8G8_UNORM:
+    case SLUICE_FORMAT_R16_UNORM:
+    case SLUICE_FORMAT_R16G16_UNORM: return is_srgb ? PBRT_OP_DECODE : 0;
+    case SLUICE_FORMAT_R8G8B8A8_SRGB:
+    case SLUICE_FORMAT_R16G16B16A16_UNORM: return is_srgb ? 0 : PBRT_OP_ENCODE;
+    default: return 0;
+    }
+}
+
+void surfaces_finish_pictures(struct surfaces *s)
+{
+    for (uint32_t i = 0; i < s->picture_count; i++) {
+        const struct wanted_picture *picture = &s->pictures[i];
+        struct PbrtOp *op = table_at(&s->ops, picture->op);
+        if (op->op == PBRT_OP_IMAGE && op->texture == (uint32_t)picture->use->id)
+            op->flags |= encoding_flags(picture->use->image, picture->encoding);
+    }
+}
