@@ -1,0 +1,242 @@
+#include "proxies.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../tools/common/log.h"
+#include "../../tools/common/text.h"
+#include "../common/ray_table.h"
+
+/* Boxes are computed from transformed boxes, and triangles are transformed by the device. */
+#define ROUNDING 1.0e-5f
+#define RANK 0u /* before tiles */
+#define RANGE_COUNT 64u
+
+static bool check(SluiceResult result, const char *what)
+{
+    if (result != SLUICE_SUCCESS)
+        text_say("%s: %s", what, sluiceGetResultName(result));
+    return result == SLUICE_SUCCESS;
+}
+
+static bool create_set(SluiceDemandLoader *loader, SluiceProxyKind kind, uint64_t most,
+                       SluiceProxySet **set, SluiceDemandResourceId *resource, uint32_t *page)
+{
+    const SluiceProxySetCreateInfo info = {.structSize = sizeof info,
+                                           .kind = kind,
+                                           .maxProxyCount =
+                                               most < INT32_MAX ? (uint32_t)most : INT32_MAX,
+                                           .log = {.pfnLog = log_say}};
+    return check(sluiceCreateProxySet(&info, set), "proxies") &&
+           check(sluiceAddDemandProxies(loader, *set, RANK, resource, page), "proxies");
+}
+
+bool proxies_create(SluiceDemandLoader *loader, const struct scene *scene, struct proxies *p)
+{
+    const uint64_t most_boxes = scene->place_count + scene->node_count + 1;
+    const uint32_t surface_count = scene->info.materialCount + scene->info.textureCount;
+    *p = (struct proxies){.loader = loader, .changed = true};
+    memcpy(p->corner, scene->box.least, sizeof p->corner);
+    if (!create_set(loader, SLUICE_PROXY_KIND_GEOMETRY, most_boxes, &p->boxes, &p->box_resource,
+                    &p->box_page) ||
+        !create_set(loader, SLUICE_PROXY_KIND_MATERIAL, surface_count + 1ull, &p->surfaces,
+                    &p->surface_resource, &p->surface_page))
+        return false;
+    for (uint32_t i = 0; i < surface_count; i++) {
+        SluiceProxyId id; /* its index is i */
+        if (!check(sluiceAddMaterialProxy(p->surfaces, &id), "a material"))
+            return false;
+    }
+    return true;
+}
+
+void proxies_finish(const struct gpu *gpu, struct structures *structures, struct proxies *p)
+{
+    structures_give(gpu, structures, &p->structure);
+    gpu_destroy_buffer(gpu, &p->buffer);
+    sluiceDestroyProxySet(p->boxes);
+    sluiceDestroyProxySet(p->surfaces);
+    free(p->nodes);
+    free(p->host);
+    free(p->ids);
+    *p = (struct proxies){0};
+}
+
+static SluiceProxySetInfo get_info(const SluiceProxySet *set)
+{
+    SluiceProxySetInfo info = {.structSize = sizeof info};
+    (void)sluiceGetProxySetInfo(set, &info); /* it has no other way to fail */
+    return info;
+}
+
+uint32_t proxies_box_count(const struct proxies *p)
+{
+    return get_info(p->boxes).proxyCount;
+}
+
+static bool reserve(void **items, uint32_t *room, uint32_t count, size_t size)
+{
+    if (count <= *room)
+        return true;
+    uint32_t more = *room ? *room : 64;
+    while (more < count)
+        more *= 2;
+    void *grown = realloc(*items, more * size);
+    if (!grown) {
+        fprintf(stderr, "out of memory\n");
+        return false;
+    }
+    *items = grown;
+    *room = more;
+    return true;
+}
+
+bool proxies_add(struct proxies *p, struct scene_node node, const SluicePbrtBounds *box)
+{
+    SluiceProxyBox wide;
+    SluiceProxyId id;
+    for (int i = 0; i < 3; i++) {
+        const float more = ROUNDING * fmaxf(fabsf(box->least[i]), fabsf(box->most[i]));
+        wide.min[i] = box->least[i] - more;
+        wide.max[i] = box->most[i] + more;
+    }
+    if (!check(sluiceAddGeometryProxy(p->boxes, &wide, &id), "a box"))
+        return false;
+    const uint32_t index = (uint32_t)id;
+    if (!reserve((void **)&p->nodes, &p->node_room, index + 1, sizeof *p->nodes))
+        return false;
+    p->nodes[index] = node;
+    p->added_count++;
+    p->changed = true;
+    return true;
+}
+
+/** Lists what is requested in a set. */
+static bool list(struct proxies *p, SluiceProxySet *set, SluiceDemandResourceId resource,
+                 bool largest_first, uint32_t *count)
+{
+    const SluiceProxyListInfo info = {.structSize = sizeof info,
+                                      .order = largest_first ? SLUICE_PROXY_ORDER_VOLUME
+                                                             : SLUICE_PROXY_ORDER_INDEX};
+    if (!check(sluiceProcessDemandProxies(p->loader, resource, set), "requests"))
+        return false;
+    *count = get_info(set).requestedCount;
+    return reserve((void **)&p->ids, &p->id_room, *count, sizeof *p->ids) &&
+           check(sluiceGetRequestedProxies(set, &info, count, p->ids), "requests");
+}
+
+static bool take_nodes(struct proxies *p, const struct proxy_order *order, struct proxy_requests *r)
+{
+    uint32_t count;
+    if (!list(p, p->boxes, p->box_resource, order->largest_first, &count))
+        return false;
+    count = order->one_node && count > 1 ? 1 : count;
+    if (!reserve((void **)&r->nodes, &r->node_room, count, sizeof *r->nodes))
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        r->nodes[i] = p->nodes[(uint32_t)p->ids[i]];
+        if (!check(sluiceRemoveProxy(p->boxes, p->ids[i]), "a box"))
+            return false;
+    }
+    r->node_count = count;
+    p->changed = p->changed || count > 0;
+    return check(sluiceClearProxyRequests(p->boxes, SLUICE_ALL_PROXIES), "requests");
+}
+
+static bool take_surfaces(struct proxies *p, const struct proxy_order *order,
+                          struct proxy_requests *r)
+{
+    uint32_t count;
+    if (!list(p, p->surfaces, p->surface_resource, false, &count))
+        return false;
+    count = order->one_surface && count > 1 ? 1 : count;
+    if (!reserve((void **)&r->surfaces, &r->surface_room, count, sizeof *r->surfaces))
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        r->surfaces[i] = (uint32_t)p->ids[i];
+        if (!check(sluiceRemoveProxy(p->surfaces, p->ids[i]), "a material"))
+            return false;
+    }
+    r->surface_count = count;
+    return check(sluiceClearProxyRequests(p->surfaces, SLUICE_ALL_PROXIES), "requests");
+}
+
+bool proxies_take(struct proxies *p, const struct proxy_order *order, struct proxy_requests *r)
+{
+    return take_nodes(p, order, r) && take_surfaces(p, order, r);
+}
+
+void proxy_requests_finish(struct proxy_requests *r)
+{
+    free(r->nodes);
+    free(r->surfaces);
+    *r = (struct proxy_requests){0};
+}
+
+/* lavapipe loses live boxes where others of the same structure are inactive, so boxes that nobody
+ * needs are points. The intersection shader passes over points. */
+static void copy_boxes(struct proxies *p, uint32_t first, uint32_t count)
+{
+    SluiceProxyBox *boxes = p->buffer.mapped, point;
+    memcpy(point.min, p->corner, sizeof point.min);
+    memcpy(point.max, p->corner, sizeof point.max);
+    for (uint32_t i = first; i < first + count; i++)
+        boxes[i] = isnan(p->host[i].min[0]) ? point : p->host[i];
+}
+
+/** Makes both arrays larger than `count` boxes. `*grown`: the device has none now. */
+static bool reserve_boxes(const struct gpu *gpu, struct proxies *p, uint32_t count, bool *grown)
+{
+    *grown = p->host_room < count || !p->buffer.buffer;
+    if (!*grown)
+        return true;
+    if (!reserve((void **)&p->host, &p->host_room, count + 1, sizeof *p->host))
+        return false;
+    gpu_destroy_buffer(gpu, &p->buffer);
+    return gpu_create_buffer(gpu, (VkDeviceSize)p->host_room * sizeof *p->host,
+                             STRUCTURE_INPUT_USAGE, &p->buffer);
+}
+
+/** Brings the boxes up to date. */
+static bool write_boxes(const struct gpu *gpu, struct proxies *p)
+{
+    const uint32_t count = get_info(p->boxes).indexCount;
+    bool grown;
+    if (!reserve_boxes(gpu, p, count, &grown))
+        return false;
+    SluiceProxyRange ranges[RANGE_COUNT];
+    uint32_t range_count;
+    const SluiceProxyBoxWrite write = {.structSize = sizeof write,
+                                       .capacity = p->host_room,
+                                       .pBoxes = p->host,
+                                       .rangeCapacity = RANGE_COUNT,
+                                       .pRanges = ranges};
+    if (!check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, &range_count), "boxes"))
+        return false;
+    for (uint32_t i = 0; i < range_count && !grown; i++)
+        copy_boxes(p, ranges[i].first, ranges[i].count);
+    if (grown)
+        copy_boxes(p, 0, count);
+    return true;
+}
+
+bool proxies_build(const struct gpu *gpu, struct structures *structures, struct proxies *p)
+{
+    if (!p->changed)
+        return true;
+    SluiceProxyGeometry geometry = {.structSize = sizeof geometry};
+    structures_give(gpu, structures, &p->structure);
+    if (!write_boxes(gpu, p) ||
+        !check(
+            sluiceGetProxyGeometry(p->boxes, ray_buffer_address(gpu, p->buffer.buffer), &geometry),
+            "boxes"))
+        return false;
+    p->changed = false;
+    struct structure_build build = {.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
+                                    .primitive_count = geometry.range.primitiveCount,
+                                    .geometry = geometry.geometry,
+                                    .target = &p->structure};
+    return build.primitive_count == 0 || structures_build(gpu, structures, &build, 1);
+}

@@ -1,0 +1,61 @@
+/** What stands for things that are not made: boxes for geometry, numbers for surfaces. */
+#ifndef DEMAND_PBRT_PROXIES_H
+#define DEMAND_PBRT_PROXIES_H
+
+#include <sluice/vulkan_proxy.h>
+
+#include "scene.h"
+#include "structures.h"
+
+/** What launches asked for. */
+struct proxy_requests {
+    struct scene_node *nodes; ///< owned
+    uint32_t *surfaces;       ///< owned
+    uint32_t node_count, node_room;
+    uint32_t surface_count, surface_room;
+};
+
+/** Zeroed is empty. */
+struct proxies {
+    SluiceDemandLoader *loader;
+    SluiceProxySet *boxes, *surfaces;
+    SluiceDemandResourceId box_resource, surface_resource;
+    uint32_t box_page, surface_page; ///< first pages, for shaders
+    struct scene_node *nodes;        ///< owned; what the box of an index stands for
+    uint32_t node_room;
+    SluiceProxyId *ids; ///< owned; room for requested ones
+    uint32_t id_room;
+    SluiceProxyBox *host;     ///< owned; boxes by index
+    uint32_t host_room;       ///< boxes
+    uint64_t version;         ///< of `host`
+    struct gpu_buffer buffer; ///< the same for the device
+    float corner[3];          ///< of the scene
+    struct structure structure;
+    bool changed;         ///< since the structure was built
+    uint64_t added_count; ///< boxes since the beginning
+};
+
+/** Surfaces are the materials of the scene, then its textures. Says on stderr why it failed. */
+bool proxies_create(SluiceDemandLoader *loader, const struct scene *scene, struct proxies *proxies);
+/** Before the loader is destroyed. */
+void proxies_finish(const struct gpu *gpu, struct structures *structures, struct proxies *proxies);
+
+/** Adds a box for a node. Says on stderr why it failed. */
+bool proxies_add(struct proxies *proxies, struct scene_node node, const SluicePbrtBounds *box);
+uint32_t proxies_box_count(const struct proxies *proxies);
+
+/** How requests are taken. */
+struct proxy_order {
+    bool largest_first;
+    bool one_node, one_surface; ///< what else is asked for is asked for again
+};
+
+/** Gets what processed launches asked for, and removes it. Says on stderr why it failed. */
+bool proxies_take(struct proxies *proxies, const struct proxy_order *order,
+                  struct proxy_requests *requests);
+void proxy_requests_finish(struct proxy_requests *requests);
+
+/** Builds the structure of the boxes if they have changed. Without boxes there is none. */
+bool proxies_build(const struct gpu *gpu, struct structures *structures, struct proxies *proxies);
+
+#endif /* DEMAND_PBRT_PROXIES_H */

@@ -1,0 +1,326 @@
+#include "world.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../tools/common/clock.h"
+#include "../../tools/common/text.h"
+#include "../common/ray_table.h"
+#include "transform.h"
+
+#define MOST_PLACES (1u << 24) /* instanceCustomIndex has 24 bits */
+
+/* Of scene_node.shape: all shapes of the instance that are alike, this one being the first. */
+#define GROUP (1u << 31)
+
+enum { KIND_SCENE, KIND_INSTANCE, KIND_GROUP, KIND_SHAPE };
+
+static int node_kind(struct scene_node node)
+{
+    if (node.shape == SLUICE_PBRT_NONE)
+        return node.instance == SLUICE_PBRT_NONE ? KIND_SCENE : KIND_INSTANCE;
+    return node.shape & GROUP ? KIND_GROUP : KIND_SHAPE;
+}
+
+bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfaces *surfaces,
+                  struct proxies *proxies, bool coarse, struct world *w)
+{
+    *w = (struct world){.gpu = gpu,
+                        .scene = scene,
+                        .surfaces = surfaces,
+                        .proxies = proxies,
+                        .coarse = coarse,
+                        .place_table.element = sizeof(struct PbrtPlace),
+                        .used.element = sizeof(uint32_t),
+                        .changed = true};
+    structures_create(gpu, &w->structures);
+    return meshes_create(gpu, scene, &w->meshes) && table_grow(gpu, &w->place_table, 1) &&
+           table_grow(gpu, &w->used, 1);
+}
+
+void world_finish(struct world *w)
+{
+    if (!w->gpu)
+        return;
+    structures_give(w->gpu, &w->structures, &w->top);
+    meshes_finish(w->gpu, &w->structures, &w->meshes);
+    structures_finish(w->gpu, &w->structures);
+    gpu_destroy_buffer(w->gpu, &w->instances);
+    table_finish(w->gpu, &w->place_table);
+    table_finish(w->gpu, &w->used);
+    free(w->places);
+    free(w->to_build);
+    *w = (struct world){0};
+}
+
+static bool has_room(void **items, uint32_t count, uint32_t *room, size_t size)
+{
+    if (count < *room)
+        return true;
+    uint32_t more = *room ? 2 * *room : 64;
+    void *grown = realloc(*items, more * size);
+    if (!grown) {
+        fprintf(stderr, "out of memory\n");
+        return false;
+    }
+    *items = grown;
+    *room = more;
+    return true;
+}
+
+/* A mesh that is absent is in the list as often as something is placed that has it, until then. */
+static bool ask_for_mesh(struct world *w, uint32_t mesh)
+{
+    if (w->meshes.items[mesh].state != MESH_ABSENT || w->meshes.items[mesh].place_count > 0)
+        return true;
+    if (!has_room((void **)&w->to_build, w->to_build_count, &w->to_build_room, sizeof(uint32_t)))
+        return false;
+    w->to_build[w->to_build_count++] = mesh;
+    return true;
+}
+
+static struct PbrtPlace describe(const struct world *w, const SluicePbrtShape *shape,
+                                 const struct place *place, double determinant)
+{
+    const bool has_map = shape->alpha.texture != SLUICE_PBRT_NONE;
+    struct PbrtPlace entry = {.mesh = place->mesh,
+                              .surface = shape->material,
+                              .alpha = has_map ? surfaces_alpha(w->surfaces, shape->alpha.texture)
+                                               : PBRT_NONE,
+                              .alphaValue = has_map ? 1.0f : shape->alpha.value[0],
+                              .light = shape->areaLight,
+                              .shape = place->node.shape};
+    if (shape->reverseOrientation && w->scene->info.version == 4) /* pbrt-v3 keeps them */
+        entry.flags |= PBRT_PLACE_NEGATED;
+    if (shape->reverseOrientation != (determinant < 0.0))
+        entry.flags |= PBRT_PLACE_REVERSED;
+    if (shape->areaLight != SLUICE_PBRT_NONE) {
+        entry.flags |= PBRT_PLACE_EMITS;
+        if (scene_light(w->scene, shape->areaLight).isTwoSided)
+            entry.flags |= PBRT_PLACE_TWO_SIDED;
+    }
+    return entry;
+}
+
+static bool is_opaque(const struct world *w, const struct PbrtPlace *entry)
+{
+    return entry->alpha == PBRT_NONE && (w->scene->info.version == 3 || entry->alphaValue >= 1.0f);
+}
+
+static bool place_shape(struct world *w, struct scene_node node)
+{
+    const uint32_t mesh = w->meshes.of_shape[node.shape];
+    if (w->meshes.items[mesh].state == MESH_FAILED)
+        return true;
+    const uint32_t index = w->place_count;
+    if (index == MOST_PLACES) {
+        fprintf(stderr, "more than %u shapes are in sight\n", MOST_PLACES);
+        return false;
+    }
+    if (!ask_for_mesh(w, mesh) ||
+        !has_room((void **)&w->places, index, &w->place_room, sizeof *w->places) ||
+        !table_grow(w->gpu, &w->place_table, index + 1) || !table_grow(w->gpu, &w->used, index + 1))
+        return false;
+    float m[12];
+    const SluicePbrtShape shape = scene_shape(w->scene, node.shape);
+    scene_node_transform(w->scene, node, m);
+    struct place *place = &w->places[w->place_count++];
+    *place = (struct place){.node = node, .mesh = mesh, .live = true};
+    const struct PbrtPlace entry = describe(w, &shape, place, transform_determinant(m));
+    *(struct PbrtPlace *)table_at(&w->place_table, index) = entry;
+    *(uint32_t *)table_at(&w->used, index) = 0;
+    place->instance = (VkAccelerationStructureInstanceKHR){
+        .instanceCustomIndex = index & 0xffffffu,
+        .mask = 0xff,
+        .instanceShaderBindingTableRecordOffset = PBRT_GROUP_MESH,
+        .flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR |
+                 (is_opaque(w, &entry) ? VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR : 0)};
+    memcpy(place->instance.transform.matrix, m, sizeof m);
+    w->meshes.items[mesh].place_count++;
+    w->entered_count++;
+    w->changed = true;
+    return true;
+}
+
+/** Whether two shapes of an object may share a box: PBRT.md has no such rule, the peer does. */
+static bool is_alike(const struct world *w, uint32_t a, uint32_t b)
+{
+    const SluicePbrtShape one = scene_shape(w->scene, a), other = scene_shape(w->scene, b);
+    const SluicePbrtMaterial m = scene_material(w->scene, one.material);
+    const SluicePbrtMaterial n = scene_material(w->scene, other.material);
+    return (one.kind == SLUICE_PBRT_SHAPE_SPHERE) == (other.kind == SLUICE_PBRT_SHAPE_SPHERE) &&
+           (one.alpha.texture == SLUICE_PBRT_NONE) == (other.alpha.texture == SLUICE_PBRT_NONE) &&
+           (m.diffuse.texture == SLUICE_PBRT_NONE) == (n.diffuse.texture == SLUICE_PBRT_NONE);
+}
+
+/** The next shape from `from` on that is placed and, unless `like` is NONE, like that one. */
+static uint32_t next_shape(const struct world *w, const SluicePbrtObject *object, uint32_t from,
+                           uint32_t like)
+{
+    for (uint32_t i = from; i < object->firstShape + object->shapeCount; i++)
+        if (!scene_box_is_empty(&w->scene->boxes[i]) &&
+            (like == SLUICE_PBRT_NONE || is_alike(w, i, like)))
+            return i;
+    return SLUICE_PBRT_NONE;
+}
+
+static bool add_box(struct world *w, struct scene_node node, const SluicePbrtBounds *box)
+{
+    return w->proxies ? proxies_add(w->proxies, node, box) : world_resolve(w, node);
+}
+
+static bool add_group(struct world *w, uint32_t instance, const SluicePbrtObject *object,
+                      uint32_t first)
+{
+    SluicePbrtBounds box = bounds_none();
+    for (uint32_t i = first; i != SLUICE_PBRT_NONE; i = next_shape(w, object, i + 1, first)) {
+        const SluicePbrtBounds one = scene_node_box(w->scene, (struct scene_node){instance, i});
+        bounds_add(&box, &one);
+    }
+    return add_box(w, (struct scene_node){instance, first | GROUP}, &box);
+}
+
+/** Boxes for the parts of an instance. A single part needs none. */
+static bool resolve_instance(struct world *w, uint32_t instance)
+{
+    const SluicePbrtObject object = scene_object_of(w->scene, instance);
+    const uint32_t first = next_shape(w, &object, object.firstShape, SLUICE_PBRT_NONE);
+    if (first == SLUICE_PBRT_NONE)
+        return true;
+    if (next_shape(w, &object, first + 1, SLUICE_PBRT_NONE) == SLUICE_PBRT_NONE)
+        return place_shape(w, (struct scene_node){instance, first});
+    bool done = true;
+    for (uint32_t i = first; i != SLUICE_PBRT_NONE && done;
+         i = next_shape(w, &object, i + 1, SLUICE_PBRT_NONE)) {
+        const struct scene_node node = {instance, i};
+        const SluicePbrtBounds box = scene_node_box(w->scene, node);
+        if (!w->coarse)
+            done = add_box(w, node, &box);
+        else if (next_shape(w, &object, object.firstShape, i) == i) /* the first of its kind */
+            done = add_group(w, instance, &object, i);
+    }
+    return done;
+}
+
+static bool resolve_group(struct world *w, struct scene_node node)
+{
+    const SluicePbrtObject object = scene_object_of(w->scene, node.instance);
+    const uint32_t first = node.shape & ~GROUP;
+    bool done = true;
+    for (uint32_t i = first; i != SLUICE_PBRT_NONE && done;
+         i = next_shape(w, &object, i + 1, first))
+        done = place_shape(w, (struct scene_node){node.instance, i});
+    return done;
+}
+
+static bool add_node(void *user_data, struct scene_node node)
+{
+    struct world *w = user_data;
+    const SluicePbrtBounds box = scene_node_box(w->scene, node);
+    return add_box(w, node, &box);
+}
+
+bool world_resolve(struct world *w, struct scene_node node)
+{
+    const int kind = node_kind(node);
+    w->node_kinds[kind]++;
+    switch (kind) {
+    case KIND_SCENE: return scene_for_each(w->scene, add_node, w);
+    case KIND_INSTANCE: return resolve_instance(w, node.instance);
+    case KIND_GROUP: return resolve_group(w, node);
+    default: return place_shape(w, node);
+    }
+}
+
+bool world_begin(struct world *w)
+{
+    const struct scene_node all = {SLUICE_PBRT_NONE, SLUICE_PBRT_NONE};
+    if (w->scene->place_count == 0)
+        return true;
+    /* A box around one box is the same box. */
+    if (w->scene->node_count == 1)
+        return world_resolve(w, all);
+    return add_box(w, all, &w->scene->box);
+}
+
+/* Meshes that could not be read leave the world. */
+static void remove_failed(struct world *w)
+{
+    for (uint32_t i = 0; i < w->place_count; i++)
+        w->places[i].live =
+            w->places[i].live && w->meshes.items[w->places[i].mesh].state == MESH_BUILT;
+}
+
+static bool build_meshes(struct world *w, uint32_t launch)
+{
+    if (w->to_build_count == 0)
+        return true;
+    const uint32_t count = w->to_build_count;
+    w->to_build_count = 0;
+    if (!meshes_build(w->gpu, w->scene, &w->structures, &w->meshes, w->to_build, count, launch))
+        return false;
+    remove_failed(w);
+    return true;
+}
+
+static uint32_t write_instances(struct world *w)
+{
+    VkAccelerationStructureInstanceKHR *instances = w->instances.mapped;
+    uint32_t count = 0;
+    if (w->proxies && w->proxies->structure.handle)
+        instances[count++] = (VkAccelerationStructureInstanceKHR){
+            .transform.matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
+            .mask = 0xff,
+            .instanceShaderBindingTableRecordOffset = PBRT_GROUP_BOX,
+            .accelerationStructureReference = w->proxies->structure.address};
+    for (uint32_t i = 0; i < w->place_count; i++) {
+        struct place *place = &w->places[i];
+        if (!place->live)
+            continue;
+        place->instance.accelerationStructureReference =
+            w->meshes.items[place->mesh].structure.address;
+        instances[count++] = place->instance;
+    }
+    return count;
+}
+
+static bool reserve_instances(struct world *w)
+{
+    const VkDeviceSize size = (w->place_count + 1ull) * sizeof(VkAccelerationStructureInstanceKHR);
+    if (w->instances.size >= size)
+        return true;
+    gpu_destroy_buffer(w->gpu, &w->instances);
+    return gpu_create_buffer(w->gpu, size + size / 2, STRUCTURE_INPUT_USAGE, &w->instances);
+}
+
+static bool build_top(struct world *w)
+{
+    if (!reserve_instances(w))
+        return false;
+    structures_give(w->gpu, &w->structures, &w->top);
+    struct structure_build build = {
+        .type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR,
+        .primitive_count = write_instances(w),
+        .target = &w->top,
+        .geometry = {
+            .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
+            .geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR,
+            .geometry.instances = {
+                .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR,
+                .data.deviceAddress = ray_buffer_address(w->gpu, w->instances.buffer)}}};
+    return structures_build(w->gpu, &w->structures, &build, 1);
+}
+
+bool world_build(struct world *w, uint32_t launch)
+{
+    if (!build_meshes(w, launch))
+        return false;
+    if (!w->changed && (!w->proxies || !w->proxies->changed))
+        return true;
+    double start = clock_seconds();
+    bool done = (!w->proxies || proxies_build(w->gpu, &w->structures, w->proxies)) && build_top(w);
+    w->top_seconds += clock_seconds() - start;
+    w->changed = !done;
+    return done;
+}

@@ -1,0 +1,54 @@
+/** What is in the world now: shapes that are built, and boxes for all others. */
+#ifndef DEMAND_PBRT_WORLD_H
+#define DEMAND_PBRT_WORLD_H
+
+#include "meshes.h"
+#include "options.h"
+#include "proxies.h"
+#include "surfaces.h"
+
+/** A shape in the world. */
+struct place {
+    struct scene_node node;
+    uint32_t mesh;
+    bool live;
+    VkAccelerationStructureInstanceKHR instance;
+};
+
+/** Zeroed is empty. */
+struct world {
+    const struct gpu *gpu;
+    struct scene *scene;
+    const struct surfaces *surfaces;
+    struct structures structures;
+    struct meshes meshes;
+    struct proxies *proxies; ///< NULL: everything is placed at once
+    bool coarse;
+    struct place *places; ///< owned
+    uint32_t place_count, place_room;
+    uint32_t *to_build; ///< owned; meshes
+    uint32_t to_build_count, to_build_room;
+    struct table place_table; ///< struct PbrtPlace
+    struct table used;        ///< uint by place: the last launch that hit it
+    struct structure top;
+    struct gpu_buffer instances;
+    bool changed; ///< since the top level was built
+    /* Since the beginning. */
+    uint64_t entered_count; ///< shapes whose box a ray entered: those that were placed
+    uint64_t node_kinds[4]; ///< boxes that were resolved: scene, instances, groups, shapes
+    double top_seconds;
+};
+
+/** Says on stderr why it failed. */
+bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfaces *surfaces,
+                  struct proxies *proxies, bool coarse, struct world *world);
+void world_finish(struct world *world);
+
+/** Adds one box around everything; without proxies, everything. */
+bool world_begin(struct world *world);
+/** Puts what is in a box into the world. Meshes are built by world_build. */
+bool world_resolve(struct world *world, struct scene_node node);
+/** Builds what has changed, for the launch with that number. No launch is under way. */
+bool world_build(struct world *world, uint32_t launch);
+
+#endif /* DEMAND_PBRT_WORLD_H */
