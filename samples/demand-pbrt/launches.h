@@ -1,0 +1,48 @@
+/** Launch, learn what is missing, make it, launch again. */
+#ifndef DEMAND_PBRT_LAUNCHES_H
+#define DEMAND_PBRT_LAUNCHES_H
+
+#include "../common/film.h"
+#include "tracing.h"
+#include "world.h"
+
+/** Zeroed but for what main.c fills is the beginning. */
+struct launches {
+    const struct gpu *gpu;
+    const struct pbrt_options *options;
+    const struct scene *scene;
+    SluiceDemandLoader *loader;
+    struct tracing *tracing;
+    struct world *world;
+    struct surfaces *surfaces;
+    struct textures *textures;
+    struct proxies *proxies; ///< NULL: nothing is made on demand but tiles
+    struct film *film;
+    const struct table *lights;
+    struct PbrtLaunch constants;
+    struct proxy_requests requests;
+    struct gpu_buffer quiet, debug;
+    VkCommandBuffer commands;
+    uint32_t count;        ///< launches so far
+    uint32_t idle_count;   ///< launches that trace nothing: opened pictures go on to their tiles
+    uint32_t sample_count; ///< complete samples per pixel
+    uint64_t ray_count;    ///< pixels traced, again and again ones among them
+    uint64_t tile_count;   ///< tiles loaded
+    uint64_t peak_device;  ///< bytes
+    double trace_seconds;  ///< of launches that trace
+    double last_seconds;   ///< of the last one
+    uint32_t last_traced;  ///< pixels of the last one
+    void *user_data;
+    bool (*after_launch)(void *user_data); ///< false ends it all
+};
+
+/** Says on stderr why it failed. */
+bool launches_create(struct launches *launches);
+void launches_finish(struct launches *launches);
+
+/** Makes all surfaces and loads all tiles. */
+bool launches_preload(struct launches *launches);
+/** Traces all samples, each until nothing is missing, or until there were enough launches. */
+bool launches_run(struct launches *launches);
+
+#endif /* DEMAND_PBRT_LAUNCHES_H */

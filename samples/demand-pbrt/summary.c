@@ -1,0 +1,78 @@
+#include "summary.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <sys/resource.h>
+
+#include "../../tools/common/output_file.h"
+#include "../../tools/common/text.h"
+
+struct figure {
+    const char *name, *unit;
+    double value;
+};
+
+static void print_figure(const struct figure *figure, bool json)
+{
+    char value[32];
+    const bool whole = figure->value == floor(figure->value) && fabs(figure->value) < 1e15;
+    snprintf(value, sizeof value, whole ? "%.0f" : "%.7g", figure->value);
+    if (json)
+        printf("{\"name\": \"%s\", \"value\": %s, \"unit\": \"%s\"}\n", figure->name, value,
+               figure->unit);
+    else
+        printf("%-22s %16s %s\n", figure->name, value, figure->unit);
+}
+
+/* Linux counts it in KiB. */
+static double peak_host_bytes(void)
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? (double)usage.ru_maxrss * 1024.0 : 0.0;
+}
+
+bool summary_print(const struct summary *s, bool json)
+{
+    const struct launches *l = s->launches;
+    const struct world *w = l->world;
+    SluiceDemandStatistics d = {.structSize = sizeof d};
+    if (sluiceGetDemandStatistics(l->loader, &d) != SLUICE_SUCCESS)
+        return false;
+    const double rate = l->last_seconds > 0.0 ? l->last_traced / l->last_seconds / 1e6 : 0.0;
+    const struct figure figures[] = {
+        {"launches", "", l->count},
+        {"launches_without_rays", "", l->idle_count},
+        {"samples_complete", "per pixel", l->sample_count},
+        {"pixels_missing", "", l->film->missing_count},
+        {"rays_from_camera", "", (double)l->ray_count},
+        {"shapes_placed", "", (double)l->scene->place_count},
+        {"shapes_entered", "", (double)w->entered_count},
+        {"boxes_added", "", l->proxies ? (double)l->proxies->added_count : 0.0},
+        {"boxes_left", "", l->proxies ? proxies_box_count(l->proxies) : 0.0},
+        {"geometries_built", "", (double)w->meshes.built_count},
+        {"geometries_failed", "", (double)w->meshes.failed_count},
+        {"geometries_evicted", "", (double)w->meshes.evicted_count},
+        {"triangles_built", "", (double)w->meshes.triangle_count},
+        {"materials", "", l->surfaces->material_count},
+        {"materials_realized", "", (double)l->surfaces->material_realized_count},
+        {"alphas_realized", "", (double)l->surfaces->alpha_realized_count},
+        {"textures_opened", "", (double)d.texturesOpened},
+        {"textures_failed", "", (double)d.texturesFailed},
+        {"tiles_loaded", "", (double)l->tile_count},
+        {"lod_bias", "levels", d.lodBias},
+        {"parse_seconds", "s", l->scene->parse_seconds},
+        {"bounds_seconds", "s", l->scene->bounds_seconds},
+        {"read_seconds", "s", w->meshes.read_seconds},
+        {"build_seconds", "s", w->meshes.build_seconds},
+        {"top_level_seconds", "s", w->top_seconds},
+        {"trace_seconds", "s", l->trace_seconds},
+        {"complete_seconds", "s", s->complete_seconds},
+        {"last_launch_rate", "Mpixel/s", rate},
+        {"geometry_bytes", "B", (double)meshes_size(&w->meshes, &w->structures)},
+        {"peak_host_bytes", "B", peak_host_bytes()},
+        {"peak_device_bytes", "B", (double)l->peak_device},
+    };
+    for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
+        print_figure(&figures[i], json);
+    return text_flush("");
+}

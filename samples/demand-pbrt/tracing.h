@@ -1,0 +1,33 @@
+/** The ray-tracing pipeline, and the descriptor set of the scene. */
+#ifndef DEMAND_PBRT_TRACING_H
+#define DEMAND_PBRT_TRACING_H
+
+#include <sluice/demand.h>
+
+#include "../../tools/common/gpu.h"
+#include "../common/ray_table.h"
+#include "pbrt_shared.h"
+
+/** Zeroed is empty. */
+struct tracing {
+    VkDescriptorSetLayout own_layout;
+    VkPipelineLayout layout;
+    VkDescriptorPool pool;
+    VkDescriptorSet own_set;
+    VkPipeline pipeline;
+    struct ray_table table;
+};
+
+/** Says on stderr why it failed. */
+bool tracing_create(const struct gpu *gpu, const SluiceDemandLoader *loader,
+                    struct tracing *tracing);
+void tracing_destroy(const struct gpu *gpu, struct tracing *tracing);
+
+/** Names what the next launch reads and writes: buffers by PBRT_BINDING_..., and the top level. No
+ *  launch is under way. */
+void tracing_bind(const struct gpu *gpu, const struct tracing *tracing,
+                  const VkBuffer buffers[PBRT_OWN_BUFFERS], VkAccelerationStructureKHR top);
+void tracing_record(const struct tracing *tracing, VkCommandBuffer commands,
+                    VkDescriptorSet demand_set, const struct PbrtLaunch *launch);
+
+#endif /* DEMAND_PBRT_TRACING_H */
