@@ -125,6 +125,17 @@ static bool create_world(struct renderer *r)
     return world_begin(&r->world);
 }
 
+static bool is_sky_dark(const struct renderer *r)
+{
+    const float *background = r->options.background;
+    if (background[0] + background[1] + background[2] > 0.0f)
+        return false;
+    for (uint32_t i = 0; i < r->scene.info.lightCount; i++)
+        if (scene_light(&r->scene, i).kind == SLUICE_PBRT_LIGHT_INFINITE)
+            return false;
+    return true;
+}
+
 static bool open_all(struct renderer *r)
 {
     const struct pbrt_options *o = &r->options;
@@ -150,7 +161,8 @@ static bool open_all(struct renderer *r)
     c->lightCount = r->scene.info.lightCount;
     c->flags |= (o->face_forward ? PBRT_LAUNCH_FACE_FORWARD : 0) |
                 (r->scene.info.version == 4 ? PBRT_LAUNCH_VERSION_4 : 0) |
-                (only_areas ? PBRT_LAUNCH_HEADLIGHT : 0);
+                (only_areas ? PBRT_LAUNCH_HEADLIGHT : 0) |
+                (is_sky_dark(r) ? PBRT_LAUNCH_DARK_SKY : 0);
     return true;
 }
 

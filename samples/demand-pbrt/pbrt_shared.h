@@ -152,6 +152,7 @@ SLUICE_SHARED_SIZE(struct PbrtDebug, 40)
 #define PBRT_LAUNCH_VERSION_4 4u  /* alpha is a probability */
 #define PBRT_LAUNCH_LIST_ONE 8u   /* list 1 is read, 0 is written */
 #define PBRT_LAUNCH_HEADLIGHT 16u /* all lights are shapes */
+#define PBRT_LAUNCH_DARK_SKY 32u  /* no light comes from infinity: ambient light is white */
 
 /* Push constants of one launch. */
 struct PbrtLaunch {

@@ -1,0 +1,227 @@
+/*
+ * What happens to a pixel's light, one ray after the other:
+ *
+ *     for (Path path = startPath(pixel); !path.done; chooseRay(path)) {
+ *         trace the ray;
+ *         if (path.isShadow) endShadow(path, whether nothing was hit);
+ *         else meetSurface(path, what was hit);
+ *     }
+ *     add path.skyWeight * the sky at path.skyDirection
+ *
+ * It depends on the pixel, the sample and what rays hit alone, not on what was there before.
+ */
+#ifndef PBRT_PATH_GLSL
+#define PBRT_PATH_GLSL
+
+#define MEAN_SKY 10.0      /* skySpread of the whole sky */
+#define DIFFUSE_SPREAD 0.35 /* after a diffuse bounce detail does not matter */
+
+struct Path {
+    vec3 origin, direction; /* of the ray that is to be traced */
+    float far, coneWidth, coneSpread;
+    bool isShadow, done, complete;
+    vec3 light;
+    vec3 share; /* of what is yet to come */
+    vec3 skyWeight, skyDirection;
+    float skySpread;
+    uint depth, lamp; /* next lamp that may shine on the surface */
+    /* Of the surface that was met: */
+    vec3 at, normal, face, albedo;
+    float distance;
+    vec3 pending;     /* light of the lamp, or weight of the sky, if nothing is in the way */
+    bool pendingSky;
+    vec3 nextShare, nextDirection; /* how the path goes on after the lamps */
+    float nextSpread;
+    bool goesOn;
+    uint random; /* state */
+};
+
+float random1(inout uint state)
+{
+    state = state * 747796405u + 2891336453u;
+    return float(hashWord(state) >> 8) / 16777216.0;
+}
+
+Path startPath(uint pixel)
+{
+    Path path;
+    bool parallel = (launch.flags & PBRT_LAUNCH_ORTHOGRAPHIC) != 0u;
+    startPixel(pixel, path.origin, path.direction);
+    path.far = FAR;
+    path.coneWidth = parallel ? launch.spread : 0.0;
+    path.coneSpread = parallel ? 0.0 : launch.spread;
+    path.isShadow = path.done = path.pendingSky = path.goesOn = false;
+    path.complete = true;
+    path.light = path.skyWeight = path.skyDirection = path.pending = vec3(0.0);
+    path.share = vec3(1.0);
+    path.skySpread = launch.spread;
+    path.depth = 0u;
+    path.lamp = launch.lightCount;
+    path.random = hashWord(pixel * 0x9e3779b1u ^ hashWord(launch.sampleIndex + 1u));
+    return path;
+}
+
+/** Off the surface, to the side that a ray leaves to. */
+vec3 leave(Path path, vec3 direction)
+{
+    vec3 a = abs(path.at);
+    float step = 4.0e-6 * (max(a.x, max(a.y, a.z)) + path.distance) + 1.0e-30;
+    return path.at + (dot(path.face, direction) < 0.0 ? -step : step) * path.face;
+}
+
+vec3 cosineDirection(vec3 normal, inout uint random)
+{
+    float turn = 2.0 * PI * random1(random), square = random1(random), radius = sqrt(square);
+    vec3 side = normalize(abs(normal.x) > 0.5 ? vec3(normal.y, -normal.x, 0.0)
+                                              : vec3(0.0, normal.z, -normal.y));
+    return normalize(radius * (cos(turn) * side + sin(turn) * cross(normal, side)) +
+                     sqrt(max(1.0 - square, 0.0)) * normal);
+}
+
+/** Fresnel's reflection of glass, without polarization. */
+float reflectance(float cosine, float eta)
+{
+    float square = 1.0 - eta * eta * (1.0 - cosine * cosine);
+    if (square <= 0.0)
+        return 1.0;
+    float beyond = sqrt(square);
+    float s = (eta * cosine - beyond) / (eta * cosine + beyond);
+    float p = (cosine - eta * beyond) / (cosine + eta * beyond);
+    return 0.5 * (s * s + p * p);
+}
+
+/** Chooses how a path goes on from mirrors and glass. */
+void scatterSharply(inout Path path, Payload s, vec3 normal, bool inside)
+{
+    vec3 direction = reflect(path.direction, normal), share = s.specular;
+    if (s.kind == PBRT_SURFACE_GLASS) {
+        float eta = inside ? max(s.eta, 1.0) : 1.0 / max(s.eta, 1.0);
+        float mirrored = reflectance(min(abs(dot(path.direction, normal)), 1.0), eta);
+        if (random1(path.random) >= mirrored) {
+            direction = refract(path.direction, normal, eta);
+            share = s.transmission;
+        }
+    } else if (s.roughness > 0.0) {
+        vec3 lobe = cosineDirection(direction, path.random);
+        direction = normalize(mix(direction, lobe, clamp(s.roughness, 0.0, 1.0)));
+    }
+    path.nextDirection = direction;
+    path.nextShare = share;
+    path.nextSpread = path.coneSpread + s.roughness;
+}
+
+void meetForPath(inout Path path, Payload s, vec3 normal)
+{
+    bool inside = dot(s.normal, path.direction) > 0.0;
+    path.light += path.share * s.emission;
+    path.goesOn = path.depth < launch.bounces;
+    path.albedo = s.diffuse / PI;
+    path.lamp = s.diffuse == vec3(0.0) ? launch.lightCount : 0u;
+    if (s.kind == PBRT_SURFACE_MIRROR || s.kind == PBRT_SURFACE_GLASS) {
+        scatterSharply(path, s, normal, inside);
+    } else {
+        path.nextDirection = cosineDirection(normal, path.random);
+        path.nextShare = s.diffuse;
+        path.nextSpread = DIFFUSE_SPREAD;
+    }
+    path.goesOn = path.goesOn && path.nextShare != vec3(0.0);
+}
+
+void meetForOcclusion(inout Path path, Payload s, vec3 normal)
+{
+    path.light += s.emission;
+    path.pending = previewColor(s);
+    path.pendingSky = true;
+    path.direction = cosineDirection(normal, path.random);
+    path.origin = leave(path, path.direction);
+    path.far = launch.mode == PBRT_MODE_NEAR ? 128.0 : 1.0e6;
+    path.isShadow = true;
+}
+
+void meetSurface(inout Path path, Payload s)
+{
+    path.distance = s.distance;
+    path.goesOn = false;
+    path.lamp = launch.lightCount;
+    if (s.distance < 0.0) {
+        path.skyWeight = path.share;
+        path.skyDirection = path.direction;
+        path.skySpread = path.coneSpread;
+        return;
+    }
+    path.at = path.origin + s.distance * path.direction;
+    path.face = s.face;
+    vec3 facing = dot(s.normal, path.direction) > 0.0 ? -s.normal : s.normal;
+    bool forward = (launch.flags & PBRT_LAUNCH_FACE_FORWARD) != 0u;
+    vec3 normal = forward || launch.mode != PBRT_MODE_PRIMARY ? facing : s.normal;
+    path.normal = normal;
+    if (s.missing || launch.mode == PBRT_MODE_PRIMARY) {
+        path.light += path.share * shadePreview(s, path.at, path.direction, normal);
+        path.skyWeight = path.share * previewColor(s);
+        path.skyDirection = normal;
+        path.skySpread = MEAN_SKY;
+        return;
+    }
+    path.coneWidth += path.coneSpread * s.distance;
+    if (launch.mode == PBRT_MODE_PATH)
+        meetForPath(path, s, normal);
+    else
+        meetForOcclusion(path, s, normal);
+}
+
+/** After a ray to a lamp or the sky. */
+void endShadow(inout Path path, bool isFree)
+{
+    bool lit = !path.pendingSky || (launch.flags & PBRT_LAUNCH_DARK_SKY) != 0u;
+    path.pendingSky = false;
+    if (!isFree)
+        return;
+    if (lit) {
+        path.light += path.pending;
+    } else {
+        path.skyWeight = path.pending;
+        path.skyDirection = path.direction;
+        path.skySpread = DIFFUSE_SPREAD;
+    }
+}
+
+/** The next lamp that shines on the surface. */
+bool chooseLamp(inout Path path)
+{
+    for (; path.lamp < launch.lightCount; path.lamp++) {
+        vec3 toward, color;
+        float distance;
+        if (!lampAt(path.lamp, path.at, toward, distance, color))
+            continue;
+        path.pending = path.share * path.albedo * color * max(dot(path.normal, toward), 0.0);
+        if (path.pending == vec3(0.0))
+            continue;
+        path.direction = toward;
+        path.origin = leave(path, toward);
+        path.far = distance * 0.9999;
+        path.isShadow = true;
+        path.lamp++;
+        return true;
+    }
+    return false;
+}
+
+/** Sets the next ray, or ends the path. */
+void chooseRay(inout Path path)
+{
+    if (path.pendingSky) /* the ray of ambient occlusion is set */
+        return;
+    if (path.complete && chooseLamp(path))
+        return;
+    path.done = !path.goesOn || !path.complete;
+    path.isShadow = false;
+    path.goesOn = false;
+    path.share *= path.nextShare;
+    path.direction = path.nextDirection;
+    path.origin = leave(path, path.direction);
+    path.far = FAR;
+    path.coneSpread = path.nextSpread;
+    path.depth++;
+}
+
+#endif
