@@ -1,0 +1,195 @@
+#!/bin/sh
+# test_demand_pbrt.sh DEMAND_PBRT FOLDER DATA
+#
+# Renders small pictures and checks what loading on demand must show: they are equal bit for bit to
+# what everything loaded before gives, and nothing is made that no ray needs. DATA has scenes of
+# pbrt; without it only scenes that are written here are rendered. Exit status 77: no device traces
+# rays.
+set -eu
+program=$1 folder=$2 data=${SLUICE_TEST_DATA:-$3}/pbrt
+
+rm -rf "$folder"
+mkdir -p "$folder"
+failed=0
+
+complain() {
+    echo "$*" >&2
+    failed=1
+}
+
+refuse() {
+    status=0
+    "$program" --file "$folder/refused.png" "$@" >/dev/null 2>&1 || status=$?
+    [ "$status" -eq 2 ] || complain "not refused: $*"
+}
+refuse
+refuse x.pbrt --no-such-option
+refuse x.pbrt --dim 96
+refuse x.pbrt --bg 1/2
+refuse x.pbrt --bg=-1/0/0
+refuse x.pbrt --render-mode far
+refuse x.pbrt --debug 3
+refuse x.pbrt --preload --budget 1M
+
+render() { # name, scene, options
+    name=$1 scene=$2
+    shift 2
+    status=0
+    "$program" "$scene" --dim 64x48 --json --cache "$folder/cache" --file "$folder/$name.pfm" \
+        --verbose-loading "$@" >"$folder/$name.json" 2>"$folder/$name.log" || status=$?
+}
+
+succeeds() {
+    [ "$status" -eq 0 ] || { complain "$name: status $status"; cat "$folder/$name.log" >&2; }
+    check pixels_missing 'v == 0'
+}
+
+value() { # figure
+    sed -n "s/.*\"$1\", \"value\": \([^,]*\),.*/\1/p" "$folder/$name.json"
+}
+
+# A figure of the last picture must satisfy an awk condition on v.
+check() { # figure, condition
+    awk -v v="$(value "$1")" 'BEGIN { v = v == "" ? "none" : v + 0; exit !(v != "none" && ('"$2"')) }' ||
+        complain "$name: $1 is $(value "$1"), but must satisfy: $2"
+}
+
+says() { # pattern
+    grep -q -e "$1" "$folder/$name.log" || complain "$name: nobody said: $1"
+}
+
+never_says() {
+    ! grep -e "$1" "$folder/$name.log" || complain "$name: was loaded although no ray needs it"
+}
+
+equals() { # name of another picture
+    cmp -s "$folder/$name.pfm" "$folder/$1.pfm" || complain "$name: is not the picture $1"
+}
+
+# Scenes of this test: a cube behind a wall, three meshes that cannot be read, one that is fine.
+write_ply() { # name, third coordinate of the last vertex
+    cat >"$folder/$1" <<END
+ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices
+end_header
+-1 0 -1
+1 0 -1
+0 0 $2
+3 0 1 2
+END
+}
+write_ply good.ply 1
+write_ply nan.ply nan
+head -c 150 "$folder/good.ply" >"$folder/cut.ply"
+cat >"$folder/own.pbrt" <<'END'
+LookAt 0 -5 0  0 0 0  0 0 1
+Camera "perspective" "float fov" 45
+Film "image" "integer xresolution" 64 "integer yresolution" 48
+WorldBegin
+LightSource "distant" "point from" [ 0 -1 1 ]
+Material "matte" "rgb Kd" [ .8 .2 .2 ]
+Shape "plymesh" "string filename" "good.ply"
+Shape "plymesh" "string filename" "nan.ply"
+Shape "plymesh" "string filename" "cut.ply"
+Shape "plymesh" "string filename" "missing.ply"
+AttributeBegin
+Scale 1 0 1
+Shape "sphere"
+AttributeEnd
+Translate 0 4 0
+Shape "sphere" "float radius" .2
+WorldEnd
+END
+
+validation=--validation
+render own "$folder/own.pbrt" $validation
+if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/own.log"; then
+    echo "there are no validation layers: rendering without them" >&2
+    validation=
+    render own "$folder/own.pbrt"
+fi
+[ "$status" -ne 77 ] || { cat "$folder/own.log" >&2; exit 77; }
+succeeds
+for line in 8 9 10 13; do
+    says "own.pbrt:$line:"
+done
+check shapes_placed 'v == 2'
+check geometries_built 'v == 1' # the ball is behind the triangle
+check materials_realized 'v == 1'
+render own-preload "$folder/own.pbrt" --preload
+succeeds
+check launches 'v == 1'
+check geometries_built 'v == 2'
+equals own
+
+# Ends early: says so.
+render early "$folder/own.pbrt" --warmup 0
+[ "$status" -eq 1 ] || complain "an incomplete picture is no error"
+check launches 'v == 1'
+check pixels_missing 'v > 0'
+
+# Without shapes there is the background, without a camera pbrt's own.
+printf 'WorldBegin\nWorldEnd\n' >"$folder/empty.pbrt"
+render empty "$folder/empty.pbrt" --bg 0.5/0.25/1
+succeeds
+says 'no shape can be seen'
+check shapes_placed 'v == 0'
+render broken /dev/null
+[ "$status" -eq 1 ] || complain "a scene that cannot be read is no error"
+
+# A scene's pictures: on demand, everything before, and in two other ways.
+scene() { # name, file, options
+    scene_name=$1 scene_file=$2
+    shift 2
+    render "$scene_name-preload" "$scene_file" --preload "$@"
+    succeeds
+    render "$scene_name" "$scene_file" "$@"
+    succeeds
+    equals "$scene_name-preload"
+}
+
+if [ ! -d "$data/made" ]; then
+    echo "there are no scenes at $data: only those of this test were rendered" >&2
+    exit $failed
+fi
+
+# With one shape a box, with its alpha and its diffuse texture four launches.
+scene cube "$data/optix-toolkit/diffuse-alpha.pbrt" $validation
+check launches 'v <= 5'
+check materials_realized 'v == 1'
+check alphas_realized 'v == 1'
+
+scene leaves "$data/made/alpha/leaf-cards.pbrt"
+never_says never-
+check textures_opened 'v == 6'
+check geometries_built 'v == 6'
+
+scene wall "$data/made/occlusion/wall.pbrt"
+never_says never-
+check shapes_placed 'v == 64'
+check shapes_entered 'v == 4'
+check geometries_built 'v == 4'
+check materials_realized 'v == 2'
+check textures_opened 'v == 1'
+
+scene wood "$data/made/instances/wood.pbrt"
+check shapes_placed 'v == 1676'
+check shapes_entered 'v < 1100'
+render wood-coarse "$data/made/instances/wood.pbrt" --proxy-granularity coarse
+succeeds
+equals wood
+
+scene shapes "$data/made/shapes/shapes.pbrt"
+scene formats "$data/made/textures/formats.pbrt"
+scene stairs "$data/bitterli/veach-mis/scene-v4.pbrt" $validation --render-mode path --samples 2
+render room-near "$data/made/twins/room-v4.pbrt" --render-mode near --oneshot-material
+succeeds
+check materials_realized 'v == 6'
+
+exit $failed
