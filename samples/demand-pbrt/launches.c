@@ -9,6 +9,8 @@
 
 /* Launches in a row that complete no pixel and make nothing: more will not help. */
 #define MOST_VAIN_LAUNCHES 200u
+/* Launches that complete no pixel after which a budget grows. */
+#define STUCK_LAUNCHES 32u
 #define NO_LEVEL UINT32_MAX ///< finer than no level: opens a picture, and loads its mip tail
 
 static bool check(SluiceResult result, const char *what)
@@ -252,7 +254,7 @@ static bool trace_once(struct launches *l, uint32_t sample, SluiceDemandTicket *
 
 static bool trace_sample(struct launches *l, uint32_t sample, uint32_t most)
 {
-    uint32_t vain = 0;
+    uint32_t vain = 0, least = UINT32_MAX, stuck = 0;
     film_begin_sample(l->film);
     while (l->film->missing_count > 0 && l->count < most && vain < MOST_VAIN_LAUNCHES) {
         SluiceDemandTicket ticket;
@@ -263,6 +265,14 @@ static bool trace_sample(struct launches *l, uint32_t sample, uint32_t most)
         if (l->film->missing_count > 0 && (!wait_for(l, ticket, &status) || !serve(l, &made)))
             return false;
         vain = progress || made ? 0 : vain + 1;
+        stuck = l->film->missing_count < least ? 0 : stuck + 1;
+        least = l->film->missing_count < least ? l->film->missing_count : least;
+        if (stuck == STUCK_LAUNCHES && l->world->budget > 0) {
+            l->world->budget *= 2;
+            stuck = 0;
+            text_say("one ray enters more than --budget holds; it is %llu KiB now",
+                     (unsigned long long)(l->world->budget >> 10));
+        }
     }
     if (vain == MOST_VAIN_LAUNCHES)
         fprintf(stderr, "%u launches in a row made nothing\n", vain);

@@ -120,6 +120,7 @@ static bool create_world(struct renderer *r)
     if ((proxies && !proxies_create(r->loader, &r->scene, proxies)) ||
         !world_create(&r->gpu, &r->scene, &r->surfaces, proxies, o->granularity == 1, &r->world))
         return false;
+    r->world.budget = o->budget;
     r->world.meshes.says_what_it_reads = o->verbose_loading;
     r->surfaces.says_what_it_makes = o->verbose_loading;
     return world_begin(&r->world);

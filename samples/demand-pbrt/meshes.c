@@ -183,23 +183,25 @@ bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct struc
         if (mesh->state == MESH_FAILED)
             continue;
         mesh->state = MESH_BUILT;
-        mesh->built_at = launch;
+        mesh->built_at = mesh->used_at = launch;
+        m->size += meshes_size_of(mesh);
         m->built_count++;
     }
     return done;
+}
+
+uint64_t meshes_size_of(const struct mesh *mesh)
+{
+    return mesh->data.size + mesh->structure.storage.size;
 }
 
 void meshes_evict(const struct gpu *gpu, struct structures *structures, struct meshes *m,
                   uint32_t index)
 {
     struct mesh *mesh = &m->items[index];
+    m->size -= meshes_size_of(mesh);
     structures_give(gpu, structures, &mesh->structure);
     arena_give(gpu, &m->data, &mesh->data);
     mesh->state = MESH_ABSENT;
     m->evicted_count++;
-}
-
-uint64_t meshes_size(const struct meshes *m, const struct structures *structures)
-{
-    return m->data.used + structures->arena.used;
 }

@@ -14,6 +14,8 @@ struct mesh {
     uint32_t shape; ///< one of those that have it
     uint32_t triangle_count;
     uint32_t built_at;    ///< launch
+    uint32_t used_at;     ///< last launch that built it or hit it, as far as it was looked up
+    bool leaves;          ///< is being evicted
     uint32_t place_count; ///< shapes in the world that use it now
     struct arena_part data;
     struct structure structure;
@@ -25,6 +27,7 @@ struct meshes {
     uint32_t count;
     uint32_t *of_shape; ///< owned; mesh of each shape
     struct arena data;
+    uint64_t size;      ///< bytes of all meshes on the device
     struct table table; ///< struct PbrtMesh by mesh
     bool says_what_it_reads;
     /* Since the beginning. */
@@ -42,10 +45,10 @@ void meshes_finish(const struct gpu *gpu, struct structures *structures, struct 
  */
 bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct structures *structures,
                   struct meshes *meshes, const uint32_t *which, uint32_t count, uint32_t launch);
+/** Device memory of a mesh. */
+uint64_t meshes_size_of(const struct mesh *mesh);
 /** Makes a mesh absent. No launch is under way. */
 void meshes_evict(const struct gpu *gpu, struct structures *structures, struct meshes *meshes,
                   uint32_t index);
-/** Device memory that meshes take. */
-uint64_t meshes_size(const struct meshes *meshes, const struct structures *structures);
 
 #endif /* DEMAND_PBRT_MESHES_H */

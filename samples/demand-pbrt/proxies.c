@@ -8,11 +8,13 @@
 #include "../../tools/common/log.h"
 #include "../../tools/common/text.h"
 #include "../common/ray_table.h"
+#include "pbrt_shared.h"
 
 /* Boxes are computed from transformed boxes, and triangles are transformed by the device. */
 #define ROUNDING 1.0e-5f
 #define RANK 0u /* before tiles */
 #define RANGE_COUNT 64u
+#define MOST_BOXES (PBRT_PAGE_CAPACITY / 2)
 
 static bool check(SluiceResult result, const char *what)
 {
@@ -35,7 +37,8 @@ static bool create_set(SluiceDemandLoader *loader, SluiceProxyKind kind, uint64_
 
 bool proxies_create(SluiceDemandLoader *loader, const struct scene *scene, struct proxies *p)
 {
-    const uint64_t most_boxes = scene->place_count + scene->node_count + 1;
+    const uint64_t boxes = scene->place_count + scene->node_count + 1;
+    const uint64_t most_boxes = boxes < MOST_BOXES ? boxes : MOST_BOXES;
     const uint32_t surface_count = scene->info.materialCount + scene->info.textureCount;
     *p = (struct proxies){.loader = loader, .changed = true};
     memcpy(p->corner, scene->box.least, sizeof p->corner);

@@ -68,7 +68,8 @@ bool summary_print(const struct summary *s, bool json)
         {"trace_seconds", "s", l->trace_seconds},
         {"complete_seconds", "s", s->complete_seconds},
         {"last_launch_rate", "Mpixel/s", rate},
-        {"geometry_bytes", "B", (double)meshes_size(&w->meshes, &w->structures)},
+        {"geometry_bytes_peak", "B", (double)w->peak_size},
+        {"geometry_bytes", "B", (double)w->meshes.size},
         {"peak_host_bytes", "B", peak_host_bytes()},
         {"peak_device_bytes", "B", (double)l->peak_device},
     };

@@ -178,6 +178,13 @@ check geometries_built 'v == 4'
 check materials_realized 'v == 2'
 check textures_opened 'v == 1'
 
+# Memory for one mesh and a half: those that rays have not hit for longest leave.
+render wall-budget "$data/made/occlusion/wall.pbrt" --budget 100K
+succeeds
+equals wall
+check geometries_evicted 'v > 0'
+check geometry_bytes 'v <= 100 * 1024'
+
 scene wood "$data/made/instances/wood.pbrt"
 check shapes_placed 'v == 1676'
 check shapes_entered 'v < 1100'

@@ -7,6 +7,7 @@
 #include "../../tools/common/clock.h"
 #include "../../tools/common/text.h"
 #include "../common/ray_table.h"
+#include "budget.h"
 #include "transform.h"
 
 #define MOST_PLACES (1u << 24) /* instanceCustomIndex has 24 bits */
@@ -50,6 +51,7 @@ void world_finish(struct world *w)
     table_finish(w->gpu, &w->place_table);
     table_finish(w->gpu, &w->used);
     free(w->places);
+    free(w->free_places);
     free(w->to_build);
     *w = (struct world){0};
 }
@@ -113,7 +115,7 @@ static bool place_shape(struct world *w, struct scene_node node)
     const uint32_t mesh = w->meshes.of_shape[node.shape];
     if (w->meshes.items[mesh].state == MESH_FAILED)
         return true;
-    const uint32_t index = w->place_count;
+    const uint32_t index = w->free_count ? w->free_places[w->free_count - 1] : w->place_count;
     if (index == MOST_PLACES) {
         fprintf(stderr, "more than %u shapes are in sight\n", MOST_PLACES);
         return false;
@@ -125,7 +127,8 @@ static bool place_shape(struct world *w, struct scene_node node)
     float m[12];
     const SluicePbrtShape shape = scene_shape(w->scene, node.shape);
     scene_node_transform(w->scene, node, m);
-    struct place *place = &w->places[w->place_count++];
+    *(w->free_count ? &w->free_count : &w->place_count) += w->free_count ? -1u : 1u;
+    struct place *place = &w->places[index];
     *place = (struct place){.node = node, .mesh = mesh, .live = true};
     const struct PbrtPlace entry = describe(w, &shape, place, transform_determinant(m));
     *(struct PbrtPlace *)table_at(&w->place_table, index) = entry;
@@ -252,13 +255,63 @@ static void remove_failed(struct world *w)
             w->places[i].live && w->meshes.items[w->places[i].mesh].state == MESH_BUILT;
 }
 
+/** Puts a box in the place of a shape whose mesh leaves. */
+static bool take_back(struct world *w, uint32_t index)
+{
+    struct place *place = &w->places[index];
+    const SluicePbrtBounds box = scene_node_box(w->scene, place->node);
+    if (!has_room((void **)&w->free_places, w->free_count, &w->free_room, sizeof(uint32_t)))
+        return false;
+    w->free_places[w->free_count++] = index;
+    w->meshes.items[place->mesh].place_count--;
+    place->live = false;
+    w->changed = true;
+    return proxies_add(w->proxies, place->node, &box);
+}
+
+bool world_evict(struct world *w)
+{
+    for (uint32_t i = 0; i < w->place_count; i++)
+        if (w->places[i].live && w->meshes.items[w->places[i].mesh].leaves && !take_back(w, i))
+            return false;
+    for (uint32_t i = 0; i < w->meshes.count; i++) {
+        struct mesh *mesh = &w->meshes.items[i];
+        if (mesh->leaves && mesh->state == MESH_BUILT)
+            meshes_evict(w->gpu, &w->structures, &w->meshes, i);
+        mesh->leaves = false;
+    }
+    return true;
+}
+
+static bool build_some(struct world *w, uint32_t first, uint32_t count, uint32_t launch)
+{
+    if (!meshes_build(w->gpu, w->scene, &w->structures, &w->meshes, w->to_build + first, count,
+                      launch))
+        return false;
+    w->peak_size = w->meshes.size > w->peak_size ? w->meshes.size : w->peak_size;
+    return true;
+}
+
+/** One after the other, until the budget is spent; the others become boxes again. */
+static bool build_within_budget(struct world *w, uint32_t count, uint32_t launch)
+{
+    bool fits = true;
+    for (uint32_t i = 0; i < count; i++) {
+        struct mesh *mesh = &w->meshes.items[w->to_build[i]];
+        if (fits && (!build_some(w, i, 1, launch) || !budget_make_room(w, launch, &fits)))
+            return false;
+        mesh->leaves = mesh->leaves || mesh->state == MESH_ABSENT;
+    }
+    return world_evict(w);
+}
+
 static bool build_meshes(struct world *w, uint32_t launch)
 {
-    if (w->to_build_count == 0)
-        return true;
     const uint32_t count = w->to_build_count;
+    if (count == 0)
+        return true;
     w->to_build_count = 0;
-    if (!meshes_build(w->gpu, w->scene, &w->structures, &w->meshes, w->to_build, count, launch))
+    if (!(w->budget ? build_within_budget(w, count, launch) : build_some(w, 0, count, launch)))
         return false;
     remove_failed(w);
     return true;

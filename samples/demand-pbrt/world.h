@@ -24,8 +24,11 @@ struct world {
     struct meshes meshes;
     struct proxies *proxies; ///< NULL: everything is placed at once
     bool coarse;
+    uint64_t budget;      ///< bytes of meshes; 0: no limit
     struct place *places; ///< owned
     uint32_t place_count, place_room;
+    uint32_t *free_places; ///< owned; indices that nothing uses
+    uint32_t free_count, free_room;
     uint32_t *to_build; ///< owned; meshes
     uint32_t to_build_count, to_build_room;
     struct table place_table; ///< struct PbrtPlace
@@ -36,6 +39,7 @@ struct world {
     /* Since the beginning. */
     uint64_t entered_count; ///< shapes whose box a ray entered: those that were placed
     uint64_t node_kinds[4]; ///< boxes that were resolved: scene, instances, groups, shapes
+    uint64_t peak_size;     ///< bytes of meshes
     double top_seconds;
 };
 
@@ -48,6 +52,8 @@ void world_finish(struct world *world);
 bool world_begin(struct world *world);
 /** Puts what is in a box into the world. Meshes are built by world_build. */
 bool world_resolve(struct world *world, struct scene_node node);
+/** Boxes for shapes of meshes that leave: they are asked for again when a ray enters them. */
+bool world_evict(struct world *world);
 /** Builds what has changed, for the launch with that number. No launch is under way. */
 bool world_build(struct world *world, uint32_t launch);
 
