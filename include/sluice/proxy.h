@@ -243,8 +243,9 @@ typedef struct SluiceProxyBoxWrite {
  *
  * `*pVersion` is the state of your memory: 0 if it has no boxes yet, otherwise what the last call
  * for this memory returned. Keep a version for each buffer. Boxes are written in groups of 64; more
- * than rangeCapacity runs are joined. Indices without a live proxy get boxes of NaN, which
- * are inactive primitives. `*pRangeCount` is the number of runs: 0 if nothing has changed.
+ * than rangeCapacity runs are joined. Indices without a live proxy get boxes of size 0,
+ * which sluiceIntersectProxyBox never hits. `*pRangeCount` is the number of runs: 0 if nothing has
+ * changed.
  *
  * Errors, with nothing written: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a
  * log message, if the set has materials, the capacity is below indexCount, or rangeCapacity is 0.

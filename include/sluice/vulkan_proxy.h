@@ -59,8 +59,8 @@ typedef struct SluiceProxyGeometry {
  * gl_PrimitiveID is then the index of the proxy. The flag
  * VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR is set, VK_GEOMETRY_OPAQUE_BIT_KHR is not.
  *
- * Build a new structure after proxies were added or removed: updates must not make inactive
- * primitives active. With an empty set primitiveCount is 0.
+ * Build or update the structure after proxies were added or removed. Vulkan allows an update only
+ * if primitiveCount is the same. With an empty set primitiveCount is 0.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize, a set
  *         with materials, or an `address` that is not a multiple of 8. It may be 0 for an empty

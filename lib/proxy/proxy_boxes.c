@@ -5,6 +5,7 @@
 #include "proxy/proxy_set.h"
 
 #include <math.h>
+#include <string.h>
 
 SluiceResult sluiceGetProxyBox(const SluiceProxySet *set, SluiceProxyId proxyId,
                                SluiceProxyBox *pBox)
@@ -53,12 +54,21 @@ static void add_range(const SluiceProxyBoxWrite *write, uint32_t *range_count, u
         write->pRanges[(*range_count)++] = (SluiceProxyRange){first, end - first};
 }
 
+/* A hole is a point, where its box was: drivers need not know of inactive primitives, and
+ * structures may be updated. */
+static SluiceProxyBox box_of(const SluiceProxySet *set, uint32_t index)
+{
+    SluiceProxyBox box = slc_proxy_at(set, index)->is.box;
+    if (!slc_bits_has(&set->live, index))
+        memcpy(box.max, box.min, sizeof box.max);
+    return box;
+}
+
 static void write_range(const SluiceProxySet *set, const SluiceProxyRange *range,
                         SluiceProxyBox *boxes)
 {
-    const SluiceProxyBox inactive = {{NAN, NAN, NAN}, {NAN, NAN, NAN}};
     for (uint32_t i = range->first; i < range->first + range->count; i++)
-        boxes[i] = slc_bits_has(&set->live, i) ? slc_proxy_at(set, i)->is.box : inactive;
+        boxes[i] = box_of(set, i);
 }
 
 SluiceResult sluiceWriteProxyBoxes(const SluiceProxySet *set, const SluiceProxyBoxWrite *pWrite,

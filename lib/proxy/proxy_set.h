@@ -22,6 +22,7 @@ struct slc_proxy {
     union {
         SluiceProxyBox box; ///< live, geometry
         struct {
+            float min[3];       ///< of its box
             uint32_t next;      ///< removed later; SLC_NO_INDEX: none
             uint32_t launch[2]; ///< the last that may name it: low, high; once it is noted
         } removed;

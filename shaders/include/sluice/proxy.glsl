@@ -32,7 +32,7 @@ void sluiceRequestMaterialProxy(uint firstPage, uint proxy)
  * tMin. `face` is the face that it enters through; inside, the face that it leaves through. Faces
  * are 0 to 5: -x, +x, -y, +y, -z, +z.
  *
- * Rounding never makes a ray miss a box that it hits; a box may seem larger by 1e-6 of the
+ * A box of size 0 is never hit. Rounding never makes a ray miss a box that it hits; a box may seem larger by 1e-6 of the
  * distance. `direction` need not have length 1 and may have components of 0.
  */
 bool sluiceIntersectProxyBox(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 direction, float tMin,
@@ -41,7 +41,7 @@ bool sluiceIntersectProxyBox(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 directi
     const float LARGEST = 3.4e38;
     float enter = -LARGEST, leave = LARGEST;
     uint enterFace = 0u, leaveFace = 0u;
-    bool hit = true;
+    bool hit = all(lessThan(boxMin, boxMax)); /* removed proxies have boxes of size 0 */
     for (int axis = 0; axis < 3; axis++) {
         float toMin = boxMin[axis] - origin[axis], toMax = boxMax[axis] - origin[axis];
         if (abs(direction[axis]) < 1e-37) { /* parallel: inside of the slab, or never */
