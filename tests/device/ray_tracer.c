@@ -13,118 +13,11 @@
     (VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR |                               \
      VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR)
 
-const char *const ray_tracer_extensions[RAY_TRACER_EXTENSION_COUNT] = {
-    VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
-    VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
-
-void *ray_tracer_features(void)
-{
-    static VkPhysicalDeviceRayTracingPipelineFeaturesKHR pipeline;
-    static VkPhysicalDeviceAccelerationStructureFeaturesKHR structure;
-    pipeline = (VkPhysicalDeviceRayTracingPipelineFeaturesKHR){
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR,
-        .pNext = &structure,
-        .rayTracingPipeline = VK_TRUE};
-    structure = (VkPhysicalDeviceAccelerationStructureFeaturesKHR){
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR,
-        .accelerationStructure = VK_TRUE};
-    return &pipeline;
-}
-
-static void buffer_init(struct ray_tracer *r, struct ray_buffer *buffer, uint64_t size,
-                        VkBufferUsageFlags usage)
-{
-    struct harness *h = r->h;
-    VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                               .size = size,
-                               .usage = usage | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT};
-    assert_int_equal(h->CreateBuffer(h->device, &info, NULL, &buffer->buffer), VK_SUCCESS);
-    VkMemoryRequirements memory;
-    h->GetBufferMemoryRequirements(h->device, buffer->buffer, &memory);
-    VkMemoryAllocateFlagsInfo flags = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
-                                       .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
-    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                     .pNext = &flags,
-                                     .allocationSize = memory.size};
-    const VkMemoryPropertyFlags wanted =
-        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    while (!(memory.memoryTypeBits >> allocate.memoryTypeIndex & 1) ||
-           (h->memory.memoryTypes[allocate.memoryTypeIndex].propertyFlags & wanted) != wanted)
-        assert_true(++allocate.memoryTypeIndex < h->memory.memoryTypeCount);
-    assert_int_equal(h->AllocateMemory(h->device, &allocate, NULL, &buffer->memory), VK_SUCCESS);
-    assert_int_equal(h->BindBufferMemory(h->device, buffer->buffer, buffer->memory, 0), VK_SUCCESS);
-    assert_int_equal(h->MapMemory(h->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->mapped),
-                     VK_SUCCESS);
-    VkBufferDeviceAddressInfo address = {.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
-                                         .buffer = buffer->buffer};
-    buffer->address = r->GetBufferDeviceAddress(h->device, &address);
-}
-
-static void buffer_finish(struct ray_tracer *r, struct ray_buffer *buffer)
-{
-    r->h->DestroyBuffer(r->h->device, buffer->buffer, NULL);
-    r->h->FreeMemory(r->h->device, buffer->memory, NULL);
-}
-
-struct build {
-    struct ray_tracer *r;
-    VkAccelerationStructureBuildGeometryInfoKHR info;
-    VkAccelerationStructureBuildRangeInfoKHR range;
-};
-
-static void record_build(void *user, VkCommandBuffer commands)
-{
-    struct build *build = user;
-    const VkAccelerationStructureBuildRangeInfoKHR *range = &build->range;
-    build->r->CmdBuildAccelerationStructuresKHR(commands, 1, &build->info, &range);
-}
-
-static void build_structure(struct ray_tracer *r, struct ray_structure *structure,
-                            VkAccelerationStructureTypeKHR type,
-                            const VkAccelerationStructureGeometryKHR *geometry, uint32_t count)
-{
-    struct build build = {
-        r,
-        {.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR,
-         .type = type,
-         .mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR,
-         .geometryCount = 1,
-         .pGeometries = geometry},
-        {.primitiveCount = count}};
-    VkAccelerationStructureBuildSizesInfoKHR sizes = {
-        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR};
-    r->GetAccelerationStructureBuildSizesKHR(
-        r->h->device, VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &build.info, &count, &sizes);
-    buffer_init(r, &structure->storage, sizes.accelerationStructureSize,
-                VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR);
-    buffer_init(r, &structure->scratch, sizes.buildScratchSize + 256,
-                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    VkAccelerationStructureCreateInfoKHR info = {
-        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR,
-        .buffer = structure->storage.buffer,
-        .size = sizes.accelerationStructureSize,
-        .type = type};
-    assert_int_equal(
-        r->CreateAccelerationStructureKHR(r->h->device, &info, NULL, &structure->handle),
-        VK_SUCCESS);
-    build.info.dstAccelerationStructure = structure->handle;
-    /* as aligned as any device asks for */
-    build.info.scratchData.deviceAddress = (structure->scratch.address + 255) & ~(uint64_t)255;
-    harness_run(r->h, record_build, &build);
-}
-
-static void structure_finish(struct ray_tracer *r, struct ray_structure *structure)
-{
-    r->DestroyAccelerationStructureKHR(r->h->device, structure->handle, NULL);
-    buffer_finish(r, &structure->storage);
-    buffer_finish(r, &structure->scratch);
-}
-
 static void build_floor(struct ray_tracer *r)
 {
     const float corners[6][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-    buffer_init(r, &r->vertices, sizeof corners,
-                VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR);
+    ray_buffer_init(&r->device, &r->vertices, sizeof corners,
+                    VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR);
     memcpy(r->vertices.mapped, corners, sizeof corners);
     VkAccelerationStructureGeometryKHR geometry = {
         .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
@@ -137,7 +30,8 @@ static void build_floor(struct ray_tracer *r)
             .vertexStride = sizeof corners[0],
             .maxVertex = 5,
             .indexType = VK_INDEX_TYPE_NONE_KHR}};
-    build_structure(r, &r->floor, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, &geometry, 2);
+    ray_structure_build(&r->device, &r->floor, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
+                        &geometry, 2);
 }
 
 static void build_scene(struct ray_tracer *r)
@@ -150,9 +44,9 @@ static void build_scene(struct ray_tracer *r)
         .mask = 0xFF,
         .flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR,
         .accelerationStructureReference =
-            r->GetAccelerationStructureDeviceAddressKHR(r->h->device, &address)};
-    buffer_init(r, &r->instances, sizeof instance,
-                VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR);
+            r->device.GetAccelerationStructureDeviceAddressKHR(r->h->device, &address)};
+    ray_buffer_init(&r->device, &r->instances, sizeof instance,
+                    VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR);
     memcpy(r->instances.mapped, &instance, sizeof instance);
     VkAccelerationStructureGeometryKHR geometry = {
         .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
@@ -161,7 +55,8 @@ static void build_scene(struct ray_tracer *r)
         .geometry.instances = {
             .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR,
             .data.deviceAddress = r->instances.address}};
-    build_structure(r, &r->scene, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, &geometry, 1);
+    ray_structure_build(&r->device, &r->scene, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR,
+                        &geometry, 1);
 }
 
 static void create_layouts(struct ray_tracer *r)
@@ -229,8 +124,8 @@ static void create_pipeline(struct ray_tracer *r)
         .pGroups = groups,
         .maxPipelineRayRecursionDepth = 1,
         .layout = r->layout};
-    assert_int_equal(r->CreateRayTracingPipelinesKHR(h->device, VK_NULL_HANDLE, VK_NULL_HANDLE, 1,
-                                                     &info, NULL, &r->pipeline),
+    assert_int_equal(r->device.CreateRayTracingPipelinesKHR(
+                         h->device, VK_NULL_HANDLE, VK_NULL_HANDLE, 1, &info, NULL, &r->pipeline),
                      VK_SUCCESS);
     for (uint32_t i = 0; i < 3; i++)
         h->DestroyShaderModule(h->device, stages[i].module, NULL);
@@ -240,10 +135,10 @@ static void create_pipeline(struct ray_tracer *r)
 static void create_groups(struct ray_tracer *r)
 {
     uint8_t handles[3][32];
-    assert_int_equal(r->GetRayTracingShaderGroupHandlesKHR(r->h->device, r->pipeline, 0, 3,
-                                                           sizeof handles, handles),
+    assert_int_equal(r->device.GetRayTracingShaderGroupHandlesKHR(r->h->device, r->pipeline, 0, 3,
+                                                                  sizeof handles, handles),
                      VK_SUCCESS);
-    buffer_init(r, &r->shaders, 4 * 64, VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR);
+    ray_buffer_init(&r->device, &r->shaders, 4 * 64, VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR);
     VkDeviceAddress first = (r->shaders.address + 63) & ~(VkDeviceAddress)63;
     for (uint32_t i = 0; i < 3; i++) {
         r->groups[i] = (VkStridedDeviceAddressRegionKHR){first + i * 64, 64, 64};
@@ -296,11 +191,7 @@ static void create_set(struct ray_tracer *r)
 void ray_tracer_init(struct ray_tracer *r, struct harness *h, struct writer *writer)
 {
     *r = (struct ray_tracer){.h = h, .writer = writer};
-#define LOAD(name)                                                                                 \
-    r->name = (PFN_vk##name)h->GetDeviceProcAddr(h->device, "vk" #name);                           \
-    assert_true(r->name != NULL);
-    RAY_TRACER_FUNCTIONS(LOAD)
-#undef LOAD
+    ray_device_init(&r->device, h);
     build_floor(r);
     build_scene(r);
     create_layouts(r);
@@ -317,11 +208,11 @@ void ray_tracer_finish(struct ray_tracer *r)
     h->DestroyPipeline(h->device, r->pipeline, NULL);
     h->DestroyPipelineLayout(h->device, r->layout, NULL);
     h->DestroyDescriptorSetLayout(h->device, r->set_layout, NULL);
-    structure_finish(r, &r->scene);
-    structure_finish(r, &r->floor);
-    buffer_finish(r, &r->shaders);
-    buffer_finish(r, &r->instances);
-    buffer_finish(r, &r->vertices);
+    ray_structure_finish(&r->device, &r->scene);
+    ray_structure_finish(&r->device, &r->floor);
+    ray_buffer_finish(&r->device, &r->shaders);
+    ray_buffer_finish(&r->device, &r->instances);
+    ray_buffer_finish(&r->device, &r->vertices);
 }
 
 void ray_tracer_record(void *user, VkCommandBuffer commands)
@@ -333,6 +224,6 @@ void ray_tracer_record(void *user, VkCommandBuffer commands)
     r->h->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, r->layout, 0, 1,
                                 &r->set, 0, NULL);
     r->h->CmdPushConstants(commands, r->layout, STAGES, 0, sizeof params, &params);
-    r->CmdTraceRaysKHR(commands, &r->groups[0], &r->groups[1], &r->groups[2], &none, params.count,
-                       1, 1);
+    r->device.CmdTraceRaysKHR(commands, &r->groups[0], &r->groups[1], &r->groups[2], &none,
+                              params.count, 1, 1);
 }

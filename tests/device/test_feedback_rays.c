@@ -129,8 +129,8 @@ static void what_rays_hit_becomes_resident(void **state)
 int main(void)
 {
     struct harness h;
-    int status = harness_init_with(&h, ray_tracer_extensions, RAY_TRACER_EXTENSION_COUNT,
-                                   ray_tracer_features());
+    int status = harness_init_with(&h, ray_device_extensions, RAY_DEVICE_EXTENSION_COUNT,
+                                   ray_device_features());
     if (status)
         return status;
     struct CMUnitTest tests[] = {
