@@ -1,0 +1,14 @@
+/* The nearest box. */
+#version 460
+#extension GL_EXT_ray_tracing : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "proxy_rays.glsl"
+
+layout(location = 0) rayPayloadInEXT ProxyHit payload;
+
+void main()
+{
+    sluiceRequestGeometryProxy(params.firstGeometry, uint(gl_PrimitiveID));
+    payload = hitOf(gl_HitTEXT, uint(gl_PrimitiveID), gl_HitKindEXT);
+}
