@@ -3,8 +3,11 @@
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "proxy/proxy_set.h"
 
 #include <sluice/vulkan_proxy.h>
+
+#include <inttypes.h>
 
 #define BATCH 256u
 
@@ -79,13 +82,18 @@ SluiceResult sluiceGetProxyGeometry(const SluiceProxySet *set, VkDeviceAddress a
     SluiceProxySetInfo info;
     if (!set || !pGeometry)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceProxyGeometry), pGeometry, NULL);
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceProxyGeometry), pGeometry, &set->log);
     if (result == SLUICE_SUCCESS)
         result = get_set_info(set, &info);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (info.kind != SLUICE_PROXY_KIND_GEOMETRY || address % 8 || (info.indexCount && !address))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (info.kind != SLUICE_PROXY_KIND_GEOMETRY)
+        return slc_log_refusal(&set->log, "%s: proxies of materials have no boxes", __func__);
+    if (address % 8 || (info.indexCount && !address))
+        return slc_log_refusal(&set->log,
+                               "address is 0x%" PRIx64 " for %u boxes: it must be a multiple of 8, "
+                               "and not 0",
+                               address, info.indexCount);
     const SluiceProxyGeometry geometry = {
         .structSize = sizeof geometry,
         .geometry = {.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
