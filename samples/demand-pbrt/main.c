@@ -18,6 +18,7 @@
 #include "camera.h"
 #include "lights.h"
 #include "picture_output.h"
+#include "statistics.h"
 #include "summary.h"
 
 #define EXIT_USAGE 2
@@ -240,6 +241,8 @@ static bool write_files(struct renderer *r)
     if (!film_read(&r->gpu, &r->film, &r->picture) ||
         !picture_output_write(&r->picture, o->exposure, o->file) ||
         (o->contact_sheet && !contact_sheet_write(&r->sheet, o->contact_sheet)))
+        return false;
+    if (o->statistics && !statistics_write(&r->launches, o->scene, o->statistics))
         return false;
     if (o->json)
         gpu_print_json(&r->gpu);

@@ -155,6 +155,8 @@ static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct m
         build->target = &mesh->structure;
         mesh->triangle_count = read.triangleCount;
         m->triangle_count += read.triangleCount;
+        m->normal_count += read.pNormals ? read.vertexCount : 0;
+        m->uv_count += read.pUvs ? read.vertexCount : 0;
         m->bytes_read += read.bytesRead;
     } else {
         fail(m, mesh); /* the library has said why, or the arena */

@@ -32,6 +32,7 @@ struct meshes {
     bool says_what_it_reads;
     /* Since the beginning. */
     uint64_t built_count, evicted_count, triangle_count, bytes_read, failed_count;
+    uint64_t normal_count, uv_count;
     double read_seconds, build_seconds;
 };
 

@@ -11,8 +11,5 @@ struct summary {
 
 /** Prints a line for each figure, as JSON or for people. */
 bool summary_print(const struct summary *summary, bool json);
-/** Writes counts under the names of the OptiX Toolkit's DemandPbrtScene. Says on stderr why it
- *  failed. */
-bool summary_write_statistics(const struct summary *summary, const char *path);
 
 #endif /* DEMAND_PBRT_SUMMARY_H */

@@ -192,6 +192,14 @@ render wood-coarse "$data/made/instances/wood.pbrt" --proxy-granularity coarse
 succeeds
 equals wood
 
+# One line for each shape in the world, and counts under the names of the OptiX Toolkit.
+render wood-files "$data/made/instances/wood.pbrt" --dump "$folder/wood.txt" --statistics "$folder/wood.json.txt"
+[ "$(wc -l <"$folder/wood.txt")" -eq 1676 ] || complain "$name: the dump has $(wc -l <"$folder/wood.txt") lines"
+for key in numFramesRendered geometryCache numTriangles proxyFactory numInstanceShapeProxiesCreated numMaterialsRealized \
+    numObjectInstances; do
+    grep -q "\"$key\":" "$folder/wood.json.txt" || complain "$name: no $key"
+done
+
 scene shapes "$data/made/shapes/shapes.pbrt"
 scene formats "$data/made/textures/formats.pbrt"
 scene stairs "$data/bitterli/veach-mis/scene-v4.pbrt" $validation --render-mode path --samples 2

@@ -28,20 +28,33 @@ static SluiceResult wait_for_bake(SluiceImageSource *source, SluiceImageFileKind
     }
 }
 
-/* On a thread of the loader. */
-static SluiceResult open_image(void *user_data, SluiceImageSource **source)
+static SluiceResult open_source(struct picture_image *image, SluiceImageSource **source,
+                                SluiceImageInfo *info)
 {
-    struct picture_image *image = user_data;
-    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceResult result = sluiceOpenImageSource(image->opener, image->path, source);
     if (result != SLUICE_SUCCESS)
         return result;
     result = wait_for_bake(*source, &image->kind);
     if (result == SLUICE_SUCCESS)
-        result = sluiceGetImageInfo(*source, &info);
+        result = sluiceGetImageInfo(*source, info);
+    if (result == SLUICE_SUCCESS)
+        return result;
+    sluiceDestroyImageSource(*source);
+    *source = NULL;
+    return result;
+}
+
+/* On a thread of the loader, and never twice at a time. */
+static SluiceResult open_image(void *user_data, SluiceImageSource **source)
+{
+    struct picture_image *image = user_data;
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceResult result = open_source(image, source, &info);
     if (result != SLUICE_SUCCESS) {
-        sluiceDestroyImageSource(*source);
-        *source = NULL;
+        if (result != SLUICE_NOT_READY && !image->has_failed)
+            text_say("%s:%u: %s: cannot be read: %s; the texture becomes gray", image->file,
+                     image->line, image->path, sluiceGetResultName(result));
+        image->has_failed = image->has_failed || result != SLUICE_NOT_READY;
         return result;
     }
     if (image->says_what_it_reads)
@@ -112,8 +125,9 @@ static SluiceDemandSampler make_sampler(const struct picture_use *use)
                                  .explicitAddressModes = true};
 }
 
-static struct picture_image *find_image(struct textures *t, const char *path)
+static struct picture_image *find_image(struct textures *t, const SluicePbrtTexture *texture)
 {
+    const char *path = texture->pImagePath;
     for (uint32_t i = 0; i < t->image_count; i++)
         if (strcmp(t->images[i]->path, path) == 0)
             return t->images[i];
@@ -124,8 +138,11 @@ static struct picture_image *find_image(struct textures *t, const char *path)
         free(image);
         return NULL;
     }
-    *image = (struct picture_image){
-        .path = path, .opener = t->opener, .says_what_it_reads = t->says_what_it_reads};
+    *image = (struct picture_image){.path = path,
+                                    .file = texture->pFile,
+                                    .line = texture->line,
+                                    .opener = t->opener,
+                                    .says_what_it_reads = t->says_what_it_reads};
     t->images[t->image_count++] = image;
     return image;
 }
@@ -156,7 +173,7 @@ const struct picture_use *textures_find(struct textures *t, const SluicePbrtText
 {
     const bool isotropic = texture->filter == SLUICE_PBRT_FILTER_TRILINEAR ||
                            texture->filter == SLUICE_PBRT_FILTER_POINT;
-    struct picture_use use = {.image = find_image(t, texture->pImagePath),
+    struct picture_use use = {.image = find_image(t, texture),
                               .wrap = texture->wrap,
                               .nearest = texture->filter == SLUICE_PBRT_FILTER_POINT,
                               .anisotropy = isotropic ? 1.0f : t->max_anisotropy};

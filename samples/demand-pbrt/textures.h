@@ -11,6 +11,9 @@
 /** A picture file. */
 struct picture_image {
     const char *path; ///< of the scene
+    const char *file; ///< text that names it first
+    uint32_t line;
+    bool has_failed; ///< which stderr has said
     SluiceImageOpener *opener;
     SluiceDemandTextureId id; ///< with the sampler that came first
     SluiceImageInfo info;     ///< known once it was opened: width is not 0 then

@@ -15,13 +15,13 @@
 /* Of scene_node.shape: all shapes of the instance that are alike, this one being the first. */
 #define GROUP (1u << 31)
 
-enum { KIND_SCENE, KIND_INSTANCE, KIND_GROUP, KIND_SHAPE };
-
-static int node_kind(struct scene_node node)
+static enum world_box node_kind(struct scene_node node)
 {
     if (node.shape == SLUICE_PBRT_NONE)
-        return node.instance == SLUICE_PBRT_NONE ? KIND_SCENE : KIND_INSTANCE;
-    return node.shape & GROUP ? KIND_GROUP : KIND_SHAPE;
+        return node.instance == SLUICE_PBRT_NONE ? BOX_SCENE : BOX_INSTANCE;
+    if (node.instance == SLUICE_PBRT_NONE)
+        return BOX_FREE_SHAPE;
+    return node.shape & GROUP ? BOX_GROUP : BOX_INSTANCE_SHAPE;
 }
 
 bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfaces *surfaces,
@@ -170,7 +170,10 @@ static uint32_t next_shape(const struct world *w, const SluicePbrtObject *object
 
 static bool add_box(struct world *w, struct scene_node node, const SluicePbrtBounds *box)
 {
-    return w->proxies ? proxies_add(w->proxies, node, box) : world_resolve(w, node);
+    if (!w->proxies)
+        return world_resolve(w, node);
+    w->created[node_kind(node)]++;
+    return proxies_add(w->proxies, node, box);
 }
 
 static bool add_group(struct world *w, uint32_t instance, const SluicePbrtObject *object,
@@ -226,12 +229,11 @@ static bool add_node(void *user_data, struct scene_node node)
 
 bool world_resolve(struct world *w, struct scene_node node)
 {
-    const int kind = node_kind(node);
-    w->node_kinds[kind]++;
-    switch (kind) {
-    case KIND_SCENE: return scene_for_each(w->scene, add_node, w);
-    case KIND_INSTANCE: return resolve_instance(w, node.instance);
-    case KIND_GROUP: return resolve_group(w, node);
+    w->resolved_count++;
+    switch (node_kind(node)) {
+    case BOX_SCENE: return scene_for_each(w->scene, add_node, w);
+    case BOX_INSTANCE: return resolve_instance(w, node.instance);
+    case BOX_GROUP: return resolve_group(w, node);
     default: return place_shape(w, node);
     }
 }

@@ -7,6 +7,9 @@
 #include "proxies.h"
 #include "surfaces.h"
 
+enum world_box { BOX_SCENE, BOX_FREE_SHAPE, BOX_INSTANCE, BOX_INSTANCE_SHAPE, BOX_GROUP };
+#define WORLD_BOX_KINDS 5
+
 /** A shape in the world. */
 struct place {
     struct scene_node node;
@@ -37,9 +40,10 @@ struct world {
     struct gpu_buffer instances;
     bool changed; ///< since the top level was built
     /* Since the beginning. */
-    uint64_t entered_count; ///< shapes whose box a ray entered: those that were placed
-    uint64_t node_kinds[4]; ///< boxes that were resolved: scene, instances, groups, shapes
-    uint64_t peak_size;     ///< bytes of meshes
+    uint64_t entered_count;  ///< shapes whose box a ray entered: those that were placed
+    uint64_t resolved_count; ///< boxes that became what is in them
+    uint64_t created[WORLD_BOX_KINDS];
+    uint64_t peak_size; ///< bytes of meshes
     double top_seconds;
 };
 
