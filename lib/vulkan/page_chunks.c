@@ -252,8 +252,8 @@ static uint32_t find_layer(const struct slc_page_chunk *chunk,
     return head;
 }
 
-static uint32_t count_layers(const struct slc_page_chunk *chunk,
-                             const struct slc_page_timelines *timelines, uint32_t user)
+uint32_t slc_page_chunk_free_count(const struct slc_page_chunk *chunk,
+                                   const struct slc_page_timelines *timelines, uint32_t user)
 {
     uint32_t head = chunk->layer_count, count = 0;
     if (timelines->user_count <= 1)
@@ -277,7 +277,7 @@ uint32_t slc_page_chunks_free_count(const struct slc_page_chunks *chunks,
     uint32_t count = 0;
     for (uint32_t i = 0; i < chunks->count; i++)
         if (has_format(&chunks->at[i], format))
-            count += count_layers(&chunks->at[i], timelines, user);
+            count += slc_page_chunk_free_count(&chunks->at[i], timelines, user);
     return count;
 }
 
@@ -323,10 +323,7 @@ void slc_page_chunks_take(struct slc_page_chunks *chunks, uint32_t page, uint32_
     struct slc_page_layer *taken = slc_page_layer(chunks, page);
     chunk->layers[taken->previous].next = taken->next;
     chunk->layers[taken->next].previous = taken->previous;
-    taken->owner = SLC_NO_OWNER; /* its texels cannot be restored any more */
-    taken->user = (uint8_t)user;
-    taken->held = true;
-    taken->shared = 0;
+    *taken = (struct slc_page_layer){.owner = SLC_NO_OWNER, .user = (uint8_t)user, .held = true};
     chunk->free_count--;
 }
 
@@ -352,7 +349,8 @@ void slc_page_chunks_free(struct slc_page_chunks *chunks, uint32_t page, uint32_
                                             .next = head,
                                             .owner = owner,
                                             .value = value,
-                                            .user = (uint8_t)user};
+                                            .user = (uint8_t)user,
+                                            .moved = layers[layer].moved};
     layers[layers[head].previous].next = layer;
     layers[head].previous = layer;
     chunk->free_count++;
@@ -413,7 +411,8 @@ static void abandon_chunk(struct slc_page_chunk *chunk, uint32_t user, uint64_t 
     if (chunk->retire_values[user] > last)
         chunk->retire_values[user] = last;
     for (uint32_t i = 0; i < chunk->layer_count; i++)
-        if (chunk->layers[i].user == user && chunk->layers[i].value > last)
+        if (!chunk->layers[i].held && chunk->layers[i].user == user &&
+            chunk->layers[i].value > last)
             chunk->layers[i].value = last;
     if (chunk->state == SLC_CHUNK_LIVE && chunk->maker == user && chunk->layout_frame >= frame) {
         chunk->fresh = true;

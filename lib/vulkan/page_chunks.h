@@ -28,9 +28,11 @@ enum slc_page_chunk_state {
 struct slc_page_layer {
     uint16_t previous, next; ///< free: in the ring
     uint32_t owner;          ///< free: owner of its texels; SLC_NO_OWNER: none
-    uint64_t value;          ///< free: the last frame of `user` that could read it; 0: none could
-    uint8_t user;            ///< user that holds it, or gave it back
+    uint64_t value; ///< free: the last frame of `user` that could read it; held: the last frame
+                    ///< that copies its texels; 0: none
+    uint8_t user;   ///< user that holds it, or gave it back
     bool held;
+    bool moved;      ///< a move made its texels, unless it was taken again since
     uint32_t shared; ///< held: 1 + the index of its entry in the directory; 0: it has none
 };
 
@@ -105,6 +107,9 @@ bool slc_page_chunks_is_refused(const struct slc_page_chunks *chunks, uint64_t t
 /** A new chunk belongs to its maker until its layout transition is complete. */
 bool slc_page_chunk_is_ready(const struct slc_page_chunk *chunk,
                              const struct slc_page_timelines *timelines, uint32_t user);
+/** Free pages of the chunk that the user may write to now. */
+uint32_t slc_page_chunk_free_count(const struct slc_page_chunk *chunk,
+                                   const struct slc_page_timelines *timelines, uint32_t user);
 /** Free pages of the format that the user may write to now. */
 uint32_t slc_page_chunks_free_count(const struct slc_page_chunks *chunks,
                                     const struct slc_page_timelines *timelines, uint32_t user,

@@ -5,7 +5,6 @@
 
 #include <sluice/shared/texture_table.h>
 
-
 /* Counts the user's tiles on the page; 0 if another user holds it. */
 static uint32_t count_tiles(const struct slc_page_pool *pool, const struct slc_page_layer *layer,
                             uint32_t user)
@@ -16,10 +15,9 @@ static uint32_t count_tiles(const struct slc_page_pool *pool, const struct slc_p
     return tile->users == 1u << user ? tile->holds[user] : 0;
 }
 
-/* Number of tiles on the pages of the chunk; SLC_NONE if another user holds any of them, or if a
- * page has more than `most` tiles. */
+/* Number of tiles on the pages of the chunk; SLC_NONE if another user holds any of them. */
 static uint32_t count_own(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk,
-                          uint32_t user, uint32_t most)
+                          uint32_t user)
 {
     uint32_t count = 0;
     for (uint32_t i = 0; i < chunk->layer_count; i++) {
@@ -27,29 +25,63 @@ static uint32_t count_own(const struct slc_page_pool *pool, const struct slc_pag
         if (!layer->held)
             continue;
         uint32_t tiles = count_tiles(pool, layer, user);
-        if (tiles == 0 || tiles > most)
+        if (tiles == 0)
             return SLC_NONE;
         count += tiles;
     }
     return count;
 }
 
-/* The chunk with the fewest pages of those that the user alone holds, with at most `most` tiles on
- * each page. */
-static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user, uint32_t most)
+/* What it costs to empty a chunk, and how much it gives, in pages. */
+struct candidate {
+    uint32_t index;
+    uint32_t held;    ///< pages whose tiles move
+    uint32_t lacking; ///< tiles that must be evicted, because others of the format have no room
+    uint32_t useful;  ///< pages of memory, without more than has to be freed
+};
+
+/* Few evictions for much memory. Small chunks that are emptied first leave a large one in the end,
+ * which is too large to stay: of equal ones the larger comes first. */
+static bool is_better(const struct candidate *a, const struct candidate *b)
 {
-    uint32_t best = SLC_NONE, fewest = SLC_NONE;
+    int64_t cost_a = (int64_t)a->lacking - a->useful, cost_b = (int64_t)b->lacking - b->useful;
+    if (cost_a != cost_b)
+        return cost_a < cost_b;
+    return a->useful != b->useful ? a->useful > b->useful : a->held < b->held;
+}
+
+static bool can_leave(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk,
+                      uint32_t user)
+{
+    return chunk->state == SLC_CHUNK_LIVE && !chunk->fresh &&
+           chunk->free_count < chunk->layer_count &&
+           slc_page_chunk_is_ready(chunk, &pool->timelines, user) &&
+           count_own(pool, chunk, user) != SLC_NONE;
+}
+
+/* The best chunk of those that the user alone holds. `needed`: pages of memory that must go. */
+static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user, uint64_t needed)
+{
+    uint32_t free_of[SLC_PAGE_FORMATS] = {0};
+    struct candidate best = {.index = SLC_NONE};
+    for (uint32_t i = 0; i < pool->chunks.count; i++)
+        if (pool->chunks.at[i].state == SLC_CHUNK_LIVE)
+            free_of[pool->chunks.at[i].format] +=
+                slc_page_chunk_free_count(&pool->chunks.at[i], &pool->timelines, user);
     for (uint32_t i = 0; i < pool->chunks.count; i++) {
         const struct slc_page_chunk *chunk = &pool->chunks.at[i];
-        uint32_t held = chunk->layer_count - chunk->free_count;
-        if (chunk->state != SLC_CHUNK_LIVE || chunk->fresh || held == 0 || held >= fewest ||
-            !slc_page_chunk_is_ready(chunk, &pool->timelines, user) ||
-            count_own(pool, chunk, user, most) == SLC_NONE)
+        if (!can_leave(pool, chunk, user))
             continue;
-        best = i;
-        fewest = held;
+        uint32_t room =
+            free_of[chunk->format] - slc_page_chunk_free_count(chunk, &pool->timelines, user);
+        struct candidate c = {.index = i,
+                              .held = chunk->layer_count - chunk->free_count,
+                              .useful = (uint32_t)slc_min_u64(needed, chunk->layer_count)};
+        c.lacking = c.held > room ? c.held - room : 0;
+        if (best.index == SLC_NONE || is_better(&c, &best))
+            best = c;
     }
-    return best;
+    return best.index;
 }
 
 void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user)
@@ -72,31 +104,32 @@ uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32
 {
     pthread_mutex_lock(&pool->mutex);
     const struct slc_page_chunk *c = &pool->chunks.at[chunk];
-    uint32_t held = c->state == SLC_CHUNK_LIVE ? count_own(pool, c, user, UINT32_MAX) : 0;
+    uint32_t held = c->state == SLC_CHUNK_LIVE ? count_own(pool, c, user) : 0;
     pthread_mutex_unlock(&pool->mutex);
     return held;
 }
 
 /* One front end at a time empties a chunk. */
-static void choose_leaving(struct slc_page_pool *pool, uint32_t user)
+static void choose_leaving(struct slc_page_pool *pool, uint32_t user, uint64_t size)
 {
     if (pool->leaving != SLC_NONE && pool->leaving_user == user &&
-        count_own(pool, &pool->chunks.at[pool->leaving], user, 1) == SLC_NONE)
+        count_own(pool, &pool->chunks.at[pool->leaving], user) == SLC_NONE)
         slc_page_pool_stay_locked(pool);
     if (pool->leaving != SLC_NONE)
         return;
-    pool->leaving = find_leaving(pool, user, 1);
+    pool->leaving = find_leaving(pool, user, size / SLC_TILE_SIZE + (size % SLC_TILE_SIZE > 0));
     pool->leaving_user = user;
     if (pool->leaving != SLC_NONE)
         pool->chunks.at[pool->leaving].leaving = true;
 }
 
-uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user, uint32_t *held)
+uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user, uint64_t size,
+                                      uint32_t *held)
 {
     uint32_t lacking = SLC_NONE;
     *held = 0;
     pthread_mutex_lock(&pool->mutex);
-    choose_leaving(pool, user);
+    choose_leaving(pool, user, size);
     if (pool->leaving != SLC_NONE && pool->leaving_user == user) {
         const struct slc_page_chunk *chunk = &pool->chunks.at[pool->leaving];
         uint32_t room =
@@ -108,22 +141,13 @@ uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user,
     return lacking;
 }
 
-bool slc_page_pool_has_unmovable(struct slc_page_pool *pool, uint32_t user)
-{
-    pthread_mutex_lock(&pool->mutex);
-    bool has = pool->leaving == SLC_NONE && find_leaving(pool, user, UINT32_MAX) != SLC_NONE;
-    pthread_mutex_unlock(&pool->mutex);
-    return has;
-}
-
 /* Bytes beyond the user's own limit, of chunks that nobody else has pages in. */
 static uint64_t own_excess(const struct slc_page_pool *pool, uint32_t user)
 {
     uint64_t size = 0, limit = pool->users[user].max_size;
     for (uint32_t i = 0; i < pool->chunks.count; i++) {
         const struct slc_page_chunk *chunk = &pool->chunks.at[i];
-        uint32_t own =
-            chunk->state == SLC_CHUNK_LIVE ? count_own(pool, chunk, user, UINT32_MAX) : 0;
+        uint32_t own = chunk->state == SLC_CHUNK_LIVE ? count_own(pool, chunk, user) : 0;
         if (own != 0 && own != SLC_NONE)
             size += (uint64_t)chunk->layer_count * SLC_TILE_SIZE;
     }
@@ -162,7 +186,15 @@ uint64_t slc_page_pool_going_size(struct slc_page_pool *pool)
     return pages * SLC_TILE_SIZE;
 }
 
-/* Moves the tile's entry in the directory to the new page. */
+uint32_t slc_page_pool_tiles_on(struct slc_page_pool *pool, uint32_t user, uint32_t page)
+{
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t count = count_tiles(pool, slc_page_layer(&pool->chunks, page), user);
+    pthread_mutex_unlock(&pool->mutex);
+    return count;
+}
+
+/* Moves the tiles' entry in the directory to the new page. */
 static void move_entry(struct slc_page_pool *pool, uint32_t from, uint32_t to)
 {
     struct slc_page_layer *old = slc_page_layer(&pool->chunks, from);
@@ -172,26 +204,46 @@ static void move_entry(struct slc_page_pool *pool, uint32_t from, uint32_t to)
     old->shared = 0;
 }
 
+static struct slc_shared_tile *entry_of(struct slc_page_pool *pool, uint32_t page)
+{
+    uint32_t shared = slc_page_layer(&pool->chunks, page)->shared;
+    return shared ? &pool->shared.entries[shared - 1] : NULL;
+}
+
+/* The user alone holds the page, and its texels are complete: an abandoned frame that copies them
+ * would copy them again, to the page that the tile was on. */
+static bool can_move(const struct slc_page_pool *pool, uint32_t user, uint32_t page,
+                     const struct slc_shared_tile *tile)
+{
+    const struct slc_page_layer *layer = slc_page_layer(&pool->chunks, page);
+    return slc_page_timelines_reached(&pool->timelines, user, layer->value) &&
+           (!tile || (tile->users == 1u << user && tile->written));
+}
+
+/* Another thread may have made the image of a page ready since the user's array of views was
+ * filled: then it is not used yet. */
+static uint32_t find_target(struct slc_page_pool *pool, uint32_t user, uint32_t from)
+{
+    uint32_t to = slc_page_chunks_find(&pool->chunks, &pool->timelines, user,
+                                       pool->chunks.at[from >> 16].format);
+    bool shown = to != SLUICE_PAGE_NONE && slc_page_views_has(&pool->users[user].shown, to >> 16);
+    return shown ? to : SLUICE_PAGE_NONE;
+}
+
 bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint64_t frame,
                         uint32_t *to, struct slc_page_readers *readers)
 {
     pthread_mutex_lock(&pool->mutex);
-    uint32_t shared = slc_page_layer(&pool->chunks, from)->shared;
-    struct slc_shared_tile *tile = shared ? &pool->shared.entries[shared - 1] : NULL;
-    *to = SLUICE_PAGE_NONE;
+    struct slc_shared_tile *tile = entry_of(pool, from);
     *readers = (struct slc_page_readers){tile ? tile->readers : 0, pool->timelines.tick};
-    if (!tile || (tile->users == 1u << user && tile->holds[user] == 1))
-        *to = slc_page_chunks_find(&pool->chunks, &pool->timelines, user,
-                                   pool->chunks.at[from >> 16].format);
-    /* Another thread may have made the image ready since this frame's array of views was filled. */
-    if (*to != SLUICE_PAGE_NONE && !slc_page_views_has(&pool->users[user].shown, *to >> 16))
-        *to = SLUICE_PAGE_NONE;
+    *to = can_move(pool, user, from, tile) ? find_target(pool, user, from) : SLUICE_PAGE_NONE;
     if (*to != SLUICE_PAGE_NONE) {
         slc_page_pool_hold_locked(pool, user, *to);
         move_entry(pool, from, *to);
+        slc_page_layer(&pool->chunks, *to)->value = frame;
+        slc_page_layer(&pool->chunks, *to)->moved = true;
         if (tile) { /* others can take it when the copy is complete */
             tile->writer = (uint8_t)user;
-            tile->written = true;
             tile->adopted = false;
             tile->value = frame;
         }
@@ -211,16 +263,31 @@ bool slc_page_pool_end_move(struct slc_page_pool *pool, uint32_t user, uint32_t 
     return over;
 }
 
-void slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint32_t to)
+/* The page still has tiles that a move put there. */
+static bool has_moved(const struct slc_page_pool *pool, uint32_t user, uint32_t page,
+                      const struct slc_shared_tile *tile)
+{
+    const struct slc_page_layer *layer = slc_page_layer(&pool->chunks, page);
+    return layer->moved && layer->held && layer->user == user &&
+           (!tile || tile->users & 1u << user);
+}
+
+bool slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint32_t to)
 {
     pthread_mutex_lock(&pool->mutex);
-    uint32_t shared = slc_page_layer(&pool->chunks, to)->shared;
-    move_entry(pool, to, from);
-    if (shared) {
-        struct slc_shared_tile *tile = &pool->shared.entries[shared - 1];
-        tile->written = tile->adopted = true;
-        tile->value = pool->timelines.of[user].recorded;
+    struct slc_shared_tile *tile = entry_of(pool, to);
+    struct slc_page_layer *layer = slc_page_layer(&pool->chunks, to);
+    bool there = has_moved(pool, user, to, tile);
+    if (there) {
+        move_entry(pool, to, from);
+        if (tile) {
+            tile->written = tile->adopted = true;
+            tile->value = pool->timelines.of[user].recorded;
+        }
+    } else if (layer->moved && !layer->held) {
+        layer->owner = SLC_NO_OWNER; /* its texels never came */
     }
-    slc_page_pool_give_locked(pool, user, to, SLC_NO_OWNER);
+    slc_page_pool_give_locked(pool, user, there ? to : from, SLC_NO_OWNER);
     pthread_mutex_unlock(&pool->mutex);
+    return there;
 }

@@ -4,6 +4,8 @@
 
 #include <sluice/shared/texture_table.h>
 
+#include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define WORDS_PER_FRAME 65536u /* words of the table that a frame scans, about */
@@ -34,90 +36,124 @@ static void record_copy(const struct slc_page_pool *pool, uint32_t from, uint32_
                           slc_page_image(pool, to), VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
 }
 
-/* Returns false if there is no page for the tile, or no room in the list. */
-static bool move_tile(struct slc_page_moves *moves, uint32_t part, uint32_t word, uint64_t frame,
-                      VkCommandBuffer commands)
+/* The moves of a frame while they are recorded. */
+struct turn {
+    struct slc_page_moves *moves;
+    uint32_t leaving; ///< image that runs empty
+    uint32_t room;    ///< pages that may still be moved
+    uint32_t tiles;   ///< on pages that were moved
+    uint32_t stored;  ///< of these, tiles whose words show the new page
+    uint64_t frame;
+    VkCommandBuffer commands;
+};
+
+static bool has_room(const struct turn *t, uint32_t tiles)
 {
-    uint32_t *entry = &moves->table->entries[word], from = slc_page_of_entry(*entry), to;
-    struct slc_page_readers readers;
-    if (moves->count == SLC_PAGE_MOVES ||
-        !slc_page_pool_move(moves->pool, moves->user, from, frame, &to, &readers))
+    uint32_t sum = t->tiles + tiles;
+    if (t->room == 0 || t->moves->count == SLC_PAGE_MOVES ||
+        (t->tiles > 0 && sum > SLC_PAGE_MOVED_TILES))
         return false;
-    record_copy(moves->pool, from, to, commands);
-    *entry = to | SLC_PAGE_SHOWN;
-    slc_page_table_store(moves->table, part, word, frame);
-    moves->under_way[moves->count++] = (struct slc_page_move){part, word, from, to, frame, readers};
+    return sum <= SLC_PAGE_MOVES_PER_FRAME ||
+           slc_page_table_make_room(t->moves->table, sum - t->stored + t->moves->store_reserve);
+}
+
+/* Copies the page. Returns false if there is no page for its tiles, or no room in the lists. */
+static bool move_page(struct turn *t, uint32_t from)
+{
+    struct slc_page_moves *moves = t->moves;
+    struct slc_page_move *move = &moves->under_way[moves->count];
+    uint32_t tiles = slc_page_pool_tiles_on(moves->pool, moves->user, from);
+    if (tiles == 0 || !has_room(t, tiles) ||
+        !slc_page_pool_move(moves->pool, moves->user, from, t->frame, &move->to, &move->readers))
+        return false;
+    move->from = from;
+    move->frame = t->frame;
+    record_copy(moves->pool, from, move->to, t->commands);
+    moves->to_of[from & 0xFFFFu] = 1 + move->to;
+    moves->count++;
+    moves->left -= moves->left == UINT32_MAX ? 0 : 1;
+    t->room--;
+    t->tiles += tiles;
     return true;
 }
 
-/* Returns how many tiles of the part were moved. */
-static uint32_t move_tiles(struct slc_page_moves *moves, uint32_t leaving, uint32_t part,
-                           uint32_t room, uint64_t frame, VkCommandBuffer commands)
+/* Moves the pages of a part's tiles while there is room, and shows the tiles of moved pages there.
+ */
+static void move_part(struct turn *t, uint32_t part)
 {
-    const struct slc_page_table_part *p = &moves->table->parts[part];
-    uint32_t moved = 0, end = p->first_word + p->word_count;
-    for (uint32_t word = p->first_word + p->desc.regularMipCount; word < end && moved < room;
-         word++) {
-        uint32_t entry = moves->table->entries[word];
-        if (!slc_page_is_taken(entry) || !(entry & SLC_PAGE_SHOWN) ||
-            slc_page_of_entry(entry) >> 16 != leaving)
+    struct slc_page_table *table = t->moves->table;
+    const struct slc_page_table_part *p = &table->parts[part];
+    for (uint32_t i = p->desc.regularMipCount; i < p->word_count; i++) {
+        uint32_t *entry = &table->entries[p->first_word + i], from = slc_page_of_entry(*entry);
+        if (!slc_page_is_taken(*entry) || !(*entry & SLC_PAGE_SHOWN) || from >> 16 != t->leaving ||
+            (!t->moves->to_of[from & 0xFFFFu] && !move_page(t, from)))
             continue;
-        if (!move_tile(moves, part, word, frame, commands))
-            break;
-        moved++;
+        *entry = (t->moves->to_of[from & 0xFFFFu] - 1) | SLC_PAGE_SHOWN;
+        slc_page_table_store(table, part, p->first_word + i, t->frame);
+        t->stored++;
     }
-    return moved;
 }
 
-void slc_page_moves_record(struct slc_page_moves *moves, uint64_t frame, uint64_t completed_frame,
-                           VkCommandBuffer commands)
+void slc_page_moves_record(struct slc_page_moves *moves, uint64_t frame, VkCommandBuffer commands)
 {
     const struct slc_page_table *table = moves->table;
-    uint32_t room = slc_min_u32(moves->left, SLC_PAGE_MOVES_PER_FRAME);
-    uint32_t leaving = slc_page_pool_leaving(moves->pool, moves->user);
-    if (room == 0 || leaving == SLC_NONE)
+    uint32_t first = moves->count;
+    struct turn t = {.moves = moves,
+                     .leaving = slc_page_pool_leaving(moves->pool, moves->user),
+                     .room = slc_min_u32(moves->left, SLC_PAGE_MOVES_PER_FRAME),
+                     .frame = frame,
+                     .commands = commands};
+    if (t.room == 0 || t.leaving == SLC_NONE)
         return;
-    for (uint32_t i = 0, words = 0; i < table->part_count && words < WORDS_PER_FRAME && room; i++) {
-        uint32_t part = moves->next_part;
-        const struct slc_page_table_part *p = &table->parts[part];
-        moves->next_part = (part + 1) % table->part_count;
-        words += p->word_count;
-        /* Abandoning a frame under way takes back the words that it stored. */
-        if (p->word_count == 0 || p->is_lost || p->stored_frame > completed_frame)
-            continue;
-        uint32_t moved = move_tiles(moves, leaving, part, room, frame, commands);
-        room -= moved;
-        moves->left -= moves->left == UINT32_MAX ? 0 : moved;
+    for (uint32_t i = 0, words = 0; i < table->part_count && words < WORDS_PER_FRAME && t.room;
+         i++) {
+        move_part(&t, moves->next_part);
+        words += table->parts[moves->next_part].word_count;
+        moves->next_part = (moves->next_part + 1) % table->part_count;
     }
+    t.room = 0;
+    for (uint32_t i = 0; i < table->part_count && t.stored < t.tiles; i++)
+        move_part(&t, i);
+    assert(t.stored == t.tiles);
+    for (uint32_t i = first; i < moves->count; i++)
+        moves->to_of[moves->under_way[i].from & 0xFFFFu] = 0;
 }
 
-void slc_page_moves_forget(struct slc_page_moves *moves, uint32_t part)
+static int compare_new_pages(const void *a, const void *b)
 {
-    for (uint32_t i = 0; i < moves->count; i++)
-        if (moves->under_way[i].part == part)
-            moves->under_way[i].word = SLC_NONE;
+    const struct slc_page_move *x = a, *y = b;
+    return (x->to > y->to) - (x->to < y->to);
 }
 
-/* The tile may have been unmapped since, and mapped again. */
-static void take_back(struct slc_page_moves *moves, const struct slc_page_move *move)
+/* Shows tiles from their old pages. The moves are sorted by new page. */
+static void show_old_pages(struct slc_page_table *table, const struct slc_page_move *moves,
+                           uint32_t count)
 {
-    if (move->word == SLC_NONE) {
-        slc_page_pool_give(moves->pool, moves->user, move->from, SLC_NO_OWNER);
-        return;
+    for (uint32_t i = 0; i < table->part_count; i++) {
+        const struct slc_page_table_part *p = &table->parts[i];
+        for (uint32_t j = p->desc.regularMipCount; j < p->word_count; j++) {
+            uint32_t *entry = &table->entries[p->first_word + j];
+            if (!slc_page_is_taken(*entry))
+                continue;
+            const struct slc_page_move key = {.to = slc_page_of_entry(*entry)};
+            const struct slc_page_move *move =
+                bsearch(&key, moves, count, sizeof *moves, compare_new_pages);
+            if (move)
+                *entry = move->from | (*entry & SLC_PAGE_SHOWN);
+        }
     }
-    uint32_t *entry = &moves->table->entries[move->word];
-    if (*entry == (move->to | SLC_PAGE_SHOWN)) {
-        slc_page_pool_move_back(moves->pool, moves->user, move->from, move->to);
-        *entry = move->from | SLC_PAGE_SHOWN;
-        return;
-    }
-    if (*entry == (move->to | SLC_PAGE_GIVEN)) /* the copy never ran */
-        *entry = SLUICE_PAGE_NONE;
-    slc_page_pool_give(moves->pool, moves->user, move->from, SLC_NO_OWNER);
 }
 
+/* Tiles may have left the new page since, and other tiles may be there. */
 void slc_page_moves_abandon(struct slc_page_moves *moves, uint64_t frame)
 {
-    while (moves->count && moves->under_way[moves->count - 1].frame >= frame)
-        take_back(moves, &moves->under_way[--moves->count]);
+    uint32_t first = moves->count, last = moves->count;
+    while (moves->count && moves->under_way[moves->count - 1].frame >= frame) {
+        const struct slc_page_move move = moves->under_way[--moves->count];
+        if (slc_page_pool_move_back(moves->pool, moves->user, move.from, move.to))
+            moves->under_way[--first] = move;
+    }
+    qsort(moves->under_way + first, last - first, sizeof *moves->under_way, compare_new_pages);
+    if (first < last)
+        show_old_pages(moves->table, moves->under_way + first, last - first);
 }

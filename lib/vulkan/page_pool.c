@@ -143,6 +143,7 @@ uint32_t slc_page_pool_present(struct slc_page_pool *pool, uint32_t user)
 {
     pthread_mutex_lock(&pool->mutex);
     uint32_t count = slc_page_chunks_present(&pool->chunks), others = held_by_others(pool, user);
+    count += pool->users[user].equal_count;
     pthread_mutex_unlock(&pool->mutex);
     return count > others ? count - others : 0;
 }
@@ -241,7 +242,9 @@ static void release_shared(struct slc_page_pool *pool, uint32_t user, uint32_t i
     if (tile->users) { /* who took it after the writer saw its copy complete */
         if (tile->writer == user)
             tile->writer = SLC_MAX_PAGE_USERS;
-        slc_page_layer(&pool->chunks, tile->page)->user = (uint8_t)slc_log2_u32(tile->users);
+        struct slc_page_layer *layer = slc_page_layer(&pool->chunks, tile->page);
+        layer->user = (uint8_t)slc_log2_u32(tile->users);
+        layer->value = 0;
         return;
     }
     tile->last_user = (uint8_t)user;
@@ -259,8 +262,10 @@ void slc_page_pool_give_locked(struct slc_page_pool *pool, uint32_t user, uint32
                                uint32_t owner)
 {
     uint32_t shared = slc_page_layer(&pool->chunks, page)->shared;
-    if (shared && --pool->shared.entries[shared - 1].holds[user] > 0)
-        return; /* other tiles of the user are equal */
+    if (shared && --pool->shared.entries[shared - 1].holds[user] > 0) {
+        pool->users[user].equal_count--; /* other tiles of the user are on it */
+        return;
+    }
     if (shared) {
         release_shared(pool, user, shared - 1, owner);
         return;
@@ -343,8 +348,13 @@ bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t pa
 {
     pthread_mutex_lock(&pool->mutex);
     bool there = slc_page_chunks_is_left(&pool->chunks, page, user, owner);
-    if (there)
+    if (there) {
+        struct slc_page_layer *layer = slc_page_layer(&pool->chunks, page);
+        const struct slc_page_layer left = *layer;
         slc_page_pool_hold_locked(pool, user, page);
+        layer->value = left.value; /* its texels stay */
+        layer->moved = left.moved;
+    }
     pthread_mutex_unlock(&pool->mutex);
     return there;
 }

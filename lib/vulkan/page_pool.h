@@ -31,6 +31,7 @@ struct slc_page_user {
      *  complete. A retired image leaves with the user's next frame. */
     struct slc_page_views shown;
     uint32_t held_count;  ///< pages, each once
+    uint32_t equal_count; ///< tiles on these pages beside the first one
     uint64_t max_size;    ///< bytes; 0: no limit of its own
     uint64_t empty_frame; ///< that put the image of empty places into its layout; 0: none did
 };
@@ -87,7 +88,8 @@ SluiceResult slc_page_pool_write_views(struct slc_page_pool *pool, uint32_t user
 /** Pages that the user could hold: those of all chunks, and those that chunks could still be made
  *  for, without pages that others hold. */
 uint64_t slc_page_pool_capacity(struct slc_page_pool *pool, uint32_t user);
-/** Pages of all chunks that are in use, free ones included, without pages that others hold. */
+/** Tiles for which there are pages: one for each page of all chunks, free ones included, without
+ *  pages that others hold; and the user's tiles that are on a page with an equal one. */
 uint32_t slc_page_pool_present(struct slc_page_pool *pool, uint32_t user);
 
 /** The device had no memory for a chunk a short while ago. */

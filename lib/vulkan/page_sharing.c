@@ -48,7 +48,9 @@ uint32_t slc_page_share_take(struct slc_page_pool *pool, uint32_t user,
     uint32_t index = find(pool, key, &ready);
     if (ready) {
         struct slc_shared_tile *tile = &pool->shared.entries[index];
-        pool->users[user].held_count += tile->holds[user]++ == 0;
+        bool is_first = tile->holds[user]++ == 0;
+        pool->users[user].held_count += is_first;
+        pool->users[user].equal_count += !is_first;
         tile->users |= 1u << user;
         tile->readers |= 1u << user;
         page = tile->page;
@@ -119,7 +121,9 @@ void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t 
                             uint64_t frame)
 {
     pthread_mutex_lock(&pool->mutex);
-    uint32_t shared = slc_page_layer(&pool->chunks, page)->shared;
+    struct slc_page_layer *layer = slc_page_layer(&pool->chunks, page);
+    uint32_t shared = layer->shared;
+    layer->value = frame;
     if (shared && pool->shared.entries[shared - 1].writer == user) {
         pool->shared.entries[shared - 1].written = true;
         pool->shared.entries[shared - 1].adopted = false;

@@ -34,7 +34,7 @@ void slc_page_share_withdraw(struct slc_page_pool *pool, uint32_t user,
 /** The tile that the user announced goes to this page, which it has taken. */
 void slc_page_share_place(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
                           uint32_t page);
-/** `frame` copies the texels to the page. Of a page that is the user's own: ignored. */
+/** `frame` copies the texels to the page, which nobody else may read before that. */
 void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t page,
                             uint64_t frame);
 /** Shares a page that the user has taken back, with its texels. Other users may read it when the

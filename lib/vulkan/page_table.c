@@ -119,6 +119,20 @@ void slc_page_table_store(struct slc_page_table *table, uint32_t part, uint32_t 
     table->parts[part].stored_frame = frame;
 }
 
+bool slc_page_table_make_room(struct slc_page_table *table, uint32_t count)
+{
+    uint32_t capacity = table->store_count + count;
+    if (capacity <= table->store_capacity)
+        return true;
+    struct slc_page_store *stores = slc_regrow(table->cb, table->stores, table->store_capacity,
+                                               capacity, sizeof *table->stores);
+    if (!stores)
+        return false;
+    table->stores = stores;
+    table->store_capacity = capacity;
+    return true;
+}
+
 static void update_words(struct slc_page_table *table, uint32_t first, uint32_t count,
                          const uint32_t *words, VkCommandBuffer commands)
 {

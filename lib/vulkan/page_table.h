@@ -46,7 +46,8 @@ struct slc_page_table {
     bool has_lost; ///< some part has is_lost set
 };
 
-/** `change_count`: most calls of slc_page_table_store between two publications. Finish the table
+/** `change_count`: most calls of slc_page_table_store between two publications, unless
+ *  slc_page_table_make_room allows more. Finish the table
  *  after an error, too. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
 SluiceResult slc_page_table_init(struct slc_page_table *table, const struct slc_vk *vk,
                                  const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
@@ -75,6 +76,9 @@ static inline uint32_t slc_page_of_entry(uint32_t entry)
 /** Stores the entry of the word for the device. Its shaders see it from `frame` on. */
 void slc_page_table_store(struct slc_page_table *table, uint32_t part, uint32_t word,
                           uint64_t frame);
+
+/** Makes room for `count` more stores in this frame. Returns false without host memory. */
+bool slc_page_table_make_room(struct slc_page_table *table, uint32_t count);
 
 /** Records whole parts: new ones, and those that abandoned frames wrote to. Call it before
  *  anything is drawn. */

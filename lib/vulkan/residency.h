@@ -88,12 +88,12 @@ struct slc_residency_interface {
     /**
      * Moves tiles together until memory has fallen by `size` bytes: frames do so until the next
      * call. Returns how many pages must be given back first. Returns SLC_NONE if no image can be
-     * emptied, or none has to be. `*must_evict`: eviction alone can empty one, because pages
-     * have several tiles. NULL if pages are slots of heaps; `compact` is NULL then, too.
+     * emptied, or none has to be. NULL if pages are slots of heaps; `compact` is NULL then, too.
      */
-    uint32_t (*gather)(struct slc_residency *residency, uint64_t size, bool *must_evict);
+    uint32_t (*gather)(struct slc_residency *residency, uint64_t size);
     /** Lets the next frame move at most `most` tiles, if the moves can empty an image in the end.
-     *  Returns how many tiles can move; frames under way may hold some of them back. */
+     *  Equal tiles on one page count once. Returns how many tiles can move; frames under way may
+     *  hold some of them back. */
     uint32_t (*compact)(struct slc_residency *residency, uint32_t most);
 
     /** As SluiceHeapAllocator. */

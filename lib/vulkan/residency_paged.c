@@ -47,8 +47,9 @@ struct paged_residency {
     struct slc_page_table table; ///< its parts are those of the images
     struct slc_page_moves moves;
     uint32_t upload_reserve; ///< changes that unmapping must leave to uploads and moves
-    uint64_t frame, completed_frame;
+    uint64_t frame;
     uint32_t next_heap, heap_count;
+    uint64_t most_tiles; ///< since a refusal, for which there was a heap too many
 };
 
 static struct paged_residency *paged(struct slc_residency *residency)
@@ -86,7 +87,6 @@ static void destroy_image(struct slc_residency *residency, uint32_t index)
     slc_plain_image_destroy(&layers[0].own_tail, &p->memory, p->vk, p->cb);
     for (uint32_t i = layers[0].layer_count; i-- > 0;) {
         give_pages(p, index + i);
-        slc_page_moves_forget(&p->moves, index + i);
         slc_page_table_remove(&p->table, index + i);
         layers[i] = (struct paged_image){0};
     }
@@ -159,15 +159,27 @@ static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
     return true;
 }
 
+/* After a refusal slots must not run ahead of the pages that there are, but for one heap: tiles
+ * that need no page of their own could fill all slots, and nobody would ask for pages again. */
+static bool may_have_heap(struct paged_residency *p, uint64_t slots)
+{
+    uint64_t tiles = slc_page_pool_present(p->pool, p->user);
+    if (!slc_page_pool_was_refused(p->pool))
+        p->most_tiles = 0;
+    else if (slots > tiles && tiles <= p->most_tiles)
+        return false;
+    else if (slots > tiles)
+        p->most_tiles = tiles;
+    return true;
+}
+
 /* A heap is a share of the budget; memory comes with the pages. */
 static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size, uint32_t *heap_id)
 {
     struct paged_residency *p = paged(residency);
     if (slc_page_pool_is_refused(p->pool) || size > slc_device_memory_size(p->caps))
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
-    /* After a refusal slots must not run ahead of the pages that there are. */
-    uint64_t slots = p->heap_count * (size / SLC_TILE_SIZE);
-    if (slc_page_pool_was_refused(p->pool) && slots > slc_page_pool_present(p->pool, p->user))
+    if (!may_have_heap(p, p->heap_count * (size / SLC_TILE_SIZE)))
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
     *heap_id = p->next_heap++;
     p->heap_count++;
@@ -180,27 +192,25 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
     paged(residency)->heap_count--;
 }
 
-static uint32_t gather(struct slc_residency *residency, uint64_t size, bool *must_evict)
+static uint32_t gather(struct slc_residency *residency, uint64_t size)
 {
     struct paged_residency *p = paged(residency);
     uint32_t held;
-    *must_evict = false;
     if (size)
         slc_page_pool_hurry(p->pool);
-    if (size <= slc_page_pool_going_size(p->pool)) {
+    uint64_t going = slc_page_pool_going_size(p->pool);
+    if (size <= going) {
         slc_page_pool_stay(p->pool, p->user);
         return SLC_NONE;
     }
     p->moves.left = UINT32_MAX;
-    uint32_t lacking = slc_page_pool_choose_leaving(p->pool, p->user, &held);
-    *must_evict = lacking == SLC_NONE && slc_page_pool_has_unmovable(p->pool, p->user);
-    return lacking;
+    return slc_page_pool_choose_leaving(p->pool, p->user, size - going, &held);
 }
 
 static uint32_t compact(struct slc_residency *residency, uint32_t most)
 {
     struct paged_residency *p = paged(residency);
-    uint32_t held, lacking = slc_page_pool_choose_leaving(p->pool, p->user, &held);
+    uint32_t held, lacking = slc_page_pool_choose_leaving(p->pool, p->user, 0, &held);
     slc_page_pool_hurry(p->pool);
     p->moves.left = slc_min_u32(most, SLC_PAGE_MOVES_PER_FRAME);
     if (lacking == 0)
@@ -219,7 +229,6 @@ static SluiceResult update(struct slc_residency *residency, uint64_t frame,
                            uint64_t completed_frame)
 {
     paged(residency)->frame = frame;
-    paged(residency)->completed_frame = completed_frame;
     slc_page_moves_complete(&paged(residency)->moves, completed_frame);
     return SLUICE_SUCCESS;
 }
@@ -405,7 +414,7 @@ static void record_begin(struct slc_residency *residency, uint64_t frame, VkComm
 {
     struct paged_residency *p = paged(residency);
     slc_page_table_record_begin(&p->table, frame, commands);
-    slc_page_moves_record(&p->moves, frame, p->completed_frame, commands);
+    slc_page_moves_record(&p->moves, frame, commands);
     count_memory(p);
 }
 
@@ -558,7 +567,10 @@ SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *
     p->max_image_count = info->max_image_count;
     /* four kinds of changes: copied, revived, shared, deferred tiles; and moves */
     p->upload_reserve = 4 * info->max_changes + SLC_PAGE_MOVES_PER_FRAME;
-    p->moves = (struct slc_page_moves){.pool = p->pool, .table = &p->table, .user = p->user};
+    p->moves.pool = p->pool;
+    p->moves.table = &p->table;
+    p->moves.user = p->user;
+    p->moves.store_reserve = p->upload_reserve;
     p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);
     SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (p->images)

@@ -2,7 +2,6 @@
 
 #include "base/checked.h"
 #include "core/observer.h"
-#include "vulkan/page_leaving.h"
 
 #define HEAPS_AT_ONCE 16u
 /* Few, because a wanted tile that moves shows a coarser level until it is read again. */
@@ -136,18 +135,6 @@ static SluiceResult give_back(SluiceVulkanStreamer *s, const SluiceStreamedTextu
     return slc_streamer_check(s, result, "sluiceTrimStandbyTiles");
 }
 
-/* Pages with several tiles cannot move, and which tiles are on them is not known. Others' refusals
- * are seen for two frames only: all standby tiles go then. */
-static SluiceResult evict_equal(SluiceVulkanStreamer *s,
-                                const SluiceStreamedTextureStatistics *stats, uint64_t size,
-                                uint32_t *target)
-{
-    uint64_t rest = without(size, slc_page_pool_going_size(s->pages));
-    bool must = s->memory_pressure.beyond > 0;
-    uint32_t count = must ? (uint32_t)div_up(rest, SLC_TILE_SIZE) : stats->standbyTileCount;
-    return give_back(s, stats, count, must, target);
-}
-
 static SluiceResult shrink_pages(SluiceVulkanStreamer *s,
                                  const SluiceStreamedTextureStatistics *stats)
 {
@@ -155,17 +142,14 @@ static SluiceResult shrink_pages(SluiceVulkanStreamer *s,
     bool must = pressure->beyond > 0, compacting = s->shrink.compacting;
     uint32_t target = must ? s->shrink.target : 0, lacking = SLC_NONE;
     uint64_t size = pressure->beyond + pressure->refused;
-    bool must_evict = false;
     if (size || !compacting)
-        lacking = s->residency->interface->gather(s->residency, size, &must_evict);
+        lacking = s->residency->interface->gather(s->residency, size);
     s->shrink.compacting = false; /* the moves are of this frame */
     SluiceResult result = SLUICE_SUCCESS;
     if (lacking != SLC_NONE && lacking > stats->standbyTileCount && !must)
-        s->residency->interface->gather(s->residency, 0, &must_evict); /* others use its pages */
+        s->residency->interface->gather(s->residency, 0); /* others use its pages */
     else if (lacking != SLC_NONE && lacking > 0)
         result = give_back(s, stats, lacking, must, &target);
-    else if (must_evict)
-        result = evict_equal(s, stats, size, &target);
     if (result >= 0)
         result = set_target(s, target);
     if (result < 0 || !s->shrink.target || stats->heapCount <= s->shrink.target)

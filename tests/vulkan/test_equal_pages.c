@@ -1,6 +1,6 @@
 /*
  * Tiles with equal texels on one page, against a naive model: two users read, show, evict and
- * restore tiles in any order, complete their frames when they like, and abandon some.
+ * restore tiles in any order, move pages, complete their frames when they like, and abandon some.
  */
 #include "vulkan/page_pool.h"
 
@@ -21,7 +21,16 @@
 
 #define FORMAT SLUICE_FORMAT_R8G8B8A8_UNORM
 
-enum { USERS = 2, CONTENTS = 16, TILES = 40, CHUNKS = 2, PAGES = 256, FRAMES = 3, COPIES = 256 };
+enum {
+    USERS = 2,
+    CONTENTS = 16,
+    TILES = 40,
+    CHUNKS = 2,
+    PAGES = 256,
+    FRAMES = 3,
+    COPIES = 256,
+    MOVES = 64
+};
 
 enum state { ABSENT, READING, WRITTEN, SHOWN };
 
@@ -36,11 +45,20 @@ struct copy {
     uint64_t frame;
 };
 
+/* Tiles go from one page to the other with this frame. */
+struct move {
+    uint32_t from, to;
+    uint64_t frame;
+    struct slc_page_readers readers;
+};
+
 struct user {
     uint32_t number; ///< of the pool
     struct tile tiles[TILES];
     struct copy copies[COPIES]; ///< that are not complete
     uint32_t copy_count;
+    struct move moves[MOVES]; ///< whose old pages are held
+    uint32_t move_count;
     uint64_t recorded;
     uint64_t last_read[CHUNKS][PAGES]; ///< by page: frame that could read it
 };
@@ -50,7 +68,7 @@ struct model {
     struct slc_page_pool pool;
     struct user users[USERS];
     uint32_t texels[CHUNKS][PAGES]; ///< 1 + content, of complete copies
-    uint32_t shared, read, restored;
+    uint32_t shared, read, restored, moved, moved_together, moved_back;
     bool shrinks; ///< users give more tiles back than they take
 };
 
@@ -259,6 +277,44 @@ static void record(struct model *m, uint32_t user)
         }
 }
 
+/* Old pages are given in the order of the moves. */
+static void end_moves(struct model *m, uint32_t user)
+{
+    struct user *u = &m->users[user];
+    uint32_t over = 0;
+    while (
+        over < u->move_count && u->moves[over].frame <= timelines[user] &&
+        slc_page_pool_end_move(&m->pool, u->number, u->moves[over].from, &u->moves[over].readers)) {
+        uint32_t from = u->moves[over++].from;
+        u->last_read[from >> 16][from & 0xFFFFu] = timelines[user];
+    }
+    u->move_count -= over;
+    memmove(u->moves, u->moves + over, u->move_count * sizeof *u->moves);
+}
+
+static void copy_moved(struct model *m, uint32_t user, uint64_t frame)
+{
+    struct user *u = &m->users[user];
+    for (uint32_t i = 0; i < u->move_count; i++)
+        if (u->moves[i].frame == frame)
+            *texels_of(m, u->moves[i].to) = *texels_of(m, u->moves[i].from);
+}
+
+/* Tiles that are still on the new page are on the old one again. */
+static void move_back(struct model *m, uint32_t user)
+{
+    struct user *u = &m->users[user];
+    while (u->move_count && u->moves[u->move_count - 1].frame == u->recorded + 1) {
+        const struct move *move = &u->moves[--u->move_count];
+        bool there = count_tiles(u, move->to) > 0;
+        assert_int_equal(slc_page_pool_move_back(&m->pool, u->number, move->from, move->to), there);
+        for (uint32_t i = 0; i < TILES; i++)
+            if (is_on_page(&u->tiles[i], move->to))
+                u->tiles[i].page = move->from;
+        m->moved_back += there;
+    }
+}
+
 /* The oldest frame that is not complete. */
 static void complete(struct model *m, uint32_t user)
 {
@@ -266,6 +322,7 @@ static void complete(struct model *m, uint32_t user)
     if (timelines[user] == u->recorded)
         return;
     uint64_t frame = ++timelines[user];
+    copy_moved(m, user, frame);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < u->copy_count; i++) {
         if (u->copies[i].frame != frame) {
@@ -292,46 +349,83 @@ static void abandon(struct model *m, uint32_t user)
     for (uint32_t i = 0; i < CHUNKS * PAGES; i++)
         if (u->last_read[i / PAGES][i % PAGES] > u->recorded)
             u->last_read[i / PAGES][i % PAGES] = u->recorded;
+    move_back(m, user);
+}
+
+/* The page whose texels the tile will show: those of a page are there when its move is complete. */
+static uint32_t page_with_texels(const struct user *u, uint32_t user, uint32_t page)
+{
+    for (uint32_t i = u->move_count; i-- > 0;)
+        if (u->moves[i].to == page && u->moves[i].frame > timelines[user])
+            page = u->moves[i].from;
+    return page;
+}
+
+static bool is_left(const struct user *u, uint32_t page)
+{
+    for (uint32_t i = 0; i < u->move_count; i++)
+        if (u->moves[i].from == page)
+            return true;
+    return false;
 }
 
 static void check(struct model *m)
 {
-    uint32_t held[USERS] = {0}, all = 0;
+    uint32_t held[USERS] = {0}, equal[USERS] = {0}, all = 0;
     for (uint32_t page = 0; page < CHUNKS * PAGES; page++) {
         uint32_t word = page / PAGES << 16 | page % PAGES, holders = 0;
         for (uint32_t i = 0; i < USERS; i++) {
             uint32_t tiles = count_tiles(&m->users[i], word);
-            held[i] += tiles > 0;
-            holders += tiles > 0;
+            bool holds = tiles > 0 || is_left(&m->users[i], word);
+            held[i] += holds;
+            equal[i] += tiles > 1 ? tiles - 1 : 0;
+            holders += holds;
         }
         all += holders > 0;
     }
     for (uint32_t i = 0; i < USERS; i++) {
         assert_int_equal(m->pool.users[m->users[i].number].held_count, held[i]);
+        assert_int_equal(m->pool.users[m->users[i].number].equal_count, equal[i]);
         for (uint32_t j = 0; j < TILES; j++)
             if (m->users[i].tiles[j].state == SHOWN)
-                assert_int_equal(*texels_of(m, m->users[i].tiles[j].page), 1 + j % CONTENTS);
+                assert_int_equal(
+                    *texels_of(m, page_with_texels(&m->users[i], i, m->users[i].tiles[j].page)),
+                    1 + j % CONTENTS);
     }
     assert_int_equal(m->pool.held_count - m->pool.shared.going_count, all);
 }
 
-/* A page with two tiles cannot be moved: one entry of a table is known. */
-static void check_moves(struct model *m, uint32_t user)
+/* All tiles on a page move with it. Pages that another user holds, too, stay. */
+static void move_page(struct model *m, uint32_t user, uint32_t index)
 {
     struct user *u = &m->users[user];
-    uint32_t to, index = (uint32_t)roll() % TILES;
-    struct slc_page_readers readers;
-    if (u->tiles[index].state != SHOWN || count_tiles(u, u->tiles[index].page) < 2)
+    const struct tile *tile = &u->tiles[index];
+    struct move *move = &u->moves[u->move_count];
+    if (tile->state != SHOWN || u->move_count == MOVES || u->recorded == timelines[user])
         return;
-    assert_false(
-        slc_page_pool_move(&m->pool, u->number, u->tiles[index].page, u->recorded, &to, &readers));
+    uint32_t from = tile->page, others = count_tiles(&m->users[1 - user], from);
+    assert_int_equal(slc_page_pool_tiles_on(&m->pool, u->number, from),
+                     others ? 0 : count_tiles(u, from));
+    if (!slc_page_pool_move(&m->pool, u->number, from, u->recorded, &move->to, &move->readers))
+        return;
+    assert_int_equal(others, 0);
+    assert_int_equal(page_with_texels(u, user, from), from);
+    check_fresh(m, user, move->to);
+    move->from = from;
+    move->frame = u->recorded;
+    u->move_count++;
+    for (uint32_t i = 0; i < TILES; i++)
+        if (is_on_page(&u->tiles[i], from))
+            u->tiles[i].page = move->to;
+    m->moved++;
+    m->moved_together += count_tiles(u, move->to) > 1;
 }
 
 static void equal_tiles_are_on_one_page_in_any_order(void **state)
 {
     (void)state;
     static struct model m;
-    uint32_t shared = 0, read = 0, restored = 0;
+    uint32_t shared = 0, read = 0, restored = 0, moved = 0, together = 0, back = 0;
     for (uint64_t seed = 1; seed <= 20; seed++) {
         roll_seed(seed);
         init(&m);
@@ -349,21 +443,29 @@ static void equal_tiles_are_on_one_page_in_any_order(void **state)
             else if (choice < 6 && m.users[user].recorded < timelines[user] + FRAMES)
                 record(&m, user);
             else if (choice < 7)
-                check_moves(&m, user);
+                for (uint32_t j = 0; j < TILES; j++)
+                    move_page(&m, user, j);
             else if (m.users[user].recorded > timelines[user])
                 change_tile(&m, user);
+            end_moves(&m, user);
             m.shrinks = i / 400 % 2;
             check(&m);
         }
         shared += m.shared;
         read += m.read;
         restored += m.restored;
+        moved += m.moved;
+        together += m.moved_together;
+        back += m.moved_back;
         finish(&m);
     }
     printf("# %u tiles shared, %u read, %u restored\n", shared, read, restored);
+    printf("# %u pages moved, %u with several tiles, %u back\n", moved, together, back);
     assert_in_range(shared, 2000, 60000);
     assert_in_range(read, 100, 60000);
-    assert_in_range(restored, 50, 60000);
+    assert_in_range(restored, 30, 60000);
+    assert_in_range(together, 500, 60000);
+    assert_in_range(back, 200, 60000);
 }
 
 static void tiles_of_another_shape_are_other_tiles(void **state)
