@@ -248,13 +248,14 @@ SLUICE_API SluiceResult sluiceSetVulkanStreamerSettings(
  * moved tiles to `*pTileCount`; 0 means that nothing is left to do.
  *
  * Call it between frames, for example before each frame while the view stands still. The heap
- * or image with the fewest tiles is emptied, if there is room for its tiles elsewhere:
+ * or image with the fewest tiles is emptied, if there is room for its tiles elsewhere. Equal tiles
+ * that share a page move together and count once.
  *
  * - Sparse mode: a heap. Its standby tiles are evicted. Its wanted tiles are read again; until then
  *   shaders see a coarser level. Heaps with packed tiles stay.
  * - Paged mode: an image of pages. The next frame copies the tiles on the GPU, at most 64, and
- *   shaders see no difference. Tiles that changed in frames under way move later. Images stay if
- *   any of their pages holds several equal tiles.
+ *   shaders see no difference. Tiles that frames under way copy move later. Images stay if another
+ *   front end shows any of their pages.
  * - Dense mode: nothing moves.
  *
  * Empty heaps and images are freed in later frames, when the GPU has finished with them. While

@@ -1,5 +1,4 @@
-/* Memory falls although most pages have several equal tiles, which cannot move.
- */
+/* Memory falls although most pages have several equal tiles. */
 #include "device/demand_runner.h"
 #include "device/scene.h"
 
@@ -231,6 +230,33 @@ static void wanted_equal_tiles_go_when_the_budget_falls_below_them(void **state)
     close_scene();
 }
 
+static void equal_tiles_are_moved_together_on_request(void **state)
+{
+    (void)state;
+    uint32_t count = 1, i;
+    open_scene(0);
+    look_at(0, ALL);
+    look_at(1, ALL);
+    run_until_sharp(60);
+    look_at(0, 6);
+    look_at(1, 6);
+    run_frames(70); /* images that run empty are freed */
+    uint64_t before = tile_memory();
+    uint32_t mapped = statistics().mappedTileCount;
+    for (i = 0; i < 60 && count > 0; i++) {
+        CHECK_OK(sluiceCompactVulkanStreamer(scene.streamer, 64, &count));
+        run_frames(1);
+        assert_int_equal(scene_missing(&scene), 0);
+    }
+    assert_int_equal(count, 0);
+    run_frames(6);
+    printf("# from %u to %u KiB in %u frames\n", (unsigned)(before / 1024),
+           (unsigned)(tile_memory() / 1024), i);
+    assert_true(tile_memory() <= 5 * MIB);
+    assert_int_equal(statistics().mappedTileCount, mapped);
+    close_scene();
+}
+
 /* Images of pages have one format each: the streamer's must be emptied. */
 static void unneeded_equal_tiles_give_way_to_a_loader(void **state)
 {
@@ -350,13 +376,25 @@ static void any_number_of_equal_tiles_leaves_an_image_of_a_loader_at_once(void *
     sluiceDestroyImageSource(more.inner);
 }
 
+static void abandoned_frames_keep_no_memory(void **state)
+{
+    uint32_t before = h.abandon_one_in;
+    h.abandon_one_in = 2;
+    unneeded_equal_tiles_go_when_the_budget_falls(state);
+    wanted_equal_tiles_go_when_the_budget_falls_below_them(state);
+    equal_tiles_are_moved_together_on_request(state);
+    h.abandon_one_in = before;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(unneeded_equal_tiles_go_when_the_budget_falls),
         cmocka_unit_test(wanted_equal_tiles_go_when_the_budget_falls_below_them),
+        cmocka_unit_test(equal_tiles_are_moved_together_on_request),
         cmocka_unit_test(unneeded_equal_tiles_give_way_to_a_loader),
         cmocka_unit_test(any_number_of_equal_tiles_leaves_an_image_of_a_loader_at_once),
+        cmocka_unit_test(abandoned_frames_keep_no_memory),
     };
     int status = harness_init(&h);
     return status ? status : harness_finish(&h, RUN_TESTS(tests));
