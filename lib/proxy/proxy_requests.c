@@ -55,8 +55,6 @@ struct heap {
 
 static double key(const struct heap *heap, SluiceProxyId id)
 {
-    if (heap->info->order == SLUICE_PROXY_ORDER_INDEX)
-        return 0;
     const SluiceProxyBox *box = &slc_proxy_at(heap->set, (uint32_t)id)->is.box;
     return heap->info->order == SLUICE_PROXY_ORDER_VOLUME
                ? -slc_proxy_box_volume(box)
@@ -93,8 +91,15 @@ static void push(struct heap *heap, SluiceProxyId id)
     heap->ids[at] = id;
 }
 
+static void list_by_index(const SluiceProxySet *set, uint32_t count, SluiceProxyId *ids)
+{
+    uint32_t index = slc_bits_next(&set->requested, 0);
+    for (uint32_t i = 0; i < count; i++, index = slc_bits_next(&set->requested, index + 1))
+        ids[i] = slc_proxy_id(set, index);
+}
+
 /* The first `capacity` in order, sorted. */
-static void list(struct heap *heap, uint32_t capacity)
+static void list_by_key(struct heap *heap, uint32_t capacity)
 {
     const struct slc_bit_tree *requested = &heap->set->requested;
     for (uint32_t i = slc_bits_next(requested, 0); i != SLC_BIT_NONE && capacity;
@@ -102,8 +107,6 @@ static void list(struct heap *heap, uint32_t capacity)
         SluiceProxyId id = slc_proxy_id(heap->set, i);
         if (heap->count < capacity)
             push(heap, id);
-        else if (heap->info->order == SLUICE_PROXY_ORDER_INDEX)
-            break;
         else if (is_before(heap, id, heap->ids[0]))
             sink(heap, id);
     }
@@ -141,9 +144,11 @@ SluiceResult sluiceGetRequestedProxies(const SluiceProxySet *set, const SluicePr
         result = check(set, &info);
     if (result != SLUICE_SUCCESS)
         return result;
-    struct heap heap = {set, &info, pProxyIds, 0};
     uint32_t capacity = *pCount;
-    list(&heap, capacity);
     *pCount = slc_min_u32(capacity, set->requested.count);
+    if (info.order == SLUICE_PROXY_ORDER_INDEX)
+        list_by_index(set, *pCount, pProxyIds);
+    else
+        list_by_key(&(struct heap){set, &info, pProxyIds, 0}, capacity);
     return capacity < set->requested.count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
 }
