@@ -89,11 +89,11 @@ SluiceResult sluiceGetProxyGeometry(const SluiceProxySet *set, VkDeviceAddress a
         return result;
     if (info.kind != SLUICE_PROXY_KIND_GEOMETRY)
         return slc_log_refusal(&set->log, "%s: proxies of materials have no boxes", __func__);
-    if (address % 8 || (info.indexCount && !address))
-        return slc_log_refusal(&set->log,
-                               "address is 0x%" PRIx64 " for %u boxes: it must be a multiple of 8, "
-                               "and not 0",
-                               address, info.indexCount);
+    if (address % 8)
+        return slc_log_refusal(&set->log, "address is 0x%" PRIx64 ": it must be a multiple of 8",
+                               address);
+    if (info.indexCount && !address)
+        return SLUICE_ERROR_NULL_POINTER;
     const SluiceProxyGeometry geometry = {
         .structSize = sizeof geometry,
         .geometry = {.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
