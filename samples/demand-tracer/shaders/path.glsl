@@ -71,7 +71,7 @@ float highlight(Surface s, vec3 direction)
 
 struct Path {
     vec3 origin, direction; /* of the ray that is to be traced */
-    Cone cone;
+    SluiceRayCone cone;
     bool toSun; /* anything in its way ends it */
     bool done;
     bool complete; /* all textures on the way were resident */
@@ -79,7 +79,7 @@ struct Path {
     vec3 share;    /* of what is yet to come */
     vec3 sunLight; /* to be added if the ray to the sun is free */
     vec3 nextOrigin, nextDirection; /* after that */
-    Cone nextCone;
+    SluiceRayCone nextCone;
     uint depth;
     Random random;
 };
@@ -89,7 +89,7 @@ Path startPath(vec3 origin, vec3 direction, float spread, Random random)
     Path path;
     path.origin = origin;
     path.direction = direction;
-    path.cone = Cone(0.0, spread);
+    path.cone = SluiceRayCone(0.0, spread);
     path.toSun = false;
     path.done = false;
     path.complete = true;
@@ -146,7 +146,7 @@ void scatter(inout Path path, Surface s, vec3 at, float fresnel, uint bounces)
         path.light += path.share * (mirrored ? skyLight(next) : ambientLight(s.normal));
     path.nextDirection = next;
     path.nextOrigin = leave(s, at, next);
-    path.nextCone = Cone(s.coneWidth, mirrored ? path.cone.spread : DIFFUSE_SPREAD);
+    path.nextCone = SluiceRayCone(s.cone.width, mirrored ? s.cone.spread : DIFFUSE_SPREAD);
 }
 
 void meetSurface(inout Path path, Surface s, uint bounces)
@@ -175,7 +175,7 @@ void meetSurface(inout Path path, Surface s, uint bounces)
     path.toSun = true;
     path.origin = leave(s, at, SUN_DIRECTION);
     path.direction = SUN_DIRECTION;
-    path.cone = Cone(s.coneWidth, SUN_SPREAD);
+    path.cone = SluiceRayCone(s.cone.width, SUN_SPREAD);
 }
 
 #endif

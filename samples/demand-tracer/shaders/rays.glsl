@@ -6,9 +6,9 @@
 #include "scene.glsl"
 
 struct Payload {
-    Surface surface; /* `complete` also says so of holes on the way */
-    Cone cone;       /* of the ray */
-    bool noting;     /* see notes.glsl */
+    Surface surface;    /* `complete` also says so of holes on the way */
+    SluiceRayCone cone; /* of the ray */
+    bool noting;        /* see notes.glsl */
 };
 
 #endif

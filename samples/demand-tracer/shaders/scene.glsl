@@ -3,6 +3,7 @@
 #define TRACER_SCENE_GLSL
 
 #include "../tracer_shared.h"
+#include "sluice/ray_footprint.glsl"
 
 layout(std430, set = 1, binding = TRACER_BINDING_VERTICES) readonly buffer Vertices
 {
@@ -17,18 +18,12 @@ layout(std430, set = 1, binding = TRACER_BINDING_INSTANCES) readonly buffer Inst
     TracerInstance instances[];
 };
 
-/** A cone around a ray: what a pixel covers. */
-struct Cone {
-    float width;  /* meters, where the ray begins */
-    float spread; /* radians */
-};
-
 /** What a ray met first. */
 struct Surface {
     float distance; /* below 0: nothing */
-    float coneWidth;
-    uint flags;     /* of the instance */
-    bool complete;  /* the texture was resident */
+    SluiceRayCone cone; /* there */
+    uint flags;         /* of the instance */
+    bool complete;      /* the texture was resident */
     vec3 albedo;
     float alpha;
     vec3 normal; /* both on the ray's side, of length 1 */
@@ -37,10 +32,9 @@ struct Surface {
 
 /** A place on a triangle, and how uv lies over it. */
 struct Patch {
-    vec3 normal, face; /* of length 1, as the triangle has them */
+    vec3 normal; /* of length 1, interpolated */
     vec2 uv;
-    vec3 edge1, edge2; /* meters */
-    vec2 uv1, uv2;     /* along the edges */
+    SluiceRayTriangle triangle; /* in meters */
 };
 
 vec3 toWorld(TracerInstance i, vec3 p, float w)
@@ -88,49 +82,23 @@ Patch patchAt(TracerInstance instance, uint triangle, vec2 weights)
     vec3 origin = vertexPosition(corner.x);
     vec2 uv = vertexUv(corner.x);
     Patch p;
-    p.edge1 = toWorld(instance, vertexPosition(corner.y) - origin, 0.0);
-    p.edge2 = toWorld(instance, vertexPosition(corner.z) - origin, 0.0);
-    p.uv1 = vertexUv(corner.y) - uv;
-    p.uv2 = vertexUv(corner.z) - uv;
-    p.uv = uv + weights.x * p.uv1 + weights.y * p.uv2;
-    p.face = normalize(cross(p.edge1, p.edge2));
+    p.triangle = sluiceFindRayTriangle(vec3(0.0),
+                                       toWorld(instance, vertexPosition(corner.y) - origin, 0.0),
+                                       toWorld(instance, vertexPosition(corner.z) - origin, 0.0),
+                                       uv, vertexUv(corner.y), vertexUv(corner.z));
+    p.uv = uv + weights.x * p.triangle.uv1 + weights.y * p.triangle.uv2;
     p.normal = normalToWorld(instance, vertexNormal(corner.x) * (1.0 - weights.x - weights.y) +
                                            vertexNormal(corner.y) * weights.x +
                                            vertexNormal(corner.z) * weights.y);
     return p;
 }
 
-/** How uv changes along a step across the triangle's plane. */
-vec2 uvAlong(Patch p, vec3 along)
-{
-    float area = dot(p.face, cross(p.edge1, p.edge2));
-    return (dot(p.face, cross(along, p.edge2)) * p.uv1 +
-            dot(p.face, cross(p.edge1, along)) * p.uv2) / area;
-}
-
-/**
- * The axes, in uv, of the ellipse that a cone of `width` meters around `direction` cuts out of the
- * triangle's plane. Akenine-Moeller et al., "Improved Shader and Texture Level of Detail Using Ray
- * Cones", JCGT 10(1), 2021.
- */
-void footprint(Patch p, vec3 direction, float width, out vec2 dx, out vec2 dy)
-{
-    vec3 a = direction - dot(p.face, direction) * p.face;
-    if (dot(a, a) < 1.0e-8) /* straight on: any axis does */
-        a = p.edge1;
-    vec3 b = cross(p.face, a);
-    a *= width / max(length(a - dot(direction, a) * direction), 1.0e-4 * length(a));
-    b *= width / max(length(b - dot(direction, b) * direction), 1.0e-4 * length(b));
-    dx = uvAlong(p, a);
-    dy = uvAlong(p, b);
-}
-
 /** `complete` becomes false where the texture is not resident. */
-vec4 patchColor(TracerInstance instance, Patch p, vec3 direction, float width,
+vec4 patchColor(TracerInstance instance, Patch p, vec3 direction, SluiceRayCone cone,
                 inout bool complete)
 {
     vec2 dx, dy;
-    footprint(p, direction, width, dx, dy);
+    sluiceConeGradients(p.triangle, cone, direction, dx, dy);
     bool resident;
     vec4 color = sluiceDemandGrad(instance.texture, p.uv, dx, dy, resident);
     complete = complete && resident;
@@ -140,32 +108,32 @@ vec4 patchColor(TracerInstance instance, Patch p, vec3 direction, float width,
 }
 
 /** Whether a ray goes on through a hole of the texture. What is not resident has no holes yet. */
-bool isHole(uint instanceIndex, uint triangle, vec2 weights, vec3 direction, float width,
+bool isHole(uint instanceIndex, uint triangle, vec2 weights, vec3 direction, SluiceRayCone cone,
             inout bool complete)
 {
     TracerInstance instance = instances[instanceIndex];
     bool resident = true;
     float alpha =
-        patchColor(instance, patchAt(instance, triangle, weights), direction, width, resident).a;
+        patchColor(instance, patchAt(instance, triangle, weights), direction, cone, resident).a;
     complete = complete && resident;
     return alpha < 0.5 && (resident || preview);
 }
 
 Surface surfaceAt(uint instanceIndex, uint triangle, vec2 weights, vec3 direction, float distance,
-                  Cone cone)
+                  SluiceRayCone cone)
 {
     TracerInstance instance = instances[instanceIndex];
     Patch p = patchAt(instance, triangle, weights);
     Surface s;
     s.distance = distance;
-    s.coneWidth = cone.width + cone.spread * distance;
+    s.cone = sluicePropagateCone(cone, distance);
     s.flags = instance.flags;
     s.complete = true;
-    vec4 color = patchColor(instance, p, direction, s.coneWidth, s.complete);
+    vec4 color = patchColor(instance, p, direction, s.cone, s.complete);
     /* files may hold anything */
     s.albedo = any(isnan(color.rgb)) ? vec3(0.0) : clamp(color.rgb, 0.0, 1.0);
     s.alpha = color.a;
-    s.face = dot(p.face, direction) > 0.0 ? -p.face : p.face;
+    s.face = dot(p.triangle.normal, direction) > 0.0 ? -p.triangle.normal : p.triangle.normal;
     s.normal = dot(p.normal, s.face) < 0.0 ? -p.normal : p.normal;
     return s;
 }
