@@ -167,9 +167,10 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     bool packedLevelsOnDemand;
     /**
      * Whether the descriptor sets of frames have an array of all textures. It has maxTextureCount
-     * elements; the index is SluiceVulkanTexture.tableIndex, also for layers of arrays. Requires
-     * the features shaderSampledImageArrayNonUniformIndexing and runtimeDescriptorArray, which
-     * sluiceRequireVulkanFeatures enables if available. Shaders define SLUICE_TEXTURE_ARRAY
+     * elements; the index is SluiceVulkanTexture.tableIndex, also for layers of arrays. A second
+     * array has the cube views of all cube maps (sample_cube.glsl), maxTextureCount / 6 rounded up.
+     * Requires the features shaderSampledImageArrayNonUniformIndexing and runtimeDescriptorArray,
+     * which sluiceRequireVulkanFeatures enables if available. Shaders define SLUICE_TEXTURE_ARRAY
      * (bindings.glsl). Default: none.
      */
     SluiceTextureArray textureArray;
@@ -574,10 +575,10 @@ SLUICE_API SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streame
  * layout; it never changes.
  *
  * shaders/include/sluice/bindings.glsl declares what such a set holds: the buffers above, the array
- * of pages, and the array of textures if there is one (textureArray). Use the layout in your
- * pipeline layouts, at the set number that your shaders define as SLUICE_SET. All shader stages may
- * read the set. In paged mode the array of pages has maxPageChunkCount elements, in other modes
- * one.
+ * of pages, and the arrays of textures and cube maps if there are any (textureArray). Use the
+ * layout in your pipeline layouts, at the set number that your shaders define as SLUICE_SET. All
+ * shader stages may read the set. In paged mode the array of pages has maxPageChunkCount elements,
+ * in other modes one.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED, with a log message, if the device
  *         supports fewer samplers per shader stage than maxPageChunkCount. Frames then have no

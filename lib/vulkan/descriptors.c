@@ -85,7 +85,7 @@ static SluiceResult check_limits(const struct slc_vk *vk, const struct slc_caps 
 {
     const struct slc_texture_array *textures = info->textures;
     bool separate = textures->kind == SLUICE_TEXTURE_ARRAY_SEPARATE;
-    uint64_t images = (uint64_t)info->page_count + textures->count;
+    uint64_t images = (uint64_t)info->page_count + textures->count + textures->cube_count;
     uint64_t samplers = separate ? (uint64_t)info->page_count + SLUICE_SAMPLER_COUNT : images;
     if (images <= caps->max_stage_images && samplers <= caps->max_stage_samplers)
         return SLUICE_SUCCESS;

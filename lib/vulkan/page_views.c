@@ -50,9 +50,10 @@ SluiceResult slc_page_views_init(struct slc_page_views *views, const struct slc_
                                   .height = 1,
                                   .mipLevelCount = 1,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .cube = true, /* for arrays of textures */
                                   .pName = "empty page"};
     SluiceResult result =
-        slc_plain_image_create(&views->image, &views->memory, vk, caps, cb, &info, 0, 1, false);
+        slc_plain_image_create(&views->image, &views->memory, vk, caps, cb, &info, 0, 6, false);
     if (result == SLUICE_SUCCESS)
         result =
             slc_create_array_view(vk, views->image.image, VK_FORMAT_R8G8B8A8_UNORM, &views->empty);

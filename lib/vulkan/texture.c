@@ -313,7 +313,7 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
     /* Samplers of the array are not those of integers: their elements stay empty. */
     if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE &&
         !slc_format_is_integer(texture->info.format))
-        slc_texture_array_set(&s->texture_array, index, texture->views.layer,
+        slc_texture_array_set(&s->texture_array, index, texture->views.layer, texture->views.cube,
                               s->samplers.list[texture->sampler].sampler);
 }
 
@@ -408,7 +408,7 @@ static SluiceResult remove_layer(SluiceVulkanStreamer *s, uint32_t index)
     texture->state = SLC_TEXTURE_REMOVED;
     texture->removed_frame = s->frame;
     s->removed_count++;
-    slc_texture_array_clear(&s->texture_array, index);
+    slc_texture_array_clear(&s->texture_array, index, texture->views.cube);
     slc_loads_drop(s, index);
     remove_primary(s, index);
     free_followers(s, id);

@@ -1,13 +1,16 @@
 /**
  * Images and samplers of all textures by table index, for shaders that choose a texture by a
  * number. Every element is valid: a place without a texture shows an image of one texel.
+ *
+ * Cube maps have an array of their own, of cube views. The place of a cube is the table index of
+ * its first face divided by 6: faces have consecutive indices, so no two cubes have one place.
  */
 #ifndef SLC_VULKAN_TEXTURE_ARRAY_H
 #define SLC_VULKAN_TEXTURE_ARRAY_H
 
 #include "vulkan/samplers.h"
 
-#define SLC_TEXTURE_ARRAY_BINDINGS 2u
+#define SLC_TEXTURE_ARRAY_BINDINGS 3u
 
 struct slc_texture_element {
     VkImageView view;
@@ -18,17 +21,18 @@ struct slc_texture_element {
 /** A zeroed one has no elements. */
 struct slc_texture_array {
     SluiceTextureArray kind;
-    struct slc_texture_element *elements; ///< owned; `count`
-    uint32_t count;
+    struct slc_texture_element *elements; ///< owned; `count`, then `cube_count`
+    uint32_t count, cube_count;
     uint64_t generation;                 ///< more with each change; counts from 1
-    VkImageView empty;                   ///< owned
+    VkImageView empty, empty_cube;       ///< owned
     VkSampler empty_sampler;             ///< borrowed
     const struct slc_samplers *samplers; ///< borrowed; those of the textures
 };
 
 /**
- * Shows `image`, of one layer and level, with `sampler` where no texture is. Both, and `samplers`,
- * must outlive the array. After an error it can be finished.
+ * Shows `image`, of six layers and one level, with `sampler` where no texture is. The image is
+ * compatible with cube views. Both, and `samplers`, must outlive the array. After an error it can
+ * be finished.
  *
  * Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
@@ -39,11 +43,12 @@ SluiceResult slc_texture_array_init(struct slc_texture_array *array, const struc
 void slc_texture_array_finish(struct slc_texture_array *array, const struct slc_vk *vk,
                               const SluiceAllocationCallbacks *cb);
 
-/** Shows a texture at `index`, from the next write of a set on. */
+/** Shows a texture at `index`, from the next write of a set on. `cube`: of the cube whose first
+ * face it is, or VK_NULL_HANDLE. */
 void slc_texture_array_set(struct slc_texture_array *array, uint32_t index, VkImageView view,
-                           VkSampler sampler);
-/** Shows no texture at `index` any more. */
-void slc_texture_array_clear(struct slc_texture_array *array, uint32_t index);
+                           VkImageView cube, VkSampler sampler);
+/** Shows no texture at `index` any more, and no cube if it is the first face of one. */
+void slc_texture_array_clear(struct slc_texture_array *array, uint32_t index, bool cube);
 
 /** Writes the layout bindings, from `binding` on. Returns how many. */
 uint32_t slc_texture_array_bindings(const struct slc_texture_array *array, uint32_t binding,

@@ -14,7 +14,8 @@
  *
  *     vec4 color = sluiceSample(tableIndex, tableIndex, uv, 0.0, 1.0, missing);
  *
- * tableIndex may differ between invocations. SLUICE_TEXTURES_SEPARATE has images and samplers.
+ * tableIndex may differ between invocations. SLUICE_TEXTURES_SEPARATE has images and samplers. Cube
+ * maps are in the set, too, for sample_cube.glsl: the number is the tableIndex of the first face.
  *
  * The pipeline layout has the set layout of sluiceGetVulkanDescriptorSetLayout at that number.
  *
@@ -81,12 +82,18 @@ layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray 
 #if SLUICE_TEXTURE_ARRAY == SLUICE_TEXTURES_SEPARATE
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_TEXTURES) uniform texture2D sluiceTextureImages[];
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_SAMPLERS) uniform sampler sluiceSamplers[SLUICE_SAMPLER_COUNT];
+layout(set = SLUICE_SET, binding = SLUICE_BINDING_CUBES) uniform textureCube sluiceCubeImages[];
 #define SLUICE_TEXTURE(i)                                                                         \
     nonuniformEXT(sampler2D(sluiceTextureImages[nonuniformEXT(i)],                                 \
                             sluiceSamplers[nonuniformEXT(SLUICE_TEXTURE_ENTRY(i).samplerIndex)]))
+#define SLUICE_CUBE_TEXTURE(i)                                                                    \
+    nonuniformEXT(samplerCube(sluiceCubeImages[nonuniformEXT((i) / 6u)],                           \
+                              sluiceSamplers[nonuniformEXT(SLUICE_TEXTURE_ENTRY(i).samplerIndex)]))
 #else
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_TEXTURES) uniform sampler2D sluiceTextures[];
+layout(set = SLUICE_SET, binding = SLUICE_BINDING_CUBES) uniform samplerCube sluiceCubes[];
 #define SLUICE_TEXTURE(i) sluiceTextures[nonuniformEXT(i)]
+#define SLUICE_CUBE_TEXTURE(i) sluiceCubes[nonuniformEXT((i) / 6u)]
 #endif
 #endif
 

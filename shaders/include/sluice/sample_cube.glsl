@@ -9,8 +9,8 @@
  *     samplerCubeArray tex, uint cube   SluiceVulkanTexture.cubeArrayView, and the number of the cube
  *     uint number                       SLUICE_CUBE_TEXTURE(number) is a samplerCube; need not be uniform
  *
- * The third form exists if SLUICE_CUBE_TEXTURE is defined, for an array of cube views of your own. (A
- * streamer's array of textures has 2D views, of each face by itself.)
+ * The third form exists if SLUICE_CUBE_TEXTURE is defined. bindings.glsl defines it for the array of
+ * textures of a streamer; the number is then `tableIndex`. For an array of cube views of your own:
  *
  *     #define SLUICE_CUBE_TEXTURE(i) cubes[nonuniformEXT(i)]
  *     vec4 color = sluiceSampleCube(number, tableIndex, direction, 0.0, 1.0, missing);

@@ -21,8 +21,9 @@ struct CubeInput {
     float dy[3];
     float lodBias;
     float maxAnisotropy;
-    float lod; /* with CUBE_FEEDBACK_LOD */
-    float unused[4];
+    float lod;   /* with CUBE_FEEDBACK_LOD */
+    uint number; /* cube_numbers.comp: tableIndex of the first face */
+    float unused[3];
 };
 SLUICE_SHARED_SIZE(struct CubeInput, 64)
 
