@@ -4,8 +4,7 @@
 
 #define SLUICE_DEMAND_SET 0
 #include "sluice/demand_bindings.glsl"
-#include "sluice/demand_grids.glsl"
-#include "sluice/cube_faces.glsl"
+#include "sluice/demand_cubes.glsl"
 
 layout(std430, set = 1, binding = 0) buffer Answer { vec4 colors[]; } answer;
 layout(push_constant) uniform Draw { uint index; } draw;
@@ -16,7 +15,6 @@ void main()
     uint grid = draw.index, cube = 0u;
     vec3 direction = vec3(gl_GlobalInvocationID), dx = vec3(0.01, 0.0, 0.0), dy = vec3(0.0, 0.01, 0.0);
     bool resident;
-    SluiceCubePoint p = sluiceFindCubePoint(direction, dx, dy); /* derivatives of the direction */
-    vec4 color = sluiceDemandLayerGrad(grid, 6u * cube + p.face, p.uv, p.dx, p.dy, resident);
+    vec4 color = sluiceDemandCubeGrad(grid, cube, direction, dx, dy, resident); /* derivatives of the direction */
     answer.colors[0] = color;
 }

@@ -10,6 +10,7 @@
 
 #include "demand_runner_bytes_comp.h"
 #include "demand_runner_comp.h"
+#include "demand_runner_cubes_comp.h"
 #include "demand_runner_grids_comp.h"
 
 #define BUFFERS 9u
@@ -146,6 +147,15 @@ void runner_sample_grids(struct runner *r)
     h->DestroyPipeline(h->device, r->pipeline, NULL);
     r->pipeline = conform_compute_pipeline(
         h, r->layout, conform_module(h, demand_runner_grids_comp, sizeof demand_runner_grids_comp),
+        NULL);
+}
+
+void runner_sample_cubes(struct runner *r)
+{
+    struct harness *h = r->h;
+    h->DestroyPipeline(h->device, r->pipeline, NULL);
+    r->pipeline = conform_compute_pipeline(
+        h, r->layout, conform_module(h, demand_runner_cubes_comp, sizeof demand_runner_cubes_comp),
         NULL);
 }
 

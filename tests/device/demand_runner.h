@@ -37,6 +37,8 @@ void runner_init(struct runner *r, struct harness *h, const SluiceDemandLoaderCr
 void runner_init_with(struct runner *r, struct harness *h, SluiceDemandLoader *loader);
 /** From now on RUNNER_LAYER_GRAD and those behind it are allowed; byte pages are not. */
 void runner_sample_grids(struct runner *r);
+/** From now on RUNNER_CUBE_GRAD is allowed; grids by themselves and byte pages are not. */
+void runner_sample_cubes(struct runner *r);
 void runner_finish(struct runner *r);
 void runner_fill(struct harness *h, SluiceDemandLoaderCreateInfo *info);
 

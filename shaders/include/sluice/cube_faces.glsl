@@ -52,6 +52,24 @@ vec3 sluiceCubeDirection(uint face, vec2 uv)
     return sluiceFromFace(face, vec3(2.0 * uv - 1.0, 1.0));
 }
 
+/**
+ * Returns the position on the face beyond an edge, and replaces `face` by that face. `uv` is beyond one
+ * edge of `face`, less than a face away: the edge is folded flat.
+ */
+vec2 sluiceFoldOverEdge(inout uint face, vec2 uv)
+{
+    vec3 at = vec3(2.0 * uv - 1.0, 1.0), outward = vec3(0.0);
+    uint axis = abs(at.x) > 1.0 ? 0u : 1u;
+    float side = at[axis] < 0.0 ? -1.0 : 1.0;
+    outward[axis] = side;
+    at.z = 2.0 - side * at[axis]; /* folded by a quarter turn around the edge */
+    at[axis] = side;
+    uint next = sluiceCubeFace(sluiceFromFace(face, outward));
+    at = sluiceToFace(next, sluiceFromFace(face, at));
+    face = next;
+    return 0.5 * at.xy + 0.5;
+}
+
 /** Returns the position of a direction with derivatives. */
 SluiceCubePoint sluiceFindCubePoint(vec3 direction, vec3 dx, vec3 dy)
 {

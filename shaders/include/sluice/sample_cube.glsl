@@ -129,14 +129,9 @@ SluiceSampling sluiceResolveCube(uint tableIndex, SluiceCubePoint p, float lodBi
 /** Fetches a texel of a regular level. Texels beyond one edge are those of the face there. */
 vec4 sluiceFetchCubePaged(uint tableIndex, uint face, uint level, ivec2 texel, int size)
 {
-    bvec2 below = lessThan(texel, ivec2(0)), above = greaterThanEqual(texel, ivec2(size));
-    if (any(below) || any(above)) {
-        uint edge = below.x ? 0u : above.x ? 1u : below.y ? 2u : 3u;
-        vec2 uv = (vec2(texel) + 0.5) / float(size);
-        SluiceCubePart part =
-            sluiceUnfoldEdge(sluiceReadGrid(tableIndex), face, uv, vec2(0.0), vec2(0.0), edge);
-        face = part.face;
-        texel = clamp(ivec2(part.uv * float(size)), ivec2(0), ivec2(size - 1));
+    if (texel != clamp(texel, ivec2(0), ivec2(size - 1))) {
+        vec2 uv = sluiceFoldOverEdge(face, (vec2(texel) + 0.5) / float(size));
+        texel = clamp(ivec2(uv * float(size)), ivec2(0), ivec2(size - 1));
     }
     return sluiceFetchPaged(SLUICE_TEXTURE_ENTRY(tableIndex + face), level, texel);
 }

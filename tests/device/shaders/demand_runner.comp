@@ -33,6 +33,9 @@ layout(push_constant) uniform Push { uint count; };
 #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
 #include "sluice/demand.glsl"
 #include "sluice/demand_jitter.glsl"
+#ifdef RUNNER_SAMPLES_CUBES
+#include "sluice/demand_cubes.glsl"
+#endif
 #ifdef RUNNER_SAMPLES_GRIDS
 #include "sluice/demand_grids.glsl"
 
@@ -98,6 +101,12 @@ void main()
 #ifdef RUNNER_READS_BYTES
     else if (i.kind == RUNNER_BYTES || i.kind == RUNNER_ADDRESS)
         value = readBytes(i.kind, i.index, uint(i.dx[0]), resident);
+#endif
+#ifdef RUNNER_SAMPLES_CUBES
+    else if (i.kind == RUNNER_CUBE_GRAD)
+        color = sluiceDemandCubeGrad(i.index, i.cell, vec3(i.direction[0], i.direction[1], i.direction[2]),
+                                     vec3(i.direction[3], i.direction[4], i.direction[5]),
+                                     vec3(i.direction[6], i.direction[7], i.direction[8]), resident);
 #endif
 #ifdef RUNNER_SAMPLES_GRIDS
     else if (i.kind >= RUNNER_LAYER_GRAD)

@@ -15,6 +15,7 @@
 #define RUNNER_LAYER_LOD 6  /* sluiceDemandLayerLod with dx[0] */
 #define RUNNER_UDIM_GRAD 7  /* sluiceDemandUdimGrad */
 #define RUNNER_JITTER 8     /* sluiceDemandJitter by kernel `cell`; dx[0]: dx and dy; dy: random */
+#define RUNNER_CUBE_GRAD 9  /* sluiceDemandCubeGrad of cube `cell` */
 
 struct RunnerInput {
     uint kind, index;
@@ -22,8 +23,9 @@ struct RunnerInput {
     float dx[2];
     float dy[2];
     uint cell;
+    float direction[9]; /* of RUNNER_CUBE_GRAD, and its derivatives */
 };
-SLUICE_SHARED_SIZE(struct RunnerInput, 36)
+SLUICE_SHARED_SIZE(struct RunnerInput, 72)
 
 struct RunnerOutput {
     float color[4];
