@@ -8,6 +8,8 @@
 #   scripts/demo.sh -- --images FOLDER --budget 64
 #                                              a museum of your own pictures in 64 MiB: photographs,
 #                                              OpenEXR, DDS, KTX2 files and tile stores
+#   scripts/demo.sh -- --pbrt FILE             a scene of pbrt instead, with geometry, materials and textures
+#                                              on demand; further options are those of samples/demand-pbrt
 #
 # Each frame is drawn a second time with everything resident, to compare, unless there is a --budget.
 # Then the gallery, smaller, is walked through with other settings, one at a time, to show what each
@@ -61,6 +63,20 @@ if has_gpu; then
 else
     select_lavapipe
     say "No GPU was found: running on the CPU (lavapipe)."
+fi
+
+# A scene of pbrt takes the place of the gallery.
+if [ "${1-}" = --pbrt ]; then
+    scene=${2:?--pbrt needs a scene}
+    shift 2
+    title "Rendering $scene"
+    mkdir -p "$output" "$cache"
+    "$folder/samples/demand-pbrt/demand-pbrt" "$scene" --file "$output/pbrt.png" --cache "$cache/pbrt" \
+        --contact-sheet "$output/pbrt-launches.png" "$@" || die "the scene was not rendered completely"
+    title "Done"
+    say "The picture: $output/pbrt.png"
+    say "What was there after each launch: $output/pbrt-launches.png"
+    exit
 fi
 
 # What shows no gallery needs no folders and leaves no report. Memory that is to be short cannot hold
