@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "../../tools/common/log.h"
 #include "../../tools/common/text.h"
@@ -41,7 +40,6 @@ bool proxies_create(SluiceDemandLoader *loader, const struct scene *scene, struc
     const uint64_t most_boxes = boxes < MOST_BOXES ? boxes : MOST_BOXES;
     const uint32_t surface_count = scene->info.materialCount + scene->info.textureCount;
     *p = (struct proxies){.loader = loader, .changed = true};
-    memcpy(p->corner, scene->box.least, sizeof p->corner);
     if (!create_set(loader, SLUICE_PROXY_KIND_GEOMETRY, most_boxes, &p->boxes, &p->box_resource,
                     &p->box_page) ||
         !create_set(loader, SLUICE_PROXY_KIND_MATERIAL, surface_count + 1ull, &p->surfaces,
@@ -62,7 +60,6 @@ void proxies_finish(const struct gpu *gpu, struct structures *structures, struct
     sluiceDestroyProxySet(p->boxes);
     sluiceDestroyProxySet(p->surfaces);
     free(p->nodes);
-    free(p->host);
     free(p->ids);
     *p = (struct proxies){0};
 }
@@ -178,51 +175,26 @@ void proxy_requests_finish(struct proxy_requests *r)
     *r = (struct proxy_requests){0};
 }
 
-/* lavapipe loses live boxes where others of the same structure are inactive, so boxes that nobody
- * needs are points. The intersection shader passes over points. */
-static void copy_boxes(struct proxies *p, uint32_t first, uint32_t count)
-{
-    SluiceProxyBox *boxes = p->buffer.mapped, point;
-    memcpy(point.min, p->corner, sizeof point.min);
-    memcpy(point.max, p->corner, sizeof point.max);
-    for (uint32_t i = first; i < first + count; i++)
-        boxes[i] = isnan(p->host[i].min[0]) ? point : p->host[i];
-}
-
-/** Makes both arrays larger than `count` boxes. `*grown`: the device has none now. */
-static bool reserve_boxes(const struct gpu *gpu, struct proxies *p, uint32_t count, bool *grown)
-{
-    *grown = p->host_room < count || !p->buffer.buffer;
-    if (!*grown)
-        return true;
-    if (!reserve((void **)&p->host, &p->host_room, count + 1, sizeof *p->host))
-        return false;
-    gpu_destroy_buffer(gpu, &p->buffer);
-    return gpu_create_buffer(gpu, (VkDeviceSize)p->host_room * sizeof *p->host,
-                             STRUCTURE_INPUT_USAGE, &p->buffer);
-}
-
-/** Brings the boxes up to date. */
+/** Brings the buffer up to date; it grows with the largest index. */
 static bool write_boxes(const struct gpu *gpu, struct proxies *p)
 {
     const uint32_t count = get_info(p->boxes).indexCount;
-    bool grown;
-    if (!reserve_boxes(gpu, p, count, &grown))
-        return false;
+    const VkDeviceSize size = (VkDeviceSize)count * sizeof(SluiceProxyBox);
+    if (p->buffer.size < size || !p->buffer.buffer) {
+        gpu_destroy_buffer(gpu, &p->buffer);
+        p->version = 0;
+        if (!gpu_create_buffer(gpu, size + size / 2 + 1024, STRUCTURE_INPUT_USAGE, &p->buffer))
+            return false;
+    }
     SluiceProxyRange ranges[RANGE_COUNT];
     uint32_t range_count;
     const SluiceProxyBoxWrite write = {.structSize = sizeof write,
-                                       .capacity = p->host_room,
-                                       .pBoxes = p->host,
+                                       .capacity =
+                                           (uint32_t)(p->buffer.size / sizeof(SluiceProxyBox)),
+                                       .pBoxes = p->buffer.mapped,
                                        .rangeCapacity = RANGE_COUNT,
                                        .pRanges = ranges};
-    if (!check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, &range_count), "boxes"))
-        return false;
-    for (uint32_t i = 0; i < range_count && !grown; i++)
-        copy_boxes(p, ranges[i].first, ranges[i].count);
-    if (grown)
-        copy_boxes(p, 0, count);
-    return true;
+    return check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, &range_count), "boxes");
 }
 
 bool proxies_build(const struct gpu *gpu, struct structures *structures, struct proxies *p)

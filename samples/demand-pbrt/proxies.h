@@ -25,11 +25,8 @@ struct proxies {
     uint32_t node_room;
     SluiceProxyId *ids; ///< owned; room for requested ones
     uint32_t id_room;
-    SluiceProxyBox *host;     ///< owned; boxes by index
-    uint32_t host_room;       ///< boxes
-    uint64_t version;         ///< of `host`
-    struct gpu_buffer buffer; ///< the same for the device
-    float corner[3];          ///< of the scene
+    struct gpu_buffer buffer; ///< of boxes, 24 bytes each
+    uint64_t version;         ///< of the buffer
     struct structure structure;
     bool changed;         ///< since the structure was built
     uint64_t added_count; ///< boxes since the beginning
