@@ -193,8 +193,9 @@ static bool add_to_sheet(struct renderer *r)
 {
     char caption[96];
     const double share = 100.0 * r->film.missing_count / ((double)r->film.width * r->film.height);
-    snprintf(caption, sizeof caption, "launch %u: %llu shapes, %.1f%% missing", r->launches.count,
-             (unsigned long long)r->world.entered_count, share);
+    const bool is_small = share > 0.0 && share < 10.0;
+    snprintf(caption, sizeof caption, "launch %u: %llu shapes, %.*f%% missing", r->launches.count,
+             (unsigned long long)r->world.entered_count, is_small ? 1 : 0, share);
     return contact_sheet_add(&r->sheet, &r->picture, r->options.exposure, caption);
 }
 

@@ -69,7 +69,7 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          "units; path: paths with shadows"},
         {OPTION_UINT, "samples", "N", "1", &o->samples, "rays per pixel; the first is its center",
          1, 65536},
-        {OPTION_UINT, "bounces", "N", "3", &o->bounces, "of paths", 0, PBRT_MAX_BOUNCES},
+        {OPTION_UINT, "depth", "N", "3", &o->bounces, "bounces of paths", 0, PBRT_MAX_BOUNCES},
         {OPTION_FLAG, "face-forward", .value = &o->face_forward,
          .help = "turn normals to the viewer in mode primary"},
         {OPTION_REAL, "exposure", "STOPS", "0", &o->exposure, "of PNG pictures", -16, 16},
@@ -87,7 +87,7 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          .help = "boxes of the largest volume come first"},
         {OPTION_UINT, "warmup", "N", "(until nothing is missing)", &o->warmup,
          "end after N + 1 launches, whatever is missing", 0, 1000000},
-        {OPTION_UINT, "launches", "MAX", "100000", &o->launches, "most launches", 1, 10000000},
+        {OPTION_UINT, "launches", "MAX", "1000", &o->launches, "most launches", 1, 10000000},
         option_budget(&o->budget, "most device memory for meshes; those that rays have not hit for "
                                   "longest become boxes again; 0: no limit"),
         {OPTION_BYTES, "texture-budget", "SIZE", "0", &o->texture_budget,
