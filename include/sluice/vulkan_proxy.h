@@ -62,9 +62,10 @@ typedef struct SluiceProxyGeometry {
  * Build or update the structure after proxies were added or removed. Vulkan allows an update only
  * if primitiveCount is the same. With an empty set primitiveCount is 0.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize, a set
- *         with materials, or an `address` that is not a multiple of 8. It may be 0 for an empty
- * set. Thread safety: may run beside calls that take a const set.
+ * Errors: SLUICE_ERROR_NULL_POINTER, also for address 0 unless the set is empty;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a wrong structSize, a set with
+ *         materials, or an `address` that is not a multiple of 8.
+ * Thread safety: may run beside calls that take a const set.
  */
 SLUICE_API SluiceResult sluiceGetProxyGeometry(const SluiceProxySet *set, VkDeviceAddress address,
                                                SluiceProxyGeometry *pGeometry);

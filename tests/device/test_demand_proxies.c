@@ -249,7 +249,7 @@ static void geometry_describes_the_boxes_of_a_set(void **state)
     for (uint32_t i = 0; i < 3; i++)
         CHECK_OK(sluiceAddGeometryProxy(set, &box, &ids[i]));
     CHECK_OK(sluiceRemoveProxy(set, ids[0]));
-    CHECK_RESULT(sluiceGetProxyGeometry(set, 0, &geometry), SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceGetProxyGeometry(set, 0, &geometry), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceGetProxyGeometry(set, 68, &geometry), SLUICE_ERROR_INVALID_ARGUMENT);
     CHECK_OK(sluiceGetProxyGeometry(set, 64, &geometry));
     assert_int_equal(geometry.range.primitiveCount, 3);
