@@ -234,7 +234,10 @@ static void other_resources_and_sets_are_refused(void **state)
 static void geometry_describes_the_boxes_of_a_set(void **state)
 {
     (void)state;
-    const SluiceProxySetCreateInfo info = {.structSize = sizeof info};
+    struct failing_allocator allocator;
+    failing_allocator_init(&allocator, UINT64_MAX);
+    const SluiceProxySetCreateInfo info = {.structSize = sizeof info,
+                                           .pAllocator = &allocator.callbacks};
     const SluiceProxyBox box = {{0, 0, 0}, {1, 1, 1}};
     SluiceProxyGeometry geometry = {.structSize = sizeof geometry};
     SluiceProxySet *set;
@@ -249,6 +252,7 @@ static void geometry_describes_the_boxes_of_a_set(void **state)
     for (uint32_t i = 0; i < 3; i++)
         CHECK_OK(sluiceAddGeometryProxy(set, &box, &ids[i]));
     CHECK_OK(sluiceRemoveProxy(set, ids[0]));
+    allocator.refuse_from = allocator.calls; /* it takes no memory */
     CHECK_RESULT(sluiceGetProxyGeometry(set, 0, &geometry), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceGetProxyGeometry(set, 68, &geometry), SLUICE_ERROR_INVALID_ARGUMENT);
     CHECK_OK(sluiceGetProxyGeometry(set, 64, &geometry));
@@ -343,9 +347,9 @@ static void without_host_memory_requests_come_with_a_later_launch(void **state)
         SluiceResult result = sluiceProcessDemandRequests(app.r.loader, &app.r.launch, UINT64_MAX,
                                                           &app.r.requests, NULL);
         done = allocator.calls <= before + refuse_from;
-        allocator.refuse_from = UINT64_MAX;
         if (result == SLUICE_SUCCESS)
-            process(&app);
+            process(&app); /* takes no memory */
+        allocator.refuse_from = UINT64_MAX;
         for (uint32_t i = 0; i < 3 && requested_count(&app) < COUNT; i++)
             launch(&app);
         assert_int_equal(requested_count(&app), COUNT);
@@ -353,6 +357,31 @@ static void without_host_memory_requests_come_with_a_later_launch(void **state)
         CHECK_OK(harness_set_context(&h, NULL));
     }
     assert_true(refuse_from > 3);
+}
+
+static void pages_for_proxies_without_host_memory_are_refused(void **state)
+{
+    (void)state;
+    struct failing_allocator allocator;
+    struct app app;
+    SluiceDemandResourceId id;
+    uint32_t first, refused = 0;
+    SluiceVulkanContextCreateInfo context = harness_context_info(&h);
+    failing_allocator_init(&allocator, UINT64_MAX);
+    context.pAllocator = &allocator.callbacks;
+    CHECK_OK(harness_set_context(&h, &context));
+    app_init(&app, 1, 0);
+    for (uint32_t i = 0; i < 40; i++) { /* until a table must grow */
+        allocator.refuse_from = allocator.calls;
+        SluiceResult result = sluiceAddDemandProxies(app.r.loader, app.set, 0, &id, &first);
+        allocator.refuse_from = UINT64_MAX;
+        refused += result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        if (result != SLUICE_SUCCESS)
+            CHECK_OK(sluiceAddDemandProxies(app.r.loader, app.set, 0, &id, &first));
+    }
+    assert_true(refused > 0);
+    app_finish(&app);
+    CHECK_OK(harness_set_context(&h, NULL));
 }
 
 int main(void)
@@ -369,6 +398,7 @@ int main(void)
         cmocka_unit_test(other_resources_and_sets_are_refused),
         cmocka_unit_test(geometry_describes_the_boxes_of_a_set),
         cmocka_unit_test(requests_of_proxies_are_recorded_and_replayed),
+        cmocka_unit_test(pages_for_proxies_without_host_memory_are_refused),
         cmocka_unit_test(without_host_memory_requests_come_with_a_later_launch),
     };
     return harness_finish(&h, RUN_TESTS(tests));

@@ -220,22 +220,22 @@ static void wrong_settings_and_kinds_are_refused(void **state)
     sluiceDestroyProxySet(set);
 }
 
-static void without_memory_nothing_changes(void **state)
+static void refuse_each_allocation(SluiceProxyKind kind)
 {
-    (void)state;
     enum { COUNT = 2100 }; /* three chunks */
     uint64_t refuse_from = 0;
     for (bool done = false; !done; refuse_from++) {
         struct failing_allocator allocator;
         failing_allocator_init(&allocator, refuse_from);
-        const SluiceProxySetCreateInfo info = {.structSize = sizeof info,
-                                               .pAllocator = &allocator.callbacks};
+        const SluiceProxySetCreateInfo info = {
+            .structSize = sizeof info, .kind = kind, .pAllocator = &allocator.callbacks};
         SluiceProxySet *set = NULL;
         uint32_t count = 0;
         SluiceResult result = sluiceCreateProxySet(&info, &set);
         while (result == SLUICE_SUCCESS && count < COUNT) {
             SluiceProxyId id = 0;
-            result = sluiceAddGeometryProxy(set, &unit, &id);
+            result = kind == SLUICE_PROXY_KIND_GEOMETRY ? sluiceAddGeometryProxy(set, &unit, &id)
+                                                        : sluiceAddMaterialProxy(set, &id);
             if (result == SLUICE_SUCCESS)
                 assert_true(id == ((uint64_t)1 << 32 | count++));
         }
@@ -246,12 +246,61 @@ static void without_memory_nothing_changes(void **state)
             assert_int_equal(info_of(set).proxyCount, count);
             assert_int_equal(info_of(set).hostMemorySize, allocator.live_bytes);
             allocator.refuse_from = UINT64_MAX;
-            assert_int_equal((uint32_t)add(set), count);
+            if (kind == SLUICE_PROXY_KIND_GEOMETRY)
+                assert_int_equal((uint32_t)add(set), count);
         }
         sluiceDestroyProxySet(set);
         assert_int_equal(allocator.live_count, 0);
     }
     assert_true(refuse_from > 10);
+}
+
+static void without_memory_nothing_changes(void **state)
+{
+    (void)state;
+    refuse_each_allocation(SLUICE_PROXY_KIND_GEOMETRY);
+    refuse_each_allocation(SLUICE_PROXY_KIND_MATERIAL);
+}
+
+static void calls_take_no_memory_once_an_index_was_used(void **state)
+{
+    (void)state;
+    static const uint32_t zero = 0;
+    struct failing_allocator allocator;
+    failing_allocator_init(&allocator, UINT64_MAX);
+    const SluiceProxySetCreateInfo info = {.structSize = sizeof info,
+                                           .pAllocator = &allocator.callbacks};
+    SluiceProxyBox boxes[1], box;
+    SluiceProxyRange range;
+    const SluiceProxyBoxWrite write = {.structSize = sizeof write,
+                                       .capacity = 1,
+                                       .pBoxes = boxes,
+                                       .rangeCapacity = 1,
+                                       .pRanges = &range};
+    const SluiceProxyRequests requests = {
+        .structSize = sizeof requests, .indexCount = 1, .pIndices = &zero};
+    SluiceProxySet *set;
+    CHECK_OK(sluiceCreateProxySet(&info, &set));
+    SluiceProxyId id = add(set);
+    allocator.refuse_from = allocator.calls;
+    for (uint32_t round = 0; round < 2; round++) {
+        uint64_t version = 0;
+        uint32_t count = 1;
+        CHECK_OK(sluiceAddProxyRequests(set, &requests));
+        CHECK_OK(sluiceGetRequestedProxies(set, NULL, &count, &id));
+        assert_int_equal(count, 1);
+        CHECK_OK(sluiceClearProxyRequests(set, id));
+        CHECK_OK(sluiceGetProxyBox(set, id, &box));
+        CHECK_OK(sluiceGetProxyBounds(set, &box));
+        CHECK_OK(sluiceWriteProxyBoxes(set, &write, &version, &count));
+        assert_memory_equal(boxes, &box, sizeof box);
+        CHECK_OK(sluiceRemoveProxy(set, id));
+        CHECK_OK(sluiceAddProxyRequests(set, &requests));
+        assert_int_equal(info_of(set).proxyCount, 0);
+        assert_int_equal((uint32_t)add(set), 0);
+    }
+    assert_int_equal(allocator.calls, allocator.refuse_from);
+    sluiceDestroyProxySet(set);
 }
 
 static SluiceProxyBox random_box(uint64_t *seed)
@@ -339,7 +388,8 @@ static void a_million_proxies_come_and_go_in_random_order(void **state)
     for (uint32_t round = 0; round < ROUNDS; round++) {
         for (; live < COUNT; live++) {
             wrong += sluiceAddGeometryProxy(set, &unit, &ids[live]) != SLUICE_SUCCESS;
-            assert_in_range((uint32_t)ids[live], 0, COUNT - 1); /* dense: no other is used */
+            if ((uint32_t)ids[live] >= COUNT) /* dense: no other index is used */
+                fail_msg("index %u", (uint32_t)ids[live]);
             wrong += used[(uint32_t)ids[live]]++;
         }
         assert_int_equal(info_of(set).proxyCount, COUNT);
@@ -374,6 +424,7 @@ int main(void)
         cmocka_unit_test(an_index_whose_generations_are_used_up_gets_no_proxy),
         cmocka_unit_test(wrong_settings_and_kinds_are_refused),
         cmocka_unit_test(without_memory_nothing_changes),
+        cmocka_unit_test(calls_take_no_memory_once_an_index_was_used),
         cmocka_unit_test(everything_in_random_order_is_what_a_naive_set_does),
         cmocka_unit_test(a_million_proxies_come_and_go_in_random_order),
     };
