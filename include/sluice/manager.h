@@ -96,7 +96,8 @@ typedef struct SluiceStreamedTextureManagerCreateInfo {
 /** Settings that can change at any time. All are 0 after creation. */
 typedef struct SluiceStreamedTextureManagerConfig {
     uint32_t structSize; ///< sizeof(SluiceStreamedTextureManagerConfig).
-    /** Most tiles that stay STANDBY. Further ones are listed for unmapping, oldest first.
+    /** Most tiles that stay STANDBY. Further ones are listed for unmapping, oldest first. Tiles
+     *  without slots (packedTilesOutside) are counted separately, up to the same number.
      *  Default: 0, none. */
     uint32_t numExtraStandbyTiles;
     uint32_t maxHeapCount;    ///< Most heaps. Default: as many as the allocator grants.
@@ -566,7 +567,8 @@ SLUICE_API SluiceResult sluiceCompleteRetireValue(SluiceStreamedTextureManager *
                                                   uint64_t retireValue);
 
 /**
- * Lists STANDBY tiles for unmapping, oldest first, until at most `keepTileCount` are left.
+ * Lists STANDBY tiles for unmapping, oldest first, until at most `keepTileCount` are left. Tiles
+ * without slots (packedTilesOutside) are not counted and stay.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER.
  */

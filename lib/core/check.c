@@ -61,6 +61,7 @@ static const char *check_lists(const slc_manager *m)
         uint8_t state;
     } lists[] = {
         {&m->residency.standby, SLUICE_TILE_STATE_STANDBY},
+        {&m->residency.standby_outside, SLUICE_TILE_STATE_STANDBY},
         {&m->residency.evicted, SLUICE_TILE_STATE_STANDBY},
         {&m->residency.canceled, SLUICE_TILE_STATE_CANCELED},
         {&m->residency.given_up, SLUICE_TILE_STATE_GIVEN_UP},
@@ -86,7 +87,9 @@ static const char *check_lists(const slc_manager *m)
         evicted_wanted += (slc_node_at(&m->residency, node)->flags & SLC_NODE_WANTED) != 0;
     REQUIRE(evicted_wanted == m->residency.evicted_wanted);
     REQUIRE(m->residency.standby.count <= m->config.numExtraStandbyTiles);
-    REQUIRE(m->residency.standby.count + m->residency.evicted.count ==
+    REQUIRE(m->residency.standby_outside.count <= m->config.numExtraStandbyTiles);
+    REQUIRE(m->residency.standby.count + m->residency.standby_outside.count +
+                m->residency.evicted.count ==
             m->residency.state_counts[SLUICE_TILE_STATE_STANDBY]);
     REQUIRE(m->residency.failed.count == m->residency.state_counts[SLUICE_TILE_STATE_FAILED]);
     if (slc_due_check(&m->residency))

@@ -119,7 +119,7 @@ static uint32_t victim_for(slc_manager *m, struct eviction *d, uint32_t request)
 void slc_evict_wanted_for(slc_manager *m, struct slc_request_walk walk, uint32_t unserved)
 {
     struct eviction d = begin_eviction(m);
-    uint64_t coming = (uint64_t)m->residency.evicted.count + m->residency.retiring.count;
+    uint64_t coming = slc_coming_slots(&m->residency);
     uint64_t reserved = slc_kept_slots(m), free_slots = m->residency.heaps.free_total;
     for (; free_slots + coming < reserved; coming++) {
         uint32_t victim = finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
@@ -152,14 +152,12 @@ bool slc_evict_unwanted_for(slc_manager *m, uint32_t unserved)
     bool dropped = false;
     if (reserved > m->residency.heaps.free_total)
         needed += reserved - m->residency.heaps.free_total;
-    while ((uint64_t)m->residency.evicted.count + m->residency.retiring.count +
-                   m->residency.standby.count <
-               needed &&
+    while (slc_coming_slots(&m->residency) + m->residency.standby.count < needed &&
            m->visit_first != SLC_NONE && is_idle(m, slc_texture_at(m, m->visit_first))) {
         slc_wants_drop(m, slc_texture_at(m, m->visit_first));
         dropped = true;
     }
-    uint64_t coming = (uint64_t)m->residency.evicted.count + m->residency.retiring.count;
+    uint64_t coming = slc_coming_slots(&m->residency);
     uint64_t take = needed > coming ? needed - coming : 0;
     slc_evict_standby(&m->residency, m->residency.standby.count > take
                                          ? m->residency.standby.count - (uint32_t)take

@@ -124,7 +124,7 @@ SluiceResult sluiceSetConfig(SluiceStreamedTextureManager *manager,
         manager->config = config;
         manager->config_count++;
         set_limits(manager);
-        slc_evict_standby(&manager->residency, config.numExtraStandbyTiles);
+        slc_limit_standby(&manager->residency);
     }
     slc_notify(manager, &call);
     return call.result;

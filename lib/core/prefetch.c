@@ -10,8 +10,8 @@ enum { MAX_LOOKED_AT = 256 };
 
 static bool may_prefetch(const slc_manager *m)
 {
-    uint32_t kept =
-        m->residency.standby.count + m->residency.state_counts[SLUICE_TILE_STATE_CANCELED];
+    uint32_t kept = m->residency.standby.count +
+                    slc_count_with_slots(&m->residency, SLUICE_TILE_STATE_CANCELED);
     return kept < m->config.numExtraStandbyTiles &&
            m->residency.heaps.free_total > slc_kept_slots(m);
 }

@@ -88,7 +88,7 @@ struct slc_machine_user {
 };
 
 struct slc_machine_limits {
-    uint32_t standby;       ///< tiles on standby; the oldest of more are evicted
+    uint32_t standby; ///< tiles on standby, and as many outside; the oldest of more are evicted
     uint32_t load_attempts; ///< failures after which a tile is GIVEN_UP
     uint64_t retry_delay;   ///< after the first failure; doubles with each
 };
@@ -104,7 +104,8 @@ struct slc_machine {
     uint32_t state_counts[8];   ///< nodes by SluiceTileState
     uint32_t outside_counts[8]; ///< those of them that take no slots
     struct slc_requests requests;
-    struct slc_list standby, evicted, canceled, given_up, retiring;
+    struct slc_list standby; ///< tiles that take slots
+    struct slc_list standby_outside, evicted, canceled, given_up, retiring;
     struct slc_due_tree failed;
     /** MAPPED tiles by level, oldest first. Packed ones are in none. */
     struct slc_list mapped[SLUICE_MAX_MIP_LEVELS];
@@ -125,6 +126,14 @@ static inline bool slc_is_packed_class(uint32_t level)
 static inline uint32_t slc_count_with_slots(const struct slc_machine *r, SluiceTileState state)
 {
     return r->state_counts[state] - r->outside_counts[state];
+}
+
+/** Slots that come back by themselves: of evicted tiles, and those that retire. */
+static inline uint64_t slc_coming_slots(const struct slc_machine *r)
+{
+    uint32_t evicted_outside =
+        r->outside_counts[SLUICE_TILE_STATE_STANDBY] - r->standby_outside.count;
+    return (uint64_t)r->evicted.count - evicted_outside + r->retiring.count;
 }
 
 static inline struct slc_node *slc_node_at(const struct slc_machine *r, uint32_t node)

@@ -40,7 +40,7 @@ static void leave_list(struct slc_machine *r, uint32_t node)
     case SLUICE_TILE_STATE_REQUESTED: slc_request_remove(r, node); break;
     case SLUICE_TILE_STATE_STANDBY:
         r->evicted_wanted -= (n->flags & SLC_NODE_WANTED) != 0;
-        slc_list_remove(r, n->flags & SLC_NODE_LISTED ? &r->evicted : &r->standby, node);
+        slc_list_remove(r, n->flags & SLC_NODE_LISTED ? &r->evicted : slc_standby_list(r, n), node);
         break;
     case SLUICE_TILE_STATE_CANCELED:
         if (!(n->flags & SLC_NODE_LISTED))
@@ -63,7 +63,7 @@ static void enter_list(struct slc_machine *r, uint32_t node)
             slc_list_append(r, &r->mapped[n->level], node);
         break;
     case SLUICE_TILE_STATE_REQUESTED: slc_request_append(r, node); break;
-    case SLUICE_TILE_STATE_STANDBY: slc_list_append(r, &r->standby, node); break;
+    case SLUICE_TILE_STATE_STANDBY: slc_list_append(r, slc_standby_list(r, n), node); break;
     case SLUICE_TILE_STATE_CANCELED: slc_list_append(r, &r->canceled, node); break;
     case SLUICE_TILE_STATE_FAILED: slc_due_insert(r, node); break;
     case SLUICE_TILE_STATE_GIVEN_UP: enter_given_up(r, node); break;
@@ -125,7 +125,7 @@ void slc_node_set_state(struct slc_machine *r, uint32_t node, SluiceTileState st
     if (is_resident(old) != is_resident(n->state))
         r->user.resident(r->user.user, n, is_resident(n->state));
     if (state == SLUICE_TILE_STATE_STANDBY)
-        slc_evict_standby(r, r->limits.standby);
+        slc_limit_standby(r);
 }
 
 void slc_node_request_again(struct slc_machine *r, uint32_t node)
@@ -172,7 +172,7 @@ bool slc_node_unmap_wanted(struct slc_machine *r, uint32_t node, uint64_t retire
 static void restore(struct slc_machine *r, uint32_t node)
 {
     struct slc_node *n = slc_node_at(r, node);
-    slc_list_remove(r, n->flags & SLC_NODE_LISTED ? &r->evicted : &r->standby, node);
+    slc_list_remove(r, n->flags & SLC_NODE_LISTED ? &r->evicted : slc_standby_list(r, n), node);
     n->flags = 0;
     count_move(r, n, SLUICE_TILE_STATE_MAPPED);
     if (is_regular(n))
@@ -185,10 +185,9 @@ static void to_standby(struct slc_machine *r, uint32_t node)
 {
     struct slc_node *n = slc_node_at(r, node);
     assert(!is_regular(n));
-    slc_list_append(r, &r->standby, node);
+    slc_list_append(r, slc_standby_list(r, n), node);
     count_move(r, n, SLUICE_TILE_STATE_STANDBY);
-    if (r->standby.count > r->limits.standby)
-        slc_evict_standby(r, r->limits.standby);
+    slc_limit_standby(r);
 }
 
 void slc_node_handed_out(struct slc_machine *r, uint32_t node)

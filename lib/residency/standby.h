@@ -1,10 +1,20 @@
-/** Unwanted resident tiles, the one unwanted longest first. */
+/**
+ * Unwanted resident tiles, the one unwanted longest first. Tiles without slots are in a list of
+ * their own: evicting one makes no room.
+ */
 #ifndef SLC_RESIDENCY_STANDBY_H
 #define SLC_RESIDENCY_STANDBY_H
 
 #include "residency/machine.h"
 
-/** Evicts the oldest ones until `keep` are left: lists them for unmapping. */
+static inline struct slc_list *slc_standby_list(struct slc_machine *r, const struct slc_node *node)
+{
+    return node->level == SLC_OUTSIDE_CLASS ? &r->standby_outside : &r->standby;
+}
+
+/** Evicts the oldest ones that take slots until `keep` are left: lists them for unmapping. */
 void slc_evict_standby(struct slc_machine *r, uint32_t keep);
+/** Evicts the oldest ones of both lists until each is within the limit. */
+void slc_limit_standby(struct slc_machine *r);
 
 #endif /* SLC_RESIDENCY_STANDBY_H */

@@ -1,5 +1,6 @@
 #include "vulkan/load_deferred.h"
 
+#include "core/observer.h"
 #include "vulkan/load_units.h"
 
 /* One that was asked to stop is not waited for. */
@@ -76,8 +77,7 @@ SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s)
     uint32_t count = s->deferred.count ? count_without_page(s) : 0;
     if (count == 0)
         return SLUICE_SUCCESS;
-    SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
-    sluiceGetStatistics(s->manager, &stats);
+    SluiceStreamedTextureStatistics stats = slc_manager_slot_statistics(s->manager);
     if (stats.standbyTileCount == 0)
         return SLUICE_SUCCESS;
     uint32_t kept = stats.standbyTileCount > count ? (uint32_t)stats.standbyTileCount - count : 0;

@@ -306,7 +306,7 @@ static SluiceResult set_config(struct naive_manager *n, const struct call *call)
     if (call->null != NULL_NONE)
         return SLUICE_ERROR_NULL_POINTER;
     n->config = call->config;
-    naive_list_standby(n, n->config.numExtraStandbyTiles);
+    naive_limit_standby(n);
     return SLUICE_SUCCESS;
 }
 

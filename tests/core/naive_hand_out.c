@@ -246,10 +246,11 @@ void naive_count_standby(const struct naive_manager *n, uint32_t *listed, uint32
 {
     uint32_t standby;
     struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_STANDBY, &standby);
-    *listed = 0;
-    for (uint32_t i = 0; i < standby; i++)
-        *listed += refs[i].tile->listed;
-    *unlisted = standby - *listed;
+    *listed = *unlisted = 0;
+    for (uint32_t i = 0; i < standby; i++) {
+        *listed += !refs[i].tile->outside && refs[i].tile->listed;
+        *unlisted += !refs[i].tile->outside && !refs[i].tile->listed;
+    }
     free(refs);
 }
 
@@ -332,13 +333,22 @@ static bool hand_out_requests(struct naive_manager *n, const struct call *call,
     return false;
 }
 
+static uint32_t count_canceled(const struct naive_manager *n)
+{
+    uint32_t all, count = 0;
+    struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_CANCELED, &all);
+    for (uint32_t i = 0; i < all; i++)
+        count += !refs[i].tile->outside;
+    free(refs);
+    return count;
+}
+
 /* Whether one more may be handed out; if not, whether that is for lack of room or host memory. */
 static bool may_prefetch(struct naive_manager *n, const struct call *call,
                          const struct outcome *seen, const struct outcome *out, bool *cut_short)
 {
-    uint32_t listed, unlisted, canceled;
+    uint32_t listed, unlisted, canceled = count_canceled(n);
     naive_count_standby(n, &listed, &unlisted);
-    free(naive_collect(n, NULL, SLUICE_TILE_STATE_CANCELED, &canceled));
     *cut_short = out->count == call->room;
     if (*cut_short || unlisted + canceled >= n->config.numExtraStandbyTiles || !slot_for(n, false))
         return false;

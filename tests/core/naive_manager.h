@@ -197,8 +197,11 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile);
 void naive_stand_by(struct naive_manager *n, struct naive_tile *tile);
 /** A MAPPED tile becomes STANDBY and listed, but stays wanted. */
 void naive_evict(struct naive_manager *n, struct naive_tile *tile);
-/** Lists the oldest STANDBY tiles that are not listed yet, until at most `keep` are left. */
+/** Lists the oldest STANDBY tiles with slots that are not listed yet, until at most `keep` are
+ * left. */
 void naive_list_standby(struct naive_manager *n, uint64_t keep);
+/** Lists the oldest STANDBY tiles beyond numExtraStandbyTiles, with slots and without. */
+void naive_limit_standby(struct naive_manager *n);
 /** Merges a map into the texture's spans and finds `held` anew; `asked` as in last_asked. */
 void naive_remember(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked,
                     uint64_t time, uint64_t timeout);

@@ -122,7 +122,7 @@ void naive_stand_by(struct naive_manager *n, struct naive_tile *tile)
     tile->state = SLUICE_TILE_STATE_STANDBY;
     tile->listed = false;
     tile->standby_at = ++n->stamp;
-    naive_list_standby(n, n->config.numExtraStandbyTiles);
+    naive_limit_standby(n);
 }
 
 void naive_evict(struct naive_manager *n, struct naive_tile *tile)
@@ -155,12 +155,12 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
     }
 }
 
-void naive_list_standby(struct naive_manager *n, uint64_t keep)
+static void list_standby(struct naive_manager *n, bool outside, uint64_t keep)
 {
     uint32_t count, unlisted = 0;
     struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_STANDBY, &count);
     for (uint32_t i = 0; i < count; i++)
-        if (!refs[i].tile->listed) {
+        if (!refs[i].tile->listed && refs[i].tile->outside == outside) {
             refs[unlisted] = refs[i];
             refs[unlisted++].key[0] = refs[i].tile->standby_at;
         }
@@ -170,6 +170,17 @@ void naive_list_standby(struct naive_manager *n, uint64_t keep)
         refs[i].tile->listed_at = ++n->stamp;
     }
     free(refs);
+}
+
+void naive_list_standby(struct naive_manager *n, uint64_t keep)
+{
+    list_standby(n, false, keep);
+}
+
+void naive_limit_standby(struct naive_manager *n)
+{
+    list_standby(n, false, n->config.numExtraStandbyTiles);
+    list_standby(n, true, n->config.numExtraStandbyTiles);
 }
 
 /* FAILED tiles in the order in which they become due. */

@@ -2,6 +2,8 @@
 #include "core/check.h"
 #include "core/scene.h"
 
+#include <stdio.h>
+
 enum { CAPACITY = 16 };
 
 static const uint32_t heap_counts[] = {1, 4, 64}; /* 16, 64 and 1024 slots */
@@ -213,6 +215,79 @@ static void packed_tiles_outside_of_heaps_need_no_slot(void **state)
     fixture_close(&f);
 }
 
+/* Textures that take slots follow `outside` small ones that were in view, and leave it, too.
+ * Returns after how many frames another texture has all of its tiles. */
+static uint32_t frames_beside(uint32_t outside)
+{
+    struct fixture f;
+    fixture_open(&f, CAPACITY, false);
+    fixture_configure(&f, 2000, 1, 5, 1);
+    SluiceStreamedTextureDesc tiny = tiny_texture(true), large = full_chain(512, 512, 128, 128);
+    SluiceTextureId ids[1000], first = fixture_add_small(&f), second = fixture_add(&f, &large);
+    for (uint32_t i = 0; i < outside; i++)
+        fixture_feed(&f, ids[i] = fixture_add(&f, &tiny), 0, 1, 2);
+    fixture_load(&f);
+    for (uint32_t i = 0; i < outside; i++)
+        fixture_feed(&f, ids[i], SLUICE_MIP_UNTOUCHED, 10, 2);
+    assert_int_equal(fixture_statistics(&f).standbyTileCount, outside);
+    fixture_feed(&f, second, 0, 11, 2);
+    fixture_load(&f);
+    assert_int_equal(fixture_statistics(&f).freeSlotCount, 1); /* kept for packed tiles */
+    fixture_feed(&f, second, SLUICE_MIP_UNTOUCHED, 20, 2);
+    uint32_t time = 20;
+    for (; time < 2000 && fixture_state(&f, first, 0) != SLUICE_TILE_STATE_MAPPED; time++) {
+        fixture_feed(&f, first, 0, time, 2);
+        fixture_load(&f);
+        fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0);
+    }
+    assert_null(slc_manager_check(f.manager));
+    assert_int_equal(fixture_statistics(&f).mappedTileCount, 6);
+    if (outside > 0)
+        CHECK_STATE(&f, ids[0], 0, STANDBY); /* nothing is won by evicting it */
+    for (uint32_t i = 0; i < outside; i++)
+        CHECK_OK(sluiceRemoveStreamedTexture(f.manager, ids[i], 1));
+    fixture_close(&f);
+    return time - 20;
+}
+
+static void packed_tiles_outside_on_standby_hold_up_no_other_texture(void **state)
+{
+    (void)state;
+    uint32_t none = frames_beside(0), many = frames_beside(1000);
+    printf("# %u frames, %u beside 1000 tiles without slots\n", none, many);
+    assert_int_equal(many, none);
+}
+
+static void packed_tiles_outside_leave_standby_to_tiles_with_slots(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceTextureId ids[8];
+    fixture_open(&f, CAPACITY, false);
+    fixture_configure(&f, 6, 1, 5, 1);
+    SluiceStreamedTextureDesc tiny = tiny_texture(true);
+    SluiceTextureId small = fixture_add_small(&f);
+    for (uint32_t i = 0; i < 8; i++)
+        fixture_feed(&f, ids[i] = fixture_add(&f, &tiny), 0, 1, 2);
+    fixture_feed(&f, small, 0, 1, 2);
+    fixture_load(&f);
+    fixture_feed(&f, small, SLUICE_MIP_UNTOUCHED, 10, 2);
+    for (uint32_t i = 0; i < 8; i++)
+        fixture_feed(&f, ids[i], SLUICE_MIP_UNTOUCHED, 10, 2);
+    fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0);
+    assert_int_equal(f.count, 2); /* each kind may have six */
+    assert_int_equal(f.tiles[0].textureId, ids[0]);
+    CHECK_OK(sluiceTrimStandbyTiles(f.manager, 2));
+    fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0);
+    assert_int_equal(f.count, 4);
+    assert_int_equal(f.tiles[0].textureId, small);
+    assert_null(slc_manager_check(f.manager));
+    fixture_configure(&f, 1, 1, 5, 1);
+    fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0);
+    assert_int_equal(f.count, 1 + 5);
+    fixture_close(&f);
+}
+
 /* A texture that wants far more than there are slots, beside textures that cannot be loaded. */
 static void blur_beside(uint32_t failing, SluiceStreamedTextureStatistics *now)
 {
@@ -263,6 +338,8 @@ int main(void)
         cmocka_unit_test(packed_tiles_stand_first_in_every_list),
         cmocka_unit_test(every_texture_shows_something_as_long_as_packed_tiles_fit),
         cmocka_unit_test(packed_tiles_outside_of_heaps_need_no_slot),
+        cmocka_unit_test(packed_tiles_outside_on_standby_hold_up_no_other_texture),
+        cmocka_unit_test(packed_tiles_outside_leave_standby_to_tiles_with_slots),
         cmocka_unit_test(packed_tiles_outside_that_failed_do_not_change_the_bias),
     };
     return RUN_TESTS(tests);
