@@ -242,14 +242,13 @@ static bool trace_once(struct launches *l, uint32_t sample, SluiceDemandTicket *
     if (!launch_once(l, true, sample, &requests, ticket))
         return false;
     l->last_seconds = clock_seconds() - start;
-    l->last_traced = before;
     l->trace_seconds += l->last_seconds;
     film_end_launch(l->film);
     l->count++;
     l->ray_count += before;
     *progress = l->film->missing_count < before || requests.servedCount > 0;
     count_memory(l);
-    return l->after_launch(l->user_data);
+    return !l->after_launch || l->after_launch(l->user_data);
 }
 
 static bool trace_sample(struct launches *l, uint32_t sample, uint32_t most)
@@ -290,6 +289,22 @@ bool launches_run(struct launches *l)
             break;
         l->sample_count++;
     }
+    return true;
+}
+
+bool launches_repeat(struct launches *l, uint32_t times)
+{
+    const uint32_t count = l->count;
+    for (uint32_t i = 0; i < times; i++) {
+        SluiceDemandTicket ticket;
+        bool progress;
+        film_begin_sample(l->film);
+        if (!trace_once(l, 0, &ticket, &progress))
+            return false;
+        if (l->repeat_seconds == 0.0 || l->last_seconds < l->repeat_seconds)
+            l->repeat_seconds = l->last_seconds;
+    }
+    l->count = count;
     return true;
 }
 

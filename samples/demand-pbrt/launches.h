@@ -31,7 +31,7 @@ struct launches {
     uint64_t peak_device;  ///< bytes
     double trace_seconds;  ///< of launches that trace
     double last_seconds;   ///< of the last one
-    uint32_t last_traced;  ///< pixels of the last one
+    double repeat_seconds; ///< of the fastest launch of launches_repeat; 0: there was none
     void *user_data;
     bool (*after_launch)(void *user_data); ///< false ends it all
 };
@@ -44,5 +44,7 @@ void launches_finish(struct launches *launches);
 bool launches_preload(struct launches *launches);
 /** Traces all samples, each until nothing is missing, or until there were enough launches. */
 bool launches_run(struct launches *launches);
+/** Traces all pixels again some times. The film is of no use afterwards. */
+bool launches_repeat(struct launches *launches, uint32_t times);
 
 #endif /* DEMAND_PBRT_LAUNCHES_H */

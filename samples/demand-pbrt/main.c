@@ -61,6 +61,7 @@ static bool create_loader(struct renderer *r)
         .structSize = sizeof info,
         .pageCapacity = PBRT_PAGE_CAPACITY,
         .memoryBudget = o->texture_budget,
+        .maxRequestsPerLaunch = PBRT_MOST_REQUESTS,
     };
     SluiceResult result = sluiceCreateVulkanContext(&context, &r->context);
     info.context = r->context;
@@ -242,6 +243,9 @@ static bool write_files(struct renderer *r)
     if (!film_read(&r->gpu, &r->film, &r->picture) ||
         !picture_output_write(&r->picture, o->exposure, o->file) ||
         (o->contact_sheet && !contact_sheet_write(&r->sheet, o->contact_sheet)))
+        return false;
+    r->launches.after_launch = NULL;
+    if (o->repeat > 0 && r->film.missing_count == 0 && !launches_repeat(&r->launches, o->repeat))
         return false;
     if (o->statistics && !statistics_write(&r->launches, o->scene, o->statistics))
         return false;

@@ -115,6 +115,8 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          "PNG of small pictures, one for each of the first launches"},
         {OPTION_TEXT, "statistics", "FILE", "(none)", &o->statistics,
          "write counts as JSON, under the names of the OptiX Toolkit's DemandPbrtScene"},
+        {OPTION_UINT, "repeat", "N", "0", &o->repeat,
+         "trace the complete picture N more times, and tell the best rate", 0, 10000},
         option_json(&o->json),
     };
     const struct option_table table = {"demand-pbrt", usage, notes, options,

@@ -21,6 +21,7 @@ struct pbrt_options {
     uint32_t bounces;
     uint32_t warmup;   ///< UINT32_MAX: until nothing is missing
     uint32_t launches; ///< most
+    uint32_t repeat;
     uint32_t anisotropy;
     uint32_t threads;
     double exposure;

@@ -5,6 +5,7 @@
 #include "sluice/shared/types.h"
 
 #define PBRT_PAGE_CAPACITY 0x04000000u /* pageCapacity */
+#define PBRT_MOST_REQUESTS 0x00020000u /* of a launch: boxes, materials, tiles */
 
 /* Descriptor set 1; set 0 is the demand loader's. */
 #define PBRT_BINDING_MESHES 0

@@ -38,7 +38,8 @@ bool summary_print(const struct summary *s, bool json)
     SluiceDemandStatistics d = {.structSize = sizeof d};
     if (sluiceGetDemandStatistics(l->loader, &d) != SLUICE_SUCCESS)
         return false;
-    const double rate = l->last_seconds > 0.0 ? l->last_traced / l->last_seconds / 1e6 : 0.0;
+    const double pixels = (double)l->film->width * l->film->height;
+    const double rate = l->repeat_seconds > 0.0 ? pixels / l->repeat_seconds / 1e6 : 0.0;
     const struct figure figures[] = {
         {"launches", "", l->count},
         {"launches_without_rays", "", l->idle_count},
@@ -67,7 +68,7 @@ bool summary_print(const struct summary *s, bool json)
         {"top_level_seconds", "s", w->top_seconds},
         {"trace_seconds", "s", l->trace_seconds},
         {"complete_seconds", "s", s->complete_seconds},
-        {"last_launch_rate", "Mpixel/s", rate},
+        {"repeat_rate", "Mpixel/s", rate},
         {"geometry_bytes_peak", "B", (double)w->peak_size},
         {"geometry_bytes", "B", (double)w->meshes.size},
         {"peak_host_bytes", "B", peak_host_bytes()},
