@@ -243,13 +243,17 @@ typedef struct SluiceImageSourceInterface {
                                          size_t rowPitch, SluiceImageFault *pFault);
     /**
      * Writes a number that stands for the texels of a region, and returns true. Two regions of
-     * the source with the same number, width and height have equal texels. Tiles with one number
-     * are resident once: in paged mode and demand loading they have one page. May be NULL.
+     * the source with the same number, width and height have equal texels. In paged mode and
+     * demand loading such tiles share a page: one that comes while another one is resident is not
+     * read. May be NULL.
      *
-     * Returns false if the source knows of no equal region, or if the region's texels may change
-     * (sluiceInvalidateDemandTexture): the answer for a region must never change. In a source of
-     * sluiceCreateArrayImageSource only numbers below 2^48 count.
+     * Returns false if the source knows of no equal region, or if the region's texels may change.
+     * The answer for a region must never change, also after sluiceInvalidateDemandTexture: that
+     * call drops the tiles of one texture, and other textures of the source keep theirs.
+     * In a source of sluiceCreateArrayImageSource only numbers below 2^48 count.
+     *
      * Must not wait and must not read files: a frame asks several times for each tile.
+     *
      * Thread safety: any thread, several calls at the same time.
      */
     bool (*pfnIdentifyRegion)(SluiceImageSource *source, const SluiceImageRegion *pRegion,

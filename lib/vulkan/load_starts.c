@@ -80,6 +80,15 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, struct slc_read_batch *b
     return slc_read_batch_add(s, batch, unit);
 }
 
+/* Shares the page of an equal tile while pages or units are short. Returns false if the tile goes
+ * on waiting. */
+static bool share_deferred(SluiceVulkanStreamer *s, const struct slc_deferred_tile *deferred,
+                           SluiceResult *result)
+{
+    return !s->textures[deferred->texture].producer.pfn &&
+           share_tile(s, deferred->texture, &deferred->tile, result) != SLC_SHARE_NONE;
+}
+
 /* Starts deferred tiles that can have a page now, coarse tiles first. At most maxLoadsInFlight per
  * call: shared tiles take no unit, so units do not bound their number. */
 static SluiceResult start_deferred(SluiceVulkanStreamer *s, struct slc_read_batch *batch)
@@ -90,14 +99,18 @@ static SluiceResult start_deferred(SluiceVulkanStreamer *s, struct slc_read_batc
         for (uint32_t i = 0;
              i < s->deferred.count && left > 0 && s->free_unit_count > 0 && result >= 0;) {
             struct slc_deferred_tile deferred = s->deferred.tiles[i];
-            if (deferred.tile.mipLevel != level || slc_pages_left(s, deferred.texture) == 0 ||
-                !units_are_ready(s, deferred.texture, 1)) {
+            bool can_start = deferred.tile.mipLevel == level &&
+                             slc_pages_left(s, deferred.texture) > 0 &&
+                             units_are_ready(s, deferred.texture, 1);
+            if (deferred.tile.mipLevel != level ||
+                (!can_start && !share_deferred(s, &deferred, &result))) {
                 i++;
                 continue;
             }
             slc_deferred_tiles_remove_at(&s->deferred, i);
             left--;
-            result = start_tile(s, batch, deferred.texture, &deferred.tile);
+            if (can_start)
+                result = start_tile(s, batch, deferred.texture, &deferred.tile);
         }
     return result;
 }

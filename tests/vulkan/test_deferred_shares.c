@@ -115,8 +115,9 @@ static void copy_tile(struct stage *s, const struct slc_tile_key *key, uint32_t 
     slc_page_share_written(pool_of(s), s->other, page, 1);
 }
 
-/* The other user has copied all tiles, and gives a page back. Returns how many tiles there are. */
-static uint32_t copy_all(struct stage *s)
+/* The other user has copied all tiles, and may give a page back. Returns how many tiles there are.
+ */
+static uint32_t copy_all(struct stage *s, bool gives)
 {
     struct slc_page_pool *pool = pool_of(s);
     VkCommandBuffer commands = fake_vulkan_commands(&s->fake);
@@ -129,22 +130,22 @@ static uint32_t copy_all(struct stage *s)
                 copy_tile(s, &key, s->pages[count++]);
             }
     slc_page_pool_record(pool, s->other, 2, 1, commands);
-    slc_page_pool_give(pool, s->other, s->pages[count], SLC_NO_OWNER);
+    if (gives)
+        slc_page_pool_give(pool, s->other, s->pages[count], SLC_NO_OWNER);
     slc_page_pool_record(pool, s->other, 3, 2, commands);
     return count;
 }
 
 /* They take neither a page nor a staging slot, so nothing else bounds what a frame changes. */
-static void deferred_tiles_that_are_shared_are_bounded_per_frame(void **state)
+static void share_all(bool gives)
 {
-    (void)state;
     static struct stage s; /* large */
     init(&s);
     for (int i = 0; i < 60; i++)
         frame(&s);
     assert_int_equal(shared_count(&s), 0);
     assert_true(s.streamer->deferred.count > 4 * LOADS);
-    uint32_t count = copy_all(&s);
+    uint32_t count = copy_all(&s, gives);
     uint64_t before = 0;
     for (int i = 0; i < 100 && before + 1 < count; i++) {
         frame(&s);
@@ -155,10 +156,23 @@ static void deferred_tiles_that_are_shared_are_bounded_per_frame(void **state)
     finish(&s);
 }
 
+static void deferred_tiles_that_are_shared_are_bounded_per_frame(void **state)
+{
+    (void)state;
+    share_all(true);
+}
+
+static void deferred_tiles_share_pages_while_none_is_free(void **state)
+{
+    (void)state;
+    share_all(false);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(deferred_tiles_that_are_shared_are_bounded_per_frame),
+        cmocka_unit_test(deferred_tiles_share_pages_while_none_is_free),
     };
     return RUN_TESTS(tests);
 }
