@@ -541,6 +541,7 @@ static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint
     SluiceFormatInfo format = {.structSize = sizeof format, .channelCount = 4};
     (void)sluiceGetFormatInfo(texture->info.format, &format);
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
+    SluiceResidencyMode mode = slc_texture_mode(s, texture);
     struct SluiceTextureEntry entry = {
         .wholeShown = texture->whole_shown,
         .width = desc->width,
@@ -565,8 +566,8 @@ static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint
             (texture->filter != SLUICE_TEXTURE_FILTER_LINEAR ? SLUICE_TEXTURE_FLAG_SPLINE : 0u) |
             (texture->filter == SLUICE_TEXTURE_FILTER_SMART_CUBIC ? SLUICE_TEXTURE_FLAG_SMART
                                                                   : 0u) |
-            (slc_texture_mode(s, texture) == SLUICE_RESIDENCY_MODE_DENSE ? SLUICE_TEXTURE_FLAG_DENSE
-                                                                         : 0u) |
+            (mode == SLUICE_RESIDENCY_MODE_DENSE ? SLUICE_TEXTURE_FLAG_DENSE : 0u) |
+            (mode == SLUICE_RESIDENCY_MODE_PAGED ? SLUICE_TEXTURE_FLAG_PAGED : 0u) |
             format.channelCount << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
     slc_texture_entry_complete(&entry);

@@ -34,6 +34,7 @@ void slc_texture_entry_complete(struct SluiceTextureEntry *entry)
     bool clamps = clamps_to_edge(entry->addressModeU) && clamps_to_edge(entry->addressModeV);
     entry->shape |= (entry->flags & SLUICE_TEXTURE_FLAG_SPLINE ? SLUICE_SHAPE_SPLINE : 0) |
                     (entry->flags & SLUICE_TEXTURE_FLAG_SMART ? SLUICE_SHAPE_SMART : 0);
+    entry->shape |= entry->flags & SLUICE_TEXTURE_FLAG_PAGED ? SLUICE_SHAPE_PAGED : 0;
     entry->shape |= (even ? 0 : SLUICE_SHAPE_UNEVEN) | (repeats ? SLUICE_SHAPE_REPEATS : 0) |
                     (even && powers && (repeats || clamps) ? SLUICE_SHAPE_QUICK : 0);
 }

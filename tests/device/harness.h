@@ -66,9 +66,10 @@ struct harness {
     SluiceResidencyMode mode; ///< never AUTO
     const char *mode_name;
     SluiceVulkanContext *context;
-    bool min_lod;                  ///< probers have samplers clamp: caps.shaderResourceMinLod
-    bool cubic;                    ///< probers know bicubic filters
-    bool page_loop;                ///< probers find pages by a loop instead of an index
+    bool min_lod;   ///< probers have samplers clamp: caps.shaderResourceMinLod
+    bool cubic;     ///< probers know bicubic filters
+    bool mixes;     ///< probers know textures of several modes; set before there is one
+    bool page_loop; ///< probers find pages by a loop instead of an index
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
     bool reads_bytes;              ///< features for addresses and arrays of buffers
     bool runs_bytes;               ///< runners read byte pages, where reads_bytes

@@ -112,10 +112,11 @@ const VkSpecializationInfo *prober_specialize(const struct prober *p,
 {
     s->values[0] = p->paged;
     s->values[1] = p->h->cubic;
-    for (uint32_t i = 0; i < 2; i++)
+    s->values[2] = p->h->mixes;
+    for (uint32_t i = 0; i < 3; i++)
         s->entries[i] =
             (VkSpecializationMapEntry){i, i * (uint32_t)sizeof s->values[0], sizeof s->values[0]};
-    s->info = (VkSpecializationInfo){2, s->entries, sizeof s->values, s->values};
+    s->info = (VkSpecializationInfo){3, s->entries, sizeof s->values, s->values};
     return &s->info;
 }
 
@@ -160,7 +161,7 @@ void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *stre
     CHECK_OK(sluiceGetVulkanResidencyMode(streamer, &mode));
     *p = (struct prober){.h = h,
                          .streamer = streamer,
-                         .paged = mode == SLUICE_RESIDENCY_MODE_PAGED,
+                         .paged = mode == SLUICE_RESIDENCY_MODE_PAGED || h->mixes,
                          .codes = mode == SLUICE_RESIDENCY_MODE_SPARSE &&
                                   h->caps.shaderResourceResidency};
     harness_buffer_init(h, &p->inputs, PROBE_CAPACITY * sizeof(struct ProbeInput),

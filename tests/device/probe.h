@@ -78,10 +78,10 @@ void prober_record(struct prober *p, VkCommandBuffer commands, struct probe_text
 /** Set 1, with the pages as they are now. */
 void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBindPoint point);
 
-/** Specialization constants `paged` and `cubic`, by which one shader serves every mode. */
+/** Specialization constants by which one shader serves every mode. */
 struct prober_specialization {
-    VkBool32 values[2]; ///< paged, cubic
-    VkSpecializationMapEntry entries[2];
+    VkBool32 values[3]; ///< paged, cubic, mixed
+    VkSpecializationMapEntry entries[3];
     VkSpecializationInfo info;
 };
 const VkSpecializationInfo *prober_specialize(const struct prober *p,

@@ -4,6 +4,7 @@
  *
  *     #define SLUICE_SET 0                   // set number; default 0
  *     #define SLUICE_PAGED true              // as in buffers.glsl; leave it out: never paged mode
+ *     #define SLUICE_PAGED_PER_TEXTURE true  // for pagedTextures; default: false
  *     #define SLUICE_FEEDBACK_IN_TURNS       // for feedbackInTurns; default: every texture
  *     #define SLUICE_TEXTURE_ARRAY SLUICE_TEXTURES_COMBINED  // as the streamer's textureArray; default: none
  *     #include "sluice/bindings.glsl"
@@ -21,8 +22,8 @@
  *
  * Requires the device features runtimeDescriptorArray and
  * shaderSampledImageArrayNonUniformIndexing with SLUICE_PAGED and with SLUICE_TEXTURE_ARRAY. Without
- * them define SLUICE_PAGE_LOOP as the number of pages: maxPageChunkCount in paged mode, 1 in other
- * modes. There is no array of textures then.
+ * them define SLUICE_PAGE_LOOP as the number of pages: maxPageChunkCount in paged mode and with
+ * pagedTextures, else 1. There is no array of textures then.
  */
 #ifndef SLUICE_BINDINGS_GLSL
 #define SLUICE_BINDINGS_GLSL

@@ -20,10 +20,27 @@
  * GL_EXT_nonuniform_qualifier must be enabled. Without that device feature define SLUICE_PAGE_LOOP
  * as the number of elements, and index without nonuniformEXT. Without SLUICE_PAGED none of these is
  * needed; the shader then serves the other modes only.
+ *
+ * For streamers with pagedTextures, whose textures may be sparse, paged or dense:
+ *
+ *     #define SLUICE_PAGED true
+ *     #define SLUICE_PAGED_PER_TEXTURE true                    // default: false
+ *
+ * Both may be constant_id constants.
  */
 #ifndef SLUICE_BUFFERS_GLSL
 #define SLUICE_BUFFERS_GLSL
 
 #include "shared/texture_table.h"
+
+/* Whether the tiles of a texture are pages. `shape` is that of its table entry. */
+#ifndef SLUICE_PAGED
+#define SLUICE_HAS_PAGES(shape) false
+#elif defined(SLUICE_PAGED_PER_TEXTURE)
+#define SLUICE_HAS_PAGES(shape)                                                                    \
+    (SLUICE_PAGED && (!SLUICE_PAGED_PER_TEXTURE || ((shape) & SLUICE_SHAPE_PAGED) != 0u))
+#else
+#define SLUICE_HAS_PAGES(shape) SLUICE_PAGED
+#endif
 
 #endif

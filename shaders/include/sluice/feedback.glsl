@@ -312,7 +312,7 @@ void sluiceWriteFeedbackQueried(float lod, uint tableIndex, vec2 uv, vec2 dx, ve
                                 float maxAnisotropy)
 {
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED) {
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape)) {
         sluiceWriteFeedback(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
         return;
     }

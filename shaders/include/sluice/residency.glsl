@@ -37,7 +37,7 @@ bool sluiceStayInside(inout float coordinate, uint size)
 uint sluiceProbeNonResident(sampler2D nearestMipTex, SluiceTextureEntry entry, vec2 uv, float level)
 {
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED)
+    if (SLUICE_HAS_PAGES(entry.shape))
         return sluiceCountUnpaged(entry, uint(level), uv);
 #endif
 #ifdef SLUICE_NO_RESIDENCY_CODES
@@ -77,7 +77,7 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
         taps = 9u;
         vec2 size = vec2(entry.width, entry.height);
         axis = length(s.dx * size) >= length(s.dy * size) ? s.dx : s.dy;
-        float reach = sluiceOverreachedLod(s.dx * size, s.dy * size, 0.0, maxAnisotropy);
+        float reach = sluiceOverreachedLod(entry.shape, s.dx * size, s.dy * size, 0.0, maxAnisotropy);
         widest = max(coarse, float(sluiceCoarsestLevel(reach, entry.mipLevelCount)));
     }
     bool spline = SLUICE_CUBIC && (entry.shape & SLUICE_SHAPE_SPLINE) != 0u;

@@ -160,22 +160,18 @@ bool sluiceReachIsThere(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint
 /**
  * Returns the LOD without anisotropy if samplers may come near it; else a LOD too fine to count.
  */
-float sluiceOverreachedLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
+float sluiceOverreachedLod(uint shape, vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
-    bool overreaches = SLUICE_ANISOTROPY_OVERREACHES && maxAnisotropy > 1.0;
-#ifdef SLUICE_PAGED
-    overreaches = overreaches && !SLUICE_PAGED;
-#endif
+    bool overreaches =
+        SLUICE_ANISOTROPY_OVERREACHES && maxAnisotropy > 1.0 && !SLUICE_HAS_PAGES(shape);
     return overreaches ? sluiceComputeLod(dx, dy, lodBias, 1.0) : -SLUICE_LOD_LIMIT;
 }
 
 /** Returns whether the sampler is passed the finest level that it may use. */
-bool sluiceSamplerClamps()
+bool sluiceSamplerClamps(uint shape)
 {
-#if defined(SLUICE_MIN_LOD) && defined(SLUICE_PAGED)
-    return !SLUICE_PAGED;
-#elif defined(SLUICE_MIN_LOD)
-    return true;
+#ifdef SLUICE_MIN_LOD
+    return !SLUICE_HAS_PAGES(shape);
 #else
     return false;
 #endif
@@ -204,12 +200,12 @@ uint sluiceReadBox(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, float lod
  * Returns the coarsest level of a sample that is clamped to `lod`, and enlarges `halfBox` if
  * necessary.
  */
-uint sluiceClampedBox(float lod, float margin, float coarsestLod, float maxAnisotropy, uint count,
-                      inout vec2 halfBox)
+uint sluiceClampedBox(uint shape, float lod, float margin, float coarsestLod, float maxAnisotropy,
+                      uint count, inout vec2 halfBox)
 {
     if (maxAnisotropy > 1.0)
         halfBox = max(halfBox, vec2(exp2(lod - margin)));
-    else if (sluiceSamplerClamps())
+    else if (sluiceSamplerClamps(shape))
         return sluiceCoarsestLevel(max(lod, coarsestLod), count); /* exactly */
     return sluiceCoarsestLevel(lod + margin, count); /* coarser by as much as finer */
 }
@@ -229,11 +225,13 @@ float sluiceLodAround(uint tableIndex, SluiceGrid grid, uint words, uint coarses
     float packed = float(SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount) + margin;
     float lod = min(sluiceLodLimit(words & 0xFFFFu, margin), packed);
     vec2 grown = halfBox;
-    if (sluiceClampedBox(lod, margin, coarsestLod, maxAnisotropy, count, grown) <= coarsest &&
+    if (sluiceClampedBox(grid.shape, lod, margin, coarsestLod, maxAnisotropy, count, grown) <=
+            coarsest &&
         grown == halfBox)
         return lod;
     lod = min(sluiceLodLimit(words >> 16u, margin), packed);
-    uint level = sluiceClampedBox(lod, margin, coarsestLod, maxAnisotropy, count, grown);
+    uint level =
+        sluiceClampedBox(grid.shape, lod, margin, coarsestLod, maxAnisotropy, count, grown);
     bool uneven = (grid.shape & SLUICE_SHAPE_UNEVEN) != 0u;
     vec2 more = grown - halfBox + SLUICE_WIDE_APRON(grid, uneven ? SLUICE_APRON_UNEVEN : SLUICE_APRON) *
                                       exp2(float(level));
@@ -314,7 +312,8 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     bool widened = !finite;
 
     vec2 halfBox = finite ? sluiceHalfBox(dx, dy, lodBias, maxAnisotropy) : vec2(0.0);
-    float reach = finite ? sluiceOverreachedLod(dx, dy, lodBias, maxAnisotropy) : -SLUICE_LOD_LIMIT;
+    float reach = finite ? sluiceOverreachedLod(grid.shape, dx, dy, lodBias, maxAnisotropy)
+                         : -SLUICE_LOD_LIMIT;
     uint coarsest = sluiceCoarsestLevel(lods.y, count);
     uint shown = sluiceReadBox(first, grid, s.uv, halfBox, s.lod, margin, s.level, coarsest) & 0xFFFFu;
     bool round = sluiceLodLimit(shown, margin) <= s.lod &&
@@ -330,7 +329,8 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     if (sluiceLodLimit(shown, margin) > s.lod) {
         s.lod = min(sluiceLodLimit(shown, margin),
                     max(float(SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount) + margin, s.lod));
-        coarsest = sluiceClampedBox(s.lod, margin, lods.y, maxAnisotropy, count, halfBox);
+        coarsest =
+            sluiceClampedBox(grid.shape, s.lod, margin, lods.y, maxAnisotropy, count, halfBox);
         uint words = sluiceReadBox(first, grid, s.uv, halfBox, s.lod, margin,
                                    sluiceFinestLevel(s.lod, margin, count), coarsest);
         if (sluiceLodLimit(words & 0xFFFFu, margin) > s.lod) {
@@ -342,8 +342,8 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         }
         s.level = sluiceFinestLevel(s.lod, margin, count);
         s.missing = max(uint(ceil(max(s.lod - margin, 0.0))) - s.wantedLevel, 1u);
-        s.minLod = sluiceSamplerClamps() ? min(s.lod, float(count - 1u)) : 0.0;
-        widened = widened || maxAnisotropy > 1.0 || !sluiceSamplerClamps();
+        s.minLod = sluiceSamplerClamps(grid.shape) ? min(s.lod, float(count - 1u)) : 0.0;
+        widened = widened || maxAnisotropy > 1.0 || !sluiceSamplerClamps(grid.shape);
     }
     s.plain = finite && !point && !round && s.missing == 0u;
     if (!finite)
@@ -404,11 +404,8 @@ float sluiceSplineShare(uint tableIndex, SluiceSampling s, vec2 dx, vec2 dy, flo
 /** Returns true if the whole texture may be shown, and texture() handles any derivatives. */
 bool sluiceIsWhole(uint tableIndex, float lodBias, float maxAnisotropy)
 {
-#ifdef SLUICE_PAGED
-    if (SLUICE_PAGED)
-        return false;
-#endif
-    return !(maxAnisotropy > 1.0) && abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS &&
+    return !SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape) && !(maxAnisotropy > 1.0) &&
+           abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS &&
            SLUICE_TEXTURE_ENTRY(tableIndex).wholeShown == 0u;
 }
 

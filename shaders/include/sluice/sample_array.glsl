@@ -83,7 +83,7 @@ vec4 sluiceSampleArrayGrad(sampler2DArray tex, uint tableIndex, uint layer, vec2
     if (sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy)) {
         float scale = exp2(sluiceClampLodBias(lodBias));
 #ifdef SLUICE_PAGED
-        if (SLUICE_PAGED) {
+        if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape)) {
             SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
             vec2 size = vec2(entry.width, entry.height);
             float lod = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
@@ -98,7 +98,7 @@ vec4 sluiceSampleArrayGrad(sampler2DArray tex, uint tableIndex, uint layer, vec2
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED)
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
         return sluiceSamplePagedArray(tex, layer, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy,
                                       s.lod, maxAnisotropy);
 #endif
@@ -116,7 +116,7 @@ vec4 sluiceSampleArray(sampler2DArray tex, uint tableIndex, uint layer, vec2 uv,
     vec2 dy = dFdy(uv);
     missingLevels = 0u;
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED)
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
         return sluiceSampleArrayGrad(tex, tableIndex, layer, uv, dx, dy, lodBias, maxAnisotropy,
                                      missingLevels);
 #endif

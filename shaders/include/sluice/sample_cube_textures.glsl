@@ -46,7 +46,7 @@ vec4 sluiceTextureCube(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, vec2 
     SluiceGrid grid = sluiceReadGrid(tableIndex);
     uint count = sluiceMipCount(grid), regular = 0u;
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED)
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
         regular = SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount;
 #endif
     lod = clamp(lod, 0.0, float(count - 1u));

@@ -63,7 +63,7 @@ vec4 sluiceTextureGrad(SLUICE_FORM tex, SluiceSampling s)
 vec4 sluiceSampleResolved(SLUICE_FORM tex, uint tableIndex, SluiceSampling s, float maxAnisotropy)
 {
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED)
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
         return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
                                  maxAnisotropy);
 #endif
@@ -74,7 +74,7 @@ vec4 sluiceSampleResolved(SLUICE_FORM tex, uint tableIndex, SluiceSampling s, fl
 vec4 sluiceSampleAtLevel(SLUICE_FORM tex, uint tableIndex, uint level, vec2 uv)
 {
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED)
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
         return sluiceSampleLevel(tex, SLUICE_TEXTURE_ENTRY(tableIndex), level, uv);
 #endif
     return textureLod(SLUICE_FORM_TEXTURE(tex), uv, float(level));
@@ -194,7 +194,7 @@ vec4 sluiceSampleGrad(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 d
         float scale = exp2(sluiceClampLodBias(lodBias));
         missingLevels = 0u;
 #ifdef SLUICE_PAGED
-        if (SLUICE_PAGED)
+        if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
             return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
 #endif
         return textureGrad(SLUICE_FORM_TEXTURE(tex), uv, dx * scale, dy * scale);
@@ -204,7 +204,7 @@ vec4 sluiceSampleGrad(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 d
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED)
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
         return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
                                  maxAnisotropy);
 #endif
@@ -215,7 +215,7 @@ vec4 sluiceSampleGrad(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 d
 vec4 sluiceTexelFetch(SLUICE_FORM tex, uint tableIndex, ivec2 texel, uint level)
 {
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED) {
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape)) {
         SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
         if (level < entry.regularMipCount)
             return sluiceFetchPaged(entry, level, texel);
@@ -257,7 +257,7 @@ vec4 sluiceSample(SLUICE_FORM tex, uint tableIndex, vec2 uv, float lodBias, floa
     bool sure = abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS &&
                 sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED && sure)
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape) && sure)
         return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
 #endif
     /* The quad decides as one, because implicit derivatives need all of it. */
@@ -266,7 +266,7 @@ vec4 sluiceSample(SLUICE_FORM tex, uint tableIndex, vec2 uv, float lodBias, floa
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
     missingLevels = sluiceMissingLevels(s);
 #ifdef SLUICE_PAGED
-    if (SLUICE_PAGED) {
+    if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape)) {
         if (s.level == SLUICE_MIP_UNTOUCHED)
             return SLUICE_FALLBACK_COLOR;
         return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,

@@ -15,6 +15,7 @@ layout(binding = 6) uniform sampler2D layerTex;
 layout(std430, set = 1, binding = 0) readonly buffer PageTable { uint words[]; } pageTable;
 layout(set = 1, binding = 1) uniform sampler2DArray pages[PROBE_PAGE_CHUNKS];
 layout(constant_id = 0) const bool paged = false;
+layout(constant_id = 2) const bool mixed = false;
 layout(push_constant) uniform Push { ProbeParams params; }; /* flags: the layer */
 
 #define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
@@ -22,6 +23,7 @@ layout(push_constant) uniform Push { ProbeParams params; }; /* flags: the layer 
 #define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
 #ifndef ARRAY_UNPAGED
 #define SLUICE_PAGED paged
+#define SLUICE_PAGED_PER_TEXTURE mixed
 #define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]
 #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
 #endif

@@ -5,7 +5,9 @@
  */
 
 layout(constant_id = 0) const bool paged = false;
+layout(constant_id = 1) const bool mixed = false;
 #define SLUICE_PAGED paged
+#define SLUICE_PAGED_PER_TEXTURE mixed
 #define SLUICE_SET 0
 #ifndef BINDLESS_ALONE
 #define SLUICE_TEXTURE_ARRAY BINDLESS_ARRAY

@@ -8,8 +8,10 @@
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool paged = false;
+layout(constant_id = 2) const bool mixed = false;
 layout(push_constant) uniform Push { ProbeParams params; };
 #define SLUICE_PAGED paged
+#define SLUICE_PAGED_PER_TEXTURE mixed
 layout(std430, binding = 0) readonly buffer Table { SluiceTextureEntry entries[]; } textureTable;
 layout(std430, binding = 1) readonly buffer MinMip { uint words[]; } minMip;
 layout(std430, binding = 2) buffer Feedback { uint words[]; } feedback;

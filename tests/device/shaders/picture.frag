@@ -19,12 +19,14 @@ layout(binding = 6) uniform sampler2D nearestMipTex;
 layout(std430, set = 1, binding = 0) readonly buffer PageTable { uint words[]; } pageTable;
 layout(set = 1, binding = 1) uniform sampler2DArray pages[PROBE_PAGE_CHUNKS];
 layout(constant_id = 0) const bool paged = false;
+layout(constant_id = 2) const bool mixed = false;
 layout(push_constant) uniform Push { ProbeParams params; };
 
 #define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
 #define SLUICE_MIN_MIP_WORD(i) minMip.words[i]
 #define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
 #define SLUICE_PAGED paged
+#define SLUICE_PAGED_PER_TEXTURE mixed
 #define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]
 #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
 #include "sluice/feedback.glsl"

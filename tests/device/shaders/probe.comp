@@ -19,6 +19,7 @@ layout(binding = 6) uniform sampler2D nearestMipTex;
 layout(std430, set = 1, binding = 0) readonly buffer PageTable { uint words[]; } pageTable;
 layout(set = 1, binding = 1) uniform sampler2DArray pages[PROBE_PAGE_CHUNKS];
 layout(constant_id = 0) const bool paged = false;
+layout(constant_id = 2) const bool mixed = false;
 layout(constant_id = 1) const bool cubic = false;
 layout(push_constant) uniform Push { ProbeParams params; };
 
@@ -26,6 +27,7 @@ layout(push_constant) uniform Push { ProbeParams params; };
 #define SLUICE_MIN_MIP_WORD(i) minMip.words[i]
 #define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
 #define SLUICE_PAGED paged
+#define SLUICE_PAGED_PER_TEXTURE mixed
 #define SLUICE_CUBIC cubic
 #define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]
 #ifdef PROBE_PAGE_LOOP

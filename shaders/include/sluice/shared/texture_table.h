@@ -49,6 +49,7 @@
 #define SLUICE_TEXTURE_FLAG_SMART 4  /* bicubic only where the texture is magnified */
 /* An ordinary image with all levels, whatever the mode of the streamer. */
 #define SLUICE_TEXTURE_FLAG_DENSE 8
+#define SLUICE_TEXTURE_FLAG_PAGED 16 /* its regular tiles are pages */
 /* Three bits of the flags: number of components of the format. */
 #define SLUICE_TEXTURE_COMPONENTS_SHIFT 8
 
@@ -71,6 +72,7 @@
 #define SLUICE_SHAPE_QUICK 0x800000u   /* powers of two that repeat or clamp along both axes */
 #define SLUICE_SHAPE_SPLINE 0x1000000u /* as SLUICE_TEXTURE_FLAG_SPLINE */
 #define SLUICE_SHAPE_SMART 0x2000000u
+#define SLUICE_SHAPE_PAGED 0x4000000u /* as SLUICE_TEXTURE_FLAG_PAGED */
 
 struct SluiceTextureEntry {
     /* Members that most samples read: */
