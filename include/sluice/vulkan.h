@@ -72,6 +72,11 @@ typedef struct SluiceVulkanStreamerDebugInfo {
      * Shows what reading back changes saves.
      */
     bool wholeFeedbackMaps;
+    /**
+     * Format that sparse mode does not stream, as on a device that has no sparse images of it. For
+     * streamers with pagedTextures. SLUICE_FORMAT_UNDEFINED: none.
+     */
+    SluiceFormat notSparse;
 } SluiceVulkanStreamerDebugInfo;
 
 /** Settings of a streamer. A field of zero selects its default. */
@@ -175,6 +180,16 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      */
     SluiceTextureArray textureArray;
     const SluiceVulkanStreamerDebugInfo *pDebug; ///< Copied. NULL in normal use: all off.
+    /**
+     * A sparse streamer also takes textures that only paged mode can stream, because the device has
+     * no sparse images of their format or size. Paged and dense streamers ignore it.
+     *
+     * Shaders that sample such a streamer define SLUICE_PAGED and SLUICE_PAGED_PER_TEXTURE
+     * (buffers.glsl). The cost without such textures: the page table, 8 bytes of device memory and
+     * as much host memory per region of maxRegionCount. A tile of a paged texture takes a slot of a
+     * heap, too, so memory for two tiles. Default: false, these textures are refused.
+     */
+    bool pagedTextures;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
@@ -407,11 +422,13 @@ typedef struct SluiceVulkanTextureCreateInfo {
      * Mode of this texture. SluiceVulkanTexture returns the mode used. Shaders sample all of them
      * alike. Values:
      * - AUTO: the streamer's mode. If that was left to AUTO, too, textures whose level 0 fits into
-     *   a tile of 64 KiB are dense: there is nothing to stream, and their images share memory.
+     *   a tile of 64 KiB are dense: there is nothing to stream, and their images share memory. With
+     *   pagedTextures, textures that sparse mode cannot stream are paged.
      * - DENSE: an ordinary image of all levels, in a streamer of any mode. In other streamers than
      *   dense ones it is loaded as a whole when it is added, and by maxLoadsInFlight reads of
      *   64 KiB at most.
-     * - SPARSE, PAGED: that mode, which must be the streamer's.
+     * - SPARSE, PAGED: that mode, which must be the streamer's. With pagedTextures a sparse
+     * streamer has PAGED, too.
      *
      * Default: AUTO.
      */
@@ -447,7 +464,7 @@ typedef struct SluiceVulkanTexture {
     VkImageView cubeArrayView;
     SluiceTextureFilter filter; ///< Filter of its samples.
     /** SPARSE, PAGED or DENSE. DENSE, in a streamer of any mode, for images that have all levels.
-     */
+     *  PAGED, in a sparse streamer, for textures beside its own (pagedTextures). */
     SluiceResidencyMode residencyMode;
 } SluiceVulkanTexture;
 

@@ -85,9 +85,9 @@
 #define SLC_FIRST_SluicePbrtLight SLC_UP_TO(SluicePbrtLight, isTwoSided)
 #define SLC_FIRST_SluicePbrtShape SLC_UP_TO(SluicePbrtShape, levels)
 #define SLC_FIRST_SluicePbrtMesh SLC_UP_TO(SluicePbrtMesh, bytesRead)
-#define SLC_FIRST_SluiceVulkanStreamerDebugInfo                                                    \
-    SLC_UP_TO(SluiceVulkanStreamerDebugInfo, wholeFeedbackMaps)
-#define SLC_FIRST_SluiceVulkanStreamerCreateInfo SLC_UP_TO(SluiceVulkanStreamerCreateInfo, pDebug)
+#define SLC_FIRST_SluiceVulkanStreamerDebugInfo SLC_UP_TO(SluiceVulkanStreamerDebugInfo, notSparse)
+#define SLC_FIRST_SluiceVulkanStreamerCreateInfo                                                   \
+    SLC_UP_TO(SluiceVulkanStreamerCreateInfo, pagedTextures)
 #define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
 #define SLC_FIRST_SluiceTileBatch SLC_UP_TO(SluiceTileBatch, pTiles)
 #define SLC_FIRST_SluiceTileProducer SLC_UP_TO(SluiceTileProducer, timeoutFrames)

@@ -9,6 +9,7 @@
 #include "vulkan/load_deferred.h"
 #include "vulkan/load_productions.h"
 #include "vulkan/load_starts.h"
+#include "vulkan/residencies.h"
 #include "vulkan/shrink.h"
 #include "vulkan/tile_upload.h"
 
@@ -28,8 +29,7 @@ static SluiceResult poll_frames(SluiceVulkanStreamer *s)
 /* What the GPU has finished: slots, images and staging memory come back. */
 static SluiceResult retire(SluiceVulkanStreamer *s)
 {
-    SluiceResult result =
-        s->residency->interface->update(s->residency, s->frame, s->completed_frame);
+    SluiceResult result = slc_residencies_update(s);
     if (result != SLUICE_SUCCESS)
         return result;
     slc_loads_recycle(s);
@@ -46,7 +46,7 @@ static SluiceResult retire(SluiceVulkanStreamer *s)
 static SluiceResult unmap_tiles(SluiceVulkanStreamer *s)
 {
     for (;;) {
-        uint32_t room = s->residency->interface->room_to_unmap(s->residency);
+        uint32_t room = slc_residencies_room_to_unmap(s);
         uint32_t count = room < s->info.tilesPerFrame ? room : s->info.tilesPerFrame;
         if (count == 0)
             return SLUICE_SUCCESS;
@@ -155,7 +155,6 @@ static void clear_buffers(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 
 static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
-    const struct slc_residency_interface *residency = s->residency->interface;
     bool written_twice = s->new_texture_count || s->has_put_back;
     barrier_before(s, commands);
     if (!s->buffers_cleared) {
@@ -163,8 +162,7 @@ static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
         s->cleared_frame = s->frame;
     }
     slc_page_pool_record(s->pages, s->page_user, s->frame, s->completed_frame, commands);
-    if (residency->record_begin)
-        residency->record_begin(s->residency, s->frame, commands);
+    slc_residencies_record_begin(s, commands);
     slc_textures_record_new(s, commands);
     slc_feedback_record_turns(s, commands);
     s->buffers_cleared = true;
@@ -174,8 +172,8 @@ static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     SluiceResult result = slc_tile_uploads_record(s, commands);
     if (result >= 0)
         result = slc_productions_record(s, commands);
-    if (result >= 0 && residency->record_publish)
-        residency->record_publish(s->residency, commands);
+    if (result >= 0)
+        slc_residencies_record_publish(s, commands);
     if (result >= 0)
         result = slc_min_mip_record(s, commands); /* after the texels that it shows */
     barrier_after(s, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
@@ -306,8 +304,7 @@ SluiceResult sluiceAbandonStreamingFrame(SluiceVulkanStreamer *streamer,
     slc_min_mip_abandon(s, frame);
     slc_feedback_abandon(s, frame);
     slc_page_pool_abandon(s->pages, s->page_user, frame);
-    if (s->residency->interface->abandon)
-        s->residency->interface->abandon(s->residency, frame);
+    slc_residencies_abandon(s, frame);
     return SLUICE_SUCCESS;
 }
 

@@ -32,6 +32,7 @@ static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
         const struct slc_unit *unit = &s->units[i];
         bool is_coming = unit->state == SLC_UNIT_READING || unit->state == SLC_UNIT_ARRIVED;
         count += is_coming && unit->packed_unit == SLC_NONE &&
+                 slc_residency_of(s, unit->texture)->interface->page_room &&
                  slc_texture_page_format(&s->textures[unit->texture]) == format;
     }
     return count;
@@ -44,7 +45,9 @@ uint32_t slc_pages_left(SluiceVulkanStreamer *s, uint32_t texture)
     struct slc_residency *residency = slc_residency_of(s, texture);
     SluiceFormat format = slc_texture_page_format(&s->textures[texture]);
     uint32_t *left = &s->pages_left[format];
-    if (*left == SLC_NONE && residency->interface->page_room) {
+    if (!residency->interface->page_room)
+        return SLC_NONE;
+    if (*left == SLC_NONE) {
         uint32_t room = residency->interface->page_room(residency, texture);
         uint32_t loads = room == UINT32_MAX ? 0 : count_loads(s, format);
         *left = room == UINT32_MAX ? SLC_NONE : room > loads ? room - loads : 0;
@@ -75,6 +78,7 @@ static uint32_t count_without_page(SluiceVulkanStreamer *s)
 SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s)
 {
     uint32_t count = s->deferred.count ? count_without_page(s) : 0;
+    s->lacking_pages = count;
     if (count == 0)
         return SLUICE_SUCCESS;
     SluiceStreamedTextureStatistics stats = slc_manager_slot_statistics(s->manager);

@@ -48,10 +48,10 @@ struct slc_residency_interface {
     void (*destroy)(struct slc_residency *residency);
 
     /** `index` is the streamer's; it names the image in the other calls. The layers of an array
-     *  have the indices from `index` on. `produced`: shaders may store to it. Logs what it
-     * refuses. */
+     *  have the indices from `index` on. `produced`: shaders may store to it. Logs what it refuses;
+     *  sparse: if `refusal` is not NULL, says there what UNSUPPORTED means instead. */
     SluiceResult (*create_image)(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, bool produced,
+                                 const SluiceImageInfo *info, bool produced, const char **refusal,
                                  struct slc_residency_image *image);
     /** No frame that uses it is incomplete and image_is_idle. Of an array with its first layer. */
     void (*destroy_image)(struct slc_residency *residency, uint32_t index);
@@ -183,6 +183,7 @@ struct slc_residency_create_info {
     uint32_t max_region_count;
     uint64_t kept_heap_size;     ///< bytes of heaps that are kept while empty
     bool whole;                  ///< dense: textures have packed levels alone
+    bool packed_outside;         ///< paged: packed tiles take no slots
     struct slc_page_pool *pages; ///< borrowed
     uint32_t page_user;          ///< of these
 };

@@ -37,9 +37,10 @@ static struct dense_residency *dense(struct slc_residency *residency)
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, bool produced,
+                                 const SluiceImageInfo *info, bool produced, const char **refusal,
                                  struct slc_residency_image *image)
 {
+    (void)refusal;
     struct dense_residency *d = dense(residency);
     struct dense_image *layers = &d->images[index];
     uint32_t layer_count = slc_max_u32(1, info->arrayLayerCount);

@@ -47,6 +47,7 @@ struct paged_residency {
     struct slc_page_table table; ///< its parts are those of the images
     struct slc_page_moves moves;
     uint32_t upload_reserve; ///< changes that unmapping must leave to uploads and moves
+    bool packed_outside;
     uint64_t frame;
     uint32_t next_heap, heap_count;
     uint64_t most_tiles; ///< since a refusal, for which there was a heap too many
@@ -120,14 +121,17 @@ static SluiceResult create_layer(struct paged_residency *p, uint32_t index, Slui
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, bool produced,
+                                 const SluiceImageInfo *info, bool produced, const char **refusal,
                                  struct slc_residency_image *out)
 {
+    (void)refusal;
     struct paged_residency *p = paged(residency);
     struct paged_image *first = &p->images[index];
     uint32_t layer_count = slc_max_u32(1, info->arrayLayerCount);
     struct slc_sparse_layout layout;
     SluiceResult result = slc_standard_layout_init(&layout, info);
+    if (result == SLUICE_SUCCESS && p->packed_outside)
+        layout.desc.packedTilesOutside = true;
     if (result == SLUICE_SUCCESS)
         result = slc_plain_image_create(&first->own_tail, &p->memory, p->vk, p->caps, p->cb, info,
                                         layout.desc.regularMipCount, layer_count, produced);
@@ -565,6 +569,7 @@ SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *
     p->pool = info->pages;
     p->user = info->page_user;
     p->max_image_count = info->max_image_count;
+    p->packed_outside = info->packed_outside;
     /* four kinds of changes: copied, revived, shared, deferred tiles; and moves */
     p->upload_reserve = 4 * info->max_changes + SLC_PAGE_MOVES_PER_FRAME;
     p->moves.pool = p->pool;

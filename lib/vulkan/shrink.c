@@ -2,8 +2,15 @@
 
 #include "base/checked.h"
 #include "core/observer.h"
+#include "vulkan/load_deferred.h"
+#include "vulkan/page_leaving.h"
+#include "vulkan/residencies.h"
 
 #define HEAPS_AT_ONCE 16u
+/* In which tiles are read that need the pages for which a heap went. */
+#define FRAMES_FOR_PAGES 8u
+/* In which tiles that were given back come again. */
+#define FRAMES_OF_LACK 4u
 /* Few, because a wanted tile that moves shows a coarser level until it is read again. */
 #define MOVES_PER_FRAME 64u
 
@@ -34,6 +41,8 @@ static uint32_t choose_target(const SluiceVulkanStreamer *s,
     const uint64_t size = (uint64_t)s->info.heapTileCapacity * SLC_TILE_SIZE;
     const struct slc_memory_pressure *pressure = &s->memory_pressure;
     uint64_t live = stats->heapCount, going = s->residency->interface->going_size(s->residency);
+    if (s->paged)
+        going += slc_page_pool_going_size(s->pages);
     uint64_t beyond = without(pressure->beyond, going);
     uint64_t refused = without(pressure->refused, without(going, pressure->beyond));
     uint64_t target = live;
@@ -44,7 +53,7 @@ static uint32_t choose_target(const SluiceVulkanStreamer *s,
     }
     if (beyond)
         target = slc_min_u64(target, without(live, div_up(beyond, size)));
-    if (!pressure->beyond && target == live)
+    if (!pressure->beyond && target == live && s->frame >= s->shrink.pages_until)
         return 0; /* a target would keep new heaps from coming before the last ones are freed */
     return target ? (uint32_t)target : 1;
 }
@@ -170,12 +179,60 @@ static void free_spare_heaps(SluiceVulkanStreamer *s)
     pressure->beyond = without(pressure->beyond, freed);
 }
 
+/* Tiles that wait for a page would hold slots in all heaps. Those still wanted come back. */
+static SluiceResult give_deferred_back(SluiceVulkanStreamer *s)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    while (s->deferred.count > 0 && result >= 0) {
+        const struct slc_deferred_tile last = s->deferred.tiles[s->deferred.count - 1];
+        slc_deferred_tiles_remove_at(&s->deferred, s->deferred.count - 1);
+        result = slc_load_give_back(s, last.texture, &last.tile);
+    }
+    return result;
+}
+
+/* Tiles of paged textures have slots, and heaps took the memory that their pages need. One heap
+ * goes at a time. What evicts tiles then, and makes everything coarser, treats all textures alike.
+ */
+static SluiceResult make_room_for_pages(SluiceVulkanStreamer *s)
+{
+    uint64_t *before = &s->shrink.size_before, size = slc_memory_client_tiles(&s->memory);
+    if (s->lacking_pages)
+        s->shrink.lacking_until = s->frame + FRAMES_OF_LACK;
+    if (!s->paged || s->frame >= s->shrink.lacking_until || !slc_page_pool_was_refused(s->pages)) {
+        *before = 0;
+    } else if (*before > size) {
+        slc_page_pool_ask_again(s->pages);
+        s->shrink.pages_until = s->frame + FRAMES_FOR_PAGES;
+        *before = 0;
+    } else if (s->frame >= s->shrink.pages_until) {
+        *before = size;
+        s->memory_pressure.beyond += (uint64_t)s->info.heapTileCapacity * SLC_TILE_SIZE;
+        return give_deferred_back(s);
+    }
+    return SLUICE_SUCCESS;
+}
+
+/* Pages beside heaps. What gives pages back is the eviction that empties heaps. */
+static void gather_pages(SluiceVulkanStreamer *s)
+{
+    uint64_t size = s->memory_pressure.beyond + s->memory_pressure.refused;
+    if (!s->paged || (size == 0 && s->shrink.compacting))
+        return;
+    uint32_t lacking = s->paged->interface->gather(s->paged, size);
+    if (lacking != SLC_NONE && lacking > 0)
+        s->paged->interface->gather(s->paged, 0);
+}
+
 static SluiceResult shrink_heaps(SluiceVulkanStreamer *s,
                                  const SluiceStreamedTextureStatistics *stats)
 {
     struct slc_shrink *shrink = &s->shrink;
+    gather_pages(s);
+    SluiceResult result = make_room_for_pages(s);
     free_spare_heaps(s);
-    SluiceResult result = set_target(s, choose_target(s, stats));
+    if (result >= 0)
+        result = set_target(s, choose_target(s, stats));
     bool too_many = shrink->target && stats->heapCount > shrink->target;
     if (result >= 0 && (too_many || shrink->compacting))
         result = release_empty_heaps(s);
@@ -213,11 +270,15 @@ SluiceResult sluiceCompactVulkanStreamer(SluiceVulkanStreamer *streamer, uint32_
     if (!s || !pTileCount)
         return SLUICE_ERROR_NULL_POINTER;
     *pTileCount = 0;
-    if (s->residency->interface->going_size)
-        return compact_heaps(s, maxTileCount, pTileCount);
-    if (s->residency->interface->compact) {
-        *pTileCount = s->residency->interface->compact(s->residency, maxTileCount);
+    struct slc_residency *pages = slc_residency_of_pages(s);
+    if (pages) {
+        *pTileCount = pages->interface->compact(pages, maxTileCount);
         s->shrink.compacting = true;
     }
-    return SLUICE_SUCCESS;
+    if (!s->residency->interface->going_size)
+        return SLUICE_SUCCESS;
+    uint32_t count;
+    SluiceResult result = compact_heaps(s, maxTileCount - *pTileCount, &count);
+    *pTileCount += count;
+    return result;
 }

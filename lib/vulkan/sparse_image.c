@@ -146,7 +146,8 @@ static void fill_layers(struct slc_sparse_image *images, uint32_t count)
 
 SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struct slc_vk *vk,
                                      const struct slc_caps *caps, uint32_t memory_type,
-                                     const SluiceImageInfo *info, bool storage)
+                                     const SluiceImageInfo *info, bool storage,
+                                     const char **refusal)
 {
     *image = (struct slc_sparse_image){0};
     VkImageCreateInfo create =
@@ -168,8 +169,12 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
         trouble = read_layout(image, vk, caps, memory_type, info);
     }
     if (trouble) {
-        slc_log(&vk->log, SLUICE_LOG_ERROR, "%s: %ux%u %s %s", info->pName ? info->pName : "image",
-                info->width, info->height, sluiceGetFormatName(info->format), trouble);
+        if (refusal)
+            *refusal = trouble;
+        else
+            slc_log(&vk->log, SLUICE_LOG_ERROR, "%s: %ux%u %s %s",
+                    info->pName ? info->pName : "image", info->width, info->height,
+                    sluiceGetFormatName(info->format), trouble);
         slc_sparse_image_destroy(image, vk);
         return SLUICE_ERROR_UNSUPPORTED;
     }
@@ -252,7 +257,7 @@ SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDev
     }
     result = slc_sparse_memory_type(&vk, &caps, &memory_type);
     if (result == SLUICE_SUCCESS)
-        result = slc_sparse_image_create(&image, &vk, &caps, memory_type, &info, false);
+        result = slc_sparse_image_create(&image, &vk, &caps, memory_type, &info, false, NULL);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceVulkanSparseImageLayout layout = {.structSize = sizeof layout};

@@ -22,12 +22,13 @@ struct slc_sparse_image {
 
 /**
  * Creates info->arrayLayerCount `images`, one for 0. `storage`: lets shaders store to them, if the
- * device can with this format. Errors: UNSUPPORTED, with a log message; OUT_OF_HOST_MEMORY,
- * OUT_OF_DEVICE_MEMORY.
+ * device can with this format. Errors: UNSUPPORTED, with a log message, or if `refusal` is not
+ * NULL, with the reason there; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
  */
 SluiceResult slc_sparse_image_create(struct slc_sparse_image *images, const struct slc_vk *vk,
                                      const struct slc_caps *caps, uint32_t memory_type,
-                                     const SluiceImageInfo *info, bool storage);
+                                     const SluiceImageInfo *info, bool storage,
+                                     const char **refusal);
 /** `images` is the first layer; all of them go. */
 void slc_sparse_image_destroy(struct slc_sparse_image *images, const struct slc_vk *vk);
 

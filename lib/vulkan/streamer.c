@@ -87,54 +87,6 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
     return result == SLUICE_SUCCESS ? slc_fill_in_times(info, log) : result;
 }
 
-static SluiceResult check_sparse_queue(const SluiceVulkanStreamer *s)
-{
-    if (s->info.residencyMode != SLUICE_RESIDENCY_MODE_SPARSE || s->context->sparse_queue)
-        return SLUICE_SUCCESS;
-    slc_log(&s->vk.log, SLUICE_LOG_ERROR, "sparseQueue of the context is NULL, in sparse mode");
-    return SLUICE_ERROR_NULL_POINTER;
-}
-
-static SluiceResult create_residency(SluiceVulkanStreamer *s)
-{
-    s->chooses_modes = s->info.residencyMode == SLUICE_RESIDENCY_MODE_AUTO;
-    s->info.residencyMode =
-        slc_choose_mode(&s->caps, s->info.residencyMode, s->info.maxTextureCount);
-    const char *missing = slc_missing_for_mode(&s->caps, s->info.residencyMode);
-    if (missing) {
-        slc_log(&s->vk.log, SLUICE_LOG_ERROR, "%s has no %s", s->caps.public.deviceName, missing);
-        return SLUICE_ERROR_UNSUPPORTED;
-    }
-    SluiceResult result = check_sparse_queue(s);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    struct slc_residency_create_info info = {
-        .vk = &s->vk,
-        .caps = &s->caps,
-        .cb = &s->cb,
-        .sparse_queue = s->context->sparse_queue,
-        .max_image_count = s->info.maxTextureCount,
-        .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
-        .max_touched_tiles =
-            s->info.maxTouchedTiles ? s->info.maxTouchedTiles : s->caps.public.maxTouchedTiles,
-        .max_region_count = s->info.maxRegionCount,
-        .kept_heap_size = s->context->shared.min_tile_memory,
-        .pages = s->pages,
-        .page_user = s->page_user,
-    };
-    info.whole = s->info.residencyMode != SLUICE_RESIDENCY_MODE_DENSE;
-    if (info.whole)
-        result = slc_create_dense_residency(&info, &s->plain);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    info.whole = false;
-    switch (s->info.residencyMode) {
-    case SLUICE_RESIDENCY_MODE_PAGED: return slc_create_paged_residency(&info, &s->residency);
-    case SLUICE_RESIDENCY_MODE_DENSE: return slc_create_dense_residency(&info, &s->residency);
-    default: return slc_create_sparse_residency(&info, &s->residency);
-    }
-}
-
 /* The largest heap that can be allocated. Heaps that are slots without memory end at the device. */
 static uint64_t largest_heap(const SluiceVulkanStreamer *s)
 {
@@ -303,23 +255,22 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
 
 static void fill_buffers(const SluiceVulkanStreamer *s, SluiceVulkanBuffers *buffers)
 {
-    const struct slc_residency *residency = s->residency;
+    const struct slc_residency *residency = slc_residency_of_pages(s);
     VkBuffer table = s->texture_table.buffer;
-    *buffers = (SluiceVulkanBuffers){.structSize = sizeof(SluiceVulkanBuffers),
-                                     .textureTable = table,
-                                     .feedback = s->feedback.buffer,
-                                     .minMip = s->min_mip.buffer,
-                                     .feedbackTurns = s->feedback_turns.buffer,
-                                     /* any buffer will do where it is not read */
-                                     .pageTable = residency->interface->page_table
-                                                      ? residency->interface->page_table(residency)
-                                                      : table};
+    *buffers = (SluiceVulkanBuffers){
+        .structSize = sizeof(SluiceVulkanBuffers),
+        .textureTable = table,
+        .feedback = s->feedback.buffer,
+        .minMip = s->min_mip.buffer,
+        .feedbackTurns = s->feedback_turns.buffer,
+        /* any buffer will do where it is not read */
+        .pageTable = residency ? residency->interface->page_table(residency) : table};
 }
 
-/* Only paged mode has pages. Elsewhere one element makes the layout that the shaders expect. */
+/* Without pages one element makes the layout that the shaders expect. */
 static SluiceResult create_descriptors(SluiceVulkanStreamer *s)
 {
-    bool paged = s->info.residencyMode == SLUICE_RESIDENCY_MODE_PAGED;
+    bool paged = slc_residency_of_pages(s) != NULL;
     struct slc_descriptors_create_info info = {.buffer_count = SLUICE_BINDING_BUFFER_COUNT,
                                                .page_count = paged ? s->pages->views.count : 1,
                                                .textures = &s->texture_array,
@@ -347,7 +298,7 @@ static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
     if (result == SLUICE_SUCCESS)
         result = slc_page_pool_add_user(s->pages, s->semaphore, 0, &s->memory, &s->page_user);
     if (result == SLUICE_SUCCESS)
-        result = create_residency(s);
+        result = slc_residencies_create(s);
     if (result == SLUICE_SUCCESS)
         result = create_buffers(s);
     if (result == SLUICE_SUCCESS)
@@ -460,10 +411,7 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
     slc_buffer_finish(&s->feedback_turns, &s->vk);
     slc_buffer_finish(&s->feedback, &s->vk);
     slc_buffer_finish(&s->texture_table, &s->vk);
-    if (s->residency)
-        s->residency->interface->destroy(s->residency);
-    if (s->plain)
-        s->plain->interface->destroy(s->plain);
+    slc_residencies_destroy(s);
     if (s->page_user < SLC_MAX_PAGE_USERS)
         slc_page_pool_remove_user(s->pages, s->page_user);
     slc_drop_pages(&s->context->shared, s->pages);
@@ -562,6 +510,8 @@ SluiceResult sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *strea
     slc_memory_client_get(streamer->vk.memory_client, &statistics.deviceMemorySize,
                           &statistics.hostVisibleMemorySize);
     statistics.deviceMemorySize += slc_page_pool_get_counts(streamer->pages).device_memory_size;
+    if (slc_residency_of_pages(streamer))
+        counters = &slc_residency_of_pages(streamer)->counters;
     statistics.pageChunkCount = counters->page_chunks;
     statistics.pageChunkShortages = counters->page_chunk_shortages;
     statistics.fadingTextures = streamer->fade_count;

@@ -58,7 +58,7 @@ struct slc_texture {
     struct slc_tile_producer producer;
     VkImageView *level_views; ///< owned by layer 0; levels of `image`, for stores; NULL: none
     SluiceImageInfo info;
-    struct slc_residency *residency; ///< of the streamer: `residency` or `plain`
+    struct slc_residency *residency; ///< of the streamer: `residency`, `paged` or `plain`
     struct slc_residency_image image;
     uint32_t first, layer, layer_count; ///< of an array: the index of layer 0; else itself, 0, 1
     struct slc_texture_views views;
@@ -120,10 +120,13 @@ struct slc_unit_list {
 
 /** See shrink.h. */
 struct slc_shrink {
-    uint32_t own_target;   ///< targetHeapCount that the application has set; 0: none
-    uint32_t target;       ///< targetHeapCount that the streamer chose
-    uint64_t config_count; ///< slc_manager_config_count behind the streamer's last sluiceSetConfig
-    bool compacting;       ///< heaps that become empty are released without any pressure
+    uint32_t own_target;    ///< targetHeapCount that the application has set; 0: none
+    uint32_t target;        ///< targetHeapCount that the streamer chose
+    uint64_t config_count;  ///< slc_manager_config_count behind the streamer's last sluiceSetConfig
+    bool compacting;        ///< heaps that become empty are released without any pressure
+    uint64_t size_before;   ///< tile memory when a heap had to go for pages; 0: none has to
+    uint64_t pages_until;   ///< before this frame memory is for pages: no heap comes
+    uint64_t lacking_until; ///< before this frame tiles count as waiting for pages
 };
 
 struct SluiceVulkanStreamer {
@@ -139,6 +142,7 @@ struct SluiceVulkanStreamer {
     struct slc_page_pool *pages; ///< of the context; NULL: not yet
     uint32_t page_user;          ///< user of `pages`; SLC_MAX_PAGE_USERS: not yet
     struct slc_residency *residency;
+    struct slc_residency *paged; ///< of textures that sparse mode refuses; NULL: there are none
     struct slc_residency *plain; ///< of textures that are images with all levels; packed tiles only
     bool chooses_modes;          ///< small textures are in `plain`
     SluiceStreamedTextureManager *manager;
@@ -188,6 +192,7 @@ struct SluiceVulkanStreamer {
     struct slc_map tile_units; ///< (texture, tile) -> unit, until the unit is free
     struct slc_deferred_tiles deferred;
     struct slc_deferred_tiles awaited; ///< that another front end is about to have
+    uint32_t lacking_pages; ///< deferred tiles that could not have a page when the frame began
     uint32_t
         pages_left[SLC_PAGE_FORMATS]; ///< for loads that start in this frame; SLC_NONE: unknown
     struct slc_staging staging;       ///< a slot per unit
@@ -231,6 +236,12 @@ static inline struct slc_residency *slc_residency_of(const SluiceVulkanStreamer 
     return s->textures[texture].residency;
 }
 
+/** The residency that has a page table; NULL: none. */
+static inline struct slc_residency *slc_residency_of_pages(const SluiceVulkanStreamer *s)
+{
+    return s->residency->interface->page_table ? s->residency : s->paged;
+}
+
 /** Bytes of the bits that say which textures write feedback. */
 static inline uint64_t slc_turns_size(const SluiceVulkanStreamer *s)
 {
@@ -253,6 +264,13 @@ void slc_settings_apply(SluiceVulkanStreamer *s);
 /* frame.c */
 /** The last frame that may be under way on the GPU: ended, and not abandoned. 0: none. */
 uint64_t slc_streamer_last_submittable(const SluiceVulkanStreamer *s);
+
+/* residencies.c */
+/** Chooses the streamer's mode, and creates what its textures need. Errors: UNSUPPORTED and
+ *  NULL_POINTER, with a log message; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
+SluiceResult slc_residencies_create(SluiceVulkanStreamer *s);
+/** Nothing of them is in use on the GPU. */
+void slc_residencies_destroy(SluiceVulkanStreamer *s);
 
 /* load_units.c */
 SluiceResult slc_loads_init(SluiceVulkanStreamer *s);

@@ -5,12 +5,15 @@
 SluiceResult slc_texture_check_mode(const SluiceVulkanStreamer *s, SluiceResidencyMode mode)
 {
     if (mode == SLUICE_RESIDENCY_MODE_AUTO || mode == SLUICE_RESIDENCY_MODE_DENSE ||
-        mode == s->info.residencyMode)
+        mode == s->info.residencyMode || (mode == SLUICE_RESIDENCY_MODE_PAGED && s->paged))
         return SLUICE_SUCCESS;
+    bool paged = mode == SLUICE_RESIDENCY_MODE_PAGED &&
+                 s->info.residencyMode == SLUICE_RESIDENCY_MODE_SPARSE;
     slc_log(&s->vk.log, SLUICE_LOG_ERROR,
             "residencyMode of a texture is %d; the streamer's is %d: it has textures of its own "
-            "mode and dense ones",
-            (int)mode, (int)s->info.residencyMode);
+            "mode and dense ones%s",
+            (int)mode, (int)s->info.residencyMode,
+            paged ? "; set pagedTextures of the streamer" : "");
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
@@ -24,24 +27,58 @@ static bool is_plain(const SluiceVulkanStreamer *s, SluiceResidencyMode mode,
     return mode == SLUICE_RESIDENCY_MODE_DENSE && s->info.residencyMode != mode;
 }
 
+static SluiceResult create(struct slc_residency *in, uint32_t first, const SluiceImageInfo *image,
+                           bool produced, const char **refusal, struct slc_residency **residency,
+                           struct slc_residency_image *out)
+{
+    *residency = in;
+    return in->interface->create_image(in, first, image, produced, refusal, out);
+}
+
+/* A texture that sparse mode refuses is paged, unless it has to be sparse. */
+static SluiceResult create_sparse_or_paged(SluiceVulkanStreamer *s, uint32_t first,
+                                           SluiceResidencyMode mode, const SluiceImageInfo *image,
+                                           bool produced, struct slc_residency **residency,
+                                           struct slc_residency_image *out)
+{
+    bool may_be_paged = mode == SLUICE_RESIDENCY_MODE_AUTO;
+    const char *refusal = "is not available as a sparse image";
+    SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
+    if (s->debug.notSparse == SLUICE_FORMAT_UNDEFINED || s->debug.notSparse != image->format)
+        result = create(s->residency, first, image, produced, &refusal, residency, out);
+    if (result != SLUICE_ERROR_UNSUPPORTED)
+        return result;
+    if (may_be_paged)
+        result = create(s->paged, first, image, produced, NULL, residency, out);
+    if (result == SLUICE_ERROR_UNSUPPORTED)
+        slc_log(&s->vk.log, SLUICE_LOG_ERROR, "%s: %ux%u %s %s%s",
+                image->pName ? image->pName : "image", image->width, image->height,
+                sluiceGetFormatName(image->format), refusal,
+                may_be_paged ? ", so it would have to be paged" : "");
+    return result;
+}
+
 SluiceResult slc_texture_create_image(SluiceVulkanStreamer *s, uint32_t first,
                                       SluiceResidencyMode mode, const SluiceImageInfo *image,
                                       bool produced, struct slc_residency **residency,
                                       struct slc_residency_image *out)
 {
-    *residency = is_plain(s, mode, image) ? s->plain : s->residency;
-    SluiceResult result =
-        (*residency)->interface->create_image(*residency, first, image, produced, out);
-    if (result != SLUICE_ERROR_OUT_OF_DEVICE_MEMORY || *residency == s->residency ||
-        mode != SLUICE_RESIDENCY_MODE_AUTO)
-        return result;
-    *residency = s->residency; /* heaps may have taken the whole budget, and have a slot for it */
-    return s->residency->interface->create_image(s->residency, first, image, produced, out);
+    if (is_plain(s, mode, image)) {
+        SluiceResult result = create(s->plain, first, image, produced, NULL, residency, out);
+        if (result != SLUICE_ERROR_OUT_OF_DEVICE_MEMORY || mode != SLUICE_RESIDENCY_MODE_AUTO)
+            return result; /* heaps may have taken the whole budget, and have a slot for it */
+    }
+    if (!s->paged)
+        return create(s->residency, first, image, produced, NULL, residency, out);
+    if (mode == SLUICE_RESIDENCY_MODE_PAGED)
+        return create(s->paged, first, image, produced, NULL, residency, out);
+    return create_sparse_or_paged(s, first, mode, image, produced, residency, out);
 }
 
 SluiceResidencyMode slc_texture_mode(const SluiceVulkanStreamer *s,
                                      const struct slc_texture *texture)
 {
-    return texture->layout.desc.packedTilesOutside ? SLUICE_RESIDENCY_MODE_DENSE
-                                                   : s->info.residencyMode;
+    if (texture->image.desc.packedTilesOutside && texture->image.desc.regularMipCount == 0)
+        return SLUICE_RESIDENCY_MODE_DENSE;
+    return texture->residency == s->paged ? SLUICE_RESIDENCY_MODE_PAGED : s->info.residencyMode;
 }

@@ -1,4 +1,5 @@
-/** Residency of a texture: the streamer's, or that of images with all levels. */
+/** Residency of a texture: the streamer's own, that of paged textures beside it, or that of images
+ *  with all levels. */
 #ifndef SLC_VULKAN_TEXTURE_MODE_H
 #define SLC_VULKAN_TEXTURE_MODE_H
 

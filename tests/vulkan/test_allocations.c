@@ -74,7 +74,7 @@ static void frame(struct walk *w)
     w->fake.frame_value = frame.signalValue;
 }
 
-static void walk_init(struct walk *w, SluiceResidencyMode mode, uint32_t share)
+static void walk_init(struct walk *w, SluiceResidencyMode mode, bool mixes, uint32_t share)
 {
     *w = (struct walk){.fake = {.want = want, .user = w},
                        .allocations = {.callbacks = {&w->allocations, allocate, release}}};
@@ -96,20 +96,23 @@ static void walk_init(struct walk *w, SluiceResidencyMode mode, uint32_t share)
     w->fake.pAllocator = &w->allocations.callbacks;
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
+    info.pagedTextures = mixes;
     CHECK_OK(fake_vulkan_create(&w->fake, &info, &w->streamer));
     for (uint32_t i = 0; i < TEXTURES; i++) {
         SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
                                                 .source = w->sources[i % SHAPES]};
+        if (mixes && i % 2)
+            create.residencyMode = SLUICE_RESIDENCY_MODE_PAGED;
         SluiceVulkanTexture texture;
         CHECK_OK(sluiceAddVulkanTexture(w->streamer, &create, &texture));
         assert_int_equal(texture.tableIndex, i);
     }
 }
 
-static void check_walk(SluiceResidencyMode mode, uint32_t share)
+static void check_walk(SluiceResidencyMode mode, bool mixes, uint32_t share)
 {
     static struct walk walk; /* large */
-    walk_init(&walk, mode, share);
+    walk_init(&walk, mode, mixes, share);
     for (uint32_t i = 0; i < 2 * ROUND; i++)
         frame(&walk);
     SluiceVulkanStreamerStatistics before = {.structSize = sizeof before},
@@ -132,20 +135,27 @@ static void check_walk(SluiceResidencyMode mode, uint32_t share)
 static void sparse_walk_allocates_nothing_in_its_later_rounds(void **state)
 {
     (void)state;
-    check_walk(SLUICE_RESIDENCY_MODE_SPARSE, TEXTURES);
-    check_walk(SLUICE_RESIDENCY_MODE_SPARSE, 3);
+    check_walk(SLUICE_RESIDENCY_MODE_SPARSE, false, TEXTURES);
+    check_walk(SLUICE_RESIDENCY_MODE_SPARSE, false, 3);
 }
 
 static void paged_walk_allocates_nothing_in_its_later_rounds(void **state)
 {
     (void)state;
-    check_walk(SLUICE_RESIDENCY_MODE_PAGED, 3);
+    check_walk(SLUICE_RESIDENCY_MODE_PAGED, false, 3);
+}
+
+static void
+a_walk_along_sparse_and_paged_textures_allocates_nothing_in_its_later_rounds(void **state)
+{
+    (void)state;
+    check_walk(SLUICE_RESIDENCY_MODE_SPARSE, true, TEXTURES);
 }
 
 static void dense_walk_allocates_nothing_in_its_later_rounds(void **state)
 {
     (void)state;
-    check_walk(SLUICE_RESIDENCY_MODE_DENSE, 3);
+    check_walk(SLUICE_RESIDENCY_MODE_DENSE, false, 3);
 }
 
 int main(void)
@@ -153,6 +163,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sparse_walk_allocates_nothing_in_its_later_rounds),
         cmocka_unit_test(paged_walk_allocates_nothing_in_its_later_rounds),
+        cmocka_unit_test(
+            a_walk_along_sparse_and_paged_textures_allocates_nothing_in_its_later_rounds),
         cmocka_unit_test(dense_walk_allocates_nothing_in_its_later_rounds),
     };
     return RUN_TESTS(tests);

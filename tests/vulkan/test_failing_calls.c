@@ -44,6 +44,7 @@ static SluiceImageSource *gray_source(void)
 }
 
 static SluiceResidencyMode mode; /* that is tested */
+static bool mixes;               /* paged textures are beside those of the streamer */
 
 static SluiceResult create(struct fake_vulkan *fake, SluiceVulkanStreamer **streamer)
 {
@@ -54,6 +55,7 @@ static SluiceResult create(struct fake_vulkan *fake, SluiceVulkanStreamer **stre
                                            .feedbackTimeoutTicks = 100};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
+    info.pagedTextures = mixes;
     return fake_vulkan_create(fake, &info, streamer);
 }
 
@@ -89,7 +91,10 @@ static void adding_survives(uint64_t objects_per_texture)
     fake = (struct fake_vulkan){.tail_page_count = 1};
     SluiceVulkanStreamer *streamer;
     CHECK_OK(create(&fake, &streamer));
-    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = gray_source()};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
+                                          .source = gray_source(),
+                                          .residencyMode =
+                                              mixes ? SLUICE_RESIDENCY_MODE_PAGED : mode};
     SluiceVulkanTexture texture;
     uint64_t objects = fake.live_objects;
     for (size_t f = 0; f < FAILURES; f++)
@@ -229,6 +234,10 @@ static void creation_survives_every_failing_call(void **state)
     (void)state;
     for (mode = SLUICE_RESIDENCY_MODE_SPARSE; mode <= SLUICE_RESIDENCY_MODE_DENSE; mode++)
         creation_survives();
+    mode = SLUICE_RESIDENCY_MODE_SPARSE;
+    mixes = true;
+    creation_survives();
+    mixes = false;
 }
 
 static void adding_survives_every_failing_call(void **state)
@@ -240,6 +249,10 @@ static void adding_survives_every_failing_call(void **state)
     adding_survives(3); /* and memory */
     mode = SLUICE_RESIDENCY_MODE_DENSE;
     adding_survives(3);
+    mode = SLUICE_RESIDENCY_MODE_SPARSE;
+    mixes = true;
+    adding_survives(3);
+    mixes = false;
 }
 
 static void frames_survive_every_failing_call(void **state)
