@@ -29,6 +29,7 @@ struct picture {
     SluiceTextureArray array;
     bool draws; ///< else computes
     bool anisotropic;
+    bool mixes;    ///< textures are sparse, paged and dense in turn
     bool compares; ///< in this frame
     SluiceImageSource *sources[TEXTURES];
     float shades[TEXTURES]; ///< red of all texels
@@ -55,6 +56,13 @@ static void paint(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t w
     rgba[3] = 1.0f;
 }
 
+static SluiceResidencyMode mode_of(const struct picture *p, uint32_t number)
+{
+    static const SluiceResidencyMode modes[] = {
+        SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_DENSE};
+    return p->mixes ? modes[number % 3] : SLUICE_RESIDENCY_MODE_AUTO;
+}
+
 static void add_texture(struct picture *p, uint32_t i, uint32_t number)
 {
     static const uint32_t sizes[][2] = {{1024, 512}, {512, 512},   {300, 200}, {64, 64},
@@ -71,6 +79,7 @@ static void add_texture(struct picture *p, uint32_t i, uint32_t number)
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &p->sources[i]));
     const SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
                                                   .source = p->sources[i],
+                                                  .residencyMode = mode_of(p, number),
                                                   .addressModeU = modes[number % 3],
                                                   .addressModeV = modes[number / 3 % 3],
                                                   .maxAnisotropy =
@@ -254,9 +263,10 @@ static void create_pipelines(struct picture *p)
                      VK_SUCCESS);
     SluiceResidencyMode resolved;
     CHECK_OK(sluiceGetVulkanResidencyMode(p->streamer, &resolved));
-    const VkBool32 paged = resolved == SLUICE_RESIDENCY_MODE_PAGED;
-    const VkSpecializationMapEntry entry = {0, 0, sizeof paged};
-    const VkSpecializationInfo constants = {1, &entry, sizeof paged, &paged};
+    const VkBool32 values[] = {resolved == SLUICE_RESIDENCY_MODE_PAGED || p->mixes, p->mixes};
+    const VkSpecializationMapEntry entries[] = {{0, 0, sizeof values[0]},
+                                                {1, sizeof values[0], sizeof values[0]}};
+    const VkSpecializationInfo constants = {2, entries, sizeof values, values};
     for (uint32_t kind = 0; kind < KINDS; kind++) {
         const VkPipelineShaderStageCreateInfo stage = {
             .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -270,11 +280,13 @@ static void create_pipelines(struct picture *p)
 }
 
 static void picture_init(struct picture *p, struct harness *h, SluiceTextureArray array, bool draws,
-                         bool anisotropic)
+                         bool anisotropic, bool mixes)
 {
-    *p = (struct picture){.h = h, .array = array, .draws = draws, .anisotropic = anisotropic};
+    *p = (struct picture){
+        .h = h, .array = array, .draws = draws, .anisotropic = anisotropic, .mixes = mixes};
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .textureArray = array,
+                                           .pagedTextures = mixes,
                                            .maxTextureCount = 4 * TEXTURES,
                                            .maxRegionCount = 1 << 12,
                                            .feedbackTimeoutTicks = 1000};
@@ -397,11 +409,12 @@ static uint32_t check_frame(struct picture *p, uint32_t seed)
     return missing;
 }
 
-static void check_all(struct harness *h, SluiceTextureArray array, bool draws, bool anisotropic)
+static void check_all(struct harness *h, SluiceTextureArray array, bool draws, bool anisotropic,
+                      bool mixes)
 {
     static struct picture picture;
     struct picture *p = &picture;
-    picture_init(p, h, array, draws, anisotropic);
+    picture_init(p, h, array, draws, anisotropic, mixes);
     uint32_t blurry = 0, missing = 0;
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
         missing = check_frame(p, frame);
@@ -427,10 +440,10 @@ static void check_all(struct harness *h, SluiceTextureArray array, bool draws, b
 
 static void check_both(struct harness *h, SluiceTextureArray array)
 {
-    check_all(h, array, false, false);
-    check_all(h, array, true, false);
+    check_all(h, array, false, false, false);
+    check_all(h, array, true, false, false);
     if (h->anisotropy && array == SLUICE_TEXTURE_ARRAY_COMBINED)
-        check_all(h, array, false, true);
+        check_all(h, array, false, true, false);
 }
 
 static bool has_features(const struct harness *h)
@@ -452,13 +465,22 @@ static void separate_images_and_samplers_sample_alike(void **state)
     check_both(*state, SLUICE_TEXTURE_ARRAY_SEPARATE);
 }
 
+static void sparse_paged_and_dense_textures_stand_in_one_draw(void **state)
+{
+    struct harness *h = *state;
+    if (!has_features(h) || h->mode != SLUICE_RESIDENCY_MODE_SPARSE)
+        SKIP_TEST("only sparse streamers have textures of all modes, numbers need array features");
+    check_all(h, SLUICE_TEXTURE_ARRAY_COMBINED, true, false, true);
+    check_all(h, SLUICE_TEXTURE_ARRAY_COMBINED, false, h->anisotropy, true);
+}
+
 static void textures_of_a_kind_share_a_sampler(void **state)
 {
     struct harness *h = *state;
     static struct picture picture;
     if (!has_features(h))
         SKIP_TEST("the device has no arrays that are indexed non-uniformly");
-    picture_init(&picture, h, SLUICE_TEXTURE_ARRAY_COMBINED, false, h->anisotropy);
+    picture_init(&picture, h, SLUICE_TEXTURE_ARRAY_COMBINED, false, h->anisotropy, false);
     VkSampler samplers[TEXTURES];
     for (uint32_t i = 0; i < TEXTURES; i++)
         CHECK_OK(
@@ -497,6 +519,7 @@ int main(void)
     struct CMUnitTest tests[] = {
         cmocka_unit_test(divergent_numbers_sample_as_each_texture_alone),
         cmocka_unit_test(separate_images_and_samplers_sample_alike),
+        cmocka_unit_test(sparse_paged_and_dense_textures_stand_in_one_draw),
         cmocka_unit_test(textures_of_a_kind_share_a_sampler),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
