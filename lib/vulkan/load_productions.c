@@ -5,19 +5,11 @@
 #include "vulkan/load_deferred.h"
 #include "vulkan/load_reads.h"
 #include "vulkan/load_units.h"
+#include "vulkan/producer_calls.h"
 #include "vulkan/read_troubles.h"
 #include "vulkan/tile_upload.h"
 
 #include <assert.h>
-
-#define BATCH 64u /* tiles of a call */
-
-/* Commands of this frame. The last batch decides whether the next one needs a barrier. */
-struct recording {
-    VkCommandBuffer commands;
-    VkImage image; ///< of the last batch; VK_NULL_HANDLE: there was none
-    uint32_t level, texture;
-};
 
 void slc_production_start(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
@@ -106,16 +98,13 @@ static SluiceResult answered(SluiceVulkanStreamer *s, uint32_t index, SluiceResu
 {
     struct slc_unit *unit = &s->units[index];
     uint32_t timeout = s->textures[unit->texture].producer.timeout_frames;
-    if (answer == SLUICE_SUCCESS || is_removed(s, index)) {
-        await_frame(s, index);
-        return SLUICE_SUCCESS;
-    }
-    if (unit->asked_frame == 0)
-        unit->asked_frame = s->frame;
-    if (answer == SLUICE_NOT_READY && s->frame - unit->asked_frame < timeout &&
-        slc_loads_can_wait(s)) {
-        slc_unit_list_append(s, &s->unproduced, index);
-        return SLUICE_SUCCESS;
+    if (is_removed(s, index))
+        answer = SLUICE_SUCCESS;
+    switch (
+        slc_producer_effect(answer, &unit->asked_frame, s->frame, timeout, slc_loads_can_wait(s))) {
+    case SLC_PRODUCER_WROTE: await_frame(s, index); return SLUICE_SUCCESS;
+    case SLC_PRODUCER_WAITS: slc_unit_list_append(s, &s->unproduced, index); return SLUICE_SUCCESS;
+    case SLC_PRODUCER_FAILED: break;
     }
     if (unit->packed_unit == SLC_NONE)
         return fail_tile(s, index, answer);
@@ -124,51 +113,20 @@ static SluiceResult answered(SluiceVulkanStreamer *s, uint32_t index, SluiceResu
     return SLUICE_SUCCESS;
 }
 
-static void barrier(const SluiceVulkanStreamer *s, VkCommandBuffer commands, bool before)
-{
-    const VkPipelineStageFlags writers =
-        VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-    const VkAccessFlags writes = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                              .srcAccessMask = writes,
-                              .dstAccessMask = before ? VK_ACCESS_SHADER_READ_BIT | writes
-                                                      : VK_ACCESS_SHADER_READ_BIT |
-                                                            VK_ACCESS_TRANSFER_WRITE_BIT};
-    s->vk.CmdPipelineBarrier(commands, before ? VK_PIPELINE_STAGE_ALL_COMMANDS_BIT : writers,
-                             before ? writers : VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &memory,
-                             0, NULL, 0, NULL);
-}
-
-/* Puts a barrier before the first batch of a texture, and before a batch with the view of the last
- * one. Batches never write the same texels, but a view has all layers of a level, so validation
- * layers report two batches with one view as a hazard. */
-static void order(const SluiceVulkanStreamer *s, struct recording *r, uint32_t texture,
-                  const SluiceTileBatch *batch)
-{
-    if (!r->image || r->texture != texture ||
-        (r->image == batch->image && r->level == batch->mipLevel))
-        barrier(s, r->commands, true);
-    r->image = batch->image;
-    r->level = batch->mipLevel;
-    r->texture = texture;
-}
-
-static void ask(SluiceVulkanStreamer *s, struct recording *r, uint32_t index,
+static void ask(SluiceVulkanStreamer *s, struct slc_producer_calls *calls, uint32_t index,
                 SluiceTileBatch *batch, SluiceResult *results)
 {
     const struct slc_texture *texture = &s->textures[index];
     batch->structSize = sizeof *batch;
     batch->textureId = texture->id;
-    batch->commandBuffer = r->commands;
+    batch->commandBuffer = calls->commands;
     batch->frameIndex = s->frame;
-    for (uint32_t i = 0; i < batch->tileCount; i++)
-        results[i] = SLUICE_SUCCESS;
-    order(s, r, index, batch);
+    slc_producer_answers_init(results, batch->tileCount);
+    slc_producer_calls_order(calls, index, (uint64_t)batch->image, batch->mipLevel);
     s->manager_locked = true;
     SluiceResult result = texture->producer.pfn(texture->producer.user, batch, results);
     s->manager_locked = false;
-    for (uint32_t i = 0; i < batch->tileCount && result != SLUICE_SUCCESS; i++)
-        results[i] = result;
+    slc_producer_answers_end(results, batch->tileCount, result);
 }
 
 /* Target of texels that have their place in the texture's image. */
@@ -221,39 +179,40 @@ static SluiceResult first_error(SluiceResult a, SluiceResult b)
 }
 
 /* Records units of one key in one batch. Reports failures to the manager. */
-static SluiceResult record_tiles(SluiceVulkanStreamer *s, struct recording *r,
+static SluiceResult record_tiles(SluiceVulkanStreamer *s, struct slc_producer_calls *calls,
                                  const uint32_t *units, uint32_t count)
 {
-    SluiceTileTarget targets[BATCH];
-    SluiceResult results[BATCH], result = SLUICE_SUCCESS;
+    SluiceTileTarget targets[SLC_PRODUCER_BATCH];
+    SluiceResult results[SLC_PRODUCER_BATCH], result = SLUICE_SUCCESS;
     SluiceTileBatch batch = {.tileCount = count, .pTiles = targets};
-    assert(count <= BATCH);
+    assert(count <= SLC_PRODUCER_BATCH);
     for (uint32_t i = 0; i < count; i++)
         place(s, &s->units[units[i]], &batch, &targets[i]);
-    ask(s, r, s->units[units[0]].texture, &batch, results);
+    ask(s, calls, s->units[units[0]].texture, &batch, results);
     for (uint32_t i = 0; i < count; i++)
         result = first_error(result, answered(s, units[i], results[i]));
     return result;
 }
 
 /* Records the mip tail level by level. Stops at the first answer that is not SLUICE_SUCCESS. */
-static SluiceResult record_packed(SluiceVulkanStreamer *s, struct recording *r, uint32_t index)
+static SluiceResult record_packed(SluiceVulkanStreamer *s, struct slc_producer_calls *calls,
+                                  uint32_t index)
 {
     uint32_t at = s->units[index].texture;
     const struct slc_texture *texture = &s->textures[at];
     const struct slc_packed_rect *rects = texture->packed.rects;
-    SluiceTileTarget targets[BATCH];
-    SluiceResult results[BATCH], answer = SLUICE_SUCCESS;
+    SluiceTileTarget targets[SLC_PRODUCER_BATCH];
+    SluiceResult results[SLC_PRODUCER_BATCH], answer = SLUICE_SUCCESS;
     s->textures[at].packed_result = SLUICE_SUCCESS;
     for (uint32_t i = 0; i < texture->packed.rect_count && answer == SLUICE_SUCCESS &&
                          texture->state == SLC_TEXTURE_LIVE;) {
         SluiceTileBatch batch = {.pTiles = targets};
         uint32_t level = rects[i].region.mipLevel;
         for (; i < texture->packed.rect_count && rects[i].region.mipLevel == level &&
-               batch.tileCount < BATCH;
+               batch.tileCount < SLC_PRODUCER_BATCH;
              i++)
             place_in_image(s, texture, &rects[i].region, &batch, &targets[batch.tileCount++]);
-        ask(s, r, at, &batch, results);
+        ask(s, calls, at, &batch, results);
         for (uint32_t k = 0; k < batch.tileCount && answer == SLUICE_SUCCESS; k++)
             answer = results[k];
     }
@@ -282,7 +241,7 @@ static SluiceResult take(SluiceVulkanStreamer *s, uint32_t *count)
 
 SluiceResult slc_productions_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
-    struct recording r = {.commands = commands};
+    struct slc_producer_calls calls = {.vk = &s->vk, .commands = commands};
     const uint32_t *units = s->frame_units;
     uint32_t count;
     SluiceResult result = take(s, &count);
@@ -294,16 +253,15 @@ SluiceResult slc_productions_record(SluiceVulkanStreamer *s, VkCommandBuffer com
             continue;
         }
         if (s->units[units[i]].packed_unit != SLC_NONE) {
-            result = first_error(result, record_packed(s, &r, units[i]));
+            result = first_error(result, record_packed(s, &calls, units[i]));
             continue;
         }
         uint64_t key = batch_key(s, units[i]);
-        while (next < count && next - i < BATCH && batch_key(s, units[next]) == key)
+        while (next < count && next - i < SLC_PRODUCER_BATCH && batch_key(s, units[next]) == key)
             next++;
-        result = first_error(result, record_tiles(s, &r, &units[i], next - i));
+        result = first_error(result, record_tiles(s, &calls, &units[i], next - i));
     }
-    if (r.image)
-        barrier(s, commands, false);
+    slc_producer_calls_end(&calls);
     return result;
 }
 

@@ -3,8 +3,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/struct_size.h"
-
-#define TIMEOUT_FRAMES 64u
+#include "vulkan/producer_calls.h"
 
 SluiceResult slc_tile_producer_read(struct slc_tile_producer *producer, SluiceImageInfo *image,
                                     const SluiceTileProducer *given, const SluiceLogCallback *log)
@@ -20,10 +19,10 @@ SluiceResult slc_tile_producer_read(struct slc_tile_producer *producer, SluiceIm
         return result;
     if (image->mipLevelCount == 0)
         image->mipLevelCount = slc_mip_count(slc_max_u32(image->width, image->height));
-    *producer = (struct slc_tile_producer){.user = info.pUserData,
-                                           .pfn = info.pfnRecordTiles,
-                                           .timeout_frames = info.timeoutFrames ? info.timeoutFrames
-                                                                                : TIMEOUT_FRAMES};
+    *producer = (struct slc_tile_producer){
+        .user = info.pUserData,
+        .pfn = info.pfnRecordTiles,
+        .timeout_frames = info.timeoutFrames ? info.timeoutFrames : SLC_PRODUCER_TIMEOUT};
     return SLUICE_SUCCESS;
 }
 
