@@ -259,6 +259,15 @@ typedef struct SluiceDemandTextureCreateInfo {
      * makes errors visible.
      */
     float failureColor[4];
+    /**
+     * Fills the tiles by commands in place of `image`, whose `source` and `pfnOpen` must be NULL
+     * then. sluiceBeginDemandLaunch calls it (docs/producers.md). Copied. Nothing is opened or read
+     * for the texture. Default: none.
+     */
+    const SluiceTileProducer *pProducer;
+    /** Color of the last level of a produced texture, in linear light. Shaders see it where the
+     *  texture covers less than a texel of that level. The producer writes the level, too. */
+    float lastLevelColor[4];
 } SluiceDemandTextureCreateInfo;
 
 /**
@@ -266,10 +275,12 @@ typedef struct SluiceDemandTextureCreateInfo {
  *
  * Any format that the device samples with linear filters is allowed, if its blocks have at most 4x4
  * texels. An image of another format, without the layer, or whose info is out of range (image.h)
- * shows its failureColor once it was opened.
+ * shows its failureColor once it was opened. A producer of such an image is refused at once.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown modes, or an
- *         anisotropy or LOD bias out of range; SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount;
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown modes, an
+ *         anisotropy or LOD bias out of range, both an image and a producer, or a producer's image
+ *         whose info is out of range; SLUICE_ERROR_UNSUPPORTED for a producer's image that the
+ *         device cannot sample; SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceAddDemandTexture(SluiceDemandLoader *loader,
@@ -383,6 +394,26 @@ SLUICE_API SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader,
                                                    uint32_t finestLevel,
                                                    SluiceDemandTicket *pTicket);
 
+/** Byte page that commands write. Never grows. */
+typedef struct SluiceBytePageTarget {
+    uint32_t page;           ///< Page of the resource.
+    uint64_t offset;         ///< Byte in the buffer where the page begins, a multiple of 16.
+    VkDeviceAddress address; ///< Its address. 0 without bufferDeviceAddress.
+} SluiceBytePageTarget;
+
+/** Byte pages to be written by commands of the application. All lie in one buffer. Pointers are
+ *  valid during the call. */
+typedef struct SluiceBytePageBatch {
+    uint32_t structSize; ///< Set by Sluice. sizeof(SluiceBytePageBatch).
+    SluiceDemandResourceId resourceId;
+    VkCommandBuffer commandBuffer; ///< That of sluiceBeginDemandLaunch.
+    uint64_t launchIndex;          ///< As SluiceDemandLaunch.launchIndex.
+    VkBuffer buffer;               ///< Storage buffer and target of transfers.
+    uint32_t pageSize;             ///< Bytes of each page.
+    uint32_t pageCount;
+    const SluiceBytePageTarget *pPages;
+} SluiceBytePageBatch;
+
 /**
  * Resource: pages with data of the application, such as vertices, acceleration structures,
  * materials. A page is a value of 64 bits that pfnFill computes, or pageSize bytes in GPU memory
@@ -429,6 +460,17 @@ typedef struct SluiceDemandResourceCreateInfo {
      * The memory is write-only: reading it back is slow.
      */
     SluiceResult (*pfnRead)(void *pUserData, uint32_t page, uint32_t size, void *pBytes);
+    /**
+     * Records commands that write all bytes of the pages of a batch, in place of pfnRead. Must be
+     * NULL if pageSize is 0 or pfnRead is set. sluiceBeginDemandLaunch calls it on its thread.
+     * Answers, barriers and rules are those of SluiceTileProducer.pfnRecordTiles (vulkan.h): a page
+     * is shown when the launch that wrote it was processed, a page that failed is asked for again
+     * after failureRetryDelayNs, and shaders see it as missing until then.
+     */
+    SluiceResult (*pfnRecordPages)(void *pUserData, const SluiceBytePageBatch *pBatch,
+                                   SluiceResult *pResults);
+    /** Launches in which a page may answer SLUICE_NOT_READY before it has failed. Default: 64. */
+    uint32_t timeoutLaunches;
 } SluiceDemandResourceCreateInfo;
 
 /**
@@ -765,6 +807,7 @@ typedef struct SluiceDemandStatistics {
     uint32_t byteChunkCount;        ///< Buffers that hold byte pages.
     uint64_t tailPageCount;         ///< Pages of 64 KiB that resident mip tails share.
     uint64_t texturesForgotten;     ///< See forgetAfterLaunches. They count as opened again later.
+    uint64_t producedCount;         ///< Tiles, mip tails and byte pages that commands made.
 } SluiceDemandStatistics;
 
 /**

@@ -295,7 +295,7 @@ SLUICE_API SluiceResult sluiceCompactVulkanStreamer(SluiceVulkanStreamer *stream
  */
 SLUICE_API SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer);
 
-/** Texels that a producer writes: a tile, or a piece of the mip tail. Never grows. */
+/** Texels that a producer writes: a tile, or a level of the mip tail. Never grows. */
 typedef struct SluiceTileTarget {
     SluiceImageRegion region; ///< Texels of the texture: level, rectangle and array layer.
     uint32_t x, y;            ///< Where the rectangle begins in the level of the image.
@@ -307,10 +307,10 @@ typedef struct SluiceTileTarget {
  * are valid during the call.
  */
 typedef struct SluiceTileBatch {
-    uint32_t structSize; ///< Set by Sluice. sizeof(SluiceTileBatch).
-    SluiceTextureId textureId;
-    VkCommandBuffer commandBuffer; ///< That of sluiceBeginStreamingFrame.
-    uint64_t frameIndex;           ///< As SluiceStreamingFrame.frameIndex.
+    uint32_t structSize;           ///< Set by Sluice. sizeof(SluiceTileBatch).
+    SluiceTextureId textureId;     ///< Of a demand loader: SluiceDemandTextureId.
+    VkCommandBuffer commandBuffer; ///< Of sluiceBeginStreamingFrame or sluiceBeginDemandLaunch.
+    uint64_t frameIndex;           ///< SluiceStreamingFrame.frameIndex, or launchIndex.
     /** In VK_IMAGE_LAYOUT_GENERAL. In paged mode it holds pages of several textures. */
     VkImage image;
     /**

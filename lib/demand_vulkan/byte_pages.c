@@ -91,6 +91,7 @@ void slc_byte_pages_describe(SluiceDemandLoader *loader, struct slc_demand_resou
     resource->byte_kind = 0;
     if (size)
         slc_byte_memory_kind(&loader->bytes, resource->stride, &resource->byte_kind);
+    resource->produced = resource->info.pfnRecordPages;
     resource->addresses = loader->bytes.get_address && !resource->info.byteOffsets;
     resource->job_kind = size == 0              ? SLC_JOB_RESOURCE
                          : size > SLC_TILE_SIZE ? SLC_JOB_LARGE
@@ -108,7 +109,8 @@ void slc_byte_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, S
         slc_job_list_append(loader, &loader->arrived, job);
         return;
     }
-    slc_resource_fail(loader, resource, job, result);
+    slc_resource_fail(loader, resource, job, result,
+                      result != SLUICE_SUCCESS && !job->stale && !slc_result_may_pass(result));
     slc_job_free(loader, job);
     slc_resource_release(loader, resource->index);
 }

@@ -64,6 +64,7 @@ static SluiceResult take_slot(SluiceDemandLoader *loader, uint32_t texture,
                                        .next = SLC_NONE,
                                        .origin = loader->textures[texture].source,
                                        .loader = loader,
+                                       .made = loader->textures[texture].made,
                                        .source = loader->textures[texture].source.source,
                                        .tail_page = taken->tail_page};
     loader->textures[texture].image = taken->slot;
@@ -103,37 +104,6 @@ static SluiceResult submit_opening(SluiceDemandLoader *loader, struct slc_demand
     return result;
 }
 
-enum slc_request_answer slc_image_request(SluiceDemandLoader *loader, uint32_t texture,
-                                          SluiceDemandTicket ticket, SluiceResult *result)
-{
-    *result = SLUICE_SUCCESS;
-    if (texture >= loader->texture_high)
-        return SLC_REQUEST_RESIDENT;
-    if (loader->textures[texture].kind == SLC_TEXTURE_VARIANT)
-        texture = loader->textures[texture].base;
-    struct slc_demand_texture *t = &loader->textures[texture];
-    if (t->kind != SLC_TEXTURE_IMAGE || t->failed)
-        return SLC_REQUEST_RESIDENT;
-    if (t->image != SLC_NONE)
-        return loader->images[t->image]->state == SLC_IMAGE_OPENING ? SLC_REQUEST_PENDING
-                                                                    : SLC_REQUEST_RESIDENT;
-    struct slc_demand_image *image;
-    if (loader->free_other_count == 0)
-        return SLC_REQUEST_POSTPONED;
-    *result = take_slot(loader, texture, &image);
-    if (*result == SLUICE_SUCCESS)
-        *result = submit_opening(loader, image, ticket);
-    if (*result == SLUICE_SUCCESS)
-        return SLC_REQUEST_LOAD;
-    if (loader->textures[texture].image != SLC_NONE) {
-        loader->textures[texture].image = SLC_NONE;
-        free_slot(loader, image);
-    }
-    if (*result == SLUICE_NOT_READY || *result == SLUICE_ERROR_LIMIT_EXCEEDED)
-        *result = SLUICE_SUCCESS;
-    return SLC_REQUEST_POSTPONED;
-}
-
 static void note_opened(SluiceDemandLoader *loader, const struct slc_demand_image *image)
 {
     struct slc_demand_texture *texture = &loader->textures[image->texture];
@@ -163,7 +133,8 @@ static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image 
     memcpy(words, image->first_pages, sizeof image->first_pages);
     memcpy(image->base_color, image->read_color, sizeof image->base_color);
     image->state = SLC_IMAGE_OPEN;
-    slc_page_pool_prepare(loader->pages, loader->page_user, image->info.format);
+    slc_page_pool_prepare(loader->pages, loader->page_user,
+                          slc_page_format(image->info.format, image->made));
     slc_image_enter_order(loader, image);
     slc_texture_show_image(loader, image);
     loader->counts.texturesOpened++;
@@ -214,6 +185,59 @@ static void give_up(SluiceDemandLoader *loader, struct slc_demand_image *image, 
     free_slot(loader, image);
 }
 
+/* All that is to be known of it is there, so that no read opens it. */
+static enum slc_request_answer open_made(SluiceDemandLoader *loader, uint32_t texture,
+                                         SluiceResult *result)
+{
+    struct slc_demand_image *image;
+    *result = take_slot(loader, texture, &image);
+    if (*result == SLUICE_SUCCESS) {
+        image->info = image->made->info;
+        memcpy(image->read_color, image->made->last_color, sizeof image->read_color);
+        *result = lay_out(loader, image);
+        if (*result == SLUICE_SUCCESS)
+            return SLC_REQUEST_LOAD;
+        image->trouble = "pageCapacity is too small for its tiles";
+        give_up(loader, image, *result);
+    }
+    if (*result == SLUICE_ERROR_LIMIT_EXCEEDED)
+        *result = SLUICE_SUCCESS;
+    return SLC_REQUEST_POSTPONED;
+}
+
+enum slc_request_answer slc_image_request(SluiceDemandLoader *loader, uint32_t texture,
+                                          SluiceDemandTicket ticket, SluiceResult *result)
+{
+    *result = SLUICE_SUCCESS;
+    if (texture >= loader->texture_high)
+        return SLC_REQUEST_RESIDENT;
+    if (loader->textures[texture].kind == SLC_TEXTURE_VARIANT)
+        texture = loader->textures[texture].base;
+    struct slc_demand_texture *t = &loader->textures[texture];
+    if (t->kind != SLC_TEXTURE_IMAGE || t->failed)
+        return SLC_REQUEST_RESIDENT;
+    if (t->image != SLC_NONE)
+        return loader->images[t->image]->state == SLC_IMAGE_OPENING ? SLC_REQUEST_PENDING
+                                                                    : SLC_REQUEST_RESIDENT;
+    struct slc_demand_image *image;
+    if (t->made)
+        return open_made(loader, texture, result);
+    if (loader->free_other_count == 0)
+        return SLC_REQUEST_POSTPONED;
+    *result = take_slot(loader, texture, &image);
+    if (*result == SLUICE_SUCCESS)
+        *result = submit_opening(loader, image, ticket);
+    if (*result == SLUICE_SUCCESS)
+        return SLC_REQUEST_LOAD;
+    if (loader->textures[texture].image != SLC_NONE) {
+        loader->textures[texture].image = SLC_NONE;
+        free_slot(loader, image);
+    }
+    if (*result == SLUICE_NOT_READY || *result == SLUICE_ERROR_LIMIT_EXCEEDED)
+        *result = SLUICE_SUCCESS;
+    return SLC_REQUEST_POSTPONED;
+}
+
 void slc_image_job_back(SluiceDemandLoader *loader, struct slc_demand_image *image,
                         const struct slc_demand_job *job, SluiceResult result)
 {
@@ -259,7 +283,7 @@ static void drop_jobs(SluiceDemandLoader *loader, struct slc_demand_image *image
 {
     if (image->job_count == 0 && loader->copied.first == SLC_NONE)
         return; /* what is copied may be copied again */
-    slc_jobs_drop(loader, SLC_JOB_TILE, image->slot, 0, UINT64_MAX);
+    slc_jobs_drop(loader, slc_tile_job_kind(image), image->slot, 0, UINT64_MAX);
     slc_jobs_drop(loader, SLC_JOB_OPEN, image->slot, 0, UINT64_MAX);
 }
 
@@ -317,7 +341,8 @@ bool slc_image_is_idle(const SluiceDemandLoader *loader, const struct slc_demand
 void slc_image_forget_texture(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     assert(slc_image_is_idle(loader, image));
-    slc_page_share_leave(loader->pages, loader->page_user, image->source);
+    if (image->source)
+        slc_page_share_leave(loader->pages, loader->page_user, image->source);
     slc_retries_all(loader, &image->retry_group);
     slc_preloads_detach(loader, image->texture);
     slc_texture_show_unknown(loader, image->texture);
@@ -344,10 +369,11 @@ void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *i
     if (image->state != SLC_IMAGE_OPEN)
         return; /* what is read now is as good as what is read next */
     drop_jobs(loader, image);
-    slc_page_share_drop(loader->pages, image->source);
+    if (image->source)
+        slc_page_share_drop(loader->pages, image->source);
     slc_retries_all(loader, &image->retry_group);
     slc_image_forget(loader, image);
-    if (image->refresh)
+    if (image->refresh || image->made)
         return;
     image->refresh = true;
     image->next = loader->first_refresh;

@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "demand_vulkan/productions.h"
 #include "demand_vulkan/refused_arguments.h"
 #include "image/read_pool.h"
 #include "vulkan/shared_parts.h"
@@ -71,8 +72,9 @@ static void on_failure(void *user, const SluiceTileReadFailure *failure)
 
 static SluiceResult create_reader(SluiceDemandLoader *loader)
 {
-    SluiceTileLoaderCreateInfo create = {
-        .structSize = sizeof create, .requestCapacity = loader->job_count, .end = {loader, on_end}};
+    SluiceTileLoaderCreateInfo create = {.structSize = sizeof create,
+                                         .requestCapacity = loader->first_produce,
+                                         .end = {loader, on_end}};
     if (loader->info.failure.pfnFailed)
         create.failure = (SluiceTileReadFailureCallback){loader, on_failure};
     SluiceResult result =
@@ -92,6 +94,8 @@ static struct slc_job_list *free_list(SluiceDemandLoader *loader, enum slc_job_k
     case SLC_JOB_TILE:
     case SLC_JOB_BYTES: *count = &loader->free_tile_count; return &loader->free_tiles;
     case SLC_JOB_LARGE: *count = &loader->free_large_count; return &loader->free_large;
+    case SLC_JOB_PRODUCE:
+    case SLC_JOB_PRODUCE_BYTES: *count = &loader->free_produce_count; return &loader->free_produce;
     default: *count = &loader->free_other_count; return &loader->free_others;
     }
 }
@@ -99,6 +103,8 @@ static struct slc_job_list *free_list(SluiceDemandLoader *loader, enum slc_job_k
 /* The staging memory of a job; NULL: it has none. */
 static struct slc_staging *staging_of(SluiceDemandLoader *loader, uint32_t index)
 {
+    if (index >= loader->first_produce)
+        return NULL;
     if (index >= loader->first_large)
         return &loader->large;
     return index < loader->info.maxTilesInFlight ? &loader->staging : NULL;
@@ -114,23 +120,27 @@ SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
 {
     uint32_t tiles = loader->info.maxTilesInFlight;
     const struct slc_job_list empty = {SLC_NONE, SLC_NONE};
-    loader->free_tiles = loader->free_others = loader->free_large = empty;
+    loader->free_tiles = loader->free_others = loader->free_large = loader->free_produce = empty;
     loader->arrived = loader->admitted = loader->copied = empty;
     loader->first_large = 2 * tiles; /* the second `tiles` jobs open images and compute values */
     loader->free_large_count = slc_max_u32(LEAST_LARGE, tiles / SLC_LARGE_SLOTS);
-    loader->job_count = loader->first_large + loader->free_large_count;
+    loader->first_produce = loader->first_large + loader->free_large_count;
+    loader->job_count = loader->first_produce + tiles;
     loader->jobs = slc_calloc(&loader->cb, loader->job_count, sizeof *loader->jobs);
     if (!loader->jobs)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     for (uint32_t i = 0; i < loader->job_count; i++)
         slc_job_list_append(loader,
-                            i < tiles                 ? &loader->free_tiles
-                            : i < loader->first_large ? &loader->free_others
-                                                      : &loader->free_large,
+                            i < tiles                   ? &loader->free_tiles
+                            : i < loader->first_large   ? &loader->free_others
+                            : i < loader->first_produce ? &loader->free_large
+                                                        : &loader->free_produce,
                             &loader->jobs[i]);
-    loader->free_tile_count = loader->free_other_count = tiles;
-    SluiceResult result = slc_staging_init(&loader->staging, &loader->context->shared.staging,
-                                           &loader->vk, &loader->caps, &loader->cb, tiles);
+    loader->free_tile_count = loader->free_other_count = loader->free_produce_count = tiles;
+    SluiceResult result = slc_productions_init(loader);
+    if (result == SLUICE_SUCCESS)
+        result = slc_staging_init(&loader->staging, &loader->context->shared.staging, &loader->vk,
+                                  &loader->caps, &loader->cb, tiles);
     return result == SLUICE_SUCCESS ? create_reader(loader) : result;
 }
 
@@ -138,6 +148,7 @@ void slc_jobs_finish(SluiceDemandLoader *loader)
 {
     slc_staging_finish(&loader->large);
     slc_staging_finish(&loader->staging);
+    slc_productions_finish(loader);
     slc_free(&loader->cb, loader->jobs, loader->job_count, sizeof *loader->jobs);
     loader->jobs = NULL;
 }
@@ -374,7 +385,8 @@ void slc_jobs_drop(SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t 
             job->page - first >= count)
             continue;
         job->stale = true;
-        sluiceCancelTileRead(loader->reader, job->read); /* of one that is over: ignored */
+        if (i < loader->first_produce)
+            sluiceCancelTileRead(loader->reader, job->read); /* of one that is over: ignored */
     }
 }
 

@@ -7,6 +7,7 @@
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "demand_vulkan/productions.h"
 #include "demand_vulkan/refused_arguments.h"
 #include "image/half.h"
 #include "vulkan/compute.h"
@@ -92,6 +93,7 @@ static void set_parameter(SluiceDemandLoader *loader, uint32_t index, uint32_t v
 static void gather(SluiceDemandLoader *loader, uint64_t launch, bool tracking)
 {
     slc_jobs_collect(loader);
+    slc_productions_collect(loader);
     slc_retries_advance(loader);
     slc_images_refresh(loader);
     slc_preloads_continue(loader);
@@ -170,7 +172,7 @@ static bool has_transfers(const SluiceDemandLoader *loader)
 {
     return !loader->cleared || loader->has_shared || loader->space_changed ||
            count_forgotten(loader) || loader->admitted.first != SLC_NONE ||
-           slc_table_mirror_has_changes(&loader->table) ||
+           slc_productions_are_due(loader) || slc_table_mirror_has_changes(&loader->table) ||
            slc_table_mirror_has_changes(&loader->levels) ||
            slc_table_mirror_has_changes(&loader->grids);
 }
@@ -194,6 +196,7 @@ static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer com
     loader->space_changed = loader->has_shared = false;
     record_forgotten(loader, commands);
     uint32_t tiles = slc_uploads_record(loader, commands);
+    tiles += slc_productions_ask(loader, commands);
     slc_table_mirror_record(&loader->table, &loader->vk, commands, loader->launch);
     slc_table_mirror_record(&loader->levels, &loader->vk, commands, loader->launch);
     slc_table_mirror_record(&loader->grids, &loader->vk, commands, loader->launch);
@@ -300,6 +303,7 @@ static SluiceResult put_back(SluiceDemandLoader *loader, uint64_t launch)
     loader->cleared &= loader->cleared_launch < launch;
     slc_page_pool_abandon(loader->pages, loader->page_user, launch);
     slc_uploads_abandon(loader, launch);
+    slc_productions_ask_again(loader, launch);
     loader->has_shared = true;
     slc_table_mirror_abandon(&loader->table, launch);
     slc_table_mirror_abandon(&loader->levels, launch);

@@ -21,6 +21,7 @@
 #include "vulkan/context.h"
 #include "vulkan/descriptors.h"
 #include "vulkan/staging.h"
+#include "vulkan/tile_producer.h"
 
 #define SLC_MAX_LAUNCHES 16u
 #define SLC_MAX_REGULAR_LEVELS 16u /* words of an element of the buffer of levels */
@@ -38,6 +39,13 @@ enum slc_texture_kind {
     SLC_TEXTURE_RETIRED ///< destroyed; launches may still name the index
 };
 
+/** Image whose tiles the application's commands write. */
+struct slc_made_image {
+    struct slc_tile_producer producer;
+    SluiceImageInfo info;
+    float last_color[4]; ///< of the last level
+};
+
 /* By index; 0 is not used. What shaders see of it is the element of the same index of `table`. */
 struct slc_demand_texture {
     enum slc_texture_kind kind;
@@ -53,6 +61,7 @@ struct slc_demand_texture {
     uint32_t next;                 ///< IMAGE, VARIANT: next variant; FREE, RETIRED: in the list
     uint64_t launch;               ///< RETIRED: the last that may name it
     SluiceDemandImage source;      ///< IMAGE
+    struct slc_made_image *made;   ///< IMAGE, owned: in place of `source`; else NULL
     VkSamplerAddressMode modes[2]; ///< IMAGE, VARIANT: the sampler's
     bool explicit_modes;
     float failure_color[4];
@@ -73,11 +82,12 @@ struct slc_demand_image {
     uint32_t next; ///< FREE, RETIRED, or waiting for a job that reads the base color again
     bool refresh;  ///< it is in that list
     uint32_t job_count;
-    uint64_t launch;          ///< RETIRED: the last that may name its pages
-    uint64_t last_use;        ///< launch that used it, missed a page of it or copied one
-    uint32_t older, newer;    ///< OPEN: in the order of use
-    bool has_tail;            ///< OPEN: which of the orders; may be out of date if true
-    SluiceDemandImage origin; ///< as the texture had it when it was opened
+    uint64_t launch;                   ///< RETIRED: the last that may name its pages
+    uint64_t last_use;                 ///< launch that used it, missed a page of it or copied one
+    uint32_t older, newer;             ///< OPEN: in the order of use
+    bool has_tail;                     ///< OPEN: which of the orders; may be out of date if true
+    SluiceDemandImage origin;          ///< as the texture had it when it was opened
+    const struct slc_made_image *made; ///< the texture's, or NULL; not read once it is detached
     SluiceDemandTicket ticket;
 
     /* Of the worker that opens it, until that job is collected. */
@@ -107,9 +117,11 @@ enum slc_job_kind {
     SLC_JOB_FREE = 0,
     SLC_JOB_OPEN,
     SLC_JOB_TILE,
-    SLC_JOB_RESOURCE, ///< a value
-    SLC_JOB_BYTES,    ///< a byte page of at most 64 KiB
-    SLC_JOB_LARGE     ///< a larger one
+    SLC_JOB_RESOURCE,     ///< a value
+    SLC_JOB_BYTES,        ///< a byte page of at most 64 KiB
+    SLC_JOB_LARGE,        ///< a larger one
+    SLC_JOB_PRODUCE,      ///< a tile or mip tail that commands write
+    SLC_JOB_PRODUCE_BYTES ///< a byte page that commands write
 };
 
 /* Image source of one row, whose texels are the pages: the tile loader reads it. */
@@ -123,6 +135,7 @@ struct slc_demand_resource {
     uint32_t stride;    ///< bytes from one byte page to the next; 0: pages are values
     uint32_t byte_kind; ///< kind of byte pages; see byte_memory.h
     bool addresses;     ///< values of byte pages are addresses
+    bool produced;      ///< commands write its byte pages
     uint32_t
         eviction_count; ///< values that pfnEvict is still to be told of, when launches are over
     uint8_t class_index;
@@ -137,8 +150,9 @@ struct slc_eviction {
     uint64_t value, launch;
 };
 
-/* A read. A job below maxTilesInFlight has the slot of `staging` at its index. A job from
- * first_large on has SLC_LARGE_SLOTS slots of `large`. */
+/* A read, or a page that commands write. A job below maxTilesInFlight has the slot of `staging` at
+ * its index. A job from first_large on has SLC_LARGE_SLOTS slots of `large`. Those from
+ * first_produce on have no memory, and are for commands. */
 struct slc_demand_job {
     enum slc_job_kind kind;
     uint32_t page, owner;           ///< image slot, or index of the resource
@@ -146,7 +160,9 @@ struct slc_demand_job {
     uint32_t next;                  ///< free, arrived or copied: in the list
     bool stale;                     ///< what is read is not wanted any more
     bool counted;                   ///< in bytesUploaded
-    uint64_t launch;                ///< copied: the one that does
+    uint64_t launch;                ///< copied or produced: the one that does
+    uint64_t asked;                 ///< launch that first asked its producer; 0: none
+    SluiceResult answer;            ///< of its producer
     uint64_t start;                 ///< ns
     uint64_t value;                 ///< of a resource
     uint64_t id;                    ///< of the texture or resource
@@ -160,6 +176,12 @@ struct slc_demand_job {
 
 struct slc_job_list {
     uint32_t first, last;
+};
+
+/** A job that waits for its producer. Jobs with equal keys make a batch. */
+struct slc_production {
+    uint64_t key;
+    uint32_t page, job;
 };
 
 #define SLC_BATCH_JOBS 512u
@@ -298,10 +320,12 @@ struct SluiceDemandLoader {
 
     SluiceTileLoader *reader;
     struct slc_demand_job *jobs; ///< owned
-    uint32_t job_count, first_large;
-    struct slc_job_list free_tiles, free_others, free_large;
+    uint32_t job_count, first_large, first_produce;
+    struct slc_job_list free_tiles, free_others, free_large, free_produce;
     struct slc_job_list arrived, admitted, copied; ///< read; resident; on its way to its place
-    uint32_t free_tile_count, free_other_count, free_large_count;
+    struct slc_job_list unproduced, produced; ///< to be asked for; written by a launch under way
+    struct slc_production *productions;       ///< owned; maxTilesInFlight
+    uint32_t free_tile_count, free_other_count, free_large_count, free_produce_count;
     uint32_t reading_count; ///< tiles and byte pages that are submitted and not yet back
     struct slc_job_batch batch;
     struct slc_tickets tickets;
@@ -334,7 +358,7 @@ static inline const char *slc_image_name(const struct slc_demand_image *image)
 {
     if (image->origin.pName)
         return image->origin.pName;
-    return image->source && image->info.pName ? image->info.pName : "image";
+    return (image->source || image->made) && image->info.pName ? image->info.pName : "image";
 }
 
 /* loader_settings.c */
@@ -436,9 +460,13 @@ void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *jo
 /** Resets the retries of the resource after a page could be read. */
 void slc_resource_note_success(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
                                uint32_t page);
-/** Ends a job that failed, or whose page is not wanted any more. */
+/** Tells the residency of a job without a result, and logs it if it `failed`. */
 void slc_resource_fail(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
-                       const struct slc_demand_job *job, SluiceResult result);
+                       const struct slc_demand_job *job, SluiceResult result, bool failed);
+SluiceDemandResourceId slc_resource_id(const struct slc_demand_resource *resource);
+/** What jobs are about to write to these pages is not wanted. */
+void slc_resource_drop_jobs(SluiceDemandLoader *loader, const struct slc_demand_resource *resource,
+                            uint32_t first, uint32_t count);
 /** Ends a job of the resource, of any kind. Frees a removed resource after its last job. */
 void slc_resource_release(SluiceDemandLoader *loader, uint32_t index);
 /** The value of a page is not resident any more. */
@@ -527,6 +555,11 @@ void slc_images_make_room(SluiceDemandLoader *loader, uint32_t page);
 void slc_images_forget_old(SluiceDemandLoader *loader);
 
 /* tiles.c */
+/** Kind of the jobs that bring tiles of the image. */
+static inline enum slc_job_kind slc_tile_job_kind(const struct slc_demand_image *image)
+{
+    return image->made ? SLC_JOB_PRODUCE : SLC_JOB_TILE;
+}
 /** The class of tiles gets the limit of slc_tile_memory_limit_now. */
 void slc_tiles_limit(SluiceDemandLoader *loader);
 /** `page` is one of the image's. */

@@ -26,15 +26,15 @@ static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
     return SLUICE_SUCCESS;
 }
 
-static const char *find_trouble(const struct slc_demand_image *image)
+const char *slc_image_trouble(const SluiceDemandLoader *loader, const SluiceImageInfo *info,
+                              uint32_t array_layer)
 {
-    const SluiceImageInfo *info = &image->info;
     const char *trouble = slc_image_info_trouble(info, SLC_LEVELS_TO_TAIL);
     if (trouble)
         return trouble;
-    if (image->origin.arrayLayer >= slc_max_u32(info->arrayLayerCount, 1))
+    if (array_layer >= slc_max_u32(info->arrayLayerCount, 1))
         return "arrayLayer is not below its arrayLayerCount";
-    if (!image->loader->usable[info->format])
+    if (!loader->usable[info->format])
         return "the device does not sample and filter its format";
     uint32_t tile_width = 0, tile_height = 0;
     SluiceFormatInfo format = {.structSize = sizeof format};
@@ -68,7 +68,7 @@ static SluiceResult open_source(struct slc_demand_image *image)
     if (result != SLUICE_SUCCESS || image->info.width)
         return result;
     image->info = info;
-    image->trouble = find_trouble(image);
+    image->trouble = slc_image_trouble(image->loader, &image->info, image->origin.arrayLayer);
     return image->trouble ? SLUICE_ERROR_UNSUPPORTED : SLUICE_SUCCESS;
 }
 

@@ -5,7 +5,9 @@
 #include "base/checked.h"
 #include "demand_vulkan/loader.h"
 
-/** Largest width and height of images. */
+/** Why an image cannot be a texture, or NULL. Reads no source. Any thread. */
+const char *slc_image_trouble(const SluiceDemandLoader *loader, const SluiceImageInfo *info,
+                              uint32_t array_layer);
 
 /**
  * Gets the first texel of the last level of a texture, in linear light. `texel`: a block of

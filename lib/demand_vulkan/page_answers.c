@@ -81,7 +81,7 @@ static SluiceResult begin(SluiceDemandLoader *loader, struct slc_demand_resource
     if (slc_residency_is_loading(loader->residency, page))
         return SLUICE_NOT_READY;
     if (resource->stride) /* bytes may be on their way to the slot */
-        slc_jobs_drop(loader, resource->job_kind, resource->index, page, 1);
+        slc_resource_drop_jobs(loader, resource, page, 1);
     slc_residency_forget(loader->residency, page, 1);
     slc_evicted_take(loader);
     enum slc_request_answer answer = slc_residency_request(loader->residency, &request, &result);

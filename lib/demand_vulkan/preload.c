@@ -139,7 +139,7 @@ static bool advance(SluiceDemandLoader *loader, struct slc_preload *preload)
         plan(loader, preload, image);
     /* It is in use: the next launch counts as one that samples it. */
     slc_image_touch(loader, loader->images[image->slot], loader->launch + 1);
-    while (slc_job_is_ready(loader, SLC_JOB_TILE)) {
+    while (slc_job_is_ready(loader, slc_tile_job_kind(image))) {
         uint32_t page;
         SluiceResult result;
         if (!has_room(loader) || !next_page(preload, image, &page))

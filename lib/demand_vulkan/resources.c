@@ -5,6 +5,7 @@
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "demand_vulkan/productions.h"
 #include "demand_vulkan/refused_arguments.h"
 #include "vulkan/create_checks.h"
 
@@ -48,7 +49,7 @@ const SluiceImageSourceInterface *slc_resource_interface(void)
     return &interface;
 }
 
-static SluiceDemandResourceId resource_id(const struct slc_demand_resource *resource)
+SluiceDemandResourceId slc_resource_id(const struct slc_demand_resource *resource)
 {
     return (uint64_t)resource->generation << 32 | (resource->index + 1);
 }
@@ -155,12 +156,17 @@ static SluiceResult check(const SluiceDemandLoader *loader,
         slc_check_limits(&loader->vk.log, limits, sizeof limits / sizeof limits[0]);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (info->pageSize ? info->pfnFill || info->pfnEvict : (bool)info->pfnRead)
+    bool bytes = info->pfnRead || info->pfnRecordPages;
+    if (info->pageSize ? info->pfnFill || info->pfnEvict : bytes)
         return slc_log_refusal(
             &loader->vk.log,
-            "pageSize is %u: pfnFill and pfnEvict are for pages of 0 bytes, pfnRead is for "
-            "larger ones",
+            "pageSize is %u: pfnFill and pfnEvict are for pages of 0 bytes, pfnRead and "
+            "pfnRecordPages are for larger ones",
             info->pageSize);
+    if (info->pfnRead && info->pfnRecordPages)
+        return slc_log_refusal(&loader->vk.log,
+                               "pfnRead and pfnRecordPages are both set: one of them can fill the "
+                               "pages of a resource");
     return info->pageCount > loader->info.pageCapacity ? SLUICE_ERROR_LIMIT_EXCEEDED
                                                        : SLUICE_SUCCESS;
 }
@@ -185,7 +191,7 @@ SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
     result = create(loader, &info, &resource);
     if (result != SLUICE_SUCCESS)
         return result;
-    *pResourceId = resource_id(resource);
+    *pResourceId = slc_resource_id(resource);
     *pFirstPage = resource->first_page;
     return SLUICE_SUCCESS;
 }
@@ -209,23 +215,26 @@ enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_
     *result = SLUICE_SUCCESS;
     if (resource->state != SLC_RESOURCE_LIVE || region.x >= resource->info.pageCount)
         return SLC_REQUEST_RESIDENT;
-    if (!resource->info.pfnFill && !resource->info.pfnRead)
+    if (!resource->info.pfnFill && !resource->info.pfnRead && !resource->produced)
         return slc_answer_request(loader, resource, page, result);
-    if (!slc_job_is_ready(loader, resource->job_kind)) {
+    if (!slc_job_is_ready(loader,
+                          resource->produced ? SLC_JOB_PRODUCE_BYTES : resource->job_kind)) {
         loader->unasked_count++;
         return SLC_REQUEST_POSTPONED;
     }
     const struct slc_page_request request = slc_resource_page_request(resource, page, false);
     enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
     loader->unasked_count += *result != SLUICE_SUCCESS;
-    if (answer != SLC_REQUEST_LOAD)
+    if (answer == SLC_REQUEST_LOAD && resource->produced)
+        slc_byte_production_begin(loader, resource, page);
+    if (answer != SLC_REQUEST_LOAD || resource->produced)
         return answer;
     struct slc_demand_job *job = slc_job_take(loader, resource->job_kind);
     void *texels = resource->stride ? (void *)slc_job_memory(loader, job) : (void *)&job->value;
     job->place = resource->stride ? slc_residency_place(loader->residency, page) : SLC_NO_PLACE;
     job->page = page;
     job->owner = index;
-    job->id = resource_id(resource);
+    job->id = slc_resource_id(resource);
     SluiceTileRead read = {.source = &resource->base,
                            .regionCount = 1,
                            .pRegions = &region,
@@ -294,9 +303,9 @@ void slc_resource_note_success(SluiceDemandLoader *loader, struct slc_demand_res
 }
 
 void slc_resource_fail(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
-                       const struct slc_demand_job *job, SluiceResult result)
+                       const struct slc_demand_job *job, SluiceResult result, bool failed)
 {
-    bool refuse = result != SLUICE_SUCCESS && !job->stale && !slc_result_may_pass(result);
+    bool refuse = failed;
     char retrying[48];
     if (refuse && !resource->told)
         slc_log(&loader->vk.log, SLUICE_LOG_WARNING, "page %u of a resource has no %s: %s; %s.",
@@ -326,7 +335,8 @@ void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *jo
     } else {
         if (filled) /* which no launch has seen */
             tell_evicted(resource, job->page - resource->first_page, job->value);
-        slc_resource_fail(loader, resource, job, result);
+        slc_resource_fail(loader, resource, job, result,
+                          result != SLUICE_SUCCESS && !job->stale && !slc_result_may_pass(result));
     }
     slc_resource_release(loader, resource->index);
 }
@@ -360,13 +370,21 @@ void slc_resources_end_retired(SluiceDemandLoader *loader)
         tell_next(loader);
 }
 
+void slc_resource_drop_jobs(SluiceDemandLoader *loader, const struct slc_demand_resource *resource,
+                            uint32_t first, uint32_t count)
+{
+    slc_jobs_drop(loader, resource->job_kind, resource->index, first, count);
+    if (resource->produced)
+        slc_jobs_drop(loader, SLC_JOB_PRODUCE_BYTES, resource->index, first, count);
+}
+
 /* What they are, and what is being found out about them. */
 static void forget(SluiceDemandLoader *loader, struct slc_demand_resource *resource, uint32_t first,
                    uint32_t count)
 {
     slc_retries_all(loader, &resource->retry_group);
     if (resource->job_count || resource->stride) /* bytes may be on their way to their slots */
-        slc_jobs_drop(loader, resource->job_kind, resource->index, first, count);
+        slc_resource_drop_jobs(loader, resource, first, count);
     slc_residency_forget(loader->residency, first, count);
     slc_answers_forget(loader, resource, first, count);
     slc_evicted_take(loader);

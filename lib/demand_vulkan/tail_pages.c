@@ -21,7 +21,7 @@ struct slc_tail_page {
 SluiceResult slc_tail_pages_init(struct slc_tail_pages *tails, const SluiceAllocationCallbacks *cb)
 {
     *tails = (struct slc_tail_pages){.cb = cb, .free = SLC_NONE};
-    for (uint32_t i = 0; i < SLUICE_FORMAT_COUNT * SLC_TAIL_CUTS; i++)
+    for (uint32_t i = 0; i < SLC_PAGE_FORMATS * SLC_TAIL_CUTS; i++)
         tails->open[i] = SLC_NONE;
     return slc_map_init(&tails->index, cb, FIRST_PAGES);
 }
@@ -37,7 +37,7 @@ void slc_tail_pages_finish(struct slc_tail_pages *tails)
 
 static uint32_t list_of(SluiceFormat format, const struct slc_tail_cut *cut)
 {
-    assert((uint32_t)format < SLUICE_FORMAT_COUNT);
+    assert((uint32_t)format < SLC_PAGE_FORMATS);
     return (uint32_t)format * SLC_TAIL_CUTS + cut->cell * 2 + cut->slots - 2;
 }
 

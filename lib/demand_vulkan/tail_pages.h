@@ -8,6 +8,7 @@
 
 #include "base/map.h"
 #include "demand/tail_place.h"
+#include "vulkan/page_chunks.h"
 
 #include <sluice/image.h>
 
@@ -19,8 +20,8 @@ struct slc_tail_pages {
     const SluiceAllocationCallbacks *cb; ///< borrowed
     struct slc_tail_page *pages;         ///< owned
     uint32_t capacity, high, free;
-    struct slc_map index;                               ///< page -> its element of `pages`
-    uint32_t open[SLUICE_FORMAT_COUNT * SLC_TAIL_CUTS]; ///< first page with free slots
+    struct slc_map index;                            ///< page -> its element of `pages`
+    uint32_t open[SLC_PAGE_FORMATS * SLC_TAIL_CUTS]; ///< first page with free slots
     uint32_t page_count, tail_count;
 };
 

@@ -3,9 +3,10 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "base/struct_size.h"
-#include "demand_vulkan/loader.h"
+#include "demand_vulkan/opening.h"
 #include "demand_vulkan/pages.h"
 #include "demand_vulkan/refused_arguments.h"
+#include "image/info.h"
 #include "vulkan/address_mode.h"
 
 #include <sluice/shared/demand.h>
@@ -136,17 +137,65 @@ SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index)
     return SLUICE_SUCCESS;
 }
 
+/* What an image needs that is opened later, to which nobody can say no any more. */
+static SluiceResult check_made(SluiceDemandLoader *loader, const SluiceImageInfo *image)
+{
+    SluiceResult result = slc_image_info_check(image, SLC_LEVELS_TO_TAIL, &loader->vk.log);
+    const char *trouble = result == SLUICE_SUCCESS ? slc_image_trouble(loader, image, 0) : NULL;
+    if (!trouble)
+        return result;
+    slc_log(&loader->vk.log, SLUICE_LOG_ERROR, "%s cannot be used as a texture: %s",
+            image->pName ? image->pName : "image", trouble);
+    return SLUICE_ERROR_UNSUPPORTED;
+}
+
+/* The source of a texture, or its producer: `*made`, which the caller owns. */
+static SluiceResult read_image(SluiceDemandLoader *loader, const char *function,
+                               const SluiceDemandTextureCreateInfo *info,
+                               struct slc_made_image **made)
+{
+    if (!info->pProducer)
+        return SLUICE_SUCCESS;
+    if (info->image.source || info->image.pfnOpen)
+        return slc_demand_refuse(loader, function,
+                                 "image.source or image.pfnOpen is set beside pProducer: one of "
+                                 "them can fill the tiles");
+    *made = slc_calloc(&loader->cb, 1, sizeof **made);
+    if (!*made)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    (*made)->info.structSize = sizeof(SluiceImageInfo);
+    memcpy((*made)->last_color, info->lastLevelColor, sizeof(*made)->last_color);
+    SluiceResult result = slc_tile_producer_read(&(*made)->producer, &(*made)->info,
+                                                 info->pProducer, &loader->vk.log);
+    if (result == SLUICE_SUCCESS)
+        result = check_made(loader, &(*made)->info);
+    if (result == SLUICE_SUCCESS)
+        return SLUICE_SUCCESS;
+    slc_free(&loader->cb, *made, 1, sizeof **made);
+    *made = NULL;
+    return result;
+}
+
+static void free_made(SluiceDemandLoader *loader, struct slc_demand_texture *texture)
+{
+    if (texture->made)
+        slc_free(&loader->cb, texture->made, 1, sizeof *texture->made);
+    texture->made = NULL;
+}
+
 SluiceResult sluiceAddDemandTexture(SluiceDemandLoader *loader,
                                     const SluiceDemandTextureCreateInfo *pCreateInfo,
                                     SluiceDemandTextureId *pTextureId)
 {
-    if (!loader || !pCreateInfo || !pTextureId ||
-        (!pCreateInfo->image.source && !pCreateInfo->image.pfnOpen))
+    if (!loader || !pCreateInfo || !pTextureId)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceDemandTextureCreateInfo info = {.structSize = sizeof info};
+    struct slc_made_image *made = NULL;
     SluiceDemandSampler sampler = {.structSize = sizeof sampler};
     SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceDemandTextureCreateInfo), &info,
                                           pCreateInfo, &loader->vk.log);
+    if (result == SLUICE_SUCCESS && !info.pProducer && !info.image.source && !info.image.pfnOpen)
+        return SLUICE_ERROR_NULL_POINTER;
     if (result == SLUICE_SUCCESS && info.pSampler)
         result = slc_struct_read(SLC_STRUCT(SluiceDemandSampler), &sampler, info.pSampler,
                                  &loader->vk.log);
@@ -154,13 +203,20 @@ SluiceResult sluiceAddDemandTexture(SluiceDemandLoader *loader,
         return result;
     if (!sampler_is_valid(&sampler))
         return refuse_sampler(loader, __func__, &sampler);
-    uint32_t index;
-    result = slc_texture_take(loader, &index);
+    result = read_image(loader, __func__, &info, &made);
     if (result != SLUICE_SUCCESS)
         return result;
+    uint32_t index;
+    result = slc_texture_take(loader, &index);
+    if (result != SLUICE_SUCCESS) {
+        if (made)
+            slc_free(&loader->cb, made, 1, sizeof *made);
+        return result;
+    }
     struct slc_demand_texture *texture = &loader->textures[index];
     texture->kind = SLC_TEXTURE_IMAGE;
     texture->source = info.image;
+    texture->made = made;
     memcpy(texture->failure_color, info.failureColor, sizeof texture->failure_color);
     write_sampler(loader, index, &sampler);
     *pTextureId = slc_texture_id(loader, index);
@@ -298,6 +354,7 @@ static void retire(SluiceDemandLoader *loader, uint32_t index, const float color
         slc_grid_empty(loader, index);
     show_failed(loader, index, color);
     slc_pages_forget_requests(loader, index, 1);
+    free_made(loader, texture);
     texture->kind = SLC_TEXTURE_RETIRED;
     texture->launch = loader->launch;
     texture->next = SLC_NONE;
@@ -380,6 +437,7 @@ SluiceResult sluiceReplaceDemandImage(SluiceDemandLoader *loader, SluiceDemandTe
                                  textureId);
     if (texture->image != SLC_NONE)
         slc_image_detach(loader, loader->images[texture->image]);
+    free_made(loader, texture);
     texture->source = *pImage;
     texture->failed = texture->told = texture->told_tail = false;
     slc_texture_show_unknown(loader, index);
@@ -443,6 +501,8 @@ SluiceResult sluiceRetryDemandTexture(SluiceDemandLoader *loader, SluiceDemandTe
 
 void slc_demand_textures_finish(SluiceDemandLoader *loader)
 {
+    for (uint32_t i = 1; i < loader->texture_high && loader->textures; i++)
+        free_made(loader, &loader->textures[i]);
     slc_free(&loader->cb, loader->textures, loader->texture_capacity, sizeof *loader->textures);
     loader->textures = NULL;
 }

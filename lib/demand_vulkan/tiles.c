@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "demand/tail_place.h"
 #include "demand_vulkan/opening.h"
+#include "demand_vulkan/productions.h"
 
 #include <assert.h>
 
@@ -154,6 +155,10 @@ static enum slc_request_answer request_page(SluiceDemandLoader *loader,
         slc_page_share_adopt(pool, loader->page_user, key, loader->tiles.retaken);
     if (answer != SLC_REQUEST_LOAD)
         return answer;
+    if (image->made) {
+        slc_tile_production_begin(loader, image, request->page);
+        return SLC_REQUEST_LOAD;
+    }
     *result = begin_read(loader, image, request, ticket);
     if (*result == SLUICE_SUCCESS && key) {
         slc_page_share_announce(pool, loader->page_user, key);
@@ -184,7 +189,7 @@ static enum slc_request_answer request_tail(SluiceDemandLoader *loader,
     struct slc_tile_memory *tiles = &loader->tiles;
     struct slc_tail_cut cut = tail_cut(image);
     tiles->tail = &cut;
-    tiles->tail_format = image->info.format;
+    tiles->tail_format = (SluiceFormat)request->kind;
     slc_tiles_limit(loader);
     enum slc_request_answer answer = request_page(loader, image, request, NULL, ticket, result);
     tiles->tail = NULL;
@@ -202,7 +207,7 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     loader->tiles.awaits = false;
     if (image->state != SLC_IMAGE_OPEN)
         return SLC_REQUEST_RESIDENT; /* what it was asked for is gone */
-    if (!slc_job_is_ready(loader, SLC_JOB_TILE))
+    if (!slc_job_is_ready(loader, slc_tile_job_kind(image)))
         return SLC_REQUEST_POSTPONED;
     bool tail = page == image->tail_page;
     uint32_t index, level = find_level(image, page, &index);
@@ -213,9 +218,11 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
         .class_index = SLC_CLASS_TILES,
         .rank = (uint8_t)(tail ? 0 : slc_image_level_rank(image, level)),
         .pinned = tail,
-        .kind = image->info.format};
+        .kind = slc_page_format(image->info.format, image->made)};
     if (tail)
         return request_tail(loader, image, &request, ticket, result);
+    if (image->made)
+        return request_page(loader, image, &request, NULL, ticket, result);
     const SluiceImageRegion region = tile_region(image, level, index);
     const struct slc_tile_key key = slc_tile_key(image->source, &region);
     return request_page(loader, image, &request, &key, ticket, result);
@@ -229,16 +236,18 @@ static void log_failure(const SluiceDemandLoader *loader, struct slc_demand_imag
     struct slc_demand_texture *texture = &loader->textures[image->texture];
     char retrying[48];
     slc_retries_words(loader, retrying, sizeof retrying);
+    const char *done = image->made ? "made" : "read";
     uint32_t index, level = find_level(image, page, &index);
     if (level == image->regular_count && !texture->told)
         slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-                "%s: levels from %u on cannot be read, and so it cannot be sampled: %s; %s.", name,
-                level, sluiceGetResultName(result), retrying);
+                "%s: levels from %u on cannot be %s, and so it cannot be sampled: %s; %s.", name,
+                level, done, sluiceGetResultName(result), retrying);
     else if (level < image->regular_count && !image->told)
         slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
-                "%s: level %u, tile (%u, %u) cannot be read: %s. Showing a coarser level; %s.",
-                name, level, index % slc_image_level_width(image, level),
-                index / slc_image_level_width(image, level), sluiceGetResultName(result), retrying);
+                "%s: level %u, tile (%u, %u) cannot be %s: %s. Showing a coarser level; %s.", name,
+                level, index % slc_image_level_width(image, level),
+                index / slc_image_level_width(image, level), done, sluiceGetResultName(result),
+                retrying);
     if (level == image->regular_count)
         texture->told = texture->told_tail = true;
     else
@@ -246,7 +255,8 @@ static void log_failure(const SluiceDemandLoader *loader, struct slc_demand_imag
 }
 
 /* A texture whose tail comes is well, and so is an image with a tile that could not be read. */
-static void note_success(SluiceDemandLoader *loader, struct slc_demand_image *image, uint32_t page)
+void slc_tile_note_success(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                           uint32_t page)
 {
     struct slc_demand_texture *texture = &loader->textures[image->texture];
     bool tail = page == image->tail_page && image->state == SLC_IMAGE_OPEN;
@@ -254,7 +264,8 @@ static void note_success(SluiceDemandLoader *loader, struct slc_demand_image *im
     slc_retries_success(loader, &image->retry_group, page);
     bool well = (tail && texture->told) || (image->told && had_group && image->retry_group == 0);
     if (well)
-        slc_log(&loader->vk.log, SLUICE_LOG_INFO, "%s: can be read again.", slc_image_name(image));
+        slc_log(&loader->vk.log, SLUICE_LOG_INFO, "%s: can be %s again.", slc_image_name(image),
+                image->made ? "made" : "read");
     if (well)
         image->told = false;
     if (tail)
@@ -268,12 +279,19 @@ void slc_tile_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, S
     loader->counts.bytesRead += size;
     loader->reading_count--;
     if (result == SLUICE_SUCCESS && !job->stale) {
-        note_success(loader, image, job->page);
+        slc_tile_note_success(loader, image, job->page);
         slc_job_list_append(loader, &loader->arrived, job);
         return;
     }
+    slc_tile_fail(loader, job, result, !job->stale && !slc_result_may_pass(result));
+}
+
+void slc_tile_fail(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult result,
+                   bool failed)
+{
+    struct slc_demand_image *image = job->image;
     uint32_t page = job->page;
-    bool failed = !job->stale && !slc_result_may_pass(result), tail = page == image->tail_page;
+    bool tail = page == image->tail_page;
     bool refuse = failed && (tail || slc_retries_add(loader, &image->retry_group, page));
     slc_residency_failed(loader->residency, page, refuse);
     if (failed)

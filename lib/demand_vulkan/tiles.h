@@ -21,4 +21,11 @@ struct slc_tile_part {
 uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page, uint32_t place,
                         struct slc_tile_part parts[SLC_TILE_MAX_PARTS]);
 
+/** Ends a job of a tile or mip tail that is not there. `failed`: by its source or producer. */
+void slc_tile_fail(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult result,
+                   bool failed);
+/** A tile or mip tail of the image came. */
+void slc_tile_note_success(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                           uint32_t page);
+
 #endif /* SLC_DEMAND_VULKAN_TILES_H */
