@@ -27,7 +27,7 @@
 #define HARNESS_DEVICE_FUNCTIONS(X)                                                               \
     X(AllocateCommandBuffers) X(AllocateDescriptorSets) X(AllocateMemory)                         \
     X(BeginCommandBuffer) X(BindBufferMemory) X(BindImageMemory) X(CmdBeginRenderPass)            \
-    X(CmdBindDescriptorSets) X(CmdBindPipeline) X(CmdCopyBufferToImage) X(CmdCopyImageToBuffer) X(CmdDispatch)            \
+    X(CmdBindDescriptorSets) X(CmdBindPipeline) X(CmdCopyBufferToImage) X(CmdCopyImageToBuffer) X(CmdDispatch) X(CmdFillBuffer)           \
     X(CmdDraw) X(CmdEndRenderPass) X(CmdPipelineBarrier) X(CmdPushConstants) X(CreateBuffer)      \
     X(CreateCommandPool) X(CreateComputePipelines) X(CreateDescriptorPool)                        \
     X(CreateDescriptorSetLayout) X(CreateFramebuffer) X(CreateGraphicsPipelines)                  \

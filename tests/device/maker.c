@@ -108,9 +108,14 @@ static void dispatch(struct maker *m, const SluiceTileBatch *batch, const Sluice
         const SluiceTileTarget *t = &batch->pTiles[i];
         if (results[i] != SLUICE_SUCCESS)
             continue;
-        tiles[m->next_tile++] =
-            (struct MakerTile){t->region.mipLevel, t->region.x, t->region.y, t->region.width,
-                               t->region.height,   t->x,        t->y,        t->layer};
+        tiles[m->next_tile++] = (struct MakerTile){t->region.mipLevel + m->version * MAKER_VERSION,
+                                                   t->region.x,
+                                                   t->region.y,
+                                                   t->region.width,
+                                                   t->region.height,
+                                                   t->x,
+                                                   t->y,
+                                                   t->layer};
         width = t->region.width > width ? t->region.width : width;
         height = t->region.height > height ? t->region.height : height;
     }

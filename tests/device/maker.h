@@ -6,6 +6,7 @@
 
 #define MAKER_SETS 256u
 #define MAKER_TILES 4096u
+#define MAKER_VERSION 32u /* added to the level that texels are hashes of */
 
 struct maker {
     struct harness *h;
@@ -18,6 +19,7 @@ struct maker {
     VkDescriptorSet sets[MAKER_SETS]; ///< used in turn, as the places in the buffers
     uint32_t next_set, next_tile;
     uint32_t tile_count, batch_count;
+    uint32_t version; ///< texels are those of the pattern's level + version * MAKER_VERSION
     /** One in so many tiles is not ready, or fails; 0: none. */
     uint32_t unready_one_in, failing_one_in, turn;
 };
