@@ -368,6 +368,30 @@ SLUICE_API SluiceResult sluiceInvalidateDemandTexture(SluiceDemandLoader *loader
                                                       SluiceDemandTextureId textureId);
 
 /**
+ * Makes tiles of a produced texture again, because their content has changed.
+ *
+ * `pRegion` is a rectangle of a level, its array layer is ignored. NULL: all texels of level 0.
+ * `mipLevelCount` levels from that level on have changed: 1 for that level alone, UINT32_MAX for
+ * all coarser ones, which change where the rectangle covers them. Enlarge the rectangle if your
+ * filter is wider. A mip tail is made as a whole.
+ *
+ * The producer is asked for resident tiles by the next launches, a quarter of maxTilesInFlight at a
+ * time, and writes them in place. Launches see the old content until then, and the new one from the
+ * launch on whose commands write it. If the producer answers with an error or is not ready for
+ * timeoutFrames, a warning is logged and the old content stays until you call again or the tile is
+ * evicted. Tiles that are being made are made again. Evicted ones are made when next sampled.
+ * sluiceInvalidateDemandTexture drops the old content at once.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a texture without a producer or a
+ *         rectangle beyond its level; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Nothing has changed then.
+ */
+SLUICE_API SluiceResult sluiceRemakeDemandTiles(SluiceDemandLoader *loader,
+                                                SluiceDemandTextureId textureId,
+                                                const SluiceImageRegion *pRegion,
+                                                uint32_t mipLevelCount);
+
+/**
  * Allows failed work of a texture to be tried again at once: its opening, or tiles that could not
  * be read. Call it when you learn that its file can be read again.
  *
@@ -508,6 +532,18 @@ SLUICE_API SluiceResult sluiceRemoveDemandResource(SluiceDemandLoader *loader,
 SLUICE_API SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
                                                     SluiceDemandResourceId resourceId,
                                                     uint32_t firstPage, uint32_t count);
+
+/**
+ * Makes `count` byte pages of a resource with pfnRecordPages again, from `firstPage` on, because
+ * their content has changed. As sluiceRemakeDemandTiles: resident pages are written in place, and
+ * launches see the old content until then.
+ *
+ * Errors: as sluiceRemoveDemandResource; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, beyond
+ *         pageCount or without pfnRecordPages; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ */
+SLUICE_API SluiceResult sluiceRemakeDemandPages(SluiceDemandLoader *loader,
+                                                SluiceDemandResourceId resourceId,
+                                                uint32_t firstPage, uint32_t count);
 
 /**
  * Lists pages that launches missed, of a resource without pfnFill and pfnRead. Pages of earlier
@@ -808,6 +844,7 @@ typedef struct SluiceDemandStatistics {
     uint64_t tailPageCount;         ///< Pages of 64 KiB that resident mip tails share.
     uint64_t texturesForgotten;     ///< See forgetAfterLaunches. They count as opened again later.
     uint64_t producedCount;         ///< Tiles, mip tails and byte pages that commands made.
+    uint64_t remadeCount;           ///< Those of them that were resident before.
 } SluiceDemandStatistics;
 
 /**

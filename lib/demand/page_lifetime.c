@@ -97,3 +97,27 @@ void slc_residency_get_counts(const struct slc_demand_residency *residency, uint
     assert(class_index < residency->class_count);
     *counts = residency->classes[class_index].counts;
 }
+
+bool slc_residency_is_resident(const struct slc_demand_residency *residency, uint32_t page,
+                               uint32_t *place)
+{
+    uint32_t index = slc_page_nodes_find(&residency->nodes, page);
+    if (index == SLC_NO_NODE || residency->nodes.at[index].state != SLC_PAGE_RESIDENT)
+        return false;
+    *place = residency->nodes.at[index].place;
+    return true;
+}
+
+uint32_t slc_residency_known_count(const struct slc_demand_residency *residency)
+{
+    return residency->nodes.end;
+}
+
+void slc_residency_visit(const struct slc_demand_residency *residency,
+                         void (*visit)(void *user, uint32_t page), void *user)
+{
+    const struct slc_page_nodes *nodes = &residency->nodes;
+    for (uint32_t i = 0; i < nodes->end; i++)
+        if (slc_page_nodes_find(nodes, nodes->at[i].page) == i)
+            visit(user, nodes->at[i].page);
+}

@@ -103,6 +103,15 @@ void slc_residency_set_switches(struct slc_demand_residency *residency, bool no_
 
 /** Whether a request for the page would need a place. */
 bool slc_residency_is_absent(const struct slc_demand_residency *residency, uint32_t page);
+/** True if the page is resident. `*place`: SLC_NO_PLACE if it has none. */
+bool slc_residency_is_resident(const struct slc_demand_residency *residency, uint32_t page,
+                               uint32_t *place);
+/** Upper bound of the pages that slc_residency_visit visits. */
+uint32_t slc_residency_known_count(const struct slc_demand_residency *residency);
+/** Visits all pages that are loading, resident or refused, or were evicted and can be restored, in
+ *  any order. The visitor may forget the page. */
+void slc_residency_visit(const struct slc_demand_residency *residency,
+                         void (*visit)(void *user, uint32_t page), void *user);
 /** The last use of the page of the class that would be evicted first; UINT64_MAX if none can be. */
 uint64_t slc_residency_oldest_use(const struct slc_demand_residency *residency,
                                   uint32_t class_index);

@@ -77,6 +77,9 @@ void slc_image_forget(SluiceDemandLoader *loader, const struct slc_demand_image 
     for (uint32_t l = 0; l < image->regular_count; l++)
         slc_residency_forget(loader->residency, image->first_pages[l], level_tile_count(image, l));
     slc_residency_forget(loader->residency, image->tail_page, 1);
+    for (uint32_t l = 0; l < image->regular_count; l++)
+        slc_remakes_forget(loader, image->first_pages[l], level_tile_count(image, l));
+    slc_remakes_forget(loader, image->tail_page, 1);
 }
 
 void slc_image_forget_requests(SluiceDemandLoader *loader, const struct slc_demand_image *image)

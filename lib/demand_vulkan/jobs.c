@@ -199,7 +199,7 @@ struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kin
         return NULL;
     assert(job->kind == SLC_JOB_FREE);
     job->kind = kind; /* what the lock guards stays as it is: nothing is running */
-    job->stale = job->counted = false;
+    job->stale = job->counted = job->remakes = false;
     job->image = NULL;
     uint32_t index = slc_job_index(loader, job);
     struct slc_staging *staging = staging_of(loader, index);

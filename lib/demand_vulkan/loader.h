@@ -20,6 +20,7 @@
 #include "demand_vulkan/tile_memory.h"
 #include "vulkan/context.h"
 #include "vulkan/descriptors.h"
+#include "vulkan/remakes.h"
 #include "vulkan/staging.h"
 #include "vulkan/tile_producer.h"
 
@@ -104,6 +105,7 @@ struct slc_demand_image {
     float base_color[4];
     uint32_t retry_group; ///< tiles that could not be read; 0: none
     bool told;            ///< that tiles cannot be read; until one comes that could not
+    bool told_remake;     ///< that a tile could not be made again; until one is
 };
 
 /** Images by last use. */
@@ -142,6 +144,7 @@ struct slc_demand_resource {
     struct slc_missed_pages missed; ///< loading pages that the application answers
     uint32_t retry_group;           ///< pages that have no value; 0: none
     bool told;                      ///< logged the first of them
+    bool told_remake;               ///< as of images
 };
 
 /* A value that no new launch sees. */
@@ -160,6 +163,7 @@ struct slc_demand_job {
     uint32_t next;                  ///< free, arrived or copied: in the list
     bool stale;                     ///< what is read is not wanted any more
     bool counted;                   ///< in bytesUploaded
+    bool remakes;                   ///< its page is resident: commands write it again
     uint64_t launch;                ///< copied or produced: the one that does
     uint64_t asked;                 ///< launch that first asked its producer; 0: none
     SluiceResult answer;            ///< of its producer
@@ -325,6 +329,7 @@ struct SluiceDemandLoader {
     struct slc_job_list arrived, admitted, copied; ///< read; resident; on its way to its place
     struct slc_job_list unproduced, produced; ///< to be asked for; written by a launch under way
     struct slc_production *productions;       ///< owned; maxTilesInFlight
+    struct slc_remakes remakes;               ///< pages that are resident
     uint32_t free_tile_count, free_other_count, free_large_count, free_produce_count;
     uint32_t reading_count; ///< tiles and byte pages that are submitted and not yet back
     struct slc_job_batch batch;
@@ -596,6 +601,18 @@ void slc_preloads_continue(SluiceDemandLoader *loader);
 /** The image at the texture's index goes: pages that preloads know are not those of the next. */
 void slc_preloads_detach(SluiceDemandLoader *loader, uint32_t texture);
 void slc_preloads_finish(SluiceDemandLoader *loader);
+
+/* productions.c; see productions.h, too */
+/** Begins a tile or mip tail of `image` that got a place. A job must be ready. */
+void slc_tile_production_begin(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                               uint32_t page);
+/** Begins a byte page that got a place. A job must be ready. */
+void slc_byte_production_begin(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
+                               uint32_t page);
+
+/* remaking.c */
+/** These pages are not to be made again: they are gone, or will be made anew. */
+void slc_remakes_forget(SluiceDemandLoader *loader, uint32_t first, uint64_t count);
 
 /* relief.c */
 /** Empties images of pages whose memory the budget or other front ends need. Call it before a

@@ -17,18 +17,21 @@ SluiceResult slc_productions_init(SluiceDemandLoader *loader)
     loader->unproduced = loader->produced = (struct slc_job_list){SLC_NONE, SLC_NONE};
     loader->productions =
         slc_alloc(&loader->cb, loader->info.maxTilesInFlight, sizeof *loader->productions);
-    return loader->productions ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (!loader->productions)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    return slc_remakes_init(&loader->remakes, &loader->cb, loader->info.maxTilesInFlight);
 }
 
 void slc_productions_finish(SluiceDemandLoader *loader)
 {
+    slc_remakes_finish(&loader->remakes);
     slc_free(&loader->cb, loader->productions, loader->info.maxTilesInFlight,
              sizeof *loader->productions);
     loader->productions = NULL;
 }
 
-static void begin(SluiceDemandLoader *loader, struct slc_demand_image *image, uint32_t owner,
-                  uint32_t page)
+static struct slc_demand_job *begin(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                                    uint32_t owner, uint32_t page)
 {
     struct slc_demand_job *job =
         slc_job_take(loader, image ? SLC_JOB_PRODUCE : SLC_JOB_PRODUCE_BYTES);
@@ -39,6 +42,7 @@ static void begin(SluiceDemandLoader *loader, struct slc_demand_image *image, ui
     job->answer = SLUICE_SUCCESS;
     job->asked = 0;
     slc_job_list_append(loader, &loader->unproduced, job);
+    return job;
 }
 
 void slc_tile_production_begin(SluiceDemandLoader *loader, struct slc_demand_image *image,
@@ -55,9 +59,50 @@ void slc_byte_production_begin(SluiceDemandLoader *loader, struct slc_demand_res
     resource->job_count++;
 }
 
+void slc_remake_begin(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                      struct slc_demand_resource *resource, uint32_t page)
+{
+    begin(loader, image, image ? image->slot : resource->index, page)->remakes = true;
+    if (image)
+        image->job_count++;
+    else
+        resource->job_count++;
+}
+
+static void end(SluiceDemandLoader *loader, struct slc_demand_job *job)
+{
+    struct slc_demand_image *image = job->image;
+    uint32_t owner = job->owner;
+    slc_job_free(loader, job);
+    if (image)
+        slc_image_release(loader, image);
+    else
+        slc_resource_release(loader, owner);
+}
+
+/* The page stays as it is. Once for a texture or resource, until one can be made again. */
+static void fail_remake(SluiceDemandLoader *loader, struct slc_demand_job *job)
+{
+    struct slc_demand_resource *resource = job->image ? NULL : loader->resources[job->owner];
+    bool *told = resource ? &resource->told_remake : &job->image->told_remake;
+    slc_remakes_end(&loader->remakes, job->page);
+    loader->counts.failedCount++;
+    if (!*told)
+        slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
+                "%s: page %u cannot be made again: %s. Its old content stays.",
+                resource ? "resource" : slc_image_name(job->image), job->page,
+                sluiceGetResultName(job->answer));
+    *told = true;
+    end(loader, job);
+}
+
 /* Ends a job whose page is not to be shown. `failed`: by its producer. */
 static void fail(SluiceDemandLoader *loader, struct slc_demand_job *job, bool failed)
 {
+    if (job->remakes) {
+        (failed ? fail_remake : end)(loader, job);
+        return;
+    }
     loader->counts.failedCount += failed;
     if (job->image) {
         slc_tile_fail(loader, job, job->answer, failed);
@@ -72,18 +117,19 @@ static void fail(SluiceDemandLoader *loader, struct slc_demand_job *job, bool fa
 static void show(SluiceDemandLoader *loader, struct slc_demand_job *job)
 {
     struct slc_demand_image *image = job->image;
-    slc_residency_loaded(loader->residency, job->page, job->place);
     loader->counts.producedCount++;
+    if (job->remakes) {
+        *(image ? &image->told_remake : &loader->resources[job->owner]->told_remake) = false;
+        loader->counts.remadeCount++;
+        end(loader, job);
+        return;
+    }
+    slc_residency_loaded(loader->residency, job->page, job->place);
     if (image)
         slc_tile_note_success(loader, image, job->page);
     else
         slc_resource_note_success(loader, loader->resources[job->owner], job->page);
-    uint32_t owner = job->owner;
-    slc_job_free(loader, job);
-    if (image)
-        slc_image_release(loader, image);
-    else
-        slc_resource_release(loader, owner);
+    end(loader, job);
 }
 
 void slc_productions_collect(SluiceDemandLoader *loader)
@@ -100,7 +146,7 @@ void slc_productions_collect(SluiceDemandLoader *loader)
 
 bool slc_productions_are_due(const SluiceDemandLoader *loader)
 {
-    return loader->unproduced.first != SLC_NONE;
+    return loader->unproduced.first != SLC_NONE || loader->remakes.count > 0;
 }
 
 static bool is_tail(const struct slc_demand_job *job)
@@ -144,12 +190,14 @@ static bool answered(SluiceDemandLoader *loader, struct slc_demand_job *job, Slu
     switch (
         slc_producer_effect(job->answer, &job->asked, loader->launch, timeout, can_wait(loader))) {
     case SLC_PRODUCER_WROTE:
+        if (job->remakes)
+            slc_remakes_end(&loader->remakes, job->page);
         slc_job_list_append(loader, &loader->produced, job);
         return !job->stale;
     case SLC_PRODUCER_WAITS: slc_job_list_append(loader, &loader->unproduced, job); return false;
     case SLC_PRODUCER_FAILED: break;
     }
-    if (is_tail(job))
+    if (is_tail(job) && !job->remakes)
         slc_job_list_append(loader, &loader->produced, job);
     else
         fail(loader, job, true);
@@ -239,13 +287,32 @@ static uint32_t ask_for_bytes(SluiceDemandLoader *loader, struct slc_producer_ca
     return written;
 }
 
+/* False: the page that was to be made again is not resident any more. If it was evicted, it must
+ * not come back as it was. If it is being made anew, that is enough. */
+static bool is_there(SluiceDemandLoader *loader, struct slc_demand_job *job)
+{
+    if (!job->remakes || slc_residency_is_resident(loader->residency, job->page, &job->place))
+        return true;
+    if (slc_residency_is_absent(loader->residency, job->page))
+        slc_residency_forget(loader->residency, job->page, 1);
+    return false;
+}
+
+/* Ends a job that its producer was not asked for, because its owner is gone. */
+static void drop(SluiceDemandLoader *loader, struct slc_demand_job *job)
+{
+    if (job->remakes)
+        slc_remakes_end(&loader->remakes, job->page);
+    fail(loader, job, false);
+}
+
 /* Takes all jobs that wait into `productions`, sorted. Ends those whose owner is gone. */
 static uint32_t take(SluiceDemandLoader *loader)
 {
     uint32_t count = 0;
     for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->unproduced));) {
-        if (job->stale)
-            fail(loader, job, false);
+        if (job->stale || !is_there(loader, job))
+            drop(loader, job);
         else
             loader->productions[count++] =
                 (struct slc_production){key_of(loader, job), job->page, slc_job_index(loader, job)};
@@ -259,11 +326,12 @@ uint32_t slc_productions_ask(SluiceDemandLoader *loader, VkCommandBuffer command
 {
     struct slc_producer_calls calls = {.vk = &loader->vk, .commands = commands};
     const struct slc_production *list = loader->productions;
+    slc_remakes_start(loader);
     uint32_t count = take(loader), written = 0;
     for (uint32_t i = 0, next; i < count; i = next) {
         next = i + 1;
         if (job_of(loader, i)->stale) { /* by a callback of this launch */
-            fail(loader, job_of(loader, i), false);
+            drop(loader, job_of(loader, i));
             continue;
         }
         while (next < count && next - i < SLC_PRODUCER_BATCH && list[next].key == list[i].key)
@@ -278,8 +346,14 @@ uint32_t slc_productions_ask(SluiceDemandLoader *loader, VkCommandBuffer command
 void slc_productions_ask_again(SluiceDemandLoader *loader, uint64_t launch)
 {
     struct slc_job_list kept = {SLC_NONE, SLC_NONE}, again = kept;
-    for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->produced));)
-        slc_job_list_append(loader, job->launch < launch ? &kept : &again, job);
+    for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->produced));) {
+        bool stays = job->launch < launch;
+        if (!stays && job->remakes &&
+            (job->stale || !slc_remakes_retake(&loader->remakes, job->page)))
+            end(loader, job); /* it is gone, or is to be made again anyway */
+        else
+            slc_job_list_append(loader, stays ? &kept : &again, job);
+    }
     for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->unproduced));)
         slc_job_list_append(loader, &again, job);
     loader->produced = kept;

@@ -13,12 +13,9 @@
 SluiceResult slc_productions_init(SluiceDemandLoader *loader);
 void slc_productions_finish(SluiceDemandLoader *loader);
 
-/** Begins a tile or mip tail of `image` that got a place. A job must be ready. */
-void slc_tile_production_begin(SluiceDemandLoader *loader, struct slc_demand_image *image,
-                               uint32_t page);
-/** Begins a byte page that got a place. A job must be ready. */
-void slc_byte_production_begin(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
-                               uint32_t page);
+/** A job that is ready makes a resident page again. Its key is taken from `remakes`. */
+void slc_remake_begin(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                      struct slc_demand_resource *resource, uint32_t page);
 
 /** Pages that launches up to `processed` wrote are resident. Before changes are applied. */
 void slc_productions_collect(SluiceDemandLoader *loader);
@@ -28,5 +25,9 @@ bool slc_productions_are_due(const SluiceDemandLoader *loader);
 uint32_t slc_productions_ask(SluiceDemandLoader *loader, VkCommandBuffer commands);
 /** Launches from this one on never run: asks again for what they wrote. */
 void slc_productions_ask_again(SluiceDemandLoader *loader, uint64_t launch);
+
+/* remaking.c */
+/** Takes pages that are to be made again into jobs, as far as these may have them. */
+void slc_remakes_start(SluiceDemandLoader *loader);
 
 #endif /* SLC_DEMAND_VULKAN_PRODUCTIONS_H */

@@ -5,7 +5,6 @@
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
-#include "demand_vulkan/productions.h"
 #include "demand_vulkan/refused_arguments.h"
 #include "vulkan/create_checks.h"
 
@@ -140,7 +139,7 @@ static SluiceResult create(SluiceDemandLoader *loader, const SluiceDemandResourc
     new->state = SLC_RESOURCE_LIVE;
     new->generation++;
     new->info = *info;
-    new->told = false;
+    new->told = new->told_remake = false;
     slc_byte_pages_describe(loader, new);
     if (new->stride)
         slc_byte_pages_add_resource(loader);
@@ -376,6 +375,7 @@ void slc_resource_drop_jobs(SluiceDemandLoader *loader, const struct slc_demand_
     slc_jobs_drop(loader, resource->job_kind, resource->index, first, count);
     if (resource->produced)
         slc_jobs_drop(loader, SLC_JOB_PRODUCE_BYTES, resource->index, first, count);
+    slc_remakes_forget(loader, first, count);
 }
 
 /* What they are, and what is being found out about them. */

@@ -4,15 +4,12 @@
 #include "base/log.h"
 #include "demand/tail_place.h"
 #include "demand_vulkan/opening.h"
-#include "demand_vulkan/productions.h"
 
 #include <assert.h>
 
 #define STAGING_ALIGNMENT 16u /* texels of any format and blocks begin at multiples of this */
 
-/* The level whose tile it is, `*index` of it row by row; regular_count for the tail, and for ids
- * that are no tile's. */
-static uint32_t find_level(const struct slc_demand_image *image, uint32_t page, uint32_t *index)
+uint32_t slc_tile_level(const struct slc_demand_image *image, uint32_t page, uint32_t *index)
 {
     for (uint32_t l = 0; l < image->regular_count; l++) {
         uint32_t count = slc_image_level_width(image, l) * slc_image_level_height(image, l);
@@ -68,7 +65,7 @@ static SluiceImageRegion tile_region(const struct slc_demand_image *image, uint3
 uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page, uint32_t place,
                         struct slc_tile_part parts[SLC_TILE_MAX_PARTS])
 {
-    uint32_t index, level = find_level(image, page, &index);
+    uint32_t index, level = slc_tile_level(image, page, &index);
     if (level == image->regular_count)
         return write_tail(image, place, parts);
     parts[0] = (struct slc_tile_part){.region = tile_region(image, level, index)};
@@ -210,7 +207,7 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     if (!slc_job_is_ready(loader, slc_tile_job_kind(image)))
         return SLC_REQUEST_POSTPONED;
     bool tail = page == image->tail_page;
-    uint32_t index, level = find_level(image, page, &index);
+    uint32_t index, level = slc_tile_level(image, page, &index);
     if (level == image->regular_count && !tail)
         return SLC_REQUEST_RESIDENT; /* rounded up to whole blocks of ids */
     const struct slc_page_request request = {
@@ -237,7 +234,7 @@ static void log_failure(const SluiceDemandLoader *loader, struct slc_demand_imag
     char retrying[48];
     slc_retries_words(loader, retrying, sizeof retrying);
     const char *done = image->made ? "made" : "read";
-    uint32_t index, level = find_level(image, page, &index);
+    uint32_t index, level = slc_tile_level(image, page, &index);
     if (level == image->regular_count && !texture->told)
         slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
                 "%s: levels from %u on cannot be %s, and so it cannot be sampled: %s; %s.", name,

@@ -21,6 +21,9 @@ struct slc_tile_part {
 uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page, uint32_t place,
                         struct slc_tile_part parts[SLC_TILE_MAX_PARTS]);
 
+/** Returns the level whose tile the page is, `*index` of it row by row; regular_count for the tail,
+ *  and for ids that are no tile's. */
+uint32_t slc_tile_level(const struct slc_demand_image *image, uint32_t page, uint32_t *index);
 /** Ends a job of a tile or mip tail that is not there. `failed`: by its source or producer. */
 void slc_tile_fail(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult result,
                    bool failed);

@@ -49,6 +49,8 @@ sluiceRemoveDemandTexture(f->loader, f->id)
 sluiceReplaceDemandImage(f->loader, f->id, &f->demand_info.image)
 sluiceInvalidateDemandTexture(f->loader, f->id)
 sluiceRetryDemandTexture(f->loader, f->id)
+sluiceRemakeDemandTiles(f->loader, f->made, ?NULL, ?1)
+sluiceRemakeDemandPages(f->loader, f->made_pages, 0, 1)
 sluicePreloadDemandTexture(f->loader, f->id, 0, ?&f->out.ticket)
 sluiceAddDemandResource(f->loader, &f->resource_info, &f->out.resource, &f->out.page)
 sluiceRemoveDemandResource(f->loader, f->resource)
@@ -99,7 +101,8 @@ struct fixture {
     SluiceDemandTextureId id;
     SluiceDemandGridCreateInfo grid_info;
     SluiceDemandResourceCreateInfo resource_info;
-    SluiceDemandResourceId resource, bytes, proxies;
+    SluiceDemandResourceId resource, bytes, proxies, made_pages;
+    SluiceDemandTextureId made;
     SluiceProxySet *set;
     SluiceDemandLaunch launch;
     struct {
@@ -172,6 +175,37 @@ static void init_streamer(struct fixture *f)
     CHECK_OK(sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->texture));
 }
 
+static SluiceResult record_tiles(void *user, const SluiceTileBatch *batch, SluiceResult *answers)
+{
+    (void)user, (void)batch, (void)answers;
+    return SLUICE_NOT_READY;
+}
+
+static SluiceResult record_pages(void *user, const SluiceBytePageBatch *batch,
+                                 SluiceResult *answers)
+{
+    (void)user, (void)batch, (void)answers;
+    return SLUICE_NOT_READY;
+}
+
+/* A texture and byte pages that commands write. */
+static void add_made(struct fixture *f)
+{
+    const SluiceImageInfo image = {.structSize = sizeof image,
+                                   .width = 64,
+                                   .height = 64,
+                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
+    const SluiceTileProducer producer = {
+        .structSize = sizeof producer, .pImage = &image, .pfnRecordTiles = record_tiles};
+    const SluiceDemandTextureCreateInfo texture = {.structSize = sizeof texture,
+                                                   .pProducer = &producer};
+    const SluiceDemandResourceCreateInfo pages = {
+        .structSize = sizeof pages, .pageCount = 4, .pageSize = 4, .pfnRecordPages = record_pages};
+    uint32_t first;
+    CHECK_OK(sluiceAddDemandTexture(f->loader, &texture, &f->made));
+    CHECK_OK(sluiceAddDemandResource(f->loader, &pages, &f->made_pages, &first));
+}
+
 static void init_loader(struct fixture *f)
 {
     f->loader_info =
@@ -203,6 +237,7 @@ static void init_loader(struct fixture *f)
     const SluiceDemandResourceCreateInfo bytes = {
         .structSize = sizeof bytes, .pageCount = 4, .pageSize = 4};
     CHECK_OK(sluiceAddDemandResource(f->loader, &bytes, &f->bytes, &first));
+    add_made(f);
     const SluiceProxySetCreateInfo set = {.structSize = sizeof set, .maxProxyCount = 4};
     const SluiceProxyBox box = {{0, 0, 0}, {1, 1, 1}};
     SluiceProxyId proxy;
