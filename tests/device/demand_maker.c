@@ -52,7 +52,7 @@ void demand_maker_add(struct demand_maker *m)
                                           .failureColor = {1, 0, 1, 1},
                                           .pProducer = &producer};
     uint32_t last = slc_mip_count(slc_max_u32(m->info.width, m->info.height)) - 1;
-    pattern_texel(PATTERN_HASH, last, 0, 0, info.lastLevelColor);
+    pattern_texel(PATTERN_HASH, last + m->maker.version * MAKER_VERSION, 0, 0, info.lastLevelColor);
     CHECK_OK(sluiceAddDemandTexture(m->r->loader, &info, &m->id));
 }
 

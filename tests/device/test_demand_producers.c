@@ -24,6 +24,8 @@ static void check_equal_to_twin(uint32_t abandon_one_in, uint32_t tiles_in_fligh
     struct demand_maker m;
     open_loader(&r, 0, tiles_in_flight);
     demand_maker_init(&m, &r, WIDTH, HEIGHT);
+    /* Memory may hold the texels of the test before. */
+    m.maker.version = 1 + tiles_in_flight + abandon_one_in;
     demand_maker_add(&m);
     demand_maker_sample(&m, STEP);
     h.abandon_one_in = abandon_one_in;
@@ -50,7 +52,7 @@ static void texels_are_those_of_the_host_twin(void **state)
 static void abandoned_launches_lose_no_tile(void **state)
 {
     (void)state;
-    check_equal_to_twin(2, 0);
+    check_equal_to_twin(2, 8); /* in many launches */
 }
 
 static void few_jobs_make_all_tiles_in_more_launches(void **state)
