@@ -1,5 +1,5 @@
 /* Lines that docs/producers.md shows. */
-#include <sluice/vulkan.h>
+#include <sluice/demand.h>
 
 struct shader_tile {
     uint32_t level, x, y, width, height, target_x, target_y, layer;
@@ -17,6 +17,17 @@ struct generator {
 SluiceResult recordTiles(void *pUserData, const SluiceTileBatch *pBatch, SluiceResult *pResults);
 SluiceResult addGenerated(SluiceVulkanStreamer *streamer, struct generator *generator,
                           SluiceVulkanTexture *pTexture);
+
+SluiceResult addLoaded(SluiceDemandLoader *loader, SluiceTileProducer producer,
+                       SluiceDemandTextureId *pTextureId);
+
+SluiceResult addLoaded(SluiceDemandLoader *loader, SluiceTileProducer producer,
+                       SluiceDemandTextureId *pTextureId)
+{
+    SluiceDemandTextureCreateInfo info = {
+        .structSize = sizeof info, .pProducer = &producer, .lastLevelColor = {0.3f, 0.4f, 0.2f, 1}};
+    return sluiceAddDemandTexture(loader, &info, pTextureId);
+}
 
 SluiceResult recordTiles(void *pUserData, const SluiceTileBatch *pBatch, SluiceResult *pResults)
 {
