@@ -122,7 +122,8 @@ static void a_new_streamer_takes_little_and_counts_all_of_it(void **state)
         struct stage *s = stage_init(modes[i]);
         SluiceVulkanStreamerStatistics stats = statistics(s);
         assert_true(stats.hostVisibleMemorySize < 8 * MIB);
-        assert_true(stats.deviceMemorySize - stats.tileMemorySize < 21 * MIB);
+        /* 6 MiB of it are the six layers of the image for empty elements. */
+        assert_true(stats.deviceMemorySize - stats.tileMemorySize < 24 * MIB);
         assert_true(stats.tileMemorySize < MIB);
         stage_finish(s);
     }
