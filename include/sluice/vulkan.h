@@ -190,6 +190,23 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * heap, too, so memory for two tiles. Default: false, these textures are refused.
      */
     bool pagedTextures;
+    /**
+     * Forget textures that nothing samples, when memory is short: the one that was sampled longest
+     * ago first. Image, views, tiles and mip tail go. Shaders then show SLUICE_FALLBACK_COLOR, and
+     * feedback brings the texture back.
+     *
+     * Textures have no image before they are sampled for the first time, so more can be added than
+     * fit into memory. Requires textureArray, whose elements follow: SluiceVulkanTexture.image and
+     * imageView are VK_NULL_HANDLE. Turns packedLevelsOnDemand on. Default: false.
+     *
+     * Arrays, cube maps, textures with a producer or an integer format, and textures of sets stay.
+     */
+    bool forgetTextures;
+    /**
+     * Forget textures that no map has requested for so many frames, also while there is memory.
+     * Requires forgetTextures. Default: 0, only when memory is short.
+     */
+    uint32_t forgetAfterFrames;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
@@ -721,7 +738,9 @@ typedef struct SluiceVulkanStreamerStatistics {
     /** Paged: tiles mapped without a read, because another front end of the context had them or an
      *  equal tile was resident. */
     uint64_t tilesShared;
-    uint64_t tilesProduced; ///< Tiles that producers wrote, without those of mip tails.
+    uint64_t tilesProduced;      ///< Tiles that producers wrote, without those of mip tails.
+    uint64_t texturesForgotten;  ///< Times that a texture was forgotten; see forgetTextures.
+    uint32_t absentTextureCount; ///< Textures without an image: forgotten, or not sampled yet.
 } SluiceVulkanStreamerStatistics;
 
 /**

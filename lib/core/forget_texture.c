@@ -1,4 +1,5 @@
-/* Forgetting textures of which nothing is wanted. */
+#include "core/forget_texture.h"
+
 #include "core/clock.h"
 #include "core/history.h"
 #include "core/lookup.h"
@@ -58,4 +59,10 @@ SluiceResult sluiceForgetStreamedTexture(SluiceStreamedTextureManager *manager,
                             .result = forget_texture(manager, textureId, retireValue)};
     slc_notify(manager, &call);
     return call.result;
+}
+
+bool slc_manager_wants_texture(const SluiceStreamedTextureManager *manager, SluiceTextureId id)
+{
+    struct slc_managed_texture *t;
+    return slc_find_texture(manager, id, &t) == SLUICE_SUCCESS && t->held_regions > 0;
 }

@@ -1,5 +1,6 @@
 /* Which textures' feedback is resolved in a frame, and what the manager gets of it. */
 #include "vulkan/streamer.h"
+#include "vulkan/texture_forgetting.h"
 
 #include "base/checked.h"
 #include "base/log.h"
@@ -24,6 +25,7 @@ static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const 
         return slc_streamer_check(s, result, "sluiceUpdateWithSamplerFeedback");
     s->manager_time = time_stamp;
     s->counts.feedbackMaps++;
+    slc_forgetting_used(s, s->by_manager_index[(uint32_t)id]);
     return SLUICE_SUCCESS;
 }
 

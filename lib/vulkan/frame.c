@@ -11,6 +11,7 @@
 #include "vulkan/load_starts.h"
 #include "vulkan/residencies.h"
 #include "vulkan/shrink.h"
+#include "vulkan/texture_forgetting.h"
 #include "vulkan/tile_upload.h"
 
 #define MAX_BARRIERS 64u
@@ -34,6 +35,7 @@ static SluiceResult retire(SluiceVulkanStreamer *s)
         return result;
     slc_loads_recycle(s);
     uint64_t limit = s->residency->interface->retire_limit(s->residency, s->completed_frame);
+    limit = slc_forgetting_retire(s, limit);
     limit = slc_textures_retire(s, limit);
     if (limit < s->retired)
         return SLUICE_SUCCESS;
@@ -92,6 +94,8 @@ static SluiceResult decide(SluiceVulkanStreamer *s)
     if (result >= 0)
         result = slc_loads_make_room(s);
     if (result >= 0)
+        result = slc_forgetting_step(s);
+    if (result >= 0)
         result = slc_shrink_step(s);
     if (result >= 0)
         result = unmap_tiles(s);
@@ -113,9 +117,11 @@ static void barrier_before(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     uint32_t done = 0;
     do {
         uint32_t count = 0;
-        for (; count < MAX_BARRIERS && done < s->new_texture_count; count++, done++) {
+        for (; count < MAX_BARRIERS && done < s->new_texture_count; done++) {
             const struct slc_texture *texture = &s->textures[s->new_textures[done]];
-            images[count] = (VkImageMemoryBarrier){
+            if (texture->presence != SLC_PRESENT)
+                continue;
+            images[count++] = (VkImageMemoryBarrier){
                 .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
                 .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_READ_BIT,
                 .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,

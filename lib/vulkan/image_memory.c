@@ -24,8 +24,10 @@ static SluiceResult allocate(const struct slc_image_memory *pool, const struct s
                                                .purpose = pool->purpose,
                                                .images = true,
                                                .name = "images"};
-    return slc_vk_result(vk, slc_memory_allocate(vk, &request, memory),
-                         "vkAllocateMemory for an image");
+    VkResult result = slc_memory_allocate(vk, &request, memory);
+    if (pool->quiet && result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
+        return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
+    return slc_vk_result(vk, result, "vkAllocateMemory for an image");
 }
 
 static SluiceResult grow(struct slc_image_memory *pool, const SluiceAllocationCallbacks *cb)

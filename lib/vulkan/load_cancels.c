@@ -6,11 +6,30 @@
 
 #define BATCH 64u
 
+static void leave_packed_queue(SluiceVulkanStreamer *s, uint32_t index)
+{
+    for (uint32_t i = 0; i < s->packed_queue_count;) {
+        if (s->packed_queue[i] == index)
+            slc_packed_queue_remove(s, i);
+        else
+            i++;
+    }
+}
+
+/* A forgotten texture need not come back. */
+static void wait_no_more(SluiceVulkanStreamer *s, uint32_t index)
+{
+    leave_packed_queue(s, index);
+    s->textures[index].packed_state = SLC_PACKED_COLLECTING;
+}
+
 /* Given back while others are not even handed out; later it goes on and ends on standby. */
 static SluiceResult cancel_packed_tile(SluiceVulkanStreamer *s, uint32_t index,
                                        const SluiceTile *tile)
 {
     struct slc_texture *texture = &s->textures[index];
+    if (texture->packed_state == SLC_PACKED_READY && texture->presence != SLC_PRESENT)
+        wait_no_more(s, index);
     if (texture->packed_state != SLC_PACKED_COLLECTING)
         return SLUICE_SUCCESS;
     uint32_t at = 0;
@@ -66,12 +85,7 @@ void slc_loads_drop(SluiceVulkanStreamer *s, uint32_t index)
     if (residency->interface->leave_source)
         residency->interface->leave_source(residency, index);
     struct slc_texture *texture = &s->textures[index];
-    for (uint32_t i = 0; i < s->packed_queue_count;) {
-        if (s->packed_queue[i] == index)
-            slc_packed_queue_remove(s, i);
-        else
-            i++;
-    }
+    leave_packed_queue(s, index);
     while (texture->packed_first_unit != SLC_NONE) {
         uint32_t unit = texture->packed_first_unit;
         texture->packed_first_unit = s->units[unit].next;

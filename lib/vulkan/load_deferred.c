@@ -67,7 +67,10 @@ static uint32_t count_without_page(SluiceVulkanStreamer *s)
     uint32_t count = 0;
     slc_pages_left_forget(s);
     for (uint32_t i = 0; i < s->deferred.count; i++) {
-        uint32_t texture = s->deferred.tiles[i].texture, left = slc_pages_left(s, texture);
+        uint32_t texture = s->deferred.tiles[i].texture;
+        if (s->textures[texture].presence != SLC_PRESENT)
+            continue;
+        uint32_t left = slc_pages_left(s, texture);
         count += left == 0;
         if (left > 0 && left != SLC_NONE)
             s->pages_left[slc_texture_page_format(&s->textures[texture])]--;

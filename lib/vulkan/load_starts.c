@@ -7,6 +7,7 @@
 #include "vulkan/load_reads.h"
 #include "vulkan/load_units.h"
 #include "vulkan/read_batch.h"
+#include "vulkan/texture_forgetting.h"
 
 /* Before anything is read for it: the tile cannot ever be bound. */
 static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
@@ -52,6 +53,8 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, struct slc_read_batch *b
     const struct slc_residency_interface *interface = residency->interface;
     SluiceResult result = SLUICE_SUCCESS;
     bool produced = s->textures[texture].producer.pfn;
+    if (s->textures[texture].presence != SLC_PRESENT) /* its mip tail brings it back */
+        return slc_load_defer(s, texture, tile);
     if (!produced && share_tile(s, texture, tile, &result) != SLC_SHARE_NONE)
         return result;
     if (interface->revive && interface->revive(residency, texture, tile)) {
@@ -99,6 +102,10 @@ static SluiceResult start_deferred(SluiceVulkanStreamer *s, struct slc_read_batc
         for (uint32_t i = 0;
              i < s->deferred.count && left > 0 && s->free_unit_count > 0 && result >= 0;) {
             struct slc_deferred_tile deferred = s->deferred.tiles[i];
+            if (s->textures[deferred.texture].presence != SLC_PRESENT) {
+                i++;
+                continue;
+            }
             bool can_start = deferred.tile.mipLevel == level &&
                              slc_pages_left(s, deferred.texture) > 0 &&
                              units_are_ready(s, deferred.texture, 1);
@@ -182,7 +189,7 @@ static SluiceResult start_packed_queue(SluiceVulkanStreamer *s, bool *waits)
     for (uint32_t i = 0; i < s->packed_queue_count;) {
         uint32_t index = s->packed_queue[i];
         struct slc_texture *texture = &s->textures[index];
-        if (texture->packed_state != SLC_PACKED_READY) {
+        if (texture->packed_state != SLC_PACKED_READY || !slc_forgetting_wake(s, index)) {
             i++;
             continue;
         }

@@ -46,6 +46,7 @@ static struct slc_residency_create_info create_info(const SluiceVulkanStreamer *
             s->info.maxTouchedTiles ? s->info.maxTouchedTiles : s->caps.public.maxTouchedTiles,
         .max_region_count = s->info.maxRegionCount,
         .kept_heap_size = s->context->shared.min_tile_memory,
+        .may_lack_memory = s->info.forgetTextures,
         .pages = s->pages,
         .page_user = s->page_user,
     };

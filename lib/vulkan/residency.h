@@ -184,6 +184,7 @@ struct slc_residency_create_info {
     uint64_t kept_heap_size;     ///< bytes of heaps that are kept while empty
     bool whole;                  ///< dense: textures have packed levels alone
     bool packed_outside;         ///< paged: packed tiles take no slots
+    bool may_lack_memory;        ///< for an image: that is no news
     struct slc_page_pool *pages; ///< borrowed
     uint32_t page_user;          ///< of these
 };

@@ -192,6 +192,7 @@ SluiceResult slc_create_dense_residency(const struct slc_residency_create_info *
     d->vk = info->vk;
     d->caps = info->caps;
     d->cb = info->cb;
+    d->memory.quiet = info->may_lack_memory;
     d->whole = info->whole;
     d->max_image_count = info->max_image_count;
     d->images = slc_calloc(d->cb, d->max_image_count, sizeof *d->images);

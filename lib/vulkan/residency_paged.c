@@ -566,6 +566,7 @@ SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *
     p->vk = info->vk;
     p->caps = info->caps;
     p->cb = info->cb;
+    p->memory.quiet = info->may_lack_memory;
     p->pool = info->pages;
     p->user = info->page_user;
     p->max_image_count = info->max_image_count;

@@ -36,6 +36,7 @@ static SluiceResult allocate_heap(void *user, uint64_t size, uint32_t *heap_id)
     SluiceResult result = s->residency->interface->allocate_heap(s->residency, size, heap_id);
     if (result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY)
         tell_of_refused_heap(s, size);
+    s->forgetting.heap_refused |= result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
     return result;
 }
 
@@ -84,6 +85,8 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
     info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
     set_default(&info->feedbackReadbackSize, slc_min_u32(info->maxRegionCount, 1u << 22));
     SluiceResult result = check_limits(log, info);
+    if (result == SLUICE_SUCCESS)
+        result = slc_forgetting_fill_in(info, log);
     return result == SLUICE_SUCCESS ? slc_fill_in_times(info, log) : result;
 }
 
@@ -347,6 +350,8 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
     s->time_check.on = pCreateInfo->ticksPerSecond == 0;
     result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
+        result = slc_forgetting_init(s);
+    if (result == SLUICE_SUCCESS)
         result = create_device_parts(s);
     if (result != SLUICE_SUCCESS) {
         sluiceDestroyVulkanStreamer(s);
@@ -361,6 +366,7 @@ static void free_arrays(SluiceVulkanStreamer *s)
 {
     const SluiceAllocationCallbacks *cb = &s->cb;
     uint32_t textures = s->info.maxTextureCount, tiles = s->info.tilesPerFrame;
+    slc_forgetting_finish(s);
     slc_region_arena_finish(&s->regions, cb);
     slc_free(cb, s->zero_map, s->info.maxRegionCount, 1);
     slc_free(cb, s->min_mip_staging, s->info.framesInFlight, sizeof *s->min_mip_staging);
@@ -515,6 +521,7 @@ SluiceResult sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *strea
     statistics.pageChunkCount = counters->page_chunks;
     statistics.pageChunkShortages = counters->page_chunk_shortages;
     statistics.fadingTextures = streamer->fade_count;
+    statistics.absentTextureCount = streamer->forgetting.absent_count;
     uint32_t uploaded = 0;
     for (uint32_t unit = streamer->uploaded.first; unit != SLC_NONE;
          unit = streamer->units[unit].next)

@@ -36,6 +36,9 @@ enum slc_texture_state {
     SLC_TEXTURE_REMOVED, ///< waits for frames, reads and bindings that still name it
 };
 
+/** See texture_forgetting.h. */
+enum slc_presence { SLC_PRESENT = 0, SLC_LEAVING, SLC_FORGOTTEN };
+
 /** The packed levels are read, bound, copied and published as one. */
 enum slc_packed_state {
     SLC_PACKED_COLLECTING = 0, ///< until every packed tile that is not mapped was handed out
@@ -73,11 +76,17 @@ struct slc_texture {
     bool feedback_whole;              ///< the next resolve must bring the whole map
     uint32_t primary_place;           ///< in primaries; SLC_NONE for followers
     uint64_t added_frame;    ///< the last one begun before; its feedback and table entry come later
-    uint64_t recorded_frame; ///< that recorded its layout and table entry; 0: none did
+    uint64_t recorded_frame; ///< that recorded its layout and table entry; 0: in new_textures
+    uint64_t cleared_frame;  ///< that cleared its feedback; 0: none did
     uint64_t shown_frame;    ///< the last that recorded any of its MinMip map
     bool whole_stale;        ///< the device may have another whole_shown
-    uint64_t removed_frame;
-    uint32_t unit_count; ///< staging slots that name it
+    uint64_t removed_frame;  ///< also of one that is LEAVING: it is not shown from here on
+    enum slc_presence presence;
+    bool forgettable;
+    bool in_order; ///< of use: PRESENT and forgettable
+    uint64_t used_frame;
+    uint32_t used_before, used_after; ///< in that order; SLC_NONE
+    uint32_t unit_count;              ///< staging slots that name it
 
     struct slc_packed_units packed;
     SluiceTile *packed_tiles;  ///< owned; desc.packedTileCount, of which packed_collected
@@ -129,6 +138,18 @@ struct slc_shrink {
     uint64_t lacking_until; ///< before this frame tiles count as waiting for pages
 };
 
+/** See texture_forgetting.h. */
+struct slc_forgetting {
+    uint32_t first, last, count; ///< textures in the order of use, the one used last at the end
+    uint32_t *leaving;           ///< owned; maxTextureCount; textures that are LEAVING
+    uint32_t leaving_count;
+    uint32_t absent_count;  ///< textures that are not PRESENT
+    uint64_t refused_frame; ///< the last one in which an image had no memory
+    uint32_t hunger;        ///< frames in a row in which an image had no memory
+    bool heap_refused;      ///< since the last step
+    bool told;              ///< logged that none can be forgotten
+};
+
 struct SluiceVulkanStreamer {
     SluiceAllocationCallbacks cb;
     SluiceVulkanStreamerCreateInfo info; ///< defaults filled in
@@ -138,6 +159,7 @@ struct SluiceVulkanStreamer {
     struct slc_memory_client memory;            ///< of vk
     struct slc_memory_pressure memory_pressure; ///< as of the last begin
     struct slc_shrink shrink;
+    struct slc_forgetting forgetting;
     struct slc_caps caps;        ///< the context's
     struct slc_page_pool *pages; ///< of the context; NULL: not yet
     uint32_t page_user;          ///< user of `pages`; SLC_MAX_PAGE_USERS: not yet
@@ -302,5 +324,13 @@ uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit);
 void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index);
 /** Regions at the edge are narrower, or levels do not halve evenly. */
 bool slc_texture_is_ragged(const struct slc_texture *texture);
+
+/* texture_forgetting.c */
+/** Checks forgetTextures and forgetAfterFrames, and sets what they imply. */
+SluiceResult slc_forgetting_fill_in(SluiceVulkanStreamerCreateInfo *info,
+                                    const SluiceLogCallback *log);
+/** Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_forgetting_init(SluiceVulkanStreamer *s);
+void slc_forgetting_finish(SluiceVulkanStreamer *s);
 
 #endif /* SLC_VULKAN_STREAMER_H */

@@ -13,6 +13,7 @@
 #include "vulkan/format.h"
 #include "vulkan/format_caps.h"
 #include "vulkan/load_cancels.h"
+#include "vulkan/texture_forgetting.h"
 #include "vulkan/texture_mode.h"
 
 #include <assert.h>
@@ -154,9 +155,10 @@ static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
 /* Views, regions and packed levels of one layer, whose image is there. */
 static SluiceResult build(SluiceVulkanStreamer *s, struct slc_texture *texture)
 {
-    SluiceResult result =
-        slc_texture_views_init(&texture->views, &s->vk, texture->image.image, &texture->info,
-                               texture->layer, s->caps.image_cube_array);
+    SluiceResult result = SLUICE_SUCCESS;
+    if (texture->image.image)
+        result = slc_texture_views_init(&texture->views, &s->vk, texture->image.image,
+                                        &texture->info, texture->layer, s->caps.image_cube_array);
     if (result == SLUICE_SUCCESS && texture->layer == 0 && texture->producer.pfn)
         result = slc_level_views_init(&texture->level_views, &s->vk, &s->cb, &texture->image,
                                       slc_vk_format(texture->info.format), texture->layer_count);
@@ -238,7 +240,11 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
     choose_kind(s, info, image, &kind);
     if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE)
         result = find_sampler(s, &kind, &sampler);
-    if (result == SLUICE_SUCCESS)
+    bool forgettable = slc_forgetting_allows(s, info, image);
+    if (result == SLUICE_SUCCESS && forgettable)
+        result = slc_forgetting_describe(s, first, info->residencyMode, image, &residency,
+                                         &residency_image);
+    else if (result == SLUICE_SUCCESS)
         result = slc_texture_create_image(s, first, info->residencyMode, image, producer->pfn,
                                           &residency, &residency_image);
     if (result != SLUICE_SUCCESS)
@@ -256,6 +262,8 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
             .layer = i,
             .layer_count = count,
             .added_frame = s->frame,
+            .presence = forgettable ? SLC_FORGOTTEN : SLC_PRESENT,
+            .forgettable = forgettable,
             .sampler_kind = kind,
             .filter = kind.nearest ? SLUICE_TEXTURE_FILTER_LINEAR : info->filter,
             .sampler = sampler};
@@ -283,6 +291,7 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
     const struct slc_texture *first = &s->textures[texture->first];
     const struct slc_texture *face = texture - texture->layer % SLC_CUBE_FACES;
     texture->state = SLC_TEXTURE_LIVE;
+    s->forgetting.absent_count += texture->presence != SLC_PRESENT;
     if (index >= s->texture_high)
         s->texture_high = index + 1;
     s->by_manager_index[(uint32_t)texture->id] = index;
@@ -291,6 +300,8 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
     texture->primary_place = SLC_NONE;
     if (texture->primary_id == SLUICE_NO_TEXTURE)
         add_primary(s, index);
+    else
+        slc_forgetting_keep(s, s->by_manager_index[(uint32_t)texture->primary_id]);
     *public = (SluiceVulkanTexture){
         .textureId = texture->id,
         .image = texture->image.image,
@@ -311,7 +322,7 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
         .residencyMode = slc_texture_mode(s, texture),
     };
     /* Samplers of the array are not those of integers: their elements stay empty. */
-    if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE &&
+    if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE && texture->image.image &&
         !slc_format_is_integer(texture->info.format))
         slc_texture_array_set(&s->texture_array, index, texture->views.layer, texture->views.cube,
                               s->samplers.list[texture->sampler].sampler);
@@ -405,6 +416,8 @@ static SluiceResult remove_layer(SluiceVulkanStreamer *s, uint32_t index)
     SluiceResult result = sluiceRemoveStreamedTexture(s->manager, id, s->frame);
     if (result != SLUICE_SUCCESS)
         return slc_streamer_check(s, result, "sluiceRemoveStreamedTexture");
+    slc_forgetting_drop(s, index);
+    s->forgetting.absent_count -= texture->presence != SLC_PRESENT;
     texture->state = SLC_TEXTURE_REMOVED;
     texture->removed_frame = s->frame;
     s->removed_count++;
@@ -582,7 +595,10 @@ void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands)
         struct SluiceTextureEntry entry = table_entry(s, index);
         s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer, (uint64_t)index * sizeof entry,
                               sizeof entry, &entry);
-        slc_feedback_record_new(s, texture, commands);
+        if (!texture->cleared_frame) { /* marks of one that comes back are there already */
+            slc_feedback_record_new(s, texture, commands);
+            texture->cleared_frame = s->frame;
+        }
         texture->recorded_frame = s->frame;
     }
     s->new_texture_count = 0;
@@ -592,7 +608,11 @@ void slc_textures_abandon(SluiceVulkanStreamer *s, uint64_t frame)
 {
     for (uint32_t i = 0; i < s->texture_high; i++) {
         struct slc_texture *texture = &s->textures[i];
-        if (texture->state != SLC_TEXTURE_LIVE || texture->recorded_frame < frame)
+        if (texture->state != SLC_TEXTURE_LIVE)
+            continue;
+        if (texture->cleared_frame >= frame)
+            texture->cleared_frame = 0;
+        if (texture->recorded_frame < frame)
             continue;
         texture->recorded_frame = 0;
         s->new_textures[s->new_texture_count++] = i;

@@ -58,6 +58,16 @@ static SluiceResult create_sparse_or_paged(SluiceVulkanStreamer *s, uint32_t fir
     return result;
 }
 
+SluiceResult slc_texture_try_image(SluiceVulkanStreamer *s, uint32_t index,
+                                   SluiceResidencyMode mode, const SluiceImageInfo *image,
+                                   struct slc_residency **residency,
+                                   struct slc_residency_image *out)
+{
+    return is_plain(s, mode, image)
+               ? create(s->plain, index, image, false, NULL, residency, out)
+               : slc_texture_create_image(s, index, mode, image, false, residency, out);
+}
+
 SluiceResult slc_texture_create_image(SluiceVulkanStreamer *s, uint32_t first,
                                       SluiceResidencyMode mode, const SluiceImageInfo *image,
                                       bool produced, struct slc_residency **residency,

@@ -15,6 +15,13 @@ SluiceResult slc_texture_create_image(SluiceVulkanStreamer *s, uint32_t first,
                                       bool produced, struct slc_residency **residency,
                                       struct slc_residency_image *out);
 
+/** Like slc_texture_create_image, of one layer, but for one thing: a texture that is to be dense is
+ *  not put elsewhere if there is no memory. */
+SluiceResult slc_texture_try_image(SluiceVulkanStreamer *s, uint32_t index,
+                                   SluiceResidencyMode mode, const SluiceImageInfo *image,
+                                   struct slc_residency **residency,
+                                   struct slc_residency_image *out);
+
 /** The mode of a texture whose layout is known: DENSE if one image has all of its levels. */
 SluiceResidencyMode slc_texture_mode(const SluiceVulkanStreamer *s,
                                      const struct slc_texture *texture);

@@ -1,0 +1,10 @@
+/** What the streamer asks before it forgets textures. */
+#ifndef SLC_CORE_FORGET_TEXTURE_H
+#define SLC_CORE_FORGET_TEXTURE_H
+
+#include <sluice/manager.h>
+
+/** Returns whether any map of the texture counts: something of it is wanted. */
+bool slc_manager_wants_texture(const SluiceStreamedTextureManager *manager, SluiceTextureId id);
+
+#endif /* SLC_CORE_FORGET_TEXTURE_H */
