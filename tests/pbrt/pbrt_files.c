@@ -1,14 +1,15 @@
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700
 
 #include "pbrt/pbrt_files.h"
 
 #include "support/test.h"
 
-#include <dirent.h>
+#include <ftw.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 void pbrt_files_init(struct pbrt_files *files)
@@ -19,19 +20,17 @@ void pbrt_files_init(struct pbrt_files *files)
     assert_non_null(mkdtemp(files->folder));
 }
 
+static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *depth)
+{
+    (void)status, (void)kind, (void)depth;
+    chmod(path, S_IRWXU); /* archives may hold folders that cannot be written */
+    return remove(path) != 0;
+}
+
 void pbrt_files_finish(struct pbrt_files *files)
 {
     sluiceDestroyPbrtScene(files->scene);
-    DIR *folder = opendir(files->folder);
-    for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        char path[600];
-        snprintf(path, sizeof path, "%s/%s", files->folder, entry->d_name);
-        if (entry->d_name[0] != '.')
-            unlink(path);
-    }
-    if (folder)
-        closedir(folder);
-    rmdir(files->folder);
+    nftw(files->folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
 }
 
 const char *pbrt_path(const struct pbrt_files *files, const char *name)
@@ -157,4 +156,12 @@ bool pbrt_sample_path(char path[1024], const char *name)
     else
         snprintf(path, 1024, "%s/../shared/data/pbrt/%s", root ? root : ".", name);
     return access(path, R_OK) == 0;
+}
+
+bool pbrt_unpack(const struct pbrt_files *files, const char *archive)
+{
+    char command[2048];
+    snprintf(command, sizeof command, "tar -xJf '%s' -C '%s' --no-same-permissions", archive,
+             files->folder);
+    return system(command) == 0;
 }

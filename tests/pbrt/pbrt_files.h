@@ -37,4 +37,7 @@ uint32_t pbrt_read_all(struct pbrt_files *files);
 /** A path below the folder of sample files. False: it is not there. */
 bool pbrt_sample_path(char path[1024], const char *name);
 
+/** Unpacks an archive into the folder with the system's tar. False: tar failed. */
+bool pbrt_unpack(const struct pbrt_files *files, const char *archive);
+
 #endif /* TESTS_PBRT_PBRT_FILES_H */

@@ -214,6 +214,35 @@ static void thirteen_encodings_of_a_cube_are_one_cube(void **state)
     }
 }
 
+/* A room of 65 files, in an archive. The headers of its PLY files announce 143 163 triangles. */
+static void the_living_room_has_its_65_shapes_and_all_of_their_triangles(void **state)
+{
+    (void)state;
+    char archive[1024];
+    uint32_t triangles = 0, plys = 0;
+    if (!pbrt_sample_path(archive, "bitterli/living-room.tar.xz"))
+        SKIP_TEST("%s is not there; SLUICE_TEST_DATA says where the data folder is", archive);
+    if (!pbrt_unpack(&files, archive))
+        SKIP_TEST("tar and xz cannot unpack %s", archive);
+    CHECK_OK(pbrt_open(&files, pbrt_path(&files, "living-room/scene-v4.pbrt")));
+    SluicePbrtSceneInfo info = pbrt_info(&files);
+    assert_int_equal(info.version, 4);
+    assert_int_equal(info.shapeCount, 65);
+    assert_int_equal(info.lightCount, 1);
+    assert_true(info.filmWidth == 1280 && info.filmHeight == 720);
+    assert_int_equal(files.errors, 0);
+    assert_int_equal(pbrt_read_all(&files), 65);
+    for (uint32_t i = 0; i < info.shapeCount; i++) {
+        SluicePbrtMesh mesh = {.structSize = sizeof mesh};
+        plys += pbrt_shape(&files, i).kind == SLUICE_PBRT_SHAPE_PLY;
+        CHECK_OK(sluiceReadPbrtShape(files.scene, i, &mesh));
+        triangles += mesh.triangleCount;
+        CHECK_OK(sluiceFreePbrtMesh(files.scene, &mesh));
+    }
+    assert_int_equal(plys, 65);
+    assert_int_equal(triangles, 143163);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -223,6 +252,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(transforms_of_object_and_instance_add_up, init, finish),
         cmocka_unit_test_setup_teardown(blocks_save_and_restore_what_the_table_says, init, finish),
         cmocka_unit_test_setup_teardown(thirteen_encodings_of_a_cube_are_one_cube, init, finish),
+        cmocka_unit_test_setup_teardown(
+            the_living_room_has_its_65_shapes_and_all_of_their_triangles, init, finish),
     };
     return RUN_TESTS(tests);
 }
