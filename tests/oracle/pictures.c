@@ -18,11 +18,43 @@ static bool take_values(struct oracle_picture *picture, const void *raw, VipsBan
     return picture->values != NULL;
 }
 
+void oracle_picture_finish(struct oracle_picture *picture)
+{
+    free(picture->values);
+    *picture = (struct oracle_picture){0};
+}
+
+/* libvips 8.14 takes PFM files as if their first row were the upper one; it is the lowest. */
+static bool read_pfm(struct oracle_picture *picture, const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    char kind = 0;
+    double order = 0;
+    if (file &&
+        fscanf(file, "P%c %u %u %lf", &kind, &picture->width, &picture->height, &order) == 4 &&
+        (kind == 'F' || kind == 'f') && order < 0 && picture->width - 1 < 65536 &&
+        picture->height - 1 < 65536 && fgetc(file) != EOF) {
+        picture->bands = kind == 'F' ? 3 : 1;
+        size_t row = (size_t)picture->width * picture->bands;
+        picture->values = malloc(row * picture->height * sizeof *picture->values);
+        for (uint32_t y = picture->height; picture->values && y-- > 0;)
+            if (fread(picture->values + row * y, sizeof(float), row, file) != row)
+                oracle_picture_finish(picture);
+    }
+    if (file)
+        fclose(file);
+    if (!picture->values)
+        fprintf(stderr, "%s: is no little-endian PFM file\n", path);
+    return picture->values != NULL;
+}
+
 bool oracle_picture_read(struct oracle_picture *picture, const char *path)
 {
     size_t size;
     void *raw = NULL;
     *picture = (struct oracle_picture){0};
+    if (g_str_has_suffix(path, ".pfm"))
+        return read_pfm(picture, path);
     VipsImage *image = vips_image_new_from_file(path, NULL);
     VipsBandFormat format = image ? vips_image_get_format(image) : VIPS_FORMAT_NOTSET;
     bool ok =
@@ -42,12 +74,6 @@ bool oracle_picture_read(struct oracle_picture *picture, const char *path)
     if (image)
         g_object_unref(image);
     return picture->values != NULL;
-}
-
-void oracle_picture_finish(struct oracle_picture *picture)
-{
-    free(picture->values);
-    *picture = (struct oracle_picture){0};
 }
 
 static double decode(const struct oracle_picture *picture, const struct oracle_lookup *lookup,

@@ -1,0 +1,43 @@
+/** A scene with all that rendering it takes. */
+#ifndef TESTS_ORACLE_ORACLE_H
+#define TESTS_ORACLE_ORACLE_H
+
+#include "oracle/camera.h"
+#include "oracle/census.h"
+#include "oracle/path.h"
+
+#include <stdio.h>
+
+enum oracle_mode { ORACLE_CAST, ORACLE_PRIMARY, ORACLE_DIRECT, ORACLE_PATH };
+
+struct oracle_settings {
+    uint32_t dim[2];  ///< 0: as the film
+    int mode;         ///< enum oracle_mode
+    uint32_t samples; ///< per pixel; the first is its center
+    uint32_t bounces; ///< of mode path
+    uint32_t seed;
+    float background[3];
+    bool face_forward, is_quiet;
+    bool nearest; ///< pictures are not filtered
+};
+
+/** Zeroed is empty. Must not move. */
+struct oracle {
+    struct oracle_settings settings;
+    struct oracle_scene scene;
+    struct oracle_values values;
+    struct oracle_camera camera;
+    struct oracle_rays *rays;
+    struct oracle_tracer tracer;
+};
+
+/** Call VIPS_INIT before. Says on stderr why it failed; call oracle_finish also then. */
+bool oracle_init(struct oracle *oracle, const char *path, const struct oracle_settings *settings);
+void oracle_finish(struct oracle *oracle);
+
+/** Fills [height][width] RGBA floats, row 0 on top. */
+void oracle_render(const struct oracle *oracle, float *rgba);
+/** Casts one ray through the center of each pixel. `hits`: a table of them, or NULL. */
+void oracle_cast(struct oracle *oracle, struct oracle_census *census, FILE *hits);
+
+#endif /* TESTS_ORACLE_ORACLE_H */
