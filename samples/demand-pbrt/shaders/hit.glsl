@@ -75,4 +75,12 @@ Hit findHit(PbrtPlace place, uint triangle, vec2 weights, vec3 direction, float 
     return hit;
 }
 
+/** For alpha, which both versions of pbrt look up without a footprint: in the finest level. */
+Hit withoutFootprint(Hit hit)
+{
+    hit.dx = hit.dy = vec2(0.0);
+    hit.px = hit.py = vec3(0.0);
+    return hit;
+}
+
 #endif

@@ -55,15 +55,16 @@ void main()
     bool resident = true;
     for (uint i = place.alpha == PBRT_NONE ? 1u : 0u; i < 4u && resident; i++) {
         uint surface = i == 0u ? place.alpha : place.surface;
+        Hit seen = i == 0u ? withoutFootprint(hit) : hit;
         if (i > 0u && payload.isShadow)
             return;
         if (surfaces[surface].realized == 0u) {
-            requestSurface(surface, hit);
+            requestSurface(surface, seen);
             return;
         }
         uint program = i <= 1u ? surfaces[surface].diffuse
                                : i == 2u ? surfaces[surface].specular : surfaces[surface].transmission;
-        values[i] = runProgram(program, hit, resident);
+        values[i] = runProgram(program, seen, resident);
     }
     if (!resident) {
         payload.missing = true;
