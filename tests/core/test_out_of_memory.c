@@ -103,6 +103,8 @@ static SluiceResult apply(struct fixture *f, const struct op *op, uint64_t *out)
         *out = mix(*out, result ? 0 : id);
         return result;
     case 1:
+        if (op->number % 4 == 1)
+            return sluiceForgetStreamedTexture(m, op->a, op->retire);
         return op->number % 4 ? SLUICE_SUCCESS : sluiceRemoveStreamedTexture(m, op->a, op->retire);
     case 2:
     case 3: return feed(f, op);

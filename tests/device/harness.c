@@ -519,9 +519,14 @@ void harness_check_silence(const struct harness *h)
     assert_int_equal(h->message_count, 0);
 }
 
-float harness_level_error(struct harness *h)
+bool harness_is_software(struct harness *h)
 {
     VkPhysicalDeviceProperties properties;
     h->GetPhysicalDeviceProperties(h->physical_device, &properties);
-    return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 0 : 0.125f;
+    return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+float harness_level_error(struct harness *h)
+{
+    return harness_is_software(h) ? 0 : 0.125f;
 }

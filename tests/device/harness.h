@@ -143,6 +143,9 @@ bool harness_abandons(struct harness *h);
 /** Fails the test if validation has said anything. */
 void harness_check_silence(const struct harness *h);
 
+/** Whether the device is a CPU, such as lavapipe. */
+bool harness_is_software(struct harness *h);
+
 /** How far a device's levels may be off the formula; a CPU's are not. */
 float harness_level_error(struct harness *h);
 

@@ -3,6 +3,7 @@
 #include "device/demand_maker.h"
 
 #include "base/checked.h"
+#include "support/failing_allocator.h"
 #include "support/test.h"
 
 #include <string.h>
@@ -386,6 +387,65 @@ static void wrong_areas_are_refused(void **state)
     demand_maker_finish(&m);
 }
 
+static void without_host_memory_remakes_are_refused_and_come_later(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct demand_maker m;
+    struct probe probes[PROBES];
+    struct failing_allocator memory;
+    failing_allocator_init(&memory, UINT64_MAX);
+    CHECK_OK(
+        harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.pAllocator = &memory.callbacks}));
+    open_made(&r, &m, 0, 0);
+    uint32_t count = add_probes(&m, probes), refused = 0;
+    runner_load(&r, LAUNCHES);
+    m.maker.version = 1;
+    SluiceResult result;
+    do {
+        memory.refuse_from = memory.calls + refused;
+        result = sluiceRemakeDemandTiles(r.loader, m.id, NULL, UINT32_MAX);
+        memory.refuse_from = UINT64_MAX;
+        if (result != SLUICE_SUCCESS)
+            CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        launch(&r, 3);
+        check_all(&m, probes, count, result == SLUICE_SUCCESS);
+    } while (result != SLUICE_SUCCESS && ++refused < 20);
+    CHECK_OK(result);
+    assert_true(refused > 0);
+    close_made(&r, &m);
+    CHECK_OK(harness_set_context(&h, NULL));
+    assert_int_equal(memory.live_count, 0);
+}
+
+static void without_host_memory_page_remakes_are_refused(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct words w;
+    struct failing_allocator memory;
+    failing_allocator_init(&memory, UINT64_MAX);
+    CHECK_OK(
+        harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.pAllocator = &memory.callbacks}));
+    open_words(&r, &w, 0);
+    load_words(&r, &w, 0, PAGES);
+    w.version = 5;
+    memory.refuse_from = memory.calls;
+    CHECK_RESULT(sluiceRemakeDemandPages(r.loader, w.id, 0, PAGES),
+                 SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    memory.refuse_from = UINT64_MAX;
+    launch(&r, 3);
+    for (uint32_t page = 0; page < PAGES; page++)
+        assert_true(words_show(&r, page, 0));
+    CHECK_OK(sluiceRemakeDemandPages(r.loader, w.id, 0, PAGES));
+    launch(&r, LAUNCHES);
+    for (uint32_t page = 0; page < PAGES; page++)
+        assert_true(words_show(&r, page, 5));
+    runner_finish(&r);
+    CHECK_OK(harness_set_context(&h, NULL));
+    assert_int_equal(memory.live_count, 0);
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -400,6 +460,8 @@ int main(void)
         cmocka_unit_test(textures_removed_while_they_are_made_again_lose_no_job),
         cmocka_unit_test(byte_pages_that_changed_are_made_again),
         cmocka_unit_test(evicted_pages_whose_slot_is_free_come_back_new),
+        cmocka_unit_test(without_host_memory_remakes_are_refused_and_come_later),
+        cmocka_unit_test(without_host_memory_page_remakes_are_refused),
         cmocka_unit_test(wrong_areas_are_refused),
     };
     return harness_finish(&h, RUN_TESTS(tests));

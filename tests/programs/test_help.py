@@ -18,7 +18,9 @@ OWN_DEFAULT = {
 }
 # A trace holds what all pixels of all textures asked for; playing it leaves nothing out by itself.
 OWN_IN = {("sluice-tradeoff play", "probability"), ("sluice-tradeoff play", "textures-per-frame"),
-          ("sluice-info", "device")}
+          ("sluice-info", "device"), ("demand-pbrt", "cache")}
+# Shapes of a scene fill a file; decisions of a replay are printed.
+OWN_KIND = {"dump"}
 
 number = 0
 failed = False
@@ -78,7 +80,7 @@ for p in programs:
         if name == "help":
             continue
         first = kinds.setdefault(name, (p.name, bool(operand)))
-        if first[1] != bool(operand):
+        if first[1] != bool(operand) and name not in OWN_KIND:
             other.append(f"--{name} takes a value in one of {first[0]} and {p.name}")
         if not operand or name in OWN_DEFAULT or (p.name, name) in OWN_IN:
             continue
