@@ -1,4 +1,4 @@
-/** What the streamer asks before it forgets textures. */
+/** Questions of the streamer before it forgets textures. */
 #ifndef SLC_CORE_FORGET_TEXTURE_H
 #define SLC_CORE_FORGET_TEXTURE_H
 

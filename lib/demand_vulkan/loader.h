@@ -469,7 +469,7 @@ void slc_resource_note_success(SluiceDemandLoader *loader, struct slc_demand_res
 void slc_resource_fail(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
                        const struct slc_demand_job *job, SluiceResult result, bool failed);
 SluiceDemandResourceId slc_resource_id(const struct slc_demand_resource *resource);
-/** What jobs are about to write to these pages is not wanted. */
+/** Drops the texels that jobs are about to write to these pages. */
 void slc_resource_drop_jobs(SluiceDemandLoader *loader, const struct slc_demand_resource *resource,
                             uint32_t first, uint32_t count);
 /** Ends a job of the resource, of any kind. Frees a removed resource after its last job. */

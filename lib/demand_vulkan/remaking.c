@@ -9,7 +9,7 @@
 
 #include <inttypes.h>
 
-/* What a call names: tiles of an image, or byte pages. */
+/* Pages that a call names: tiles of an image, or byte pages. */
 struct changed {
     SluiceDemandLoader *loader;
     const struct slc_demand_image *image; ///< NULL: pages
@@ -61,7 +61,7 @@ static void change_tiles(struct changed *c)
     }
 }
 
-/* Those that a launch under way wrote. Those that wait for their producer come new anyway. */
+/* Pages that a launch under way wrote. Pages that wait for their producer come new anyway. */
 static void change_written(struct changed *c)
 {
     SluiceDemandLoader *loader = c->loader;
