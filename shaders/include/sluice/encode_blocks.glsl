@@ -1,0 +1,289 @@
+/*
+ * Compresses 4 x 4 texels to a block of BC1, BC4, BC5 or BC7, for shaders that make texels: one
+ * invocation per block. Texels are in rows, from the top. Blocks go to a buffer, and from there to
+ * an image by vkCmdCopyBufferToImage (docs/producers.md).
+ *
+ * Values are clamped to 0..1 and encoded as they are: encode sRGB before. They must be finite.
+ * BC7 has blocks of mode 6 alone. docs/producers.md has the quality.
+ */
+#ifndef SLUICE_ENCODE_BLOCKS_GLSL
+#define SLUICE_ENCODE_BLOCKS_GLSL
+
+/* The texels of a block as one line: `end[0]` at weight 0, `end[1]` at weight 1. */
+struct SluiceBlockLine {
+    vec4 end[2];
+};
+
+/* The line through the mean along the axis of largest variance. `mask`: 0 in channels to ignore. */
+SluiceBlockLine sluiceFitBlockLine(vec4 texels[16], vec4 mask)
+{
+    vec4 mean = vec4(0), low = vec4(1), high = vec4(0);
+    for (int i = 0; i < 16; i++) {
+        mean += texels[i] / 16;
+        low = min(low, texels[i]);
+        high = max(high, texels[i]);
+    }
+    mat4 covariance = mat4(0);
+    for (int i = 0; i < 16; i++) {
+        vec4 d = (texels[i] - mean) * mask;
+        covariance += outerProduct(d, d);
+    }
+    /* The row of the channel that varies most: it is not perpendicular to the axis. */
+    vec4 range = (high - low) * mask, axis = covariance[0];
+    float widest = range.x;
+    for (int c = 1; c < 4; c++)
+        if (range[c] > widest) {
+            widest = range[c];
+            axis = covariance[c];
+        }
+    for (int i = 0; i < 6; i++) {
+        float largest = max(max(abs(axis.x), abs(axis.y)), max(abs(axis.z), abs(axis.w)));
+        if (largest > 0)
+            axis = covariance * (axis / largest);
+    }
+    float square = dot(axis, axis), first = 0, last = 0;
+    if (square > 0) {
+        axis *= inversesqrt(square);
+        for (int i = 0; i < 16; i++) {
+            float t = dot(texels[i] - mean, axis);
+            first = min(first, t);
+            last = max(last, t);
+        }
+    }
+    return SluiceBlockLine(vec4[2](clamp(mean + axis * first, 0, 1), clamp(mean + axis * last, 0, 1)));
+}
+
+/* Where the texel is nearest to the line: 0..1. */
+float sluicePlaceOnLine(SluiceBlockLine line, vec4 texel, vec4 mask)
+{
+    vec4 d = (line.end[1] - line.end[0]) * mask;
+    float square = dot(d, d);
+    return square > 0 ? clamp(dot(texel - line.end[0], d) / square, 0, 1) : 0;
+}
+
+/* The ends that fit the texels best if texel i has weight w[i]. */
+SluiceBlockLine sluiceRefitBlockLine(SluiceBlockLine line, vec4 texels[16], float w[16])
+{
+    float aa = 0, ab = 0, bb = 0;
+    vec4 a = vec4(0), b = vec4(0);
+    for (int i = 0; i < 16; i++) {
+        float v = 1 - w[i];
+        aa += v * v;
+        ab += v * w[i];
+        bb += w[i] * w[i];
+        a += v * texels[i];
+        b += w[i] * texels[i];
+    }
+    float determinant = aa * bb - ab * ab;
+    if (determinant > 1e-4) {
+        line.end[0] = clamp((bb * a - ab * b) / determinant, 0, 1);
+        line.end[1] = clamp((aa * b - ab * a) / determinant, 0, 1);
+    }
+    return line;
+}
+
+/* --- BC1 --- */
+
+uint sluiceQuantizeBc1(vec4 color)
+{
+    uvec3 q = uvec3(round(color.rgb * vec3(31, 63, 31)));
+    return q.r << 11 | q.g << 5 | q.b;
+}
+
+vec4 sluiceBc1Color(uint q)
+{
+    uvec3 c = uvec3(q >> 11, q >> 5 & 63u, q & 31u);
+    c = uvec3(c.r << 3 | c.r >> 2, c.g << 2 | c.g >> 4, c.b << 3 | c.b >> 2);
+    return vec4(vec3(c) / 255, 1);
+}
+
+/* Picks indices for two ends; `w` receives the weights. Returns the squared error. */
+float sluiceIndexBc1(inout uvec2 ends, vec4 texels[16], out uint indices, out float w[16])
+{
+    if (ends.x < ends.y)
+        ends = ends.yx; /* the order of blocks with four colors */
+    SluiceBlockLine line = SluiceBlockLine(vec4[2](sluiceBc1Color(ends.x), sluiceBc1Color(ends.y)));
+    float error = 0;
+    indices = 0u;
+    for (int i = 0; i < 16; i++) {
+        uint third = uint(round(sluicePlaceOnLine(line, texels[i], vec4(1, 1, 1, 0)) * 3));
+        w[i] = float(third) / 3;
+        vec4 d = mix(line.end[0], line.end[1], w[i]) - texels[i];
+        error += dot(d.rgb, d.rgb);
+        uint index = third == 0u ? 0u : third == 3u ? 1u : third + 1u;
+        indices |= index << 2 * i;
+    }
+    if (ends.x == ends.y)
+        indices = 0u; /* a block of three colors: index 3 would be black */
+    return error;
+}
+
+/** BC1 without transparency. `texels`: alpha is ignored. */
+uvec2 sluiceEncodeBc1(vec4 texels[16])
+{
+    for (int i = 0; i < 16; i++)
+        texels[i] = vec4(clamp(texels[i].rgb, 0, 1), 1);
+    SluiceBlockLine line = sluiceFitBlockLine(texels, vec4(1, 1, 1, 0));
+    uvec2 best = uvec2(0);
+    uint bestIndices = 0u;
+    float bestError = 1e9;
+    for (int pass = 0; pass < 3; pass++) {
+        uvec2 ends = uvec2(sluiceQuantizeBc1(line.end[0]), sluiceQuantizeBc1(line.end[1]));
+        uint indices;
+        float w[16];
+        float error = sluiceIndexBc1(ends, texels, indices, w);
+        if (error < bestError) {
+            bestError = error;
+            best = ends;
+            bestIndices = indices;
+        }
+        line = sluiceRefitBlockLine(SluiceBlockLine(vec4[2](sluiceBc1Color(ends.x), sluiceBc1Color(ends.y))), texels, w);
+    }
+    return uvec2(best.x | best.y << 16, bestIndices);
+}
+
+/* --- BC4 and BC5 --- */
+
+float sluiceIndexBc4(uvec2 ends, vec4 texels[16], out uvec2 block, out float w[16])
+{
+    vec2 e = vec2(ends) / 255;
+    float error = 0;
+    block = uvec2(ends.x | ends.y << 8, 0);
+    for (int i = 0; i < 16; i++) {
+        float t = ends.x > ends.y ? clamp((texels[i].x - e.x) / (e.y - e.x), 0, 1) : 0;
+        uint step = uint(round(t * 7));
+        w[i] = float(step) / 7;
+        float d = mix(e.x, e.y, w[i]) - texels[i].x;
+        error += d * d;
+        uint index = step == 0u ? 0u : step == 7u ? 1u : step + 1u;
+        int at = 16 + 3 * i;
+        if (at < 32)
+            block.x |= index << at;
+        if (at < 32 && at > 29)
+            block.y |= index >> 32 - at;
+        if (at >= 32)
+            block.y |= index << at - 32;
+    }
+    return error;
+}
+
+/** BC4. 0 and 1 are exact. */
+uvec2 sluiceEncodeBc4(float values[16])
+{
+    vec4 texels[16];
+    float low = 1, high = 0;
+    for (int i = 0; i < 16; i++) {
+        texels[i] = vec4(clamp(values[i], 0, 1), 0, 0, 0);
+        low = min(low, texels[i].x);
+        high = max(high, texels[i].x);
+    }
+    SluiceBlockLine line = SluiceBlockLine(vec4[2](vec4(high), vec4(low)));
+    uvec2 best = uvec2(0);
+    float bestError = 1e9;
+    for (int pass = 0; pass < 2; pass++) {
+        uvec2 ends = uvec2(floor(vec2(line.end[0].x, line.end[1].x) * 255 + 0.5));
+        uvec2 block;
+        float w[16];
+        float error = sluiceIndexBc4(ends, texels, block, w);
+        if (error < bestError && ends.x >= ends.y) {
+            bestError = error;
+            best = block;
+        }
+        line = sluiceRefitBlockLine(line, texels, w);
+    }
+    return best;
+}
+
+/** BC5: two blocks of BC4. */
+uvec4 sluiceEncodeBc5(float red[16], float green[16])
+{
+    return uvec4(sluiceEncodeBc4(red), sluiceEncodeBc4(green));
+}
+
+/* --- BC7, mode 6: one line, ends of 7 bits and a shared lowest bit, 16 weights --- */
+
+const uint sluiceBc7Weights[16] = uint[16](0u, 4u, 9u, 13u, 17u, 21u, 26u, 30u, 34u, 38u, 43u, 47u, 51u, 55u, 60u, 64u);
+
+/* 8 bits per channel, whose lowest bits are equal: of the two ways, the nearer one. */
+uvec4 sluiceQuantizeBc7(vec4 color)
+{
+    vec4 c = color * 255;
+    uvec4 even = uvec4(clamp(floor(c / 2 + 0.5), 0, 127)) * 2u;
+    uvec4 odd = uvec4(clamp(floor((c - 1) / 2 + 0.5), 0, 127)) * 2u + 1u;
+    vec4 e = vec4(even) - c, o = vec4(odd) - c;
+    /* Full opacity is exact. */
+    return color.a < 1 && dot(e, e) < dot(o, o) ? even : odd;
+}
+
+float sluiceIndexBc7(uvec4 ends[2], vec4 texels[16], out uint indices[16], out float w[16])
+{
+    SluiceBlockLine line = SluiceBlockLine(vec4[2](vec4(ends[0]) / 255, vec4(ends[1]) / 255));
+    float error = 0;
+    for (int i = 0; i < 16; i++) {
+        /* Steps of the weights are 4 or 5 of 64: the index is a step below or above at most. */
+        float t = sluicePlaceOnLine(line, texels[i], vec4(1)) * 64;
+        uint index = uint(round(t * 15 / 64));
+        if (index > 0u && abs(t - float(sluiceBc7Weights[index - 1u])) < abs(t - float(sluiceBc7Weights[index])))
+            index--;
+        if (index < 15u && abs(t - float(sluiceBc7Weights[index + 1u])) < abs(t - float(sluiceBc7Weights[index])))
+            index++;
+        indices[i] = index;
+        w[i] = float(sluiceBc7Weights[index]) / 64;
+        vec4 d = mix(line.end[0], line.end[1], w[i]) - texels[i];
+        error += dot(d, d);
+    }
+    return error;
+}
+
+void sluicePutBits(inout uvec4 block, inout int at, uint value, int bits)
+{
+    block[at >> 5] |= value << (at & 31);
+    if ((at & 31) + bits > 32)
+        block[(at >> 5) + 1] |= value >> 32 - (at & 31);
+    at += bits;
+}
+
+uvec4 sluicePackBc7(uvec4 ends[2], uint indices[16])
+{
+    /* The first index has three bits: its highest one is 0. */
+    bool turn = indices[0] > 7u;
+    uvec4 a = turn ? ends[1] : ends[0], b = turn ? ends[0] : ends[1];
+    uvec4 block = uvec4(0);
+    int at = 0;
+    sluicePutBits(block, at, 1u << 6, 7);
+    for (int c = 0; c < 4; c++) {
+        sluicePutBits(block, at, a[c] >> 1, 7);
+        sluicePutBits(block, at, b[c] >> 1, 7);
+    }
+    sluicePutBits(block, at, a.x & 1u, 1);
+    sluicePutBits(block, at, b.x & 1u, 1);
+    for (int i = 0; i < 16; i++)
+        sluicePutBits(block, at, turn ? 15u - indices[i] : indices[i], i == 0 ? 3 : 4);
+    return block;
+}
+
+/** BC7 of RGBA, by mode 6. */
+uvec4 sluiceEncodeBc7(vec4 texels[16])
+{
+    for (int i = 0; i < 16; i++)
+        texels[i] = clamp(texels[i], 0, 1);
+    SluiceBlockLine line = sluiceFitBlockLine(texels, vec4(1));
+    uvec4 best[2] = uvec4[2](uvec4(0), uvec4(0));
+    uint bestIndices[16];
+    float bestError = 1e9;
+    for (int pass = 0; pass < 3; pass++) {
+        uvec4 ends[2] = uvec4[2](sluiceQuantizeBc7(line.end[0]), sluiceQuantizeBc7(line.end[1]));
+        uint indices[16];
+        float w[16];
+        float error = sluiceIndexBc7(ends, texels, indices, w);
+        if (error < bestError) {
+            bestError = error;
+            best = ends;
+            bestIndices = indices;
+        }
+        line = sluiceRefitBlockLine(line, texels, w);
+    }
+    return sluicePackBc7(best, bestIndices);
+}
+
+#endif /* SLUICE_ENCODE_BLOCKS_GLSL */
