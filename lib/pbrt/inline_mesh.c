@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "pbrt/lexer.h"
 #include "pbrt/ply_reader.h"
-#include "pbrt/text_number.h"
+#include "base/text_number.h"
 
 #include <float.h>
 #include <math.h>
@@ -20,14 +20,14 @@ static bool read_one(struct slc_pbrt_lexer *lexer, double *number)
         slc_pbrt_window_refill(window, window->cursor);
     struct slc_pbrt_token token;
     const unsigned char *text = window->bytes + window->cursor;
-    const unsigned char *end = slc_pbrt_read_number(text, number);
+    const unsigned char *end = slc_read_number(text, number);
     if ((size_t)(end - text) < NUMBER_REACH) {
         window->cursor += (size_t)(end - text);
         window->cursor += *end == ',';
         return end > text && fabs(*number) <= FLT_MAX;
     }
     slc_pbrt_next_token(lexer, &token); /* very long numbers */
-    end = slc_pbrt_read_number((const unsigned char *)token.text, number);
+    end = slc_read_number((const unsigned char *)token.text, number);
     return token.kind == SLC_PBRT_TOKEN_WORD && end > (const unsigned char *)token.text &&
            fabs(*number) <= FLT_MAX;
 }

@@ -1,7 +1,7 @@
 #include "pbrt/parser.h"
 
 #include "pbrt/growth.h"
-#include "pbrt/text_number.h"
+#include "base/text_number.h"
 
 #include <float.h>
 #include <math.h>
@@ -25,16 +25,16 @@ static const unsigned char *read_cell(const unsigned char *text, enum slc_pbrt_t
 {
     double number = 0;
     if (type == SLC_PBRT_INTEGER) {
-        const unsigned char *end = slc_pbrt_read_integer(text, &cell->integer);
+        const unsigned char *end = slc_read_integer(text, &cell->integer);
         if (end > text && (ends_word(*end) || *end == ','))
             return end;
-        end = slc_pbrt_read_number(text, &number);
+        end = slc_read_number(text, &number);
         if (end == text || !(fabs(number) <= INT32_MAX) || floor(number) != number)
             return text;
         cell->integer = (int32_t)number;
         return end;
     }
-    const unsigned char *end = slc_pbrt_read_number(text, &number);
+    const unsigned char *end = slc_read_number(text, &number);
     if (!(fabs(number) <= FLT_MAX))
         return text;
     cell->number = (float)number;
@@ -339,8 +339,8 @@ bool slc_pbrt_read_parameters_for(struct slc_pbrt_parser *parser, enum slc_pbrt_
            slc_pbrt_out_of_memory(parser);
 }
 
-bool slc_pbrt_read_numbers(struct slc_pbrt_parser *parser, double *numbers, int count,
-                           const struct slc_pbrt_place *place)
+bool slc_read_numbers(struct slc_pbrt_parser *parser, double *numbers, int count,
+                      const struct slc_pbrt_place *place)
 {
     bool in_brackets = false;
     for (int i = 0; i < count + in_brackets; i++) {
@@ -361,7 +361,7 @@ bool slc_pbrt_read_numbers(struct slc_pbrt_parser *parser, double *numbers, int 
                                  "%d numbers are expected here", count);
         memcpy(text, token->text, length);
         text[length] = 0;
-        const unsigned char *end = slc_pbrt_read_number(text, &numbers[i]);
+        const unsigned char *end = slc_read_number(text, &numbers[i]);
         bool has_comma = *end == ',' && end + 1 == text + length;
         if (end == text || (end != text + length && !has_comma) || !(fabs(numbers[i]) <= FLT_MAX))
             return slc_pbrt_stop(parser, SLUICE_ERROR_CORRUPT_DATA, place,

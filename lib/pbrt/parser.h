@@ -139,8 +139,8 @@ bool slc_pbrt_read_parameters(struct slc_pbrt_parser *parser);
 /** With those of Attribute in front. */
 bool slc_pbrt_read_parameters_for(struct slc_pbrt_parser *parser, enum slc_pbrt_target target);
 /** `count` numbers, in brackets or not. */
-bool slc_pbrt_read_numbers(struct slc_pbrt_parser *parser, double *numbers, int count,
-                           const struct slc_pbrt_place *place);
+bool slc_read_numbers(struct slc_pbrt_parser *parser, double *numbers, int count,
+                      const struct slc_pbrt_place *place);
 /** A string in quotes; *found says whether it was there. */
 bool slc_pbrt_read_name(struct slc_pbrt_parser *parser, const char *what, uint32_t *name,
                         bool *found);

@@ -3,7 +3,7 @@
 #include "pbrt/affine.h"
 #include "pbrt/growth.h"
 #include "pbrt/ply_header.h"
-#include "pbrt/text_number.h"
+#include "base/text_number.h"
 
 #include <float.h>
 #include <math.h>
@@ -58,7 +58,7 @@ static SluiceResult read_text(struct ply *ply, double *number)
         slc_pbrt_window_refill(window, window->cursor);
     }
     const unsigned char *text = window->bytes + window->cursor;
-    const unsigned char *end = slc_pbrt_read_number(text, number);
+    const unsigned char *end = slc_read_number(text, number);
     if (window->cursor >= window->end)
         return cut_off(ply);
     if (end == text || (*end && !is_blank(*end)))

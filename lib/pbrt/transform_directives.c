@@ -40,7 +40,7 @@ bool slc_pbrt_translate(struct slc_pbrt_parser *parser, const struct slc_pbrt_pl
 {
     struct slc_pbrt_affine by = slc_pbrt_identity();
     double n[3];
-    if (!slc_pbrt_read_numbers(parser, n, 3, place))
+    if (!slc_read_numbers(parser, n, 3, place))
         return false;
     for (int i = 0; i < 3; i++)
         by.m[i][3] = n[i];
@@ -51,7 +51,7 @@ bool slc_pbrt_scale(struct slc_pbrt_parser *parser, const struct slc_pbrt_place 
 {
     struct slc_pbrt_affine by = slc_pbrt_identity();
     double n[3];
-    if (!slc_pbrt_read_numbers(parser, n, 3, place))
+    if (!slc_read_numbers(parser, n, 3, place))
         return false;
     for (int i = 0; i < 3; i++)
         by.m[i][i] = n[i];
@@ -62,7 +62,7 @@ bool slc_pbrt_rotate(struct slc_pbrt_parser *parser, const struct slc_pbrt_place
 {
     struct slc_pbrt_affine by;
     double n[4];
-    if (!slc_pbrt_read_numbers(parser, n, 4, place))
+    if (!slc_read_numbers(parser, n, 4, place))
         return false;
     if (slc_pbrt_rotation(n[0], n + 1, &by))
         return append_transform(parser, &by, place);
@@ -75,7 +75,7 @@ bool slc_pbrt_look_at_directive(struct slc_pbrt_parser *parser, const struct slc
 {
     struct slc_pbrt_affine by;
     double n[9];
-    if (!slc_pbrt_read_numbers(parser, n, 9, place))
+    if (!slc_read_numbers(parser, n, 9, place))
         return false;
     if (slc_pbrt_look_at(n, n + 3, n + 6, &by))
         return append_transform(parser, &by, place);
@@ -89,7 +89,7 @@ static bool read_matrix(struct slc_pbrt_parser *parser, struct slc_pbrt_affine *
                         const struct slc_pbrt_place *place, bool *usable)
 {
     double n[16];
-    if (!slc_pbrt_read_numbers(parser, n, 16, place))
+    if (!slc_read_numbers(parser, n, 16, place))
         return false;
     double scale = n[3] == 0 && n[7] == 0 && n[11] == 0 ? n[15] : 0;
     *usable = scale != 0;
@@ -177,5 +177,5 @@ bool slc_pbrt_active_transform(struct slc_pbrt_parser *parser, const struct slc_
 bool slc_pbrt_transform_times(struct slc_pbrt_parser *parser, const struct slc_pbrt_place *place)
 {
     double n[2];
-    return slc_pbrt_read_numbers(parser, n, 2, place);
+    return slc_read_numbers(parser, n, 2, place);
 }

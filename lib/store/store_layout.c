@@ -1,7 +1,7 @@
 #include "store/store_layout.h"
 
 #include "image/info.h"
-#include "store/little_endian.h"
+#include "base/little_endian.h"
 
 #include <string.h>
 #include <xxhash.h>

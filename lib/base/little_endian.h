@@ -1,6 +1,6 @@
 /** Numbers as files have them, on any host. */
-#ifndef SLC_STORE_LITTLE_ENDIAN_H
-#define SLC_STORE_LITTLE_ENDIAN_H
+#ifndef SLC_BASE_LITTLE_ENDIAN_H
+#define SLC_BASE_LITTLE_ENDIAN_H
 
 #include <stdint.h>
 
@@ -29,4 +29,4 @@ static inline uint64_t slc_get_u64(const unsigned char *bytes)
     return slc_get_u32(bytes) | (uint64_t)slc_get_u32(bytes + 4) << 32;
 }
 
-#endif /* SLC_STORE_LITTLE_ENDIAN_H */
+#endif /* SLC_BASE_LITTLE_ENDIAN_H */

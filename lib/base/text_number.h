@@ -1,6 +1,6 @@
-/** Numbers of pbrt and PLY files, read the same in every locale. */
-#ifndef SLC_PBRT_TEXT_NUMBER_H
-#define SLC_PBRT_TEXT_NUMBER_H
+/** Numbers in the text of files, read the same in every locale. */
+#ifndef SLC_BASE_TEXT_NUMBER_H
+#define SLC_BASE_TEXT_NUMBER_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,9 +12,9 @@
  * Right to the last bit if it has at most 15 digits and an exponent of at most 22; otherwise to
  * about 1e-15 of its value. May be infinite.
  */
-const unsigned char *slc_pbrt_read_number(const unsigned char *text, double *number);
+const unsigned char *slc_read_number(const unsigned char *text, double *number);
 
 /** Reads [+-]digits that fit in 32 bits. Returns `text` if there are none or they do not fit. */
-const unsigned char *slc_pbrt_read_integer(const unsigned char *text, int32_t *number);
+const unsigned char *slc_read_integer(const unsigned char *text, int32_t *number);
 
-#endif /* SLC_PBRT_TEXT_NUMBER_H */
+#endif /* SLC_BASE_TEXT_NUMBER_H */

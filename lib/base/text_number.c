@@ -1,4 +1,4 @@
-#include "pbrt/text_number.h"
+#include "base/text_number.h"
 
 #include <math.h>
 
@@ -50,7 +50,7 @@ static const unsigned char *read_exponent(const unsigned char *c, int32_t *expon
     return digit;
 }
 
-const unsigned char *slc_pbrt_read_number(const unsigned char *text, double *number)
+const unsigned char *slc_read_number(const unsigned char *text, double *number)
 {
     const unsigned char *c = text;
     bool is_negative = *c == '-';
@@ -89,7 +89,7 @@ const unsigned char *slc_pbrt_read_number(const unsigned char *text, double *num
     return c;
 }
 
-const unsigned char *slc_pbrt_read_integer(const unsigned char *text, int32_t *number)
+const unsigned char *slc_read_integer(const unsigned char *text, int32_t *number)
 {
     const unsigned char *c = text;
     bool is_negative = *c == '-';
