@@ -1,0 +1,296 @@
+/**
+ * Neural textures: all channels of a material compressed together, decoded by a small network where
+ * they are sampled. Reads, decodes and writes .ntc files. Link `sluice-neural`.
+ *
+ * A file holds latent images, which are grids of small codes, and the weights of a network. A texel
+ * of a mip is decoded from the codes around it. Two formats are read and written:
+ * - schema 1 (compressors of version 0.5 to 0.7): each mip uses one latent image, which is a fine
+ *   and a coarse grid of 1 to 8 bits per code. Texels outside clamp.
+ * - schema 3 (version 0.9): each mip uses two latent images of 4 bits per code. Texels outside
+ * wrap.
+ *
+ * Mips that share latent images are fused: one piece of the latents serves all of them.
+ * docs/neural.md has the format of what these calls return.
+ */
+#ifndef SLUICE_NEURAL_H
+#define SLUICE_NEURAL_H
+
+#include <sluice/input.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Most mips, latent images, channels and weight layers of a set. */
+#define SLUICE_NEURAL_MAX_MIPS 16
+#define SLUICE_NEURAL_MAX_LATENT_IMAGES 8
+#define SLUICE_NEURAL_MAX_CHANNELS 16
+#define SLUICE_NEURAL_LAYERS 4
+
+/** Most texels in width and height of a set. */
+#define SLUICE_NEURAL_MAX_SIZE 32768
+
+/** A file of neural textures. Constant after sluiceOpenNeuralSet. */
+typedef struct SluiceNeuralSet SluiceNeuralSet;
+
+/** Settings of a set. A field of zero selects its default. */
+typedef struct SluiceNeuralSetCreateInfo {
+    uint32_t structSize;                         ///< sizeof(SluiceNeuralSetCreateInfo).
+    const char *pPath;                           ///< Required without pInput. Copied.
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
+    SluiceLogCallback log; ///< Problems of the file. Each is logged once, at most 16.
+    /** Reads these bytes instead of the file (input.h). Copied, but not the bytes. pPath is then a
+     *  name for messages and may be NULL. Default: NULL, the file. */
+    const SluiceInput *pInput;
+    /** Pool that opens and closes the file as it is read (input.h). Must outlive the set. Not used
+     *  with pInput. Default: NULL, the file stays open. */
+    SluiceFilePool *filePool;
+} SluiceNeuralSetCreateInfo;
+
+/**
+ * Opens a file and reads its description. `*pSet` belongs to the caller, who destroys it with
+ * sluiceDestroyNeuralSet.
+ *
+ * Every field of the file is checked. Memory: the description, at most 1 MiB.
+ *
+ * Returns SLUICE_NOT_READY if the input says so, or if no file descriptor is free: call again.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT; SLUICE_ERROR_FILE_NOT_FOUND;
+ *         SLUICE_ERROR_IO; SLUICE_ERROR_CORRUPT_DATA; SLUICE_ERROR_UNSUPPORTED for schema 2, other
+ *         containers, and sizes above SLUICE_NEURAL_MAX_SIZE; SLUICE_ERROR_LIMIT_EXCEEDED for a
+ *         description above 1 MiB; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceOpenNeuralSet(const SluiceNeuralSetCreateInfo *pInfo,
+                                            SluiceNeuralSet **pSet);
+
+/** Destroys a set. NULL is allowed. Thread safety: external on `set`. */
+SLUICE_API void sluiceDestroyNeuralSet(SluiceNeuralSet *set);
+
+/** Size of the network. */
+typedef enum SluiceNeuralNetwork {
+    SLUICE_NEURAL_NETWORK_SMALL = 0,  ///< Schema 1: 48, 64, 64, 64, 16 neurons.
+    SLUICE_NEURAL_NETWORK_MEDIUM = 1, ///< Schema 1: 64 inputs.
+    SLUICE_NEURAL_NETWORK_LARGE = 2,  ///< Schema 1: 80 inputs.
+    SLUICE_NEURAL_NETWORK_XLARGE = 3, ///< Schema 1: 96 inputs.
+    SLUICE_NEURAL_NETWORK_SCHEMA3 = 4 ///< Schema 3: 48, 64, 48, 32, 16 neurons.
+} SluiceNeuralNetwork;
+
+/** Weights of a network. */
+typedef enum SluiceNeuralWeightKind {
+    SLUICE_NEURAL_WEIGHTS_INT8 = 0, ///< Results are defined to the bit.
+    /** Layers 0 to 2 in 8-bit floating point (E4M3), layer 3 as INT8. */
+    SLUICE_NEURAL_WEIGHTS_FP8 = 1
+} SluiceNeuralWeightKind;
+
+/** Transfer function of a channel's values. */
+typedef enum SluiceNeuralColorSpace {
+    SLUICE_NEURAL_COLOR_LINEAR = 0,
+    SLUICE_NEURAL_COLOR_SRGB = 1,
+    SLUICE_NEURAL_COLOR_HLG = 2 ///< Hybrid log-gamma of linear values; linear 1 is code 0.5.
+} SluiceNeuralColorSpace;
+
+/** Format of a texture's channels before compression. */
+typedef enum SluiceNeuralChannelFormat {
+    SLUICE_NEURAL_CHANNEL_UNKNOWN = 0,
+    SLUICE_NEURAL_CHANNEL_UNORM8 = 1,
+    SLUICE_NEURAL_CHANNEL_UNORM16 = 2,
+    SLUICE_NEURAL_CHANNEL_FLOAT16 = 3,
+    SLUICE_NEURAL_CHANNEL_FLOAT32 = 4,
+    SLUICE_NEURAL_CHANNEL_UINT32 = 5
+} SluiceNeuralChannelFormat;
+
+/** What a set contains. */
+typedef struct SluiceNeuralSetInfo {
+    uint32_t structSize;       ///< sizeof(SluiceNeuralSetInfo).
+    uint32_t schema;           ///< 1 or 3.
+    uint32_t width, height;    ///< Texels of mip 0.
+    uint32_t mipCount;         ///< Each mip has max(1, size >> mip) texels.
+    uint32_t channelCount;     ///< Channels of the network's output that the file declares.
+    uint32_t validChannels;    ///< Bit c: channel c belongs to a texture. Others are garbage.
+    uint32_t textureCount;     ///< See sluiceGetNeuralTexture.
+    uint32_t latentImageCount; ///< See sluiceGetNeuralLatentImage.
+    SluiceNeuralNetwork network;
+    uint32_t inputCount;   ///< Inputs of the network: 48, 64, 80 or 96.
+    uint32_t highFeatures; ///< Codes per texel of the fine grid. 4, 8, 12 or 16.
+    uint32_t highBits;     ///< Bits per code: 1, 2, 4 or 8. Schema 3: 4.
+    uint32_t lowFeatures;  ///< Codes per texel of the coarse grid. Schema 3: highFeatures.
+    uint32_t lowBits;      ///< Bits per code. Schema 3: 4.
+    uint32_t gridScale;    ///< Texels of mip 0 per texel of the finest grid, rounded.
+    bool hasInt8, hasFp8;  ///< Weights in the file.
+    uint64_t fileSize;     ///< Bytes.
+    uint64_t latentSize;   ///< Bytes of all latents as stored.
+} SluiceNeuralSetInfo;
+
+/**
+ * Gets what a set contains.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceGetNeuralSetInfo(const SluiceNeuralSet *set,
+                                               SluiceNeuralSetInfo *pInfo);
+
+/** A texture: a run of channels. */
+typedef struct SluiceNeuralTexture {
+    uint32_t structSize;   ///< sizeof(SluiceNeuralTexture).
+    const char *pName;     ///< UTF-8 as the file has it. Lives as long as the set.
+    uint32_t firstChannel; ///< Below the set's channelCount.
+    uint32_t channelCount; ///< 1 to 4.
+    SluiceNeuralChannelFormat format;
+    SluiceNeuralColorSpace rgbColorSpace;   ///< Wanted of the decoded texture.
+    SluiceNeuralColorSpace alphaColorSpace; ///< Wanted of channel 3.
+    uint32_t bcFormat; ///< Block format the author proposes: 1 to 7 for BC1 to BC7, 0 for none.
+} SluiceNeuralTexture;
+
+/**
+ * Gets a texture.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize or an
+ *         `index` that is not below textureCount.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceGetNeuralTexture(const SluiceNeuralSet *set, uint32_t index,
+                                               SluiceNeuralTexture *pTexture);
+
+/**
+ * Gets the color space in which the network returns a channel.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a `channel` that is not
+ *         below channelCount.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceGetNeuralChannel(const SluiceNeuralSet *set, uint32_t channel,
+                                               SluiceNeuralColorSpace *pColorSpace);
+
+/** A mip. */
+typedef struct SluiceNeuralMip {
+    uint32_t structSize;       ///< sizeof(SluiceNeuralMip).
+    uint32_t width, height;    ///< Texels.
+    uint32_t latentImage;      ///< First latent image that it uses.
+    uint32_t latentImageCount; ///< Schema 1: 1. Schema 3: 2.
+    float positionLod;         ///< Level between its latent images, -1 to 2.
+    float positionScale;       ///< Factor of texel coordinates in the network's position input.
+    uint32_t firstFusedMip;    ///< First mip that uses the same latent images.
+    uint32_t fusedMipCount;    ///< Mips that use them, this one included.
+} SluiceNeuralMip;
+
+/**
+ * Gets a mip, the latent images that it uses and the mips that are fused with it.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize or a
+ *         `mip` that is not below mipCount.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceGetNeuralMip(const SluiceNeuralSet *set, uint32_t mip,
+                                           SluiceNeuralMip *pMip);
+
+/** A latent image. */
+typedef struct SluiceNeuralLatentImage {
+    uint32_t structSize;          ///< sizeof(SluiceNeuralLatentImage).
+    uint32_t width, height;       ///< Texels of the fine grid. Schema 3: of the image.
+    uint32_t lowWidth, lowHeight; ///< Texels of the coarse grid. Schema 3: 0.
+    uint32_t partCount;           ///< Parts in the file. See SluiceNeuralLatentPart.
+    uint32_t firstMip;            ///< First mip that uses it.
+    uint32_t mipCount;            ///< Mips that use it. 0: none does.
+} SluiceNeuralLatentImage;
+
+/**
+ * Gets a latent image and the mips that it serves.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize or an
+ *         `index` that is not below latentImageCount.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceGetNeuralLatentImage(const SluiceNeuralSet *set, uint32_t index,
+                                                   SluiceNeuralLatentImage *pImage);
+
+/** Bytes of a latent image in the file. Never grows. */
+typedef struct SluiceNeuralLatentPart {
+    uint64_t offset;     ///< From the start of the file.
+    uint64_t storedSize; ///< Bytes in the file.
+    uint64_t size;       ///< Bytes once decompressed.
+    bool isCompressed;   ///< GDeflate.
+} SluiceNeuralLatentPart;
+
+/**
+ * Gets where a part of a latent image lies in the file.
+ *
+ * Schema 1: part 0 is the fine grid, part 1 the coarse grid. Code e = (y * width + x) * features +
+ * feature is in bits e * bits of the little-endian bit string. Schema 3: part p is a layer of
+ * 16-bit texels with the features 4 p to 4 p + 3, the first one in bits 0 to 3; as an image
+ * VK_FORMAT_A4R4G4B4_UNORM_PACK16.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if `image` is not below
+ *         latentImageCount or `part` not below its partCount.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceGetNeuralLatentPart(const SluiceNeuralSet *set, uint32_t image,
+                                                  uint32_t part, SluiceNeuralLatentPart *pPart);
+
+/**
+ * Gets the range of bytes in the file that has all latents of `mipCount` mips from `firstMip` on.
+ * Other bytes may lie between them.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if `mipCount` is 0 or the mips
+ *         are not those of the set.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceGetNeuralLatentRange(const SluiceNeuralSet *set, uint32_t firstMip,
+                                                   uint32_t mipCount, uint64_t *pOffset,
+                                                   uint64_t *pSize);
+
+/**
+ * A rectangle of a grid of codes. 16 bytes. `sliceSize` 0: not resident.
+ *
+ * Code `feature` of texel (x, y) of the slice is the code e = (y * sliceWidth + x) * features +
+ * feature of a string of codes that begins `dataOffset` bytes behind the start of the latents. Its
+ * bits are e * bits and up, the lowest first, in little-endian words. Schema 3: texel (x, y) of the
+ * slice is texel ((left + x) mod gridWidth, (top + y) mod gridHeight) of the grid.
+ */
+typedef struct SluiceNeuralSlice {
+    uint32_t dataOffset; ///< Bytes, a multiple of 4.
+    uint32_t gridSize;   ///< Texels of the whole grid: width in bits 0 to 15, height above.
+    uint32_t origin;     ///< Texel of the grid where the slice begins: left, top.
+    uint32_t sliceSize;  ///< Texels of the slice: width, height.
+} SluiceNeuralSlice;
+
+/** What decoding a mip takes. 16 bytes. */
+typedef struct SluiceNeuralMipConstants {
+    uint32_t firstSlice; ///< Index of the first of its two slices.
+    int32_t lodCode;     ///< Level input of the network, -128 to 127.
+    float positionLod;   ///< Level input of the network with FP8 weights.
+    float positionScale; ///< Factor of texel coordinates in the position inputs.
+} SluiceNeuralMipConstants;
+
+/**
+ * What decoding takes beside latents and weights. 576 bytes of 32-bit scalars and arrays of them:
+ * the layout of the GLSL struct of this name in std430 and in scalar blocks. Never grows.
+ *
+ * Schema 1: latent image n has slice 2 n for its fine grid and 2 n + 1 for its coarse grid. Schema
+ * 3: latent image n has slice n.
+ */
+typedef struct SluiceNeuralConstants {
+    uint32_t schema;           ///< 1 or 3.
+    uint32_t width, height;    ///< Texels of mip 0.
+    uint32_t mipCount;         ///< Mips of the set.
+    uint32_t channelCount;     ///< Channels of the set.
+    uint32_t validChannels;    ///< Bit c: channel c belongs to a texture.
+    uint32_t inputCount;       ///< Inputs of the network: 48, 64, 80 or 96.
+    uint32_t networkFeatures;  ///< Inputs per corner (schema 1) or latent image (schema 3).
+    uint32_t highFeatures;     ///< Codes per texel of the first slice of a mip.
+    uint32_t highBits;         ///< Bits per code there.
+    uint32_t lowFeatures;      ///< Codes per texel of the second slice of a mip.
+    uint32_t lowBits;          ///< Bits per code there.
+    uint32_t firstMip;         ///< First mip whose slices are there.
+    uint32_t residentMipCount; ///< Mips whose slices are there.
+    uint32_t reserved[2];      ///< 0.
+    SluiceNeuralMipConstants mips[SLUICE_NEURAL_MAX_MIPS];
+    SluiceNeuralSlice slices[16];
+} SluiceNeuralConstants;
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+
+#endif /* SLUICE_NEURAL_H */
