@@ -338,6 +338,10 @@ typedef struct SluiceTileBatch {
     uint32_t mipLevel; ///< Level of `image`. Not the level of the texture, which is in `region`.
     uint32_t tileCount;
     const SluiceTileTarget *pTiles;
+    /** Texels of `mipLevel` of `image`. A copy of compressed blocks ends at a whole block, or
+     * there.
+     */
+    uint32_t levelWidth, levelHeight;
 } SluiceTileBatch;
 
 /**

@@ -232,7 +232,9 @@ static uint32_t ask_for_tiles(SluiceDemandLoader *loader, struct slc_producer_ca
                              .frameIndex = loader->launch,
                              .image = slc_page_image(loader->pages, place),
                              .imageView = slc_page_storage_view(loader->pages, place),
-                             .pTiles = targets};
+                             .pTiles = targets,
+                             .levelWidth = image->tile_width,
+                             .levelHeight = image->tile_height};
     uint32_t parts = 1, written = 0;
     for (uint32_t i = 0; i < count; i++) {
         struct slc_tile_part list[SLC_TILE_MAX_PARTS];

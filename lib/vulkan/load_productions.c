@@ -138,6 +138,8 @@ static void place_in_image(const SluiceVulkanStreamer *s, const struct slc_textu
     batch->image = texture->image.image;
     batch->mipLevel = region->mipLevel - texture->image.first_level;
     batch->imageView = views ? views[batch->mipLevel] : VK_NULL_HANDLE;
+    batch->levelWidth = slc_mip_size(texture->info.width, region->mipLevel);
+    batch->levelHeight = slc_mip_size(texture->info.height, region->mipLevel);
     *target = (SluiceTileTarget){*region, region->x, region->y, texture->layer};
     target->region.arrayLayer = texture->layer;
 }
@@ -156,6 +158,8 @@ static void place(const SluiceVulkanStreamer *s, const struct slc_unit *unit,
     batch->image = page.image;
     batch->imageView = page.view;
     batch->mipLevel = 0;
+    batch->levelWidth = texture->image.desc.tileWidth;
+    batch->levelHeight = texture->image.desc.tileHeight;
     *target = (SluiceTileTarget){.region = region, .layer = page.layer};
 }
 

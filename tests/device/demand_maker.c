@@ -29,6 +29,9 @@ static SluiceResult record_tiles(void *user, const SluiceTileBatch *batch, Sluic
     assert_int_equal(batch->textureId, m->id);
     for (uint32_t i = 0; i < batch->tileCount; i++) {
         assert_int_equal(answers[i], SLUICE_SUCCESS);
+        const SluiceTileTarget *t = &batch->pTiles[i];
+        assert_in_range(t->x + t->region.width, 1, batch->levelWidth);
+        assert_in_range(t->y + t->region.height, 1, batch->levelHeight);
         if (batch->pTiles[i].region.mipLevel == m->answer_level)
             answers[i] = m->answer;
         m->asked_count++;

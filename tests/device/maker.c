@@ -160,6 +160,11 @@ static SluiceResult record_tiles(void *user, const SluiceTileBatch *batch, Sluic
 {
     struct maker *m = user;
     for (uint32_t i = 0; i < batch->tileCount; i++) {
+        const SluiceTileTarget *t = &batch->pTiles[i];
+        assert_in_range(t->x + t->region.width, 1, batch->levelWidth);
+        assert_in_range(t->y + t->region.height, 1, batch->levelHeight);
+    }
+    for (uint32_t i = 0; i < batch->tileCount; i++) {
         if (batch->pTiles[i].region.mipLevel > 2) /* the mip tail is all or nothing */
             continue;
         uint32_t turn = ++m->turn;
