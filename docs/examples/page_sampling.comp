@@ -2,7 +2,10 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
+#define SLUICE_SET 2
 #define SLUICE_DEMAND_CUBIC true
+#include "sluice/bindings.glsl"
+#include "sluice/sample_stochastic.glsl"
 #include "sluice/demand_bindings.glsl"
 #include "sluice/demand.glsl"
 #include "sluice/demand_jitter.glsl"
@@ -10,6 +13,7 @@
 
 layout(std430, set = 1, binding = 0) buffer Answer { vec4 colors[]; } answer;
 layout(push_constant) uniform Draw { uint index; } draw;
+layout(set = 1, binding = 1) uniform sampler2D tex;
 layout(local_size_x = 8, local_size_y = 8) in;
 
 vec3 bumpNormal(uint index, vec2 uv, vec2 dx, vec2 dy, float height, vec3 tangent, vec3 bitangent, vec3 normal)
@@ -27,6 +31,14 @@ vec4 hitJittered(uint index, vec2 at, vec2 dx, vec2 dy, vec2 random)
     bool resident;
     vec2 jittered = sluiceDemandJitter(index, at, dx, dy, SLUICE_JITTER_TENT, random);
     vec4 color = sluiceDemandGrad(index, jittered, dx, dy, resident);
+    return color;
+}
+
+vec4 sampleStochastic(uint tableIndex, uvec2 pixel, uint frame, vec2 uv, float lod)
+{
+    uint missing;
+    vec2 random = sluiceRandomPair(uvec3(pixel, frame));
+    vec4 color = sluiceSampleStochastic(tex, tableIndex, uv, lod, SLUICE_PICK_CUBIC, 0.0, true, random, missing);
     return color;
 }
 
@@ -70,6 +82,7 @@ void main()
     answer.colors[1] = hitWithCone(draw.index, cone, p, n, uv, vec2(0.5), direction, 1.0, n[0]);
     SluiceRayDifferential ray = sluiceCameraDifferential(direction, vec3(0.0, 0.001, 0.0), vec3(0.0, 0.0, 0.001));
     answer.colors[3] = hitJittered(draw.index, uv[0], vec2(0.01, 0.0), vec2(0.0, 0.01), vec2(0.25));
+    answer.colors[4] = sampleStochastic(draw.index, gl_GlobalInvocationID.xy, 1u, vec2(0.5), 1.5);
     SluiceRayTriangle t = sluiceFindRayTriangle(p[0], p[1], p[2], uv[0], uv[1], uv[2]);
     answer.colors[2] = hitWithDifferential(draw.index, ray, t, n, vec2(0.0), uv[0], direction, 1.0, n[0]);
 }

@@ -11,6 +11,20 @@
 /* Steps of filter weights. Devices usually have at least these, and sums of weights stay exactly 1. */
 #define SLUICE_FILTER_STEPS 256.0
 
+/* The sampler's border color. Define it before to change it. */
+#ifndef SLUICE_BORDER_COLOR
+#define SLUICE_BORDER_COLOR vec4(0.0)
+#endif
+
+/** Returns the border color, limited to the components of the format. */
+vec4 sluiceBorder(SluiceTextureEntry entry)
+{
+    uint count = (entry.flags >> SLUICE_TEXTURE_COMPONENTS_SHIFT) & 7u;
+    vec4 color = SLUICE_BORDER_COLOR;
+    return vec4(color.r, count > 1u ? color.g : 0.0, count > 2u ? color.b : 0.0,
+                count > 3u ? color.a : 1.0);
+}
+
 /** Axis of a bilinear sample, in texels of a level. */
 struct SluicePageAxis {
     int low, high; /* -1: beyond the border */

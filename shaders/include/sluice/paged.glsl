@@ -16,11 +16,6 @@
 #include "lod.glsl"
 #include "page_filter.glsl"
 
-/* The sampler's border color. Define it before to change it. */
-#ifndef SLUICE_BORDER_COLOR
-#define SLUICE_BORDER_COLOR vec4(0.0)
-#endif
-
 ivec2 sluiceLevelSize(SluiceTextureEntry entry, uint level)
 {
     return max(ivec2(uvec2(entry.width, entry.height) >> level), ivec2(1));
@@ -51,15 +46,6 @@ vec4 sluiceFetchPaged(SluiceTextureEntry entry, uint level, ivec2 texel)
     ivec3 at = ivec3(texel & ((ivec2(1) << shift) - 1), page & 0xFFFFu);
     SLUICE_WITH_PAGE(page, color = texelFetch(SLUICE_PAGE_TEXTURE(chunk), at, 0))
     return color;
-}
-
-/** Returns the border color, limited to the components of the format. */
-vec4 sluiceBorder(SluiceTextureEntry entry)
-{
-    uint count = (entry.flags >> SLUICE_TEXTURE_COMPONENTS_SHIFT) & 7u;
-    vec4 color = SLUICE_BORDER_COLOR;
-    return vec4(color.r, count > 1u ? color.g : 0.0, count > 2u ? color.b : 0.0,
-                count > 3u ? color.a : 1.0);
 }
 
 vec4 sluiceFetchOrBorder(SluiceTextureEntry entry, uint level, int x, int y)
