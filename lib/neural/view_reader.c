@@ -1,0 +1,148 @@
+#include "neural/view_reader.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/little_endian.h"
+#include "neural/gdeflate.h"
+
+#include <string.h>
+#include <zlib.h>
+
+/* Stored blocks make a tile larger by a few bytes; no writer goes beyond. */
+#define MAX_STORED_TILE (2 * SLC_GDEFLATE_TILE)
+
+static SluiceResult corrupt(const SluiceNeuralSet *set, const struct slc_neural_view *view,
+                            const char *what)
+{
+    return slc_input_fail_at(&set->file, SLUICE_ERROR_CORRUPT_DATA, view->offset, what);
+}
+
+/* Where a tile lies in the file. Entry 0 of the table is the size of the last tile, or what writers
+ * took for it: it is not used, the last tile ends with the view. */
+static SluiceResult find_tile(const SluiceNeuralSet *set, const struct slc_neural_view *view,
+                              uint32_t count, uint32_t tile, uint64_t *offset, uint64_t *size)
+{
+    uint8_t entries[8] = {0};
+    uint64_t begin = 0, table = SLC_GDEFLATE_HEADER + 4 * (uint64_t)count;
+    if (table > view->stored_size)
+        return corrupt(set, view, "compressed latents are shorter than their table");
+    uint64_t end = view->stored_size - table;
+    bool is_first = tile == 0, is_last = tile + 1 == count;
+    if (!is_first || !is_last) {
+        /* this tile's entry and the next one's, as far as there are any */
+        uint32_t from = is_first ? 1 : tile, to = is_last ? tile : tile + 1;
+        SluiceResult result =
+            slc_input_file_read(&set->file, view->offset + SLC_GDEFLATE_HEADER + 4 * (uint64_t)from,
+                                entries, 4 * (size_t)(to - from + 1));
+        if (result != SLUICE_SUCCESS)
+            return result;
+        begin = is_first ? 0 : slc_get_u32(entries);
+        end = is_last ? end : slc_get_u32(entries + (is_first ? 0 : 4));
+    }
+    if (begin > end || end > view->stored_size - table || end - begin > MAX_STORED_TILE)
+        return corrupt(set, view, "compressed latents have a table that contradicts itself");
+    *offset = view->offset + table + begin;
+    *size = end - begin;
+    return SLUICE_SUCCESS;
+}
+
+/* Room for one tile as stored and inflated. */
+struct tile_room {
+    uint8_t *stored; /* MAX_STORED_TILE */
+    uint8_t *bytes;  /* SLC_GDEFLATE_TILE */
+};
+
+static SluiceResult inflate_tile(const SluiceNeuralSet *set, const struct slc_neural_view *view,
+                                 uint32_t count, uint32_t tile, const struct tile_room *room)
+{
+    uint64_t offset = 0, stored = 0;
+    uint64_t left = view->size - (uint64_t)tile * SLC_GDEFLATE_TILE;
+    SluiceResult result = find_tile(set, view, count, tile, &offset, &stored);
+    if (result == SLUICE_SUCCESS)
+        result = slc_input_file_read(&set->file, offset, room->stored, (size_t)stored);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (slc_gdeflate_inflate(room->stored, (size_t)stored, room->bytes,
+                             (size_t)slc_min_u64(left, SLC_GDEFLATE_TILE)))
+        return SLUICE_SUCCESS;
+    return corrupt(set, view, "compressed latents do not inflate");
+}
+
+static SluiceResult read_tiles(const SluiceNeuralSet *set, const struct slc_neural_view *view,
+                               uint64_t offset, size_t size, uint8_t *bytes,
+                               const struct tile_room *room)
+{
+    uint8_t head[SLC_GDEFLATE_HEADER];
+    struct slc_gdeflate_header header;
+    if (view->stored_size < sizeof head)
+        return corrupt(set, view, "compressed latents are shorter than their header");
+    SluiceResult result = slc_input_file_read(&set->file, view->offset, head, sizeof head);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!slc_gdeflate_read_header(head, &header) || header.size != view->size)
+        return corrupt(set, view, "compressed latents have a header that contradicts their view");
+    while (size && result == SLUICE_SUCCESS) {
+        uint32_t tile = (uint32_t)(offset / SLC_GDEFLATE_TILE);
+        size_t at = (size_t)(offset % SLC_GDEFLATE_TILE);
+        size_t part = SLC_GDEFLATE_TILE - at < size ? SLC_GDEFLATE_TILE - at : size;
+        result = inflate_tile(set, view, header.tile_count, tile, room);
+        if (result == SLUICE_SUCCESS)
+            memcpy(bytes, room->bytes + at, part);
+        bytes += part;
+        offset += part;
+        size -= part;
+    }
+    return result;
+}
+
+SluiceResult slc_neural_read_view_part(const SluiceNeuralSet *set,
+                                       const struct slc_neural_view *view, uint64_t offset,
+                                       size_t size, void *bytes)
+{
+    if (!view->is_compressed)
+        return slc_input_file_read(&set->file, view->offset + offset, bytes, size);
+    struct tile_room room;
+    room.stored = slc_alloc(&set->allocator, MAX_STORED_TILE + SLC_GDEFLATE_TILE, 1);
+    if (!room.stored)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    room.bytes = room.stored + MAX_STORED_TILE;
+    SluiceResult result = read_tiles(set, view, offset, size, bytes, &room);
+    slc_free(&set->allocator, room.stored, MAX_STORED_TILE + SLC_GDEFLATE_TILE, 1);
+    return result;
+}
+
+static SluiceResult compare(const SluiceNeuralSet *set, const struct slc_neural_view *view,
+                            uint32_t crc)
+{
+    if (view->crc == 0 || view->crc == crc)
+        return SLUICE_SUCCESS;
+    return corrupt(set, view, "checksum mismatch");
+}
+
+SluiceResult slc_neural_read_view(const SluiceNeuralSet *set, const struct slc_neural_view *view,
+                                  void *bytes)
+{
+    SluiceResult result = slc_neural_read_view_part(set, view, 0, (size_t)view->size, bytes);
+    if (result == SLUICE_SUCCESS && view->crc)
+        result = compare(set, view, (uint32_t)crc32_z(0, bytes, (size_t)view->size));
+    return result;
+}
+
+SluiceResult slc_neural_verify_view(const SluiceNeuralSet *set, const struct slc_neural_view *view)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    uLong crc = 0;
+    if (view->crc == 0)
+        return SLUICE_SUCCESS;
+    uint8_t *bytes = slc_alloc(&set->allocator, SLC_GDEFLATE_TILE, 1);
+    if (!bytes)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint64_t at = 0; at < view->size && result == SLUICE_SUCCESS; at += SLC_GDEFLATE_TILE) {
+        size_t size = (size_t)slc_min_u64(view->size - at, SLC_GDEFLATE_TILE);
+        result = slc_neural_read_view_part(set, view, at, size, bytes);
+        if (result == SLUICE_SUCCESS)
+            crc = crc32_z(crc, bytes, size);
+    }
+    slc_free(&set->allocator, bytes, SLC_GDEFLATE_TILE, 1);
+    return result == SLUICE_SUCCESS ? compare(set, view, (uint32_t)crc) : result;
+}
