@@ -1,0 +1,297 @@
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "neural/slices.h"
+#include "neural/view_reader.h"
+
+#include <string.h>
+
+/* Fills in defaults and checks that the set has these texels. */
+static SluiceResult check_request(const SluiceNeuralSet *set, const SluiceNeuralRequest *given,
+                                  struct slc_neural_request *request)
+{
+    SluiceNeuralRequest r = given ? *given : (SluiceNeuralRequest){0};
+    if (r.firstMip < set->info.mipCount && r.mipCount == 0)
+        r.mipCount = set->info.mipCount - r.firstMip;
+    SluiceResult result = slc_neural_check_mips(set, r.firstMip, r.mipCount);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    const struct slc_neural_mip *mip = &set->mips[r.firstMip];
+    if (r.width == 0 && r.height == 0 && r.x == 0 && r.y == 0) {
+        r.width = mip->width;
+        r.height = mip->height;
+    }
+    if (r.width == 0 || r.height == 0 || r.x >= mip->width || r.width > mip->width - r.x ||
+        r.y >= mip->height || r.height > mip->height - r.y)
+        return slc_log_refusal(
+            &set->file.log, "%s: rectangle is %u x %u at %u, %u; mip %u has %u x %u texels",
+            set->file.path, r.width, r.height, r.x, r.y, r.firstMip, mip->width, mip->height);
+    *request = (struct slc_neural_request){r.firstMip, r.mipCount, {r.x, r.y}, {r.width, r.height}};
+    return SLUICE_SUCCESS;
+}
+
+static void fill_constants(const SluiceNeuralSet *set, const struct slc_neural_request *request,
+                           SluiceNeuralConstants *constants)
+{
+    const SluiceNeuralSetInfo *info = &set->info;
+    *constants = (SluiceNeuralConstants){
+        .schema = info->schema,
+        .width = info->width,
+        .height = info->height,
+        .mipCount = info->mipCount,
+        .channelCount = info->channelCount,
+        .validChannels = info->validChannels,
+        .inputCount = info->inputCount,
+        .networkFeatures = info->schema == 1 ? (info->inputCount - 32) / 4 : 16,
+        .highFeatures = info->highFeatures,
+        .highBits = info->highBits,
+        .lowFeatures = info->lowFeatures,
+        .lowBits = info->lowBits,
+        .firstMip = request->first_mip,
+        .residentMipCount = request->mip_count,
+    };
+    for (uint32_t i = 0; i < info->mipCount; i++) {
+        const struct slc_neural_mip *mip = &set->mips[i];
+        constants->mips[i] = (SluiceNeuralMipConstants){
+            mip->first_grid, slc_neural_wave_code(info->schema, mip->position_lod),
+            mip->position_lod, mip->position_scale};
+    }
+}
+
+/* Rows of one part of a grid. Compressed ones are inflated together. */
+struct rows {
+    const SluiceNeuralSet *set;
+    const struct slc_neural_view *view;
+    uint8_t *bytes;
+    size_t size;
+    uint64_t begin; ///< byte of the view that `bytes` begins with; compressed views
+};
+
+/* `begin_bit` of the first row to `end_bit` of the last one; `row_bits` of one row. */
+static SluiceResult open_rows(struct rows *rows, const SluiceNeuralSet *set,
+                              const struct slc_neural_view *view, uint64_t begin_bit,
+                              uint64_t end_bit, uint64_t row_bits)
+{
+    *rows = (struct rows){.set = set, .view = view, .begin = begin_bit / 8};
+    rows->size = view->is_compressed ? (size_t)((end_bit + 7) / 8 - rows->begin)
+                                     : (size_t)(row_bits / 8 + 2);
+    rows->bytes = slc_alloc(&set->allocator, rows->size, 1);
+    if (!rows->bytes)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    return view->is_compressed
+               ? slc_neural_read_view_part(set, view, rows->begin, rows->size, rows->bytes)
+               : SLUICE_SUCCESS;
+}
+
+/* `*bytes` holds bits from `bit` on; the first one is bit `bit` mod 8 of the first byte. */
+static SluiceResult read_row(const struct rows *rows, uint64_t bit, uint64_t count,
+                             const uint8_t **bytes)
+{
+    uint64_t first = bit / 8, end = (bit + count + 7) / 8;
+    if (rows->view->is_compressed) {
+        *bytes = rows->bytes + (first - rows->begin);
+        return SLUICE_SUCCESS;
+    }
+    *bytes = rows->bytes;
+    return slc_neural_read_view_part(rows->set, rows->view, first, (size_t)(end - first),
+                                     rows->bytes);
+}
+
+static void close_rows(struct rows *rows)
+{
+    slc_free(&rows->set->allocator, rows->bytes, rows->size, 1);
+}
+
+/* Copies `count` bits, a multiple of 4, from `from` bits behind `in` to `to` bits behind `out`. */
+static void copy_bits(uint8_t *out, uint64_t to, const uint8_t *in, uint32_t from, uint64_t count)
+{
+    if ((to | from | count) % 8 == 0) {
+        memcpy(out + to / 8, in + from / 8, (size_t)(count / 8));
+        return;
+    }
+    for (uint64_t i = 0; i < count; i += 4) {
+        uint64_t source = from + i, target = to + i;
+        uint8_t nibble = in[source / 8] >> source % 8 & 15;
+        out[target / 8] =
+            (uint8_t)((out[target / 8] & ~(15u << target % 8)) | (uint32_t)nibble << target % 8);
+    }
+}
+
+/* A rectangle of a grid, as it lies in one run of rows and columns of the file. */
+struct block {
+    const struct slc_neural_grid *grid;
+    uint32_t left, top, width, height; ///< in the grid
+    uint32_t to_x, to_y;               ///< in the slice
+    uint32_t slice_width;
+};
+
+/* Schema 1: codes lie in the file as in the slice. */
+static SluiceResult copy_block_1(const SluiceNeuralSet *set, const struct block *b, uint8_t *out)
+{
+    uint64_t bits = b->grid->features * b->grid->bits, pitch = b->grid->width * bits;
+    uint64_t begin = b->top * pitch + b->left * bits;
+    struct rows rows;
+    const uint8_t *row;
+    SluiceResult result =
+        open_rows(&rows, set, &b->grid->parts[0], begin,
+                  begin + (b->height - 1) * pitch + b->width * bits, b->width * bits);
+    for (uint32_t y = 0; y < b->height && result == SLUICE_SUCCESS; y++) {
+        uint64_t bit = begin + y * pitch;
+        result = read_row(&rows, bit, b->width * bits, &row);
+        if (result == SLUICE_SUCCESS)
+            copy_bits(out, ((uint64_t)(b->to_y + y) * b->slice_width + b->to_x) * bits, row,
+                      (uint32_t)(bit % 8), b->width * bits);
+    }
+    close_rows(&rows);
+    return result;
+}
+
+/* Schema 3: a layer has 4 codes of each texel; in the slice those of a texel lie together. */
+static SluiceResult copy_layer(const SluiceNeuralSet *set, const struct block *b, uint32_t layer,
+                               uint8_t *out)
+{
+    uint64_t pitch = 16 * (uint64_t)b->grid->width, begin = b->top * pitch + 16 * (uint64_t)b->left;
+    uint32_t layers = b->grid->part_count;
+    struct rows rows;
+    const uint8_t *row;
+    SluiceResult result =
+        open_rows(&rows, set, &b->grid->parts[layer], begin,
+                  begin + (b->height - 1) * pitch + 16 * (uint64_t)b->width, 16 * b->width);
+    for (uint32_t y = 0; y < b->height && result == SLUICE_SUCCESS; y++) {
+        uint8_t *texel =
+            out + 2 * (((size_t)(b->to_y + y) * b->slice_width + b->to_x) * layers + layer);
+        result = read_row(&rows, begin + y * pitch, 16 * (uint64_t)b->width, &row);
+        for (uint32_t x = 0; x < b->width && result == SLUICE_SUCCESS; x++, texel += 2 * layers)
+            memcpy(texel, row + 2 * (size_t)x, 2);
+    }
+    close_rows(&rows);
+    return result;
+}
+
+static SluiceResult copy_block_3(const SluiceNeuralSet *set, const struct block *b, uint8_t *out)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t i = 0; i < b->grid->part_count && result == SLUICE_SUCCESS; i++)
+        result = copy_layer(set, b, i, out);
+    return result;
+}
+
+/* The first read of a view compares its checksum. */
+static SluiceResult verify_grid(const SluiceNeuralSet *set, uint32_t grid)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    if (atomic_load(&set->verified[grid]))
+        return result;
+    for (uint32_t i = 0; i < set->grids[grid].part_count && result == SLUICE_SUCCESS; i++)
+        result = slc_neural_verify_view(set, &set->grids[grid].parts[i]);
+    if (result == SLUICE_SUCCESS)
+        atomic_store(&set->verified[grid], true);
+    return result;
+}
+
+/* A slice that wraps has up to four blocks. */
+static SluiceResult read_slice(const SluiceNeuralSet *set, uint32_t index,
+                               const SluiceNeuralSlice *slice, uint8_t *out)
+{
+    const struct slc_neural_grid *grid = &set->grids[index];
+    uint32_t width = slice->sliceSize & 0xFFFF, height = slice->sliceSize >> 16;
+    SluiceResult result = verify_grid(set, index);
+    struct block b = {.grid = grid, .slice_width = width};
+    for (b.to_y = 0; b.to_y < height && result == SLUICE_SUCCESS; b.to_y += b.height) {
+        b.top = ((slice->origin >> 16) + b.to_y) % grid->height;
+        b.height = slc_min_u32(height - b.to_y, grid->height - b.top);
+        for (b.to_x = 0; b.to_x < width && result == SLUICE_SUCCESS; b.to_x += b.width) {
+            b.left = ((slice->origin & 0xFFFF) + b.to_x) % grid->width;
+            b.width = slc_min_u32(width - b.to_x, grid->width - b.left);
+            result = (set->info.schema == 1 ? copy_block_1 : copy_block_3)(set, &b, out);
+        }
+    }
+    return result;
+}
+
+static SluiceResult read_slices(const SluiceNeuralSet *set, const SluiceNeuralConstants *constants,
+                                uint64_t size, uint8_t *bytes)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    memset(bytes, 0, (size_t)size);
+    for (uint32_t i = 0; i < set->grid_count && result == SLUICE_SUCCESS; i++)
+        if (constants->slices[i].sliceSize)
+            result =
+                read_slice(set, i, &constants->slices[i], bytes + constants->slices[i].dataOffset);
+    return result;
+}
+
+static SluiceResult check_size(const SluiceNeuralSet *set, uint64_t size)
+{
+    if (size <= SLC_NEURAL_MAX_LATENTS)
+        return SLUICE_SUCCESS;
+    return slc_input_fail(&set->file, SLUICE_ERROR_LIMIT_EXCEEDED,
+                          "needs %llu bytes of latents for the texels asked for; at most 2^29 are "
+                          "possible, ask for a smaller rectangle",
+                          (unsigned long long)size);
+}
+
+SluiceResult sluiceReadNeuralLatents(const SluiceNeuralSet *set,
+                                     const SluiceNeuralRequest *pRequest,
+                                     SluiceNeuralConstants *pConstants, uint64_t *pSize,
+                                     void *pBytes)
+{
+    struct slc_neural_request request;
+    SluiceNeuralConstants constants;
+    if (!set || !pConstants || !pSize)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = check_request(set, pRequest, &request);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    fill_constants(set, &request, &constants);
+    uint64_t size = slc_neural_make_slices(set, &request, constants.slices), room = *pSize;
+    result = check_size(set, size);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *pSize = size;
+    if (pBytes && room < size)
+        return SLUICE_ERROR_SIZE_MISMATCH;
+    if (pBytes)
+        result = read_slices(set, &constants, size, pBytes);
+    if (result == SLUICE_SUCCESS)
+        *pConstants = constants;
+    return result;
+}
+
+SluiceResult sluiceBoundNeuralLatents(const SluiceNeuralSet *set,
+                                      const SluiceNeuralRequest *pRequest, uint32_t alignment,
+                                      uint64_t *pSize)
+{
+    struct slc_neural_request request;
+    if (!set || !pRequest || !pSize)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceNeuralRequest at_origin = *pRequest;
+    at_origin.x = at_origin.y = 0;
+    SluiceResult result = check_request(set, &at_origin, &request);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    bool is_power = alignment && !(alignment & (alignment - 1));
+    *pSize = slc_neural_bound_slices(set, &request, is_power ? alignment : 1);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceReadNeuralLatentPart(const SluiceNeuralSet *set, uint32_t image, uint32_t part,
+                                        uint64_t *pSize, void *pBytes)
+{
+    SluiceNeuralLatentPart found;
+    if (!pSize)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = sluiceGetNeuralLatentPart(set, image, part, &found);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint64_t room = *pSize;
+    *pSize = found.size;
+    if (!pBytes)
+        return SLUICE_SUCCESS;
+    if (room < found.size)
+        return SLUICE_ERROR_SIZE_MISMATCH;
+    bool is_one = set->info.schema == 1;
+    return slc_neural_read_view(
+        set, is_one ? &set->grids[2 * image + part].parts[0] : &set->grids[image].parts[part],
+        pBytes);
+}
