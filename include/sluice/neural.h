@@ -48,10 +48,11 @@ typedef struct SluiceNeuralSetCreateInfo {
 } SluiceNeuralSetCreateInfo;
 
 /**
- * Opens a file and reads its description. `*pSet` belongs to the caller, who destroys it with
- * sluiceDestroyNeuralSet.
+ * Opens a file and reads its description and its weights. `*pSet` belongs to the caller, who
+ * destroys it with sluiceDestroyNeuralSet.
  *
- * Every field of the file is checked. Memory: the description, at most 1 MiB.
+ * Every field of the file is checked. Memory: the description, at most 1 MiB, and the weights, at
+ * most 34 KiB.
  *
  * Returns SLUICE_NOT_READY if the input says so, or if no file descriptor is free: call again.
  *
@@ -154,7 +155,7 @@ SLUICE_API SluiceResult sluiceGetNeuralTexture(const SluiceNeuralSet *set, uint3
                                                SluiceNeuralTexture *pTexture);
 
 /**
- * Gets the color space in which the network returns a channel.
+ * Gets the color space in which the network returns a channel (sluiceConvertNeuralColor).
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a `channel` that is not
  *         below channelCount.
@@ -288,6 +289,153 @@ typedef struct SluiceNeuralConstants {
     SluiceNeuralMipConstants mips[SLUICE_NEURAL_MAX_MIPS];
     SluiceNeuralSlice slices[16];
 } SluiceNeuralConstants;
+
+/** Stands for a constant in SluiceNeuralOutput::channel. */
+#define SLUICE_NEURAL_CONSTANT UINT32_MAX
+
+/** What an output of the network is. Never grows. */
+typedef struct SluiceNeuralOutput {
+    uint32_t channel; ///< A channel of the set, or SLUICE_NEURAL_CONSTANT.
+    float constant;   ///< The value if `channel` says so, rounded to 1 / 65536. Below 32768.
+} SluiceNeuralOutput;
+
+/**
+ * Writes the weights of the network as decoders read them.
+ *
+ * `pOutputs` may be NULL: output c is channel c. Otherwise it has 16 elements, which say what each
+ * output of the decoder becomes. So sets with other channels may share one shader; the last layer
+ * has its rows in another order, and constants cost nothing.
+ *
+ * `pBytes` may be NULL: `*pSize` becomes the number of bytes. Otherwise `*pSize` says how many
+ * bytes there are at `pBytes`, and becomes how many were written. The bytes, for layers of inputs x
+ * outputs neurons (network):
+ * - weights of the layers 0 to 3, [output][input], one byte each: INT8, or E4M3 in layers 0 to 2;
+ * - INT8: all scales (float), then all biases (int32), layer after layer;
+ * - FP8: biases of the layers 0 to 2 (half), then scales (float) and biases (int32) of layer 3.
+ * Smaller networks are padded. Sizes: schema 1 INT8 13952, 14976, 16000, 17024, FP8 512 bytes more
+ * than its weights; schema 3 9472 and 8608.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT; SLUICE_ERROR_SIZE_MISMATCH if
+ *         `*pSize` is too small (`*pSize` has the size then); SLUICE_ERROR_UNSUPPORTED if the file
+ *         has no weights of this kind.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceGetNeuralWeights(const SluiceNeuralSet *set,
+                                               SluiceNeuralWeightKind kind,
+                                               const SluiceNeuralOutput *pOutputs, uint64_t *pSize,
+                                               void *pBytes);
+
+/** Texels to decode: a rectangle of mip `firstMip`, and what lies over it in coarser mips. All
+ *  zeros: the whole set. Never grows. */
+typedef struct SluiceNeuralRequest {
+    uint32_t firstMip;      ///< Finest mip.
+    uint32_t mipCount;      ///< Mips from firstMip on. 0: all.
+    uint32_t x, y;          ///< Texels of mip firstMip.
+    uint32_t width, height; ///< Texels of mip firstMip. 0 and 0: the whole mip; x and y are 0 then.
+} SluiceNeuralRequest;
+
+/**
+ * Reads the latents that decoding the texels of a request takes, and the constants that go with
+ * them. Upload both, or pass them to sluiceDecodeNeuralTexels.
+ *
+ * Each pair of grids that the mips use becomes two slices. A slice is the rectangle that the
+ * coarsest of these mips takes, so that the slices of fused mips are read once. Texels of a request
+ * decode to the same bits from its slices as from all latents. Schema 1: slices are those of
+ * compressors of version 0.7, byte for byte, if each mip is half of the one before; otherwise they
+ * may be larger.
+ *
+ * `pRequest` may be NULL: the whole set. `pBytes` may be NULL: nothing is read, `*pSize` becomes
+ * the number of bytes and `*pConstants` is filled. Otherwise `*pSize` says how many bytes there are
+ * at `pBytes`, and becomes how many were written. The first read of compressed latents compares
+ * their checksum.
+ *
+ * Returns SLUICE_NOT_READY if the input says so, or if no file descriptor is free: call again.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for mips or texels that the set
+ *         does not have; SLUICE_ERROR_SIZE_MISMATCH if `*pSize` is too small (`*pSize` has the size
+ *         then); SLUICE_ERROR_LIMIT_EXCEEDED for more than 2^29 bytes; SLUICE_ERROR_IO;
+ *         SLUICE_ERROR_CORRUPT_DATA for latents that do not inflate or fail their checksum;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. `*pConstants` is unchanged after an error, the bytes are
+ *         undefined.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceReadNeuralLatents(const SluiceNeuralSet *set,
+                                                const SluiceNeuralRequest *pRequest,
+                                                SluiceNeuralConstants *pConstants, uint64_t *pSize,
+                                                void *pBytes);
+
+/**
+ * Gets a number of bytes that sluiceReadNeuralLatents never exceeds, for requests of this size
+ * whose x and y are multiples of `alignment`. x and y of the request are ignored. Slots of this
+ * size fit every tile.
+ *
+ * An `alignment` that is no power of two counts as 1.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for mips or sizes that the set
+ *         does not have.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceBoundNeuralLatents(const SluiceNeuralSet *set,
+                                                 const SluiceNeuralRequest *pRequest,
+                                                 uint32_t alignment, uint64_t *pSize);
+
+/**
+ * Reads a part of a latent image as the file has it, inflated (sluiceGetNeuralLatentPart).
+ *
+ * `pBytes` may be NULL: `*pSize` becomes the number of bytes. Otherwise `*pSize` says how many
+ * bytes there are at `pBytes`, and becomes how many were written.
+ *
+ * Returns and errors: as sluiceReadNeuralLatents.
+ * Thread safety: may run beside calls that take a const set.
+ */
+SLUICE_API SluiceResult sluiceReadNeuralLatentPart(const SluiceNeuralSet *set, uint32_t image,
+                                                   uint32_t part, uint64_t *pSize, void *pBytes);
+
+/** Texels to decode on the host. */
+typedef struct SluiceNeuralDecodeInfo {
+    uint32_t structSize;                     ///< sizeof(SluiceNeuralDecodeInfo).
+    const SluiceNeuralConstants *pConstants; ///< Of sluiceReadNeuralLatents.
+    const void *pLatents;                    ///< Of the same call.
+    uint64_t latentSize;                     ///< Bytes.
+    const void *pWeights;                    ///< Of sluiceGetNeuralWeights.
+    uint64_t weightSize;                     ///< Bytes.
+    SluiceNeuralWeightKind weightKind;
+    uint32_t mip;
+    uint32_t x, y, width, height; ///< Texels of the mip.
+    uint32_t firstChannel;        ///< First output of the network to write.
+    uint32_t channelCount;        ///< Outputs to write. 1 to 16.
+    /** Required. Row y, column x, channel c are written to [y * rowPitch + x * channelCount + c].
+     */
+    float *pTexels;
+    uint64_t rowPitch;     ///< Floats from a row to the next one. Default: width * channelCount.
+    SluiceLogCallback log; ///< Arguments that are refused.
+} SluiceNeuralDecodeInfo;
+
+/**
+ * Decodes a rectangle of a mip on the calling thread. Takes no memory.
+ *
+ * Values are those of the network: in the channel's color space, and perhaps a little outside of 0
+ * to 1. With INT8 weights the result is the same bits on every machine. With FP8 weights inputs
+ * are rounded to half before they are rounded to E4M3, and sums are in 32-bit floats, in the order
+ * of the inputs; other decoders differ by rounding.
+ *
+ * Returns SLUICE_NOT_READY, with nothing written, if the slices do not have the latents of these
+ * texels.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for texels or channels that do
+ *         not exist, for constants that contradict themselves, and for too few bytes of latents or
+ *         weights.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceDecodeNeuralTexels(const SluiceNeuralDecodeInfo *pInfo);
+
+/**
+ * Converts a value from one color space to another. Negative values of sRGB are on its linear part;
+ * HLG is symmetric about 0. Clamp to 0..1 before storing as UNORM.
+ * Thread safety: any thread.
+ */
+SLUICE_API float sluiceConvertNeuralColor(float value, SluiceNeuralColorSpace from,
+                                          SluiceNeuralColorSpace to);
 
 #ifdef __cplusplus
 } /* extern "C" */

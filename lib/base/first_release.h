@@ -40,6 +40,7 @@
 #define SLC_FIRST_SluiceProxyBoxWrite SLC_UP_TO(SluiceProxyBoxWrite, pRanges)
 #define SLC_FIRST_SluiceNeuralSetCreateInfo SLC_UP_TO(SluiceNeuralSetCreateInfo, filePool)
 #define SLC_FIRST_SluiceNeuralSetInfo SLC_UP_TO(SluiceNeuralSetInfo, latentSize)
+#define SLC_FIRST_SluiceNeuralDecodeInfo SLC_UP_TO(SluiceNeuralDecodeInfo, log)
 #define SLC_FIRST_SluiceNeuralTexture SLC_UP_TO(SluiceNeuralTexture, bcFormat)
 #define SLC_FIRST_SluiceNeuralMip SLC_UP_TO(SluiceNeuralMip, fusedMipCount)
 #define SLC_FIRST_SluiceNeuralLatentImage SLC_UP_TO(SluiceNeuralLatentImage, mipCount)

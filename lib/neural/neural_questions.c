@@ -136,14 +136,13 @@ SluiceResult sluiceGetNeuralLatentPart(const SluiceNeuralSet *set, uint32_t imag
     return SLUICE_SUCCESS;
 }
 
-bool slc_neural_has_mips(const SluiceNeuralSet *set, uint32_t first, uint32_t count)
+SluiceResult slc_neural_check_mips(const SluiceNeuralSet *set, uint32_t first, uint32_t count)
 {
     uint32_t all = set->info.mipCount;
     if (count && first < all && count <= all - first)
-        return true;
-    slc_log_refusal(&set->file.log, "%s: %u mips from %u on; the file has %u", set->file.path,
-                    count, first, all);
-    return false;
+        return SLUICE_SUCCESS;
+    return slc_log_refusal(&set->file.log, "%s: %u mips from %u on; the file has %u",
+                           set->file.path, count, first, all);
 }
 
 static void widen(const struct slc_neural_grid *grid, uint64_t *begin, uint64_t *end)
@@ -161,8 +160,9 @@ SluiceResult sluiceGetNeuralLatentRange(const SluiceNeuralSet *set, uint32_t fir
 {
     if (!set || !pOffset || !pSize)
         return SLUICE_ERROR_NULL_POINTER;
-    if (!slc_neural_has_mips(set, firstMip, mipCount))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = slc_neural_check_mips(set, firstMip, mipCount);
+    if (result != SLUICE_SUCCESS)
+        return result;
     uint64_t begin = UINT64_MAX, end = 0;
     for (uint32_t i = firstMip; i < firstMip + mipCount; i++) {
         widen(&set->grids[set->mips[i].first_grid], &begin, &end);

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/struct_size.h"
+#include "neural/network.h"
 #include "base/little_endian.h"
 
 #include <stdio.h>
@@ -83,6 +84,8 @@ static SluiceResult read_set(SluiceNeuralSet *set, struct slc_neural_document *d
         result = parse_text(set, document);
     if (result == SLUICE_SUCCESS)
         result = slc_neural_check(set, document);
+    if (result == SLUICE_SUCCESS)
+        result = slc_neural_read_networks(set, document);
     set->info.fileSize = set->file.size;
     return result;
 }
@@ -94,7 +97,8 @@ static SluiceResult open_set(SluiceNeuralSet *set)
     if (!document)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     document->allocator = set->allocator;
-    SluiceResult result = read_set(set, document);
+    set->verified = slc_calloc(&set->allocator, SLC_NEURAL_MAX_GRIDS, sizeof *set->verified);
+    SluiceResult result = set->verified ? read_set(set, document) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     slc_neural_document_finish(document);
     slc_free(&set->allocator, document, 1, sizeof *document);
     return result;
@@ -136,5 +140,9 @@ void sluiceDestroyNeuralSet(SluiceNeuralSet *set)
     SluiceAllocationCallbacks cb = set->allocator;
     slc_input_file_finish(&set->file);
     slc_free(&cb, set->text, set->text_size, 1);
+    slc_free(&cb, set->verified, SLC_NEURAL_MAX_GRIDS, sizeof *set->verified);
+    for (int kind = 0; kind < 2; kind++)
+        slc_free(&cb, set->weights[kind],
+                 slc_neural_blob_of(&set->shape, (SluiceNeuralWeightKind)kind).size, 1);
     slc_free(&cb, set, 1, sizeof *set);
 }

@@ -7,6 +7,8 @@
 #include "image/input_file.h"
 #include "neural/neural_document.h"
 
+#include <stdatomic.h>
+
 #define SLC_NEURAL_MAX_GRIDS 16
 #define SLC_NEURAL_MAX_PARTS SLC_NEURAL_MAX_LAYER_VIEWS
 
@@ -45,6 +47,8 @@ struct SluiceNeuralSet {
     struct slc_neural_mip mips[SLUICE_NEURAL_MAX_MIPS];
     struct slc_neural_grid grids[SLC_NEURAL_MAX_GRIDS];
     uint32_t grid_count;
+    uint8_t *weights[2];           ///< owned, by SluiceNeuralWeightKind; NULL: not in the file
+    atomic_bool *verified;         ///< owned, SLC_NEURAL_MAX_GRIDS: the checksums were compared
     struct slc_neural_shape shape; ///< of the network, padded to the sizes of its kind
 };
 
@@ -64,7 +68,7 @@ SluiceResult slc_neural_find_view(const struct SluiceNeuralSet *set,
                                   const struct slc_neural_document *document, uint32_t index,
                                   uint64_t size, struct slc_neural_view *view);
 
-/** Mips first..first + count - 1, all those of the set. */
-bool slc_neural_has_mips(const SluiceNeuralSet *set, uint32_t first, uint32_t count);
+/** Logs mips that the set does not have. Errors: INVALID_ARGUMENT. */
+SluiceResult slc_neural_check_mips(const SluiceNeuralSet *set, uint32_t first, uint32_t count);
 
 #endif /* SLC_NEURAL_NEURAL_SET_H */

@@ -172,6 +172,14 @@ static void contradictions_are_refused(void **state)
         {"\"offset\":512", "\"offset\":524", SLUICE_ERROR_CORRUPT_DATA},
         {"\"name\":\"two\"", "\"name\":\"\\u0\"", SLUICE_ERROR_CORRUPT_DATA},
         {"{\"schema", "[\"schema", SLUICE_ERROR_CORRUPT_DATA},
+        {"\"inputChannels\":48", "\"inputChannels\":64", SLUICE_ERROR_CORRUPT_DATA},
+        {"\"outputChannels\":4", "\"outputChannels\":5", SLUICE_ERROR_CORRUPT_DATA},
+        {"\"outputChannels\":16", "\"outputChannels\":15", SLUICE_ERROR_CORRUPT_DATA},
+        {"\"weightView\":0", "\"weightView\":1", SLUICE_ERROR_CORRUPT_DATA},
+        {"\"weightType\":\"Int8\"", "\"weightType\":\"Int9\"", SLUICE_ERROR_CORRUPT_DATA},
+        {"\"scaleType\":\"Float32\"", "\"scaleType\":\"Float16\"", SLUICE_ERROR_CORRUPT_DATA},
+        {"\"biasType\":\"Int32\"", "\"biasType\":\"Int8\" ", SLUICE_ERROR_CORRUPT_DATA},
+        {"\"RowMajor\"", "\"ColMajor\"", SLUICE_ERROR_CORRUPT_DATA},
     };
     uint8_t bytes[WORKED_EXAMPLE_MAX_SIZE];
     (void)state;
@@ -254,14 +262,48 @@ static void ask(const SluiceNeuralSet *set)
     SluiceNeuralLatentImage image = {.structSize = sizeof image};
     SluiceNeuralLatentPart part;
     SluiceNeuralColorSpace space;
+    SluiceNeuralRequest request = {.width = 2, .height = 2};
     uint64_t offset, size;
     info_of(set);
+    CHECK_OK(sluiceGetNeuralWeights(set, SLUICE_NEURAL_WEIGHTS_INT8, NULL, &size, NULL));
+    assert_int_equal(size, 9472);
+    CHECK_OK(sluiceBoundNeuralLatents(set, &request, 1, &size));
     CHECK_OK(sluiceGetNeuralTexture(set, 0, &texture));
     CHECK_OK(sluiceGetNeuralChannel(set, 0, &space));
     CHECK_OK(sluiceGetNeuralMip(set, 0, &mip));
     CHECK_OK(sluiceGetNeuralLatentImage(set, 0, &image));
     CHECK_OK(sluiceGetNeuralLatentPart(set, 0, 0, &part));
     CHECK_OK(sluiceGetNeuralLatentRange(set, 0, 1, &offset, &size));
+}
+
+/* Latents, both ways, and texels of them. */
+static SluiceResult read_and_decode(const SluiceNeuralSet *set)
+{
+    SluiceNeuralConstants constants;
+    uint8_t latents[64], weights[9472];
+    float texels[16];
+    uint64_t size = sizeof latents, weight_size = sizeof weights;
+    SluiceResult result = sluiceReadNeuralLatentPart(set, 0, 0, &size, latents);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    size = sizeof latents;
+    result = sluiceReadNeuralLatents(set, NULL, &constants, &size, latents);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    CHECK_OK(sluiceGetNeuralWeights(set, SLUICE_NEURAL_WEIGHTS_INT8, NULL, &weight_size, weights));
+    SluiceNeuralDecodeInfo info = {
+        .structSize = sizeof info,
+        .pConstants = &constants,
+        .pLatents = latents,
+        .latentSize = size,
+        .pWeights = weights,
+        .weightSize = weight_size,
+        .width = 4,
+        .height = 4,
+        .channelCount = 1,
+        .pTexels = texels,
+    };
+    return sluiceDecodeNeuralTexels(&info);
 }
 
 static void questions_take_no_memory(void **state)
@@ -293,6 +335,8 @@ static void every_refused_allocation_is_survived(void **state)
             assert_null(set);
         } else {
             ask(set);
+            result = read_and_decode(set);
+            assert_true(result == SLUICE_SUCCESS || result == SLUICE_ERROR_OUT_OF_HOST_MEMORY);
         }
         sluiceDestroyNeuralSet(set);
         assert_int_equal(allocator.live_bytes, 0);

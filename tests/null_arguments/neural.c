@@ -16,6 +16,12 @@ sluiceGetNeuralMip(f->set, 0, &f->out.mip)
 sluiceGetNeuralLatentImage(f->set, 0, &f->out.image)
 sluiceGetNeuralLatentPart(f->set, 0, 0, &f->out.part)
 sluiceGetNeuralLatentRange(f->set, 0, 1, &f->out.offset, &f->out.size)
+sluiceGetNeuralWeights(f->set, 0, ?f->outputs, &f->out.size, ?NULL)
+sluiceReadNeuralLatents(f->set, ?&f->request, &f->out.constants, &f->out.size, ?NULL)
+sluiceBoundNeuralLatents(f->set, &f->request, 1, &f->out.size)
+sluiceReadNeuralLatentPart(f->set, 0, 0, &f->out.size, ?NULL)
+sluiceDecodeNeuralTexels(&f->decode)
+sluiceConvertNeuralColor(0, 0, 0)
 */
 /* clang-format on */
 
@@ -23,6 +29,13 @@ struct fixture {
     SluiceNeuralSetCreateInfo create;
     SluiceInput input;
     SluiceNeuralSet *set;
+    SluiceNeuralOutput outputs[16];
+    SluiceNeuralRequest request;
+    SluiceNeuralDecodeInfo decode;
+    SluiceNeuralConstants constants;
+    uint64_t sizes[2];
+    uint8_t latents[1024], weights[16384];
+    float texels[16 * 2];
     uint8_t bytes[WORKED_EXAMPLE_MAX_SIZE];
     struct {
         SluiceNeuralSet *set;
@@ -32,6 +45,7 @@ struct fixture {
         SluiceNeuralMip mip;
         SluiceNeuralLatentImage image;
         SluiceNeuralLatentPart part;
+        SluiceNeuralConstants constants;
         uint64_t offset, size;
     } out;
 };
@@ -47,6 +61,23 @@ static void fixture_init(struct fixture *f, void **state)
     f->create.structSize = sizeof f->create;
     f->create.pInput = &f->input;
     CHECK_OK(sluiceOpenNeuralSet(&f->create, &f->set));
+    f->sizes[0] = sizeof f->latents;
+    f->sizes[1] = sizeof f->weights;
+    CHECK_OK(sluiceReadNeuralLatents(f->set, NULL, &f->constants, &f->sizes[0], f->latents));
+    CHECK_OK(
+        sluiceGetNeuralWeights(f->set, SLUICE_NEURAL_WEIGHTS_INT8, NULL, &f->sizes[1], f->weights));
+    f->decode = (SluiceNeuralDecodeInfo){
+        .structSize = sizeof f->decode,
+        .pConstants = &f->constants,
+        .pLatents = f->latents,
+        .latentSize = f->sizes[0],
+        .pWeights = f->weights,
+        .weightSize = f->sizes[1],
+        .width = 4,
+        .height = 4,
+        .channelCount = 2,
+        .pTexels = f->texels,
+    };
 }
 
 static void fixture_finish(struct fixture *f)

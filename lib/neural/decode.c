@@ -1,0 +1,189 @@
+#include "base/checked.h"
+#include "base/log.h"
+#include "base/struct_size.h"
+#include "neural/decoder.h"
+#include "neural/slices.h"
+
+#include <string.h>
+
+static SluiceResult refuse(const SluiceNeuralDecodeInfo *info, const char *what, uint64_t value)
+{
+    return slc_log_refusal(&info->log, "%s of a decode is %llu, which does not fit", what,
+                           (unsigned long long)value);
+}
+
+/* Constants come from sluiceReadNeuralLatents, but perhaps by way of a file. */
+static SluiceResult check_constants(const SluiceNeuralDecodeInfo *info,
+                                    const SluiceNeuralConstants *k)
+{
+    const uint32_t features[] = {k->highFeatures, k->lowFeatures};
+    const uint32_t bits[] = {k->highBits, k->lowBits};
+    bool is_one = k->schema == 1;
+    if (!is_one && k->schema != 3)
+        return refuse(info, "schema", k->schema);
+    if (k->mipCount > SLUICE_NEURAL_MAX_MIPS || info->mip >= k->mipCount)
+        return refuse(info, "mip", info->mip);
+    if (k->inputCount != (is_one ? 32 + 4 * k->networkFeatures : 48) || k->networkFeatures > 16 ||
+        k->networkFeatures % 4 || k->networkFeatures == 0)
+        return refuse(info, "inputCount", k->inputCount);
+    for (int i = 0; i < 2; i++) {
+        bool is_power = bits[i] && bits[i] <= 8 && !(bits[i] & (bits[i] - 1));
+        if (features[i] > 16 || features[i] % 4 || features[i] == 0 || !is_power ||
+            (!is_one && (bits[i] != 4 || features[i] != features[0])))
+            return refuse(info, "latent shape", features[i]);
+    }
+    if (is_one && k->highFeatures > k->networkFeatures)
+        return refuse(info, "highFeatures", k->highFeatures);
+    return SLUICE_SUCCESS;
+}
+
+static bool has_axis(uint32_t first, uint32_t last, uint32_t mip_size, uint32_t grid,
+                     uint32_t origin, uint32_t size, bool is_clamped)
+{
+    int32_t end = (int32_t)grid - 1;
+    int32_t from = slc_neural_corner(slc_neural_place(first, grid, mip_size));
+    int32_t to = slc_neural_corner(slc_neural_place(last, grid, mip_size)) + 1;
+    if (!is_clamped) {
+        uint32_t start = (uint32_t)(from + (int32_t)(2 * grid) - (int32_t)origin) % grid;
+        return size == grid || start + (uint32_t)(to - from) < size;
+    }
+    from = from < 0 ? 0 : from;
+    to = to > end ? end : to;
+    return from >= (int32_t)origin && to < (int32_t)(origin + size);
+}
+
+/* Whether a slice is sound, and has what the rectangle takes. */
+static SluiceResult check_slice(const SluiceNeuralDecodeInfo *info,
+                                const struct slc_neural_mip_view *view, uint32_t g)
+{
+    const SluiceNeuralConstants *k = view->constants;
+    const SluiceNeuralSlice *s = &view->slices[g];
+    uint32_t width = s->sliceSize & 0xFFFF, height = s->sliceSize >> 16;
+    uint32_t grid_width = s->gridSize & 0xFFFF, grid_height = s->gridSize >> 16;
+    uint32_t left = s->origin & 0xFFFF, top = s->origin >> 16;
+    uint32_t bits = g ? k->lowFeatures * k->lowBits : k->highFeatures * k->highBits;
+    uint64_t bytes = slc_neural_slice_bytes(width, height, bits);
+    bool is_one = k->schema == 1;
+    if (s->sliceSize == 0)
+        return SLUICE_NOT_READY;
+    if (grid_width == 0 || grid_height == 0 || grid_width > SLUICE_NEURAL_MAX_SIZE ||
+        grid_height > SLUICE_NEURAL_MAX_SIZE)
+        return refuse(info, "gridSize", s->gridSize);
+    if (left >= grid_width || top >= grid_height || width > grid_width || height > grid_height)
+        return refuse(info, "origin of a slice", s->origin);
+    if (width == 0 || height == 0 || bytes > SLC_NEURAL_MAX_LATENTS || bytes > info->latentSize ||
+        s->dataOffset > info->latentSize - bytes)
+        return refuse(info, "latentSize", info->latentSize);
+    if (!has_axis(info->x, info->x + info->width - 1, view->width, grid_width, left, width,
+                  is_one) ||
+        !has_axis(info->y, info->y + info->height - 1, view->height, grid_height, top, height,
+                  is_one))
+        return SLUICE_NOT_READY;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult make_view(const SluiceNeuralDecodeInfo *info, const SluiceNeuralConstants *k,
+                              struct slc_neural_mip_view *view)
+{
+    *view = (struct slc_neural_mip_view){
+        .constants = k,
+        .mip = info->mip,
+        .width = slc_mip_size(k->width, info->mip),
+        .height = slc_mip_size(k->height, info->mip),
+    };
+    uint32_t first = k->mips[info->mip].firstSlice;
+    if (k->width == 0 || k->width > SLUICE_NEURAL_MAX_SIZE)
+        return refuse(info, "width of mip 0", k->width);
+    if (k->height == 0 || k->height > SLUICE_NEURAL_MAX_SIZE)
+        return refuse(info, "height of mip 0", k->height);
+    if (info->width == 0 || info->x >= view->width || info->width > view->width - info->x)
+        return refuse(info, "width", info->width);
+    if (info->height == 0 || info->y >= view->height || info->height > view->height - info->y)
+        return refuse(info, "height", info->height);
+    if (first > SLC_NEURAL_MAX_GRIDS - 2)
+        return refuse(info, "firstSlice", first);
+    if (!(k->mips[info->mip].positionScale > 0 && k->mips[info->mip].positionScale <= 65536))
+        return refuse(info, "positionScale of mip", info->mip);
+    for (uint32_t g = 0; g < 2; g++) {
+        view->slices[g] = k->slices[first + g];
+        view->codes[g] = (const uint8_t *)info->pLatents + view->slices[g].dataOffset;
+        SluiceResult result = check_slice(info, view, g);
+        if (result != SLUICE_SUCCESS)
+            return result;
+    }
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult check_output(const SluiceNeuralDecodeInfo *info, uint64_t blob_size)
+{
+    uint64_t row = (uint64_t)info->width * info->channelCount;
+    if (info->weightKind != SLUICE_NEURAL_WEIGHTS_INT8 &&
+        info->weightKind != SLUICE_NEURAL_WEIGHTS_FP8)
+        return refuse(info, "weightKind", (uint64_t)info->weightKind);
+    if (info->weightSize < blob_size)
+        return refuse(info, "weightSize", info->weightSize);
+    if (info->channelCount == 0 || info->channelCount > SLUICE_NEURAL_MAX_CHANNELS ||
+        info->firstChannel > SLUICE_NEURAL_MAX_CHANNELS - info->channelCount)
+        return refuse(info, "channelCount", info->channelCount);
+    if (info->rowPitch && info->rowPitch < row)
+        return refuse(info, "rowPitch", info->rowPitch);
+    return SLUICE_SUCCESS;
+}
+
+static void decode_texel(const SluiceNeuralDecodeInfo *info, const struct slc_neural_mip_view *view,
+                         const struct slc_neural_shape *shape, const struct slc_neural_blob *at,
+                         uint32_t x, uint32_t y, float outputs[SLUICE_NEURAL_MAX_CHANNELS])
+{
+    if (info->weightKind == SLUICE_NEURAL_WEIGHTS_INT8) {
+        int8_t inputs[SLC_NEURAL_MAX_INPUTS];
+        slc_neural_int8_inputs(view, x, y, inputs);
+        slc_neural_run_int8(shape, at, info->pWeights, inputs, outputs);
+    } else {
+        float inputs[SLC_NEURAL_MAX_INPUTS];
+        slc_neural_fp8_inputs(view, x, y, inputs);
+        slc_neural_run_fp8(shape, at, info->pWeights, inputs, outputs);
+    }
+}
+
+static void decode_texels(const SluiceNeuralDecodeInfo *info,
+                          const struct slc_neural_mip_view *view,
+                          const struct slc_neural_shape *shape, const struct slc_neural_blob *at)
+{
+    float outputs[SLUICE_NEURAL_MAX_CHANNELS];
+    uint64_t pitch = info->rowPitch ? info->rowPitch : (uint64_t)info->width * info->channelCount;
+    for (uint32_t y = 0; y < info->height; y++) {
+        float *texel = info->pTexels + y * pitch;
+        for (uint32_t x = 0; x < info->width; x++, texel += info->channelCount) {
+            decode_texel(info, view, shape, at, info->x + x, info->y + y, outputs);
+            memcpy(texel, outputs + info->firstChannel, info->channelCount * sizeof *texel);
+        }
+    }
+}
+
+SluiceResult sluiceDecodeNeuralTexels(const SluiceNeuralDecodeInfo *pInfo)
+{
+    if (!pInfo)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceNeuralDecodeInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceNeuralDecodeInfo), &info, pInfo, &pInfo->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!info.pConstants || !info.pLatents || !info.pWeights || !info.pTexels)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_neural_mip_view view;
+    SluiceNeuralConstants constants = *info.pConstants;
+    result = check_constants(&info, &constants);
+    if (result == SLUICE_SUCCESS)
+        result = make_view(&info, &constants, &view);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_neural_shape shape = slc_neural_shape_of(
+        constants.schema == 3 ? SLUICE_NEURAL_NETWORK_SCHEMA3
+                              : (SluiceNeuralNetwork)(constants.networkFeatures / 4 - 1));
+    struct slc_neural_blob at = slc_neural_blob_of(&shape, info.weightKind);
+    result = check_output(&info, at.size);
+    if (result == SLUICE_SUCCESS)
+        decode_texels(&info, &view, &shape, &at);
+    return result;
+}

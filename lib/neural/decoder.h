@@ -1,0 +1,52 @@
+/** Decodes texels on the host: what shaders do, to the bit with INT8 weights. */
+#ifndef SLC_NEURAL_DECODER_H
+#define SLC_NEURAL_DECODER_H
+
+#include "neural/network.h"
+
+enum { SLC_NEURAL_MAX_INPUTS = 96, SLC_NEURAL_MAX_NEURONS = 64 };
+
+/** A mip, its two grids, and where they lie. */
+struct slc_neural_mip_view {
+    const SluiceNeuralConstants *constants;
+    uint32_t mip, width, height;
+    SluiceNeuralSlice slices[2];
+    const uint8_t *codes[2]; ///< of the slices
+};
+
+/** Two grids, four texels around a place, and their weights. */
+struct slc_neural_corners {
+    uint32_t texels[4];  ///< numbers in the slice: (x0, y0), (x1, y0), (x0, y1), (x1, y1)
+    uint32_t weights[4]; ///< of 65536
+};
+
+/** Finds the corners of a texel in the slice `g` of a mip. */
+void slc_neural_find_corners(const struct slc_neural_mip_view *view, uint32_t g, uint32_t x,
+                             uint32_t y, struct slc_neural_corners *corners);
+
+/** A code of a slice. */
+static inline uint32_t slc_neural_code(const uint8_t *codes, uint32_t features, uint32_t bits,
+                                       uint32_t texel, uint32_t feature)
+{
+    uint32_t bit = (texel * features + feature) * bits; /* slices have less than 2^32 */
+    return (uint32_t)codes[bit / 8] >> bit % 8 & ((1u << bits) - 1);
+}
+
+/** Inputs of the network for a texel; `inputs` has constants->inputCount. */
+void slc_neural_int8_inputs(const struct slc_neural_mip_view *view, uint32_t x, uint32_t y,
+                            int8_t *inputs);
+void slc_neural_fp8_inputs(const struct slc_neural_mip_view *view, uint32_t x, uint32_t y,
+                           float *inputs);
+
+/** Runs the network. `outputs` has 16 elements. Inputs of FP8 are rounded to half, then to E4M3. */
+void slc_neural_run_int8(const struct slc_neural_shape *shape, const struct slc_neural_blob *at,
+                         const uint8_t *weights, const int8_t *inputs, float *outputs);
+void slc_neural_run_fp8(const struct slc_neural_shape *shape, const struct slc_neural_blob *at,
+                        const uint8_t *weights, const float *inputs, float *outputs);
+
+/** Eight bits with 4 of exponent and 3 of mantissa, without infinities. */
+float slc_float_from_e4m3(uint8_t bits);
+/** The nearest, ties to even, at most +-448. */
+uint8_t slc_e4m3_from_float(float value);
+
+#endif /* SLC_NEURAL_DECODER_H */
