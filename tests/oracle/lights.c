@@ -4,9 +4,14 @@
 
 #include <stdlib.h>
 
-static bool emits(const struct oracle_scene *scene, const struct oracle_place *place)
+#define ORACLE_FAR 1e300 /* of lights without a place */
+
+/* Direct light looks no alpha up where it chooses points. */
+bool oracle_is_chosen(const struct oracle_scene *scene, size_t place)
 {
-    return scene->shapes[place->shape].areaLight != SLUICE_PBRT_NONE;
+    const SluicePbrtShape *shape = &scene->shapes[scene->places[place].shape];
+    return shape->areaLight != SLUICE_PBRT_NONE && shape->alpha.texture == SLUICE_PBRT_NONE &&
+           shape->alpha.value[0] >= 1;
 }
 
 /* The side of area lights is that of the geometric normal, as oracle_find_point turns it. */
@@ -36,14 +41,14 @@ bool oracle_lights_create(struct oracle_lights *lights, const struct oracle_scen
     size_t count = 0;
     *lights = (struct oracle_lights){scene, values, .background = background};
     for (size_t i = 0; i < scene->place_count; i++)
-        if (emits(scene, &scene->places[i]))
+        if (oracle_is_chosen(scene, i))
             count += scene->meshes[scene->places[i].mesh].triangleCount;
     lights->emitters = calloc(count + 1, sizeof *lights->emitters);
     if (!lights->emitters)
         return false;
     for (size_t i = 0; i < scene->place_count; i++)
-        for (uint32_t t = 0; emits(scene, &scene->places[i]) &&
-                             t < scene->meshes[scene->places[i].mesh].triangleCount;
+        for (uint32_t t = 0;
+             oracle_is_chosen(scene, i) && t < scene->meshes[scene->places[i].mesh].triangleCount;
              t++) {
             struct oracle_emitter e = make_emitter(scene, i, t);
             e.weight_before = lights->weight;
@@ -97,9 +102,16 @@ static double arriving(const struct receiver *at, struct vec towards, double dis
     double cosine = dot(at->normal, towards);
     if (cosine <= 0 || dot(at->side, towards) <= 0)
         return 0;
-    struct oracle_ray ray = {along(at->point, at->side, at->offset), towards,
-                             distance - 2 * at->offset, *at->seed};
-    return ray.longest > 0 && oracle_rays_is_blocked(at->rays, &ray) ? 0 : cosine;
+    /* From where the ray begins: aimed from the point itself, it would meet a lamp that it grazes
+     * before its end. */
+    struct vec start = along(at->point, at->side, at->offset);
+    struct vec path = sub(along(at->point, towards, distance), start);
+    struct oracle_ray ray = {start, unit(path), length(path) * (1 - 1e-5), *at->seed};
+    if (distance >= ORACLE_FAR) {
+        ray.direction = towards;
+        ray.longest = distance;
+    }
+    return oracle_rays_is_blocked(at->rays, &ray) ? 0 : cosine;
 }
 
 /* pbrt-v3: the fourth power of how far the cosine is between the edges. pbrt-v4: a smooth step. */
@@ -123,7 +135,7 @@ bool oracle_sent(const struct oracle_scene *scene, uint32_t index, struct vec po
 {
     const SluicePbrtLight *light = &scene->lights[index];
     *towards = vec_of(light->direction);
-    *distance = 1e300;
+    *distance = ORACLE_FAR;
     *color = vec_of(light->color);
     if (light->kind == SLUICE_PBRT_LIGHT_DISTANT)
         return true;

@@ -25,6 +25,8 @@ bool oracle_lights_create(struct oracle_lights *lights, const struct oracle_scen
                           struct oracle_values *values, struct vec background);
 void oracle_lights_finish(struct oracle_lights *lights);
 
+/** Whether direct light counts what the shape emits. If not, paths count it where they hit it. */
+bool oracle_is_chosen(const struct oracle_scene *scene, size_t place);
 /** Radiance that a surface emits towards a direction. */
 struct vec oracle_emitted(const struct oracle_lights *lights, const struct oracle_hit *hit,
                           struct vec direction);

@@ -146,7 +146,7 @@ struct vec oracle_radiance(const struct oracle_tracer *tracer, struct oracle_ray
         if (!oracle_rays_trace(tracer->rays, &path.ray, &hit))
             return add(path.sum,
                        mul(path.weight, oracle_surroundings(&tracer->lights, path.ray.direction)));
-        if (path.sees_emitters)
+        if (path.sees_emitters || !oracle_is_chosen(tracer->scene, hit.place))
             path.sum =
                 add(path.sum, mul(path.weight, oracle_emitted(&tracer->lights, &hit,
                                                               scale(path.ray.direction, -1))));
