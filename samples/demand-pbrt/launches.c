@@ -59,6 +59,7 @@ static void bind_all(struct launches *l)
         [PBRT_BINDING_SURFACES] = l->surfaces->table.buffer.buffer,
         [PBRT_BINDING_OPS] = l->surfaces->ops.buffer.buffer,
         [PBRT_BINDING_LIGHTS] = l->lights->buffer.buffer,
+        [PBRT_BINDING_EMITTERS] = l->emitters->buffer.buffer,
         [PBRT_BINDING_FILM] = l->film->sums.buffer,
         [PBRT_BINDING_LATEST] = l->film->latest.buffer,
         [PBRT_BINDING_LISTS] = l->film->lists.buffer,

@@ -18,7 +18,7 @@ struct launches {
     struct textures *textures;
     struct proxies *proxies; ///< NULL: nothing is made on demand but tiles
     struct film *film;
-    const struct table *lights;
+    const struct table *lights, *emitters;
     struct PbrtLaunch constants;
     struct proxy_requests requests;
     struct gpu_buffer quiet, debug;

@@ -16,6 +16,7 @@
 #include "../../tools/common/text.h"
 #include "../common/contact_sheet.h"
 #include "camera.h"
+#include "emitters.h"
 #include "lights.h"
 #include "picture_output.h"
 #include "statistics.h"
@@ -33,7 +34,7 @@ struct renderer {
     SluiceDemandLoader *loader;
     struct textures textures;
     struct surfaces surfaces;
-    struct table lights;
+    struct table lights, emitters;
     struct proxies proxies;
     struct world world;
     struct film film;
@@ -153,6 +154,7 @@ static bool open_all(struct renderer *r)
     if (!create_gpu(r) || !create_textures(r) ||
         !surfaces_create(&r->gpu, &r->scene, &r->surfaces) ||
         !lights_create(&r->gpu, &r->scene, &r->textures, &r->lights, &only_areas) ||
+        !emitters_create(&r->gpu, &r->scene, o->mode == PBRT_MODE_PATH, &r->lights, &r->emitters) ||
         !create_world(r) || !film_create(&r->gpu, size[0], size[1], &r->film) ||
         !picture_create(size[0], size[1], &r->picture) ||
         !tracing_create(&r->gpu, r->loader, &r->tracing))
@@ -162,6 +164,7 @@ static bool open_all(struct renderer *r)
     c->mode = (uint32_t)o->mode;
     c->bounces = o->bounces;
     c->lightCount = r->scene.info.lightCount;
+    c->emitterCount = r->emitters.count;
     c->flags |= (o->face_forward ? PBRT_LAUNCH_FACE_FORWARD : 0) |
                 (r->scene.info.version == 4 ? PBRT_LAUNCH_VERSION_4 : 0) |
                 (only_areas ? PBRT_LAUNCH_HEADLIGHT : 0) |
@@ -180,6 +183,7 @@ static void close_all(struct renderer *r)
         world_finish(&r->world);
         surfaces_finish(&r->gpu, &r->surfaces);
         table_finish(&r->gpu, &r->lights);
+        table_finish(&r->gpu, &r->emitters);
     }
     sluiceDestroyDemandLoader(r->loader);
     sluiceDestroyVulkanContext(r->context);
@@ -269,6 +273,7 @@ static bool render(struct renderer *r)
                                     .proxies = r->options.preload ? NULL : &r->proxies,
                                     .film = &r->film,
                                     .lights = &r->lights,
+                                    .emitters = &r->emitters,
                                     .constants = constants,
                                     .user_data = r,
                                     .after_launch = after_launch};

@@ -22,8 +22,9 @@
 #define PBRT_BINDING_USED 11
 #define PBRT_BINDING_BOXES 12
 #define PBRT_BINDING_DEBUG 13
-#define PBRT_OWN_BUFFERS 14
-#define PBRT_BINDING_SCENE 14 /* the acceleration structure */
+#define PBRT_BINDING_EMITTERS 14
+#define PBRT_OWN_BUFFERS 15
+#define PBRT_BINDING_SCENE 15 /* the acceleration structure */
 
 #define PBRT_ROW_WIDTH 1024 /* rays of one row of a launch */
 #define PBRT_NONE 0xffffffffu
@@ -48,6 +49,7 @@ SLUICE_SHARED_SIZE(struct PbrtMesh, 32)
 #define PBRT_PLACE_NEGATED 2u   /* the file's normals are negated */
 #define PBRT_PLACE_EMITS 4u     /* `light` is an area light */
 #define PBRT_PLACE_TWO_SIDED 8u /* ... that also emits on the back */
+#define PBRT_PLACE_LISTED 16u   /* ... whose triangles are PbrtEmitters */
 
 /* A shape in the world. */
 struct PbrtPlace {
@@ -121,12 +123,25 @@ struct PbrtLight {
     float color[3];
     float cosOuter;
     float position[3];
-    uint reserved0;
+    float density; /* of chosen points per area, where the light is a shape */
     float direction[3];
-    uint reserved1;
+    uint reserved;
     float worldToLight[12];
 };
 SLUICE_SHARED_SIZE(struct PbrtLight, 112)
+
+/* A triangle that emits, in the world. Paths choose one by its power. */
+struct PbrtEmitter {
+    float corner[3];
+    float below; /* share of the power that the emitters before have */
+    float side1[3];
+    uint light;
+    float side2[3];
+    uint isTwoSided;
+    float outside[3]; /* of length 1 */
+    uint reserved;
+};
+SLUICE_SHARED_SIZE(struct PbrtEmitter, 64)
 
 /* What --debug tells of a pixel's first ray. */
 struct PbrtDebug {
@@ -174,7 +189,8 @@ struct PbrtLaunch {
     uint launchIndex;
     uint surfacePage; /* first pages of requests */
     uint proxyPage;
+    uint emitterCount;
 };
-SLUICE_SHARED_SIZE(struct PbrtLaunch, 120)
+SLUICE_SHARED_SIZE(struct PbrtLaunch, 124)
 
 #endif

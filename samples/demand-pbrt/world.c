@@ -8,6 +8,7 @@
 #include "../../tools/common/text.h"
 #include "../common/ray_table.h"
 #include "budget.h"
+#include "emitters.h"
 #include "transform.h"
 
 #define MOST_PLACES (1u << 24) /* instanceCustomIndex has 24 bits */
@@ -83,26 +84,17 @@ static bool ask_for_mesh(struct world *w, uint32_t mesh)
 }
 
 static struct PbrtPlace describe(const struct world *w, const SluicePbrtShape *shape,
-                                 const struct place *place, double determinant)
+                                 const struct place *place, const float transform[12])
 {
     const bool has_map = shape->alpha.texture != SLUICE_PBRT_NONE;
-    struct PbrtPlace entry = {.mesh = place->mesh,
+    return (struct PbrtPlace){.mesh = place->mesh,
                               .surface = shape->material,
                               .alpha = has_map ? surfaces_alpha(w->surfaces, shape->alpha.texture)
                                                : PBRT_NONE,
                               .alphaValue = has_map ? 1.0f : shape->alpha.value[0],
+                              .flags = emitters_place_flags(w->scene, shape, transform),
                               .light = shape->areaLight,
                               .shape = place->node.shape};
-    if (shape->reverseOrientation && w->scene->info.version == 4) /* pbrt-v3 keeps them */
-        entry.flags |= PBRT_PLACE_NEGATED;
-    if (shape->reverseOrientation != (determinant < 0.0))
-        entry.flags |= PBRT_PLACE_REVERSED;
-    if (shape->areaLight != SLUICE_PBRT_NONE) {
-        entry.flags |= PBRT_PLACE_EMITS;
-        if (scene_light(w->scene, shape->areaLight).isTwoSided)
-            entry.flags |= PBRT_PLACE_TWO_SIDED;
-    }
-    return entry;
 }
 
 static bool is_opaque(const struct world *w, const struct PbrtPlace *entry)
@@ -130,7 +122,7 @@ static bool place_shape(struct world *w, struct scene_node node)
     *(w->free_count ? &w->free_count : &w->place_count) += w->free_count ? -1u : 1u;
     struct place *place = &w->places[index];
     *place = (struct place){.node = node, .mesh = mesh, .live = true};
-    const struct PbrtPlace entry = describe(w, &shape, place, transform_determinant(m));
+    const struct PbrtPlace entry = describe(w, &shape, place, m);
     *(struct PbrtPlace *)table_at(&w->place_table, index) = entry;
     *(uint32_t *)table_at(&w->used, index) = 0;
     place->instance = (VkAccelerationStructureInstanceKHR){

@@ -23,6 +23,7 @@ void main()
     payload.normal = payload.face = sluiceProxyFaceNormal(gl_HitKindEXT);
     payload.diffuse = colors[gl_HitKindEXT];
     payload.specular = payload.transmission = payload.emission = vec3(0.0);
+    payload.density = 0.0;
     payload.kind = 0u;
     payload.place = gl_PrimitiveID;
     payload.triangle = PBRT_NONE;

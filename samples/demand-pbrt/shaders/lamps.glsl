@@ -1,4 +1,4 @@
-/* Lights that are no shapes and not infinitely large. */
+/* Lights that paths look for: all but infinitely large ones. */
 #ifndef PBRT_LAMPS_GLSL
 #define PBRT_LAMPS_GLSL
 
@@ -26,6 +26,63 @@ bool lampAt(uint i, vec3 at, out vec3 toward, out float distance, out vec3 color
         color *= (launch.flags & PBRT_LAUNCH_VERSION_4) != 0u ? f * f * (3.0 - 2.0 * f)
                                                                : f * f * f * f;
     }
+    return true;
+}
+
+/** How much a way of finding light counts beside another that finds the same light: Veach and
+ *  Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995, with the
+ *  power 2. Arguments are probabilities per solid angle. */
+float weightOf(float found, float other)
+{
+    float ratio = other / max(found, 1.0e-30);
+    return 1.0 / (1.0 + ratio * ratio);
+}
+
+/** Probability per solid angle of a point that is chosen on an emitter. */
+float emitterChance(float density, float distance, float cosine)
+{
+    return density * distance * distance / max(cosine, 1.0e-20);
+}
+
+/** The last emitter whose share of the power begins at `chosen` or below. */
+uint findEmitter(float chosen)
+{
+    uint least = 0u, most = launch.emitterCount;
+    while (most - least > 1u) {
+        uint middle = (least + most) / 2u;
+        if (emitters[middle].below <= chosen)
+            least = middle;
+        else
+            most = middle;
+    }
+    return least;
+}
+
+/**
+ * Light of a point of the shapes that emit, without shadow; false if it shines elsewhere. `color`
+ * is divided by the chance of the point, and weighed against finding the point by a diffuse bounce.
+ */
+bool emitterAt(vec3 chosen, vec3 at, vec3 normal, out vec3 toward, out float distance,
+               out vec3 color)
+{
+    if (launch.emitterCount == 0u)
+        return false;
+    uint i = findEmitter(chosen.x);
+    uint light = emitters[i].light;
+    float root = sqrt(chosen.y);
+    vec3 way = toVector(emitters[i].corner) +
+               root * (1.0 - chosen.z) * toVector(emitters[i].side1) +
+               root * chosen.z * toVector(emitters[i].side2) - at;
+    distance = length(way);
+    toward = way / max(distance, 1.0e-30);
+    float cosine = -dot(toVector(emitters[i].outside), toward);
+    if (emitters[i].isTwoSided != 0u)
+        cosine = abs(cosine);
+    float here = dot(normal, toward);
+    if (cosine <= 0.0 || here <= 0.0 || distance <= 0.0)
+        return false;
+    float chance = emitterChance(lights[light].density, distance, cosine);
+    color = toVector(lights[light].color) / chance * weightOf(chance, here / PI);
     return true;
 }
 

@@ -47,6 +47,8 @@ void main()
     payload.triangle = gl_PrimitiveID;
     payload.kind = 0u;
     payload.emission = emissionOf(place, hit);
+    payload.density =
+        (place.flags & PBRT_PLACE_LISTED) != 0u ? lights[place.light].density : 0.0;
     payload.diffuse = PROXY_MATERIAL_COLOR;
     payload.specular = payload.transmission = vec3(0.0);
 

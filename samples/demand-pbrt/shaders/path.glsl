@@ -14,6 +14,7 @@
 #define PBRT_PATH_GLSL
 
 #define MEAN_SKY 10.0      /* skySpread of the whole sky */
+#define NO_LAMP (launch.lightCount + 1u) /* lightCount stands for all shapes that emit */
 #define DIFFUSE_SPREAD 0.35 /* after a diffuse bounce detail does not matter */
 
 struct Path {
@@ -25,13 +26,14 @@ struct Path {
     vec3 skyWeight, skyDirection;
     float skySpread;
     uint depth, lamp; /* next lamp that may shine on the surface */
+    float chance;     /* of the ray's direction, per solid angle; 0: no lamp was looked for there */
     /* Of the surface that was met: */
     vec3 at, normal, face, albedo;
     float distance;
     vec3 pending;     /* light of the lamp, or weight of the sky, if nothing is in the way */
     bool pendingSky;
     vec3 nextShare, nextDirection; /* how the path goes on after the lamps */
-    float nextSpread;
+    float nextSpread, nextChance;
     bool goesOn;
     uint random; /* state */
 };
@@ -40,6 +42,12 @@ float random1(inout uint state)
 {
     state = state * 747796405u + 2891336453u;
     return float(hashWord(state) >> 8) / 16777216.0;
+}
+
+vec3 random3(inout uint state)
+{
+    float x = random1(state), y = random1(state);
+    return vec3(x, y, random1(state));
 }
 
 Path startPath(uint pixel)
@@ -56,7 +64,8 @@ Path startPath(uint pixel)
     path.share = vec3(1.0);
     path.skySpread = launch.spread;
     path.depth = 0u;
-    path.lamp = launch.lightCount;
+    path.lamp = NO_LAMP;
+    path.chance = path.nextChance = 0.0;
     path.random = hashWord(pixel * 0x9e3779b1u ^ hashWord(launch.sampleIndex + 1u));
     return path;
 }
@@ -110,21 +119,41 @@ void scatterSharply(inout Path path, Payload s, vec3 normal, bool inside)
     path.nextSpread = path.coneSpread + s.roughness;
 }
 
+/** A shape that emits may have been found in two ways. */
+void meetEmitter(inout Path path, Payload s)
+{
+    float weight = 1.0;
+    if (s.density > 0.0 && path.chance > 0.0)
+        weight = weightOf(path.chance, emitterChance(s.density, s.distance,
+                                                     abs(dot(s.face, path.direction))));
+    path.light += path.share * s.emission * weight;
+}
+
+/** The last ray only asks for light. */
+bool isLast(Path path)
+{
+    return launch.mode == PBRT_MODE_PATH && path.depth > launch.bounces;
+}
+
 void meetForPath(inout Path path, Payload s, vec3 normal)
 {
     bool inside = dot(s.normal, path.direction) > 0.0;
-    path.light += path.share * s.emission;
-    path.goesOn = path.depth < launch.bounces;
+    meetEmitter(path, s);
+    if (isLast(path))
+        return;
+    path.goesOn = true;
     path.albedo = s.diffuse / PI;
-    path.lamp = s.diffuse == vec3(0.0) ? launch.lightCount : 0u;
+    path.lamp = s.diffuse == vec3(0.0) ? NO_LAMP : 0u;
+    path.nextChance = 0.0;
     if (s.kind == PBRT_SURFACE_MIRROR || s.kind == PBRT_SURFACE_GLASS) {
         scatterSharply(path, s, normal, inside);
     } else {
         path.nextDirection = cosineDirection(normal, path.random);
+        path.nextChance = max(dot(normal, path.nextDirection), 1.0e-20) / PI;
         path.nextShare = s.diffuse;
         path.nextSpread = DIFFUSE_SPREAD;
     }
-    path.goesOn = path.goesOn && path.nextShare != vec3(0.0);
+    path.goesOn = path.nextShare != vec3(0.0);
 }
 
 void meetForOcclusion(inout Path path, Payload s, vec3 normal)
@@ -142,7 +171,7 @@ void meetSurface(inout Path path, Payload s)
 {
     path.distance = s.distance;
     path.goesOn = false;
-    path.lamp = launch.lightCount;
+    path.lamp = NO_LAMP;
     if (s.distance < 0.0) {
         path.skyWeight = path.share;
         path.skyDirection = path.direction;
@@ -188,10 +217,12 @@ void endShadow(inout Path path, bool isFree)
 /** The next lamp that shines on the surface. */
 bool chooseLamp(inout Path path)
 {
-    for (; path.lamp < launch.lightCount; path.lamp++) {
+    for (; path.lamp < NO_LAMP; path.lamp++) {
         vec3 toward, color;
         float distance;
-        if (!lampAt(path.lamp, path.at, toward, distance, color))
+        if (path.lamp < launch.lightCount
+                ? !lampAt(path.lamp, path.at, toward, distance, color)
+                : !emitterAt(random3(path.random), path.at, path.normal, toward, distance, color))
             continue;
         path.pending = path.share * path.albedo * color * max(dot(path.normal, toward), 0.0);
         if (path.pending == vec3(0.0))
@@ -217,6 +248,7 @@ void chooseRay(inout Path path)
     path.isShadow = false;
     path.goesOn = false;
     path.share *= path.nextShare;
+    path.chance = path.nextChance;
     path.direction = path.nextDirection;
     path.origin = leave(path, path.direction);
     path.far = FAR;

@@ -28,6 +28,10 @@ layout(std430, set = 1, binding = PBRT_BINDING_LIGHTS) readonly buffer Lights
 {
     PbrtLight lights[];
 };
+layout(std430, set = 1, binding = PBRT_BINDING_EMITTERS) readonly buffer Emitters
+{
+    PbrtEmitter emitters[];
+};
 layout(std430, set = 1, binding = PBRT_BINDING_WANTED) buffer Wanted
 {
     uint wanted[]; /* of each surface that is asked for: 1 + log2 of texels per unit of uv */
@@ -70,6 +74,7 @@ struct Payload {
     vec3 face;      /* geometric, of length 1 */
     vec3 diffuse, specular, transmission;
     vec3 emission; /* toward the ray's origin */
+    float density; /* of chosen points per area, where it emits; 0: its points are never chosen */
     uint kind;     /* of the surface */
     float roughness, eta;
     uint place, triangle; /* for --debug */
