@@ -110,6 +110,8 @@
     SLC_UP_TO(SluiceVulkanContextCreateInfo, minTileMemorySize)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
     SLC_UP_TO(SluiceVulkanContextStatistics, deviceMemoryBudget)
+#define SLC_FIRST_SluiceNeuralImageSourceCreateInfo                                                \
+    SLC_UP_TO(SluiceNeuralImageSourceCreateInfo, log)
 #define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
     SLC_UP_TO(SluiceVulkanDeviceCapabilities, sparseCubes)
 #define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \

@@ -3,7 +3,8 @@
 
 #include "neural/worked_example.h"
 
-#include <sluice/neural.h>
+#include <sluice/neural_pages.h>
+#include <sluice/neural_source.h>
 
 /* clang-format off */
 /* CALLS
@@ -22,6 +23,9 @@ sluiceBoundNeuralLatents(f->set, &f->request, 1, &f->out.size)
 sluiceReadNeuralLatentPart(f->set, 0, 0, &f->out.size, ?NULL)
 sluiceDecodeNeuralTexels(&f->decode)
 sluiceConvertNeuralColor(0, 0, 0)
+sluiceCreateNeuralImageSource(&f->source, &f->out.source) => sluiceDestroyImageSource(f->out.source)
+sluiceLayOutNeuralPages(f->set, 4096, &f->out.pages)
+sluiceReadNeuralPage(f->set, &f->pages, 0, f->page)
 */
 /* clang-format on */
 
@@ -37,7 +41,12 @@ struct fixture {
     uint8_t latents[1024], weights[16384];
     float texels[16 * 2];
     uint8_t bytes[WORKED_EXAMPLE_MAX_SIZE];
+    SluiceNeuralImageSourceCreateInfo source;
+    SluiceNeuralPages pages;
+    uint8_t page[4096];
     struct {
+        SluiceImageSource *source;
+        SluiceNeuralPages pages;
         SluiceNeuralSet *set;
         SluiceNeuralSetInfo info;
         SluiceNeuralTexture texture;
@@ -61,6 +70,8 @@ static void fixture_init(struct fixture *f, void **state)
     f->create.structSize = sizeof f->create;
     f->create.pInput = &f->input;
     CHECK_OK(sluiceOpenNeuralSet(&f->create, &f->set));
+    CHECK_OK(sluiceLayOutNeuralPages(f->set, sizeof f->page, &f->pages));
+    f->source = (SluiceNeuralImageSourceCreateInfo){.structSize = sizeof f->source, .set = f->set};
     f->sizes[0] = sizeof f->latents;
     f->sizes[1] = sizeof f->weights;
     CHECK_OK(sluiceReadNeuralLatents(f->set, NULL, &f->constants, &f->sizes[0], f->latents));
