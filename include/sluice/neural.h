@@ -346,8 +346,8 @@ typedef struct SluiceNeuralRequest {
  *
  * `pRequest` may be NULL: the whole set. `pBytes` may be NULL: nothing is read, `*pSize` becomes
  * the number of bytes and `*pConstants` is filled. Otherwise `*pSize` says how many bytes there are
- * at `pBytes`, and becomes how many were written. The first read of compressed latents compares
- * their checksum.
+ * at `pBytes`, and becomes how many were written. Checksums are compared at the first
+ * read of compressed latents and of whole latent images.
  *
  * Returns SLUICE_NOT_READY if the input says so, or if no file descriptor is free: call again.
  *
@@ -436,6 +436,72 @@ SLUICE_API SluiceResult sluiceDecodeNeuralTexels(const SluiceNeuralDecodeInfo *p
  */
 SLUICE_API float sluiceConvertNeuralColor(float value, SluiceNeuralColorSpace from,
                                           SluiceNeuralColorSpace to);
+
+/** A file to write. */
+typedef struct SluiceNeuralWriteInfo {
+    uint32_t structSize; ///< sizeof(SluiceNeuralWriteInfo).
+    const char *pPath;   ///< Required without pfnWrite. The file is complete or absent.
+    void *pUserData;     ///< Passed to pfnWrite.
+    /** Gets the bytes of the file in their order. Takes the place of the file. A result that is not
+     *  SLUICE_SUCCESS ends the call and is returned. */
+    SluiceResult (*pfnWrite)(void *pUserData, const void *pBytes, size_t size);
+    uint32_t schema;        ///< 1 or 3.
+    uint32_t width, height; ///< Texels of mip 0. 1 to SLUICE_NEURAL_MAX_SIZE.
+    uint32_t mipCount;      ///< Default: all.
+    uint32_t channelCount;  ///< 1 to 16. The file has an even number.
+    uint32_t textureCount;  ///< At most 16.
+    const SluiceNeuralTexture *pTextures;
+    const SluiceNeuralColorSpace *pColorSpaces; ///< One per channel. NULL: all linear.
+    SluiceNeuralNetwork network;                ///< Of the schema.
+    uint32_t highFeatures; ///< Codes per texel of a latent image, in schema 1 of its fine grid.
+    uint32_t highBits;     ///< Schema 1.
+    uint32_t lowFeatures;  ///< Schema 1.
+    uint32_t lowBits;      ///< Schema 1.
+    uint32_t gridScale;    ///< Texels of mip 0 per texel of the finest grid. 1 to 6.
+    /** At most 8, in schema 3 an even number. Default: those with more than one texel. */
+    uint32_t latentImageCount;
+    /** All codes, a byte each: grid after grid, each [y][x][feature]. Grids have the order of the
+     *  slices of sluicePlanNeuralFile. Required without pLatents. */
+    const uint8_t *pCodes;
+    /** All codes packed, as the slices of sluicePlanNeuralFile say. Used if pCodes is NULL. */
+    const void *pLatents;
+    const void *pInt8Weights; ///< As sluiceGetNeuralWeights writes them. NULL: none.
+    const void *pFp8Weights;  ///< As sluiceGetNeuralWeights writes them. NULL: none.
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
+    SluiceLogCallback log;
+} SluiceNeuralWriteInfo;
+
+/**
+ * Gets the constants and the latent layout of a file before it is written, as compressors need
+ * them. Latents, weights and the target of `pInfo` are not used.
+ *
+ * Slices are those of whole grids, also of those that no mip uses. `*pLatentSize` is the number of
+ * bytes of SluiceNeuralWriteInfo::pLatents. Mips use latents by the rules of the format's own
+ * compressors.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluicePlanNeuralFile(const SluiceNeuralWriteInfo *pInfo,
+                                             SluiceNeuralConstants *pConstants,
+                                             uint64_t *pLatentSize);
+
+/**
+ * Writes a file. Equal arguments give equal bytes. Latents of schema 3 have checksums.
+ *
+ * Memory: the latents, and a description of a few KiB. The file is written as `pPath` +
+ * ".sluice-part", then synced to disk and renamed.
+ *
+ * Returns SLUICE_NOT_READY, with nothing written, if no file descriptor is free.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, also without weights; SLUICE_ERROR_INVALID_ARGUMENT, also for
+ *         codes that do not fit into their bits and weights that are no numbers;
+ *         SLUICE_ERROR_FILE_NOT_FOUND if the folder does not exist; SLUICE_ERROR_BUSY if another
+ *         writer has the file open; SLUICE_ERROR_IO; SLUICE_ERROR_OUT_OF_HOST_MEMORY; results of
+ *         pfnWrite.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceWriteNeuralFile(const SluiceNeuralWriteInfo *pInfo);
 
 #ifdef __cplusplus
 } /* extern "C" */

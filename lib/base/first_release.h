@@ -41,6 +41,7 @@
 #define SLC_FIRST_SluiceNeuralSetCreateInfo SLC_UP_TO(SluiceNeuralSetCreateInfo, filePool)
 #define SLC_FIRST_SluiceNeuralSetInfo SLC_UP_TO(SluiceNeuralSetInfo, latentSize)
 #define SLC_FIRST_SluiceNeuralDecodeInfo SLC_UP_TO(SluiceNeuralDecodeInfo, log)
+#define SLC_FIRST_SluiceNeuralWriteInfo SLC_UP_TO(SluiceNeuralWriteInfo, log)
 #define SLC_FIRST_SluiceNeuralTexture SLC_UP_TO(SluiceNeuralTexture, bcFormat)
 #define SLC_FIRST_SluiceNeuralMip SLC_UP_TO(SluiceNeuralMip, fusedMipCount)
 #define SLC_FIRST_SluiceNeuralLatentImage SLC_UP_TO(SluiceNeuralLatentImage, mipCount)

@@ -30,34 +30,6 @@ static SluiceResult check_request(const SluiceNeuralSet *set, const SluiceNeural
     return SLUICE_SUCCESS;
 }
 
-static void fill_constants(const SluiceNeuralSet *set, const struct slc_neural_request *request,
-                           SluiceNeuralConstants *constants)
-{
-    const SluiceNeuralSetInfo *info = &set->info;
-    *constants = (SluiceNeuralConstants){
-        .schema = info->schema,
-        .width = info->width,
-        .height = info->height,
-        .mipCount = info->mipCount,
-        .channelCount = info->channelCount,
-        .validChannels = info->validChannels,
-        .inputCount = info->inputCount,
-        .networkFeatures = info->schema == 1 ? (info->inputCount - 32) / 4 : 16,
-        .highFeatures = info->highFeatures,
-        .highBits = info->highBits,
-        .lowFeatures = info->lowFeatures,
-        .lowBits = info->lowBits,
-        .firstMip = request->first_mip,
-        .residentMipCount = request->mip_count,
-    };
-    for (uint32_t i = 0; i < info->mipCount; i++) {
-        const struct slc_neural_mip *mip = &set->mips[i];
-        constants->mips[i] = (SluiceNeuralMipConstants){
-            mip->first_grid, slc_neural_wave_code(info->schema, mip->position_lod),
-            mip->position_lod, mip->position_scale};
-    }
-}
-
 /* Rows of one part of a grid. Compressed ones are inflated together. */
 struct rows {
     const SluiceNeuralSet *set;
@@ -176,11 +148,11 @@ static SluiceResult copy_block_3(const SluiceNeuralSet *set, const struct block 
     return result;
 }
 
-/* The first read of a view compares its checksum. */
-static SluiceResult verify_grid(const SluiceNeuralSet *set, uint32_t grid)
+/* The first read of a grid that is compressed or read as a whole compares its checksums. */
+static SluiceResult verify_grid(const SluiceNeuralSet *set, uint32_t grid, bool is_whole)
 {
     SluiceResult result = SLUICE_SUCCESS;
-    if (atomic_load(&set->verified[grid]))
+    if (atomic_load(&set->verified[grid]) || !(is_whole || set->grids[grid].parts[0].is_compressed))
         return result;
     for (uint32_t i = 0; i < set->grids[grid].part_count && result == SLUICE_SUCCESS; i++)
         result = slc_neural_verify_view(set, &set->grids[grid].parts[i]);
@@ -195,7 +167,8 @@ static SluiceResult read_slice(const SluiceNeuralSet *set, uint32_t index,
 {
     const struct slc_neural_grid *grid = &set->grids[index];
     uint32_t width = slice->sliceSize & 0xFFFF, height = slice->sliceSize >> 16;
-    SluiceResult result = verify_grid(set, index);
+    bool is_whole = slice->sliceSize == slice->gridSize;
+    SluiceResult result = verify_grid(set, index, is_whole);
     struct block b = {.grid = grid, .slice_width = width};
     for (b.to_y = 0; b.to_y < height && result == SLUICE_SUCCESS; b.to_y += b.height) {
         b.top = ((slice->origin >> 16) + b.to_y) % grid->height;
@@ -243,7 +216,7 @@ SluiceResult sluiceReadNeuralLatents(const SluiceNeuralSet *set,
     SluiceResult result = check_request(set, pRequest, &request);
     if (result != SLUICE_SUCCESS)
         return result;
-    fill_constants(set, &request, &constants);
+    slc_neural_fill_constants(set, &request, &constants);
     uint64_t size = slc_neural_make_slices(set, &request, constants.slices), room = *pSize;
     result = check_size(set, size);
     if (result != SLUICE_SUCCESS)

@@ -182,6 +182,19 @@ uint64_t slc_neural_make_slices(const SluiceNeuralSet *set,
     return size;
 }
 
+uint64_t slc_neural_whole_slices(const SluiceNeuralSet *set,
+                                 SluiceNeuralSlice slices[SLC_NEURAL_MAX_GRIDS])
+{
+    uint64_t size = 0;
+    for (uint32_t i = 0; i < set->grid_count; i++) {
+        const struct slc_neural_grid *g = &set->grids[i];
+        uint32_t texels = g->width | g->height << 16;
+        slices[i] = (SluiceNeuralSlice){(uint32_t)size, texels, 0, texels};
+        size += slc_neural_slice_bytes(g->width, g->height, g->features * g->bits);
+    }
+    return size;
+}
+
 static uint64_t div_up(uint64_t a, uint64_t b)
 {
     return a / b + (a % b != 0);
@@ -234,4 +247,32 @@ uint64_t slc_neural_bound_slices(const SluiceNeuralSet *set,
         mip = unit.last + 1;
     }
     return size;
+}
+
+void slc_neural_fill_constants(const SluiceNeuralSet *set, const struct slc_neural_request *request,
+                               SluiceNeuralConstants *constants)
+{
+    const SluiceNeuralSetInfo *info = &set->info;
+    *constants = (SluiceNeuralConstants){
+        .schema = info->schema,
+        .width = info->width,
+        .height = info->height,
+        .mipCount = info->mipCount,
+        .channelCount = info->channelCount,
+        .validChannels = info->validChannels,
+        .inputCount = info->inputCount,
+        .networkFeatures = info->schema == 1 ? (info->inputCount - 32) / 4 : 16,
+        .highFeatures = info->highFeatures,
+        .highBits = info->highBits,
+        .lowFeatures = info->lowFeatures,
+        .lowBits = info->lowBits,
+        .firstMip = request->first_mip,
+        .residentMipCount = request->mip_count,
+    };
+    for (uint32_t i = 0; i < info->mipCount; i++) {
+        const struct slc_neural_mip *mip = &set->mips[i];
+        constants->mips[i] = (SluiceNeuralMipConstants){
+            mip->first_grid, slc_neural_wave_code(info->schema, mip->position_lod),
+            mip->position_lod, mip->position_scale};
+    }
 }

@@ -51,6 +51,14 @@ uint64_t slc_neural_make_slices(const SluiceNeuralSet *set,
                                 const struct slc_neural_request *request,
                                 SluiceNeuralSlice slices[SLC_NEURAL_MAX_GRIDS]);
 
+/** Fills the slices of all grids as a whole, also those that no mip uses. Returns their bytes. */
+uint64_t slc_neural_whole_slices(const SluiceNeuralSet *set,
+                                 SluiceNeuralSlice slices[SLC_NEURAL_MAX_GRIDS]);
+
+/** Fills everything but the slices. */
+void slc_neural_fill_constants(const SluiceNeuralSet *set, const struct slc_neural_request *request,
+                               SluiceNeuralConstants *constants);
+
 /** Bytes that no rectangle of this size takes more of, whose origin is a multiple of `alignment`,
  *  a power of two. `request->origin` is not used. */
 uint64_t slc_neural_bound_slices(const SluiceNeuralSet *set,

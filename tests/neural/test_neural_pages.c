@@ -160,7 +160,7 @@ static void pages_are_as_large_as_allowed(void **state)
     if (!whole_init(&w, "v9_64_g.ntc"))
         SKIP_TEST("the sample is not there");
     CHECK_OK(sluiceLayOutNeuralPages(w.set, 1 << 20, &pages));
-    assert_int_equal(pages.pageCount, pages.groupCount); /* a group fits into a page */
+    assert_int_equal(pages.pageCount, pages.groupCount);    /* a group fits into a page */
     CHECK_OK(sluiceLayOutNeuralPages(w.set, 2048, &pages)); /* edges are halved */
     assert_true(pages.pageSize > 512 && pages.groups[0].columns > 1);
     CHECK_RESULT(sluiceLayOutNeuralPages(w.set, 600, &pages), SLUICE_ERROR_LIMIT_EXCEEDED);

@@ -26,6 +26,8 @@ sluiceConvertNeuralColor(0, 0, 0)
 sluiceCreateNeuralImageSource(&f->source, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceLayOutNeuralPages(f->set, 4096, &f->out.pages)
 sluiceReadNeuralPage(f->set, &f->pages, 0, f->page)
+sluicePlanNeuralFile(&f->write, &f->out.constants, &f->out.size)
+sluiceWriteNeuralFile(&f->write)
 */
 /* clang-format on */
 
@@ -36,6 +38,8 @@ struct fixture {
     SluiceNeuralOutput outputs[16];
     SluiceNeuralRequest request;
     SluiceNeuralDecodeInfo decode;
+    SluiceNeuralWriteInfo write;
+    uint8_t codes[64];
     SluiceNeuralConstants constants;
     uint64_t sizes[2];
     uint8_t latents[1024], weights[16384];
@@ -60,6 +64,12 @@ struct fixture {
 };
 
 CALLS_FUNCTIONS
+
+static SluiceResult drop(void *user, const void *bytes, size_t size)
+{
+    (void)user, (void)bytes, (void)size;
+    return SLUICE_SUCCESS;
+}
 
 static void fixture_init(struct fixture *f, void **state)
 {
@@ -88,6 +98,19 @@ static void fixture_init(struct fixture *f, void **state)
         .height = 4,
         .channelCount = 2,
         .pTexels = f->texels,
+    };
+    f->write = (SluiceNeuralWriteInfo){
+        .structSize = sizeof f->write,
+        .pfnWrite = drop,
+        .schema = 3,
+        .width = 4,
+        .height = 4,
+        .channelCount = 2,
+        .network = SLUICE_NEURAL_NETWORK_SCHEMA3,
+        .highFeatures = 4,
+        .gridScale = 2,
+        .pCodes = f->codes,
+        .pInt8Weights = f->weights,
     };
 }
 

@@ -2,6 +2,7 @@
 #include "neural/neural_set.h"
 
 #include "base/alloc.h"
+#include "base/log.h"
 #include "base/checked.h"
 
 #include <sluice/neural_pages.h>
@@ -120,7 +121,10 @@ SluiceResult sluiceReadNeuralPage(const SluiceNeuralSet *set, const SluiceNeural
     if (page >= pPages->pageCount || !group ||
         sluiceLayOutNeuralPages(set, pPages->pageSize, &made) != SLUICE_SUCCESS ||
         memcmp(&made, pPages, sizeof made))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_log_refusal(&set->file.log,
+                               "%s: page is %u of %u, or the pages are those of "
+                               "another set",
+                               set->file.path, page, pPages->pageCount);
     const SluiceNeuralRequest request = rectangle(pPages, group, page);
     const SluiceAllocationCallbacks *cb = &set->allocator;
     /* Latents are not read in the order of their bytes, and the memory may be slow to read. */
