@@ -123,6 +123,8 @@ static bool list(struct proxies *p, SluiceProxySet *set, SluiceDemandResourceId 
     if (!check(sluiceProcessDemandProxies(p->loader, resource, set), "requests"))
         return false;
     *count = get_info(set).requestedCount;
+    if (*count == 0)
+        return true;
     return reserve((void **)&p->ids, &p->id_room, *count, sizeof *p->ids) &&
            check(sluiceGetRequestedProxies(set, &info, count, p->ids), "requests");
 }
