@@ -113,6 +113,10 @@
     SLC_UP_TO(SluiceVulkanContextStatistics, deviceMemoryBudget)
 #define SLC_FIRST_SluiceNeuralImageSourceCreateInfo                                                \
     SLC_UP_TO(SluiceNeuralImageSourceCreateInfo, log)
+#define SLC_FIRST_SluiceNeuralCompressorCreateInfo                                                 \
+    SLC_UP_TO(SluiceNeuralCompressorCreateInfo, checkpointSize)
+#define SLC_FIRST_SluiceNeuralTrainedSet SLC_UP_TO(SluiceNeuralTrainedSet, fp8Size)
+#define SLC_FIRST_SluiceNeuralProgress SLC_UP_TO(SluiceNeuralProgress, channelErrors)
 #define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
     SLC_UP_TO(SluiceVulkanDeviceCapabilities, sparseCubes)
 #define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \

@@ -3,9 +3,11 @@
 #include "null_arguments/calls.h"
 
 #include <sluice/demand.h>
+#include <sluice/neural_compress.h>
 #include <sluice/vulkan_proxy.h>
 
 #include <stdio.h>
+#include <stdlib.h>
 
 /* clang-format off */
 /* CALLS
@@ -39,6 +41,14 @@ sluiceRetryVulkanSource(f->streamer, ?f->source)
 sluiceGetVulkanResidencyMode(f->streamer, &f->out.mode)
 sluiceChooseVulkanResidencyMode(&f->h->caps, f->h->mode, 1, &f->out.mode)
 sluiceGetVulkanStreamerManager(f->streamer, &f->out.manager)
+
+sluiceCreateNeuralCompressor(f->h->context, &f->compressor_info, &f->out.compressor) => sluiceDestroyNeuralCompressor(f->out.compressor)
+!sluiceDestroyNeuralCompressor(f->compressor)
+sluiceRecordNeuralTraining(f->compressor, f->commands, ?1, &f->out.page)
+sluiceRecordNeuralReadback(f->compressor, f->commands)
+sluiceGetNeuralProgress(f->compressor, &f->out.progress)
+sluiceGetNeuralCheckpoint(f->compressor, ?f->checkpoint, checkpoint_size(f))
+sluiceGetNeuralTrainedSet(f->compressor, &f->out.trained)
 
 sluiceCreateDemandLoader(&f->loader_info, &f->out.loader) => sluiceDestroyDemandLoader(f->out.loader)
 !sluiceDestroyDemandLoader(f->loader)
@@ -105,6 +115,13 @@ struct fixture {
     SluiceDemandTextureId made;
     SluiceProxySet *set;
     SluiceDemandLaunch launch;
+    SluiceNeuralCompressorCreateInfo compressor_info;
+    SluiceNeuralTrainingChannel channel;
+    const float *mips[1];
+    float texel;
+    SluiceNeuralCompressor *compressor;
+    void *checkpoint;
+    size_t checkpoint_size;
     struct {
         SluiceResidencyMode mode;
         SluiceVulkanDeviceCapabilities caps;
@@ -137,10 +154,18 @@ struct fixture {
         SluiceRecorder *recorder;
         SluiceDemandTicketStatus ticket_status;
         SluiceDemandStatistics demand_statistics;
+        SluiceNeuralCompressor *compressor;
+        SluiceNeuralProgress progress;
+        SluiceNeuralTrainedSet trained;
     } out;
 };
 
 CALLS_FUNCTIONS
+
+static size_t *checkpoint_size(struct fixture *f)
+{
+    return &f->checkpoint_size;
+}
 
 static struct harness h;
 
@@ -246,6 +271,29 @@ static void init_loader(struct fixture *f)
     CHECK_OK(sluiceAddDemandProxies(f->loader, f->set, 0, &f->proxies, &first));
 }
 
+/* One for all tests, of one texel: its passes take long to compile. */
+static SluiceNeuralCompressor *compressor;
+
+static void init_compressor(struct fixture *f)
+{
+    f->texel = 0.5f;
+    f->mips[0] = &f->texel;
+    f->compressor_info = (SluiceNeuralCompressorCreateInfo){
+        .structSize = sizeof(SluiceNeuralCompressorCreateInfo),
+        .width = 1,
+        .height = 1,
+        .channelCount = 1,
+        .pChannels = &f->channel,
+        .ppMips = f->mips,
+        .batchSize = 32};
+    if (!compressor)
+        CHECK_OK(sluiceCreateNeuralCompressor(h.context, &f->compressor_info, &compressor));
+    f->compressor = compressor;
+    CHECK_OK(sluiceGetNeuralCheckpoint(f->compressor, NULL, &f->checkpoint_size));
+    f->checkpoint = malloc(f->checkpoint_size);
+    CHECK_OK(sluiceRecordNeuralReadback(f->compressor, f->commands));
+}
+
 static void fixture_init(struct fixture *f, void **state)
 {
     (void)state;
@@ -264,12 +312,14 @@ static void fixture_init(struct fixture *f, void **state)
     init_loader(f);
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     assert_int_equal(h.BeginCommandBuffer(f->commands, &begin), VK_SUCCESS);
+    init_compressor(f);
 }
 
 /* Nothing of what was recorded is submitted. */
 static void fixture_finish(struct fixture *f)
 {
     assert_int_equal(h.ResetCommandBuffer(f->commands, 0), VK_SUCCESS);
+    free(f->checkpoint);
     sluiceDestroyDemandLoader(f->loader);
     sluiceDestroyProxySet(f->set);
     sluiceDestroyDemandLoader(f->fresh_loader);
@@ -289,5 +339,7 @@ int main(void)
         return status;
     const struct CMUnitTest tests[] = {CALLS_TESTS};
     CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 1}));
-    return harness_finish(&h, RUN_TESTS(tests));
+    status = RUN_TESTS(tests);
+    sluiceDestroyNeuralCompressor(compressor);
+    return harness_finish(&h, status);
 }
