@@ -11,6 +11,7 @@
 #include <string.h>
 
 #define MAX_DEVICES 32
+#define MAX_EXTENSIONS 512
 #define MAX_FAMILIES 32
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
 
@@ -275,6 +276,17 @@ static bool choose_queue_family(struct gpu *gpu)
     return false;
 }
 
+static bool has_extension(VkPhysicalDevice device, const char *name)
+{
+    VkExtensionProperties extensions[MAX_EXTENSIONS];
+    uint32_t count = MAX_EXTENSIONS;
+    vkEnumerateDeviceExtensionProperties(device, NULL, &count, extensions);
+    for (uint32_t i = 0; i < count; i++)
+        if (strcmp(extensions[i].extensionName, name) == 0)
+            return true;
+    return false;
+}
+
 static bool create_device(struct gpu *gpu)
 {
     VkPhysicalDeviceVulkan12Features vulkan12 = {
@@ -313,6 +325,16 @@ static bool create_device(struct gpu *gpu)
     struct gpu_ray_features rays;
     if (gpu->ray_tracing)
         gpu_require_rays(&rays, &vulkan12, &info);
+    static const char *const dot_name = VK_KHR_SHADER_INTEGER_DOT_PRODUCT_EXTENSION_NAME;
+    VkPhysicalDeviceShaderIntegerDotProductFeaturesKHR dot = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_INTEGER_DOT_PRODUCT_FEATURES_KHR,
+        .pNext = vulkan12.pNext,
+        .shaderIntegerDotProduct = VK_TRUE};
+    if (gpu->integer_dot) {
+        vulkan12.pNext = &dot;
+        info.enabledExtensionCount = 1;
+        info.ppEnabledExtensionNames = &dot_name;
+    }
     if (!gpu_check(vkCreateDevice(gpu->physical_device, &info, NULL, &gpu->device),
                    "vkCreateDevice"))
         return false;
@@ -336,6 +358,9 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
         *unsupported = !choose_device(request->device, gpu) || !choose_queue_family(gpu);
         gpu->ray_tracing =
             !*unsupported && request->ray_tracing && gpu_traces_rays(gpu->physical_device);
+        gpu->integer_dot =
+            !*unsupported && request->integer_dot && !gpu->ray_tracing &&
+            has_extension(gpu->physical_device, VK_KHR_SHADER_INTEGER_DOT_PRODUCT_EXTENSION_NAME);
         if (!*unsupported && create_device(gpu))
             return true;
     }

@@ -15,6 +15,7 @@ struct gpu_request {
     /** That streamers will have. AUTO for the second: sparse if the first is, else dense. */
     SluiceResidencyMode modes[2];
     bool ray_tracing; ///< the ray-tracing pipeline is enabled, where the device has it
+    bool integer_dot; ///< integer dot products are enabled, where the device has them; without rays
 };
 
 struct gpu {
@@ -31,6 +32,7 @@ struct gpu {
     SluiceResidencyMode modes[2]; ///< as asked for, never AUTO
     bool is_auto;                 ///< the first was AUTO: gpu_choose_mode may change it
     bool ray_tracing;             ///< asked for and there, with buffer addresses
+    bool integer_dot;             ///< asked for and there
     VkDebugUtilsMessengerEXT messenger;
     atomic_uint validation_messages; ///< warnings and errors of the validation layers so far
 };
