@@ -1,0 +1,26 @@
+/** A material of eight channels in all forms: latents, weights, and textures. */
+#ifndef BENCH_NEURAL_MATERIAL_H
+#define BENCH_NEURAL_MATERIAL_H
+
+#include "../../tools/common/gpu.h"
+
+#include <sluice/neural.h>
+
+struct material {
+    SluiceNeuralConstants constants;
+    uint8_t *latents, *weights; ///< owned
+    uint64_t latent_size, weight_size;
+    struct gpu_buffer buffers[4];      ///< constants, latents, weights, weights
+    struct gpu_image rgba8[2], bc7[2]; ///< four channels each
+    uint64_t rgba8_size, bc7_size;     ///< bytes of both
+};
+
+/**
+ * Reads a file, or makes a set of random numbers of `size` texels if `path` is NULL: how long a
+ * decode takes does not depend on them. Blocks of BC7 are random, too. Says on stderr what failed.
+ */
+bool material_create(struct material *material, const struct gpu *gpu, const char *path,
+                     uint32_t size);
+void material_destroy(struct material *material, const struct gpu *gpu);
+
+#endif /* BENCH_NEURAL_MATERIAL_H */

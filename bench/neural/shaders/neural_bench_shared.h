@@ -1,0 +1,23 @@
+/* What the shaders of bench/neural read, for C and GLSL. */
+#ifndef NEURAL_BENCH_SHARED_H
+#define NEURAL_BENCH_SHARED_H
+
+#if defined(__STDC_VERSION__)
+#include <sluice/shared/types.h>
+#else
+#include "sluice/shared/types.h"
+#endif
+
+#define NEURAL_BENCH_MAX_WEIGHTS 17024 /* bytes */
+
+struct NeuralBenchParams {
+    uint width; /* of the picture, in pixels */
+    uint height;
+    uint frame;
+    float lod;
+    float uvPerPixel[2];
+    uint textureSize[2];
+};
+SLUICE_SHARED_SIZE(struct NeuralBenchParams, 32)
+
+#endif

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Whether the benchmark runs and prints its figures; what those are is nobody's business here.
+#
+#   bench/neural/test_figures.sh PROGRAM
+
+set -uo pipefail
+lines=$("$1" --size 64x36 --texture-size 64 --repeat 2 --json)
+status=$?
+[ "$status" = 0 ] || exit "$status"
+for name in schema latents weights rgba8.time bc7.time int8.time int8.rate; do
+    if ! grep -q -E "^\{\"name\": \"neural\.$name\", \"value\": [0-9][0-9.e+-]*, \"unit\": \"[^\"]*\"\}$" <<<"$lines"; then
+        echo "there is no figure neural.$name" >&2
+        exit 1
+    fi
+done
