@@ -239,8 +239,8 @@ uint64_t slc_neural_bound_slices(const SluiceNeuralSet *set,
             struct axis x = axis_of(set, request, &unit, i, 0);
             struct axis y = axis_of(set, request, &unit, i, 1);
             uint32_t width = bound_span(&x, alignment, pair);
-            /* a slice as wide as an odd grid has pairs of rows */
-            bool has_pairs = (pair & 4) && width == g->width && width % 2;
+            /* a slice that ends with an odd grid has pairs of rows */
+            bool has_pairs = (pair & 4) && g->width % 2;
             size +=
                 slc_neural_slice_bytes(width, bound_span(&y, alignment, has_pairs ? 4 : 0), bits);
         }
