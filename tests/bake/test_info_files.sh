@@ -58,7 +58,7 @@ echo nothing >text
 run 1 a.store text empty absent && [ "$(grep -c . err)" -eq 3 ] && grep -q '300 x 200' out
 fact files_that_are_none_are_errors_and_the_others_are_shown
 
-run 1 a.png && [ "$(grep -c . err)" -eq 1 ] && grep -q 'a.png: is not a tile store, OpenEXR, DDS or KTX2 file; sluice-bake' err
+run 1 a.png && [ "$(grep -c . err)" -eq 1 ] && grep -q 'a.png: is not a tile store, OpenEXR, DDS, KTX2 or .ntc file; sluice-bake' err
 fact a_picture_of_another_kind_is_named_so
 
 if [ -n "$dds" ]; then

@@ -2,17 +2,39 @@
  */
 #include "show.h"
 
+#include "neural_file.h"
+
 #include "../common/text.h"
 
 #include <stdio.h>
+
+static int show_any_file(const struct options *options, const char *path)
+{
+#ifdef HAVE_NEURAL
+    if (is_neural_file(path))
+        return show_neural_file(options, path);
+#endif
+    return show_file(options, path);
+}
 
 static int show_files(const struct options *options)
 {
     int status = ALL_SHOWN;
     for (size_t i = 0; i < options->files.count; i++)
-        if (show_file(options, options->files.items[i]) != ALL_SHOWN)
+        if (show_any_file(options, options->files.items[i]) != ALL_SHOWN)
             status = NOT_SHOWN;
     return status;
+}
+
+static int decode(const struct options *options)
+{
+#ifdef HAVE_NEURAL
+    return decode_neural_file(options);
+#else
+    (void)options;
+    text_say("sluice-info: this build reads no neural textures");
+    return NOT_SHOWN;
+#endif
 }
 
 int main(int argc, char **argv)
@@ -24,6 +46,8 @@ int main(int argc, char **argv)
         return WRONG_USAGE;
     if (outcome == OPTIONS_HELP)
         status = ALL_SHOWN;
+    else if (options.decode >= 0)
+        status = decode(&options);
     else if (options.png)
         status = write_picture(&options);
     else if (options.files.count)

@@ -109,9 +109,10 @@ bool open_texture_file(struct texture_file *file, const char *path,
     else if (memcmp(start, store, 8) == 0)
         result = open_store(file, path, log);
     else {
-        text_say("sluice-info: %s: is not a tile store, OpenEXR, DDS or KTX2 file; sluice-bake "
-                 "makes tile stores of other pictures",
-                 path);
+        text_say(
+            "sluice-info: %s: is not a tile store, OpenEXR, DDS, KTX2 or .ntc file; sluice-bake "
+            "makes tile stores of other pictures",
+            path);
         return false;
     }
     file->image.structSize = sizeof file->image;

@@ -10,12 +10,14 @@
 static const char usage[] =
     "usage: sluice-info FILE... [--json]\n"
     "       sluice-info FILE [--level N] [--tile X,Y] --png OUT\n"
+    "       sluice-info FILE.ntc --decode MIP [--weights int8|fp8] -o OUT\n"
     "       sluice-info [--device INDEX|NAME] [--image WxH] [--json]\n"
     "       sluice-info --formats [--device INDEX|NAME] [--json]\n"
     "       sluice-info --list-devices\n"
     "\n"
-    "Says what is in tile stores, OpenEXR, DDS and KTX2 files, or, without a file, what the\n"
-    "Vulkan devices of this machine can do for Sluice. Options end at --.\n";
+    "Says what is in tile stores, OpenEXR, DDS, KTX2 and .ntc files (neural textures), or,\n"
+    "without a file, what the Vulkan devices of this machine can do for Sluice. Options end\n"
+    "at --.\n";
 
 static const char notes[] =
     "Of each format of a device: whether it can be streamed, sampled and filtered; the tile as\n"
@@ -46,6 +48,10 @@ static bool is_consistent(const struct option_table *table, const struct options
         return options_refuse(table, "--png takes one file; --help says more");
     if (!o->png && (o->tile.is_given || o->level))
         return options_refuse(table, "--level and --tile go with --png; --help says more");
+    if ((o->decode >= 0) != (o->output != NULL))
+        return options_refuse(table, "--decode and --output go together; --help says more");
+    if (o->decode >= 0 && (o->files.count != 1 || o->png || o->json))
+        return options_refuse(table, "--decode takes one file, and no --png or --json");
     if (o->files.count && (o->device || o->list_devices || o->formats))
         return options_refuse(table, "files or devices, not both; --help says more");
     return true;
@@ -53,7 +59,7 @@ static bool is_consistent(const struct option_table *table, const struct options
 
 enum option_outcome parse_options(struct options *o, int argc, char **argv)
 {
-    *o = (struct options){0};
+    *o = (struct options){.decode = -1};
     const struct option options[] = {
         {OPTION_WORDS, .value = &o->files},
         {OPTION_SECTION, .help = "Files"},
@@ -63,6 +69,12 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_CUSTOM, "tile", "X,Y", "(the whole level)", &o->tile,
          "only this 64 KiB tile of it: column and row", .parse = parse_tile},
         option_memory(&o->memory, "host memory for the picture and for reading its file"),
+        {OPTION_SECTION, .help = "Neural textures"},
+        {OPTION_INT, "decode", "MIP", "(none)", &o->decode,
+         "decode a mip to floats: [height][width][channels], row 0 first", 0, 31},
+        {OPTION_CHOICE, "weights", "int8|fp8", "int8", &o->weights,
+         "weights of the network to decode with"},
+        {OPTION_TEXT, "output", "OUT", "(none)", &o->output, "file of the floats", .letter = 'o'},
         {OPTION_SECTION, .help = "Devices"},
         {OPTION_TEXT, "device", "INDEX|NAME", "(all)", &o->device,
          "one Vulkan device: an index of --list-devices, or part of its name"},

@@ -15,6 +15,9 @@ struct options {
     const char *png; ///< NULL: no picture is written
     uint32_t level;
     struct tile_choice tile;
+    int32_t decode;     ///< mip of a neural set to decode; -1: none
+    int weights;        ///< 0: INT8, 1: FP8
+    const char *output; ///< where decoded floats go
     uint64_t memory;    ///< bytes that a picture and the reading of its file may take
     const char *device; ///< number or a part of the name; NULL: all
     uint32_t image[2];  ///< width and height of the image whose layout is shown
