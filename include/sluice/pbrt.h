@@ -299,7 +299,7 @@ typedef struct SluicePbrtShape {
     float innerRadius;    ///< DISK.
     float zMin, zMax;     ///< SPHERE, CYLINDER. DISK: both are the height.
     float phiMax;         ///< SPHERE, DISK, CYLINDER; degrees.
-    uint32_t levels;      ///< LOOP: times to subdivide.
+    uint32_t levels;      ///< LOOP: times to subdivide, 0 to 8. Default: 3.
 } SluicePbrtShape;
 
 /**
@@ -392,8 +392,8 @@ typedef struct SluicePbrtMesh {
  * Reads the triangles of one shape from its file.
  *
  * Spheres, disks and cylinders become 64 segments for a whole turn, loopsubdiv becomes its
- * control mesh, bilinear patches and quads become two triangles, and larger polygons a fan.
- * The arrays belong to the caller, who frees them with sluiceFreePbrtMesh.
+ * limit surface after `levels` subdivisions, bilinear patches and quads become two triangles, and
+ * larger polygons a fan. The arrays belong to the caller, who frees them with sluiceFreePbrtMesh.
  *
  * Errors, logged with the line of the Shape: SLUICE_ERROR_NULL_POINTER;
  *         SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize or an `index` that is not below

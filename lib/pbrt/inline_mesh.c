@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "pbrt/lexer.h"
+#include "pbrt/loop_subdivision.h"
 #include "pbrt/ply_reader.h"
 #include "base/text_number.h"
 
@@ -125,6 +126,18 @@ static SluiceResult read_faces(const SluicePbrtScene *scene,
     return result;
 }
 
+static SluiceResult subdivide(const SluicePbrtScene *scene,
+                              const struct slc_pbrt_shape_entry *shape, SluicePbrtMesh *mesh)
+{
+    SluiceResult result = slc_pbrt_subdivide(&scene->allocator, shape->data.mesh.levels,
+                                             scene->limits.maxMeshSize, mesh);
+    if (result != SLUICE_ERROR_UNSUPPORTED)
+        return result;
+    slc_pbrt_warn(scene, &shape->place,
+                  "faces do not form one surface with a direction: the control mesh is shown");
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult slc_pbrt_read_inline_mesh(const SluicePbrtScene *scene,
                                        const struct slc_pbrt_shape_entry *shape,
                                        SluicePbrtMesh *mesh)
@@ -147,10 +160,15 @@ SluiceResult slc_pbrt_read_inline_mesh(const SluicePbrtScene *scene,
         result = read_floats(scene, &spans[SLC_PBRT_SPAN_UVS], &mesh->pUvs, &mesh->bytesRead);
     if (result == SLUICE_SUCCESS)
         result = read_faces(scene, shape, &spans[SLC_PBRT_SPAN_INDICES], mesh);
+    if (result == SLUICE_SUCCESS && shape->kind == SLUICE_PBRT_SHAPE_LOOP)
+        result = subdivide(scene, shape, mesh);
     if (result == SLUICE_SUCCESS)
         return SLUICE_SUCCESS;
     slc_pbrt_free_mesh(&scene->allocator, mesh);
     *mesh = (SluicePbrtMesh){.structSize = sizeof *mesh};
+    if (result == SLUICE_ERROR_LIMIT_EXCEEDED)
+        return slc_pbrt_fail(scene, result, &shape->place,
+                             "subdivided, the mesh is larger than maxMeshSize");
     return slc_pbrt_fail(scene, result, &shape->place, "the mesh cannot be read again: %s",
                          result == SLUICE_ERROR_IO ? "the text has changed"
                                                    : slc_pbrt_failure_text(result));

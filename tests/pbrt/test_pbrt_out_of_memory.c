@@ -27,6 +27,7 @@ static const char SCENE[] =
     "Shape \"sphere\" \"texture alpha\" \"a\"\nShape \"moebius\"\nAttributeEnd\nNamedMaterial "
     "\"later\"\n"
     "ObjectBegin \"o\"\nShape \"plymesh\" \"string filename\" \"a.ply\" \"rgb Kd\" [1 1 0]\n"
+    "Shape \"loopsubdiv\" \"point P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]\n"
     "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1] \"integer indices\" [0 1 2 3]\n"
     "ObjectEnd\nObjectInstance \"o\"\n"
     "MakeNamedMaterial \"later\" \"string type\" \"mix\" \"string materials\" [\"x\" \"later\"]\n"
@@ -67,7 +68,7 @@ static SluiceResult use_scene(const char *path, const char *bounds_path,
         return result;
     }
     CHECK_OK(sluiceGetPbrtSceneInfo(scene, &counts));
-    assert_int_equal(counts.shapeCount, 6);
+    assert_int_equal(counts.shapeCount, 7);
     ask(scene);
     for (uint32_t i = 0; i < counts.shapeCount && result == SLUICE_SUCCESS; i++) {
         SluicePbrtMesh mesh = {.structSize = sizeof mesh};
