@@ -328,7 +328,7 @@ bool launches_preload(struct launches *l)
             return false;
     for (uint32_t i = 0; i < l->textures->use_count; i++) {
         SluiceDemandTicket ticket;
-        if (!check(sluicePreloadDemandTexture(l->loader, l->textures->uses[i].id, 0, &ticket),
+        if (!check(sluicePreloadDemandTexture(l->loader, l->textures->uses[i]->id, 0, &ticket),
                    "a picture cannot be loaded") ||
             !finish_ticket(l, ticket))
             return false;

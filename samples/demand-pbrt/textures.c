@@ -81,6 +81,8 @@ void textures_finish(struct textures *t)
 {
     for (uint32_t i = 0; i < t->image_count; i++)
         free(t->images[i]);
+    for (uint32_t i = 0; i < t->use_count; i++)
+        free(t->uses[i]);
     free(t->images);
     free(t->uses);
     sluiceDestroyImageOpener(t->opener);
@@ -169,6 +171,26 @@ static bool is_same_use(const struct picture_use *a, const struct picture_use *b
            a->nearest == b->nearest && a->anisotropy == b->anisotropy;
 }
 
+/* Callers keep the pointer. */
+static const struct picture_use *add_use(struct textures *t, const SluicePbrtTexture *texture,
+                                         struct picture_use *use)
+{
+    struct picture_use *kept = malloc(sizeof *kept);
+    if (!kept || !grow((void **)&t->uses, t->use_count, &t->use_room, sizeof *t->uses)) {
+        free(kept);
+        return NULL;
+    }
+    SluiceResult result = add_texture(t, use);
+    if (result != SLUICE_SUCCESS) {
+        text_say("%s:%u: texture \"%s\": cannot be added: %s", texture->pFile, texture->line,
+                 texture->pName, sluiceGetResultName(result));
+        free(kept);
+        return NULL;
+    }
+    *kept = *use;
+    return t->uses[t->use_count++] = kept;
+}
+
 const struct picture_use *textures_find(struct textures *t, const SluicePbrtTexture *texture)
 {
     const bool isotropic = texture->filter == SLUICE_PBRT_FILTER_TRILINEAR ||
@@ -180,18 +202,9 @@ const struct picture_use *textures_find(struct textures *t, const SluicePbrtText
     if (!use.image)
         return NULL;
     for (uint32_t i = 0; i < t->use_count; i++)
-        if (is_same_use(&t->uses[i], &use))
-            return &t->uses[i];
-    if (!grow((void **)&t->uses, t->use_count, &t->use_room, sizeof *t->uses))
-        return NULL;
-    SluiceResult result = add_texture(t, &use);
-    if (result != SLUICE_SUCCESS) {
-        text_say("%s:%u: texture \"%s\": cannot be added: %s", texture->pFile, texture->line,
-                 texture->pName, sluiceGetResultName(result));
-        return NULL;
-    }
-    t->uses[t->use_count] = use;
-    return &t->uses[t->use_count++];
+        if (is_same_use(t->uses[i], &use))
+            return t->uses[i];
+    return add_use(t, texture, &use);
 }
 
 bool textures_has_alpha(const char *path)

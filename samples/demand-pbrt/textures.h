@@ -35,7 +35,7 @@ struct textures {
     SluiceDemandLoader *loader;
     SluiceImageOpener *opener;
     struct picture_image **images; ///< owned
-    struct picture_use *uses;      ///< owned
+    struct picture_use **uses;     ///< owned, and each of them
     uint32_t image_count, use_count, image_room, use_room;
     float max_anisotropy;
     bool says_what_it_reads;
@@ -47,7 +47,8 @@ bool textures_create(SluiceDemandLoader *loader, const char *cache, uint32_t thr
 /** After the loader is destroyed. */
 void textures_finish(struct textures *textures);
 
-/** Finds or adds the demand texture of an image texture. Says on stderr if that fails. */
+/** Finds or adds the demand texture of an image texture. The result stays until textures_finish.
+ * Says on stderr if that fails. */
 const struct picture_use *textures_find(struct textures *textures,
                                         const SluicePbrtTexture *texture);
 
