@@ -121,7 +121,8 @@ static bool create_world(struct renderer *r)
     const struct pbrt_options *o = &r->options;
     struct proxies *proxies = o->preload ? NULL : &r->proxies;
     if ((proxies && !proxies_create(r->loader, &r->scene, proxies)) ||
-        !world_create(&r->gpu, &r->scene, &r->surfaces, proxies, o->granularity == 1, &r->world))
+        !world_create(&r->gpu, &r->scene, &r->surfaces, proxies, o->granularity == 1, o->threads,
+                      &r->world))
         return false;
     r->world.budget = o->budget;
     r->world.meshes.says_what_it_reads = o->verbose_loading;

@@ -7,6 +7,8 @@
 #include "../../tools/common/clock.h"
 #include "../../tools/common/text.h"
 
+#define AHEAD (MESH_READER_ROOM / 2) /* meshes that are read while another is built */
+
 /** A PLY file that several shapes have has one pointer as its path. */
 struct known_file {
     const char *path;
@@ -44,7 +46,8 @@ static void assign(const struct scene *scene, struct known_file *files, uint32_t
     }
 }
 
-bool meshes_create(const struct gpu *gpu, const struct scene *scene, struct meshes *m)
+bool meshes_create(const struct gpu *gpu, const struct scene *scene, uint32_t thread_count,
+                   struct meshes *m)
 {
     const uint32_t count = scene->info.shapeCount;
     uint32_t size = 2;
@@ -61,7 +64,9 @@ bool meshes_create(const struct gpu *gpu, const struct scene *scene, struct mesh
     else
         fprintf(stderr, "out of memory\n");
     free(files);
-    return done && table_grow(gpu, &m->table, m->count + 1u);
+    if (done)
+        m->reader = mesh_reader_create(scene, thread_count);
+    return done && m->reader && table_grow(gpu, &m->table, m->count + 1u);
 }
 
 void meshes_finish(const struct gpu *gpu, struct structures *structures, struct meshes *m)
@@ -71,6 +76,7 @@ void meshes_finish(const struct gpu *gpu, struct structures *structures, struct 
     arena_finish(gpu, &m->data);
     if (gpu->device)
         table_finish(gpu, &m->table);
+    mesh_reader_destroy(m->reader);
     free(m->items);
     free(m->of_shape);
     *m = (struct meshes){0};
@@ -137,16 +143,16 @@ static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct m
 {
     struct mesh *mesh = &m->items[index];
     struct PbrtMesh *entry = table_at(&m->table, index);
-    SluicePbrtMesh read = {.structSize = sizeof read};
-    double start = clock_seconds();
-    SluiceResult result = sluiceReadPbrtShape(scene->pbrt, mesh->shape, &read);
-    m->read_seconds += clock_seconds() - start;
+    struct mesh_read taken;
+    mesh_reader_take(m->reader, mesh->shape, &taken);
+    SluicePbrtMesh read = taken.mesh;
+    m->read_seconds += taken.seconds;
     if (m->says_what_it_reads) {
         const SluicePbrtShape shape = scene_shape(scene, mesh->shape);
         text_say("mesh %u: %s: %u triangles", index, shape.pPlyPath ? shape.pPlyPath : shape.pFile,
                  read.triangleCount);
     }
-    bool done = result == SLUICE_SUCCESS && read.triangleCount > 0 && read.vertexCount > 0 &&
+    bool done = taken.result == SLUICE_SUCCESS && read.triangleCount > 0 && read.vertexCount > 0 &&
                 words_of(&read) <= UINT32_MAX &&
                 arena_take(gpu, &m->data, 4 * words_of(&read), &mesh->data);
     if (done) {
@@ -169,13 +175,17 @@ bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct struc
                   struct meshes *m, const uint32_t *which, uint32_t count, uint32_t launch)
 {
     struct structure_build *builds = calloc(count + 1u, sizeof *builds);
-    uint32_t build_count = 0;
+    uint32_t build_count = 0, asked = 0;
     if (!builds) {
         fprintf(stderr, "out of memory\n");
         return false;
     }
-    for (uint32_t i = 0; i < count; i++)
+    for (uint32_t i = 0; i < count; i++) {
+        while (asked < count && asked < i + AHEAD &&
+               mesh_reader_ask(m->reader, m->items[which[asked]].shape))
+            asked++;
         build_count += read_mesh(gpu, scene, m, which[i], &builds[build_count]);
+    }
     double start = clock_seconds();
     bool done = structures_build(gpu, structures, builds, build_count);
     m->build_seconds += clock_seconds() - start;
@@ -190,6 +200,15 @@ bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct struc
         m->built_count++;
     }
     return done;
+}
+
+bool meshes_fetch(struct meshes *m, uint32_t index)
+{
+    const struct mesh *mesh = &m->items[index];
+    if (mesh->state != MESH_ABSENT || mesh_reader_is_ready(m->reader, mesh->shape))
+        return true;
+    (void)mesh_reader_ask(m->reader, mesh->shape);
+    return false;
 }
 
 uint64_t meshes_size_of(const struct mesh *mesh)

@@ -2,6 +2,7 @@
 #ifndef DEMAND_PBRT_MESHES_H
 #define DEMAND_PBRT_MESHES_H
 
+#include "mesh_reader.h"
 #include "pbrt_shared.h"
 #include "scene.h"
 #include "structures.h"
@@ -26,6 +27,7 @@ struct meshes {
     struct mesh *items; ///< owned
     uint32_t count;
     uint32_t *of_shape; ///< owned; mesh of each shape
+    struct mesh_reader *reader;
     struct arena data;
     uint64_t size;      ///< bytes of all meshes on the device
     struct table table; ///< struct PbrtMesh by mesh
@@ -33,11 +35,13 @@ struct meshes {
     /* Since the beginning. */
     uint64_t built_count, evicted_count, triangle_count, bytes_read, failed_count;
     uint64_t normal_count, uv_count;
-    double read_seconds, build_seconds;
+    double read_seconds; ///< of all threads together
+    double build_seconds;
 };
 
 /** Says on stderr why it failed. */
-bool meshes_create(const struct gpu *gpu, const struct scene *scene, struct meshes *meshes);
+bool meshes_create(const struct gpu *gpu, const struct scene *scene, uint32_t thread_count,
+                   struct meshes *meshes);
 void meshes_finish(const struct gpu *gpu, struct structures *structures, struct meshes *meshes);
 
 /**
@@ -46,6 +50,8 @@ void meshes_finish(const struct gpu *gpu, struct structures *structures, struct 
  */
 bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct structures *structures,
                   struct meshes *meshes, const uint32_t *which, uint32_t count, uint32_t launch);
+/** Whether a mesh need not be read from its file any more; if it must, that begins. */
+bool meshes_fetch(struct meshes *meshes, uint32_t index);
 /** Device memory of a mesh. */
 uint64_t meshes_size_of(const struct mesh *mesh);
 /** Makes a mesh absent. No launch is under way. */

@@ -26,7 +26,7 @@ static enum world_box node_kind(struct scene_node node)
 }
 
 bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfaces *surfaces,
-                  struct proxies *proxies, bool coarse, struct world *w)
+                  struct proxies *proxies, bool coarse, uint32_t thread_count, struct world *w)
 {
     *w = (struct world){.gpu = gpu,
                         .scene = scene,
@@ -37,8 +37,8 @@ bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfa
                         .used.element = sizeof(uint32_t),
                         .changed = true};
     structures_create(gpu, &w->structures);
-    return meshes_create(gpu, scene, &w->meshes) && table_grow(gpu, &w->place_table, 1) &&
-           table_grow(gpu, &w->used, 1);
+    return meshes_create(gpu, scene, thread_count, &w->meshes) &&
+           table_grow(gpu, &w->place_table, 1) && table_grow(gpu, &w->used, 1);
 }
 
 void world_finish(struct world *w)
@@ -54,6 +54,7 @@ void world_finish(struct world *w)
     free(w->places);
     free(w->free_places);
     free(w->to_build);
+    free(w->moved);
     *w = (struct world){0};
 }
 
@@ -69,6 +70,15 @@ static bool has_room(void **items, uint32_t count, uint32_t *room, size_t size)
     }
     *items = grown;
     *room = more;
+    return true;
+}
+
+/** Its instance is written when the top level is built. */
+static bool note_moved(struct world *w, uint32_t place)
+{
+    if (!has_room((void **)&w->moved, w->moved_count, &w->moved_room, sizeof(uint32_t)))
+        return false;
+    w->moved[w->moved_count++] = place;
     return true;
 }
 
@@ -112,7 +122,7 @@ static bool place_shape(struct world *w, struct scene_node node)
         fprintf(stderr, "more than %u shapes are in sight\n", MOST_PLACES);
         return false;
     }
-    if (!ask_for_mesh(w, mesh) ||
+    if (!ask_for_mesh(w, mesh) || !note_moved(w, index) ||
         !has_room((void **)&w->places, index, &w->place_room, sizeof *w->places) ||
         !table_grow(w->gpu, &w->place_table, index + 1) || !table_grow(w->gpu, &w->used, index + 1))
         return false;
@@ -179,6 +189,16 @@ static bool add_group(struct world *w, uint32_t instance, const SluicePbrtObject
     return add_box(w, (struct scene_node){instance, first | GROUP}, &box);
 }
 
+/** An instance with a single part becomes that part. */
+static bool fetch_single(struct world *w, uint32_t instance)
+{
+    const SluicePbrtObject object = scene_object_of(w->scene, instance);
+    const uint32_t first = next_shape(w, &object, object.firstShape, SLUICE_PBRT_NONE);
+    return first == SLUICE_PBRT_NONE ||
+           next_shape(w, &object, first + 1, SLUICE_PBRT_NONE) != SLUICE_PBRT_NONE ||
+           meshes_fetch(&w->meshes, w->meshes.of_shape[first]);
+}
+
 /** Boxes for the parts of an instance. A single part needs none. */
 static bool resolve_instance(struct world *w, uint32_t instance)
 {
@@ -221,13 +241,17 @@ static bool add_node(void *user_data, struct scene_node node)
 
 bool world_resolve(struct world *w, struct scene_node node)
 {
-    w->resolved_count++;
+    const double start = clock_seconds();
+    bool done;
     switch (node_kind(node)) {
-    case BOX_SCENE: return scene_for_each(w->scene, add_node, w);
-    case BOX_INSTANCE: return resolve_instance(w, node.instance);
-    case BOX_GROUP: return resolve_group(w, node);
-    default: return place_shape(w, node);
+    case BOX_SCENE: done = scene_for_each(w->scene, add_node, w); break;
+    case BOX_INSTANCE: done = resolve_instance(w, node.instance); break;
+    case BOX_GROUP: done = resolve_group(w, node); break;
+    default: done = place_shape(w, node); break;
     }
+    w->resolved_count++;
+    w->resolve_seconds += clock_seconds() - start;
+    return done;
 }
 
 bool world_begin(struct world *w)
@@ -244,9 +268,10 @@ bool world_begin(struct world *w)
 /* Meshes that could not be read leave the world. */
 static void remove_failed(struct world *w)
 {
-    for (uint32_t i = 0; i < w->place_count; i++)
-        w->places[i].live =
-            w->places[i].live && w->meshes.items[w->places[i].mesh].state == MESH_BUILT;
+    for (uint32_t i = 0; i < w->moved_count; i++) {
+        struct place *place = &w->places[w->moved[i]];
+        place->live = place->live && w->meshes.items[place->mesh].state == MESH_BUILT;
+    }
 }
 
 /** Puts a box in the place of a shape whose mesh leaves. */
@@ -254,7 +279,8 @@ static bool take_back(struct world *w, uint32_t index)
 {
     struct place *place = &w->places[index];
     const SluicePbrtBounds box = scene_node_box(w->scene, place->node);
-    if (!has_room((void **)&w->free_places, w->free_count, &w->free_room, sizeof(uint32_t)))
+    if (!has_room((void **)&w->free_places, w->free_count, &w->free_room, sizeof(uint32_t)) ||
+        !note_moved(w, index))
         return false;
     w->free_places[w->free_count++] = index;
     w->meshes.items[place->mesh].place_count--;
@@ -299,7 +325,15 @@ static bool build_within_budget(struct world *w, uint32_t count, uint32_t launch
     return world_evict(w);
 }
 
-static bool build_meshes(struct world *w, uint32_t launch)
+bool world_fetch(struct world *w, struct scene_node node)
+{
+    const enum world_box kind = node_kind(node);
+    if (kind == BOX_FREE_SHAPE || kind == BOX_INSTANCE_SHAPE)
+        return meshes_fetch(&w->meshes, w->meshes.of_shape[node.shape]);
+    return kind != BOX_INSTANCE || fetch_single(w, node.instance);
+}
+
+bool world_build_meshes(struct world *w, uint32_t launch)
 {
     const uint32_t count = w->to_build_count;
     if (count == 0)
@@ -311,34 +345,38 @@ static bool build_meshes(struct world *w, uint32_t launch)
     return true;
 }
 
-static uint32_t write_instances(struct world *w)
+/** Cost follows what has changed: instances keep their places in the buffer. */
+static void write_instances(struct world *w)
 {
     VkAccelerationStructureInstanceKHR *instances = w->instances.mapped;
-    uint32_t count = 0;
-    if (w->proxies && w->proxies->structure.handle)
-        instances[count++] = (VkAccelerationStructureInstanceKHR){
-            .transform.matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
-            .mask = 0xff,
-            .instanceShaderBindingTableRecordOffset = PBRT_GROUP_BOX,
-            .accelerationStructureReference = w->proxies->structure.address};
-    for (uint32_t i = 0; i < w->place_count; i++) {
-        struct place *place = &w->places[i];
-        if (!place->live)
-            continue;
+    const struct structure *boxes = w->proxies ? &w->proxies->structure : NULL;
+    instances[0] = (VkAccelerationStructureInstanceKHR){
+        .transform.matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
+        .mask = 0xff,
+        .instanceShaderBindingTableRecordOffset = PBRT_GROUP_BOX,
+        .accelerationStructureReference = boxes ? boxes->address : 0};
+    for (uint32_t i = 0; i < w->moved_count; i++) {
+        struct place *place = &w->places[w->moved[i]];
         place->instance.accelerationStructureReference =
-            w->meshes.items[place->mesh].structure.address;
-        instances[count++] = place->instance;
+            place->live ? w->meshes.items[place->mesh].structure.address : 0;
+        instances[1 + w->moved[i]] = place->instance;
     }
-    return count;
+    w->moved_count = 0;
 }
 
+/** A larger buffer takes over what the old one has, by the host's copy. */
 static bool reserve_instances(struct world *w)
 {
     const VkDeviceSize size = (w->place_count + 1ull) * sizeof(VkAccelerationStructureInstanceKHR);
     if (w->instances.size >= size)
         return true;
     gpu_destroy_buffer(w->gpu, &w->instances);
-    return gpu_create_buffer(w->gpu, size + size / 2, STRUCTURE_INPUT_USAGE, &w->instances);
+    if (!gpu_create_buffer(w->gpu, size + size / 2, STRUCTURE_INPUT_USAGE, &w->instances))
+        return false;
+    VkAccelerationStructureInstanceKHR *instances = w->instances.mapped;
+    for (uint32_t i = 0; i < w->place_count; i++)
+        instances[1 + i] = w->places[i].instance;
+    return true;
 }
 
 static bool build_top(struct world *w)
@@ -346,9 +384,10 @@ static bool build_top(struct world *w)
     if (!reserve_instances(w))
         return false;
     structures_give(w->gpu, &w->structures, &w->top);
+    write_instances(w);
     struct structure_build build = {
         .type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR,
-        .primitive_count = write_instances(w),
+        .primitive_count = w->place_count + 1,
         .target = &w->top,
         .geometry = {
             .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
@@ -361,7 +400,7 @@ static bool build_top(struct world *w)
 
 bool world_build(struct world *w, uint32_t launch)
 {
-    if (!build_meshes(w, launch))
+    if (!world_build_meshes(w, launch))
         return false;
     if (!w->changed && (!w->proxies || !w->proxies->changed))
         return true;

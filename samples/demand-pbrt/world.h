@@ -37,19 +37,22 @@ struct world {
     struct table place_table; ///< struct PbrtPlace
     struct table used;        ///< uint by place: the last launch that hit it
     struct structure top;
-    struct gpu_buffer instances;
+    struct gpu_buffer
+        instances;   ///< the boxes, then places by index: those that are not live hit nothing
+    uint32_t *moved; ///< owned; places whose instance must be written
+    uint32_t moved_count, moved_room;
     bool changed; ///< since the top level was built
     /* Since the beginning. */
     uint64_t entered_count;  ///< shapes whose box a ray entered: those that were placed
     uint64_t resolved_count; ///< boxes that became what is in them
     uint64_t created[WORLD_BOX_KINDS];
     uint64_t peak_size; ///< bytes of meshes
-    double top_seconds;
+    double top_seconds, resolve_seconds;
 };
 
 /** Says on stderr why it failed. */
 bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfaces *surfaces,
-                  struct proxies *proxies, bool coarse, struct world *world);
+                  struct proxies *proxies, bool coarse, uint32_t thread_count, struct world *world);
 void world_finish(struct world *world);
 
 /** Adds one box around everything; without proxies, everything. */
@@ -58,6 +61,10 @@ bool world_begin(struct world *world);
 bool world_resolve(struct world *world, struct scene_node node);
 /** Boxes for shapes of meshes that leave: they are asked for again when a ray enters them. */
 bool world_evict(struct world *world);
+/** Whether a node can be resolved without waiting for a file; if not, that is read from now on. */
+bool world_fetch(struct world *world, struct scene_node node);
+/** Builds meshes of what was resolved, for the launch with that number. No launch is under way. */
+bool world_build_meshes(struct world *world, uint32_t launch);
 /** Builds what has changed, for the launch with that number. No launch is under way. */
 bool world_build(struct world *world, uint32_t launch);
 
