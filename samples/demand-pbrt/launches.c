@@ -52,7 +52,7 @@ void launches_finish(struct launches *l)
 
 static void bind_all(struct launches *l)
 {
-    const VkBuffer boxes = l->proxies ? l->proxies->buffer.buffer : l->quiet.buffer;
+    const VkBuffer boxes = l->world->proxies ? l->proxies->buffer.buffer : l->quiet.buffer;
     const VkBuffer buffers[PBRT_OWN_BUFFERS] = {
         [PBRT_BINDING_MESHES] = l->world->meshes.table.buffer.buffer,
         [PBRT_BINDING_PLACES] = l->world->place_table.buffer.buffer,
@@ -230,8 +230,7 @@ static void count_memory(struct launches *l)
         l->peak_device = size;
 }
 
-static bool trace_once(struct launches *l, uint32_t sample, SluiceDemandTicket *ticket,
-                       bool *progress)
+bool launches_trace(struct launches *l, uint32_t sample, SluiceDemandTicket *ticket, bool *progress)
 {
     SluiceDemandRequests requests = {.structSize = sizeof requests};
     const uint32_t before = l->film->missing_count;
@@ -256,11 +255,11 @@ static bool trace_sample(struct launches *l, uint32_t sample, uint32_t most)
 {
     uint32_t vain = 0, least = UINT32_MAX, stuck = 0;
     film_begin_sample(l->film);
-    while (l->film->missing_count > 0 && l->count < most && vain < MOST_VAIN_LAUNCHES) {
+    while (l->film->missing_count > 0 && l->count - l->first < most && vain < MOST_VAIN_LAUNCHES) {
         SluiceDemandTicket ticket;
         SluiceDemandTicketStatus status;
         bool progress, made = false;
-        if (!trace_once(l, sample, &ticket, &progress))
+        if (!launches_trace(l, sample, &ticket, &progress))
             return false;
         if (l->film->missing_count > 0 && (!wait_for(l, ticket, &status) || !serve(l, &made)))
             return false;
@@ -300,7 +299,7 @@ bool launches_repeat(struct launches *l, uint32_t times)
         SluiceDemandTicket ticket;
         bool progress;
         film_begin_sample(l->film);
-        if (!trace_once(l, 0, &ticket, &progress))
+        if (!launches_trace(l, 0, &ticket, &progress))
             return false;
         if (l->repeat_seconds == 0.0 || l->last_seconds < l->repeat_seconds)
             l->repeat_seconds = l->last_seconds;

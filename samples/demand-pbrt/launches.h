@@ -24,6 +24,7 @@ struct launches {
     struct gpu_buffer quiet, debug;
     VkCommandBuffer commands;
     uint32_t count;        ///< launches so far
+    uint32_t first;        ///< launches before those that --launches counts
     uint32_t idle_count;   ///< launches that trace nothing: opened pictures go on to their tiles
     uint32_t sample_count; ///< complete samples per pixel
     uint64_t ray_count;    ///< pixels traced, again and again ones among them
@@ -44,6 +45,10 @@ void launches_finish(struct launches *launches);
 bool launches_preload(struct launches *launches);
 /** Traces all samples, each until nothing is missing, or until there were enough launches. */
 bool launches_run(struct launches *launches);
+/** Builds what has changed, and traces the film's list once. `*progress`: pixels became complete,
+ * or tiles were asked for. */
+bool launches_trace(struct launches *launches, uint32_t sample, SluiceDemandTicket *ticket,
+                    bool *progress);
 /** Traces all pixels again some times. The film is of no use afterwards. */
 bool launches_repeat(struct launches *launches, uint32_t times);
 

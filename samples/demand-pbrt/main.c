@@ -17,6 +17,7 @@
 #include "../common/contact_sheet.h"
 #include "camera.h"
 #include "emitters.h"
+#include "flight.h"
 #include "lights.h"
 #include "picture_output.h"
 #include "statistics.h"
@@ -42,6 +43,7 @@ struct renderer {
     struct picture picture;
     struct contact_sheet sheet;
     struct launches launches;
+    struct flight flight;
     double start; ///< of the program
 };
 
@@ -121,8 +123,8 @@ static bool create_world(struct renderer *r)
     const struct pbrt_options *o = &r->options;
     struct proxies *proxies = o->preload ? NULL : &r->proxies;
     if ((proxies && !proxies_create(r->loader, &r->scene, proxies)) ||
-        !world_create(&r->gpu, &r->scene, &r->surfaces, proxies, o->granularity == 1, o->threads,
-                      &r->world))
+        !world_create(&r->gpu, &r->scene, &r->surfaces, o->preload_shapes ? NULL : proxies,
+                      o->granularity == 1, o->threads, &r->world))
         return false;
     r->world.budget = o->budget;
     r->world.meshes.says_what_it_reads = o->verbose_loading;
@@ -178,6 +180,7 @@ static void close_all(struct renderer *r)
     if (r->gpu.device) {
         vkDeviceWaitIdle(r->gpu.device);
         launches_finish(&r->launches);
+        flight_finish(&r->flight);
         tracing_destroy(&r->gpu, &r->tracing);
         film_destroy(&r->gpu, &r->film);
         proxies_finish(&r->gpu, &r->world.structures, &r->proxies);
@@ -256,7 +259,23 @@ static bool write_files(struct renderer *r)
         return false;
     if (o->json)
         gpu_print_json(&r->gpu);
+    if (o->fly > 0)
+        flight_print(&r->flight, o->json);
     return summary_print(&summary, o->json);
+}
+
+static double read_clock(void *user_data)
+{
+    (void)user_data;
+    return clock_seconds();
+}
+
+static bool fly(struct renderer *r)
+{
+    r->flight =
+        (struct flight){.frame_count = r->options.fly,
+                        .budget = {.seconds = 1e-3 * r->options.frame_budget, .now = read_clock}};
+    return r->options.fly == 0 || flight_run(&r->launches, &r->flight);
 }
 
 static bool render(struct renderer *r)
@@ -279,7 +298,7 @@ static bool render(struct renderer *r)
                                     .user_data = r,
                                     .after_launch = after_launch};
     if (!launches_create(&r->launches) || (r->options.preload && !launches_preload(&r->launches)) ||
-        !launches_run(&r->launches))
+        !fly(r) || !launches_run(&r->launches))
         return false;
     const uint32_t missing = r->film.missing_count;
     if (missing > 0)

@@ -47,8 +47,12 @@ static bool check(const struct option_table *table, const struct pbrt_options *o
         return options_refuse(table, "a scene is missing");
     if (o->texture_budget > 0 && o->texture_budget < 4u << 20)
         return options_refuse(table, "--texture-budget: wants 4M at least, or 0");
-    if (o->preload && o->budget > 0)
+    if ((o->preload || o->preload_shapes) && o->budget > 0)
         return options_refuse(table, "--preload and --budget: give one of them");
+    if (o->preload && o->preload_shapes)
+        return options_refuse(table, "--preload and --preload-shapes: give one of them");
+    if (o->frame_budget > 0 && o->fly == 0)
+        return options_refuse(table, "--frame-budget: is for --fly");
     return true;
 }
 
@@ -77,6 +81,14 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
         {OPTION_SECTION, .help = "Loading"},
         {OPTION_FLAG, "preload", .value = &o->preload,
          .help = "load everything first: the truth to compare with"},
+        {OPTION_FLAG, "preload-shapes", .value = &o->preload_shapes,
+         .help = "build all shapes first; materials and textures on demand"},
+        {OPTION_UINT, "fly", "FRAMES", "0", &o->fly,
+         "fly once around the scene first, and tell how long frames took", 0, 1000000},
+        {OPTION_REAL, "frame-budget", "MS", "0", &o->frame_budget,
+         "time of a frame of --fly: when it is spent, boxes and materials that are asked for wait; "
+         "0: no limit",
+         0, 100000},
         {OPTION_CHOICE, "proxy-granularity", "fine|coarse", "fine", &o->granularity,
          "fine: each shape of an instance has a box; coarse: those that are alike have one"},
         {OPTION_FLAG, "oneshot-geometry", .value = &o->oneshot_geometry,

@@ -22,6 +22,8 @@ struct pbrt_options {
     uint32_t warmup;   ///< UINT32_MAX: until nothing is missing
     uint32_t launches; ///< most
     uint32_t repeat;
+    uint32_t fly;        ///< frames; 0: none
+    double frame_budget; ///< ms; 0: no limit
     uint32_t anisotropy;
     uint32_t threads;
     double exposure;
@@ -30,7 +32,7 @@ struct pbrt_options {
     uint64_t budget; ///< bytes of geometry; 0: no limit
     uint64_t texture_budget;
     bool face_forward, oneshot_geometry, oneshot_material, sort_proxies, verbose_loading;
-    bool preload, json, validation, list_devices;
+    bool preload, preload_shapes, json, validation, list_devices;
 };
 
 enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_options *options);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../../tools/common/log.h"
 #include "../../tools/common/text.h"
@@ -82,7 +83,7 @@ static bool reserve(void **items, uint32_t *room, uint32_t count, size_t size)
         return true;
     uint32_t more = *room ? *room : 64;
     while (more < count)
-        more *= 2;
+        more += more / 4;
     void *grown = realloc(*items, more * size);
     if (!grown) {
         fprintf(stderr, "out of memory\n");
@@ -115,24 +116,24 @@ bool proxies_add(struct proxies *p, struct scene_node node, const SluicePbrtBoun
 
 /** Lists what is requested in a set. */
 static bool list(struct proxies *p, SluiceProxySet *set, SluiceDemandResourceId resource,
-                 bool largest_first, uint32_t *count)
+                 const SluiceProxyListInfo *info, uint32_t *count)
 {
-    const SluiceProxyListInfo info = {.structSize = sizeof info,
-                                      .order = largest_first ? SLUICE_PROXY_ORDER_VOLUME
-                                                             : SLUICE_PROXY_ORDER_INDEX};
     if (!check(sluiceProcessDemandProxies(p->loader, resource, set), "requests"))
         return false;
     *count = get_info(set).requestedCount;
     if (*count == 0)
         return true;
     return reserve((void **)&p->ids, &p->id_room, *count, sizeof *p->ids) &&
-           check(sluiceGetRequestedProxies(set, &info, count, p->ids), "requests");
+           check(sluiceGetRequestedProxies(set, info, count, p->ids), "requests");
 }
 
 static bool take_nodes(struct proxies *p, const struct proxy_order *order, struct proxy_requests *r)
 {
+    const SluiceProxyListInfo info = {.structSize = sizeof info,
+                                      .order = order->largest_first ? SLUICE_PROXY_ORDER_VOLUME
+                                                                    : SLUICE_PROXY_ORDER_INDEX};
     uint32_t count;
-    if (!list(p, p->boxes, p->box_resource, order->largest_first, &count))
+    if (!list(p, p->boxes, p->box_resource, &info, &count))
         return false;
     count = order->one_node && count > 1 ? 1 : count;
     if (!reserve((void **)&r->nodes, &r->node_room, count, sizeof *r->nodes))
@@ -151,7 +152,7 @@ static bool take_surfaces(struct proxies *p, const struct proxy_order *order,
                           struct proxy_requests *r)
 {
     uint32_t count;
-    if (!list(p, p->surfaces, p->surface_resource, false, &count))
+    if (!list(p, p->surfaces, p->surface_resource, NULL, &count))
         return false;
     count = order->one_surface && count > 1 ? 1 : count;
     if (!reserve((void **)&r->surfaces, &r->surface_room, count, sizeof *r->surfaces))
@@ -170,8 +171,51 @@ bool proxies_take(struct proxies *p, const struct proxy_order *order, struct pro
     return take_nodes(p, order, r) && take_surfaces(p, order, r);
 }
 
+/** Of one set, into `ids`. */
+static bool copy_ids(struct proxies *p, SluiceProxyId **ids, uint32_t *room, uint32_t count)
+{
+    if (!reserve((void **)ids, room, count + 1, sizeof **ids))
+        return false;
+    memcpy(*ids, p->ids, count * sizeof **ids);
+    return true;
+}
+
+bool proxies_list(struct proxies *p, const float eye[3], struct proxy_requests *r)
+{
+    SluiceProxyListInfo info = {.structSize = sizeof info, .order = SLUICE_PROXY_ORDER_DISTANCE};
+    memcpy(info.point, eye, sizeof info.point);
+    if (!list(p, p->boxes, p->box_resource, &info, &r->node_count) ||
+        !copy_ids(p, &r->ids, &r->id_room, r->node_count) ||
+        !reserve((void **)&r->nodes, &r->node_room, r->node_count, sizeof *r->nodes))
+        return false;
+    for (uint32_t i = 0; i < r->node_count; i++)
+        r->nodes[i] = p->nodes[(uint32_t)r->ids[i]];
+    info.order = SLUICE_PROXY_ORDER_INDEX;
+    if (!list(p, p->surfaces, p->surface_resource, &info, &r->surface_count) ||
+        !copy_ids(p, &r->surface_ids, &r->surface_id_room, r->surface_count) ||
+        !reserve((void **)&r->surfaces, &r->surface_room, r->surface_count, sizeof *r->surfaces))
+        return false;
+    for (uint32_t i = 0; i < r->surface_count; i++)
+        r->surfaces[i] = (uint32_t)r->surface_ids[i];
+    return check(sluiceClearProxyRequests(p->boxes, SLUICE_ALL_PROXIES), "requests") &&
+           check(sluiceClearProxyRequests(p->surfaces, SLUICE_ALL_PROXIES), "requests");
+}
+
+bool proxies_take_node(struct proxies *p, const struct proxy_requests *r, uint32_t number)
+{
+    p->changed = true;
+    return check(sluiceRemoveProxy(p->boxes, r->ids[number]), "a box");
+}
+
+bool proxies_take_surface(struct proxies *p, const struct proxy_requests *r, uint32_t number)
+{
+    return check(sluiceRemoveProxy(p->surfaces, r->surface_ids[number]), "a material");
+}
+
 void proxy_requests_finish(struct proxy_requests *r)
 {
+    free(r->ids);
+    free(r->surface_ids);
     free(r->nodes);
     free(r->surfaces);
     *r = (struct proxy_requests){0};
@@ -185,7 +229,7 @@ static bool write_boxes(const struct gpu *gpu, struct proxies *p)
     if (p->buffer.size < size || !p->buffer.buffer) {
         gpu_destroy_buffer(gpu, &p->buffer);
         p->version = 0;
-        if (!gpu_create_buffer(gpu, size + size / 2 + 1024, STRUCTURE_INPUT_USAGE, &p->buffer))
+        if (!gpu_create_buffer(gpu, size + size / 16 + 1024, STRUCTURE_INPUT_USAGE, &p->buffer))
             return false;
     }
     SluiceProxyRange ranges[RANGE_COUNT];
@@ -197,6 +241,17 @@ static bool write_boxes(const struct gpu *gpu, struct proxies *p)
                                        .rangeCapacity = RANGE_COUNT,
                                        .pRanges = ranges};
     return check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, &range_count), "boxes");
+}
+
+static void count_memory(struct proxies *p)
+{
+    const SluiceProxySetInfo info = get_info(p->boxes);
+    if (info.proxyCount <= p->most_count)
+        return;
+    p->most_count = info.proxyCount;
+    p->bytes_per_box = ((double)info.hostMemorySize + (double)p->buffer.size +
+                        (double)p->node_room * sizeof *p->nodes) /
+                       info.proxyCount;
 }
 
 bool proxies_build(const struct gpu *gpu, struct structures *structures, struct proxies *p)
@@ -211,6 +266,7 @@ bool proxies_build(const struct gpu *gpu, struct structures *structures, struct 
             "boxes"))
         return false;
     p->changed = false;
+    count_memory(p);
     struct structure_build build = {.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
                                     .primitive_count = geometry.range.primitiveCount,
                                     .geometry = geometry.geometry,

@@ -7,12 +7,7 @@
 #include "../../tools/common/output_file.h"
 #include "../../tools/common/text.h"
 
-struct figure {
-    const char *name, *unit;
-    double value;
-};
-
-static void print_figure(const struct figure *figure, bool json)
+void summary_print_figure(const struct figure *figure, bool json)
 {
     char value[32];
     const bool whole = figure->value == floor(figure->value) && fabs(figure->value) < 1e15;
@@ -40,6 +35,8 @@ bool summary_print(const struct summary *s, bool json)
         return false;
     const double pixels = (double)l->film->width * l->film->height;
     const double rate = l->repeat_seconds > 0.0 ? pixels / l->repeat_seconds / 1e6 : 0.0;
+    const double resolve =
+        w->resolved_count ? 1e6 * w->resolve_seconds / (double)w->resolved_count : 0.0;
     const struct figure figures[] = {
         {"launches", "", l->count},
         {"launches_without_rays", "", l->idle_count},
@@ -50,6 +47,7 @@ bool summary_print(const struct summary *s, bool json)
         {"shapes_entered", "", (double)w->entered_count},
         {"boxes_added", "", l->proxies ? (double)l->proxies->added_count : 0.0},
         {"boxes_left", "", l->proxies ? proxies_box_count(l->proxies) : 0.0},
+        {"bytes_per_box", "B", l->proxies ? l->proxies->bytes_per_box : 0.0},
         {"geometries_built", "", (double)w->meshes.built_count},
         {"geometries_failed", "", (double)w->meshes.failed_count},
         {"geometries_evicted", "", (double)w->meshes.evicted_count},
@@ -66,6 +64,7 @@ bool summary_print(const struct summary *s, bool json)
         {"read_seconds", "s", w->meshes.read_seconds},
         {"build_seconds", "s", w->meshes.build_seconds},
         {"top_level_seconds", "s", w->top_seconds},
+        {"resolve_per_1000", "ms", resolve},
         {"trace_seconds", "s", l->trace_seconds},
         {"complete_seconds", "s", s->complete_seconds},
         {"repeat_rate", "Mpixel/s", rate},
@@ -75,6 +74,6 @@ bool summary_print(const struct summary *s, bool json)
         {"peak_device_bytes", "B", (double)l->peak_device},
     };
     for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
-        print_figure(&figures[i], json);
+        summary_print_figure(&figures[i], json);
     return text_flush("");
 }

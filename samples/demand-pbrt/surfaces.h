@@ -24,6 +24,7 @@ struct surfaces {
     uint32_t material_count;
     struct wanted_picture *pictures; ///< owned; of the last call of surfaces_realize
     uint32_t picture_count, picture_room;
+    uint32_t opened_count; ///< of the pictures: those that flights need not look at again
     bool says_what_it_makes;
     uint64_t material_realized_count, alpha_realized_count; ///< since the beginning
 };

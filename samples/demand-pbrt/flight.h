@@ -1,0 +1,29 @@
+/** An interactive preview without a window: the camera moves, and each frame has a time budget. */
+#ifndef DEMAND_PBRT_FLIGHT_H
+#define DEMAND_PBRT_FLIGHT_H
+
+#include "frame_budget.h"
+#include "launches.h"
+
+/** Zeroed but for the first four is the beginning. */
+struct flight {
+    uint32_t frame_count;
+    struct frame_budget budget;
+    double *seconds; ///< owned; of each frame
+    double missing;  ///< pixels that showed boxes or had no material, of all frames
+    uint64_t resolved, most_resolved; ///< boxes, in all and in one frame
+};
+
+/**
+ * Flies once around the vertical axis through the middle of the scene, and ends at the scene's
+ * camera. Each frame resolves what the last one asked for, the nearest first, until its time is
+ * spent, and traces all pixels once. Afterwards everything is ready for launches_run. Says on
+ * stderr why it failed.
+ */
+bool flight_run(struct launches *launches, struct flight *flight);
+void flight_finish(struct flight *flight);
+
+/** Prints figures, as summary_print does. */
+void flight_print(const struct flight *flight, bool json);
+
+#endif /* DEMAND_PBRT_FLIGHT_H */

@@ -1,0 +1,62 @@
+#!/bin/sh
+# test_flight.sh DEMAND_PBRT FILM_SET FOLDER
+#
+# Flies through a small scene of many instances. Whatever came when, the picture at the end is that
+# of a fresh start, bit for bit; so it is with one reading thread and with several, and with all
+# shapes built first. Exit status 77: no device traces rays.
+set -eu
+program=$1 maker=$2 folder=$3
+failed=0
+
+complain() {
+    echo "$*" >&2
+    failed=1
+}
+
+rm -rf "$folder"
+mkdir -p "$folder"
+"$maker" --instances 2000 --meshes 40 --triangles 100 --texture-size 512 "$folder/set" >/dev/null
+"$maker" --instances 2000 --meshes 40 --triangles 100 --texture-size 512 "$folder/again" >/dev/null
+diff -r "$folder/set" "$folder/again" >/dev/null || complain "the same options give other bytes"
+rm -rf "$folder/again"
+
+render() { # name, options
+    name=$1
+    shift
+    status=0
+    "$program" "$folder/set/scene.pbrt" --dim 96x54 --json --file "$folder/$name.pfm" "$@" \
+        >"$folder/$name.json" 2>"$folder/$name.log" || status=$?
+    [ "$status" -ne 77 ] || { cat "$folder/$name.log" >&2; exit 77; }
+    [ "$status" -eq 0 ] || { complain "$name: status $status"; cat "$folder/$name.log" >&2; }
+    cmp -s "$folder/$name.pfm" "$folder/fresh.pfm" || complain "$name: is not the picture of a fresh start"
+}
+
+value() { # figure
+    sed -n "s/.*\"$1\", \"value\": \([^,]*\),.*/\1/p" "$folder/$name.json"
+}
+
+check() { # figure, condition on v
+    awk -v v="$(value "$1")" 'BEGIN { v = v == "" ? "none" : v + 0; exit !(v != "none" && ('"$2"')) }' ||
+        complain "$name: $1 is $(value "$1"), but must satisfy: $2"
+}
+
+render fresh --threads 1
+check geometries_built 'v <= 41'
+check bytes_per_box 'v > 0 && v <= 66'
+render shapes --preload-shapes
+check shapes_entered 'v == 2001'
+render unbounded --fly 20 --threads 4
+check frames 'v == 20'
+check frame_boxes_resolved_most 'v > 20'
+# Less time than a launch takes: one box in a frame.
+render bounded --fly 20 --frame-budget 0.01
+check frames 'v == 20'
+check frame_boxes_resolved_most 'v == 1'
+
+for options in "--frame-budget 16" "--preload --preload-shapes" "--preload-shapes --budget 1M"; do
+    status=0
+    # shellcheck disable=SC2086
+    "$program" "$folder/set/scene.pbrt" --file "$folder/no.png" $options >/dev/null 2>&1 || status=$?
+    [ "$status" -eq 2 ] || complain "not refused: $options"
+done
+exit $failed
