@@ -19,6 +19,7 @@
 #include "neural_bench_schema1_uniform_comp.h"
 #include "neural_bench_schema3_comp.h"
 #include "neural_bench_schema3_dot_comp.h"
+#include "neural_bench_schema3_dot_unhinted_comp.h"
 #include "neural_bench_schema3_dot_uniform_comp.h"
 #include "neural_bench_schema3_uniform_comp.h"
 #include "neural_bench_textures_comp.h"
@@ -48,6 +49,7 @@ static const struct path {
     {"int8_schema", CODE(neural_bench_schema3_comp), 3, false, RGBA8},
     {"int8_schema_dot", CODE(neural_bench_schema1_dot_comp), 1, true, RGBA8},
     {"int8_schema_dot", CODE(neural_bench_schema3_dot_comp), 3, true, RGBA8},
+    {"int8_schema_dot_unhinted", CODE(neural_bench_schema3_dot_unhinted_comp), 3, true, RGBA8},
     {"int8_schema_uniform", CODE(neural_bench_schema1_uniform_comp), 1, false, RGBA8},
     {"int8_schema_uniform", CODE(neural_bench_schema3_uniform_comp), 3, false, RGBA8},
     {"int8_schema_dot_uniform", CODE(neural_bench_schema1_dot_uniform_comp), 1, true, RGBA8},

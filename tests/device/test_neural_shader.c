@@ -51,7 +51,7 @@ static struct rig *rig_init(struct rig *rig)
     VkShaderModule modules[VARIANTS] = {[ANY] = conform_module(h, neural_comp, sizeof neural_comp)};
     if (has_dot)
         modules[DOT] = conform_module(h, neural_dot_comp, sizeof neural_dot_comp);
-    if (!harness_is_software(h)) { /* lavapipe unrolls all loops, and compiles for 20 s each */
+    if (!harness_is_software(h)) { /* lavapipe unrolls all loops, and compiles for seconds */
         modules[SCHEMA_1] = conform_module(h, neural_schema1_comp, sizeof neural_schema1_comp);
         modules[SCHEMA_3] = conform_module(h, neural_schema3_comp, sizeof neural_schema3_comp);
     }

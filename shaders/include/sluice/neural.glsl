@@ -34,6 +34,21 @@
 #extension GL_EXT_spirv_intrinsics : require
 #endif
 
+/* With SLUICE_NEURAL_SCHEMA sizes of layers are constants. Sums are unrolled then, so that their inputs are
+ * registers; outputs are not, so that shaders stay small. Define both as nothing to leave it to the compiler. */
+#ifdef SLUICE_NEURAL_SCHEMA
+#extension GL_EXT_control_flow_attributes : require
+#endif
+#ifndef SLUICE_NEURAL_UNROLL
+#ifdef SLUICE_NEURAL_SCHEMA
+#define SLUICE_NEURAL_UNROLL [[unroll]]
+#define SLUICE_NEURAL_ROLL [[dont_unroll]]
+#else
+#define SLUICE_NEURAL_UNROLL
+#define SLUICE_NEURAL_ROLL
+#endif
+#endif
+
 #include "neural_inputs.glsl"
 #include "shared/neural.h"
 
@@ -71,6 +86,7 @@ float sluiceNeuralOutput(uint s, SluiceNeuralLayer layer, uint neurons[SLUICE_NE
 {
     int sum = int(SLUICE_NEURAL_WEIGHT_WORD(s, layer.biases + o));
     uint row = layer.weights + o * layer.inputWords;
+    SLUICE_NEURAL_UNROLL
     for (uint k = 0u; k < layer.inputWords; k++)
         sum += sluiceDotBytes(neurons[k], SLUICE_NEURAL_WEIGHT_WORD(s, row + k));
     precise float scaled = float(sum) * uintBitsToFloat(SLUICE_NEURAL_WEIGHT_WORD(s, layer.scales + o));
@@ -90,11 +106,13 @@ uint sluiceNeuralActivate(float r)
 void sluiceNeuralHidden(uint s, SluiceNeuralLayer layer, inout uint neurons[SLUICE_NEURAL_WORDS])
 {
     uint made[16];
+    SLUICE_NEURAL_ROLL
     for (uint i = 0u; i < layer.outputs / 4u; i++) {
         made[i] = 0u;
         for (uint j = 0u; j < 4u; j++)
             made[i] |= sluiceNeuralActivate(sluiceNeuralOutput(s, layer, neurons, 4u * i + j)) << (8u * j);
     }
+    SLUICE_NEURAL_UNROLL
     for (uint i = 0u; i < layer.outputs / 4u; i++)
         neurons[i] = made[i];
 }
@@ -109,6 +127,7 @@ void sluiceNeuralRun(uint s, inout uint neurons[SLUICE_NEURAL_WORDS], out float 
     layer.weights = 0u;
     layer.scales = words.x + words.y + words.z + words.w;
     layer.biases = layer.scales + outputs.x + outputs.y + outputs.z + outputs.w;
+    SLUICE_NEURAL_UNROLL
     for (uint i = 0u; i < 4u; i++) {
         layer.inputWords = inputs[i] / 4u;
         layer.outputs = outputs[i];
