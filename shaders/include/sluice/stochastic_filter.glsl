@@ -117,7 +117,7 @@ int sluicePickAlong(float at, uint kernel, inout float random)
 vec2 sluiceNormalPair(vec2 random)
 {
     float radius = sqrt(-2.0 * log(max(1.0 - random.x, 5.9604645e-8)));
-    float angle = 6.28318531 * random.y;
+    float angle = 6.28318531 * (random.y - 0.5); /* devices are exact from -pi to pi */
     return radius * vec2(cos(angle), sin(angle));
 }
 
