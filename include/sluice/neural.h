@@ -412,7 +412,8 @@ typedef struct SluiceNeuralDecodeInfo {
 } SluiceNeuralDecodeInfo;
 
 /**
- * Decodes a rectangle of a mip on the calling thread. Takes no memory.
+ * Decodes a rectangle of a mip on the calling thread. Takes no memory but 110 KiB of stack. Each
+ * call puts the weights into another order, so decode many texels at once.
  *
  * Values are those of the network: in the channel's color space, and perhaps a little outside of 0
  * to 1. With INT8 weights the result is the same bits on every machine. With FP8 weights inputs

@@ -1,7 +1,7 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "base/struct_size.h"
-#include "neural/decoder.h"
+#include "neural/fast_network.h"
 #include "neural/slices.h"
 
 #include <string.h>
@@ -130,31 +130,32 @@ static SluiceResult check_output(const SluiceNeuralDecodeInfo *info, uint64_t bl
     return SLUICE_SUCCESS;
 }
 
-static void decode_texel(const SluiceNeuralDecodeInfo *info, const struct slc_neural_mip_view *view,
-                         const struct slc_neural_shape *shape, const struct slc_neural_blob *at,
+static void decode_texel(const struct slc_neural_fast *fast, const struct slc_neural_mip_view *view,
                          uint32_t x, uint32_t y, float outputs[SLUICE_NEURAL_MAX_CHANNELS])
 {
-    if (info->weightKind == SLUICE_NEURAL_WEIGHTS_INT8) {
+    if (fast->kind == SLUICE_NEURAL_WEIGHTS_INT8) {
         int8_t inputs[SLC_NEURAL_MAX_INPUTS];
         slc_neural_int8_inputs(view, x, y, inputs);
-        slc_neural_run_int8(shape, at, info->pWeights, inputs, outputs);
+        slc_neural_fast_int8(fast, inputs, outputs);
     } else {
         float inputs[SLC_NEURAL_MAX_INPUTS];
         slc_neural_fp8_inputs(view, x, y, inputs);
-        slc_neural_run_fp8(shape, at, info->pWeights, inputs, outputs);
+        slc_neural_fast_fp8(fast, inputs, outputs);
     }
 }
 
 static void decode_texels(const SluiceNeuralDecodeInfo *info,
                           const struct slc_neural_mip_view *view,
-                          const struct slc_neural_shape *shape, const struct slc_neural_blob *at)
+                          const struct slc_neural_shape *shape)
 {
+    struct slc_neural_fast fast;
     float outputs[SLUICE_NEURAL_MAX_CHANNELS];
     uint64_t pitch = info->rowPitch ? info->rowPitch : (uint64_t)info->width * info->channelCount;
+    slc_neural_fast_init(&fast, shape, info->weightKind, info->pWeights);
     for (uint32_t y = 0; y < info->height; y++) {
         float *texel = info->pTexels + y * pitch;
         for (uint32_t x = 0; x < info->width; x++, texel += info->channelCount) {
-            decode_texel(info, view, shape, at, info->x + x, info->y + y, outputs);
+            decode_texel(&fast, view, info->x + x, info->y + y, outputs);
             memcpy(texel, outputs + info->firstChannel, info->channelCount * sizeof *texel);
         }
     }
@@ -183,7 +184,10 @@ SluiceResult sluiceDecodeNeuralTexels(const SluiceNeuralDecodeInfo *pInfo)
                               : (SluiceNeuralNetwork)(constants.networkFeatures / 4 - 1));
     struct slc_neural_blob at = slc_neural_blob_of(&shape, info.weightKind);
     result = check_output(&info, at.size);
+    if (result == SLUICE_SUCCESS &&
+        !slc_neural_blob_is_sound(&shape, info.weightKind, info.pWeights))
+        return slc_log_refusal(&info.log, "weights of a decode are no numbers, or beyond 2^63");
     if (result == SLUICE_SUCCESS)
-        decode_texels(&info, &view, &shape, &at);
+        decode_texels(&info, &view, &shape);
     return result;
 }

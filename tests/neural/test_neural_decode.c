@@ -1,8 +1,10 @@
 /* Decoded texels beside numbers by hand, and beside decodes of another decoder. */
 #include "neural/decoded.h"
-#include "neural/decoder.h"
+#include "neural/fast_network.h"
+#include "neural/made_file.h"
 #include "neural/neural_files.h"
 #include "neural/worked_example.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -79,6 +81,43 @@ static void the_worked_example_decodes(void **state)
     sluiceDestroyNeuralSet(set);
 }
 
+/* Random networks and inputs of each size; sums may wrap. */
+static void both_ways_to_run_a_network_give_the_same_bits(void **state)
+{
+    static struct slc_neural_fast fast;
+    (void)state;
+    for (uint32_t s = 0; s < MADE_SHAPE_COUNT; s++) {
+        struct made_parts parts;
+        make_parts(&parts, &made_shapes[s], s);
+        struct slc_neural_shape shape = slc_neural_shape_of(made_shapes[s].network);
+        for (int kind = 0; kind < 2; kind++) {
+            SluiceNeuralWeightKind k = (SluiceNeuralWeightKind)kind;
+            struct slc_neural_blob at = slc_neural_blob_of(&shape, k);
+            uint8_t *blob = kind ? parts.fp8_weights : parts.int8_weights;
+            if (s == 0 && !kind)
+                memset(blob + at.biases[0], 0x7F, 8);
+            slc_neural_fast_init(&fast, &shape, k, blob);
+            for (int n = 0; n < 50; n++) {
+                float slow_outputs[16], fast_outputs[16], floats[96];
+                int8_t inputs[96];
+                for (int i = 0; i < 96; i++) {
+                    inputs[i] = (int8_t)(roll() % 256 - 128);
+                    floats[i] = (float)inputs[i] / 100.0f;
+                }
+                if (kind) {
+                    slc_neural_run_fp8(&shape, &at, blob, floats, slow_outputs);
+                    slc_neural_fast_fp8(&fast, floats, fast_outputs);
+                } else {
+                    slc_neural_run_int8(&shape, &at, blob, inputs, slow_outputs);
+                    slc_neural_fast_int8(&fast, inputs, fast_outputs);
+                }
+                assert_memory_equal(slow_outputs, fast_outputs, sizeof slow_outputs);
+            }
+        }
+        free_made_parts(&parts);
+    }
+}
+
 /* Floats of NAME.WEIGHTS.mipNN.f32. */
 static void check_golden(const char *name, const char *weights, uint32_t mip, double least)
 {
@@ -122,14 +161,92 @@ static void decodes_of_schema_3_agree_with_another_decoder(void **state)
     }
 }
 
+static void color_spaces_are_the_inverse_of_one_another(void **state)
+{
+    (void)state;
+    for (int i = -100; i <= 300; i++) {
+        float linear = (float)i / 50;
+        for (int space = 0; space < 3; space++) {
+            SluiceNeuralColorSpace s = (SluiceNeuralColorSpace)space;
+            float code = sluiceConvertNeuralColor(linear, SLUICE_NEURAL_COLOR_LINEAR, s);
+            float again = sluiceConvertNeuralColor(code, s, SLUICE_NEURAL_COLOR_LINEAR);
+            assert_true(fabsf(again - linear) < 2e-5f);
+        }
+    }
+    assert_true(
+        fabsf(sluiceConvertNeuralColor(0.5f, SLUICE_NEURAL_COLOR_SRGB, SLUICE_NEURAL_COLOR_LINEAR) -
+              0.21404114f) < 1e-6f);
+    assert_true(
+        fabsf(sluiceConvertNeuralColor(1.0f, SLUICE_NEURAL_COLOR_LINEAR, SLUICE_NEURAL_COLOR_HLG) -
+              0.5f) < 1e-6f);
+    assert_true(fabsf(sluiceConvertNeuralColor(-12.0f, SLUICE_NEURAL_COLOR_LINEAR,
+                                               SLUICE_NEURAL_COLOR_HLG) +
+                      1.0f) < 1e-4f);
+}
+
+static void e4m3_rounds_to_the_nearest(void **state)
+{
+    (void)state;
+    for (int bits = 0; bits < 256; bits++)
+        if ((bits & 0x7F) != 0x7F && bits != 0x80)
+            assert_int_equal(slc_e4m3_from_float(slc_float_from_e4m3((uint8_t)bits)), bits);
+    for (int i = -5000; i <= 5000; i++) { /* no other code is nearer */
+        float value = (float)i / 10;
+        float best = slc_float_from_e4m3(slc_e4m3_from_float(value));
+        for (int bits = 0; bits < 256; bits++)
+            if ((bits & 0x7F) != 0x7F)
+                assert_true(fabsf(best - value) <=
+                            fabsf(slc_float_from_e4m3((uint8_t)bits) - value));
+    }
+    assert_int_equal(slc_e4m3_from_float(1e30f), 0x7E);
+    assert_int_equal(slc_e4m3_from_float(1.0625f), 0x38); /* ties to even */
+    assert_int_equal(slc_e4m3_from_float(1.1875f), 0x3A);
+    assert_int_equal(slc_e4m3_from_float(0x1p-10f), 0);
+}
+
+/* Outputs are permuted, and constants need no weights. */
+static void outputs_are_mapped(void **state)
+{
+    SluiceNeuralOutput outputs[16] = {{1, 0}, {SLUICE_NEURAL_CONSTANT, 0.75f}, {0, 0}};
+    float plain[2 * 16], mapped[3 * 16];
+    SluiceNeuralSet *set = NULL;
+    struct decodable d;
+    (void)state;
+    open_worked_example(&set, &d);
+    CHECK_OK(decode_rectangle(&d, 0, 0, 0, 4, 4, plain));
+    CHECK_OK(sluiceGetNeuralWeights(set, d.kind, outputs, &d.weight_size, d.weights));
+    d.constants.channelCount = 3;
+    CHECK_OK(decode_rectangle(&d, 0, 0, 0, 4, 4, mapped));
+    for (int i = 0; i < 16; i++) {
+        assert_true(mapped[3 * i] == plain[2 * i + 1]);
+        assert_true(mapped[3 * i + 1] == 0.75f);
+        assert_true(mapped[3 * i + 2] == plain[2 * i]);
+    }
+    outputs[3].channel = 16;
+    CHECK_RESULT(sluiceGetNeuralWeights(set, d.kind, outputs, &d.weight_size, d.weights),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    outputs[3] = (SluiceNeuralOutput){SLUICE_NEURAL_CONSTANT, 32768};
+    CHECK_RESULT(sluiceGetNeuralWeights(set, d.kind, outputs, &d.weight_size, d.weights),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(
+        sluiceGetNeuralWeights(set, SLUICE_NEURAL_WEIGHTS_FP8, NULL, &d.weight_size, d.weights),
+        SLUICE_ERROR_UNSUPPORTED);
+    free_decodable(&d);
+    sluiceDestroyNeuralSet(set);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_worked_network_runs_as_by_hand),
         cmocka_unit_test(the_inputs_of_the_worked_example_are_those_by_hand),
         cmocka_unit_test(the_worked_example_decodes),
+        cmocka_unit_test(both_ways_to_run_a_network_give_the_same_bits),
         cmocka_unit_test(decodes_of_schema_1_agree_with_another_decoder),
         cmocka_unit_test(decodes_of_schema_3_agree_with_another_decoder),
+        cmocka_unit_test(color_spaces_are_the_inverse_of_one_another),
+        cmocka_unit_test(e4m3_rounds_to_the_nearest),
+        cmocka_unit_test(outputs_are_mapped),
     };
     return RUN_TESTS(tests);
 }

@@ -1,0 +1,32 @@
+/** A network with its weights in the order in which they are used, four outputs at a time. The same
+ *  bits as slc_neural_run_int8 and slc_neural_run_fp8. */
+#ifndef SLC_NEURAL_FAST_NETWORK_H
+#define SLC_NEURAL_FAST_NETWORK_H
+
+#include "neural/decoder.h"
+
+enum { SLC_NEURAL_MAX_WEIGHTS = 96 * 64 + 2 * 64 * 64 + 64 * 16 };
+
+struct slc_neural_fast {
+    struct slc_neural_shape shape;
+    SluiceNeuralWeightKind kind;
+    uint32_t first_weight[SLUICE_NEURAL_LAYERS];
+    uint32_t first_output[SLUICE_NEURAL_LAYERS];
+    /** INT8 layers: [output / 4][input / 2][output % 4][input % 2]. */
+    _Alignas(16) int16_t weights[SLC_NEURAL_MAX_WEIGHTS];
+    /** FP8 layers: [input][output]. */
+    _Alignas(16) float floats[SLC_NEURAL_MAX_WEIGHTS];
+    _Alignas(16) float scales[4 * SLC_NEURAL_MAX_NEURONS];
+    _Alignas(16) int32_t biases[4 * SLC_NEURAL_MAX_NEURONS];
+    _Alignas(16) float float_biases[4 * SLC_NEURAL_MAX_NEURONS];
+};
+
+/** About 100 KiB: not for the stack of a small thread. */
+void slc_neural_fast_init(struct slc_neural_fast *fast, const struct slc_neural_shape *shape,
+                          SluiceNeuralWeightKind kind, const uint8_t *blob);
+
+/** `outputs` has 16 elements. */
+void slc_neural_fast_int8(const struct slc_neural_fast *fast, const int8_t *inputs, float *outputs);
+void slc_neural_fast_fp8(const struct slc_neural_fast *fast, const float *inputs, float *outputs);
+
+#endif /* SLC_NEURAL_FAST_NETWORK_H */
