@@ -6,6 +6,7 @@
 
 #include "../../tools/common/clock.h"
 #include "../../tools/common/text.h"
+#include "compaction.h"
 
 #define AHEAD (MESH_READER_ROOM / 2) /* meshes that are read while another is built */
 
@@ -159,6 +160,7 @@ static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct m
         write_mesh(&read, &mesh->data, entry);
         set_geometry(&read, mesh, entry, build);
         build->target = &mesh->structure;
+        build->compact = !m->uncompacted;
         mesh->triangle_count = read.triangleCount;
         m->triangle_count += read.triangleCount;
         m->normal_count += read.pNormals ? read.vertexCount : 0;
@@ -187,7 +189,8 @@ bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct struc
         build_count += read_mesh(gpu, scene, m, which[i], &builds[build_count]);
     }
     double start = clock_seconds();
-    bool done = structures_build(gpu, structures, builds, build_count);
+    bool done = structures_build(gpu, structures, builds, build_count) &&
+                (m->uncompacted || structures_compact(gpu, structures, builds, build_count));
     m->build_seconds += clock_seconds() - start;
     free(builds);
     for (uint32_t i = 0; i < count; i++) {

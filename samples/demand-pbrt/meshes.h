@@ -32,6 +32,7 @@ struct meshes {
     uint64_t size;      ///< bytes of all meshes on the device
     struct table table; ///< struct PbrtMesh by mesh
     bool says_what_it_reads;
+    bool uncompacted; ///< structures stay as they were built
     /* Since the beginning. */
     uint64_t built_count, evicted_count, triangle_count, bytes_read, failed_count;
     uint64_t normal_count, uv_count;

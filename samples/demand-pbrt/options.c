@@ -83,6 +83,8 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          .help = "load everything first: the truth to compare with"},
         {OPTION_FLAG, "preload-shapes", .value = &o->preload_shapes,
          .help = "build all shapes first; materials and textures on demand"},
+        {OPTION_FLAG, "uncompacted", .value = &o->uncompacted,
+         .help = "keep the structures of meshes as they were built, to compare with"},
         {OPTION_UINT, "fly", "FRAMES", "0", &o->fly,
          "fly once around the scene first, and tell how long frames took", 0, 1000000},
         {OPTION_REAL, "frame-budget", "MS", "0", &o->frame_budget,

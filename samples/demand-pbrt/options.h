@@ -32,7 +32,7 @@ struct pbrt_options {
     uint64_t budget; ///< bytes of geometry; 0: no limit
     uint64_t texture_budget;
     bool face_forward, oneshot_geometry, oneshot_material, sort_proxies, verbose_loading;
-    bool preload, preload_shapes, json, validation, list_devices;
+    bool preload, preload_shapes, uncompacted, json, validation, list_devices;
 };
 
 enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_options *options);

@@ -54,11 +54,34 @@ static VkAccelerationStructureBuildGeometryInfoKHR build_info(const struct struc
     return (VkAccelerationStructureBuildGeometryInfoKHR){
         .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR,
         .type = build->type,
-        .flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR,
+        .flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
+                 (build->compact ? VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR : 0),
         .mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR,
         .geometryCount = 1,
         .pGeometries = &build->geometry,
         .dstAccelerationStructure = build->target->handle};
+}
+
+bool structures_take(const struct gpu *gpu, struct structures *s,
+                     VkAccelerationStructureTypeKHR type, VkDeviceSize size,
+                     struct structure *structure)
+{
+    if (!arena_take(gpu, &s->arena, size, &structure->storage))
+        return false;
+    const VkAccelerationStructureCreateInfoKHR info = {
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR,
+        .buffer = structure->storage.buffer,
+        .offset = structure->storage.offset,
+        .size = size,
+        .type = type};
+    if (!gpu_check(s->create(gpu->device, &info, NULL, &structure->handle),
+                   "vkCreateAccelerationStructureKHR"))
+        return false;
+    const VkAccelerationStructureDeviceAddressInfoKHR address = {
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR,
+        .accelerationStructure = structure->handle};
+    structure->address = s->get_address(gpu->device, &address);
+    return true;
 }
 
 static bool create_target(const struct gpu *gpu, struct structures *s, struct structure_build *b)
@@ -70,22 +93,7 @@ static bool create_target(const struct gpu *gpu, struct structures *s, struct st
                  &b->primitive_count, &sizes);
     const VkDeviceSize mask = s->scratch_alignment - 1;
     b->scratch_size = (sizes.buildScratchSize + mask) & ~mask;
-    if (!arena_take(gpu, &s->arena, sizes.accelerationStructureSize, &b->target->storage))
-        return false;
-    const VkAccelerationStructureCreateInfoKHR info = {
-        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR,
-        .buffer = b->target->storage.buffer,
-        .offset = b->target->storage.offset,
-        .size = sizes.accelerationStructureSize,
-        .type = b->type};
-    if (!gpu_check(s->create(gpu->device, &info, NULL, &b->target->handle),
-                   "vkCreateAccelerationStructureKHR"))
-        return false;
-    const VkAccelerationStructureDeviceAddressInfoKHR address = {
-        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR,
-        .accelerationStructure = b->target->handle};
-    b->target->address = s->get_address(gpu->device, &address);
-    return true;
+    return structures_take(gpu, s, b->type, sizes.accelerationStructureSize, b->target);
 }
 
 /** Places builds in scratch memory: at 0 begins a group that waits for the one before. */

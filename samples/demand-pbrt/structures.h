@@ -27,6 +27,7 @@ struct structure_build {
     VkAccelerationStructureTypeKHR type;
     VkAccelerationStructureGeometryKHR geometry;
     uint32_t primitive_count;
+    bool compact;              ///< structures_compact follows
     struct structure *target;  ///< zeroed; filled
     VkDeviceSize scratch_size; ///< private
     VkDeviceSize scratch_at;   ///< private
@@ -35,6 +36,10 @@ struct structure_build {
 void structures_create(const struct gpu *gpu, struct structures *structures);
 void structures_finish(const struct gpu *gpu, struct structures *structures);
 
+/** Makes a structure without contents. Says on stderr why it failed. */
+bool structures_take(const struct gpu *gpu, struct structures *structures,
+                     VkAccelerationStructureTypeKHR type, VkDeviceSize size,
+                     struct structure *structure);
 /** Builds them all, or none. Says on stderr why it failed. */
 bool structures_build(const struct gpu *gpu, struct structures *structures,
                       struct structure_build *builds, uint32_t count);

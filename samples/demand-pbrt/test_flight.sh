@@ -2,8 +2,8 @@
 # test_flight.sh DEMAND_PBRT FILM_SET FOLDER
 #
 # Flies through a small scene of many instances. Whatever came when, the picture at the end is that
-# of a fresh start, bit for bit; so it is with one reading thread and with several, and with all
-# shapes built first. Exit status 77: no device traces rays.
+# of a fresh start, bit for bit; so it is with one reading thread and with several, with all
+# shapes built first, and with structures that are not compacted. Exit status 77: no device traces rays.
 set -eu
 program=$1 maker=$2 folder=$3
 failed=0
@@ -43,6 +43,9 @@ check() { # figure, condition on v
 render fresh --threads 1
 check geometries_built 'v <= 41'
 check bytes_per_box 'v > 0 && v <= 66'
+compacted=$(value geometry_bytes)
+render uncompacted --uncompacted
+check geometry_bytes "v >= $compacted"
 render shapes --preload-shapes
 check shapes_entered 'v == 2001'
 render unbounded --fly 20 --threads 4
