@@ -80,7 +80,7 @@ void slc_network_to_int8(const float *parameters, struct slc_int8_network *netwo
                    network->scales + layers[l].first_row, network->biases + layers[l].first_row);
 }
 
-uint8_t slc_e4m3_from_float(float value)
+uint8_t slc_train_e4m3(float value)
 {
     float size = fminf(fabsf(value), 448.0f);
     int exponent;
@@ -94,7 +94,7 @@ uint8_t slc_e4m3_from_float(float value)
 void slc_network_to_fp8(const float *parameters, struct slc_fp8_network *network)
 {
     for (uint32_t i = 0; i < TRAIN_WEIGHTS3; i++)
-        network->weights[i] = slc_e4m3_from_float(parameters[i]);
+        network->weights[i] = slc_train_e4m3(parameters[i]);
     for (uint32_t row = 0; row < TRAIN_ROWS - TRAIN_OUTPUTS; row++)
         network->biases[row] = slc_half_from_float(parameters[TRAIN_BIASES + row]);
     fold_layer(parameters, LAYERS - 1, (int8_t *)network->weights + TRAIN_WEIGHTS3, network->scales,

@@ -29,7 +29,7 @@ void slc_network_to_int8(const float *parameters, struct slc_int8_network *netwo
 void slc_network_to_fp8(const float *parameters, struct slc_fp8_network *network);
 
 /** Nearest E4M3 code, ties to even; at most 448. */
-uint8_t slc_e4m3_from_float(float value);
+uint8_t slc_train_e4m3(float value);
 
 /** The hash of the shaders, and a float of 0 to 1 made of it. */
 uint32_t slc_train_hash(uint32_t x);

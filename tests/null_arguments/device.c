@@ -278,14 +278,14 @@ static void init_compressor(struct fixture *f)
 {
     f->texel = 0.5f;
     f->mips[0] = &f->texel;
-    f->compressor_info = (SluiceNeuralCompressorCreateInfo){
-        .structSize = sizeof(SluiceNeuralCompressorCreateInfo),
-        .width = 1,
-        .height = 1,
-        .channelCount = 1,
-        .pChannels = &f->channel,
-        .ppMips = f->mips,
-        .batchSize = 32};
+    f->compressor_info =
+        (SluiceNeuralCompressorCreateInfo){.structSize = sizeof(SluiceNeuralCompressorCreateInfo),
+                                           .width = 1,
+                                           .height = 1,
+                                           .channelCount = 1,
+                                           .pChannels = &f->channel,
+                                           .ppMips = f->mips,
+                                           .batchSize = 32};
     if (!compressor)
         CHECK_OK(sluiceCreateNeuralCompressor(h.context, &f->compressor_info, &compressor));
     f->compressor = compressor;
