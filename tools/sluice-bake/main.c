@@ -4,6 +4,7 @@
 #include "../common/clock.h"
 #include "../common/descriptors.h"
 #include "find.h"
+#include "neural.h"
 #include "options.h"
 #include "report.h"
 #include "../common/text.h"
@@ -98,6 +99,8 @@ int main(int argc, char **argv)
         status = OK;
     else if (options.verify)
         status = verify_files(&options.inputs, options.json) ? OK : FAILED;
+    else if (options.neural)
+        status = neural_bake(&options) ? OK : FAILED;
     else
         status = options.cube || options.array ? bake_layers(&options) : bake(&options);
     return text_flush("sluice-bake: ") ? status : FAILED;

@@ -12,6 +12,7 @@ static const char usage[] =
     "usage: sluice-bake IN... -o OUT|DIR [options]\n"
     "       sluice-bake --cube PX NX PY NY PZ NZ -o OUT [options]\n"
     "       sluice-bake --array IN... -o OUT [options]\n"
+    "       sluice-bake --neural PICTURE... -o OUT.ntc [options]\n"
     "       sluice-bake --verify FILE|DIR... [--json]\n"
     "\n"
     "Makes tile stores of pictures: anything that libvips reads, OpenEXR, DDS, KTX2, larger\n"
@@ -129,7 +130,7 @@ static bool is_folder(const char *path)
 /* Layers make one store of pictures that are named. */
 static bool has_one_output(const struct option_table *table, const struct options *o)
 {
-    const char *option = o->cube ? "--cube" : "--array";
+    const char *option = o->neural ? "--neural" : o->cube ? "--cube" : "--array";
     if (o->verify)
         return options_refuse(table, "%s or --verify, not both; --help says more", option);
     if (is_folder(o->output))
@@ -157,9 +158,13 @@ static bool is_complete(const struct option_table *table, const struct options *
     if (c->srgb && (c->linear || o->settings.normalMap))
         return options_refuse(table, "--srgb or --%s, not both; --help says more",
                               c->linear ? "linear" : "normal");
-    if (o->cube && o->array)
-        return options_refuse(table, "--cube or --array, not both; --help says more");
-    return !(o->cube || o->array) || has_one_output(table, o);
+    if ((int)o->cube + o->array + o->neural > 1)
+        return options_refuse(table, "--cube, --array or --neural, one of them; --help says more");
+    if (o->neural && o->batch % 32)
+        return options_refuse(table, "--batch %u: is no multiple of 32", o->batch);
+    if (o->psnr > 0.0 && o->checkpoint)
+        return options_refuse(table, "--psnr or --checkpoint, not both; --help says more");
+    return !(o->cube || o->array || o->neural) || has_one_output(table, o);
 }
 
 enum option_outcome parse_options(struct options *o, int argc, char **argv)
@@ -176,6 +181,8 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
                  "(+X -X +Y -Y +Z -Z); 12 of two cubes, and so on"},
         {OPTION_FLAG, "array", .value = &o->array,
          .help = "the pictures become layers of one store, in this order"},
+        {OPTION_FLAG, "neural", .value = &o->neural,
+         .help = "compress the pictures together as one neural set, on a Vulkan device"},
         {OPTION_SECTION, .help = "Texels"},
         {OPTION_CHOICE, "format", format_names, "auto", &c.format,
          "format of the texels; auto: by channels, bit depth and meaning."},
@@ -199,6 +206,21 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
          "keep the share of texels with at least this alpha, above 0 and at most 1, in all levels; "
          "reads pictures twice",
          .parse = parse_cutout},
+        {OPTION_SECTION, .help = "Neural sets"},
+        {OPTION_CHOICE, "bits-per-texel", "1.25|2.5|5|10|20", "5", &o->bits,
+         "latents of mip 0, for all channels"},
+        {OPTION_REAL, "psnr", "DB", "(off)", &o->psnr,
+         "try 1.25 bits per texel, then 2.5 and so on, until mip 0 has this PSNR", 1, 100},
+        {OPTION_FLAG, "mask", .value = &o->mask, .help = "fourth channels are masks: keep 0 and 1"},
+        {OPTION_UINT, "steps", "N", "20000", &o->steps, "steps of training", 20, 10000000},
+        {OPTION_UINT, "batch", "N", "65536", &o->batch, "samples of a step, a multiple of 32", 32,
+         1048576},
+        option_seed(&o->seed),
+        {OPTION_TEXT, "checkpoint", "FILE", "(off)", &o->checkpoint,
+         "go on from this file if it is there, and write it every minute"},
+        {OPTION_FLAG, "progress", .value = &o->progress,
+         .help = "print step, PSNR and time left every second"},
+        option_device(&o->device),
         {OPTION_SECTION, .help = "Work"},
         {OPTION_CUSTOM, "compression", "LEVEL|none", "10", s, "level of zstd, 1 to 22",
          .parse = parse_compression},

@@ -14,6 +14,12 @@ struct options {
     uint32_t threads; ///< 0: all processors
     bool force, verify, json;
     bool cube, array; ///< the inputs become layers of one store
+    bool neural;      ///< the inputs are compressed together
+    bool mask, progress;
+    int bits;    ///< index into 1.25, 2.5, 5, 10, 20 bits per texel
+    double psnr; ///< dB to reach; 0: none
+    uint32_t steps, batch, seed;
+    const char *checkpoint, *device; ///< may be NULL
 };
 
 /** Prints the help text if it was asked for. On failure says on standard error what is wrong. */

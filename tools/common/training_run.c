@@ -1,0 +1,301 @@
+#include "training_run.h"
+
+#include "clock.h"
+#include "input.h"
+#include "log.h"
+#include "output_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define STEPS_PER_SUBMISSION 64u /* a software device takes a second or more for them */
+#define CHECKPOINT_SECONDS 60.0
+#define CHECKPOINT_LIMIT (UINT64_C(4) << 30)
+
+struct session {
+    struct training_run *run;
+    SluiceVulkanContext *context;
+    SluiceNeuralCompressor *compressor;
+    VkCommandBuffer commands;
+    VkFence fence;
+    double start, shown, saved;
+};
+
+static bool check(SluiceResult result, const char *what)
+{
+    if (result < 0)
+        fprintf(stderr, "%s: %s\n", what, sluiceGetResultName(result));
+    return result == SLUICE_SUCCESS;
+}
+
+static bool create(struct session *s)
+{
+    const struct training_run *run = s->run;
+    const struct training_set *set = run->set;
+    const SluiceVulkanContextCreateInfo context = {.structSize = sizeof context,
+                                                   .queueFamilyIndex = run->gpu->family,
+                                                   .instance = run->gpu->instance,
+                                                   .physicalDevice = run->gpu->physical_device,
+                                                   .device = run->gpu->device,
+                                                   .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
+                                                   .log = {NULL, log_say}};
+    SluiceNeuralCompressorCreateInfo info = {.structSize = sizeof info,
+                                             .width = set->width,
+                                             .height = set->height,
+                                             .mipCount = set->mip_count,
+                                             .channelCount = set->channel_count,
+                                             .pChannels = set->meaning,
+                                             .ppMips = (const float *const *)set->mips,
+                                             .gridSizeScale = run->scale,
+                                             .featureCount = run->features,
+                                             .stepCount = run->steps,
+                                             .batchSize = run->batch,
+                                             .seed = run->seed};
+    char *checkpoint = NULL;
+    if (run->checkpoint &&
+        input_read_file(run->checkpoint, CHECKPOINT_LIMIT, &checkpoint, &info.checkpointSize))
+        info.pCheckpoint = checkpoint;
+    bool is_made = check(sluiceCreateVulkanContext(&context, &s->context), "Vulkan context") &&
+                   check(sluiceCreateNeuralCompressor(s->context, &info, &s->compressor),
+                         info.pCheckpoint ? run->checkpoint : "compressor");
+    free(checkpoint);
+    const VkCommandBufferAllocateInfo commands = {
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+        .commandPool = run->gpu->command_pool,
+        .commandBufferCount = 1};
+    const VkFenceCreateInfo fence = {.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    return is_made &&
+           gpu_check(vkAllocateCommandBuffers(run->gpu->device, &commands, &s->commands),
+                     "vkAllocateCommandBuffers") &&
+           gpu_check(vkCreateFence(run->gpu->device, &fence, NULL, &s->fence), "vkCreateFence");
+}
+
+static void destroy(struct session *s)
+{
+    VkDevice device = s->run->gpu->device;
+    sluiceDestroyNeuralCompressor(s->compressor);
+    sluiceDestroyVulkanContext(s->context);
+    vkDestroyFence(device, s->fence, NULL);
+    if (s->commands)
+        vkFreeCommandBuffers(device, s->run->gpu->command_pool, 1, &s->commands);
+}
+
+/* `max_steps` steps, or a readback for 0. `*steps` were recorded. */
+static bool run_commands(struct session *s, uint32_t max_steps, uint32_t *steps)
+{
+    const struct gpu *gpu = s->run->gpu;
+    const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    const VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                                 .commandBufferCount = 1,
+                                 .pCommandBuffers = &s->commands};
+    *steps = 0;
+    return gpu_check(vkBeginCommandBuffer(s->commands, &begin), "vkBeginCommandBuffer") &&
+           check(max_steps
+                     ? sluiceRecordNeuralTraining(s->compressor, s->commands, max_steps, steps)
+                     : sluiceRecordNeuralReadback(s->compressor, s->commands),
+                 "training") &&
+           gpu_check(vkEndCommandBuffer(s->commands), "vkEndCommandBuffer") &&
+           gpu_check(vkQueueSubmit(gpu->queue, 1, &submit, s->fence), "vkQueueSubmit") &&
+           gpu_check(vkWaitForFences(gpu->device, 1, &s->fence, VK_TRUE, UINT64_MAX),
+                     "vkWaitForFences") &&
+           gpu_check(vkResetFences(gpu->device, 1, &s->fence), "vkResetFences");
+}
+
+/* A line each second, and the last one. */
+static void show(struct session *s)
+{
+    SluiceNeuralProgress progress = {.structSize = sizeof progress};
+    double time = clock_seconds();
+    if (!s->run->progress ||
+        !check(sluiceGetNeuralProgress(s->compressor, &progress), "progress") ||
+        (time < s->shown + 1.0 && progress.step < progress.stepCount))
+        return;
+    s->shown = time;
+    double left = (time - s->start) / s->run->steps_run * (progress.stepCount - progress.step);
+    fprintf(stderr, "step %u of %u: %.2f dB in all mips, %.1f s left\n", progress.step,
+            progress.stepCount, -10.0 * log10(progress.meanSquaredError), left);
+}
+
+static bool save(struct session *s)
+{
+    uint32_t steps;
+    size_t size;
+    if (!run_commands(s, 0, &steps) ||
+        !check(sluiceGetNeuralCheckpoint(s->compressor, NULL, &size), "checkpoint"))
+        return false;
+    void *checkpoint = malloc(size);
+    struct output_file *file = checkpoint ? output_file_begin(s->run->checkpoint) : NULL;
+    bool is_whole =
+        file && check(sluiceGetNeuralCheckpoint(s->compressor, checkpoint, &size), "checkpoint") &&
+        fwrite(checkpoint, 1, size, output_file_stream(file)) == size;
+    is_whole = output_file_end(file, is_whole) && is_whole;
+    free(checkpoint);
+    s->saved = clock_seconds();
+    return is_whole;
+}
+
+static bool train(struct session *s)
+{
+    uint32_t steps = 1;
+    s->start = s->saved = clock_seconds();
+    while (steps > 0) {
+        if (!run_commands(s, STEPS_PER_SUBMISSION, &steps))
+            return false;
+        s->run->steps_run += steps;
+        s->run->seconds = clock_seconds() - s->start;
+        if (steps > 0)
+            show(s);
+        if (s->run->checkpoint && steps > 0 && clock_seconds() > s->saved + CHECKPOINT_SECONDS &&
+            !save(s))
+            return false;
+    }
+    return run_commands(s, 0, &steps);
+}
+
+/* One byte per code, image after image. */
+static uint8_t *codes_of(const SluiceNeuralTrainedSet *trained)
+{
+    size_t count = 0, at = 0;
+    for (uint32_t n = 0; n < trained->latentImageCount; n++)
+        count += (size_t)trained->latentImages[n].width * trained->latentImages[n].height;
+    uint8_t *codes = malloc(count * trained->featureCount);
+    for (uint32_t n = 0; n < trained->latentImageCount && codes; n++) {
+        const SluiceNeuralTrainedImage *image = &trained->latentImages[n];
+        size_t texels = (size_t)image->width * image->height;
+        for (size_t i = 0; i < texels; i++)
+            for (uint32_t f = 0; f < trained->featureCount; f++)
+                codes[at++] = image->pTexels[f / 4 * texels + i] >> (f % 4 * 4) & 15;
+    }
+    return codes;
+}
+
+static bool write_file(struct session *s)
+{
+    const struct training_run *run = s->run;
+    SluiceNeuralTrainedSet trained = {.structSize = sizeof trained};
+    if (!check(sluiceGetNeuralTrainedSet(s->compressor, &trained), "trained set"))
+        return false;
+    uint8_t *codes = codes_of(&trained);
+    const SluiceNeuralWriteInfo info = {.structSize = sizeof info,
+                                        .pPath = run->output,
+                                        .schema = 3,
+                                        .width = run->set->width,
+                                        .height = run->set->height,
+                                        .mipCount = run->set->mip_count,
+                                        .channelCount = run->set->channel_count,
+                                        .textureCount = run->set->texture_count,
+                                        .pTextures = run->set->textures,
+                                        .pColorSpaces = run->set->spaces,
+                                        .network = SLUICE_NEURAL_NETWORK_SCHEMA3,
+                                        .highFeatures = run->features,
+                                        .gridScale = run->scale,
+                                        .latentImageCount = trained.latentImageCount,
+                                        .pCodes = codes,
+                                        .pInt8Weights = trained.pInt8Weights,
+                                        .pFp8Weights = trained.pFp8Weights,
+                                        .log = {NULL, log_say}};
+    bool is_written = codes && check(sluiceWriteNeuralFile(&info), run->output);
+    free(codes);
+    return is_written;
+}
+
+/* Squared errors of mip 0, by channel; masks are counted. */
+struct errors {
+    double squares[SLUICE_NEURAL_MAX_CHANNELS], certain, exact;
+};
+
+static void add_row(const struct training_set *set, const float *decoded, const float *wanted,
+                    struct errors *errors)
+{
+    for (uint32_t i = 0; i < set->width * set->channel_count; i++) {
+        uint32_t c = i % set->channel_count;
+        float value = decoded[i];
+        if (set->meaning[c].clamped)
+            value = fmaxf(fminf(value, 1.0f), 0.0f);
+        errors->squares[c] += pow((double)(value - wanted[i]), 2.0);
+        if (set->meaning[c].mask && (wanted[i] <= 0.0f || wanted[i] >= 1.0f)) {
+            errors->certain += 1.0;
+            errors->exact += value == wanted[i];
+        }
+    }
+}
+
+/* What a reader of the file gets. */
+static bool decode(const struct training_run *run, SluiceNeuralSet *file,
+                   SluiceNeuralWeightKind kind, struct errors *errors)
+{
+    const struct training_set *set = run->set;
+    static const SluiceNeuralRequest mip0 = {.mipCount = 1};
+    SluiceNeuralConstants constants;
+    uint64_t latent_size, weight_size;
+    if (!check(sluiceReadNeuralLatents(file, &mip0, &constants, &latent_size, NULL), "latents") ||
+        !check(sluiceGetNeuralWeights(file, kind, NULL, &weight_size, NULL), "weights"))
+        return false;
+    char *latents = malloc((size_t)latent_size), *weights = malloc((size_t)weight_size);
+    float *row = malloc((size_t)set->width * set->channel_count * sizeof *row);
+    SluiceNeuralDecodeInfo info = {.structSize = sizeof info,
+                                   .pConstants = &constants,
+                                   .pLatents = latents,
+                                   .latentSize = latent_size,
+                                   .pWeights = weights,
+                                   .weightSize = weight_size,
+                                   .weightKind = kind,
+                                   .width = set->width,
+                                   .height = 1,
+                                   .channelCount = set->channel_count,
+                                   .pTexels = row};
+    bool is_read =
+        latents && weights && row &&
+        check(sluiceReadNeuralLatents(file, &mip0, &constants, &latent_size, latents), "latents") &&
+        check(sluiceGetNeuralWeights(file, kind, NULL, &weight_size, weights), "weights");
+    for (info.y = 0; info.y < set->height && is_read; info.y++) {
+        is_read = check(sluiceDecodeNeuralTexels(&info), "decoding");
+        add_row(set, row, set->mips[0] + (size_t)info.y * set->width * set->channel_count, errors);
+    }
+    free(row);
+    free(weights);
+    free(latents);
+    return is_read;
+}
+
+static double psnr_of(const struct training_set *set, const struct errors *errors)
+{
+    double sum = 0.0;
+    for (uint32_t c = 0; c < set->channel_count; c++)
+        sum += errors->squares[c];
+    return -10.0 * log10(sum / ((double)set->width * set->height * set->channel_count));
+}
+
+static bool compare(struct training_run *run)
+{
+    const SluiceNeuralSetCreateInfo info = {
+        .structSize = sizeof info, .pPath = run->output, .log = {NULL, log_say}};
+    SluiceNeuralSet *file = NULL;
+    SluiceNeuralSetInfo facts = {.structSize = sizeof facts};
+    struct errors int8 = {0}, fp8 = {0};
+    bool is_read = check(sluiceOpenNeuralSet(&info, &file), run->output) &&
+                   check(sluiceGetNeuralSetInfo(file, &facts), run->output) &&
+                   decode(run, file, SLUICE_NEURAL_WEIGHTS_INT8, &int8) &&
+                   decode(run, file, SLUICE_NEURAL_WEIGHTS_FP8, &fp8);
+    sluiceDestroyNeuralSet(file);
+    run->file_size = facts.fileSize;
+    run->psnr = psnr_of(run->set, &int8);
+    run->fp8_psnr = psnr_of(run->set, &fp8);
+    run->exact_mask = int8.certain > 0.0 ? int8.exact / int8.certain : 1.0;
+    for (uint32_t c = 0; c < run->set->channel_count; c++)
+        run->channel_psnr[c] =
+            -10.0 * log10(int8.squares[c] / ((double)run->set->width * run->set->height));
+    return is_read;
+}
+
+bool training_run(struct training_run *run)
+{
+    struct session session = {.run = run};
+    run->steps_run = 0;
+    run->seconds = 0.0;
+    bool is_done = create(&session) && train(&session) && write_file(&session);
+    destroy(&session);
+    return is_done && compare(run);
+}

@@ -1,0 +1,41 @@
+/** Pictures of equal size whose channels are compressed together, and their mips. */
+#ifndef TOOLS_COMMON_TRAINING_SET_H
+#define TOOLS_COMMON_TRAINING_SET_H
+
+#include <sluice/neural.h>
+#include <sluice/neural_compress.h>
+
+#define TRAINING_SET_NAME 64
+
+struct training_set {
+    uint32_t width, height, mip_count, channel_count, texture_count;
+    float *level0; ///< owned; [y][x][SLUICE_NEURAL_MAX_CHANNELS], values of each channel's space
+    float *mips[SLUICE_NEURAL_MAX_MIPS]; ///< owned; [y][x][channel_count]
+    SluiceNeuralTrainingChannel meaning[SLUICE_NEURAL_MAX_CHANNELS];
+    SluiceNeuralColorSpace spaces[SLUICE_NEURAL_MAX_CHANNELS];
+    SluiceNeuralTexture textures[SLUICE_NEURAL_MAX_CHANNELS];
+    char names[SLUICE_NEURAL_MAX_CHANNELS][TRAINING_SET_NAME];
+};
+
+/** Texels [y][x][channel_count]. */
+struct training_picture {
+    const char *name; ///< copied
+    uint32_t width, height, channel_count;
+    const float *texels; ///< as stored in `space`: linear values of HLG, too, are converted
+    SluiceNeuralChannelFormat format;
+    SluiceNeuralColorSpace space; ///< of channels 0 to 2; channel 3 is linear
+    bool mask;                    ///< the last channel is a mask
+};
+
+/** Adds the channels of a picture. False, which stderr says, for another size, too many channels,
+ * or without memory. */
+bool training_set_add(struct training_set *set, const struct training_picture *picture);
+
+/** Makes the mips: each texel is the mean, in linear light, of the texels of mip 0 that it covers.
+ *  False without memory. */
+bool training_set_finish_mips(struct training_set *set);
+
+/** A zeroed set is allowed. */
+void training_set_free(struct training_set *set);
+
+#endif /* TOOLS_COMMON_TRAINING_SET_H */

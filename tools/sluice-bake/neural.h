@@ -1,0 +1,10 @@
+/** sluice-bake --neural: pictures become one .ntc file. */
+#ifndef TOOLS_SLUICE_BAKE_NEURAL_H
+#define TOOLS_SLUICE_BAKE_NEURAL_H
+
+#include "options.h"
+
+/** False, which stderr says. */
+bool neural_bake(const struct options *options);
+
+#endif /* TOOLS_SLUICE_BAKE_NEURAL_H */

@@ -1,0 +1,13 @@
+/* In place of neural.c where the Vulkan loader or zlib is missing. */
+#include "neural.h"
+
+#include <stdio.h>
+
+bool neural_bake(const struct options *options)
+{
+    (void)options;
+    fprintf(stderr,
+            "sluice-bake: --neural needs the Vulkan loader and zlib, which were missing when "
+            "this program was built\n");
+    return false;
+}
