@@ -139,7 +139,7 @@ typedef enum SluicePbrtFilter {
 
 /** Transfer function of a picture's numbers. */
 typedef enum SluicePbrtEncoding {
-    SLUICE_PBRT_ENCODING_DEFAULT = 0, ///< sRGB for PNG and TGA files, otherwise linear.
+    SLUICE_PBRT_ENCODING_DEFAULT = 0, ///< sRGB for PNG and TGA with 8 bits, otherwise linear.
     SLUICE_PBRT_ENCODING_SRGB = 1,
     SLUICE_PBRT_ENCODING_LINEAR = 2,
     SLUICE_PBRT_ENCODING_GAMMA = 3 ///< A power: SluicePbrtTexture::gamma.

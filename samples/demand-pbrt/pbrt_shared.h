@@ -26,8 +26,7 @@
 #define PBRT_OWN_BUFFERS 15
 #define PBRT_BINDING_SCENE 15 /* the acceleration structure */
 
-#define PBRT_PART_BOXES 4096 /* of a structure; the custom index of its instance is its number */
-#define PBRT_ROW_WIDTH 1024  /* rays of one row of a launch */
+#define PBRT_ROW_WIDTH 1024 /* rays of one row of a launch */
 #define PBRT_NONE 0xffffffffu
 #define PBRT_MAX_BOUNCES 8
 

@@ -13,7 +13,7 @@
 /* Boxes are computed from transformed boxes, and triangles are transformed by the device. */
 #define ROUNDING 1.0e-5f
 #define RANK 0u /* before tiles */
-#define RANGE_COUNT 512u
+#define RANGE_COUNT 64u
 #define MOST_BOXES (PBRT_PAGE_CAPACITY / 2)
 
 static bool check(SluiceResult result, const char *what)
@@ -41,13 +41,6 @@ bool proxies_create(SluiceDemandLoader *loader, const struct scene *scene, struc
     const uint64_t most_boxes = boxes < MOST_BOXES ? boxes : MOST_BOXES;
     const uint32_t surface_count = scene->info.materialCount + scene->info.textureCount;
     *p = (struct proxies){.loader = loader, .changed = true};
-    p->part_room = (uint32_t)((most_boxes + PBRT_PART_BOXES - 1) / PBRT_PART_BOXES);
-    p->parts = calloc(p->part_room, sizeof *p->parts);
-    p->part_changed = calloc(p->part_room + 1u, sizeof *p->part_changed);
-    if (!p->parts || !p->part_changed) {
-        fprintf(stderr, "out of memory\n");
-        return false;
-    }
     if (!create_set(loader, SLUICE_PROXY_KIND_GEOMETRY, most_boxes, &p->boxes, &p->box_resource,
                     &p->box_page) ||
         !create_set(loader, SLUICE_PROXY_KIND_MATERIAL, surface_count + 1ull, &p->surfaces,
@@ -63,14 +56,11 @@ bool proxies_create(SluiceDemandLoader *loader, const struct scene *scene, struc
 
 void proxies_finish(const struct gpu *gpu, struct structures *structures, struct proxies *p)
 {
-    for (uint32_t i = 0; i < p->part_room && p->parts; i++)
-        structures_give(gpu, structures, &p->parts[i]);
+    structures_give(gpu, structures, &p->structure);
     gpu_destroy_buffer(gpu, &p->buffer);
     sluiceDestroyProxySet(p->boxes);
     sluiceDestroyProxySet(p->surfaces);
     free(p->nodes);
-    free(p->parts);
-    free(p->part_changed);
     free(p->ids);
     *p = (struct proxies){0};
 }
@@ -232,8 +222,7 @@ void proxy_requests_finish(struct proxy_requests *r)
 }
 
 /** Brings the buffer up to date; it grows with the largest index. */
-static bool write_boxes(const struct gpu *gpu, struct proxies *p, SluiceProxyRange *ranges,
-                        uint32_t *range_count)
+static bool write_boxes(const struct gpu *gpu, struct proxies *p)
 {
     const uint32_t count = get_info(p->boxes).indexCount;
     const VkDeviceSize size = (VkDeviceSize)count * sizeof(SluiceProxyBox);
@@ -243,13 +232,15 @@ static bool write_boxes(const struct gpu *gpu, struct proxies *p, SluiceProxyRan
         if (!gpu_create_buffer(gpu, size + size / 16 + 1024, STRUCTURE_INPUT_USAGE, &p->buffer))
             return false;
     }
+    SluiceProxyRange ranges[RANGE_COUNT];
+    uint32_t range_count;
     const SluiceProxyBoxWrite write = {.structSize = sizeof write,
                                        .capacity =
                                            (uint32_t)(p->buffer.size / sizeof(SluiceProxyBox)),
                                        .pBoxes = p->buffer.mapped,
                                        .rangeCapacity = RANGE_COUNT,
                                        .pRanges = ranges};
-    return check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, range_count), "boxes");
+    return check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, &range_count), "boxes");
 }
 
 static void count_memory(struct proxies *p)
@@ -263,64 +254,22 @@ static void count_memory(struct proxies *p)
                        info.proxyCount;
 }
 
-/** Marks the parts of boxes from `first` to before `end`. */
-static void mark_parts(struct proxies *p, uint32_t first, uint32_t end)
-{
-    for (uint32_t i = first / PBRT_PART_BOXES; (uint64_t)i * PBRT_PART_BOXES < end; i++)
-        p->part_changed[i] = true;
-}
-
-/** One build for each part that has changed and has boxes. */
-static uint32_t list_builds(const struct gpu *gpu, struct structures *structures, struct proxies *p,
-                            const SluiceProxyGeometry *geometry, struct structure_build *builds)
-{
-    const uint32_t end = geometry->range.primitiveCount;
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < p->part_room; i++) {
-        const uint32_t first = i * PBRT_PART_BOXES;
-        if (!p->part_changed[i])
-            continue;
-        p->part_changed[i] = false;
-        structures_give(gpu, structures, &p->parts[i]);
-        if (first >= end)
-            continue;
-        builds[count] = (struct structure_build){
-            .type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
-            .primitive_count = end - first < PBRT_PART_BOXES ? end - first : PBRT_PART_BOXES,
-            .geometry = geometry->geometry,
-            .target = &p->parts[i]};
-        builds[count++].geometry.geometry.aabbs.data.deviceAddress +=
-            (VkDeviceSize)first * sizeof(SluiceProxyBox);
-    }
-    return count;
-}
-
 bool proxies_build(const struct gpu *gpu, struct structures *structures, struct proxies *p)
 {
     if (!p->changed)
         return true;
     SluiceProxyGeometry geometry = {.structSize = sizeof geometry};
-    SluiceProxyRange ranges[RANGE_COUNT];
-    uint32_t range_count;
-    if (!write_boxes(gpu, p, ranges, &range_count) ||
+    structures_give(gpu, structures, &p->structure);
+    if (!write_boxes(gpu, p) ||
         !check(
             sluiceGetProxyGeometry(p->boxes, ray_buffer_address(gpu, p->buffer.buffer), &geometry),
             "boxes"))
         return false;
-    const uint32_t count = geometry.range.primitiveCount, built = p->built_count;
-    for (uint32_t i = 0; i < range_count; i++)
-        mark_parts(p, ranges[i].first, ranges[i].first + ranges[i].count);
-    mark_parts(p, count < built ? count : built, count < built ? built : count);
-    struct structure_build *builds = calloc(p->part_room + 1u, sizeof *builds);
-    if (!builds) {
-        fprintf(stderr, "out of memory\n");
-        return false;
-    }
-    p->built_count = count;
     p->changed = false;
     count_memory(p);
-    const uint32_t build_count = list_builds(gpu, structures, p, &geometry, builds);
-    bool done = structures_build(gpu, structures, builds, build_count);
-    free(builds);
-    return done;
+    struct structure_build build = {.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
+                                    .primitive_count = geometry.range.primitiveCount,
+                                    .geometry = geometry.geometry,
+                                    .target = &p->structure};
+    return build.primitive_count == 0 || structures_build(gpu, structures, &build, 1);
 }

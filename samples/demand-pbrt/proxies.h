@@ -29,14 +29,11 @@ struct proxies {
     uint32_t id_room;
     struct gpu_buffer buffer; ///< of boxes, 24 bytes each
     uint64_t version;         ///< of the buffer
-    struct structure *parts;  ///< owned; of PBRT_PART_BOXES boxes each, those without boxes zeroed
-    bool *part_changed;       ///< owned
-    uint32_t part_room;       ///< for all boxes that there may be
-    uint32_t built_count;     ///< boxes in the structures, with gaps
-    bool changed;             ///< since the structure was built
-    uint64_t added_count;     ///< boxes since the beginning
-    uint32_t most_count;      ///< boxes at a time
-    double bytes_per_box;     ///< on host and device when they were most, without their structure
+    struct structure structure;
+    bool changed;         ///< since the structure was built
+    uint64_t added_count; ///< boxes since the beginning
+    uint32_t most_count;  ///< boxes at a time
+    double bytes_per_box; ///< on host and device when they were most, without their structure
 };
 
 /** Surfaces are the materials of the scene, then its textures. Says on stderr why it failed. */
@@ -67,7 +64,7 @@ bool proxies_take_surface(struct proxies *proxies, const struct proxy_requests *
                           uint32_t number);
 void proxy_requests_finish(struct proxy_requests *requests);
 
-/** Builds the structures of boxes that have changed. */
+/** Builds the structure of the boxes if they have changed. Without boxes there is none. */
 bool proxies_build(const struct gpu *gpu, struct structures *structures, struct proxies *proxies);
 
 #endif /* DEMAND_PBRT_PROXIES_H */

@@ -345,29 +345,21 @@ bool world_build_meshes(struct world *w, uint32_t launch)
     return true;
 }
 
-/** Instances of boxes, which come before all places. */
-static uint32_t part_room(const struct world *w)
-{
-    return w->proxies ? w->proxies->part_room : 0;
-}
-
 /** Cost follows what has changed: instances keep their places in the buffer. */
 static void write_instances(struct world *w)
 {
     VkAccelerationStructureInstanceKHR *instances = w->instances.mapped;
-    const uint32_t parts = part_room(w);
-    for (uint32_t i = 0; i < parts; i++)
-        instances[i] = (VkAccelerationStructureInstanceKHR){
-            .transform.matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
-            .instanceCustomIndex = i & 0xffffffu,
-            .mask = 0xff,
-            .instanceShaderBindingTableRecordOffset = PBRT_GROUP_BOX,
-            .accelerationStructureReference = w->proxies->parts[i].address};
+    const struct structure *boxes = w->proxies ? &w->proxies->structure : NULL;
+    instances[0] = (VkAccelerationStructureInstanceKHR){
+        .transform.matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
+        .mask = 0xff,
+        .instanceShaderBindingTableRecordOffset = PBRT_GROUP_BOX,
+        .accelerationStructureReference = boxes ? boxes->address : 0};
     for (uint32_t i = 0; i < w->moved_count; i++) {
         struct place *place = &w->places[w->moved[i]];
         place->instance.accelerationStructureReference =
             place->live ? w->meshes.items[place->mesh].structure.address : 0;
-        instances[parts + w->moved[i]] = place->instance;
+        instances[1 + w->moved[i]] = place->instance;
     }
     w->moved_count = 0;
 }
@@ -375,8 +367,7 @@ static void write_instances(struct world *w)
 /** A larger buffer takes over what the old one has, by the host's copy. */
 static bool reserve_instances(struct world *w)
 {
-    const VkDeviceSize size =
-        ((uint64_t)w->place_count + part_room(w) + 1) * sizeof(VkAccelerationStructureInstanceKHR);
+    const VkDeviceSize size = (w->place_count + 1ull) * sizeof(VkAccelerationStructureInstanceKHR);
     if (w->instances.size >= size)
         return true;
     gpu_destroy_buffer(w->gpu, &w->instances);
@@ -384,7 +375,7 @@ static bool reserve_instances(struct world *w)
         return false;
     VkAccelerationStructureInstanceKHR *instances = w->instances.mapped;
     for (uint32_t i = 0; i < w->place_count; i++)
-        instances[part_room(w) + i] = w->places[i].instance;
+        instances[1 + i] = w->places[i].instance;
     return true;
 }
 
@@ -396,7 +387,7 @@ static bool build_top(struct world *w)
     write_instances(w);
     struct structure_build build = {
         .type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR,
-        .primitive_count = part_room(w) + w->place_count,
+        .primitive_count = w->place_count + 1,
         .target = &w->top,
         .geometry = {
             .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,

@@ -1,15 +1,14 @@
 /* GDeflate against an encoder that writes the same bits the long way round. */
 #include "base/little_endian.h"
 #include "neural/gdeflate.h"
-#include "neural/made_file.h"
 #include "neural/neural_files.h"
 #include "support/failing_allocator.h"
 #include "support/roll.h"
 #include "support/test.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 /* Bits of 32 lanes. Words lie in the order in which a decoder asks for them, so the encoder keeps
  * what each lane has and counts as a decoder does. */
@@ -279,195 +278,11 @@ static void damaged_streams_end(void **state)
     free(stream);
 }
 
-/* Given bytes as literals and a stored block. */
-static size_t encode_bytes(const uint8_t *bytes, size_t size, uint8_t *out)
-{
-    struct encoder *e = new_encoder();
-    size_t stored = size / 2;
-    begin_block(e, false, 1);
-    e->lane = 0;
-    for (size_t i = 0; i < size - stored; i++, step(e))
-        put_fixed(e, bytes[i]);
-    put_fixed(e, 256);
-    for (int i = 0; i < 32; i++)
-        step(e);
-    begin_block(e, true, 0);
-    put_stored(e, bytes + size - stored, (uint32_t)stored);
-    return finish(e, out);
-}
-
-/* A view as compressors of version 0.9 store it: entry 0 has a number that nobody may use. */
-static size_t compress_view(const uint8_t *bytes, size_t size, uint8_t *out)
-{
-    uint32_t tiles = (uint32_t)((size + 65535) / 65536), last = size % 65536;
-    size_t at = 8 + 4 * tiles;
-    out[0] = 4;
-    out[1] = 0xFB;
-    out[2] = (uint8_t)tiles;
-    out[3] = 0;
-    slc_put_u32(out + 4, 1 | last << 2);
-    for (uint32_t t = 0; t < tiles; t++) {
-        slc_put_u32(out + 8 + 4 * t, t ? (uint32_t)(at - 8 - 4 * tiles) : last);
-        at += encode_bytes(bytes + t * 65536u, t + 1 < tiles || !last ? 65536 : last, out + at);
-    }
-    return at;
-}
-
-/* The file with its latents compressed: those views have checksums. Returns the size. */
-static size_t compress_latents(const struct made_file *file, uint8_t *out)
-{
-    const char *text = (const char *)file->bytes + 40, *view = strstr(text, "\"views\":[");
-    const uint8_t *data = file->bytes + slc_get_u64(file->bytes + 24);
-    uint8_t *made = calloc(1, 1 << 20);
-    char *out_text = (char *)out + 40;
-    size_t made_size = 0, text_size = (size_t)(view + 8 - text);
-    assert_non_null(made);
-    memcpy(out, file->bytes, 40 + text_size);
-    for (view += 8; *view != ']'; view = strchr(view, '}') + 1) {
-        unsigned long long offset, size, crc;
-        int count = sscanf(view + 1, "{\"offset\":%llu,\"storedSize\":%llu,\"crc32\":%llu", &offset,
-                           &size, &crc);
-        size_t stored = (size_t)size;
-        if (count == 3)
-            stored = compress_view(data + offset, (size_t)size, made + made_size);
-        else
-            memcpy(made + made_size, data + offset, stored);
-        text_size += (size_t)sprintf(out_text + text_size, "%c{\"offset\":%zu,\"storedSize\":%zu",
-                                     *view, made_size, stored);
-        if (count == 3)
-            text_size += (size_t)sprintf(
-                out_text + text_size,
-                ",\"compression\":\"GDeflate\",\"uncompressedSize\":%llu,\"crc32\":%llu", size,
-                crc);
-        text_size += (size_t)sprintf(out_text + text_size, "}");
-        made_size = (made_size + stored + 3) / 4 * 4;
-    }
-    text_size += (size_t)sprintf(out_text + text_size, "]}") + 1;
-    size_t data_offset = (40 + text_size + 3) / 4 * 4;
-    memset(out + 40 + text_size, 0, data_offset - 40 - text_size);
-    slc_put_u64(out + 16, text_size);
-    slc_put_u64(out + 24, data_offset);
-    slc_put_u64(out + 32, made_size);
-    memcpy(out + data_offset, made, made_size);
-    free(made);
-    return data_offset + made_size;
-}
-
-static const struct made_shape two_tiles = {
-    3, 300, 200, 1, 4, 0, 0, 0, SLUICE_NEURAL_NETWORK_SCHEMA3};
-
-static void compressed_latents_are_those_before(void **state)
-{
-    struct made_file file;
-    SluiceNeuralSet *set = open_made_file(&two_tiles, 5, &file), *compressed = NULL;
-    uint8_t *bytes = calloc(1, 1 << 20), *latents[2] = {malloc(1 << 18), malloc(1 << 18)};
-    SluiceNeuralConstants k[2];
-    (void)state;
-    size_t size = compress_latents(&file, bytes);
-    CHECK_OK(open_neural_bytes(bytes, size, NULL, &compressed));
-    for (int n = 0; n < 40; n++) {
-        SluiceNeuralRequest request = {.x = (uint32_t)roll() % 300, .y = (uint32_t)roll() % 200};
-        request.width = n ? 1 + (uint32_t)roll() % (300 - request.x) : 300 - request.x;
-        request.height = n ? 1 + (uint32_t)roll() % (200 - request.y) : 200 - request.y;
-        for (int i = 0; i < 2; i++) {
-            uint64_t room = 1 << 18;
-            CHECK_OK(
-                sluiceReadNeuralLatents(i ? compressed : set, &request, &k[i], &room, latents[i]));
-            if (i)
-                assert_memory_equal(latents[0], latents[1], room);
-        }
-        assert_memory_equal(&k[0], &k[1], sizeof k[0]);
-    }
-    for (int i = 0; i < 2; i++) {
-        uint64_t room = 1 << 18;
-        CHECK_OK(sluiceReadNeuralLatentPart(i ? compressed : set, 0, 0, &room, latents[i]));
-        assert_int_equal(room, 120000);
-    }
-    assert_memory_equal(latents[0], latents[1], 120000);
-    sluiceDestroyNeuralSet(compressed);
-    sluiceDestroyNeuralSet(set);
-    free(latents[0]);
-    free(latents[1]);
-    free(bytes);
-    free(file.bytes);
-}
-
-/* Damages the digits behind the last `key`, and reads. */
-static void check_damage(uint8_t *bytes, size_t size, const char *key, SluiceResult expected)
-{
-    char *text = (char *)bytes + 40, *found = NULL;
-    SluiceNeuralConstants k;
-    SluiceNeuralSet *set = NULL;
-    uint8_t *latents = malloc(1 << 18);
-    const SluiceNeuralRequest request = {.firstMip = 8};
-    uint64_t room = 1 << 18;
-    for (char *at = text; (at = strstr(at, key)); at++)
-        found = at + strlen(key);
-    assert_non_null(found);
-    *found ^= 1;
-    SluiceResult result = open_neural_bytes(bytes, size, NULL, &set);
-    if (result == SLUICE_SUCCESS)
-        result = sluiceReadNeuralLatents(set, &request, &k, &room, latents);
-    CHECK_RESULT(result, expected);
-    sluiceDestroyNeuralSet(set);
-    *found ^= 1;
-    free(latents);
-}
-
-static void checksums_and_sizes_are_compared(void **state)
-{
-    struct made_file file;
-    uint8_t *bytes = calloc(1, 1 << 20);
-    (void)state;
-    sluiceDestroyNeuralSet(open_made_file(&two_tiles, 5, &file));
-    size_t size = compress_latents(&file, bytes);
-    check_damage(bytes, size, "\"crc32\":", SLUICE_ERROR_CORRUPT_DATA);
-    check_damage(bytes, size, "\"uncompressedSize\":", SLUICE_ERROR_CORRUPT_DATA);
-    check_damage(file.bytes, file.size, "\"crc32\":", SLUICE_ERROR_CORRUPT_DATA);
-    free(file.bytes);
-    free(bytes);
-}
-
-static void compressed_latents_survive_refused_allocations(void **state)
-{
-    struct made_file file;
-    uint8_t *bytes = calloc(1, 1 << 20), *latents = malloc(1 << 18);
-    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    (void)state;
-    sluiceDestroyNeuralSet(open_made_file(&two_tiles, 5, &file));
-    size_t size = compress_latents(&file, bytes);
-    for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
-        struct failing_allocator allocator;
-        SluiceNeuralSet *set = NULL;
-        SluiceNeuralConstants k;
-        uint64_t room = 1 << 18;
-        failing_allocator_init(&allocator, n);
-        result = open_neural_bytes(bytes, size, &allocator.callbacks, &set);
-        if (result == SLUICE_SUCCESS)
-            result = sluiceReadNeuralLatentPart(set, 6, 0, &room, latents);
-        if (result == SLUICE_SUCCESS) {
-            const SluiceNeuralRequest request = {.firstMip = 8};
-            room = 1 << 18;
-            result = sluiceReadNeuralLatents(set, &request, &k, &room, latents);
-        }
-        assert_true(result == SLUICE_SUCCESS || result == SLUICE_ERROR_OUT_OF_HOST_MEMORY);
-        sluiceDestroyNeuralSet(set);
-        assert_int_equal(allocator.live_bytes, 0);
-        assert_true(n < 100);
-    }
-    free(latents);
-    free(bytes);
-    free(file.bytes);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiles_of_all_kinds_of_blocks_inflate),
         cmocka_unit_test(damaged_streams_end),
-        cmocka_unit_test(compressed_latents_are_those_before),
-        cmocka_unit_test(checksums_and_sizes_are_compared),
-        cmocka_unit_test(compressed_latents_survive_refused_allocations),
     };
     return RUN_TESTS(tests);
 }

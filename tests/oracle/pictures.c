@@ -63,8 +63,7 @@ bool oracle_picture_read(struct oracle_picture *picture, const char *path)
         *picture = (struct oracle_picture){.width = (uint32_t)image->Xsize,
                                            .height = (uint32_t)image->Ysize,
                                            .bands = (uint32_t)image->Bands,
-                                           .is_integer = format == VIPS_FORMAT_UCHAR ||
-                                                         format == VIPS_FORMAT_USHORT,
+                                           .eight_bits = format == VIPS_FORMAT_UCHAR,
                                            .has_alpha = vips_image_hasalpha(image)};
         ok = take_values(picture, raw, format);
     }
@@ -81,7 +80,7 @@ static double decode(const struct oracle_picture *picture, const struct oracle_l
                      double x)
 {
     bool srgb = lookup->encoding == SLUICE_PBRT_ENCODING_SRGB ||
-                (lookup->encoding == SLUICE_PBRT_ENCODING_DEFAULT && picture->is_integer);
+                (lookup->encoding == SLUICE_PBRT_ENCODING_DEFAULT && picture->eight_bits);
     if (lookup->encoding == SLUICE_PBRT_ENCODING_GAMMA)
         return pow(fmax(x, 0), lookup->gamma);
     if (srgb)

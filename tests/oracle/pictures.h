@@ -11,7 +11,7 @@
 /** Row 0 on top. */
 struct oracle_picture {
     uint32_t width, height, bands;
-    bool is_integer; ///< PNG and TGA files, which are sRGB unless a texture says otherwise
+    bool eight_bits;
     bool has_alpha;
     float *values; ///< owned; 0 to 1 for integers; as the file has them
 };

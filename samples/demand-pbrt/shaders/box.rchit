@@ -8,7 +8,6 @@
 
 #include "demand.glsl"
 #include "scene.glsl"
-#include "boxes.glsl"
 #include "sluice/proxy.glsl"
 
 layout(location = 0) rayPayloadInEXT Payload payload;
@@ -18,7 +17,7 @@ void main()
     /* -x red, +x yellow, -y green, +y cyan, -z blue, +z magenta */
     const vec3 colors[6] = vec3[6](vec3(0.8, 0.1, 0.1), vec3(0.8, 0.8, 0.1), vec3(0.1, 0.7, 0.1),
                                    vec3(0.1, 0.8, 0.8), vec3(0.1, 0.1, 0.8), vec3(0.8, 0.1, 0.8));
-    sluiceRequestGeometryProxy(launch.proxyPage, boxIndex());
+    sluiceRequestGeometryProxy(launch.proxyPage, gl_PrimitiveID);
     payload.distance = gl_HitTEXT;
     payload.missing = true;
     payload.normal = payload.face = sluiceProxyFaceNormal(gl_HitKindEXT);
@@ -26,6 +25,6 @@ void main()
     payload.specular = payload.transmission = payload.emission = vec3(0.0);
     payload.density = 0.0;
     payload.kind = 0u;
-    payload.place = boxIndex();
+    payload.place = gl_PrimitiveID;
     payload.triangle = PBRT_NONE;
 }
