@@ -117,6 +117,9 @@
     SLC_UP_TO(SluiceNeuralCompressorCreateInfo, checkpointSize)
 #define SLC_FIRST_SluiceNeuralTrainedSet SLC_UP_TO(SluiceNeuralTrainedSet, fp8Size)
 #define SLC_FIRST_SluiceNeuralProgress SLC_UP_TO(SluiceNeuralProgress, channelErrors)
+#define SLC_FIRST_SluiceVulkanNeuralDecoderCreateInfo                                              \
+    SLC_UP_TO(SluiceVulkanNeuralDecoderCreateInfo, pAllocator)
+#define SLC_FIRST_SluiceVulkanNeuralOutput SLC_UP_TO(SluiceVulkanNeuralOutput, to)
 #define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
     SLC_UP_TO(SluiceVulkanDeviceCapabilities, sparseCubes)
 #define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \

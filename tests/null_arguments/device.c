@@ -4,6 +4,7 @@
 
 #include <sluice/demand.h>
 #include <sluice/neural_compress.h>
+#include <sluice/vulkan_neural.h>
 #include <sluice/vulkan_proxy.h>
 
 #include <stdio.h>
@@ -71,6 +72,9 @@ sluiceSetDemandPageBytes(f->loader, f->bytes, 0, &f->out.page, ?true)
 sluiceAddDemandProxies(f->loader, f->set, ?0, &f->out.resource, &f->out.page)
 sluiceProcessDemandProxies(f->loader, f->proxies, f->set)
 sluiceGetProxyGeometry(f->set, 256, &f->out.geometry)
+sluiceCreateVulkanNeuralDecoder(&f->decoder_info, &f->out.decoder) => sluiceDestroyVulkanNeuralDecoder(f->out.decoder)
+!sluiceDestroyVulkanNeuralDecoder(f->decoder)
+sluiceAddVulkanNeuralOutput(f->decoder, &f->neural_output, &f->out.producer)
 sluiceGetDemandBuffers(f->loader, &f->out.demand_buffers)
 sluiceGetDemandPages(f->loader, &f->out.pages)
 sluiceGetDemandByteBuffers(f->loader, &f->out.byte_buffers)
@@ -122,7 +126,12 @@ struct fixture {
     SluiceNeuralCompressor *compressor;
     void *checkpoint;
     size_t checkpoint_size;
+    SluiceVulkanNeuralDecoderCreateInfo decoder_info;
+    SluiceVulkanNeuralDecoder *decoder;
+    SluiceVulkanNeuralOutput neural_output;
     struct {
+        SluiceVulkanNeuralDecoder *decoder;
+        const SluiceTileProducer *producer;
         SluiceResidencyMode mode;
         SluiceVulkanDeviceCapabilities caps;
         SluiceVulkanFormatCapabilities format;
@@ -294,6 +303,38 @@ static void init_compressor(struct fixture *f)
     CHECK_OK(sluiceRecordNeuralReadback(f->compressor, f->commands));
 }
 
+/* A set of 4 x 4 texels, all of zeros. */
+static void init_decoder(struct fixture *f)
+{
+    static const SluiceNeuralConstants constants = {
+        .schema = 3,
+        .width = 4,
+        .height = 4,
+        .mipCount = 1,
+        .channelCount = 2,
+        .validChannels = 3,
+        .inputCount = 48,
+        .networkFeatures = 16,
+        .highFeatures = 4,
+        .highBits = 4,
+        .lowFeatures = 4,
+        .lowBits = 4,
+        .residentMipCount = 1,
+        .slices = {{0, 0x20002, 0, 0x20002}, {8, 0x10001, 0, 0x10001}}};
+    static const uint8_t latents[12], weights[9472];
+    f->decoder_info = (SluiceVulkanNeuralDecoderCreateInfo){.structSize = sizeof f->decoder_info,
+                                                            .context = h.context,
+                                                            .pConstants = &constants,
+                                                            .pLatents = latents,
+                                                            .latentSize = sizeof latents,
+                                                            .pWeights = weights,
+                                                            .weightSize = sizeof weights};
+    f->neural_output = (SluiceVulkanNeuralOutput){.structSize = sizeof f->neural_output,
+                                                  .format = SLUICE_FORMAT_BC4_UNORM_BLOCK,
+                                                  .channelCount = 1};
+    CHECK_OK(sluiceCreateVulkanNeuralDecoder(&f->decoder_info, &f->decoder));
+}
+
 static void fixture_init(struct fixture *f, void **state)
 {
     (void)state;
@@ -310,6 +351,7 @@ static void fixture_init(struct fixture *f, void **state)
     f->context_info = harness_context_info(&h);
     init_streamer(f);
     init_loader(f);
+    init_decoder(f);
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     assert_int_equal(h.BeginCommandBuffer(f->commands, &begin), VK_SUCCESS);
     init_compressor(f);
@@ -320,6 +362,7 @@ static void fixture_finish(struct fixture *f)
 {
     assert_int_equal(h.ResetCommandBuffer(f->commands, 0), VK_SUCCESS);
     free(f->checkpoint);
+    sluiceDestroyVulkanNeuralDecoder(f->decoder);
     sluiceDestroyDemandLoader(f->loader);
     sluiceDestroyProxySet(f->set);
     sluiceDestroyDemandLoader(f->fresh_loader);

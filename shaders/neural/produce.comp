@@ -1,0 +1,93 @@
+/*
+ * Decodes a rectangle of a mip of a neural set to texels or blocks in a buffer. A workgroup decodes
+ * 8 x 8 texels, which are four blocks.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+#include "sluice/shared/neural.h"
+#include "sluice/shared/neural_tile.h"
+
+layout(local_size_x = SLUICE_NEURAL_GROUP, local_size_y = SLUICE_NEURAL_GROUP) in;
+layout(push_constant) uniform Push { SluiceNeuralTile tile; };
+layout(std430, binding = 0) readonly buffer Constants { SluiceNeuralConstants constants; } decodable;
+layout(std430, binding = 1) readonly buffer Latents { uint words[]; } latents;
+layout(std430, binding = 2) readonly buffer Weights { uint words[]; } weights;
+layout(std430, binding = 3) writeonly buffer Output { uint words[]; } stored;
+
+#define SLUICE_NEURAL_CONSTANTS(s) decodable.constants
+#define SLUICE_NEURAL_LATENT_WORD(s, i) latents.words[i]
+#define SLUICE_NEURAL_WEIGHT_WORD(s, i) weights.words[i]
+#include "sluice/encode_blocks.glsl"
+#include "sluice/neural.glsl"
+
+shared vec4 texels[SLUICE_NEURAL_GROUP * SLUICE_NEURAL_GROUP];
+
+float fromLinear(float value, uint space)
+{
+    float h = abs(value);
+    if (space == SLUICE_NEURAL_COLOR_SRGB)
+        return value <= 0.0031308 ? 12.92 * value : 1.055 * pow(value, 1.0 / 2.4) - 0.055;
+    if (space == SLUICE_NEURAL_COLOR_HLG)
+        return sign(value) * (h < 1.0 ? 0.5 * sqrt(h) : 0.17883277 * log(h - 0.28466892) + 0.55991073);
+    return value;
+}
+
+vec4 decodeTexel(uvec2 at)
+{
+    float channels[SLUICE_NEURAL_CHANNELS];
+    vec4 color = vec4(0, 0, 0, 1);
+    sluiceNeuralSample(0u, ivec2(uvec2(tile.x, tile.y) + at), tile.mip, channels);
+    for (uint c = 0u; c < tile.channelCount; c++) {
+        uint spaces = tile.spaces >> c * 2u * SLUICE_NEURAL_SPACE_BITS, mask = (1u << SLUICE_NEURAL_SPACE_BITS) - 1u;
+        uint from = spaces & mask, to = spaces >> SLUICE_NEURAL_SPACE_BITS & mask;
+        float value = channels[tile.firstChannel + c];
+        color[c] = clamp(from == to ? value : fromLinear(sluiceNeuralToLinear(value, from), to), 0.0, 1.0);
+    }
+    return color;
+}
+
+void storeBlock(uint number)
+{
+    uvec2 first = uvec2(number & 1u, number >> 1u) * 4u;
+    uvec2 block = gl_WorkGroupID.xy * 2u + uvec2(number & 1u, number >> 1u);
+    if (any(greaterThanEqual(4u * block, uvec2(tile.width, tile.height))))
+        return;
+    vec4 colors[16];
+    float red[16], green[16];
+    for (uint i = 0u; i < 16u; i++) {
+        colors[i] = texels[(first.y + i / 4u) * SLUICE_NEURAL_GROUP + first.x + i % 4u];
+        red[i] = colors[i].r;
+        green[i] = colors[i].g;
+    }
+    uvec4 made = uvec4(0u);
+    uint words = 4u;
+    if (tile.store == SLUICE_NEURAL_STORE_BC7) {
+        made = sluiceEncodeBc7(colors);
+    } else if (tile.store == SLUICE_NEURAL_STORE_BC5) {
+        made = sluiceEncodeBc5(red, green);
+    } else {
+        words = 2u;
+        made.xy = tile.store == SLUICE_NEURAL_STORE_BC4 ? sluiceEncodeBc4(red) : sluiceEncodeBc1(colors);
+    }
+    uint at = tile.word + block.y * tile.pitch + block.x * words;
+    for (uint i = 0u; i < words; i++)
+        stored.words[at + i] = made[i];
+}
+
+void main()
+{
+    /* Blocks that the edge cuts are filled up with its texels. */
+    uvec2 at = gl_GlobalInvocationID.xy;
+    bool inside = all(lessThan(at, uvec2(tile.width, tile.height)));
+    vec4 color = decodeTexel(min(at, uvec2(tile.width, tile.height) - 1u));
+    if (tile.store == SLUICE_NEURAL_STORE_RGBA8) {
+        if (inside)
+            stored.words[tile.word + at.y * tile.pitch + at.x] = packUnorm4x8(color);
+        return;
+    }
+    texels[gl_LocalInvocationIndex] = color;
+    barrier();
+    if (gl_LocalInvocationIndex < 4u)
+        storeBlock(gl_LocalInvocationIndex);
+}
