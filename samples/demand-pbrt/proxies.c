@@ -16,11 +16,15 @@
 #define RANGE_COUNT 64u
 #define MOST_BOXES (PBRT_PAGE_CAPACITY / 2)
 
+/* Boxes that a frame of a flight looks at, the nearest ones: to sort 40 000 takes longer than a
+ * frame. */
+#define MOST_LISTED 2048u
+
 static bool check(SluiceResult result, const char *what)
 {
-    if (result != SLUICE_SUCCESS)
+    if (result < 0)
         text_say("%s: %s", what, sluiceGetResultName(result));
-    return result == SLUICE_SUCCESS;
+    return result >= 0;
 }
 
 static bool create_set(SluiceDemandLoader *loader, SluiceProxyKind kind, uint64_t most,
@@ -114,13 +118,14 @@ bool proxies_add(struct proxies *p, struct scene_node node, const SluicePbrtBoun
     return true;
 }
 
-/** Lists what is requested in a set. */
+/** Lists what is requested in a set, `most` at most. */
 static bool list(struct proxies *p, SluiceProxySet *set, SluiceDemandResourceId resource,
-                 const SluiceProxyListInfo *info, uint32_t *count)
+                 const SluiceProxyListInfo *info, uint32_t most, uint32_t *count)
 {
     if (!check(sluiceProcessDemandProxies(p->loader, resource, set), "requests"))
         return false;
     *count = get_info(set).requestedCount;
+    *count = *count < most ? *count : most;
     if (*count == 0)
         return true;
     return reserve((void **)&p->ids, &p->id_room, *count, sizeof *p->ids) &&
@@ -133,7 +138,7 @@ static bool take_nodes(struct proxies *p, const struct proxy_order *order, struc
                                       .order = order->largest_first ? SLUICE_PROXY_ORDER_VOLUME
                                                                     : SLUICE_PROXY_ORDER_INDEX};
     uint32_t count;
-    if (!list(p, p->boxes, p->box_resource, &info, &count))
+    if (!list(p, p->boxes, p->box_resource, &info, UINT32_MAX, &count))
         return false;
     count = order->one_node && count > 1 ? 1 : count;
     if (!reserve((void **)&r->nodes, &r->node_room, count, sizeof *r->nodes))
@@ -152,7 +157,7 @@ static bool take_surfaces(struct proxies *p, const struct proxy_order *order,
                           struct proxy_requests *r)
 {
     uint32_t count;
-    if (!list(p, p->surfaces, p->surface_resource, NULL, &count))
+    if (!list(p, p->surfaces, p->surface_resource, NULL, UINT32_MAX, &count))
         return false;
     count = order->one_surface && count > 1 ? 1 : count;
     if (!reserve((void **)&r->surfaces, &r->surface_room, count, sizeof *r->surfaces))
@@ -184,14 +189,14 @@ bool proxies_list(struct proxies *p, const float eye[3], struct proxy_requests *
 {
     SluiceProxyListInfo info = {.structSize = sizeof info, .order = SLUICE_PROXY_ORDER_DISTANCE};
     memcpy(info.point, eye, sizeof info.point);
-    if (!list(p, p->boxes, p->box_resource, &info, &r->node_count) ||
+    if (!list(p, p->boxes, p->box_resource, &info, MOST_LISTED, &r->node_count) ||
         !copy_ids(p, &r->ids, &r->id_room, r->node_count) ||
         !reserve((void **)&r->nodes, &r->node_room, r->node_count, sizeof *r->nodes))
         return false;
     for (uint32_t i = 0; i < r->node_count; i++)
         r->nodes[i] = p->nodes[(uint32_t)r->ids[i]];
     info.order = SLUICE_PROXY_ORDER_INDEX;
-    if (!list(p, p->surfaces, p->surface_resource, &info, &r->surface_count) ||
+    if (!list(p, p->surfaces, p->surface_resource, &info, UINT32_MAX, &r->surface_count) ||
         !copy_ids(p, &r->surface_ids, &r->surface_id_room, r->surface_count) ||
         !reserve((void **)&r->surfaces, &r->surface_room, r->surface_count, sizeof *r->surfaces))
         return false;
