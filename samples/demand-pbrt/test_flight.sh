@@ -55,6 +55,14 @@ check frame_boxes_resolved_most 'v > 20'
 render bounded --fly 20 --frame-budget 0.01
 check frames 'v == 20'
 check frame_boxes_resolved_most 'v == 1'
+# Tails of many pictures in blocks, copied by several commands.
+status=0
+"$program" "$folder/set/scene.pbrt" --dim 96x54 --validation --file "$folder/silent.pfm" \
+    >"$folder/silent.log" 2>&1 || status=$?
+[ "$status" -eq 0 ] || grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/silent.log" || {
+    complain "validation is not silent"
+    head -n 5 "$folder/silent.log" >&2
+}
 
 for options in "--frame-budget 16" "--preload --preload-shapes" "--preload-shapes --budget 1M"; do
     status=0
