@@ -1,5 +1,6 @@
 #include "neural_file.h"
 
+#include "../common/input.h"
 #include "../common/text.h"
 #include "show.h"
 
@@ -23,7 +24,7 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 bool is_neural_file(const char *path)
 {
     char start[4] = {0};
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path);
     if (!file)
         return false;
     (void)!fread(start, 1, sizeof start, file);
