@@ -303,7 +303,9 @@ static void init_compressor(struct fixture *f)
     CHECK_OK(sluiceRecordNeuralReadback(f->compressor, f->commands));
 }
 
-/* A set of 4 x 4 texels, all of zeros. */
+/* One for all tests, of 4 x 4 texels, all of zeros. */
+static SluiceVulkanNeuralDecoder *decoder;
+
 static void init_decoder(struct fixture *f)
 {
     static const SluiceNeuralConstants constants = {
@@ -332,7 +334,9 @@ static void init_decoder(struct fixture *f)
     f->neural_output = (SluiceVulkanNeuralOutput){.structSize = sizeof f->neural_output,
                                                   .format = SLUICE_FORMAT_BC4_UNORM_BLOCK,
                                                   .channelCount = 1};
-    CHECK_OK(sluiceCreateVulkanNeuralDecoder(&f->decoder_info, &f->decoder));
+    if (!decoder)
+        CHECK_OK(sluiceCreateVulkanNeuralDecoder(&f->decoder_info, &decoder));
+    f->decoder = decoder;
 }
 
 static void fixture_init(struct fixture *f, void **state)
@@ -362,7 +366,6 @@ static void fixture_finish(struct fixture *f)
 {
     assert_int_equal(h.ResetCommandBuffer(f->commands, 0), VK_SUCCESS);
     free(f->checkpoint);
-    sluiceDestroyVulkanNeuralDecoder(f->decoder);
     sluiceDestroyDemandLoader(f->loader);
     sluiceDestroyProxySet(f->set);
     sluiceDestroyDemandLoader(f->fresh_loader);
@@ -383,6 +386,7 @@ int main(void)
     const struct CMUnitTest tests[] = {CALLS_TESTS};
     CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 1}));
     status = RUN_TESTS(tests);
+    sluiceDestroyVulkanNeuralDecoder(decoder);
     sluiceDestroyNeuralCompressor(compressor);
     return harness_finish(&h, status);
 }
