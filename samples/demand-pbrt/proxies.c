@@ -181,7 +181,8 @@ static bool copy_ids(struct proxies *p, SluiceProxyId **ids, uint32_t *room, uin
 {
     if (!reserve((void **)ids, room, count + 1, sizeof **ids))
         return false;
-    memcpy(*ids, p->ids, count * sizeof **ids);
+    if (count > 0) /* p->ids is NULL until there is one */
+        memcpy(*ids, p->ids, count * sizeof **ids);
     return true;
 }
 
