@@ -101,7 +101,7 @@ typedef enum SluiceNeuralChannelFormat {
     SLUICE_NEURAL_CHANNEL_UINT32 = 5
 } SluiceNeuralChannelFormat;
 
-/** What a set contains. */
+/** Description of a set. */
 typedef struct SluiceNeuralSetInfo {
     uint32_t structSize;       ///< sizeof(SluiceNeuralSetInfo).
     uint32_t schema;           ///< 1 or 3.
@@ -256,7 +256,7 @@ typedef struct SluiceNeuralSlice {
     uint32_t sliceSize;  ///< Texels of the slice: width, height.
 } SluiceNeuralSlice;
 
-/** What decoding a mip takes. 16 bytes. */
+/** Constants of a mip for decoders. 16 bytes. */
 typedef struct SluiceNeuralMipConstants {
     uint32_t firstSlice; ///< Index of the first of its two slices.
     int32_t lodCode;     ///< Level input of the network, -128 to 127.
@@ -265,8 +265,8 @@ typedef struct SluiceNeuralMipConstants {
 } SluiceNeuralMipConstants;
 
 /**
- * What decoding takes beside latents and weights. 576 bytes of 32-bit scalars and arrays of them:
- * the layout of the GLSL struct of this name in std430 and in scalar blocks. Never grows.
+ * Constants for decoders, beside latents and weights. 576 bytes of 32-bit scalars and arrays of
+ * them: the layout of the GLSL struct of this name in std430 and in scalar blocks. Never grows.
  *
  * Schema 1: latent image n has slice 2 n for its fine grid and 2 n + 1 for its coarse grid. Schema
  * 3: latent image n has slice n.
@@ -293,7 +293,7 @@ typedef struct SluiceNeuralConstants {
 /** Stands for a constant in SluiceNeuralOutput::channel. */
 #define SLUICE_NEURAL_CONSTANT UINT32_MAX
 
-/** What an output of the network is. Never grows. */
+/** Meaning of an output of the network. Never grows. */
 typedef struct SluiceNeuralOutput {
     uint32_t channel; ///< A channel of the set, or SLUICE_NEURAL_CONSTANT.
     float constant;   ///< The value if `channel` says so, rounded to 1 / 65536. Below 32768.

@@ -1,4 +1,4 @@
-/* What the shaders of bench/neural read, for C and GLSL. */
+/* Parameters of the shaders of bench/neural, for C and GLSL. */
 #ifndef NEURAL_BENCH_SHARED_H
 #define NEURAL_BENCH_SHARED_H
 
