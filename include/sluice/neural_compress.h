@@ -97,7 +97,7 @@ typedef struct SluiceNeuralProgress {
     /** Mean squared error over channels and samples of the last recorded commands, without weights.
      *  Samples are of all mips. 0 before the first. */
     double meanSquaredError;
-    /** The same per channel. */
+    /** Mean squared error of each channel. */
     double channelErrors[SLUICE_NEURAL_COMPRESS_MAX_CHANNELS];
 } SluiceNeuralProgress;
 

@@ -59,10 +59,11 @@ typedef struct SluiceVulkanNeuralOutput {
     /** R8G8B8A8, BC1_RGB, BC4, BC5 or BC7, UNORM or SRGB. BC1 has three channels, BC4 one, BC5 two.
      *  Blocks are those of encode_blocks.glsl. */
     SluiceFormat format;
-    uint32_t firstChannel; ///< Of the set.
+    uint32_t firstChannel; ///< First channel of the set to store.
     uint32_t channelCount; ///< 1 to 4. Channels that the format has beside them are 0, alpha 1.
     SluiceNeuralColorSpace from[4]; ///< Of the network's channels: sluiceGetNeuralChannel.
-    /** Of the stored values. Channels 0 to 2 of SRGB formats must be SLUICE_NEURAL_COLOR_SRGB. */
+    /** Color spaces of the stored values. SRGB formats need SLUICE_NEURAL_COLOR_SRGB for channels
+     *  0 to 2. */
     SluiceNeuralColorSpace to[4];
 } SluiceVulkanNeuralOutput;
 
@@ -71,8 +72,8 @@ typedef struct SluiceVulkanNeuralOutput {
  * SluiceDemandTextureCreateInfo.pProducer, for any number of textures of one queue. It belongs to
  * the decoder and lives as long.
  *
- * All levels have the set's sizes; there are as many as the set has mips. The producer answers with
- * SLUICE_SUCCESS always: decoding needs no more than what is in memory.
+ * All levels have the set's sizes; there are as many as the set has mips. A tile fails only
+ * if it is larger than scratchSize. Nothing is read.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for
  *         channels or color spaces that do not exist, or a wrong structSize;

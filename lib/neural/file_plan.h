@@ -1,4 +1,4 @@
-/** What a file will have, by the rules of its writers: sizes of grids, and which mips use them. */
+/** Plans a file by the rules of its writers: sizes of grids, and which mips use them. */
 #ifndef SLC_NEURAL_FILE_PLAN_H
 #define SLC_NEURAL_FILE_PLAN_H
 

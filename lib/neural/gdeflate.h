@@ -9,7 +9,7 @@
 #define SLC_GDEFLATE_TILE 65536u
 #define SLC_GDEFLATE_HEADER 8u
 
-/** What the first bytes of a stream say. */
+/** Header of a stream. */
 struct slc_gdeflate_header {
     uint32_t tile_count;
     uint64_t size; ///< Bytes once inflated.

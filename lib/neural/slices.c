@@ -46,8 +46,9 @@ static struct range edge_range(const struct axis *a, bool is_clamped)
 }
 
 /*
- * What the decoder reads for texels of a mip, `step` levels coarser than the first one. Where sizes
- * are no powers of two, a texel of the first mip may lie over another one than its number halved.
+ * Finds the texels that decoding reads in a mip `step` levels coarser than the first one. Where
+ * sizes are no powers of two, a texel of the first mip may lie over another one than its number
+ * halved.
  */
 static struct range texel_range(const struct axis *a, uint32_t mip_size, uint32_t step)
 {
