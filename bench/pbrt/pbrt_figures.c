@@ -1,7 +1,7 @@
 /*
  * How fast pbrt scenes are opened, and what memory that takes.
  *
- *     pbrt_figures [--json] [--quick] FOLDER
+ *     pbrt_figures [options] FOLDER
  *
  * FOLDER takes scenes that are made here and removed at the end. They are in the page cache. One
  * thread. The ratio beside the text is to counting the lines of the same file, read in blocks of
@@ -10,6 +10,7 @@
 #define _XOPEN_SOURCE 700
 
 #include "../../tools/common/clock.h"
+#include "../../tools/common/shared_options.h"
 
 #include <sluice/pbrt.h>
 
@@ -246,20 +247,19 @@ static void remove_files(void)
 
 int main(int argc, char **argv)
 {
-    for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--json") == 0)
-            run.json = true;
-        else if (strcmp(argv[i], "--quick") == 0)
-            run.quick = true;
-        else if (argv[i][0] != '-' && !run.folder)
-            run.folder = argv[i];
-        else
-            run.folder = NULL, i = argc;
-    }
-    if (!run.folder) {
-        fputs("usage: pbrt_figures [--json] [--quick] FOLDER\n", stderr);
-        return 2;
-    }
+    const struct option options[] = {
+        {OPTION_WORD, .value = &run.folder, .help = "a folder for the scenes", .minimum = 1},
+        option_json(&run.json),
+        {OPTION_FLAG, "quick", .value = &run.quick, .help = "small scenes"},
+    };
+    const struct option_table table = {"pbrt_figures",
+                                       "usage: pbrt_figures [options] FOLDER\n\nMeasures how fast "
+                                       "pbrt scenes are opened, and what "
+                                       "memory that takes; a figure per line.\n",
+                                       NULL, options, sizeof options / sizeof *options};
+    enum option_outcome outcome = options_parse(&table, argc, argv);
+    if (outcome != OPTIONS_RUN)
+        return outcome == OPTIONS_HELP ? 0 : 2;
     atexit(remove_files);
     uint32_t instances = run.quick ? 10000 : 1000000;
     write_text(run.quick ? 20000 : 1000000);

@@ -15,6 +15,7 @@ OWN_DEFAULT = {
     "texture-size": "textures of scenes",
     "residency": "benches measure all modes",
     "only": "benches measure all or one",
+    "bits-per-texel": "benches measure all or one",
 }
 # A trace holds what all pixels of all textures asked for; playing it leaves nothing out by itself.
 OWN_IN = {("sluice-tradeoff play", "probability"), ("sluice-tradeoff play", "textures-per-frame"),
