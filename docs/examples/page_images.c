@@ -13,3 +13,10 @@ SluiceResult open_any_file(const char *cacheFolder, const char *path, SluiceImag
         result = sluiceOpenImageSource(*pOpener, path, pSource);
     return result;
 }
+
+SluiceResult open_albedo(SluiceImageOpener *opener, const char *path, SluiceImageSource **pSource);
+
+SluiceResult open_albedo(SluiceImageOpener *opener, const char *path, SluiceImageSource **pSource)
+{
+    return sluiceOpenNamedImageSource(opener, path, "albedo", pSource);
+}

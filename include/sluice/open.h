@@ -1,13 +1,14 @@
 /**
  * Opens image files of all kinds by their contents. Link `sluice-open`.
  *
- * Tile stores, OpenEXR, DDS and KTX2 files are read in place. Pictures without tiles (JPEG, PNG,
+ * Tile stores, OpenEXR, DDS and KTX2 files are read in place. Textures of neural sets (neural.h)
+ * are decoded when they are read. Pictures without tiles (JPEG, PNG,
  * TIFF, WebP and whatever else libvips reads) can be streamed at once, too. Their coarse levels
  * come first, from a fast preview. The other levels come when a bake in the background has ended.
  * The bake writes a tile store, which is kept in a cache folder for the next time.
  *
- * An opener takes paths and uses defaults. Create sources by store.h, exr.h, dds.h and ktx2.h for
- * bytes in memory (input.h) and for other settings, such as another format.
+ * An opener takes paths and uses defaults. Create sources by store.h, exr.h, dds.h, ktx2.h and
+ * neural_source.h for bytes in memory (input.h) and for other settings, such as another format.
  */
 #ifndef SLUICE_OPEN_H
 #define SLUICE_OPEN_H
@@ -83,6 +84,9 @@ SLUICE_API void sluiceDestroyImageOpener(SluiceImageOpener *opener);
  * and they take up to a third of level 0 in memory, at most 512 MiB. A file of a compressed format
  * is delivered with the levels that it has.
  *
+ * A neural set is opened as its first texture, decoded with INT8 weights; if it has several, a
+ * message at SLUICE_LOG_INFO names them. sluiceOpenNamedImageSource opens the others.
+ *
  * A picture without tiles has its final size, format and levels at once. It is baked with default
  * settings (SluiceBakeSettings). Until the preview is ready, all reads return SLUICE_NOT_READY.
  * Until the bake has ended, reads of levels wider or higher than 512 texels do. Streamers and
@@ -108,13 +112,27 @@ SLUICE_API void sluiceDestroyImageOpener(SluiceImageOpener *opener);
 SLUICE_API SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
                                               SluiceImageSource **pSource);
 
+/**
+ * Opens a texture of a neural set (neural.h) by its name. Otherwise as sluiceOpenImageSource. Each
+ * texture has its own source, which keeps the description and the weights of the set.
+ *
+ * Errors: as sluiceOpenImageSource; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the set
+ *         has no texture `texture` (the message names those that it has), or the file is no neural
+ *         set.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceOpenNamedImageSource(SluiceImageOpener *opener, const char *path,
+                                                   const char *texture,
+                                                   SluiceImageSource **pSource);
+
 /** Kind of an opened file. */
 typedef enum SluiceImageFileKind {
     SLUICE_IMAGE_FILE_KIND_STORE = 0,
     SLUICE_IMAGE_FILE_KIND_EXR = 1,
     SLUICE_IMAGE_FILE_KIND_DDS = 2,
     SLUICE_IMAGE_FILE_KIND_KTX2 = 3,
-    SLUICE_IMAGE_FILE_KIND_PICTURE = 4 ///< Without tiles; baked in the background.
+    SLUICE_IMAGE_FILE_KIND_PICTURE = 4, ///< Without tiles; baked in the background.
+    SLUICE_IMAGE_FILE_KIND_NEURAL = 5   ///< A texture of a neural set.
 } SluiceImageFileKind;
 
 /** State of an opened file at the time of the call. */

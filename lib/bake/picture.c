@@ -113,6 +113,11 @@ SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening
     SluiceResult result = look_inside(&choice, cb, log, &kind);
     if (result != SLUICE_SUCCESS)
         return result;
+    if (kind == SLC_SIGNATURE_NEURAL) {
+        slc_log(log, SLUICE_LOG_ERROR,
+                "%s: is a neural set, which is not baked; open it with sluice-open", path);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
     if (kind == SLC_SIGNATURE_OTHER || kind == SLC_SIGNATURE_STORE) /* libvips refuses stores */
         return slc_picture_open_vips(path, opening, cb, log, picture);
     if (opening->first_level > 0) {

@@ -25,7 +25,7 @@ SluiceResult slc_file_kind_find(SluiceFilePool *pool, const char *path,
                                 const SluiceLogCallback *log, SluiceImageFileKind *kind,
                                 struct slc_file_identity *identity);
 
-/** Opens any kind but PICTURE. Errors: as sluiceOpenImageSource, logged. */
+/** Opens any kind but PICTURE and NEURAL. Errors: as sluiceOpenImageSource, logged. */
 SluiceResult slc_file_kind_open(SluiceImageFileKind kind, const char *path,
                                 const struct slc_shared_files *files,
                                 const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,

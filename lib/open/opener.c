@@ -8,6 +8,7 @@
 #include "base/said.h"
 #include "base/struct_size.h"
 #include "image/identity.h"
+#include "open/neural_file.h"
 #ifdef SLC_HAVE_BAKE
 #include "open/background.h"
 #endif
@@ -86,11 +87,11 @@ SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *pa
                                        struct slc_picture_stream **stream)
 {
     (void)identity, (void)stream;
-    slc_log(
-        &opener->log, SLUICE_LOG_ERROR,
-        "%s: is no tile store, OpenEXR, DDS or KTX2 file; this build of Sluice was made without "
-        "sluice-bake, which reads other pictures with libvips",
-        path);
+    slc_log(&opener->log, SLUICE_LOG_ERROR,
+            "%s: is no tile store, OpenEXR, DDS, KTX2 file or neural set; this build of Sluice was "
+            "made without "
+            "sluice-bake, which reads other pictures with libvips",
+            path);
     return SLUICE_ERROR_UNSUPPORTED;
 }
 #endif
@@ -105,6 +106,8 @@ static void free_image(struct slc_opened_image *image)
     sluiceDestroyImageSource(image->source);
     if (image->path)
         slc_free(&cb, image->path, strlen(image->path) + 1, 1);
+    if (image->texture)
+        slc_free(&cb, image->texture, strlen(image->texture) + 1, 1);
     slc_free(&cb, image, 1, sizeof *image);
 }
 
@@ -197,12 +200,18 @@ static const SluiceImageSourceInterface opened_interface = {.structSize = sizeof
                                                             .pfnReadRegionLocated = read_region,
                                                             .pfnIdentifyRegion = identify};
 
+static bool is_same_name(const char *a, const char *b)
+{
+    return a && b ? strcmp(a, b) == 0 : !a && !b;
+}
+
 /* With the mutex held. */
 static struct slc_opened_image *find_image(SluiceImageOpener *opener, const char *path,
+                                           const char *texture,
                                            const struct slc_file_identity *identity)
 {
     struct slc_opened_image *image = *find_bucket(opener, path);
-    while (image && (strcmp(image->path, path) != 0 ||
+    while (image && (strcmp(image->path, path) != 0 || !is_same_name(image->texture, texture) ||
                      memcmp(&image->identity, identity, sizeof *identity) != 0))
         image = image->next;
     return image;
@@ -227,7 +236,7 @@ static SluiceResult complete_chain(struct slc_opened_image *image)
 
 /* NULL: no memory. */
 static struct slc_opened_image *create_image(SluiceImageOpener *opener, const char *path,
-                                             SluiceImageFileKind kind,
+                                             const char *texture, SluiceImageFileKind kind,
                                              const struct slc_file_identity *identity)
 {
     struct slc_opened_image *image = slc_calloc(&opener->allocator, 1, sizeof *image);
@@ -240,7 +249,9 @@ static struct slc_opened_image *create_image(SluiceImageOpener *opener, const ch
     image->kind = kind;
     image->identity = *identity;
     image->path = slc_strdup(&opener->allocator, path);
-    if (image->path)
+    if (texture)
+        image->texture = slc_strdup(&opener->allocator, texture);
+    if (image->path && (image->texture || !texture))
         return image;
     free_image(image);
     return NULL;
@@ -252,8 +263,12 @@ static SluiceResult open_image(struct slc_opened_image *image)
     SluiceResult result;
     if (image->kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
         return slc_picture_stream_create(opener, image->path, &image->identity, &image->stream);
-    result = slc_file_kind_open(image->kind, image->path, &opener->files, &opener->allocator,
-                                &opener->log, &image->source);
+    if (image->kind == SLUICE_IMAGE_FILE_KIND_NEURAL)
+        result = slc_neural_file_open(image->path, image->texture, opener->files.pool,
+                                      &opener->allocator, &opener->log, &image->source);
+    else
+        result = slc_file_kind_open(image->kind, image->path, &opener->files, &opener->allocator,
+                                    &opener->log, &image->source);
     return result == SLUICE_SUCCESS ? complete_chain(image) : result;
 }
 
@@ -280,22 +295,25 @@ static void wait_until_open(struct slc_opened_image *image)
         pthread_cond_wait(&image->opener->opened, &image->opener->mutex);
 }
 
-SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
-                                   SluiceImageSource **pSource)
+static SluiceResult open_texture(SluiceImageOpener *opener, const char *path, const char *texture,
+                                 SluiceImageSource **source)
 {
-    if (!opener || !path || !pSource)
-        return SLUICE_ERROR_NULL_POINTER;
     SluiceImageFileKind kind;
     struct slc_file_identity identity = {0};
     SluiceResult result =
         slc_file_kind_find(opener->files.pool, path, &opener->log, &kind, &identity);
     if (result != SLUICE_SUCCESS)
         return result;
+    if (texture && kind != SLUICE_IMAGE_FILE_KIND_NEURAL)
+        return slc_log_refusal(&opener->log,
+                               "%s: is no neural set, so it has no texture of a name; open it with "
+                               "sluiceOpenImageSource",
+                               path);
     pthread_mutex_lock(&opener->mutex);
-    struct slc_opened_image *image = find_image(opener, path, &identity);
+    struct slc_opened_image *image = find_image(opener, path, texture, &identity);
     if (image)
         wait_until_open(image);
-    else if ((image = create_image(opener, path, kind, &identity)))
+    else if ((image = create_image(opener, path, texture, kind, &identity)))
         open_for_all(image);
     result = image ? image->result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     bool is_unused = image && result != SLUICE_SUCCESS && drop_reference(image);
@@ -303,8 +321,22 @@ SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
     if (is_unused)
         free_image(image);
     if (result == SLUICE_SUCCESS)
-        *pSource = &image->base;
+        *source = &image->base;
     return result;
+}
+
+SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
+                                   SluiceImageSource **pSource)
+{
+    return !opener || !path || !pSource ? SLUICE_ERROR_NULL_POINTER
+                                        : open_texture(opener, path, NULL, pSource);
+}
+
+SluiceResult sluiceOpenNamedImageSource(SluiceImageOpener *opener, const char *path,
+                                        const char *texture, SluiceImageSource **pSource)
+{
+    return !opener || !path || !texture || !pSource ? SLUICE_ERROR_NULL_POINTER
+                                                    : open_texture(opener, path, texture, pSource);
 }
 
 SluiceResult sluiceGetOpenedImageInfo(SluiceImageSource *source, SluiceOpenedImageInfo *pInfo)

@@ -24,6 +24,7 @@ struct slc_opened_image {
     bool is_opening;
     SluiceResult result; ///< of opening it
     char *path;          ///< owned
+    char *texture;       ///< owned; name that was asked for; NULL: none
     struct slc_file_identity identity;
     SluiceImageFileKind kind;
     SluiceImageSource *source;         ///< owned; NULL for pictures

@@ -1,15 +1,19 @@
 /* NULL and zero in every argument of the functions of sluice-open. */
 #include "null_arguments/calls.h"
 
+#include "neural/worked_example.h"
+
 #include <sluice/open.h>
 
 #include <stdio.h>
+#include <unistd.h>
 
 /* clang-format off */
 /* CALLS
 sluiceCreateImageOpener(&f->create, &f->out.opener) => sluiceDestroyImageOpener(f->out.opener)
 !sluiceDestroyImageOpener(f->opener)
 sluiceOpenImageSource(f->opener, f->path, &f->out.source) => sluiceDestroyImageSource(f->out.source)
+sluiceOpenNamedImageSource(f->opener, f->path, "two", &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceGetOpenedImageInfo(f->source, &f->out.info)
 */
 /* clang-format on */
@@ -18,7 +22,7 @@ struct fixture {
     SluiceImageOpenerCreateInfo create;
     SluiceImageOpener *opener;
     SluiceImageSource *source;
-    char path[1024];
+    char path[64];
     struct {
         SluiceImageOpener *opener;
         SluiceImageSource *source;
@@ -31,8 +35,12 @@ CALLS_FUNCTIONS
 static void fixture_init(struct fixture *f, void **state)
 {
     (void)state;
-    const char *root = getenv("SLUICE_SOURCE_ROOT");
-    snprintf(f->path, sizeof f->path, "%s/tests/container/data/nvtt_bc1.dds", root ? root : ".");
+    static uint8_t bytes[WORKED_EXAMPLE_MAX_SIZE];
+    size_t size = write_worked_example(bytes);
+    snprintf(f->path, sizeof f->path, "/tmp/sluice-null-XXXXXX");
+    int descriptor = mkstemp(f->path);
+    assert_int_equal(write(descriptor, bytes, size), size);
+    close(descriptor);
     f->create.structSize = sizeof f->create;
     CHECK_OK(sluiceCreateImageOpener(&f->create, &f->opener));
     CHECK_OK(sluiceOpenImageSource(f->opener, f->path, &f->source));
@@ -42,6 +50,7 @@ static void fixture_finish(struct fixture *f)
 {
     sluiceDestroyImageSource(f->source);
     sluiceDestroyImageOpener(f->opener);
+    unlink(f->path);
 }
 
 #include "open_calls.h"

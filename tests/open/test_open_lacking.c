@@ -27,6 +27,7 @@ static void kinds_that_are_lacking_are_refused_by_name(void **state)
         {"\x76\x2F\x31\x01", "sluice-exr", HAVE_EXR},
         {"DDS ", "sluice-container", HAVE_CONTAINER},
         {"\xABKTX 20\xBB\r\n\x1A\n", "sluice-container", HAVE_CONTAINER},
+        {"NTEX", "sluice-neural", HAVE_NEURAL},
         {"\x89PNG\r\n\x1A\n", "sluice-bake", HAVE_BAKE},
     };
     char path[] = "/tmp/sluice-lacking-XXXXXX", folder[64], last[1024];
