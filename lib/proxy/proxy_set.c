@@ -104,6 +104,18 @@ static bool add_chunk(SluiceProxySet *set)
     return true;
 }
 
+/* Boxes up to a new last one become primitives. Those between may lie behind what fitted into the
+ * caller's memory when they changed: they count as changed again. The indices between were removed
+ * and are not free, so each is walked over at most once per removal. */
+static void note_growth(SluiceProxySet *set, uint32_t index)
+{
+    uint32_t last = slc_bits_last(&set->live), first = last == SLC_BIT_NONE ? 0 : last + 1;
+    if (set->kind != SLUICE_PROXY_KIND_GEOMETRY)
+        return;
+    for (uint32_t group = first / SLC_PROXY_GROUP; group < index / SLC_PROXY_GROUP; group++)
+        set->changed[group] = set->version + 1; /* the version that the new box makes */
+}
+
 static SluiceResult take_index(SluiceProxySet *set, uint32_t *index)
 {
     *index = slc_bits_next(&set->free, 0);
@@ -114,6 +126,7 @@ static SluiceResult take_index(SluiceProxySet *set, uint32_t *index)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         *index = set->index_count++;
     }
+    note_growth(set, *index);
     slc_bits_remove(&set->free, *index);
     slc_bits_add(&set->live, *index);
     slc_proxy_at(set, *index)->generation++;

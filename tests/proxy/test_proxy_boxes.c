@@ -243,11 +243,56 @@ static void a_change_of_one_box_writes_one_group(void **state)
     sluiceDestroyProxySet(set);
 }
 
+/* The caller passes the number of boxes as the capacity of memory that has room for more. One index
+ * behind them becomes free before those between. */
+static void boxes_between_are_written_when_the_last_index_rises(void **state)
+{
+    enum { COUNT = 200, KEPT = 10, FAR = 150 };
+    (void)state;
+    SluiceProxySet *set = create();
+    SluiceProxyId ids[COUNT], id;
+    SluiceProxyBox boxes[COUNT];
+    SluiceProxyRange ranges[8];
+    uint64_t version = 0;
+    uint32_t count;
+    const SluiceProxyBox unit = {{0, 0, 0}, {1, 1, 1}};
+    SluiceProxyBoxWrite info = {.structSize = sizeof info,
+                                .capacity = KEPT,
+                                .pBoxes = boxes,
+                                .rangeCapacity = 8,
+                                .pRanges = ranges};
+    SluiceProxyRequests launch = {.structSize = sizeof launch, .begunLaunch = 1};
+    memset(boxes, 0x7F, sizeof boxes);
+    for (uint32_t i = 0; i < COUNT; i++)
+        CHECK_OK(sluiceAddGeometryProxy(set, &unit, &ids[i]));
+    CHECK_OK(sluiceRemoveProxy(set, ids[FAR]));
+    CHECK_OK(sluiceAddProxyRequests(set, &launch));
+    for (uint32_t i = KEPT; i < COUNT; i++)
+        if (i != FAR)
+            CHECK_OK(sluiceRemoveProxy(set, ids[i]));
+    CHECK_OK(sluiceWriteProxyBoxes(set, &info, &version, &count));
+    launch.begunLaunch = 2;
+    launch.processedLaunch = 1;
+    CHECK_OK(sluiceAddProxyRequests(set, &launch));
+    CHECK_OK(sluiceAddGeometryProxy(set, &unit, &id));
+    assert_int_equal((uint32_t)id, FAR);
+    info.capacity = FAR + 1;
+    CHECK_OK(sluiceWriteProxyBoxes(set, &info, &version, &count));
+    for (uint32_t i = 0; i <= FAR; i++) {
+        const SluiceProxyBox expected = {{0, 0, 0}, {1, 1, 1}}, hole = {{0, 0, 0}, {0, 0, 0}};
+        bool is_live = i < KEPT || i == FAR;
+        if (memcmp(&boxes[i], is_live ? &expected : &hole, sizeof hole) != 0)
+            fail_msg("box %u is not written", i);
+    }
+    sluiceDestroyProxySet(set);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_of_zero_thickness_become_thick_enough_to_be_hit),
         cmocka_unit_test(degenerate_boxes_are_refused),
+        cmocka_unit_test(boxes_between_are_written_when_the_last_index_rises),
         cmocka_unit_test(only_changed_boxes_are_written_into_any_number_of_buffers),
         cmocka_unit_test(a_change_of_one_box_writes_one_group),
     };
