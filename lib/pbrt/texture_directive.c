@@ -1,8 +1,9 @@
 #include "pbrt/parser.h"
 
+#include "base/text_number.h"
 #include "pbrt/growth.h"
 
-#include <stdlib.h>
+#include <float.h>
 #include <string.h>
 #include <strings.h>
 
@@ -75,14 +76,10 @@ static void read_filter(struct slc_pbrt_parser *parser, SluicePbrtTexture *textu
     else if (encoding && strcmp(encoding, "linear") == 0)
         texture->encoding = SLUICE_PBRT_ENCODING_LINEAR;
     else if (encoding && strncmp(encoding, "gamma ", 6) == 0) {
-        int whole = atoi(encoding + 6);
-        const char *point = strchr(encoding, '.');
-        double gamma = whole, place = 0.1;
-        for (point = point ? point + 1 : NULL; point && *point >= '0' && *point <= '9';
-             point++, place /= 10)
-            gamma += place * (*point - '0');
+        double gamma = 1;
+        slc_read_number((const unsigned char *)encoding + 6, &gamma);
         texture->encoding = SLUICE_PBRT_ENCODING_GAMMA;
-        texture->gamma = gamma > 0 ? (float)gamma : 1;
+        texture->gamma = gamma > 0 && gamma <= FLT_MAX ? (float)gamma : 1;
     }
 }
 

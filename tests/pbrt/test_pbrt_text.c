@@ -347,6 +347,30 @@ static void limits_stop_the_reader(void **state)
     CHECK_OK(sluiceOpenPbrtScene(&info, &files.scene));
 }
 
+static void the_gamma_of_a_texture_is_any_number(void **state)
+{
+    static const struct {
+        const char *text;
+        float gamma;
+    } encodings[] = {{"gamma 2.2", 2.2f}, {"gamma 22e-1", 2.2f}, {"gamma 99999999999999", 1e14f},
+                     {"gamma 1e99", 1},   {"gamma -2", 1},       {"gamma ", 1}};
+    (void)state;
+    pbrt_write(&files, "a.png", "", 0);
+    for (size_t i = 0; i < sizeof encodings / sizeof *encodings; i++) {
+        char text[200];
+        SluicePbrtTexture texture = {.structSize = sizeof texture};
+        snprintf(text, sizeof text,
+                 HEADER "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.png\" "
+                        "\"string encoding\" \"%s\"\n",
+                 encodings[i].text);
+        CHECK_OK(pbrt_open_text(&files, text));
+        CHECK_OK(sluiceGetPbrtTexture(files.scene, 0, &texture));
+        assert_int_equal(texture.encoding, SLUICE_PBRT_ENCODING_GAMMA);
+        if (texture.gamma != encodings[i].gamma)
+            fail_msg("\"%s\" is %.9g", encodings[i].text, (double)texture.gamma);
+    }
+}
+
 static void bounds_are_remembered_in_a_file(void **state)
 {
     (void)state;
@@ -445,6 +469,7 @@ int main(void)
         TEST(inline_meshes_are_read_again_from_their_place),
         TEST(numbers_are_those_of_the_c_library),
         TEST(limits_stop_the_reader),
+        TEST(the_gamma_of_a_texture_is_any_number),
         TEST(bounds_are_remembered_in_a_file),
         TEST(compressed_files_are_read_like_plain_ones),
         TEST(options_of_both_forms_are_skipped),
