@@ -31,7 +31,8 @@ typedef struct SluicePbrtSceneCreateInfo {
     const char *pPath;                           ///< Required. The scene file. Copied.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     /** Messages "FILE:LINE:COLUMN: TEXT". Warnings say what is approximated or ignored. Errors say
-     *  what is left out. At most 1000 of each scene. */
+     *  what is left out. At most 1000 while the scene is opened, and one for each later call that
+     *  fails. */
     SluiceLogCallback log;
     /** File that sluiceWritePbrtBounds has written. It is read if it exists; entries of files that
      *  have changed since are not used. Default: NULL, none. */
@@ -41,7 +42,7 @@ typedef struct SluicePbrtSceneCreateInfo {
     uint32_t maxBlockDepth;    ///< Blocks in blocks. At most 2^16. Default: 1024.
     uint32_t maxShapeCount;    ///< At most 2^31 - 1. Default: 2^24.
     uint32_t maxInstanceCount; ///< At most 2^31 - 1. Default: 2^26.
-    uint64_t maxTextSize;      ///< Bytes of text in all. Default: 2^38.
+    uint64_t maxTextSize;      ///< Bytes of text in all, decompressed. Default: 2^38.
     uint64_t maxMeshSize;      ///< Bytes in memory of one shape that is read. Default: 2^34.
 } SluicePbrtSceneCreateInfo;
 

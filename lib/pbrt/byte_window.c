@@ -134,6 +134,22 @@ static size_t read_compressed(struct slc_pbrt_window *window, unsigned char *byt
 }
 #endif
 
+/* Compressed text may be a thousand times as large as its file, so it is stopped while it is read.
+ */
+static void check_limit(struct slc_pbrt_window *window)
+{
+    if (window->base + window->end <= window->most || window->failure != SLUICE_SUCCESS)
+        return;
+    window->failure = SLUICE_ERROR_LIMIT_EXCEEDED;
+    window->is_over = true;
+}
+
+void slc_pbrt_window_limit(struct slc_pbrt_window *window, uint64_t most)
+{
+    window->most = most;
+    check_limit(window);
+}
+
 size_t slc_pbrt_window_refill(struct slc_pbrt_window *window, size_t keep)
 {
     size_t kept = window->end - keep;
@@ -149,6 +165,7 @@ size_t slc_pbrt_window_refill(struct slc_pbrt_window *window, size_t keep)
     window->is_over |= room > 0 && got == 0;
     window->end += got;
     window->bytes[window->end] = 0;
+    check_limit(window);
     return keep;
 }
 
@@ -216,7 +233,8 @@ SluiceResult slc_pbrt_window_open(struct slc_pbrt_window *window, const char *pa
                                   const SluiceAllocationCallbacks *cb)
 {
     struct stat status;
-    *window = (struct slc_pbrt_window){.allocator = *cb, .descriptor = slc_open_input(path)};
+    *window = (struct slc_pbrt_window){
+        .allocator = *cb, .descriptor = slc_open_input(path), .most = UINT64_MAX};
     if (window->descriptor < 0)
         return slc_system_result(errno);
     window->is_open = true;

@@ -25,6 +25,7 @@ struct slc_pbrt_window {
     uint64_t file_offset;  ///< of the next byte to read from the file
     bool is_open, is_over; ///< is_over: nothing follows bytes[end]
     SluiceResult failure;  ///< of reading; the text counts as over then
+    uint64_t most;         ///< bytes of text that may be read
     struct slc_pbrt_stamp stamp;
     struct slc_pbrt_inflater *inflater; ///< owned; NULL: plain
 };
@@ -40,6 +41,9 @@ void slc_pbrt_window_finish(struct slc_pbrt_window *window);
  * indices have become lower. `keep` <= cursor. Sets is_over at the end.
  */
 size_t slc_pbrt_window_refill(struct slc_pbrt_window *window, size_t keep);
+
+/** Sets the most bytes of text. Text beyond it is a failure: LIMIT_EXCEEDED. */
+void slc_pbrt_window_limit(struct slc_pbrt_window *window, uint64_t most);
 
 /** Goes to an offset of the text, at or behind the present one. False: the text ends before. */
 bool slc_pbrt_window_seek(struct slc_pbrt_window *window, uint64_t offset);

@@ -59,6 +59,7 @@ const char *slc_pbrt_failure_text(SluiceResult result)
     case SLUICE_ERROR_OUT_OF_HOST_MEMORY: return "not enough memory";
     case SLUICE_ERROR_UNSUPPORTED: return "compressed, and Sluice was built without zlib";
     case SLUICE_ERROR_CORRUPT_DATA: return "damaged compressed data";
+    case SLUICE_ERROR_LIMIT_EXCEEDED: return "more text than maxTextSize allows";
     case SLUICE_NOT_READY: return "too few file descriptors";
     default: return "cannot be read";
     }

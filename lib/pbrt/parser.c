@@ -78,6 +78,8 @@ bool slc_pbrt_take_token(struct slc_pbrt_parser *parser)
         slc_pbrt_next_token(&frame->lexer, token);
         token->file = frame->file;
         struct slc_pbrt_place place = slc_pbrt_token_place(token);
+        if (frame->lexer.window.failure != SLUICE_SUCCESS) /* the token may be cut off */
+            return check_end_of_file(parser, frame);
         if (token->kind == SLC_PBRT_TOKEN_OPEN_STRING)
             return slc_pbrt_stop(parser, SLUICE_ERROR_CORRUPT_DATA, &place,
                                  "this string does not end on its line");
@@ -135,6 +137,7 @@ static bool push_frame(struct slc_pbrt_parser *parser, uint32_t path, bool is_im
         return slc_pbrt_out_of_memory(parser);
     if (*opened != SLUICE_SUCCESS)
         return true;
+    slc_pbrt_window_limit(&frame->lexer.window, scene->limits.maxTextSize - scene->info.textSize);
     frame->is_import = is_import;
     frame->block_count = parser->block_count;
     if (add_file(parser, path, &frame->lexer.window.stamp, &frame->file)) {

@@ -333,18 +333,91 @@ static void numbers_are_those_of_the_c_library(void **state)
     }
 }
 
+/* The last message. */
+static char last_message[1024];
+
+static void keep_message(void *user, SluiceLogSeverity severity, const char *message)
+{
+    (void)user, (void)severity;
+    snprintf(last_message, sizeof last_message, "%s", message);
+}
+
+static SluiceResult open_with(SluicePbrtSceneCreateInfo info, const char *name)
+{
+    char path[600];
+    snprintf(path, sizeof path, "%s", pbrt_path(&files, name));
+    info.structSize = sizeof info;
+    info.pPath = path;
+    info.log.pfnLog = keep_message;
+    sluiceDestroyPbrtScene(files.scene);
+    files.scene = NULL;
+    return sluiceOpenPbrtScene(&info, &files.scene);
+}
+
+/* Each limit is what this scene needs: one less is too little. */
 static void limits_stop_the_reader(void **state)
 {
     (void)state;
-    char text[64 * 20 + 64] = HEADER;
-    for (int i = 0; i < 20; i++)
-        strcat(text, "AttributeBegin\n");
-    pbrt_write(&files, "scene.pbrt", text, strlen(text));
-    SluicePbrtSceneCreateInfo info = {
-        .structSize = sizeof info, .pPath = pbrt_path(&files, "scene.pbrt"), .maxBlockDepth = 19};
-    CHECK_RESULT(sluiceOpenPbrtScene(&info, &files.scene), SLUICE_ERROR_LIMIT_EXCEEDED);
-    info.maxBlockDepth = 20;
-    CHECK_OK(sluiceOpenPbrtScene(&info, &files.scene));
+    static const char SCENE[] = HEADER "Include \"a\"\nInclude \"a\"\n"
+                                       "AttributeBegin\nAttributeBegin\nAttributeEnd\n"
+                                       "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0]"
+                                       " \"integer indices\" [0 1 2]\nAttributeEnd\n"
+                                       "ObjectInstance \"o\"\nObjectInstance \"o\"\n";
+    static const char A[] = "Include \"b\"\n";
+    static const char B[] = "ObjectBegin \"o\"\nShape \"sphere\"\nObjectEnd\n";
+    const uint64_t text_size = sizeof SCENE - 1 + 2 * (sizeof A - 1 + sizeof B - 1);
+    SluicePbrtMesh mesh = {.structSize = sizeof mesh};
+    pbrt_write(&files, "scene.pbrt", SCENE, sizeof SCENE - 1);
+    pbrt_write(&files, "a", A, sizeof A - 1);
+    pbrt_write(&files, "b", B, sizeof B - 1);
+#define NEEDS(field, value)                                                                        \
+    do {                                                                                           \
+        CHECK_RESULT(open_with((SluicePbrtSceneCreateInfo){.field = (value)-1}, "scene.pbrt"),     \
+                     SLUICE_ERROR_LIMIT_EXCEEDED);                                                 \
+        assert_non_null(strstr(last_message, #field));                                             \
+        CHECK_OK(open_with((SluicePbrtSceneCreateInfo){.field = (value)}, "scene.pbrt"));          \
+    } while (0)
+    NEEDS(maxIncludeDepth, 3);
+    NEEDS(maxIncludeCount, 4);
+    NEEDS(maxBlockDepth, 2);
+    NEEDS(maxShapeCount, 3);
+    NEEDS(maxInstanceCount, 2);
+    NEEDS(maxTextSize, text_size);
+#undef NEEDS
+    assert_int_equal(pbrt_info(&files).textSize, text_size);
+    CHECK_OK(open_with((SluicePbrtSceneCreateInfo){.maxMeshSize = 12 * 4 - 1}, "scene.pbrt"));
+    CHECK_RESULT(sluiceReadPbrtShape(files.scene, 2, &mesh), SLUICE_ERROR_LIMIT_EXCEEDED);
+    CHECK_OK(open_with((SluicePbrtSceneCreateInfo){.maxMeshSize = 12 * 4}, "scene.pbrt"));
+    CHECK_OK(sluiceReadPbrtShape(files.scene, 2, &mesh));
+    CHECK_OK(sluiceFreePbrtMesh(files.scene, &mesh));
+}
+
+/* A kilobyte of the file is a megabyte of text. */
+static void compressed_text_stops_at_its_limit(void **state)
+{
+    (void)state;
+#if TEST_HAS_ZLIB
+    enum { LIMIT = 1 << 20, LINES = 1 << 21 };
+    static char ones[2 * LINES];
+    unsigned line = 0;
+    for (size_t i = 0; i < sizeof ones; i++)
+        ones[i] = i % 2 ? '\n' : '1';
+    for (int imported = 0; imported < 2; imported++) {
+        gzFile file = gzopen(pbrt_path(&files, "a.gz"), "wb1");
+        gzputs(file, "Shape \"trianglemesh\" \"point P\" [\n");
+        gzwrite(file, ones, sizeof ones);
+        gzputs(file, "]\n");
+        assert_int_equal(gzclose(file), Z_OK);
+        const char *text = imported ? HEADER "Import \"a.gz\"\n" : HEADER "Include \"a.gz\"\n";
+        pbrt_write(&files, "scene.pbrt", text, strlen(text));
+        CHECK_RESULT(open_with((SluicePbrtSceneCreateInfo){.maxTextSize = LIMIT}, "scene.pbrt"),
+                     SLUICE_ERROR_LIMIT_EXCEEDED);
+        assert_int_equal(sscanf(strstr(last_message, "a.gz:"), "a.gz:%u:", &line), 1);
+        assert_in_range(line, LIMIT / 4, LIMIT / 2 + (1 << 17)); /* read ahead */
+    }
+#else
+    SKIP_TEST("Sluice is built without zlib");
+#endif
 }
 
 static void the_gamma_of_a_texture_is_any_number(void **state)
@@ -469,6 +542,7 @@ int main(void)
         TEST(inline_meshes_are_read_again_from_their_place),
         TEST(numbers_are_those_of_the_c_library),
         TEST(limits_stop_the_reader),
+        TEST(compressed_text_stops_at_its_limit),
         TEST(the_gamma_of_a_texture_is_any_number),
         TEST(bounds_are_remembered_in_a_file),
         TEST(compressed_files_are_read_like_plain_ones),
