@@ -96,6 +96,7 @@
 #define SLC_FIRST_SluiceVulkanStreamerCreateInfo                                                   \
     SLC_UP_TO(SluiceVulkanStreamerCreateInfo, pagedTextures)
 #define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
+#define SLC_FIRST_SluiceVulkanTextureState SLC_UP_TO(SluiceVulkanTextureState, shownLevel)
 #define SLC_FIRST_SluiceTileBatch SLC_UP_TO(SluiceTileBatch, pTiles)
 #define SLC_FIRST_SluiceTileProducer SLC_UP_TO(SluiceTileProducer, timeoutFrames)
 #define SLC_FIRST_SluiceVulkanTextureCreateInfo                                                    \

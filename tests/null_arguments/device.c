@@ -4,6 +4,7 @@
 
 #include <sluice/demand.h>
 #include <sluice/neural_compress.h>
+#include <sluice/vulkan_control.h>
 #include <sluice/vulkan_neural.h>
 #include <sluice/vulkan_proxy.h>
 
@@ -42,6 +43,7 @@ sluiceRetryVulkanSource(f->streamer, ?f->source)
 sluiceGetVulkanResidencyMode(f->streamer, &f->out.mode)
 sluiceChooseVulkanResidencyMode(&f->h->caps, f->h->mode, 1, &f->out.mode)
 sluiceGetVulkanStreamerManager(f->streamer, &f->out.manager)
+sluiceGetVulkanTextureState(f->streamer, f->texture.textureId, ?NULL, &f->out.texture_state)
 
 sluiceCreateNeuralCompressor(f->h->context, &f->compressor_info, &f->out.compressor) => sluiceDestroyNeuralCompressor(f->out.compressor)
 !sluiceDestroyNeuralCompressor(f->compressor)
@@ -148,6 +150,7 @@ struct fixture {
         VkSampler sampler_handle;
         SluiceStreamingFrame frame;
         SluiceVulkanStreamerStatistics statistics;
+        SluiceVulkanTextureState texture_state;
         SluiceTileLoaderStatistics reads;
         SluiceDemandLoader *loader;
         SluiceDemandTextureId id;

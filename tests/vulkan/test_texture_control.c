@@ -1,0 +1,234 @@
+/* What an application may know and decide about single textures. */
+#include "vulkan/fake_vulkan.h"
+
+#include "support/failing_allocator.h"
+#include "support/test.h"
+
+#include <sluice/vulkan_control.h>
+
+#include <string.h>
+
+enum { TEXTURES = 4, SIZE = 1024, TILES = SIZE / 128, TAIL = 3 };
+
+struct stage {
+    struct fake_vulkan fake;
+    struct failing_allocator memory;
+    SluiceVulkanStreamer *streamer;
+    SluiceImageSource *source;
+    SluiceVulkanTexture textures[TEXTURES];
+    uint64_t time;
+    uint8_t seen[TEXTURES][TILES * TILES]; ///< what shaders mark
+    char last[256];                        ///< message
+};
+
+static uint8_t want(void *user, uint32_t region)
+{
+    return ((struct stage *)user)->seen[region / (TILES * TILES)][region % (TILES * TILES)];
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static void keep_message(void *user, SluiceLogSeverity severity, const char *message)
+{
+    (void)severity;
+    strncpy(((struct stage *)user)->last, message, sizeof((struct stage *)user)->last - 1);
+}
+
+static struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
+{
+    static struct stage s; /* large */
+    s = (struct stage){.fake = {.tail_page_count = 1, .want = want, .user = &s}};
+    memset(s.seen, SLUICE_MIP_UNTOUCHED, sizeof s.seen);
+    failing_allocator_init(&s.memory, UINT64_MAX);
+    s.fake.log = (SluiceLogCallback){&s, keep_message};
+    s.fake.pAllocator = &s.memory.callbacks;
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo gray = {.structSize = sizeof gray,
+                            .width = SIZE,
+                            .height = SIZE,
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "gray"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
+    SluiceVulkanStreamerCreateInfo info = *settings;
+    info.structSize = sizeof info;
+    info.maxTextureCount = TEXTURES;
+    info.maxRegionCount = 1 << 10;
+    fake_vulkan_fill(&info);
+    CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = s.source};
+    for (int i = 0; i < TEXTURES; i++)
+        CHECK_OK(sluiceAddVulkanTexture(s.streamer, &create, &s.textures[i]));
+    return &s;
+}
+
+static void stage_finish(struct stage *s)
+{
+    fake_vulkan_destroy(s->streamer);
+    sluiceDestroyImageSource(s->source);
+    assert_true(s->fake.live_objects == 0 && s->memory.live_bytes == 0);
+}
+
+static void frames(struct stage *s, uint32_t count)
+{
+    struct fake_vulkan *fake = &s->fake;
+    for (; count > 0; count--) {
+        SluiceStreamingFrame frame = {.structSize = sizeof frame};
+        fake->published = false;
+        fake->copy_count = fake->bind_count = 0;
+        fake->bind_value = fake->submitted_bind_value;
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(s->streamer));
+        CHECK_OK(
+            sluiceBeginStreamingFrame(s->streamer, fake_vulkan_commands(fake), ++s->time, &frame));
+        CHECK_OK(sluiceEndStreamingFrame(s->streamer, fake_vulkan_commands(fake)));
+        fake->frame_semaphore = frame.semaphore;
+        fake->frame_value = frame.signalValue;
+    }
+}
+
+static SluiceVulkanTextureState state_of(const struct stage *s, uint32_t texture,
+                                         SluiceTextureRect rect)
+{
+    SluiceVulkanTextureState state = {.structSize = sizeof state};
+    CHECK_OK(
+        sluiceGetVulkanTextureState(s->streamer, s->textures[texture].textureId, &rect, &state));
+    return state;
+}
+
+/* The finest level whose tile over (x, y) is over (tx, ty), too. */
+static uint32_t shared_level(uint32_t x, uint32_t y, uint32_t tx, uint32_t ty)
+{
+    uint32_t level = 0;
+    while (x >> level != tx >> level || y >> level != ty >> level)
+        level++;
+    return level;
+}
+
+/* State ------------------------------------------------------------------------------------- */
+
+static void a_texture_is_drawable_once_its_mip_tail_is_shown(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
+    uint32_t frame = 0;
+    for (; frame < 10; frame++) {
+        SluiceVulkanTextureState now = state_of(s, 1, (SluiceTextureRect){0});
+        if (now.drawable)
+            break;
+        assert_int_equal(now.residentLevel, SLUICE_MIP_UNTOUCHED);
+        assert_true(now.shownLevel == (float)SLUICE_MIP_UNTOUCHED);
+        frames(s, 1);
+    }
+    assert_true(frame > 0 && frame < 10);
+    assert_int_equal(state_of(s, 1, (SluiceTextureRect){0}).residentLevel, TAIL);
+    assert_true(state_of(s, 1, (SluiceTextureRect){0}).shownLevel == TAIL);
+    CHECK_OK(sluiceRemoveVulkanTexture(s->streamer, s->textures[1].textureId));
+    SluiceVulkanTextureState gone = {.structSize = sizeof gone};
+    CHECK_RESULT(sluiceGetVulkanTextureState(s->streamer, s->textures[1].textureId, NULL, &gone),
+                 SLUICE_ERROR_STALE_TEXTURE);
+    stage_finish(s);
+}
+
+static void states_of_rectangles_follow_what_is_resident(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
+    const uint32_t tx = 3, ty = 2;
+    s->seen[2][ty * TILES + tx] = 0;
+    frames(s, 10);
+    for (uint32_t y = 0; y < TILES; y++)
+        for (uint32_t x = 0; x < TILES; x++) {
+            SluiceVulkanTextureState tile =
+                state_of(s, 2, (SluiceTextureRect){x * 128 + 5, y * 128 + 127, 123, 1});
+            assert_int_equal(tile.residentLevel, shared_level(x, y, tx, ty));
+            assert_true(tile.drawable && tile.shownLevel == (float)tile.residentLevel);
+            /* from here to the last texel */
+            SluiceVulkanTextureState rest = state_of(
+                s, 2,
+                (SluiceTextureRect){x * 128 + 127, y * 128, SIZE - x * 128 - 127, SIZE - y * 128});
+            assert_int_equal(rest.residentLevel, TAIL);
+        }
+    assert_int_equal(state_of(s, 2, (SluiceTextureRect){256, 256, 256, 128}).residentLevel, 1);
+    assert_int_equal(state_of(s, 2, (SluiceTextureRect){256, 255, 256, 257}).residentLevel, 2);
+    assert_int_equal(state_of(s, 1, (SluiceTextureRect){256, 256, 1, 1}).residentLevel, TAIL);
+    stage_finish(s);
+}
+
+static void shown_levels_fade_to_resident_ones(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .residencyFadeTicks = 8});
+    const SluiceTextureRect tile = {0, 0, 1, 1};
+    frames(s, 6);
+    s->seen[0][0] = 0;
+    float before = state_of(s, 0, tile).shownLevel;
+    assert_true(before == TAIL);
+    uint32_t between = 0;
+    for (uint32_t i = 0; i < 60; i++) {
+        frames(s, 1);
+        SluiceVulkanTextureState now = state_of(s, 0, tile);
+        assert_true(now.shownLevel <= before && now.shownLevel >= (float)now.residentLevel);
+        between += now.shownLevel > (float)now.residentLevel;
+        before = now.shownLevel;
+    }
+    assert_true(before == 0.0f && between >= 8);
+    stage_finish(s);
+}
+
+static void rectangles_outside_are_refused(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){0});
+    const SluiceTextureRect wrong[] = {{0, 0, SIZE + 1, 1},
+                                       {0, 0, 1, SIZE + 1},
+                                       {1, 0, 0, 0},
+                                       {0, 0, 0, 5},
+                                       {SIZE, 0, 1, 1},
+                                       {1, 1, SIZE, 1},
+                                       {UINT32_MAX, 0, 1, 1},
+                                       {5, 5, UINT32_MAX, UINT32_MAX},
+                                       {0, UINT32_MAX, 1, UINT32_MAX}};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        SluiceVulkanTextureState out = {.structSize = sizeof out, .residentLevel = 77};
+        s->last[0] = 0;
+        CHECK_RESULT(
+            sluiceGetVulkanTextureState(s->streamer, s->textures[0].textureId, &wrong[i], &out),
+            SLUICE_ERROR_INVALID_ARGUMENT);
+        assert_true(strstr(s->last, "1024 x 1024") && out.residentLevel == 77);
+    }
+    SluiceVulkanTextureState unset = {0};
+    CHECK_RESULT(sluiceGetVulkanTextureState(s->streamer, s->textures[0].textureId, NULL, &unset),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    stage_finish(s);
+}
+
+static void questions_take_no_memory(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){0});
+    frames(s, 3);
+    uint64_t calls = s->memory.calls;
+    s->memory.refuse_from = 0;
+    SluiceVulkanTextureState all = {.structSize = sizeof all};
+    CHECK_OK(sluiceGetVulkanTextureState(s->streamer, s->textures[0].textureId, NULL, &all));
+    assert_true(s->memory.calls == calls && all.drawable);
+    s->memory.refuse_from = UINT64_MAX;
+    stage_finish(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_texture_is_drawable_once_its_mip_tail_is_shown),
+        cmocka_unit_test(states_of_rectangles_follow_what_is_resident),
+        cmocka_unit_test(shown_levels_fade_to_resident_ones),
+        cmocka_unit_test(rectangles_outside_are_refused),
+        cmocka_unit_test(questions_take_no_memory),
+    };
+    return RUN_TESTS(tests);
+}
