@@ -50,6 +50,75 @@ SLUICE_API SluiceResult sluiceGetVulkanTextureState(const SluiceVulkanStreamer *
                                                     const SluiceTextureRect *pRect,
                                                     SluiceVulkanTextureState *pState);
 
+/** Id of a request. Never 0 and never reused. */
+typedef uint64_t SluiceTextureRequestId;
+
+/** Request of the application for tiles of a texture. */
+typedef struct SluiceVulkanTextureRequest {
+    uint32_t structSize; ///< sizeof(SluiceVulkanTextureRequest).
+    /** Finest level to load. Coarser levels come with it. Above the last level: packed levels. */
+    uint32_t level;
+    SluiceTextureRect rect; ///< Default: the whole texture.
+    /**
+     * Time stamp of the first frame in which the request is over. UINT64_MAX: it lasts until it is
+     * withdrawn or the texture is removed (a pin). Default: 0, over at once.
+     */
+    uint64_t until;
+} SluiceVulkanTextureRequest;
+
+/**
+ * Requests tiles of a texture, as if every frame sampled the rectangle at `level`.
+ *
+ * The next frame begun starts to load what is not resident. Requests count beside feedback: the
+ * finer of both counts in each region. Like feedback, they are made coarser while more is wanted
+ * than memory holds, and they expire feedbackTimeoutTicks after they are over. Textures that follow
+ * this one load what it requests. Recordings hold requests as part of feedback maps.
+ *
+ * `pRequestId` may be NULL if you do not want to withdraw the request or see its progress.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the rectangle leaves the texture,
+ *         if the texture follows another one (request its primary), or for a wrong structSize;
+ *         SLUICE_ERROR_LIMIT_EXCEEDED for more than 2^20 requests that are not over;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. Nothing has changed after an error.
+ */
+SLUICE_API SluiceResult sluiceRequestVulkanTexture(SluiceVulkanStreamer *streamer,
+                                                   SluiceTextureId textureId,
+                                                   const SluiceVulkanTextureRequest *pRequest,
+                                                   SluiceTextureRequestId *pRequestId);
+
+/**
+ * Withdraws a request: it is over. Does nothing if it was over before.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for an id
+ *         that no request had.
+ */
+SLUICE_API SluiceResult sluiceWithdrawVulkanRequest(SluiceVulkanStreamer *streamer,
+                                                    SluiceTextureRequestId requestId);
+
+/** How far a request is. */
+typedef struct SluiceVulkanRequestProgress {
+    uint32_t structSize; ///< sizeof(SluiceVulkanRequestProgress).
+    bool over;           ///< It is over. All other fields are then 0.
+    bool ready;          ///< Every sample of the rectangle can show its level.
+    uint32_t tileCount;  ///< Tiles that it requests, of all levels, packed ones included.
+    uint32_t residentTileCount;
+    uint32_t givenUpTileCount; ///< Tiles whose loads failed too often (manager.h).
+} SluiceVulkanRequestProgress;
+
+/**
+ * Gets how far a request is, in the last frame begun. Takes time in proportion to its tiles.
+ *
+ * It never becomes ready while given-up tiles fail, or while memory is short. Stop waiting when
+ * residentTileCount + givenUpTileCount == tileCount.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for an id
+ *         that no request had, or for a wrong structSize.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanRequestProgress(const SluiceVulkanStreamer *streamer,
+                                                       SluiceTextureRequestId requestId,
+                                                       SluiceVulkanRequestProgress *pProgress);
+
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

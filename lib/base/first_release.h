@@ -97,6 +97,9 @@
     SLC_UP_TO(SluiceVulkanStreamerCreateInfo, pagedTextures)
 #define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
 #define SLC_FIRST_SluiceVulkanTextureState SLC_UP_TO(SluiceVulkanTextureState, shownLevel)
+#define SLC_FIRST_SluiceVulkanTextureRequest SLC_UP_TO(SluiceVulkanTextureRequest, until)
+#define SLC_FIRST_SluiceVulkanRequestProgress                                                      \
+    SLC_UP_TO(SluiceVulkanRequestProgress, givenUpTileCount)
 #define SLC_FIRST_SluiceTileBatch SLC_UP_TO(SluiceTileBatch, pTiles)
 #define SLC_FIRST_SluiceTileProducer SLC_UP_TO(SluiceTileProducer, timeoutFrames)
 #define SLC_FIRST_SluiceVulkanTextureCreateInfo                                                    \

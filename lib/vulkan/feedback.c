@@ -1,6 +1,8 @@
 /* Which textures' feedback is resolved in a frame, and what the manager gets of it. */
 #include "vulkan/streamer.h"
+#include "vulkan/texture_control.h"
 #include "vulkan/texture_forgetting.h"
+#include "vulkan/texture_requests.h"
 
 #include "base/checked.h"
 #include "base/log.h"
@@ -19,7 +21,7 @@ static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const 
         return SLUICE_SUCCESS; /* removed while its map was on its way */
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
         slc_log(&s->vk.log, SLUICE_LOG_WARNING, "no memory to take in a feedback map");
-        return SLUICE_SUCCESS; /* nothing has changed, and there will be another one */
+        return SLUICE_NOT_READY; /* nothing has changed, and there will be another one */
     }
     if (result < 0)
         return slc_streamer_check(s, result, "sluiceUpdateWithSamplerFeedback");
@@ -27,6 +29,13 @@ static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const 
     s->counts.feedbackMaps++;
     slc_forgetting_used(s, s->by_manager_index[(uint32_t)id]);
     return SLUICE_SUCCESS;
+}
+
+static SluiceResult give_map_of(SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                                uint64_t time_stamp)
+{
+    return give_map(s, texture->id, slc_control_map(s, texture), texture->layout.feedbackWidth,
+                    texture->layout.feedbackHeight, time_stamp, s->info.feedbackTimeoutTicks);
 }
 
 /* The next primaries in turn, each at most once a frame. */
@@ -120,19 +129,37 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
         }
         ask_for_all(s, texture, s->debug.wholeFeedbackMaps);
         s->counts.feedbackWords += resolved.count;
-        SluiceResult result = give_map(
-            s, texture->id, texture->feedback.levels, texture->layout.feedbackWidth,
-            texture->layout.feedbackHeight, slot->time_stamp, s->info.feedbackTimeoutTicks);
+        SluiceResult result = give_map_of(s, texture, slot->time_stamp);
         if (result < 0)
             return result;
     }
     return SLUICE_SUCCESS;
 }
 
+/* Maps that do not wait for feedback. Their time is none before that of feedback to come. */
+static SluiceResult give_due_maps(SluiceVulkanStreamer *s)
+{
+    const struct slc_readback_slot *pending = slc_readback_oldest(&s->readback, UINT64_MAX);
+    uint64_t time_stamp = pending ? pending->time_stamp : s->time_stamp;
+    uint32_t kept = 0, count = s->due_map_count;
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t i = 0; i < count; i++) {
+        struct slc_texture *texture = &s->textures[s->due_maps[i]];
+        if (result >= 0)
+            result = give_map_of(s, texture, time_stamp);
+        texture->map_due = result != SLUICE_SUCCESS;
+        if (texture->map_due)
+            s->due_maps[kept++] = s->due_maps[i];
+    }
+    s->due_map_count = kept;
+    return result;
+}
+
 SluiceResult slc_feedback_read(SluiceVulkanStreamer *s)
 {
     if (s->debug.mapEverything)
         return want_everything(s);
+    slc_texture_requests_expire(s);
     struct slc_readback_slot *slot;
     while ((slot = slc_readback_oldest(&s->readback, s->completed_frame))) {
         SluiceResult result = read_slot(s, slot);
@@ -140,7 +167,7 @@ SluiceResult slc_feedback_read(SluiceVulkanStreamer *s)
             return result;
         slot->frame = 0;
     }
-    return SLUICE_SUCCESS;
+    return give_due_maps(s);
 }
 
 static bool takes_part(const SluiceVulkanStreamer *s, uint32_t index)

@@ -154,6 +154,7 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     s->textures = slc_calloc(cb, textures, sizeof *s->textures);
     s->by_manager_index = slc_calloc(cb, textures, sizeof *s->by_manager_index);
     s->primaries = slc_alloc(cb, textures, sizeof *s->primaries);
+    s->due_maps = slc_alloc(cb, textures, sizeof *s->due_maps);
     s->new_textures = slc_alloc(cb, textures, sizeof *s->new_textures);
     s->packed_queue = slc_alloc(cb, textures, sizeof *s->packed_queue);
     s->frame_units = slc_alloc(cb, tiles, sizeof *s->frame_units);
@@ -171,7 +172,7 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     s->feedback_levels = slc_alloc(cb, s->info.maxRegionCount, 1);
     if (s->debug.mapEverything)
         s->zero_map = slc_calloc(cb, s->info.maxRegionCount, 1);
-    if (!s->textures || !s->by_manager_index || !s->primaries || !s->new_textures ||
+    if (!s->textures || !s->by_manager_index || !s->primaries || !s->due_maps || !s->new_textures ||
         !s->packed_queue || !s->frame_units || !s->tiles || !s->tile_indices || !s->copies ||
         !s->min_mip_texels || !s->min_mip_levels || !s->fades || !s->around_row ||
         !s->feedback_levels || !s->turns || !s->min_mip_staging || !s->around_words ||
@@ -367,6 +368,7 @@ static void free_arrays(SluiceVulkanStreamer *s)
     const SluiceAllocationCallbacks *cb = &s->cb;
     uint32_t textures = s->info.maxTextureCount, tiles = s->info.tilesPerFrame;
     slc_forgetting_finish(s);
+    slc_control_finish(s);
     slc_region_arena_finish(&s->regions, cb);
     slc_free(cb, s->zero_map, s->info.maxRegionCount, 1);
     slc_free(cb, s->min_mip_staging, s->info.framesInFlight, sizeof *s->min_mip_staging);

@@ -75,6 +75,8 @@ struct slc_texture {
     struct slc_feedback_map feedback; ///< of primaries; its levels are part of feedback_levels
     bool feedback_whole;              ///< the next resolve must bring the whole map
     uint32_t primary_place;           ///< in primaries; SLC_NONE for followers
+    uint32_t first_request;           ///< place + 1 of a request; 0: none
+    bool map_due;                     ///< in due_maps
     uint64_t added_frame;    ///< the last one begun before; its feedback and table entry come later
     uint64_t recorded_frame; ///< that recorded its layout and table entry; 0: in new_textures
     uint64_t cleared_frame;  ///< that cleared its feedback; 0: none did
@@ -150,6 +152,14 @@ struct slc_forgetting {
     bool told;              ///< logged that none can be forgotten
 };
 
+/** See texture_requests.h. */
+struct slc_texture_requests {
+    struct slc_texture_request *list; ///< owned; `room`, of which `count` were used
+    uint32_t count, room;
+    uint32_t first_free; ///< place + 1; 0: none
+    uint32_t live_count;
+};
+
 struct SluiceVulkanStreamer {
     SluiceAllocationCallbacks cb;
     SluiceVulkanStreamerCreateInfo info; ///< defaults filled in
@@ -195,6 +205,11 @@ struct SluiceVulkanStreamer {
     uint32_t texture_high;        ///< textures from here on were never used
     uint32_t *primaries;          ///< owned; textures whose feedback is read back
     uint32_t primary_count, primary_cursor;
+    uint32_t *due_maps; ///< owned; textures of which the manager gets a map in the next frame
+    uint32_t due_map_count;
+    struct slc_texture_requests requests;
+    uint8_t *control_map; ///< owned; scratch for maps that are not the feedback alone
+    uint32_t control_room;
     uint64_t list_version;  ///< counts whatever makes lists of what to resolve out of date
     uint32_t *new_textures; ///< owned; added since the last frame
     uint32_t new_texture_count;
@@ -324,6 +339,9 @@ uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit);
 void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index);
 /** Regions at the edge are narrower, or levels do not halve evenly. */
 bool slc_texture_is_ragged(const struct slc_texture *texture);
+
+/* texture_control.c */
+void slc_control_finish(SluiceVulkanStreamer *s);
 
 /* texture_forgetting.c */
 /** Checks forgetTextures and forgetAfterFrames, and sets what they imply. */

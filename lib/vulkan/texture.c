@@ -13,6 +13,7 @@
 #include "vulkan/format.h"
 #include "vulkan/format_caps.h"
 #include "vulkan/load_cancels.h"
+#include "vulkan/texture_control.h"
 #include "vulkan/texture_forgetting.h"
 #include "vulkan/texture_mode.h"
 
@@ -423,6 +424,7 @@ static SluiceResult remove_layer(SluiceVulkanStreamer *s, uint32_t index)
     s->removed_count++;
     slc_texture_array_clear(&s->texture_array, index, texture->views.cube);
     slc_loads_drop(s, index);
+    slc_control_drop(s, texture);
     remove_primary(s, index);
     free_followers(s, id);
     forget_new(s, index);

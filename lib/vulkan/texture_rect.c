@@ -18,6 +18,17 @@ SluiceResult slc_streamer_find(const SluiceVulkanStreamer *s, SluiceTextureId id
     return SLUICE_SUCCESS;
 }
 
+SluiceResult slc_streamer_find_primary(const SluiceVulkanStreamer *s, SluiceTextureId id,
+                                       struct slc_texture **texture)
+{
+    SluiceResult result = slc_streamer_find(s, id, texture);
+    if (result != SLUICE_SUCCESS || (*texture)->primary_id == SLUICE_NO_TEXTURE)
+        return result;
+    return slc_log_refusal(&s->vk.log,
+                           "%s: follows another texture; call the function for its primary",
+                           (*texture)->info.pName ? (*texture)->info.pName : "image");
+}
+
 static bool is_inside(uint32_t first, uint32_t count, uint32_t size)
 {
     return count > 0 && first < size && count <= size - first;

@@ -15,6 +15,10 @@ struct slc_tile_rect {
 SluiceResult slc_streamer_find(const SluiceVulkanStreamer *s, SluiceTextureId id,
                                struct slc_texture **texture);
 
+/** Finds a texture that follows no other one. Errors: as above; INVALID_ARGUMENT, logged. */
+SluiceResult slc_streamer_find_primary(const SluiceVulkanStreamer *s, SluiceTextureId id,
+                                       struct slc_texture **texture);
+
 /** Cells of `cell_width` by `cell_height` texels, `columns` by `rows` of them. */
 struct slc_cells {
     uint32_t cell_width, cell_height, columns, rows;

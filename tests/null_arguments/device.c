@@ -44,6 +44,9 @@ sluiceGetVulkanResidencyMode(f->streamer, &f->out.mode)
 sluiceChooseVulkanResidencyMode(&f->h->caps, f->h->mode, 1, &f->out.mode)
 sluiceGetVulkanStreamerManager(f->streamer, &f->out.manager)
 sluiceGetVulkanTextureState(f->streamer, f->texture.textureId, ?NULL, &f->out.texture_state)
+sluiceRequestVulkanTexture(f->streamer, f->texture.textureId, &f->request, ?&f->out.request)
+sluiceGetVulkanRequestProgress(f->streamer, f->request_id, &f->out.request_progress)
+sluiceWithdrawVulkanRequest(f->streamer, f->request_id)
 
 sluiceCreateNeuralCompressor(f->h->context, &f->compressor_info, &f->out.compressor) => sluiceDestroyNeuralCompressor(f->out.compressor)
 !sluiceDestroyNeuralCompressor(f->compressor)
@@ -108,6 +111,8 @@ struct fixture {
     SluiceVulkanTextureCreateInfo texture_info;
     SluiceVulkanTexture texture;
     SluiceVulkanStreamerSettings settings;
+    SluiceVulkanTextureRequest request;
+    SluiceTextureRequestId request_id;
     SluiceDemandLoaderSettings loader_settings;
     SluiceDemandLoaderCreateInfo loader_info;
     SluiceDemandLoader *loader, *fresh_loader;
@@ -151,6 +156,8 @@ struct fixture {
         SluiceStreamingFrame frame;
         SluiceVulkanStreamerStatistics statistics;
         SluiceVulkanTextureState texture_state;
+        SluiceTextureRequestId request;
+        SluiceVulkanRequestProgress request_progress;
         SluiceTileLoaderStatistics reads;
         SluiceDemandLoader *loader;
         SluiceDemandTextureId id;
@@ -210,6 +217,9 @@ static void init_streamer(struct fixture *f)
     f->texture_info = (SluiceVulkanTextureCreateInfo){
         .structSize = sizeof(SluiceVulkanTextureCreateInfo), .source = f->source};
     CHECK_OK(sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->texture));
+    f->request = (SluiceVulkanTextureRequest){.structSize = sizeof f->request, .until = UINT64_MAX};
+    CHECK_OK(
+        sluiceRequestVulkanTexture(f->streamer, f->texture.textureId, &f->request, &f->request_id));
 }
 
 static SluiceResult record_tiles(void *user, const SluiceTileBatch *batch, SluiceResult *answers)

@@ -207,15 +207,245 @@ static void rectangles_outside_are_refused(void **state)
     stage_finish(s);
 }
 
+/* Requests ---------------------------------------------------------------------------------- */
+
+static SluiceTextureRequestId request(struct stage *s, uint32_t texture, uint32_t level,
+                                      SluiceTextureRect rect, uint64_t until)
+{
+    const SluiceVulkanTextureRequest info = {
+        .structSize = sizeof info, .level = level, .rect = rect, .until = until};
+    SluiceTextureRequestId id = 0;
+    CHECK_OK(sluiceRequestVulkanTexture(s->streamer, s->textures[texture].textureId, &info, &id));
+    assert_true(id != 0);
+    return id;
+}
+
+static SluiceVulkanRequestProgress progress_of(const struct stage *s, SluiceTextureRequestId id)
+{
+    SluiceVulkanRequestProgress progress = {.structSize = sizeof progress};
+    CHECK_OK(sluiceGetVulkanRequestProgress(s->streamer, id, &progress));
+    return progress;
+}
+
+static uint32_t mapped_tiles(const struct stage *s)
+{
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
+    CHECK_OK(sluiceGetVulkanStreamerStatistics(s->streamer, &stats));
+    return stats.mappedTileCount;
+}
+
+static const SluiceTextureRect tile_3_2 = {3 * 128 + 7, 2 * 128 + 9, 1, 1};
+
+static void a_request_loads_its_tiles_without_any_feedback(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 4, .texturesPerFrame = 1});
+    frames(s, 5);
+    uint32_t before = mapped_tiles(s);
+    SluiceTextureRequestId id = request(s, 1, 0, tile_3_2, UINT64_MAX);
+    SluiceVulkanRequestProgress progress = progress_of(s, id);
+    /* one tile of each regular level, and the mip tail */
+    assert_true(progress.tileCount == TAIL + 1 && progress.residentTileCount == 1);
+    assert_false(progress.ready || progress.over);
+    uint32_t waited = 0;
+    for (; !progress_of(s, id).ready && waited < 20; waited++)
+        frames(s, 1);
+    assert_true(waited >= 2 && waited <= 5); /* no turn of four textures is waited for */
+    frames(s, 40);
+    assert_int_equal(progress_of(s, id).residentTileCount, TAIL + 1);
+    assert_int_equal(mapped_tiles(s), before + TAIL);
+    for (uint32_t y = 0; y < TILES; y++)
+        for (uint32_t x = 0; x < TILES; x++)
+            assert_int_equal(
+                state_of(s, 1, (SluiceTextureRect){x * 128, y * 128, 128, 128}).residentLevel,
+                shared_level(x, y, 3, 2));
+    CHECK_OK(sluiceWithdrawVulkanRequest(s->streamer, id));
+    frames(s, 40);
+    assert_int_equal(mapped_tiles(s), before);
+    stage_finish(s);
+}
+
+static void requests_are_over_at_their_time(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 3});
+    frames(s, 5);
+    uint32_t before = mapped_tiles(s);
+    SluiceTextureRequestId late = request(s, 0, 1, tile_3_2, s->time);
+    SluiceTextureRequestId id = request(s, 0, 1, tile_3_2, s->time + 20);
+    for (uint32_t i = 1; i < 20; i++) {
+        frames(s, 1);
+        assert_true(progress_of(s, late).over && !progress_of(s, id).over);
+    }
+    assert_true(progress_of(s, id).ready && mapped_tiles(s) == before + TAIL - 1);
+    frames(s, 1);
+    SluiceVulkanRequestProgress end = progress_of(s, id);
+    assert_true(end.over && !end.ready && end.tileCount == 0);
+    assert_int_equal(mapped_tiles(s), before + TAIL - 1); /* the timeout has only begun */
+    frames(s, 30);
+    assert_int_equal(mapped_tiles(s), before);
+    CHECK_OK(sluiceWithdrawVulkanRequest(s->streamer, id));
+    stage_finish(s);
+}
+
+/* What a tile of level 0 shows if regions hold these levels. */
+static uint32_t expected_level(const uint8_t held[TILES * TILES], uint32_t x, uint32_t y)
+{
+    uint32_t finest = TAIL;
+    for (uint32_t i = 0; i < TILES * TILES; i++) {
+        uint32_t level = shared_level(x, y, i % TILES, i / TILES);
+        level = held[i] > level ? held[i] : level;
+        finest = level < finest ? level : finest;
+    }
+    return finest;
+}
+
+static void check_all_tiles(const struct stage *s, uint32_t texture,
+                            const uint8_t held[TILES * TILES])
+{
+    for (uint32_t y = 0; y < TILES; y++)
+        for (uint32_t x = 0; x < TILES; x++)
+            assert_int_equal(
+                state_of(s, texture, (SluiceTextureRect){x * 128, y * 128, 128, 128}).residentLevel,
+                expected_level(held, x, y));
+}
+
+static uint32_t next_random(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return *seed >> 8;
+}
+
+static SluiceTextureRect random_rect(uint32_t *seed)
+{
+    uint32_t x = next_random(seed) % SIZE, y = next_random(seed) % SIZE;
+    return (SluiceTextureRect){x, y, 1 + next_random(seed) % (SIZE - x),
+                               1 + next_random(seed) % (SIZE - y)};
+}
+
+static void lower(uint8_t held[TILES * TILES], uint8_t level, SluiceTextureRect r)
+{
+    for (uint32_t i = 0; i < TILES * TILES; i++) {
+        uint32_t x = i % TILES * 128, y = i / TILES * 128;
+        if (x < r.x + r.width && x + 128 > r.x && y < r.y + r.height && y + 128 > r.y)
+            held[i] = level < held[i] ? level : held[i];
+    }
+}
+
+static void the_finer_of_feedback_and_requests_counts(void **state)
+{
+    (void)state;
+    uint32_t seed = 7;
+    for (uint32_t round = 0; round < 4; round++) {
+        struct stage *s =
+            stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
+        uint8_t held[TILES * TILES];
+        for (uint32_t i = 0; i < TILES * TILES; i++)
+            held[i] = s->seen[2][i] = (uint8_t)(next_random(&seed) % 40);
+        SluiceTextureRequestId ids[40];
+        for (uint32_t i = 0; i < 40; i++) {
+            SluiceTextureRect rect = random_rect(&seed);
+            uint8_t level = (uint8_t)(i % 10 ? 2 + i % 5 : i / 20);
+            bool counts = i % 3 != 0;
+            ids[i] = request(s, counts ? 2 : 3, level, rect, UINT64_MAX);
+            if (counts)
+                lower(held, level, rect);
+        }
+        for (uint32_t i = 0; i < 40; i += 3)
+            CHECK_OK(sluiceWithdrawVulkanRequest(s->streamer, ids[i]));
+        frames(s, 12);
+        check_all_tiles(s, 2, held);
+        assert_int_equal(state_of(s, 3, (SluiceTextureRect){0}).residentLevel, TAIL);
+        stage_finish(s);
+    }
+}
+
+static void requests_go_with_their_texture(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 5});
+    SluiceTextureRequestId first = request(s, 3, 0, tile_3_2, UINT64_MAX);
+    SluiceTextureRequestId kept = request(s, 2, 0, tile_3_2, UINT64_MAX);
+    CHECK_OK(sluiceRemoveVulkanTexture(s->streamer, s->textures[3].textureId));
+    assert_true(progress_of(s, first).over && !progress_of(s, kept).over);
+    frames(s, 6);
+    assert_true(progress_of(s, kept).ready);
+    SluiceTextureRequestId next = request(s, 2, 0, tile_3_2, UINT64_MAX);
+    assert_true(next != first && progress_of(s, first).over);
+    CHECK_OK(sluiceWithdrawVulkanRequest(s->streamer, first));
+    assert_true(progress_of(s, next).ready);
+    const SluiceTextureRequestId wrong[] = {0, next + 1, next + ((uint64_t)1 << 32), UINT64_MAX};
+    for (uint32_t i = 0; i < 4; i++) {
+        SluiceVulkanRequestProgress progress = {.structSize = sizeof progress};
+        CHECK_RESULT(sluiceWithdrawVulkanRequest(s->streamer, wrong[i]),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+        CHECK_RESULT(sluiceGetVulkanRequestProgress(s->streamer, wrong[i], &progress),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+        assert_non_null(strstr(s->last, "requestId"));
+    }
+    stage_finish(s);
+}
+
+static void followers_load_what_their_primary_requests(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 5});
+    CHECK_OK(sluiceRemoveVulkanTexture(s->streamer, s->textures[3].textureId));
+    frames(s, 4);
+    SluiceVulkanTextureCreateInfo create = {
+        .structSize = sizeof create, .source = s->source, .primaryId = s->textures[2].textureId};
+    CHECK_OK(sluiceAddVulkanTexture(s->streamer, &create, &s->textures[3]));
+    const SluiceVulkanTextureRequest info = {
+        .structSize = sizeof info, .rect = tile_3_2, .until = UINT64_MAX};
+    CHECK_RESULT(sluiceRequestVulkanTexture(s->streamer, s->textures[3].textureId, &info, NULL),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(s->last, "primary"));
+    CHECK_OK(sluiceRequestVulkanTexture(s->streamer, s->textures[2].textureId, &info, NULL));
+    frames(s, 8);
+    assert_int_equal(state_of(s, 3, tile_3_2).residentLevel, 0);
+    stage_finish(s);
+}
+
+static void requests_survive_every_refused_allocation(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 5});
+    frames(s, 4);
+    uint64_t refused = 0;
+    for (uint32_t i = 0; i < 40; i++) {
+        const SluiceVulkanTextureRequest info = {
+            .structSize = sizeof info, .level = i % 4, .rect = tile_3_2, .until = UINT64_MAX};
+        SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+            s->memory.refuse_from = s->memory.calls + n;
+            result = sluiceRequestVulkanTexture(s->streamer, s->textures[1].textureId, &info, NULL);
+            refused += result != SLUICE_SUCCESS;
+            assert_true(result == SLUICE_SUCCESS || result == SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        }
+    }
+    assert_int_equal(refused, 4); /* the scratch, and room for 16, 32 and 64 */
+    s->memory.refuse_from = 0;    /* the manager cannot take the map */
+    frames(s, 3);
+    assert_int_equal(state_of(s, 1, tile_3_2).residentLevel, TAIL);
+    s->memory.refuse_from = UINT64_MAX;
+    frames(s, 6);
+    assert_int_equal(state_of(s, 1, tile_3_2).residentLevel, 0);
+    stage_finish(s);
+}
+
 static void questions_take_no_memory(void **state)
 {
     (void)state;
     struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){0});
     frames(s, 3);
+    SluiceTextureRequestId id = request(s, 0, 0, tile_3_2, UINT64_MAX);
     uint64_t calls = s->memory.calls;
     s->memory.refuse_from = 0;
     SluiceVulkanTextureState all = {.structSize = sizeof all};
     CHECK_OK(sluiceGetVulkanTextureState(s->streamer, s->textures[0].textureId, NULL, &all));
+    assert_int_equal(progress_of(s, id).tileCount, TAIL + 1);
+    CHECK_OK(sluiceWithdrawVulkanRequest(s->streamer, id));
     assert_true(s->memory.calls == calls && all.drawable);
     s->memory.refuse_from = UINT64_MAX;
     stage_finish(s);
@@ -228,6 +458,12 @@ int main(void)
         cmocka_unit_test(states_of_rectangles_follow_what_is_resident),
         cmocka_unit_test(shown_levels_fade_to_resident_ones),
         cmocka_unit_test(rectangles_outside_are_refused),
+        cmocka_unit_test(a_request_loads_its_tiles_without_any_feedback),
+        cmocka_unit_test(requests_are_over_at_their_time),
+        cmocka_unit_test(the_finer_of_feedback_and_requests_counts),
+        cmocka_unit_test(requests_go_with_their_texture),
+        cmocka_unit_test(followers_load_what_their_primary_requests),
+        cmocka_unit_test(requests_survive_every_refused_allocation),
         cmocka_unit_test(questions_take_no_memory),
     };
     return RUN_TESTS(tests);
