@@ -336,6 +336,21 @@ SLUICE_API SluiceResult sluiceForgetStreamedTexture(SluiceStreamedTextureManager
                                                     uint64_t retireValue);
 
 /**
+ * Evicts a texture that is out of sight: drops what its maps requested, as if it never had one, and
+ * lists its STANDBY tiles for unmapping until at most `keepTileCount` are left, finer levels first.
+ * UINT32_MAX keeps all of them STANDBY.
+ *
+ * Tiles that are being loaded are CANCELED. Packed tiles stay wanted if alwaysMapPackedTiles is on.
+ * Textures that follow it keep what they request. The next map requests tiles as usual, and
+ * restores those that are still STANDBY.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.
+ */
+SLUICE_API SluiceResult sluiceEvictStreamedTexture(SluiceStreamedTextureManager *manager,
+                                                   SluiceTextureId textureId,
+                                                   uint32_t keepTileCount);
+
+/**
  * Gets the layout of a texture.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.

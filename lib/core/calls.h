@@ -28,7 +28,8 @@ enum slc_call_kind {
     /** During GET_TILES_TO_MAP, before that call itself is reported. */
     SLC_CALL_HEAP_ANSWER = 20,
     SLC_CALL_EVACUATE_HEAPS = 21,
-    SLC_CALL_FORGET_TEXTURE = 22
+    SLC_CALL_FORGET_TEXTURE = 22,
+    SLC_CALL_EVICT_TEXTURE = 23
 };
 
 /**
@@ -47,7 +48,7 @@ struct slc_call {
     const SluiceStreamedTextureManagerConfig *config; ///< SET_CONFIG
     const SluiceStreamedTextureDesc *desc;            ///< ADD_TEXTURE
     const SluiceFeedbackDesc *feedback;               ///< UPDATE_FEEDBACK
-    uint32_t keep_count; ///< TRIM_STANDBY; EVACUATE_HEAPS: the most tiles
+    uint32_t keep_count; ///< TRIM_STANDBY, EVICT_TEXTURE; EVACUATE_HEAPS: the most tiles
     uint32_t heap_id;    ///< RELEASE_HEAP, HEAP_ANSWER
     uint32_t room;       ///< of the list calls: *pCount on entry
     bool query;          ///< of the list calls: the array was NULL

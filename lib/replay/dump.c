@@ -28,6 +28,7 @@ static const char *const call_names[] = {
     [SLC_CALL_TRIM_STANDBY] = "trim-standby",
     [SLC_CALL_EVACUATE_HEAPS] = "evacuate-heaps",
     [SLC_CALL_FORGET_TEXTURE] = "forget-texture",
+    [SLC_CALL_EVICT_TEXTURE] = "evict-texture",
     [SLC_CALL_DEFRAGMENT] = "defragment",
     [SLC_CALL_RELEASE_HEAP] = "release-heap",
     [SLC_CALL_GET_MINMIP_UPDATES] = "get-minmip-updates",

@@ -174,6 +174,7 @@ static SluiceResult make_simple_call(struct slc_player *player, struct slc_call 
             call->desc && call->result == SLUICE_ERROR_NULL_POINTER ? NULL : &call->texture_id);
     case SLC_CALL_REMOVE_TEXTURE: return sluiceRemoveStreamedTexture(m, id, call->retire_value);
     case SLC_CALL_FORGET_TEXTURE: return sluiceForgetStreamedTexture(m, id, call->retire_value);
+    case SLC_CALL_EVICT_TEXTURE: return sluiceEvictStreamedTexture(m, id, call->keep_count);
     case SLC_CALL_UPDATE_FEEDBACK:
         return sluiceUpdateWithSamplerFeedback(m, id, call->feedback, call->time_stamp,
                                                call->timeout);

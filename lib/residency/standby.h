@@ -12,6 +12,8 @@ static inline struct slc_list *slc_standby_list(struct slc_machine *r, const str
     return node->level == SLC_OUTSIDE_CLASS ? &r->standby_outside : &r->standby;
 }
 
+/** Lists a tile for unmapping that is in one of the lists. */
+void slc_list_for_unmapping(struct slc_machine *r, uint32_t node);
 /** Evicts the oldest ones that take slots until `keep` are left: lists them for unmapping. */
 void slc_evict_standby(struct slc_machine *r, uint32_t keep);
 /** Evicts the oldest ones of both lists until each is within the limit. */

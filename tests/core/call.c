@@ -23,6 +23,7 @@ static const char *const names[CALL_KIND_COUNT] = {
     [CALL_TRIM] = "TrimStandbyTiles",
     [CALL_EVACUATE] = "EvacuateHeaps",
     [CALL_FORGET] = "ForgetStreamedTexture",
+    [CALL_EVICT] = "EvictStreamedTexture",
     [CALL_DEFRAGMENT] = "DefragmentTiles",
     [CALL_EMPTY_HEAPS] = "GetEmptyHeaps",
     [CALL_RELEASE_HEAP] = "ReleaseHeap",
@@ -149,6 +150,7 @@ static SluiceResult make(SluiceStreamedTextureManager *m, const struct call *c, 
     case CALL_TRIM: return sluiceTrimStandbyTiles(m, c->keep);
     case CALL_EVACUATE: return sluiceEvacuateHeaps(m, c->keep);
     case CALL_FORGET: return sluiceForgetStreamedTexture(m, c->texture, c->retire);
+    case CALL_EVICT: return sluiceEvictStreamedTexture(m, c->texture, c->keep);
     case CALL_RELEASE_HEAP: return sluiceReleaseHeap(m, c->heap);
     case CALL_WRITE_MINMIP:
         return sluiceWriteMinMipData(m, c->texture, c->pitch, c->size, first ? NULL : out->bytes);

@@ -35,6 +35,7 @@ enum call_kind {
     CALL_STATISTICS,
     CALL_EVACUATE, ///< made of a CALL_TRIM, so that sequences from files keep their meaning
     CALL_FORGET,   ///< made of a CALL_TRIM, too
+    CALL_EVICT,    ///< made of a CALL_TRIM, too
     CALL_KIND_COUNT
 };
 

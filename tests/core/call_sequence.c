@@ -50,6 +50,7 @@ static const enum call_null last_pointer[CALL_KIND_COUNT] = {
     [CALL_WRITE_RECT] = NULL_SECOND,      [CALL_TILE_STATE] = NULL_SECOND,
     [CALL_LAYOUT] = NULL_SECOND,          [CALL_TEXTURE_LAYOUT] = NULL_FIRST,
     [CALL_STATISTICS] = NULL_FIRST,       [CALL_FORGET] = NULL_MANAGER,
+    [CALL_EVICT] = NULL_MANAGER,
 };
 
 void call_sequence_start(struct call_sequence *s, struct choice choice)
@@ -424,12 +425,27 @@ static const struct naive_texture *texture_to_forget(const struct naive_manager 
     return any;
 }
 
+/* Of 14, 20 or 26; the first texture that holds anything, if there is one. */
+static void make_evict(const struct naive_manager *n, struct call *call)
+{
+    const struct naive_texture *any = NULL;
+    for (uint32_t i = 0; i < n->texture_room; i++) {
+        const struct naive_texture *t = n->textures[(n->stamp + i) % n->texture_room];
+        any = t && (!any || (naive_holds_anything(t) && !naive_holds_anything(any))) ? t : any;
+    }
+    call->kind = CALL_EVICT;
+    call->texture = any ? any->id : SLUICE_NO_TEXTURE;
+    call->keep = call->keep == 14 ? 0 : call->keep == 20 ? 3 : UINT32_MAX;
+}
+
 static void make_trim(struct call_sequence *s, const struct naive_manager *n, struct call *call)
 {
     call->keep = choice_once_in(&s->choice, 3) ? 0 : choice_below(&s->choice, 30);
     if (call->keep % 3 == 1) /* no choice of its own: files keep their meaning */
         call->kind = CALL_EVACUATE;
-    if (call->keep % 6 != 5)
+    if (call->keep % 6 == 2 && call->keep > 8)
+        make_evict(n, call);
+    if (call->keep % 6 != 5 || call->kind == CALL_EVICT)
         return;
     const struct naive_texture *t = texture_to_forget(n, call->keep);
     call->kind = CALL_FORGET;

@@ -534,6 +534,8 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_PROBED_EARLY] = "textures to be probed because another tile came",
     [NAIVE_EVACUATED] = "tiles evacuated",
     [NAIVE_TEXTURE_FORGOTTEN] = "tiles of textures forgotten",
+    [NAIVE_TEXTURE_EVICTED] = "textures evicted",
+    [NAIVE_TEXTURE_LISTED] = "tiles of textures listed",
     [NAIVE_RETRIED_ALL] = "textures whose given-up tiles were all tried again",
 };
 

@@ -115,6 +115,33 @@ static SluiceResult forget_texture(struct naive_manager *n, const struct call *c
     return SLUICE_SUCCESS;
 }
 
+static SluiceResult evict_texture(struct naive_manager *n, const struct call *call)
+{
+    SluiceResult result;
+    if (call->null != NULL_NONE)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct naive_texture *t = naive_find(n, call->texture, &result);
+    if (!t)
+        return result;
+    if (naive_holds_anything(t)) {
+        naive_drop_wants(n, t);
+        n->events[NAIVE_TEXTURE_EVICTED]++;
+    }
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < t->layout.tileCount; i++)
+        left += t->tiles[i].state == SLUICE_TILE_STATE_STANDBY && !t->tiles[i].listed;
+    for (uint32_t i = 0; i < t->layout.tileCount; i++) {
+        struct naive_tile *tile = &t->tiles[i];
+        if (left <= call->keep || tile->state != SLUICE_TILE_STATE_STANDBY || tile->listed)
+            continue;
+        tile->listed = true;
+        tile->listed_at = ++n->stamp;
+        left--;
+        n->events[NAIVE_TEXTURE_LISTED]++;
+    }
+    return SLUICE_SUCCESS;
+}
+
 static SluiceResult complete(struct naive_manager *n, const struct call *call)
 {
     if (call->null != NULL_NONE)
@@ -318,6 +345,7 @@ static SluiceResult dispatch(struct naive_manager *n, const struct call *call,
     case CALL_ADD_TEXTURE: return naive_add_texture(n, call, seen, out);
     case CALL_REMOVE_TEXTURE: return remove_texture(n, call);
     case CALL_FORGET: return forget_texture(n, call);
+    case CALL_EVICT: return evict_texture(n, call);
     case CALL_FEEDBACK: return naive_feedback(n, call);
     case CALL_MATCH_PRIMARY: return naive_match(n, call);
     case CALL_SET_PRIMARY: return set_primary(n, call);

@@ -231,7 +231,7 @@ static bool is_idle(const struct naive_manager *n, const struct naive_texture *t
     return age > 0 && age / k >= max_u64(t->map_timeout, max_u64(t->interval, n->usual));
 }
 
-static void forget(struct naive_manager *n, struct naive_texture *t)
+void naive_drop_wants(struct naive_manager *n, struct naive_texture *t)
 {
     naive_forget_history(t);
     const size_t regions = (size_t)t->layout.feedbackWidth * t->layout.feedbackHeight;
@@ -239,7 +239,6 @@ static void forget(struct naive_manager *n, struct naive_texture *t)
     memset(t->held, SLUICE_MIP_UNTOUCHED, regions);
     naive_apply_held(n, t);
     n->bias.scene_changed = true;
-    n->events[NAIVE_FORGOTTEN]++;
 }
 
 void naive_count_standby(const struct naive_manager *n, uint32_t *listed, uint32_t *unlisted)
@@ -267,7 +266,8 @@ static bool make_room(struct naive_manager *n, uint64_t unserved)
         struct naive_texture *t = oldest_texture(n);
         if (!t || !is_idle(n, t))
             break;
-        forget(n, t);
+        naive_drop_wants(n, t);
+        n->events[NAIVE_FORGOTTEN]++;
         forgot = true;
         naive_count_standby(n, &listed, &unlisted);
     }

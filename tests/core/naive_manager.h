@@ -117,6 +117,8 @@ enum naive_event {
     NAIVE_RETRIED_ALL,
     NAIVE_EVACUATED,         ///< tiles
     NAIVE_TEXTURE_FORGOTTEN, ///< tiles
+    NAIVE_TEXTURE_EVICTED,   ///< that held anything
+    NAIVE_TEXTURE_LISTED,    ///< its tiles, for unmapping
     NAIVE_EVENT_COUNT
 };
 
@@ -208,6 +210,8 @@ void naive_remember(struct naive_manager *n, struct naive_texture *t, const uint
 /* Whether so many misses are enough for a level to expire. */
 bool naive_would_believe(const struct naive_manager *n, const struct naive_texture *t,
                          uint64_t misses, uint32_t level);
+/** What its maps asked for is dropped, and nothing of it is wanted any longer. */
+void naive_drop_wants(struct naive_manager *n, struct naive_texture *t);
 void naive_forget_history(struct naive_texture *t);
 bool naive_has_state(const struct naive_texture *t);
 bool naive_holds_anything(const struct naive_texture *t);

@@ -1,4 +1,5 @@
-/** Forgetting a texture of which nothing is wanted: what it gives back, and that it returns. */
+/** Forgetting a texture of which nothing is wanted, and evicting one: what it gives back, and that
+ * it returns. */
 #include "core/sound.h"
 
 #include <string.h>
@@ -156,6 +157,74 @@ static void retire_values_do_not_go_back(void **state)
     fixture_close(&f);
 }
 
+static void an_evicted_texture_is_unmapped_and_comes_back_with_its_next_map(void **state)
+{
+    (void)state;
+    SluiceTextureId id = open_loaded(true);
+    SOUND(&f, sluiceEvictStreamedTexture(f.manager, id, 0));
+    assert_int_equal(shown(id), 0); /* until it is unmapped */
+    SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 7));
+    assert_int_equal(f.count, 5);
+    for (uint32_t i = 0; i < 5; i++)
+        CHECK_STATE(&f, id, i, FREE);
+    CHECK_STATE(&f, id, 5, MAPPED); /* packed tiles are always mapped */
+    assert_int_equal(shown(id), 2);
+    SOUND(&f, sluiceCompleteRetireValue(f.manager, 7));
+    sound_feed(&f, id, 0, 8, 0);
+    for (uint32_t i = 0; i < 5; i++)
+        CHECK_STATE(&f, id, i, REQUESTED);
+    sound_load(&f);
+    assert_int_equal(shown(id), 0);
+    fixture_close(&f);
+}
+
+static void tiles_that_eviction_keeps_come_back_without_a_load(void **state)
+{
+    (void)state;
+    SluiceTextureId id = open_loaded(false);
+    SOUND(&f, sluiceEvictStreamedTexture(f.manager, id, UINT32_MAX));
+    for (uint32_t i = 0; i < 6; i++)
+        CHECK_STATE(&f, id, i, STANDBY);
+    SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 1));
+    assert_int_equal(f.count, 0);
+    SOUND(&f, sluiceEvictStreamedTexture(f.manager, id, 3));
+    SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 1));
+    assert_int_equal(f.count, 3); /* finer levels first */
+    for (uint32_t i = 0; i < 6; i++)
+        if (i < 3)
+            CHECK_STATE(&f, id, i, FREE);
+        else
+            CHECK_STATE(&f, id, i, STANDBY);
+    const uint64_t handed_out = fixture_statistics(&f).handedOutTotal;
+    sound_feed(&f, id, 1, 2, 0);
+    CHECK_STATE(&f, id, 4, MAPPED);
+    CHECK_STATE(&f, id, 5, MAPPED);
+    sound_load(&f);
+    assert_int_equal(fixture_statistics(&f).handedOutTotal, handed_out);
+    fixture_close(&f);
+}
+
+static void eviction_cancels_loads_and_leaves_followers_alone(void **state)
+{
+    (void)state;
+    fixture_open(&f, 32, false);
+    fixture_configure(&f, 100, 0, 2, 50);
+    SluiceTextureId id = fixture_add_small(&f), follower = fixture_add_small(&f);
+    CHECK_OK(sluiceSetPrimaryTexture(f.manager, follower, id));
+    sound_feed(&f, id, 0, 1, 0);
+    SOUND(&f, fixture_to_map(&f, id));
+    SOUND(&f, sluiceEvictStreamedTexture(f.manager, id, 0));
+    for (uint32_t i = 0; i < 6; i++) {
+        CHECK_STATE(&f, id, i, CANCELED);
+        CHECK_STATE(&f, follower, i, REQUESTED);
+    }
+    const SluiceTextureId wrong[] = {SLUICE_NO_TEXTURE, SLUICE_ALL_TEXTURES, id + 7};
+    for (uint32_t i = 0; i < 3; i++)
+        REFUSED(&f, 1, &id, sluiceEvictStreamedTexture(f.manager, wrong[i], 0),
+                SLUICE_ERROR_UNKNOWN_TEXTURE);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -167,6 +236,9 @@ int main(void)
         cmocka_unit_test(packed_tiles_that_are_always_mapped_keep_it),
         cmocka_unit_test(nothing_stays_of_it_in_host_memory),
         cmocka_unit_test(retire_values_do_not_go_back),
+        cmocka_unit_test(an_evicted_texture_is_unmapped_and_comes_back_with_its_next_map),
+        cmocka_unit_test(tiles_that_eviction_keeps_come_back_without_a_load),
+        cmocka_unit_test(eviction_cancels_loads_and_leaves_followers_alone),
     };
     return RUN_TESTS(tests);
 }

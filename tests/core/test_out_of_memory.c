@@ -105,6 +105,8 @@ static SluiceResult apply(struct fixture *f, const struct op *op, uint64_t *out)
     case 1:
         if (op->number % 4 == 1)
             return sluiceForgetStreamedTexture(m, op->a, op->retire);
+        if (op->number % 4 == 2)
+            return sluiceEvictStreamedTexture(m, op->a, op->number % 5);
         return op->number % 4 ? SLUICE_SUCCESS : sluiceRemoveStreamedTexture(m, op->a, op->retire);
     case 2:
     case 3: return feed(f, op);

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#define KIND_COUNT 22
+#define KIND_COUNT 23
 
 static uint64_t next_random(uint64_t *seed)
 {

@@ -113,7 +113,7 @@ static void what_changes_while_running_is_replayed(void **state)
     struct trace_buffer buffer;
     SluiceRecorder *recorder;
     const SluiceRecordWriter writer = trace_buffer_writer(&buffer);
-    uint32_t forgotten = 0;
+    uint32_t forgotten = 0, evicted = 0;
     random_app_init(&app, 8, false);
     CHECK_OK(sluiceBeginRecording(app.manager, &writer, NULL, &recorder));
     for (uint32_t i = 0; i < 60; i++) {
@@ -128,8 +128,11 @@ static void what_changes_while_running_is_replayed(void **state)
         CHECK_OK(sluiceEvacuateHeaps(app.manager, i));
         for (uint32_t k = 0; k < app.id_count; k++) /* 0 is complete, and never goes back */
             forgotten += sluiceForgetStreamedTexture(app.manager, app.ids[k], 0) == SLUICE_SUCCESS;
+        for (uint32_t k = i % 4; k < app.id_count; k += 4) /* some are stale */
+            evicted +=
+                sluiceEvictStreamedTexture(app.manager, app.ids[k], i % 12) == SLUICE_SUCCESS;
     }
-    assert_true(forgotten > 0);
+    assert_true(forgotten > 0 && evicted > 0);
     CHECK_OK(sluiceEndRecording(recorder));
 
     SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
