@@ -19,7 +19,8 @@ extern "C" {
 typedef struct SluiceNeuralImageSourceCreateInfo {
     uint32_t structSize;        ///< sizeof(SluiceNeuralImageSourceCreateInfo).
     const SluiceNeuralSet *set; ///< Required, unless ownedSet. Must outlive the source.
-    /** A set that the source destroys with itself; also when creation fails. Excludes `set`. */
+    /** A set that the source destroys with itself. Also destroyed if creation fails, unless pInfo
+     * is NULL or its structSize is wrong. Excludes `set`. */
     SluiceNeuralSet *ownedSet;
     uint32_t textureIndex; ///< Below the set's textureCount.
     /** SLUICE_NEURAL_WEIGHTS_INT8 gives the same texels on every machine. */

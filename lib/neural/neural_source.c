@@ -225,13 +225,13 @@ SluiceResult sluiceCreateNeuralImageSource(const SluiceNeuralImageSourceCreateIn
                                            SluiceImageSource **pSource)
 {
     SluiceNeuralImageSourceCreateInfo info;
-    if (!pInfo || !pSource)
+    if (!pInfo)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceResult result =
         slc_struct_read(SLC_STRUCT(SluiceNeuralImageSourceCreateInfo), &info, pInfo, &pInfo->log);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = check(&info);
+    result = pSource ? check(&info) : SLUICE_ERROR_NULL_POINTER;
     if (result == SLUICE_SUCCESS)
         result = create(&info, pSource);
     if (result != SLUICE_SUCCESS)

@@ -188,6 +188,30 @@ static void every_refused_allocation_of_a_source_is_survived(void **state)
     assert_true(allowed > 3);
 }
 
+/* Whatever is wrong with the other arguments, once the info could be read. */
+static void an_owned_set_is_destroyed_if_creation_fails(void **state)
+{
+    struct failing_allocator allocator;
+    (void)state;
+    example_size = write_worked_example(example);
+    for (int wrong = 0; wrong < 4; wrong++) {
+        SluiceNeuralSet *set = NULL, *other = NULL;
+        SluiceImageSource *source = NULL;
+        failing_allocator_init(&allocator, UINT64_MAX);
+        CHECK_OK(open_neural_bytes(example, example_size, &allocator.callbacks, &set));
+        CHECK_OK(open_neural_bytes(example, example_size, NULL, &other));
+        SluiceNeuralImageSourceCreateInfo info = {
+            .structSize = sizeof info,
+            .set = wrong == 1 ? other : NULL,
+            .ownedSet = set,
+            .textureIndex = wrong == 2,
+            .weights = wrong == 3 ? SLUICE_NEURAL_WEIGHTS_FP8 : SLUICE_NEURAL_WEIGHTS_INT8};
+        assert_true(sluiceCreateNeuralImageSource(&info, wrong ? &source : NULL) < 0);
+        assert_int_equal(allocator.live_count, 0);
+        sluiceDestroyNeuralSet(other);
+    }
+}
+
 static void textures_that_do_not_exist_are_refused(void **state)
 {
     SluiceNeuralSet *set = NULL;
@@ -214,6 +238,7 @@ int main(void)
         cmocka_unit_test(texels_are_those_of_the_decoder),
         cmocka_unit_test(hdr_textures_are_linear_floats),
         cmocka_unit_test(every_refused_allocation_of_a_source_is_survived),
+        cmocka_unit_test(an_owned_set_is_destroyed_if_creation_fails),
         cmocka_unit_test(textures_that_do_not_exist_are_refused),
     };
     return RUN_TESTS(tests);
