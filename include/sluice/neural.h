@@ -480,8 +480,8 @@ typedef struct SluiceNeuralWriteInfo {
  * bytes of SluiceNeuralWriteInfo::pLatents. Mips use latents by the rules of the format's own
  * compressors.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT.
- * Thread safety: any thread.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, also for more than 2^29 bytes
+ * of latents. Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluicePlanNeuralFile(const SluiceNeuralWriteInfo *pInfo,
                                              SluiceNeuralConstants *pConstants,
@@ -490,13 +490,15 @@ SLUICE_API SluiceResult sluicePlanNeuralFile(const SluiceNeuralWriteInfo *pInfo,
 /**
  * Writes a file. Equal arguments give equal bytes. Latents of schema 3 have checksums.
  *
- * Memory: the latents, and a description of a few KiB. The file is written as `pPath` +
+ * Memory: the latents, at most 2^30 bytes, and a description, at most 1 MiB with the names of
+ * textures. The file is written as `pPath` +
  * ".sluice-part", then synced to disk and renamed.
  *
  * Returns SLUICE_NOT_READY, with nothing written, if no file descriptor is free.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, also without weights; SLUICE_ERROR_INVALID_ARGUMENT, also for
- *         codes that do not fit into their bits and weights that are no numbers;
+ *         codes that do not fit into their bits, weights that are no numbers, and more memory than
+ *         that;
  *         SLUICE_ERROR_FILE_NOT_FOUND if the folder does not exist; SLUICE_ERROR_BUSY if another
  *         writer has the file open; SLUICE_ERROR_IO; SLUICE_ERROR_OUT_OF_HOST_MEMORY; results of
  *         pfnWrite.

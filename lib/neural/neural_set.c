@@ -12,7 +12,6 @@
 #define HEADER_SIZE 40u
 #define MAGIC 0x5845544Eu /* NTEX */
 #define VERSION 0x100u
-#define MAX_TEXT_SIZE (1u << 20)
 
 /* Chunks end inside the file, but for padding that versions 0.9.0 and 0.9.1 left out. */
 static SluiceResult check_header(SluiceNeuralSet *set, const unsigned char header[HEADER_SIZE],
@@ -36,10 +35,10 @@ static SluiceResult check_header(SluiceNeuralSet *set, const unsigned char heade
         return slc_input_fail(&set->file, SLUICE_ERROR_CORRUPT_DATA,
                               "has its data outside of the file");
     set->data_size = slc_min_u64(set->data_size, size - set->data_offset);
-    if (*text_size > MAX_TEXT_SIZE)
+    if (*text_size > SLC_NEURAL_MAX_TEXT_SIZE)
         return slc_input_fail(&set->file, SLUICE_ERROR_LIMIT_EXCEEDED,
                               "has a description of %llu bytes; at most %u are read",
-                              (unsigned long long)*text_size, MAX_TEXT_SIZE);
+                              (unsigned long long)*text_size, SLC_NEURAL_MAX_TEXT_SIZE);
     return SLUICE_SUCCESS;
 }
 

@@ -10,6 +10,7 @@
 #include <stdatomic.h>
 
 #define SLC_NEURAL_MAX_GRIDS 16
+#define SLC_NEURAL_MAX_TEXT_SIZE (1u << 20) /* bytes of a description */
 #define SLC_NEURAL_MAX_PARTS SLC_NEURAL_MAX_LAYER_VIEWS
 
 /**

@@ -192,6 +192,21 @@ static SluiceResult check_weights(const SluiceNeuralWriteInfo *info, const Sluic
     return SLUICE_SUCCESS;
 }
 
+/* Names of textures may be too long for readers. */
+static SluiceResult describe(const SluiceNeuralWriteInfo *info, const SluiceNeuralSet *set,
+                             const struct slc_neural_pieces *pieces, struct slc_neural_text *text)
+{
+    slc_neural_describe(text, set, pieces);
+    if (text->failed)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (text->size <= SLC_NEURAL_MAX_TEXT_SIZE)
+        return SLUICE_SUCCESS;
+    return slc_log_refusal(&info->log,
+                           "the description has %zu bytes, most of them names of textures; at "
+                           "most %u are read",
+                           text->size, SLC_NEURAL_MAX_TEXT_SIZE);
+}
+
 static SluiceResult write_set(const SluiceNeuralWriteInfo *info, const SluiceNeuralSet *set,
                               const SluiceAllocationCallbacks *cb)
 {
@@ -201,7 +216,7 @@ static SluiceResult write_set(const SluiceNeuralWriteInfo *info, const SluiceNeu
     for (uint32_t i = 0; i < set->grid_count; i++)
         views.size += view_size(&set->grids[i]) * set->grids[i].part_count;
     if (views.size > 2 * SLC_NEURAL_MAX_LATENTS)
-        return slc_log_refusal(&info->log, "latents have %llu bytes; at most 2^29 are possible",
+        return slc_log_refusal(&info->log, "latents have %llu bytes; at most 2^30 are written",
                                (unsigned long long)views.size);
     views.bytes = slc_calloc(cb, (size_t)views.size, 1);
     if (!views.bytes)
@@ -213,10 +228,10 @@ static SluiceResult write_set(const SluiceNeuralWriteInfo *info, const SluiceNeu
         if (info->pFp8Weights)
             add_network(&pieces, set, SLUICE_NEURAL_WEIGHTS_FP8, info->pFp8Weights);
         add_latents(&pieces, set, views.bytes);
-        slc_neural_describe(&text, set, &pieces);
-        result =
-            text.failed ? SLUICE_ERROR_OUT_OF_HOST_MEMORY : write_pieces(info, &text, &pieces, cb);
+        result = describe(info, set, &pieces, &text);
     }
+    if (result == SLUICE_SUCCESS)
+        result = write_pieces(info, &text, &pieces, cb);
     slc_neural_text_finish(&text);
     slc_free(cb, views.bytes, (size_t)views.size, 1);
     return result;

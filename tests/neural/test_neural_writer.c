@@ -268,6 +268,41 @@ static void wrong_arguments_are_refused(void **state)
     free_made_parts(&parts);
 }
 
+/* The longest names that are written are read again. */
+static void names_are_as_long_as_can_be_read(void **state)
+{
+    enum { LIMIT = 1 << 20 };
+    struct made_parts parts;
+    (void)state;
+    make_parts(&parts, &made_shapes[0], 1);
+    char *name = malloc(LIMIT + 1);
+    assert_non_null(name);
+    parts.textures[0].pName = name;
+    uint32_t length = LIMIT, step = LIMIT;
+    for (; step > 0; step /= 2) { /* the most for which the call succeeds */
+        struct made_file file = {0};
+        memset(name, 'n', length);
+        name[length] = '\0';
+        SluiceResult result = write_made_file(&parts, &file);
+        if (result == SLUICE_SUCCESS) {
+            SluiceNeuralSet *set = NULL;
+            SluiceNeuralTexture texture = {.structSize = sizeof texture};
+            CHECK_OK(open_neural_bytes(file.bytes, file.size, NULL, &set));
+            CHECK_OK(sluiceGetNeuralTexture(set, 0, &texture));
+            assert_string_equal(texture.pName, name);
+            sluiceDestroyNeuralSet(set);
+        } else {
+            CHECK_RESULT(result, SLUICE_ERROR_INVALID_ARGUMENT);
+            assert_int_equal(file.size, 0);
+        }
+        free(file.bytes);
+        length = result == SLUICE_SUCCESS ? length + step / 2 : length - step / 2;
+    }
+    assert_in_range(length, LIMIT - 16384, LIMIT - 1);
+    free(name);
+    free_made_parts(&parts);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -279,6 +314,7 @@ int main(void)
         cmocka_unit_test(every_refused_allocation_is_survived),
         cmocka_unit_test(plans_take_no_memory),
         cmocka_unit_test(wrong_arguments_are_refused),
+        cmocka_unit_test(names_are_as_long_as_can_be_read),
     };
     return RUN_TESTS(tests);
 }
