@@ -26,10 +26,10 @@ typedef struct SluiceVulkanNeuralDecoderCreateInfo {
     /** Required, of all mips. Copied, as all that follows. */
     const SluiceNeuralConstants *pConstants;
     const void *pLatents; ///< Required. The latents that the constants describe.
-    uint64_t latentSize;  ///< Bytes, a multiple of 4, above 0.
+    uint64_t latentSize;  ///< Bytes, a multiple of 4, above 0 and below 2^32.
     const void *pWeights; ///< Required. Weights of SLUICE_NEURAL_WEIGHTS_INT8.
     uint64_t weightSize;  ///< Bytes.
-    uint64_t scratchSize; ///< Bytes of a buffer for decoded tiles. Default: 4 MiB.
+    uint64_t scratchSize; ///< Bytes of a buffer for tiles: 64 KiB to 256 MiB. Default: 4 MiB.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
 } SluiceVulkanNeuralDecoderCreateInfo;
 
@@ -38,7 +38,9 @@ typedef struct SluiceVulkanNeuralDecoderCreateInfo {
  * sluiceDestroyVulkanNeuralDecoder. Its buffers count as memory of the context.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for
- *         constants that do not fit latents and weights, or mips that are missing;
+ *         constants that do not fit latents and weights, a size out of range, or mips that are
+ *         missing; SLUICE_ERROR_LIMIT_EXCEEDED, with a log message, if latents or scratch are above
+ *         the device's maxStorageBufferRange;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY, SLUICE_ERROR_OUT_OF_DEVICE_MEMORY, SLUICE_ERROR_VULKAN.
  * Thread safety: external on the context.
  */

@@ -11,6 +11,7 @@
 
 #define DEFAULT_SCRATCH (UINT64_C(4) << 20)
 #define MAX_SCRATCH (UINT64_C(256) << 20)
+#define MAX_SLICE (UINT64_C(1) << 29) /* bytes: shaders count bits in 32 bits */
 
 /* Bytes of weights, scales and biases of the network. 0: there is no such network. */
 static uint64_t weight_size(const SluiceNeuralConstants *constants)
@@ -26,6 +27,15 @@ static uint64_t weight_size(const SluiceNeuralConstants *constants)
     return size;
 }
 
+/* Shaders keep the inputs of a texel in an array that has room for these and no more. */
+static bool inputs_are_right(const SluiceNeuralConstants *c)
+{
+    if (c->schema == 3)
+        return c->networkFeatures == 16 && c->lowFeatures == c->highFeatures && c->highBits == 4 &&
+               c->lowBits == 4;
+    return c->networkFeatures == (c->inputCount - 32) / 4;
+}
+
 static bool features_are_right(uint32_t features, uint32_t bits)
 {
     return features >= 4 && features <= 16 && features % 4 == 0 &&
@@ -38,10 +48,17 @@ static SluiceResult check_slice(const SluiceVulkanNeuralDecoderCreateInfo *info,
 {
     const SluiceNeuralSlice *slice = &info->pConstants->slices[index];
     uint64_t width = slice->sliceSize & 0xFFFFu, height = slice->sliceSize >> 16;
-    uint64_t end = slice->dataOffset + (width * height * features * bits + 31) / 32 * 4;
+    uint64_t size = (width * height * features * bits + 31) / 32 * 4;
+    uint64_t end = slice->dataOffset + size;
     if (slice->sliceSize != slice->gridSize || slice->origin || !width || !height)
         return slc_log_refusal(&info->context->vk.log,
                                "pConstants->slices[%u] is not the whole of its grid", index);
+    if (width > SLUICE_NEURAL_MAX_SIZE || height > SLUICE_NEURAL_MAX_SIZE || size > MAX_SLICE)
+        return slc_log_refusal(&info->context->vk.log,
+                               "pConstants->slices[%u] has %u x %u texels and %llu bytes; the "
+                               "limits are %u texels and 2^29 bytes",
+                               index, (uint32_t)width, (uint32_t)height, (unsigned long long)size,
+                               SLUICE_NEURAL_MAX_SIZE);
     if (slice->dataOffset % 4 || end > info->latentSize)
         return slc_log_refusal(&info->context->vk.log,
                                "pConstants->slices[%u] ends at byte %llu, but latentSize is %llu",
@@ -66,7 +83,7 @@ static SluiceResult check_constants(const SluiceVulkanNeuralDecoderCreateInfo *i
         c->residentMipCount != c->mipCount)
         return slc_log_refusal(log, "pConstants has mips %u to %u of %u; all are needed",
                                c->firstMip, c->firstMip + c->residentMipCount, c->mipCount);
-    if (c->channelCount - 1 >= SLUICE_NEURAL_MAX_CHANNELS || c->networkFeatures > 16 ||
+    if (c->channelCount - 1 >= SLUICE_NEURAL_MAX_CHANNELS || !inputs_are_right(c) ||
         !features_are_right(c->highFeatures, c->highBits) ||
         !features_are_right(c->lowFeatures, c->lowBits) || c->highFeatures > c->networkFeatures)
         return slc_log_refusal(log, "pConstants has channels or features that no set has");
@@ -84,7 +101,19 @@ static SluiceResult check_constants(const SluiceVulkanNeuralDecoderCreateInfo *i
     return SLUICE_SUCCESS;
 }
 
-/* Errors: NULL_POINTER, INVALID_ARGUMENT. */
+/* Errors: LIMIT_EXCEEDED. */
+static SluiceResult check_range(const SluiceVulkanNeuralDecoderCreateInfo *info)
+{
+    const uint32_t most = info->context->caps.max_storage_buffer_range;
+    if (info->latentSize <= most && info->scratchSize <= most)
+        return SLUICE_SUCCESS;
+    slc_log(&info->context->vk.log, SLUICE_LOG_ERROR,
+            "latentSize is %llu and scratchSize is %llu; maxStorageBufferRange of the device is %u",
+            (unsigned long long)info->latentSize, (unsigned long long)info->scratchSize, most);
+    return SLUICE_ERROR_LIMIT_EXCEEDED;
+}
+
+/* Errors: NULL_POINTER, INVALID_ARGUMENT, LIMIT_EXCEEDED. */
 static SluiceResult read_info(SluiceVulkanNeuralDecoderCreateInfo *info,
                               const SluiceVulkanNeuralDecoderCreateInfo *given)
 {
@@ -106,7 +135,8 @@ static SluiceResult read_info(SluiceVulkanNeuralDecoderCreateInfo *info,
     if (info->latentSize == 0 || info->latentSize % 4 || info->latentSize > UINT32_MAX)
         return slc_log_refusal(log, "latentSize is %llu; it must be a multiple of 4 below 2^32",
                                (unsigned long long)info->latentSize);
-    return check_constants(info);
+    result = check_constants(info);
+    return result == SLUICE_SUCCESS ? check_range(info) : result;
 }
 
 static SluiceResult upload(SluiceVulkanNeuralDecoder *d, enum slc_neural_buffer which,

@@ -215,6 +215,65 @@ static void wrong_decoders_are_refused(void **state)
     close_set(&rig);
 }
 
+/* What the decoder in C refuses. In a shader it would be memory beside the latents or the inputs.
+ */
+static void constants_that_contradict_themselves_are_refused(void **state)
+{
+    struct harness *h = *state;
+    struct rig rig;
+    SluiceVulkanNeuralDecoder *decoder = NULL;
+    if (!open_set(&rig, SMALL))
+        SKIP_TEST("the sample is not there");
+    enum { LATENTS = 1 << 20 };
+    void *latents = calloc(1, LATENTS);
+    assert_non_null(latents);
+    h->quiet = true;
+    for (int wrong = 0; wrong < 5; wrong++) {
+        SluiceNeuralConstants constants = rig.decodable.constants;
+        SluiceVulkanNeuralDecoderCreateInfo info = decoder_info(&rig, h->context);
+        SluiceNeuralSlice *slice = &constants.slices[constants.mips[0].firstSlice];
+        info.pConstants = &constants;
+        info.pLatents = latents;
+        info.latentSize = LATENTS;
+        switch (wrong) {
+        case 0: constants.networkFeatures = 8; break;
+        case 1: constants.lowFeatures = constants.highFeatures == 4 ? 8 : 4; break;
+        case 2: constants.highBits = constants.lowBits = 2; break;
+        case 3: slice->gridSize = slice->sliceSize = 32769 | 1 << 16; break;
+        default: slice->gridSize = slice->sliceSize = 1u | 40000u << 16;
+        }
+        SluiceResult result = sluiceCreateVulkanNeuralDecoder(&info, &decoder);
+        if (result != SLUICE_ERROR_INVALID_ARGUMENT)
+            fail_msg("%d: %s", wrong, sluiceGetResultName(result));
+    }
+    h->quiet = false;
+    free(latents);
+    close_set(&rig);
+}
+
+static void buffers_beyond_the_range_of_the_device_are_refused(void **state)
+{
+    struct harness *h = *state;
+    struct rig rig;
+    SluiceVulkanNeuralDecoder *decoder = NULL;
+    VkPhysicalDeviceProperties properties;
+    h->GetPhysicalDeviceProperties(h->physical_device, &properties);
+    const uint32_t most = properties.limits.maxStorageBufferRange;
+    if (most >= 256u << 20)
+        SKIP_TEST("the largest scratch buffer is within the device's range");
+    if (!open_set(&rig, SMALL))
+        SKIP_TEST("the sample is not there");
+    SluiceVulkanNeuralDecoderCreateInfo info = decoder_info(&rig, h->context);
+    info.scratchSize = most + 1ull;
+    h->quiet = true;
+    CHECK_RESULT(sluiceCreateVulkanNeuralDecoder(&info, &decoder), SLUICE_ERROR_LIMIT_EXCEEDED);
+    h->quiet = false;
+    info.scratchSize = 256u << 10;
+    CHECK_OK(sluiceCreateVulkanNeuralDecoder(&info, &decoder));
+    sluiceDestroyVulkanNeuralDecoder(decoder);
+    close_set(&rig);
+}
+
 static void wrong_outputs_are_refused(void **state)
 {
     struct harness *h = *state;
@@ -287,6 +346,8 @@ int main(void)
         cmocka_unit_test(texels_are_those_of_the_decoder_in_C),
         cmocka_unit_test(blocks_are_near_to_them),
         cmocka_unit_test(wrong_decoders_are_refused),
+        cmocka_unit_test(constants_that_contradict_themselves_are_refused),
+        cmocka_unit_test(buffers_beyond_the_range_of_the_device_are_refused),
         cmocka_unit_test(wrong_outputs_are_refused),
         cmocka_unit_test(every_refused_allocation_is_survived),
     };
