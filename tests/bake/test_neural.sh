@@ -28,6 +28,10 @@ fact nothing_else_is_left_behind $?
 ! "$bake" --neural "$work/color.ppm" "$work/small.pgm" -o "$work/other.ntc" 2>"$work/err" &&
     grep -q 'small: is 16 x 16, the pictures before are 32 x 32' "$work/err" && [ ! -e "$work/other.ntc" ]
 fact pictures_of_other_sizes_are_refused $?
+mkdir "$work/other" && cp "$work/rough.pgm" "$work/other/color.pgm"
+! "$bake" --neural "$work/color.ppm" "$work/other/color.pgm" -o "$work/other.ntc" 2>"$work/err" &&
+    grep -q 'color: two pictures of a set have this name' "$work/err" && [ ! -e "$work/other.ntc" ]
+fact pictures_of_one_name_are_refused $?
 "$bake" --neural --array "$work/color.ppm" -o "$work/other.ntc" 2>"$work/err"
 [ $? -eq 2 ] && grep -q -e '--neural, one of them' "$work/err"
 fact contradicting_options_are_refused $?

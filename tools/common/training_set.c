@@ -6,8 +6,21 @@
 
 #define STRIDE SLUICE_NEURAL_MAX_CHANNELS
 
+/* Textures are opened by their names. */
+static bool has_name(const struct training_set *set, const char *name)
+{
+    for (uint32_t i = 0; i < set->texture_count; i++)
+        if (strncmp(set->names[i], name, sizeof set->names[i] - 1) == 0)
+            return true;
+    return false;
+}
+
 static bool fits(const struct training_set *set, const struct training_picture *picture)
 {
+    if (has_name(set, picture->name)) {
+        fprintf(stderr, "%s: two pictures of a set have this name; rename one\n", picture->name);
+        return false;
+    }
     bool is_size =
         set->texture_count == 0 || (set->width == picture->width && set->height == picture->height);
     if (!is_size)
