@@ -340,9 +340,9 @@ SLUICE_API SluiceResult sluiceForgetStreamedTexture(SluiceStreamedTextureManager
  * lists its STANDBY tiles for unmapping until at most `keepTileCount` are left, finer levels first.
  * UINT32_MAX keeps all of them STANDBY.
  *
- * Tiles that are being loaded are CANCELED. Packed tiles stay wanted if alwaysMapPackedTiles is on.
- * Textures that follow it keep what they request. The next map requests tiles as usual, and
- * restores those that are still STANDBY.
+ * Textures that follow it are evicted, too, and keep as many tiles each. Tiles that are being
+ * loaded are CANCELED. Packed tiles stay wanted if alwaysMapPackedTiles is on. The next map
+ * requests tiles as usual, and restores those that are still STANDBY.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.
  */

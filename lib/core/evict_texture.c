@@ -37,15 +37,22 @@ static void list_tiles(slc_manager *m, const struct slc_managed_texture *t, uint
     }
 }
 
+static void evict(slc_manager *m, struct slc_managed_texture *t, uint32_t keep)
+{
+    if (t->held_regions > 0)
+        slc_wants_drop(m, t);
+    list_tiles(m, t, keep);
+}
+
 static SluiceResult evict_texture(slc_manager *m, SluiceTextureId id, uint32_t keep)
 {
     struct slc_managed_texture *t;
     SluiceResult result = slc_find_texture(m, id, &t);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (t->held_regions > 0)
-        slc_wants_drop(m, t);
-    list_tiles(m, t, keep);
+    evict(m, t, keep);
+    for (uint32_t i = t->first_follower; i != SLC_NONE; i = slc_texture_at(m, i)->next_follower)
+        evict(m, slc_texture_at(m, i), keep);
     return SLUICE_SUCCESS;
 }
 

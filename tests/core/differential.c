@@ -536,6 +536,7 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_TEXTURE_FORGOTTEN] = "tiles of textures forgotten",
     [NAIVE_TEXTURE_EVICTED] = "textures evicted",
     [NAIVE_TEXTURE_LISTED] = "tiles of textures listed",
+    [NAIVE_FOLLOWER_EVICTED] = "followers evicted",
     [NAIVE_RETRIED_ALL] = "textures whose given-up tiles were all tried again",
 };
 

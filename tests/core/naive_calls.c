@@ -115,14 +115,8 @@ static SluiceResult forget_texture(struct naive_manager *n, const struct call *c
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult evict_texture(struct naive_manager *n, const struct call *call)
+static void evict(struct naive_manager *n, struct naive_texture *t, uint32_t keep)
 {
-    SluiceResult result;
-    if (call->null != NULL_NONE)
-        return SLUICE_ERROR_NULL_POINTER;
-    struct naive_texture *t = naive_find(n, call->texture, &result);
-    if (!t)
-        return result;
     if (naive_holds_anything(t)) {
         naive_drop_wants(n, t);
         n->events[NAIVE_TEXTURE_EVICTED]++;
@@ -132,12 +126,43 @@ static SluiceResult evict_texture(struct naive_manager *n, const struct call *ca
         left += t->tiles[i].state == SLUICE_TILE_STATE_STANDBY && !t->tiles[i].listed;
     for (uint32_t i = 0; i < t->layout.tileCount; i++) {
         struct naive_tile *tile = &t->tiles[i];
-        if (left <= call->keep || tile->state != SLUICE_TILE_STATE_STANDBY || tile->listed)
+        if (left <= keep || tile->state != SLUICE_TILE_STATE_STANDBY || tile->listed)
             continue;
         tile->listed = true;
         tile->listed_at = ++n->stamp;
         left--;
         n->events[NAIVE_TEXTURE_LISTED]++;
+    }
+}
+
+/* The follower of `t` that came after `f`; the first one after `t` itself. */
+static struct naive_texture *next_follower(const struct naive_manager *n,
+                                           const struct naive_texture *t,
+                                           const struct naive_texture *f)
+{
+    struct naive_texture *next = NULL;
+    for (uint32_t i = 0; i < n->texture_room; i++) {
+        struct naive_texture *other = n->textures[i];
+        if (other && other->primary == t->id &&
+            (f == t || other->follower_since > f->follower_since) &&
+            (!next || other->follower_since < next->follower_since))
+            next = other;
+    }
+    return next;
+}
+
+static SluiceResult evict_texture(struct naive_manager *n, const struct call *call)
+{
+    SluiceResult result;
+    if (call->null != NULL_NONE)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct naive_texture *t = naive_find(n, call->texture, &result);
+    if (!t)
+        return result;
+    evict(n, t, call->keep);
+    for (struct naive_texture *f = t; (f = next_follower(n, t, f));) {
+        evict(n, f, call->keep);
+        n->events[NAIVE_FOLLOWER_EVICTED]++;
     }
     return SLUICE_SUCCESS;
 }

@@ -119,6 +119,7 @@ enum naive_event {
     NAIVE_TEXTURE_FORGOTTEN, ///< tiles
     NAIVE_TEXTURE_EVICTED,   ///< that held anything
     NAIVE_TEXTURE_LISTED,    ///< its tiles, for unmapping
+    NAIVE_FOLLOWER_EVICTED,  ///< with its primary
     NAIVE_EVENT_COUNT
 };
 

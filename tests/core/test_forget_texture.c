@@ -204,7 +204,7 @@ static void tiles_that_eviction_keeps_come_back_without_a_load(void **state)
     fixture_close(&f);
 }
 
-static void eviction_cancels_loads_and_leaves_followers_alone(void **state)
+static void eviction_cancels_loads_of_followers_too(void **state)
 {
     (void)state;
     fixture_open(&f, 32, false);
@@ -212,11 +212,17 @@ static void eviction_cancels_loads_and_leaves_followers_alone(void **state)
     SluiceTextureId id = fixture_add_small(&f), follower = fixture_add_small(&f);
     CHECK_OK(sluiceSetPrimaryTexture(f.manager, follower, id));
     sound_feed(&f, id, 0, 1, 0);
-    SOUND(&f, fixture_to_map(&f, id));
+    SOUND(&f, fixture_to_map(&f, follower));
     SOUND(&f, sluiceEvictStreamedTexture(f.manager, id, 0));
     for (uint32_t i = 0; i < 6; i++) {
-        CHECK_STATE(&f, id, i, CANCELED);
-        CHECK_STATE(&f, follower, i, REQUESTED);
+        CHECK_STATE(&f, id, i, FREE);
+        CHECK_STATE(&f, follower, i, CANCELED);
+    }
+    sound_feed(&f, id, 0, 2, 0);
+    SOUND(&f, sluiceEvictStreamedTexture(f.manager, follower, 0));
+    for (uint32_t i = 0; i < 6; i++) {
+        CHECK_STATE(&f, id, i, REQUESTED);
+        CHECK_STATE(&f, follower, i, CANCELED);
     }
     const SluiceTextureId wrong[] = {SLUICE_NO_TEXTURE, SLUICE_ALL_TEXTURES, id + 7};
     for (uint32_t i = 0; i < 3; i++)
@@ -238,7 +244,7 @@ int main(void)
         cmocka_unit_test(retire_values_do_not_go_back),
         cmocka_unit_test(an_evicted_texture_is_unmapped_and_comes_back_with_its_next_map),
         cmocka_unit_test(tiles_that_eviction_keeps_come_back_without_a_load),
-        cmocka_unit_test(eviction_cancels_loads_and_leaves_followers_alone),
+        cmocka_unit_test(eviction_cancels_loads_of_followers_too),
     };
     return RUN_TESTS(tests);
 }
