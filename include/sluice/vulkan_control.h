@@ -119,6 +119,61 @@ SLUICE_API SluiceResult sluiceGetVulkanRequestProgress(const SluiceVulkanStreame
                                                        SluiceTextureRequestId requestId,
                                                        SluiceVulkanRequestProgress *pProgress);
 
+/** What an application decides about a texture and those that follow it. All zero: nothing. */
+typedef struct SluiceVulkanTextureControl {
+    uint32_t structSize; ///< sizeof(SluiceVulkanTextureControl).
+    /** Finer levels are not loaded, whatever feedback and requests say. Above the last level:
+     * packed levels alone. */
+    uint32_t finestLevel;
+    /** Levels added to what feedback requests, not to requests of the application. -32 to 32. */
+    int32_t mipBias;
+    /**
+     * The texture cannot be in view. Its feedback is not read back: it leaves its turn to others.
+     * What its feedback requested is dropped, and its tiles stay as standby tiles until others need
+     * the memory. Requests of the application still count. Set it back before the texture may be in
+     * view again: its first map then restores what is still resident.
+     */
+    bool hidden;
+} SluiceVulkanTextureControl;
+
+/**
+ * Gets what was set last. Set structSize first.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the texture follows another one, or
+ *         for a wrong structSize.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanTextureControl(const SluiceVulkanStreamer *streamer,
+                                                      SluiceTextureId textureId,
+                                                      SluiceVulkanTextureControl *pControl);
+
+/**
+ * Sets what the application decides about a texture. Takes effect when the next frame begins. Tiles
+ * that are too fine for new limits become standby tiles at once. Recordings hold the effect as
+ * feedback maps and evictions.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a mipBias out of range, if the
+ *         texture follows another one (control its primary), or for a wrong structSize;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. Nothing has changed after an error.
+ */
+SLUICE_API SluiceResult sluiceSetVulkanTextureControl(SluiceVulkanStreamer *streamer,
+                                                      SluiceTextureId textureId,
+                                                      const SluiceVulkanTextureControl *pControl);
+
+/**
+ * Evicts tiles of a texture, and of those that follow it: drops what feedback requested, and
+ * evicts standby tiles until at most `keepTileCount` are left of each texture, finer levels first.
+ * The next frame unmaps them. UINT32_MAX: keep all as standby tiles.
+ *
+ * Packed levels stay, unless packedLevelsOnDemand is set. If the texture is still in view, or
+ * requests of the application count, its tiles are loaded again.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE.
+ */
+SLUICE_API SluiceResult sluiceEvictVulkanTexture(SluiceVulkanStreamer *streamer,
+                                                 SluiceTextureId textureId, uint32_t keepTileCount);
+
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

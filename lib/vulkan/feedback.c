@@ -71,6 +71,25 @@ void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture)
     texture->feedback_whole = s->debug.wholeFeedbackMaps;
 }
 
+void slc_feedback_join(SluiceVulkanStreamer *s, uint32_t index)
+{
+    s->list_version++;
+    s->textures[index].primary_place = s->primary_count;
+    s->primaries[s->primary_count++] = index;
+}
+
+void slc_feedback_leave(SluiceVulkanStreamer *s, uint32_t index)
+{
+    uint32_t place = s->textures[index].primary_place;
+    if (place == SLC_NONE)
+        return;
+    s->list_version++;
+    uint32_t last = s->primaries[--s->primary_count];
+    s->primaries[place] = last;
+    s->textures[last].primary_place = place;
+    s->textures[index].primary_place = SLC_NONE;
+}
+
 uint64_t slc_feedback_size(const SluiceVulkanStreamer *s, uint32_t region_count)
 {
     return (uint64_t)region_count *
@@ -129,11 +148,26 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
         }
         ask_for_all(s, texture, s->debug.wholeFeedbackMaps);
         s->counts.feedbackWords += resolved.count;
+        if (texture->hidden)
+            continue;
         SluiceResult result = give_map_of(s, texture, slot->time_stamp);
         if (result < 0)
             return result;
     }
     return SLUICE_SUCCESS;
+}
+
+static SluiceResult give_due_map(SluiceVulkanStreamer *s, struct slc_texture *texture,
+                                 uint64_t time_stamp)
+{
+    if (texture->drop_due) {
+        SluiceResult result = sluiceEvictStreamedTexture(s->manager, texture->id, UINT32_MAX);
+        if (result < 0)
+            return slc_streamer_check(s, result, "sluiceEvictStreamedTexture");
+        texture->drop_due = false;
+    }
+    bool empty = texture->hidden && !texture->first_request;
+    return empty ? SLUICE_SUCCESS : give_map_of(s, texture, time_stamp);
 }
 
 /* Maps that do not wait for feedback. Their time is none before that of feedback to come. */
@@ -146,7 +180,7 @@ static SluiceResult give_due_maps(SluiceVulkanStreamer *s)
     for (uint32_t i = 0; i < count; i++) {
         struct slc_texture *texture = &s->textures[s->due_maps[i]];
         if (result >= 0)
-            result = give_map_of(s, texture, time_stamp);
+            result = give_due_map(s, texture, time_stamp);
         texture->map_due = result != SLUICE_SUCCESS;
         if (texture->map_due)
             s->due_maps[kept++] = s->due_maps[i];

@@ -74,9 +74,13 @@ struct slc_texture {
     uint16_t whole_shown; ///< the largest texel of its MinMip map, as the texture table has it
     struct slc_feedback_map feedback; ///< of primaries; its levels are part of feedback_levels
     bool feedback_whole;              ///< the next resolve must bring the whole map
-    uint32_t primary_place;           ///< in primaries; SLC_NONE for followers
+    uint32_t primary_place;           ///< in primaries; SLC_NONE: it has no turns
     uint32_t first_request;           ///< place + 1 of a request; 0: none
     bool map_due;                     ///< in due_maps
+    bool drop_due;                    ///< what earlier maps requested does not count any longer
+    uint8_t finest_level;             ///< SluiceVulkanTextureControl of primaries, as the next two
+    int8_t mip_bias;
+    bool hidden;
     uint64_t added_frame;    ///< the last one begun before; its feedback and table entry come later
     uint64_t recorded_frame; ///< that recorded its layout and table entry; 0: in new_textures
     uint64_t cleared_frame;  ///< that cleared its feedback; 0: none did
@@ -319,6 +323,9 @@ SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer command
 void slc_min_mip_abandon(SluiceVulkanStreamer *s, uint64_t frame);
 
 /* feedback.c: which textures' feedback is resolved, and what the manager gets of it */
+/** The texture has turns from now on, or none any longer. */
+void slc_feedback_join(SluiceVulkanStreamer *s, uint32_t index);
+void slc_feedback_leave(SluiceVulkanStreamer *s, uint32_t index);
 void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture);
 void slc_feedback_record_new(SluiceVulkanStreamer *s, const struct slc_texture *texture,
                              VkCommandBuffer commands);

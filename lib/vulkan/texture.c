@@ -117,25 +117,6 @@ static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *
     return result;
 }
 
-static void add_primary(SluiceVulkanStreamer *s, uint32_t index)
-{
-    s->list_version++;
-    s->textures[index].primary_place = s->primary_count;
-    s->primaries[s->primary_count++] = index;
-}
-
-static void remove_primary(SluiceVulkanStreamer *s, uint32_t index)
-{
-    uint32_t place = s->textures[index].primary_place;
-    if (place == SLC_NONE)
-        return;
-    s->list_version++;
-    uint32_t last = s->primaries[--s->primary_count];
-    s->primaries[place] = last;
-    s->textures[last].primary_place = place;
-    s->textures[index].primary_place = SLC_NONE;
-}
-
 static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
 {
     struct slc_texture *texture = &s->textures[index];
@@ -300,7 +281,7 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
     s->new_textures[s->new_texture_count++] = index;
     texture->primary_place = SLC_NONE;
     if (texture->primary_id == SLUICE_NO_TEXTURE)
-        add_primary(s, index);
+        slc_feedback_join(s, index);
     else
         slc_forgetting_keep(s, s->by_manager_index[(uint32_t)texture->primary_id]);
     *public = (SluiceVulkanTexture){
@@ -397,7 +378,7 @@ static void free_followers(SluiceVulkanStreamer *s, SluiceTextureId primary)
         if (texture->state != SLC_TEXTURE_LIVE || texture->primary_id != primary)
             continue;
         texture->primary_id = SLUICE_NO_TEXTURE;
-        add_primary(s, i);
+        slc_feedback_join(s, i);
     }
 }
 
@@ -425,7 +406,7 @@ static SluiceResult remove_layer(SluiceVulkanStreamer *s, uint32_t index)
     slc_texture_array_clear(&s->texture_array, index, texture->views.cube);
     slc_loads_drop(s, index);
     slc_control_drop(s, texture);
-    remove_primary(s, index);
+    slc_feedback_leave(s, index);
     free_followers(s, id);
     forget_new(s, index);
     return SLUICE_SUCCESS;

@@ -99,6 +99,7 @@ static void end_request(SluiceVulkanStreamer *s, struct slc_texture_request *req
         link = &s->requests.list[*link - 1].next;
     *link = request->next;
     give_back(&s->requests, request);
+    texture->drop_due |= texture->hidden; /* no later map lets it expire */
     slc_due_map_add(s, texture);
 }
 

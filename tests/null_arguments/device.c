@@ -47,6 +47,9 @@ sluiceGetVulkanTextureState(f->streamer, f->texture.textureId, ?NULL, &f->out.te
 sluiceRequestVulkanTexture(f->streamer, f->texture.textureId, &f->request, ?&f->out.request)
 sluiceGetVulkanRequestProgress(f->streamer, f->request_id, &f->out.request_progress)
 sluiceWithdrawVulkanRequest(f->streamer, f->request_id)
+sluiceGetVulkanTextureControl(f->streamer, f->texture.textureId, &f->out.control)
+sluiceSetVulkanTextureControl(f->streamer, f->texture.textureId, &f->control)
+sluiceEvictVulkanTexture(f->streamer, f->texture.textureId, ?1)
 
 sluiceCreateNeuralCompressor(f->h->context, &f->compressor_info, &f->out.compressor) => sluiceDestroyNeuralCompressor(f->out.compressor)
 !sluiceDestroyNeuralCompressor(f->compressor)
@@ -113,6 +116,7 @@ struct fixture {
     SluiceVulkanStreamerSettings settings;
     SluiceVulkanTextureRequest request;
     SluiceTextureRequestId request_id;
+    SluiceVulkanTextureControl control;
     SluiceDemandLoaderSettings loader_settings;
     SluiceDemandLoaderCreateInfo loader_info;
     SluiceDemandLoader *loader, *fresh_loader;
@@ -157,6 +161,7 @@ struct fixture {
         SluiceVulkanStreamerStatistics statistics;
         SluiceVulkanTextureState texture_state;
         SluiceTextureRequestId request;
+        SluiceVulkanTextureControl control;
         SluiceVulkanRequestProgress request_progress;
         SluiceTileLoaderStatistics reads;
         SluiceDemandLoader *loader;
@@ -217,6 +222,7 @@ static void init_streamer(struct fixture *f)
     f->texture_info = (SluiceVulkanTextureCreateInfo){
         .structSize = sizeof(SluiceVulkanTextureCreateInfo), .source = f->source};
     CHECK_OK(sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->texture));
+    f->control.structSize = sizeof f->control;
     f->request = (SluiceVulkanTextureRequest){.structSize = sizeof f->request, .until = UINT64_MAX};
     CHECK_OK(
         sluiceRequestVulkanTexture(f->streamer, f->texture.textureId, &f->request, &f->request_id));

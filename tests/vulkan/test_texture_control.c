@@ -434,6 +434,145 @@ static void requests_survive_every_refused_allocation(void **state)
     stage_finish(s);
 }
 
+/* Control ----------------------------------------------------------------------------------- */
+
+static void set_control(struct stage *s, uint32_t texture, SluiceVulkanTextureControl control)
+{
+    control.structSize = sizeof control;
+    CHECK_OK(sluiceSetVulkanTextureControl(s->streamer, s->textures[texture].textureId, &control));
+}
+
+static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
+{
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
+    CHECK_OK(sluiceGetVulkanStreamerStatistics(s->streamer, &stats));
+    return stats;
+}
+
+static void limits_hold_for_feedback_and_requests_at_once(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
+    memset(s->seen, 0, sizeof s->seen);
+    for (uint32_t i = 0; i < TEXTURES; i++)
+        set_control(s, i, (SluiceVulkanTextureControl){.finestLevel = i == 3 ? 99 : i});
+    request(s, 1, 0, (SluiceTextureRect){0}, UINT64_MAX);
+    frames(s, 10);
+    for (uint32_t i = 0; i < TEXTURES; i++) {
+        assert_int_equal(state_of(s, i, (SluiceTextureRect){0}).residentLevel, i);
+        assert_int_equal(state_of(s, i, tile_3_2).residentLevel, i);
+    }
+    for (uint32_t i = 0; i < TEXTURES; i++) /* long before the timeout */
+        set_control(s, i, (SluiceVulkanTextureControl){.finestLevel = TAIL - i});
+    frames(s, 4);
+    assert_int_equal(mapped_tiles(s), TEXTURES + 4 + 16 + 4 + 64 + 16 + 4);
+    frames(s, 8);
+    for (uint32_t i = 0; i < TEXTURES; i++)
+        assert_int_equal(state_of(s, i, (SluiceTextureRect){0}).residentLevel, TAIL - i);
+    stage_finish(s);
+}
+
+static void a_bias_moves_feedback_and_not_requests(void **state)
+{
+    (void)state;
+    uint32_t seed = 5;
+    const int32_t biases[] = {1, -1, 32, -32};
+    for (uint32_t round = 0; round < 4; round++) {
+        struct stage *s =
+            stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
+        uint8_t held[TILES * TILES];
+        for (uint32_t i = 0; i < TILES * TILES; i++) {
+            s->seen[0][i] = (uint8_t)(next_random(&seed) % 5 ? 255 : next_random(&seed) % 4);
+            int32_t biased = s->seen[0][i] + biases[round];
+            held[i] = s->seen[0][i] == 255 ? 255 : (uint8_t)(biased < 0 ? 0 : biased);
+        }
+        lower(held, 1, tile_3_2);
+        set_control(s, 0, (SluiceVulkanTextureControl){.mipBias = biases[round]});
+        request(s, 0, 1, tile_3_2, UINT64_MAX);
+        frames(s, 10);
+        check_all_tiles(s, 0, held);
+        stage_finish(s);
+    }
+}
+
+static void hidden_textures_leave_their_turns_and_their_tiles_stand_by(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
+        .feedbackTimeoutTicks = 1000, .texturesPerFrame = 1, .numExtraStandbyTiles = 1000});
+    memset(s->seen, 1, sizeof s->seen);
+    frames(s, 20);
+    const uint32_t each = 16 + 4 + 1;
+    assert_int_equal(mapped_tiles(s), TEXTURES * each);
+    for (uint32_t i = 1; i < TEXTURES; i++)
+        set_control(s, i, (SluiceVulkanTextureControl){.hidden = true});
+    frames(s, 2);
+    assert_int_equal(mapped_tiles(s), each + (TEXTURES - 1)); /* and mip tails */
+    assert_int_equal(statistics(s).standbyTileCount, (TEXTURES - 1) * (each - 1));
+    memset(s->seen[0], 0, sizeof s->seen[0]);
+    frames(s, 5); /* each frame is its turn */
+    assert_int_equal(state_of(s, 0, (SluiceTextureRect){0}).residentLevel, 0);
+    assert_int_equal(statistics(s).standbyTileCount, (TEXTURES - 1) * (each - 1));
+    SluiceTextureRequestId id = request(s, 2, 1, (SluiceTextureRect){0}, UINT64_MAX);
+    frames(s, 2);
+    assert_int_equal(statistics(s).standbyTileCount, (TEXTURES - 2) * (each - 1));
+    CHECK_OK(sluiceWithdrawVulkanRequest(s->streamer, id));
+    frames(s, 2);
+    assert_int_equal(statistics(s).standbyTileCount, (TEXTURES - 1) * (each - 1));
+    const uint64_t read = statistics(s).bytesRead;
+    for (uint32_t i = 1; i < TEXTURES; i++)
+        set_control(s, i, (SluiceVulkanTextureControl){0});
+    frames(s, 12);
+    assert_int_equal(mapped_tiles(s), 64 + TEXTURES * each);
+    assert_int_equal(statistics(s).bytesRead, read);
+    stage_finish(s);
+}
+
+static void evicted_tiles_are_unmapped_with_the_next_frame(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000,
+                                                                   .numExtraStandbyTiles = 1000});
+    memset(s->seen[0], 0, sizeof s->seen[0]);
+    memset(s->seen[1], 0, sizeof s->seen[1]);
+    frames(s, 8);
+    memset(s->seen, SLUICE_MIP_UNTOUCHED, sizeof s->seen);
+    frames(s, 2);
+    assert_int_equal(mapped_tiles(s), 2 * (64 + 16 + 4) + TEXTURES);
+    const uint64_t before = statistics(s).tilesUnmapped;
+    CHECK_OK(sluiceEvictVulkanTexture(s->streamer, s->textures[0].textureId, 0));
+    CHECK_OK(sluiceEvictVulkanTexture(s->streamer, s->textures[1].textureId, 20));
+    frames(s, 1);
+    assert_int_equal(statistics(s).tilesUnmapped, before + 64 + 16 + 4 + 64);
+    assert_int_equal(state_of(s, 0, (SluiceTextureRect){0}).residentLevel, TAIL);
+    assert_int_equal(state_of(s, 1, (SluiceTextureRect){0}).residentLevel, 1);
+    frames(s, 10);
+    assert_int_equal(mapped_tiles(s), TEXTURES);
+    stage_finish(s);
+}
+
+static void controls_survive_every_refused_allocation(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){0});
+    const SluiceTextureId id = s->textures[0].textureId;
+    SluiceVulkanTextureControl control = {.structSize = sizeof control, .mipBias = -33};
+    CHECK_RESULT(sluiceSetVulkanTextureControl(s->streamer, id, &control),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(s->last, "mipBias is -33"));
+    control.mipBias = -32;
+    s->memory.refuse_from = s->memory.calls;
+    CHECK_RESULT(sluiceSetVulkanTextureControl(s->streamer, id, &control),
+                 SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    CHECK_OK(sluiceGetVulkanTextureControl(s->streamer, id, &control));
+    assert_int_equal(control.mipBias, 0);
+    s->memory.refuse_from = UINT64_MAX;
+    set_control(s, 0, (SluiceVulkanTextureControl){.finestLevel = 2, .mipBias = 3, .hidden = true});
+    CHECK_OK(sluiceGetVulkanTextureControl(s->streamer, id, &control));
+    assert_true(control.finestLevel == 2 && control.mipBias == 3 && control.hidden);
+    stage_finish(s);
+}
+
 static void questions_take_no_memory(void **state)
 {
     (void)state;
@@ -445,6 +584,9 @@ static void questions_take_no_memory(void **state)
     SluiceVulkanTextureState all = {.structSize = sizeof all};
     CHECK_OK(sluiceGetVulkanTextureState(s->streamer, s->textures[0].textureId, NULL, &all));
     assert_int_equal(progress_of(s, id).tileCount, TAIL + 1);
+    SluiceVulkanTextureControl control = {.structSize = sizeof control};
+    CHECK_OK(sluiceGetVulkanTextureControl(s->streamer, s->textures[0].textureId, &control));
+    CHECK_OK(sluiceEvictVulkanTexture(s->streamer, s->textures[0].textureId, 0));
     CHECK_OK(sluiceWithdrawVulkanRequest(s->streamer, id));
     assert_true(s->memory.calls == calls && all.drawable);
     s->memory.refuse_from = UINT64_MAX;
@@ -464,6 +606,11 @@ int main(void)
         cmocka_unit_test(requests_go_with_their_texture),
         cmocka_unit_test(followers_load_what_their_primary_requests),
         cmocka_unit_test(requests_survive_every_refused_allocation),
+        cmocka_unit_test(limits_hold_for_feedback_and_requests_at_once),
+        cmocka_unit_test(a_bias_moves_feedback_and_not_requests),
+        cmocka_unit_test(hidden_textures_leave_their_turns_and_their_tiles_stand_by),
+        cmocka_unit_test(evicted_tiles_are_unmapped_with_the_next_frame),
+        cmocka_unit_test(controls_survive_every_refused_allocation),
         cmocka_unit_test(questions_take_no_memory),
     };
     return RUN_TESTS(tests);
