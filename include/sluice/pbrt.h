@@ -181,7 +181,8 @@ typedef struct SluicePbrtTexture {
 } SluicePbrtTexture;
 
 /**
- * Gets a texture. Inputs have lower indices than the texture itself.
+ * Gets a texture. Inputs have lower indices than the texture itself. Textures contain one another
+ * at most 32 deep; the same texture may be an input of many.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize or an
  *         `index` that is not below textureCount.

@@ -29,6 +29,7 @@ struct slc_pbrt_material_entry {
 struct slc_pbrt_texture_entry {
     SluicePbrtTexture texture; ///< strings are NULL
     uint32_t name, image;      ///< in names; image may be SLUICE_PBRT_NONE
+    uint32_t depth;            ///< of the textures in it: 0 for none, 1 for those without any
     struct slc_pbrt_place place;
 };
 

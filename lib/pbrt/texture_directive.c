@@ -8,6 +8,7 @@
 #include <strings.h>
 
 #define MAX_TEXTURES ((size_t)1 << 24)
+#define MAX_TEXTURE_DEPTH 32u
 
 static void set_all(float value[3], float to)
 {
@@ -236,6 +237,28 @@ static bool read_kind(struct slc_pbrt_parser *parser, struct slc_pbrt_texture_en
     return true;
 }
 
+/* Renderers walk from a texture to its inputs, so textures that nest deep become their mean. */
+static bool limit_depth(struct slc_pbrt_parser *parser, struct slc_pbrt_texture_entry *entry,
+                        const struct slc_pbrt_place *place)
+{
+    SluicePbrtTexture *texture = &entry->texture;
+    const SluicePbrtValue *values[] = {&texture->inputs[0], &texture->inputs[1], &texture->amount};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        if (values[i]->texture == SLUICE_PBRT_NONE)
+            continue;
+        uint32_t depth = parser->scene->textures[values[i]->texture].depth + 1;
+        entry->depth = depth > entry->depth ? depth : entry->depth;
+    }
+    if (entry->depth <= MAX_TEXTURE_DEPTH)
+        return true;
+    texture->kind = SLUICE_PBRT_TEXTURE_CONSTANT;
+    texture->inputs[0] = texture->inputs[1] = texture->amount = constant(0);
+    entry->depth = 0;
+    return slc_pbrt_warn_once(parser, "texture depth", place,
+                              "textures nest more than %u deep: this one becomes its mean",
+                              MAX_TEXTURE_DEPTH);
+}
+
 bool slc_pbrt_texture(struct slc_pbrt_parser *parser, const struct slc_pbrt_place *place)
 {
     SluicePbrtScene *scene = parser->scene;
@@ -255,7 +278,7 @@ bool slc_pbrt_texture(struct slc_pbrt_parser *parser, const struct slc_pbrt_plac
     entry.texture.gamma = entry.texture.imageScale = 1;
     read_mapping(parser, &entry.texture);
     strncat(kind_text, slc_pbrt_name(&scene->names, kind), sizeof kind_text - 1);
-    if (!read_kind(parser, &entry, kind_text, place))
+    if (!read_kind(parser, &entry, kind_text, place) || !limit_depth(parser, &entry, place))
         return false;
     if (scene->texture_count >= MAX_TEXTURES)
         return slc_pbrt_stop(parser, SLUICE_ERROR_LIMIT_EXCEEDED, place, "2^24 textures");

@@ -444,6 +444,48 @@ static void the_gamma_of_a_texture_is_any_number(void **state)
     }
 }
 
+/* Textures below one, walked as renderers do. */
+static uint32_t texture_depth(uint32_t index)
+{
+    SluicePbrtTexture texture = {.structSize = sizeof texture};
+    uint32_t most = 0;
+    CHECK_OK(sluiceGetPbrtTexture(files.scene, index, &texture));
+    const SluicePbrtValue values[] = {texture.inputs[0], texture.inputs[1], texture.amount};
+    for (int i = 0; i < 3; i++)
+        if (values[i].texture != SLUICE_PBRT_NONE) {
+            uint32_t depth = 1 + texture_depth(values[i].texture);
+            most = depth > most ? depth : most;
+        }
+    return most;
+}
+
+static void textures_nest_32_deep(void **state)
+{
+    static const char *const KINDS[][2] = {
+        {"scale", "tex2"}, {"mix", "tex1"}, {"mix", "amount"}, {"checkerboard", "tex2"}};
+    enum { COUNT = 40 };
+    (void)state;
+    for (size_t kind = 0; kind < sizeof KINDS / sizeof *KINDS; kind++) {
+        char text[COUNT * 100] = HEADER "Texture \"t0\" \"float\" \"constant\" \"float value\" 1\n";
+        for (int i = 1; i <= COUNT; i++)
+            sprintf(text + strlen(text),
+                    "Texture \"t%d\" \"float\" \"%s\" \"texture %s\" \"t%d\"\n", i, KINDS[kind][0],
+                    KINDS[kind][1], i - 1);
+        CHECK_OK(pbrt_open_text(&files, text));
+        for (uint32_t i = 0; i <= 32; i++)
+            assert_int_equal(texture_depth(i), i);
+        for (uint32_t i = 33; i <= COUNT; i++)
+            assert_int_equal(texture_depth(i), i - 33);
+        SluicePbrtTexture texture = {.structSize = sizeof texture};
+        CHECK_OK(sluiceGetPbrtTexture(files.scene, 33, &texture));
+        assert_int_equal(texture.kind, SLUICE_PBRT_TEXTURE_CONSTANT);
+        if (kind == 0)
+            assert_true(texture.value[0] == 1.0f); /* the product of ones */
+        assert_int_equal(files.warnings, 1);
+        assert_non_null(strstr(files.log, ":35:")); /* the line of t33 */
+    }
+}
+
 static void bounds_are_remembered_in_a_file(void **state)
 {
     (void)state;
@@ -544,6 +586,7 @@ int main(void)
         TEST(limits_stop_the_reader),
         TEST(compressed_text_stops_at_its_limit),
         TEST(the_gamma_of_a_texture_is_any_number),
+        TEST(textures_nest_32_deep),
         TEST(bounds_are_remembered_in_a_file),
         TEST(compressed_files_are_read_like_plain_ones),
         TEST(options_of_both_forms_are_skipped),
