@@ -1,7 +1,6 @@
 #include "neural/decoder.h"
 #include "neural/slices.h"
 
-#include <math.h>
 #include <string.h>
 
 static uint32_t low(uint32_t pair)
@@ -30,47 +29,43 @@ static uint32_t wrap_corner(int32_t corner, uint32_t grid, uint32_t origin, uint
     return at < (int32_t)size ? (uint32_t)at : size - 1;
 }
 
+void slc_neural_find_axis(const struct slc_neural_mip_view *view, uint32_t g, uint32_t axis,
+                          uint32_t texel, uint32_t corners[2], uint32_t *fraction)
+{
+    const SluiceNeuralSlice *slice = &view->slices[g];
+    uint32_t (*const part)(uint32_t) = axis ? high : low;
+    uint32_t grid = part(slice->gridSize);
+    int32_t place = slc_neural_place(texel, grid, axis ? view->height : view->width);
+    int32_t corner = slc_neural_corner(place);
+    uint32_t (*const fit)(int32_t, uint32_t, uint32_t, uint32_t) =
+        view->constants->schema == 1 ? clamp_corner : wrap_corner;
+    for (int32_t i = 0; i < 2; i++)
+        corners[i] = fit(corner + i, grid, part(slice->origin), part(slice->sliceSize));
+    *fraction = (uint32_t)(place + 256) & 255;
+}
+
 void slc_neural_find_corners(const struct slc_neural_mip_view *view, uint32_t g, uint32_t x,
                              uint32_t y, struct slc_neural_corners *c)
 {
-    const SluiceNeuralSlice *slice = &view->slices[g];
-    uint32_t grid_width = low(slice->gridSize), grid_height = high(slice->gridSize);
-    uint32_t width = low(slice->sliceSize), height = high(slice->sliceSize);
-    int32_t place_x = slc_neural_place(x, grid_width, view->width);
-    int32_t place_y = slc_neural_place(y, grid_height, view->height);
-    int32_t corner_x = slc_neural_corner(place_x), corner_y = slc_neural_corner(place_y);
-    uint32_t fx = (uint32_t)(place_x + 256) & 255, fy = (uint32_t)(place_y + 256) & 255;
-    uint32_t (*const fit)(int32_t, uint32_t, uint32_t, uint32_t) =
-        view->constants->schema == 1 ? clamp_corner : wrap_corner;
-    uint32_t xs[2], ys[2];
-    for (int32_t i = 0; i < 2; i++) {
-        xs[i] = fit(corner_x + i, grid_width, low(slice->origin), width);
-        ys[i] = fit(corner_y + i, grid_height, high(slice->origin), height);
-    }
+    uint32_t xs[2], ys[2], fx, fy, width = low(view->slices[g].sliceSize);
+    slc_neural_find_axis(view, g, 0, x, xs, &fx);
+    slc_neural_find_axis(view, g, 1, y, ys, &fy);
     for (uint32_t i = 0; i < 4; i++) {
         c->texels[i] = ys[i / 2] * width + xs[i % 2];
         c->weights[i] = (i % 2 ? fx : 256 - fx) * (i / 2 ? fy : 256 - fy);
     }
 }
 
-static float fraction(float value)
-{
-    return value - floorf(value);
-}
-
 /* Three waves of four values, -1 to 1. */
 static void position_waves(const struct slc_neural_mip_view *view, uint32_t x, uint32_t y,
                            float waves[12])
 {
-    float scale = view->constants->mips[view->mip].positionScale;
-    float p[2] = {(float)x * scale, (float)y * scale};
-    bool is_one = view->constants->schema == 1;
-    for (int i = 0; i < 12; i++) {
-        float t =
-            is_one ? p[i % 2] * (0.125f * (float)(1 << i / 4)) : p[i % 2] * (float)(1 << i / 4);
-        if (i % 4 >= 2)
-            t += 0.25f;
-        waves[i] = is_one ? fabsf(4 * fraction(t) - 2) - 1 : 2 * fraction(t) - 1;
+    float of_x[6], of_y[6];
+    slc_neural_axis_waves(view, x, of_x);
+    slc_neural_axis_waves(view, y, of_y);
+    for (int k = 0; k < 6; k++) {
+        waves[2 * k] = of_x[k];
+        waves[2 * k + 1] = of_y[k];
     }
 }
 

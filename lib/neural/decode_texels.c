@@ -1,7 +1,7 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "base/struct_size.h"
-#include "neural/fast_network.h"
+#include "neural/decoder.h"
 #include "neural/slices.h"
 
 #include <string.h>
@@ -130,38 +130,35 @@ static SluiceResult check_output(const SluiceNeuralDecodeInfo *info, uint64_t bl
     return SLUICE_SUCCESS;
 }
 
-static void decode_texel(const struct slc_neural_fast *fast, const struct slc_neural_mip_view *view,
-                         uint32_t x, uint32_t y, float outputs[SLUICE_NEURAL_MAX_CHANNELS])
+void slc_neural_decode_plainly(const struct slc_neural_job *job)
 {
-    if (fast->kind == SLUICE_NEURAL_WEIGHTS_INT8) {
-        int8_t inputs[SLC_NEURAL_MAX_INPUTS];
-        slc_neural_int8_inputs(view, x, y, inputs);
-        slc_neural_fast_int8(fast, inputs, outputs);
-    } else {
-        float inputs[SLC_NEURAL_MAX_INPUTS];
-        slc_neural_fp8_inputs(view, x, y, inputs);
-        slc_neural_fast_fp8(fast, inputs, outputs);
-    }
-}
-
-static void decode_texels(const SluiceNeuralDecodeInfo *info,
-                          const struct slc_neural_mip_view *view,
-                          const struct slc_neural_shape *shape)
-{
-    struct slc_neural_fast fast;
-    float outputs[SLUICE_NEURAL_MAX_CHANNELS];
-    uint64_t pitch = info->rowPitch ? info->rowPitch : (uint64_t)info->width * info->channelCount;
-    slc_neural_fast_init(&fast, shape, info->weightKind, info->pWeights);
-    for (uint32_t y = 0; y < info->height; y++) {
-        float *texel = info->pTexels + y * pitch;
-        for (uint32_t x = 0; x < info->width; x++, texel += info->channelCount) {
-            decode_texel(&fast, view, info->x + x, info->y + y, outputs);
-            memcpy(texel, outputs + info->firstChannel, info->channelCount * sizeof *texel);
+    const struct slc_neural_blob at = slc_neural_blob_of(job->shape, job->kind);
+    for (uint32_t i = 0; i < job->width * job->height; i++) {
+        const uint32_t x = i % job->width, y = i / job->width;
+        float floats[SLC_NEURAL_MAX_INPUTS], outputs[SLUICE_NEURAL_MAX_CHANNELS];
+        int8_t codes[SLC_NEURAL_MAX_INPUTS];
+        if (job->kind == SLUICE_NEURAL_WEIGHTS_INT8) {
+            slc_neural_int8_inputs(job->view, job->x + x, job->y + y, codes);
+            slc_neural_run_int8(job->shape, &at, job->weights, codes, outputs);
+        } else {
+            slc_neural_fp8_inputs(job->view, job->x + x, job->y + y, floats);
+            slc_neural_run_fp8(job->shape, &at, job->weights, floats, outputs);
         }
+        memcpy(job->texels + y * job->pitch + (size_t)x * job->channel_count,
+               outputs + job->first_channel, job->channel_count * sizeof *outputs);
     }
 }
 
-SluiceResult sluiceDecodeNeuralTexels(const SluiceNeuralDecodeInfo *pInfo)
+slc_neural_way *slc_neural_fastest_way(void)
+{
+#ifdef SLC_HAVE_AVX2
+    if (__builtin_cpu_supports("avx2"))
+        return slc_neural_decode_strips_avx2;
+#endif
+    return slc_neural_decode_strips;
+}
+
+SluiceResult slc_neural_decode(const SluiceNeuralDecodeInfo *pInfo, slc_neural_way *way)
 {
     if (!pInfo)
         return SLUICE_ERROR_NULL_POINTER;
@@ -187,7 +184,25 @@ SluiceResult sluiceDecodeNeuralTexels(const SluiceNeuralDecodeInfo *pInfo)
     if (result == SLUICE_SUCCESS &&
         !slc_neural_blob_is_sound(&shape, info.weightKind, info.pWeights))
         return slc_log_refusal(&info.log, "weights of a decode are no numbers, or beyond 2^63");
-    if (result == SLUICE_SUCCESS)
-        decode_texels(&info, &view, &shape);
-    return result;
+    if (result != SLUICE_SUCCESS)
+        return result;
+    const uint64_t row = (uint64_t)info.width * info.channelCount;
+    way(&(struct slc_neural_job){.view = &view,
+                                 .shape = &shape,
+                                 .kind = info.weightKind,
+                                 .weights = info.pWeights,
+                                 .x = info.x,
+                                 .y = info.y,
+                                 .width = info.width,
+                                 .height = info.height,
+                                 .first_channel = info.firstChannel,
+                                 .channel_count = info.channelCount,
+                                 .texels = info.pTexels,
+                                 .pitch = info.rowPitch ? info.rowPitch : row});
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceDecodeNeuralTexels(const SluiceNeuralDecodeInfo *pInfo)
+{
+    return slc_neural_decode(pInfo, slc_neural_fastest_way());
 }

@@ -4,6 +4,8 @@
 
 #include "neural/network.h"
 
+#include <math.h>
+
 enum { SLC_NEURAL_MAX_INPUTS = 96, SLC_NEURAL_MAX_NEURONS = 64 };
 
 /** A mip, its two grids, and where they lie. */
@@ -20,6 +22,11 @@ struct slc_neural_corners {
     uint32_t weights[4]; ///< of 65536
 };
 
+/** Finds the two columns (axis 0) or rows (axis 1) of the slice `g` around the texel's, and 256
+ *  times the fraction. */
+void slc_neural_find_axis(const struct slc_neural_mip_view *view, uint32_t g, uint32_t axis,
+                          uint32_t texel, uint32_t corners[2], uint32_t *fraction);
+
 /** Finds the corners of a texel in the slice `g` of a mip. */
 void slc_neural_find_corners(const struct slc_neural_mip_view *view, uint32_t g, uint32_t x,
                              uint32_t y, struct slc_neural_corners *corners);
@@ -30,6 +37,23 @@ static inline uint32_t slc_neural_code(const uint8_t *codes, uint32_t features, 
 {
     uint32_t bit = (texel * features + feature) * bits; /* slices have less than 2^32 */
     return (uint32_t)codes[bit / 8] >> bit % 8 & ((1u << bits) - 1);
+}
+
+/** Waves 0, 2 .. 10 of a column, or 1, 3 .. 11 of a row: -1 to 1. */
+static inline void slc_neural_axis_waves(const struct slc_neural_mip_view *view, uint32_t texel,
+                                         float waves[6])
+{
+    const float p = (float)texel * view->constants->mips[view->mip].positionScale;
+    const bool is_one = view->constants->schema == 1;
+    for (int k = 0; k < 6; k++) {
+        float t = is_one ? p * (0.125f * (float)(1 << k / 2)) : p * (float)(1 << k / 2);
+        if (k % 2)
+            t += 0.25f;
+        if (is_one)
+            waves[k] = fabsf(4 * (t - floorf(t)) - 2) - 1;
+        else
+            waves[k] = 2 * (t - floorf(t)) - 1;
+    }
 }
 
 /** Inputs of the network for a texel; `inputs` has constants->inputCount. */
@@ -43,6 +67,28 @@ void slc_neural_run_int8(const struct slc_neural_shape *shape, const struct slc_
                          const uint8_t *weights, const int8_t *inputs, float *outputs);
 void slc_neural_run_fp8(const struct slc_neural_shape *shape, const struct slc_neural_blob *at,
                         const uint8_t *weights, const float *inputs, float *outputs);
+
+/** A rectangle to decode. */
+struct slc_neural_job {
+    const struct slc_neural_mip_view *view;
+    const struct slc_neural_shape *shape;
+    SluiceNeuralWeightKind kind;
+    const uint8_t *weights;
+    uint32_t x, y, width, height;
+    uint32_t first_channel, channel_count;
+    float *texels;
+    uint64_t pitch; ///< floats from row to row
+};
+
+/** Ways to decode, which give the same bits: texel by texel, four and eight at a time. */
+typedef void slc_neural_way(const struct slc_neural_job *job);
+slc_neural_way slc_neural_decode_plainly, slc_neural_decode_strips, slc_neural_decode_strips_avx2;
+
+/** The fastest way of this processor. */
+slc_neural_way *slc_neural_fastest_way(void);
+
+/** sluiceDecodeNeuralTexels in one of the ways. */
+SluiceResult slc_neural_decode(const SluiceNeuralDecodeInfo *info, slc_neural_way *way);
 
 /** Eight bits with 4 of exponent and 3 of mantissa, without infinities. */
 float slc_float_from_e4m3(uint8_t bits);

@@ -1,5 +1,4 @@
-/** A network with its weights in the order in which they are used, four outputs at a time. The same
- *  bits as slc_neural_run_int8 and slc_neural_run_fp8. */
+/** A network with its weights in the order in which strips use them: four outputs at a time. */
 #ifndef SLC_NEURAL_FAST_NETWORK_H
 #define SLC_NEURAL_FAST_NETWORK_H
 
@@ -24,9 +23,5 @@ struct slc_neural_fast {
 /** About 100 KiB: not for the stack of a small thread. */
 void slc_neural_fast_init(struct slc_neural_fast *fast, const struct slc_neural_shape *shape,
                           SluiceNeuralWeightKind kind, const uint8_t *blob);
-
-/** `outputs` has 16 elements. */
-void slc_neural_fast_int8(const struct slc_neural_fast *fast, const int8_t *inputs, float *outputs);
-void slc_neural_fast_fp8(const struct slc_neural_fast *fast, const float *inputs, float *outputs);
 
 #endif /* SLC_NEURAL_FAST_NETWORK_H */

@@ -1,6 +1,7 @@
 /* Decoded texels beside numbers by hand, and beside decodes of another decoder. */
+#include "base/checked.h"
 #include "neural/decoded.h"
-#include "neural/fast_network.h"
+#include "neural/decoder.h"
 #include "neural/made_file.h"
 #include "neural/neural_files.h"
 #include "neural/worked_example.h"
@@ -81,40 +82,62 @@ static void the_worked_example_decodes(void **state)
     sluiceDestroyNeuralSet(set);
 }
 
-/* Random networks and inputs of each size; sums may wrap. */
-static void both_ways_to_run_a_network_give_the_same_bits(void **state)
+/* Decodes a rectangle of a mip in all ways, with channels 1 and 2 if there are any. */
+static void check_ways(const struct decodable *d, uint32_t mip)
 {
-    static struct slc_neural_fast fast;
+    enum { WIDTH = 45, HEIGHT = 12, MOST = WIDTH * HEIGHT * 2 };
+    static float plain[MOST], strips[MOST], fastest[MOST];
+    const uint32_t width = slc_mip_size(d->constants.width, mip),
+                   height = slc_mip_size(d->constants.height, mip);
+    SluiceNeuralDecodeInfo info = {.structSize = sizeof info,
+                                   .pConstants = &d->constants,
+                                   .pLatents = d->latents,
+                                   .latentSize = d->latent_size,
+                                   .pWeights = d->weights,
+                                   .weightSize = d->weight_size,
+                                   .weightKind = d->kind,
+                                   .mip = mip,
+                                   .x = width / 5,
+                                   .y = height / 3,
+                                   .firstChannel = 1,
+                                   .channelCount = 2};
+    info.width = slc_min_u32(width - info.x, WIDTH);
+    info.height = slc_min_u32(height - info.y, HEIGHT);
+    const size_t size = (size_t)info.width * info.height * 2 * sizeof(float);
+    info.pTexels = plain;
+    CHECK_OK(slc_neural_decode(&info, slc_neural_decode_plainly));
+    info.pTexels = strips;
+    CHECK_OK(slc_neural_decode(&info, slc_neural_decode_strips));
+    info.pTexels = fastest;
+    CHECK_OK(slc_neural_decode(&info, slc_neural_fastest_way()));
+    assert_memory_equal(plain, strips, size);
+    assert_memory_equal(plain, fastest, size);
+}
+
+/* Random networks and latents of each size, all mips; sums may wrap, a level may be no number. */
+static void all_ways_to_decode_give_the_same_bits(void **state)
+{
     (void)state;
     for (uint32_t s = 0; s < MADE_SHAPE_COUNT; s++) {
-        struct made_parts parts;
-        make_parts(&parts, &made_shapes[s], s);
+        struct made_file file = {0};
+        SluiceNeuralSet *set = open_made_file(&made_shapes[s], s, &file);
         struct slc_neural_shape shape = slc_neural_shape_of(made_shapes[s].network);
         for (int kind = 0; kind < 2; kind++) {
             SluiceNeuralWeightKind k = (SluiceNeuralWeightKind)kind;
             struct slc_neural_blob at = slc_neural_blob_of(&shape, k);
-            uint8_t *blob = kind ? parts.fp8_weights : parts.int8_weights;
-            if (s == 0 && !kind)
-                memset(blob + at.biases[0], 0x7F, 8);
-            slc_neural_fast_init(&fast, &shape, k, blob);
-            for (int n = 0; n < 50; n++) {
-                float slow_outputs[16], fast_outputs[16], floats[96];
-                int8_t inputs[96];
-                for (int i = 0; i < 96; i++) {
-                    inputs[i] = (int8_t)(roll() % 256 - 128);
-                    floats[i] = (float)inputs[i] / 100.0f;
-                }
-                if (kind) {
-                    slc_neural_run_fp8(&shape, &at, blob, floats, slow_outputs);
-                    slc_neural_fast_fp8(&fast, floats, fast_outputs);
-                } else {
-                    slc_neural_run_int8(&shape, &at, blob, inputs, slow_outputs);
-                    slc_neural_fast_int8(&fast, inputs, fast_outputs);
-                }
-                assert_memory_equal(slow_outputs, fast_outputs, sizeof slow_outputs);
+            struct decodable d;
+            read_decodable(set, NULL, k, &d);
+            if (s % 2 == 0 && !kind)
+                memset(d.weights + at.biases[0], 0x7F, 8);
+            for (uint32_t m = 0; m < d.constants.mipCount; m++) {
+                const float lods[] = {d.constants.mips[m].positionLod, NAN, 1e5f, -3e-6f};
+                d.constants.mips[m].positionLod = lods[(m + s) % 4];
+                check_ways(&d, m);
             }
+            free_decodable(&d);
         }
-        free_made_parts(&parts);
+        sluiceDestroyNeuralSet(set);
+        free(file.bytes);
     }
 }
 
@@ -241,7 +264,7 @@ int main(void)
         cmocka_unit_test(the_worked_network_runs_as_by_hand),
         cmocka_unit_test(the_inputs_of_the_worked_example_are_those_by_hand),
         cmocka_unit_test(the_worked_example_decodes),
-        cmocka_unit_test(both_ways_to_run_a_network_give_the_same_bits),
+        cmocka_unit_test(all_ways_to_decode_give_the_same_bits),
         cmocka_unit_test(decodes_of_schema_1_agree_with_another_decoder),
         cmocka_unit_test(decodes_of_schema_3_agree_with_another_decoder),
         cmocka_unit_test(color_spaces_are_the_inverse_of_one_another),
