@@ -207,6 +207,17 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * Requires forgetTextures. Default: 0, only when memory is short.
      */
     uint32_t forgetAfterFrames;
+    /**
+     * Most feedback maps that a frame can read back: the limit of texturesPerFrame, framesPerRound
+     * and sluiceResolveAllVulkanTextures. Takes 56 bytes of memory per map and
+     * frame in flight. Default: texturesPerFrame.
+     */
+    uint32_t maxTexturesPerFrame;
+    /**
+     * Read back more than texturesPerFrame maps per frame if otherwise some texture would not have
+     * its turn in so many frames. maxTexturesPerFrame still limits them. Default: 0, never.
+     */
+    uint32_t framesPerRound;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
@@ -216,8 +227,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
  *         sparseQueue; SLUICE_ERROR_INVALID_ARGUMENT for values out of range, and for
  *         a setting together with the one that turns it off; SLUICE_ERROR_UNSUPPORTED if the device
  *         does not support the requested mode; SLUICE_ERROR_LIMIT_EXCEEDED if maxTextureCount,
- *         maxRegionCount, texturesPerFrame or feedbackReadbackSize require a storage buffer above
- *         the device's maxStorageBufferRange, or if textureArray needs more images or samplers per
+ *         maxRegionCount, maxTexturesPerFrame or feedbackReadbackSize require a storage buffer
+ * above the device's maxStorageBufferRange, or if textureArray needs more images or samplers per
  *         shader stage than the device has; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
  *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
  * Thread safety: any thread.
@@ -244,7 +255,7 @@ SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
  */
 typedef struct SluiceVulkanStreamerSettings {
     uint32_t structSize;             ///< Required. sizeof(SluiceVulkanStreamerSettings).
-    uint32_t texturesPerFrame;       ///< 1 to the create-info's value.
+    uint32_t texturesPerFrame;       ///< 1 to maxTexturesPerFrame of the create-info.
     uint32_t tilesPerFrame;          ///< 1 to 2^14. Changing it allocates host memory.
     uint32_t numExtraStandbyTiles;   ///< 0: evict unwanted tiles at once.
     uint32_t maxHeapCount;           ///< 0: as many as fit into memory.
@@ -254,6 +265,7 @@ typedef struct SluiceVulkanStreamerSettings {
     uint64_t givenUpRetryDelayTicks; ///< 0: 120 times retryDelayTicks. UINT64_MAX: never.
     bool noEviction; ///< Requests wait for free memory instead of evicting resident tiles.
     bool noMipBias;  ///< Never request coarser levels because more is wanted than memory holds.
+    uint32_t framesPerRound; ///< 0: texturesPerFrame alone says how many maps are read back.
 } SluiceVulkanStreamerSettings;
 
 /**
@@ -299,6 +311,19 @@ SLUICE_API SluiceResult sluiceSetVulkanStreamerSettings(
  */
 SLUICE_API SluiceResult sluiceCompactVulkanStreamer(SluiceVulkanStreamer *streamer,
                                                     uint32_t maxTileCount, uint32_t *pTileCount);
+
+/**
+ * Reads back the feedback of all textures as soon as possible: call it before the first frame after
+ * a camera cut.
+ *
+ * Frames that begin later read back up to maxTexturesPerFrame maps each, until every texture had
+ * its turn once. If maxTexturesPerFrame is at least the number of textures that do not follow
+ * another one, one frame does. Bytes are limited by feedbackReadbackSize as always: maps that do
+ * not fit come first in a later frame.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceResolveAllVulkanTextures(SluiceVulkanStreamer *streamer);
 
 /**
  * Waits until no read is in progress and all submitted bindings are complete. Does not wait for

@@ -46,9 +46,29 @@ static uint32_t next_primary(SluiceVulkanStreamer *s)
     return s->primaries[s->primary_cursor++];
 }
 
+/* Textures may have gone since the frame began. */
 static uint32_t share_of_frame(const SluiceVulkanStreamer *s)
 {
-    return slc_min_u32(s->info.texturesPerFrame, s->primary_count);
+    return slc_min_u32(s->share, s->primary_count);
+}
+
+void slc_feedback_choose_share(SluiceVulkanStreamer *s)
+{
+    uint32_t share = s->info.texturesPerFrame;
+    if (s->info.framesPerRound)
+        share = slc_max_u32(share, slc_div_up_u32(s->primary_count, s->info.framesPerRound));
+    s->share_of_all = s->all_left > 0;
+    share = slc_min_u32(slc_max_u32(share, s->all_left), s->most_textures_per_frame);
+    s->list_version += share != s->share;
+    s->share = share;
+}
+
+SluiceResult sluiceResolveAllVulkanTextures(SluiceVulkanStreamer *streamer)
+{
+    if (!streamer)
+        return SLUICE_ERROR_NULL_POINTER;
+    streamer->all_left = streamer->primary_count;
+    return SLUICE_SUCCESS;
 }
 
 /* Everything is wanted always: no map has to come from the GPU. */
@@ -263,10 +283,12 @@ static void list_items(SluiceVulkanStreamer *s, struct slc_readback_slot *slot, 
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     uint32_t share = share_of_frame(s);
+    s->all_left -= slc_min_u32(s->all_left, s->share);
     if (share == 0 || s->debug.mapEverything)
         return;
     struct slc_readback_slot *slot =
         slc_readback_begin(&s->readback, s->slot, s->frame, s->time_stamp);
+    slot->share_of_all = s->share_of_all;
     if (slot->list_version == s->list_version && slot->list_first == s->primary_cursor) {
         slc_resolve_resume(&s->resolve, (uint32_t)(slot - s->readback.slots), slot->item_count,
                            slot->segment_count);
@@ -289,6 +311,8 @@ void slc_feedback_abandon(SluiceVulkanStreamer *s, uint64_t frame)
             continue;
         if (slot->frame < oldest)
             s->primary_cursor = slot->list_first;
+        if (slot->share_of_all) /* their turns come again */
+            s->all_left = s->primary_count;
         oldest = slot->frame < oldest ? slot->frame : oldest;
         slot->frame = 0;
     }

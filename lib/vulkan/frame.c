@@ -223,6 +223,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     s->slot_turn++;
     s->time_stamp = timeStamp;
     slc_settings_apply(s);
+    slc_feedback_choose_share(s);
     slc_time_check_frame(&s->time_check, &s->vk.log, timeStamp);
     SluiceStreamingFrame frame = {.structSize = sizeof frame,
                                   .frameIndex = s->frame,

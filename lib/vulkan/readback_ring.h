@@ -17,6 +17,7 @@ struct slc_readback_slot {
     SluiceTextureId *items;        ///< part of slc_readback_ring.items
     uint64_t list_version;         ///< SluiceVulkanStreamer.list_version at that time; 0: none
     uint32_t list_first, list_end; ///< cursors before and after
+    bool share_of_all;             ///< some items are there because all textures are asked for
 };
 
 /** In the buffer a slot is max_items results and then `capacity` words that they name. */

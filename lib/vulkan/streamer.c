@@ -82,9 +82,15 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
                 slc_max_u32(64, 4 * slc_min_u32(info->tilesPerFrame, SLC_MAX_TILES_PER_FRAME)));
     set_default(&info->heapTileCapacity, SLUICE_DEFAULT_HEAP_TILE_CAPACITY);
     set_default(&info->maxRegionCount, 1u << 20);
+    set_default(&info->maxTexturesPerFrame, info->texturesPerFrame);
+    info->maxTexturesPerFrame = slc_min_u32(info->maxTexturesPerFrame, info->maxTextureCount);
     info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
     set_default(&info->feedbackReadbackSize, slc_min_u32(info->maxRegionCount, 1u << 22));
     SluiceResult result = check_limits(log, info);
+    if (result == SLUICE_SUCCESS && info->maxTexturesPerFrame < info->texturesPerFrame)
+        result = slc_log_refusal(
+            log, "maxTexturesPerFrame is %u; it must be texturesPerFrame, %u, at least",
+            info->maxTexturesPerFrame, info->texturesPerFrame);
     if (result == SLUICE_SUCCESS)
         result = slc_forgetting_fill_in(info, log);
     return result == SLUICE_SUCCESS ? slc_fill_in_times(info, log) : result;
@@ -181,7 +187,9 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     memset(s->min_mip_texels, 0xFF, s->info.maxRegionCount * sizeof *s->min_mip_texels);
     memset(s->min_mip_levels, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
     s->fade_clock.time_per_level = s->info.residencyFadeTicks;
-    s->most_textures_per_frame = s->next_textures_per_frame = s->info.texturesPerFrame;
+    s->most_textures_per_frame = s->info.maxTexturesPerFrame;
+    s->next_textures_per_frame = s->info.texturesPerFrame;
+    s->next_frames_per_round = s->info.framesPerRound;
     return slc_region_arena_init(&s->regions, cb, s->info.maxRegionCount, textures);
 }
 
@@ -206,8 +214,8 @@ static SluiceResult check_buffer_sizes(const SluiceVulkanStreamer *s)
     else if (slc_feedback_size(s, s->regions.size) > limit)
         setting = "maxRegionCount";
     else if (slc_resolve_table_size(&resolve) > limit || slc_resolve_scratch_size(&resolve) > limit)
-        setting = "texturesPerFrame";
-    else if (slc_readback_ring_size(s->info.framesInFlight, s->info.texturesPerFrame,
+        setting = "maxTexturesPerFrame";
+    else if (slc_readback_ring_size(s->info.framesInFlight, s->most_textures_per_frame,
                                     s->info.feedbackReadbackSize / 4) > limit)
         setting = "feedbackReadbackSize";
     if (!setting)
@@ -249,7 +257,7 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
     if (result == SLUICE_SUCCESS)
         result =
             slc_readback_ring_init(&s->readback, &s->vk, &s->caps, &s->cb, s->info.framesInFlight,
-                                   s->info.texturesPerFrame, s->info.feedbackReadbackSize / 4);
+                                   s->most_textures_per_frame, s->info.feedbackReadbackSize / 4);
     name_buffers(s);
     struct slc_resolve_create_info resolve = resolve_info(s);
     if (result == SLUICE_SUCCESS)

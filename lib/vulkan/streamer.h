@@ -192,9 +192,13 @@ struct SluiceVulkanStreamer {
     uint64_t retired;    ///< the last value that the manager was told
     uint64_t time_stamp; ///< of the last frame begun
     struct slc_time_check time_check;
-    uint64_t manager_time;              ///< the last time stamp that the manager got
-    uint32_t most_textures_per_frame;   ///< that the buffers have room for
-    uint32_t next_textures_per_frame;   ///< from the next frame on
+    uint64_t manager_time;            ///< the last time stamp that the manager got
+    uint32_t most_textures_per_frame; ///< that the buffers have room for
+    uint32_t next_textures_per_frame; ///< from the next frame on
+    uint32_t next_frames_per_round;   ///< as well
+    uint32_t share;    ///< maps of the frame that began; the buffers have room for them
+    uint32_t all_left; ///< turns until all textures that are asked for had one
+    bool share_of_all; ///< some of them because all textures are asked for
     uint64_t in_flight[SLC_MAX_FRAMES]; ///< by slot; framesInFlight of them; 0: none
     bool submittable[SLC_MAX_FRAMES];   ///< by slot; its frame was ended without an error
     uint64_t slot_turn;                 ///< frames begun and not abandoned
@@ -323,6 +327,8 @@ SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer command
 void slc_min_mip_abandon(SluiceVulkanStreamer *s, uint64_t frame);
 
 /* feedback.c: which textures' feedback is resolved, and what the manager gets of it */
+/** A frame begins: how many textures have their turn. */
+void slc_feedback_choose_share(SluiceVulkanStreamer *s);
 /** The texture has turns from now on, or none any longer. */
 void slc_feedback_join(SluiceVulkanStreamer *s, uint32_t index);
 void slc_feedback_leave(SluiceVulkanStreamer *s, uint32_t index);

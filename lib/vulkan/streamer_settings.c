@@ -64,10 +64,8 @@ static SluiceResult set_tiles_per_frame(SluiceVulkanStreamer *s, uint32_t count)
 
 void slc_settings_apply(SluiceVulkanStreamer *s)
 {
-    if (s->info.texturesPerFrame == s->next_textures_per_frame)
-        return;
     s->info.texturesPerFrame = s->next_textures_per_frame;
-    s->list_version++;
+    s->info.framesPerRound = s->next_frames_per_round;
 }
 
 SluiceResult sluiceGetVulkanStreamerSettings(const SluiceVulkanStreamer *streamer,
@@ -91,7 +89,8 @@ SluiceResult sluiceGetVulkanStreamerSettings(const SluiceVulkanStreamer *streame
         .retryDelayTicks = config->retryDelayTicks,
         .givenUpRetryDelayTicks = config->givenUpRetryDelayTicks,
         .noEviction = config->noEviction,
-        .noMipBias = config->noMipBias};
+        .noMipBias = config->noMipBias,
+        .framesPerRound = streamer->next_frames_per_round};
     slc_struct_write(type, pSettings, &settings);
     return SLUICE_SUCCESS;
 }
@@ -138,6 +137,7 @@ SluiceResult sluiceSetVulkanStreamerSettings(SluiceVulkanStreamer *streamer,
     if (result != SLUICE_SUCCESS)
         return result;
     s->next_textures_per_frame = settings.texturesPerFrame;
+    s->next_frames_per_round = settings.framesPerRound;
     s->info.feedbackTimeoutTicks = settings.feedbackTimeoutTicks;
     s->info.residencyFadeTicks = settings.residencyFadeTicks;
     s->fade_clock.time_per_level = settings.residencyFadeTicks;

@@ -113,7 +113,8 @@ static bool are_same(const SluiceVulkanStreamerSettings *a, const SluiceVulkanSt
            a->residencyFadeTicks == b->residencyFadeTicks &&
            a->retryDelayTicks == b->retryDelayTicks &&
            a->givenUpRetryDelayTicks == b->givenUpRetryDelayTicks &&
-           a->noEviction == b->noEviction && a->noMipBias == b->noMipBias;
+           a->noEviction == b->noEviction && a->noMipBias == b->noMipBias &&
+           a->framesPerRound == b->framesPerRound;
 }
 
 static void settings_begin_as_the_create_info_says(void **state)
@@ -149,7 +150,8 @@ static void settings_begin_as_the_create_info_says(void **state)
                                               .retryDelayTicks = 130,
                                               .givenUpRetryDelayTicks = 150,
                                               .noEviction = true,
-                                              .noMipBias = true};
+                                              .noMipBias = true,
+                                              .framesPerRound = 170};
     CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
     SluiceVulkanStreamerSettings set = get(s);
     assert_true(are_same(&set, &settings));
@@ -236,6 +238,94 @@ static void textures_per_frame_are_those_of_the_frame_that_began(void **state)
     frame(s);
     assert_int_equal(statistics(s).feedbackMaps - before, 4);
     stage_finish(s);
+}
+
+/* Maps of the frame that has just been read. */
+static uint64_t maps_of_frame(struct stage *s)
+{
+    uint64_t before = statistics(s).feedbackMaps;
+    frame(s);
+    return statistics(s).feedbackMaps - before;
+}
+
+static void all_textures_have_their_turn_after_a_cut(void **state)
+{
+    (void)state;
+    for (uint32_t most = 1; most <= 6; most++) {
+        struct stage *s = stage_init(
+            &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                              .texturesPerFrame = 1,
+                                              .maxTexturesPerFrame = most,
+                                              .feedbackTimeoutTicks = 1000});
+        for (int i = 0; i < 5; i++)
+            frame(s);
+        assert_int_equal(maps_of_frame(s), 1);
+        s->memory.refuse_from = 0;
+        CHECK_OK(sluiceResolveAllVulkanTextures(s->streamer));
+        s->memory.refuse_from = UINT64_MAX;
+        assert_int_equal(maps_of_frame(s), 1); /* of the frame before */
+        for (uint32_t left = TEXTURES; left > 0;) {
+            uint32_t maps = left < most ? left : most;
+            assert_int_equal(maps_of_frame(s), maps);
+            left -= maps;
+        }
+        assert_int_equal(maps_of_frame(s), 1);
+        stage_finish(s);
+    }
+}
+
+static void turns_of_all_come_again_if_their_frame_is_abandoned(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                          .texturesPerFrame = 1,
+                                          .maxTexturesPerFrame = TEXTURES,
+                                          .feedbackTimeoutTicks = 1000});
+    for (int i = 0; i < 5; i++)
+        frame(s);
+    CHECK_OK(sluiceResolveAllVulkanTextures(s->streamer));
+    SluiceStreamingFrame lost = {.structSize = sizeof lost};
+    VkCommandBuffer commands = fake_vulkan_commands(&s->fake);
+    s->fake.copy_count = s->fake.bind_count = 0;
+    CHECK_OK(sluiceBeginStreamingFrame(s->streamer, commands, ++s->time, &lost));
+    CHECK_OK(sluiceEndStreamingFrame(s->streamer, commands));
+    CHECK_OK(sluiceAbandonStreamingFrame(s->streamer, &lost));
+    frame(s);
+    assert_int_equal(maps_of_frame(s), TEXTURES);
+    assert_int_equal(maps_of_frame(s), 1);
+    stage_finish(s);
+}
+
+static void rounds_take_at_most_so_many_frames(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                          .texturesPerFrame = 1,
+                                          .maxTexturesPerFrame = 3,
+                                          .framesPerRound = 2,
+                                          .feedbackTimeoutTicks = 1000});
+    const uint32_t rounds[] = {2, 4, 3, 1, 0}, maps[] = {2, 1, 2, 3, 1};
+    for (uint32_t i = 0; i < 5; i++) {
+        SluiceVulkanStreamerSettings settings = get(s);
+        settings.framesPerRound = rounds[i];
+        if (i > 0)
+            CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+        frame(s);
+        frame(s);
+        assert_int_equal(maps_of_frame(s), maps[i]);
+    }
+    stage_finish(s);
+    struct stage *wrong = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo)});
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .texturesPerFrame = 5, .maxTexturesPerFrame = 4};
+    fake_vulkan_fill(&info);
+    SluiceVulkanStreamer *refused;
+    CHECK_RESULT(fake_vulkan_create(&wrong->fake, &info, &refused), SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(wrong->last, "maxTexturesPerFrame is 4"));
+    stage_finish(wrong);
 }
 
 static void timeout_and_standby_follow_the_settings(void **state)
@@ -385,6 +475,9 @@ int main(void)
         cmocka_unit_test(wrong_settings_change_nothing_and_are_named),
         cmocka_unit_test(tiles_per_frame_limit_the_next_frame),
         cmocka_unit_test(textures_per_frame_are_those_of_the_frame_that_began),
+        cmocka_unit_test(all_textures_have_their_turn_after_a_cut),
+        cmocka_unit_test(turns_of_all_come_again_if_their_frame_is_abandoned),
+        cmocka_unit_test(rounds_take_at_most_so_many_frames),
         cmocka_unit_test(timeout_and_standby_follow_the_settings),
         cmocka_unit_test(configuration_of_the_manager_and_settings_are_one),
         cmocka_unit_test(settings_survive_every_refused_allocation),
