@@ -396,6 +396,7 @@ typedef struct SluicePbrtMesh {
  * Spheres, disks and cylinders become 64 segments for a whole turn, loopsubdiv becomes its
  * limit surface after `levels` subdivisions, bilinear patches and quads become two triangles, and
  * larger polygons a fan. The arrays belong to the caller, who frees them with sluiceFreePbrtMesh.
+ * After an error all fields of the mesh but structSize are 0, unless structSize is wrong.
  *
  * Errors, logged with the line of the Shape: SLUICE_ERROR_NULL_POINTER;
  *         SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize or an `index` that is not below

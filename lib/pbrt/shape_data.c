@@ -100,11 +100,12 @@ SluiceResult sluiceReadPbrtShape(const SluicePbrtScene *scene, uint32_t index,
     SluiceResult result = slc_struct_check(SLC_STRUCT(SluicePbrtMesh), pMesh, &scene->limits.log);
     if (result != SLUICE_SUCCESS)
         return result;
+    SluicePbrtMesh mesh = {0}; /* also after an error, so that it can be freed */
+    slc_struct_write(SLC_STRUCT(SluicePbrtMesh), pMesh, &mesh);
     if (index >= scene->shape_count)
         return slc_log_refusal(&scene->limits.log, "shape %u: the scene has %zu", index,
                                scene->shape_count);
     const struct slc_pbrt_shape_entry *shape = &scene->shapes[index];
-    SluicePbrtMesh mesh;
     switch (shape->kind) {
     case SLUICE_PBRT_SHAPE_TRIANGLES:
     case SLUICE_PBRT_SHAPE_LOOP:

@@ -486,6 +486,22 @@ static void textures_nest_32_deep(void **state)
     }
 }
 
+static void a_mesh_that_could_not_be_read_can_be_freed(void **state)
+{
+    (void)state;
+    static const char TEXT[] = HEADER "Shape \"plymesh\" \"string filename\" \"none.ply\"\n";
+    CHECK_OK(pbrt_open_text(&files, TEXT));
+    for (uint32_t index = 0; index < 2; index++) { /* without a file, and none at all */
+        SluicePbrtMesh mesh;
+        memset(&mesh, 0xA5, sizeof mesh);
+        mesh.structSize = sizeof mesh;
+        CHECK_RESULT(sluiceReadPbrtShape(files.scene, index, &mesh),
+                     index ? SLUICE_ERROR_INVALID_ARGUMENT : SLUICE_ERROR_FILE_NOT_FOUND);
+        assert_true(!mesh.pPositions && !mesh.pIndices && mesh.vertexCount == 0);
+        CHECK_OK(sluiceFreePbrtMesh(files.scene, &mesh));
+    }
+}
+
 static void bounds_are_remembered_in_a_file(void **state)
 {
     (void)state;
@@ -587,6 +603,7 @@ int main(void)
         TEST(compressed_text_stops_at_its_limit),
         TEST(the_gamma_of_a_texture_is_any_number),
         TEST(textures_nest_32_deep),
+        TEST(a_mesh_that_could_not_be_read_can_be_freed),
         TEST(bounds_are_remembered_in_a_file),
         TEST(compressed_files_are_read_like_plain_ones),
         TEST(options_of_both_forms_are_skipped),
