@@ -170,7 +170,7 @@ typedef struct SluiceNeuralMip {
     uint32_t width, height;    ///< Texels.
     uint32_t latentImage;      ///< First latent image that it uses.
     uint32_t latentImageCount; ///< Schema 1: 1. Schema 3: 2.
-    float positionLod;         ///< Level between its latent images, -1 to 2.
+    float positionLod;         ///< Level between its latent images, -1024 to 1024.
     float positionScale;       ///< Factor of texel coordinates in the network's position input.
     uint32_t firstFusedMip;    ///< First mip that uses the same latent images.
     uint32_t fusedMipCount;    ///< Mips that use them, this one included.
@@ -295,8 +295,9 @@ typedef struct SluiceNeuralConstants {
 
 /** Meaning of an output of the network. Never grows. */
 typedef struct SluiceNeuralOutput {
-    uint32_t channel; ///< A channel of the set, or SLUICE_NEURAL_CONSTANT.
-    float constant;   ///< The value if `channel` says so, rounded to 1 / 65536. Below 32768.
+    /** 0 to 15, or SLUICE_NEURAL_CONSTANT. Not in validChannels: garbage. */
+    uint32_t channel;
+    float constant; ///< The value if `channel` says so, rounded to 1 / 65536. Below 32768.
 } SluiceNeuralOutput;
 
 /**

@@ -203,8 +203,8 @@ typedef struct SluiceProxyListInfo {
  * or its request is cleared.
  *
  * Set `*pCount` to the capacity of `pProxyIds`. The call sets it to the number of ids written.
- * Returns SLUICE_INCOMPLETE if there are more; those written are the first in order. `pInfo` may be
- * NULL: SLUICE_PROXY_ORDER_INDEX.
+ * Returns SLUICE_INCOMPLETE if there are more; those written are the first in order. The number of
+ * all is requestedCount of SluiceProxySetInfo. `pInfo` may be NULL: SLUICE_PROXY_ORDER_INDEX.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for an
  * order that is unknown or needs boxes that the set does not have, or a point that is not finite.
