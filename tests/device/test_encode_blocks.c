@@ -14,8 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { BLOCKS = 2048, KINDS = 6 };
-enum kind { SOLID, TWO_COLORS, RAMP, CURVE, CLOUD, NOISE };
+enum { BLOCKS = 2048, KINDS = 7 };
+enum kind { SOLID, TWO_COLORS, RAMP, CURVE, CLOUD, NOISE, APART };
 static const char *const format_names[] = {"BC1", "BC4", "BC5", "BC7"};
 
 struct rig {
@@ -71,10 +71,13 @@ static void make_block(enum kind kind, float rgba[64])
         b[c] = kind == CLOUD ? a[c] + draw(-0.1, 0.1) : draw(0, 1);
         bend[c] = draw(-0.2, 0.2);
     }
+    const int apart = (int)(roll() % 4); /* varies downward alone, with the others to the right */
     for (int i = 0; i < 16; i++) {
         double t = kind == TWO_COLORS ? draw(0, 1) < 0.5 : (i % 4 + 2 * (i / 4)) / 9.0;
         for (int c = 0; c < 4; c++) {
             double v = kind == SOLID ? a[c] : kind == NOISE ? draw(0, 1) : a[c] + t * (b[c] - a[c]);
+            if (kind == APART)
+                v = a[c] + (c == apart ? i / 4 : i % 4) / 3.0 * (b[c] - a[c]);
             if (kind == CURVE)
                 v += bend[c] * 4 * t * (1 - t);
             if (kind == CLOUD)
@@ -192,10 +195,10 @@ static double psnr(double squares, int channels)
 static void blocks_of_each_kind_beat_the_corners_of_their_box(void **state)
 {
     /* dB over BLOCKS blocks: about 0.3 below what was measured. */
-    static const double least[ENCODE_FORMATS][KINDS] = {{41.6, 41.6, 28.8, 26.9, 32.7, 13.5},
-                                                        {150, 150, 35.3, 36.4, 47.8, 29.7},
-                                                        {150, 150, 35.2, 36.3, 47.8, 29.7},
-                                                        {53.5, 53.0, 41.7, 29.6, 32.7, 13.1}};
+    static const double least[ENCODE_FORMATS][KINDS] = {{41.6, 41.6, 28.8, 26.9, 32.7, 13.5, 23.9},
+                                                        {150, 150, 35.3, 36.4, 47.8, 29.7, 37.6},
+                                                        {150, 150, 35.2, 36.3, 47.8, 29.7, 37.7},
+                                                        {53.5, 53.0, 41.7, 30.3, 34.5, 15.1, 50.8}};
     struct rig rig;
     rig_init(&rig, *state);
     struct EncodeInput *inputs = rig.texels.mapped;
@@ -213,6 +216,8 @@ static void blocks_of_each_kind_beat_the_corners_of_their_box(void **state)
                 corners += corner_error(format, inputs[i].rgba);
             }
             int channels = channel_count(format);
+            print_message("# %s, kind %u: %.2f dB\n", format_names[format], kind,
+                          psnr(squares, channels));
             if (!(psnr(squares, channels) >= least[format][kind] && squares <= corners * 1.001))
                 fail_msg("%s, kind %u: %.2f dB, corners have %.2f", format_names[format], kind,
                          psnr(squares, channels), psnr(corners, channels));

@@ -4,7 +4,7 @@
  * an image by vkCmdCopyBufferToImage (docs/producers.md).
  *
  * Values are clamped to 0..1 and encoded as they are: encode sRGB before. They must be finite.
- * BC7 has blocks of mode 6 alone. docs/producers.md has the quality.
+ * BC7 has blocks of modes 5 and 6. docs/producers.md has the quality.
  */
 #ifndef SLUICE_ENCODE_BLOCKS_GLSL
 #define SLUICE_ENCODE_BLOCKS_GLSL
@@ -262,7 +262,109 @@ uvec4 sluicePackBc7(uvec4 ends[2], uint indices[16])
     return block;
 }
 
-/** BC7 of RGBA, by mode 6. */
+/* --- BC7, mode 5: one channel apart, with weights of its own. Ends of 7 and 8 bits, 4 weights --- */
+
+/* Alpha changes places with channel `rotation - 1`; 0: stays. */
+vec4 sluiceRotateBc7(vec4 texel, uint rotation)
+{
+    return rotation == 1u   ? texel.agbr
+           : rotation == 2u ? texel.rabg
+           : rotation == 3u ? texel.rgab
+                            : texel;
+}
+
+struct SluiceBc7Split {
+    uvec4 ends[2]; /* as stored: 7 bits of color, 8 of alpha */
+    uvec2 indices; /* of color, of alpha: 2 bits each */
+};
+
+/* Weights 21 and 43 of 64 for a third and two thirds. */
+float sluiceBc7Third(uint index)
+{
+    return float(21u * index + (index > 1u ? 1u : 0u)) / 64;
+}
+
+/* Picks indices for two ends; `line` becomes their fit. Returns the squared error. */
+float sluiceIndexBc7Split(inout SluiceBlockLine line, vec4 texels[16], out SluiceBc7Split block)
+{
+    const vec4 color = vec4(1, 1, 1, 0), alpha = vec4(0, 0, 0, 1);
+    SluiceBlockLine stored;
+    for (int e = 0; e < 2; e++) {
+        block.ends[e] = uvec4(floor(line.end[e] * vec4(127, 127, 127, 255) + 0.5));
+        uvec4 bytes = uvec4(block.ends[e].rgb << 1 | block.ends[e].rgb >> 6, block.ends[e].a);
+        stored.end[e] = vec4(bytes) / 255;
+    }
+    float w[16], v[16], error = 0;
+    block.indices = uvec2(0);
+    for (int i = 0; i < 16; i++) {
+        uint c = uint(round(sluicePlaceOnLine(stored, texels[i], color) * 3));
+        uint a = uint(round(sluicePlaceOnLine(stored, texels[i], alpha) * 3));
+        w[i] = sluiceBc7Third(c);
+        v[i] = sluiceBc7Third(a);
+        block.indices |= uvec2(c, a) << 2 * i;
+        vec4 d = mix(stored.end[0], stored.end[1], vec4(vec3(w[i]), v[i])) - texels[i];
+        error += dot(d, d);
+    }
+    SluiceBlockLine colors = sluiceRefitBlockLine(stored, texels, w);
+    SluiceBlockLine alphas = sluiceRefitBlockLine(stored, texels, v);
+    for (int e = 0; e < 2; e++)
+        line.end[e] = vec4(colors.end[e].rgb, alphas.end[e].a);
+    return error;
+}
+
+uvec4 sluicePackBc7Split(SluiceBc7Split split, uint rotation)
+{
+    /* The first indices have one bit: their higher one is 0. */
+    bvec2 turn = notEqual(split.indices & 2u, uvec2(0));
+    uvec2 indices = uvec2(turn.x ? ~split.indices.x : split.indices.x, turn.y ? ~split.indices.y : split.indices.y);
+    uvec4 block = uvec4(0);
+    int at = 0;
+    sluicePutBits(block, at, 1u << 5, 6);
+    sluicePutBits(block, at, rotation, 2);
+    for (int c = 0; c < 4; c++) {
+        uint first = split.ends[0][c], second = split.ends[1][c];
+        bool swap = c < 3 ? turn.x : turn.y;
+        sluicePutBits(block, at, swap ? second : first, c < 3 ? 7 : 8);
+        sluicePutBits(block, at, swap ? first : second, c < 3 ? 7 : 8);
+    }
+    for (int k = 0; k < 2; k++) {
+        sluicePutBits(block, at, indices[k] & 1u, 1);
+        sluicePutBits(block, at, indices[k] >> 2, 30);
+    }
+    return block;
+}
+
+/* Replaces `block` if a channel apart has a smaller error. */
+void sluiceTryBc7Split(vec4 texels[16], inout float bestError, inout uvec4 block)
+{
+    SluiceBc7Split best;
+    uint bestRotation = 4u;
+    for (uint rotation = 0u; rotation < 4u; rotation++) {
+        vec4 rotated[16];
+        float low = 1, high = 0;
+        for (int i = 0; i < 16; i++) {
+            rotated[i] = sluiceRotateBc7(texels[i], rotation);
+            low = min(low, rotated[i].a);
+            high = max(high, rotated[i].a);
+        }
+        SluiceBlockLine line = sluiceFitBlockLine(rotated, vec4(1, 1, 1, 0));
+        line.end[0].a = low;
+        line.end[1].a = high;
+        for (int pass = 0; pass < 2; pass++) {
+            SluiceBc7Split split;
+            float error = sluiceIndexBc7Split(line, rotated, split);
+            if (error < bestError) {
+                bestError = error;
+                best = split;
+                bestRotation = rotation;
+            }
+        }
+    }
+    if (bestRotation < 4u)
+        block = sluicePackBc7Split(best, bestRotation);
+}
+
+/** BC7 of RGBA, by mode 6 or 5. Channels that vary as one are best; one may be unlike the others. */
 uvec4 sluiceEncodeBc7(vec4 texels[16])
 {
     for (int i = 0; i < 16; i++)
@@ -283,7 +385,10 @@ uvec4 sluiceEncodeBc7(vec4 texels[16])
         }
         line = sluiceRefitBlockLine(line, texels, w);
     }
-    return sluicePackBc7(best, bestIndices);
+    uvec4 block = sluicePackBc7(best, bestIndices);
+    if (bestError > 64.0 / (255 * 255)) /* one step of 8 bits per value */
+        sluiceTryBc7Split(texels, bestError, block);
+    return block;
 }
 
 #endif /* SLUICE_ENCODE_BLOCKS_GLSL */
