@@ -162,10 +162,9 @@ static uint32_t choose_level(const struct wanted_picture *picture)
 }
 
 /** All are begun before one is waited for. */
-static bool preload_pictures(struct launches *l, bool are_open)
+static bool begin_pictures(struct launches *l, bool are_open)
 {
     struct surfaces *s = l->surfaces;
-    SluiceDemandTicketStatus status;
     for (uint32_t i = 0; i < s->picture_count; i++) {
         struct wanted_picture *picture = &s->pictures[i];
         const uint32_t level = are_open ? choose_level(picture) : NO_LEVEL;
@@ -173,6 +172,13 @@ static bool preload_pictures(struct launches *l, bool are_open)
                    "a picture cannot be loaded"))
             return false;
     }
+    return true;
+}
+
+static bool wait_for_pictures(struct launches *l)
+{
+    const struct surfaces *s = l->surfaces;
+    SluiceDemandTicketStatus status;
     for (uint32_t i = 0; i < s->picture_count; i++)
         if (!wait_for(l, s->pictures[i].ticket, &status))
             return false;
@@ -180,10 +186,12 @@ static bool preload_pictures(struct launches *l, bool are_open)
 }
 
 /** Opens the pictures of surfaces that were just made, so that the next launch misses only tiles.
- */
+ *  The launch without rays starts to read the mip tails of those that are open: the next tickets do
+ *  not wait for them. */
 static bool open_pictures(struct launches *l)
 {
-    if (!preload_pictures(l, false) || !idle_launch(l) || !preload_pictures(l, true))
+    if (!begin_pictures(l, false) || !wait_for_pictures(l) || !idle_launch(l) ||
+        !wait_for_pictures(l) || !begin_pictures(l, true) || !wait_for_pictures(l))
         return false;
     surfaces_finish_pictures(l->surfaces);
     return true;
