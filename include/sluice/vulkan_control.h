@@ -174,6 +174,23 @@ SLUICE_API SluiceResult sluiceSetVulkanTextureControl(SluiceVulkanStreamer *stre
 SLUICE_API SluiceResult sluiceEvictVulkanTexture(SluiceVulkanStreamer *streamer,
                                                  SluiceTextureId textureId, uint32_t keepTileCount);
 
+/**
+ * Changes the primary of a texture: from now on it loads what the feedback of the primary requests.
+ * SLUICE_NO_TEXTURE: its own feedback counts from now on. Does nothing if it is its primary.
+ *
+ * A texture that begins to follow another one loses its requests and its control. Neither it nor
+ * its primary is forgotten from then on (forgetTextures). What earlier maps requested expires as
+ * usual.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the primary is the texture itself
+ *         or follows another one, or if the texture has followers. Nothing has changed after an
+ *         error.
+ */
+SLUICE_API SluiceResult sluiceSetVulkanPrimaryTexture(SluiceVulkanStreamer *streamer,
+                                                      SluiceTextureId textureId,
+                                                      SluiceTextureId primaryId);
+
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

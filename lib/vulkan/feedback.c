@@ -168,7 +168,7 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
         }
         ask_for_all(s, texture, s->debug.wholeFeedbackMaps);
         s->counts.feedbackWords += resolved.count;
-        if (texture->hidden)
+        if (texture->hidden || texture->primary_id != SLUICE_NO_TEXTURE)
             continue;
         SluiceResult result = give_map_of(s, texture, slot->time_stamp);
         if (result < 0)

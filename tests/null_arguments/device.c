@@ -51,6 +51,7 @@ sluiceWithdrawVulkanRequest(f->streamer, f->request_id)
 sluiceGetVulkanTextureControl(f->streamer, f->texture.textureId, &f->out.control)
 sluiceSetVulkanTextureControl(f->streamer, f->texture.textureId, &f->control)
 sluiceEvictVulkanTexture(f->streamer, f->texture.textureId, ?1)
+sluiceSetVulkanPrimaryTexture(f->streamer, f->texture.textureId, ?SLUICE_NO_TEXTURE)
 
 sluiceCreateNeuralCompressor(f->h->context, &f->compressor_info, &f->out.compressor) => sluiceDestroyNeuralCompressor(f->out.compressor)
 !sluiceDestroyNeuralCompressor(f->compressor)

@@ -551,6 +551,51 @@ static void evicted_tiles_are_unmapped_with_the_next_frame(void **state)
     stage_finish(s);
 }
 
+static void primaries_change_while_textures_stream(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 4});
+    const SluiceTextureId id = s->textures[0].textureId, other = s->textures[1].textureId;
+    memset(s->seen[0], 2, sizeof s->seen[0]);
+    s->seen[1][2 * TILES + 3] = 0;
+    SluiceTextureRequestId pin = request(s, 0, 1, (SluiceTextureRect){0}, UINT64_MAX);
+    set_control(s, 0, (SluiceVulkanTextureControl){.finestLevel = 1, .hidden = true});
+    frames(s, 10);
+    assert_int_equal(state_of(s, 0, (SluiceTextureRect){0}).residentLevel, 1);
+    uint64_t maps = statistics(s).feedbackMaps;
+    CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, id, other));
+    assert_true(progress_of(s, pin).over);
+    SluiceVulkanTextureControl control = {.structSize = sizeof control};
+    CHECK_RESULT(sluiceGetVulkanTextureControl(s->streamer, id, &control),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    frames(s, 20);
+    for (uint32_t y = 0; y < TILES; y++)
+        for (uint32_t x = 0; x < TILES; x++) {
+            const SluiceTextureRect tile = {x * 128, y * 128, 128, 128};
+            assert_int_equal(state_of(s, 0, tile).residentLevel, shared_level(x, y, 3, 2));
+            assert_int_equal(state_of(s, 1, tile).residentLevel, shared_level(x, y, 3, 2));
+        }
+    assert_int_equal(statistics(s).feedbackMaps, maps + 1 + 20 * (TEXTURES - 1));
+    CHECK_RESULT(sluiceSetVulkanPrimaryTexture(s->streamer, other, s->textures[2].textureId),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(s->last, "followers of its own"));
+    CHECK_RESULT(sluiceSetVulkanPrimaryTexture(s->streamer, s->textures[2].textureId, id),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, id, other)); /* nothing changes */
+    const uint64_t calls = s->memory.calls;
+    CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, id, SLUICE_NO_TEXTURE));
+    CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, id, SLUICE_NO_TEXTURE));
+    assert_int_equal(s->memory.calls, calls);
+    CHECK_OK(sluiceGetVulkanTextureControl(s->streamer, id, &control));
+    assert_true(control.finestLevel == 0 && !control.hidden);
+    frames(s, 20);
+    assert_int_equal(state_of(s, 0, (SluiceTextureRect){0}).residentLevel, 2);
+    assert_int_equal(state_of(s, 0, tile_3_2).residentLevel, 2);
+    CHECK_OK(sluiceRemoveVulkanTexture(s->streamer, other));
+    frames(s, 3);
+    stage_finish(s);
+}
+
 static void controls_survive_every_refused_allocation(void **state)
 {
     (void)state;
@@ -610,6 +655,7 @@ int main(void)
         cmocka_unit_test(a_bias_moves_feedback_and_not_requests),
         cmocka_unit_test(hidden_textures_leave_their_turns_and_their_tiles_stand_by),
         cmocka_unit_test(evicted_tiles_are_unmapped_with_the_next_frame),
+        cmocka_unit_test(primaries_change_while_textures_stream),
         cmocka_unit_test(controls_survive_every_refused_allocation),
         cmocka_unit_test(questions_take_no_memory),
     };
