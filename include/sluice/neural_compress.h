@@ -63,9 +63,11 @@ typedef struct SluiceNeuralCompressorCreateInfo {
  * Creates a compressor. Takes about 28 bytes of device memory per feature of each latent texel, and
  * two bytes per channel of each texel.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a field
- *         outside its range or an input that is not finite; SLUICE_ERROR_CORRUPT_DATA, with a log
- *         message, for a checkpoint that is damaged or of other settings;
+ * Errors: SLUICE_ERROR_NULL_POINTER, also for a mip; SLUICE_ERROR_INVALID_ARGUMENT, with a log
+ *         message, for a field outside its range, more than 2^30 latents, or an input that is not
+ *         finite; SLUICE_ERROR_LIMIT_EXCEEDED, with a log message, if a buffer is above the
+ * device's maxStorageBufferRange; SLUICE_ERROR_CORRUPT_DATA, with a log message, for a checkpoint
+ *         that is damaged or of other settings;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY, SLUICE_ERROR_OUT_OF_DEVICE_MEMORY, SLUICE_ERROR_VULKAN.
  * Thread safety: external on `context`.
  */
@@ -80,8 +82,8 @@ SLUICE_API void sluiceDestroyNeuralCompressor(SluiceNeuralCompressor *compressor
  * Records up to `maxSteps` steps. Submit the command buffer to a queue of the context's family, and
  * wait until it ended before the next call on the compressor.
  *
- * `*pStepCount` becomes the number of recorded steps; 0 if all steps have been recorded. At most
- * 1024 steps are recorded at once.
+ * `*pStepCount` becomes the number of recorded steps; 0 if all steps have been recorded, or if
+ * maxSteps is 0. At most 1024 steps are recorded at once.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER.
  */

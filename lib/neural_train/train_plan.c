@@ -9,7 +9,8 @@
 #define MAX_SIZE 16384u
 #define MAX_BATCH (1u << 20)
 #define MAX_STEPS 10000000u
-#define MASK_MARGIN 0.02f /* five steps of 8 bits beyond 0 and 1 */
+#define MAX_LATENTS (UINT64_C(1) << 30) /* of 4 bytes: no device has a larger range */
+#define MASK_MARGIN 0.02f               /* five steps of 8 bits beyond 0 and 1 */
 
 static const uint32_t default_steps = 20000, default_batch = 65536;
 static const float default_network_rate = 0.005f, default_latent_rate = 0.1f;
@@ -82,6 +83,19 @@ static void plan_images(struct slc_train_plan *plan)
     }
 }
 
+/* Shaders count latents in 32 bits. Errors: INVALID_ARGUMENT. */
+static SluiceResult check_latents(const struct slc_train_plan *plan, const SluiceLogCallback *log)
+{
+    uint64_t count = (uint64_t)plan->latent_texels * plan->feature_count;
+    if (count <= MAX_LATENTS)
+        return SLUICE_SUCCESS;
+    return slc_log_refusal(log,
+                           "%u x %u texels, gridSizeScale %u and featureCount %u make %llu "
+                           "latents; at most 2^30 are possible",
+                           plan->width, plan->height, plan->scale, plan->feature_count,
+                           (unsigned long long)count);
+}
+
 /* Mips have samples by their texels, and each has some. */
 static void plan_samples(struct slc_train_plan *plan)
 {
@@ -126,12 +140,15 @@ SluiceResult slc_train_plan_init(struct slc_train_plan *plan,
         .latent_rate = info->latentRate > 0.0f ? info->latentRate : default_latent_rate};
     plan->refine_steps = plan->step_count / 20;
     plan->fp8_steps = plan->step_count / 20;
-    for (uint32_t m = 0; m < plan->mip_count; m++)
+    for (uint32_t m = 0; m < plan->mip_count; m++) {
+        if (!info->ppMips[m])
+            return SLUICE_ERROR_NULL_POINTER;
         plan->texel_count += (uint64_t)slc_mip_size(plan->width, m) * slc_mip_size(plan->height, m);
+    }
     memcpy(plan->channels, info->pChannels, info->channelCount * sizeof *plan->channels);
     plan_images(plan);
     plan_samples(plan);
-    return SLUICE_SUCCESS;
+    return check_latents(plan, log);
 }
 
 uint32_t slc_train_first_image(const struct slc_train_plan *plan, uint32_t mip)

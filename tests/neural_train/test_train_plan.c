@@ -18,7 +18,9 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *text)
 
 static const SluiceLogCallback log_of_test = {NULL, on_log};
 static const SluiceNeuralTrainingChannel channels[16];
-static const float *const mips[16];
+static const float texel;
+#define FOUR_MIPS &texel, &texel, &texel, &texel
+static const float *const mips[16] = {FOUR_MIPS, FOUR_MIPS, FOUR_MIPS, FOUR_MIPS}; /* not read */
 
 static SluiceNeuralCompressorCreateInfo info_of(uint32_t width, uint32_t height, uint32_t scale)
 {
@@ -161,6 +163,33 @@ static void wrong_values_are_named(void **state)
     assert_string_equal(message, "latentRate is nan, must be 0 to 1");
 }
 
+/* Here 32 bits have room for the remainder alone: buffers would be small, and shaders write beyond.
+ */
+static void latents_that_32_bits_cannot_count_are_refused(void **state)
+{
+    (void)state;
+    struct slc_train_plan plan;
+    SluiceNeuralCompressorCreateInfo info = info_of(16384, 12289, 1);
+    CHECK_RESULT(slc_train_plan_init(&plan, &info, &log_of_test), SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(message, "at most 2^30"));
+    info.gridSizeScale = 4;
+    CHECK_OK(slc_train_plan_init(&plan, &info, &log_of_test));
+}
+
+static void a_mip_that_is_missing_is_refused(void **state)
+{
+    (void)state;
+    const float *some[16];
+    struct slc_train_plan plan;
+    SluiceNeuralCompressorCreateInfo info = info_of(64, 64, 4);
+    memcpy(some, mips, sizeof some);
+    some[6] = NULL;
+    info.ppMips = some;
+    CHECK_RESULT(slc_train_plan_init(&plan, &info, &log_of_test), SLUICE_ERROR_NULL_POINTER);
+    info.mipCount = 6;
+    CHECK_OK(slc_train_plan_init(&plan, &info, &log_of_test));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -169,6 +198,8 @@ int main(void)
         cmocka_unit_test(sums_of_gradients_fit_into_32_bits),
         cmocka_unit_test(rates_fall_and_latents_freeze_before_the_end),
         cmocka_unit_test(wrong_values_are_named),
+        cmocka_unit_test(latents_that_32_bits_cannot_count_are_refused),
+        cmocka_unit_test(a_mip_that_is_missing_is_refused),
     };
     return RUN_TESTS(tests);
 }
