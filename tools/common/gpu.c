@@ -287,6 +287,16 @@ static bool has_extension(VkPhysicalDevice device, const char *name)
     return false;
 }
 
+static bool has_addresses(VkPhysicalDevice device)
+{
+    VkPhysicalDeviceVulkan12Features vulkan12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                          .pNext = &vulkan12};
+    vkGetPhysicalDeviceFeatures2(device, &features);
+    return vulkan12.bufferDeviceAddress;
+}
+
 static bool create_device(struct gpu *gpu)
 {
     VkPhysicalDeviceVulkan12Features vulkan12 = {
@@ -308,6 +318,14 @@ static bool create_device(struct gpu *gpu)
                                                                : gpu->modes[i],
                                         &log, &features.features, &vulkan12) != SLUICE_SUCCESS)
             return false;
+
+    if (gpu->byte_pages) {
+        if (sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
+                                        SLUICE_RESIDENCY_MODE_PAGED, &log, &features.features,
+                                        &vulkan12) != SLUICE_SUCCESS)
+            return false;
+        vulkan12.bufferDeviceAddress = VK_TRUE;
+    }
 
     static const float priority = 1.0f;
     VkDeviceQueueCreateInfo queues[2];
@@ -361,6 +379,8 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
         gpu->integer_dot =
             !*unsupported && request->integer_dot && !gpu->ray_tracing &&
             has_extension(gpu->physical_device, VK_KHR_SHADER_INTEGER_DOT_PRODUCT_EXTENSION_NAME);
+        gpu->byte_pages =
+            !*unsupported && request->byte_pages && has_addresses(gpu->physical_device);
         if (!*unsupported && create_device(gpu))
             return true;
     }

@@ -16,6 +16,7 @@ struct gpu_request {
     SluiceResidencyMode modes[2];
     bool ray_tracing; ///< the ray-tracing pipeline is enabled, where the device has it
     bool integer_dot; ///< integer dot products are enabled, where the device has them; without rays
+    bool byte_pages;  ///< byte pages of demand loaders, with addresses, where the device has them
 };
 
 struct gpu {
@@ -33,6 +34,7 @@ struct gpu {
     bool is_auto;                 ///< the first was AUTO: gpu_choose_mode may change it
     bool ray_tracing;             ///< asked for and there, with buffer addresses
     bool integer_dot;             ///< asked for and there
+    bool byte_pages;              ///< asked for and there
     VkDebugUtilsMessengerEXT messenger;
     atomic_uint validation_messages; ///< warnings and errors of the validation layers so far
 };
