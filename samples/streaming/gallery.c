@@ -149,6 +149,7 @@ static bool outputs_spare_inputs(const struct gallery *gallery)
     bool good = true;
     for (size_t i = 0; i < settings->images.count && good; i++)
         good = output_add_input(settings->images.items[i]);
+    good = good && (!settings->neural || output_add_input(settings->neural));
     for (uint32_t i = 0; i < gallery->pictures.count && good; i++)
         good = output_add_input(gallery->pictures.pictures[i].path);
     snprintf(csv, sizeof csv, "%s/frames.csv", settings->output);
@@ -165,6 +166,8 @@ enum gallery_outcome gallery_open(struct gallery *gallery)
                                  settings->validation,
                                  {settings_residency_mode(settings->residency),
                                   settings_residency_mode(settings->compare_with)}};
+    for (uint32_t i = 0; settings->neural && i < settings->neural_mode_count; i++)
+        device.byte_pages = device.byte_pages || settings->neural_modes[i] == NEURAL_SAMPLE;
     bool unsupported;
     if (!gpu_create(&device, &gallery->gpu, &unsupported))
         return unsupported ? GALLERY_NO_DEVICE : GALLERY_FAILED;

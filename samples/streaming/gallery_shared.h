@@ -3,6 +3,11 @@
 #define GALLERY_SHARED_H
 
 #include "sluice/shared/types.h"
+#ifdef __STDC_VERSION__
+#include <sluice/neural_pages.h>
+#else
+#include "sluice/shared/neural_pages.h"
+#endif
 
 #define GALLERY_NO_TEXTURE 0xffffffffu
 #define GALLERY_LIGHTS_PER_DRAW 3
@@ -13,6 +18,17 @@
 #define GALLERY_BINDING_COUNTS 2
 #define GALLERY_BINDING_REQUIRED 3 /* the pass of needs.frag writes its feedback here */
 #define GALLERY_BINDING_COUNT 4
+
+/* Storage buffers of set 3: those of a demand loader, then those of a neural set. */
+#define GALLERY_NEURAL_BINDING_LEVELS 0
+#define GALLERY_NEURAL_BINDING_DIRECTORY 1
+#define GALLERY_NEURAL_BINDING_BLOCKS 2
+#define GALLERY_NEURAL_BINDING_MASKS 3
+#define GALLERY_NEURAL_BINDING_REQUESTS 4
+#define GALLERY_NEURAL_BINDING_SECTIONS 5
+#define GALLERY_NEURAL_BINDING_SET 6
+#define GALLERY_NEURAL_BINDING_WEIGHTS 7
+#define GALLERY_NEURAL_BINDING_COUNT 8
 
 /* Draw flags. */
 #define GALLERY_GRAY 1u    /* one channel, shown as gray */
@@ -42,13 +58,14 @@ struct GalleryFrame {
     uint highlight;      /* 1: tint what is coarser than wanted */
     float presentEye[3]; /* where the eye is; `eye` is where it will be, where that is drawn */
     float pixelScale;    /* width of the picture's pixels, in pixels of what is drawn */
+    uint neuralPicks;    /* texels per pixel of pictures that the shader decodes */
 };
-SLUICE_SHARED_SIZE(struct GalleryFrame, 128)
+SLUICE_SHARED_SIZE(struct GalleryFrame, 132)
 
 /* Push constants of one draw. */
 struct GalleryDraw {
-    uint colorTexture; /* texture table index */
-    uint reliefTexture;
+    uint colorTexture;  /* texture table index; of a decoded picture its first channel in the set */
+    uint reliefTexture; /* texture table index; of a decoded picture color spaces, 2 bits each */
     uint reliefFeedback; /* 1: the relief writes feedback of its own */
     uint flags;
     uint lights[GALLERY_LIGHTS_PER_DRAW];
@@ -57,6 +74,13 @@ struct GalleryDraw {
     float reliefScale; /* texels of relief that stand for its height */
 };
 SLUICE_SHARED_SIZE(struct GalleryDraw, 48)
+
+/* A neural set whose latents are pages. */
+struct GalleryNeuralSet {
+    SluiceNeuralPages pages;
+    uint firstPage;
+};
+SLUICE_SHARED_SIZE(struct GalleryNeuralSet, 292)
 
 /* What the counting pass finds. */
 struct GalleryCounts {

@@ -24,11 +24,13 @@
 #include "gallery.h"
 #include "gallery_report.h"
 #include "measure.h"
+#include "material_files.h"
 #include "needs_trace.h"
 
 #define EXIT_USAGE 2
 #define EXIT_NO_DEVICE 77
-#define SOME_FRAMES 8 ///< pictures of the way that --write-frames some writes
+#define MATERIAL_SIZE 512 ///< texels along a side of --neural-material
+#define SOME_FRAMES 8     ///< pictures of the way that --write-frames some writes
 
 struct walk {
     struct gallery *gallery;
@@ -142,6 +144,7 @@ static bool draw_frame(struct walk *walk, uint32_t frame, uint64_t time_stamp)
     walk->tiles_mapped = drawn.statistics.tilesMapped;
     walk->measure->frames[frame].host_seconds = drawn.host_seconds;
     walk->measure->frames[frame].statistics = drawn.statistics;
+    walk->measure->frames[frame].neural_bytes = drawn.neural_bytes;
     return !gallery->settings.compare || view_draw(&gallery->truth, &camera, time_stamp, &truth);
 }
 
@@ -272,6 +275,8 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
     measure.texture_count = gallery->streamed.texture_count;
     done = done && begin_needs(&walk) && walk_through(&walk) && needs_wait_end(&walk.needs.wait);
     measure.reads = view_reads(&gallery->streamed);
+    if (gallery->pictures.neural)
+        measure.file_bytes = (double)atomic_load(&gallery->pictures.neural->bytes_read);
     done = needs_trace_end(&walk.trace, done) && done &&
            comparison_run(&walk.comparison, &walk.written) && write_results(&walk, argc, argv);
     needs_finish(&walk.needs);
@@ -316,6 +321,10 @@ int main(int argc, char **argv)
     descriptors_raise();
     if (gallery.settings.list_devices)
         return text_exit_status(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
+    if (gallery.settings.material)
+        return text_exit_status(material_files_write(gallery.settings.material, MATERIAL_SIZE)
+                                    ? EXIT_SUCCESS
+                                    : EXIT_FAILURE);
     if (gallery.settings.generate_only)
         return text_exit_status(generate_only(&gallery.settings));
     if (!can_write_outputs(&gallery.settings))

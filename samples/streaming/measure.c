@@ -9,7 +9,7 @@
 
 bool measure_begin(struct measure *measure, const struct settings *settings)
 {
-    *measure = (struct measure){.settings = settings};
+    *measure = (struct measure){.settings = settings, .file_bytes = NAN};
     measure->frames = calloc(settings->frames, sizeof *measure->frames);
     measure->frame_count = settings->frames;
     measure->rest_frame = settings->frames - settings->rest_frames;
@@ -136,6 +136,67 @@ static double needed_bytes_peak(const struct measure *measure)
 static double tile_bytes(const struct needs *needs, bool loaded, bool needed)
 {
     return needs ? MEASURE_TILE_BYTES * (double)needs_count_tiles(needs, loaded, needed) : NAN;
+}
+
+#define FINAL_DB 0.1 ///< the PSNR of the end, but for the noise of random texels
+
+/** Frames after the camera stopped until the PSNR is that of the last frame for good. */
+static double frames_to_final(const struct measure *measure)
+{
+    double last = measure->frames[measure->frame_count - 1].psnr;
+    uint32_t from = measure->frame_count;
+    while (from > measure->rest_frame &&
+           finite_psnr(measure->frames[from - 1].psnr) >= finite_psnr(last) - FINAL_DB)
+        from--;
+    return from < measure->frame_count ? from - measure->rest_frame : NAN;
+}
+
+#define FIRST_DB 0.5
+
+/** Frames from the first one, with nothing in memory, until the PSNR is about the best of the way's
+ *  first tenth. */
+static double frames_to_first_sharp(const struct measure *measure)
+{
+    uint32_t count = measure->frame_count / 10 > 8 ? measure->frame_count / 10 : 8, frame = 0;
+    double best = NAN;
+    count = count < measure->frame_count ? count : measure->frame_count;
+    for (uint32_t i = 0; i < count; i++)
+        best = fmax(best, finite_psnr(measure->frames[i].psnr));
+    while (frame < count && finite_psnr(measure->frames[frame].psnr) < best - FIRST_DB)
+        frame++;
+    return isnan(best) ? NAN : frame;
+}
+
+static double last_frames_flip(const struct measure *measure)
+{
+    return measure->frames[measure->frame_count - 1].flip;
+}
+
+/* How a neural set was streamed. NaN where none hangs. */
+static uint32_t neural_figures(const struct measure *measure, struct figure *figures)
+{
+    bool hangs = !isnan(measure->file_bytes);
+    double most = 0, beside = 0;
+    for (uint32_t i = 0; i < measure->frame_count; i++) {
+        const struct frame_record *record = &measure->frames[i];
+        double tiles = MEASURE_TILE_BYTES * measure_resident_tiles(record);
+        most = fmax(most, tiles + (double)record->neural_bytes);
+        beside = fmax(beside, (double)record->neural_bytes);
+    }
+    const struct figure list[] = {
+        {"texture_bytes_peak", hangs ? most : NAN, "bytes",
+         "of tiles, latents, pages of latents and weights in GPU memory, the most at a time"},
+        {"latent_bytes_peak", hangs ? beside : NAN, "bytes",
+         "of latents, pages of latents and weights alone"},
+        {"file_bytes_read", measure->file_bytes, "bytes", "from the files of the set"},
+        {"frames_to_final", hangs ? frames_to_final(measure) : NAN, "frames",
+         "that the camera stands still until the PSNR is within 0.1 dB of the end's"},
+        {"frames_to_first_sharp", hangs ? frames_to_first_sharp(measure) : NAN, "frames",
+         "from nothing in memory until the PSNR is within 0.5 dB of the best of the first tenth"},
+        {"flip_final", hangs ? last_frames_flip(measure) : NAN, "", "FLIP of the last frame"},
+    };
+    memcpy(figures, list, sizeof list);
+    return sizeof list / sizeof *list;
 }
 
 /* What was loaded, and what of it had to be. */
@@ -267,6 +328,7 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
     memcpy(figures, list, sizeof list);
     uint32_t count = sizeof list / sizeof *list;
     count += loaded_figures(measure, figures + count);
+    count += neural_figures(measure, figures + count);
     return count + wait_figures(measure, figures + count);
 }
 

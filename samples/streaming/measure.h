@@ -15,6 +15,7 @@ struct frame_record {
     double psnr;       ///< to the fully resident picture; NaN without a comparison
     double ssim, flip; ///< NaN in frames that were not looked at
     SluiceVulkanStreamerStatistics statistics;
+    uint64_t neural_bytes; ///< of latents and weights in GPU memory
     struct GalleryCounts counts;
     struct needs_frame needs; ///< where they are found out
     double missing_percent;   ///< of the sampled pixels; NaN where nothing counts them
@@ -32,6 +33,7 @@ struct measure {
     uint32_t texture_count;
     struct view_reads reads;
     const struct needs *needs; ///< borrowed; of all frames; NULL: not found out
+    double file_bytes;         ///< read from the files of a neural set; NaN: none hangs
     uint64_t truth_bytes;      ///< that the fully resident pictures take; 0 without a comparison
 };
 

@@ -25,4 +25,9 @@ void pattern_wallpaper(float u, float v, float footprint, float rgb[3]);
 /** Height of a canvas and the paint on it, 0 to 1, in rgb[0]. Does not repeat. */
 void pattern_canvas(float u, float v, float footprint, float rgb[3]);
 
+/** Color, height and roughness of one mosaic, for a set of textures. */
+void pattern_mosaic(float u, float v, float footprint, float rgb[3]);
+void pattern_mosaic_height(float u, float v, float footprint, float rgb[3]);
+void pattern_mosaic_roughness(float u, float v, float footprint, float rgb[3]);
+
 #endif /* SAMPLES_STREAMING_PATTERNS_H */

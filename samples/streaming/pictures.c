@@ -10,6 +10,7 @@
 #include "../../tools/common/text.h"
 #include "baked.h"
 #include "exposure.h"
+#include "neural_files.h"
 
 static bool is_compressed(SluiceFormat format)
 {
@@ -65,6 +66,9 @@ static void close_picture(struct picture *picture)
 {
     sluiceDestroyImageSource(picture->color);
     sluiceDestroyImageSource(picture->relief);
+    if (picture->neural)
+        sluiceDestroyImageSource(picture->neural->original);
+    free(picture->neural);
     free(picture->path);
 }
 
@@ -173,6 +177,13 @@ bool pictures_open(const struct settings *settings, const struct picture_limits 
                    struct picture_list *list)
 {
     struct file_list files = {0};
+    if (settings->neural) {
+        *list = (struct picture_list){0};
+        bool hung = neural_files_open(settings, limits, list);
+        if (!hung)
+            pictures_close(list);
+        return hung;
+    }
     bool collected = settings->images.count > 0 || collect_generated(settings, &files);
     for (size_t i = 0; collected && i < settings->images.count; i++)
         collected = files_collect(settings->images.items[i], HANGABLE_SUFFIXES, &files);
@@ -189,6 +200,7 @@ void pictures_close(struct picture_list *list)
     for (uint32_t i = 0; i < list->count; i++)
         close_picture(&list->pictures[i]);
     free(list->pictures);
+    neural_files_close(list->neural);
 #ifdef HAVE_STORE
     sluiceDestroyStoreReadPool(list->pool);
 #endif

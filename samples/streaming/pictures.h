@@ -8,14 +8,18 @@
 #include "generate.h"
 #include "settings.h"
 
+struct neural_files;
+struct neural_picture;
+
 struct picture {
     char *path;               ///< owned
-    SluiceImageSource *color; ///< owned
+    SluiceImageSource *color; ///< owned; NULL where `neural` says so
     SluiceImageInfo info;
     float exposure;            ///< factor that brings the picture to a middle brightness
     bool gray;                 ///< one channel, to be shown as gray
     SluiceImageSource *relief; ///< owned; height of canvas and paint, half the picture's size
     struct pattern_image relief_pattern;
+    struct neural_picture *neural; ///< owned; NULL: no texture of a neural set
 };
 
 struct picture_list {
@@ -24,6 +28,7 @@ struct picture_list {
     uint32_t refused;              ///< files that could not be opened; the reasons were printed
     SluiceStoreReadPool *pool;     ///< owned; that all stores share
     SluiceExrMemoryBudget *memory; ///< owned; that all OpenEXR files without levels share
+    struct neural_files *neural;   ///< owned; NULL: no neural set hangs
 };
 
 /** What the device can hold of one image. */

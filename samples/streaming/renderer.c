@@ -9,6 +9,7 @@
 #include "count_frag.h"
 #include "count_paged_frag.h"
 #include "needs_frag.h"
+#include "neural_frag.h"
 #include "plain_frag.h"
 #include "surface_frag.h"
 #include "surface_paged_frag.h"
@@ -29,7 +30,7 @@ static bool create_set_layout(const struct gpu *gpu, VkDescriptorType type, uint
                      "vkCreateDescriptorSetLayout");
 }
 
-static bool create_layouts(struct renderer *renderer, VkDescriptorSetLayout streamer_layout)
+static bool create_layouts(struct renderer *renderer, const struct renderer_request *request)
 {
     const struct gpu *gpu = renderer->gpu;
     if (!create_set_layout(gpu, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4,
@@ -38,12 +39,12 @@ static bool create_layouts(struct renderer *renderer, VkDescriptorSetLayout stre
                            &renderer->frame_layout))
         return false;
 
-    const VkDescriptorSetLayout sets[] = {streamer_layout, renderer->texture_layout,
-                                          renderer->frame_layout};
+    const VkDescriptorSetLayout sets[] = {request->streamer_layout, renderer->texture_layout,
+                                          renderer->frame_layout, request->neural_layout};
     const VkPushConstantRange constants = {VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                                            sizeof(struct GalleryDraw)};
     VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                       .setLayoutCount = 3,
+                                       .setLayoutCount = request->neural_layout ? 4 : 3,
                                        .pSetLayouts = sets,
                                        .pushConstantRangeCount = 1,
                                        .pPushConstantRanges = &constants};
@@ -131,19 +132,23 @@ static bool create_pipelines(struct renderer *renderer, const struct renderer_re
         {
             [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
             [RENDERER_SURFACE] = {surface_frag, sizeof surface_frag},
+            [RENDERER_NEURAL] = {neural_frag, sizeof neural_frag},
             [RENDERER_COUNT] = {count_frag, sizeof count_frag},
             [RENDERER_NEEDS] = {needs_frag, sizeof needs_frag},
         },
       paged_fragments[RENDERER_PASS_COUNT] = {
           [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
           [RENDERER_SURFACE] = {surface_paged_frag, sizeof surface_paged_frag},
+          [RENDERER_NEURAL] = {neural_frag, sizeof neural_frag},
           [RENDERER_COUNT] = {count_paged_frag, sizeof count_paged_frag},
           [RENDERER_NEEDS] = {needs_frag, sizeof needs_frag},
       };
     renderer->vertex = gpu_create_shader(gpu, gallery_vert, sizeof gallery_vert);
     bool created = renderer->vertex != VK_NULL_HANDLE;
     for (int i = 0; created && i < RENDERER_PASS_COUNT; i++) {
-        if ((i == RENDERER_COUNT && !request->counting) || (i == RENDERER_NEEDS && !request->needs))
+        if ((i == RENDERER_COUNT && !request->counting) ||
+            (i == RENDERER_NEEDS && !request->needs) ||
+            (i == RENDERER_NEURAL && !request->neural_layout))
             continue;
         VkShaderModule fragment =
             request->paged
@@ -161,9 +166,8 @@ bool renderer_create(const struct gpu *gpu, const struct renderer_request *reque
                      struct renderer *renderer)
 {
     *renderer = (struct renderer){.gpu = gpu, .room = request->room};
-    if (create_layouts(renderer, request->streamer_layout) &&
-        create_samplers(renderer, request->anisotropy) && create_buffers(renderer) &&
-        create_pipelines(renderer, request))
+    if (create_layouts(renderer, request) && create_samplers(renderer, request->anisotropy) &&
+        create_buffers(renderer) && create_pipelines(renderer, request))
         return true;
     renderer_destroy(renderer);
     return false;
@@ -232,10 +236,21 @@ const struct renderer_surface *renderer_surface_of(const struct room_part *part,
     case ROOM_PLAIN: return NULL;
     case ROOM_FLOOR: return &surfaces[0];
     case ROOM_WALL: return &surfaces[1];
-    case ROOM_PICTURE:
-        return surfaces[2 + part->picture].missing ? NULL : &surfaces[2 + part->picture];
+    case ROOM_PICTURE: {
+        const struct renderer_surface *surface = &surfaces[2 + part->picture];
+        return surface->missing || surface->decoded ? NULL : surface;
+    }
     }
     return NULL;
+}
+
+/** The surface of a part that the shader decodes; else NULL. */
+static const struct renderer_surface *decoded_surface_of(const struct room_part *part,
+                                                         const struct renderer_surface *surfaces)
+{
+    return part->surface == ROOM_PICTURE && surfaces[2 + part->picture].decoded
+               ? &surfaces[2 + part->picture]
+               : NULL;
 }
 
 static struct GalleryDraw draw_of(const struct room_part *part,
@@ -269,6 +284,9 @@ void renderer_bind(const struct renderer *renderer, VkCommandBuffer commands,
                             1, &sets->streamer, 0, NULL);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, renderer->pipeline_layout, 2,
                             1, &sets->frame, 0, NULL);
+    if (sets->neural)
+        vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                renderer->pipeline_layout, 3, 1, &sets->neural, 0, NULL);
 }
 
 void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands,
@@ -281,14 +299,18 @@ void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands,
     for (uint32_t i = 0; i < room->part_count; i++) {
         const struct room_part *part = &room->parts[i];
         const struct renderer_surface *surface = renderer_surface_of(part, surfaces);
-        VkPipeline pipeline = renderer->pipelines[surface ? pass : RENDERER_PLAIN];
+        const struct renderer_surface *decoded =
+            pass == RENDERER_SURFACE ? decoded_surface_of(part, surfaces) : NULL;
+        VkPipeline pipeline = renderer->pipelines[decoded   ? RENDERER_NEURAL
+                                                  : surface ? pass
+                                                            : RENDERER_PLAIN];
         if (pipeline != bound)
             vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
         bound = pipeline;
         if (surface)
             vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
                                     renderer->pipeline_layout, 1, 1, &surface->textures, 0, NULL);
-        struct GalleryDraw draw = draw_of(part, surface);
+        struct GalleryDraw draw = draw_of(part, decoded ? decoded : surface);
         vkCmdPushConstants(commands, renderer->pipeline_layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                            sizeof draw, &draw);
         vkCmdDraw(commands, part->vertex_count, 1, part->first_vertex, 0);

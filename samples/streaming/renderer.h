@@ -10,6 +10,7 @@
 enum renderer_pass {
     RENDERER_PLAIN,
     RENDERER_SURFACE,
+    RENDERER_NEURAL,
     RENDERER_COUNT,
     RENDERER_NEEDS,
     RENDERER_PASS_COUNT
@@ -21,7 +22,7 @@ struct renderer {
     VkDescriptorSetLayout frame_layout, texture_layout;
     VkPipelineLayout pipeline_layout;
     VkShaderModule vertex;                     ///< of all pipelines
-    VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the last two only where asked for
+    VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the last three only where asked for
     VkSampler clamp, repeat;                   ///< as drawn
     VkSampler probe_clamp, probe_repeat;       ///< nearest between levels, for the counting pass
     struct gpu_buffer vertices, lights;
@@ -35,12 +36,14 @@ struct renderer_surface {
     float exposure, relief_scale;
     bool gray, painted;
     bool missing; ///< left out: drawn like a plain part
+    bool decoded; ///< by the shader, of a neural set; plain but in RENDERER_SURFACE
 };
 
 struct renderer_request {
     const struct room *room;     ///< must outlive the renderer
     const struct target *target; ///< compatible with those drawn to
     VkDescriptorSetLayout streamer_layout;
+    VkDescriptorSetLayout neural_layout; ///< of set 3; VK_NULL_HANDLE: nothing is decoded
     uint32_t anisotropy;
     bool counting, needs; ///< create the pipelines of these passes, too
     bool paged;           ///< shaders for paged residency
@@ -50,6 +53,7 @@ struct renderer_request {
 struct renderer_sets {
     VkDescriptorSet streamer; ///< set 0; the streamer's for this frame
     VkDescriptorSet frame;    ///< set 2; of `frame_layout`
+    VkDescriptorSet neural;   ///< set 3; VK_NULL_HANDLE: nothing is decoded
 };
 
 bool renderer_create(const struct gpu *gpu, const struct renderer_request *request,
@@ -70,7 +74,7 @@ void renderer_write_texture_set(const struct renderer *renderer, VkDescriptorSet
  */
 bool renderer_create_pipeline(const struct renderer *renderer, const struct target *target,
                               VkShaderModule fragment, bool writes_color, VkPipeline *pipeline);
-/** What a part is drawn with; NULL if it has no texture. */
+/** What a part is drawn with; NULL if it has no streamed texture. */
 const struct renderer_surface *renderer_surface_of(const struct room_part *part,
                                                    const struct renderer_surface *surfaces);
 

@@ -3,6 +3,7 @@
 #include "../../tools/common/shared_options.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char usage[] =
     "usage: streaming [OPTION ...]\n\n"
@@ -48,6 +49,31 @@ static bool complete_reference(const struct option_table *table, struct settings
     return true;
 }
 
+/** Each once. */
+static bool read_neural_modes(const struct option_table *table, struct settings *s)
+{
+    static const char *const names[NEURAL_MODE_COUNT] = {"raw", "bc7", "load", "feedback",
+                                                         "sample"};
+    static char first[] = "raw", second[] = "feedback";
+    static char *const usual[] = {first, second};
+    struct option_list words = s->neural_as.count ? s->neural_as : (struct option_list){usual, 2};
+    for (size_t i = 0; i < words.count; i++) {
+        uint32_t mode = 0, same = 0;
+        while (mode < NEURAL_MODE_COUNT && strcmp(words.items[i], names[mode]) != 0)
+            mode++;
+        if (mode == NEURAL_MODE_COUNT)
+            return options_refuse(table, "--neural-as %s: wants raw, bc7, load, feedback or sample",
+                                  words.items[i]);
+        while (same < s->neural_mode_count && s->neural_modes[same] != (enum neural_mode)mode)
+            same++;
+        if (same < s->neural_mode_count)
+            return options_refuse(table, "--neural-as: %s twice", names[mode]);
+        s->neural_modes[s->neural_mode_count++] = (enum neural_mode)mode;
+    }
+    return !s->neural || s->images.count == 0 ||
+           options_refuse(table, "--neural-set: hangs instead of --images, not with them");
+}
+
 /* Everything that the table cannot say. */
 static bool check(const struct option_table *table, struct settings *s)
 {
@@ -60,7 +86,7 @@ static bool check(const struct option_table *table, struct settings *s)
                                      "coarsest levels are loaded at once");
     if (s->budget > 0 && s->budget < TILE_SIZE)
         return options_refuse(table, "--budget: wants 64K at least, for one tile, or 0");
-    return complete_reference(table, s);
+    return read_neural_modes(table, s) && complete_reference(table, s);
 }
 
 enum option_outcome settings_parse(int argc, char **argv, struct settings *s)
@@ -80,7 +106,21 @@ enum option_outcome settings_parse(int argc, char **argv, struct settings *s)
          .help = "end after generating, or baking, the pictures"},
         {OPTION_CHOICE, "format", "auto|rgba16f|rgba8", "auto", &s->format,
          "texels on the GPU; auto: half floats of OpenEXR files, one channel if they are gray, "
-         "else sRGB bytes; stores, DDS and KTX2 files keep their format"},
+         "else sRGB bytes; stores, DDS and KTX2 files keep their format. rgba8: textures that "
+         "--neural-as feedback decodes are no blocks"},
+
+        {OPTION_SECTION, .help = "Neural textures"},
+        {OPTION_TEXT, "neural-set", "FILE.ntc", "(none)", &s->neural,
+         "hang the textures of this set instead of pictures. The pictures that it was made of lie "
+         "beside it and have the names of the textures: albedo.png"},
+        {OPTION_LIST, "neural-as", "MODE ...", "(raw feedback)", &s->neural_as,
+         "how each texture hangs, once for each: raw, texels before compression; bc7, blocks; "
+         "load, decoded when a tile is read; feedback, decoded by the GPU when a tile is asked "
+         "for; sample, decoded by the shader"},
+        {OPTION_UINT, "neural-picks", "N", "1", &s->neural_picks,
+         "texels that the shader of sample chooses at random per pixel, and averages", 1, 64},
+        {OPTION_TEXT, "neural-material", "DIR", "(none)", &s->material,
+         "write a material of 512 x 512 texels as PNG files, for sluice-bake --neural, and end"},
 
         {OPTION_SECTION, .help = "Frames"},
         {OPTION_EXTENT, "size", "WxH", "640x360", s->size, "pixels", 16, 8192},

@@ -12,13 +12,28 @@ enum three_way { THREE_WAY_AUTO, THREE_WAY_ON, THREE_WAY_OFF };
 enum residency { RESIDENCY_AUTO, RESIDENCY_SPARSE, RESIDENCY_PAGED, RESIDENCY_DENSE };
 enum on_off { SETTING_ON, SETTING_OFF };
 
+/** How a texture of a neural set is streamed. */
+enum neural_mode {
+    NEURAL_RAW,      ///< texels as they were before compression, from a tile store
+    NEURAL_BC7,      ///< blocks, from a tile store
+    NEURAL_LOAD,     ///< decoded by the loader's threads
+    NEURAL_FEEDBACK, ///< decoded by the GPU, tile by tile
+    NEURAL_SAMPLE,   ///< decoded by the shader that samples
+    NEURAL_MODE_COUNT
+};
+
 struct settings {
     /* pictures */
     struct option_list images;
     const char *cache;
     uint32_t generate_scale;
     bool generate_only;
-    int format; ///< enum pixel_format
+    const char *neural; ///< .ntc file; NULL: pictures hang
+    struct option_list neural_as;
+    enum neural_mode neural_modes[NEURAL_MODE_COUNT]; ///< after parsing, of neural_as
+    uint32_t neural_mode_count, neural_picks;
+    const char *material; ///< folder to write a material to; NULL: none
+    int format;           ///< enum pixel_format
     /* frames */
     uint32_t size[2];
     uint32_t frames, rest_frames;

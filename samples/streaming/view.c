@@ -8,6 +8,7 @@
 #include "../../tools/common/log.h"
 #include "../../tools/common/text.h"
 #include "view_needs.h"
+#include "view_neural.h"
 
 _Static_assert(PREDICT_SLOTS == VIEW_FRAMES_IN_FLIGHT, "one for each frame in flight");
 
@@ -100,6 +101,7 @@ static bool create_renderer(struct view *view)
     const struct view_request *request = &view->request;
     struct renderer_request info = {.room = request->room,
                                     .target = request->target,
+                                    .neural_layout = view->neural.layout,
                                     .anisotropy = request->settings->anisotropy,
                                     .counting = request->counting,
                                     .needs = request->needs,
@@ -109,19 +111,23 @@ static bool create_renderer(struct view *view)
            renderer_create(request->gpu, &info, &view->renderer);
 }
 
-static SluiceResult add_texture(struct view *view, SluiceImageSource *source,
-                                SluiceTextureId primary, bool repeat, SluiceVulkanTexture *texture)
+SluiceResult view_add_texture(struct view *view, SluiceImageSource *source,
+                              const SluiceTileProducer *producer, SluiceTextureId primary,
+                              bool repeat, SluiceVulkanTexture *texture)
 {
     VkSamplerAddressMode mode =
         repeat ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
-                                          .source = slowness_wrap(&view->slowness, source),
+                                          .source = source ? slowness_wrap(&view->slowness, source)
+                                                           : NULL,
+                                          .pProducer = producer,
                                           .primaryId = primary,
                                           .addressModeU = mode,
                                           .addressModeV = mode,
                                           .explicitAddressModes = true};
-    SluiceResult result = info.source ? sluiceAddVulkanTexture(view->streamer, &info, texture)
-                                      : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    SluiceResult result = info.source || producer
+                              ? sluiceAddVulkanTexture(view->streamer, &info, texture)
+                              : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result == SLUICE_SUCCESS) {
         view->texture_ids[view->texture_count] =
             (struct needs_id){texture->textureId, texture->tableIndex};
@@ -129,7 +135,8 @@ static SluiceResult add_texture(struct view *view, SluiceImageSource *source,
         return result;
     }
     SluiceImageInfo image = {.structSize = sizeof image, .pName = "a texture"};
-    (void)sluiceGetImageInfo(source, &image);
+    if (source)
+        (void)sluiceGetImageInfo(source, &image);
     text_say("%s: cannot be streamed: %s", image.pName, sluiceGetResultName(result));
     return result;
 }
@@ -178,7 +185,7 @@ static bool create_tiled_surface(struct view *view, SluiceImageSource *source,
                                  struct renderer_surface *surface)
 {
     SluiceVulkanTexture color;
-    if (add_texture(view, source, SLUICE_NO_TEXTURE, true, &color) != SLUICE_SUCCESS)
+    if (view_add_texture(view, source, NULL, SLUICE_NO_TEXTURE, true, &color) != SLUICE_SUCCESS)
         return false;
     surface->color_index = surface->relief_index = color.tableIndex;
     surface->exposure = 1.0f;
@@ -192,11 +199,14 @@ static SluiceResult create_picture_surface(struct view *view, const struct pictu
 {
     bool sets = view->request.settings->texture_sets == SETTING_ON;
     SluiceVulkanTexture color, relief;
-    SluiceResult result = add_texture(view, picture->color, SLUICE_NO_TEXTURE, false, &color);
+    if (picture->neural)
+        return view_neural_create_surface(view, picture, surface);
+    SluiceResult result =
+        view_add_texture(view, picture->color, NULL, SLUICE_NO_TEXTURE, false, &color);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = add_texture(view, picture->relief, sets ? color.textureId : SLUICE_NO_TEXTURE, false,
-                         &relief);
+    result = view_add_texture(view, picture->relief, NULL,
+                              sets ? color.textureId : SLUICE_NO_TEXTURE, false, &relief);
     if (result != SLUICE_SUCCESS) {
         take_back(view, &color);
         return result;
@@ -312,7 +322,7 @@ bool view_create(const struct view_request *request, const char *record_path, st
 {
     *view = (struct view){.request = *request};
     bool created = begin_slowness(view) && create_context(view) && create_streamer(view) &&
-                   create_renderer(view);
+                   view_neural_create(view) && create_renderer(view);
     /* Before the first texture, so that the recording is complete. */
     const SluiceFileRecordingInfo recording = {
         .structSize = sizeof recording, .pPath = record_path, .log = {.pfnLog = log_say}};
@@ -351,6 +361,7 @@ bool view_destroy(struct view *view)
     free(view->texture_ids);
     free(view->sources);
     sluiceDestroyVulkanStreamer(view->streamer);
+    neural_view_destroy(&view->neural);
     sluiceDestroyVulkanContext(view->context);
     slowness_finish(&view->slowness);
     *view = (struct view){0};
@@ -376,6 +387,7 @@ static void write_frame_data(const struct view *view, const struct camera *camer
         .feedbackSeed = settings->seed * 0x9e3779b1u + view->frame_index,
         .latticeFrame = settings->lattice ? view->frame_index : GALLERY_NO_TEXTURE,
         .highlight = settings->highlight && !view->request.everything,
+        .neuralPicks = settings->neural_picks,
     };
     if (view->request.everything) { /* its feedback is not needed */
         frame->feedbackProbability = 0.0f;
@@ -439,7 +451,7 @@ static bool record_frame(struct view *view, struct view_slot *slot,
 {
     const struct view_request *request = &view->request;
     static const float background[4] = {0.02f, 0.02f, 0.02f, 1.0f};
-    const struct renderer_sets sets = {frame->descriptorSet, slot->frame_set};
+    const struct renderer_sets sets = {frame->descriptorSet, slot->frame_set, view->neural.set};
     VkCommandBuffer commands = slot->commands;
 
     if (request->counting)
@@ -447,12 +459,15 @@ static bool record_frame(struct view *view, struct view_slot *slot,
     if (view->looks_ahead)
         record_prediction(view, frame->descriptorSet, commands);
 
+    if (!neural_view_begin(&view->neural, view->frame_index % VIEW_FRAMES_IN_FLIGHT, commands))
+        return false;
     target_begin(request->target, commands, background);
     renderer_draw(&view->renderer, commands, &sets, view->surfaces, RENDERER_SURFACE);
     target_end(request->target, commands);
 
     /* Takes down what the shaders wanted. */
-    if (!check(sluiceEndStreamingFrame(view->streamer, commands), "sluiceEndStreamingFrame"))
+    if (!neural_view_end(&view->neural, commands) ||
+        !check(sluiceEndStreamingFrame(view->streamer, commands), "sluiceEndStreamingFrame"))
         return false;
 
     target_copy_out(request->target, commands, slot->pixels.buffer);
@@ -466,22 +481,27 @@ static bool record_frame(struct view *view, struct view_slot *slot,
     return true;
 }
 
-static bool submit(const struct view *view, struct view_slot *slot,
-                   const SluiceStreamingFrame *frame)
+static bool submit(struct view *view, struct view_slot *slot, const SluiceStreamingFrame *frame)
 {
+    uint32_t slot_index = view->frame_index % VIEW_FRAMES_IN_FLIGHT;
+    uint32_t launches = view->neural.loader ? 1 : 0;
+    const SluiceDemandLaunch *launch = &view->neural.launches[slot_index];
+    const uint64_t values[] = {frame->signalValue, launch->signalValue};
+    const VkSemaphore semaphores[] = {frame->semaphore, launch->semaphore};
     VkTimelineSemaphoreSubmitInfo timeline = {.sType =
                                                   VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
-                                              .signalSemaphoreValueCount = 1,
-                                              .pSignalSemaphoreValues = &frame->signalValue};
+                                              .signalSemaphoreValueCount = 1 + launches,
+                                              .pSignalSemaphoreValues = values};
     VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                          .pNext = &timeline,
                          .commandBufferCount = 1,
                          .pCommandBuffers = &slot->commands,
-                         .signalSemaphoreCount = 1,
-                         .pSignalSemaphores = &frame->semaphore};
+                         .signalSemaphoreCount = 1 + launches,
+                         .pSignalSemaphores = semaphores};
     if (!gpu_check(vkQueueSubmit(view->request.gpu->queue, 1, &info, VK_NULL_HANDLE),
                    "vkQueueSubmit"))
         return false;
+    view->neural.under_way[slot_index] = launches > 0;
     slot->semaphore = frame->semaphore;
     slot->signal_value = frame->signalValue;
     return true;
@@ -517,6 +537,7 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
     out->host_seconds = clock_seconds() - start - needs_seconds;
     out->statistics.structSize = sizeof out->statistics;
     sluiceGetVulkanStreamerStatistics(view->streamer, &out->statistics);
+    out->neural_bytes = neural_view_memory(&view->neural);
     view->frame_index++;
     return true;
 }
@@ -559,7 +580,9 @@ double view_gpu_seconds(const struct view *view, uint32_t slot)
 
 bool view_settle(struct view *view)
 {
-    return check(sluiceWaitVulkanStreamerIdle(view->streamer), "sluiceWaitVulkanStreamerIdle");
+    uint32_t newest = (view->frame_index + VIEW_FRAMES_IN_FLIGHT - 1) % VIEW_FRAMES_IN_FLIGHT;
+    return neural_view_process(&view->neural, newest, true) &&
+           check(sluiceWaitVulkanStreamerIdle(view->streamer), "sluiceWaitVulkanStreamerIdle");
 }
 
 uint64_t view_tile_count(const struct view *view)

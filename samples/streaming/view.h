@@ -7,6 +7,7 @@
 
 #include "motion.h"
 #include "needs_pass.h"
+#include "neural_view.h"
 #include "predict.h"
 #include "renderer.h"
 #include "settings.h"
@@ -43,6 +44,7 @@ struct view_slot {
 struct view_frame {
     double host_seconds; ///< from begin to submit, without the needs pass
     SluiceVulkanStreamerStatistics statistics;
+    uint64_t neural_bytes; ///< of latents, pages and weights in GPU memory
 };
 
 struct view {
@@ -53,6 +55,7 @@ struct view {
     SluiceRecorder *recorder;              ///< owned
     struct renderer renderer;              ///< its pipelines have the streamer's set layout
     struct slowness slowness;              ///< of its sources; the truth has none
+    struct neural_view neural;             ///< the truth has none
     VkDescriptorPool descriptor_pool;
     struct renderer_surface *surfaces; ///< owned; floor, wall, pictures
     struct needs_id *texture_ids;      ///< owned; of all textures, in the order of their making

@@ -1,12 +1,43 @@
-/* make_neural_file OUT: writes the worked example, for tests of programs. */
+/* make_neural_file OUT [mosaic]: writes the worked example, or a set of random numbers with the
+ * names and the size of the gallery's material, for tests of programs. */
+#include "neural/made_file.h"
 #include "neural/worked_example.h"
 
 #include <stdio.h>
+#include <string.h>
+
+static SluiceResult write_mosaic(const char *path)
+{
+    static const struct made_shape shape = {
+        3, 512, 512, 4, 4, 0, 0, 0, SLUICE_NEURAL_NETWORK_SCHEMA3};
+    static const char *const names[] = {"albedo", "height", "roughness"};
+    SluiceNeuralTexture textures[3];
+    struct made_parts parts;
+    make_parts(&parts, &shape, 3);
+    for (uint32_t i = 0; i < 3; i++)
+        textures[i] = (SluiceNeuralTexture){.structSize = sizeof textures[i],
+                                            .pName = names[i],
+                                            .firstChannel = i ? i + 2 : 0,
+                                            .channelCount = i ? 1 : 3,
+                                            .format = SLUICE_NEURAL_CHANNEL_UNORM8,
+                                            .rgbColorSpace = i ? SLUICE_NEURAL_COLOR_LINEAR
+                                                               : SLUICE_NEURAL_COLOR_SRGB};
+    for (uint32_t c = 0; c < 5; c++)
+        parts.spaces[c] = c < 3 ? SLUICE_NEURAL_COLOR_SRGB : SLUICE_NEURAL_COLOR_LINEAR;
+    parts.info.textureCount = 3;
+    parts.info.pTextures = textures;
+    parts.info.pPath = path;
+    SluiceResult result = sluiceWriteNeuralFile(&parts.info);
+    free_made_parts(&parts);
+    return result;
+}
 
 int main(int argc, char **argv)
 {
     uint8_t bytes[WORKED_EXAMPLE_MAX_SIZE];
     size_t size = write_worked_example(bytes);
+    if (argc == 3 && strcmp(argv[2], "mosaic") == 0)
+        return write_mosaic(argv[1]) != SLUICE_SUCCESS;
     FILE *file = argc == 2 ? fopen(argv[1], "wb") : NULL;
     if (!file)
         return 1;

@@ -1,0 +1,116 @@
+"""test_neural_gallery.py STREAMING MAKE_NEURAL_FILE FOLDER: a neural set hangs in the gallery.
+
+What the C decoder makes (mode load) is the oracle of what the GPU and the shader make. Prints TAP.
+"""
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import zlib
+
+STREAMING, MAKE, FOLDER = (os.path.abspath(path) for path in sys.argv[1:4])
+FIGURES = ("psnr_final_db", "flip_final", "texture_bytes_peak", "latent_bytes_peak", "file_bytes_read",
+           "frames_to_first_sharp", "frames_to_final")
+LAST = "frame-0007.png"
+number = 0
+
+
+def fact(name, holds):
+    global number
+    number += 1
+    print("%sok %d - %s" % ("" if holds else "not ", number, name), flush=True)
+    return holds
+
+
+def run(*options):
+    done = subprocess.run([STREAMING, "--cache", "cache", *options], capture_output=True, text=True)
+    return done.returncode, done.stdout, done.stderr
+
+
+def walk(mode, *options):
+    """Figures of a walk in which the camera rests before a picture."""
+    status, out, err = run("--neural-set", "in/set.ntc", "--neural-as", mode, "--generate-scale", "32", "--size",
+                           "160x90", "--samples", "1", "--frames", "8", "--rest-frames", "8", "--deterministic",
+                           "--probability", "1", "--needs", "off", "--output", mode, "--json", *options)
+    if status:
+        print("# " + err.replace("\n", "\n# "))
+    figures = (json.loads(line) for line in out.splitlines())
+    return {figure["name"]: figure["value"] for figure in figures} if status == 0 else {}
+
+
+def read_png(path):
+    """Bytes of an RGB picture."""
+    with open(path, "rb") as file:
+        data = file.read()[8:]
+    packed, at = b"", 0
+    while at < len(data):
+        size, kind = int.from_bytes(data[at:at + 4], "big"), data[at + 4:at + 8]
+        body = data[at + 8:at + 8 + size]
+        if kind == b"IHDR":
+            width = int.from_bytes(body[:4], "big")
+        packed += body if kind == b"IDAT" else b""
+        at += size + 12
+    lines, row, pixels = zlib.decompress(packed), [0] * (3 * width), []
+    for start in range(0, len(lines), 3 * width + 1):
+        above, kind, row = row, lines[start], []
+        for i, byte in enumerate(lines[start + 1:start + 1 + 3 * width]):
+            left, up, corner = (row[i - 3] if i > 2 else 0), above[i], (above[i - 3] if i > 2 else 0)
+            nearest = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
+            row.append(byte + (0, left, up, (left + up) // 2, nearest)[kind] & 255)
+        pixels += row
+    return pixels
+
+
+def psnr(a, b):
+    error = sum((x - y) ** 2 for x, y in zip(a, b)) / len(a)
+    return 10 * math.log10(255 ** 2 / error) if error else math.inf
+
+
+def same(a, b):
+    with open(a, "rb") as one, open(b, "rb") as other:
+        return one.read() == other.read()
+
+
+def main():
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    os.makedirs(FOLDER)
+    os.chdir(FOLDER)
+    status, _, err = run("--neural-material", "in")
+    made = status == 0 and subprocess.run([MAKE, "in/set.ntc", "mosaic"]).returncode == 0
+    good = fact("a_material_is_written", made and sorted(os.listdir("in")) ==
+                ["albedo.png", "height.png", "roughness.png", "set.ntc"])
+    figures = {"load": walk("load", "--reference", "truth", "--compare-with", "dense"),
+               "feedback": walk("feedback", "--format", "rgba8"),
+               "sample": walk("sample", "--neural-picks", "8", "--validation")}
+    if not all(figures.values()):
+        print("Bail out! a walk failed")
+        return 1
+    good &= fact("all_figures_are_reported", all(figures["load"].get(name) is not None for name in FIGURES))
+    good &= fact("the_truth_is_the_pictures_that_were_compressed", figures["load"]["psnr_final_db"] < 30 and
+                 not same("load/" + LAST, "load/" + LAST.replace("frame", "truth")))
+    good &= fact("decoded_on_feedback_they_are_the_c_decoders_bit_by_bit", same("load/" + LAST, "feedback/" + LAST))
+    decibels = psnr(read_png("sample/" + LAST), read_png("load/" + LAST))
+    print("# sample: %.2f dB to load" % decibels)
+    good &= fact("the_mean_of_8_texels_is_the_c_decoders_picture_to_19_db", decibels > 19)
+    good &= fact("latents_take_memory_where_they_are_decoded_on_the_gpu",
+                 [figures[mode]["latent_bytes_peak"] > 0 for mode in ("load", "feedback", "sample")] ==
+                 [False, True, True])
+    good &= fact("only_one_copy_of_the_latents_is_read_on_sample",
+                 figures["sample"]["file_bytes_read"] < 2 * os.path.getsize("in/set.ntc"))
+    os.rename("in/height.png", "height.png")
+    status, _, err = run("--neural-set", "in/set.ntc", "--output", "refused")
+    good &= fact("a_texture_without_its_original_is_named", status == 1 and "in/set.ntc" in err and
+                 "height.png" in err)
+    status, _, err = run("--neural-set", "height.png", "--output", "refused")
+    good &= fact("a_file_that_is_no_set_is_refused_by_name", status == 1 and "height.png" in err)
+    wrong = [run(*options, "--output", "refused")[0] for options in (
+        ("--neural-set", "a.ntc", "--neural-as", "all"), ("--neural-set", "a.ntc", "--neural-as", "raw", "raw"),
+        ("--neural-set", "a.ntc", "--images", "in"), ("--neural-set", "a.ntc", "--neural-picks", "65"))]
+    good &= fact("wrong_options_exit_with_2", wrong == [2, 2, 2, 2])
+    print("1..%d" % number)
+    return 0 if good else 1
+
+
+sys.exit(main())
