@@ -42,7 +42,7 @@ status 0 "$tool" --help && grep -q -- '--repeats N .*(3; 5 with --full)' out
 report help_names_defaults $?
 
 wrong=0
-for arguments in '' 'nowhere' 'trace' 'gallery gallery' 'gallery --no-such-option' 'gallery --sweep' \
+for arguments in '' 'nowhere' 'trace' 'neural' 'gallery gallery' 'gallery --no-such-option' 'gallery --sweep' \
     'gallery --repeats 0' 'gallery --repeats 1x' 'gallery --jobs 0' 'gallery --run-limit nan' \
     'gallery --run-limit 0' 'gallery --grid' 'gallery --results' 'page' 'page a b'; do
     # shellcheck disable=SC2086

@@ -21,6 +21,7 @@ static const char usage[] =
     "picture: a table, points.csv, runs.csv and page.html. SCENE is\n"
     "  gallery          a walk past pictures whose textures are streamed\n"
     "  demand-tracer    a garden whose textures are loaded when rays hit them\n"
+    "  neural           a neural set that hangs in the gallery: -- --neural-set FILE.ntc\n"
     "  trace FILE       recorded feedback, played without a device\n"
     "Runs that are complete are kept, so that the same command goes on after an interruption;\n"
     "`page` makes the results again of what is there. `play --help` lists its options.\n";
@@ -44,13 +45,14 @@ static void print_settings(const struct scene *scene)
 
 static bool refuse_scene(const struct option_table *table, const char *word)
 {
-    static const char *const names[] = {"gallery", "demand-tracer", "trace",
+    static const char *const names[] = {"gallery", "demand-tracer", "neural", "trace",
                                         "sweep",   "page",          "play"};
     char question[64];
     struct nearest nearest = {.word = word, .word_length = strlen(word)};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         nearest_try(&nearest, names[i], strlen(names[i]));
-    return options_refuse(table, "there is no scene '%s': gallery, demand-tracer or trace FILE%s",
+    return options_refuse(table,
+                          "there is no scene '%s': gallery, demand-tracer, neural or trace FILE%s",
                           word, nearest_question(&nearest, "", question, sizeof question));
 }
 
@@ -64,6 +66,14 @@ static bool is_readable(const struct option_table *table, const char *path)
     return true;
 }
 
+static bool has_word(const struct text_list *list, const char *word)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (strcmp(list->items[i], word) == 0)
+            return true;
+    return false;
+}
+
 static bool is_complete(const struct option_table *table, struct options *o, const char *scene)
 {
     o->scene = scene_find(scene);
@@ -75,6 +85,8 @@ static bool is_complete(const struct option_table *table, struct options *o, con
         return options_refuse(table, "trace needs a file");
     if (o->trace && !is_readable(table, o->trace))
         return false;
+    if (o->scene == &scene_neural && !has_word(&o->scene_arguments, "--neural-set"))
+        return options_refuse(table, "neural needs a set: -- --neural-set FILE.ntc");
     if (o->grid && o->sweeps.count == 0)
         return options_refuse(table, "--grid needs --sweep");
     return true;
@@ -95,7 +107,7 @@ enum option_outcome options_parse_sweep(int argc, char **argv, struct options *o
     *o = (struct options){0};
     const struct option options[] = {
         {OPTION_WORD, .operand = "SCENE", .value = &scene, .minimum = 1,
-         .help = "a scene (gallery, demand-tracer or trace FILE)"},
+         .help = "a scene (gallery, demand-tracer, neural or trace FILE)"},
         {OPTION_WORD, .operand = "FILE", .value = &o->trace},
         {OPTION_REST, .value = &rest},
         {OPTION_SECTION, .help = "Plan"},
@@ -130,6 +142,7 @@ enum option_outcome options_parse_sweep(int argc, char **argv, struct options *o
     if (outcome == OPTIONS_HELP) {
         print_settings(&scene_gallery);
         print_settings(&scene_demand_tracer);
+        print_settings(&scene_neural);
         print_settings(&scene_trace);
     }
     if (outcome != OPTIONS_RUN)
@@ -144,14 +157,6 @@ enum option_outcome options_parse_sweep(int argc, char **argv, struct options *o
     else if (is_complete(&table, o, scene))
         return OPTIONS_RUN;
     return OPTIONS_ERROR;
-}
-
-static bool has_word(const struct text_list *list, const char *word)
-{
-    for (size_t i = 0; i < list->count; i++)
-        if (strcmp(list->items[i], word) == 0)
-            return true;
-    return false;
 }
 
 /* All of them are options with one value. */
