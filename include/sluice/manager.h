@@ -253,6 +253,19 @@ typedef struct SluiceStreamedTextureStatistics {
     uint64_t givenUpRetriedTotal; ///< GIVEN_UP -> REQUESTED, except by sluiceRetryFailedTiles.
 } SluiceStreamedTextureStatistics;
 
+/** Statistics of a texture. `...Total` counts since it was added, and wraps at 2^32. */
+typedef struct SluiceTextureStatistics {
+    uint32_t structSize;         ///< sizeof(SluiceTextureStatistics).
+    uint32_t residentTileCount;  ///< MAPPED or STANDBY, packed tiles included.
+    uint32_t requestedTileCount; ///< REQUESTED.
+    uint32_t mappedTotal;        ///< Loads that arrived.
+    uint32_t unmappedTotal;      ///< Tiles listed by sluiceGetTilesToUnmap.
+    uint32_t failedTotal;        ///< Loads that failed.
+    bool wanted;                 ///< Some region requests a level now.
+    bool seen;                   ///< Some map requested something.
+    uint64_t seenTime;           ///< Time stamp of the last map that did. 0 if none did.
+} SluiceTextureStatistics;
+
 /**
  * Creates a manager without textures and heaps.
  *
@@ -686,6 +699,17 @@ SLUICE_API SluiceResult sluiceGetTileState(const SluiceStreamedTextureManager *m
  */
 SLUICE_API SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
                                             SluiceStreamedTextureStatistics *pStatistics);
+
+/**
+ * Gets statistics of a texture, in constant time. Requests of an application that are merged into
+ * maps (vulkan_control.h) count as seen.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a wrong structSize.
+ */
+SLUICE_API SluiceResult sluiceGetTextureStatistics(const SluiceStreamedTextureManager *manager,
+                                                   SluiceTextureId textureId,
+                                                   SluiceTextureStatistics *pStatistics);
 
 #ifdef __cplusplus
 } /* extern "C" */

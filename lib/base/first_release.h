@@ -30,6 +30,7 @@
 #define SLC_FIRST_SluiceFeedbackDesc SLC_UP_TO(SluiceFeedbackDesc, streamedMipLevels)
 #define SLC_FIRST_SluiceStreamedTextureStatistics                                                  \
     SLC_UP_TO(SluiceStreamedTextureStatistics, givenUpRetriedTotal)
+#define SLC_FIRST_SluiceTextureStatistics SLC_UP_TO(SluiceTextureStatistics, seenTime)
 #define SLC_FIRST_SluiceFileRecordingInfo SLC_UP_TO(SluiceFileRecordingInfo, log)
 #define SLC_FIRST_SluiceReplayInfo SLC_UP_TO(SluiceReplayInfo, pStatistics)
 #define SLC_FIRST_SluiceReplayResult SLC_UP_TO(SluiceReplayResult, demand)

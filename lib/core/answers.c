@@ -96,11 +96,13 @@ static void answer_mapped(slc_manager *m, struct slc_managed_texture *t, uint32_
         slc_node_set_state(&m->residency, node,
                            is_wanted(n) ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY);
     m->mapped_total++;
+    t->mapped_total++;
 }
 
 static void answer_failed(slc_manager *m, uint32_t node, uint64_t time)
 {
     m->failed_total++;
+    slc_texture_at(m, slc_node_at(&m->residency, node)->owner)->failed_total++;
     slc_node_free_slot(&m->residency, node);
     if (!is_wanted(slc_node_at(&m->residency, node))) {
         slc_node_release(&m->residency, node);

@@ -129,8 +129,12 @@ struct slc_managed_texture {
     uint32_t report_count, first_report, last_report; ///< numbers; see reports.c
     uint8_t trouble;                                  ///< enum slc_trouble
     bool retried_all;                                 ///< since the last probe
+    bool seen;                                        ///< some map asked for something
     uint32_t trouble_prev, trouble_next; ///< indices, SLC_NONE; in the list of its trouble
     uint64_t trouble_time;               ///< when it entered that
+
+    uint64_t seen_time; ///< of the last map that did
+    uint32_t mapped_total, unmapped_total, failed_total;
 };
 
 #define SLC_TEXTURES_PER_CHUNK 64

@@ -1,4 +1,5 @@
 #include "base/struct_size.h"
+#include "core/lookup.h"
 #include "core/observer.h"
 #include "core/state.h"
 
@@ -41,6 +42,34 @@ SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
         .hostMemorySize = m->host_memory_size,
     };
     slc_struct_write(SLC_STRUCT(SluiceStreamedTextureStatistics), pStatistics, &statistics);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceGetTextureStatistics(const SluiceStreamedTextureManager *manager,
+                                        SluiceTextureId textureId,
+                                        SluiceTextureStatistics *pStatistics)
+{
+    if (!manager || !pStatistics)
+        return SLUICE_ERROR_NULL_POINTER;
+    const struct slc_struct *type = SLC_STRUCT(SluiceTextureStatistics);
+    struct slc_managed_texture *t;
+    SluiceResult result = slc_struct_check(type, pStatistics, &manager->info.log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_find_texture(manager, textureId, &t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    const SluiceTextureStatistics statistics = {
+        .structSize = sizeof statistics,
+        .residentTileCount = t->resident_tiles + t->packed_resident,
+        .requestedTileCount = t->requested_count,
+        .mappedTotal = t->mapped_total,
+        .unmappedTotal = t->unmapped_total,
+        .failedTotal = t->failed_total,
+        .wanted = t->held_regions > 0,
+        .seen = t->seen,
+        .seenTime = t->seen_time,
+    };
+    slc_struct_write(type, pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }
 

@@ -67,6 +67,7 @@ static bool take_unmapped(slc_manager *m, uint32_t node, uint64_t retire_value)
         return false;
     slc_state_release(m, t);
     m->unmapped_total++;
+    t->unmapped_total++;
     return true;
 }
 

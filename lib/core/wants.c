@@ -449,6 +449,15 @@ static bool settle(slc_manager *m, struct slc_managed_texture *t, struct slc_ran
     return changed;
 }
 
+/* The texture's history has just taken in a map. */
+static void take_sight(struct slc_managed_texture *t, uint64_t time)
+{
+    if (t->history->asked_least == SLUICE_MIP_UNTOUCHED)
+        return;
+    t->seen = true;
+    t->seen_time = time;
+}
+
 static void take_time(slc_manager *m, struct slc_managed_texture *t, uint64_t time,
                       uint64_t timeout)
 {
@@ -477,6 +486,7 @@ void slc_wants_commit(slc_manager *m, struct slc_managed_texture *t, uint64_t ti
         if (changed.end > 0 && settle(m, t, changed, held_before, log) && same_bias)
             m->bias.changed = true;
         slc_visit(m, t, t->held_regions > 0);
+        take_sight(t, time);
         slc_state_release(m, t);
     }
     take_time(m, t, time, timeout);
@@ -499,6 +509,7 @@ void slc_wants_repeat(slc_manager *m, const struct slc_managed_texture *leader,
     settle_moves(m, t, &moves);
     packed_after(m, t, held_before);
     slc_visit(m, t, t->held_regions > 0);
+    take_sight(t, time);
     slc_state_release(m, t);
     take_time(m, t, time, timeout);
 }

@@ -291,6 +291,62 @@ static void lists_hand_out_what_there_is_room_for(void **state)
     fixture_close(&f);
 }
 
+/* Against the states of all tiles, and the totals of the manager. */
+static void check_sums(const struct fixture *f, const SluiceTextureId *ids, uint32_t count)
+{
+    const SluiceStreamedTextureStatistics all = fixture_statistics(f);
+    uint64_t mapped = 0, unmapped = 0, failed = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        SluiceTextureStatistics s = {.structSize = sizeof s};
+        CHECK_OK(sluiceGetTextureStatistics(f->manager, ids[k], &s));
+        uint32_t states[8] = {0};
+        for (uint32_t i = 0; i < fixture_layout(f, ids[k]).tileCount; i++)
+            states[fixture_state(f, ids[k], i)]++;
+        assert_int_equal(s.residentTileCount,
+                         states[SLUICE_TILE_STATE_MAPPED] + states[SLUICE_TILE_STATE_STANDBY]);
+        assert_int_equal(s.requestedTileCount, states[SLUICE_TILE_STATE_REQUESTED]);
+        mapped += s.mappedTotal, unmapped += s.unmappedTotal, failed += s.failedTotal;
+    }
+    assert_true(mapped == all.mappedTotal && unmapped == all.unmappedTotal);
+    assert_true(failed == all.failedTotal);
+}
+
+static void statistics_of_textures_add_up(void **state)
+{
+    (void)state;
+    struct fixture f;
+    enum { COUNT = 4 };
+    SluiceTextureId ids[COUNT];
+    uint64_t random = 3, seen[COUNT] = {0};
+    fixture_open(&f, 4, false);
+    fixture_configure(&f, 3, 0, 3, 2);
+    f.heaps.limit = 3;
+    for (uint32_t k = 0; k < COUNT; k++)
+        ids[k] = fixture_add_small(&f);
+    for (uint64_t time = 1; time <= 300; time++) {
+        uint32_t k = next_random(&random) % COUNT, level = next_random(&random) % 4;
+        fixture_feed(&f, ids[k], level < 3 ? (uint8_t)level : SLUICE_MIP_UNTOUCHED, time, 2);
+        seen[k] = level < 3 ? time : seen[k];
+        CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
+        assert_true(fixture_to_map(&f, SLUICE_ALL_TEXTURES) >= 0);
+        for (uint32_t i = 0; i < f.count; i++)
+            CHECK_OK(next_random(&random) % 4
+                         ? sluiceUpdateTilesMapping(f.manager, f.tiles[i].textureId, 1,
+                                                    &f.tiles[i].tileIndex)
+                         : sluiceReportFailedTiles(f.manager, f.tiles[i].textureId, 1,
+                                                   &f.tiles[i].tileIndex, time));
+        check_sums(&f, ids, COUNT);
+        SluiceTextureStatistics s = {.structSize = sizeof s};
+        const uint64_t calls = f.memory.calls;
+        CHECK_OK(sluiceGetTextureStatistics(f.manager, ids[k], &s));
+        assert_true(s.seenTime == seen[k] && s.seen == (seen[k] > 0) && f.memory.calls == calls);
+        assert_true(s.wanted || level == 3);
+    }
+    assert_true(fixture_statistics(&f).unmappedTotal > 20 &&
+                fixture_statistics(&f).failedTotal > 20);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -306,6 +362,7 @@ int main(void)
         cmocka_unit_test(listed_for_unmapping_and_wanted_again_is_mapped_again),
         cmocka_unit_test(trim_lists_the_oldest_down_to_what_is_kept),
         cmocka_unit_test(lists_hand_out_what_there_is_room_for),
+        cmocka_unit_test(statistics_of_textures_add_up),
     };
     return RUN_TESTS(tests);
 }

@@ -82,6 +82,7 @@ sluiceWriteMinMipRect(f->manager, &f->rect, 2, 4, f->out.min_mip)
 sluiceGetMinMipUpdates(f->manager, one(f), ?f->out.rects)
 sluiceGetTileState(f->manager, f->id, 1, ?&f->out.state, ?&f->out.tile)
 sluiceGetStatistics(f->manager, &f->out.statistics)
+sluiceGetTextureStatistics(f->manager, f->id, &f->out.texture_statistics)
 
 sluiceComputePsnr8(f->texels, f->texels, 4, 4, 4, &f->out.number)
 sluiceComputeSsim(&f->pair, ?NULL, ?NULL, &f->out.number)
@@ -153,6 +154,7 @@ struct fixture {
         SluiceMinMipRect rects[1];
         SluiceTileState state;
         SluiceStreamedTextureStatistics statistics;
+        SluiceTextureStatistics texture_statistics;
         SluiceRecorder *recorder;
         SluiceReplayResult replay;
     } out;
