@@ -50,7 +50,7 @@ tap_stage style scripts/dev/check-style.sh
 if [ "$quick" = no ]; then
     tap_stage consumer tests/consumer/run.sh
     sanitizer_stage clang-sanitizers sanitize address,undefined -Dbuildtype=debugoptimized
-    sanitizer_stage clang-threads tsan thread -Dbuildtype=debugoptimized -Dsamples=disabled
+    sanitizer_stage clang-threads tsan thread -Dbuildtype=debugoptimized -Dsamples=disabled -Dpbrt=disabled -Dneural=disabled
 
     # Every feature off, both kinds of library; replays must decide the same in all of them.
     # What is slow has run twice by now and depends on none of this.

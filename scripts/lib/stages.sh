@@ -59,6 +59,7 @@ build_stage() {
     shift
     if ! (
         [ ${#settings[@]} -eq 0 ] || export "${settings[@]}"
+        ! command -v ld.lld >/dev/null || export CC_LD=lld CXX_LD=lld
         # Stacks need lines; the rest of the debug information takes a fifth of the compiler's time.
         configure "$folder" --wrap-mode="$(wrap_mode test)" --werror -Dc_args=-g1 -Dcpp_args=-g1 "$@"
     ); then
