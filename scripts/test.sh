@@ -3,7 +3,7 @@
 #
 #   scripts/test.sh [options]
 #
-#   --quick        only the gcc build, its tests, and the style check
+#   --quick        only the gcc build, its tests but for the long ones, and the style check
 #   --no-install   install nothing; say what is missing
 #   --clean        throw away earlier test builds first
 #   --help
@@ -44,22 +44,29 @@ begin_stages
 
 # As users get it, and everything that is not about the build: headers, packages, examples, device.
 # shellcheck disable=SC2034 # read by meson_stage
-test_options=(--no-suite short)
+test_options=(--no-suite short --no-suite rare)
+if [ "$quick" = yes ]; then
+    for suite in bench dense pictures samples slow twin; do
+        test_options+=(--no-suite "$suite")
+    done
+fi
 meson_stage gcc CC=gcc CXX=g++ -- -Dbuildtype=debugoptimized -Ddefault_library=both
 tap_stage style scripts/dev/check-style.sh
 if [ "$quick" = no ]; then
     tap_stage consumer tests/consumer/run.sh
-    sanitizer_stage clang-sanitizers sanitize address,undefined -Dbuildtype=debugoptimized
+    # The library, its tools and its tests; CONTRIBUTING.md says how samples are looked at.
+    sanitizer_stage clang-sanitizers sanitize address,undefined -Dbuildtype=debugoptimized -Dsamples=disabled
     sanitizer_stage clang-threads tsan thread -Dbuildtype=debugoptimized -Dsamples=disabled -Dpbrt=disabled -Dneural=disabled
 
     # Every feature off, both kinds of library; replays must decide the same in all of them.
     # What is slow has run twice by now and depends on none of this.
     # shellcheck disable=SC2034 # read by meson_stage
-    test_options=(--no-suite slow --no-suite short)
+    test_options=(--no-suite slow --no-suite short --no-suite rare)
     off='-Dexr=disabled -Dcontainer=disabled -Dzstd=disabled -Dstore=disabled -Dbake=disabled -Dvulkan=disabled -Dsamples=disabled'
     # shellcheck disable=SC2086 # lists of words
     {
         meson_stage gcc-O3-static CC=gcc -- $off -Doptimization=3 -Ddefault_library=static
+        test_options=(--suite base --suite core --suite replay --suite demand --no-suite slow --no-suite short)
         meson_stage clang-O0-shared CC=clang -- $off -Doptimization=0 -Ddefault_library=shared
     }
 fi
