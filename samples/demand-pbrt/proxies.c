@@ -10,7 +10,8 @@
 #include "../common/ray_table.h"
 #include "pbrt_shared.h"
 
-/* Boxes are computed from transformed boxes, and triangles are transformed by the device. */
+/* Boxes are computed from transformed boxes, and triangles are transformed by the device. A
+ * transform mixes the axes, so errors follow the largest coordinate. */
 #define ROUNDING 1.0e-5f
 #define RANK 0u /* before tiles */
 #define RANGE_COUNT 64u
@@ -102,8 +103,10 @@ bool proxies_add(struct proxies *p, struct scene_node node, const SluicePbrtBoun
 {
     SluiceProxyBox wide;
     SluiceProxyId id;
+    float more = 0.0f;
+    for (int i = 0; i < 3; i++)
+        more = fmaxf(more, ROUNDING * fmaxf(fabsf(box->least[i]), fabsf(box->most[i])));
     for (int i = 0; i < 3; i++) {
-        const float more = ROUNDING * fmaxf(fabsf(box->least[i]), fabsf(box->most[i]));
         wide.min[i] = box->least[i] - more;
         wide.max[i] = box->most[i] + more;
     }
