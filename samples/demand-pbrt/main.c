@@ -225,7 +225,7 @@ static void tell_debug(const struct renderer *r)
     } else if (d->kind == 2) {
         fprintf(stderr, " %u", d->place);
     }
-    fprintf(stderr, " at %g%s\n", d->distance, d->missing ? ", and something is missing" : "");
+    fprintf(stderr, " at %.9g%s\n", d->distance, d->missing ? ", and something is missing" : "");
     d->kind = 0;
 }
 
