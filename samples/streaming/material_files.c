@@ -10,7 +10,7 @@
 #include "../../tools/common/text.h"
 #include "patterns.h"
 
-#define SUPERSAMPLES 2 ///< per axis and texel
+#define SUPERSAMPLES 3 ///< per axis and texel
 
 static const struct {
     const char *name;
