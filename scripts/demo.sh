@@ -10,6 +10,8 @@
 #                                              OpenEXR, DDS, KTX2 files and tile stores
 #   scripts/demo.sh -- --pbrt FILE             a scene of pbrt instead, with geometry, materials and textures
 #                                              on demand; further options are those of samples/demand-pbrt
+#   scripts/demo.sh -- --neural [FILE.ntc]     a neural set instead, streamed in five ways; without a file a
+#                                              small material is made and compressed, minutes on a CPU
 #
 # Each frame is drawn a second time with everything resident, to compare, unless there is a --budget.
 # Then the gallery, smaller, is walked through with other settings, one at a time, to show what each
@@ -76,6 +78,39 @@ if [ "${1-}" = --pbrt ]; then
     title "Done"
     say "The picture: $output/pbrt.png"
     say "What was there after each launch: $output/pbrt-launches.png"
+    exit
+fi
+
+# A neural set hangs in the gallery, in all ways in which it can be streamed.
+if [ "${1-}" = --neural ]; then
+    shift
+    set=$cache/neural/mosaic.ntc streaming=$folder/samples/streaming/streaming
+    mkdir -p "$output" "$cache/neural"
+    if [ $# -gt 0 ] && [ "${1#--}" = "$1" ]; then
+        set=$1
+        shift
+    elif [ ! -e "$set" ]; then
+        title "Compressing a material of three textures"
+        training=(--steps 400 --batch 4096 --device cpu)
+        ! has_gpu || training=()
+        "$streaming" --neural-material "$cache/neural" || die "the material could not be written"
+        "$folder/tools/sluice-bake/sluice-bake" --neural "$cache"/neural/{albedo,height,roughness}.png -o "$set" \
+            --checkpoint "$set.checkpoint" --progress "${training[@]}" || die "the material was not compressed"
+    fi
+    title "Hanging $set in five ways"
+    walk=()
+    for option in generate-scale=4 frames=120 rest-frames=30; do
+        [[ " $* " == *" --${option%=*} "* ]] || walk+=("--${option%=*}" "${option#*=}")
+    done
+    "$streaming" --neural-set "$set" --neural-as raw bc7 load feedback sample "${walk[@]}" --output "$output" \
+        --cache "$cache" --json "$@" >"$output/summary.txt" || die "the demo did not end well"
+    title "Comparing the five ways"
+    mkdir -p "$output/neural"
+    "$folder/tools/sluice-tradeoff/sluice-tradeoff" neural --quick --repeats 1 --results "$output/neural" -- \
+        --neural-set "$set" --cache "$cache" "$@" | tee "$output/neural/table.txt" || die "the measurements did not end well"
+    title "Done"
+    say "All five in one room: $output/frame-*.png, $output/report.html"
+    say "Their pictures side by side, and what each costs: $output/neural/page.html"
     exit
 fi
 
