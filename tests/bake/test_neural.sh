@@ -25,6 +25,37 @@ fact pictures_become_a_set_of_19_dB_in_60_steps $?
 others=$(find "$work" -type f ! -name set.ntc ! -name '*.p[gp]m' ! -name out ! -name err)
 [ "$(head -c 4 "$work/set.ntc")" = NTEX ] && [ -z "$others" ]
 fact nothing_else_is_left_behind $?
+psnr_of() { sed -n 's/.*"psnr": \([0-9.]*\).*/\1/p'; }
+quick() { "$bake" --neural "$work/color.ppm" --steps 20 --batch 192 --json "$@" 2>"$work/err"; }
+
+# 1 dB is there at once.
+[ "$(quick -o "$work/first.ntc" --psnr 1 | grep -c '"bits_per_texel": 1.25,')" -eq 1 ]
+fact a_search_ends_at_the_first_size_that_is_good_enough $?
+
+# A weight moves errors from one picture to the other; what is wrong is refused before training.
+both() { quick "$work/rough.pgm" --steps 60 --batch 320 --bits-per-texel 2.5 -o "$work/weighed.ntc" "$@"; }
+unweighed=$(psnr_of <"$work/out") weighed=$(both --weights rough=0.001,color=1 | psnr_of)
+echo "# $unweighed dB, $weighed dB with one picture left to itself"
+awk -v a="$unweighed" -v b="$weighed" 'BEGIN { exit !(b > 0 && b < a - 1) }'
+fact a_picture_without_weight_is_left_to_itself $?
+is_refused=0
+for wrong in rough=0 none=1; do
+    both --weights "$wrong" >"$work/out" && is_refused=1
+    grep -q -e "--weights" "$work/err" && [ ! -s "$work/out" ] || is_refused=1
+done
+fact wrong_weights_are_refused $is_refused
+
+# The first checkpoint is of step 64 of 84.
+resumed() { quick --bits-per-texel 2.5 --steps 80 --checkpoint "$work/state" -o "$work/$1" | sed 's/.*"steps": \([0-9]*\),.*/\1/'; }
+first=$(resumed one.ntc) second=$(resumed two.ntc)
+echo "# $first steps, $second after the checkpoint"
+[ "$first" = 84 ] && [ "$second" = 20 ] && cmp -s "$work/one.ntc" "$work/two.ntc"
+fact a_run_goes_on_from_a_checkpoint_to_the_same_bytes $?
+rm -f "$work/two.ntc"
+! quick --bits-per-texel 2.5 --steps 81 --checkpoint "$work/state" -o "$work/two.ntc" >"$work/out" &&
+    grep -q "$work/state" "$work/err" && [ ! -e "$work/two.ntc" ]
+fact a_checkpoint_of_another_run_is_refused $?
+
 ! "$bake" --neural "$work/color.ppm" "$work/small.pgm" -o "$work/other.ntc" 2>"$work/err" &&
     grep -q 'small: is 16 x 16, the pictures before are 32 x 32' "$work/err" && [ ! -e "$work/other.ntc" ]
 fact pictures_of_other_sizes_are_refused $?

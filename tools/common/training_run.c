@@ -139,7 +139,8 @@ static bool save(struct session *s)
 static bool train(struct session *s)
 {
     uint32_t steps = 1;
-    s->start = s->saved = clock_seconds();
+    s->start = clock_seconds();
+    s->saved = s->start - CHECKPOINT_SECONDS; /* at once, so that a wrong name is no late surprise */
     while (steps > 0) {
         if (!run_commands(s, STEPS_PER_SUBMISSION, &steps))
             return false;

@@ -79,6 +79,20 @@ bool training_set_add(struct training_set *set, const struct training_picture *p
     return true;
 }
 
+bool training_set_weigh(struct training_set *set, const char *name, float weight)
+{
+    bool is_there = false;
+    for (uint32_t t = 0; t < set->texture_count; t++) {
+        const SluiceNeuralTexture *texture = &set->textures[t];
+        if (strcmp(set->names[t], name) != 0)
+            continue;
+        is_there = true;
+        for (uint32_t c = 0; c < texture->channelCount; c++)
+            set->meaning[texture->firstChannel + c].weight = weight;
+    }
+    return is_there;
+}
+
 static uint32_t mip_size(uint32_t size, uint32_t mip)
 {
     return size >> mip ? size >> mip : 1;

@@ -31,6 +31,10 @@ struct training_picture {
  * or without memory. */
 bool training_set_add(struct training_set *set, const struct training_picture *picture);
 
+/** Sets how much the squared errors of a picture's channels count, above 0 and at most 1000. Each
+ *  counts once by default. False if no picture has the name. */
+bool training_set_weigh(struct training_set *set, const char *name, float weight);
+
 /** Makes the mips: each texel is the mean, in linear light, of the texels of mip 0 that it covers.
  *  False without memory. */
 bool training_set_finish_mips(struct training_set *set);

@@ -173,6 +173,33 @@ static bool add_picture(struct training_set *set, const char *path, struct pictu
     return training_set_add(set, &added);
 }
 
+/* NAME=W, with commas between. */
+static bool weigh(struct training_set *set, const char *text)
+{
+    while (text && *text) {
+        char name[TRAINING_SET_NAME];
+        const char *equals = strchr(text, '=');
+        char *end = NULL;
+        const float weight = equals ? strtof(equals + 1, &end) : 0.0f;
+        const size_t length = equals ? (size_t)(equals - text) : 0;
+        if (!equals || end == equals + 1 || (*end && *end != ',') || length >= sizeof name ||
+            !(weight > 0.0f && weight <= 1000.0f)) {
+            fprintf(stderr,
+                    "sluice-bake: --weights %s: is no NAME=W with W above 0 and at most "
+                    "1000\n",
+                    text);
+            return false;
+        }
+        snprintf(name, sizeof name, "%.*s", (int)length, text);
+        if (!training_set_weigh(set, name, weight)) {
+            fprintf(stderr, "sluice-bake: --weights %s: no picture has this name\n", name);
+            return false;
+        }
+        text = *end ? end + 1 : end;
+    }
+    return true;
+}
+
 static bool read_set(const struct options *options, struct training_set *set)
 {
     const SluiceBakerCreateInfo info = {
@@ -190,7 +217,7 @@ static bool read_set(const struct options *options, struct training_set *set)
         free(picture.texels);
     }
     sluiceDestroyBaker(baker);
-    return is_read && training_set_finish_mips(set);
+    return is_read && weigh(set, options->weights) && training_set_finish_mips(set);
 }
 
 static void print_run(const struct options *options, const struct training_run *run)

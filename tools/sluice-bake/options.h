@@ -19,7 +19,7 @@ struct options {
     int bits;    ///< index into 1.25, 2.5, 5, 10, 20 bits per texel
     double psnr; ///< dB to reach; 0: none
     uint32_t steps, batch, seed;
-    const char *checkpoint, *device; ///< may be NULL
+    const char *weights, *checkpoint, *device; ///< may be NULL
 };
 
 /** Prints the help text if it was asked for. On failure says on standard error what is wrong. */
