@@ -216,6 +216,10 @@ float error_of(float value, uint channel, uint texel)
             error = max(error + margin, 0.0);
         if (wanted >= 1.0)
             error = min(error - margin, 0.0);
+        /* A mask counts as wrong by some steps wherever it is wrong: squares of small errors alone
+         * would not outweigh those of other channels. */
+        if (margin > 0.0 && error != 0.0 && (wanted <= 0.0 || wanted >= 1.0))
+            error = sign(error) * max(abs(error), TRAIN_MASK_ERROR);
     }
     return error;
 }

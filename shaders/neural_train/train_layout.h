@@ -51,6 +51,7 @@
 #define TRAIN_CHANNEL_WEIGHT 0  /* float; 0: the channel is not used */
 #define TRAIN_CHANNEL_MARGIN 1  /* float: how far beyond 0 and 1 a mask is pushed */
 #define TRAIN_CHANNEL_CLAMPED 2 /* the decoded value is clamped to 0..1 */
+#define TRAIN_MASK_ERROR 0.1    /* the least error of a mask that is not exact at 0 or 1 */
 
 #define TRAIN_QUANTIZE_INPUTS 1u
 #define TRAIN_QUANTIZE_NETWORK 2u /* hidden values and weights */

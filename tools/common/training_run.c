@@ -140,7 +140,8 @@ static bool train(struct session *s)
 {
     uint32_t steps = 1;
     s->start = clock_seconds();
-    s->saved = s->start - CHECKPOINT_SECONDS; /* at once, so that a wrong name is no late surprise */
+    s->saved =
+        s->start - CHECKPOINT_SECONDS; /* at once, so that a wrong name is no late surprise */
     while (steps > 0) {
         if (!run_commands(s, STEPS_PER_SUBMISSION, &steps))
             return false;
