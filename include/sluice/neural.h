@@ -81,7 +81,10 @@ typedef enum SluiceNeuralNetwork {
 typedef enum SluiceNeuralWeightKind {
     SLUICE_NEURAL_WEIGHTS_INT8 = 0, ///< Results are defined to the bit.
     /** Layers 0 to 2 in 8-bit floating point (E4M3), layer 3 as INT8. */
-    SLUICE_NEURAL_WEIGHTS_FP8 = 1
+    SLUICE_NEURAL_WEIGHTS_FP8 = 1,
+    /** FP8 weights widened to 16-bit floating point, for shaders that compute in it
+     *  (SLUICE_NEURAL_HALF in neural.glsl). Only sluiceGetNeuralWeights takes this kind. */
+    SLUICE_NEURAL_WEIGHTS_HALF = 2
 } SluiceNeuralWeightKind;
 
 /** Transfer function of a channel's values. */
@@ -313,6 +316,7 @@ typedef struct SluiceNeuralOutput {
  * - weights of the layers 0 to 3, [output][input], one byte each: INT8, or E4M3 in layers 0 to 2;
  * - INT8: all scales (float), then all biases (int32), layer after layer;
  * - FP8: biases of the layers 0 to 2 (half), then scales (float) and biases (int32) of layer 3.
+ * - HALF: as FP8, but weights of the layers 0 to 2 have two bytes each.
  * Smaller networks are padded. Sizes: schema 1 INT8 13952, 14976, 16000, 17024, FP8 512 bytes more
  * than its weights; schema 3 9472 and 8608.
  *

@@ -13,9 +13,10 @@
 
 enum { LAST = SLUICE_NEURAL_LAYERS - 1, MAX_LAYER_SIZE = 96 * 64 };
 
+/* FP8, or made of it. */
 static bool is_fp8(SluiceNeuralWeightKind kind, uint32_t layer)
 {
-    return kind == SLUICE_NEURAL_WEIGHTS_FP8 && layer < LAST;
+    return kind != SLUICE_NEURAL_WEIGHTS_INT8 && layer < LAST;
 }
 
 struct slc_neural_blob slc_neural_blob_of(const struct slc_neural_shape *shape,
@@ -24,7 +25,8 @@ struct slc_neural_blob slc_neural_blob_of(const struct slc_neural_shape *shape,
     struct slc_neural_blob blob = {{0}, {0}, {0}, 0};
     for (uint32_t i = 0; i < SLUICE_NEURAL_LAYERS; i++) {
         blob.weights[i] = blob.size;
-        blob.size += shape->outputs[i] * shape->inputs[i];
+        blob.size += shape->outputs[i] * shape->inputs[i] *
+                     (kind == SLUICE_NEURAL_WEIGHTS_HALF && i < LAST ? 2 : 1);
     }
     for (uint32_t i = 0; i < SLUICE_NEURAL_LAYERS; i++)
         if (is_fp8(kind, i)) {

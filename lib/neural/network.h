@@ -6,7 +6,7 @@
 
 /** Byte offsets in a blob. */
 struct slc_neural_blob {
-    uint32_t weights[SLUICE_NEURAL_LAYERS]; ///< [output][input], a byte each
+    uint32_t weights[SLUICE_NEURAL_LAYERS]; ///< [output][input], a byte each, some of HALF two
     uint32_t scales[SLUICE_NEURAL_LAYERS];  ///< float; FP8: of layer 3 alone
     uint32_t biases[SLUICE_NEURAL_LAYERS];  ///< int32; FP8: half in layers 0 to 2
     uint32_t size;

@@ -1,5 +1,7 @@
 /* What is written is read again. */
+#include "image/half.h"
 #include "neural/decoded.h"
+#include "neural/decoder.h"
 #include "neural/made_file.h"
 #include "neural/neural_files.h"
 #include "support/failing_allocator.h"
@@ -86,6 +88,36 @@ static void what_is_written_is_read_again(void **state)
             check_codes(&parts, &d);
             free_decodable(&d);
         }
+        sluiceDestroyNeuralSet(set);
+        free_made_parts(&parts);
+        free(file.bytes);
+    }
+}
+
+/* Layers 0 to 2 are the same numbers in 16 bits; all else is the same bytes. */
+static void half_weights_are_those_of_fp8(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < MADE_SHAPE_COUNT; i++) {
+        struct made_parts parts;
+        struct made_file file = {0};
+        struct decodable fp8, half;
+        SluiceNeuralSet *set = NULL;
+        make_parts(&parts, &made_shapes[i], i);
+        CHECK_OK(write_made_file(&parts, &file));
+        CHECK_OK(open_neural_bytes(file.bytes, file.size, NULL, &set));
+        read_decodable(set, NULL, SLUICE_NEURAL_WEIGHTS_FP8, &fp8);
+        read_decodable(set, NULL, SLUICE_NEURAL_WEIGHTS_HALF, &half);
+        uint64_t wide = half.weight_size - fp8.weight_size; /* weights of these layers */
+        assert_int_equal(wide,
+                         fp8.constants.schema == 3 ? 7680 : fp8.constants.inputCount * 64 + 8192);
+        for (uint64_t k = 0; k < wide; k++) {
+            uint16_t bits = (uint16_t)(half.weights[2 * k] | half.weights[2 * k + 1] << 8);
+            assert_true(slc_float_from_half(bits) == slc_float_from_e4m3(fp8.weights[k]));
+        }
+        assert_memory_equal(half.weights + 2 * wide, fp8.weights + wide, fp8.weight_size - wide);
+        free_decodable(&fp8);
+        free_decodable(&half);
         sluiceDestroyNeuralSet(set);
         free_made_parts(&parts);
         free(file.bytes);
@@ -307,6 +339,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_written_is_read_again),
+        cmocka_unit_test(half_weights_are_those_of_fp8),
         cmocka_unit_test(packed_latents_give_the_same_file),
         cmocka_unit_test(plans_are_those_of_the_samples),
         cmocka_unit_test(files_are_written_to_a_path),
