@@ -8,7 +8,8 @@
 #include "sluice/shared/types.h"
 #endif
 
-#define NEURAL_BENCH_MAX_WEIGHTS 17024 /* bytes */
+#define NEURAL_BENCH_MAX_WEIGHTS 17024 /* bytes of a uniform buffer */
+#define NEURAL_BENCH_WEIGHT_ROOM 65536 /* bytes of a storage buffer */
 
 struct NeuralBenchParams {
     uint width; /* of the picture, in pixels */

@@ -23,8 +23,17 @@
  *     #define SLUICE_NEURAL_SCHEMA 3         // or 1: the only schema of the shader; default: any. Faster.
  *     #define SLUICE_NEURAL_INPUTS 64        // with schema 1: the only network; default: any. Faster.
  *     #define SLUICE_NEURAL_INTEGER_DOT      // uses VK_KHR_shader_integer_dot_product: enable its feature
+ *     #define SLUICE_NEURAL_FP8              // weights are FP8: the bits of the host's decode with these
+ *     #define SLUICE_NEURAL_HALF             // weights are HALF: computes in 16-bit floats (shaderFloat16)
+ *     #define SLUICE_NEURAL_VECTOR           // uses VK_NV_cooperative_vector, with INT8 or FP8 weights that
+ *                                            // sluiceConvertNeuralWeights wrote; needs SLUICE_NEURAL_SCHEMA and
+ *                                            // a compiler with GL_NV_cooperative_vector
+ *     #define SLUICE_NEURAL_VECTOR_WEIGHTS(s) weights // for it: array of uint in a storage buffer that begins with
+ *                                            // the weights of the set
  *
- * Results have the same bits on every device whose float multiplication rounds to nearest, except for
+ * sluice/neural_paths.h says which of these a device has. neural_matrix.glsl decodes a subgroup's texels at once.
+ *
+ * Results with INT8 weights have the same bits on every device whose float multiplication rounds to nearest, except for
  * outputs below 2^-126.
  */
 #ifndef SLUICE_NEURAL_GLSL
@@ -32,6 +41,13 @@
 
 #ifdef SLUICE_NEURAL_INTEGER_DOT
 #extension GL_EXT_spirv_intrinsics : require
+#endif
+#ifdef SLUICE_NEURAL_HALF
+#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
+#endif
+#ifdef SLUICE_NEURAL_VECTOR
+#extension GL_NV_cooperative_vector : require
+#extension GL_EXT_shader_explicit_arithmetic_types : require
 #endif
 
 /* With SLUICE_NEURAL_SCHEMA sizes of layers are constants. Sums are unrolled then, so that their inputs are
@@ -81,6 +97,13 @@ struct SluiceNeuralLayer {
     uint outputs;
 };
 
+/** Returns a sum times its scale. */
+float sluiceNeuralScaled(uint s, int sum, uint scaleWord)
+{
+    precise float scaled = float(sum) * uintBitsToFloat(SLUICE_NEURAL_WEIGHT_WORD(s, scaleWord));
+    return scaled;
+}
+
 /** Returns the sum of an output, times its scale. */
 float sluiceNeuralOutput(uint s, SluiceNeuralLayer layer, uint neurons[SLUICE_NEURAL_WORDS], uint o)
 {
@@ -89,8 +112,7 @@ float sluiceNeuralOutput(uint s, SluiceNeuralLayer layer, uint neurons[SLUICE_NE
     SLUICE_NEURAL_UNROLL
     for (uint k = 0u; k < layer.inputWords; k++)
         sum += sluiceDotBytes(neurons[k], SLUICE_NEURAL_WEIGHT_WORD(s, row + k));
-    precise float scaled = float(sum) * uintBitsToFloat(SLUICE_NEURAL_WEIGHT_WORD(s, layer.scales + o));
-    return scaled;
+    return sluiceNeuralScaled(s, sum, layer.scales + o);
 }
 
 /** Returns the activation of a sum as a byte: a cubic GELU, clamped to 3, in steps of 1/80. */
@@ -142,6 +164,26 @@ void sluiceNeuralRun(uint s, inout uint neurons[SLUICE_NEURAL_WORDS], out float 
     }
 }
 
+#if defined(SLUICE_NEURAL_FP8) || defined(SLUICE_NEURAL_HALF)
+#define SLUICE_NEURAL_INPUT_TYPE float inputs[SLUICE_NEURAL_VALUES]
+#define SLUICE_NEURAL_FIND_INPUTS sluiceNeuralInputValues
+#else
+#define SLUICE_NEURAL_INPUT_TYPE uint inputs[SLUICE_NEURAL_WORDS]
+#define SLUICE_NEURAL_FIND_INPUTS sluiceNeuralInputs
+#endif
+#if defined(SLUICE_NEURAL_VECTOR)
+#define SLUICE_NEURAL_RUN sluiceNeuralRunVector
+#if defined(SLUICE_NEURAL_FP8)
+#include "neural_values.glsl"
+#endif
+#include "neural_vector.glsl"
+#elif defined(SLUICE_NEURAL_FP8) || defined(SLUICE_NEURAL_HALF)
+#define SLUICE_NEURAL_RUN sluiceNeuralRunFloat
+#include "neural_float.glsl"
+#else
+#define SLUICE_NEURAL_RUN sluiceNeuralRun
+#endif
+
 /** Returns the number of mips of a set. */
 uint sluiceGetNeuralMipCount(uint s)
 {
@@ -163,15 +205,15 @@ uvec2 sluiceGetNeuralSize(uint s, uint mip)
  */
 bool sluiceNeuralSample(uint s, ivec2 texel, uint mip, out float channels[SLUICE_NEURAL_CHANNELS])
 {
-    uint neurons[SLUICE_NEURAL_WORDS];
     for (uint i = 0u; i < SLUICE_NEURAL_CHANNELS; i++)
         channels[i] = 0.0;
     if (mip >= sluiceGetNeuralMipCount(s) || any(lessThan(texel, ivec2(0))) ||
         any(greaterThanEqual(uvec2(texel), sluiceGetNeuralSize(s, mip))))
         return false;
-    if (!sluiceNeuralInputs(s, uvec2(texel), mip, sluiceGetNeuralSize(s, mip), neurons))
+    SLUICE_NEURAL_INPUT_TYPE;
+    if (!SLUICE_NEURAL_FIND_INPUTS(s, uvec2(texel), mip, sluiceGetNeuralSize(s, mip), inputs))
         return false;
-    sluiceNeuralRun(s, neurons, channels);
+    SLUICE_NEURAL_RUN(s, inputs, channels);
     return true;
 }
 
