@@ -123,6 +123,8 @@
     SLC_UP_TO(SluiceNeuralCompressorCreateInfo, checkpointSize)
 #define SLC_FIRST_SluiceNeuralTrainedSet SLC_UP_TO(SluiceNeuralTrainedSet, fp8Size)
 #define SLC_FIRST_SluiceNeuralProgress SLC_UP_TO(SluiceNeuralProgress, channelErrors)
+#define SLC_FIRST_SluiceNeuralPaths SLC_UP_TO(SluiceNeuralPaths, matrixK)
+#define SLC_FIRST_SluiceNeuralConvertInfo SLC_UP_TO(SluiceNeuralConvertInfo, log)
 #define SLC_FIRST_SluiceVulkanNeuralDecoderCreateInfo                                              \
     SLC_UP_TO(SluiceVulkanNeuralDecoderCreateInfo, pAllocator)
 #define SLC_FIRST_SluiceVulkanNeuralOutput SLC_UP_TO(SluiceVulkanNeuralOutput, to)

@@ -81,12 +81,14 @@ void conform_write_buffers(struct harness *h, const struct conform_set *set, uin
     h->UpdateDescriptorSets(h->device, 1, &write, 0, NULL);
 }
 
-VkPipeline conform_compute_pipeline(struct harness *h, VkPipelineLayout layout,
-                                    VkShaderModule compute, const VkSpecializationInfo *constants)
+static VkPipeline compute_pipeline(struct harness *h, VkPipelineLayout layout,
+                                   VkShaderModule compute, const VkSpecializationInfo *constants,
+                                   VkPipelineShaderStageCreateFlags flags)
 {
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .flags = flags,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = compute,
                   .pName = "main",
@@ -98,6 +100,19 @@ VkPipeline conform_compute_pipeline(struct harness *h, VkPipelineLayout layout,
         VK_SUCCESS);
     h->DestroyShaderModule(h->device, compute, NULL);
     return pipeline;
+}
+
+VkPipeline conform_compute_pipeline(struct harness *h, VkPipelineLayout layout,
+                                    VkShaderModule compute, const VkSpecializationInfo *constants)
+{
+    return compute_pipeline(h, layout, compute, constants, 0);
+}
+
+VkPipeline conform_subgroup_pipeline(struct harness *h, VkPipelineLayout layout,
+                                     VkShaderModule compute, const VkSpecializationInfo *constants)
+{
+    return compute_pipeline(h, layout, compute, constants,
+                            VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT_EXT);
 }
 
 void conform_create_target(struct harness *h, VkRenderPass *pass, VkFramebuffer *framebuffer)

@@ -76,6 +76,9 @@ void conform_run_job(struct harness *h, const struct conform_job *job);
 /** Consumes the module, as the next. `constants` may be NULL. */
 VkPipeline conform_compute_pipeline(struct harness *h, VkPipelineLayout layout,
                                     VkShaderModule compute, const VkSpecializationInfo *constants);
+/** The same with full subgroups: needs computeFullSubgroups. */
+VkPipeline conform_subgroup_pipeline(struct harness *h, VkPipelineLayout layout,
+                                     VkShaderModule compute, const VkSpecializationInfo *constants);
 
 /** For a target of CONFORM_TARGET_SIZE. */
 VkPipeline conform_graphics_pipeline(struct harness *h, VkPipelineLayout layout, VkRenderPass pass,

@@ -37,7 +37,7 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
         fprintf(stderr, "# %s\n", message);
 }
 
-static bool layer_is_installed(struct harness *h)
+static bool layer_is_installed(struct harness *h, uint32_t version)
 {
     PFN_vkEnumerateInstanceLayerProperties enumerate =
         (PFN_vkEnumerateInstanceLayerProperties)h->get(NULL, "vkEnumerateInstanceLayerProperties");
@@ -47,11 +47,11 @@ static bool layer_is_installed(struct harness *h)
         return false;
     for (uint32_t i = 0; i < count; i++)
         if (strcmp(layers[i].layerName, LAYER) == 0)
-            return true;
+            return layers[i].specVersion >= version;
     return false;
 }
 
-static bool create_instance(struct harness *h)
+static bool create_instance(struct harness *h, uint32_t layer_version)
 {
     const char *layers[] = {LAYER}, *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
                                                      VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
@@ -75,7 +75,7 @@ static bool create_instance(struct harness *h)
                                      .apiVersion = VK_API_VERSION_1_2};
     VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                  .pApplicationInfo = &application};
-    h->validates = layer_is_installed(h);
+    h->validates = layer_is_installed(h, layer_version);
     if (h->validates) {
         info.pNext = &features;
         info.enabledLayerCount = 1;
@@ -167,6 +167,7 @@ struct extras {
     const char *const *extensions;
     uint32_t extension_count;
     void *features;
+    const struct harness_newer *newer; ///< NULL: nothing
 };
 
 static bool has_extensions(struct harness *h, const struct extras *extras)
@@ -228,6 +229,8 @@ static bool create_device(struct harness *h, const struct extras *extras)
                                .pQueueCreateInfos = queues,
                                .enabledExtensionCount = extras->extension_count,
                                .ppEnabledExtensionNames = extras->extensions};
+    if (extras->newer)
+        extras->newer->prepare(h, &info, &vulkan12, extras->newer->user);
     if (h->CreateDevice(h->physical_device, &info, NULL, &h->device) != VK_SUCCESS)
         return false;
 #define LOAD(name) h->name = (PFN_vk##name)h->GetDeviceProcAddr(h->device, "vk" #name);
@@ -262,16 +265,14 @@ int harness_init(struct harness *h)
     return harness_init_with(h, NULL, 0, NULL);
 }
 
-int harness_init_with(struct harness *h, const char *const *extensions, uint32_t extension_count,
-                      void *features)
+static int init(struct harness *h, const struct extras *extras)
 {
-    const struct extras extras = {extensions, extension_count, features};
     *h = (struct harness){0};
     h->library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!h->library)
         return no_device(h, "there is no Vulkan loader (libvulkan.so.1)");
     *(void **)&h->get = dlsym(h->library, "vkGetInstanceProcAddr"); /* as dlopen(3) writes it */
-    if (!h->get || !create_instance(h))
+    if (!h->get || !create_instance(h, extras->newer ? extras->newer->layer_version : 0))
         return no_device(h, "no Vulkan 1.2 instance can be created");
     if (!pick_mode(h)) {
         fprintf(stderr, "SLUICE_RESIDENCY is none of sparse, paged, dense and auto\n");
@@ -282,15 +283,26 @@ int harness_init_with(struct harness *h, const char *const *extensions, uint32_t
         return no_device(h, getenv("SLUICE_DEVICE")
                                 ? "the device that SLUICE_DEVICE names is absent or lacks the mode"
                                 : "no device has Vulkan 1.2 and what the residency mode needs");
-    if (extension_count && !has_extensions(h, &extras))
+    if (extras->extension_count && !has_extensions(h, extras))
         return no_device(h, "the device lacks an extension that this test is about");
-    if (!create_device(h, &extras) || harness_set_context(h, NULL) != SLUICE_SUCCESS)
+    if (!create_device(h, extras) || harness_set_context(h, NULL) != SLUICE_SUCCESS)
         return 1;
     const char *abandon = getenv("SLUICE_ABANDON");
     h->abandon_one_in = abandon ? (uint32_t)strtoul(abandon, NULL, 10) : 0;
     fprintf(stderr, "# %s, residency %s, validation %s\n", h->caps.deviceName, h->mode_name,
             h->validates ? "on" : "absent");
     return 0;
+}
+
+int harness_init_with(struct harness *h, const char *const *extensions, uint32_t extension_count,
+                      void *features)
+{
+    return init(h, &(struct extras){extensions, extension_count, features, NULL});
+}
+
+int harness_init_newer(struct harness *h, const struct harness_newer *newer)
+{
+    return init(h, &(struct extras){.newer = newer});
 }
 
 int harness_finish(struct harness *h, int status)

@@ -98,6 +98,17 @@ int harness_init(struct harness *h);
  * for vkCreateDevice or NULL. Also enables bufferDeviceAddress. */
 int harness_init_with(struct harness *h, const char *const *extensions, uint32_t extension_count,
                       void *features);
+/** What a test of a newer extension adds to a device. */
+struct harness_newer {
+    /** Adds extensions to `info` and features to `vulkan12` and its chain, if the device has them.
+     */
+    void (*prepare)(struct harness *h, VkDeviceCreateInfo *info,
+                    VkPhysicalDeviceVulkan12Features *vulkan12, void *user);
+    void *user;
+    uint32_t layer_version; ///< validation that is older does not know the extension and stays off
+};
+/** As harness_init. */
+int harness_init_newer(struct harness *h, const struct harness_newer *newer);
 /** Returns `status`, or 1 if that was 0 and validation complains about what is left. After a failed
  *  test it says nothing of what that test left behind. */
 int harness_finish(struct harness *h, int status);

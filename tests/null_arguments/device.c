@@ -4,6 +4,7 @@
 
 #include <sluice/demand.h>
 #include <sluice/neural_compress.h>
+#include <sluice/neural_paths.h>
 #include <sluice/vulkan_control.h>
 #include <sluice/vulkan_neural.h>
 #include <sluice/vulkan_proxy.h>
@@ -85,6 +86,9 @@ sluiceGetProxyGeometry(f->set, 256, &f->out.geometry)
 sluiceCreateVulkanNeuralDecoder(&f->decoder_info, &f->out.decoder) => sluiceDestroyVulkanNeuralDecoder(f->out.decoder)
 !sluiceDestroyVulkanNeuralDecoder(f->decoder)
 sluiceAddVulkanNeuralOutput(f->decoder, &f->neural_output, &f->out.producer)
+sluiceGetNeuralPaths(f->h->instance, f->h->physical_device, f->h->get, ?NULL, &f->out.paths)
+sluiceRequireNeuralPaths(&f->paths, ?NULL, &f->out.features12, &f->out.path_features)
+!sluiceConvertNeuralWeights(&f->convert_info, &f->convert_size, ?NULL)
 sluiceGetDemandBuffers(f->loader, &f->out.demand_buffers)
 sluiceGetDemandPages(f->loader, &f->out.pages)
 sluiceGetDemandByteBuffers(f->loader, &f->out.byte_buffers)
@@ -139,10 +143,15 @@ struct fixture {
     SluiceNeuralCompressor *compressor;
     void *checkpoint;
     size_t checkpoint_size;
+    SluiceNeuralPaths paths;
+    SluiceNeuralConvertInfo convert_info;
+    uint64_t convert_size;
     SluiceVulkanNeuralDecoderCreateInfo decoder_info;
     SluiceVulkanNeuralDecoder *decoder;
     SluiceVulkanNeuralOutput neural_output;
     struct {
+        SluiceNeuralPaths paths;
+        SluiceNeuralPathFeatures path_features;
         SluiceVulkanNeuralDecoder *decoder;
         const SluiceTileProducer *producer;
         SluiceResidencyMode mode;
@@ -345,6 +354,8 @@ static void init_decoder(struct fixture *f)
         .residentMipCount = 1,
         .slices = {{0, 0x20002, 0, 0x20002}, {8, 0x10001, 0, 0x10001}}};
     static const uint8_t latents[12], weights[9472];
+    f->paths.structSize = f->out.paths.structSize = sizeof f->paths;
+    f->convert_info.structSize = sizeof f->convert_info;
     f->decoder_info = (SluiceVulkanNeuralDecoderCreateInfo){.structSize = sizeof f->decoder_info,
                                                             .context = h.context,
                                                             .pConstants = &constants,
