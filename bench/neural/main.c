@@ -13,6 +13,10 @@
 
 #include "neural_bench_comp.h"
 #include "neural_bench_dot_comp.h"
+#include "neural_bench_fp8_comp.h"
+#include "neural_bench_half_comp.h"
+#include "neural_bench_half_uniform_comp.h"
+#include "neural_bench_matrix.h"
 #include "neural_bench_schema1_comp.h"
 #include "neural_bench_schema1_dot_comp.h"
 #include "neural_bench_schema1_dot_uniform_comp.h"
@@ -23,6 +27,8 @@
 #include "neural_bench_schema3_dot_uniform_comp.h"
 #include "neural_bench_schema3_uniform_comp.h"
 #include "neural_bench_textures_comp.h"
+#include "neural_bench_vector_fp8.h"
+#include "neural_bench_vector_int8.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,6 +37,8 @@
 enum { BINDINGS = 7 };
 enum textures { RGBA8, BC7 };
 
+enum needs { NOTHING, DOT, HALF_FLOATS, VECTORS, MATRICES };
+
 /* clang-format off */
 #define CODE(name) name, sizeof name
 static const struct path {
@@ -38,22 +46,29 @@ static const struct path {
     const uint32_t *words;
     size_t size;
     uint32_t schema; ///< 0: any
-    bool needs_dot;
+    enum needs needs;
     enum textures textures;
+    enum weights weights;
 } paths[] = {
-    {"rgba8", CODE(neural_bench_textures_comp), 0, false, RGBA8},
-    {"bc7", CODE(neural_bench_textures_comp), 0, false, BC7},
-    {"int8", CODE(neural_bench_comp), 0, false, RGBA8},
-    {"int8_dot", CODE(neural_bench_dot_comp), 0, true, RGBA8},
-    {"int8_schema", CODE(neural_bench_schema1_comp), 1, false, RGBA8},
-    {"int8_schema", CODE(neural_bench_schema3_comp), 3, false, RGBA8},
-    {"int8_schema_dot", CODE(neural_bench_schema1_dot_comp), 1, true, RGBA8},
-    {"int8_schema_dot", CODE(neural_bench_schema3_dot_comp), 3, true, RGBA8},
-    {"int8_schema_dot_unhinted", CODE(neural_bench_schema3_dot_unhinted_comp), 3, true, RGBA8},
-    {"int8_schema_uniform", CODE(neural_bench_schema1_uniform_comp), 1, false, RGBA8},
-    {"int8_schema_uniform", CODE(neural_bench_schema3_uniform_comp), 3, false, RGBA8},
-    {"int8_schema_dot_uniform", CODE(neural_bench_schema1_dot_uniform_comp), 1, true, RGBA8},
-    {"int8_schema_dot_uniform", CODE(neural_bench_schema3_dot_uniform_comp), 3, true, RGBA8},
+    {"rgba8", CODE(neural_bench_textures_comp), 0, NOTHING, RGBA8, INT8},
+    {"bc7", CODE(neural_bench_textures_comp), 0, NOTHING, BC7, INT8},
+    {"int8", CODE(neural_bench_comp), 0, NOTHING, RGBA8, INT8},
+    {"int8_dot", CODE(neural_bench_dot_comp), 0, DOT, RGBA8, INT8},
+    {"int8_schema", CODE(neural_bench_schema1_comp), 1, NOTHING, RGBA8, INT8},
+    {"int8_schema", CODE(neural_bench_schema3_comp), 3, NOTHING, RGBA8, INT8},
+    {"int8_schema_dot", CODE(neural_bench_schema1_dot_comp), 1, DOT, RGBA8, INT8},
+    {"int8_schema_dot", CODE(neural_bench_schema3_dot_comp), 3, DOT, RGBA8, INT8},
+    {"int8_schema_dot_unhinted", CODE(neural_bench_schema3_dot_unhinted_comp), 3, DOT, RGBA8, INT8},
+    {"int8_schema_uniform", CODE(neural_bench_schema1_uniform_comp), 1, NOTHING, RGBA8, INT8},
+    {"int8_schema_uniform", CODE(neural_bench_schema3_uniform_comp), 3, NOTHING, RGBA8, INT8},
+    {"int8_schema_dot_uniform", CODE(neural_bench_schema1_dot_uniform_comp), 1, DOT, RGBA8, INT8},
+    {"int8_schema_dot_uniform", CODE(neural_bench_schema3_dot_uniform_comp), 3, DOT, RGBA8, INT8},
+    {"fp8_schema", CODE(neural_bench_fp8_comp), 3, NOTHING, RGBA8, FP8},
+    {"half_schema", CODE(neural_bench_half_comp), 3, HALF_FLOATS, RGBA8, HALF},
+    {"half_schema_uniform", CODE(neural_bench_half_uniform_comp), 3, HALF_FLOATS, RGBA8, HALF},
+    {"vector_int8", CODE(neural_bench_vector_int8), 3, VECTORS, RGBA8, VECTOR_INT8},
+    {"vector_fp8", CODE(neural_bench_vector_fp8), 3, VECTORS, RGBA8, VECTOR_FP8},
+    {"matrix_int8", CODE(neural_bench_matrix), 3, MATRICES, RGBA8, INT8},
 };
 /* clang-format on */
 #define PATH_COUNT (sizeof paths / sizeof *paths)
@@ -64,12 +79,13 @@ struct bench {
     uint32_t size[2], repeats;
     double lod;
     bool wall; ///< time stamps are no use
+    bool all;  ///< paths also on software devices
     struct gpu_buffer picture;
     VkSampler sampler;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
     VkDescriptorPool pool;
-    VkDescriptorSet sets[2]; ///< by enum textures
+    VkDescriptorSet sets[2][WEIGHTS]; ///< by textures and weights
     VkQueryPool queries;
     VkPipeline pipelines[PATH_COUNT];
     struct samples samples[PATH_COUNT];
@@ -115,7 +131,16 @@ static bool create_layout(struct bench *b)
            gpu_check(vkCreateQueryPool(device, &queries, NULL, &b->queries), "vkCreateQueryPool");
 }
 
-static void write_set(struct bench *b, enum textures textures)
+static const struct gpu_buffer *set_buffer(const struct bench *b, uint32_t binding,
+                                           enum weights weights)
+{
+    return binding == 0   ? &b->picture
+           : binding < 3  ? &b->material.buffers[binding - 1]
+           : binding == 3 ? &b->material.storage[weights]
+                          : &b->material.uniform[weights];
+}
+
+static void write_set(struct bench *b, enum textures textures, enum weights weights)
 {
     const struct gpu_image *images = textures == BC7 ? b->material.bc7 : b->material.rgba8;
     VkDescriptorBufferInfo buffers[BINDINGS];
@@ -123,13 +148,13 @@ static void write_set(struct bench *b, enum textures textures)
     VkWriteDescriptorSet writes[BINDINGS];
     for (uint32_t i = 0; i < BINDINGS; i++) {
         writes[i] = (VkWriteDescriptorSet){.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                           .dstSet = b->sets[textures],
+                                           .dstSet = b->sets[textures][weights],
                                            .dstBinding = i,
                                            .descriptorCount = 1,
                                            .descriptorType = binding_type(i)};
         if (i < 5) {
-            buffers[i] = (VkDescriptorBufferInfo){
-                i ? b->material.buffers[i - 1].buffer : b->picture.buffer, 0, VK_WHOLE_SIZE};
+            buffers[i] =
+                (VkDescriptorBufferInfo){set_buffer(b, i, weights)->buffer, 0, VK_WHOLE_SIZE};
             writes[i].pBufferInfo = &buffers[i];
         } else {
             views[i] = (VkDescriptorImageInfo){b->sampler, images[i - 5].view,
@@ -142,44 +167,72 @@ static void write_set(struct bench *b, enum textures textures)
 
 static bool create_sets(struct bench *b)
 {
-    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 8},
-                                          {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
-                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4}};
+    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 8 * WEIGHTS},
+                                          {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * WEIGHTS},
+                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4 * WEIGHTS}};
     VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                       .maxSets = 2,
+                                       .maxSets = 2 * WEIGHTS,
                                        .poolSizeCount = 3,
                                        .pPoolSizes = sizes};
     if (!gpu_check(vkCreateDescriptorPool(b->gpu.device, &pool, NULL, &b->pool),
                    "vkCreateDescriptorPool"))
         return false;
-    const VkDescriptorSetLayout layouts[2] = {b->set_layout, b->set_layout};
+    VkDescriptorSetLayout layouts[2 * WEIGHTS];
+    for (uint32_t i = 0; i < 2 * WEIGHTS; i++)
+        layouts[i] = b->set_layout;
     VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                         .descriptorPool = b->pool,
-                                        .descriptorSetCount = 2,
+                                        .descriptorSetCount = 2 * WEIGHTS,
                                         .pSetLayouts = layouts};
-    if (!gpu_check(vkAllocateDescriptorSets(b->gpu.device, &info, b->sets),
+    if (!gpu_check(vkAllocateDescriptorSets(b->gpu.device, &info, b->sets[0]),
                    "vkAllocateDescriptorSets"))
         return false;
-    write_set(b, RGBA8);
-    write_set(b, BC7);
+    for (int i = 0; i < WEIGHTS; i++)
+        if (b->material.storage[i].buffer) {
+            write_set(b, RGBA8, (enum weights)i);
+            write_set(b, BC7, (enum weights)i);
+        }
     return true;
+}
+
+static bool is_there(const SluiceNeuralPaths *paths_there, enum needs needs)
+{
+    switch (needs) {
+    case NOTHING: return true;
+    case DOT: return paths_there->integerDot;
+    case HALF_FLOATS: return paths_there->half;
+    case VECTORS: return paths_there->vectorInt8 || paths_there->vectorFp8;
+    case MATRICES: return paths_there->matrix;
+    }
+    return false;
 }
 
 /* Compilers of software devices take many seconds for each decoder. */
 static bool is_measured(const struct bench *b, const struct path *path)
 {
-    bool is_special = path->needs_dot || path->schema != 0;
-    return !(is_special && b->wall) && (!path->needs_dot || b->gpu.integer_dot) &&
+    bool is_special = path->needs != NOTHING || path->schema != 0;
+    return !(is_special && b->wall && !b->all) && is_there(&b->gpu.neural, path->needs) &&
+           b->material.storage[path->weights].buffer &&
            (path->schema == 0 || path->schema == b->material.constants.schema);
+}
+
+static bool create_pipeline(struct bench *b, const struct path *path, VkPipeline *pipeline)
+{
+    const SluiceNeuralPaths *there = &b->gpu.neural;
+    const VkSpecializationMapEntry entries[] = {{0, 0, 4}, {1, 4, 4}, {2, 8, 4}};
+    const uint32_t shape[] = {there->matrixM, there->matrixN, there->matrixK};
+    const VkSpecializationInfo constants = {3, entries, sizeof shape, shape};
+    if (path->needs == MATRICES)
+        return gpu_create_subgroup_pipeline(&b->gpu, b->layout, path->words, path->size, &constants,
+                                            pipeline);
+    return gpu_create_compute_pipeline(&b->gpu, b->layout, path->words, path->size, NULL, pipeline);
 }
 
 static bool create_pipelines(struct bench *b)
 {
     for (size_t i = 0; i < PATH_COUNT; i++) {
         samples_init(&b->samples[i], b->repeats);
-        if (is_measured(b, &paths[i]) &&
-            !gpu_create_compute_pipeline(&b->gpu, b->layout, paths[i].words, paths[i].size, NULL,
-                                         &b->pipelines[i]))
+        if (is_measured(b, &paths[i]) && !create_pipeline(b, &paths[i], &b->pipelines[i]))
             return false;
     }
     return true;
@@ -198,7 +251,7 @@ static void record(const struct bench *b, VkCommandBuffer commands, size_t i, ui
         .textureSize = {k->width, k->height}};
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, b->pipelines[i]);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, b->layout, 0, 1,
-                            &b->sets[paths[i].textures], 0, NULL);
+                            &b->sets[paths[i].textures][paths[i].weights], 0, NULL);
     vkCmdPushConstants(commands, b->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof params, &params);
     vkCmdResetQueryPool(commands, b->queries, 0, 2);
     vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, b->queries, 0);
@@ -288,7 +341,7 @@ static int run(struct bench *b, const struct arguments *a)
     struct gpu_request request = {
         .device = a->device,
         .validation = a->validation,
-        .integer_dot = true,
+        .neural = true,
         .modes = {SLUICE_RESIDENCY_MODE_DENSE, SLUICE_RESIDENCY_MODE_DENSE}};
     bool unsupported;
     if (!gpu_create(&request, &b->gpu, &unsupported))
@@ -321,6 +374,7 @@ int main(int argc, char **argv)
          "width and height of a set of random numbers in texels", 64, 8192},
         {OPTION_UINT, "repeat", "N", "50", &b.repeats, "screens of each path", 1, 10000},
         {OPTION_REAL, "lod", "X", "0.5", &b.lod, "level of detail of all pixels", -4, 8},
+        {OPTION_FLAG, "all", .value = &b.all, .help = "all paths, also on a software device"},
         option_validation(&a.validation),
         option_json(&a.json),
         option_list_devices(&a.list),

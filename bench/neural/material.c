@@ -31,12 +31,9 @@ static bool check(SluiceResult result, const char *what)
     return false;
 }
 
-static bool read_material(struct material *m, const char *path)
+static bool read_material(struct material *m, const SluiceNeuralSet *set)
 {
-    SluiceNeuralSetCreateInfo info = {.structSize = sizeof info, .pPath = path};
-    SluiceNeuralSet *set = NULL;
     bool done =
-        check(sluiceOpenNeuralSet(&info, &set), path) &&
         check(sluiceReadNeuralLatents(set, NULL, &m->constants, &m->latent_size, NULL),
               "sluiceReadNeuralLatents") &&
         check(sluiceGetNeuralWeights(set, SLUICE_NEURAL_WEIGHTS_INT8, NULL, &m->weight_size, NULL),
@@ -51,7 +48,6 @@ static bool read_material(struct material *m, const char *path)
                                             m->weights),
                      "sluiceGetNeuralWeights");
     }
-    sluiceDestroyNeuralSet(set);
     return done;
 }
 
@@ -238,16 +234,85 @@ static bool create_texture(const struct material *m, const struct gpu *gpu, uint
     return done;
 }
 
+/* Weights of a kind of the set; of random numbers without one. Owned by the caller. */
+static uint8_t *get_weights(const struct material *m, const SluiceNeuralSet *set,
+                            SluiceNeuralWeightKind kind, uint64_t *size)
+{
+    uint8_t *bytes = calloc(1, NEURAL_BENCH_WEIGHT_ROOM);
+    *size = NEURAL_BENCH_WEIGHT_ROOM;
+    if (bytes && !set) {
+        memcpy(bytes, m->weights, (size_t)m->weight_size);
+        *size = kind == SLUICE_NEURAL_WEIGHTS_FP8 ? 8608 : m->weight_size;
+    } else if (bytes && !check(sluiceGetNeuralWeights(set, kind, NULL, size, bytes),
+                               "sluiceGetNeuralWeights")) {
+        free(bytes);
+        return NULL;
+    }
+    return bytes;
+}
+
+/* Replaces weights by those in the device's layout. */
+static bool convert_weights(const struct material *m, const struct gpu *gpu,
+                            SluiceNeuralWeightKind kind, uint8_t *bytes, uint64_t size)
+{
+    uint8_t *made = calloc(1, NEURAL_BENCH_WEIGHT_ROOM);
+    uint64_t room = NEURAL_BENCH_WEIGHT_ROOM;
+    SluiceNeuralConvertInfo info = {.structSize = sizeof info,
+                                    .device = gpu->device,
+                                    .pfnGetDeviceProcAddr = vkGetDeviceProcAddr,
+                                    .pConstants = &m->constants,
+                                    .weightKind = kind,
+                                    .pWeights = bytes,
+                                    .weightSize = size};
+    bool done =
+        made && check(sluiceConvertNeuralWeights(&info, &room, made), "sluiceConvertNeuralWeights");
+    if (done)
+        memcpy(bytes, made, NEURAL_BENCH_WEIGHT_ROOM);
+    free(made);
+    return done;
+}
+
+static bool create_weights(struct material *m, const struct gpu *gpu, const SluiceNeuralSet *set,
+                           enum weights weights)
+{
+    static const SluiceNeuralWeightKind kinds[WEIGHTS] = {[INT8] = SLUICE_NEURAL_WEIGHTS_INT8,
+                                                          [FP8] = SLUICE_NEURAL_WEIGHTS_FP8,
+                                                          [HALF] = SLUICE_NEURAL_WEIGHTS_HALF,
+                                                          [VECTOR_INT8] =
+                                                              SLUICE_NEURAL_WEIGHTS_INT8,
+                                                          [VECTOR_FP8] = SLUICE_NEURAL_WEIGHTS_FP8};
+    bool is_vector = weights == VECTOR_INT8 || weights == VECTOR_FP8;
+    SluiceNeuralSetInfo info = {.structSize = sizeof info};
+    uint64_t size;
+    if (set && sluiceGetNeuralSetInfo(set, &info) == SLUICE_SUCCESS && !info.hasFp8 &&
+        kinds[weights] != SLUICE_NEURAL_WEIGHTS_INT8)
+        return true; /* paths without weights are left out */
+    if ((weights == VECTOR_INT8 && !gpu->neural.vectorInt8) ||
+        (weights == VECTOR_FP8 && !gpu->neural.vectorFp8))
+        return true;
+    uint8_t *bytes = get_weights(m, set, kinds[weights], &size);
+    bool done = bytes && (!is_vector || convert_weights(m, gpu, kinds[weights], bytes, size)) &&
+                fill_buffer(gpu, bytes, NEURAL_BENCH_WEIGHT_ROOM,
+                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &m->storage[weights]) &&
+                fill_buffer(gpu, bytes, NEURAL_BENCH_MAX_WEIGHTS,
+                            VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, &m->uniform[weights]);
+    free(bytes);
+    return done;
+}
+
 bool material_create(struct material *m, const struct gpu *gpu, const char *path, uint32_t size)
 {
     const VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    SluiceNeuralSetCreateInfo info = {.structSize = sizeof info, .pPath = path};
+    SluiceNeuralSet *set = NULL;
     *m = (struct material){0};
-    bool done = (path ? read_material(m, path) : make_material(m, size)) &&
+    bool done = (path ? check(sluiceOpenNeuralSet(&info, &set), path) && read_material(m, set)
+                      : make_material(m, size)) &&
                 fill_buffer(gpu, &m->constants, sizeof m->constants, storage, &m->buffers[0]) &&
-                fill_buffer(gpu, m->latents, m->latent_size, storage, &m->buffers[1]) &&
-                fill_buffer(gpu, m->weights, NEURAL_BENCH_MAX_WEIGHTS, storage, &m->buffers[2]) &&
-                fill_buffer(gpu, m->weights, NEURAL_BENCH_MAX_WEIGHTS,
-                            VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, &m->buffers[3]);
+                fill_buffer(gpu, m->latents, m->latent_size, storage, &m->buffers[1]);
+    for (int weights = 0; weights < WEIGHTS && done; weights++)
+        done = create_weights(m, gpu, set, (enum weights)weights);
+    sluiceDestroyNeuralSet(set);
     for (uint32_t i = 0; i < 2 && done; i++)
         done = create_texture(m, gpu, 4 * i, false, &m->rgba8[i]) &&
                create_texture(m, gpu, 4 * i, true, &m->bc7[i]);
@@ -258,8 +323,12 @@ bool material_create(struct material *m, const struct gpu *gpu, const char *path
 
 void material_destroy(struct material *m, const struct gpu *gpu)
 {
-    for (uint32_t i = 0; i < 4; i++)
+    for (uint32_t i = 0; i < 2; i++)
         gpu_destroy_buffer(gpu, &m->buffers[i]);
+    for (uint32_t i = 0; i < WEIGHTS; i++) {
+        gpu_destroy_buffer(gpu, &m->storage[i]);
+        gpu_destroy_buffer(gpu, &m->uniform[i]);
+    }
     for (uint32_t i = 0; i < 2; i++) {
         gpu_destroy_image(gpu, &m->rgba8[i]);
         gpu_destroy_image(gpu, &m->bc7[i]);

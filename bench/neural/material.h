@@ -6,11 +6,16 @@
 
 #include <sluice/neural.h>
 
+/** Weights in the form that a path reads. */
+enum weights { INT8, FP8, HALF, VECTOR_INT8, VECTOR_FP8, WEIGHTS };
+
 struct material {
     SluiceNeuralConstants constants;
-    uint8_t *latents, *weights; ///< owned
+    uint8_t *latents, *weights; ///< owned; INT8
     uint64_t latent_size, weight_size;
-    struct gpu_buffer buffers[4];      ///< constants, latents, weights, weights
+    struct gpu_buffer buffers[2]; ///< constants, latents
+    struct gpu_buffer storage[WEIGHTS],
+        uniform[WEIGHTS];              ///< no buffer: the device has no such path
     struct gpu_image rgba8[2], bc7[2]; ///< four channels each
     uint64_t rgba8_size, bc7_size;     ///< bytes of both
 };

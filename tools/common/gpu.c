@@ -11,7 +11,6 @@
 #include <string.h>
 
 #define MAX_DEVICES 32
-#define MAX_EXTENSIONS 512
 #define MAX_FAMILIES 32
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
 
@@ -276,17 +275,6 @@ static bool choose_queue_family(struct gpu *gpu)
     return false;
 }
 
-static bool has_extension(VkPhysicalDevice device, const char *name)
-{
-    VkExtensionProperties extensions[MAX_EXTENSIONS];
-    uint32_t count = MAX_EXTENSIONS;
-    vkEnumerateDeviceExtensionProperties(device, NULL, &count, extensions);
-    for (uint32_t i = 0; i < count; i++)
-        if (strcmp(extensions[i].extensionName, name) == 0)
-            return true;
-    return false;
-}
-
 static bool has_addresses(VkPhysicalDevice device)
 {
     VkPhysicalDeviceVulkan12Features vulkan12 = {
@@ -343,15 +331,14 @@ static bool create_device(struct gpu *gpu)
     struct gpu_ray_features rays;
     if (gpu->ray_tracing)
         gpu_require_rays(&rays, &vulkan12, &info);
-    static const char *const dot_name = VK_KHR_SHADER_INTEGER_DOT_PRODUCT_EXTENSION_NAME;
-    VkPhysicalDeviceShaderIntegerDotProductFeaturesKHR dot = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_INTEGER_DOT_PRODUCT_FEATURES_KHR,
-        .pNext = vulkan12.pNext,
-        .shaderIntegerDotProduct = VK_TRUE};
-    if (gpu->integer_dot) {
-        vulkan12.pNext = &dot;
-        info.enabledExtensionCount = 1;
-        info.ppEnabledExtensionNames = &dot_name;
+    SluiceNeuralPathFeatures paths;
+    if (gpu->neural.structSize) {
+        if (sluiceRequireNeuralPaths(&gpu->neural, vulkan12.pNext, &vulkan12, &paths) !=
+            SLUICE_SUCCESS)
+            return false;
+        vulkan12.pNext = paths.pNext;
+        info.enabledExtensionCount = paths.extensionCount;
+        info.ppEnabledExtensionNames = paths.extensions;
     }
     if (!gpu_check(vkCreateDevice(gpu->physical_device, &info, NULL, &gpu->device),
                    "vkCreateDevice"))
@@ -376,11 +363,14 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
         *unsupported = !choose_device(request->device, gpu) || !choose_queue_family(gpu);
         gpu->ray_tracing =
             !*unsupported && request->ray_tracing && gpu_traces_rays(gpu->physical_device);
-        gpu->integer_dot =
-            !*unsupported && request->integer_dot && !gpu->ray_tracing &&
-            has_extension(gpu->physical_device, VK_KHR_SHADER_INTEGER_DOT_PRODUCT_EXTENSION_NAME);
         gpu->byte_pages =
             !*unsupported && request->byte_pages && has_addresses(gpu->physical_device);
+        if (!*unsupported && request->neural && !gpu->ray_tracing) {
+            gpu->neural.structSize = sizeof gpu->neural;
+            *unsupported =
+                sluiceGetNeuralPaths(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
+                                     NULL, &gpu->neural) != SLUICE_SUCCESS;
+        }
         if (!*unsupported && create_device(gpu))
             return true;
     }
@@ -423,9 +413,10 @@ VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, s
     return module;
 }
 
-bool gpu_create_compute_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
-                                 const uint32_t *words, size_t size,
-                                 const VkSpecializationInfo *constants, VkPipeline *pipeline)
+static bool create_compute_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
+                                    const uint32_t *words, size_t size,
+                                    const VkSpecializationInfo *constants,
+                                    VkPipelineShaderStageCreateFlags flags, VkPipeline *pipeline)
 {
     VkShaderModule module = gpu_create_shader(gpu, words, size);
     if (!module)
@@ -433,6 +424,7 @@ bool gpu_create_compute_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .flags = flags,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,
                   .pName = "main",
@@ -443,6 +435,22 @@ bool gpu_create_compute_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
                   "vkCreateComputePipelines");
     vkDestroyShaderModule(gpu->device, module, NULL);
     return created;
+}
+
+bool gpu_create_compute_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
+                                 const uint32_t *words, size_t size,
+                                 const VkSpecializationInfo *constants, VkPipeline *pipeline)
+{
+    return create_compute_pipeline(gpu, layout, words, size, constants, 0, pipeline);
+}
+
+bool gpu_create_subgroup_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
+                                  const uint32_t *words, size_t size,
+                                  const VkSpecializationInfo *constants, VkPipeline *pipeline)
+{
+    return create_compute_pipeline(gpu, layout, words, size, constants,
+                                   VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT_EXT,
+                                   pipeline);
 }
 
 void gpu_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,

@@ -4,6 +4,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <sluice/neural_paths.h>
 #include <sluice/vulkan.h>
 
 #include <stdatomic.h>
@@ -15,8 +16,8 @@ struct gpu_request {
     /** That streamers will have. AUTO for the second: sparse if the first is, else dense. */
     SluiceResidencyMode modes[2];
     bool ray_tracing; ///< the ray-tracing pipeline is enabled, where the device has it
-    bool integer_dot; ///< integer dot products are enabled, where the device has them; without rays
     bool byte_pages;  ///< byte pages of demand loaders, with addresses, where the device has them
+    bool neural;      ///< all decode paths that the device has are enabled; without rays
 };
 
 struct gpu {
@@ -33,8 +34,8 @@ struct gpu {
     SluiceResidencyMode modes[2]; ///< as asked for, never AUTO
     bool is_auto;                 ///< the first was AUTO: gpu_choose_mode may change it
     bool ray_tracing;             ///< asked for and there, with buffer addresses
-    bool integer_dot;             ///< asked for and there
     bool byte_pages;              ///< asked for and there
+    SluiceNeuralPaths neural;     ///< asked for and there
     VkDebugUtilsMessengerEXT messenger;
     atomic_uint validation_messages; ///< warnings and errors of the validation layers so far
 };
@@ -96,6 +97,10 @@ VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, s
 bool gpu_create_compute_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
                                  const uint32_t *words, size_t size,
                                  const VkSpecializationInfo *constants, VkPipeline *pipeline);
+/** The same with full subgroups: for gpu->neural.matrix. */
+bool gpu_create_subgroup_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
+                                  const uint32_t *words, size_t size,
+                                  const VkSpecializationInfo *constants, VkPipeline *pipeline);
 
 /** Of all memory. */
 void gpu_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
