@@ -26,7 +26,6 @@
 
 #define TRACER_ROW_WIDTH 1024 /* rays of one row of a launch */
 #define TRACER_GROUP_SIZE 64  /* threads of the compute path */
-#define TRACER_STACK_SIZE 48  /* nodes of one hierarchy on the way down */
 #define TRACER_MAX_BOUNCES 8
 
 struct TracerVertex {

@@ -1,10 +1,15 @@
 /*
- * A way down the hierarchies that bvh.c builds, for devices that trace no rays themselves. It stops
+ * A way down the trees of bvh.c, for devices that trace no rays themselves. It stops
  * at triangles that may have holes, so that textures are sampled in one place of the shader alone:
  * compilers put all functions in line.
  */
 #ifndef TRACER_BVH_GLSL
 #define TRACER_BVH_GLSL
+
+#include "../../common/box_tree.glsl"
+
+/* Two trees: the one over instances, and that of an instance. */
+#define STACK_SIZE (2 * (BOX_TREE_MOST_DEPTH + 1))
 
 layout(std430, set = 1, binding = TRACER_BINDING_NODES) readonly buffer Nodes
 {
@@ -29,13 +34,13 @@ struct Walk {
     Hit best;
 };
 
-uint walkStack[TRACER_STACK_SIZE];
+uint walkStack[STACK_SIZE];
 
 void setWalkRay(inout Walk walk, vec3 origin, vec3 direction)
 {
     walk.origin = origin;
     walk.direction = direction;
-    walk.inverse = 1.0 / direction;
+    walk.inverse = boxTreeInverse(direction);
 }
 
 Walk startWalk(vec3 origin, vec3 direction, float far, bool any, uint root)
@@ -59,13 +64,11 @@ Walk startWalk(vec3 origin, vec3 direction, float far, bool any, uint root)
 /** How far the ray is when it enters a box; beyond 1e29 if that is not before `far`. */
 float enterBox(Walk walk, TracerNode node)
 {
-    vec3 a = (vec3(node.low[0], node.low[1], node.low[2]) - walk.origin) * walk.inverse;
-    vec3 b = (vec3(node.high[0], node.high[1], node.high[2]) - walk.origin) * walk.inverse;
-    vec3 first = min(a, b), last = max(a, b);
-    float enter = max(max(first.x, first.y), max(first.z, 0.0));
-    /* a little wider than it is: rounding must not lose what lies in the box's side */
-    float leave = min(min(last.x, last.y), last.z) * 1.000001 + 1.0e-7;
-    return enter <= min(leave, walk.far) ? enter : 1.0e30;
+    float enter;
+    bool enters = boxTreeEnter(vec3(node.low[0], node.low[1], node.low[2]),
+                               vec3(node.high[0], node.high[1], node.high[2]), walk.origin,
+                               walk.inverse, walk.far, enter);
+    return enters ? enter : 1.0e30;
 }
 
 /** Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. */

@@ -1,0 +1,31 @@
+/* Rays and the boxes of trees that box_tree.c builds. */
+#ifndef SAMPLES_BOX_TREE_GLSL
+#define SAMPLES_BOX_TREE_GLSL
+
+#define BOX_TREE_MOST_DEPTH 30
+
+/** 1 / direction, and finite: products with it are no NaN. */
+vec3 boxTreeInverse(vec3 direction)
+{
+    const float LEAST = 1.0e-37;
+    vec3 least = mix(vec3(LEAST), vec3(-LEAST), lessThan(direction, vec3(0.0)));
+    return 1.0 / mix(direction, least, lessThan(abs(direction), vec3(LEAST)));
+}
+
+/**
+ * Whether a ray is in a box before `far`; `enter` is where, and at least 0. The box seems larger by
+ * 1e-6 of the distance to its farthest corner: whatever a ray hits in it, rounding here and there
+ * never makes the ray miss the box. Rays may begin in faces, and run in them.
+ */
+bool boxTreeEnter(vec3 low, vec3 high, vec3 origin, vec3 inverse, float far, out float enter)
+{
+    vec3 toLow = low - origin, toHigh = high - origin;
+    vec3 reach = max(abs(toLow), abs(toHigh));
+    float more = 1.0e-6 * max(reach.x, max(reach.y, reach.z));
+    vec3 a = (toLow - more) * inverse, b = (toHigh + more) * inverse;
+    vec3 first = min(a, b), last = max(a, b);
+    enter = max(max(first.x, first.y), max(first.z, 0.0));
+    return enter <= min(min(last.x, last.y), min(last.z, far));
+}
+
+#endif

@@ -1,0 +1,46 @@
+/**
+ * Hierarchies of boxes for devices that trace no rays themselves. Equal boxes give equal trees.
+ * box_tree.glsl tells which boxes a ray enters.
+ */
+#ifndef SAMPLES_COMMON_BOX_TREE_H
+#define SAMPLES_COMMON_BOX_TREE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/** A walk that visits the nearer child first keeps so many nodes and one more. The root's depth is
+ *  0. */
+#define BOX_TREE_MOST_DEPTH 30u
+
+struct box_tree_box {
+    float low[3], high[3];
+};
+
+/** A box around two nodes, `first` and the one after it, or around `count` boxes. */
+struct box_tree_node {
+    float low[3];
+    uint32_t first;
+    float high[3];
+    uint32_t count; ///< 0: of nodes
+};
+
+/** Zeroed is empty. */
+struct box_tree {
+    struct box_tree_node *nodes; ///< owned; the first is the root
+    uint32_t node_count;         ///< 0: there are no boxes
+    uint32_t *order;             ///< owned; indices of boxes: leaves have runs of it
+};
+
+/**
+ * Builds a tree of leaves with at most `leaf_size` boxes, by binned surface areas (Wald, "On fast
+ * Construction of SAH-based Bounding Volume Hierarchies", 2007). `count` is at most 2^30. Boxes
+ * whose numbers are not finite may lie in any leaf. False when out of memory: nothing is built.
+ */
+bool box_tree_build(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
+                    struct box_tree *tree);
+void box_tree_finish(struct box_tree *tree);
+
+struct box_tree_box box_tree_empty_box(void);
+void box_tree_add_point(struct box_tree_box *box, const float point[3]);
+
+#endif /* SAMPLES_COMMON_BOX_TREE_H */
