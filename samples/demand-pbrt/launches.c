@@ -28,12 +28,11 @@ bool launches_create(struct launches *l)
                                               .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                               .commandBufferCount = 1};
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    if (!gpu_create_buffer(l->gpu, sizeof(uint32_t), usage, &l->quiet) ||
+    if (!gpu_create_buffer(l->gpu, sizeof(uint32_t), usage, &l->unused) ||
         !gpu_create_buffer(l->gpu, sizeof(struct PbrtDebug), usage, &l->debug) ||
         !gpu_check(vkAllocateCommandBuffers(l->gpu->device, &info, &l->commands),
                    "vkAllocateCommandBuffers"))
         return false;
-    memset(l->quiet.mapped, 0xff, l->quiet.size);
     memset(l->debug.mapped, 0, l->debug.size);
     struct PbrtDebug *debug = l->debug.mapped;
     const uint32_t *pixel = l->options->debug;
@@ -46,13 +45,13 @@ void launches_finish(struct launches *l)
     if (!l->gpu)
         return;
     proxy_requests_finish(&l->requests);
-    gpu_destroy_buffer(l->gpu, &l->quiet);
+    gpu_destroy_buffer(l->gpu, &l->unused);
     gpu_destroy_buffer(l->gpu, &l->debug);
 }
 
 static void bind_all(struct launches *l)
 {
-    const VkBuffer boxes = l->world->proxies ? l->proxies->buffer.buffer : l->quiet.buffer;
+    const VkBuffer boxes = l->world->proxies ? l->proxies->buffer.buffer : l->unused.buffer;
     const VkBuffer buffers[PBRT_OWN_BUFFERS] = {
         [PBRT_BINDING_MESHES] = l->world->meshes.table.buffer.buffer,
         [PBRT_BINDING_PLACES] = l->world->place_table.buffer.buffer,
@@ -65,7 +64,6 @@ static void bind_all(struct launches *l)
         [PBRT_BINDING_LISTS] = l->film->lists.buffer,
         [PBRT_BINDING_COUNTERS] = l->film->counters.buffer,
         [PBRT_BINDING_WANTED] = l->surfaces->wanted.buffer.buffer,
-        [PBRT_BINDING_QUIET] = l->quiet.buffer,
         [PBRT_BINDING_USED] = l->world->used.buffer.buffer,
         [PBRT_BINDING_BOXES] = boxes,
         [PBRT_BINDING_DEBUG] = l->debug.buffer};

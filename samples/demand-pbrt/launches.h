@@ -21,7 +21,7 @@ struct launches {
     const struct table *lights, *emitters;
     struct PbrtLaunch constants;
     struct proxy_requests requests;
-    struct gpu_buffer quiet, debug;
+    struct gpu_buffer unused, debug; ///< the first stands for buffers that there are not
     VkCommandBuffer commands;
     uint32_t count;        ///< launches so far
     uint32_t first;        ///< launches before those that --launches counts

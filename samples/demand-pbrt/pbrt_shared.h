@@ -18,13 +18,12 @@
 #define PBRT_BINDING_LISTS 7
 #define PBRT_BINDING_COUNTERS 8
 #define PBRT_BINDING_WANTED 9
-#define PBRT_BINDING_QUIET 10
-#define PBRT_BINDING_USED 11
-#define PBRT_BINDING_BOXES 12
-#define PBRT_BINDING_DEBUG 13
-#define PBRT_BINDING_EMITTERS 14
-#define PBRT_OWN_BUFFERS 15
-#define PBRT_BINDING_SCENE 15 /* the acceleration structure */
+#define PBRT_BINDING_USED 10
+#define PBRT_BINDING_BOXES 11
+#define PBRT_BINDING_DEBUG 12
+#define PBRT_BINDING_EMITTERS 13
+#define PBRT_OWN_BUFFERS 14
+#define PBRT_BINDING_SCENE 14 /* the acceleration structure */
 
 #define PBRT_ROW_WIDTH 1024 /* rays of one row of a launch */
 #define PBRT_NONE 0xffffffffu

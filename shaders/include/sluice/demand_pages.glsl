@@ -12,6 +12,8 @@
  *     #define SLUICE_DEMAND_REQUEST_WORD(i) requests.words[i]     // uint, read and written
  *     #define SLUICE_DEMAND_SECTION_WORD(i) sections.words[i]     // uint, read and written
  *
+ *     #define SLUICE_DEMAND_QUIET true  // optional, a bool: nothing is requested while it is true
+ *
  * The blocks are std430 storage buffers (SluiceDemandBuffers). Those that are only read may be
  * readonly. You may include "shared/demand.h" before you declare them. Any stage. Fragment shaders
  * require the feature fragmentStoresAndAtomics, earlier stages vertexPipelineStoresAndAtomics.
@@ -21,6 +23,10 @@
 
 #include "shared/demand.h"
 
+#ifndef SLUICE_DEMAND_QUIET
+#define SLUICE_DEMAND_QUIET false
+#endif
+
 /**
  * Requests a page: sets its bit, and that of its section. If the bit is already set, this costs one
  * load, so thousands of invocations may miss the same page.
@@ -29,7 +35,7 @@ void sluiceRequestDemandPage(uint page)
 {
     uint word = page / SLUICE_DEMAND_BLOCK_PAGES;
     uint bit = 1u << (page % SLUICE_DEMAND_BLOCK_PAGES);
-    if ((SLUICE_DEMAND_REQUEST_WORD(word) & bit) != 0u ||
+    if (SLUICE_DEMAND_QUIET || (SLUICE_DEMAND_REQUEST_WORD(word) & bit) != 0u ||
         (atomicOr(SLUICE_DEMAND_REQUEST_WORD(word), bit) & bit) != 0u)
         return; /* whoever set it sets that of the section */
     uint section = page / SLUICE_DEMAND_SECTION_PAGES;

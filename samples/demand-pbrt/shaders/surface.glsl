@@ -1,0 +1,114 @@
+/*
+ * What is looked at where a ray meets a triangle or a box: the nearest one asks for what it lacks.
+ * Include demand.glsl, scene.glsl, hit.glsl, programs.glsl and alpha.glsl before, and declare
+ * `Payload payload`.
+ */
+#ifndef PBRT_SURFACE_GLSL
+#define PBRT_SURFACE_GLSL
+
+#include "sluice/proxy.glsl"
+
+/** A ray at a triangle. */
+struct Meeting {
+    uint place, triangle;
+    vec2 weights; /* of its second and third corner */
+    float distance;
+    vec3 origin, direction; /* of the ray, in the world */
+    mat4x3 objectToWorld, worldToObject;
+};
+
+Hit hitOf(Meeting m)
+{
+    return findHit(places[m.place], m.triangle, m.weights, m.direction,
+                   payload.coneWidth + payload.coneSpread * m.distance, m.objectToWorld,
+                   m.worldToObject);
+}
+
+/** Also tells how sharp its pictures have to be. */
+void requestSurface(uint surface, Hit hit)
+{
+    float lod = sluiceDemandComputeLod(hit.dx, hit.dy, 1.0);
+    atomicMax(wanted[surface], 1u + uint(clamp(ceil(-lod), 0.0, 30.0)));
+    sluiceRequestMaterialProxy(launch.surfacePage, surface);
+    payload.missing = true;
+}
+
+vec3 emissionOf(PbrtPlace place, Hit hit, vec3 direction)
+{
+    bool front = dot(hit.face, direction) < 0.0;
+    if ((place.flags & PBRT_PLACE_EMITS) == 0u ||
+        (!front && (place.flags & PBRT_PLACE_TWO_SIDED) == 0u))
+        return vec3(0.0);
+    return toVector(lights[place.light].color);
+}
+
+void describeHit(Meeting m, PbrtPlace place, Hit hit)
+{
+    used[m.place] = launch.launchIndex;
+    payload.distance = m.distance;
+    payload.normal = hit.normal;
+    payload.face = hit.face;
+    payload.place = m.place;
+    payload.triangle = m.triangle;
+    payload.kind = 0u;
+    payload.emission = emissionOf(place, hit, m.direction);
+    payload.density =
+        (place.flags & PBRT_PLACE_LISTED) != 0u ? lights[place.light].density : 0.0;
+    payload.diffuse = PROXY_MATERIAL_COLOR;
+    payload.specular = payload.transmission = vec3(0.0);
+}
+
+void describeSurface(uint surface, vec3 values[4])
+{
+    payload.diffuse = clamp(values[1], 0.0, 1.0);
+    payload.specular = clamp(values[2], 0.0, 1.0);
+    payload.transmission = clamp(values[3], 0.0, 1.0);
+    payload.kind = surfaces[surface].kind;
+    payload.roughness = surfaces[surface].roughness;
+    payload.eta = surfaces[surface].eta;
+}
+
+/**
+ * The nearest surface asks for its alpha, then for its material, then for their texels.
+ *
+ * With `isCandidate` it is one on the way to it, and the function returns whether the ray goes on
+ * through a hole. SLUICE_DEMAND_QUIET must be true then: a hit whose alpha is not there yet counts
+ * as solid. If it is the nearest one, it asks for its alpha. So nothing is asked for behind another
+ * surface. Both are one function because compilers put programs in line wherever they are called.
+ */
+bool meetTriangle(Meeting m, bool isCandidate)
+{
+    PbrtPlace place = places[m.place];
+    Hit hit = hitOf(m);
+    if (!isCandidate)
+        describeHit(m, place, hit);
+    /* Alpha first: 0. Then diffuse, specular, transmission. */
+    vec3 values[4];
+    bool resident = true;
+    values[0] = vec3(place.alphaValue);
+    for (uint i = place.alpha == PBRT_NONE ? 1u : 0u; i < (isCandidate ? 1u : 4u) && resident; i++) {
+        uint surface = i == 0u ? place.alpha : place.surface;
+        Hit seen = hit;
+        if (i == 0u)
+            seen = withoutFootprint(hit);
+        else if (payload.isShadow)
+            return false;
+        if (surfaces[surface].realized == 0u) {
+            if (!isCandidate)
+                requestSurface(surface, seen);
+            return false;
+        }
+        uint program = i <= 1u ? surfaces[surface].diffuse
+                               : i == 2u ? surfaces[surface].specular : surfaces[surface].transmission;
+        values[i] = runProgram(program, seen, resident);
+    }
+    if (isCandidate)
+        return resident && cutsOut(values[0].x, m.origin, m.direction);
+    if (resident)
+        describeSurface(place.surface, values);
+    else
+        payload.missing = true;
+    return false;
+}
+
+#endif
