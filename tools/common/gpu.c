@@ -331,6 +331,8 @@ static bool create_device(struct gpu *gpu)
     struct gpu_ray_features rays;
     if (gpu->ray_tracing)
         gpu_require_rays(&rays, &vulkan12, &info);
+    if (gpu->buffer_addresses)
+        vulkan12.bufferDeviceAddress = VK_TRUE;
     SluiceNeuralPathFeatures paths;
     if (gpu->neural.structSize) {
         if (sluiceRequireNeuralPaths(&gpu->neural, vulkan12.pNext, &vulkan12, &paths) !=
@@ -363,6 +365,8 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
         *unsupported = !choose_device(request->device, gpu) || !choose_queue_family(gpu);
         gpu->ray_tracing =
             !*unsupported && request->ray_tracing && gpu_traces_rays(gpu->physical_device);
+        gpu->buffer_addresses = gpu->ray_tracing || (!*unsupported && request->buffer_addresses &&
+                                                     has_addresses(gpu->physical_device));
         gpu->byte_pages =
             !*unsupported && request->byte_pages && has_addresses(gpu->physical_device);
         if (!*unsupported && request->neural && !gpu->ray_tracing) {

@@ -15,9 +15,10 @@ struct gpu_request {
     bool validation;    ///< with synchronization validation
     /** That streamers will have. AUTO for the second: sparse if the first is, else dense. */
     SluiceResidencyMode modes[2];
-    bool ray_tracing; ///< the ray-tracing pipeline is enabled, where the device has it
-    bool byte_pages;  ///< byte pages of demand loaders, with addresses, where the device has them
-    bool neural;      ///< all decode paths that the device has are enabled; without rays
+    bool ray_tracing;      ///< the ray-tracing pipeline is enabled, where the device has it
+    bool buffer_addresses; ///< buffers have addresses, where the device knows them
+    bool byte_pages; ///< byte pages of demand loaders, with addresses, where the device has them
+    bool neural;     ///< all decode paths that the device has are enabled; without rays
 };
 
 struct gpu {
@@ -34,6 +35,7 @@ struct gpu {
     SluiceResidencyMode modes[2]; ///< as asked for, never AUTO
     bool is_auto;                 ///< the first was AUTO: gpu_choose_mode may change it
     bool ray_tracing;             ///< asked for and there, with buffer addresses
+    bool buffer_addresses;        ///< asked for and there, or rays are traced
     bool byte_pages;              ///< asked for and there
     SluiceNeuralPaths neural;     ///< asked for and there
     VkDebugUtilsMessengerEXT messenger;
