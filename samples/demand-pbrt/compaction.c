@@ -74,6 +74,8 @@ static bool compact(const struct gpu *gpu, struct structures *s, struct compacti
 bool structures_compact(const struct gpu *gpu, struct structures *s,
                         const struct structure_build *builds, uint32_t count)
 {
+    if (!gpu->ray_tracing)
+        return true;
     struct compaction c = {
         .write_sizes = (PFN_vkCmdWriteAccelerationStructuresPropertiesKHR)vkGetDeviceProcAddr(
             gpu->device, "vkCmdWriteAccelerationStructuresPropertiesKHR"),

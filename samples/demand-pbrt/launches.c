@@ -51,6 +51,7 @@ void launches_finish(struct launches *l)
 
 static void bind_all(struct launches *l)
 {
+    const struct top_tree *top = &l->world->tree;
     const VkBuffer boxes = l->world->proxies ? l->proxies->buffer.buffer : l->unused.buffer;
     const VkBuffer buffers[PBRT_OWN_BUFFERS] = {
         [PBRT_BINDING_MESHES] = l->world->meshes.table.buffer.buffer,
@@ -66,7 +67,10 @@ static void bind_all(struct launches *l)
         [PBRT_BINDING_WANTED] = l->surfaces->wanted.buffer.buffer,
         [PBRT_BINDING_USED] = l->world->used.buffer.buffer,
         [PBRT_BINDING_BOXES] = boxes,
-        [PBRT_BINDING_DEBUG] = l->debug.buffer};
+        [PBRT_BINDING_DEBUG] = l->debug.buffer,
+        [PBRT_BINDING_WORLD] = top->world.buffer ? top->world.buffer : l->unused.buffer,
+        [PBRT_BINDING_INSTANCES] =
+            top->world.buffer ? top->instances.buffer.buffer : l->unused.buffer};
     tracing_bind(l->gpu, l->tracing, buffers, l->world->top.handle);
 }
 
@@ -227,11 +231,11 @@ static void count_memory(struct launches *l)
     if (sluiceGetDemandStatistics(l->loader, &statistics) != SLUICE_SUCCESS)
         return;
     const struct world *w = l->world;
-    const uint64_t size = statistics.deviceMemorySize + statistics.hostVisibleMemorySize +
-                          w->structures.arena.size + w->structures.scratch.size +
-                          w->meshes.data.size + w->instances.size + w->place_table.buffer.size +
-                          w->meshes.table.buffer.size + l->surfaces->table.buffer.size +
-                          l->surfaces->ops.buffer.size;
+    const uint64_t size =
+        statistics.deviceMemorySize + statistics.hostVisibleMemorySize + w->structures.arena.size +
+        w->structures.scratch.size + w->meshes.data.size + w->instances.size + w->tree.nodes.size +
+        w->tree.instances.buffer.size + w->place_table.buffer.size + w->meshes.table.buffer.size +
+        l->surfaces->table.buffer.size + l->surfaces->ops.buffer.size;
     if (size > l->peak_device)
         l->peak_device = size;
 }

@@ -83,14 +83,18 @@ static bool create_gpu(struct renderer *r)
         .device = r->options.device,
         .validation = r->options.validation,
         .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED},
-        .ray_tracing = true};
+        .ray_tracing = r->options.path != PATH_COMPUTE,
+        .buffer_addresses = true};
     if (!gpu_create(&request, &r->gpu, &r->unsupported))
         return false;
-    if (r->gpu.ray_tracing)
-        return create_loader(r);
-    text_say("%s has no ray-tracing pipeline", r->gpu.properties.deviceName);
-    r->unsupported = true;
-    return false;
+    r->unsupported =
+        !r->gpu.buffer_addresses || (r->options.path == PATH_PIPELINE && !r->gpu.ray_tracing);
+    if (!r->gpu.buffer_addresses)
+        text_say("%s has no addresses of buffers", r->gpu.properties.deviceName);
+    else if (request.ray_tracing && !r->gpu.ray_tracing)
+        text_say("%s has no ray-tracing pipeline%s", r->gpu.properties.deviceName,
+                 r->unsupported ? "" : ": rays are traced in a compute shader, which is slower");
+    return !r->unsupported && create_loader(r);
 }
 
 /* Before anything takes its time. */

@@ -54,7 +54,7 @@ bool meshes_create(const struct gpu *gpu, const struct scene *scene, uint32_t th
     uint32_t size = 2;
     while (size < 2 * (uint64_t)count)
         size *= 2;
-    *m = (struct meshes){.data = {.usage = STRUCTURE_INPUT_USAGE, .mapped = true},
+    *m = (struct meshes){.data = {.usage = structures_input_usage(gpu), .mapped = true},
                          .table.element = sizeof(struct PbrtMesh)};
     struct known_file *files = calloc(size, sizeof *files);
     m->items = calloc(count + 1u, sizeof *m->items);
@@ -96,9 +96,23 @@ static uint32_t *append(uint32_t *words, const void *values, size_t count)
     return values ? words + count : words;
 }
 
-/** Copies a mesh to the device: positions, normals, uvs, indices. */
-static void write_mesh(const SluicePbrtMesh *read, struct arena_part *part, struct PbrtMesh *entry)
+/** Of the compute path: behind everything else. */
+static void write_tree(const SluicePbrtMesh *read, const struct box_tree *tree, uint32_t *at,
+                       struct mesh *mesh, struct PbrtMesh *entry)
 {
+    const uint32_t *base = mesh->data.mapped;
+    const uint32_t *nodes = mesh_tree_write(read, tree, base, at);
+    entry->order = entry->indices + 3 * read->triangleCount;
+    mesh->tree.address = mesh->data.address + sizeof *base * (uint64_t)(nodes - base);
+    memcpy(mesh->tree.box.low, tree->nodes[0].low, sizeof mesh->tree.box.low);
+    memcpy(mesh->tree.box.high, tree->nodes[0].high, sizeof mesh->tree.box.high);
+}
+
+/** Copies a mesh to the device: positions, normals, uvs, indices. */
+static void write_mesh(const SluicePbrtMesh *read, const struct box_tree *tree, struct mesh *mesh,
+                       struct PbrtMesh *entry)
+{
+    const struct arena_part *part = &mesh->data;
     const size_t count = read->vertexCount;
     uint32_t *const base = part->mapped;
     uint32_t *at = append(base, read->pPositions, 3 * count);
@@ -109,13 +123,17 @@ static void write_mesh(const SluicePbrtMesh *read, struct arena_part *part, stru
     entry->uvs = read->pUvs ? (uint32_t)(at - base) : 0;
     at = append(at, read->pUvs, 2 * count);
     entry->indices = (uint32_t)(at - base);
-    append(at, read->pIndices, 3 * (size_t)read->triangleCount);
+    if (tree->node_count > 0)
+        write_tree(read, tree, at, mesh, entry);
+    else
+        append(at, read->pIndices, 3 * (size_t)read->triangleCount);
 }
 
-static uint64_t words_of(const SluicePbrtMesh *read)
+static uint64_t words_of(const SluicePbrtMesh *read, const struct box_tree *tree)
 {
     const uint64_t per_vertex = 3u + (read->pNormals ? 3u : 0) + (read->pUvs ? 2u : 0);
-    return per_vertex * read->vertexCount + 3ull * read->triangleCount;
+    return per_vertex * read->vertexCount +
+           (tree->node_count > 0 ? mesh_tree_words(read, tree) : 3ull * read->triangleCount);
 }
 
 static void set_geometry(const SluicePbrtMesh *read, const struct mesh *mesh,
@@ -138,6 +156,22 @@ static void set_geometry(const SluicePbrtMesh *read, const struct mesh *mesh,
                 .indexData.deviceAddress = mesh->data.address + 4ull * entry->indices}}};
 }
 
+/** Copies what was read to the device, where the compute path's tree is behind it. */
+static bool place_mesh(const struct gpu *gpu, const SluicePbrtMesh *read, struct meshes *m,
+                       struct mesh *mesh, struct PbrtMesh *entry)
+{
+    const double start = clock_seconds();
+    struct box_tree tree = {0};
+    const bool done = (gpu->ray_tracing || mesh_tree_build(read, &tree)) &&
+                      words_of(read, &tree) <= UINT32_MAX &&
+                      arena_take(gpu, &m->data, 4 * words_of(read, &tree), &mesh->data);
+    if (done)
+        write_mesh(read, &tree, mesh, entry);
+    m->build_seconds += gpu->ray_tracing ? 0.0 : clock_seconds() - start;
+    box_tree_finish(&tree);
+    return done;
+}
+
 /** False: there is nothing to build. */
 static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct meshes *m,
                       uint32_t index, struct structure_build *build)
@@ -154,10 +188,8 @@ static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct m
                  read.triangleCount);
     }
     bool done = taken.result == SLUICE_SUCCESS && read.triangleCount > 0 && read.vertexCount > 0 &&
-                words_of(&read) <= UINT32_MAX &&
-                arena_take(gpu, &m->data, 4 * words_of(&read), &mesh->data);
+                place_mesh(gpu, &read, m, mesh, entry);
     if (done) {
-        write_mesh(&read, &mesh->data, entry);
         set_geometry(&read, mesh, entry, build);
         build->target = &mesh->structure;
         build->compact = !m->uncompacted;

@@ -3,6 +3,7 @@
 #define DEMAND_PBRT_MESHES_H
 
 #include "mesh_reader.h"
+#include "mesh_tree.h"
 #include "pbrt_shared.h"
 #include "scene.h"
 #include "structures.h"
@@ -20,6 +21,7 @@ struct mesh {
     uint32_t place_count; ///< shapes in the world that use it now
     struct arena_part data;
     struct structure structure;
+    struct mesh_tree tree; ///< of the compute path
 };
 
 /** Zeroed is empty. */

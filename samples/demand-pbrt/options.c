@@ -15,7 +15,7 @@ static const char usage[] =
 
 static const char notes[] =
     "Exit status: 0 for a complete picture; 1 if something failed, or pixels are still missing\n"
-    "after the last launch; 2 for a wrong option; 77 without a Vulkan device that traces rays.\n";
+    "after the last launch; 2 for a wrong option; 77 without a Vulkan device that fits.\n";
 
 /** "r/g/b" or "r,g,b", none negative. */
 static bool parse_color(const char *text, void *value)
@@ -93,6 +93,9 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          0, 100000},
         {OPTION_CHOICE, "proxy-granularity", "fine|coarse", "fine", &o->granularity,
          "fine: each shape of an instance has a box; coarse: those that are alike have one"},
+        {OPTION_CHOICE, "path", "auto|pipeline|compute", "auto", &o->path,
+         "how rays find what they hit: by the device's ray-tracing pipeline or by a compute "
+         "shader, which is slower; auto: the pipeline where there is one"},
         {OPTION_FLAG, "oneshot-geometry", .value = &o->oneshot_geometry,
          .help = "one box per launch becomes what is in it"},
         {OPTION_FLAG, "oneshot-material", .value = &o->oneshot_material,

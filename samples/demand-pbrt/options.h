@@ -4,6 +4,8 @@
 
 #include "../../tools/common/option_table.h"
 
+enum path_choice { PATH_AUTO, PATH_PIPELINE, PATH_COMPUTE };
+
 struct pbrt_options {
     const char *scene;
     const char *file;
@@ -29,6 +31,7 @@ struct pbrt_options {
     double exposure;
     int mode;        ///< PBRT_MODE_...
     int granularity; ///< 0: fine
+    int path;        ///< enum path_choice
     uint64_t budget; ///< bytes of geometry; 0: no limit
     uint64_t texture_budget;
     bool face_forward, oneshot_geometry, oneshot_material, sort_proxies, verbose_loading;

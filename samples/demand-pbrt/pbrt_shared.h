@@ -22,10 +22,13 @@
 #define PBRT_BINDING_BOXES 11
 #define PBRT_BINDING_DEBUG 12
 #define PBRT_BINDING_EMITTERS 13
-#define PBRT_OWN_BUFFERS 14
-#define PBRT_BINDING_SCENE 14 /* the acceleration structure */
+#define PBRT_BINDING_WORLD 14     /* of the compute path */
+#define PBRT_BINDING_INSTANCES 15 /* ... */
+#define PBRT_OWN_BUFFERS 16
+#define PBRT_BINDING_SCENE 16 /* the acceleration structure, of pipelines alone */
 
 #define PBRT_ROW_WIDTH 1024 /* rays of one row of a launch */
+#define PBRT_GROUP_SIZE 64  /* threads of the compute path */
 #define PBRT_NONE 0xffffffffu
 #define PBRT_MAX_BOUNCES 8
 
@@ -39,9 +42,25 @@ struct PbrtMesh {
     uint normals;    /* 0: none */
     uint uvs;        /* 0: none */
     uint indices;
-    uint reserved[3];
+    /* Of the compute path, whose indices are in the order of the tree's leaves: */
+    uint order; /* the file's number of each triangle */
+    uint reserved[2];
 };
 SLUICE_SHARED_SIZE(struct PbrtMesh, 32)
+
+/* Items of the tree over the world: places, or boxes with this bit. */
+#define PBRT_ITEM_BOX 0x80000000u
+
+#define PBRT_INSTANCE_OPAQUE 1u /* PbrtInstance.flags */
+
+/* Where a place is, for the compute path. */
+struct PbrtInstance {
+    float toWorld[12]; /* three rows of four */
+    float toObject[9]; /* the inverse, for directions */
+    uint nodes[2];     /* address of the mesh's tree */
+    uint flags;
+};
+SLUICE_SHARED_SIZE(struct PbrtInstance, 96)
 
 /* PbrtPlace.flags */
 #define PBRT_PLACE_REVERSED 1u  /* the geometric normal is opposite to the order of the corners */
@@ -59,7 +78,7 @@ struct PbrtPlace {
     uint flags;
     uint light;
     uint shape;
-    uint reserved;
+    uint instance; /* PBRT_NONE: a shape that is no part of an object */
 };
 SLUICE_SHARED_SIZE(struct PbrtPlace, 32)
 

@@ -63,6 +63,7 @@ void proxies_finish(const struct gpu *gpu, struct structures *structures, struct
 {
     structures_give(gpu, structures, &p->structure);
     gpu_destroy_buffer(gpu, &p->buffer);
+    free(p->copy);
     sluiceDestroyProxySet(p->boxes);
     sluiceDestroyProxySet(p->surfaces);
     free(p->nodes);
@@ -230,26 +231,51 @@ void proxy_requests_finish(struct proxy_requests *r)
     *r = (struct proxy_requests){0};
 }
 
+/** A larger buffer is written anew. */
+static bool reserve_boxes(const struct gpu *gpu, struct proxies *p)
+{
+    const VkDeviceSize size = (VkDeviceSize)p->box_count * sizeof(SluiceProxyBox);
+    if (p->buffer.size >= size && p->buffer.buffer)
+        return true;
+    gpu_destroy_buffer(gpu, &p->buffer);
+    p->version = 0;
+    if (!gpu_create_buffer(gpu, size + size / 16 + 1024, structures_input_usage(gpu), &p->buffer))
+        return false;
+    if (gpu->ray_tracing)
+        return true;
+    free(p->copy);
+    p->copy = malloc(p->buffer.size);
+    if (!p->copy)
+        fprintf(stderr, "out of memory\n");
+    return p->copy;
+}
+
+static void copy_ranges(struct proxies *p, const SluiceProxyRange *ranges, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        memcpy((SluiceProxyBox *)p->buffer.mapped + ranges[i].first, p->copy + ranges[i].first,
+               ranges[i].count * sizeof *p->copy);
+}
+
 /** Brings the buffer up to date; it grows with the largest index. */
 static bool write_boxes(const struct gpu *gpu, struct proxies *p)
 {
-    const uint32_t count = get_info(p->boxes).indexCount;
-    const VkDeviceSize size = (VkDeviceSize)count * sizeof(SluiceProxyBox);
-    if (p->buffer.size < size || !p->buffer.buffer) {
-        gpu_destroy_buffer(gpu, &p->buffer);
-        p->version = 0;
-        if (!gpu_create_buffer(gpu, size + size / 16 + 1024, STRUCTURE_INPUT_USAGE, &p->buffer))
-            return false;
-    }
+    p->box_count = get_info(p->boxes).indexCount;
+    if (!reserve_boxes(gpu, p))
+        return false;
     SluiceProxyRange ranges[RANGE_COUNT];
     uint32_t range_count;
     const SluiceProxyBoxWrite write = {.structSize = sizeof write,
                                        .capacity =
                                            (uint32_t)(p->buffer.size / sizeof(SluiceProxyBox)),
-                                       .pBoxes = p->buffer.mapped,
+                                       .pBoxes = p->copy ? p->copy : p->buffer.mapped,
                                        .rangeCapacity = RANGE_COUNT,
                                        .pRanges = ranges};
-    return check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, &range_count), "boxes");
+    if (!check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, &range_count), "boxes"))
+        return false;
+    if (p->copy)
+        copy_ranges(p, ranges, range_count);
+    return true;
 }
 
 static void count_memory(struct proxies *p)
@@ -258,9 +284,10 @@ static void count_memory(struct proxies *p)
     if (info.proxyCount <= p->most_count)
         return;
     p->most_count = info.proxyCount;
-    p->bytes_per_box = ((double)info.hostMemorySize + (double)p->buffer.size +
-                        (double)p->node_room * sizeof *p->nodes) /
-                       info.proxyCount;
+    p->bytes_per_box =
+        ((double)info.hostMemorySize + (double)p->buffer.size +
+         (p->copy ? (double)p->buffer.size : 0.0) + (double)p->node_room * sizeof *p->nodes) /
+        info.proxyCount;
 }
 
 bool proxies_build(const struct gpu *gpu, struct structures *structures, struct proxies *p)

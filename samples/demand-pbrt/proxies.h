@@ -28,6 +28,8 @@ struct proxies {
     SluiceProxyId *ids; ///< owned; room for requested ones
     uint32_t id_room;
     struct gpu_buffer buffer; ///< of boxes, 24 bytes each
+    SluiceProxyBox *copy;     ///< owned; of the buffer, for the compute path's tree
+    uint32_t box_count;       ///< of the buffer
     uint64_t version;         ///< of the buffer
     struct structure structure;
     bool changed;         ///< since the structure was built

@@ -13,6 +13,9 @@ static PFN_vkVoidFunction function(const struct gpu *gpu, const char *name)
 
 void structures_create(const struct gpu *gpu, struct structures *s)
 {
+    *s = (struct structures){0};
+    if (!gpu->ray_tracing)
+        return;
     VkPhysicalDeviceAccelerationStructurePropertiesKHR properties = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR};
     VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
@@ -161,6 +164,8 @@ bool structures_build(const struct gpu *gpu, struct structures *s, struct struct
                       uint32_t count)
 {
     bool done = true;
+    if (!gpu->ray_tracing)
+        return true;
     for (uint32_t i = 0; i < count && done; i++)
         done = create_target(gpu, s, &builds[i]);
     done = done && reserve_scratch(gpu, s, place_scratch(builds, count));

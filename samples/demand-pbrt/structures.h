@@ -1,4 +1,5 @@
-/** Acceleration structures: built in batches, with the host waiting. */
+/** Acceleration structures: built in batches, with the host waiting. Where rays are traced by a
+ *  compute shader there are none, and these functions do nothing. */
 #ifndef DEMAND_PBRT_STRUCTURES_H
 #define DEMAND_PBRT_STRUCTURES_H
 
@@ -47,9 +48,12 @@ bool structures_build(const struct gpu *gpu, struct structures *structures,
 void structures_give(const struct gpu *gpu, struct structures *structures,
                      struct structure *structure);
 
-/** Usage of buffers that builds read. */
-#define STRUCTURE_INPUT_USAGE                                                                      \
-    (VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |                        \
-     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT)
+/** Usage of buffers that builds read, and shaders. */
+static inline VkBufferUsageFlags structures_input_usage(const struct gpu *gpu)
+{
+    return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
+           (gpu->ray_tracing ? VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR
+                             : 0);
+}
 
 #endif /* DEMAND_PBRT_STRUCTURES_H */

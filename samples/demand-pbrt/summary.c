@@ -39,6 +39,7 @@ bool summary_print(const struct summary *s, bool json)
         w->resolved_count ? 1e6 * w->resolve_seconds / (double)w->resolved_count : 0.0;
     const struct figure figures[] = {
         {"launches", "", l->count},
+        {"ray_tracing_pipeline", "", l->gpu->ray_tracing},
         {"launches_without_rays", "", l->idle_count},
         {"samples_complete", "per pixel", l->sample_count},
         {"pixels_missing", "", l->film->missing_count},

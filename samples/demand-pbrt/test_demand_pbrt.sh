@@ -46,6 +46,7 @@ refuse x.pbrt --bg 1/2
 refuse x.pbrt --bg=-1/0/0
 refuse x.pbrt --render-mode far
 refuse x.pbrt --debug 3
+refuse x.pbrt --path rays
 refuse x.pbrt --preload --budget 1M
 
 render() { # name, scene, options
@@ -146,6 +147,18 @@ check launches 'v == 1'
 check geometries_built 'v == 2'
 equals own
 
+# Without ray tracing of the device: trees of ours in a compute shader.
+begin the_compute_path_leaves_out_what_cannot_be_read
+render own-compute "$folder/own.pbrt" $validation --path compute
+succeeds
+check ray_tracing_pipeline 'v == 0'
+check geometries_built 'v == 1'
+check materials_realized 'v == 1'
+render own-compute-preload "$folder/own.pbrt" --path compute --preload
+succeeds
+check geometries_built 'v == 2'
+equals own-compute
+
 begin incomplete_pictures_are_an_error
 render early "$folder/own.pbrt" --warmup 0
 [ "$status" -eq 1 ] || complain "an incomplete picture is no error"
@@ -159,6 +172,9 @@ render empty "$folder/empty.pbrt" --bg 0.5/0.25/1
 succeeds
 says 'no shape can be seen'
 check shapes_placed 'v == 0'
+render empty-compute "$folder/empty.pbrt" --bg 0.5/0.25/1 --path compute
+succeeds
+equals empty
 render broken /dev/null
 [ "$status" -eq 1 ] || complain "a scene that cannot be read is no error"
 
@@ -224,6 +240,23 @@ done
 render wood-coarse "$data/made/instances/wood.pbrt" --proxy-granularity coarse
 succeeds
 equals wood
+
+begin the_compute_path_gives_the_pictures_of_everything_loaded_before
+scene leaves-compute "$data/made/alpha/leaf-cards.pbrt" --path compute
+never_says never-
+check textures_opened 'v == 6'
+check geometries_built 'v == 6'
+scene wall-compute "$data/made/occlusion/wall.pbrt" --path compute --render-mode path
+never_says never-
+render wall-compute-budget "$data/made/occlusion/wall.pbrt" --path compute --render-mode path --budget 80K
+succeeds
+equals wall-compute
+check geometries_evicted 'v > 0'
+scene wood-compute "$data/made/instances/wood.pbrt" --path compute $validation
+check shapes_entered 'v < 1100'
+render wood-compute-coarse "$data/made/instances/wood.pbrt" --path compute --proxy-granularity coarse
+succeeds
+equals wood-compute
 
 begin shapes_on_demand_are_those_loaded_before
 scene shapes "$data/made/shapes/shapes.pbrt"

@@ -3,43 +3,23 @@
 #include <string.h>
 
 #include "../../tools/common/text.h"
-#include "box_rchit.h"
-#include "box_rint.h"
-#include "mesh_rahit.h"
-#include "mesh_rchit.h"
-#include "miss_rmiss.h"
-#include "trace_rgen.h"
-
-enum { BEGIN, MISS, MESH_NEAREST, MESH_ANY, BOX_NEAREST, BOX_HIT, STAGE_COUNT };
-#define GROUP_COUNT 4u
-
-static const struct {
-    const uint32_t *code;
-    size_t size;
-    VkShaderStageFlagBits stage;
-} shaders[STAGE_COUNT] = {
-    [BEGIN] = {trace_rgen, sizeof trace_rgen, VK_SHADER_STAGE_RAYGEN_BIT_KHR},
-    [MISS] = {miss_rmiss, sizeof miss_rmiss, VK_SHADER_STAGE_MISS_BIT_KHR},
-    [MESH_NEAREST] = {mesh_rchit, sizeof mesh_rchit, VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR},
-    [MESH_ANY] = {mesh_rahit, sizeof mesh_rahit, VK_SHADER_STAGE_ANY_HIT_BIT_KHR},
-    [BOX_NEAREST] = {box_rchit, sizeof box_rchit, VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR},
-    [BOX_HIT] = {box_rint, sizeof box_rint, VK_SHADER_STAGE_INTERSECTION_BIT_KHR},
-};
+#include "trace_comp.h"
 
 static bool create_set_layout(const struct gpu *gpu, struct tracing *t)
 {
     VkDescriptorSetLayoutBinding bindings[PBRT_OWN_BUFFERS + 1];
-    for (uint32_t i = 0; i <= PBRT_OWN_BUFFERS; i++)
+    const uint32_t count = PBRT_OWN_BUFFERS + (gpu->ray_tracing ? 1 : 0);
+    for (uint32_t i = 0; i < count; i++)
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = i,
             .descriptorType = i == PBRT_BINDING_SCENE
                                   ? VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR
                                   : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
             .descriptorCount = 1,
-            .stageFlags = RAY_STAGES};
+            .stageFlags = t->stages};
     const VkDescriptorSetLayoutCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = PBRT_OWN_BUFFERS + 1,
+        .bindingCount = count,
         .pBindings = bindings};
     return gpu_check(vkCreateDescriptorSetLayout(gpu->device, &info, NULL, &t->own_layout),
                      "vkCreateDescriptorSetLayout");
@@ -57,7 +37,7 @@ static bool create_layouts(const struct gpu *gpu, const SluiceDemandLoader *load
     if (!create_set_layout(gpu, t))
         return false;
     const VkDescriptorSetLayout layouts[2] = {demand, t->own_layout};
-    const VkPushConstantRange push = {RAY_STAGES, 0, sizeof(struct PbrtLaunch)};
+    const VkPushConstantRange push = {t->stages, 0, sizeof(struct PbrtLaunch)};
     const VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                              .setLayoutCount = 2,
                                              .pSetLayouts = layouts,
@@ -73,7 +53,7 @@ static bool allocate_set(const struct gpu *gpu, struct tracing *t)
                                            {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1}};
     const VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                              .maxSets = 1,
-                                             .poolSizeCount = 2,
+                                             .poolSizeCount = gpu->ray_tracing ? 2 : 1,
                                              .pPoolSizes = sizes};
     if (!gpu_check(vkCreateDescriptorPool(gpu->device, &pool, NULL, &t->pool),
                    "vkCreateDescriptorPool"))
@@ -87,65 +67,21 @@ static bool allocate_set(const struct gpu *gpu, struct tracing *t)
                      "vkAllocateDescriptorSets");
 }
 
-static bool create_stages(const struct gpu *gpu,
-                          VkPipelineShaderStageCreateInfo stages[STAGE_COUNT])
-{
-    bool done = true;
-    for (int i = 0; i < STAGE_COUNT; i++) {
-        stages[i] = (VkPipelineShaderStageCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-            .stage = shaders[i].stage,
-            .module = gpu_create_shader(gpu, shaders[i].code, shaders[i].size),
-            .pName = "main"};
-        done = done && stages[i].module != VK_NULL_HANDLE;
-    }
-    return done;
-}
-
-static bool create_pipeline(const struct gpu *gpu, struct tracing *t)
-{
-    PFN_vkCreateRayTracingPipelinesKHR create =
-        (PFN_vkCreateRayTracingPipelinesKHR)vkGetDeviceProcAddr(gpu->device,
-                                                                "vkCreateRayTracingPipelinesKHR");
-    VkPipelineShaderStageCreateInfo stages[STAGE_COUNT];
-    VkRayTracingShaderGroupCreateInfoKHR groups[GROUP_COUNT] = {
-        ray_table_general_group(BEGIN), ray_table_general_group(MISS),
-        [2 + PBRT_GROUP_MESH] = ray_table_general_group(VK_SHADER_UNUSED_KHR),
-        [2 + PBRT_GROUP_BOX] = ray_table_general_group(VK_SHADER_UNUSED_KHR)};
-    groups[2 + PBRT_GROUP_MESH].type = VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR;
-    groups[2 + PBRT_GROUP_MESH].closestHitShader = MESH_NEAREST;
-    groups[2 + PBRT_GROUP_MESH].anyHitShader = MESH_ANY;
-    groups[2 + PBRT_GROUP_BOX].type = VK_RAY_TRACING_SHADER_GROUP_TYPE_PROCEDURAL_HIT_GROUP_KHR;
-    groups[2 + PBRT_GROUP_BOX].closestHitShader = BOX_NEAREST;
-    groups[2 + PBRT_GROUP_BOX].intersectionShader = BOX_HIT;
-    const VkRayTracingPipelineCreateInfoKHR info = {
-        .sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR,
-        .stageCount = STAGE_COUNT,
-        .pStages = stages,
-        .groupCount = GROUP_COUNT,
-        .pGroups = groups,
-        .maxPipelineRayRecursionDepth = 1,
-        .layout = t->layout};
-    bool done =
-        create_stages(gpu, stages) &&
-        gpu_check(create(gpu->device, VK_NULL_HANDLE, VK_NULL_HANDLE, 1, &info, NULL, &t->pipeline),
-                  "vkCreateRayTracingPipelinesKHR");
-    for (int i = 0; i < STAGE_COUNT; i++)
-        vkDestroyShaderModule(gpu->device, stages[i].module, NULL);
-    return done;
-}
-
 bool tracing_create(const struct gpu *gpu, const SluiceDemandLoader *loader, struct tracing *t)
 {
-    *t = (struct tracing){0};
-    return create_layouts(gpu, loader, t) && allocate_set(gpu, t) && create_pipeline(gpu, t) &&
-           ray_table_create(gpu, t->pipeline, GROUP_COUNT, &t->table);
+    *t = (struct tracing){.stages = gpu->ray_tracing ? RAY_STAGES : VK_SHADER_STAGE_COMPUTE_BIT};
+    if (!create_layouts(gpu, loader, t) || !allocate_set(gpu, t))
+        return false;
+    if (gpu->ray_tracing)
+        return pipeline_rays_create(gpu, t->layout, &t->rays);
+    return gpu_create_compute_pipeline(gpu, t->layout, trace_comp, sizeof trace_comp, NULL,
+                                       &t->compute);
 }
 
 void tracing_destroy(const struct gpu *gpu, struct tracing *t)
 {
-    ray_table_destroy(gpu, &t->table);
-    vkDestroyPipeline(gpu->device, t->pipeline, NULL);
+    pipeline_rays_destroy(gpu, &t->rays);
+    vkDestroyPipeline(gpu->device, t->compute, NULL);
     vkDestroyDescriptorPool(gpu->device, t->pool, NULL);
     vkDestroyPipelineLayout(gpu->device, t->layout, NULL);
     vkDestroyDescriptorSetLayout(gpu->device, t->own_layout, NULL);
@@ -174,17 +110,21 @@ void tracing_bind(const struct gpu *gpu, const struct tracing *t,
          .dstBinding = PBRT_BINDING_SCENE,
          .descriptorCount = 1,
          .descriptorType = VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR}};
-    vkUpdateDescriptorSets(gpu->device, 2, writes, 0, NULL);
+    vkUpdateDescriptorSets(gpu->device, gpu->ray_tracing ? 2 : 1, writes, 0, NULL);
 }
 
 void tracing_record(const struct tracing *t, VkCommandBuffer commands, VkDescriptorSet demand_set,
                     const struct PbrtLaunch *launch)
 {
     const VkDescriptorSet sets[2] = {demand_set, t->own_set};
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, t->pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, t->layout, 0, 2, sets,
-                            0, NULL);
-    vkCmdPushConstants(commands, t->layout, RAY_STAGES, 0, sizeof *launch, launch);
-    ray_table_record(&t->table, commands, PBRT_ROW_WIDTH,
-                     (launch->count + PBRT_ROW_WIDTH - 1) / PBRT_ROW_WIDTH);
+    const VkPipelineBindPoint point =
+        t->compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR;
+    const uint32_t rows = (launch->count + PBRT_ROW_WIDTH - 1) / PBRT_ROW_WIDTH;
+    vkCmdBindPipeline(commands, point, t->compute ? t->compute : t->rays.pipeline);
+    vkCmdBindDescriptorSets(commands, point, t->layout, 0, 2, sets, 0, NULL);
+    vkCmdPushConstants(commands, t->layout, t->stages, 0, sizeof *launch, launch);
+    if (t->compute)
+        vkCmdDispatch(commands, PBRT_ROW_WIDTH / PBRT_GROUP_SIZE, rows, 1);
+    else
+        ray_table_record(&t->rays.table, commands, PBRT_ROW_WIDTH, rows);
 }

@@ -1,12 +1,13 @@
-/** The ray-tracing pipeline, and the descriptor set of the scene. */
+/** How rays are traced: by the ray-tracing pipeline, where gpu.ray_tracing says so, or by a compute
+ *  shader. And the descriptor set of the scene. */
 #ifndef DEMAND_PBRT_TRACING_H
 #define DEMAND_PBRT_TRACING_H
 
 #include <sluice/demand.h>
 
 #include "../../tools/common/gpu.h"
-#include "../common/ray_table.h"
 #include "pbrt_shared.h"
+#include "pipeline_rays.h"
 
 /** Zeroed is empty. */
 struct tracing {
@@ -14,8 +15,9 @@ struct tracing {
     VkPipelineLayout layout;
     VkDescriptorPool pool;
     VkDescriptorSet own_set;
-    VkPipeline pipeline;
-    struct ray_table table;
+    VkPipeline compute;        ///< instead of `rays`
+    struct pipeline_rays rays; ///< zeroed in the compute path
+    VkShaderStageFlags stages;
 };
 
 /** Says on stderr why it failed. */
@@ -23,8 +25,8 @@ bool tracing_create(const struct gpu *gpu, const SluiceDemandLoader *loader,
                     struct tracing *tracing);
 void tracing_destroy(const struct gpu *gpu, struct tracing *tracing);
 
-/** Names what the next launch reads and writes: buffers by PBRT_BINDING_..., and the top level. No
- *  launch is under way. */
+/** Names what the next launch reads and writes: buffers by PBRT_BINDING_..., and the top
+ *  level, which the compute path has not. No launch is under way. */
 void tracing_bind(const struct gpu *gpu, const struct tracing *tracing,
                   const VkBuffer buffers[PBRT_OWN_BUFFERS], VkAccelerationStructureKHR top);
 void tracing_record(const struct tracing *tracing, VkCommandBuffer commands,

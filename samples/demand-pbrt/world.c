@@ -37,7 +37,8 @@ bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfa
                         .used.element = sizeof(uint32_t),
                         .changed = true};
     structures_create(gpu, &w->structures);
-    return meshes_create(gpu, scene, thread_count, &w->meshes) &&
+    return (gpu->ray_tracing || top_tree_create(gpu, &w->tree)) &&
+           meshes_create(gpu, scene, thread_count, &w->meshes) &&
            table_grow(gpu, &w->place_table, 1) && table_grow(gpu, &w->used, 1);
 }
 
@@ -46,6 +47,7 @@ void world_finish(struct world *w)
     if (!w->gpu)
         return;
     structures_give(w->gpu, &w->structures, &w->top);
+    top_tree_finish(w->gpu, &w->tree);
     meshes_finish(w->gpu, &w->structures, &w->meshes);
     structures_finish(w->gpu, &w->structures);
     gpu_destroy_buffer(w->gpu, &w->instances);
@@ -104,7 +106,8 @@ static struct PbrtPlace describe(const struct world *w, const SluicePbrtShape *s
                               .alphaValue = has_map ? 1.0f : shape->alpha.value[0],
                               .flags = emitters_place_flags(w->scene, shape, transform),
                               .light = shape->areaLight,
-                              .shape = place->node.shape};
+                              .shape = place->node.shape,
+                              .instance = place->node.instance};
 }
 
 static bool is_opaque(const struct world *w, const struct PbrtPlace *entry)
@@ -371,7 +374,7 @@ static bool reserve_instances(struct world *w)
     if (w->instances.size >= size)
         return true;
     gpu_destroy_buffer(w->gpu, &w->instances);
-    if (!gpu_create_buffer(w->gpu, size + size / 2, STRUCTURE_INPUT_USAGE, &w->instances))
+    if (!gpu_create_buffer(w->gpu, size + size / 2, structures_input_usage(w->gpu), &w->instances))
         return false;
     VkAccelerationStructureInstanceKHR *instances = w->instances.mapped;
     for (uint32_t i = 0; i < w->place_count; i++)
@@ -398,6 +401,30 @@ static bool build_top(struct world *w)
     return structures_build(w->gpu, &w->structures, &build, 1);
 }
 
+static bool place_in_tree(struct world *w, uint32_t index)
+{
+    const struct place *place = &w->places[index];
+    const VkAccelerationStructureInstanceKHR *instance = &place->instance;
+    const struct mesh_tree *tree = &w->meshes.items[place->mesh].tree;
+    struct top_tree_place at = {
+        .box = tree->box,
+        .nodes = tree->address,
+        .opaque = (instance->flags & VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR) != 0};
+    memcpy(at.to_world, instance->transform.matrix, sizeof at.to_world);
+    return top_tree_set(w->gpu, &w->tree, index, place->live ? &at : NULL);
+}
+
+/** The same without ray tracing of the device. */
+static bool build_top_tree(struct world *w)
+{
+    for (uint32_t i = 0; i < w->moved_count; i++)
+        if (!place_in_tree(w, w->moved[i]))
+            return false;
+    w->moved_count = 0;
+    return top_tree_build(w->gpu, &w->tree, w->proxies ? w->proxies->copy : NULL,
+                          w->proxies ? w->proxies->box_count : 0);
+}
+
 bool world_build(struct world *w, uint32_t launch)
 {
     if (!world_build_meshes(w, launch))
@@ -405,7 +432,8 @@ bool world_build(struct world *w, uint32_t launch)
     if (!w->changed && (!w->proxies || !w->proxies->changed))
         return true;
     double start = clock_seconds();
-    bool done = (!w->proxies || proxies_build(w->gpu, &w->structures, w->proxies)) && build_top(w);
+    bool done = (!w->proxies || proxies_build(w->gpu, &w->structures, w->proxies)) &&
+                (w->gpu->ray_tracing ? build_top(w) : build_top_tree(w));
     w->top_seconds += clock_seconds() - start;
     w->changed = !done;
     return done;

@@ -6,6 +6,7 @@
 #include "options.h"
 #include "proxies.h"
 #include "surfaces.h"
+#include "top_tree.h"
 
 enum world_box { BOX_SCENE, BOX_FREE_SHAPE, BOX_INSTANCE, BOX_INSTANCE_SHAPE, BOX_GROUP };
 #define WORLD_BOX_KINDS 5
@@ -37,6 +38,7 @@ struct world {
     struct table place_table; ///< struct PbrtPlace
     struct table used;        ///< uint by place: the last launch that hit it
     struct structure top;
+    struct top_tree tree; ///< instead, of the compute path
     struct gpu_buffer
         instances;   ///< the boxes, then places by index: those that are not live hit nothing
     uint32_t *moved; ///< owned; places whose instance must be written
