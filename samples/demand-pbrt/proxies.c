@@ -104,7 +104,7 @@ bool proxies_add(struct proxies *p, struct scene_node node, const SluicePbrtBoun
 {
     SluiceProxyBox wide;
     SluiceProxyId id;
-    float more = 0.0f;
+    float more = 0x1p-90f; /* points and smaller shapes become boxes, too */
     for (int i = 0; i < 3; i++)
         more = fmaxf(more, ROUNDING * fmaxf(fabsf(box->least[i]), fabsf(box->most[i])));
     for (int i = 0; i < 3; i++) {

@@ -66,15 +66,31 @@ static bool is_visible(const struct scene *scene, const SluicePbrtShape *shape)
     return false;
 }
 
+/* Boxes of proxies end at 2^100; they are a little wider than these. */
+#define MOST_COORDINATE 0x1p99f
+
+static bool is_too_large(const SluicePbrtBounds *box)
+{
+    for (int i = 0; i < 3; i++)
+        if (!(box->least[i] >= -MOST_COORDINATE && box->most[i] <= MOST_COORDINATE))
+            return true;
+    return false;
+}
+
 /* Boxes of no thickness are fine: rays hit their faces. */
 static void find_box(struct scene *scene, uint32_t index)
 {
     const SluicePbrtShape shape = scene_shape(scene, index);
     SluicePbrtBounds box;
     scene->boxes[index] = bounds_none();
-    if (is_visible(scene, &shape) &&
-        sluiceGetPbrtShapeBounds(scene->pbrt, index, &box) == SLUICE_SUCCESS)
-        scene->boxes[index] = box; /* after an error the log has the line */
+    if (!is_visible(scene, &shape) ||
+        sluiceGetPbrtShapeBounds(scene->pbrt, index, &box) != SLUICE_SUCCESS)
+        return; /* after an error the log has the line */
+    if (is_too_large(&box))
+        text_say("%s:%u:%u: a coordinate is beyond %g; the shape is left out", shape.pFile,
+                 shape.line, shape.column, (double)MOST_COORDINATE);
+    else
+        scene->boxes[index] = box;
 }
 
 static bool find_boxes(struct scene *scene)
@@ -109,7 +125,8 @@ SluicePbrtBounds scene_node_box(const struct scene *scene, struct scene_node nod
     float inverse[12];
     if (scene_box_is_empty(box) || !transform_invert(instance->transform, inverse))
         return bounds_none();
-    return transform_bounds(instance->transform, box);
+    const SluicePbrtBounds placed = transform_bounds(instance->transform, box);
+    return is_too_large(&placed) ? bounds_none() : placed;
 }
 
 void scene_node_transform(const struct scene *scene, struct scene_node node, float transform[12])

@@ -224,10 +224,19 @@ def defect_20():
          p.log.count("picture ") == 1)
 
 
+def shapes_without_a_place():
+    triangle = "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 ] \"point P\" [ {} ]\n"
+    odd = "".join(triangle.format(points) for points in (
+        "0 0 0 0 0 0 0 0 0", "0 0 0 1e35 0 0 0 1e35 0", "0 0 0 1e-35 0 0 0 1e-35 0"))
+    plain, beside = Picture(SUN + SQUARE), Picture(SUN + odd + SQUARE)
+    fact("shapes that are a point, tiny or beyond all numbers leave the rest of the picture as it is",
+         beside.done and are_equal(plain, beside) and "the shape is left out" in beside.log)
+
+
 shutil.rmtree(folder, ignore_errors=True)
 os.makedirs(folder)
 for test in (defect_6, defects_11_and_12, defect_13, defect_14, defect_15, defect_16, defect_17, defect_18, defect_19,
-             defect_20):
+             defect_20, shapes_without_a_place):
     test()
 print(f"1..{number}")
 sys.exit(failed)
