@@ -12,6 +12,13 @@ static SluiceResult refuse(const SluiceNeuralDecodeInfo *info, const char *what,
                            (unsigned long long)value);
 }
 
+static SluiceResult refuse_span(const SluiceNeuralDecodeInfo *info, const char *what,
+                                uint32_t first, uint32_t count, uint32_t limit)
+{
+    return slc_log_refusal(&info->log, "%s of a decode is %u from texel %u on; mip %u has %u", what,
+                           count, first, info->mip, limit);
+}
+
 /* Constants come from sluiceReadNeuralLatents, but perhaps by way of a file. */
 static SluiceResult check_constants(const SluiceNeuralDecodeInfo *info,
                                     const SluiceNeuralConstants *k)
@@ -97,9 +104,9 @@ static SluiceResult make_view(const SluiceNeuralDecodeInfo *info, const SluiceNe
     if (k->height == 0 || k->height > SLUICE_NEURAL_MAX_SIZE)
         return refuse(info, "height of mip 0", k->height);
     if (info->width == 0 || info->x >= view->width || info->width > view->width - info->x)
-        return refuse(info, "width", info->width);
+        return refuse_span(info, "width", info->x, info->width, view->width);
     if (info->height == 0 || info->y >= view->height || info->height > view->height - info->y)
-        return refuse(info, "height", info->height);
+        return refuse_span(info, "height", info->y, info->height, view->height);
     if (first > SLC_NEURAL_MAX_GRIDS - 2)
         return refuse(info, "firstSlice", first);
     if (!(k->mips[info->mip].positionScale > 0 && k->mips[info->mip].positionScale <= 65536))

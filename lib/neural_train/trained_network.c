@@ -44,18 +44,25 @@ void slc_network_init(float *parameters, uint32_t seed)
         parameters[TRAIN_BIASES + row] = 0.0f;
 }
 
+/* Training that ran away leaves NaN, which no integer is. */
+static float finite(float value)
+{
+    return isfinite(value) ? value : 0.0f;
+}
+
 /* Bias and scale of one row whose inputs are (code + offset) / step. */
 static void fold_row(const float *weights, uint32_t count, float bias, double step, int offset,
                      int8_t *codes, float *scale, int32_t *folded)
 {
     float most = 1e-20f;
     for (uint32_t i = 0; i < count; i++)
-        most = fmaxf(most, fabsf(weights[i]));
+        most = fmaxf(most, fabsf(finite(weights[i])));
+    bias = finite(bias);
     /* A bias far above all weights decides instead, so that it fits. */
     float unit = fmaxf(most / 127.0f, fabsf(bias) * (float)(step / MAX_BIAS));
     int sum = 0;
     for (uint32_t i = 0; i < count; i++) {
-        codes[i] = (int8_t)rintf(weights[i] / unit);
+        codes[i] = (int8_t)rintf(finite(weights[i]) / unit);
         sum += codes[i];
     }
     double wanted = offset * sum + bias * step / (double)unit;

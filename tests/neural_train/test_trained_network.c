@@ -137,9 +137,24 @@ static void e4m3_codes_are_the_nearest(void **state)
     assert_int_equal(slc_train_e4m3(1e9f), 0x7E); /* 448 */
 }
 
+static void parameters_that_are_no_numbers_export_as_zero(void **state)
+{
+    static struct slc_int8_network network;
+    (void)state;
+    fill_parameters(1);
+    parameters[0] = NAN;
+    parameters[1] = INFINITY;
+    parameters[TRAIN_BIASES] = NAN;
+    slc_network_to_int8(parameters, &network);
+    assert_int_equal(network.weights[0], 0);
+    assert_int_equal(network.weights[1], 0);
+    assert_true(isfinite(network.scales[0]) && network.scales[0] > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parameters_that_are_no_numbers_export_as_zero),
         cmocka_unit_test(int8_network_computes_what_was_trained),
         cmocka_unit_test(fp8_network_computes_what_was_trained),
         cmocka_unit_test(rows_of_zeros_are_their_biases),
