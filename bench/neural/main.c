@@ -372,7 +372,7 @@ int main(int argc, char **argv)
         {OPTION_EXTENT, "size", "WxH", "3840x2160", b.size, "of the screen in pixels", 1, 16384},
         {OPTION_UINT, "texture-size", "N", "1024", &a.texture_size,
          "width and height of a set of random numbers in texels", 64, 8192},
-        {OPTION_UINT, "repeat", "N", "50", &b.repeats, "screens of each path", 1, 10000},
+        {OPTION_UINT, "screens", "N", "50", &b.repeats, "screens of each path", 1, 10000},
         {OPTION_REAL, "lod", "X", "0.5", &b.lod, "level of detail of all pixels", -4, 8},
         {OPTION_FLAG, "all", .value = &b.all, .help = "all paths, also on a software device"},
         option_validation(&a.validation),

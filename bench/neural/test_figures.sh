@@ -4,7 +4,7 @@
 #   bench/neural/test_figures.sh PROGRAM
 
 set -uo pipefail
-lines=$("$1" --size 64x36 --texture-size 64 --repeat 2 --json)
+lines=$("$1" --size 64x36 --texture-size 64 --screens 2 --json)
 status=$?
 [ "$status" = 0 ] || exit "$status"
 for name in schema latents weights rgba8.time bc7.time int8.time int8.rate; do

@@ -60,8 +60,9 @@ typedef struct SluiceVulkanTextureRequest {
     uint32_t level;
     SluiceTextureRect rect; ///< Default: the whole texture.
     /**
-     * Time stamp of the first frame in which the request is over, less than 2^63 after the present one. UINT64_MAX: it lasts until it is
-     * withdrawn or the texture is removed (a pin). Default: 0, over at once.
+     * Time stamp of the first frame in which the request is over, less than 2^63 after the present
+     * one. UINT64_MAX: it lasts until it is withdrawn or the texture is removed (a pin). Default:
+     * 0, over at once.
      */
     uint64_t until;
 } SluiceVulkanTextureRequest;

@@ -34,14 +34,14 @@ fact a_search_ends_at_the_first_size_that_is_good_enough $?
 
 # A weight moves errors from one picture to the other; what is wrong is refused before training.
 both() { quick "$work/rough.pgm" --steps 60 --batch 320 --bits-per-texel 2.5 -o "$work/weighed.ntc" "$@"; }
-unweighed=$(psnr_of <"$work/out") weighed=$(both --weights rough=0.001,color=1 | psnr_of)
+unweighed=$(psnr_of <"$work/out") weighed=$(both --loss-weights rough=0.001,color=1 | psnr_of)
 echo "# $unweighed dB, $weighed dB with one picture left to itself"
 awk -v a="$unweighed" -v b="$weighed" 'BEGIN { exit !(b > 0 && b < a - 1) }'
 fact a_picture_without_weight_is_left_to_itself $?
 is_refused=0
 for wrong in rough=0 none=1; do
-    both --weights "$wrong" >"$work/out" && is_refused=1
-    grep -q -e "--weights" "$work/err" && [ ! -s "$work/out" ] || is_refused=1
+    both --loss-weights "$wrong" >"$work/out" && is_refused=1
+    grep -q -e "--loss-weights" "$work/err" && [ ! -s "$work/out" ] || is_refused=1
 done
 fact wrong_weights_are_refused $is_refused
 

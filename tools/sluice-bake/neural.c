@@ -185,14 +185,14 @@ static bool weigh(struct training_set *set, const char *text)
         if (!equals || end == equals + 1 || (*end && *end != ',') || length >= sizeof name ||
             !(weight > 0.0f && weight <= 1000.0f)) {
             fprintf(stderr,
-                    "sluice-bake: --weights %s: is no NAME=W with W above 0 and at most "
+                    "sluice-bake: --loss-weights %s: is no NAME=W with W above 0 and at most "
                     "1000\n",
                     text);
             return false;
         }
         snprintf(name, sizeof name, "%.*s", (int)length, text);
         if (!training_set_weigh(set, name, weight)) {
-            fprintf(stderr, "sluice-bake: --weights %s: no picture has this name\n", name);
+            fprintf(stderr, "sluice-bake: --loss-weights %s: no picture has this name\n", name);
             return false;
         }
         text = *end ? end + 1 : end;

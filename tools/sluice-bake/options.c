@@ -212,7 +212,7 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_REAL, "psnr", "DB", "(off)", &o->psnr,
          "try 1.25 bits per texel, then 2.5 and so on, until mip 0 has this PSNR", 1, 100},
         {OPTION_FLAG, "mask", .value = &o->mask, .help = "fourth channels are masks: keep 0 and 1"},
-        {OPTION_TEXT, "weights", "NAME=W,..", "(1 each)", &o->weights,
+        {OPTION_TEXT, "loss-weights", "NAME=W,..", "(1 each)", &o->weights,
          "how much the squared errors of a picture count, above 0 and at most 1000; names are "
          "those "
          "of the files, without folder and extension"},
