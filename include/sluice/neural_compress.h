@@ -28,7 +28,8 @@ typedef struct SluiceNeuralTrainingChannel {
     /** Decoded values are clamped to 0..1: values beyond count as no error where the channel is 0
      * or 1. */
     bool clamped;
-    /** An alpha mask, also clamped: is pushed beyond 0 and 1, so that it is exact there. */
+    /** An alpha mask, also clamped: is pushed beyond 0 and 1, so that most texels are exact there.
+     */
     bool mask;
 } SluiceNeuralTrainingChannel;
 
