@@ -67,10 +67,9 @@ typedef struct SluiceNeuralCompressorCreateInfo {
  * Errors: SLUICE_ERROR_NULL_POINTER, also for a mip; SLUICE_ERROR_INVALID_ARGUMENT, with a log
  *         message, for a field outside its range, more than 2^30 latents, or an input that is not
  *         finite; SLUICE_ERROR_LIMIT_EXCEEDED, with a log message, if a buffer is above the
- * device's maxStorageBufferRange; SLUICE_ERROR_CORRUPT_DATA, with a log message, for a checkpoint
- *         that is damaged or of other settings;
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY, SLUICE_ERROR_OUT_OF_DEVICE_MEMORY, SLUICE_ERROR_VULKAN.
- * Thread safety: external on `context`.
+ *         device's maxStorageBufferRange; SLUICE_ERROR_CORRUPT_DATA, with a log message, for a
+ * checkpoint that is damaged or of other settings; SLUICE_ERROR_OUT_OF_HOST_MEMORY,
+ * SLUICE_ERROR_OUT_OF_DEVICE_MEMORY, SLUICE_ERROR_VULKAN. Thread safety: external on `context`.
  */
 SLUICE_API SluiceResult sluiceCreateNeuralCompressor(SluiceVulkanContext *context,
                                                      const SluiceNeuralCompressorCreateInfo *pInfo,

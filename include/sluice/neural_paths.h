@@ -45,7 +45,8 @@ SLUICE_API SluiceResult sluiceGetNeuralPaths(VkInstance instance, VkPhysicalDevi
 /** Most extensions of all paths. */
 #define SLUICE_NEURAL_MAX_EXTENSIONS 4
 
-/** What vkCreateDevice takes for paths. Never grows. Must not move while `pNext` is used. */
+/** Extensions and features of paths, for vkCreateDevice. Never grows. Must not move while `pNext`
+ *  is used. */
 typedef struct SluiceNeuralPathFeatures {
     uint32_t extensionCount;
     const char *extensions[SLUICE_NEURAL_MAX_EXTENSIONS]; ///< Static strings.

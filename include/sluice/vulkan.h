@@ -1,6 +1,7 @@
 /**
  * Streams textures on a Vulkan device. Link `sluice-vulkan`. Only headers whose names begin with
- * `vulkan`, and demand.h, include Vulkan. vulkan_control.h controls single textures.
+ * `vulkan`, demand.h, neural_compress.h and neural_paths.h include Vulkan. vulkan_control.h
+ * controls single textures.
  *
  * The application owns instance, device, queues and command buffers, and draws. A streamer owns the
  * streamed images, the buffers for feedback, MinMip maps and the texture table, a manager

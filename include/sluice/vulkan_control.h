@@ -19,7 +19,7 @@ typedef struct SluiceTextureRect {
     uint32_t x, y, width, height;
 } SluiceTextureRect;
 
-/** What shaders see of a rectangle of a texture. */
+/** State of a rectangle of a texture, as shaders see it. */
 typedef struct SluiceVulkanTextureState {
     uint32_t structSize; ///< sizeof(SluiceVulkanTextureState).
     bool drawable;       ///< Every sample in the rectangle shows texels of the texture.
@@ -120,7 +120,8 @@ SLUICE_API SluiceResult sluiceGetVulkanRequestProgress(const SluiceVulkanStreame
                                                        SluiceTextureRequestId requestId,
                                                        SluiceVulkanRequestProgress *pProgress);
 
-/** What an application decides about a texture and those that follow it. All zero: nothing. */
+/** Limits, bias and visibility of a texture and of its followers. All zero: no limit, no bias,
+ *  visible. */
 typedef struct SluiceVulkanTextureControl {
     uint32_t structSize; ///< sizeof(SluiceVulkanTextureControl).
     /** Finer levels are not loaded, whatever feedback and requests say. Above the last level:
@@ -130,7 +131,7 @@ typedef struct SluiceVulkanTextureControl {
     int32_t mipBias;
     /**
      * The texture cannot be in view. Its feedback is not read back: it leaves its turn to others.
-     * What its feedback requested is dropped, and its tiles stay as standby tiles until others need
+     * Requests of its feedback are dropped, and its tiles stay as standby tiles until others need
      * the memory. Requests of the application still count. Set it back before the texture may be in
      * view again: its first map then restores what is still resident.
      */

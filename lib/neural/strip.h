@@ -17,7 +17,7 @@ typedef float slc_floats __attribute__((vector_size(4 * SLC_STRIP_LANES)));
 typedef int32_t slc_ints __attribute__((vector_size(4 * SLC_STRIP_LANES)));
 typedef uint32_t slc_words __attribute__((vector_size(4 * SLC_STRIP_LANES)));
 
-/** What the texels of a column have in common, per lane. */
+/** Values that all texels of a column share, per lane. */
 struct slc_neural_strip {
     const struct slc_neural_mip_view *view;
     uint32_t x[SLC_STRIP_LANES];             ///< columns; the last one is repeated

@@ -89,8 +89,7 @@ SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *pa
     (void)identity, (void)stream;
     slc_log(&opener->log, SLUICE_LOG_ERROR,
             "%s: is no tile store, OpenEXR, DDS, KTX2 file or neural set; this build of Sluice was "
-            "made without "
-            "sluice-bake, which reads other pictures with libvips",
+            "made without sluice-bake, which reads other pictures with libvips",
             path);
     return SLUICE_ERROR_UNSUPPORTED;
 }
