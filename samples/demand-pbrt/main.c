@@ -155,6 +155,8 @@ static bool open_all(struct renderer *r)
     bool only_areas = false;
     if (!can_write_outputs(o) || !scene_open(o->scene, o->bounds, &r->scene))
         return false;
+    if (!o->preload && !o->preload_shapes && !scene_cluster(&r->scene, o->cluster_size))
+        return false;
     if (o->dump && !scene_dump(&r->scene, o->dump))
         return false;
     camera_size(&r->scene, o, size);

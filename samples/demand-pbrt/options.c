@@ -136,6 +136,10 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          "trace the complete picture N more times, and tell the best rate", 0, 10000},
         option_json(&o->json),
     };
+        {OPTION_UINT, "cluster-size", "N", "1024", &o->cluster_size,
+         "instances and shapes that one box becomes, at most; boxes of more become boxes of "
+         "clusters",
+         2, 1000000},
     const struct option_table table = {"demand-pbrt", usage, notes, options,
                                        sizeof options / sizeof *options};
     enum option_outcome outcome = options_parse(&table, argc, argv);

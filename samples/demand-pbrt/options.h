@@ -28,6 +28,7 @@ struct pbrt_options {
     double frame_budget; ///< ms; 0: no limit
     uint32_t anisotropy;
     uint32_t threads;
+    uint32_t cluster_size;
     double exposure;
     int mode;        ///< PBRT_MODE_...
     int granularity; ///< 0: fine

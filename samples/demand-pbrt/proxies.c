@@ -42,7 +42,8 @@ static bool create_set(SluiceDemandLoader *loader, SluiceProxyKind kind, uint64_
 
 bool proxies_create(SluiceDemandLoader *loader, const struct scene *scene, struct proxies *p)
 {
-    const uint64_t boxes = scene->place_count + scene->node_count + 1;
+    const uint64_t boxes =
+        scene->place_count + scene->node_count + scene->clusters.tree.node_count + 1;
     const uint64_t most_boxes = boxes < MOST_BOXES ? boxes : MOST_BOXES;
     const uint32_t surface_count = scene->info.materialCount + scene->info.textureCount;
     *p = (struct proxies){.loader = loader, .changed = true};
@@ -278,16 +279,20 @@ static bool write_boxes(const struct gpu *gpu, struct proxies *p)
     return true;
 }
 
+double proxies_memory(const struct proxies *p)
+{
+    return (double)get_info(p->boxes).hostMemorySize + (double)p->buffer.size +
+           (p->copy ? (double)p->buffer.size : 0.0) + (double)p->node_room * sizeof *p->nodes +
+           (double)p->structure.storage.size;
+}
+
 static void count_memory(struct proxies *p)
 {
     const SluiceProxySetInfo info = get_info(p->boxes);
     if (info.proxyCount <= p->most_count)
         return;
     p->most_count = info.proxyCount;
-    p->bytes_per_box =
-        ((double)info.hostMemorySize + (double)p->buffer.size +
-         (p->copy ? (double)p->buffer.size : 0.0) + (double)p->node_room * sizeof *p->nodes) /
-        info.proxyCount;
+    p->bytes_per_box = (proxies_memory(p) - (double)p->structure.storage.size) / info.proxyCount;
 }
 
 bool proxies_build(const struct gpu *gpu, struct structures *structures, struct proxies *p)

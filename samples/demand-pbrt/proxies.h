@@ -46,6 +46,8 @@ void proxies_finish(const struct gpu *gpu, struct structures *structures, struct
 /** Adds a box for a node. Says on stderr why it failed. */
 bool proxies_add(struct proxies *proxies, struct scene_node node, const SluicePbrtBounds *box);
 uint32_t proxies_box_count(const struct proxies *proxies);
+/** Bytes on host and device. */
+double proxies_memory(const struct proxies *proxies);
 
 /** How requests are taken. */
 struct proxy_order {

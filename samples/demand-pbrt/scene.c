@@ -209,8 +209,56 @@ void scene_finish(struct scene *scene)
 {
     free(scene->boxes);
     free(scene->object_boxes);
+    clusters_finish(&scene->clusters);
     sluiceDestroyPbrtScene(scene->pbrt);
     *scene = (struct scene){0};
+}
+
+struct node_list {
+    const struct scene *scene;
+    struct box_tree_box *boxes; ///< owned
+    uint32_t *keys;             ///< owned; shapes, then instances
+    uint32_t count;
+};
+
+static bool list_node(void *user_data, struct scene_node node)
+{
+    struct node_list *list = user_data;
+    const SluicePbrtBounds box = scene_node_box(list->scene, node);
+    memcpy(list->boxes[list->count].low, box.least, sizeof box.least);
+    memcpy(list->boxes[list->count].high, box.most, sizeof box.most);
+    list->keys[list->count++] = node.instance == SLUICE_PBRT_NONE
+                                    ? node.shape
+                                    : list->scene->info.shapeCount + node.instance;
+    return true;
+}
+
+struct scene_node scene_node_of_key(const struct scene *scene, uint32_t key)
+{
+    const uint32_t shapes = scene->info.shapeCount;
+    return key < shapes ? (struct scene_node){SLUICE_PBRT_NONE, key}
+                        : (struct scene_node){key - shapes, SLUICE_PBRT_NONE};
+}
+
+bool scene_cluster(struct scene *scene, uint32_t size)
+{
+    const double start = clock_seconds();
+    if (scene->node_count <= size)
+        return true;
+    struct node_list list = {.scene = scene,
+                             .boxes = malloc(scene->node_count * sizeof *list.boxes),
+                             .keys = malloc(scene->node_count * sizeof *list.keys)};
+    bool done = list.boxes && list.keys;
+    if (done) {
+        scene_for_each(scene, list_node, &list);
+        done = clusters_create(list.boxes, list.keys, list.count, size, &scene->clusters);
+    }
+    if (!done)
+        fprintf(stderr, "out of memory\n");
+    free(list.boxes);
+    free(list.keys);
+    scene->cluster_seconds = clock_seconds() - start;
+    return done;
 }
 
 static void print_value(FILE *file, const struct scene *scene, const SluicePbrtValue *value)

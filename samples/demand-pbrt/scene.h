@@ -6,6 +6,8 @@
 
 #include <stdbool.h>
 
+#include "clusters.h"
+
 /** Zeroed is empty. */
 struct scene {
     SluicePbrtScene *pbrt;
@@ -16,8 +18,10 @@ struct scene {
     SluicePbrtBounds box;           ///< of everything
     uint64_t node_count;            ///< free shapes, and instances with something in them
     uint64_t place_count;           ///< shapes in the world; those of objects once per instance
+    struct clusters clusters;       ///< of the nodes; empty: there are few of them
     double parse_seconds;           ///< of the text
     double bounds_seconds;          ///< of the boxes: vertices of PLY files
+    double cluster_seconds;         ///< of the clusters
 };
 
 /** A shape in the world. `instance` is SLUICE_PBRT_NONE for shapes that are no part of an object.
@@ -48,6 +52,12 @@ SluicePbrtLight scene_light(const struct scene *scene, uint32_t index);
  *  Ends with false when `visit` returns false. */
 bool scene_for_each(const struct scene *scene,
                     bool (*visit)(void *user_data, struct scene_node node), void *user_data);
+
+/** Sorts all nodes to clusters of `size` at most, if there are more of them. Says on stderr why it
+ *  failed. */
+bool scene_cluster(struct scene *scene, uint32_t size);
+/** The node of a key in the clusters. */
+struct scene_node scene_node_of_key(const struct scene *scene, uint32_t key);
 
 /** Writes a line for each shape in the world. Says on stderr why it failed. */
 bool scene_dump(const struct scene *scene, const char *path);

@@ -26,6 +26,21 @@ static double peak_host_bytes(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (double)usage.ru_maxrss * 1024.0 : 0.0;
 }
 
+/** Of instances, and shapes of no object, that are boxes or in clusters: all memory for boxes and
+ *  clusters, their structure among it. */
+static double bytes_per_unresolved(const struct launches *l)
+{
+    const struct scene *scene = l->scene;
+    const struct box_tree *tree = &scene->clusters.tree;
+    const double clusters =
+        (double)tree->node_count * sizeof *tree->nodes +
+        (tree->node_count > 0 ? (double)scene->node_count * sizeof *tree->order : 0.0);
+    if (!l->world->proxies || l->world->resolved_nodes >= scene->node_count)
+        return 0.0;
+    return (clusters + proxies_memory(l->proxies)) /
+           (double)(scene->node_count - l->world->resolved_nodes);
+}
+
 bool summary_print(const struct summary *s, bool json)
 {
     const struct launches *l = s->launches;
@@ -37,6 +52,7 @@ bool summary_print(const struct summary *s, bool json)
     const double rate = l->repeat_seconds > 0.0 ? pixels / l->repeat_seconds / 1e6 : 0.0;
     const double resolve =
         w->resolved_count ? 1e6 * w->resolve_seconds / (double)w->resolved_count : 0.0;
+    const double per_node = bytes_per_unresolved(l);
     const struct figure figures[] = {
         {"launches", "", l->count},
         {"ray_tracing_pipeline", "", l->gpu->ray_tracing},
@@ -48,7 +64,9 @@ bool summary_print(const struct summary *s, bool json)
         {"shapes_entered", "", (double)w->entered_count},
         {"boxes_added", "", l->proxies ? (double)l->proxies->added_count : 0.0},
         {"boxes_left", "", l->proxies ? proxies_box_count(l->proxies) : 0.0},
+        {"boxes_added_most", "by one", (double)w->most_added},
         {"bytes_per_box", "B", l->proxies ? l->proxies->bytes_per_box : 0.0},
+        {"bytes_per_unresolved", "B", per_node},
         {"geometries_built", "", (double)w->meshes.built_count},
         {"geometries_failed", "", (double)w->meshes.failed_count},
         {"geometries_evicted", "", (double)w->meshes.evicted_count},
@@ -62,6 +80,8 @@ bool summary_print(const struct summary *s, bool json)
         {"lod_bias", "levels", d.lodBias},
         {"parse_seconds", "s", l->scene->parse_seconds},
         {"bounds_seconds", "s", l->scene->bounds_seconds},
+        {"cluster_seconds", "s", l->scene->cluster_seconds},
+        {"clusters", "", (l->scene->clusters.tree.node_count + 1) / 2},
         {"read_seconds", "s", w->meshes.read_seconds},
         {"build_seconds", "s", w->meshes.build_seconds},
         {"top_level_seconds", "s", w->top_seconds},

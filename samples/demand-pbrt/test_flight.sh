@@ -42,7 +42,9 @@ check() { # figure, condition on v
 
 render fresh --threads 1
 check geometries_built 'v <= 41'
-check bytes_per_box 'v > 0 && v <= 66'
+check bytes_per_box 'v > 0 && v <= 76'
+check bytes_per_unresolved 'v > 0'
+check boxes_added_most 'v > 256 && v <= 1024'
 compacted=$(value geometry_bytes)
 render uncompacted --uncompacted
 check geometry_bytes "v >= $compacted"
@@ -51,6 +53,11 @@ check shapes_entered 'v == 2001'
 render unbounded --fly 20 --threads 4
 check frames 'v == 20'
 check frame_boxes_resolved_most 'v > 20'
+# Clusters of clusters: no item of a frame adds more than four times the size of a cluster.
+render clusters --fly 20 --cluster-size 64
+check boxes_added_most 'v > 8 && v <= 256'
+render flat --cluster-size 4096
+check boxes_added_most 'v == 2001'
 # Less time than a launch takes: one box in a frame.
 render bounded --fly 20 --frame-budget 0.01
 check frames 'v == 20'

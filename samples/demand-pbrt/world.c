@@ -13,7 +13,8 @@
 
 #define MOST_PLACES (1u << 24) /* instanceCustomIndex has 24 bits */
 
-/* Of scene_node.shape: all shapes of the instance that are alike, this one being the first. */
+/* Of scene_node.shape: all shapes of the instance that are alike, this one being the first; without
+ * an instance, a node of the tree of clusters. */
 #define GROUP (1u << 31)
 
 static enum world_box node_kind(struct scene_node node)
@@ -21,7 +22,7 @@ static enum world_box node_kind(struct scene_node node)
     if (node.shape == SLUICE_PBRT_NONE)
         return node.instance == SLUICE_PBRT_NONE ? BOX_SCENE : BOX_INSTANCE;
     if (node.instance == SLUICE_PBRT_NONE)
-        return BOX_FREE_SHAPE;
+        return node.shape & GROUP ? BOX_CLUSTER : BOX_FREE_SHAPE;
     return node.shape & GROUP ? BOX_GROUP : BOX_INSTANCE_SHAPE;
 }
 
@@ -57,6 +58,7 @@ void world_finish(struct world *w)
     free(w->free_places);
     free(w->to_build);
     free(w->moved);
+    free(w->step_nodes);
     *w = (struct world){0};
 }
 
@@ -242,16 +244,51 @@ static bool add_node(void *user_data, struct scene_node node)
     return add_box(w, node, &box);
 }
 
+/** A node of the tree of clusters. */
+static bool add_cluster(struct world *w, uint32_t index)
+{
+    const struct box_tree_node *node = &w->scene->clusters.tree.nodes[index];
+    SluicePbrtBounds box;
+    memcpy(box.least, node->low, sizeof box.least);
+    memcpy(box.most, node->high, sizeof box.most);
+    return add_box(w, (struct scene_node){SLUICE_PBRT_NONE, index | GROUP}, &box);
+}
+
+/** A bounded number of boxes, so that frames end in time. */
+static bool resolve_cluster(struct world *w, uint32_t index)
+{
+    const struct clusters *clusters = &w->scene->clusters;
+    struct cluster_step step = {.nodes = w->step_nodes};
+    clusters_open(clusters, index, &step);
+    bool done = true;
+    for (uint32_t i = 0; i < step.count && done; i++)
+        done = step.keys ? add_node(w, scene_node_of_key(w->scene, step.keys[i]))
+                         : add_cluster(w, step.nodes[i]);
+    return done;
+}
+
+static bool resolve_scene(struct world *w)
+{
+    return w->proxies && w->scene->clusters.size ? resolve_cluster(w, 0)
+                                                 : scene_for_each(w->scene, add_node, w);
+}
+
 bool world_resolve(struct world *w, struct scene_node node)
 {
     const double start = clock_seconds();
+    const uint64_t before = w->proxies ? w->proxies->added_count : 0;
+    const enum world_box kind = node_kind(node);
     bool done;
-    switch (node_kind(node)) {
-    case BOX_SCENE: done = scene_for_each(w->scene, add_node, w); break;
+    switch (kind) {
+    case BOX_SCENE: done = resolve_scene(w); break;
+    case BOX_CLUSTER: done = resolve_cluster(w, node.shape & ~GROUP); break;
     case BOX_INSTANCE: done = resolve_instance(w, node.instance); break;
     case BOX_GROUP: done = resolve_group(w, node); break;
     default: done = place_shape(w, node); break;
     }
+    const uint64_t added = w->proxies ? w->proxies->added_count - before : 0;
+    w->most_added = added > w->most_added ? added : w->most_added;
+    w->resolved_nodes += kind == BOX_INSTANCE || kind == BOX_FREE_SHAPE;
     w->resolved_count++;
     w->resolve_seconds += clock_seconds() - start;
     return done;
@@ -259,9 +296,15 @@ bool world_resolve(struct world *w, struct scene_node node)
 
 bool world_begin(struct world *w)
 {
+    const size_t most = CLUSTERS_FAN * (size_t)w->scene->clusters.size + 1;
     const struct scene_node all = {SLUICE_PBRT_NONE, SLUICE_PBRT_NONE};
     if (w->scene->place_count == 0)
         return true;
+    w->step_nodes = malloc(most * sizeof *w->step_nodes);
+    if (!w->step_nodes) {
+        fprintf(stderr, "out of memory\n");
+        return false;
+    }
     /* A box around one box is the same box. */
     if (w->scene->node_count == 1)
         return world_resolve(w, all);

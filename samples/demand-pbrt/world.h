@@ -8,8 +8,15 @@
 #include "surfaces.h"
 #include "top_tree.h"
 
-enum world_box { BOX_SCENE, BOX_FREE_SHAPE, BOX_INSTANCE, BOX_INSTANCE_SHAPE, BOX_GROUP };
-#define WORLD_BOX_KINDS 5
+enum world_box {
+    BOX_SCENE,
+    BOX_FREE_SHAPE,
+    BOX_INSTANCE,
+    BOX_INSTANCE_SHAPE,
+    BOX_GROUP,
+    BOX_CLUSTER
+};
+#define WORLD_BOX_KINDS 6
 
 /** A shape in the world. */
 struct place {
@@ -47,6 +54,9 @@ struct world {
     /* Since the beginning. */
     uint64_t entered_count;  ///< shapes whose box a ray entered: those that were placed
     uint64_t resolved_count; ///< boxes that became what is in them
+    uint32_t *step_nodes;    ///< owned; room for what a box of clusters becomes
+    uint64_t resolved_nodes; ///< ... that were instances or shapes of no object
+    uint64_t most_added;     ///< boxes, by resolving one
     uint64_t created[WORLD_BOX_KINDS];
     uint64_t peak_size; ///< bytes of meshes
     double top_seconds, resolve_seconds;

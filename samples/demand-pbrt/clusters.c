@@ -1,0 +1,54 @@
+#include "clusters.h"
+
+#include <stdlib.h>
+
+bool clusters_create(const struct box_tree_box *boxes, const uint32_t *keys, uint32_t count,
+                     uint32_t size, struct clusters *c)
+{
+    *c = (struct clusters){.size = size};
+    if (!box_tree_build(boxes, count, size, &c->tree))
+        return false;
+    if (count == 0)
+        return true;
+    for (uint32_t i = 0; i < count; i++)
+        c->tree.order[i] = keys[c->tree.order[i]];
+    /* There was room for leaves of one box each. */
+    void *fitting = realloc(c->tree.nodes, c->tree.node_count * sizeof *c->tree.nodes);
+    if (fitting)
+        c->tree.nodes = fitting;
+    return true;
+}
+
+void clusters_finish(struct clusters *c)
+{
+    box_tree_finish(&c->tree);
+    *c = (struct clusters){0};
+}
+
+void clusters_open(const struct clusters *c, uint32_t node, struct cluster_step *step)
+{
+    const struct box_tree_node *nodes = c->tree.nodes;
+    const uint32_t most = CLUSTERS_FAN * c->size;
+    step->keys = NULL;
+    if (nodes[node].count > 0) {
+        step->keys = c->tree.order + nodes[node].first;
+        step->count = nodes[node].count;
+        return;
+    }
+    step->nodes[0] = node;
+    step->count = 1;
+    /* Breadth first: the next node becomes its two children, one in its place. */
+    for (uint32_t at = 0, end = 1; at < step->count && step->count < most;) {
+        const struct box_tree_node *parent = &nodes[step->nodes[at]];
+        if (parent->count == 0) {
+            step->nodes[at] = parent->first;
+            step->nodes[step->count++] = parent->first + 1;
+        }
+        at++;
+        if (at == end) { /* a level is done: go on with the next one, from the beginning */
+            const bool grew = step->count > end;
+            end = step->count;
+            at = grew ? 0 : step->count;
+        }
+    }
+}
