@@ -47,10 +47,18 @@ static void write_vector(const float m[12], float x, float y, float z, float out
     transform_vector(m, v, out);
 }
 
-void camera_constants(const struct scene *scene, const uint32_t size[2], struct PbrtLaunch *c)
+void camera_matrix(const struct scene *scene, const struct camera_view *view, float matrix[12])
+{
+    memcpy(matrix, scene->info.cameraToWorld, sizeof scene->info.cameraToWorld);
+    if (view->given)
+        camera_look_at(view, scene->info.cameraToWorld, matrix);
+}
+
+void camera_constants(const struct scene *scene, const float m[12], const uint32_t size[2],
+                      struct PbrtLaunch *c)
 {
     const SluicePbrtSceneInfo *info = &scene->info;
-    const float *m = info->cameraToWorld, *crop = info->cropWindow;
+    const float *crop = info->cropWindow;
     const bool perspective = info->cameraKind == SLUICE_PBRT_CAMERA_PERSPECTIVE;
     const float scale =
         perspective ? tanf(0.5f * info->fieldOfView * 3.14159265358979f / 180.0f) : 1.0f;

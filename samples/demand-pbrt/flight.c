@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../../tools/common/text.h"
+#include "camera.h"
 #include "summary.h"
 
 /* Meshes whose structures are built in one submission. */
@@ -28,17 +29,14 @@ static void turn(float v[2], double c, double s)
 }
 
 /** The axis that is up is the one of y and z that is more upright in the picture. */
-static void place_camera(const struct launches *l, const struct PbrtLaunch *last, double share,
-                         struct PbrtLaunch *constants)
+static void orbit(const struct launches *l, const struct PbrtLaunch *last, double share,
+                  struct PbrtLaunch *constants)
 {
     const SluicePbrtBounds *box = &l->scene->box;
     const double c = cos(share * 6.283185307179586), s = sin(share * 6.283185307179586);
     float *const vectors[] = {constants->eye, constants->corner, constants->right, constants->down,
                               constants->forward};
     float middle[3];
-    *constants = *last;
-    if (share >= 1.0)
-        return;
     const int up = fabsf(last->down[1]) > fabsf(last->down[2]) ? 1 : 2;
     for (int i = 0; i < 3; i++)
         middle[i] = 0.5f * (box->least[i] + box->most[i]);
@@ -53,6 +51,26 @@ static void place_camera(const struct launches *l, const struct PbrtLaunch *last
     }
     for (int i = 0; i < 3; i++)
         constants->eye[i] += middle[i];
+}
+
+/** At the end `constants` are those of the picture. */
+static void place_camera(const struct launches *l, const struct PbrtLaunch *last, double share,
+                         struct PbrtLaunch *constants)
+{
+    const struct pbrt_options *o = l->options;
+    const uint32_t size[2] = {l->film->width, l->film->height};
+    float from[12], to[12], between[12];
+    *constants = *last;
+    if (share >= 1.0)
+        return;
+    if (!o->fly_from.given) {
+        orbit(l, last, share, constants);
+        return;
+    }
+    camera_matrix(l->scene, &o->fly_from, from);
+    camera_matrix(l->scene, &o->camera, to);
+    camera_between(from, to, (float)share, between);
+    camera_constants(l->scene, between, size, constants);
 }
 
 /** Pictures are opened by other threads. Those that are open tell what their formats mean. */

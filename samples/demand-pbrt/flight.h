@@ -15,10 +15,10 @@ struct flight {
 };
 
 /**
- * Flies once around the vertical axis through the middle of the scene, and ends at the scene's
- * camera. Each frame resolves what the last one asked for, the nearest first, until its time is
- * spent, and traces all pixels once. Afterwards everything is ready for launches_run. Says on
- * stderr why it failed.
+ * Flies once around the vertical axis through the middle of the scene, or from --fly-from, and ends
+ * at the camera of the picture. Each frame resolves what the last one asked for, the nearest first,
+ * until its time is spent, and traces all pixels once. Afterwards everything is ready for
+ * launches_run. Says on stderr why it failed.
  */
 bool flight_run(struct launches *launches, struct flight *flight);
 void flight_finish(struct flight *flight);

@@ -169,7 +169,9 @@ static bool open_all(struct renderer *r)
         !picture_create(size[0], size[1], &r->picture) ||
         !tracing_create(&r->gpu, r->loader, &r->tracing))
         return false;
-    camera_constants(&r->scene, size, c);
+    float camera[12];
+    camera_matrix(&r->scene, &o->camera, camera);
+    camera_constants(&r->scene, camera, size, c);
     memcpy(c->background, o->background, sizeof c->background);
     c->mode = (uint32_t)o->mode;
     c->bounces = o->bounces;

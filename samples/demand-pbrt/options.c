@@ -41,6 +41,41 @@ static bool parse_pixel(const char *text, void *value)
     return sscanf(text, "%5u/%5u%n", &pixel[0], &pixel[1], &end) == 2 && text[end] == '\0';
 }
 
+static bool is_straight(const float a[3], const float b[3])
+{
+    float longest = 0.0f;
+    for (int i = 0; i < 3; i++)
+        longest = fmaxf(longest, fabsf(a[i] * b[(i + 1) % 3] - a[(i + 1) % 3] * b[i]));
+    return !(longest > 0.0f);
+}
+
+/** "x/y/z/x/y/z" or "x/y/z/x/y/z/x/y/z": eye, point, up. */
+static bool parse_view(const char *text, void *value)
+{
+    struct camera_view *view = value;
+    float *const numbers[] = {view->eye, view->look, view->up};
+    int count = 0, end = 0;
+    for (; count < 9; count++) {
+        float *number = &numbers[count / 3][count % 3];
+        if (sscanf(text, "%f%n", number, &end) != 1 || !isfinite(*number))
+            return false;
+        text += end;
+        if (*text != '/')
+            break;
+        text++;
+    }
+    view->given = true;
+    view->has_up = count == 8;
+    float way[3];
+    bool moves = false;
+    for (int i = 0; i < 3; i++) {
+        way[i] = view->look[i] - view->eye[i];
+        moves = moves || way[i] != 0.0f;
+    }
+    return *text == '\0' && (count == 5 || count == 8) && moves &&
+           !(view->has_up && is_straight(way, view->up));
+}
+
 static bool check(const struct option_table *table, const struct pbrt_options *o)
 {
     if (!o->scene && !o->list_devices)
@@ -53,6 +88,8 @@ static bool check(const struct option_table *table, const struct pbrt_options *o
         return options_refuse(table, "--preload and --preload-shapes: give one of them");
     if (o->frame_budget > 0 && o->fly == 0)
         return options_refuse(table, "--frame-budget: is for --fly");
+    if (o->fly_from.given && o->fly == 0)
+        return options_refuse(table, "--fly-from: is for --fly");
     return true;
 }
 
@@ -74,6 +111,10 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
         {OPTION_UINT, "samples", "N", "1", &o->samples, "rays per pixel; the first is its center",
          1, 65536},
         {OPTION_UINT, "depth", "N", "3", &o->bounces, "bounces of paths", 0, PBRT_MAX_BOUNCES},
+        {OPTION_CUSTOM, "camera", "EYE/POINT[/UP]", "(that of the scene)", &o->camera,
+         "where the camera is, what it looks at, and which way is up: three numbers each, as in "
+         "0/-5/2/0/0/0",
+         .parse = parse_view},
         {OPTION_FLAG, "face-forward", .value = &o->face_forward,
          .help = "turn normals to the viewer in mode primary"},
         {OPTION_REAL, "exposure", "STOPS", "0", &o->exposure, "of PNG pictures", -16, 16},
@@ -87,12 +128,18 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          .help = "keep the structures of meshes as they were built, to compare with"},
         {OPTION_UINT, "fly", "FRAMES", "0", &o->fly,
          "fly once around the scene first, and tell how long frames took", 0, 1000000},
+        {OPTION_CUSTOM, "fly-from", "EYE/POINT[/UP]", "(around the scene)", &o->fly_from,
+         "fly from this camera to that of the picture instead", .parse = parse_view},
         {OPTION_REAL, "frame-budget", "MS", "0", &o->frame_budget,
          "time of a frame of --fly: when it is spent, boxes and materials that are asked for wait; "
          "0: no limit",
          0, 100000},
         {OPTION_CHOICE, "proxy-granularity", "fine|coarse", "fine", &o->granularity,
          "fine: each shape of an instance has a box; coarse: those that are alike have one"},
+        {OPTION_UINT, "cluster-size", "N", "1024", &o->cluster_size,
+         "instances and shapes that one box becomes, at most; boxes of more become boxes of "
+         "clusters",
+         2, 1000000},
         {OPTION_CHOICE, "path", "auto|pipeline|compute", "auto", &o->path,
          "how rays find what they hit: by the device's ray-tracing pipeline or by a compute "
          "shader, which is slower; auto: the pipeline where there is one"},
@@ -136,10 +183,6 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          "trace the complete picture N more times, and tell the best rate", 0, 10000},
         option_json(&o->json),
     };
-        {OPTION_UINT, "cluster-size", "N", "1024", &o->cluster_size,
-         "instances and shapes that one box becomes, at most; boxes of more become boxes of "
-         "clusters",
-         2, 1000000},
     const struct option_table table = {"demand-pbrt", usage, notes, options,
                                        sizeof options / sizeof *options};
     enum option_outcome outcome = options_parse(&table, argc, argv);

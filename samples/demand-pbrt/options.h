@@ -3,6 +3,7 @@
 #define DEMAND_PBRT_OPTIONS_H
 
 #include "../../tools/common/option_table.h"
+#include "camera_path.h"
 
 enum path_choice { PATH_AUTO, PATH_PIPELINE, PATH_COMPUTE };
 
@@ -24,11 +25,12 @@ struct pbrt_options {
     uint32_t warmup;   ///< UINT32_MAX: until nothing is missing
     uint32_t launches; ///< most
     uint32_t repeat;
+    struct camera_view camera, fly_from;
     uint32_t fly;        ///< frames; 0: none
     double frame_budget; ///< ms; 0: no limit
+    uint32_t cluster_size;
     uint32_t anisotropy;
     uint32_t threads;
-    uint32_t cluster_size;
     double exposure;
     int mode;        ///< PBRT_MODE_...
     int granularity; ///< 0: fine

@@ -58,6 +58,9 @@ render clusters --fly 20 --cluster-size 64
 check boxes_added_most 'v > 8 && v <= 256'
 render flat --cluster-size 4096
 check boxes_added_most 'v == 2001'
+# From another camera to that of the picture.
+render path --fly 8 --fly-from 0/-300/60/0/0/0/0/0/1
+check frames 'v == 8'
 # Less time than a launch takes: one box in a frame.
 render bounded --fly 20 --frame-budget 0.01
 check frames 'v == 20'
@@ -71,7 +74,8 @@ status=0
     head -n 5 "$folder/silent.log" >&2
 }
 
-for options in "--frame-budget 16" "--preload --preload-shapes" "--preload-shapes --budget 1M"; do
+for options in "--frame-budget 16" "--preload --preload-shapes" "--preload-shapes --budget 1M" "--fly-from 0/0/0/1/0/0" \
+    "--camera 0/0/0" "--camera 1/2/3/1/2/3" "--camera 0/0/0/0/0/2/0/0/1" "--camera 0/0/0/1/0/nan" "--cluster-size 1"; do
     status=0
     # shellcheck disable=SC2086
     "$program" "$folder/set/scene.pbrt" --file "$folder/no.png" $options >/dev/null 2>&1 || status=$?

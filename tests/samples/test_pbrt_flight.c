@@ -1,0 +1,186 @@
+/* Parts of demand-pbrt's flights that need no device: clusters and cameras. */
+#include "../../samples/demand-pbrt/camera_path.h"
+#include "../../samples/demand-pbrt/clusters.h"
+
+#include "support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST 5000u
+
+static uint32_t next(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return *state >> 8;
+}
+
+static void fill(struct box_tree_box *boxes, uint32_t *keys, uint32_t count, uint32_t seed)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        keys[i] = 3 * i + 7;
+        for (int axis = 0; axis < 3; axis++) {
+            boxes[i].low[axis] = (float)(next(&seed) % 1000);
+            boxes[i].high[axis] = boxes[i].low[axis] + 1.0f;
+        }
+    }
+}
+
+struct opening {
+    const struct clusters *clusters;
+    uint8_t seen[MOST];
+    uint32_t steps, most, deepest;
+};
+
+/** As resolving every box would. */
+static void open_all(struct opening *o, uint32_t node, uint32_t depth)
+{
+    struct cluster_step step = {
+        .nodes = malloc((CLUSTERS_FAN * (size_t)o->clusters->size + 1) * sizeof *step.nodes)};
+    assert_non_null(step.nodes);
+    clusters_open(o->clusters, node, &step);
+    o->steps++;
+    o->most = step.count > o->most ? step.count : o->most;
+    o->deepest = depth > o->deepest ? depth : o->deepest;
+    for (uint32_t i = 0; i < step.count; i++)
+        if (step.keys)
+            o->seen[(step.keys[i] - 7) / 3]++;
+        else
+            open_all(o, step.nodes[i], depth + 1);
+    free(step.nodes);
+}
+
+static void each_step_is_bounded_and_everything_comes_once(void **state)
+{
+    (void)state;
+    static const uint32_t counts[] = {2, 33, 300, MOST}, sizes[] = {1, 8, 32, 400};
+    static struct box_tree_box boxes[MOST];
+    static uint32_t keys[MOST];
+    for (size_t c = 0; c < 4; c++)
+        for (size_t s = 0; s < 4; s++) {
+            struct clusters clusters;
+            static struct opening o;
+            fill(boxes, keys, counts[c], 11);
+            assert_true(clusters_create(boxes, keys, counts[c], sizes[s], &clusters));
+            o = (struct opening){.clusters = &clusters};
+            open_all(&o, 0, 1);
+            assert_true(o.most <= CLUSTERS_FAN * sizes[s]);
+            for (uint32_t i = 0; i < counts[c]; i++)
+                assert_int_equal(o.seen[i], 1);
+            clusters_finish(&clusters);
+        }
+}
+
+/* Clusters of 64 out of 5000 are fewer than 256: their boxes come in one step. */
+static void the_way_to_a_cluster_is_short(void **state)
+{
+    (void)state;
+    static struct box_tree_box boxes[MOST];
+    static uint32_t keys[MOST];
+    static struct opening o;
+    struct clusters clusters;
+    fill(boxes, keys, MOST, 5);
+    assert_true(clusters_create(boxes, keys, MOST, 64, &clusters));
+    o = (struct opening){.clusters = &clusters};
+    open_all(&o, 0, 1);
+    assert_int_equal(o.deepest, 2);
+    assert_int_equal(o.steps, 1 + (clusters.tree.node_count + 1) / 2);
+    clusters_finish(&clusters);
+}
+
+/* pbrt's own: the camera at the origin looks along z, y is up. */
+static const float plain[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+static void assert_matrix(const float m[12], const float expected[12])
+{
+    for (int i = 0; i < 12; i++)
+        assert_true(fabsf(m[i] - expected[i]) < 1e-5f);
+}
+
+/* pbrt's LookAt: x is up cross forward, so from the south x is east. */
+static void cameras_look_at_points_as_those_of_pbrt(void **state)
+{
+    (void)state;
+    const struct camera_view south = {
+        .eye = {0, -5, 0}, .look = {0, 3, 0}, .up = {0, 1, 2}, .given = true, .has_up = true};
+    const float expected[12] = {-1, 0, 0, 0, 0, 0, 1, -5, 0, 1, 0, 0};
+    float m[12];
+    camera_look_at(&south, plain, m);
+    assert_matrix(m, expected);
+}
+
+static void cameras_keep_mirrors_and_units_of_the_scene(void **state)
+{
+    (void)state;
+    const float like[12] = {-2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0};
+    const struct camera_view view = {.eye = {1, 2, 3}, .look = {1, 2, 9}, .given = true};
+    const float expected[12] = {-2, 0, 0, 1, 0, 2, 0, 2, 0, 0, 2, 3};
+    float m[12];
+    camera_look_at(&view, like, m);
+    assert_matrix(m, expected);
+}
+
+static void looking_straight_up_gives_right_angles(void **state)
+{
+    (void)state;
+    const struct camera_view view = {.look = {0, 7, 0}, .given = true};
+    float m[12];
+    camera_look_at(&view, plain, m);
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+            const float product = m[a] * m[b] + m[4 + a] * m[4 + b] + m[8 + a] * m[8 + b];
+            assert_true(fabsf(product - (a == b ? 1.0f : 0.0f)) < 1e-5f);
+        }
+}
+
+/** Turned around y by an angle, at x = 4 share. */
+static void turned(double angle, float x, float m[12])
+{
+    const float c = (float)cos(angle), s = (float)sin(angle);
+    const float matrix[12] = {c, 0, s, x, 0, 1, 0, 0, -s, 0, c, 0};
+    memcpy(m, matrix, sizeof matrix);
+}
+
+static void the_way_between_cameras_turns_evenly(void **state)
+{
+    (void)state;
+    static const double angles[] = {0.001, 0.7, 2.0, 3.1, -2.5};
+    for (size_t i = 0; i < sizeof angles / sizeof *angles; i++)
+        for (int step = 0; step <= 8; step++) {
+            float from[12], to[12], m[12], expected[12];
+            turned(0.3, 0.0f, from);
+            turned(0.3 + angles[i], 4.0f, to);
+            turned(0.3 + angles[i] * step / 8, 0.5f * (float)step, expected);
+            camera_between(from, to, (float)step / 8, m);
+            assert_matrix(m, expected);
+        }
+}
+
+/* Each of the four components of the quaternion is the largest one in a turn. */
+static void half_turns_end_where_they_should(void **state)
+{
+    (void)state;
+    for (int axis = 0; axis < 3; axis++)
+        for (int mirror = 0; mirror < 2; mirror++) {
+            float to[12] = {0}, m[12];
+            for (int i = 0; i < 3; i++)
+                to[5 * i] = (i == axis ? 1.0f : -1.0f) * (mirror && i == 0 ? -1.0f : 1.0f);
+            camera_between(plain, to, 1.0f, m);
+            assert_matrix(m, to);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_step_is_bounded_and_everything_comes_once),
+        cmocka_unit_test(the_way_to_a_cluster_is_short),
+        cmocka_unit_test(cameras_look_at_points_as_those_of_pbrt),
+        cmocka_unit_test(cameras_keep_mirrors_and_units_of_the_scene),
+        cmocka_unit_test(looking_straight_up_gives_right_angles),
+        cmocka_unit_test(the_way_between_cameras_turns_evenly),
+        cmocka_unit_test(half_turns_end_where_they_should),
+    };
+    return RUN_TESTS(tests);
+}
