@@ -4,7 +4,7 @@
  * an image by vkCmdCopyBufferToImage (docs/producers.md).
  *
  * Values are clamped to 0..1 and encoded as they are: encode sRGB before. They must be finite.
- * BC7 has blocks of modes 5 and 6. docs/producers.md has the quality.
+ * BC7 has blocks of modes 1, 4, 5 and 6. docs/producers.md has the quality.
  */
 #ifndef SLUICE_ENCODE_BLOCKS_GLSL
 #define SLUICE_ENCODE_BLOCKS_GLSL
@@ -14,18 +14,21 @@ struct SluiceBlockLine {
     vec4 end[2];
 };
 
-/* The line through the mean along the axis of largest variance. `mask`: 0 in channels to ignore. */
-SluiceBlockLine sluiceFitBlockLine(vec4 texels[16], vec4 mask)
+/* The line through the mean of the texels of `members` along the axis of their largest variance. `mask`: 0 in
+ * channels to ignore. */
+SluiceBlockLine sluiceFitPartOfBlock(vec4 texels[16], uint members, vec4 mask)
 {
     vec4 mean = vec4(0), low = vec4(1), high = vec4(0);
-    for (int i = 0; i < 16; i++) {
-        mean += texels[i] / 16;
-        low = min(low, texels[i]);
-        high = max(high, texels[i]);
-    }
+    float count = float(bitCount(members));
+    for (int i = 0; i < 16; i++)
+        if ((members >> i & 1u) != 0u) {
+            mean += texels[i] / count;
+            low = min(low, texels[i]);
+            high = max(high, texels[i]);
+        }
     mat4 covariance = mat4(0);
     for (int i = 0; i < 16; i++) {
-        vec4 d = (texels[i] - mean) * mask;
+        vec4 d = (members >> i & 1u) != 0u ? (texels[i] - mean) * mask : vec4(0);
         covariance += outerProduct(d, d);
     }
     /* The row of the channel that varies most: it is not perpendicular to the axis. */
@@ -45,12 +48,18 @@ SluiceBlockLine sluiceFitBlockLine(vec4 texels[16], vec4 mask)
     if (square > 0) {
         axis *= inversesqrt(square);
         for (int i = 0; i < 16; i++) {
-            float t = dot(texels[i] - mean, axis);
+            float t = (members >> i & 1u) != 0u ? dot(texels[i] - mean, axis) : 0;
             first = min(first, t);
             last = max(last, t);
         }
     }
     return SluiceBlockLine(vec4[2](clamp(mean + axis * first, 0, 1), clamp(mean + axis * last, 0, 1)));
+}
+
+/* The line of all texels. */
+SluiceBlockLine sluiceFitBlockLine(vec4 texels[16], vec4 mask)
+{
+    return sluiceFitPartOfBlock(texels, 0xFFFFu, mask);
 }
 
 /* Where the texel is nearest to the line: 0..1. */
@@ -61,18 +70,18 @@ float sluicePlaceOnLine(SluiceBlockLine line, vec4 texel, vec4 mask)
     return square > 0 ? clamp(dot(texel - line.end[0], d) / square, 0, 1) : 0;
 }
 
-/* The ends that fit the texels best if texel i has weight w[i]. */
-SluiceBlockLine sluiceRefitBlockLine(SluiceBlockLine line, vec4 texels[16], float w[16])
+/* The ends that fit the texels of `members` best if texel i has weight w[i]. */
+SluiceBlockLine sluiceRefitPartOfBlock(SluiceBlockLine line, vec4 texels[16], uint members, float w[16])
 {
     float aa = 0, ab = 0, bb = 0;
     vec4 a = vec4(0), b = vec4(0);
     for (int i = 0; i < 16; i++) {
-        float v = 1 - w[i];
+        float own = float(members >> i & 1u), v = own * (1 - w[i]), u = own * w[i];
         aa += v * v;
-        ab += v * w[i];
-        bb += w[i] * w[i];
+        ab += v * u;
+        bb += u * u;
         a += v * texels[i];
-        b += w[i] * texels[i];
+        b += u * texels[i];
     }
     float determinant = aa * bb - ab * ab;
     if (determinant > 1e-4) {
@@ -80,6 +89,12 @@ SluiceBlockLine sluiceRefitBlockLine(SluiceBlockLine line, vec4 texels[16], floa
         line.end[1] = clamp((aa * b - ab * a) / determinant, 0, 1);
     }
     return line;
+}
+
+/* The ends that fit all texels best. */
+SluiceBlockLine sluiceRefitBlockLine(SluiceBlockLine line, vec4 texels[16], float w[16])
+{
+    return sluiceRefitPartOfBlock(line, texels, 0xFFFFu, w);
 }
 
 /* --- BC1 --- */
