@@ -22,6 +22,9 @@ layout(std430, binding = 3) writeonly buffer Output { uint words[]; } stored;
 #include "sluice/neural.glsl"
 
 shared vec4 texels[SLUICE_NEURAL_GROUP * SLUICE_NEURAL_GROUP];
+/* Of BC7, by block and candidate. */
+shared float errors[SLUICE_NEURAL_GROUP * SLUICE_NEURAL_GROUP];
+shared uvec4 blocks[SLUICE_NEURAL_GROUP * SLUICE_NEURAL_GROUP];
 
 float fromLinear(float value, uint space)
 {
@@ -47,32 +50,63 @@ vec4 decodeTexel(uvec2 at)
     return color;
 }
 
-void storeBlock(uint number)
+/* The texels of one of the workgroup's four blocks. */
+void loadBlock(uint number, out vec4 colors[16])
 {
     uvec2 first = uvec2(number & 1u, number >> 1u) * 4u;
+    for (uint i = 0u; i < 16u; i++)
+        colors[i] = texels[(first.y + i / 4u) * SLUICE_NEURAL_GROUP + first.x + i % 4u];
+}
+
+void storeBlock(uint number, uint words, uvec4 made)
+{
     uvec2 block = gl_WorkGroupID.xy * 2u + uvec2(number & 1u, number >> 1u);
     if (any(greaterThanEqual(4u * block, uvec2(tile.width, tile.height))))
         return;
-    vec4 colors[16];
-    float red[16], green[16];
-    for (uint i = 0u; i < 16u; i++) {
-        colors[i] = texels[(first.y + i / 4u) * SLUICE_NEURAL_GROUP + first.x + i % 4u];
-        red[i] = colors[i].r;
-        green[i] = colors[i].g;
-    }
-    uvec4 made = uvec4(0u);
-    uint words = 4u;
-    if (tile.store == SLUICE_NEURAL_STORE_BC7) {
-        made = sluiceEncodeBc7(colors);
-    } else if (tile.store == SLUICE_NEURAL_STORE_BC5) {
-        made = sluiceEncodeBc5(red, green);
-    } else {
-        words = 2u;
-        made.xy = tile.store == SLUICE_NEURAL_STORE_BC4 ? sluiceEncodeBc4(red) : sluiceEncodeBc1(colors);
-    }
     uint at = tile.word + block.y * tile.pitch + block.x * words;
     for (uint i = 0u; i < words; i++)
         stored.words[at + i] = made[i];
+}
+
+/* One invocation per block. */
+void encodeBlock(uint number)
+{
+    vec4 colors[16];
+    float red[16], green[16];
+    loadBlock(number, colors);
+    for (uint i = 0u; i < 16u; i++) {
+        red[i] = colors[i].r;
+        green[i] = colors[i].g;
+    }
+    if (tile.store == SLUICE_NEURAL_STORE_BC5)
+        storeBlock(number, 4u, sluiceEncodeBc5(red, green));
+    else if (tile.store == SLUICE_NEURAL_STORE_BC4)
+        storeBlock(number, 2u, uvec4(sluiceEncodeBc4(red), 0u, 0u));
+    else
+        storeBlock(number, 2u, uvec4(sluiceEncodeBc1(colors), 0u, 0u));
+}
+
+/* 16 invocations per block: each tries another way to encode it. */
+void encodeBc7()
+{
+    uint number = gl_LocalInvocationIndex / 16u, candidate = gl_LocalInvocationIndex % 16u;
+    float error = 1e9;
+    if (candidate < SLUICE_BC7_CANDIDATES) {
+        vec4 colors[16];
+        loadBlock(number, colors);
+        SluiceBc7Candidate tried = sluiceTryBc7(colors, candidate);
+        error = tried.error;
+        blocks[gl_LocalInvocationIndex] = tried.block;
+    }
+    errors[gl_LocalInvocationIndex] = error;
+    barrier();
+    if (candidate != 0u)
+        return;
+    uint best = gl_LocalInvocationIndex;
+    for (uint i = 1u; i < SLUICE_BC7_CANDIDATES; i++)
+        if (errors[gl_LocalInvocationIndex + i] < errors[best])
+            best = gl_LocalInvocationIndex + i;
+    storeBlock(number, 4u, blocks[best]);
 }
 
 void main()
@@ -88,6 +122,8 @@ void main()
     }
     texels[gl_LocalInvocationIndex] = color;
     barrier();
-    if (gl_LocalInvocationIndex < 4u)
-        storeBlock(gl_LocalInvocationIndex);
+    if (tile.store == SLUICE_NEURAL_STORE_BC7)
+        encodeBc7();
+    else if (gl_LocalInvocationIndex < 4u)
+        encodeBlock(gl_LocalInvocationIndex);
 }

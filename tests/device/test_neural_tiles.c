@@ -171,13 +171,14 @@ static void blocks_are_near_to_them(void **state)
     } formats[] = {{SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, 3, 35.0},
                    {SLUICE_FORMAT_BC4_UNORM_BLOCK, 1, 38.5},
                    {SLUICE_FORMAT_BC5_UNORM_BLOCK, 2, 40.5},
-                   {SLUICE_FORMAT_BC7_UNORM_BLOCK, 4, 22.5}};
+                   {SLUICE_FORMAT_BC7_UNORM_BLOCK, 4, 36.4}};
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
         struct rig rig;
         if (!rig_init(&rig, *state, SMALL, formats[i].format, 0, formats[i].channels))
             SKIP_TEST("the sample is not there");
         struct fetch f = compare(&rig);
         double psnr = -10 * log10(f.squares / f.texel_count);
+        print_message("# format %d: %.2f dB\n", (int)formats[i].format, psnr);
         if (!(psnr >= formats[i].least))
             fail_msg("format %d: %.2f dB", (int)formats[i].format, psnr);
         rig_finish(&rig);
