@@ -39,17 +39,14 @@ static SluiceVulkanNeuralDecoderCreateInfo decoder_info(const struct rig *rig,
                                                  .weightSize = rig->decodable.weight_size};
 }
 
-/* False if there is no sample. */
-static bool open_set(struct rig *rig, const char *sample)
+static void open_set(struct rig *rig, const char *sample)
 {
     char path[512];
     *rig = (struct rig){.info = {.structSize = sizeof rig->info}};
-    if (!find_neural_sample(sample, path, sizeof path))
-        return false;
+    assert_true(find_neural_sample(sample, path, sizeof path));
     rig->set = open_neural_sample(path);
     CHECK_OK(sluiceGetNeuralSetInfo(rig->set, &rig->info));
     read_decodable(rig->set, NULL, SLUICE_NEURAL_WEIGHTS_INT8, &rig->decodable);
-    return true;
 }
 
 static void close_set(struct rig *rig)
@@ -58,20 +55,23 @@ static void close_set(struct rig *rig)
     sluiceDestroyNeuralSet(rig->set);
 }
 
-/* Values are stored as the network gives them. Of LARGE one corner is looked at. */
-static bool rig_init(struct rig *rig, struct harness *h, const char *sample, SluiceFormat format,
-                     uint32_t first, uint32_t count)
+static void rig_init(struct rig *rig, struct harness *h, const char *sample)
 {
-    static const struct scene_aim corner = {0.87, 0.65, 0.12, 0.34, 0, 1, 0, 0};
-    const SluiceTileProducer *producer;
-    if (!open_set(rig, sample))
-        return false;
-    scene_init(
-        &rig->scene, h,
-        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo)});
+    open_set(rig, sample);
     SluiceVulkanNeuralDecoderCreateInfo info = decoder_info(rig, h->context);
     info.scratchSize = 65536; /* a tile, or a few levels of the mip tail */
     CHECK_OK(sluiceCreateVulkanNeuralDecoder(&info, &rig->decoder));
+}
+
+/* Values are stored as the network gives them. Of LARGE one corner is looked at. */
+static void show(struct rig *rig, struct harness *h, SluiceFormat format, uint32_t first,
+                 uint32_t count)
+{
+    static const struct scene_aim corner = {0.87, 0.65, 0.12, 0.34, 0, 1, 0, 0};
+    const SluiceTileProducer *producer;
+    scene_init(
+        &rig->scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo)});
     rig->output = (SluiceVulkanNeuralOutput){.structSize = sizeof rig->output,
                                              .format = format,
                                              .firstChannel = first,
@@ -80,14 +80,18 @@ static bool rig_init(struct rig *rig, struct harness *h, const char *sample, Slu
     rig->texture = scene_add_produced(&rig->scene, producer);
     scene_aim(&rig->scene, rig->texture, 64, &corner);
     scene_settle(&rig->scene, 60);
-    return true;
 }
 
-static void rig_finish(struct rig *rig)
+/* The decoder is not used any more. */
+static void hide(struct rig *rig)
 {
     struct harness *h = rig->scene.h;
     scene_finish(&rig->scene);
     CHECK_OK(h->DeviceWaitIdle(h->device) == VK_SUCCESS ? SLUICE_SUCCESS : SLUICE_ERROR_VULKAN);
+}
+
+static void rig_finish(struct rig *rig)
+{
     sluiceDestroyVulkanNeuralDecoder(rig->decoder);
     close_set(rig);
 }
@@ -154,11 +158,12 @@ static struct fetch compare(struct rig *rig)
 static void texels_are_those_of_the_decoder_in_C(void **state)
 {
     struct rig rig;
-    if (!rig_init(&rig, *state, LARGE, SLUICE_FORMAT_R8G8B8A8_UNORM, 1, 3))
-        SKIP_TEST("the sample is not there");
+    rig_init(&rig, *state, LARGE);
+    show(&rig, *state, SLUICE_FORMAT_R8G8B8A8_UNORM, 1, 3);
     struct fetch f = compare(&rig);
     if (!(f.texel_count > 30000 && f.worst <= 0.5 / 255 + 1e-6))
         fail_msg("%u values, the worst is off by %.9g", f.texel_count, f.worst);
+    hide(&rig);
     rig_finish(&rig);
 }
 
@@ -172,17 +177,18 @@ static void blocks_are_near_to_them(void **state)
                    {SLUICE_FORMAT_BC4_UNORM_BLOCK, 1, 38.5},
                    {SLUICE_FORMAT_BC5_UNORM_BLOCK, 2, 40.5},
                    {SLUICE_FORMAT_BC7_UNORM_BLOCK, 4, 36.4}};
+    struct rig rig;
+    rig_init(&rig, *state, SMALL);
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
-        struct rig rig;
-        if (!rig_init(&rig, *state, SMALL, formats[i].format, 0, formats[i].channels))
-            SKIP_TEST("the sample is not there");
+        show(&rig, *state, formats[i].format, 0, formats[i].channels);
         struct fetch f = compare(&rig);
         double psnr = -10 * log10(f.squares / f.texel_count);
         print_message("# format %d: %.2f dB\n", (int)formats[i].format, psnr);
         if (!(psnr >= formats[i].least))
             fail_msg("format %d: %.2f dB", (int)formats[i].format, psnr);
-        rig_finish(&rig);
+        hide(&rig);
     }
+    rig_finish(&rig);
 }
 
 static void wrong_decoders_are_refused(void **state)
@@ -190,8 +196,7 @@ static void wrong_decoders_are_refused(void **state)
     struct harness *h = *state;
     struct rig rig;
     SluiceVulkanNeuralDecoder *decoder = NULL;
-    if (!open_set(&rig, SMALL))
-        SKIP_TEST("the sample is not there");
+    open_set(&rig, SMALL);
     SluiceVulkanNeuralDecoderCreateInfo info = decoder_info(&rig, h->context), wrong;
     h->quiet = true;
     wrong = info;
@@ -223,8 +228,7 @@ static void constants_that_contradict_themselves_are_refused(void **state)
     struct harness *h = *state;
     struct rig rig;
     SluiceVulkanNeuralDecoder *decoder = NULL;
-    if (!open_set(&rig, SMALL))
-        SKIP_TEST("the sample is not there");
+    open_set(&rig, SMALL);
     enum { LATENTS = 1 << 20 };
     void *latents = calloc(1, LATENTS);
     assert_non_null(latents);
@@ -262,8 +266,7 @@ static void buffers_beyond_the_range_of_the_device_are_refused(void **state)
     const uint32_t most = properties.limits.maxStorageBufferRange;
     if (most >= 256u << 20)
         SKIP_TEST("the largest scratch buffer is within the device's range");
-    if (!open_set(&rig, SMALL))
-        SKIP_TEST("the sample is not there");
+    open_set(&rig, SMALL);
     SluiceVulkanNeuralDecoderCreateInfo info = decoder_info(&rig, h->context);
     info.scratchSize = most + 1ull;
     h->quiet = true;
@@ -280,8 +283,7 @@ static void wrong_outputs_are_refused(void **state)
     struct harness *h = *state;
     struct rig rig;
     const SluiceTileProducer *producer = NULL;
-    if (!open_set(&rig, SMALL))
-        SKIP_TEST("the sample is not there");
+    open_set(&rig, SMALL);
     SluiceVulkanNeuralDecoderCreateInfo info = decoder_info(&rig, h->context);
     CHECK_OK(sluiceCreateVulkanNeuralDecoder(&info, &rig.decoder));
     SluiceVulkanNeuralOutput output = {
@@ -313,8 +315,7 @@ static void every_refused_allocation_is_survived(void **state)
     struct rig rig;
     SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     uint32_t allowed = 0;
-    if (!open_set(&rig, SMALL))
-        SKIP_TEST("the sample is not there");
+    open_set(&rig, SMALL);
     for (; result != SLUICE_SUCCESS; allowed++) {
         struct failing_allocator allocator;
         const SluiceTileProducer *producer = NULL;
@@ -340,7 +341,9 @@ static void every_refused_allocation_is_survived(void **state)
 int main(void)
 {
     struct harness h;
-    int status = harness_init(&h);
+    int status = need_neural_samples((const char *const[]){SMALL, LARGE, NULL});
+    if (status == 0)
+        status = harness_init(&h);
     if (status)
         return status;
     struct CMUnitTest tests[] = {

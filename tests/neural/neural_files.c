@@ -27,6 +27,18 @@ bool find_neural_sample(const char *name, char *path, size_t size)
     return file != NULL;
 }
 
+int need_neural_samples(const char *const *names)
+{
+    char path[512];
+    for (; *names; names++)
+        if (!find_neural_sample(*names, path, sizeof path)) {
+            printf("1..0 # SKIP %s is not there; SLUICE_TEST_DATA says where the data folder is\n",
+                   path);
+            return 77;
+        }
+    return 0;
+}
+
 SluiceNeuralSet *open_neural_sample(const char *path)
 {
     SluiceNeuralSetCreateInfo info = {.structSize = sizeof info, .pPath = path};
