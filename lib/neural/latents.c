@@ -30,48 +30,34 @@ static SluiceResult check_request(const SluiceNeuralSet *set, const SluiceNeural
     return SLUICE_SUCCESS;
 }
 
-/* Rows of one part of a grid. Compressed ones are inflated together. */
+/* Rows of one part of a grid. One row is in memory, however many the file claims to have. */
 struct rows {
-    const SluiceNeuralSet *set;
-    const struct slc_neural_view *view;
+    struct slc_neural_view_reader reader;
     uint8_t *bytes;
     size_t size;
-    uint64_t begin; ///< byte of the view that `bytes` begins with; compressed views
 };
 
-/* `begin_bit` of the first row to `end_bit` of the last one; `row_bits` of one row. */
+/* `row_bits`: of the widest row. */
 static SluiceResult open_rows(struct rows *rows, const SluiceNeuralSet *set,
-                              const struct slc_neural_view *view, uint64_t begin_bit,
-                              uint64_t end_bit, uint64_t row_bits)
+                              const struct slc_neural_view *view, uint64_t row_bits)
 {
-    *rows = (struct rows){.set = set, .view = view, .begin = begin_bit / 8};
-    rows->size = view->is_compressed ? (size_t)((end_bit + 7) / 8 - rows->begin)
-                                     : (size_t)(row_bits / 8 + 2);
-    rows->bytes = slc_alloc(&set->allocator, rows->size, 1);
-    if (!rows->bytes)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    return view->is_compressed
-               ? slc_neural_read_view_part(set, view, rows->begin, rows->size, rows->bytes)
-               : SLUICE_SUCCESS;
+    SluiceResult result = slc_neural_open_view(set, view, &rows->reader);
+    rows->size = (size_t)(row_bits / 8 + 2);
+    rows->bytes = result == SLUICE_SUCCESS ? slc_alloc(&set->allocator, rows->size, 1) : NULL;
+    return result == SLUICE_SUCCESS && !rows->bytes ? SLUICE_ERROR_OUT_OF_HOST_MEMORY : result;
 }
 
-/* `*bytes` holds bits from `bit` on; the first one is bit `bit` mod 8 of the first byte. */
-static SluiceResult read_row(const struct rows *rows, uint64_t bit, uint64_t count,
-                             const uint8_t **bytes)
+/* `rows->bytes` gets bits from `bit` on; the first one is bit `bit` mod 8 of the first byte. */
+static SluiceResult read_row(struct rows *rows, uint64_t bit, uint64_t count)
 {
     uint64_t first = bit / 8, end = (bit + count + 7) / 8;
-    if (rows->view->is_compressed) {
-        *bytes = rows->bytes + (first - rows->begin);
-        return SLUICE_SUCCESS;
-    }
-    *bytes = rows->bytes;
-    return slc_neural_read_view_part(rows->set, rows->view, first, (size_t)(end - first),
-                                     rows->bytes);
+    return slc_neural_read_view_part(&rows->reader, first, (size_t)(end - first), rows->bytes);
 }
 
 static void close_rows(struct rows *rows)
 {
-    slc_free(&rows->set->allocator, rows->bytes, rows->size, 1);
+    slc_free(&rows->reader.set->allocator, rows->bytes, rows->size, 1);
+    slc_neural_close_view(&rows->reader);
 }
 
 /* Copies `count` bits, a multiple of 4, from `from` bits behind `in` to `to` bits behind `out`. */
@@ -103,15 +89,12 @@ static SluiceResult copy_block_1(const SluiceNeuralSet *set, const struct block 
     uint64_t bits = b->grid->features * b->grid->bits, pitch = b->grid->width * bits;
     uint64_t begin = b->top * pitch + b->left * bits;
     struct rows rows;
-    const uint8_t *row;
-    SluiceResult result =
-        open_rows(&rows, set, &b->grid->parts[0], begin,
-                  begin + (b->height - 1) * pitch + b->width * bits, b->width * bits);
+    SluiceResult result = open_rows(&rows, set, &b->grid->parts[0], b->width * bits);
     for (uint32_t y = 0; y < b->height && result == SLUICE_SUCCESS; y++) {
         uint64_t bit = begin + y * pitch;
-        result = read_row(&rows, bit, b->width * bits, &row);
+        result = read_row(&rows, bit, b->width * bits);
         if (result == SLUICE_SUCCESS)
-            copy_bits(out, ((uint64_t)(b->to_y + y) * b->slice_width + b->to_x) * bits, row,
+            copy_bits(out, ((uint64_t)(b->to_y + y) * b->slice_width + b->to_x) * bits, rows.bytes,
                       (uint32_t)(bit % 8), b->width * bits);
     }
     close_rows(&rows);
@@ -125,16 +108,13 @@ static SluiceResult copy_layer(const SluiceNeuralSet *set, const struct block *b
     uint64_t pitch = 16 * (uint64_t)b->grid->width, begin = b->top * pitch + 16 * (uint64_t)b->left;
     uint32_t layers = b->grid->part_count;
     struct rows rows;
-    const uint8_t *row;
-    SluiceResult result =
-        open_rows(&rows, set, &b->grid->parts[layer], begin,
-                  begin + (b->height - 1) * pitch + 16 * (uint64_t)b->width, 16 * b->width);
+    SluiceResult result = open_rows(&rows, set, &b->grid->parts[layer], 16 * (uint64_t)b->width);
     for (uint32_t y = 0; y < b->height && result == SLUICE_SUCCESS; y++) {
         uint8_t *texel =
             out + 2 * (((size_t)(b->to_y + y) * b->slice_width + b->to_x) * layers + layer);
-        result = read_row(&rows, begin + y * pitch, 16 * (uint64_t)b->width, &row);
+        result = read_row(&rows, begin + y * pitch, 16 * (uint64_t)b->width);
         for (uint32_t x = 0; x < b->width && result == SLUICE_SUCCESS; x++, texel += 2 * layers)
-            memcpy(texel, row + 2 * (size_t)x, 2);
+            memcpy(texel, rows.bytes + 2 * (size_t)x, 2);
     }
     close_rows(&rows);
     return result;
@@ -148,16 +128,25 @@ static SluiceResult copy_block_3(const SluiceNeuralSet *set, const struct block 
     return result;
 }
 
-/* The first read of a grid that is compressed or read as a whole compares its checksums. */
-static SluiceResult verify_grid(const SluiceNeuralSet *set, uint32_t grid, bool is_whole)
+static bool has_compressed_part(const struct slc_neural_grid *grid)
 {
+    for (uint32_t i = 0; i < grid->part_count; i++)
+        if (grid->parts[i].is_compressed)
+            return true;
+    return false;
+}
+
+/* The first read of a grid that is compressed or read as a whole compares its checksums. */
+static SluiceResult verify_grid(const SluiceNeuralSet *set, uint32_t index, bool is_whole)
+{
+    const struct slc_neural_grid *grid = &set->grids[index];
     SluiceResult result = SLUICE_SUCCESS;
-    if (atomic_load(&set->verified[grid]) || !(is_whole || set->grids[grid].parts[0].is_compressed))
+    if (atomic_load(&set->verified[index]) || !(is_whole || has_compressed_part(grid)))
         return result;
-    for (uint32_t i = 0; i < set->grids[grid].part_count && result == SLUICE_SUCCESS; i++)
-        result = slc_neural_verify_view(set, &set->grids[grid].parts[i]);
+    for (uint32_t i = 0; i < grid->part_count && result == SLUICE_SUCCESS; i++)
+        result = slc_neural_verify_view(set, &grid->parts[i]);
     if (result == SLUICE_SUCCESS)
-        atomic_store(&set->verified[grid], true);
+        atomic_store(&set->verified[index], true);
     return result;
 }
 

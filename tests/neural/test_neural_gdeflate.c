@@ -1,7 +1,9 @@
-/* GDeflate against an encoder that writes the same bits the long way round. */
+/* GDeflate against an encoder that writes the same bits the long way round, alone and in sets. */
 #include "base/little_endian.h"
 #include "neural/gdeflate.h"
+#include "neural/made_file.h"
 #include "neural/neural_files.h"
+#include "neural/neural_set.h"
 #include "support/failing_allocator.h"
 #include "support/roll.h"
 #include "support/test.h"
@@ -278,11 +280,153 @@ static void damaged_streams_end(void **state)
     free(stream);
 }
 
+/* Appends a part of a grid as a stream of stored blocks, and lets the set read that. */
+static void compress_part(struct slc_neural_view *view, struct made_file *file)
+{
+    const uint64_t size = view->stored_size;
+    const uint32_t count = (uint32_t)((size + SLC_GDEFLATE_TILE - 1) / SLC_GDEFLATE_TILE);
+    file->bytes = realloc(file->bytes, file->size + 2 * (size_t)size + 4096);
+    assert_non_null(file->bytes);
+    uint8_t *begin = file->bytes + file->size, *table = begin + 8, *tiles = table + 4 * count,
+            *to = tiles;
+    memcpy(begin, (uint8_t[4]){4, 0xFB, (uint8_t)count, (uint8_t)(count >> 8)}, 4);
+    slc_put_u32(begin + 4, 1 | (uint32_t)(size % SLC_GDEFLATE_TILE) << 2);
+    for (uint32_t t = 0; t < count; t++) {
+        const uint64_t left = size - (uint64_t)t * SLC_GDEFLATE_TILE;
+        const uint32_t part = (uint32_t)(left < SLC_GDEFLATE_TILE ? left : SLC_GDEFLATE_TILE);
+        const uint8_t *from = file->bytes + view->offset + (size_t)t * SLC_GDEFLATE_TILE;
+        struct encoder *e = new_encoder();
+        begin_block(e, false, 0);
+        put_stored(e, from, part / 2);
+        begin_block(e, true, 0);
+        put_stored(e, from + part / 2, part - part / 2);
+        slc_put_u32(table + 4 * t, (uint32_t)(to - tiles));
+        to += finish(e, to);
+    }
+    *view = (struct slc_neural_view){.offset = file->size,
+                                     .stored_size = (uint64_t)(to - begin),
+                                     .size = size,
+                                     .is_compressed = true,
+                                     .crc = view->crc};
+    file->size += view->stored_size;
+}
+
+/* The largest allocation since it was zeroed. */
+static void *allocate_noting(void *user, size_t size, size_t alignment)
+{
+    size_t *largest = user;
+    *largest = size > *largest ? size : *largest;
+    (void)alignment;
+    return malloc(size);
+}
+
+static void free_noting(void *user, void *memory, size_t size)
+{
+    (void)user, (void)size;
+    free(memory);
+}
+
+/* A set whose latents take a tile per 512 rows of texels and part; part 1 of each grid is
+ * compressed. */
+struct compressed {
+    struct made_file file;
+    SluiceNeuralSet *set, *plain;
+    size_t largest;
+};
+
+static void open_compressed(struct compressed *c, uint32_t height)
+{
+    const struct made_shape shape = {3, 1024, height, 4, 8, 0, 0, 0, SLUICE_NEURAL_NETWORK_SCHEMA3};
+    struct made_parts parts;
+    const SluiceAllocationCallbacks noting = {&c->largest, allocate_noting, free_noting};
+    *c = (struct compressed){0};
+    make_parts(&parts, &shape, 5);
+    CHECK_OK(write_made_file(&parts, &c->file));
+    free_made_parts(&parts);
+    CHECK_OK(open_neural_bytes(c->file.bytes, c->file.size, &noting, &c->set));
+    for (uint32_t g = 0; g < c->set->grid_count; g++)
+        compress_part(&c->set->grids[g].parts[1], &c->file);
+    c->set->file.input.pBytes = c->file.bytes;
+    c->set->file.size = c->set->file.input.size = c->file.size;
+    CHECK_OK(open_neural_bytes(c->file.bytes, c->file.size, NULL, &c->plain));
+}
+
+static void close_compressed(struct compressed *c)
+{
+    sluiceDestroyNeuralSet(c->set);
+    sluiceDestroyNeuralSet(c->plain);
+    free(c->file.bytes);
+}
+
+static void slices_of_compressed_latents_are_those_of_plain_ones(void **state)
+{
+    /* all, a column, a rectangle that ends at the edge */
+    static const SluiceNeuralRequest requests[] = {
+        {0, 0, 0, 0, 0, 0},
+        {.x = 500, .width = 8, .height = 1024},
+        {.x = 900, .y = 700, .width = 124, .height = 324}};
+    struct compressed c;
+    (void)state;
+    open_compressed(&c, 1024);
+    assert_true(c.set->grids[0].parts[1].size > SLC_GDEFLATE_TILE);
+    for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
+        SluiceNeuralConstants constants;
+        uint64_t size = 0;
+        CHECK_OK(sluiceReadNeuralLatents(c.plain, &requests[i], &constants, &size, NULL));
+        uint8_t *plain = malloc(size), *got = malloc(size);
+        assert_true(plain && got);
+        CHECK_OK(sluiceReadNeuralLatents(c.plain, &requests[i], &constants, &size, plain));
+        CHECK_OK(sluiceReadNeuralLatents(c.set, &requests[i], &constants, &size, got));
+        assert_memory_equal(plain, got, size);
+        free(plain);
+        free(got);
+    }
+    close_compressed(&c);
+}
+
+static void columns_of_compressed_latents_take_memory_of_a_tile(void **state)
+{
+    const SluiceNeuralRequest column = {.x = 500, .width = 8, .height = 4096};
+    struct compressed c;
+    SluiceNeuralConstants constants;
+    uint64_t size = 1 << 20;
+    uint8_t *bytes = malloc(size);
+    (void)state;
+    assert_non_null(bytes);
+    open_compressed(&c, 4096);
+    c.largest = 0;
+    assert_true(c.set->grids[0].parts[1].size > 6 * SLC_GDEFLATE_TILE);
+    CHECK_OK(sluiceReadNeuralLatents(c.set, &column, &constants, &size, bytes));
+    assert_in_range(c.largest, SLC_GDEFLATE_TILE, 3 * SLC_GDEFLATE_TILE);
+    free(bytes);
+    close_compressed(&c);
+}
+
+static void checksums_are_compared_where_any_part_is_compressed(void **state)
+{
+    const SluiceNeuralRequest request = {.x = 16, .y = 16, .width = 8, .height = 8};
+    struct compressed c;
+    SluiceNeuralConstants constants;
+    uint64_t size = 1 << 20;
+    uint8_t *bytes = malloc(size);
+    (void)state;
+    assert_non_null(bytes);
+    open_compressed(&c, 1024);
+    c.set->grids[0].parts[1].crc ^= 1;
+    CHECK_RESULT(sluiceReadNeuralLatents(c.set, &request, &constants, &size, bytes),
+                 SLUICE_ERROR_CORRUPT_DATA);
+    free(bytes);
+    close_compressed(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiles_of_all_kinds_of_blocks_inflate),
         cmocka_unit_test(damaged_streams_end),
+        cmocka_unit_test(slices_of_compressed_latents_are_those_of_plain_ones),
+        cmocka_unit_test(columns_of_compressed_latents_take_memory_of_a_tile),
+        cmocka_unit_test(checksums_are_compared_where_any_part_is_compressed),
     };
     return RUN_TESTS(tests);
 }
