@@ -379,8 +379,18 @@ bool world_fetch(struct world *w, struct scene_node node)
     return kind != BOX_INSTANCE || fetch_single(w, node.instance);
 }
 
+/* The mesh that the last launch built may be one too many. It stayed for that launch. */
+static bool return_to_budget(struct world *w, uint32_t launch)
+{
+    bool fits;
+    return w->budget == 0 || w->meshes.size <= w->budget ||
+           (budget_make_room(w, launch, &fits) && world_evict(w));
+}
+
 bool world_build_meshes(struct world *w, uint32_t launch)
 {
+    if (!return_to_budget(w, launch))
+        return false;
     const uint32_t count = w->to_build_count;
     if (count == 0)
         return true;
