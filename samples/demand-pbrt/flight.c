@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../../tools/common/text.h"
+#include "budget.h"
 #include "camera.h"
 #include "summary.h"
 
@@ -98,7 +99,7 @@ static bool make_surface(struct launches *l, uint32_t surface)
 {
     struct surfaces *s = l->surfaces;
     const uint32_t first = s->picture_count;
-    if (!surfaces_realize(l->gpu, l->scene, l->textures, s, surface))
+    if (!surfaces_realize(l->gpu, l->scene, l->textures, s, surface, l->count + 1))
         return false;
     for (uint32_t i = first; i < s->picture_count; i++)
         if (!check(sluicePreloadDemandTexture(l->loader, s->pictures[i].use->id, UINT32_MAX,
@@ -111,11 +112,13 @@ static bool make_surface(struct launches *l, uint32_t surface)
 static bool serve_surfaces(struct launches *l, struct flight *f)
 {
     const struct proxy_requests *r = &l->requests;
-    for (uint32_t i = 0; i < r->surface_count; i++) {
+    bool fits = true;
+    for (uint32_t i = 0; i < r->surface_count && fits; i++) {
         if ((!frame_budget_has_time(&f->budget) && i > 0) ||
             l->surfaces->picture_count >= MOST_PICTURES)
             break;
-        if (!proxies_take_surface(l->proxies, r, i) || !make_surface(l, r->surfaces[i]))
+        if (!make_surface(l, r->surfaces[i]) ||
+            !budget_make_surface_room(l->world, l->surfaces, l->count + 1, &fits))
             return false;
     }
     return true;

@@ -6,6 +6,7 @@
 
 #include "../../tools/common/clock.h"
 #include "../../tools/common/text.h"
+#include "budget.h"
 
 /* Launches in a row that complete no pixel and make nothing: more will not help. */
 #define MOST_VAIN_LAUNCHES 200u
@@ -201,9 +202,14 @@ static bool open_pictures(struct launches *l)
 
 static bool realize(struct launches *l, const uint32_t *which, uint32_t count)
 {
+    const uint32_t launch = l->count + 1;
+    bool fits = true;
     surfaces_begin(l->surfaces);
-    for (uint32_t i = 0; i < count; i++)
-        if (!surfaces_realize(l->gpu, l->scene, l->textures, l->surfaces, which[i]))
+    if (!budget_make_surface_room(l->world, l->surfaces, launch, &fits))
+        return false;
+    for (uint32_t i = 0; i < count && fits; i++)
+        if (!surfaces_realize(l->gpu, l->scene, l->textures, l->surfaces, which[i], launch) ||
+            !budget_make_surface_room(l->world, l->surfaces, launch, &fits))
             return false;
     return l->surfaces->picture_count == 0 || open_pictures(l);
 }
@@ -221,8 +227,7 @@ static bool serve(struct launches *l, bool *made)
     for (uint32_t i = 0; i < l->requests.node_count; i++)
         if (!world_resolve(l->world, l->requests.nodes[i]))
             return false;
-    return l->requests.surface_count == 0 ||
-           realize(l, l->requests.surfaces, l->requests.surface_count);
+    return realize(l, l->requests.surfaces, l->requests.surface_count);
 }
 
 static void count_memory(struct launches *l)
@@ -261,6 +266,20 @@ bool launches_trace(struct launches *l, uint32_t sample, SluiceDemandTicket *tic
     return !l->after_launch || l->after_launch(l->user_data);
 }
 
+/** Of those that there are. */
+static bool grow_budgets(struct launches *l)
+{
+    uint64_t *meshes = &l->world->budget, *materials = &l->surfaces->budget;
+    if (*meshes == 0 && *materials == 0)
+        return false;
+    *meshes *= 2;
+    *materials *= 2;
+    text_say("one path needs more than the budgets hold; they are %llu KiB of meshes, %llu KiB of "
+             "materials now, 0 being no limit",
+             (unsigned long long)(*meshes >> 10), (unsigned long long)(*materials >> 10));
+    return true;
+}
+
 static bool trace_sample(struct launches *l, uint32_t sample, uint32_t most)
 {
     uint32_t vain = 0, least = UINT32_MAX, stuck = 0;
@@ -276,12 +295,8 @@ static bool trace_sample(struct launches *l, uint32_t sample, uint32_t most)
         vain = progress || made ? 0 : vain + 1;
         stuck = l->film->missing_count < least ? 0 : stuck + 1;
         least = l->film->missing_count < least ? l->film->missing_count : least;
-        if (stuck == STUCK_LAUNCHES && l->world->budget > 0) {
-            l->world->budget *= 2;
+        if (stuck == STUCK_LAUNCHES && grow_budgets(l))
             stuck = 0;
-            text_say("one ray enters more than --budget holds; it is %llu KiB now",
-                     (unsigned long long)(l->world->budget >> 10));
-        }
     }
     if (vain == MOST_VAIN_LAUNCHES)
         fprintf(stderr, "%u launches in a row made nothing\n", vain);
@@ -333,7 +348,7 @@ bool launches_preload(struct launches *l)
 {
     surfaces_begin(l->surfaces);
     for (uint32_t i = 0; i < l->scene->info.materialCount + l->scene->info.textureCount; i++)
-        if (!surfaces_realize(l->gpu, l->scene, l->textures, l->surfaces, i))
+        if (!surfaces_realize(l->gpu, l->scene, l->textures, l->surfaces, i, l->count + 1))
             return false;
     for (uint32_t i = 0; i < l->textures->use_count; i++) {
         SluiceDemandTicket ticket;

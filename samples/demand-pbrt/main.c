@@ -131,6 +131,7 @@ static bool create_world(struct renderer *r)
                       o->granularity == 1, o->threads, &r->world))
         return false;
     r->world.budget = o->budget;
+    r->surfaces.budget = o->material_budget;
     r->world.meshes.uncompacted = o->uncompacted;
     r->world.meshes.says_what_it_reads = o->verbose_loading;
     r->surfaces.says_what_it_makes = o->verbose_loading;

@@ -82,6 +82,8 @@ static bool check(const struct option_table *table, const struct pbrt_options *o
         return options_refuse(table, "a scene is missing");
     if (o->texture_budget > 0 && o->texture_budget < 4u << 20)
         return options_refuse(table, "--texture-budget: wants 4M at least, or 0");
+    if (o->preload && o->material_budget > 0)
+        return options_refuse(table, "--preload and --material-budget: give one of them");
     if ((o->preload || o->preload_shapes) && o->budget > 0)
         return options_refuse(table, "--preload and --budget: give one of them");
     if (o->preload && o->preload_shapes)
@@ -154,6 +156,10 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
         {OPTION_UINT, "launches", "MAX", "1000", &o->launches, "most launches", 1, 10000000},
         option_budget(&o->budget, "most device memory for meshes; those that rays have not hit for "
                                   "longest become boxes again; 0: no limit"),
+        {OPTION_BYTES, "material-budget", "SIZE", "0", &o->material_budget,
+         "most device memory for what materials compute, without texels; those that rays have not "
+         "hit for longest are asked for again; 0: no limit",
+         0, 1099511627776.0},
         {OPTION_BYTES, "texture-budget", "SIZE", "0", &o->texture_budget,
          "most device memory for tiles, 4M or more; 0: half of the device's", 0, 1099511627776.0},
         {OPTION_UINT, "anisotropy", "N", "8", &o->anisotropy, "of textures, at most", 1, 64},

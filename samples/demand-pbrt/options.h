@@ -32,10 +32,11 @@ struct pbrt_options {
     uint32_t anisotropy;
     uint32_t threads;
     double exposure;
-    int mode;        ///< PBRT_MODE_...
-    int granularity; ///< 0: fine
-    int path;        ///< enum path_choice
-    uint64_t budget; ///< bytes of geometry; 0: no limit
+    int mode;                 ///< PBRT_MODE_...
+    int granularity;          ///< 0: fine
+    int path;                 ///< enum path_choice
+    uint64_t budget;          ///< bytes of geometry; 0: no limit
+    uint64_t material_budget; ///< bytes of ops; 0: no limit
     uint64_t texture_budget;
     bool face_forward, oneshot_geometry, oneshot_material, sort_proxies, verbose_loading;
     bool preload, preload_shapes, uncompacted, json, validation, list_devices;

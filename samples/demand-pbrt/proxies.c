@@ -167,11 +167,8 @@ static bool take_surfaces(struct proxies *p, const struct proxy_order *order,
     count = order->one_surface && count > 1 ? 1 : count;
     if (!reserve((void **)&r->surfaces, &r->surface_room, count, sizeof *r->surfaces))
         return false;
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < count; i++)
         r->surfaces[i] = (uint32_t)p->ids[i];
-        if (!check(sluiceRemoveProxy(p->surfaces, p->ids[i]), "a material"))
-            return false;
-    }
     r->surface_count = count;
     return check(sluiceClearProxyRequests(p->surfaces, SLUICE_ALL_PROXIES), "requests");
 }
@@ -181,35 +178,21 @@ bool proxies_take(struct proxies *p, const struct proxy_order *order, struct pro
     return take_nodes(p, order, r) && take_surfaces(p, order, r);
 }
 
-/** Of one set, into `ids`. */
-static bool copy_ids(struct proxies *p, SluiceProxyId **ids, uint32_t *room, uint32_t count)
-{
-    if (!reserve((void **)ids, room, count + 1, sizeof **ids))
-        return false;
-    if (count > 0) /* p->ids is NULL until there is one */
-        memcpy(*ids, p->ids, count * sizeof **ids);
-    return true;
-}
-
 bool proxies_list(struct proxies *p, const float eye[3], struct proxy_requests *r)
 {
     SluiceProxyListInfo info = {.structSize = sizeof info, .order = SLUICE_PROXY_ORDER_DISTANCE};
     memcpy(info.point, eye, sizeof info.point);
     if (!list(p, p->boxes, p->box_resource, &info, MOST_LISTED, &r->node_count) ||
-        !copy_ids(p, &r->ids, &r->id_room, r->node_count) ||
+        !reserve((void **)&r->ids, &r->id_room, r->node_count, sizeof *r->ids) ||
         !reserve((void **)&r->nodes, &r->node_room, r->node_count, sizeof *r->nodes))
         return false;
-    for (uint32_t i = 0; i < r->node_count; i++)
+    for (uint32_t i = 0; i < r->node_count; i++) {
+        r->ids[i] = p->ids[i];
         r->nodes[i] = p->nodes[(uint32_t)r->ids[i]];
-    info.order = SLUICE_PROXY_ORDER_INDEX;
-    if (!list(p, p->surfaces, p->surface_resource, &info, UINT32_MAX, &r->surface_count) ||
-        !copy_ids(p, &r->surface_ids, &r->surface_id_room, r->surface_count) ||
-        !reserve((void **)&r->surfaces, &r->surface_room, r->surface_count, sizeof *r->surfaces))
-        return false;
-    for (uint32_t i = 0; i < r->surface_count; i++)
-        r->surfaces[i] = (uint32_t)r->surface_ids[i];
+    }
+    const struct proxy_order all = {0};
     return check(sluiceClearProxyRequests(p->boxes, SLUICE_ALL_PROXIES), "requests") &&
-           check(sluiceClearProxyRequests(p->surfaces, SLUICE_ALL_PROXIES), "requests");
+           take_surfaces(p, &all, r);
 }
 
 bool proxies_take_node(struct proxies *p, const struct proxy_requests *r, uint32_t number)
@@ -218,15 +201,9 @@ bool proxies_take_node(struct proxies *p, const struct proxy_requests *r, uint32
     return check(sluiceRemoveProxy(p->boxes, r->ids[number]), "a box");
 }
 
-bool proxies_take_surface(struct proxies *p, const struct proxy_requests *r, uint32_t number)
-{
-    return check(sluiceRemoveProxy(p->surfaces, r->surface_ids[number]), "a material");
-}
-
 void proxy_requests_finish(struct proxy_requests *r)
 {
     free(r->ids);
-    free(r->surface_ids);
     free(r->nodes);
     free(r->surfaces);
     *r = (struct proxy_requests){0};

@@ -9,12 +9,12 @@
 
 /** What launches asked for. */
 struct proxy_requests {
-    struct scene_node *nodes;         ///< owned
-    uint32_t *surfaces;               ///< owned
-    SluiceProxyId *ids, *surface_ids; ///< owned; of proxies_list
+    struct scene_node *nodes; ///< owned
+    uint32_t *surfaces;       ///< owned
+    SluiceProxyId *ids;       ///< owned; of the nodes of proxies_list
     uint32_t node_count, node_room;
     uint32_t surface_count, surface_room;
-    uint32_t id_room, surface_id_room;
+    uint32_t id_room;
 };
 
 /** Zeroed is empty. */
@@ -55,17 +55,16 @@ struct proxy_order {
     bool one_node, one_surface; ///< what else is asked for is asked for again
 };
 
-/** Gets what processed launches asked for, and removes it. Says on stderr why it failed. */
+/** Gets what processed launches asked for, and removes the boxes. Surfaces stay, so that rays ask
+ *  again for those that are not made, or no more. Says on stderr why it failed. */
 bool proxies_take(struct proxies *proxies, const struct proxy_order *order,
                   struct proxy_requests *requests);
 /** Lists what processed launches asked for, boxes nearest to `eye` first. All of it stays, and what
- *  is not taken with the two functions below is asked for again. */
+ *  is not taken with the function below, or made, is asked for again. */
 bool proxies_list(struct proxies *proxies, const float eye[3], struct proxy_requests *requests);
 /** Removes the box of a listed node: the number is that in the list. */
 bool proxies_take_node(struct proxies *proxies, const struct proxy_requests *requests,
                        uint32_t number);
-bool proxies_take_surface(struct proxies *proxies, const struct proxy_requests *requests,
-                          uint32_t number);
 void proxy_requests_finish(struct proxy_requests *requests);
 
 /** Builds the structure of the boxes if they have changed. Without boxes there is none. */

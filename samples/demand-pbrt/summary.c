@@ -73,6 +73,8 @@ bool summary_print(const struct summary *s, bool json)
         {"triangles_built", "", (double)w->meshes.triangle_count},
         {"materials", "", l->surfaces->material_count},
         {"materials_realized", "", (double)l->surfaces->material_realized_count},
+        {"materials_evicted", "with alphas", (double)l->surfaces->evicted_count},
+        {"material_bytes", "B", (double)surfaces_size(l->surfaces)},
         {"alphas_realized", "", (double)l->surfaces->alpha_realized_count},
         {"textures_opened", "", (double)d.texturesOpened},
         {"textures_failed", "", (double)d.texturesFailed},

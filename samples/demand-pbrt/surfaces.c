@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../../tools/common/text.h"
 #include "programs.h"
@@ -19,10 +20,11 @@ bool surfaces_create(const struct gpu *gpu, const struct scene *scene, struct su
                            .material_count = scene->info.materialCount,
                            .picture_room = PICTURE_ROOM};
     s->pictures = calloc(s->picture_room, sizeof *s->pictures);
-    if (!s->pictures)
+    s->made = calloc(count + 1u, sizeof *s->made);
+    if (!s->pictures || !s->made)
         fprintf(stderr, "out of memory\n");
-    return s->pictures && table_grow(gpu, &s->table, count + 1) && table_grow(gpu, &s->ops, 1) &&
-           table_grow(gpu, &s->wanted, count + 1);
+    return s->pictures && s->made && table_grow(gpu, &s->table, count + 1) &&
+           table_grow(gpu, &s->ops, 1) && table_grow(gpu, &s->wanted, count + 1);
 }
 
 void surfaces_finish(const struct gpu *gpu, struct surfaces *s)
@@ -33,6 +35,7 @@ void surfaces_finish(const struct gpu *gpu, struct surfaces *s)
         table_finish(gpu, &s->wanted);
     }
     free(s->pictures);
+    free(s->made);
     *s = (struct surfaces){0};
 }
 
@@ -85,9 +88,12 @@ static void tell(const struct scene *scene, const struct surfaces *s, uint32_t i
 }
 
 bool surfaces_realize(const struct gpu *gpu, const struct scene *scene, struct textures *textures,
-                      struct surfaces *s, uint32_t index)
+                      struct surfaces *s, uint32_t index, uint32_t launch)
 {
+    const uint32_t first = s->ops.count;
     const uint32_t wanted = *(const uint32_t *)table_at(&s->wanted, index);
+    if (((const struct PbrtSurface *)table_at(&s->table, index))->realized)
+        return true;
     const struct program program = {.gpu = gpu,
                                     .scene = scene,
                                     .textures = textures,
@@ -102,10 +108,68 @@ bool surfaces_realize(const struct gpu *gpu, const struct scene *scene, struct t
         return false;
     surface.realized = 1;
     *(struct PbrtSurface *)table_at(&s->table, index) = surface;
+    s->made[s->made_count++] =
+        (struct made_surface){index, first, s->ops.count - first, launch, launch, false};
     *(index < s->material_count ? &s->material_realized_count : &s->alpha_realized_count) += 1;
     if (s->says_what_it_makes)
         tell(scene, s, index);
     return true;
+}
+
+uint64_t surfaces_size(const struct surfaces *s)
+{
+    return (uint64_t)s->ops.count * s->ops.element;
+}
+
+/** Moves the ops of a surface toward the beginning. Targets and programs are places in the table.
+ */
+static void move_down(struct surfaces *s, const struct made_surface *made, uint32_t to)
+{
+    const uint32_t by = made->first_op - to;
+    memmove(table_at(&s->ops, to), table_at(&s->ops, made->first_op),
+            (size_t)made->op_count * s->ops.element);
+    for (uint32_t i = to; i < to + made->op_count; i++) {
+        struct PbrtOp *op = table_at(&s->ops, i);
+        op->target -= op->op == PBRT_OP_CHECKER || op->op == PBRT_OP_JUMP ? by : 0;
+    }
+    struct PbrtSurface *surface = table_at(&s->table, made->index);
+    uint32_t *const programs[] = {&surface->diffuse, &surface->specular, &surface->transmission};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        *programs[i] -= *programs[i] == PBRT_NONE ? 0 : by;
+}
+
+/** Pictures are listed in the order of their ops, too. */
+static void move_pictures(struct surfaces *s, const struct made_surface *made, uint32_t to,
+                          uint32_t *next)
+{
+    for (; *next < s->picture_count; *next += 1) {
+        uint32_t *op = &s->pictures[*next].op;
+        if (*op == PBRT_NONE)
+            continue;
+        if (*op >= made->first_op + made->op_count)
+            return;
+        *op = made->leaves ? PBRT_NONE : *op - (made->first_op - to);
+    }
+}
+
+void surfaces_evict(struct surfaces *s)
+{
+    uint32_t kept = 0, at = 0, picture = 0;
+    for (uint32_t i = 0; i < s->made_count; i++) {
+        struct made_surface made = s->made[i];
+        move_pictures(s, &made, at, &picture);
+        if (made.leaves) {
+            *(struct PbrtSurface *)table_at(&s->table, made.index) = (struct PbrtSurface){0};
+            s->evicted_count++;
+            continue;
+        }
+        move_down(s, &made, at);
+        made.first_op = at;
+        at += made.op_count;
+        s->made[kept++] = made;
+    }
+    s->made_count = kept;
+    s->ops.count = at;
 }
 
 static uint32_t encoding_flags(const struct picture_image *image, SluicePbrtEncoding encoding)
@@ -130,6 +194,8 @@ void surfaces_finish_pictures(struct surfaces *s)
 {
     for (uint32_t i = 0; i < s->picture_count; i++) {
         const struct wanted_picture *picture = &s->pictures[i];
+        if (picture->op == PBRT_NONE)
+            continue;
         struct PbrtOp *op = table_at(&s->ops, picture->op);
         if (op->op == PBRT_OP_IMAGE && op->texture == (uint32_t)picture->use->id)
             op->flags |= encoding_flags(picture->use->image, picture->encoding);
