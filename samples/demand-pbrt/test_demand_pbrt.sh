@@ -48,6 +48,7 @@ refuse x.pbrt --render-mode far
 refuse x.pbrt --debug 3
 refuse x.pbrt --path rays
 refuse x.pbrt --preload --budget 1M
+refuse x.pbrt --preload --material-budget 1M
 
 render() { # name, scene, options
     name=$1 scene=$2
@@ -226,6 +227,15 @@ equals wall
 check geometries_evicted 'v > 0'
 check geometry_bytes 'v <= 100 * 1024'
 
+# Memory for half of the materials and alphas that are seen.
+begin a_budget_of_materials_gives_the_same_picture
+render leaves-budget "$data/made/alpha/leaf-cards.pbrt" --material-budget 2K
+succeeds
+equals leaves
+check materials_evicted 'v > 0'
+check material_bytes 'v <= 2048'
+check textures_opened 'v == 6'
+
 # The dump has a line for each shape in the world; counts have the names of the OptiX Toolkit.
 begin coarse_boxes_give_the_same_picture
 render wood "$data/made/instances/wood.pbrt" --dump "$folder/wood.txt" --statistics "$folder/wood.json.txt"
@@ -248,10 +258,14 @@ check textures_opened 'v == 6'
 check geometries_built 'v == 6'
 scene wall-compute "$data/made/occlusion/wall.pbrt" --path compute --render-mode path
 never_says never-
-render wall-compute-budget "$data/made/occlusion/wall.pbrt" --path compute --render-mode path --budget 80K
+render wall-compute-budget "$data/made/occlusion/wall.pbrt" --path compute --render-mode path --budget 100K
 succeeds
 equals wall-compute
 check geometries_evicted 'v > 0'
+render leaves-compute-budget "$data/made/alpha/leaf-cards.pbrt" --path compute --material-budget 2K
+succeeds
+equals leaves-compute
+check materials_evicted 'v > 0'
 scene wood-compute "$data/made/instances/wood.pbrt" --path compute $validation
 check shapes_entered 'v < 1100'
 render wood-compute-coarse "$data/made/instances/wood.pbrt" --path compute --proxy-granularity coarse

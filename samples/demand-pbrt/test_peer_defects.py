@@ -224,6 +224,28 @@ def defect_20():
          p.log.count("picture ") == 1)
 
 
+def materials():
+    """The peer shares materials of equal numbers, whatever their pictures are."""
+    write_png("one.png", (255, 0, 0))
+    write_png("other.png", (0, 255, 0))
+    textures = "".join(f"Texture \"{name}\" \"color\" \"imagemap\" \"string filename\" \"{name}.png\"\n"
+                       for name in ("one", "other"))
+    row = textures + ("Texture \"fields\" \"color\" \"checkerboard\" \"rgb tex1\" [ 0 0 1 ] \"texture tex2\" \"one\"\n"
+                      "Scale .3 .3 .3\nTranslate -3 0 0\n")
+    for name in "one", "other", "one", "fields", "other":
+        row += f"Material \"matte\" \"texture Kd\" \"{name}\"\n" + SQUARE + "\nTranslate 2 0 0\n"
+    plain = Picture(row)
+    colors = [plain.at(x, 8) for x in (15, 13, 10)]
+    fact("materials are shared where all they refer to is equal",
+         colors[0][0] > 0.1 and colors[0][1] == 0 and colors[1][1] > 0.1 and colors[1][0] == 0 and
+         colors[2][0] > 0.1 and colors[2][1] == 0 and plain.figures["materials_realized"] == 3)
+    for path in "pipeline", "compute":
+        short = Picture(row, "--material-budget", "1K", "--path", path, "--samples", "2", "--budget", "1K")
+        whole = Picture(row, "--path", path, "--samples", "2")
+        fact(f"materials and meshes that leave for others come back the same, path {path}",
+             are_equal(short, whole) and short.figures["materials_evicted"] > 0 and short.figures["geometries_evicted"] > 0)
+
+
 def shapes_without_a_place():
     triangle = "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 ] \"point P\" [ {} ]\n"
     odd = "".join(triangle.format(points) for points in (
@@ -236,7 +258,7 @@ def shapes_without_a_place():
 shutil.rmtree(folder, ignore_errors=True)
 os.makedirs(folder)
 for test in (defect_6, defects_11_and_12, defect_13, defect_14, defect_15, defect_16, defect_17, defect_18, defect_19,
-             defect_20, shapes_without_a_place):
+             defect_20, materials, shapes_without_a_place):
     test()
 print(f"1..{number}")
 sys.exit(failed)
