@@ -1,0 +1,28 @@
+/** A lock that any number of readers, or one writer, can hold. */
+#ifndef SLC_PLATFORM_RW_LOCK_H
+#define SLC_PLATFORM_RW_LOCK_H
+
+#include <stdbool.h>
+
+/* Apart from thread.h: POSIX headers hide the type unless the source asks for POSIX. */
+#ifdef _WIN32
+typedef void *slc_native_rw_lock;
+#else
+#include <pthread.h>
+typedef pthread_rwlock_t slc_native_rw_lock;
+#endif
+
+struct slc_rw_lock {
+    slc_native_rw_lock native;
+};
+
+/** False for want of memory, which Linux and Windows never do. */
+bool slc_rw_lock_init(struct slc_rw_lock *lock);
+/** Nobody holds it. */
+void slc_rw_lock_finish(struct slc_rw_lock *lock);
+void slc_rw_lock_read(struct slc_rw_lock *lock);
+void slc_rw_lock_end_read(struct slc_rw_lock *lock);
+void slc_rw_lock_write(struct slc_rw_lock *lock);
+void slc_rw_lock_end_write(struct slc_rw_lock *lock);
+
+#endif /* SLC_PLATFORM_RW_LOCK_H */
