@@ -1,26 +1,21 @@
 #include "base/alloc.h"
 
 #include "base/checked.h"
+#include "platform/host_memory.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static void *default_allocate(void *user, size_t size, size_t alignment)
 {
     (void)user;
-    if (alignment <= _Alignof(max_align_t))
-        return malloc(size);
-    size_t rounded;
-    if (!slc_add_size(size, alignment - 1, &rounded))
-        return NULL;
-    return aligned_alloc(alignment, rounded & ~(alignment - 1));
+    return slc_host_allocate(size, alignment);
 }
 
 static void default_free(void *user, void *memory, size_t size)
 {
     (void)user;
     (void)size;
-    free(memory);
+    slc_host_free(memory);
 }
 
 SluiceAllocationCallbacks slc_allocator(const SluiceAllocationCallbacks *given)

@@ -1,19 +1,12 @@
-#define _DEFAULT_SOURCE /* flock */
-#define _FILE_OFFSET_BITS 64
-
 #include "base/part_file.h"
 
 #include "base/alloc.h"
 #include "base/log.h"
 #include "base/system.h"
+#include "platform/folder.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static SluiceResult fail(const struct slc_part_file *part, const char *path, const char *why)
 {
@@ -45,20 +38,20 @@ static SluiceResult fail_write(const struct slc_part_file *part, uint64_t offset
 static void close_descriptor(struct slc_part_file *part)
 {
     if (part->descriptor >= 0)
-        close(part->descriptor);
+        slc_file_close(part->descriptor);
     part->descriptor = -1;
 }
 
-static bool is_still_there(const struct slc_part_file *part, const struct stat *status)
+static bool is_still_there(const struct slc_part_file *part, const struct slc_file_status *status)
 {
-    struct stat named;
-    return lstat(part->path, &named) == 0 && named.st_dev == status->st_dev &&
-           named.st_ino == status->st_ino;
+    struct slc_file_status named;
+    return slc_path_get_link_status(part->path, &named) && named.device == status->device &&
+           named.inode == status->inode;
 }
 
 static SluiceResult lock(const struct slc_part_file *part)
 {
-    if (flock(part->descriptor, LOCK_EX | LOCK_NB) == 0)
+    if (slc_file_lock(part->descriptor))
         return SLUICE_SUCCESS;
     if (errno != EWOULDBLOCK)
         return fail_system(part, "lock");
@@ -69,54 +62,40 @@ static SluiceResult lock(const struct slc_part_file *part)
 /* `*is_gone`: what was opened was finished or removed by its writer before the lock was ours. */
 static SluiceResult check_part(struct slc_part_file *part, bool *is_gone)
 {
-    struct stat status;
-    if (fstat(part->descriptor, &status) != 0)
+    struct slc_file_status status;
+    if (!slc_file_get_status(part->descriptor, &status))
         return fail_system(part, "stat");
-    if (!S_ISREG(status.st_mode))
+    if (status.kind != SLC_NODE_FILE)
         return fail(part, part->path, "is there already and is no regular file");
     *is_gone = !is_still_there(part, &status);
     if (*is_gone)
         return SLUICE_ERROR_IO;
-    if (status.st_nlink != 1)
+    if (status.link_count != 1)
         return fail(part, part->path, "has hard links, whose contents would be lost; remove it");
-    part->size = (uint64_t)status.st_size;
+    part->size = status.size;
     return SLUICE_SUCCESS;
 }
 
 /* Private files stay private, also while they are written. */
-static mode_t wanted_mode(const struct slc_part_file *part, mode_t without_target)
+static uint32_t wanted_mode(const struct slc_part_file *part, uint32_t without_target)
 {
-    struct stat status;
-    bool is_there = lstat(part->target, &status) == 0 && S_ISREG(status.st_mode);
-    return is_there ? status.st_mode & 0777 : without_target;
+    struct slc_file_status status;
+    bool is_there = slc_path_get_link_status(part->target, &status) && status.kind == SLC_NODE_FILE;
+    return is_there ? status.permissions : without_target;
 }
 
-/* File systems without permissions refuse this call, and need not. 0: as the system's mask says. */
-static void set_mode(const struct slc_part_file *part, mode_t mode)
+/* 0: as the system's mask says. */
+static void set_mode(const struct slc_part_file *part, uint32_t mode)
 {
     if (mode != 0)
-        (void)!fchmod(part->descriptor, mode);
-}
-
-/* Never 0 to 2: a program that was started without its standard output prints to 1. */
-static int above_standard(int descriptor)
-{
-    if (descriptor < 0 || descriptor > STDERR_FILENO)
-        return descriptor;
-    int higher = fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-    int error = errno;
-    close(descriptor);
-    errno = error;
-    return higher;
+        slc_file_set_permissions(part->descriptor, mode);
 }
 
 /* A descriptor is left only after a success, so that nothing else is ever taken for ours. */
 static SluiceResult open_and_lock(struct slc_part_file *part, bool *is_gone)
 {
     *is_gone = false;
-    part->descriptor =
-        above_standard(open(part->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW,
-                            wanted_mode(part, 0666)));
+    part->descriptor = slc_file_create(part->path, wanted_mode(part, 0666));
     if (part->descriptor < 0 && errno == ELOOP)
         return fail(part, part->path, "is a symbolic link, which is not followed; remove it");
     if (part->descriptor < 0)
@@ -129,50 +108,38 @@ static SluiceResult open_and_lock(struct slc_part_file *part, bool *is_gone)
     return result;
 }
 
-/* While there is a path to cut off at the last slash. */
 static SluiceResult open_folder(struct slc_part_file *part)
 {
-    char *slash = strrchr(part->target, '/'), end = '\0';
-    if (slash) {
-        slash += slash == part->target; /* the root keeps its slash */
-        end = *slash;
-        *slash = '\0';
-    }
-    part->folder = open(slash ? part->target : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    char *name = part->target + (slc_path_name(part->target) - part->target), first = *name;
+    *name = '\0';
+    part->folder = slc_folder_open(name > part->target ? part->target : ".");
     int error = errno;
-    if (slash)
-        *slash = end;
+    *name = first;
     if (part->folder >= 0)
         return SLUICE_SUCCESS;
     errno = error;
     return fail_open(part, "open the folder");
 }
 
-static bool takes_a_stream(const struct stat *status)
-{
-    return S_ISCHR(status->st_mode) || S_ISFIFO(status->st_mode);
-}
-
 /* Root may write to files that are read-only: the mode says what their owner wants. */
-static bool is_read_only(const char *path, const struct stat *status)
+static bool is_read_only(const char *path, const struct slc_file_status *status)
 {
-    return (status->st_mode & 0222) == 0 ||
-           (faccessat(AT_FDCWD, path, W_OK, AT_EACCESS) != 0 && errno == EACCES);
+    return (status->permissions & 0222) == 0 || (!slc_path_is_writable(path) && errno == EACCES);
 }
 
 /* A file at the target is replaced; whatever else is there stays, and the call is refused. */
 static SluiceResult check_target(const struct slc_part_file *part)
 {
-    struct stat status;
-    if (lstat(part->target, &status) != 0)
+    struct slc_file_status status;
+    if (!slc_path_get_link_status(part->target, &status))
         return SLUICE_SUCCESS;
-    if (S_ISLNK(status.st_mode))
+    if (status.kind == SLC_NODE_LINK)
         return fail(part, part->target,
                     "is a symbolic link, which is neither followed nor replaced; name the file "
                     "that it stands for");
-    if (S_ISDIR(status.st_mode))
+    if (status.kind == SLC_NODE_FOLDER)
         return fail(part, part->target, "is there already and is a folder");
-    if (!S_ISREG(status.st_mode))
+    if (status.kind != SLC_NODE_FILE)
         return fail(part, part->target, "is there already and is no regular file");
     if (is_read_only(part->target, &status))
         return fail(part, part->target, "is there already and is read-only");
@@ -181,20 +148,20 @@ static SluiceResult check_target(const struct slc_part_file *part)
 
 static bool find_stream(const struct slc_part_file *part)
 {
-    struct stat status;
-    return stat(part->target, &status) == 0 && takes_a_stream(&status);
+    struct slc_file_status status;
+    return slc_path_get_status(part->target, &status) && status.kind == SLC_NODE_STREAM;
 }
 
 /* Nothing is created and nothing cut: it may have become another file since it was looked at. */
 static SluiceResult open_direct(struct slc_part_file *part)
 {
-    struct stat status;
+    struct slc_file_status status;
     part->is_direct = true;
     part->path[strlen(part->target)] = '\0';
-    part->descriptor = above_standard(open(part->target, O_WRONLY | O_CLOEXEC | O_NOCTTY));
+    part->descriptor = slc_file_open_stream(part->target);
     if (part->descriptor < 0)
         return fail_open(part, "open");
-    if (fstat(part->descriptor, &status) == 0 && takes_a_stream(&status))
+    if (slc_file_get_status(part->descriptor, &status) && status.kind == SLC_NODE_STREAM)
         return SLUICE_SUCCESS;
     close_descriptor(part);
     return fail(part, part->target, "is no pipe and no character device any more");
@@ -213,9 +180,9 @@ static SluiceResult open_beside(struct slc_part_file *part, bool resume)
         result = open_and_lock(part, &is_gone);
     if (is_gone)
         return fail(part, part->path, "others keep removing it");
-    mode_t mode = wanted_mode(part, 0);
+    uint32_t mode = wanted_mode(part, 0);
     if (result == SLUICE_SUCCESS && mode != 0) /* which the next writer can open, too */
-        set_mode(part, mode | S_IRUSR | S_IWUSR);
+        set_mode(part, mode | 0600);
     if (result == SLUICE_SUCCESS && !resume && part->size > 0) {
         part->size = 0;
         result = slc_part_file_cut(part, 0);
@@ -248,8 +215,8 @@ SluiceResult slc_part_file_write(const struct slc_part_file *part, uint64_t offs
 {
     size_t done = 0;
     while (done < size) {
-        ssize_t put = pwrite(part->descriptor, (const char *)bytes + done, size - done,
-                             (off_t)(offset + done));
+        int64_t put = slc_file_write_at(part->descriptor, offset + done, (const char *)bytes + done,
+                                        size - done);
         if (put > 0)
             done += (size_t)put;
         else if (put == 0 || errno != EINTR)
@@ -262,7 +229,7 @@ SluiceResult slc_part_file_append(const struct slc_part_file *part, const void *
 {
     size_t done = 0;
     while (done < size) {
-        ssize_t put = write(part->descriptor, (const char *)bytes + done, size - done);
+        int64_t put = slc_file_append(part->descriptor, (const char *)bytes + done, size - done);
         if (put > 0)
             done += (size_t)put;
         else if (put < 0 && errno != EINTR)
@@ -275,36 +242,31 @@ SluiceResult slc_part_file_append(const struct slc_part_file *part, const void *
 
 SluiceResult slc_part_file_cut(const struct slc_part_file *part, uint64_t size)
 {
-    if (ftruncate(part->descriptor, (off_t)size) != 0)
+    if (!slc_file_set_size(part->descriptor, size))
         return fail_system(part, "set the length");
     return SLUICE_SUCCESS;
 }
 
 SluiceResult slc_part_file_reserve(const struct slc_part_file *part, uint64_t size)
 {
-    int error;
-    do
-        error = posix_fallocate(part->descriptor, 0, (off_t)size);
-    while (error == EINTR);
-    if (error == EOPNOTSUPP || error == EINVAL) /* of the file system: without a promise, then */
+    if (slc_file_reserve(part->descriptor, size))
+        return SLUICE_SUCCESS;
+    if (errno == EOPNOTSUPP || errno == EINVAL) /* of the file system: without a promise, then */
         return slc_part_file_cut(part, size);
-    errno = error;
-    return error ? fail_system(part, "make room for the index") : SLUICE_SUCCESS;
+    return fail_system(part, "make room for the index");
 }
 
-/* So that the new name outlives a crash of the system. Some file systems cannot, and need not. */
+/* So that the new name outlives a crash of the system. */
 static SluiceResult sync_folder(const struct slc_part_file *part)
 {
-    if (fsync(part->folder) == 0 || errno == EINVAL)
-        return SLUICE_SUCCESS;
-    return fail_system(part, "sync the folder");
+    return slc_folder_sync(part->folder) ? SLUICE_SUCCESS : fail_system(part, "sync the folder");
 }
 
 /* A NAME.sluice-part that was removed meanwhile may be half a file of the next writer by now. */
 static SluiceResult check_ours(const struct slc_part_file *part)
 {
-    struct stat status;
-    if (fstat(part->descriptor, &status) == 0 && is_still_there(part, &status))
+    struct slc_file_status status;
+    if (slc_file_get_status(part->descriptor, &status) && is_still_there(part, &status))
         return SLUICE_SUCCESS;
     return fail(part, part->path, "was removed or replaced while it was written");
 }
@@ -314,10 +276,10 @@ SluiceResult slc_part_file_publish(struct slc_part_file *part)
     if (part->is_direct)
         return SLUICE_SUCCESS;
     set_mode(part, wanted_mode(part, 0));
-    if (!part->is_unsynced && fsync(part->descriptor) != 0) {
+    if (!part->is_unsynced && !slc_file_sync(part->descriptor)) {
         SluiceResult result = fail_system(part, "sync");
         /* what was not written may be taken as written by the next sync: nothing here is resumed */
-        (void)!ftruncate(part->descriptor, 0);
+        (void)!slc_file_set_size(part->descriptor, 0);
         return result;
     }
     /* Once more: a device that has come since the start would be replaced. */
@@ -326,17 +288,17 @@ SluiceResult slc_part_file_publish(struct slc_part_file *part)
         result = check_ours(part);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (rename(part->path, part->target) != 0)
+    if (!slc_path_replace(part->path, part->target))
         return fail_system(part, "rename to its name");
     return part->is_unsynced ? SLUICE_SUCCESS : sync_folder(part);
 }
 
 void slc_part_file_remove(const struct slc_part_file *part)
 {
-    struct stat status;
+    struct slc_file_status status;
     if (part->is_open && !part->is_direct && part->descriptor >= 0 &&
-        fstat(part->descriptor, &status) == 0 && is_still_there(part, &status))
-        unlink(part->path);
+        slc_file_get_status(part->descriptor, &status) && is_still_there(part, &status))
+        slc_path_remove(part->path);
 }
 
 void slc_part_file_close(struct slc_part_file *part)
@@ -348,7 +310,7 @@ void slc_part_file_close(struct slc_part_file *part)
     if (part->target)
         slc_free(cb, part->target, strlen(part->target) + 1, 1);
     if (part->folder >= 0)
-        close(part->folder);
+        slc_file_close(part->folder);
     close_descriptor(part);
     *part = (struct slc_part_file){.descriptor = -1, .folder = -1};
 }

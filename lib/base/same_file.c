@@ -1,15 +1,15 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "base/same_file.h"
 
+#include "platform/file.h"
+
 #include <stdio.h>
-#include <sys/stat.h>
 
 bool slc_is_same_file(const char *a, const char *b)
 {
-    struct stat first, second;
-    return stat(a, &first) == 0 && stat(b, &second) == 0 && S_ISREG(first.st_mode) &&
-           first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+    struct slc_file_status first, second;
+    return slc_path_get_status(a, &first) && slc_path_get_status(b, &second) &&
+           first.kind == SLC_NODE_FILE && first.device == second.device &&
+           first.inode == second.inode;
 }
 
 bool slc_output_replaces_input(const char *output, const char *input)

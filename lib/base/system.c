@@ -1,12 +1,6 @@
-#define _POSIX_C_SOURCE 200809L
-#define _FILE_OFFSET_BITS 64
-
 #include "base/system.h"
 
-#include <errno.h>
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <unistd.h>
+#include "platform/file.h"
 
 SluiceResult slc_system_result(int error)
 {
@@ -26,23 +20,17 @@ SluiceResult slc_system_result(int error)
 /* The system gives the lowest free number, so a high one means that all lower ones are in use. */
 static bool is_reserved(int descriptor)
 {
-    struct rlimit limit;
-    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-        return false;
-    rlim_t quarter = limit.rlim_cur / 4;
-    rlim_t reserve = quarter < SLC_RESERVED_DESCRIPTORS ? quarter : SLC_RESERVED_DESCRIPTORS;
-    return (rlim_t)descriptor >= limit.rlim_cur - reserve;
+    uint64_t limit = slc_get_descriptor_limit(), quarter = limit / 4;
+    uint64_t reserve = quarter < SLC_RESERVED_DESCRIPTORS ? quarter : SLC_RESERVED_DESCRIPTORS;
+    return (uint64_t)descriptor >= limit - reserve;
 }
 
 int slc_open_input(const char *path)
 {
-    int descriptor;
-    do
-        descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    while (descriptor < 0 && errno == EINTR);
+    int descriptor = slc_file_open(path);
     if (descriptor < 0 || !is_reserved(descriptor))
         return descriptor;
-    close(descriptor);
+    slc_file_close(descriptor);
     errno = EMFILE;
     return -1;
 }
