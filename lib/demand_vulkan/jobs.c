@@ -9,6 +9,7 @@
 #include "demand_vulkan/productions.h"
 #include "demand_vulkan/refused_arguments.h"
 #include "image/read_pool.h"
+#include "platform/time_now.h"
 #include "vulkan/shared_parts.h"
 #include "vulkan/sparse_layout.h"
 
@@ -46,14 +47,14 @@ static void on_end(void *user, uint64_t index, SluiceResult result)
     struct slc_demand_job *job = &loader->jobs[index];
     uint64_t us = (slc_monotonic_time() - job->start) / 1000;
     uint32_t bucket = us >> 31 ? 31 : us ? slc_log2_u32((uint32_t)us) + 1 : 0;
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     if (result != SLUICE_ERROR_CANCELED)
         tickets->latency[slc_min_u32(bucket, 23)]++;
     job->running = false;
     slc_ticket_task_ends(tickets, job->ticket, result != SLUICE_SUCCESS);
     if (tickets->job_waiters)
-        pthread_cond_broadcast(&tickets->changed);
-    pthread_mutex_unlock(&tickets->mutex);
+        slc_condition_broadcast(&tickets->changed);
+    slc_mutex_unlock(&tickets->mutex);
 }
 
 /* What the reader calls source and value are things of ours; the application knows its own. */
@@ -262,18 +263,18 @@ static SluiceResult submit_alone(SluiceDemandLoader *loader, struct slc_demand_j
     struct slc_tickets *tickets = &loader->tickets;
     uint64_t number = 0;
     bool canceled = false;
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     begin_task(loader, job, ticket);
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
     SluiceResult result = sluiceSubmitTileRead(loader->reader, read, &number);
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     if (result == SLUICE_SUCCESS) {
         canceled = note_read(loader, job, ticket, number);
     } else {
         job->running = false;
         slc_ticket_task_withdraw(tickets, ticket);
     }
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
     if (canceled)
         sluiceCancelTileRead(loader->reader, number);
     return result;
@@ -287,19 +288,19 @@ static void submit_batch(SluiceDemandLoader *loader)
     uint32_t canceled = 0;
     if (batch->count == 0)
         return;
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     for (uint32_t i = 0; i < batch->count; i++)
         begin_task(loader, batch->jobs[i], batch->tickets[i]);
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
     SluiceResult result =
         sluiceSubmitTileReads(loader->reader, batch->count, batch->reads, numbers);
     assert(result == SLUICE_SUCCESS); /* the reader has room for all jobs */
     (void)result;
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     for (uint32_t i = 0; i < batch->count; i++)
         if (note_read(loader, batch->jobs[i], batch->tickets[i], numbers[i]))
             numbers[canceled++] = numbers[i];
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
     for (uint32_t i = 0; i < canceled; i++)
         sluiceCancelTileRead(loader->reader, numbers[i]);
     batch->count = 0;
@@ -402,12 +403,12 @@ static bool is_running(const SluiceDemandLoader *loader, enum slc_job_kind kind,
 void slc_jobs_wait(SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t owner)
 {
     struct slc_tickets *tickets = &loader->tickets;
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     tickets->job_waiters++;
     while (is_running(loader, kind, owner))
-        pthread_cond_wait(&tickets->changed, &tickets->mutex);
+        slc_condition_wait(&tickets->changed, &tickets->mutex);
     tickets->job_waiters--;
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
 }
 
 /* Those of a ticket, or of all for 0. */
@@ -416,13 +417,13 @@ static void cancel_jobs(SluiceDemandLoader *loader, SluiceDemandTicket ticket)
     for (uint32_t next = 0; next < loader->job_count;) {
         uint64_t reads[BATCH];
         uint32_t count = 0;
-        pthread_mutex_lock(&loader->tickets.mutex);
+        slc_mutex_lock(&loader->tickets.mutex);
         for (; next < loader->job_count && count < BATCH; next++) {
             const struct slc_demand_job *job = &loader->jobs[next];
             if (job->running && job->read && (ticket == 0 || job->ticket == ticket))
                 reads[count++] = job->read;
         }
-        pthread_mutex_unlock(&loader->tickets.mutex);
+        slc_mutex_unlock(&loader->tickets.mutex);
         for (uint32_t i = 0; i < count; i++)
             sluiceCancelTileRead(loader->reader, reads[i]);
     }
@@ -433,11 +434,11 @@ SluiceResult sluiceCancelDemandTicket(SluiceDemandLoader *loader, SluiceDemandTi
     if (!loader)
         return SLUICE_ERROR_NULL_POINTER;
     bool known;
-    pthread_mutex_lock(&loader->tickets.mutex);
+    slc_mutex_lock(&loader->tickets.mutex);
     struct slc_ticket *found = slc_ticket_find(&loader->tickets, ticket, &known);
     if (found)
         found->canceled = true;
-    pthread_mutex_unlock(&loader->tickets.mutex);
+    slc_mutex_unlock(&loader->tickets.mutex);
     if (found)
         cancel_jobs(loader, ticket);
     return known ? SLUICE_SUCCESS : slc_demand_refuse_ticket(loader, __func__, ticket);
@@ -447,10 +448,10 @@ SluiceResult sluiceAbortDemandLoader(SluiceDemandLoader *loader)
 {
     if (!loader)
         return SLUICE_ERROR_NULL_POINTER;
-    pthread_mutex_lock(&loader->tickets.mutex);
+    slc_mutex_lock(&loader->tickets.mutex);
     loader->tickets.aborted = true;
-    pthread_cond_broadcast(&loader->tickets.changed);
-    pthread_mutex_unlock(&loader->tickets.mutex);
+    slc_condition_broadcast(&loader->tickets.changed);
+    slc_mutex_unlock(&loader->tickets.mutex);
     cancel_jobs(loader, 0);
     return SLUICE_SUCCESS;
 }

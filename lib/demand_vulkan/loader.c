@@ -426,10 +426,10 @@ SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
     statistics.pageChunkCount = pool.chunk_count;
     statistics.pageChunkShortages = pool.shortages;
     statistics.lodBias = slc_residency_lod_bias(loader->residency);
-    pthread_mutex_lock(&loader->tickets.mutex);
+    slc_mutex_lock(&loader->tickets.mutex);
     memcpy(statistics.latencyHistogram, loader->tickets.latency,
            sizeof statistics.latencyHistogram);
-    pthread_mutex_unlock(&loader->tickets.mutex);
+    slc_mutex_unlock(&loader->tickets.mutex);
     slc_struct_write(SLC_STRUCT(SluiceDemandStatistics), pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }

@@ -10,6 +10,7 @@
 #include "demand_vulkan/pages.h"
 
 #include "base/alloc.h"
+#include "platform/time_now.h"
 
 #include <stdio.h>
 

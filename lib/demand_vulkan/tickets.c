@@ -1,56 +1,31 @@
-#define _GNU_SOURCE /* mutexes that spin before they sleep */
-
 #include "demand_vulkan/tickets.h"
 
 #include "base/alloc.h"
+#include "platform/time_now.h"
 
 #include <assert.h>
-#include <errno.h>
-#include <time.h>
 
 #define NONE UINT32_MAX
 #define KEPT 1024u /* tickets that are over and can still be asked how it went */
 
-uint64_t slc_monotonic_time(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-}
-
-/* A point in time `timeout` ns from now for pthread_cond_timedwait on `changed`; false: never. */
-static bool find_deadline(uint64_t timeout, struct timespec *until)
+/* The time `timeout` ns from now. False: never. */
+static bool find_deadline(uint64_t timeout, uint64_t *until)
 {
     uint64_t now = slc_monotonic_time();
-    if (timeout > (UINT64_MAX >> 1) - now)
-        return false;
-    *until = (struct timespec){(time_t)((now + timeout) / 1000000000u),
-                               (long)((now + timeout) % 1000000000u)};
-    return true;
-}
-
-/* Taken for a moment, often, and by workers while they hold the tile loader's. */
-static void init_mutex(pthread_mutex_t *mutex)
-{
-    pthread_mutexattr_t attributes;
-    pthread_mutexattr_init(&attributes);
-#ifdef PTHREAD_ADAPTIVE_MUTEX_INITIALIZER_NP
-    pthread_mutexattr_settype(&attributes, PTHREAD_MUTEX_ADAPTIVE_NP);
-#endif
-    pthread_mutex_init(mutex, &attributes);
-    pthread_mutexattr_destroy(&attributes);
+    *until = now + timeout;
+    return timeout <= (UINT64_MAX >> 1) - now;
 }
 
 SluiceResult slc_tickets_init(struct slc_tickets *tickets, const SluiceAllocationCallbacks *cb)
 {
     *tickets = (struct slc_tickets){.cb = *cb, .first_done = NONE, .last_done = NONE};
-    pthread_condattr_t attributes;
-    if (pthread_condattr_init(&attributes) != 0)
+    /* Taken for a moment, often, and by workers while they hold the tile loader's. */
+    if (!slc_mutex_init_spinning(&tickets->mutex))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    init_mutex(&tickets->mutex);
-    pthread_cond_init(&tickets->changed, &attributes);
-    pthread_condattr_destroy(&attributes);
+    if (!slc_condition_init(&tickets->changed)) {
+        slc_mutex_finish(&tickets->mutex);
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
     tickets->ready = true;
     return SLUICE_SUCCESS;
 }
@@ -59,8 +34,8 @@ void slc_tickets_finish(struct slc_tickets *tickets)
 {
     if (!tickets->ready)
         return;
-    pthread_cond_destroy(&tickets->changed);
-    pthread_mutex_destroy(&tickets->mutex);
+    slc_condition_finish(&tickets->changed);
+    slc_mutex_finish(&tickets->mutex);
     slc_free(&tickets->cb, tickets->slots, tickets->capacity, sizeof *tickets->slots);
     *tickets = (struct slc_tickets){0};
 }
@@ -88,14 +63,14 @@ static uint32_t take_slot(struct slc_tickets *tickets)
 
 SluiceResult slc_ticket_open(struct slc_tickets *tickets, SluiceDemandTicket *ticket)
 {
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     uint32_t slot = take_slot(tickets);
     if (slot != NONE) {
         struct slc_ticket *new = &tickets->slots[slot];
         *new = (struct slc_ticket){.generation = new->generation + 1, .owners = 1};
         *ticket = (uint64_t) new->generation << 32 | (slot + 1);
     }
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
     return slot == NONE ? SLUICE_ERROR_OUT_OF_HOST_MEMORY : SLUICE_SUCCESS;
 }
 
@@ -134,49 +109,49 @@ static void check_done(struct slc_tickets *tickets, struct slc_ticket *ticket)
 
 SluiceDemandTicket slc_ticket_close(struct slc_tickets *tickets, SluiceDemandTicket ticket)
 {
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     struct slc_ticket *found = find(tickets, ticket);
     bool empty = !found || found->task_count == 0;
     if (found) {
         assert(found->owners > 0);
         found->owners--;
         check_done(tickets, found);
-        pthread_cond_broadcast(&tickets->changed);
+        slc_condition_broadcast(&tickets->changed);
     }
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
     return empty ? 0 : ticket;
 }
 
 void slc_ticket_add(struct slc_tickets *tickets, SluiceDemandTicket ticket, uint32_t count)
 {
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     struct slc_ticket *found = find(tickets, ticket);
     if (found) {
         assert(found->owners > 0);
         found->task_count += count;
         found->remaining += count;
     }
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
 }
 
 void slc_ticket_drop(struct slc_tickets *tickets, SluiceDemandTicket ticket, uint32_t count)
 {
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     struct slc_ticket *found = find(tickets, ticket);
     if (found) {
         assert(found->remaining >= count && found->owners > 0);
         found->remaining -= count;
         found->task_count -= count;
     }
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
 }
 
 bool slc_ticket_is_canceled(struct slc_tickets *tickets, SluiceDemandTicket ticket)
 {
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     struct slc_ticket *found = find(tickets, ticket);
     bool canceled = tickets->aborted || (found && found->canceled);
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
     return canceled;
 }
 
@@ -212,7 +187,7 @@ void slc_ticket_task_ends(struct slc_tickets *tickets, SluiceDemandTicket ticket
     found->failed += failed;
     check_done(tickets, found);
     if (found->running == 0)
-        pthread_cond_broadcast(&tickets->changed);
+        slc_condition_broadcast(&tickets->changed);
 }
 
 static void write_status(const struct slc_ticket *ticket, SluiceDemandTicketStatus *status)
@@ -231,11 +206,11 @@ SluiceResult slc_ticket_get_status(struct slc_tickets *tickets, SluiceDemandTick
                                    SluiceDemandTicketStatus *status)
 {
     bool known;
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     const struct slc_ticket *found = slc_ticket_find(tickets, ticket, &known);
     if (known)
         write_status(found, status);
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
     return known ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
 }
 
@@ -256,17 +231,17 @@ static SluiceResult look(struct slc_tickets *tickets, SluiceDemandTicket ticket,
 SluiceResult slc_ticket_wait(struct slc_tickets *tickets, SluiceDemandTicket ticket,
                              uint64_t timeout, SluiceDemandTicketStatus *status)
 {
-    struct timespec until;
+    uint64_t until;
     bool ends = find_deadline(timeout, &until), over = timeout == 0;
-    pthread_mutex_lock(&tickets->mutex);
+    slc_mutex_lock(&tickets->mutex);
     SluiceResult result = look(tickets, ticket, status);
     while (result == SLUICE_NOT_READY && !over) {
         if (ends)
-            over = pthread_cond_timedwait(&tickets->changed, &tickets->mutex, &until) == ETIMEDOUT;
+            over = !slc_condition_wait_until(&tickets->changed, &tickets->mutex, until);
         else
-            pthread_cond_wait(&tickets->changed, &tickets->mutex);
+            slc_condition_wait(&tickets->changed, &tickets->mutex);
         result = look(tickets, ticket, status);
     }
-    pthread_mutex_unlock(&tickets->mutex);
+    slc_mutex_unlock(&tickets->mutex);
     return result;
 }

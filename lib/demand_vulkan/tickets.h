@@ -7,7 +7,8 @@
 
 #include <sluice/demand.h>
 
-#include <pthread.h>
+#include "platform/thread.h"
+
 #include <time.h>
 
 struct slc_ticket {
@@ -21,9 +22,10 @@ struct slc_ticket {
 
 struct slc_tickets {
     SluiceAllocationCallbacks cb;
-    pthread_mutex_t mutex;  ///< around everything here
-    pthread_cond_t changed; ///< a ticket has nothing running any more, a job is over, or all end
-    bool ready;             ///< mutex and condition exist
+    struct slc_mutex mutex; ///< around everything here
+    struct slc_condition
+        changed; ///< a ticket has nothing running any more, a job is over, or all end
+    bool ready;  ///< mutex and condition exist
     bool aborted;
     uint32_t job_waiters;     ///< threads that wait for the end of any job
     struct slc_ticket *slots; ///< owned
@@ -61,7 +63,5 @@ SluiceResult slc_ticket_get_status(struct slc_tickets *tickets, SluiceDemandTick
                                    SluiceDemandTicketStatus *status);
 SluiceResult slc_ticket_wait(struct slc_tickets *tickets, SluiceDemandTicket ticket,
                              uint64_t timeout, SluiceDemandTicketStatus *status);
-
-uint64_t slc_monotonic_time(void); ///< ns
 
 #endif /* SLC_DEMAND_VULKAN_TICKETS_H */
