@@ -10,8 +10,8 @@
 #include "image/identity.h"
 #include "image/info.h"
 #include "image/mip.h"
+#include "platform/thread.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
 
 /* Texels that are filtered at once: memory stays bounded whatever is read. */
@@ -31,8 +31,8 @@ struct complete_source {
     SluiceLogCallback log;
     SluiceImageSource *inner;
     uint64_t max_memory;
-    pthread_mutex_t mutex; ///< around opening and building
-    atomic_bool is_open;   ///< the next four are constant from then on
+    struct slc_mutex mutex; ///< around opening and building
+    atomic_bool is_open;    ///< the next four are constant from then on
     SluiceImageInfo info;
     uint32_t inner_count; ///< levels of `inner`
     uint32_t first_kept;
@@ -87,12 +87,12 @@ static SluiceResult ensure_open(struct complete_source *source)
     SluiceResult result = SLUICE_SUCCESS;
     if (atomic_load_explicit(&source->is_open, memory_order_acquire))
         return result;
-    pthread_mutex_lock(&source->mutex);
+    slc_mutex_lock(&source->mutex);
     if (!atomic_load_explicit(&source->is_open, memory_order_relaxed)) {
         result = describe(source);
         atomic_store_explicit(&source->is_open, result == SLUICE_SUCCESS, memory_order_release);
     }
-    pthread_mutex_unlock(&source->mutex);
+    slc_mutex_unlock(&source->mutex);
     return result;
 }
 
@@ -196,12 +196,12 @@ static SluiceResult ensure_built(struct complete_source *source, uint32_t index,
     SluiceResult result = SLUICE_SUCCESS;
     if (atomic_load_explicit(&layer->is_built, memory_order_acquire))
         return result;
-    pthread_mutex_lock(&source->mutex);
+    slc_mutex_lock(&source->mutex);
     if (!atomic_load_explicit(&layer->is_built, memory_order_relaxed)) {
         result = build_layer(source, index, fault);
         atomic_store_explicit(&layer->is_built, result == SLUICE_SUCCESS, memory_order_release);
     }
-    pthread_mutex_unlock(&source->mutex);
+    slc_mutex_unlock(&source->mutex);
     return result;
 }
 
@@ -249,7 +249,7 @@ static void destroy(SluiceImageSource *base)
     for (uint32_t i = 0; source->layers && i < source->layer_count; i++)
         slc_mip_chain_finish(&source->layers[i].kept, &cb);
     slc_free(&cb, source->layers, source->layer_count, sizeof *source->layers);
-    pthread_mutex_destroy(&source->mutex);
+    slc_mutex_finish(&source->mutex);
     slc_free(&cb, source, 1, sizeof *source);
 }
 
@@ -282,7 +282,7 @@ SluiceResult sluiceCreateCompleteChainSource(const SluiceCompleteChainSourceCrea
     source->inner = info.source;
     source->max_memory =
         info.maxMemorySize ? info.maxMemorySize : SLUICE_COMPLETE_CHAIN_DEFAULT_MEMORY_SIZE;
-    pthread_mutex_init(&source->mutex, NULL);
+    slc_mutex_init(&source->mutex);
     *pSource = &source->base;
     return SLUICE_SUCCESS;
 }

@@ -1,46 +1,39 @@
-#define _POSIX_C_SOURCE 200809L
-#define _FILE_OFFSET_BITS 64
-
 #include "image/file_pool.h"
 
 #include "base/alloc.h"
 #include "base/struct_size.h"
 #include "base/system.h"
+#include "platform/thread.h"
 
-#include <errno.h>
-#include <pthread.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #define MAX_OPEN_FILES (1u << 20)
 
 struct SluiceFilePool {
     SluiceAllocationCallbacks allocator;
-    pthread_mutex_t mutex;  ///< around what follows, and around the files
-    pthread_cond_t changed; ///< a file was released, closed, or its opening has ended
+    struct slc_mutex mutex;       ///< around what follows, and around the files
+    struct slc_condition changed; ///< a file was released, closed, or its opening has ended
     struct slc_pooled_file *newest, *oldest; ///< open files, by last use
     SluiceFilePoolStatistics statistics; ///< openFileCount counts files that are being opened, too
 };
 
-struct slc_file_identity slc_file_identity(const struct stat *status)
+struct slc_file_identity slc_file_identity(const struct slc_file_status *status)
 {
     return (struct slc_file_identity){
-        .device = (uint64_t)status->st_dev,
-        .inode = (uint64_t)status->st_ino,
-        .size = (uint64_t)status->st_size,
-        .seconds = (int64_t)status->st_mtim.tv_sec,
-        .nanoseconds = (int64_t)status->st_mtim.tv_nsec,
+        .device = status->device,
+        .inode = status->inode,
+        .size = status->size,
+        .seconds = status->modified.seconds,
+        .nanoseconds = status->modified.nanoseconds,
     };
 }
 
 static uint32_t default_limit(void)
 {
-    struct rlimit limit;
-    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
-        limit.rlim_cur / 4 > MAX_OPEN_FILES)
+    uint64_t quarter = slc_get_descriptor_limit() / 4;
+    if (quarter > MAX_OPEN_FILES)
         return MAX_OPEN_FILES;
-    return limit.rlim_cur < 8 ? 1 : (uint32_t)(limit.rlim_cur / 4);
+    return quarter < 2 ? 1 : (uint32_t)quarter;
 }
 
 SluiceResult sluiceCreateFilePool(const SluiceFilePoolCreateInfo *pInfo, SluiceFilePool **pPool)
@@ -65,8 +58,8 @@ SluiceResult sluiceCreateFilePool(const SluiceFilePoolCreateInfo *pInfo, SluiceF
     pool->statistics.structSize = sizeof pool->statistics;
     pool->statistics.maxOpenFileCount =
         info.maxOpenFileCount ? info.maxOpenFileCount : default_limit();
-    pthread_mutex_init(&pool->mutex, NULL);
-    pthread_cond_init(&pool->changed, NULL);
+    slc_mutex_init(&pool->mutex);
+    slc_condition_init(&pool->changed);
     *pPool = pool;
     return SLUICE_SUCCESS;
 }
@@ -76,8 +69,8 @@ void sluiceDestroyFilePool(SluiceFilePool *pool)
     if (!pool)
         return;
     SluiceAllocationCallbacks cb = pool->allocator;
-    pthread_cond_destroy(&pool->changed);
-    pthread_mutex_destroy(&pool->mutex);
+    slc_condition_finish(&pool->changed);
+    slc_mutex_finish(&pool->mutex);
     slc_free(&cb, pool, 1, sizeof *pool);
 }
 
@@ -89,9 +82,9 @@ SluiceResult sluiceGetFilePoolStatistics(SluiceFilePool *pool,
     SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceFilePoolStatistics), pStatistics, NULL);
     if (result != SLUICE_SUCCESS)
         return result;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     SluiceFilePoolStatistics statistics = pool->statistics;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     slc_struct_write(SLC_STRUCT(SluiceFilePoolStatistics), pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }
@@ -113,7 +106,7 @@ static void put_first(SluiceFilePool *pool, struct slc_pooled_file *file)
 static void close_file(SluiceFilePool *pool, struct slc_pooled_file *file)
 {
     take_out(pool, file);
-    close(file->descriptor);
+    slc_file_close(file->descriptor);
     file->descriptor = -1;
     pool->statistics.openFileCount--;
 }
@@ -135,11 +128,11 @@ static bool make_room(SluiceFilePool *pool)
  */
 static int open_known(struct slc_pooled_file *file, const char *path)
 {
-    struct stat status;
+    struct slc_file_status status;
     int descriptor = slc_open_input(path);
     if (descriptor < 0)
         return -1;
-    int error = fstat(descriptor, &status) == 0 ? 0 : errno;
+    int error = slc_file_get_status(descriptor, &status) ? 0 : errno;
     if (error == 0) {
         struct slc_file_identity identity = slc_file_identity(&status);
         if (!file->is_known)
@@ -149,7 +142,7 @@ static int open_known(struct slc_pooled_file *file, const char *path)
     }
     if (error == 0)
         return descriptor;
-    close(descriptor);
+    slc_file_close(descriptor);
     errno = error;
     return -1;
 }
@@ -160,12 +153,12 @@ static int open_file(SluiceFilePool *pool, struct slc_pooled_file *file, const c
     SluiceFilePoolStatistics *statistics = &pool->statistics;
     file->is_opening = true;
     statistics->openFileCount++;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     int descriptor = open_known(file, path);
     int error = descriptor < 0 ? errno : 0;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     file->is_opening = false;
-    pthread_cond_broadcast(&pool->changed);
+    slc_condition_broadcast(&pool->changed);
     if (error) {
         statistics->openFileCount--;
         statistics->replacedTotal += error == ESTALE;
@@ -186,7 +179,7 @@ static int ensure_open(SluiceFilePool *pool, struct slc_pooled_file *file, const
     while (file->descriptor < 0) {
         bool has_room = pool->statistics.openFileCount < pool->statistics.maxOpenFileCount;
         if (file->is_opening || (!has_room && !make_room(pool))) {
-            pthread_cond_wait(&pool->changed, &pool->mutex);
+            slc_condition_wait(&pool->changed, &pool->mutex);
             continue;
         }
         int error = open_file(pool, file, path);
@@ -200,7 +193,7 @@ static int ensure_open(SluiceFilePool *pool, struct slc_pooled_file *file, const
 
 int slc_file_pool_acquire(SluiceFilePool *pool, struct slc_pooled_file *file, const char *path)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     int error = ensure_open(pool, file, path);
     if (error == 0) {
         file->user_count++;
@@ -208,7 +201,7 @@ int slc_file_pool_acquire(SluiceFilePool *pool, struct slc_pooled_file *file, co
         put_first(pool, file);
     }
     int descriptor = file->descriptor;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     if (error == 0)
         return descriptor;
     errno = error;
@@ -217,18 +210,18 @@ int slc_file_pool_acquire(SluiceFilePool *pool, struct slc_pooled_file *file, co
 
 void slc_file_pool_release(SluiceFilePool *pool, struct slc_pooled_file *file)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     file->user_count--;
-    pthread_cond_broadcast(&pool->changed);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_condition_broadcast(&pool->changed);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 void slc_file_pool_remove(SluiceFilePool *pool, struct slc_pooled_file *file)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     if (file->descriptor >= 0)
         close_file(pool, file);
-    pthread_cond_broadcast(&pool->changed);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_condition_broadcast(&pool->changed);
+    slc_mutex_unlock(&pool->mutex);
     *file = SLC_POOLED_FILE_CLOSED;
 }

@@ -4,7 +4,7 @@
 
 #include <sluice/input.h>
 
-#include <sys/stat.h>
+#include "platform/file.h"
 
 /** Tells a file from another one that took its name, and from itself with other contents. */
 struct slc_file_identity {
@@ -12,8 +12,7 @@ struct slc_file_identity {
     int64_t seconds, nanoseconds; ///< of the last change of contents; chmod and links change others
 };
 
-/** The identity in the answer of fstat. */
-struct slc_file_identity slc_file_identity(const struct stat *status);
+struct slc_file_identity slc_file_identity(const struct slc_file_status *status);
 
 /** One file of a pool. The pool's mutex guards all of it. Starts as SLC_POOLED_FILE_CLOSED. */
 struct slc_pooled_file {

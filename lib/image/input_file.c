@@ -1,6 +1,3 @@
-#define _POSIX_C_SOURCE 200809L
-#define _FILE_OFFSET_BITS 64
-
 #include "image/input_file.h"
 
 #include "base/alloc.h"
@@ -8,12 +5,9 @@
 #include "base/struct_size.h"
 #include "base/system.h"
 
-#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static SluiceResult say(const struct slc_input_file *file, SluiceResult result, uint64_t key,
                         const char *message)
@@ -118,12 +112,12 @@ static void return_descriptor(const struct slc_input_file *file)
 
 static SluiceResult check_status(struct slc_input_file *file, int descriptor)
 {
-    struct stat status;
-    if (fstat(descriptor, &status) != 0)
+    struct slc_file_status status;
+    if (!slc_file_get_status(descriptor, &status))
         return slc_input_fail(file, slc_system_result(errno), "cannot stat: %s", strerror(errno));
-    if (!S_ISREG(status.st_mode))
+    if (status.kind != SLC_NODE_FILE)
         return slc_input_fail(file, SLUICE_ERROR_IO, "is not a regular file");
-    file->size = (uint64_t)status.st_size;
+    file->size = status.size;
     return SLUICE_SUCCESS;
 }
 
@@ -156,7 +150,7 @@ SluiceResult slc_input_file_open(struct slc_input_file *file)
 void slc_input_file_close(struct slc_input_file *file)
 {
     if (file->descriptor >= 0)
-        close(file->descriptor);
+        slc_file_close(file->descriptor);
     else if (file->is_open && file->pool)
         slc_file_pool_remove(file->pool, file->pooled);
     file->descriptor = -1;
@@ -209,9 +203,8 @@ static int64_t read_descriptor(int descriptor, uint64_t offset, void *bytes, uin
 {
     uint64_t done = 0;
     while (done < size) {
-        uint64_t rest = size - done;
-        size_t step = rest < 1u << 30 ? (size_t)rest : 1u << 30; /* a read is at most 2^31 */
-        ssize_t got = pread(descriptor, (char *)bytes + done, step, (off_t)(offset + done));
+        int64_t got = slc_file_read_at(descriptor, offset + done, (char *)bytes + done,
+                                       (size_t)(size - done));
         if (got == 0)
             break;
         if (got > 0)
@@ -267,15 +260,15 @@ SluiceResult slc_input_fail_at(const struct slc_input_file *file, SluiceResult r
 
 struct slc_file_stamp slc_input_file_stamp(const struct slc_input_file *file)
 {
-    struct stat status;
+    struct slc_file_status status;
     int descriptor = is_in_file(file) ? borrow_descriptor(file) : -1;
     if (descriptor < 0)
         return (struct slc_file_stamp){0};
-    bool is_known = fstat(descriptor, &status) == 0;
+    bool is_known = slc_file_get_status(descriptor, &status);
     return_descriptor(file);
     if (!is_known)
         return (struct slc_file_stamp){0};
-    return (struct slc_file_stamp){{status.st_mtim.tv_sec, status.st_ctim.tv_sec},
-                                   {status.st_mtim.tv_nsec, status.st_ctim.tv_nsec},
-                                   (uint64_t)status.st_size};
+    return (struct slc_file_stamp){{status.modified.seconds, status.changed.seconds},
+                                   {status.modified.nanoseconds, status.changed.nanoseconds},
+                                   status.size};
 }

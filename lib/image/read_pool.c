@@ -1,13 +1,10 @@
-#define _GNU_SOURCE /* mutexes that spin before they sleep */
-
 #include "image/read_pool.h"
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "platform/time_now.h"
 
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #define TILE_SIZE 65536u
 
@@ -18,13 +15,6 @@ struct attempt {
     SluiceImageFault fault;
     uint64_t latency; ///< ns
 };
-
-static uint64_t nanoseconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-}
 
 static bool is_dropped(const struct slc_read *read)
 {
@@ -80,9 +70,9 @@ static SluiceResult read_regions(const SluiceTileLoader *loader, struct slc_read
 static struct attempt make_attempt(const SluiceTileLoader *loader, struct slc_read *read)
 {
     struct attempt attempt = {.fault = {"", SLUICE_UNKNOWN_OFFSET}};
-    uint64_t start = nanoseconds();
+    uint64_t start = slc_monotonic_time();
     attempt.result = read_regions(loader, read, &attempt.info, &attempt.fault);
-    attempt.latency = nanoseconds() - start;
+    attempt.latency = slc_monotonic_time() - start;
     read->attempts.count++;
     read->attempts.corrupt_count += attempt.result == SLUICE_ERROR_CORRUPT_DATA;
     return attempt;
@@ -115,7 +105,7 @@ static void report_failure(const SluiceTileLoader *loader, const struct slc_read
 void slc_loader_signal_if_idle(SluiceTileLoader *loader)
 {
     if (slc_read_queue_is_idle(&loader->queue))
-        pthread_cond_broadcast(&loader->pool->idle);
+        slc_condition_broadcast(&loader->pool->idle);
 }
 
 void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, SluiceResult result)
@@ -128,13 +118,13 @@ void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, Sluice
 /* With the mutex held, which is given up meanwhile. */
 static void run(SluiceTileLoader *loader, struct slc_read *read)
 {
-    pthread_mutex_t *mutex = &loader->pool->mutex;
+    struct slc_mutex *mutex = &loader->pool->mutex;
     uint64_t delay = 0;
-    pthread_mutex_unlock(mutex);
+    slc_mutex_unlock(mutex);
     struct attempt attempt = make_attempt(loader, read);
     bool will_retry = slc_retry_is_due(&loader->retry, &read->attempts, attempt.result, &delay);
     report_failure(loader, read, &attempt, will_retry, delay);
-    pthread_mutex_lock(mutex);
+    slc_mutex_lock(mutex);
     if (attempt.info.format != SLUICE_FORMAT_UNDEFINED)
         read->source->format = attempt.info.format;
     slc_read_queue_add_attempt(&loader->queue, read, attempt.result, attempt.fault.offset,
@@ -144,7 +134,7 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
     } else if (is_dropped(read)) {
         slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELED);
     } else {
-        uint64_t now = nanoseconds();
+        uint64_t now = slc_monotonic_time();
         slc_read_queue_delay(&loader->queue, read,
                              delay < UINT64_MAX - now ? now + delay : UINT64_MAX - 1);
     }
@@ -165,12 +155,11 @@ static uint64_t next_due(const struct slc_read_pool *pool)
 static void wait_for_work(struct slc_read_pool *pool)
 {
     uint64_t due = next_due(pool);
-    struct timespec until = {(time_t)(due / 1000000000u), (long)(due % 1000000000u)};
     pool->waiting_count++;
     if (due == UINT64_MAX)
-        pthread_cond_wait(&pool->work, &pool->mutex);
+        slc_condition_wait(&pool->work, &pool->mutex);
     else
-        pthread_cond_timedwait(&pool->work, &pool->mutex, &until);
+        slc_condition_wait_until(&pool->work, &pool->mutex, due);
     pool->waiting_count--;
     pool->signaled_count -= pool->signaled_count > 0;
 }
@@ -184,7 +173,7 @@ void slc_read_pool_signal(struct slc_read_pool *pool)
     if (pool->waiting_count == 0 || pool->signaled_count > 0)
         return;
     pool->signaled_count++;
-    pthread_cond_signal(&pool->work);
+    slc_condition_signal(&pool->work);
 }
 
 bool slc_read_pool_has_startable(const struct slc_read_pool *pool)
@@ -208,7 +197,7 @@ static bool has_work(const struct slc_read_pool *pool)
 static struct slc_read *start(struct slc_read_pool *pool, SluiceTileLoader **loader)
 {
     SluiceTileLoader *first = pool->turn ? pool->turn : pool->loaders, *at = first;
-    uint64_t now = first ? nanoseconds() : 0;
+    uint64_t now = first ? slc_monotonic_time() : 0;
     while (at) {
         SluiceTileLoader *next = at->next ? at->next : pool->loaders;
         struct slc_read *read = slc_read_queue_start(&at->queue, now);
@@ -224,7 +213,7 @@ static struct slc_read *start(struct slc_read_pool *pool, SluiceTileLoader **loa
 static void *worker_main(void *argument)
 {
     struct slc_read_pool *pool = argument;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     for (;;) {
         SluiceTileLoader *loader = NULL;
         struct slc_read *read = start(pool, &loader);
@@ -239,46 +228,29 @@ static void *worker_main(void *argument)
             slc_read_pool_signal(pool);
         run(loader, read);
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return NULL;
 }
 
 /* At least two, or one source that stalls would stop all. */
 static uint32_t default_thread_count(void)
 {
-    long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    return processors > 3 ? (uint32_t)processors - 1 : 2;
-}
-
-static void init_synchronization(struct slc_read_pool *pool)
-{
-    pthread_condattr_t attributes;
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_mutexattr_t mutex;
-    pthread_mutexattr_init(&mutex);
-#ifdef PTHREAD_ADAPTIVE_MUTEX_INITIALIZER_NP
-    pthread_mutexattr_settype(&mutex, PTHREAD_MUTEX_ADAPTIVE_NP);
-#endif
-    pthread_mutex_init(&pool->mutex, &mutex);
-    pthread_mutexattr_destroy(&mutex);
-    pthread_cond_init(&pool->work, &attributes);
-    pthread_cond_init(&pool->idle, NULL);
-    pthread_condattr_destroy(&attributes);
+    uint32_t processors = slc_get_processor_count();
+    return processors > 3 ? processors - 1 : 2;
 }
 
 /* `wanted`: threads that there is room for. */
 static void stop(struct slc_read_pool *pool, uint32_t wanted)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     pool->stopping = true;
-    pthread_cond_broadcast(&pool->work);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_condition_broadcast(&pool->work);
+    slc_mutex_unlock(&pool->mutex);
     for (uint32_t i = 0; i < pool->thread_count; i++)
-        pthread_join(pool->threads[i], NULL);
-    pthread_mutex_destroy(&pool->mutex);
-    pthread_cond_destroy(&pool->work);
-    pthread_cond_destroy(&pool->idle);
+        slc_thread_join(&pool->threads[i]);
+    slc_mutex_finish(&pool->mutex);
+    slc_condition_finish(&pool->work);
+    slc_condition_finish(&pool->idle);
     SluiceAllocationCallbacks cb = pool->allocator;
     slc_free(&cb, pool->threads, wanted, sizeof *pool->threads);
     slc_free(&cb, pool, 1, sizeof *pool);
@@ -303,9 +275,11 @@ SluiceResult slc_read_pool_create(const SluiceTileLoaderCreateInfo *info,
         slc_free(&cb, pool, 1, sizeof *pool);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
-    init_synchronization(pool);
+    slc_mutex_init_spinning(&pool->mutex);
+    slc_condition_init(&pool->work);
+    slc_condition_init(&pool->idle);
     while (pool->thread_count < wanted &&
-           pthread_create(&pool->threads[pool->thread_count], NULL, worker_main, pool) == 0)
+           slc_thread_start(&pool->threads[pool->thread_count], worker_main, pool))
         pool->thread_count++;
     if (pool->thread_count < wanted) {
         stop(pool, wanted);

@@ -11,14 +11,13 @@
 #include <sluice/loader.h>
 
 #include "image/read_queue.h"
-
-#include <pthread.h>
+#include "platform/thread.h"
 
 struct slc_read_pool {
     SluiceAllocationCallbacks allocator;
-    pthread_mutex_t mutex; ///< around everything below, and all queues
-    pthread_cond_t work;   ///< a read may have become startable or delayed, or the pool stops
-    pthread_cond_t idle;   ///< nothing of some loader is queued, delayed or running
+    struct slc_mutex mutex;    ///< around everything below, and all queues
+    struct slc_condition work; ///< a read may have become startable or delayed, or the pool stops
+    struct slc_condition idle; ///< nothing of some loader is queued, delayed or running
     struct slc_read_load load;
     SluiceTileLoader *loaders; ///< in a list
     SluiceTileLoader *turn;    ///< which starts the next read if it can
@@ -26,7 +25,7 @@ struct slc_read_pool {
     uint32_t waiting_count;  ///< threads that wait for `work`
     uint32_t signaled_count; ///< of these, threads that were signaled and have not woken yet
     uint32_t thread_count;
-    pthread_t *threads;
+    struct slc_thread *threads;
 };
 
 struct SluiceTileLoader {

@@ -38,12 +38,12 @@ static void join(SluiceTileLoader *loader, struct slc_read_pool *pool)
 {
     SluiceTileLoader **last = &pool->loaders;
     loader->pool = pool;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     slc_read_queue_share(&loader->queue, &pool->load, pool->loaders ? &pool->loaders->queue : NULL);
     while (*last)
         last = &(*last)->next;
     *last = loader;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 SluiceResult slc_create_pool_loader(struct slc_read_pool *pool,
@@ -113,13 +113,13 @@ void sluiceDestroyTileLoader(SluiceTileLoader *loader)
     if (!loader)
         return;
     struct slc_read_pool *pool = loader->pool;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     for (uint32_t i = 0; i < loader->queue.capacity; i++)
         drop_read(loader, &loader->queue.reads[i]);
     while (!slc_read_queue_is_idle(&loader->queue))
-        pthread_cond_wait(&pool->idle, &pool->mutex);
+        slc_condition_wait(&pool->idle, &pool->mutex);
     leave(loader);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     if (loader->owns_pool)
         slc_read_pool_destroy(pool);
     SluiceAllocationCallbacks cb = loader->allocator;
@@ -150,13 +150,13 @@ SluiceResult sluiceSubmitTileReads(SluiceTileLoader *loader, uint32_t count,
     }
     if (count == 0)
         return SLUICE_SUCCESS;
-    pthread_mutex_lock(&loader->pool->mutex);
+    slc_mutex_lock(&loader->pool->mutex);
     bool room = loader->queue.free_count >= count;
     for (uint32_t i = 0; room && i < count; i++)
         slc_read_queue_submit(&loader->queue, &pReads[i], &pTickets[i]);
     if (room)
         slc_read_pool_signal(loader->pool);
-    pthread_mutex_unlock(&loader->pool->mutex);
+    slc_mutex_unlock(&loader->pool->mutex);
     return room ? SLUICE_SUCCESS : SLUICE_NOT_READY;
 }
 
@@ -170,7 +170,7 @@ SluiceResult sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)
 {
     if (!loader)
         return SLUICE_ERROR_NULL_POINTER;
-    pthread_mutex_lock(&loader->pool->mutex);
+    slc_mutex_lock(&loader->pool->mutex);
     struct slc_read *read = slc_read_queue_find(&loader->queue, ticket);
     if (read)
         drop_read(loader, read);
@@ -178,7 +178,7 @@ SluiceResult sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)
     if (slc_read_pool_has_startable(loader->pool))
         slc_read_pool_signal(loader->pool);
     slc_loader_signal_if_idle(loader);
-    pthread_mutex_unlock(&loader->pool->mutex);
+    slc_mutex_unlock(&loader->pool->mutex);
     return SLUICE_SUCCESS;
 }
 
@@ -188,11 +188,11 @@ SluiceResult sluiceCollectTileReads(SluiceTileLoader *loader, uint32_t *pResultC
     if (!loader || !pResultCount || (*pResultCount > 0 && !pResults))
         return SLUICE_ERROR_NULL_POINTER;
     uint32_t room = *pResultCount, count = 0;
-    pthread_mutex_lock(&loader->pool->mutex);
+    slc_mutex_lock(&loader->pool->mutex);
     while (count < room && slc_read_queue_collect(&loader->queue, &pResults[count]))
         count++;
     bool more = loader->queue.finished_count > 0;
-    pthread_mutex_unlock(&loader->pool->mutex);
+    slc_mutex_unlock(&loader->pool->mutex);
     *pResultCount = count;
     return more ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
 }
@@ -201,10 +201,10 @@ SluiceResult sluiceWaitTileLoaderIdle(SluiceTileLoader *loader)
 {
     if (!loader)
         return SLUICE_ERROR_NULL_POINTER;
-    pthread_mutex_lock(&loader->pool->mutex);
+    slc_mutex_lock(&loader->pool->mutex);
     while (!slc_read_queue_is_idle(&loader->queue))
-        pthread_cond_wait(&loader->pool->idle, &loader->pool->mutex);
-    pthread_mutex_unlock(&loader->pool->mutex);
+        slc_condition_wait(&loader->pool->idle, &loader->pool->mutex);
+    slc_mutex_unlock(&loader->pool->mutex);
     return SLUICE_SUCCESS;
 }
 
@@ -219,9 +219,9 @@ SluiceResult sluiceGetTileLoaderStatistics(SluiceTileLoader *loader,
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceTileLoaderStatistics statistics = {.structSize = sizeof statistics};
-    pthread_mutex_lock(&loader->pool->mutex);
+    slc_mutex_lock(&loader->pool->mutex);
     slc_read_queue_write_statistics(&loader->queue, source, &statistics);
-    pthread_mutex_unlock(&loader->pool->mutex);
+    slc_mutex_unlock(&loader->pool->mutex);
     slc_struct_write(SLC_STRUCT(SluiceTileLoaderStatistics), pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }
@@ -231,8 +231,8 @@ SluiceResult sluiceDropTileLoaderStatistics(SluiceTileLoader *loader,
 {
     if (!loader || !source)
         return SLUICE_ERROR_NULL_POINTER;
-    pthread_mutex_lock(&loader->pool->mutex);
+    slc_mutex_lock(&loader->pool->mutex);
     SluiceResult result = slc_read_queue_forget(&loader->queue, source);
-    pthread_mutex_unlock(&loader->pool->mutex);
+    slc_mutex_unlock(&loader->pool->mutex);
     return result;
 }

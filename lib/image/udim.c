@@ -1,17 +1,14 @@
 /* UDIM patterns: names of files with the number of a cell in them. */
-#define _XOPEN_SOURCE 700
 
 #include "base/log.h"
 #include "base/system.h"
+#include "platform/folder.h"
 
 #include <sluice/udim.h>
 
-#include <dirent.h>
-#include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define MAX_PATTERN 4095u
 #define CELLS (SLUICE_UDIM_LAST - SLUICE_UDIM_FIRST + 1)
@@ -31,16 +28,16 @@ static const char *split(const char *text, struct pattern *pattern)
     if (strlen(text) > MAX_PATTERN)
         return "is longer than 4095 bytes";
     const char *udim = strstr(text, "<UDIM>"), *uv = strstr(text, "<UVTILE>");
-    const char *at = udim ? udim : uv, *slash = strrchr(text, '/');
+    const char *at = udim ? udim : uv, *name = slc_path_name(text);
     if (!at)
         return "has neither <UDIM> nor <UVTILE>";
     pattern->uv = !udim;
     pattern->suffix = at + (udim ? strlen("<UDIM>") : strlen("<UVTILE>"));
     if ((udim && uv) || strstr(pattern->suffix, "<UDIM>") || strstr(pattern->suffix, "<UVTILE>"))
         return "has more than one placeholder";
-    if (slash && slash > at)
+    if (name > at)
         return "has its placeholder in the name of a folder";
-    pattern->prefix = slash ? slash + 1 : text;
+    pattern->prefix = name;
     pattern->folder = (size_t)(pattern->prefix - text);
     pattern->prefix_length = (size_t)(at - pattern->prefix);
     pattern->suffix_length = strlen(pattern->suffix);
@@ -90,17 +87,16 @@ static uint32_t cell_of(const struct pattern *pattern, const char *name)
 }
 
 /* Returns 0 or a value of errno. */
-static int mark_files(DIR *folder, const struct pattern *pattern, bool found[CELLS])
+static int mark_files(struct slc_folder *folder, const struct pattern *pattern, bool found[CELLS])
 {
     for (;;) {
-        struct stat status;
-        errno = 0;
-        const struct dirent *entry = readdir(folder);
-        if (!entry)
+        struct slc_file_status status;
+        const char *name = slc_folder_next(folder);
+        if (!name)
             return errno;
-        uint32_t number = cell_of(pattern, entry->d_name);
-        if (number && fstatat(dirfd(folder), entry->d_name, &status, 0) == 0 &&
-            S_ISREG(status.st_mode))
+        uint32_t number = cell_of(pattern, name);
+        if (number && slc_folder_get_status(folder, name, false, &status) &&
+            status.kind == SLC_NODE_FILE)
             found[number - SLUICE_UDIM_FIRST] = true;
     }
 }
@@ -113,10 +109,9 @@ static SluiceResult list_files(const char *text, const struct pattern *pattern,
         memcpy(path, text, pattern->folder);
         path[pattern->folder] = 0;
     }
-    DIR *folder = opendir(path);
+    struct slc_folder *folder = slc_folder_begin(path);
     int error = folder ? mark_files(folder, pattern, found) : errno;
-    if (folder)
-        closedir(folder);
+    slc_folder_end(folder);
     if (error == 0)
         return SLUICE_SUCCESS;
     SluiceResult result = slc_system_result(error);

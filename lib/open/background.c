@@ -3,13 +3,14 @@
 #include "open/background.h"
 
 #include "base/alloc.h"
+#include "platform/time_now.h"
 
-#include <time.h>
+#define A_WHILE 50000000 /* nanoseconds */
 
 struct worker {
     struct slc_background *background;
     enum slc_stream_job_kind kind;
-    pthread_t thread;
+    struct slc_thread thread;
     bool has_started;
     struct slc_picture_stream *first, *last; ///< its queue
 };
@@ -17,8 +18,8 @@ struct worker {
 struct slc_background {
     SluiceAllocationCallbacks allocator;
     SluiceBaker *baker;
-    pthread_mutex_t mutex; ///< around what follows, and around the jobs of streams
-    pthread_cond_t changed;
+    struct slc_mutex mutex; ///< around what follows, and around the jobs of streams
+    struct slc_condition changed;
     bool is_ending;
     struct worker workers[SLC_JOB_KIND_COUNT];
 };
@@ -51,14 +52,8 @@ static struct slc_picture_stream *take_first(struct worker *worker)
 /* With the mutex held. Less if a stream is queued or canceled meanwhile. */
 static void wait_a_while(struct slc_background *background)
 {
-    struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_nsec += 50000000;
-    if (until.tv_nsec >= 1000000000) {
-        until.tv_nsec -= 1000000000;
-        until.tv_sec++;
-    }
-    pthread_cond_timedwait(&background->changed, &background->mutex, &until);
+    slc_condition_wait_until(&background->changed, &background->mutex,
+                             slc_monotonic_time() + A_WHILE);
 }
 
 /* With the mutex held. Whether a job can begin now; otherwise some time has passed. */
@@ -67,7 +62,7 @@ static bool wait_for_job(struct worker *worker)
     struct slc_background *background = worker->background;
     struct slc_picture_stream *first = worker->first;
     if (!first) {
-        pthread_cond_wait(&background->changed, &background->mutex);
+        slc_condition_wait(&background->changed, &background->mutex);
         return false;
     }
     if (!first->jobs[worker->kind].is_later)
@@ -92,24 +87,24 @@ static void *work(void *argument)
 {
     struct worker *worker = argument;
     struct slc_background *background = worker->background;
-    pthread_mutex_lock(&background->mutex);
+    slc_mutex_lock(&background->mutex);
     while (!background->is_ending) {
         if (!wait_for_job(worker))
             continue;
         struct slc_picture_stream *stream = take_first(worker);
         struct slc_stream_job *job = &stream->jobs[worker->kind];
-        pthread_mutex_unlock(&background->mutex);
+        slc_mutex_unlock(&background->mutex);
         bool has_ended = run(worker, stream);
-        pthread_mutex_lock(&background->mutex);
+        slc_mutex_lock(&background->mutex);
         job->is_running = false;
         if (!has_ended && !atomic_load(&stream->is_canceled)) {
             append(worker, stream);
             job->is_later = true;
         } else {
-            pthread_cond_broadcast(&background->changed);
+            slc_condition_broadcast(&background->changed);
         }
     }
-    pthread_mutex_unlock(&background->mutex);
+    slc_mutex_unlock(&background->mutex);
     return NULL;
 }
 
@@ -119,8 +114,8 @@ SluiceResult slc_background_create(SluiceImageOpener *opener, struct slc_backgro
     if (!background)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     background->allocator = opener->allocator;
-    pthread_mutex_init(&background->mutex, NULL);
-    pthread_cond_init(&background->changed, NULL);
+    slc_mutex_init(&background->mutex);
+    slc_condition_init(&background->changed);
     SluiceBakerCreateInfo info = {.structSize = sizeof info,
                                   .threadCount = opener->bake_thread_count,
                                   .maxMemory = opener->max_bake_memory,
@@ -131,7 +126,7 @@ SluiceResult slc_background_create(SluiceImageOpener *opener, struct slc_backgro
         struct worker *worker = &background->workers[i];
         worker->background = background;
         worker->kind = (enum slc_stream_job_kind)i;
-        worker->has_started = pthread_create(&worker->thread, NULL, work, worker) == 0;
+        worker->has_started = slc_thread_start(&worker->thread, work, worker);
         result = worker->has_started ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
     if (result != SLUICE_SUCCESS) {
@@ -147,16 +142,16 @@ void slc_background_destroy(struct slc_background *background)
     if (!background)
         return;
     SluiceAllocationCallbacks cb = background->allocator;
-    pthread_mutex_lock(&background->mutex);
+    slc_mutex_lock(&background->mutex);
     background->is_ending = true;
-    pthread_cond_broadcast(&background->changed);
-    pthread_mutex_unlock(&background->mutex);
+    slc_condition_broadcast(&background->changed);
+    slc_mutex_unlock(&background->mutex);
     for (int i = 0; i < SLC_JOB_KIND_COUNT; i++)
         if (background->workers[i].has_started)
-            pthread_join(background->workers[i].thread, NULL);
+            slc_thread_join(&background->workers[i].thread);
     sluiceDestroyBaker(background->baker);
-    pthread_cond_destroy(&background->changed);
-    pthread_mutex_destroy(&background->mutex);
+    slc_condition_finish(&background->changed);
+    slc_mutex_finish(&background->mutex);
     slc_free(&cb, background, 1, sizeof *background);
 }
 
@@ -168,12 +163,12 @@ SluiceBaker *slc_background_baker(struct slc_background *background)
 void slc_background_queue(struct slc_background *background, struct slc_picture_stream *stream,
                           enum slc_stream_job_kind kind)
 {
-    pthread_mutex_lock(&background->mutex);
+    slc_mutex_lock(&background->mutex);
     if (!stream->jobs[kind].is_queued && !atomic_load(&stream->is_canceled)) {
         append(&background->workers[kind], stream);
-        pthread_cond_broadcast(&background->changed);
+        slc_condition_broadcast(&background->changed);
     }
-    pthread_mutex_unlock(&background->mutex);
+    slc_mutex_unlock(&background->mutex);
 }
 
 static void take_out(struct worker *worker, struct slc_picture_stream *stream)
@@ -194,14 +189,14 @@ static void take_out(struct worker *worker, struct slc_picture_stream *stream)
 
 void slc_background_cancel(struct slc_background *background, struct slc_picture_stream *stream)
 {
-    pthread_mutex_lock(&background->mutex);
+    slc_mutex_lock(&background->mutex);
     atomic_store(&stream->is_canceled, true);
-    pthread_cond_broadcast(&background->changed);
+    slc_condition_broadcast(&background->changed);
     for (int kind = 0; kind < SLC_JOB_KIND_COUNT; kind++) {
         if (stream->jobs[kind].is_queued)
             take_out(&background->workers[kind], stream);
         while (stream->jobs[kind].is_running)
-            pthread_cond_wait(&background->changed, &background->mutex);
+            slc_condition_wait(&background->changed, &background->mutex);
     }
-    pthread_mutex_unlock(&background->mutex);
+    slc_mutex_unlock(&background->mutex);
 }

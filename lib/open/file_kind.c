@@ -1,15 +1,10 @@
-#define _POSIX_C_SOURCE 200809L
-#define _FILE_OFFSET_BITS 64
-
 #include "open/file_kind.h"
 
 #include "base/log.h"
 #include "base/system.h"
 #include "image/file_signature.h"
 
-#include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 #ifdef SLC_HAVE_CONTAINER
 #include <sluice/dds.h>
@@ -61,15 +56,15 @@ static SluiceImageFileKind kind_of(const char bytes[SLC_SIGNATURE_SIZE])
 static int look_at(int descriptor, char bytes[SLC_SIGNATURE_SIZE],
                    struct slc_file_identity *identity)
 {
-    struct stat status;
-    if (fstat(descriptor, &status) != 0)
+    struct slc_file_status status;
+    if (!slc_file_get_status(descriptor, &status))
         return errno;
-    if (!S_ISREG(status.st_mode))
+    if (status.kind != SLC_NODE_FILE)
         return EINVAL;
     *identity = slc_file_identity(&status);
-    ssize_t got;
+    int64_t got;
     do
-        got = pread(descriptor, bytes, SLC_SIGNATURE_SIZE, 0);
+        got = slc_file_read_at(descriptor, 0, bytes, SLC_SIGNATURE_SIZE);
     while (got < 0 && errno == EINTR);
     return got < 0 ? errno : 0;
 }

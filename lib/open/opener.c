@@ -45,8 +45,8 @@ SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
     opener->max_cache_size = info.maxCacheSize ? info.maxCacheSize : SLUICE_OPEN_DEFAULT_CACHE_SIZE;
     opener->max_bake_memory = info.maxBakeMemory;
     opener->bake_thread_count = info.bakeThreadCount;
-    pthread_mutex_init(&opener->mutex, NULL);
-    pthread_cond_init(&opener->opened, NULL);
+    slc_mutex_init(&opener->mutex);
+    slc_condition_init(&opener->opened);
     if (info.pCacheFolder) {
         opener->cache_folder = slc_strdup(&cb, info.pCacheFolder);
         result = opener->cache_folder ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -72,8 +72,8 @@ void sluiceDestroyImageOpener(SluiceImageOpener *opener)
     slc_shared_files_finish(&opener->files);
     if (opener->cache_folder)
         slc_free(&cb, opener->cache_folder, strlen(opener->cache_folder) + 1, 1);
-    pthread_cond_destroy(&opener->opened);
-    pthread_mutex_destroy(&opener->mutex);
+    slc_condition_finish(&opener->opened);
+    slc_mutex_finish(&opener->mutex);
     slc_free(&cb, opener, 1, sizeof *opener);
 }
 
@@ -186,9 +186,9 @@ static void destroy(SluiceImageSource *base)
 {
     struct slc_opened_image *image = (struct slc_opened_image *)base;
     SluiceImageOpener *opener = image->opener;
-    pthread_mutex_lock(&opener->mutex);
+    slc_mutex_lock(&opener->mutex);
     bool is_last = drop_reference(image);
-    pthread_mutex_unlock(&opener->mutex);
+    slc_mutex_unlock(&opener->mutex);
     if (is_last)
         free_image(image);
 }
@@ -276,14 +276,14 @@ static void open_for_all(struct slc_opened_image *image)
 {
     SluiceImageOpener *opener = image->opener;
     add_to_bucket(image);
-    pthread_mutex_unlock(&opener->mutex);
+    slc_mutex_unlock(&opener->mutex);
     SluiceResult result = open_image(image);
-    pthread_mutex_lock(&opener->mutex);
+    slc_mutex_lock(&opener->mutex);
     image->result = result;
     image->is_opening = false;
     if (result != SLUICE_SUCCESS)
         take_from_bucket(image); /* who opens it next tries again */
-    pthread_cond_broadcast(&opener->opened);
+    slc_condition_broadcast(&opener->opened);
 }
 
 /* With the mutex held, but not while it waits. Counts the image. */
@@ -291,7 +291,7 @@ static void wait_until_open(struct slc_opened_image *image)
 {
     image->reference_count++;
     while (image->is_opening)
-        pthread_cond_wait(&image->opener->opened, &image->opener->mutex);
+        slc_condition_wait(&image->opener->opened, &image->opener->mutex);
 }
 
 static SluiceResult open_texture(SluiceImageOpener *opener, const char *path, const char *texture,
@@ -308,7 +308,7 @@ static SluiceResult open_texture(SluiceImageOpener *opener, const char *path, co
                                "%s: is no neural set, so it has no texture of a name; open it with "
                                "sluiceOpenImageSource",
                                path);
-    pthread_mutex_lock(&opener->mutex);
+    slc_mutex_lock(&opener->mutex);
     struct slc_opened_image *image = find_image(opener, path, texture, &identity);
     if (image)
         wait_until_open(image);
@@ -316,7 +316,7 @@ static SluiceResult open_texture(SluiceImageOpener *opener, const char *path, co
         open_for_all(image);
     result = image ? image->result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     bool is_unused = image && result != SLUICE_SUCCESS && drop_reference(image);
-    pthread_mutex_unlock(&opener->mutex);
+    slc_mutex_unlock(&opener->mutex);
     if (is_unused)
         free_image(image);
     if (result == SLUICE_SUCCESS)
@@ -353,9 +353,9 @@ SluiceResult sluiceGetOpenedImageInfo(SluiceImageSource *source, SluiceOpenedIma
                                   .source = image->source,
                                   .previewReady = true,
                                   .ready = true};
-    pthread_mutex_lock(&image->opener->mutex);
+    slc_mutex_lock(&image->opener->mutex);
     info.openCount = image->reference_count;
-    pthread_mutex_unlock(&image->opener->mutex);
+    slc_mutex_unlock(&image->opener->mutex);
 #ifdef SLC_HAVE_BAKE
     if (image->stream)
         slc_picture_stream_describe(image->stream, &info);

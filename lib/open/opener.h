@@ -6,8 +6,7 @@
 
 #include "image/file_pool.h"
 #include "open/file_kind.h"
-
-#include <pthread.h>
+#include "platform/thread.h"
 
 #define SLC_OPENER_BUCKETS 1024u
 
@@ -40,8 +39,8 @@ struct SluiceImageOpener {
     uint64_t max_cache_size, max_bake_memory;
     uint32_t bake_thread_count;
     struct slc_shared_files files;
-    pthread_mutex_t mutex;             ///< around what follows; never held while files are read
-    pthread_cond_t opened;             ///< an image is open, or could not be opened
+    struct slc_mutex mutex;            ///< around what follows; never held while files are read
+    struct slc_condition opened;       ///< an image is open, or could not be opened
     struct slc_background *background; ///< owned; NULL: no picture was opened yet
     struct slc_opened_image *buckets[SLC_OPENER_BUCKETS];
 };

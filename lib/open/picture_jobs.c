@@ -1,5 +1,4 @@
 #define _POSIX_C_SOURCE 200809L
-#define _FILE_OFFSET_BITS 64
 
 #include "base/alloc.h"
 #include "base/checked.h"
@@ -10,8 +9,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static bool note_progress(void *user, uint64_t done, uint64_t total)
 {
@@ -44,7 +41,7 @@ static void *take_file(const struct slc_picture_stream *stream, const char *path
     }
     *size = (size_t)file.size;
     slc_input_file_finish(&file);
-    unlink(path);
+    slc_path_remove(path);
     return bytes;
 }
 
@@ -61,8 +58,8 @@ bool slc_picture_is_as_described(const struct slc_picture_stream *stream, Sluice
 
 static bool is_unchanged(const struct slc_picture_stream *stream)
 {
-    struct stat status;
-    if (stat(stream->path, &status) != 0)
+    struct slc_file_status status;
+    if (!slc_path_get_status(stream->path, &status))
         return false;
     struct slc_file_identity now = slc_file_identity(&status);
     return now.size == stream->identity.size && now.seconds == stream->identity.seconds &&
@@ -86,14 +83,14 @@ static void show_preview(struct slc_picture_stream *stream, void *bytes, size_t 
     bool is_right = result == SLUICE_SUCCESS &&
                     slc_picture_is_as_described(stream, preview, stream->preview_level) &&
                     is_unchanged(stream);
-    pthread_rwlock_wrlock(&stream->lock);
+    slc_rw_lock_write(&stream->lock);
     if (is_right && !stream->store && !stream->preview) {
         stream->preview = preview;
         stream->preview_bytes = bytes;
         stream->preview_size = size;
         is_shown = true;
     }
-    pthread_rwlock_unlock(&stream->lock);
+    slc_rw_lock_end_write(&stream->lock);
     if (is_shown)
         return;
     sluiceDestroyImageSource(preview);
@@ -124,8 +121,8 @@ void slc_make_preview(struct slc_background *background, struct slc_picture_stre
 bool slc_picture_store_is_replaced(const struct slc_picture_stream *stream,
                                    const struct slc_file_identity *identity, bool *is_there)
 {
-    struct stat status;
-    *is_there = stat(stream->store_path, &status) == 0;
+    struct slc_file_status status;
+    *is_there = slc_path_get_status(stream->store_path, &status);
     if (!*is_there)
         return false;
     struct slc_file_identity now = slc_file_identity(&status);
@@ -145,10 +142,10 @@ SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceIma
     SluiceStoreInfo found = {.structSize = sizeof found};
     SluiceBakeSettings settings = {.structSize = sizeof settings};
     uint64_t hash = 0;
-    struct stat status;
+    struct slc_file_status status;
     *store = NULL;
     /* Before it is opened: a file that takes its place in between is opened once more, no worse. */
-    if (stat(stream->store_path, &status) != 0)
+    if (!slc_path_get_status(stream->store_path, &status))
         return SLUICE_ERROR_FILE_NOT_FOUND;
     *identity = slc_file_identity(&status);
     SluiceResult result = sluiceHashBakeSettings(&settings, &hash);
@@ -181,11 +178,11 @@ static bool is_in_use(void *user, const struct slc_cached_store *store)
 {
     SluiceImageOpener *opener = user;
     bool is_used = false;
-    pthread_mutex_lock(&opener->mutex);
+    slc_mutex_lock(&opener->mutex);
     for (uint32_t b = 0; b < SLC_OPENER_BUCKETS && !is_used; b++)
         for (struct slc_opened_image *i = opener->buckets[b]; i && !is_used; i = i->next)
             is_used = reads(i, store);
-    pthread_mutex_unlock(&opener->mutex);
+    slc_mutex_unlock(&opener->mutex);
     return is_used;
 }
 
@@ -245,7 +242,7 @@ static SluiceResult bake_and_open(struct slc_background *background,
 static void show_store(struct slc_picture_stream *stream, SluiceImageSource *store,
                        const struct slc_file_identity *identity)
 {
-    pthread_rwlock_wrlock(&stream->lock);
+    slc_rw_lock_write(&stream->lock);
     SluiceImageSource *preview = stream->preview;
     void *bytes = stream->preview_bytes;
     size_t size = stream->preview_size;
@@ -253,7 +250,7 @@ static void show_store(struct slc_picture_stream *stream, SluiceImageSource *sto
     stream->store_identity = *identity;
     stream->preview = NULL;
     stream->preview_bytes = NULL;
-    pthread_rwlock_unlock(&stream->lock);
+    slc_rw_lock_end_write(&stream->lock);
     sluiceDestroyImageSource(preview);
     slc_free(&stream->opener->allocator, bytes, size, 1);
 }

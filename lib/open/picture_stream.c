@@ -53,11 +53,11 @@ static SluiceResult need_background(struct slc_picture_stream *stream)
 {
     SluiceImageOpener *opener = stream->opener;
     SluiceResult result = SLUICE_SUCCESS;
-    pthread_mutex_lock(&opener->mutex);
+    slc_mutex_lock(&opener->mutex);
     if (!opener->background)
         result = slc_background_create(opener, &opener->background);
     stream->background = opener->background;
-    pthread_mutex_unlock(&opener->mutex);
+    slc_mutex_unlock(&opener->mutex);
     return result;
 }
 
@@ -101,15 +101,15 @@ SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *pa
     stream->opener = opener;
     stream->path = path;
     stream->identity = *identity;
-    pthread_rwlock_init(&stream->lock, NULL);
+    slc_rw_lock_init(&stream->lock);
     SluiceResult result = init(stream);
     if (result != SLUICE_SUCCESS) {
         slc_picture_stream_destroy(stream);
         return result;
     }
-    pthread_mutex_lock(&opener->mutex); /* bakes of others look which stores are in use */
+    slc_mutex_lock(&opener->mutex); /* bakes of others look which stores are in use */
     *out = stream;
-    pthread_mutex_unlock(&opener->mutex);
+    slc_mutex_unlock(&opener->mutex);
     return SLUICE_SUCCESS;
 }
 
@@ -124,7 +124,7 @@ void slc_picture_stream_destroy(struct slc_picture_stream *stream)
     sluiceDestroyImageSource(stream->preview);
     slc_free(&cb, stream->preview_bytes, stream->preview_size, 1);
     slc_free(&cb, stream->store_path, stream->store_path ? strlen(stream->store_path) + 1 : 0, 1);
-    pthread_rwlock_destroy(&stream->lock);
+    slc_rw_lock_finish(&stream->lock);
     slc_free(&cb, stream, 1, sizeof *stream);
 }
 
@@ -191,10 +191,10 @@ static enum recovery recover(struct slc_picture_stream *stream)
 static bool rebuild(struct slc_picture_stream *stream, const SluiceImageSource *failed)
 {
     enum recovery recovery = RECOVERY_LATER;
-    pthread_rwlock_wrlock(&stream->lock);
+    slc_rw_lock_write(&stream->lock);
     if (stream->store == failed) /* otherwise another reader was here first */
         recovery = recover(stream);
-    pthread_rwlock_unlock(&stream->lock);
+    slc_rw_lock_end_write(&stream->lock);
     if (recovery != RECOVERY_BAKE)
         return recovery == RECOVERY_LATER;
     slc_log(&stream->opener->log, SLUICE_LOG_WARNING,
@@ -209,7 +209,7 @@ SluiceResult slc_picture_stream_read(struct slc_picture_stream *stream,
 {
     SluiceImageRegion part = *region;
     SluiceResult result = (SluiceResult)atomic_load(&stream->failure);
-    pthread_rwlock_rdlock(&stream->lock);
+    slc_rw_lock_read(&stream->lock);
     const SluiceImageSource *store = stream->store;
     if (store) {
         result = sluiceReadImageRegionLocated(stream->store, region, texels, row_pitch, fault);
@@ -220,7 +220,7 @@ SluiceResult slc_picture_stream_read(struct slc_picture_stream *stream,
         result = SLUICE_NOT_READY;
     }
     fault->pName = stream->path; /* the inner source, which may be destroyed soon, set its own */
-    pthread_rwlock_unlock(&stream->lock);
+    slc_rw_lock_end_read(&stream->lock);
     if (store && result == SLUICE_SUCCESS && atomic_load(&stream->vanished_count) > 0)
         atomic_store(&stream->vanished_count, 0);
     if (store && is_lost(result) && rebuild(stream, store))
@@ -230,10 +230,10 @@ SluiceResult slc_picture_stream_read(struct slc_picture_stream *stream,
 
 void slc_picture_stream_describe(struct slc_picture_stream *stream, SluiceOpenedImageInfo *info)
 {
-    pthread_rwlock_rdlock(&stream->lock);
+    slc_rw_lock_read(&stream->lock);
     info->ready = stream->store != NULL;
     info->previewReady = stream->store || stream->preview;
-    pthread_rwlock_unlock(&stream->lock);
+    slc_rw_lock_end_read(&stream->lock);
     info->failure = (SluiceResult)atomic_load(&stream->failure);
     info->totalTexels = atomic_load(&stream->total_texels);
     info->doneTexels = atomic_load(&stream->done_texels);

@@ -6,8 +6,8 @@
 #define SLC_OPEN_PICTURE_STREAM_H
 
 #include "open/opener.h"
+#include "platform/rw_lock.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
 
 /** Levels with at most so many texels in a direction are in the preview. */
@@ -37,7 +37,7 @@ struct slc_picture_stream {
     atomic_int failure; ///< SluiceResult of the bake
     atomic_uint_fast64_t done_texels, total_texels;
     atomic_uint vanished_count; ///< stores that vanished since the last good read
-    pthread_rwlock_t lock;      ///< around what follows; readers hold it while they read
+    struct slc_rw_lock lock;    ///< around what follows; readers hold it while they read
     SluiceImageSource *store;   ///< owned; NULL: not yet
     SluiceImageSource *preview; ///< owned; NULL: not yet, or not needed
     void *preview_bytes;        ///< owned

@@ -1,32 +1,24 @@
-#define _XOPEN_SOURCE 700
-#define _FILE_OFFSET_BITS 64
-
 #include "open/store_cache.h"
 
 #include "base/alloc.h"
 #include "base/log.h"
 #include "base/part_file.h"
 #include "base/said.h"
+#include "platform/folder.h"
 
-#include <dirent.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
-#include <unistd.h>
 
 /* Part files and previews that nobody has written for so long were left behind. */
 #define SECONDS_UNTIL_LEFT (24 * 3600)
 
 SluiceResult slc_store_cache_make(const char *folder, const SluiceLogCallback *log)
 {
-    struct stat status;
-    if (mkdir(folder, 0700) == 0 ||
-        (errno == EEXIST && stat(folder, &status) == 0 && S_ISDIR(status.st_mode)))
+    struct slc_file_status status;
+    if (slc_folder_make(folder) ||
+        (errno == EEXIST && slc_path_get_status(folder, &status) && status.kind == SLC_NODE_FOLDER))
         return SLUICE_SUCCESS;
     slc_log(log, SLUICE_LOG_ERROR, "%s: cannot make this folder: %s", folder, strerror(errno));
     return SLUICE_ERROR_IO;
@@ -35,7 +27,7 @@ SluiceResult slc_store_cache_make(const char *folder, const SluiceLogCallback *l
 SluiceResult slc_store_cache_path(const char *folder, const char *picture,
                                   const SluiceAllocationCallbacks *cb, char **path)
 {
-    char *real = realpath(picture, NULL);
+    char *real = slc_path_resolve(picture);
     const char *name = real ? real : picture;
     uint64_t hash = slc_said_key(name), length = strlen(name);
     free(real);
@@ -52,8 +44,7 @@ SluiceResult slc_store_cache_path(const char *folder, const char *picture,
 
 void slc_store_cache_touch(const char *path)
 {
-    const struct timespec times[2] = {{.tv_nsec = UTIME_NOW}, {.tv_nsec = UTIME_OMIT}};
-    (void)!utimensat(AT_FDCWD, path, times, 0);
+    slc_path_touch(path);
 }
 
 #define STORE_SUFFIX ".store"
@@ -63,8 +54,9 @@ void slc_store_cache_touch(const char *path)
 bool slc_store_cache_preview_path(const char *store_path, const void *id, char *path, size_t size)
 {
     int stem = (int)(strlen(store_path) - strlen(STORE_SUFFIX));
-    int length = snprintf(path, size, "%.*s-%llx-%llx" PREVIEW_SUFFIX, stem, store_path,
-                          (unsigned long long)getpid(), (unsigned long long)(uintptr_t)id);
+    int length =
+        snprintf(path, size, "%.*s-%llx-%llx" PREVIEW_SUFFIX, stem, store_path,
+                 (unsigned long long)slc_get_process_id(), (unsigned long long)(uintptr_t)id);
     return length > 0 && (size_t)length < size;
 }
 
@@ -122,9 +114,10 @@ static bool find_kind(const char *name, struct slc_cached_store *store)
 }
 
 /* Others may be written now. */
-static bool is_removable(const struct slc_cached_store *store, const struct stat *status)
+static bool is_removable(const struct slc_cached_store *store, const struct slc_file_status *status)
 {
-    return store->kind == SLC_CACHED_STORE || time(NULL) - status->st_mtime > SECONDS_UNTIL_LEFT;
+    return store->kind == SLC_CACHED_STORE ||
+           (int64_t)time(NULL) - status->modified.seconds > SECONDS_UNTIL_LEFT;
 }
 
 static bool add(struct cached_stores *stores, const SluiceAllocationCallbacks *cb,
@@ -144,22 +137,21 @@ static bool add(struct cached_stores *stores, const SluiceAllocationCallbacks *c
     return true;
 }
 
-static bool list_stores(DIR *folder, struct cached_stores *stores,
+static bool list_stores(struct slc_folder *folder, struct cached_stores *stores,
                         const SluiceAllocationCallbacks *cb)
 {
-    struct dirent *entry;
-    while ((entry = readdir(folder))) {
-        struct stat status;
+    const char *name;
+    while ((name = slc_folder_next(folder))) {
+        struct slc_file_status status;
         struct slc_cached_store store;
-        if (strlen(entry->d_name) >= sizeof store.name || !find_kind(entry->d_name, &store) ||
-            fstatat(dirfd(folder), entry->d_name, &status, AT_SYMLINK_NOFOLLOW) != 0 ||
-            !S_ISREG(status.st_mode))
+        if (strlen(name) >= sizeof store.name || !find_kind(name, &store) ||
+            !slc_folder_get_status(folder, name, true, &status) || status.kind != SLC_NODE_FILE)
             continue;
-        memcpy(store.name, entry->d_name, strlen(entry->d_name) + 1);
-        store.device = (uint64_t)status.st_dev;
-        store.inode = (uint64_t)status.st_ino;
-        store.size = (uint64_t)status.st_size;
-        store.touched = status.st_atim;
+        memcpy(store.name, name, strlen(name) + 1);
+        store.device = status.device;
+        store.inode = status.inode;
+        store.size = status.size;
+        store.touched = status.read;
         stores->size += store.size;
         if (is_removable(&store, &status) && !add(stores, cb, &store))
             return false;
@@ -169,11 +161,11 @@ static bool list_stores(DIR *folder, struct cached_stores *stores,
 
 static int compare_touched(const void *a, const void *b)
 {
-    const struct timespec *x = &((const struct slc_cached_store *)a)->touched;
-    const struct timespec *y = &((const struct slc_cached_store *)b)->touched;
-    if (x->tv_sec != y->tv_sec)
-        return x->tv_sec < y->tv_sec ? -1 : 1;
-    return (x->tv_nsec > y->tv_nsec) - (x->tv_nsec < y->tv_nsec);
+    const struct slc_file_time *x = &((const struct slc_cached_store *)a)->touched;
+    const struct slc_file_time *y = &((const struct slc_cached_store *)b)->touched;
+    if (x->seconds != y->seconds)
+        return x->seconds < y->seconds ? -1 : 1;
+    return (x->nanoseconds > y->nanoseconds) - (x->nanoseconds < y->nanoseconds);
 }
 
 /* Under its lock: a bake may have begun to continue it. */
@@ -181,7 +173,7 @@ static bool remove_part(const char *folder, const struct slc_cached_store *part,
                         const SluiceAllocationCallbacks *cb)
 {
     static const SluiceLogCallback silent;
-    char target[PATH_MAX];
+    char target[4096];
     struct slc_part_file file;
     int stem = (int)(strlen(part->name) - strlen(PART_SUFFIX));
     int length = snprintf(target, sizeof target, "%s/%.*s", folder, stem, part->name);
@@ -194,11 +186,11 @@ static bool remove_part(const char *folder, const struct slc_cached_store *part,
     return result == SLUICE_SUCCESS;
 }
 
-static bool remove_file(const char *path, DIR *folder, const struct slc_cached_store *store,
-                        const SluiceAllocationCallbacks *cb)
+static bool remove_file(const char *path, struct slc_folder *folder,
+                        const struct slc_cached_store *store, const SluiceAllocationCallbacks *cb)
 {
     return store->kind == SLC_CACHED_PART ? remove_part(path, store, cb)
-                                          : unlinkat(dirfd(folder), store->name, 0) == 0;
+                                          : slc_folder_remove(folder, store->name);
 }
 
 void slc_store_cache_trim(const char *path, uint64_t max_size, const SluiceAllocationCallbacks *cb,
@@ -206,7 +198,7 @@ void slc_store_cache_trim(const char *path, uint64_t max_size, const SluiceAlloc
                           void *user)
 {
     struct cached_stores stores = {0};
-    DIR *folder = opendir(path);
+    struct slc_folder *folder = slc_folder_begin(path);
     if (!folder)
         return;
     bool is_complete = list_stores(folder, &stores, cb);
@@ -219,5 +211,5 @@ void slc_store_cache_trim(const char *path, uint64_t max_size, const SluiceAlloc
             stores.size -= store->size;
     }
     slc_free(cb, stores.items, stores.capacity, sizeof *stores.items);
-    closedir(folder);
+    slc_folder_end(folder);
 }

@@ -4,14 +4,14 @@
 
 #include <sluice/base.h>
 
-#include <time.h>
+#include "platform/file.h"
 
 /** A file of the folder. */
 struct slc_cached_store {
     char name[96];
     enum { SLC_CACHED_STORE, SLC_CACHED_PART, SLC_CACHED_PREVIEW } kind;
     uint64_t device, inode, size;
-    struct timespec touched;
+    struct slc_file_time touched;
 };
 
 /** Makes the folder unless it is there. Errors: IO, logged. */
