@@ -1,13 +1,11 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "container/container_source.h"
 
 #include "base/alloc.h"
 #include "base/log.h"
 #include "container/level_cache.h"
 #include "image/format_size.h"
+#include "platform/thread.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -16,8 +14,8 @@ struct container_source {
     struct slc_input_file file;
     SluiceFormat asked_format;
     SluiceResult (*read_header)(const struct slc_input_file *, struct slc_container_layout *);
-    pthread_mutex_t mutex; ///< around opening
-    atomic_bool is_open;   ///< what follows is constant from then on
+    struct slc_mutex mutex; ///< around opening
+    atomic_bool is_open;    ///< what follows is constant from then on
     struct slc_container_layout layout;
     SluiceImageInfo info;
     struct slc_level_cache cache;
@@ -124,7 +122,7 @@ static SluiceResult ensure_open(struct container_source *source)
     if (atomic_load_explicit(&source->is_open, memory_order_acquire))
         return SLUICE_SUCCESS;
     SluiceResult result = SLUICE_SUCCESS;
-    pthread_mutex_lock(&source->mutex);
+    slc_mutex_lock(&source->mutex);
     if (!atomic_load_explicit(&source->is_open, memory_order_relaxed)) {
         result = slc_input_file_open(&source->file);
         if (result == SLUICE_SUCCESS)
@@ -134,7 +132,7 @@ static SluiceResult ensure_open(struct container_source *source)
         else
             slc_input_file_close(&source->file);
     }
-    pthread_mutex_unlock(&source->mutex);
+    slc_mutex_unlock(&source->mutex);
     return result;
 }
 
@@ -186,7 +184,7 @@ static void destroy(SluiceImageSource *base)
     SluiceAllocationCallbacks cb = source->file.allocator;
     slc_level_cache_finish(&source->cache);
     slc_input_file_finish(&source->file);
-    pthread_mutex_destroy(&source->mutex);
+    slc_mutex_finish(&source->mutex);
     slc_free(&cb, source, 1, sizeof *source);
 }
 
@@ -212,7 +210,7 @@ SluiceResult slc_container_source_create(const struct slc_container_create_info 
     source->base.pInterface = &container_interface;
     source->asked_format = info->format;
     source->read_header = info->read_header;
-    pthread_mutex_init(&source->mutex, NULL);
+    slc_mutex_init(&source->mutex);
     slc_level_cache_init(&source->cache, &source->file, info->max_cache_size);
     SluiceResult result = slc_input_file_init_choice(&source->file, &info->choice, &cb, info->log);
     if (result != SLUICE_SUCCESS) {

@@ -1,5 +1,3 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "container/level_cache.h"
 
 #include "base/alloc.h"
@@ -12,8 +10,8 @@ void slc_level_cache_init(struct slc_level_cache *cache, const struct slc_input_
                           uint64_t max_size)
 {
     *cache = (struct slc_level_cache){.file = file, .max_size = max_size};
-    pthread_mutex_init(&cache->mutex, NULL);
-    pthread_cond_init(&cache->changed, NULL);
+    slc_mutex_init(&cache->mutex);
+    slc_condition_init(&cache->changed);
 }
 
 static void forget(struct slc_level_cache *cache, struct slc_cached_level *level)
@@ -28,8 +26,8 @@ void slc_level_cache_finish(struct slc_level_cache *cache)
     for (uint32_t i = 0; i < SLC_MAX_MIP_LEVELS; i++)
         if (cache->levels[i].bytes)
             forget(cache, &cache->levels[i]);
-    pthread_mutex_destroy(&cache->mutex);
-    pthread_cond_destroy(&cache->changed);
+    slc_mutex_finish(&cache->mutex);
+    slc_condition_finish(&cache->changed);
 }
 
 static SluiceResult check_level(const struct slc_level_cache *cache,
@@ -146,14 +144,14 @@ static SluiceResult load_unlocked(struct slc_level_cache *cache,
     level->is_loading = true;
     level->size = layout->size;
     cache->size += level->size;
-    pthread_mutex_unlock(&cache->mutex);
+    slc_mutex_unlock(&cache->mutex);
     SluiceResult result = load(cache->file, layout, index, &bytes);
-    pthread_mutex_lock(&cache->mutex);
+    slc_mutex_lock(&cache->mutex);
     level->is_loading = false;
     level->bytes = bytes;
     if (!bytes)
         cache->size -= level->size;
-    pthread_cond_broadcast(&cache->changed);
+    slc_condition_broadcast(&cache->changed);
     return result;
 }
 
@@ -163,10 +161,10 @@ SluiceResult slc_level_cache_acquire(struct slc_level_cache *cache,
 {
     struct slc_cached_level *cached = &cache->levels[level];
     SluiceResult result = SLUICE_SUCCESS;
-    pthread_mutex_lock(&cache->mutex);
+    slc_mutex_lock(&cache->mutex);
     while (!cached->bytes && result == SLUICE_SUCCESS) {
         if (cached->is_loading || !make_room(cache, layout->levels[level].size))
-            pthread_cond_wait(&cache->changed, &cache->mutex);
+            slc_condition_wait(&cache->changed, &cache->mutex);
         else
             result = load_unlocked(cache, &layout->levels[level], level);
     }
@@ -175,14 +173,14 @@ SluiceResult slc_level_cache_acquire(struct slc_level_cache *cache,
         cached->last_use = ++cache->acquisitions;
         *bytes = cached->bytes;
     }
-    pthread_mutex_unlock(&cache->mutex);
+    slc_mutex_unlock(&cache->mutex);
     return result;
 }
 
 void slc_level_cache_release(struct slc_level_cache *cache, uint32_t level)
 {
-    pthread_mutex_lock(&cache->mutex);
+    slc_mutex_lock(&cache->mutex);
     if (--cache->levels[level].user_count == 0)
-        pthread_cond_broadcast(&cache->changed);
-    pthread_mutex_unlock(&cache->mutex);
+        slc_condition_broadcast(&cache->changed);
+    slc_mutex_unlock(&cache->mutex);
 }

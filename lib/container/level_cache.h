@@ -6,8 +6,7 @@
 #define SLC_CONTAINER_LEVEL_CACHE_H
 
 #include "container/container_layout.h"
-
-#include <pthread.h>
+#include "platform/thread.h"
 
 struct slc_cached_level {
     char *bytes; ///< owned; NULL: not there
@@ -20,8 +19,8 @@ struct slc_cached_level {
 struct slc_level_cache {
     const struct slc_input_file *file;
     uint64_t max_size; ///< bytes of all levels that are there or on their way
-    pthread_mutex_t mutex;
-    pthread_cond_t changed; ///< a level came, or nobody uses it any more
+    struct slc_mutex mutex;
+    struct slc_condition changed; ///< a level came, or nobody uses it any more
     uint64_t size;
     uint64_t acquisitions;
     struct slc_cached_level levels[SLC_MAX_MIP_LEVELS];

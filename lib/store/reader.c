@@ -51,7 +51,7 @@ SluiceResult slc_store_reader_open(struct slc_store_reader *reader,
     if (result != SLUICE_SUCCESS)
         return result;
     slc_store_equal_chunks_find(&reader->equal, &reader->file, &reader->header);
-    reader->has_mutex = pthread_mutex_init(&reader->mutex, NULL) == 0;
+    reader->has_mutex = slc_mutex_init(&reader->mutex);
     return reader->has_mutex ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
@@ -61,7 +61,7 @@ void slc_store_reader_close(struct slc_store_reader *reader)
         slc_free(&reader->file.allocator, reader->kept[i].bytes, SLC_STORE_BLOCK_SIZE, 1);
     slc_store_equal_chunks_finish(&reader->equal, &reader->file.allocator);
     if (reader->has_mutex)
-        pthread_mutex_destroy(&reader->mutex);
+        slc_mutex_finish(&reader->mutex);
     sluiceDestroyStoreReadPool(reader->own_pool);
     slc_input_file_finish(&reader->file);
 }
@@ -70,7 +70,7 @@ static bool find_in_kept(struct slc_store_reader *reader, uint64_t block,
                          struct slc_store_find *find)
 {
     uint32_t i = (uint32_t)(block % SLC_STORE_KEPT_BLOCKS);
-    pthread_mutex_lock(&reader->mutex);
+    slc_mutex_lock(&reader->mutex);
     bool is_kept = reader->kept[i].bytes && reader->kept[i].number == block;
     if (is_kept) {
         uint32_t entry = (uint32_t)(find->number % SLC_STORE_BLOCK_ENTRIES);
@@ -78,7 +78,7 @@ static bool find_in_kept(struct slc_store_reader *reader, uint64_t block,
             slc_store_entry_read(reader->kept[i].bytes + slc_store_entry_offset(find->number));
         find->is_checked = (reader->kept[i].checked[entry / 8] >> entry % 8 & 1) != 0;
     }
-    pthread_mutex_unlock(&reader->mutex);
+    slc_mutex_unlock(&reader->mutex);
     return is_kept;
 }
 
@@ -86,7 +86,7 @@ static bool find_in_kept(struct slc_store_reader *reader, uint64_t block,
 static void keep_block(struct slc_store_reader *reader, uint64_t block, const unsigned char *bytes)
 {
     uint32_t i = (uint32_t)(block % SLC_STORE_KEPT_BLOCKS);
-    pthread_mutex_lock(&reader->mutex);
+    slc_mutex_lock(&reader->mutex);
     if (!reader->kept[i].bytes)
         reader->kept[i].bytes = slc_alloc(&reader->file.allocator, SLC_STORE_BLOCK_SIZE, 1);
     if (reader->kept[i].bytes) {
@@ -94,7 +94,7 @@ static void keep_block(struct slc_store_reader *reader, uint64_t block, const un
         memset(reader->kept[i].checked, 0, sizeof reader->kept[i].checked);
         reader->kept[i].number = block;
     }
-    pthread_mutex_unlock(&reader->mutex);
+    slc_mutex_unlock(&reader->mutex);
 }
 
 static SluiceResult find_in_file(struct slc_store_reader *reader, uint64_t block,
@@ -136,10 +136,10 @@ static void note_checked(struct slc_store_reader *reader, const struct slc_store
     uint64_t block = find->number / SLC_STORE_BLOCK_ENTRIES;
     uint32_t i = (uint32_t)(block % SLC_STORE_KEPT_BLOCKS);
     uint32_t entry = (uint32_t)(find->number % SLC_STORE_BLOCK_ENTRIES);
-    pthread_mutex_lock(&reader->mutex);
+    slc_mutex_lock(&reader->mutex);
     if (reader->kept[i].bytes && reader->kept[i].number == block)
         reader->kept[i].checked[entry / 8] |= (uint8_t)(1 << entry % 8);
-    pthread_mutex_unlock(&reader->mutex);
+    slc_mutex_unlock(&reader->mutex);
 }
 
 static SluiceResult read_stored(struct slc_store_reader *reader, const struct slc_store_find *find,

@@ -6,8 +6,7 @@
 #include "store/equal_chunks.h"
 #include "store/store_layout.h"
 #include "store/store_read_pool.h"
-
-#include <pthread.h>
+#include "platform/thread.h"
 
 /** Blocks of the index that are kept, each at a place of its own. */
 #define SLC_STORE_KEPT_BLOCKS 64u
@@ -20,7 +19,7 @@ struct slc_store_reader {
     SluiceStoreReadPool *pool, *own_pool; ///< the second NULL where the first is the caller's
     bool checks_always;                   ///< raw chunks; else once while their block is kept
     bool has_mutex;
-    pthread_mutex_t mutex; ///< around what follows
+    struct slc_mutex mutex; ///< around what follows
     struct {
         uint64_t number;                                    ///< of the block
         unsigned char *bytes;                               ///< NULL: none; sound

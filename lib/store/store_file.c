@@ -1,14 +1,10 @@
-#define _POSIX_C_SOURCE 200809L
-#define _FILE_OFFSET_BITS 64
-
 #include "store/store_file.h"
 
 #include "base/log.h"
 #include "base/system.h"
+#include "platform/file.h"
 
-#include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 SluiceResult slc_store_fail_at(const struct slc_store_file *file, SluiceResult result,
                                uint64_t offset, const char *what)
@@ -23,8 +19,8 @@ SluiceResult slc_store_file_read(const struct slc_store_file *file, uint64_t off
 {
     size_t done = 0;
     while (done < size) {
-        ssize_t got =
-            pread(file->descriptor, (char *)bytes + done, size - done, (off_t)(offset + done));
+        int64_t got =
+            slc_file_read_at(file->descriptor, offset + done, (char *)bytes + done, size - done);
         if (got == 0)
             return slc_store_fail_at(file, SLUICE_ERROR_IO, offset + done,
                                      "the file ends here; it has become shorter");
@@ -42,8 +38,8 @@ SluiceResult slc_store_file_write(const struct slc_store_file *file, uint64_t of
 {
     size_t done = 0;
     while (done < size) {
-        ssize_t put = pwrite(file->descriptor, (const char *)bytes + done, size - done,
-                             (off_t)(offset + done));
+        int64_t put = slc_file_write_at(file->descriptor, offset + done, (const char *)bytes + done,
+                                        size - done);
         if (put > 0)
             done += (size_t)put;
         else if (put == 0 || errno != EINTR)

@@ -1,12 +1,11 @@
 #include "store/store_read_pool.h"
 
 #include "base/alloc.h"
-
-#include <pthread.h>
+#include "platform/thread.h"
 
 struct SluiceStoreReadPool {
     SluiceAllocationCallbacks allocator;
-    pthread_mutex_t mutex; ///< around what follows
+    struct slc_mutex mutex; ///< around what follows
     struct slc_store_read_bench *idle;
 };
 
@@ -20,7 +19,7 @@ SluiceResult sluiceCreateStoreReadPool(const SluiceAllocationCallbacks *pAllocat
     if (!pool)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     pool->allocator = cb;
-    if (pthread_mutex_init(&pool->mutex, NULL) != 0) {
+    if (!slc_mutex_init(&pool->mutex)) {
         slc_free(&cb, pool, 1, sizeof *pool);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
@@ -44,17 +43,17 @@ void sluiceDestroyStoreReadPool(SluiceStoreReadPool *pool)
         pool->idle = bench->next;
         free_bench(&cb, bench);
     }
-    pthread_mutex_destroy(&pool->mutex);
+    slc_mutex_finish(&pool->mutex);
     slc_free(&cb, pool, 1, sizeof *pool);
 }
 
 struct slc_store_read_bench *slc_store_read_pool_take(SluiceStoreReadPool *pool)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     struct slc_store_read_bench *bench = pool->idle;
     if (bench)
         pool->idle = bench->next;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     if (bench)
         return bench;
     bench = slc_alloc(&pool->allocator, 1, sizeof *bench);
@@ -73,8 +72,8 @@ struct slc_store_decompressor *slc_store_read_decompressor(SluiceStoreReadPool *
 
 void slc_store_read_pool_give(SluiceStoreReadPool *pool, struct slc_store_read_bench *bench)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     bench->next = pool->idle;
     pool->idle = bench;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }

@@ -132,7 +132,7 @@ static SluiceResult begin(SluiceStoreWriter *writer, const SluiceStoreCreateInfo
     }
     if (result != SLUICE_SUCCESS)
         return result;
-    writer->has_mutex = pthread_mutex_init(&writer->mutex, NULL) == 0;
+    writer->has_mutex = slc_mutex_init(&writer->mutex);
     return writer->has_mutex ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
@@ -178,7 +178,7 @@ void sluiceDestroyStoreWriter(SluiceStoreWriter *writer)
     slc_store_writer_free_benches(writer);
     slc_free(&writer->allocator, writer->repeats, 1, sizeof *writer->repeats);
     if (writer->has_mutex)
-        pthread_mutex_destroy(&writer->mutex);
+        slc_mutex_finish(&writer->mutex);
     SluiceAllocationCallbacks cb = writer->allocator;
     slc_free(&cb, writer, 1, sizeof *writer);
 }
@@ -196,9 +196,9 @@ SluiceResult sluiceGetStoreProgress(SluiceStoreWriter *writer, uint64_t *pWritte
 {
     if (!writer || !pWrittenTileCount || !pTileCount)
         return SLUICE_ERROR_NULL_POINTER;
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     *pWrittenTileCount = writer->written_count;
-    pthread_mutex_unlock(&writer->mutex);
+    slc_mutex_unlock(&writer->mutex);
     *pTileCount = writer->header.grid.chunk_count;
     return SLUICE_SUCCESS;
 }

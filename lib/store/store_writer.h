@@ -7,8 +7,7 @@
 #include "store/repeats.h"
 #include "store/store_file.h"
 #include "store/store_layout.h"
-
-#include <pthread.h>
+#include "platform/thread.h"
 
 /** What one call needs to make a chunk; as many as there were calls at a time. */
 struct slc_store_bench {
@@ -32,7 +31,7 @@ struct SluiceStoreWriter {
     unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
     bool may_resume;
     bool has_mutex;
-    pthread_mutex_t mutex; ///< around what follows
+    struct slc_mutex mutex; ///< around what follows
     enum slc_store_state state;
     uint64_t end; ///< where the next compressed chunk goes
     uint64_t written_count;

@@ -69,12 +69,12 @@ static bool has_repeats(SluiceStoreWriter *writer)
 
 static SluiceResult take_bench(SluiceStoreWriter *writer, struct slc_store_bench **out)
 {
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     bool ready = has_repeats(writer);
     struct slc_store_bench *bench = ready ? writer->idle : NULL;
     if (bench)
         writer->idle = bench->next;
-    pthread_mutex_unlock(&writer->mutex);
+    slc_mutex_unlock(&writer->mutex);
     if (!ready)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (!bench) {
@@ -95,10 +95,10 @@ static SluiceResult take_bench(SluiceStoreWriter *writer, struct slc_store_bench
 
 static void give_bench(SluiceStoreWriter *writer, struct slc_store_bench *bench)
 {
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     bench->next = writer->idle;
     writer->idle = bench;
-    pthread_mutex_unlock(&writer->mutex);
+    slc_mutex_unlock(&writer->mutex);
 }
 
 /* A place in the file that is nobody else's. Errors: as state says. */
@@ -106,7 +106,7 @@ static SluiceResult take_place(SluiceStoreWriter *writer, const struct slc_store
                                struct slc_store_entry *entry)
 {
     const struct slc_store_header *header = &writer->header;
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     SluiceResult result = writer->state == SLC_STORE_WRITING ? SLUICE_SUCCESS : SLUICE_ERROR_IO;
     if (header->compression_level == 0) {
         entry->offset = header->data_offset + slc_store_chunk_offset(&header->grid, place);
@@ -114,17 +114,17 @@ static SluiceResult take_place(SluiceStoreWriter *writer, const struct slc_store
         entry->offset = writer->end;
         writer->end += entry->size;
     }
-    pthread_mutex_unlock(&writer->mutex);
+    slc_mutex_unlock(&writer->mutex);
     return result;
 }
 
 /* Unless others have taken the room behind it, it is free again. */
 static void return_place(SluiceStoreWriter *writer, const struct slc_store_entry *entry)
 {
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     if (writer->end == entry->offset + entry->size)
         writer->end = entry->offset;
-    pthread_mutex_unlock(&writer->mutex);
+    slc_mutex_unlock(&writer->mutex);
 }
 
 /* The index has had its room on the disk from the start. If this fails all the same, what is there
@@ -136,12 +136,12 @@ static SluiceResult write_entry(SluiceStoreWriter *writer, uint64_t number,
     slc_store_entry_write(entry, bytes);
     SluiceResult result =
         slc_store_file_write(&writer->file, entry_offset(number), bytes, sizeof bytes);
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     if (result == SLUICE_SUCCESS)
         writer->written_count++;
     else
         writer->state = SLC_STORE_BROKEN;
-    pthread_mutex_unlock(&writer->mutex);
+    slc_mutex_unlock(&writer->mutex);
     return result;
 }
 
@@ -151,12 +151,12 @@ static bool find_repeat(SluiceStoreWriter *writer, uint64_t hash, const void *by
                         struct slc_store_entry *entry)
 {
     struct slc_store_repeat repeat = {.size = 0};
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     const struct slc_store_repeat *found =
         slc_store_repeats_find(writer->repeats, hash, entry->size);
     if (found && writer->state == SLC_STORE_WRITING)
         repeat = *found;
-    pthread_mutex_unlock(&writer->mutex);
+    slc_mutex_unlock(&writer->mutex);
     if (repeat.size == 0 || !slc_store_repeat_is_equal(&writer->file, &repeat, bytes))
         return false;
     entry->offset = repeat.offset;
@@ -167,9 +167,9 @@ static void note_repeat(SluiceStoreWriter *writer, uint64_t hash,
                         const struct slc_store_entry *entry)
 {
     const struct slc_store_repeat repeat = {hash, entry->offset, entry->size};
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     slc_store_repeats_add(writer->repeats, &repeat);
-    pthread_mutex_unlock(&writer->mutex);
+    slc_mutex_unlock(&writer->mutex);
 }
 
 static SluiceResult write_stored(SluiceStoreWriter *writer, const struct slc_store_place *place,
@@ -225,9 +225,9 @@ static void pack_rows(const void *texels, size_t row_pitch, size_t size, uint32_
 
 static SluiceResult check_unwritten(SluiceStoreWriter *writer, const struct slc_store_place *place)
 {
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     bool is_finished = writer->state == SLC_STORE_FINISHED;
-    pthread_mutex_unlock(&writer->mutex);
+    slc_mutex_unlock(&writer->mutex);
     if (is_finished)
         return SLUICE_ERROR_INVALID_TILE_STATE;
     struct slc_store_entry entry;
