@@ -17,7 +17,7 @@ struct slc_astc_context {
 void slc_astc_pool_init(struct slc_astc_pool *pool, const SluiceAllocationCallbacks *cb)
 {
     *pool = (struct slc_astc_pool){.allocator = *cb, .is_ready = true};
-    pthread_mutex_init(&pool->mutex, NULL);
+    slc_mutex_init(&pool->mutex);
 }
 
 static void destroy_context(struct slc_astc_pool *pool, struct slc_astc_context *context)
@@ -36,7 +36,7 @@ void slc_astc_pool_finish(struct slc_astc_pool *pool)
         destroy_context(pool, context);
     }
     if (pool->is_ready)
-        pthread_mutex_destroy(&pool->mutex);
+        slc_mutex_finish(&pool->mutex);
     pool->is_ready = false;
 }
 
@@ -65,23 +65,23 @@ static struct slc_astc_context *create_context(struct slc_astc_pool *pool, uint3
 static struct slc_astc_context *take_context(struct slc_astc_pool *pool, uint32_t extent, bool srgb,
                                              SluiceBakeQuality quality)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     struct slc_astc_context **at = &pool->idle;
     while (*at && ((*at)->extent != extent || (*at)->srgb != srgb || (*at)->quality != quality))
         at = &(*at)->next;
     struct slc_astc_context *found = *at;
     if (found)
         *at = found->next;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return found ? found : create_context(pool, extent, srgb, quality);
 }
 
 static void put_back(struct slc_astc_pool *pool, struct slc_astc_context *context)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     context->next = pool->idle;
     pool->idle = context;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 SluiceResult slc_astc_pool_encode(struct slc_astc_pool *pool, uint32_t extent, bool srgb,

@@ -4,14 +4,14 @@
 
 #include <sluice/bake.h>
 
-#include <pthread.h>
+#include "platform/thread.h"
 
 struct slc_astc_context;
 
 /** Initialize before use. Finish it when no thread encodes. */
 struct slc_astc_pool {
     SluiceAllocationCallbacks allocator;
-    pthread_mutex_t mutex;
+    struct slc_mutex mutex;
     bool is_ready;
     struct slc_astc_context *idle;
 };

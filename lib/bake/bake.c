@@ -9,9 +9,9 @@
 #include "base/struct_size.h"
 #include "image/format_size.h"
 #include "image/info.h"
+#include "platform/file.h"
 
 #include <string.h>
-#include <sys/stat.h>
 
 /* What zstd and the store's writer take per thread. */
 #define MEMORY_PER_THREAD ((uint64_t)3 << 20)
@@ -412,13 +412,13 @@ static SluiceResult bake_with_memory(struct bake *bake, const SluiceStoreLayout 
 
 static SluiceResult bake_pictures(struct bake *bake)
 {
-    struct stat status;
+    struct slc_file_status status;
     SluiceStoreLayout layout;
     SluiceResult result = look_at_pictures(bake, &layout);
     if (result == SLUICE_SUCCESS)
         result = bake_with_memory(bake, &layout);
-    if (result == SLUICE_SUCCESS && stat(bake->info->pOutputPath, &status) == 0)
-        bake->report.outputSize = (uint64_t)status.st_size;
+    if (result == SLUICE_SUCCESS && slc_path_get_status(bake->info->pOutputPath, &status))
+        bake->report.outputSize = status.size;
     end_picture(bake);
     return result;
 }

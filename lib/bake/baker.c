@@ -1,5 +1,3 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "bake/baker.h"
 
 #include "bake/texels.h"
@@ -7,8 +5,7 @@
 #include "base/alloc.h"
 #include "base/log.h"
 #include "base/struct_size.h"
-
-#include <unistd.h>
+#include "platform/thread.h"
 
 #include <vips/vips.h>
 
@@ -17,10 +14,8 @@
 
 static uint32_t count_threads(uint32_t wanted)
 {
-    if (wanted == 0) {
-        long online = sysconf(_SC_NPROCESSORS_ONLN);
-        wanted = online > 0 ? (uint32_t)online : 1;
-    }
+    if (wanted == 0)
+        wanted = slc_get_processor_count();
     return wanted < MAX_THREADS ? wanted : MAX_THREADS;
 }
 
@@ -100,7 +95,7 @@ static bool take(struct reservation *reservation, SluiceBaker *baker)
     bool has_room = fits(reservation);
     if (has_room)
         baker->used_memory += reservation->size;
-    pthread_mutex_unlock(&baker->jobs.mutex);
+    slc_mutex_unlock(&baker->jobs.mutex);
     return has_room;
 }
 

@@ -96,7 +96,7 @@ static SluiceResult start(struct run *run, uint32_t layer, uint32_t level, uint3
     SluiceResult result = run->result;
     slot->is_busy = result == SLUICE_SUCCESS;
     uint64_t done = run->done;
-    pthread_mutex_unlock(&copy->jobs->mutex);
+    slc_mutex_unlock(&copy->jobs->mutex);
     if (result != SLUICE_SUCCESS)
         return result;
     slot->run = run;
@@ -120,7 +120,7 @@ static SluiceResult copy_tail(struct slc_copy *copy, uint32_t layer, char *texel
                                                    layout->tailFirstLevel, 0, 0, &found);
     slc_bake_jobs_lock(copy->jobs); /* tiles are still being copied */
     copy->found_tile_count += found;
-    pthread_mutex_unlock(&copy->jobs->mutex);
+    slc_mutex_unlock(&copy->jobs->mutex);
     for (uint32_t l = layout->tailFirstLevel; l < layout->mipLevelCount; l++) {
         SluiceImageRegion region;
         if (result == SLUICE_SUCCESS)

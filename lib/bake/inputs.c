@@ -1,16 +1,13 @@
-#define _XOPEN_SOURCE 700
-
 #include "bake/inputs.h"
 
 #include "base/log.h"
 #include "base/same_file.h"
+#include "platform/file.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
 
 const char *slc_bake_input_path(const struct slc_bake_inputs *inputs, uint32_t index)
 {
@@ -42,20 +39,20 @@ static uint64_t hash_number(uint64_t hash, uint64_t number)
 static SluiceResult look_at_file(struct slc_bake_inputs *inputs, const char *path,
                                  const SluiceLogCallback *log)
 {
-    struct stat status;
+    struct slc_file_status status;
     const char *output = inputs->info->pOutputPath;
-    if (stat(path, &status) != 0) {
+    if (!slc_path_get_status(path, &status)) {
         slc_log(log, SLUICE_LOG_ERROR, "%s: %s", path, strerror(errno));
         return errno == ENOENT || errno == ENOTDIR ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
     }
     if (output && slc_output_replaces_input(output, path))
         return slc_log_refusal(log, "%s: the store would take its place", path);
-    int64_t time = (int64_t)status.st_mtim.tv_sec * INT64_C(1000000000) + status.st_mtim.tv_nsec;
-    inputs->size += (uint64_t)status.st_size;
+    int64_t time = status.modified.seconds * INT64_C(1000000000) + status.modified.nanoseconds;
+    inputs->size += status.size;
     inputs->time = inputs->count == 1 || time > inputs->time ? time : inputs->time;
     const char *name = slc_base_name(path);
     inputs->hash = XXH64(name, strlen(name), inputs->hash);
-    inputs->hash = hash_number(hash_number(inputs->hash, (uint64_t)status.st_size), (uint64_t)time);
+    inputs->hash = hash_number(hash_number(inputs->hash, status.size), (uint64_t)time);
     return SLUICE_SUCCESS;
 }
 

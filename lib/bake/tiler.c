@@ -155,7 +155,7 @@ SluiceResult slc_tiler_result(struct slc_tiler *tiler)
 {
     slc_bake_jobs_lock(tiler->jobs);
     SluiceResult result = tiler->result;
-    pthread_mutex_unlock(&tiler->jobs->mutex);
+    slc_mutex_unlock(&tiler->jobs->mutex);
     return result;
 }
 
@@ -184,7 +184,7 @@ static struct slc_band *open_band(struct slc_tiler *tiler, struct slc_tiler_leve
     slc_bake_jobs_lock(tiler->jobs);
     while (band->is_open || band->pending)
         band++;
-    pthread_mutex_unlock(&tiler->jobs->mutex);
+    slc_mutex_unlock(&tiler->jobs->mutex);
     band->is_open = true;
     band->y = y;
     band->row_count = 0;
@@ -222,7 +222,7 @@ void slc_tiler_end_row(struct slc_tiler *tiler, uint32_t l, uint32_t y)
     slc_bake_jobs_lock(tiler->jobs);
     band->is_open = false;
     band->pending = tile_count;
-    pthread_mutex_unlock(&tiler->jobs->mutex);
+    slc_mutex_unlock(&tiler->jobs->mutex);
     for (uint32_t x = 0; x < tile_count; x++) {
         band->jobs[x] = (struct slc_tile_job){.base.run = run_tile_job, .band = band, .x = x};
         slc_bake_jobs_submit(tiler->jobs, &band->jobs[x].base);

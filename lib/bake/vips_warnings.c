@@ -2,14 +2,14 @@
 
 #include "base/log.h"
 #include "image/input_file.h"
+#include "platform/thread.h"
 
-#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
 #include <vips/vips.h>
 
-static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER; ///< around the next two
+static struct slc_mutex mutex = SLC_MUTEX_INITIALIZER; ///< around the next two
 static uint32_t listener_count;
 static guint handler;
 
@@ -52,20 +52,20 @@ static void on_warning(const gchar *domain, GLogLevelFlags level, const gchar *m
 
 void slc_vips_warnings_listen(void)
 {
-    pthread_mutex_lock(&mutex);
+    slc_mutex_lock(&mutex);
     if (listener_count++ == 0)
         handler =
             g_log_set_handler("VIPS", G_LOG_LEVEL_WARNING | G_LOG_FLAG_FATAL | G_LOG_FLAG_RECURSION,
                               on_warning, NULL);
-    pthread_mutex_unlock(&mutex);
+    slc_mutex_unlock(&mutex);
 }
 
 void slc_vips_warnings_end(void)
 {
-    pthread_mutex_lock(&mutex);
+    slc_mutex_lock(&mutex);
     if (--listener_count == 0)
         g_log_remove_handler("VIPS", handler);
-    pthread_mutex_unlock(&mutex);
+    slc_mutex_unlock(&mutex);
 }
 
 void slc_vips_warnings_enter(struct slc_vips_warnings *warnings)

@@ -1,11 +1,9 @@
-#define _POSIX_C_SOURCE 200809L
-
 #include "bake/work_pool.h"
 
 #include "base/alloc.h"
+#include "platform/time_now.h"
 
 #include <assert.h>
-#include <time.h>
 
 #define A_WHILE 20000000 /* nanoseconds */
 
@@ -22,40 +20,34 @@ static struct slc_job *take(struct slc_bake_jobs *jobs)
 
 static void run_unlocked(struct slc_bake_jobs *jobs, struct slc_job *job)
 {
-    pthread_mutex_unlock(&jobs->mutex);
+    slc_mutex_unlock(&jobs->mutex);
     job->run(job);
-    pthread_mutex_lock(&jobs->mutex);
+    slc_mutex_lock(&jobs->mutex);
 }
 
 void slc_bake_jobs_help_until(struct slc_bake_jobs *jobs, bool (*is_done)(void *user), void *user)
 {
-    pthread_mutex_lock(&jobs->mutex);
+    slc_mutex_lock(&jobs->mutex);
     while (!is_done(user)) {
         struct slc_job *job = take(jobs);
         if (job)
             run_unlocked(jobs, job);
         else
-            pthread_cond_wait(&jobs->changed, &jobs->mutex);
+            slc_condition_wait(&jobs->changed, &jobs->mutex);
     }
-    pthread_mutex_unlock(&jobs->mutex);
+    slc_mutex_unlock(&jobs->mutex);
 }
 
 void slc_bake_jobs_help_a_while(struct slc_bake_jobs *jobs, bool (*is_done)(void *user), void *user)
 {
-    struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_nsec += A_WHILE;
-    if (until.tv_nsec >= 1000000000) {
-        until.tv_nsec -= 1000000000;
-        until.tv_sec++;
-    }
-    pthread_mutex_lock(&jobs->mutex);
+    uint64_t until = slc_monotonic_time() + A_WHILE;
+    slc_mutex_lock(&jobs->mutex);
     struct slc_job *job = is_done(user) ? NULL : take(jobs);
     if (job)
         run_unlocked(jobs, job);
     else if (!is_done(user))
-        pthread_cond_timedwait(&jobs->changed, &jobs->mutex, &until);
-    pthread_mutex_unlock(&jobs->mutex);
+        slc_condition_wait_until(&jobs->changed, &jobs->mutex, until);
+    slc_mutex_unlock(&jobs->mutex);
 }
 
 static bool ends(void *user)
@@ -74,14 +66,14 @@ SluiceResult slc_bake_jobs_init(struct slc_bake_jobs *jobs, const SluiceAllocati
                                 uint32_t thread_count)
 {
     *jobs = (struct slc_bake_jobs){.allocator = *cb};
-    pthread_mutex_init(&jobs->mutex, NULL);
-    pthread_cond_init(&jobs->changed, NULL);
+    slc_mutex_init(&jobs->mutex);
+    slc_condition_init(&jobs->changed);
     if (thread_count == 0)
         return SLUICE_SUCCESS;
     jobs->threads = slc_alloc(cb, thread_count, sizeof *jobs->threads);
     bool is_complete = jobs->threads != NULL;
     for (uint32_t i = 0; i < thread_count && is_complete; i++) {
-        is_complete = pthread_create(&jobs->threads[i], NULL, work, jobs) == 0;
+        is_complete = slc_thread_start(&jobs->threads[i], work, jobs);
         jobs->thread_count += is_complete;
     }
     if (is_complete)
@@ -90,10 +82,10 @@ SluiceResult slc_bake_jobs_init(struct slc_bake_jobs *jobs, const SluiceAllocati
     jobs->ends = true;
     slc_bake_jobs_unlock_and_wake(jobs);
     for (uint32_t i = 0; i < jobs->thread_count; i++)
-        pthread_join(jobs->threads[i], NULL);
+        slc_thread_join(&jobs->threads[i]);
     slc_free(cb, jobs->threads, thread_count, sizeof *jobs->threads);
-    pthread_cond_destroy(&jobs->changed);
-    pthread_mutex_destroy(&jobs->mutex);
+    slc_condition_finish(&jobs->changed);
+    slc_mutex_finish(&jobs->mutex);
     return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
@@ -104,10 +96,10 @@ void slc_bake_jobs_finish(struct slc_bake_jobs *jobs)
     jobs->ends = true;
     slc_bake_jobs_unlock_and_wake(jobs);
     for (uint32_t i = 0; i < jobs->thread_count; i++)
-        pthread_join(jobs->threads[i], NULL);
+        slc_thread_join(&jobs->threads[i]);
     slc_free(&jobs->allocator, jobs->threads, jobs->thread_count, sizeof *jobs->threads);
-    pthread_cond_destroy(&jobs->changed);
-    pthread_mutex_destroy(&jobs->mutex);
+    slc_condition_finish(&jobs->changed);
+    slc_mutex_finish(&jobs->mutex);
 }
 
 void slc_bake_jobs_submit(struct slc_bake_jobs *jobs, struct slc_job *job)
@@ -124,11 +116,11 @@ void slc_bake_jobs_submit(struct slc_bake_jobs *jobs, struct slc_job *job)
 
 void slc_bake_jobs_lock(struct slc_bake_jobs *jobs)
 {
-    pthread_mutex_lock(&jobs->mutex);
+    slc_mutex_lock(&jobs->mutex);
 }
 
 void slc_bake_jobs_unlock_and_wake(struct slc_bake_jobs *jobs)
 {
-    pthread_cond_broadcast(&jobs->changed);
-    pthread_mutex_unlock(&jobs->mutex);
+    slc_condition_broadcast(&jobs->changed);
+    slc_mutex_unlock(&jobs->mutex);
 }

@@ -4,7 +4,7 @@
 
 #include <sluice/base.h>
 
-#include <pthread.h>
+#include "platform/thread.h"
 
 /** Embedded in what it works on; not touched any more once `run` is called. */
 struct slc_job {
@@ -14,12 +14,12 @@ struct slc_job {
 
 struct slc_bake_jobs {
     SluiceAllocationCallbacks allocator;
-    pthread_mutex_t mutex;
-    pthread_cond_t changed; ///< a job came or ended, or `ends`
+    struct slc_mutex mutex;
+    struct slc_condition changed; ///< a job came or ended, or `ends`
     struct slc_job *first, *last;
     bool ends;
     uint32_t thread_count;
-    pthread_t *threads;
+    struct slc_thread *threads;
 };
 
 /** `thread_count` may be 0: then waiters do everything. Errors: OUT_OF_HOST_MEMORY. */

@@ -1,6 +1,3 @@
-#define _POSIX_C_SOURCE 200809L
-#define _FILE_OFFSET_BITS 64
-
 #include <sluice/exr.h>
 
 #include "base/alloc.h"
@@ -11,13 +8,13 @@
 #include "exr/exr_memory_budget.h"
 #include "image/format_size.h"
 #include "image/mip.h"
+#include "platform/time_now.h"
+#include "platform/thread.h"
 
-#include <pthread.h>
 #include <string.h>
-#include <time.h>
 
 /* Until a file that could not be decoded is decoded again though it seems unchanged. */
-#define SECONDS_BETWEEN_BUILDS 10
+#define TIME_BETWEEN_BUILDS UINT64_C(10000000000) /* nanoseconds */
 
 struct exr_source {
     SluiceImageSource base;
@@ -27,11 +24,11 @@ struct exr_source {
     uint64_t chain_size;           ///< bytes that building takes and the chain then holds; 0: none
     uint64_t read_size;            ///< bytes that a read takes
     SluiceExrMemoryBudget *budget; ///< NULL, or chain_size was taken from it
-    pthread_mutex_t mutex;         ///< around what follows
+    struct slc_mutex mutex;        ///< around what follows
     bool is_built;
     SluiceResult failure;                ///< of building, if another attempt now would fail again
     struct slc_file_stamp failure_stamp; ///< of the file then
-    time_t failure_time;
+    uint64_t failure_time;
     struct slc_mip_chain chain;
 };
 
@@ -85,13 +82,6 @@ static SluiceResult build_chain(struct exr_source *source)
     return result;
 }
 
-static time_t now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return time.tv_sec;
-}
-
 /* Decoding all of a file takes long, so it is not done for every tile that is asked for again. */
 static void note_failure(struct exr_source *source, SluiceResult result)
 {
@@ -99,7 +89,7 @@ static void note_failure(struct exr_source *source, SluiceResult result)
         return;
     source->failure = result;
     source->failure_stamp = slc_input_file_stamp(&source->file.input);
-    source->failure_time = now();
+    source->failure_time = slc_monotonic_time();
 }
 
 /* It was written again, or there may have been an outage. */
@@ -107,13 +97,13 @@ static bool may_be_well(const struct exr_source *source)
 {
     struct slc_file_stamp stamp = slc_input_file_stamp(&source->file.input);
     return memcmp(&stamp, &source->failure_stamp, sizeof stamp) != 0 ||
-           now() - source->failure_time >= SECONDS_BETWEEN_BUILDS;
+           slc_monotonic_time() - source->failure_time >= TIME_BETWEEN_BUILDS;
 }
 
 /* The first reader builds while the others wait; afterwards the chain never changes. */
 static SluiceResult ensure_chain(struct exr_source *source)
 {
-    pthread_mutex_lock(&source->mutex);
+    slc_mutex_lock(&source->mutex);
     if (source->failure != SLUICE_SUCCESS && may_be_well(source))
         source->failure = SLUICE_SUCCESS;
     SluiceResult result = source->failure;
@@ -122,7 +112,7 @@ static SluiceResult ensure_chain(struct exr_source *source)
         source->is_built = result == SLUICE_SUCCESS;
         note_failure(source, result);
     }
-    pthread_mutex_unlock(&source->mutex);
+    slc_mutex_unlock(&source->mutex);
     return result;
 }
 
@@ -148,7 +138,7 @@ static void destroy(SluiceImageSource *base)
     if (source->budget)
         slc_memory_budget_give_back(source->budget, source->chain_size);
     slc_exr_file_close(&source->file);
-    pthread_mutex_destroy(&source->mutex);
+    slc_mutex_finish(&source->mutex);
     slc_free(&cb, source, 1, sizeof *source);
 }
 
@@ -307,7 +297,7 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
     if (!source)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     source->base.pInterface = &exr_interface;
-    pthread_mutex_init(&source->mutex, NULL);
+    slc_mutex_init(&source->mutex);
     struct slc_input_choice choice = {info.pPath, info.pInput, info.filePool};
     result = slc_exr_file_open(&source->file, &choice, &cb, &info.log);
     if (info.keepPrimaries && source->file.converts) {

@@ -8,9 +8,9 @@
 #include "image/convert.h"
 #include "image/format_size.h"
 #include "image/half.h"
+#include "platform/thread.h"
 
 #include <openexr.h>
-#include <pthread.h>
 #include <string.h>
 
 /* A tile, in the order in which tiles are taken and written: level by level, row by row. */
@@ -31,9 +31,9 @@ struct writer {
     bool write_failed; ///< And was logged.
     exr_context_t context;
 
-    pthread_mutex_t mutex; ///< around what follows and around every write
-    pthread_cond_t turn;   ///< another tile has been written, or writing has failed
-    struct tile next;      ///< to be taken
+    struct slc_mutex mutex;    ///< around what follows and around every write
+    struct slc_condition turn; ///< another tile has been written, or writing has failed
+    struct tile next;          ///< to be taken
     uint64_t written_count, written_texels;
     SluiceResult result; ///< the first failure
 };
@@ -294,9 +294,9 @@ static void write_tile(struct writer *writer, const struct tile *tile,
         bytes = pipeline.compressed_buffer;
         size = pipeline.compressed_bytes;
     }
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     while (writer->written_count != tile->index && writer->result == SLUICE_SUCCESS)
-        pthread_cond_wait(&writer->turn, &writer->mutex);
+        slc_condition_wait(&writer->turn, &writer->mutex);
     if (writer->result == SLUICE_SUCCESS) {
         if (result == SLUICE_SUCCESS)
             result = library_result(writer, encoding);
@@ -306,16 +306,16 @@ static void write_tile(struct writer *writer, const struct tile *tile,
     }
     if (compresses)
         exr_encoding_destroy(writer->context, &pipeline);
-    pthread_cond_broadcast(&writer->turn);
+    slc_condition_broadcast(&writer->turn);
 }
 
 static void report(struct writer *writer, SluiceResult result)
 {
-    pthread_mutex_lock(&writer->mutex);
+    slc_mutex_lock(&writer->mutex);
     if (writer->result == SLUICE_SUCCESS)
         writer->result = result;
-    pthread_cond_broadcast(&writer->turn);
-    pthread_mutex_unlock(&writer->mutex);
+    slc_condition_broadcast(&writer->turn);
+    slc_mutex_unlock(&writer->mutex);
 }
 
 static void *worker_main(void *argument)
@@ -331,12 +331,12 @@ static void *worker_main(void *argument)
     buffers.packed = slc_alloc(cb, buffers.packed_size, 1);
     if (buffers.texels && buffers.packed) {
         struct tile tile;
-        pthread_mutex_lock(&writer->mutex);
+        slc_mutex_lock(&writer->mutex);
         while (take_tile(writer, &tile)) {
-            pthread_mutex_unlock(&writer->mutex);
+            slc_mutex_unlock(&writer->mutex);
             write_tile(writer, &tile, &buffers); /* returns with the mutex */
         }
-        pthread_mutex_unlock(&writer->mutex);
+        slc_mutex_unlock(&writer->mutex);
     } else {
         report(writer, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
     }
@@ -349,17 +349,17 @@ static void *worker_main(void *argument)
 static SluiceResult run_workers(struct writer *writer)
 {
     uint32_t extra = writer->info.threadCount - 1, started = 0;
-    pthread_t *threads = NULL;
+    struct slc_thread *threads = NULL;
     if (extra > 0) {
         threads = slc_alloc(&writer->allocator, extra, sizeof *threads);
         if (!threads)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
-    while (started < extra && pthread_create(&threads[started], NULL, worker_main, writer) == 0)
+    while (started < extra && slc_thread_start(&threads[started], worker_main, writer))
         started++;
     worker_main(writer);
     for (uint32_t i = 0; i < started; i++)
-        pthread_join(threads[i], NULL);
+        slc_thread_join(&threads[i]);
     slc_free(&writer->allocator, threads, extra, sizeof *threads);
     return writer->result;
 }
@@ -439,10 +439,10 @@ SluiceResult sluiceWriteExrFile(const SluiceExrWriteInfo *pInfo, SluiceImageSour
         result = prepare(&writer);
     if (result != SLUICE_SUCCESS)
         return result;
-    pthread_mutex_init(&writer.mutex, NULL);
-    pthread_cond_init(&writer.turn, NULL);
+    slc_mutex_init(&writer.mutex);
+    slc_condition_init(&writer.turn);
     result = write_image(&writer);
-    pthread_mutex_destroy(&writer.mutex);
-    pthread_cond_destroy(&writer.turn);
+    slc_mutex_finish(&writer.mutex);
+    slc_condition_finish(&writer.turn);
     return result;
 }

@@ -1,15 +1,10 @@
-#define _POSIX_C_SOURCE 200809L
-#define _FILE_OFFSET_BITS 64
-
 #include "pbrt/byte_window.h"
 
 #include "base/alloc.h"
 #include "base/system.h"
+#include "platform/file.h"
 
-#include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #if SLC_HAVE_ZLIB
 #include <zlib.h>
@@ -30,7 +25,7 @@ struct slc_pbrt_inflater {
 static size_t read_file(struct slc_pbrt_window *window, unsigned char *bytes, size_t size)
 {
     while (window->failure == SLUICE_SUCCESS) {
-        ssize_t got = pread(window->descriptor, bytes, size, (off_t)window->file_offset);
+        int64_t got = slc_file_read_at(window->descriptor, window->file_offset, bytes, size);
         if (got >= 0) {
             window->file_offset += (uint64_t)got;
             return (size_t)got;
@@ -207,17 +202,16 @@ bool slc_pbrt_window_take(struct slc_pbrt_window *window, void *bytes, size_t si
     return true;
 }
 
-static struct slc_pbrt_stamp stamp_of(const struct stat *status)
+static struct slc_pbrt_stamp stamp_of(const struct slc_file_status *status)
 {
-    return (struct slc_pbrt_stamp){(uint64_t)status->st_dev, (uint64_t)status->st_ino,
-                                   (uint64_t)status->st_size, (int64_t)status->st_mtim.tv_sec,
-                                   (int64_t)status->st_mtim.tv_nsec};
+    return (struct slc_pbrt_stamp){status->device, status->inode, status->size,
+                                   status->modified.seconds, status->modified.nanoseconds};
 }
 
 bool slc_pbrt_stamp_of(const char *path, struct slc_pbrt_stamp *stamp)
 {
-    struct stat status;
-    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode))
+    struct slc_file_status status;
+    if (!slc_path_get_status(path, &status) || status.kind != SLC_NODE_FILE)
         return false;
     *stamp = stamp_of(&status);
     return true;
@@ -232,14 +226,14 @@ bool slc_pbrt_stamps_equal(const struct slc_pbrt_stamp *a, const struct slc_pbrt
 SluiceResult slc_pbrt_window_open(struct slc_pbrt_window *window, const char *path,
                                   const SluiceAllocationCallbacks *cb)
 {
-    struct stat status;
+    struct slc_file_status status;
     *window = (struct slc_pbrt_window){
         .allocator = *cb, .descriptor = slc_open_input(path), .most = UINT64_MAX};
     if (window->descriptor < 0)
         return slc_system_result(errno);
     window->is_open = true;
     SluiceResult result = SLUICE_ERROR_IO;
-    if (fstat(window->descriptor, &status) != 0 || !S_ISREG(status.st_mode))
+    if (!slc_file_get_status(window->descriptor, &status) || status.kind != SLC_NODE_FILE)
         goto fail;
     window->stamp = stamp_of(&status);
     result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -271,6 +265,6 @@ void slc_pbrt_window_finish(struct slc_pbrt_window *window)
         return;
     finish_inflater(window);
     slc_free(&window->allocator, window->bytes, SLC_PBRT_WINDOW_SIZE + 1, 1);
-    close(window->descriptor);
+    slc_file_close(window->descriptor);
     *window = (struct slc_pbrt_window){0};
 }
