@@ -72,7 +72,7 @@ SluiceResult slc_device_budget_init(struct slc_device_budget *device, const stru
     device->heap = slc_device_memory_heap(caps);
     device->step =
         slc_min_u64(MAX_STEP, caps->memory.memoryHeaps[device->heap].size / STEPS_PER_HEAP);
-    if (device->get && pthread_mutex_init(&device->mutex, NULL) != 0)
+    if (device->get && !slc_mutex_init(&device->mutex))
         device->get = NULL;
     if (device->get)
         poll(device, budget);
@@ -82,15 +82,15 @@ SluiceResult slc_device_budget_init(struct slc_device_budget *device, const stru
 void slc_device_budget_finish(struct slc_device_budget *device)
 {
     if (device->get)
-        pthread_mutex_destroy(&device->mutex);
+        slc_mutex_finish(&device->mutex);
 }
 
 void slc_device_budget_turn(struct slc_device_budget *device, struct slc_memory_budget *budget)
 {
     if (!device->get)
         return;
-    pthread_mutex_lock(&device->mutex);
+    slc_mutex_lock(&device->mutex);
     if (++device->turns >= SLC_DEVICE_BUDGET_TURNS)
         poll(device, budget);
-    pthread_mutex_unlock(&device->mutex);
+    slc_mutex_unlock(&device->mutex);
 }

@@ -11,7 +11,7 @@
 
 /** Zeroed: no limit, and the device is not polled. */
 struct slc_device_budget {
-    pthread_mutex_t mutex; ///< around `limit` and `turns`: front ends may be on different threads
+    struct slc_mutex mutex; ///< around `limit` and `turns`: front ends may be on different threads
     PFN_vkGetPhysicalDeviceMemoryProperties2 get; ///< NULL: the limit stays SLC_NO_MEMORY_LIMIT
     VkPhysicalDevice physical_device;
     uint32_t heap;  ///< the largest that is local to the device

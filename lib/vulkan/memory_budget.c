@@ -16,28 +16,27 @@ SluiceResult slc_memory_budget_init(struct slc_memory_budget *budget)
 {
     *budget = (struct slc_memory_budget){.limit = SLC_NO_MEMORY_LIMIT,
                                          .device_limit = SLC_NO_MEMORY_LIMIT};
-    return pthread_mutex_init(&budget->mutex, NULL) == 0 ? SLUICE_SUCCESS
-                                                         : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    return slc_mutex_init(&budget->mutex) ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
 void slc_memory_budget_finish(struct slc_memory_budget *budget)
 {
     assert(!budget->clients && budget->block_count == 0);
-    pthread_mutex_destroy(&budget->mutex);
+    slc_mutex_finish(&budget->mutex);
 }
 
 void slc_memory_budget_set_limit(struct slc_memory_budget *budget, uint64_t limit)
 {
-    pthread_mutex_lock(&budget->mutex);
+    slc_mutex_lock(&budget->mutex);
     budget->limit = limit;
-    pthread_mutex_unlock(&budget->mutex);
+    slc_mutex_unlock(&budget->mutex);
 }
 
 void slc_memory_budget_set_device_limit(struct slc_memory_budget *budget, uint64_t limit)
 {
-    pthread_mutex_lock(&budget->mutex);
+    slc_mutex_lock(&budget->mutex);
     budget->device_limit = limit;
-    pthread_mutex_unlock(&budget->mutex);
+    slc_mutex_unlock(&budget->mutex);
 }
 
 static uint64_t tile_memory(const struct slc_memory_budget *budget)
@@ -50,17 +49,17 @@ static uint64_t tile_memory(const struct slc_memory_budget *budget)
 
 uint64_t slc_memory_budget_limit(struct slc_memory_budget *budget)
 {
-    pthread_mutex_lock(&budget->mutex);
+    slc_mutex_lock(&budget->mutex);
     uint64_t limit = slc_min_u64(budget->limit, budget->device_limit);
-    pthread_mutex_unlock(&budget->mutex);
+    slc_mutex_unlock(&budget->mutex);
     return limit;
 }
 
 uint64_t slc_memory_budget_tile_memory(struct slc_memory_budget *budget)
 {
-    pthread_mutex_lock(&budget->mutex);
+    slc_mutex_lock(&budget->mutex);
     uint64_t size = tile_memory(budget);
-    pthread_mutex_unlock(&budget->mutex);
+    slc_mutex_unlock(&budget->mutex);
     return size;
 }
 
@@ -68,7 +67,7 @@ void slc_memory_budget_get(struct slc_memory_budget *budget,
                            SluiceVulkanContextStatistics *statistics)
 {
     SluiceVulkanContextStatistics *s = statistics;
-    pthread_mutex_lock(&budget->mutex);
+    slc_mutex_lock(&budget->mutex);
     s->memoryBudget = slc_min_u64(budget->limit, budget->device_limit);
     s->tileMemorySize = tile_memory(budget);
     s->heapMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_HEAP];
@@ -81,17 +80,17 @@ void slc_memory_budget_get(struct slc_memory_budget *budget,
     s->memoryBlockCount = budget->block_count;
     s->refusedBlockCount = budget->refused_count;
     s->deviceMemoryBudget = budget->device_limit;
-    pthread_mutex_unlock(&budget->mutex);
+    slc_mutex_unlock(&budget->mutex);
 }
 
 void slc_memory_client_init(struct slc_memory_client *client, struct slc_memory_budget *budget)
 {
-    pthread_mutex_lock(&budget->mutex);
+    slc_mutex_lock(&budget->mutex);
     *client = (struct slc_memory_client){.budget = budget, .next = budget->clients};
     if (client->next)
         client->next->previous = client;
     budget->clients = client;
-    pthread_mutex_unlock(&budget->mutex);
+    slc_mutex_unlock(&budget->mutex);
 }
 
 void slc_memory_client_finish(struct slc_memory_client *client)
@@ -100,14 +99,14 @@ void slc_memory_client_finish(struct slc_memory_client *client)
     if (!budget)
         return;
     assert(client->device == 0 && client->host == 0);
-    pthread_mutex_lock(&budget->mutex);
+    slc_mutex_lock(&budget->mutex);
     if (client->previous)
         client->previous->next = client->next;
     else
         budget->clients = client->next;
     if (client->next)
         client->next->previous = client->previous;
-    pthread_mutex_unlock(&budget->mutex);
+    slc_mutex_unlock(&budget->mutex);
     *client = (struct slc_memory_client){0};
 }
 
@@ -123,7 +122,7 @@ bool slc_memory_client_take(struct slc_memory_client *client, SluiceDeviceMemory
 {
     struct slc_memory_budget *budget = client->budget;
     bool tiles = slc_memory_is_for_tiles(purpose);
-    pthread_mutex_lock(&budget->mutex);
+    slc_mutex_lock(&budget->mutex);
     uint64_t used = tile_memory(budget), limit = slc_min_u64(budget->limit, budget->device_limit);
     bool fits = !tiles || (used <= limit && size <= limit - used);
     if (fits) {
@@ -135,7 +134,7 @@ bool slc_memory_client_take(struct slc_memory_client *client, SluiceDeviceMemory
         budget->refused_count++;
         note_refusal(client, size);
     }
-    pthread_mutex_unlock(&budget->mutex);
+    slc_mutex_unlock(&budget->mutex);
     return fits;
 }
 
@@ -154,31 +153,31 @@ static void give(struct slc_memory_client *client, SluiceDeviceMemoryPurpose pur
 void slc_memory_client_give(struct slc_memory_client *client, SluiceDeviceMemoryPurpose purpose,
                             bool mapped, uint64_t size)
 {
-    pthread_mutex_lock(&client->budget->mutex);
+    slc_mutex_lock(&client->budget->mutex);
     give(client, purpose, mapped, size);
-    pthread_mutex_unlock(&client->budget->mutex);
+    slc_mutex_unlock(&client->budget->mutex);
 }
 
 void slc_memory_client_refuse(struct slc_memory_client *client, SluiceDeviceMemoryPurpose purpose,
                               bool mapped, uint64_t size)
 {
-    pthread_mutex_lock(&client->budget->mutex);
+    slc_mutex_lock(&client->budget->mutex);
     give(client, purpose, mapped, size);
     if (slc_memory_is_for_tiles(purpose))
         note_refusal(client, size);
-    pthread_mutex_unlock(&client->budget->mutex);
+    slc_mutex_unlock(&client->budget->mutex);
 }
 
 void slc_memory_client_move(struct slc_memory_client *from, struct slc_memory_client *to,
                             SluiceDeviceMemoryPurpose purpose, bool mapped, uint64_t size)
 {
-    pthread_mutex_lock(&from->budget->mutex);
+    slc_mutex_lock(&from->budget->mutex);
     uint64_t tiles = slc_memory_is_for_tiles(purpose) ? size : 0;
     *(mapped ? &from->host : &from->device) -= size;
     *(mapped ? &to->host : &to->device) += size;
     from->tiles -= tiles;
     to->tiles += tiles;
-    pthread_mutex_unlock(&from->budget->mutex);
+    slc_mutex_unlock(&from->budget->mutex);
 }
 
 void slc_memory_client_set_source(struct slc_memory_client *client,
@@ -186,20 +185,20 @@ void slc_memory_client_set_source(struct slc_memory_client *client,
 {
     if (!client || !client->budget)
         return;
-    pthread_mutex_lock(&client->budget->mutex);
+    slc_mutex_lock(&client->budget->mutex);
     client->source = source;
-    pthread_mutex_unlock(&client->budget->mutex);
+    slc_mutex_unlock(&client->budget->mutex);
 }
 
 void slc_memory_client_blame(struct slc_memory_client *source, struct slc_memory_client *client)
 {
     if (!source->budget)
         return;
-    pthread_mutex_lock(&source->budget->mutex);
+    slc_mutex_lock(&source->budget->mutex);
     if (client)
         note_refusal(client, source->refused);
     source->refused = 0;
-    pthread_mutex_unlock(&source->budget->mutex);
+    slc_mutex_unlock(&source->budget->mutex);
 }
 
 /* The part of `amount` that `own` is of `all`. Rounded up, so that the shares of all clients reach
@@ -218,7 +217,7 @@ static uint64_t share_of(uint64_t amount, uint64_t own, uint64_t all)
 struct slc_memory_pressure slc_memory_client_begin(struct slc_memory_client *client)
 {
     struct slc_memory_budget *budget = client->budget;
-    pthread_mutex_lock(&budget->mutex);
+    slc_mutex_lock(&budget->mutex);
     uint64_t used = tile_memory(budget), limit = slc_min_u64(budget->limit, budget->device_limit);
     uint64_t own = client->tiles + (client->source ? client->source->tiles : 0);
     struct slc_memory_pressure pressure = {.beyond = used > limit ? used - limit : 0};
@@ -230,7 +229,7 @@ struct slc_memory_pressure slc_memory_client_begin(struct slc_memory_client *cli
     client->refused = 0;
     pressure.refused = slc_min_u64(pressure.refused, own);
     pressure.beyond = share_of(pressure.beyond, own, used);
-    pthread_mutex_unlock(&budget->mutex);
+    slc_mutex_unlock(&budget->mutex);
     return pressure;
 }
 
@@ -238,9 +237,9 @@ uint64_t slc_memory_client_tiles(struct slc_memory_client *client)
 {
     if (!client->budget)
         return 0;
-    pthread_mutex_lock(&client->budget->mutex);
+    slc_mutex_lock(&client->budget->mutex);
     uint64_t tiles = client->tiles;
-    pthread_mutex_unlock(&client->budget->mutex);
+    slc_mutex_unlock(&client->budget->mutex);
     return tiles;
 }
 
@@ -253,10 +252,10 @@ void slc_memory_client_get(struct slc_memory_client *client, uint64_t *device, u
             *host = 0;
         return;
     }
-    pthread_mutex_lock(&client->budget->mutex);
+    slc_mutex_lock(&client->budget->mutex);
     if (device)
         *device = client->device;
     if (host)
         *host = client->host;
-    pthread_mutex_unlock(&client->budget->mutex);
+    slc_mutex_unlock(&client->budget->mutex);
 }

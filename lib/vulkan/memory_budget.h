@@ -11,7 +11,7 @@
 
 #include <sluice/vulkan_context.h>
 
-#include <pthread.h>
+#include "platform/thread.h"
 
 #define SLC_MEMORY_PURPOSES 7u
 #define SLC_NO_MEMORY_LIMIT UINT64_MAX
@@ -19,7 +19,7 @@
 struct slc_memory_client;
 
 struct slc_memory_budget {
-    pthread_mutex_t mutex;
+    struct slc_mutex mutex;
     uint64_t limit, device_limit; ///< bytes of tile memory; the smaller one counts
     uint64_t used[SLC_MEMORY_PURPOSES];
     uint32_t block_count;

@@ -86,26 +86,26 @@ static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user, ui
 
 void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     if (pool->leaving_user == user)
         slc_page_pool_stay_locked(pool);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 uint32_t slc_page_pool_leaving(struct slc_page_pool *pool, uint32_t user)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t leaving = pool->leaving_user == user ? pool->leaving : SLC_NONE;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return leaving;
 }
 
 uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32_t chunk)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     const struct slc_page_chunk *c = &pool->chunks.at[chunk];
     uint32_t held = c->state == SLC_CHUNK_LIVE ? count_own(pool, c, user) : 0;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return held;
 }
 
@@ -128,7 +128,7 @@ uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user,
 {
     uint32_t lacking = SLC_NONE;
     *held = 0;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     choose_leaving(pool, user, size);
     if (pool->leaving != SLC_NONE && pool->leaving_user == user) {
         const struct slc_page_chunk *chunk = &pool->chunks.at[pool->leaving];
@@ -137,7 +137,7 @@ uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user,
         *held = chunk->layer_count - chunk->free_count;
         lacking = *held > room ? *held - room : 0;
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return lacking;
 }
 
@@ -164,17 +164,17 @@ static uint64_t share_excess(const struct slc_page_pool *pool, uint32_t user, ui
 
 uint64_t slc_page_pool_excess(struct slc_page_pool *pool, uint32_t user)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint64_t limit = pool->chunks.max_size, size = pool->chunks.memory.total_size;
     uint64_t excess = limit && size > limit ? share_excess(pool, user, size - limit) : 0;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return excess;
 }
 
 uint64_t slc_page_pool_going_size(struct slc_page_pool *pool)
 {
     uint64_t pages = 0;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     for (uint32_t i = 0; i < pool->chunks.count; i++) {
         const struct slc_page_chunk *chunk = &pool->chunks.at[i];
         bool goes = chunk->state == SLC_CHUNK_RETIRING ||
@@ -182,15 +182,15 @@ uint64_t slc_page_pool_going_size(struct slc_page_pool *pool)
                      !chunk->fresh);
         pages += goes ? chunk->layer_count : 0;
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return pages * SLC_TILE_SIZE;
 }
 
 uint32_t slc_page_pool_tiles_on(struct slc_page_pool *pool, uint32_t user, uint32_t page)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t count = count_tiles(pool, slc_page_layer(&pool->chunks, page), user);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return count;
 }
 
@@ -233,7 +233,7 @@ static uint32_t find_target(struct slc_page_pool *pool, uint32_t user, uint32_t 
 bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint64_t frame,
                         uint32_t *to, struct slc_page_readers *readers)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     struct slc_shared_tile *tile = entry_of(pool, from);
     *readers = (struct slc_page_readers){tile ? tile->readers : 0, pool->timelines.tick};
     *to = can_move(pool, user, from, tile) ? find_target(pool, user, from) : SLUICE_PAGE_NONE;
@@ -248,18 +248,18 @@ bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from
             tile->value = frame;
         }
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return *to != SLUICE_PAGE_NONE;
 }
 
 bool slc_page_pool_end_move(struct slc_page_pool *pool, uint32_t user, uint32_t from,
                             const struct slc_page_readers *readers)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     bool over = slc_page_timelines_passed(&pool->timelines, readers->users, user, readers->tick);
     if (over)
         slc_page_pool_give_locked(pool, user, from, SLC_NO_OWNER);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return over;
 }
 
@@ -274,7 +274,7 @@ static bool has_moved(const struct slc_page_pool *pool, uint32_t user, uint32_t 
 
 bool slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint32_t to)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     struct slc_shared_tile *tile = entry_of(pool, to);
     struct slc_page_layer *layer = slc_page_layer(&pool->chunks, to);
     bool there = has_moved(pool, user, to, tile);
@@ -288,6 +288,6 @@ bool slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t
         layer->owner = SLC_NO_OWNER; /* its texels never came */
     }
     slc_page_pool_give_locked(pool, user, there ? to : from, SLC_NO_OWNER);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return there;
 }

@@ -18,7 +18,7 @@ SluiceResult slc_page_pool_init(struct slc_page_pool *pool, const struct slc_vk 
     }
     pool->shared.free = SLC_NONE;
     pool->leaving = SLC_NONE;
-    pthread_mutex_init(&pool->mutex, NULL);
+    slc_mutex_init(&pool->mutex);
     SluiceResult result = slc_page_views_init(&pool->views, &pool->vk, caps, cb, chunk_count);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -34,7 +34,7 @@ void slc_page_pool_finish(struct slc_page_pool *pool)
     slc_shared_tiles_finish(&pool->shared, pool->cb);
     slc_page_views_finish(&pool->views, &pool->vk, pool->cb);
     slc_memory_client_finish(&pool->client);
-    pthread_mutex_destroy(&pool->mutex);
+    slc_mutex_finish(&pool->mutex);
     *pool = (struct slc_page_pool){0};
 }
 
@@ -72,11 +72,11 @@ SluiceResult slc_page_pool_write_views(struct slc_page_pool *pool, uint32_t user
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_page_views *shown = &pool->users[user].shown;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     for (uint32_t i = 0; i < pool->chunks.count; i++)
         if (pool->chunks.at[i].state != SLC_CHUNK_LIVE)
             slc_page_views_set(shown, i, VK_NULL_HANDLE);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     const SluiceVulkanPages pages = {.structSize = sizeof pages,
                                      .sampler = shown->sampler,
                                      .viewCount = shown->count,
@@ -90,7 +90,7 @@ SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore sema
                                     uint64_t max_size, struct slc_memory_client *client,
                                     uint32_t *user)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t at = slc_page_timelines_free_place(&pool->timelines);
     SluiceResult result = SLUICE_ERROR_LIMIT_EXCEEDED;
     if (at < SLC_MAX_PAGE_USERS)
@@ -103,7 +103,7 @@ SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore sema
         show_chunks(pool, at);
         sum_limits(pool);
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     if (result == SLUICE_SUCCESS)
         *user = at;
     return result;
@@ -111,25 +111,25 @@ SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore sema
 
 void slc_page_pool_set_max_size(struct slc_page_pool *pool, uint32_t user, uint64_t max_size)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     pool->users[user].max_size = max_size;
     sum_limits(pool);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 bool slc_page_pool_is_refused(struct slc_page_pool *pool)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     bool refused = slc_page_chunks_is_refused(&pool->chunks, pool->timelines.tick);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return refused;
 }
 
 bool slc_page_pool_was_refused(struct slc_page_pool *pool)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     bool refused = pool->chunks.refused_tick > 0;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return refused;
 }
 
@@ -141,20 +141,20 @@ static uint32_t held_by_others(const struct slc_page_pool *pool, uint32_t user)
 
 uint32_t slc_page_pool_present(struct slc_page_pool *pool, uint32_t user)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t count = slc_page_chunks_present(&pool->chunks), others = held_by_others(pool, user);
     count += pool->users[user].equal_count;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return count > others ? count - others : 0;
 }
 
 uint64_t slc_page_pool_capacity(struct slc_page_pool *pool, uint32_t user)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint64_t count = (uint64_t)slc_page_chunks_present(&pool->chunks) +
                      slc_page_chunks_room(&pool->chunks, pool->timelines.tick);
     uint64_t others = held_by_others(pool, user);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return count > others ? count - others : 0;
 }
 
@@ -162,14 +162,14 @@ uint32_t slc_page_pool_free_count(struct slc_page_pool *pool, uint32_t user, Slu
 {
     uint32_t count = UINT32_MAX;
     const struct slc_page_chunks *chunks = &pool->chunks;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint64_t tick = pool->timelines.tick;
     if (chunks->refused_tick || chunks->max_size) {
         count = chunks->max_size ? slc_page_chunks_room(chunks, tick)
                                  : !slc_page_chunks_is_refused(chunks, tick);
         count += slc_page_chunks_free_count(chunks, &pool->timelines, user, format);
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return count;
 }
 
@@ -194,23 +194,23 @@ void slc_page_pool_hold_locked(struct slc_page_pool *pool, uint32_t user, uint32
 uint32_t slc_page_pool_take(struct slc_page_pool *pool, uint32_t user, SluiceFormat format)
 {
     assert((uint32_t)format < SLC_PAGE_FORMATS);
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t page = slc_page_chunks_find(&pool->chunks, &pool->timelines, user, format);
     if (page == SLUICE_PAGE_NONE && grow(pool, user, format))
         page = slc_page_chunks_find(&pool->chunks, &pool->timelines, user, format);
     if (page != SLUICE_PAGE_NONE)
         slc_page_pool_hold_locked(pool, user, page);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return page;
 }
 
 /* Pages that are made ahead are nobody's shortage. */
 void slc_page_pool_prepare(struct slc_page_pool *pool, uint32_t user, SluiceFormat format)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     slc_page_chunks_prepare(&pool->chunks, pool->timelines.tick, user, format);
     slc_memory_client_blame(&pool->client, NULL);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 static void free_page(struct slc_page_pool *pool, uint32_t page, uint32_t user, uint64_t value,
@@ -286,9 +286,9 @@ static void end_going(struct slc_page_pool *pool)
 
 void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     slc_page_pool_give_locked(pool, user, page, owner);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 /* Gives back all pages of the user but shared ones: leave_shared does those. */
@@ -328,7 +328,7 @@ void slc_page_pool_stay_locked(struct slc_page_pool *pool)
 
 void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     leave_shared(pool, user);
     give_all(pool, user);
     slc_page_chunks_drop_user(&pool->chunks, user);
@@ -341,12 +341,12 @@ void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user)
     pool->users[user] = (struct slc_page_user){0};
     slc_page_timelines_remove(&pool->timelines, user);
     sum_limits(pool);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     bool there = slc_page_chunks_is_left(&pool->chunks, page, user, owner);
     if (there) {
         struct slc_page_layer *layer = slc_page_layer(&pool->chunks, page);
@@ -355,29 +355,29 @@ bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t pa
         layer->value = left.value; /* its texels stay */
         layer->moved = left.moved;
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return there;
 }
 
 void slc_page_pool_hurry(struct slc_page_pool *pool)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     pool->hurry = true;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 void slc_page_pool_ask_again(struct slc_page_pool *pool)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     pool->chunks.has_freed = true;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t frame,
                           uint64_t completed_frame, VkCommandBuffer commands)
 {
     struct slc_page_chunks *chunks = &pool->chunks;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     slc_page_timelines_advance(&pool->timelines, &pool->vk, user, completed_frame);
     end_going(pool);
     for (uint32_t i = 0; i < chunks->count; i++) {
@@ -391,13 +391,13 @@ void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t fr
         slc_page_chunks_record(chunks, i, &pool->timelines, user, commands);
     show_chunks(pool, user);
     pool->hurry = false;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 void slc_page_pool_record_empty(struct slc_page_pool *pool, uint32_t user, uint64_t frame,
                                 VkCommandBuffer commands)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++) {
         uint64_t empty_frame = pool->users[i].empty_frame;
         pool->empty_is_ready |=
@@ -407,7 +407,7 @@ void slc_page_pool_record_empty(struct slc_page_pool *pool, uint32_t user, uint6
         slc_page_views_record(&pool->views, &pool->vk, commands);
         pool->users[user].empty_frame = frame;
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 static void abandon_shared(struct slc_page_pool *pool, uint32_t user, uint64_t frame, uint64_t last)
@@ -425,24 +425,24 @@ static void abandon_shared(struct slc_page_pool *pool, uint32_t user, uint64_t f
 
 void slc_page_pool_abandon(struct slc_page_pool *pool, uint32_t user, uint64_t frame)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     if (pool->users[user].empty_frame >= frame)
         pool->users[user].empty_frame = 0;
     slc_page_timelines_abandon(&pool->timelines, user, frame);
     uint64_t last = pool->timelines.of[user].recorded;
     slc_page_chunks_abandon(&pool->chunks, user, frame, last);
     abandon_shared(pool, user, frame, last);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 struct slc_page_pool_counts slc_page_pool_get_counts(struct slc_page_pool *pool)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     struct slc_page_pool_counts counts = {.tile_memory_size =
                                               slc_memory_client_tiles(&pool->client),
                                           .chunk_count = pool->chunks.image_count,
                                           .shortages = pool->chunks.shortages};
     slc_memory_client_get(&pool->client, &counts.device_memory_size, NULL);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return counts;
 }

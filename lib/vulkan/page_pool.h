@@ -19,10 +19,9 @@
 #include "vulkan/page_timelines.h"
 #include "vulkan/page_views.h"
 #include "vulkan/shared_tiles.h"
+#include "platform/thread.h"
 
 #include <sluice/vulkan.h>
-
-#include <pthread.h>
 
 struct slc_page_user {
     struct slc_memory_client *client; ///< for whom the pool allocates; NULL: nobody counts
@@ -40,7 +39,7 @@ struct slc_page_pool {
     struct slc_vk vk; ///< the context's, but for memory_client
     struct slc_memory_client client;
     const SluiceAllocationCallbacks *cb;
-    pthread_mutex_t mutex; ///< around everything below; users may be on different threads
+    struct slc_mutex mutex; ///< around everything below; users may be on different threads
     bool has_mutex;
     struct slc_page_views views; ///< sampler and empty image for the users' arrays
     struct slc_page_chunks chunks;

@@ -28,14 +28,14 @@ enum slc_share slc_page_share_look(struct slc_page_pool *pool, uint32_t user,
                                    const struct slc_tile_key *key)
 {
     bool ready = false;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t index = find(pool, key, &ready);
     enum slc_share share = index == SLC_NONE ? SLC_SHARE_NONE
                            : ready           ? SLC_SHARE_READY
                                              : SLC_SHARE_WAIT;
     if (share == SLC_SHARE_WAIT && is_stalled(pool, user, pool->shared.entries[index].writer))
         share = SLC_SHARE_NONE;
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return share;
 }
 
@@ -44,7 +44,7 @@ uint32_t slc_page_share_take(struct slc_page_pool *pool, uint32_t user,
 {
     bool ready = false;
     uint32_t page = SLUICE_PAGE_NONE;
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t index = find(pool, key, &ready);
     if (ready) {
         struct slc_shared_tile *tile = &pool->shared.entries[index];
@@ -55,7 +55,7 @@ uint32_t slc_page_share_take(struct slc_page_pool *pool, uint32_t user,
         tile->readers |= 1u << user;
         page = tile->page;
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
     return page;
 }
 
@@ -92,35 +92,35 @@ static uint32_t find_own(const struct slc_page_pool *pool, uint32_t user,
 void slc_page_share_announce(struct slc_page_pool *pool, uint32_t user,
                              const struct slc_tile_key *key)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     announce(pool, user, key);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 void slc_page_share_withdraw(struct slc_page_pool *pool, uint32_t user,
                              const struct slc_tile_key *key)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t index = find_own(pool, user, key);
     if (index != SLC_NONE)
         slc_shared_tiles_remove(&pool->shared, index);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 void slc_page_share_place(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
                           uint32_t page)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t index = find_own(pool, user, key);
     if (index != SLC_NONE)
         place(pool, user, index, page);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t page,
                             uint64_t frame)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     struct slc_page_layer *layer = slc_page_layer(&pool->chunks, page);
     uint32_t shared = layer->shared;
     layer->value = frame;
@@ -129,13 +129,13 @@ void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t 
         pool->shared.entries[shared - 1].adopted = false;
         pool->shared.entries[shared - 1].value = frame;
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
                           uint32_t page)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t index = announce(pool, user, key);
     if (index != SLC_NONE) {
         place(pool, user, index, page);
@@ -143,7 +143,7 @@ void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struc
         /* a frame at or after the copy: only copied texels can be taken back */
         pool->shared.entries[index].value = slc_page_layer(&pool->chunks, page)->value;
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 /* A tile without a page is nothing without its name. */
@@ -158,7 +158,7 @@ static void unlist(struct slc_page_pool *pool, uint32_t index)
 void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,
                           const SluiceImageSource *source)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     for (uint32_t next, i = slc_shared_tiles_first_of(&pool->shared, source); i != SLC_NONE;
          i = next) {
         const struct slc_shared_tile *tile = &pool->shared.entries[i];
@@ -167,14 +167,14 @@ void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,
         if (own)
             unlist(pool, i);
     }
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 void slc_page_share_drop(struct slc_page_pool *pool, const SluiceImageSource *source)
 {
-    pthread_mutex_lock(&pool->mutex);
+    slc_mutex_lock(&pool->mutex);
     uint32_t first;
     while ((first = slc_shared_tiles_first_of(&pool->shared, source)) != SLC_NONE)
         unlist(pool, first);
-    pthread_mutex_unlock(&pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
 }

@@ -20,7 +20,7 @@ void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk 
         info->maxPageChunkCount ? info->maxPageChunkCount : DEFAULT_PAGE_CHUNKS;
     shared->min_tile_memory = info->minTileMemorySize;
     shared->retry = info->readRetry;
-    pthread_mutex_init(&shared->mutex, NULL);
+    slc_mutex_init(&shared->mutex);
     slc_staging_group_init(&shared->staging, info->minStagingSize);
 }
 
@@ -28,7 +28,7 @@ void slc_shared_parts_finish(struct slc_shared_parts *shared)
 {
     assert(!shared->pages && !shared->threads);
     slc_staging_group_finish(&shared->staging);
-    pthread_mutex_destroy(&shared->mutex);
+    slc_mutex_finish(&shared->mutex);
 }
 
 static SluiceResult create_pages(struct slc_shared_parts *shared)
@@ -51,14 +51,14 @@ static SluiceResult create_pages(struct slc_shared_parts *shared)
 SluiceResult slc_use_pages(struct slc_shared_parts *shared, struct slc_page_pool **pool)
 {
     SluiceResult result = SLUICE_SUCCESS;
-    pthread_mutex_lock(&shared->mutex);
+    slc_mutex_lock(&shared->mutex);
     if (!shared->pages)
         result = create_pages(shared);
     if (result == SLUICE_SUCCESS) {
         shared->page_users++;
         *pool = shared->pages;
     }
-    pthread_mutex_unlock(&shared->mutex);
+    slc_mutex_unlock(&shared->mutex);
     return result;
 }
 
@@ -66,14 +66,14 @@ void slc_drop_pages(struct slc_shared_parts *shared, struct slc_page_pool *pool)
 {
     if (!pool)
         return;
-    pthread_mutex_lock(&shared->mutex);
+    slc_mutex_lock(&shared->mutex);
     assert(pool == shared->pages && shared->page_users > 0);
     if (--shared->page_users == 0) {
         slc_page_pool_finish(pool);
         slc_free(shared->cb, pool, 1, sizeof *pool);
         shared->pages = NULL;
     }
-    pthread_mutex_unlock(&shared->mutex);
+    slc_mutex_unlock(&shared->mutex);
 }
 
 /* With the lock held. */
@@ -95,7 +95,7 @@ SluiceResult slc_create_shared_loader(struct slc_shared_parts *shared,
     create.threadCount = shared->thread_count;
     create.maxReadsPerSource = shared->max_reads_per_source;
     create.retry = shared->retry;
-    pthread_mutex_lock(&shared->mutex);
+    slc_mutex_lock(&shared->mutex);
     if (!shared->threads)
         result = slc_read_pool_create(&create, &shared->threads);
     if (result == SLUICE_SUCCESS)
@@ -106,7 +106,7 @@ SluiceResult slc_create_shared_loader(struct slc_shared_parts *shared,
     } else {
         drop_threads(shared);
     }
-    pthread_mutex_unlock(&shared->mutex);
+    slc_mutex_unlock(&shared->mutex);
     return result;
 }
 
@@ -115,8 +115,8 @@ void slc_destroy_shared_loader(struct slc_shared_parts *shared, SluiceTileLoader
     if (!loader)
         return;
     sluiceDestroyTileLoader(loader);
-    pthread_mutex_lock(&shared->mutex);
+    slc_mutex_lock(&shared->mutex);
     shared->loader_count--;
     drop_threads(shared);
-    pthread_mutex_unlock(&shared->mutex);
+    slc_mutex_unlock(&shared->mutex);
 }

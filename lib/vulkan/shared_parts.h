@@ -7,11 +7,10 @@
 
 #include "vulkan/page_pool.h"
 #include "vulkan/staging.h"
+#include "platform/thread.h"
 
 #include <sluice/loader.h>
 #include <sluice/vulkan_context.h>
-
-#include <pthread.h>
 
 struct slc_read_pool;
 
@@ -24,7 +23,7 @@ struct slc_shared_parts {
     uint32_t max_page_chunks;      ///< images of pages
     uint64_t min_tile_memory;      ///< bytes that are made ahead
     SluiceTileRetryPolicy retry;   ///< of failed reads
-    pthread_mutex_t mutex;         ///< around the next four
+    struct slc_mutex mutex;        ///< around the next four
     struct slc_page_pool *pages;
     struct slc_read_pool *threads;
     uint32_t page_users, loader_count;

@@ -12,13 +12,13 @@
 void slc_staging_group_init(struct slc_staging_group *group, uint64_t kept_size)
 {
     *group = (struct slc_staging_group){.kept_size = kept_size};
-    pthread_mutex_init(&group->mutex, NULL);
+    slc_mutex_init(&group->mutex);
 }
 
 void slc_staging_group_finish(struct slc_staging_group *group)
 {
     assert(!group->first && group->size == 0);
-    pthread_mutex_destroy(&group->mutex);
+    slc_mutex_finish(&group->mutex);
 }
 
 uint32_t slc_staging_block(uint32_t slot)
@@ -89,14 +89,14 @@ SluiceResult slc_staging_init(struct slc_staging *staging, struct slc_staging_gr
     if (!staging->blocks)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     SluiceResult result = SLUICE_SUCCESS;
-    pthread_mutex_lock(&group->mutex);
+    slc_mutex_lock(&group->mutex);
     staging->next = group->first;
     group->first = staging;
     for (uint32_t i = 0; result == SLUICE_SUCCESS && i < staging->block_count &&
                          (i == 0 || group->size < group->kept_size);
          i++)
         result = make_block(staging, i);
-    pthread_mutex_unlock(&group->mutex);
+    slc_mutex_unlock(&group->mutex);
     return result;
 }
 
@@ -105,13 +105,13 @@ void slc_staging_finish(struct slc_staging *staging)
     if (!staging->blocks)
         return;
     struct slc_staging **link = &staging->group->first;
-    pthread_mutex_lock(&staging->group->mutex);
+    slc_mutex_lock(&staging->group->mutex);
     while (*link != staging)
         link = &(*link)->next;
     *link = staging->next;
     for (uint32_t i = 0; i < staging->block_count; i++)
         free_block(staging, i);
-    pthread_mutex_unlock(&staging->group->mutex);
+    slc_mutex_unlock(&staging->group->mutex);
     slc_free(staging->cb, staging->blocks, staging->block_count, sizeof *staging->blocks);
     *staging = (struct slc_staging){0};
 }
@@ -123,47 +123,47 @@ static bool is_there(const struct slc_staging *staging, uint32_t slot)
 
 bool slc_staging_is_there(const struct slc_staging *staging, uint32_t slot)
 {
-    pthread_mutex_lock(&staging->group->mutex);
+    slc_mutex_lock(&staging->group->mutex);
     bool there = is_there(staging, slot);
-    pthread_mutex_unlock(&staging->group->mutex);
+    slc_mutex_unlock(&staging->group->mutex);
     return there;
 }
 
 bool slc_staging_ensure(struct slc_staging *staging, uint32_t slot)
 {
     assert(slot < staging->slot_count);
-    pthread_mutex_lock(&staging->group->mutex);
+    slc_mutex_lock(&staging->group->mutex);
     uint32_t block = slc_staging_block(slot);
     if (!is_there(staging, slot) && !take_idle(staging, block) && !staging->refused)
         staging->refused = make_block(staging, block) != SLUICE_SUCCESS;
     bool there = is_there(staging, slot);
-    pthread_mutex_unlock(&staging->group->mutex);
+    slc_mutex_unlock(&staging->group->mutex);
     return there;
 }
 
 void slc_staging_take(struct slc_staging *staging, uint32_t slot)
 {
-    pthread_mutex_lock(&staging->group->mutex);
+    slc_mutex_lock(&staging->group->mutex);
     assert(is_there(staging, slot));
     staging->blocks[slc_staging_block(slot)].used_count++;
-    pthread_mutex_unlock(&staging->group->mutex);
+    slc_mutex_unlock(&staging->group->mutex);
 }
 
 void slc_staging_give(struct slc_staging *staging, uint32_t slot)
 {
     struct slc_staging_block *block = &staging->blocks[slc_staging_block(slot)];
-    pthread_mutex_lock(&staging->group->mutex);
+    slc_mutex_lock(&staging->group->mutex);
     assert(block->used_count > 0);
     if (--block->used_count == 0)
         block->idle_since = staging->tick;
-    pthread_mutex_unlock(&staging->group->mutex);
+    slc_mutex_unlock(&staging->group->mutex);
 }
 
 void slc_staging_trim(struct slc_staging *staging)
 {
     staging->tick++;
     staging->refused = false;
-    pthread_mutex_lock(&staging->group->mutex);
+    slc_mutex_lock(&staging->group->mutex);
     for (uint32_t i = 1; i < staging->block_count; i++) {
         const struct slc_staging_block *block = &staging->blocks[i];
         if (block->buffer.buffer && block->used_count == 0 &&
@@ -171,7 +171,7 @@ void slc_staging_trim(struct slc_staging *staging)
             staging->group->size - block->buffer.size >= staging->group->kept_size)
             free_block(staging, i);
     }
-    pthread_mutex_unlock(&staging->group->mutex);
+    slc_mutex_unlock(&staging->group->mutex);
 }
 
 uint8_t *slc_staging_memory(const struct slc_staging *staging, uint32_t slot)

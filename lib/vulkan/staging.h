@@ -12,8 +12,7 @@
 #define SLC_VULKAN_STAGING_H
 
 #include "vulkan/buffer.h"
-
-#include <pthread.h>
+#include "platform/thread.h"
 
 #define SLC_STAGING_BLOCK_SLOTS 64u
 
@@ -26,7 +25,7 @@ struct slc_staging_block {
 struct slc_staging;
 
 struct slc_staging_group {
-    pthread_mutex_t mutex; ///< around the blocks of all members
+    struct slc_mutex mutex; ///< around the blocks of all members
     struct slc_staging *first;
     uint64_t kept_size; ///< bytes of blocks that stay while they are idle
     uint64_t size;      ///< bytes of all blocks
