@@ -91,7 +91,7 @@ unlisted_refusals() {
         sed -n 's/^< \(.*\)/\1: use slc_log_refusal/p; s/^> \(.*\)/\1: no longer there/p'
 }
 
-echo 1..14
+echo 1..15
 search $'\t' "${code[@]}" | report sources_hold_no_tabs
 search '[[:blank:]]+$' "${text[@]}" | report lines_have_no_trailing_blanks
 search $'\r' "${text[@]}" | report lines_end_with_a_newline_alone
@@ -111,6 +111,10 @@ import_circles residency core demand vulkan demand_vulkan | report files_of_a_fo
 # Words for which the field says retire, evict and restore. CHANGELOG.md may hold old names.
 search '\b(bur[y]|burie[ds]|exhum[e]|ghos[t]s?|displac(e[ds]?|ing))\b' "${text[@]}" |
     grep -v '^CHANGELOG.md:' | report memory_is_retired_and_tiles_are_evicted
+
+# lib/platform has one source for each operating system; what else is there is the same on all.
+search '#include <(pthread|unistd|fcntl|dirent|process|io|windows|sys/[a-z]+)\.h>' 'lib/*.c' 'lib/*.h' 'lib/*.cpp' |
+    grep -v '^lib/platform/' | report only_platform_calls_the_system
 
 names_in_two_places | report names_of_lib_are_unique
 unlisted_refusals | report refused_arguments_are_logged
