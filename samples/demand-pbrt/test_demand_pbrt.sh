@@ -85,8 +85,8 @@ equals() { # name of another picture
     cmp -s "$folder/$name.pfm" "$folder/$1.pfm" || complain "$name: is not the picture $1"
 }
 
-# Scenes of this test: a cube behind a wall, three meshes that cannot be read, one that is fine.
-write_ply() { # name, third coordinate of the last vertex
+# Scenes of this test: meshes and a picture that cannot be read, and two meshes that are fine.
+write_ply() { # name, third coordinate of the last vertex, faces, a face
     cat >"$folder/$1" <<END
 ply
 format ascii 1.0
@@ -94,17 +94,20 @@ element vertex 3
 property float x
 property float y
 property float z
-element face 1
+element face $3
 property list uchar int vertex_indices
 end_header
 -1 0 -1
 1 0 -1
 0 0 $2
-3 0 1 2
+$4
 END
 }
-write_ply good.ply 1
-write_ply nan.ply nan
+write_ply good.ply 1 1 '3 0 1 2'
+write_ply nan.ply nan 1 '3 0 1 2'
+write_ply range.ply 1 1 '3 0 1 3'
+write_ply none.ply 1 0 ''
+echo 'this is no picture' >"$folder/lost.png"
 head -c 150 "$folder/good.ply" >"$folder/cut.ply"
 cat >"$folder/own.pbrt" <<'END'
 LookAt 0 -5 0  0 0 0  0 0 1
@@ -123,10 +126,17 @@ Shape "sphere"
 AttributeEnd
 Translate 0 4 0
 Shape "sphere" "float radius" .2
+Translate 0 -5 0
+Shape "plymesh" "string filename" "range.ply"
+Shape "plymesh" "string filename" "none.ply"
+Shape "trianglemesh" "integer indices" [ 0 1 3 ] "point P" [ -1 0 -1 1 0 -1 0 0 1 ]
+Texture "lost" "color" "imagemap" "string filename" "lost.png"
+Material "matte" "texture Kd" "lost"
+Shape "trianglemesh" "integer indices" [ 0 1 2 ] "point P" [ -.3 0 -.9  .3 0 -.9  0 0 -.5 ]
 WorldEnd
 END
 
-begin meshes_that_cannot_be_read_are_named
+begin what_cannot_be_read_is_named_and_the_rest_is_rendered
 validation=--validation
 render own "$folder/own.pbrt" $validation
 if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/own.log"; then
@@ -136,16 +146,17 @@ if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/own.log"; 
 fi
 [ "$status" -ne 77 ] || { echo "1..0 # SKIP no device traces rays"; exit 0; }
 succeeds
-for line in 8 9 10 13; do
+for line in 8 9 10 13 18 19 20 21; do
     says "own.pbrt:$line:"
 done
-check shapes_placed 'v == 2'
-check geometries_built 'v == 1' # the ball is behind the triangle
-check materials_realized 'v == 1'
+check shapes_placed 'v == 4' # not that without faces
+check geometries_built 'v == 2' # the ball is behind the triangle
+check materials_realized 'v == 2'
+check textures_failed 'v == 1'
 render own-preload "$folder/own.pbrt" --preload
 succeeds
 check launches 'v == 1'
-check geometries_built 'v == 2'
+check geometries_built 'v == 3'
 equals own
 
 # Without ray tracing of the device: trees of ours in a compute shader.
@@ -153,11 +164,11 @@ begin the_compute_path_leaves_out_what_cannot_be_read
 render own-compute "$folder/own.pbrt" $validation --path compute
 succeeds
 check ray_tracing_pipeline 'v == 0'
-check geometries_built 'v == 1'
-check materials_realized 'v == 1'
+check geometries_built 'v == 2'
+check materials_realized 'v == 2'
 render own-compute-preload "$folder/own.pbrt" --path compute --preload
 succeeds
-check geometries_built 'v == 2'
+check geometries_built 'v == 3'
 equals own-compute
 
 begin incomplete_pictures_are_an_error

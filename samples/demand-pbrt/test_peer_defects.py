@@ -36,6 +36,13 @@ def write_png(name, rgba):
                    chunk(b"IEND", b""))
 
 
+def write_halves():
+    """A sky that is 1 where y of the light is positive, and else 1/4."""
+    with open(os.path.join(folder, "halves.pfm"), "wb") as file:
+        row = [1.0] * 24 + [0.25] * 24
+        file.write(b"PF\n16 8\n-1\n" + array.array("f", row * 8).tobytes())
+
+
 class Picture:
     def __init__(self, scene, *options, width=WIDTH, height=HEIGHT):
         """`scene`: the text of the world, or of all if it has a camera of its own."""
@@ -179,9 +186,7 @@ def defect_18():
     def sky(scale, turn):
         return Picture(f"Rotate {turn} 0 0 1\nLightSource \"infinite\" \"string mapname\" \"halves.pfm\" "
                        f"\"rgb scale\" [ {scale} {scale} {scale} ]\n")
-    with open(os.path.join(folder, "halves.pfm"), "wb") as file:
-        row = [1.0] * 24 + [0.25] * 24  # where y of the light is positive, and negative
-        file.write(b"PF\n16 8\n-1\n" + array.array("f", row * 8).tobytes())
+    write_halves()
     one, turned = sky(1, 0), sky(2, 180)
     fact("defect 18: maps of infinite lights are shown, scaled and turned",
          one.at(12, 8)[0] == 1 and turned.at(12, 8)[0] == 0.5)
@@ -246,6 +251,23 @@ def materials():
              are_equal(short, whole) and short.figures["materials_evicted"] > 0 and short.figures["geometries_evicted"] > 0)
 
 
+def holes_and_skies():
+    """Both versions' alpha: below the middle of a ball, and beyond half of the radius of a disk."""
+    parts = ("WorldBegin\nTexture \"a\" \"float\" \"checkerboard\" \"float tex1\" 0 \"float tex2\" 1 \"float vscale\" 2\n"
+             "Translate 1 0 0\nShape \"sphere\" \"float radius\" .8 \"texture alpha\" \"a\"\nTranslate -2 0 0\n"
+             "Rotate 90 1 0 0\nShape \"disk\" \"float radius\" .8 \"texture alpha\" \"a\"\n")
+    for side, ball, disk in (-5, 7, 16), (5, 16, 7):
+        camera = f"LookAt 0 {side} 0  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\n"
+        p = Picture(camera + parts, "--bg", "0/0/1")
+        fact(f"balls and disks have alpha, seen from {'the front' if side < 0 else 'behind'}",
+             [p.at(*at) == (0, 0, 1) for at in ((ball, 6), (ball, 10), (disk, 8), (disk + 3, 8), (disk - 3, 8))] ==
+             [False, True, False, True, True])
+    write_halves()
+    halves = "LightSource \"infinite\" \"string mapname\" \"halves.pfm\"\n"
+    fact("all maps of infinite lights add up, the first texture among them",
+         Picture(halves + "Rotate 180 0 0 1\n" + halves).at(12, 8)[0] == 1.25)
+
+
 def shapes_without_a_place():
     triangle = "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 ] \"point P\" [ {} ]\n"
     odd = "".join(triangle.format(points) for points in (
@@ -258,7 +280,7 @@ def shapes_without_a_place():
 shutil.rmtree(folder, ignore_errors=True)
 os.makedirs(folder)
 for test in (defect_6, defects_11_and_12, defect_13, defect_14, defect_15, defect_16, defect_17, defect_18, defect_19,
-             defect_20, materials, shapes_without_a_place):
+             defect_20, materials, holes_and_skies, shapes_without_a_place):
     test()
 print(f"1..{number}")
 sys.exit(failed)
