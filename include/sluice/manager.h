@@ -663,6 +663,20 @@ SLUICE_API SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager
                                               size_t size, uint8_t *pMinMip);
 
 /**
+ * Writes which level is requested where: minMipHeight rows of minMipWidth bytes, `rowPitch` bytes
+ * apart, as sluiceWriteMinMipData writes what is resident.
+ *
+ * A texel is the finest level that the maps which still count request of the tile of level 0,
+ * with the global mip bias that was added when the last map came. SLUICE_MIP_UNTOUCHED: none. Where
+ * it is below the texel of the MinMip map, finer tiles are missing.
+ *
+ * Errors: as sluiceWriteMinMipData.
+ */
+SLUICE_API SluiceResult sluiceWriteRequestedLevels(const SluiceStreamedTextureManager *manager,
+                                                   SluiceTextureId textureId, size_t rowPitch,
+                                                   size_t size, uint8_t *pLevels);
+
+/**
  * Writes a rectangle of a MinMip map. Its first texel goes to pMinMip[0].
  *
  * Errors: as sluiceWriteMinMipData; SLUICE_ERROR_INVALID_ARGUMENT if the rectangle is empty or

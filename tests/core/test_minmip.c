@@ -322,6 +322,56 @@ static void each_changed_texture_is_listed_once_in_the_order_of_change(void **st
     fixture_close(&f);
 }
 
+/* Texel by texel: the least level of all regions that have a texel of the tile. */
+static uint8_t expected_request(const SluiceStreamedTextureLayout *layout, const uint8_t *map,
+                                uint32_t x, uint32_t y)
+{
+    const SluiceStreamedTextureDesc *d = &layout->desc;
+    uint8_t least = SLUICE_MIP_UNTOUCHED;
+    for (uint32_t v = y * d->tileHeight; v < (y + 1) * d->tileHeight && v < d->height; v++)
+        for (uint32_t u = x * d->tileWidth; u < (x + 1) * d->tileWidth && u < d->width; u++) {
+            uint32_t region =
+                v / d->feedbackRegionHeight * layout->feedbackWidth + u / d->feedbackRegionWidth;
+            least = map[region] < least ? map[region] : least;
+        }
+    if (least == SLUICE_MIP_UNTOUCHED)
+        return least;
+    return least < d->mipLevelCount ? least : (uint8_t)(d->mipLevelCount - 1);
+}
+
+static void requested_levels_are_what_is_wanted(void **state)
+{
+    (void)state;
+    const uint32_t regions[] = {128, 64, 200, 512};
+    uint64_t random = 11;
+    for (uint32_t k = 0; k < 4; k++) {
+        struct fixture f;
+        fixture_open(&f, 64, false);
+        SluiceStreamedTextureDesc desc = full_chain(700, 450, 128, 128);
+        desc.feedbackRegionWidth = desc.feedbackRegionHeight = regions[k];
+        SluiceTextureId id = fixture_add(&f, &desc);
+        SluiceStreamedTextureLayout layout = fixture_layout(&f, id);
+        uint8_t map[128], levels[64];
+        const uint32_t width = layout.minMipWidth, height = layout.minMipHeight;
+        CHECK_OK(sluiceWriteRequestedLevels(f.manager, id, width, sizeof levels, levels));
+        assert_int_equal(levels[0], SLUICE_MIP_UNTOUCHED);
+        for (uint32_t i = 0; i < sizeof map; i++)
+            map[i] = next_random(&random) % 2 ? 255 : (uint8_t)(next_random(&random) % 12);
+        fixture_feed_map(&f, id, map, 1, 0);
+        memset(levels, 77, sizeof levels);
+        CHECK_OK(sluiceWriteRequestedLevels(f.manager, id, width + 1,
+                                            (height - 1) * (width + 1) + width, levels));
+        for (uint32_t y = 0; y < height; y++) {
+            for (uint32_t x = 0; x < width; x++)
+                assert_int_equal(levels[y * (width + 1) + x], expected_request(&layout, map, x, y));
+            assert_int_equal(levels[y * (width + 1) + width], 77);
+        }
+        CHECK_RESULT(sluiceWriteRequestedLevels(f.manager, id, width, width * height - 1, levels),
+                     SLUICE_ERROR_SIZE_MISMATCH);
+        fixture_close(&f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -333,6 +383,7 @@ int main(void)
         cmocka_unit_test(pitch_and_size_are_checked),
         cmocka_unit_test(rectangles_are_checked),
         cmocka_unit_test(each_changed_texture_is_listed_once_in_the_order_of_change),
+        cmocka_unit_test(requested_levels_are_what_is_wanted),
     };
     return RUN_TESTS(tests);
 }

@@ -1,0 +1,20 @@
+/** Which level is requested where, and whether memory keeps it from being loaded. */
+#ifndef SLC_CORE_REQUESTED_LEVELS_H
+#define SLC_CORE_REQUESTED_LEVELS_H
+
+#include <sluice/manager.h>
+
+/** Levels requested of a tile of level 0. SLUICE_MIP_UNTOUCHED: none. */
+struct slc_requested_level {
+    uint8_t held;  ///< what counts: made coarser by the global mip bias
+    uint8_t asked; ///< before the bias
+};
+
+/** Of the tile of level 0 at (x, y), a texel of the MinMip map. The texture exists. */
+struct slc_requested_level slc_requested_level(const SluiceStreamedTextureManager *manager,
+                                               SluiceTextureId id, uint32_t x, uint32_t y);
+
+/** Whether the last list of tiles to map ended for lack of slots. */
+bool slc_manager_lacks_slots(const SluiceStreamedTextureManager *manager);
+
+#endif /* SLC_CORE_REQUESTED_LEVELS_H */
