@@ -6,6 +6,7 @@
 #include <sluice/neural_compress.h>
 #include <sluice/neural_paths.h>
 #include <sluice/vulkan_control.h>
+#include <sluice/vulkan_explain.h>
 #include <sluice/vulkan_neural.h>
 #include <sluice/vulkan_proxy.h>
 
@@ -46,6 +47,7 @@ sluiceGetVulkanResidencyMode(f->streamer, &f->out.mode)
 sluiceChooseVulkanResidencyMode(&f->h->caps, f->h->mode, 1, &f->out.mode)
 sluiceGetVulkanStreamerManager(f->streamer, &f->out.manager)
 sluiceGetVulkanTextureState(f->streamer, f->texture.textureId, ?NULL, &f->out.texture_state)
+sluiceExplainVulkanTexture(f->streamer, f->texture.textureId, ?NULL, &f->out.explanation)
 sluiceRequestVulkanTexture(f->streamer, f->texture.textureId, &f->request, ?&f->out.request)
 sluiceGetVulkanRequestProgress(f->streamer, f->request_id, &f->out.request_progress)
 sluiceWithdrawVulkanRequest(f->streamer, f->request_id)
@@ -171,6 +173,7 @@ struct fixture {
         SluiceStreamingFrame frame;
         SluiceVulkanStreamerStatistics statistics;
         SluiceVulkanTextureState texture_state;
+        SluiceVulkanExplanation explanation;
         SluiceTextureRequestId request;
         SluiceVulkanTextureControl control;
         SluiceVulkanRequestProgress request_progress;

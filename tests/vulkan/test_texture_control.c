@@ -1,94 +1,9 @@
 /* What an application may know and decide about single textures. */
-#include "vulkan/fake_vulkan.h"
+#include "vulkan/control_stage.h"
 
-#include "support/failing_allocator.h"
-#include "support/test.h"
-
-#include <sluice/vulkan_control.h>
+#include <sluice/vulkan_explain.h>
 
 #include <string.h>
-
-enum { TEXTURES = 4, SIZE = 1024, TILES = SIZE / 128, TAIL = 3 };
-
-struct stage {
-    struct fake_vulkan fake;
-    struct failing_allocator memory;
-    SluiceVulkanStreamer *streamer;
-    SluiceImageSource *source;
-    SluiceVulkanTexture textures[TEXTURES];
-    uint64_t time;
-    uint8_t seen[TEXTURES][TILES * TILES]; ///< what shaders mark
-    char last[256];                        ///< message
-};
-
-static uint8_t want(void *user, uint32_t region)
-{
-    return ((struct stage *)user)->seen[region / (TILES * TILES)][region % (TILES * TILES)];
-}
-
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
-static void keep_message(void *user, SluiceLogSeverity severity, const char *message)
-{
-    (void)severity;
-    strncpy(((struct stage *)user)->last, message, sizeof((struct stage *)user)->last - 1);
-}
-
-static struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
-{
-    static struct stage s; /* large */
-    s = (struct stage){.fake = {.tail_page_count = 1, .want = want, .user = &s}};
-    memset(s.seen, SLUICE_MIP_UNTOUCHED, sizeof s.seen);
-    failing_allocator_init(&s.memory, UINT64_MAX);
-    s.fake.log = (SluiceLogCallback){&s, keep_message};
-    s.fake.pAllocator = &s.memory.callbacks;
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = SIZE,
-                            .height = SIZE,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
-    SluiceVulkanStreamerCreateInfo info = *settings;
-    info.structSize = sizeof info;
-    info.maxTextureCount = TEXTURES;
-    info.maxRegionCount = 1 << 10;
-    fake_vulkan_fill(&info);
-    CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
-    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = s.source};
-    for (int i = 0; i < TEXTURES; i++)
-        CHECK_OK(sluiceAddVulkanTexture(s.streamer, &create, &s.textures[i]));
-    return &s;
-}
-
-static void stage_finish(struct stage *s)
-{
-    fake_vulkan_destroy(s->streamer);
-    sluiceDestroyImageSource(s->source);
-    assert_true(s->fake.live_objects == 0 && s->memory.live_bytes == 0);
-}
-
-static void frames(struct stage *s, uint32_t count)
-{
-    struct fake_vulkan *fake = &s->fake;
-    for (; count > 0; count--) {
-        SluiceStreamingFrame frame = {.structSize = sizeof frame};
-        fake->published = false;
-        fake->copy_count = fake->bind_count = 0;
-        fake->bind_value = fake->submitted_bind_value;
-        CHECK_OK(sluiceWaitVulkanStreamerIdle(s->streamer));
-        CHECK_OK(
-            sluiceBeginStreamingFrame(s->streamer, fake_vulkan_commands(fake), ++s->time, &frame));
-        CHECK_OK(sluiceEndStreamingFrame(s->streamer, fake_vulkan_commands(fake)));
-        fake->frame_semaphore = frame.semaphore;
-        fake->frame_value = frame.signalValue;
-    }
-}
 
 static SluiceVulkanTextureState state_of(const struct stage *s, uint32_t texture,
                                          SluiceTextureRect rect)
@@ -393,8 +308,9 @@ static void followers_load_what_their_primary_requests(void **state)
     struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 5});
     CHECK_OK(sluiceRemoveVulkanTexture(s->streamer, s->textures[3].textureId));
     frames(s, 4);
-    SluiceVulkanTextureCreateInfo create = {
-        .structSize = sizeof create, .source = s->source, .primaryId = s->textures[2].textureId};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
+                                            .source = &s->faults.base,
+                                            .primaryId = s->textures[2].textureId};
     CHECK_OK(sluiceAddVulkanTexture(s->streamer, &create, &s->textures[3]));
     const SluiceVulkanTextureRequest info = {
         .structSize = sizeof info, .rect = tile_3_2, .until = UINT64_MAX};
@@ -435,19 +351,6 @@ static void requests_survive_every_refused_allocation(void **state)
 }
 
 /* Control ----------------------------------------------------------------------------------- */
-
-static void set_control(struct stage *s, uint32_t texture, SluiceVulkanTextureControl control)
-{
-    control.structSize = sizeof control;
-    CHECK_OK(sluiceSetVulkanTextureControl(s->streamer, s->textures[texture].textureId, &control));
-}
-
-static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
-{
-    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
-    CHECK_OK(sluiceGetVulkanStreamerStatistics(s->streamer, &stats));
-    return stats;
-}
 
 static void limits_hold_for_feedback_and_requests_at_once(void **state)
 {
@@ -628,6 +531,8 @@ static void questions_take_no_memory(void **state)
     s->memory.refuse_from = 0;
     SluiceVulkanTextureState all = {.structSize = sizeof all};
     CHECK_OK(sluiceGetVulkanTextureState(s->streamer, s->textures[0].textureId, NULL, &all));
+    SluiceVulkanExplanation why = {.structSize = sizeof why};
+    CHECK_OK(sluiceExplainVulkanTexture(s->streamer, s->textures[0].textureId, NULL, &why));
     assert_int_equal(progress_of(s, id).tileCount, TAIL + 1);
     SluiceVulkanTextureControl control = {.structSize = sizeof control};
     CHECK_OK(sluiceGetVulkanTextureControl(s->streamer, s->textures[0].textureId, &control));
@@ -658,6 +563,14 @@ int main(void)
         cmocka_unit_test(primaries_change_while_textures_stream),
         cmocka_unit_test(controls_survive_every_refused_allocation),
         cmocka_unit_test(questions_take_no_memory),
+        cmocka_unit_test(each_step_of_a_load_is_told),
+        cmocka_unit_test(what_the_application_decides_is_told),
+        cmocka_unit_test(what_nobody_sees_is_told),
+        cmocka_unit_test(memory_that_is_short_is_told),
+        cmocka_unit_test(failed_loads_are_told),
+        cmocka_unit_test(fades_are_told),
+        cmocka_unit_test(followers_are_explained_by_their_primary),
+        cmocka_unit_test(explanations_agree_with_the_state_of_each_tile),
     };
     return RUN_TESTS(tests);
 }
