@@ -219,6 +219,34 @@ typedef struct SluiceTile {
     uint32_t slot; ///< Index in the heap, 0 to heapTileCapacity - 1.
 } SluiceTile;
 
+/** Why a tile changed its state. */
+typedef enum SluiceTileEventReason {
+    SLUICE_TILE_EVENT_FEEDBACK = 0,   ///< A map requests the tile, or no map does any longer.
+    SLUICE_TILE_EVENT_ADDED = 1,      ///< Its texture was added: packed tiles with
+                                      ///< alwaysMapPackedTiles.
+    SLUICE_TILE_EVENT_LISTED = 2,     ///< sluiceGetTilesToMap returned it.
+    SLUICE_TILE_EVENT_PREFETCHED = 3, ///< As before, and nothing requests it (prefetchLevels).
+    SLUICE_TILE_EVENT_ANSWERED = 4,   ///< Its load arrived, failed, or was canceled.
+    SLUICE_TILE_EVENT_RETRIED = 5,    ///< Its load had failed; it is due again.
+    SLUICE_TILE_EVENT_EVICTED = 6,    ///< Others need its slot.
+    SLUICE_TILE_EVENT_UNMAPPED = 7,   ///< sluiceGetTilesToUnmap returned it.
+    SLUICE_TILE_EVENT_CALLED = 8,     ///< sluiceEvictStreamedTexture.
+    SLUICE_TILE_EVENT_REMOVED = 9     ///< Its texture was removed or forgotten.
+} SluiceTileEventReason;
+
+/** Change of a tile's state. Never grows. */
+typedef struct SluiceTileEvent {
+    SluiceTextureId textureId;
+    uint64_t timeStamp; ///< The last one that the manager was given. 0 before the first.
+    uint64_t mark;      ///< sluiceMarkTileEvents.
+    uint32_t tileIndex;
+    SluiceTileState from, to;
+    SluiceTileEventReason reason;
+} SluiceTileEvent;
+
+/** Most events that a manager keeps. */
+#define SLUICE_MAX_TILE_EVENTS (1u << 24)
+
 /**
  * Move of a tile: copy the contents of `from` to (heapId, slot) and bind the tile there. Never
  * grows.
@@ -724,6 +752,40 @@ SLUICE_API SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *
 SLUICE_API SluiceResult sluiceGetTextureStatistics(const SluiceStreamedTextureManager *manager,
                                                    SluiceTextureId textureId,
                                                    SluiceTextureStatistics *pStatistics);
+
+/**
+ * Keeps the last `capacity` state changes of tiles. 0 keeps none, and frees the memory: 40 bytes
+ * per event. Events kept so far are lost. Decisions are the same with and without events.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, above
+ *         SLUICE_MAX_TILE_EVENTS; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Nothing has changed after an
+ *         error.
+ */
+SLUICE_API SluiceResult sluiceSetTileEventCapacity(SluiceStreamedTextureManager *manager,
+                                                   uint32_t capacity);
+
+/**
+ * Sets the mark that events have from now on, for example the number of a frame or a time. A
+ * streamer marks events with the index of its frame (vulkan.h).
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceMarkTileEvents(SluiceStreamedTextureManager *manager, uint64_t mark);
+
+/**
+ * Reads events, the oldest first, from `*pCursor` on. The cursor is the number of an event, from 0;
+ * it becomes that of the next event to read. Each reader has its own cursor.
+ *
+ * `*pEventCount` is the capacity of `pEvents` on entry, which may be 0, and the number written on
+ * return. `*pLostCount` becomes the number of events since the cursor that are no longer kept; it
+ * may be NULL. Returns SLUICE_INCOMPLETE if events are left.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the
+ *         cursor is above the number of events so far.
+ */
+SLUICE_API SluiceResult sluiceReadTileEvents(const SluiceStreamedTextureManager *manager,
+                                             uint64_t *pCursor, uint32_t *pEventCount,
+                                             SluiceTileEvent *pEvents, uint64_t *pLostCount);
 
 #ifdef __cplusplus
 } /* extern "C" */

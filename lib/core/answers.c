@@ -90,6 +90,7 @@ static void answer_mapped(slc_manager *m, struct slc_managed_texture *t, uint32_
     if (t->given_up_first)
         slc_given_up_note_success(m, t, n->failures > 0);
     n->failures = 0;
+    m->events.reason = SLUICE_TILE_EVENT_ANSWERED;
     if (n->state == SLUICE_TILE_STATE_ALLOCATED)
         slc_node_mapped(&m->residency, node);
     else
@@ -102,6 +103,7 @@ static void answer_mapped(slc_manager *m, struct slc_managed_texture *t, uint32_
 static void answer_failed(slc_manager *m, uint32_t node, uint64_t time)
 {
     m->failed_total++;
+    m->events.reason = SLUICE_TILE_EVENT_ANSWERED;
     slc_texture_at(m, slc_node_at(&m->residency, node)->owner)->failed_total++;
     slc_node_free_slot(&m->residency, node);
     if (!is_wanted(slc_node_at(&m->residency, node))) {
@@ -124,6 +126,7 @@ static void answer_canceled(slc_manager *m, uint32_t node, uint64_t retire_value
              level = slc_node_at(&m->residency, node)->level;
     uint32_t failures = slc_node_at(&m->residency, node)->failures;
     struct slc_managed_texture *t = slc_texture_at(m, slc_node_at(&m->residency, node)->owner);
+    m->events.reason = SLUICE_TILE_EVENT_ANSWERED;
     slc_node_retire(&m->residency, node, retire_value);
     m->canceled_total++;
     if (!wanted)
@@ -270,6 +273,7 @@ SluiceResult sluiceRetryFailedTiles(SluiceStreamedTextureManager *manager,
                             .texture_id = textureId,
                             .result = slc_find_scope(manager, __func__, textureId, &scope)};
     if (call.result == SLUICE_SUCCESS) {
+        manager->events.reason = SLUICE_TILE_EVENT_RETRIED;
         retry_failed(manager, scope);
         retry_given_up(manager, scope);
     }

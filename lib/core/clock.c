@@ -16,6 +16,7 @@ bool slc_retire_is_backwards(const slc_manager *m, uint64_t retire_value)
 
 static void request_due(slc_manager *m)
 {
+    m->events.reason = SLUICE_TILE_EVENT_RETRIED;
     for (uint32_t node; (node = slc_due_first(&m->residency)) &&
                         (int64_t)(m->time - slc_node_at(&m->residency, node)->order) >= 0;)
         slc_node_request_again(&m->residency, node);

@@ -50,6 +50,7 @@ static SluiceResult evict_texture(slc_manager *m, SluiceTextureId id, uint32_t k
     SluiceResult result = slc_find_texture(m, id, &t);
     if (result != SLUICE_SUCCESS)
         return result;
+    m->events.reason = SLUICE_TILE_EVENT_CALLED;
     evict(m, t, keep);
     for (uint32_t i = t->first_follower; i != SLC_NONE; i = slc_texture_at(m, i)->next_follower)
         evict(m, slc_texture_at(m, i), keep);

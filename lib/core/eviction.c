@@ -119,6 +119,7 @@ static uint32_t victim_for(slc_manager *m, struct eviction *d, uint32_t request)
 void slc_evict_wanted_for(slc_manager *m, struct slc_request_walk walk, uint32_t unserved)
 {
     struct eviction d = begin_eviction(m);
+    m->events.reason = SLUICE_TILE_EVENT_EVICTED;
     uint64_t coming = slc_coming_slots(&m->residency);
     uint64_t reserved = slc_kept_slots(m), free_slots = m->residency.heaps.free_total;
     for (; free_slots + coming < reserved; coming++) {
@@ -150,6 +151,7 @@ bool slc_evict_unwanted_for(slc_manager *m, uint32_t unserved)
 {
     uint64_t needed = unserved, reserved = slc_kept_slots(m);
     bool dropped = false;
+    m->events.reason = SLUICE_TILE_EVENT_EVICTED;
     if (reserved > m->residency.heaps.free_total)
         needed += reserved - m->residency.heaps.free_total;
     while (slc_coming_slots(&m->residency) + m->residency.standby.count < needed &&

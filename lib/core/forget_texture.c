@@ -39,6 +39,7 @@ static SluiceResult forget_texture(slc_manager *m, SluiceTextureId id, uint64_t 
         return SLUICE_NOT_READY;
     if (retire_value)
         m->last_retire = retire_value;
+    m->events.reason = SLUICE_TILE_EVENT_REMOVED;
     for (uint32_t tile = first_tile(t); tile < t->shape->tile_count; tile++)
         if (slc_find_node(t, tile))
             slc_node_retire(&m->residency, slc_find_node(t, tile), retire_value);

@@ -76,6 +76,7 @@ static bool is_packed(const slc_manager *m, uint32_t node)
  * so they are not counted. */
 static void request_tiles(slc_manager *m, struct slc_managed_texture *t, uint32_t count)
 {
+    m->events.reason = SLUICE_TILE_EVENT_RETRIED;
     for (uint32_t node; (node = t->given_up_first) && (count > 0 || is_packed(m, node));) {
         count -= count > 0;
         slc_node_request_again(&m->residency, node);

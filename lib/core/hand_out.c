@@ -110,6 +110,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_managed_texture *s
     uint64_t limit = slc_slot_limit(m);
     bool refused = false;
     SluiceResult result = SLUICE_SUCCESS;
+    m->events.reason = SLUICE_TILE_EVENT_LISTED;
     struct slc_request_walk walk = slc_walk_requests(m, scope, keys);
     while (written < room && walk.node && passed_over < SLC_MAX_PASSED_OVER) {
         uint32_t node = walk.node;

@@ -132,6 +132,7 @@ static SluiceResult add_texture(slc_manager *m, const SluiceStreamedTextureDesc 
     m->texture_count++;
     m->tile_count += t->shape->tile_count;
     slc_min_mip_dirty_all(m, t);
+    m->events.reason = SLUICE_TILE_EVENT_ADDED;
     if (m->info.alwaysMapPackedTiles)
         slc_packed_tiles_wanted(m, t);
     *id = slc_texture_id(t);
@@ -172,6 +173,7 @@ static SluiceResult remove_texture(slc_manager *m, SluiceTextureId id, uint64_t 
         return SLUICE_ERROR_TIME_BACKWARDS;
     if (retire_value)
         m->last_retire = retire_value;
+    m->events.reason = SLUICE_TILE_EVENT_REMOVED;
     slc_unfollow(m, t);
     while (t->first_follower != SLC_NONE)
         slc_unfollow(m, slc_texture_at(m, t->first_follower));

@@ -4,6 +4,7 @@
 #include "core/observer.h"
 #include "core/managed_textures.h"
 #include "core/texture_tiles.h"
+#include "core/tile_events.h"
 #include "residency/create.h"
 #include "residency/standby.h"
 
@@ -55,6 +56,7 @@ static void destroy(slc_manager *m)
 {
     slc_textures_finish(m);
     slc_machine_finish(&m->residency);
+    slc_tile_events_finish(&m->events, &m->cb);
     slc_free(&m->cb, m->scratch, m->scratch_room, 1);
     slc_free(&m->cb, m->reports.list, m->reports.room, sizeof *m->reports.list);
     slc_map_finish(&m->reports.tiles, &m->cb);

@@ -46,6 +46,7 @@ static SluiceResult prefetch_level(slc_manager *m, struct slc_managed_texture *t
 SluiceResult slc_prefetch(slc_manager *m, uint32_t room, uint32_t *written, SluiceTile *tiles)
 {
     uint32_t level_before = m->prefetch_level, texture_before = m->prefetch_texture;
+    m->events.reason = SLUICE_TILE_EVENT_PREFETCHED;
     for (uint32_t i = 0; i < MAX_LOOKED_AT && i < m->texture_end; i++) {
         if (m->prefetch_texture >= m->texture_end) {
             m->prefetch_texture = 0;

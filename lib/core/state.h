@@ -182,6 +182,16 @@ struct slc_round {
     uint64_t began_long, waited_long; ///< the same, for some rounds
 };
 
+/** See tile_events.h. */
+struct slc_tile_events {
+    SluiceTileEvent *ring;        ///< owned; `capacity`, NULL: none
+    uint64_t count;               ///< events so far, which wrote ring[count % capacity]
+    uint64_t first;               ///< number of the oldest one since the ring was made
+    uint64_t mark;                ///< of the application
+    uint32_t capacity;            ///< of the ring
+    SluiceTileEventReason reason; ///< of what changes from now on
+};
+
 struct SluiceStreamedTextureManager {
     SluiceStreamedTextureManagerCreateInfo info; ///< pAllocator points to `given` or is NULL
     SluiceAllocationCallbacks given;
@@ -203,6 +213,7 @@ struct SluiceStreamedTextureManager {
     uint64_t tile_count;
 
     struct slc_machine residency;
+    struct slc_tile_events events;
 
     uint8_t *scratch; ///< owned, for the maps of one call
     size_t scratch_room;

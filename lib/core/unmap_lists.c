@@ -61,6 +61,7 @@ static SluiceResult take_list(slc_manager *m, struct slc_list *list,
 static bool take_unmapped(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
     struct slc_managed_texture *t = slc_texture_at(m, slc_node_at(&m->residency, node)->owner);
+    m->events.reason = SLUICE_TILE_EVENT_UNMAPPED;
     if (!(slc_node_at(&m->residency, node)->flags & SLC_NODE_WANTED))
         slc_node_retire(&m->residency, node, retire_value);
     else if (!slc_node_unmap_wanted(&m->residency, node, retire_value))

@@ -473,6 +473,7 @@ static void take_time(slc_manager *m, struct slc_managed_texture *t, uint64_t ti
 void slc_wants_commit(slc_manager *m, struct slc_managed_texture *t, uint64_t time,
                       uint64_t timeout, struct slc_move_log *log)
 {
+    m->events.reason = SLUICE_TILE_EVENT_FEEDBACK;
     if (t->nodes) {
         struct slc_history *h = t->history;
         bool held_before = t->held_regions > 0;
@@ -498,6 +499,7 @@ void slc_wants_repeat(slc_manager *m, const struct slc_managed_texture *leader,
 {
     bool held_before = t->held_regions > 0;
     struct moves moves = {.count = 0};
+    m->events.reason = SLUICE_TILE_EVENT_FEEDBACK;
     m->bias.maps++;
     m->round.maps++;
     t->held_regions = leader->held_regions;

@@ -85,6 +85,8 @@ struct slc_machine_user {
     void (*given_up)(void *user, uint32_t node, bool now);
     /** The tile is FREE: it has no node any more. */
     void (*released)(void *user, const struct slc_node *node);
+    /** The tile changed its state. NULL: nobody asks. */
+    void (*changed)(void *user, const struct slc_node *node, uint8_t from, uint8_t to);
 };
 
 struct slc_machine_limits {

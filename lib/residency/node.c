@@ -92,6 +92,8 @@ static void uncount_node(struct slc_machine *r, const struct slc_node *n)
 
 static void count_move(struct slc_machine *r, struct slc_node *n, SluiceTileState to)
 {
+    if (r->user.changed)
+        r->user.changed(r->user.user, n, n->state, (uint8_t)to);
     uncount_node(r, n);
     n->state = (uint8_t)to;
     count_node(r, n);
@@ -107,6 +109,8 @@ static uint32_t take_node(struct slc_machine *r, uint32_t owner, uint32_t tile, 
                                               .level = (uint8_t)level,
                                               .state = (uint8_t)state};
     count_node(r, slc_node_at(r, node));
+    if (r->user.changed)
+        r->user.changed(r->user.user, slc_node_at(r, node), SLUICE_TILE_STATE_FREE, (uint8_t)state);
     return node;
 }
 

@@ -71,6 +71,9 @@ bool slc_run_add(struct slc_machine *r, struct slc_run *run, uint32_t node, uint
     run->last = node;
     run->next = n->next;
     run->count++;
+    uint8_t before = n->state;
     n->state = wanted ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY;
+    if (r->user.changed)
+        r->user.changed(r->user.user, n, before, n->state);
     return true;
 }

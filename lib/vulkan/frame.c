@@ -230,6 +230,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                   .semaphore = s->semaphore,
                                   .signalValue = s->frame};
     slc_device_budget_turn(&s->context->device_budget, &s->context->budget);
+    sluiceMarkTileEvents(s->manager, s->frame);
     s->manager_locked = false;
     result = decide(s);
     if (result >= 0)

@@ -347,6 +347,160 @@ static void statistics_of_textures_add_up(void **state)
     fixture_close(&f);
 }
 
+enum { EVENT_TEXTURES = 4, EVENT_TILES = 6 };
+
+/* What a manager with few slots goes through: loads that come, fail and are canceled, evictions. */
+static void random_step(struct fixture *f, const SluiceTextureId *ids, uint64_t time,
+                        uint64_t *random)
+{
+    const uint32_t k = next_random(random) % EVENT_TEXTURES, level = next_random(random) % 4;
+    fixture_feed(f, ids[k], level < 3 ? (uint8_t)level : SLUICE_MIP_UNTOUCHED, time, 2);
+    CHECK_OK(fixture_to_cancel(f, SLUICE_ALL_TEXTURES));
+    CHECK_OK(fixture_to_unmap(f, SLUICE_ALL_TEXTURES, 0));
+    if (next_random(random) % 8 == 0)
+        CHECK_OK(sluiceEvictStreamedTexture(f->manager, ids[(k + 1) % EVENT_TEXTURES], 1));
+    if (next_random(random) % 16 == 0)
+        CHECK_OK(sluiceRetryFailedTiles(f->manager, SLUICE_ALL_TEXTURES));
+    assert_true(fixture_to_map(f, SLUICE_ALL_TEXTURES) >= 0);
+    for (uint32_t i = 0; i < f->count; i++) {
+        const SluiceTile *t = &f->tiles[i];
+        const uint32_t choice = next_random(random) % 8;
+        if (choice == 0)
+            CHECK_OK(sluiceReportCanceledTiles(f->manager, t->textureId, 1, &t->tileIndex, 0));
+        else if (choice < 3)
+            CHECK_OK(sluiceReportFailedTiles(f->manager, t->textureId, 1, &t->tileIndex, time));
+        else if (choice < 7)
+            CHECK_OK(sluiceUpdateTilesMapping(f->manager, t->textureId, 1, &t->tileIndex));
+        else /* while it is being loaded */
+            CHECK_OK(sluiceEvictStreamedTexture(f->manager, t->textureId, UINT32_MAX));
+    }
+    for (uint32_t i = 0; i < EVENT_TEXTURES; i++)
+        for (uint32_t tile = 0; tile < EVENT_TILES; tile++) {
+            SluiceTileState is = fixture_state(f, ids[i], tile);
+            if (is == SLUICE_TILE_STATE_ALLOCATED || is == SLUICE_TILE_STATE_CANCELED)
+                CHECK_OK(sluiceUpdateTilesMapping(f->manager, ids[i], 1, &tile));
+        }
+}
+
+static void open_for_events(struct fixture *f, SluiceTextureId *ids, uint32_t capacity)
+{
+    fixture_open(f, 4, true);
+    fixture_configure(f, 3, 0, 3, 2);
+    f->heaps.limit = 3;
+    CHECK_OK(sluiceSetTileEventCapacity(f->manager, capacity));
+    CHECK_OK(sluiceMarkTileEvents(f->manager, 1001));
+    for (uint32_t k = 0; k < EVENT_TEXTURES; k++)
+        ids[k] = fixture_add_small(f);
+}
+
+/* Follows the states of all tiles by events alone. */
+static void follow_events(const struct fixture *f, uint64_t *cursor, uint64_t time,
+                          SluiceTileState states[EVENT_TEXTURES][EVENT_TILES], uint32_t reasons[10])
+{
+    SluiceTileEvent events[7];
+    for (SluiceResult more = SLUICE_INCOMPLETE; more == SLUICE_INCOMPLETE;) {
+        uint32_t count = 7;
+        uint64_t lost = 1;
+        more = sluiceReadTileEvents(f->manager, cursor, &count, events, &lost);
+        assert_true(more >= 0 && lost == 0 && (count == 7 || more == SLUICE_SUCCESS));
+        for (uint32_t i = 0; i < count; i++) {
+            const SluiceTileEvent *e = &events[i];
+            SluiceTileState *is = &states[(uint32_t)e->textureId][e->tileIndex];
+            assert_true(e->from == *is && e->to != *is && e->mark == 1000 + time);
+            assert_true(e->timeStamp == time || e->timeStamp + 1 == time);
+            *is = e->to;
+            reasons[e->reason]++;
+        }
+    }
+}
+
+static void events_tell_all_changes_of_states(void **state)
+{
+    (void)state;
+    struct fixture with, without;
+    SluiceTextureId ids[EVENT_TEXTURES], same[EVENT_TEXTURES];
+    SluiceTileState states[EVENT_TEXTURES][EVENT_TILES] = {{0}};
+    uint64_t random = 9, again = 9, cursor = 0;
+    uint32_t reasons[10] = {0};
+    open_for_events(&with, ids, 200);
+    open_for_events(&without, same, 0);
+    for (uint64_t time = 1; time <= 400; time++) {
+        const uint64_t calls = with.memory.calls;
+        CHECK_OK(sluiceMarkTileEvents(with.manager, 1000 + time));
+        assert_int_equal(calls, with.memory.calls);
+        random_step(&with, ids, time, &random);
+        random_step(&without, same, time, &again);
+        follow_events(&with, &cursor, time, states, reasons);
+        for (uint32_t i = 0; i < EVENT_TEXTURES * EVENT_TILES; i++)
+            assert_int_equal(states[i / EVENT_TILES][i % EVENT_TILES],
+                             fixture_state(&with, ids[i / EVENT_TILES], i % EVENT_TILES));
+        assert_true(fixture_digest(&with, EVENT_TEXTURES, ids) ==
+                    fixture_digest(&without, EVENT_TEXTURES, same));
+    }
+    CHECK_OK(sluiceRemoveStreamedTexture(with.manager, ids[1], 0));
+    follow_events(&with, &cursor, 400, states, reasons);
+    for (uint32_t i = 0; i < EVENT_TILES; i++)
+        assert_int_equal(states[1][i], SLUICE_TILE_STATE_FREE);
+    for (uint32_t i = 0; i < 10; i++)
+        assert_true(reasons[i] > 0 || i == SLUICE_TILE_EVENT_PREFETCHED);
+    fixture_close(&without);
+    fixture_close(&with);
+}
+
+static void events_that_are_overwritten_are_counted(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceTextureId ids[EVENT_TEXTURES];
+    SluiceTileEvent events[8];
+    open_for_events(&f, ids, 3); /* each texture requests its packed tile: four events */
+    uint64_t cursor = 0, lost = 0, late = 2;
+    uint32_t count = 1;
+    CHECK_RESULT(sluiceReadTileEvents(f.manager, &cursor, &count, events, &lost),
+                 SLUICE_INCOMPLETE);
+    assert_true(cursor == 2 && lost == 1 && count == 1 && events[0].textureId == ids[1]);
+    assert_true(events[0].tileIndex == 5 && events[0].to == SLUICE_TILE_STATE_REQUESTED);
+    assert_int_equal(events[0].reason, SLUICE_TILE_EVENT_ADDED);
+    count = 8;
+    CHECK_OK(sluiceReadTileEvents(f.manager, &late, &count, events, NULL)); /* another reader */
+    assert_true(late == 4 && count == 2 && events[1].textureId == ids[3]);
+    cursor = 5;
+    CHECK_RESULT(sluiceReadTileEvents(f.manager, &cursor, &count, events, &lost),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_OK(sluiceSetTileEventCapacity(f.manager, 5)); /* what was kept is lost */
+    cursor = 3, count = 8;
+    CHECK_OK(sluiceReadTileEvents(f.manager, &cursor, &count, events, &lost));
+    assert_true(cursor == 4 && count == 0 && lost == 1);
+    CHECK_RESULT(sluiceSetTileEventCapacity(f.manager, SLUICE_MAX_TILE_EVENTS + 1),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    fixture_load(&f);
+    count = 8;
+    CHECK_OK(sluiceReadTileEvents(f.manager, &cursor, &count, events, &lost));
+    assert_true(count == 5 && lost == 3 && cursor == 12);
+    fixture_close(&f);
+}
+
+static void events_survive_a_refused_allocation(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceTextureId ids[EVENT_TEXTURES];
+    SluiceTileEvent events[8];
+    open_for_events(&f, ids, 8);
+    f.memory.refuse_from = f.memory.calls;
+    CHECK_RESULT(sluiceSetTileEventCapacity(f.manager, 100), SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    uint64_t cursor = 0;
+    uint32_t count = 8;
+    CHECK_OK(sluiceReadTileEvents(f.manager, &cursor, &count, events, NULL));
+    assert_int_equal(count, 4);
+    CHECK_OK(sluiceSetTileEventCapacity(f.manager, 0));
+    f.memory.refuse_from = UINT64_MAX;
+    fixture_feed(&f, ids[0], 0, 1, 0);
+    CHECK_OK(sluiceReadTileEvents(f.manager, &cursor, &count, events, NULL));
+    assert_int_equal(count, 0);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -363,6 +517,9 @@ int main(void)
         cmocka_unit_test(trim_lists_the_oldest_down_to_what_is_kept),
         cmocka_unit_test(lists_hand_out_what_there_is_room_for),
         cmocka_unit_test(statistics_of_textures_add_up),
+        cmocka_unit_test(events_tell_all_changes_of_states),
+        cmocka_unit_test(events_that_are_overwritten_are_counted),
+        cmocka_unit_test(events_survive_a_refused_allocation),
     };
     return RUN_TESTS(tests);
 }

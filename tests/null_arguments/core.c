@@ -83,6 +83,9 @@ sluiceWriteRequestedLevels(f->manager, f->id, 2, 4, f->out.min_mip)
 sluiceGetMinMipUpdates(f->manager, one(f), ?f->out.rects)
 sluiceGetTileState(f->manager, f->id, 1, ?&f->out.state, ?&f->out.tile)
 sluiceGetStatistics(f->manager, &f->out.statistics)
+sluiceSetTileEventCapacity(f->manager, ?1)
+sluiceMarkTileEvents(f->manager, ?1)
+sluiceReadTileEvents(f->manager, &f->out.cursor, one(f), f->out.events, ?&f->out.lost)
 sluiceGetTextureStatistics(f->manager, f->id, &f->out.texture_statistics)
 
 sluiceComputePsnr8(f->texels, f->texels, 4, 4, 4, &f->out.number)
@@ -156,6 +159,8 @@ struct fixture {
         SluiceTileState state;
         SluiceStreamedTextureStatistics statistics;
         SluiceTextureStatistics texture_statistics;
+        uint64_t cursor, lost;
+        SluiceTileEvent events[1];
         SluiceRecorder *recorder;
         SluiceReplayResult replay;
     } out;

@@ -68,7 +68,7 @@ static struct rig *make(void)
     rig->cb = slc_allocator(NULL);
     r->limits = (struct slc_machine_limits){.standby = 2, .load_attempts = 2, .retry_delay = 10};
     SluiceHeapAllocator heaps = {rig, allocate_heap, release_heap};
-    struct slc_machine_user user = {rig, on_requested, on_resident, on_given_up, on_released};
+    struct slc_machine_user user = {rig, on_requested, on_resident, on_given_up, on_released, NULL};
     CHECK_OK(slc_machine_init(r, &rig->cb, &user, &heaps, HEAP_TILES, 65536));
     assert_true(slc_reserve_nodes(r, TILES));
     return rig;
