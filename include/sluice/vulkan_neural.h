@@ -58,8 +58,9 @@ SLUICE_API void sluiceDestroyVulkanNeuralDecoder(SluiceVulkanNeuralDecoder *deco
 typedef struct SluiceVulkanNeuralOutput {
     uint32_t structSize; ///< sizeof(SluiceVulkanNeuralOutput).
     const char *pName;   ///< For messages. May be NULL. Must outlive the decoder.
-    /** R8G8B8A8, BC1_RGB, BC4, BC5 or BC7, UNORM or SRGB. BC1 has three channels, BC4 one, BC5 two.
-     *  Blocks are those of encode_blocks.glsl. */
+    /** R8G8B8A8, BC1_RGB, BC4, BC5 or BC7, UNORM or SRGB, or R16G16B16A16_SFLOAT. BC1 has three
+     *  channels, BC4 one, BC5 two. Blocks are those of encode_blocks.glsl. Values are clamped to
+     *  0..1; floats to the largest 16-bit float, 65504. */
     SluiceFormat format;
     uint32_t firstChannel; ///< First channel of the set to store.
     uint32_t channelCount; ///< 1 to 4. Channels that the format has beside them are 0, alpha 1.

@@ -19,6 +19,7 @@ static const struct storage *find_storage(SluiceFormat format)
     static const struct storage list[] = {
         {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_NEURAL_STORE_RGBA8, 1, 1, 4, false},
         {SLUICE_FORMAT_R8G8B8A8_SRGB, SLUICE_NEURAL_STORE_RGBA8, 1, 1, 4, true},
+        {SLUICE_FORMAT_R16G16B16A16_SFLOAT, SLUICE_NEURAL_STORE_RGBA16F, 1, 2, 4, false},
         {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, SLUICE_NEURAL_STORE_BC1, 4, 2, 3, false},
         {SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK, SLUICE_NEURAL_STORE_BC1, 4, 2, 3, true},
         {SLUICE_FORMAT_BC4_UNORM_BLOCK, SLUICE_NEURAL_STORE_BC4, 4, 2, 1, false},
@@ -38,10 +39,10 @@ static SluiceResult check(const SluiceVulkanNeuralDecoder *decoder,
     const SluiceLogCallback *log = &decoder->context->vk.log;
     const struct storage *storage = find_storage(o->format);
     if (!storage) {
-        slc_log(
-            log, SLUICE_LOG_ERROR,
-            "format %d of a neural texture cannot be written; RGBA8, BC1_RGB, BC4, BC5 and BC7 can",
-            (int)o->format);
+        slc_log(log, SLUICE_LOG_ERROR,
+                "format %d of a neural texture cannot be written; RGBA8, RGBA16F, BC1_RGB, BC4, "
+                "BC5 and BC7 can",
+                (int)o->format);
         return SLUICE_ERROR_UNSUPPORTED;
     }
     if (o->channelCount == 0 || o->channelCount > storage->channels)

@@ -45,9 +45,10 @@ vec4 decodeTexel(uvec2 at)
         uint spaces = tile.spaces >> c * 2u * SLUICE_NEURAL_SPACE_BITS, mask = (1u << SLUICE_NEURAL_SPACE_BITS) - 1u;
         uint from = spaces & mask, to = spaces >> SLUICE_NEURAL_SPACE_BITS & mask;
         float value = channels[tile.firstChannel + c];
-        color[c] = clamp(from == to ? value : fromLinear(sluiceNeuralToLinear(value, from), to), 0.0, 1.0);
+        color[c] = from == to ? value : fromLinear(sluiceNeuralToLinear(value, from), to);
     }
-    return color;
+    const float most = 65504.0; /* of 16-bit floats */
+    return tile.store == SLUICE_NEURAL_STORE_RGBA16F ? clamp(color, -most, most) : clamp(color, 0.0, 1.0);
 }
 
 /* The texels of one of the workgroup's four blocks. */
@@ -118,6 +119,14 @@ void main()
     if (tile.store == SLUICE_NEURAL_STORE_RGBA8) {
         if (inside)
             stored.words[tile.word + at.y * tile.pitch + at.x] = packUnorm4x8(color);
+        return;
+    }
+    if (tile.store == SLUICE_NEURAL_STORE_RGBA16F) {
+        uint word = tile.word + at.y * tile.pitch + 2u * at.x;
+        if (inside) {
+            stored.words[word] = packHalf2x16(color.rg);
+            stored.words[word + 1u] = packHalf2x16(color.ba);
+        }
         return;
     }
     texels[gl_LocalInvocationIndex] = color;

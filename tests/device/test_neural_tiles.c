@@ -24,6 +24,7 @@ struct rig {
     SluiceVulkanNeuralDecoder *decoder;
     uint32_t texture;
     SluiceVulkanNeuralOutput output;
+    bool hlg; ///< values are codes of HLG, and are stored linear
 };
 
 static SluiceVulkanNeuralDecoderCreateInfo decoder_info(const struct rig *rig,
@@ -76,6 +77,8 @@ static void show(struct rig *rig, struct harness *h, SluiceFormat format, uint32
                                              .format = format,
                                              .firstChannel = first,
                                              .channelCount = count};
+    for (uint32_t c = 0; c < count && rig->hlg; c++)
+        rig->output.from[c] = SLUICE_NEURAL_COLOR_HLG;
     CHECK_OK(sluiceAddVulkanNeuralOutput(rig->decoder, &rig->output, &producer));
     rig->texture = scene_add_produced(&rig->scene, producer);
     scene_aim(&rig->scene, rig->texture, 64, &corner);
@@ -101,7 +104,7 @@ struct fetch {
     uint32_t count, texel_count;
     const float *texels; ///< of the level
     uint32_t level;
-    double squares, worst;
+    double squares, worst, largest;
 };
 
 static void record_fetch(void *user, VkCommandBuffer commands)
@@ -122,11 +125,16 @@ static void flush(struct fetch *f)
         const float *color = prober_outputs(&rig->scene.prober)[i].color;
         size_t at = (size_t)in->uv[1] * width + (size_t)in->uv[0];
         for (uint32_t c = 0; c < rig->output.channelCount; c++) {
+            float code = f->texels[at * rig->info.channelCount + rig->output.firstChannel + c];
             double v =
-                (double)f->texels[at * rig->info.channelCount + rig->output.firstChannel + c];
-            double d = fabs(fmin(fmax(v, 0), 1) - (double)color[c]);
+                (double)sluiceConvertNeuralColor(code, rig->output.from[c], rig->output.to[c]);
+            /* 16-bit floats have 11 bits. */
+            double d = rig->output.format == SLUICE_FORMAT_R16G16B16A16_SFLOAT
+                           ? fabs(v - (double)color[c]) / fmax(fabs(v), 1e-3)
+                           : fabs(fmin(fmax(v, 0), 1) - (double)color[c]);
             f->squares += d * d;
             f->worst = fmax(f->worst, d);
+            f->largest = fmax(f->largest, (double)color[c]);
         }
         f->texel_count += rig->output.channelCount;
     }
@@ -163,6 +171,21 @@ static void texels_are_those_of_the_decoder_in_C(void **state)
     struct fetch f = compare(&rig);
     if (!(f.texel_count > 30000 && f.worst <= 0.5 / 255 + 1e-6))
         fail_msg("%u values, the worst is off by %.9g", f.texel_count, f.worst);
+    hide(&rig);
+    rig_finish(&rig);
+}
+
+/* The numbers of the sample are taken for codes of HLG. */
+static void codes_of_hlg_become_linear_floats(void **state)
+{
+    struct rig rig;
+    rig_init(&rig, *state, SMALL);
+    rig.hlg = true;
+    show(&rig, *state, SLUICE_FORMAT_R16G16B16A16_SFLOAT, 0, 4);
+    struct fetch f = compare(&rig);
+    if (!(f.texel_count > 16000 && f.worst <= 1.0 / 1024 && f.largest > 2))
+        fail_msg("%u values up to %g, the worst is off by %.9g of itself", f.texel_count, f.largest,
+                 f.worst);
     hide(&rig);
     rig_finish(&rig);
 }
@@ -348,6 +371,7 @@ int main(void)
         return status;
     struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_are_those_of_the_decoder_in_C),
+        cmocka_unit_test(codes_of_hlg_become_linear_floats),
         cmocka_unit_test(blocks_are_near_to_them),
         cmocka_unit_test(wrong_decoders_are_refused),
         cmocka_unit_test(constants_that_contradict_themselves_are_refused),

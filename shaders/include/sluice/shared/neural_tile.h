@@ -17,6 +17,7 @@
 #define SLUICE_NEURAL_STORE_BC4 2u
 #define SLUICE_NEURAL_STORE_BC5 3u
 #define SLUICE_NEURAL_STORE_BC7 4u
+#define SLUICE_NEURAL_STORE_RGBA16F 5u
 
 /* Values of a channel: bits 4 c to 4 c + 1 of `spaces` are the network's space, the next two the
  * stored one. */
