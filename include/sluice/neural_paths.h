@@ -24,11 +24,13 @@ typedef struct SluiceNeuralPaths {
     /** Shape of int8 products with int32 sums that the device lists for subgroups:
      * SLUICE_NEURAL_MATRIX_M, N and K. 0 without `matrix`. */
     uint32_t matrixM, matrixN, matrixK;
+    VkShaderStageFlags vectorStages; ///< Stages with cooperative vectors. 0 without vectorInt8.
 } SluiceNeuralPaths;
 
 /**
  * Gets the paths of a device. Cooperative paths are those that compute shaders can use and whose
- * combination of types the device lists.
+ * combination of types the device lists. Look at vectorStages before other stages use vectors;
+ * neural_matrix.glsl has shared memory, so it is for compute shaders alone.
  *
  * `pAllocator` may be NULL.
  *

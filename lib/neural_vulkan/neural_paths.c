@@ -101,6 +101,7 @@ static void get_properties(struct question *q, SluiceNeuralPaths *paths)
     bool has_vector = (vector.stages & VK_SHADER_STAGE_COMPUTE_BIT) && vector.maxComponents >= 96;
     paths->vectorInt8 = paths->vectorInt8 && has_vector;
     paths->vectorFp8 = paths->vectorFp8 && has_vector;
+    paths->vectorStages = vector.stages;
     paths->matrix = paths->matrix && (matrix.stages & VK_SHADER_STAGE_COMPUTE_BIT);
     q->subgroup_size = subgroup.subgroupSize;
 }
@@ -138,6 +139,8 @@ static SluiceResult check_vectors(const struct question *q, SluiceNeuralPaths *p
     }
     paths->vectorInt8 = paths->vectorInt8 && int8;
     paths->vectorFp8 = paths->vectorFp8 && int8 && fp8; /* the last layer is int8 */
+    if (!paths->vectorInt8)
+        paths->vectorStages = 0;
     return SLUICE_SUCCESS;
 }
 

@@ -100,6 +100,10 @@ static void rig_init(struct rig *rig)
     for (uint32_t p = 0; p < PATHS; p++)
         if (!rig->pipelines[p])
             print_message("# %s: the device does not list it\n", paths[p].name);
+    assert_int_equal(rig->there.vectorInt8,
+                     (rig->there.vectorStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0);
+    if (rig->there.vectorInt8)
+        print_message("# vectors in stages 0x%x\n", rig->there.vectorStages);
     if (rig->pipelines[MATRIX])
         print_message("# matrices of %u x %u x %u\n", rig->there.matrixM, rig->there.matrixN,
                       rig->there.matrixK);
