@@ -167,7 +167,8 @@ enum gallery_outcome gallery_open(struct gallery *gallery)
                                  {settings_residency_mode(settings->residency),
                                   settings_residency_mode(settings->compare_with)}};
     for (uint32_t i = 0; settings->neural && i < settings->neural_mode_count; i++)
-        device.byte_pages = device.byte_pages || settings->neural_modes[i] == NEURAL_SAMPLE;
+        device.byte_pages = device.neural =
+            device.byte_pages || settings->neural_modes[i] == NEURAL_SAMPLE;
     bool unsupported;
     if (!gpu_create(&device, &gallery->gpu, &unsupported))
         return unsupported ? GALLERY_NO_DEVICE : GALLERY_FAILED;

@@ -32,6 +32,7 @@ layout(std430, set = 3, binding = GALLERY_NEURAL_BINDING_WEIGHTS) readonly buffe
 #define SLUICE_NEURAL_PAGES(s) neuralSet.pages
 #define SLUICE_NEURAL_FIRST_PAGE(s) neuralSet.firstPage
 #define SLUICE_NEURAL_WEIGHT_WORD(s, i) weights.words[i]
+#define SLUICE_NEURAL_VECTOR_WEIGHTS(s) weights.words
 #include "sluice/neural_pages.glsl"
 
 layout(location = 0) in vec3 position;

@@ -6,6 +6,7 @@
 
 #include "../../tools/common/text.h"
 #include "gallery_shared.h"
+#include "neural_path.h"
 
 #define PAGE_SIZE 16384u          ///< most bytes of a page of latents
 #define SCRATCH_SIZE (256u << 10) ///< bytes for tiles while they are decoded
@@ -113,18 +114,18 @@ static bool pin_last_page(struct neural_view *view)
     return pinned;
 }
 
-static bool create_buffers(struct neural_view *view, const void *weights, uint64_t weight_size,
+static bool create_buffers(struct neural_view *view, const struct neural_program *program,
                            uint32_t first_page)
 {
     if (!gpu_create_buffer(view->gpu, sizeof(struct GalleryNeuralSet),
                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &view->set_buffer) ||
-        !gpu_create_buffer(view->gpu, weight_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+        !gpu_create_buffer(view->gpu, program->weight_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                            &view->weights))
         return false;
     struct GalleryNeuralSet *set = view->set_buffer.mapped;
     *set = (struct GalleryNeuralSet){.firstPage = first_page};
     memcpy(&set->pages, &view->pages, sizeof set->pages);
-    memcpy(view->weights.mapped, weights, (size_t)weight_size);
+    memcpy(view->weights.mapped, program->weights, (size_t)program->weight_size);
     return true;
 }
 
@@ -183,19 +184,24 @@ static void write_set(const struct neural_view *view)
 }
 
 static bool create_sampling(struct neural_view *view, SluiceVulkanContext *context,
-                            const void *weights, uint64_t weight_size)
+                            enum neural_path path)
 {
+    struct neural_program program;
     uint32_t first_page = 0;
     if (!view->gpu->byte_pages) {
         text_say("%s: --neural-as sample wants the feature bufferDeviceAddress, which is missing",
                  view->gpu->properties.deviceName);
         return false;
     }
-    if (!create_loader(view, context, &first_page) || !pin_last_page(view) ||
-        !create_buffers(view, weights, weight_size, first_page) || !create_layout(view))
-        return false;
-    write_set(view);
-    return true;
+    bool created = neural_program_create(view->gpu, view->files->set, path, &program) &&
+                   create_loader(view, context, &first_page) && pin_last_page(view) &&
+                   create_buffers(view, &program, first_page) && create_layout(view);
+    view->words = program.words;
+    view->words_size = program.words_size;
+    neural_program_destroy(&program);
+    if (created)
+        write_set(view);
+    return created;
 }
 
 bool neural_view_create(const struct gpu *gpu, SluiceVulkanContext *context,
@@ -209,8 +215,9 @@ bool neural_view_create(const struct gpu *gpu, SluiceVulkanContext *context,
     bool feedback = hangs_as(settings, NEURAL_FEEDBACK), sample = hangs_as(settings, NEURAL_SAMPLE);
     uint64_t weight_size = 0;
     void *weights = read_weights(view->files->set, &weight_size);
-    bool created = weights && (!feedback || create_decoder(view, context, weights, weight_size)) &&
-                   (!sample || create_sampling(view, context, weights, weight_size));
+    bool created =
+        weights && (!feedback || create_decoder(view, context, weights, weight_size)) &&
+        (!sample || create_sampling(view, context, (enum neural_path)settings->neural_path));
     free(weights);
     return created;
 }

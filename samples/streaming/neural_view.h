@@ -23,6 +23,8 @@ struct neural_view {
     SluiceDemandResourceId resource;
     SluiceNeuralPages pages;
     struct gpu_buffer set_buffer, weights;
+    const uint32_t *words;        ///< SPIR-V of the shader that decodes
+    size_t words_size;            ///< bytes
     VkDescriptorSetLayout layout; ///< set 3 of the pipelines; VK_NULL_HANDLE without a loader
     VkDescriptorPool pool;
     VkDescriptorSet set;

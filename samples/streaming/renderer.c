@@ -9,7 +9,6 @@
 #include "count_frag.h"
 #include "count_paged_frag.h"
 #include "needs_frag.h"
-#include "neural_frag.h"
 #include "plain_frag.h"
 #include "surface_frag.h"
 #include "surface_paged_frag.h"
@@ -132,14 +131,14 @@ static bool create_pipelines(struct renderer *renderer, const struct renderer_re
         {
             [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
             [RENDERER_SURFACE] = {surface_frag, sizeof surface_frag},
-            [RENDERER_NEURAL] = {neural_frag, sizeof neural_frag},
+            [RENDERER_NEURAL] = {request->neural_words, request->neural_size},
             [RENDERER_COUNT] = {count_frag, sizeof count_frag},
             [RENDERER_NEEDS] = {needs_frag, sizeof needs_frag},
         },
       paged_fragments[RENDERER_PASS_COUNT] = {
           [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
           [RENDERER_SURFACE] = {surface_paged_frag, sizeof surface_paged_frag},
-          [RENDERER_NEURAL] = {neural_frag, sizeof neural_frag},
+          [RENDERER_NEURAL] = {request->neural_words, request->neural_size},
           [RENDERER_COUNT] = {count_paged_frag, sizeof count_paged_frag},
           [RENDERER_NEEDS] = {needs_frag, sizeof needs_frag},
       };

@@ -44,6 +44,8 @@ struct renderer_request {
     const struct target *target; ///< compatible with those drawn to
     VkDescriptorSetLayout streamer_layout;
     VkDescriptorSetLayout neural_layout; ///< of set 3; VK_NULL_HANDLE: nothing is decoded
+    const uint32_t *neural_words;        ///< SPIR-V of RENDERER_NEURAL
+    size_t neural_size;                  ///< bytes
     uint32_t anisotropy;
     bool counting, needs; ///< create the pipelines of these passes, too
     bool paged;           ///< shaders for paged residency

@@ -22,6 +22,15 @@ enum neural_mode {
     NEURAL_MODE_COUNT
 };
 
+/** How the shader of NEURAL_SAMPLE runs the network. */
+enum neural_path {
+    NEURAL_PATH_AUTO,
+    NEURAL_PATH_PLAIN,
+    NEURAL_PATH_DOT,       ///< integer dot products
+    NEURAL_PATH_VECTOR,    ///< cooperative vectors with INT8 weights
+    NEURAL_PATH_VECTOR_FP8 ///< with FP8 weights
+};
+
 struct settings {
     /* pictures */
     struct option_list images;
@@ -32,6 +41,7 @@ struct settings {
     struct option_list neural_as;
     enum neural_mode neural_modes[NEURAL_MODE_COUNT]; ///< after parsing, of neural_as
     uint32_t neural_mode_count, neural_picks;
+    int neural_path;      ///< enum neural_path
     const char *material; ///< folder to write a material to; NULL: none
     int format;           ///< enum pixel_format
     /* frames */

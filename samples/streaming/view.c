@@ -102,6 +102,8 @@ static bool create_renderer(struct view *view)
     struct renderer_request info = {.room = request->room,
                                     .target = request->target,
                                     .neural_layout = view->neural.layout,
+                                    .neural_words = view->neural.words,
+                                    .neural_size = view->neural.words_size,
                                     .anisotropy = request->settings->anisotropy,
                                     .counting = request->counting,
                                     .needs = request->needs,

@@ -28,6 +28,7 @@ FP8 = ["-DSLUICE_NEURAL_FP8"]
 MATRIX = ["-DNEURAL_MATRIX"]
 TEST = ROOT / "tests/device/shaders/neural.comp"
 BENCH = ROOT / "bench/neural/shaders/neural_bench.comp"
+GALLERY = ROOT / "samples/streaming/neural.frag"
 MODULES = {
     "neural_vector_int8": (TEST, VECTOR),
     "neural_vector_fp8": (TEST, VECTOR + FP8),
@@ -35,6 +36,8 @@ MODULES = {
     "neural_bench_vector_int8": (BENCH, VECTOR),
     "neural_bench_vector_fp8": (BENCH, VECTOR + FP8),
     "neural_bench_matrix": (BENCH, MATRIX + ["-DSLUICE_NEURAL_SCHEMA=3"]),
+    "gallery_neural_vector_int8": (GALLERY, VECTOR),
+    "gallery_neural_vector_fp8": (GALLERY, VECTOR + FP8),
 }
 
 

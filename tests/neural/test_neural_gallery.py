@@ -73,6 +73,11 @@ def same(a, b):
         return one.read() == other.read()
 
 
+def check_dot():
+    dot = walk("sample", "--neural-picks", "8", "--neural-path", "dot", "--output", "dot")
+    return bool(dot) and same("sample/" + LAST, "dot/" + LAST)
+
+
 def main():
     shutil.rmtree(FOLDER, ignore_errors=True)
     os.makedirs(FOLDER)
@@ -83,7 +88,7 @@ def main():
                 ["albedo.png", "height.png", "roughness.png", "set.ntc"])
     figures = {"load": walk("load", "--reference", "truth", "--compare-with", "dense"),
                "feedback": walk("feedback", "--format", "rgba8"),
-               "sample": walk("sample", "--neural-picks", "8", "--validation")}
+               "sample": walk("sample", "--neural-picks", "8", "--neural-path", "plain", "--validation")}
     if not all(figures.values()):
         print("Bail out! a walk failed")
         return 1
@@ -99,6 +104,7 @@ def main():
                  [False, True, True])
     good &= fact("only_one_copy_of_the_latents_is_read_on_sample",
                  figures["sample"]["file_bytes_read"] < 2 * os.path.getsize("in/set.ntc"))
+    good &= fact("integer_dot_products_give_the_same_picture", check_dot())
     os.rename("in/height.png", "height.png")
     status, _, err = run("--neural-set", "in/set.ntc", "--output", "refused")
     good &= fact("a_texture_without_its_original_is_named", status == 1 and "in/set.ntc" in err and
@@ -107,8 +113,9 @@ def main():
     good &= fact("a_file_that_is_no_set_is_refused_by_name", status == 1 and "height.png" in err)
     wrong = [run(*options, "--output", "refused")[0] for options in (
         ("--neural-set", "a.ntc", "--neural-as", "all"), ("--neural-set", "a.ntc", "--neural-as", "raw", "raw"),
-        ("--neural-set", "a.ntc", "--images", "in"), ("--neural-set", "a.ntc", "--neural-picks", "65"))]
-    good &= fact("wrong_options_exit_with_2", wrong == [2, 2, 2, 2])
+        ("--neural-set", "a.ntc", "--images", "in"), ("--neural-set", "a.ntc", "--neural-picks", "65"),
+        ("--neural-set", "a.ntc", "--neural-path", "matrix"))]
+    good &= fact("wrong_options_exit_with_2", wrong == [2] * 5)
     print("1..%d" % number)
     return 0 if good else 1
 
