@@ -34,6 +34,7 @@
 #define GALLERY_GRAY 1u    /* one channel, shown as gray */
 #define GALLERY_PAINTED 2u /* has a relief, and varnish that shines */
 #define GALLERY_GLOWING 4u /* not lit: gives light itself */
+#define GALLERY_HDR 8u     /* a decoded picture whose values may be above 1 */
 
 /* A lamp over a picture. */
 struct GalleryLight {

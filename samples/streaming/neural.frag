@@ -46,9 +46,10 @@ vec3 colorOf(float channels[SLUICE_NEURAL_CHANNELS])
 {
     vec3 color = vec3(0.0);
     uint first = draw.colorTexture, count = (draw.flags & GALLERY_GRAY) != 0u ? 1u : 3u;
+    /* Textures of 16-bit floats would hold negative values, too, and filter them. */
+    vec2 range = (draw.flags & GALLERY_HDR) != 0u ? vec2(-65504.0, 65504.0) : vec2(0.0, 1.0);
     for (uint c = 0u; c < count; c++)
-        color[c] = sluiceNeuralToLinear(clamp(channels[first + c], 0.0, 1.0),
-                                        draw.reliefTexture >> 2u * c & 3u);
+        color[c] = clamp(sluiceNeuralToLinear(channels[first + c], draw.reliefTexture >> 2u * c & 3u), range.x, range.y);
     return count == 1u ? color.rrr : color;
 }
 

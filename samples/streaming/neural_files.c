@@ -77,31 +77,41 @@ static char *find_original(const char *set_path, const char *name)
     return found ? path : NULL;
 }
 
-/** Formats of a texture: texels as they are, and blocks. */
+/** Formats of a texture: texels as they are, blocks, and what the GPU makes of latents. */
 struct formats {
-    SluiceFormat raw, blocks;
+    SluiceFormat raw, blocks, decoded;
 };
+
+static bool is_hdr(const SluiceNeuralTexture *texture)
+{
+    return texture->rgbColorSpace == SLUICE_NEURAL_COLOR_HLG ||
+           texture->format == SLUICE_NEURAL_CHANNEL_FLOAT16 ||
+           texture->format == SLUICE_NEURAL_CHANNEL_FLOAT32;
+}
 
 static struct formats formats_of(const SluiceNeuralTexture *texture)
 {
     static const struct formats linear[] = {
-        {SLUICE_FORMAT_R8_UNORM, SLUICE_FORMAT_BC4_UNORM_BLOCK},
-        {SLUICE_FORMAT_R8G8_UNORM, SLUICE_FORMAT_BC5_UNORM_BLOCK},
-        {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_BC7_UNORM_BLOCK},
-        {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_BC7_UNORM_BLOCK}};
-    const struct formats srgb = {SLUICE_FORMAT_R8G8B8A8_SRGB, SLUICE_FORMAT_BC7_SRGB_BLOCK};
+        {SLUICE_FORMAT_R8_UNORM, SLUICE_FORMAT_BC4_UNORM_BLOCK, SLUICE_FORMAT_BC4_UNORM_BLOCK},
+        {SLUICE_FORMAT_R8G8_UNORM, SLUICE_FORMAT_BC5_UNORM_BLOCK, SLUICE_FORMAT_BC5_UNORM_BLOCK},
+        {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_BC7_UNORM_BLOCK,
+         SLUICE_FORMAT_BC7_UNORM_BLOCK},
+        {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_BC7_UNORM_BLOCK,
+         SLUICE_FORMAT_BC7_UNORM_BLOCK}};
+    const struct formats srgb = {SLUICE_FORMAT_R8G8B8A8_SRGB, SLUICE_FORMAT_BC7_SRGB_BLOCK,
+                                 SLUICE_FORMAT_BC7_SRGB_BLOCK};
+    const struct formats hdr = {SLUICE_FORMAT_R16G16B16A16_SFLOAT, SLUICE_FORMAT_BC6H_UFLOAT_BLOCK,
+                                SLUICE_FORMAT_R16G16B16A16_SFLOAT};
+    if (is_hdr(texture))
+        return hdr;
     return texture->rgbColorSpace == SLUICE_NEURAL_COLOR_SRGB ? srgb
                                                               : linear[texture->channelCount - 1];
 }
 
-/** Bytes on the screen's scale are all that the modes are compared for. */
 static bool is_hangable(const char *path, const SluiceNeuralTexture *texture)
 {
-    bool hdr = texture->rgbColorSpace == SLUICE_NEURAL_COLOR_HLG ||
-               texture->format == SLUICE_NEURAL_CHANNEL_FLOAT16 ||
-               texture->format == SLUICE_NEURAL_CHANNEL_FLOAT32;
-    if (hdr)
-        text_say("%s: its texture %s is left out: it has floats, and textures of bytes hang here",
+    if (is_hdr(texture) && texture->channelCount < 3)
+        text_say("%s: its texture %s is left out: it has floats, and less than three channels",
                  path, texture->pName);
     else if (strchr(texture->pName, '/') || !*texture->pName)
         text_say("%s: its texture '%s' is left out: no file has that name", path, texture->pName);
@@ -190,7 +200,8 @@ static bool find_spaces(const struct neural_files *files, struct neural_picture 
         if (sluiceGetNeuralChannel(files->set, neural->texture.firstChannel + c,
                                    &neural->from[c]) != SLUICE_SUCCESS)
             return false;
-        neural->to[c] = c < 3 ? neural->texture.rgbColorSpace : SLUICE_NEURAL_COLOR_LINEAR;
+        neural->to[c] =
+            c < 3 && !neural->hdr ? neural->texture.rgbColorSpace : SLUICE_NEURAL_COLOR_LINEAR;
     }
     return true;
 }
@@ -206,8 +217,9 @@ static bool hang(struct picture_list *list, const struct hanging *hanging, uint3
     *picture = (struct picture){.path = strdup(hanging->original), .neural = neural};
     if (!picture->path || !neural)
         return false;
-    *neural = (struct neural_picture){.texture = hanging->texture, .mode = mode};
-    neural->format = takes_blocks                                 ? formats.blocks
+    *neural = (struct neural_picture){
+        .texture = hanging->texture, .mode = mode, .hdr = is_hdr(&hanging->texture)};
+    neural->format = takes_blocks || neural->hdr                  ? formats.decoded
                      : formats.raw == SLUICE_FORMAT_R8G8B8A8_SRGB ? formats.raw
                                                                   : SLUICE_FORMAT_R8G8B8A8_UNORM;
     picture->info.structSize = sizeof picture->info;

@@ -34,6 +34,7 @@ struct neural_picture {
     SluiceImageSource *original;           ///< owned; the texels before compression
     enum neural_mode mode;                 ///< how it is streamed
     SluiceFormat format;                   ///< of NEURAL_FEEDBACK
+    bool hdr;                              ///< values may be above 1
     SluiceNeuralColorSpace from[4], to[4]; ///< of its channels: the network's, and those stored
 };
 

@@ -270,7 +270,8 @@ static struct GalleryDraw draw_of(const struct room_part *part,
     draw.reliefFeedback = surface->relief_feedback;
     draw.exposure = surface->exposure;
     draw.reliefScale = surface->relief_scale;
-    draw.flags |= (surface->gray ? GALLERY_GRAY : 0) | (surface->painted ? GALLERY_PAINTED : 0);
+    draw.flags |= (surface->gray ? GALLERY_GRAY : 0) | (surface->painted ? GALLERY_PAINTED : 0) |
+                  (surface->hdr ? GALLERY_HDR : 0);
     return draw;
 }
 

@@ -35,6 +35,7 @@ struct renderer_surface {
     bool relief_feedback;               ///< writes feedback of its own
     float exposure, relief_scale;
     bool gray, painted;
+    bool hdr;     ///< decoded, and values may be above 1
     bool missing; ///< left out: drawn like a plain part
     bool decoded; ///< by the shader, of a neural set; plain but in RENDERER_SURFACE
 };

@@ -18,6 +18,7 @@ SluiceResult view_neural_create_surface(struct view *view, const struct picture 
     surface->exposure = picture->exposure;
     surface->gray = picture->gray;
     surface->decoded = mode == NEURAL_SAMPLE;
+    surface->hdr = neural->hdr;
     if (surface->decoded) {
         surface->color_index = neural->texture.firstChannel;
         for (uint32_t c = 0; c < 3; c++)

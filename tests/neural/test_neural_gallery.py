@@ -6,6 +6,7 @@ import json
 import math
 import os
 import shutil
+import struct
 import subprocess
 import sys
 import zlib
@@ -29,9 +30,30 @@ def run(*options):
     return done.returncode, done.stdout, done.stderr
 
 
-def walk(mode, *options):
+def write_exr(path, size):
+    """A picture of floats from 0.25 to 16: one uncompressed line after the other."""
+    def attribute(name, kind, value):
+        return name + b"\0" + kind + b"\0" + struct.pack("<I", len(value)) + value
+    channels = b"".join(name + b"\0" + struct.pack("<IIII", 2, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    box = struct.pack("<IIII", 0, 0, size - 1, size - 1)
+    head = struct.pack("<II", 20000630, 2) + attribute(b"channels", b"chlist", channels) + \
+        attribute(b"compression", b"compression", b"\0") + attribute(b"dataWindow", b"box2i", box) + \
+        attribute(b"displayWindow", b"box2i", box) + attribute(b"lineOrder", b"lineOrder", b"\0") + \
+        attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) + \
+        attribute(b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)) + \
+        attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0"
+    lines = [struct.pack("<II", y, 12 * size) +
+             b"".join(struct.pack("<f", 0.25 * 2.0 ** ((x + y + c) % 7)) for c in range(3) for x in range(size))
+             for y in range(size)]
+    first = len(head) + 8 * size
+    with open(path, "wb") as file:
+        file.write(head + struct.pack("<%dQ" % size, *(first + y * len(lines[0]) for y in range(size))) +
+                   b"".join(lines))
+
+
+def walk(mode, *options, folder="in"):
     """Figures of a walk in which the camera rests before a picture."""
-    status, out, err = run("--neural-set", "in/set.ntc", "--neural-as", mode, "--generate-scale", "32", "--size",
+    status, out, err = run("--neural-set", folder + "/set.ntc", "--neural-as", mode, "--generate-scale", "32", "--size",
                            "160x90", "--samples", "1", "--frames", "8", "--rest-frames", "8", "--deterministic",
                            "--probability", "1", "--needs", "off", "--output", mode, "--json", *options)
     if status:
@@ -78,6 +100,21 @@ def check_dot():
     return bool(dot) and same("sample/" + LAST, "dot/" + LAST)
 
 
+def check_light():
+    os.makedirs("light")
+    write_exr("light/light.exr", 64)
+    if subprocess.run([MAKE, "light/set.ntc", "light"]).returncode:
+        return False
+    modes = {mode: walk(mode, "--output", "light-" + mode, *options, folder="light")
+             for mode, options in (("load", ()), ("feedback", ()), ("sample", ("--neural-picks", "8")))}
+    if not all(modes.values()):
+        return False
+    load, feedback, sample = (read_png("light-%s/%s" % (mode, LAST)) for mode in ("load", "feedback", "sample"))
+    print("# light: feedback %.2f dB, sample %.2f dB to load" % (psnr(feedback, load), psnr(sample, load)))
+    mean = sum(sample) / sum(load)
+    return psnr(feedback, load) > 50 and psnr(sample, load) > 12 and 0.9 < mean < 1.1
+
+
 def main():
     shutil.rmtree(FOLDER, ignore_errors=True)
     os.makedirs(FOLDER)
@@ -105,6 +142,7 @@ def main():
     good &= fact("only_one_copy_of_the_latents_is_read_on_sample",
                  figures["sample"]["file_bytes_read"] < 2 * os.path.getsize("in/set.ntc"))
     good &= fact("integer_dot_products_give_the_same_picture", check_dot())
+    good &= fact("colors_above_1_come_through_in_all_modes", check_light())
     os.rename("in/height.png", "height.png")
     status, _, err = run("--neural-set", "in/set.ntc", "--output", "refused")
     good &= fact("a_texture_without_its_original_is_named", status == 1 and "in/set.ntc" in err and
