@@ -4,8 +4,9 @@
  */
 #include "commands.h"
 #include "material.h"
+#include "stopwatch.h"
+#include "tiles.h"
 
-#include "../../tools/common/clock.h"
 #include "../../tools/common/shared_options.h"
 #include "../manager/figures.h"
 
@@ -78,15 +79,14 @@ struct bench {
     struct material material;
     uint32_t size[2], repeats;
     double lod;
-    bool wall; ///< time stamps are no use
-    bool all;  ///< paths also on software devices
+    bool all; ///< paths also on software devices
     struct gpu_buffer picture;
     VkSampler sampler;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
     VkDescriptorPool pool;
     VkDescriptorSet sets[2][WEIGHTS]; ///< by textures and weights
-    VkQueryPool queries;
+    struct stopwatch stopwatch;
     VkPipeline pipelines[PATH_COUNT];
     struct samples samples[PATH_COUNT];
 };
@@ -119,16 +119,12 @@ static bool create_layout(struct bench *b)
                                    .minFilter = VK_FILTER_LINEAR,
                                    .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
                                    .maxLod = VK_LOD_CLAMP_NONE};
-    VkQueryPoolCreateInfo queries = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                     .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                     .queryCount = 2};
     VkDevice device = b->gpu.device;
     return gpu_check(vkCreateDescriptorSetLayout(device, &set, NULL, &b->set_layout),
                      "vkCreateDescriptorSetLayout") &&
            gpu_check(vkCreatePipelineLayout(device, &layout, NULL, &b->layout),
                      "vkCreatePipelineLayout") &&
-           gpu_check(vkCreateSampler(device, &sampler, NULL, &b->sampler), "vkCreateSampler") &&
-           gpu_check(vkCreateQueryPool(device, &queries, NULL, &b->queries), "vkCreateQueryPool");
+           gpu_check(vkCreateSampler(device, &sampler, NULL, &b->sampler), "vkCreateSampler");
 }
 
 static const struct gpu_buffer *set_buffer(const struct bench *b, uint32_t binding,
@@ -190,7 +186,8 @@ static bool create_sets(struct bench *b)
     for (int i = 0; i < WEIGHTS; i++)
         if (b->material.storage[i].buffer) {
             write_set(b, RGBA8, (enum weights)i);
-            write_set(b, BC7, (enum weights)i);
+            if (b->material.bc7[0].view)
+                write_set(b, BC7, (enum weights)i);
         }
     return true;
 }
@@ -211,7 +208,9 @@ static bool is_there(const SluiceNeuralPaths *paths_there, enum needs needs)
 static bool is_measured(const struct bench *b, const struct path *path)
 {
     bool is_special = path->needs != NOTHING || path->schema != 0;
-    return !(is_special && b->wall && !b->all) && is_there(&b->gpu.neural, path->needs) &&
+    if (path->textures == BC7 && !b->material.bc7[0].view)
+        return false;
+    return !(is_special && b->stopwatch.wall && !b->all) && is_there(&b->gpu.neural, path->needs) &&
            b->material.storage[path->weights].buffer &&
            (path->schema == 0 || path->schema == b->material.constants.schema);
 }
@@ -253,31 +252,20 @@ static void record(const struct bench *b, VkCommandBuffer commands, size_t i, ui
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, b->layout, 0, 1,
                             &b->sets[paths[i].textures][paths[i].weights], 0, NULL);
     vkCmdPushConstants(commands, b->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof params, &params);
-    vkCmdResetQueryPool(commands, b->queries, 0, 2);
-    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, b->queries, 0);
+    stopwatch_start(&b->stopwatch, commands);
     vkCmdDispatch(commands, (b->size[0] + 7) / 8, (b->size[1] + 7) / 8, 1);
-    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, b->queries, 1);
+    stopwatch_stop(&b->stopwatch, commands);
 }
 
 static bool measure_path(struct bench *b, size_t i, uint32_t frame)
 {
     VkCommandBuffer commands;
-    uint64_t ticks[2];
+    double seconds;
     if (!commands_begin(&b->gpu, &commands))
         return false;
     record(b, commands, i, frame);
-    double start = clock_seconds();
-    if (!commands_run(&b->gpu, commands))
+    if (!stopwatch_run(&b->stopwatch, &b->gpu, commands, &seconds))
         return false;
-    double seconds = clock_seconds() - start;
-    if (!b->wall) {
-        if (!gpu_check(vkGetQueryPoolResults(b->gpu.device, b->queries, 0, 2, sizeof ticks, ticks,
-                                             sizeof *ticks, VK_QUERY_RESULT_64_BIT),
-                       "vkGetQueryPoolResults"))
-            return false;
-        seconds =
-            1e-9 * (double)b->gpu.properties.limits.timestampPeriod * (double)(ticks[1] - ticks[0]);
-    }
     if (frame > 0) /* the first one compiles and warms up */
         samples_add(&b->samples[i], seconds * 1e9);
     return true;
@@ -300,7 +288,8 @@ static void report(struct bench *b)
     figure("neural", "latents", (double)b->material.latent_size, "bytes");
     figure("neural", "weights", (double)b->material.weight_size, "bytes");
     figure("neural", "rgba8.size", (double)b->material.rgba8_size, "bytes");
-    figure("neural", "bc7.size", (double)b->material.bc7_size, "bytes");
+    if (b->material.bc7[0].view)
+        figure("neural", "bc7.size", (double)b->material.bc7_size, "bytes");
     for (size_t i = 0; i < PATH_COUNT; i++) {
         char name[64];
         if (!b->pipelines[i])
@@ -320,7 +309,7 @@ static void destroy(struct bench *b)
         vkDestroyPipeline(device, b->pipelines[i], NULL);
         samples_finish(&b->samples[i]);
     }
-    vkDestroyQueryPool(device, b->queries, NULL);
+    stopwatch_destroy(&b->gpu, &b->stopwatch);
     vkDestroyDescriptorPool(device, b->pool, NULL);
     vkDestroySampler(device, b->sampler, NULL);
     vkDestroyPipelineLayout(device, b->layout, NULL);
@@ -347,15 +336,18 @@ static int run(struct bench *b, const struct arguments *a)
     if (!gpu_create(&request, &b->gpu, &unsupported))
         return unsupported ? 77 : 1;
     const SluiceVulkanDeviceCapabilities *caps = &b->gpu.capabilities;
-    b->wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || !(caps->timestampPeriod > 0);
+    bool wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || !(caps->timestampPeriod > 0);
     fprintf(stderr, "%s, %s %s%s\n", caps->deviceName, caps->driverName, caps->driverInfo,
-            b->wall ? ", wall time" : "");
-    bool done = gpu_create_device_buffer(&b->gpu, (VkDeviceSize)b->size[0] * b->size[1] * 8,
+            wall ? ", wall time" : "");
+    bool done = stopwatch_create(&b->gpu, wall, &b->stopwatch) &&
+                gpu_create_device_buffer(&b->gpu, (VkDeviceSize)b->size[0] * b->size[1] * 8,
                                          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &b->picture) &&
                 material_create(&b->material, &b->gpu, a->file, a->texture_size) &&
                 create_layout(b) && create_sets(b) && create_pipelines(b) && measure(b);
     if (done)
         report(b);
+    done = done && material_time_host(&b->material) &&
+           tiles_measure(&b->gpu, &b->material, &b->stopwatch, b->repeats);
     done = done && atomic_load(&b->gpu.validation_messages) == 0;
     destroy(b);
     return done ? 0 : 1;

@@ -1,12 +1,16 @@
 #include "material.h"
 
+#include "baked_blocks.h"
 #include "commands.h"
+
+#include "../manager/figures.h"
 
 #include "neural_bench_shared.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /* Features per texel of random sets, and texels of level 0 per texel of their finest latent image.
  */
@@ -170,16 +174,6 @@ static bool decode_chain(const struct material *m, uint32_t first, uint8_t *byte
     return done;
 }
 
-/* Blocks of mode 6, whose first seven bits say so. */
-static void make_blocks(uint64_t size, uint8_t *bytes)
-{
-    uint32_t state = 2;
-    for (uint64_t i = 0; i < size; i++) {
-        uint8_t random = (uint8_t)next_random(&state);
-        bytes[i] = i % 16 ? random : (uint8_t)((random & 0x80) | 0x40);
-    }
-}
-
 static void record_copies(const struct material *m, VkCommandBuffer commands, VkBuffer from,
                           VkImage image, bool is_blocks)
 {
@@ -211,26 +205,36 @@ static void record_copies(const struct material *m, VkCommandBuffer commands, Vk
                          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
-static bool create_texture(const struct material *m, const struct gpu *gpu, uint32_t first,
-                           bool is_blocks, struct gpu_image *image)
+static bool upload_texture(const struct material *m, const struct gpu *gpu, bool is_blocks,
+                           const struct gpu_buffer *staging, struct gpu_image *image)
 {
-    struct gpu_buffer staging = {0};
     VkCommandBuffer commands;
-    uint64_t size = chain_bytes(m, is_blocks);
-    bool done =
-        gpu_create_texture(gpu, is_blocks ? VK_FORMAT_BC7_UNORM_BLOCK : VK_FORMAT_R8G8B8A8_UNORM,
-                           m->constants.width, m->constants.height, m->constants.mipCount, image) &&
-        gpu_create_buffer(gpu, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &staging);
-    if (done && is_blocks)
-        make_blocks(size, staging.mapped);
-    else if (done)
-        done = decode_chain(m, first, staging.mapped);
-    done = done && commands_begin(gpu, &commands);
-    if (done) {
-        record_copies(m, commands, staging.buffer, image->image, is_blocks);
-        done = commands_run(gpu, commands);
-    }
-    gpu_destroy_buffer(gpu, &staging);
+    if (!gpu_create_texture(gpu, is_blocks ? VK_FORMAT_BC7_UNORM_BLOCK : VK_FORMAT_R8G8B8A8_UNORM,
+                            m->constants.width, m->constants.height, m->constants.mipCount,
+                            image) ||
+        !commands_begin(gpu, &commands))
+        return false;
+    record_copies(m, commands, staging->buffer, image->image, is_blocks);
+    return commands_run(gpu, commands);
+}
+
+/* Channels `first` to `first` + 3 as texels and as blocks. */
+static bool create_textures(const struct material *m, const struct gpu *gpu, uint32_t first,
+                            struct gpu_image *rgba8, struct gpu_image *bc7)
+{
+    const VkBufferUsageFlags usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    struct gpu_buffer texels = {0}, blocks = {0};
+    bool done = gpu_create_buffer(gpu, chain_bytes(m, false), usage, &texels) &&
+                gpu_create_buffer(gpu, chain_bytes(m, true), usage, &blocks) &&
+                decode_chain(m, first, texels.mapped) &&
+                upload_texture(m, gpu, false, &texels, rgba8);
+    const struct chain chain = {texels.mapped, m->constants.width, m->constants.height,
+                                m->constants.mipCount};
+    if (done && baked_blocks_exist())
+        done =
+            baked_blocks_write(&chain, blocks.mapped) && upload_texture(m, gpu, true, &blocks, bc7);
+    gpu_destroy_buffer(gpu, &texels);
+    gpu_destroy_buffer(gpu, &blocks);
     return done;
 }
 
@@ -314,10 +318,35 @@ bool material_create(struct material *m, const struct gpu *gpu, const char *path
         done = create_weights(m, gpu, set, (enum weights)weights);
     sluiceDestroyNeuralSet(set);
     for (uint32_t i = 0; i < 2 && done; i++)
-        done = create_texture(m, gpu, 4 * i, false, &m->rgba8[i]) &&
-               create_texture(m, gpu, 4 * i, true, &m->bc7[i]);
+        done = create_textures(m, gpu, 4 * i, &m->rgba8[i], &m->bc7[i]);
     m->rgba8_size = 2 * chain_bytes(m, false);
     m->bc7_size = 2 * chain_bytes(m, true);
+    return done;
+}
+
+bool material_time_host(const struct material *m)
+{
+    const SluiceNeuralConstants *k = &m->constants;
+    float *texels = malloc(sizeof *texels * k->channelCount * k->width * k->height);
+    const SluiceNeuralDecodeInfo info = {.structSize = sizeof info,
+                                         .pConstants = k,
+                                         .pLatents = m->latents,
+                                         .latentSize = m->latent_size,
+                                         .pWeights = m->weights,
+                                         .weightSize = m->weight_size,
+                                         .width = k->width,
+                                         .height = k->height,
+                                         .channelCount = k->channelCount,
+                                         .pTexels = texels};
+    bool done = texels != NULL;
+    double decoded = 0, seconds = 0;
+    for (clock_t begin = clock(); done && seconds < 0.2; decoded += (double)k->width * k->height) {
+        done = check(sluiceDecodeNeuralTexels(&info), "sluiceDecodeNeuralTexels");
+        seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
+    }
+    free(texels);
+    if (done)
+        figure("neural", "host.rate", 1e-6 * decoded / seconds, "Mtexel/s");
     return done;
 }
 

@@ -16,16 +16,20 @@ struct material {
     struct gpu_buffer buffers[2]; ///< constants, latents
     struct gpu_buffer storage[WEIGHTS],
         uniform[WEIGHTS];              ///< no buffer: the device has no such path
-    struct gpu_image rgba8[2], bc7[2]; ///< four channels each
+    struct gpu_image rgba8[2], bc7[2]; ///< four channels each; bc7: no image without the baker
     uint64_t rgba8_size, bc7_size;     ///< bytes of both
 };
 
 /**
  * Reads a file, or makes a set of random numbers of `size` texels if `path` is NULL: how long a
- * decode takes does not depend on them. Blocks of BC7 are random, too. Says on stderr what failed.
+ * decode takes does not depend on them. BC7 is what sluice-bake makes of the decoded texels;
+ * without the baker there is none. Says on stderr what failed.
  */
 bool material_create(struct material *material, const struct gpu *gpu, const char *path,
                      uint32_t size);
+
+/** Prints how many texels per second one core of the host decodes. False, said, if it fails. */
+bool material_time_host(const struct material *material);
 void material_destroy(struct material *material, const struct gpu *gpu);
 
 #endif /* BENCH_NEURAL_MATERIAL_H */

@@ -1,0 +1,23 @@
+/** How long commands take: time stamps of the device, or the clock around the submission. */
+#ifndef BENCH_NEURAL_STOPWATCH_H
+#define BENCH_NEURAL_STOPWATCH_H
+
+#include "commands.h"
+
+struct stopwatch {
+    VkQueryPool queries;
+    bool wall; ///< time stamps are no use
+};
+
+bool stopwatch_create(const struct gpu *gpu, bool wall, struct stopwatch *stopwatch);
+void stopwatch_destroy(const struct gpu *gpu, struct stopwatch *stopwatch);
+
+/** Around what is measured, in one command buffer. */
+void stopwatch_start(const struct stopwatch *stopwatch, VkCommandBuffer commands);
+void stopwatch_stop(const struct stopwatch *stopwatch, VkCommandBuffer commands);
+
+/** Runs and frees the commands, as commands_run. */
+bool stopwatch_run(const struct stopwatch *stopwatch, const struct gpu *gpu,
+                   VkCommandBuffer commands, double *seconds);
+
+#endif /* BENCH_NEURAL_STOPWATCH_H */
