@@ -28,8 +28,10 @@
 #ifndef SLUICE_BINDINGS_GLSL
 #define SLUICE_BINDINGS_GLSL
 
+#include "language.glsl"
+#ifndef SLUICE_HLSL
 #extension GL_EXT_nonuniform_qualifier : require
-
+#endif
 #include "shared/bindings.h"
 #include "shared/texture_table.h"
 
@@ -37,50 +39,56 @@
 #define SLUICE_SET 0
 #endif
 
-layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_TEXTURE_TABLE) readonly buffer SluiceTextureTable
-{
-    SluiceTextureEntry sluiceTextureEntries[];
-};
+SLUICE_BUFFER(SLUICE_SET, SLUICE_BINDING_TEXTURE_TABLE, SluiceTextureTable, SluiceTextureEntry, sluiceTextureEntries)
 #define SLUICE_TEXTURE_ENTRY(i) sluiceTextureEntries[i]
 
-layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_MIN_MIP) readonly buffer SluiceMinMip
-{
-    uint sluiceMinMipWords[];
-};
+SLUICE_BUFFER(SLUICE_SET, SLUICE_BINDING_MIN_MIP, SluiceMinMip, uint, sluiceMinMipWords)
 #define SLUICE_MIN_MIP_WORD(i) sluiceMinMipWords[i]
 
-layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_FEEDBACK) buffer SluiceFeedback
-{
-    uint sluiceFeedbackWords[];
-};
+SLUICE_WRITTEN_BUFFER(SLUICE_SET, SLUICE_BINDING_FEEDBACK, SluiceFeedback, uint, sluiceFeedbackWords)
 #define SLUICE_FEEDBACK_WORD(i) sluiceFeedbackWords[i]
 
 #ifdef SLUICE_FEEDBACK_IN_TURNS
-layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_FEEDBACK_TURNS) readonly buffer SluiceFeedbackTurns
-{
-    uint sluiceFeedbackTurnWords[];
-};
+SLUICE_BUFFER(SLUICE_SET, SLUICE_BINDING_FEEDBACK_TURNS, SluiceFeedbackTurns, uint, sluiceFeedbackTurnWords)
 #define SLUICE_FEEDBACK_TURN_WORD(i) sluiceFeedbackTurnWords[i]
 #endif
 
 #ifdef SLUICE_PAGED
-layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_PAGE_TABLE) readonly buffer SluicePageTable
-{
-    uint sluicePageTableWords[];
-};
+SLUICE_BUFFER(SLUICE_SET, SLUICE_BINDING_PAGE_TABLE, SluicePageTable, uint, sluicePageTableWords)
 #define SLUICE_PAGE_TABLE_WORD(i) sluicePageTableWords[i]
 
 #ifdef SLUICE_PAGE_LOOP
-layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray sluicePages[SLUICE_PAGE_LOOP];
-#define SLUICE_PAGE_TEXTURE(i) sluicePages[i]
+#define SLUICE_PAGE_INDEX(i) i
+#define SLUICE_PAGE_COUNT SLUICE_PAGE_LOOP
 #else
-layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray sluicePages[];
-#define SLUICE_PAGE_TEXTURE(i) sluicePages[nonuniformEXT(i)]
+#define SLUICE_PAGE_INDEX(i) SLUICE_NON_UNIFORM(i)
+#define SLUICE_PAGE_COUNT
 #endif
+#ifdef SLUICE_HLSL
+[[vk::binding(SLUICE_BINDING_PAGES, SLUICE_SET)]] Texture2DArray sluicePages[SLUICE_PAGE_COUNT];
+[[vk::binding(SLUICE_BINDING_PAGES, SLUICE_SET)]] SamplerState sluicePageSamplers[SLUICE_PAGE_COUNT];
+#define SLUICE_PAGE_SAMPLER(i) sluicePageSamplers[SLUICE_PAGE_INDEX(i)]
+#else
+layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray sluicePages[SLUICE_PAGE_COUNT];
+#endif
+#define SLUICE_PAGE_TEXTURE(i) sluicePages[SLUICE_PAGE_INDEX(i)]
 #endif
 
 #ifdef SLUICE_TEXTURE_ARRAY
+#if defined(SLUICE_HLSL)
+#ifndef SLUICE_TEXTURE_COUNT /* some compilers need one, at most that of the set */
+#define SLUICE_TEXTURE_COUNT
+#endif
+[[vk::binding(SLUICE_BINDING_TEXTURES, SLUICE_SET)]] Texture2D sluiceTextures[SLUICE_TEXTURE_COUNT];
+#define SLUICE_TEXTURE(i) sluiceTextures[SLUICE_NON_UNIFORM(i)]
 #if SLUICE_TEXTURE_ARRAY == SLUICE_TEXTURES_SEPARATE
+[[vk::binding(SLUICE_BINDING_SAMPLERS, SLUICE_SET)]] SamplerState sluiceSamplers[SLUICE_SAMPLER_COUNT];
+#define SLUICE_TEXTURE_SAMPLER(i) sluiceSamplers[SLUICE_NON_UNIFORM(SLUICE_TEXTURE_ENTRY(i).samplerIndex)]
+#else
+[[vk::binding(SLUICE_BINDING_TEXTURES, SLUICE_SET)]] SamplerState sluiceSamplers[SLUICE_TEXTURE_COUNT];
+#define SLUICE_TEXTURE_SAMPLER(i) sluiceSamplers[SLUICE_NON_UNIFORM(i)]
+#endif
+#elif SLUICE_TEXTURE_ARRAY == SLUICE_TEXTURES_SEPARATE
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_TEXTURES) uniform texture2D sluiceTextureImages[];
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_SAMPLERS) uniform sampler sluiceSamplers[SLUICE_SAMPLER_COUNT];
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_CUBES) uniform textureCube sluiceCubeImages[];

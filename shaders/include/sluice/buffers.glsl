@@ -31,6 +31,7 @@
 #ifndef SLUICE_BUFFERS_GLSL
 #define SLUICE_BUFFERS_GLSL
 
+#include "language.glsl"
 #include "shared/texture_table.h"
 
 /* Whether the tiles of a texture are pages. `shape` is that of its table entry. */

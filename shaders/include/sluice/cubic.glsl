@@ -11,6 +11,8 @@
 #ifndef SLUICE_CUBIC_GLSL
 #define SLUICE_CUBIC_GLSL
 
+#include "language.glsl"
+
 /** One axis of a sample of a level: the coordinates of two linear samples, and their weights. */
 struct SluiceFilterAxis {
     vec2 at, weight;
@@ -37,15 +39,19 @@ vec4 sluiceSplineSlopes(float t)
  */
 SluiceFilterAxis sluiceFilterAxis(float coordinate, float n, bool cubic, bool slope)
 {
+    SluiceFilterAxis axis;
+    axis.at = SLUICE_SPLAT(vec2, coordinate);
+    axis.weight = vec2(1.0, 0.0);
     if (!cubic && !slope)
-        return SluiceFilterAxis(vec2(coordinate), vec2(1.0, 0.0));
+        return axis;
     float at = clamp(coordinate, -1.0e9, 1.0e9) * n - 0.5; /* beyond, nothing changes */
     float low = floor(at), t = at - low;
     vec4 w = slope ? n * sluiceSplineSlopes(t) : sluiceSplineWeights(t);
     if (!cubic)
         w = vec4(0.0, -n, n, 0.0); /* from the middle of one texel to that of the next */
-    vec2 sums = w.xz + w.yw;
-    return SluiceFilterAxis((low + vec2(-0.5, 1.5) + (cubic ? w.yw / sums : vec2(1.0, 0.0))) / n, sums);
+    axis.weight = w.xz + w.yw;
+    axis.at = (low + vec2(-0.5, 1.5) + (cubic ? w.yw / axis.weight : vec2(1.0, 0.0))) / n;
+    return axis;
 }
 
 /*
@@ -62,8 +68,10 @@ SluiceFilterPart sluiceFindFilterPart(vec2 uv, vec2 size, bool cubic, uint part)
     SluiceFilterAxis x = sluiceFilterAxis(uv.x, size.x, cubic, part >> 2u == 1u);
     SluiceFilterAxis y = sluiceFilterAxis(uv.y, size.y, cubic, part >> 2u == 2u);
     bool right = (part & 1u) != 0u, below = (part & 2u) != 0u;
-    return SluiceFilterPart(vec2(right ? x.at.y : x.at.x, below ? y.at.y : y.at.x),
-                            (right ? x.weight.y : x.weight.x) * (below ? y.weight.y : y.weight.x));
+    SluiceFilterPart result;
+    result.uv = vec2(right ? x.at.y : x.at.x, below ? y.at.y : y.at.x);
+    result.weight = (right ? x.weight.y : x.weight.x) * (below ? y.weight.y : y.weight.x);
+    return result;
 }
 
 /**

@@ -74,13 +74,13 @@ float sluiceNearCoordinate(float coordinate, uint addressMode)
 /** Sums all bilinear samples of one sample without bicubic filter and derivatives. */
 vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv)
 {
-    vec4 sum = vec4(0.0);
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0);
     float step = 1.0 / float(taps.count);
-    [[dont_unroll]] for (uint pass = 0u; pass < 2u; pass++) {
-        float share = pass == 0u ? 1.0 - taps.fraction : taps.fraction;
+    SLUICE_DONT_UNROLL for (uint turn = 0u; turn < 2u; turn++) {
+        float share = turn == 0u ? 1.0 - taps.fraction : taps.fraction;
         if (!(share > 0.0))
             continue;
-        uint level = pass == 0u ? taps.fine : taps.coarse;
+        uint level = turn == 0u ? taps.fine : taps.coarse;
         for (uint i = 0u; i < taps.count; i++) {
             vec2 at = uv + taps.axis * ((float(i) + 0.5) * step - 0.5);
             sum += share * sluiceDemandTexels(s, level, at);
@@ -93,9 +93,9 @@ vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv)
 mat3x4 sluiceSumKernels(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv,
                         SluiceDemandKernel kernel, float lod)
 {
-    mat3x4 sum = mat3x4(0.0);
+    mat3x4 sum = SLUICE_SPLAT(mat3x4, 0.0);
     float step = 1.0 / float(taps.count);
-    [[dont_unroll]] for (uint i = 0u; i < 2u * taps.count; i++) {
+    SLUICE_DONT_UNROLL for (uint i = 0u; i < 2u * taps.count; i++) {
         bool coarse = i >= taps.count;
         float share = coarse ? taps.fraction : 1.0 - taps.fraction;
         if (!(share > 0.0))
@@ -112,7 +112,7 @@ bool sluiceFindInGrid(inout uint index, inout vec2 uv)
 {
     uvec2 size = uvec2(SLUICE_DEMAND_TEXTURE(index).width, SLUICE_DEMAND_TEXTURE(index).height);
     vec2 cell = floor(uv);
-    if (any(lessThan(cell, vec2(0.0))) || any(greaterThanEqual(cell, vec2(size))))
+    if (any(lessThan(cell, SLUICE_SPLAT(vec2, 0.0))) || any(greaterThanEqual(cell, vec2(size))))
         return false;
     uint member = SLUICE_DEMAND_LEVEL_WORD(SLUICE_DEMAND_TEXTURE(index).levels +
                                            uint(cell.y) * size.x + uint(cell.x));
@@ -129,10 +129,13 @@ bool sluiceOpenDemand(uint index, inout vec2 uv, out SluiceDemandState s, out ve
     s.resident = true;
     uint state = SLUICE_DEMAND_TEXTURE(index).state;
     bool grid = state == SLUICE_DEMAND_TEXTURE_GRID;
-    uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
-    if (grid && sluiceFindInGrid(index, uv))
-        state = SLUICE_DEMAND_TEXTURE(index).state;
-    color = vec4(0.0);
+    uv = sluiceIsFinite(uv) ? uv : SLUICE_SPLAT(vec2, 0.0);
+    if (grid) {
+        bool found = sluiceFindInGrid(index, uv);
+        if (found)
+            state = SLUICE_DEMAND_TEXTURE(index).state;
+    }
+    color = SLUICE_SPLAT(vec4, 0.0);
     if (state != SLUICE_DEMAND_TEXTURE_OPEN) {
         s.resident = state != SLUICE_DEMAND_TEXTURE_UNKNOWN;
         if (s.resident)
@@ -175,7 +178,7 @@ mat3x4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, 
     if (beyond && modes.x != SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
         modes.y != SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER) {
         sluiceMarkDemandPage(s.tailPage);
-        return mat3x4(sluiceDemandBaseColor(s.index), vec4(0.0), vec4(0.0));
+        return mat3x4(sluiceDemandBaseColor(s.index), SLUICE_SPLAT(vec4, 0.0), SLUICE_SPLAT(vec4, 0.0));
     }
     lod = beyond ? float(last) : max(lod, 0.0);
     SluicePagedTaps taps =
@@ -188,12 +191,12 @@ mat3x4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, 
         sluiceMarkDemandPage(s.tailPage);
     if (taps.count > 1u || any) /* steps of a row are small beside some coordinates */
         uv = vec2(sluiceNearCoordinate(uv.x, modes.x), sluiceNearCoordinate(uv.y, modes.y));
-    mat3x4 sum = mat3x4(0.0);
+    mat3x4 sum = SLUICE_SPLAT(mat3x4, 0.0);
     if (any)
         sum = sluiceSumKernels(s, taps, uv, kernel, lod);
     else
         sum[0] = sluiceSumDemand(s, taps, uv);
-    return s.resident || SLUICE_DEMAND_PREVIEW ? sum : mat3x4(0.0);
+    return s.resident || SLUICE_DEMAND_PREVIEW ? sum : SLUICE_SPLAT(mat3x4, 0.0);
 }
 
 /**
@@ -236,7 +239,7 @@ mat3x4 sluiceDemandSample(uint index, vec2 uv, vec2 dx, vec2 dy, bool atLod, flo
                           out bool resident)
 {
     SluiceDemandState s;
-    mat3x4 sum = mat3x4(0.0);
+    mat3x4 sum = SLUICE_SPLAT(mat3x4, 0.0);
     if (sluiceOpenDemand(index, uv, s, sum[0])) {
         vec2 size = vec2(s.size);
         float n = 1.0, loader = sluiceLoaderLodBias();
@@ -266,7 +269,7 @@ vec4 sluiceDemandGrad(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 /** Samples at `lod` plus both LOD biases, like textureLod: without anisotropy. */
 vec4 sluiceDemandLod(uint index, vec2 uv, float lod, out bool resident)
 {
-    return sluiceDemandSample(index, uv, vec2(0.0), vec2(0.0), true, lod, SLUICE_DEMAND_AS_TEXTURE,
+    return sluiceDemandSample(index, uv, SLUICE_SPLAT(vec2, 0.0), SLUICE_SPLAT(vec2, 0.0), true, lod, SLUICE_DEMAND_AS_TEXTURE,
                               resident)[0];
 }
 

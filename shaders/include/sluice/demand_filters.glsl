@@ -19,8 +19,12 @@ struct SluiceDemandKernel {
 /** Returns the filter of a texture. */
 SluiceDemandKernel sluiceDemandKernel(uint shape, bool slopes, float lod)
 {
-    return SluiceDemandKernel((shape & SLUICE_DEMAND_SPLINE) != 0u, (shape & SLUICE_DEMAND_SMART) != 0u,
-                              slopes, lod);
+    SluiceDemandKernel kernel;
+    kernel.spline = (shape & SLUICE_DEMAND_SPLINE) != 0u;
+    kernel.smart = (shape & SLUICE_DEMAND_SMART) != 0u;
+    kernel.slopes = slopes;
+    kernel.lod = lod;
+    return kernel;
 }
 
 /** Returns how much of what is shown at `lod` is bicubic. */
@@ -42,11 +46,11 @@ mat3x4 sluiceFilterDemand(inout SluiceDemandState s, uint level, vec2 uv, Sluice
     uint parts = kernel.slopes && (s.shape & SLUICE_DEMAND_NEAREST) == 0u ? 12u : 4u;
     bool ask = true;
     for (;;) {
-        vec2 size = vec2(max(s.size >> level, uvec2(1u)));
+        vec2 size = vec2(max(s.size >> level, SLUICE_SPLAT(uvec2, 1u)));
         uint worst = 0u, end = share > 0.0 ? 2u * parts : parts;
-        mat3x4 sum = mat3x4(0.0);
+        mat3x4 sum = SLUICE_SPLAT(mat3x4, 0.0);
         /* All parts are looked up, so that one launch requests all pages. */
-        [[dont_unroll]] for (uint i = share < 1.0 ? 0u : parts; i < end; i++) {
+        SLUICE_DONT_UNROLL for (uint i = share < 1.0 ? 0u : parts; i < end; i++) {
             bool cubic = i >= parts;
             uint part = cubic ? i - parts : i, found;
             SluiceFilterPart at = sluiceFindFilterPart(uv, size, cubic, part);
@@ -67,7 +71,7 @@ mat3x4 sluiceFilterDemand(inout SluiceDemandState s, uint level, vec2 uv, Sluice
         if (worst == SLUICE_PAGE_NONE) {
             s.resident = false;
             if (!SLUICE_DEMAND_PREVIEW)
-                return mat3x4(0.0);
+                return SLUICE_SPLAT(mat3x4, 0.0);
             ask = false;
         }
         level = level < regular ? level + 1u : sluiceDemandLastLevel(s.shape);

@@ -21,6 +21,7 @@
 #ifndef SLUICE_DEMAND_PAGES_GLSL
 #define SLUICE_DEMAND_PAGES_GLSL
 
+#include "language.glsl"
 #include "shared/demand.h"
 
 #ifndef SLUICE_DEMAND_QUIET
@@ -35,13 +36,16 @@ void sluiceRequestDemandPage(uint page)
 {
     uint word = page / SLUICE_DEMAND_BLOCK_PAGES;
     uint bit = 1u << (page % SLUICE_DEMAND_BLOCK_PAGES);
-    if (SLUICE_DEMAND_QUIET || (SLUICE_DEMAND_REQUEST_WORD(word) & bit) != 0u ||
-        (atomicOr(SLUICE_DEMAND_REQUEST_WORD(word), bit) & bit) != 0u)
+    if (SLUICE_DEMAND_QUIET || (SLUICE_DEMAND_REQUEST_WORD(word) & bit) != 0u)
+        return;
+    uint before;
+    SLUICE_ATOMIC_OR_READ(SLUICE_DEMAND_REQUEST_WORD(word), bit, before);
+    if ((before & bit) != 0u)
         return; /* whoever set it sets that of the section */
     uint section = page / SLUICE_DEMAND_SECTION_PAGES;
     bit = 1u << (section % 32u);
     if ((SLUICE_DEMAND_SECTION_WORD(section / 32u) & bit) == 0u)
-        atomicOr(SLUICE_DEMAND_SECTION_WORD(section / 32u), bit);
+        SLUICE_ATOMIC_OR(SLUICE_DEMAND_SECTION_WORD(section / 32u), bit);
 }
 
 /**
@@ -63,7 +67,7 @@ bool sluiceFindDemandPage(uint page, out uint at, out uint word)
     if ((resident & bit) == 0u)
         return false;
     if ((used & bit) == 0u && SLUICE_DEMAND_LEVEL_WORD(SLUICE_DEMAND_PARAMETER_TRACKING) != 0u)
-        atomicOr(SLUICE_DEMAND_MASKS(block).used, bit);
+        SLUICE_ATOMIC_OR(SLUICE_DEMAND_MASKS(block).used, bit);
     return true;
 }
 
@@ -75,7 +79,7 @@ void sluiceMarkDemandPage(uint page)
     uint block = SLUICE_DEMAND_DIRECTORY_WORD(page / SLUICE_DEMAND_BLOCK_PAGES);
     uint bit = 1u << (page % SLUICE_DEMAND_BLOCK_PAGES);
     if (block != SLUICE_DEMAND_NO_BLOCK && (SLUICE_DEMAND_MASKS(block).used & bit) == 0u)
-        atomicOr(SLUICE_DEMAND_MASKS(block).used, bit);
+        SLUICE_ATOMIC_OR(SLUICE_DEMAND_MASKS(block).used, bit);
 }
 
 /**
@@ -87,7 +91,7 @@ void sluiceMarkDemandPage(uint page)
 bool sluiceMapOrRequest(uint page, out uvec2 value)
 {
     uint at, word;
-    value = uvec2(0u);
+    value = SLUICE_SPLAT(uvec2, 0u);
     if (!sluiceFindDemandPage(page, at, word)) {
         sluiceRequestDemandPage(page);
         return false;

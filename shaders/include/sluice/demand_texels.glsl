@@ -5,15 +5,16 @@
 #ifndef SLUICE_DEMAND_TEXELS_GLSL
 #define SLUICE_DEMAND_TEXELS_GLSL
 
-/* Unrolled, the long paths would be three times as long. They are rarely taken. */
-#extension GL_EXT_control_flow_attributes : require
-
 #include "demand_pages.glsl"
+#ifndef SLUICE_HLSL /* unrolled, the long paths would be three times as long; they are rarely taken */
+#extension GL_EXT_control_flow_attributes : require
+#endif
 #include "page_filter.glsl"
 
 /* Shaders that only load on demand may define SLUICE_PAGE_TEXTURE alone. */
 #ifndef SLUICE_DEMAND_PAGE_TEXTURE
 #define SLUICE_DEMAND_PAGE_TEXTURE(i) SLUICE_PAGE_TEXTURE(i)
+#define SLUICE_DEMAND_PAGE_SAMPLER(i) SLUICE_PAGE_SAMPLER(i)
 #endif
 
 #ifndef SLUICE_DEMAND_PREVIEW
@@ -58,10 +59,10 @@ ivec2 sluiceDemandTileShift(uint shape)
  */
 ivec2 sluiceDemandTailPlace(uint shape, uint word, uint k)
 {
-    ivec2 cell = ivec2(1) << sluiceDemandTileShift(shape);
+    ivec2 cell = SLUICE_SPLAT(ivec2, 1) << sluiceDemandTileShift(shape);
     uint n = bitfieldExtract(word, SLUICE_DEMAND_CELL_SHIFT, 2);
     if (n != 0u)
-        cell = ivec2(SLUICE_DEMAND_CELL_SIDE(cell.y, n));
+        cell = SLUICE_SPLAT(ivec2, SLUICE_DEMAND_CELL_SIDE(cell.y, n));
     int slot = int(bitfieldExtract(word, SLUICE_DEMAND_SLOT_SHIFT, 2)) - 1;
     int block = (shape & SLUICE_DEMAND_BLOCKS) != 0u ? 4 : 1, level = int(k);
     ivec2 corner = cell * ivec2(bitfieldExtract(word, SLUICE_DEMAND_CELL_X_SHIFT, 3),
@@ -121,7 +122,7 @@ struct SluiceDemandLevel {
 /** Returns where the level begins in the page of `word`. */
 ivec2 sluiceDemandOrigin(uint shape, SluiceDemandLevel l, uint word)
 {
-    return l.tail < 0 ? ivec2(0) : sluiceDemandTailPlace(shape, word, uint(l.tail));
+    return l.tail < 0 ? SLUICE_SPLAT(ivec2, 0) : sluiceDemandTailPlace(shape, word, uint(l.tail));
 }
 
 SluiceDemandLevel sluiceReadDemandLevel(SluiceDemandState s, uint level)
@@ -129,7 +130,7 @@ SluiceDemandLevel sluiceReadDemandLevel(SluiceDemandState s, uint level)
     int shift = sluiceDemandTileShift(s.shape).x;
     uint regular = sluiceDemandRegularCount(s.shape);
     SluiceDemandLevel l;
-    l.size = max(ivec2(s.size >> level), ivec2(1));
+    l.size = max(ivec2(s.size >> level), SLUICE_SPLAT(ivec2, 1));
     l.columns = (l.size.x + (1 << shift) - 1) >> shift;
     l.tail = int(level) - int(regular);
     if (level < regular)
@@ -148,15 +149,15 @@ vec4 sluiceGatherDemand(inout SluiceDemandState s, SluiceDemandLevel l, bool las
                         SluicePageAxis y, bool ask, out uint worst)
 {
     ivec2 shift = sluiceDemandTileShift(s.shape);
-    vec4 sum = vec4(0.0);
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0);
     worst = 0u;
-    [[dont_unroll]] for (uint i = 0u; i < 4u; i++) {
+    SLUICE_DONT_UNROLL for (uint i = 0u; i < 4u; i++) {
         bool right = (i & 1u) != 0u, below = (i & 2u) != 0u;
         ivec2 texel = ivec2(right ? x.high : x.low, below ? y.high : y.low);
         float weight = (right ? x.weight : 1.0 - x.weight) * (below ? y.weight : 1.0 - y.weight);
         if (!(weight > 0.0))
             continue;
-        vec4 color = vec4(0.0);
+        vec4 color = SLUICE_SPLAT(vec4, 0.0);
         if (min(texel.x, texel.y) < 0) {
             color = sluiceDemandBorder(s);
         } else if (last) {
@@ -169,7 +170,7 @@ vec4 sluiceGatherDemand(inout SluiceDemandState s, SluiceDemandLevel l, bool las
             uint place = word & SLUICE_DEMAND_PLACE_MASK;
             ivec3 at = ivec3(texel, place & 0xFFFFu);
             if (word < SLUICE_DEMAND_PAGE_REFUSED)
-                SLUICE_WITH_PAGE(place, color = texelFetch(SLUICE_DEMAND_PAGE_TEXTURE(chunk), at, 0))
+                SLUICE_WITH_PAGE(place, color = SLUICE_ARRAY_FETCH(SLUICE_DEMAND_PAGE_TEXTURE(chunk), at))
         }
         sum += weight * color;
     }
@@ -210,9 +211,9 @@ vec4 sluiceDemandBilinear(inout SluiceDemandState s, uint level, vec2 uv, bool a
     vec2 scale = uintBitsToFloat(uvec2(127 - shift) << 23u); /* 1 / the tile's size */
     uint place = worst & SLUICE_DEMAND_PLACE_MASK;
     vec3 at = vec3(local * scale, float(place & 0xFFFFu));
-    vec4 color = vec4(0.0);
+    vec4 color = SLUICE_SPLAT(vec4, 0.0);
     if (worst < SLUICE_DEMAND_PAGE_REFUSED)
-        SLUICE_WITH_PAGE(place, color = textureLod(SLUICE_DEMAND_PAGE_TEXTURE(chunk), at, 0.0))
+        SLUICE_WITH_PAGE(place, color = SLUICE_ARRAY_SAMPLE(SLUICE_DEMAND_PAGE_TEXTURE(chunk), SLUICE_DEMAND_PAGE_SAMPLER(chunk), at))
     return color;
 }
 
@@ -233,7 +234,7 @@ vec4 sluiceDemandTexels(inout SluiceDemandState s, uint level, vec2 uv)
         if (worst == SLUICE_PAGE_NONE) {
             s.resident = false;
             if (!SLUICE_DEMAND_PREVIEW)
-                return vec4(0.0);
+                return SLUICE_SPLAT(vec4, 0.0);
             ask = false;
         }
         /* the last level is always resident: a color of the texture */

@@ -51,10 +51,10 @@ void sluiceMarkUnlessKnown(uint at, uint level, uint known)
 #if SLUICE_FEEDBACK_ENCODING == SLUICE_FEEDBACK_MASKS
     uint bit = 1u << min(level, SLUICE_FEEDBACK_MASK_LEVELS - 1u);
     if ((known & (bit | (bit - 1u))) == 0u)
-        atomicOr(SLUICE_FEEDBACK_WORD(at >> 1u), bit << ((at & 1u) * 16u));
+        SLUICE_ATOMIC_OR(SLUICE_FEEDBACK_WORD(at >> 1u), bit << ((at & 1u) * 16u));
 #else
     if (level < known)
-        atomicMin(SLUICE_FEEDBACK_WORD(at), level);
+        SLUICE_ATOMIC_MIN(SLUICE_FEEDBACK_WORD(at), level);
 #endif
 }
 
@@ -109,7 +109,7 @@ void sluiceMarkFootprint(uint first, SluiceGrid grid, SluiceFootprint footprint,
 uvec2 sluiceCornerRegion(SluiceGrid grid, vec2 texel)
 {
     if ((grid.shape & SLUICE_SHAPE_REPEATS) == 0u)
-        texel = clamp(texel, vec2(0.0), grid.size - 0.5);
+        texel = clamp(texel, SLUICE_SPLAT(vec2, 0.0), grid.size - 0.5);
     return uvec2(ivec2(floor(texel)) >> ivec2(sluiceRegionShift(grid))) & grid.last;
 }
 
@@ -119,7 +119,7 @@ void sluiceMarkCorners(uint first, SluiceGrid grid, vec2 low, vec2 high, uint le
     uvec2 from = sluiceCornerRegion(grid, low), to = sluiceCornerRegion(grid, high);
     uint upper = first + from.y * (grid.last.x + 1u);
     sluiceMarkRegionAt(upper + from.x, level);
-    if (from == to)
+    if (all(equal(from, to)))
         return;
     /* loads first, because they take long */
     uint lower = first + to.y * (grid.last.x + 1u);
@@ -272,7 +272,7 @@ void sluiceWriteFeedbackLod(uint tableIndex, vec2 uv, float lod)
     SluiceGrid grid = sluiceReadGrid(tableIndex);
     uint count = sluiceMipCount(grid);
     lod = sluiceIsFinite(uv) ? sluiceClampLod(lod) : SLUICE_LOD_LIMIT;
-    sluiceMarkBox(SLUICE_TEXTURE_ENTRY(tableIndex).feedbackOffset, grid, uv, vec2(0.0),
+    sluiceMarkBox(SLUICE_TEXTURE_ENTRY(tableIndex).feedbackOffset, grid, uv, SLUICE_SPLAT(vec2, 0.0),
                   sluiceFinestLevel(lod, 0.0, count), sluiceCoarsestLevel(lod, count));
 }
 
@@ -288,9 +288,9 @@ void sluiceWriteFeedbackLod(uint tableIndex, vec2 uv, float lod)
  * differences also keep compilers from moving the query into a branch, where the neighbors are
  * missing.
  */
-float sluiceQueryLod(sampler2D tex, vec2 uv)
+float sluiceQueryLod(SLUICE_SAMPLER_2D(tex), vec2 uv)
 {
-    float lod = textureQueryLod(tex, uv).y;
+    float lod = SLUICE_QUERY_LOD(tex, SLUICE_SAMPLER_OF(tex), uv);
     float spread = abs(dFdxFine(lod)) + abs(dFdyFine(lod));
     return spread > 0.0 ? lod - spread : lod; /* NaN stays what it is in this pixel alone */
 }
@@ -339,10 +339,10 @@ void sluiceWriteFeedbackQueried(float lod, uint tableIndex, vec2 uv, vec2 dx, ve
  * Queries the LOD and writes feedback. Call in uniform control flow, with `selected` rather than a
  * branch around it.
  */
-void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lodBias,
+void sluiceWriteFeedbackQuery(SLUICE_SAMPLER_2D(tex), uint tableIndex, vec2 uv, float lodBias,
                               float maxAnisotropy, bool selected)
 {
-    float lod = sluiceQueryLod(tex, uv);
+    float lod = sluiceQueryLod(SLUICE_PASS_SAMPLER(tex), uv);
     vec2 dx = dFdx(uv), dy = dFdy(uv);
     if (selected)
         sluiceWriteFeedbackQueried(lod, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);

@@ -75,7 +75,7 @@ uvec2 sluiceRegionShift(SluiceGrid grid)
 /** Returns a region's width and height in texels of level 0. */
 vec2 sluiceRegionSize(SluiceGrid grid)
 {
-    return vec2(uvec2(1u) << sluiceRegionShift(grid));
+    return vec2(SLUICE_SPLAT(uvec2, 1u) << sluiceRegionShift(grid));
 }
 
 uvec2 sluiceAddressModes(SluiceGrid grid)
@@ -139,7 +139,7 @@ uvec2 sluiceRegionRange(float coordinate, float below, float above, uint address
  */
 SluiceFootprint sluiceComputeFootprint(SluiceGrid grid, vec2 uv, vec2 halfBox, uint coarsestLevel)
 {
-    vec2 texel = min(vec2(uintBitsToFloat((coarsestLevel + 127u) << 23u)), grid.size); /* 2 to the level */
+    vec2 texel = min(SLUICE_SPLAT(vec2, uintBitsToFloat((coarsestLevel + 127u) << 23u)), grid.size); /* 2 to the level */
     float below = SLUICE_WIDE_APRON(grid, SLUICE_APRON);
     if ((grid.shape & SLUICE_SHAPE_UNEVEN) != 0u) {
         texel = grid.size / vec2(max(uvec2(grid.size) >> coarsestLevel, 1u));
@@ -152,7 +152,10 @@ SluiceFootprint sluiceComputeFootprint(SluiceGrid grid, vec2 uv, vec2 halfBox, u
     uvec2 y = sluiceRegionRange(uv.y, below * texel.y + halfBox.y,
                                 SLUICE_WIDE_APRON(grid, SLUICE_APRON) * texel.y + halfBox.y, modes.y,
                                 grid.size.y, shift.y, grid.last.y);
-    return SluiceFootprint(uvec2(x.x, y.x), uvec2(x.y, y.y));
+    SluiceFootprint footprint;
+    footprint.first = uvec2(x.x, y.x);
+    footprint.last = uvec2(x.y, y.y);
+    return footprint;
 }
 
 /** Returns the step between regions along an axis that visits every tile of `level`. */
@@ -182,7 +185,7 @@ uint sluiceNextRegion(uint at, uint last, uint axisLast, uint step)
 vec2 sluiceHalfBox(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     if (!(maxAnisotropy > 1.0))
-        return vec2(0.0);
+        return SLUICE_SPLAT(vec2, 0.0);
     float scale = lodBias <= 0.0 ? 1.0 : exp2(sluiceClampLodBias(lodBias)); /* NaN is large */
     return scale * vec2(length(vec2(dx.x, dy.x)), length(vec2(dx.y, dy.y)));
 }

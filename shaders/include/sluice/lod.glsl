@@ -11,6 +11,7 @@
 #ifndef SLUICE_LOD_GLSL
 #define SLUICE_LOD_GLSL
 
+#include "language.glsl"
 #include "shared/texture_table.h"
 
 /* LODs are clamped to +- this. There are no levels beyond. */
@@ -64,10 +65,10 @@ vec2 sluiceComputeLods(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
     float x2 = dx.x * dx.x + dx.y * dx.y;
     float y2 = dy.x * dy.x + dy.y * dy.y;
     if (!(x2 >= 0.0 && y2 >= 0.0)) /* NaN */
-        return vec2(SLUICE_LOD_LIMIT);
+        return SLUICE_SPLAT(vec2, SLUICE_LOD_LIMIT);
     float n = sluiceClampAnisotropy(maxAnisotropy);
-    vec2 major2 = vec2(max(x2, y2));
-    vec2 minor2 = vec2(min(x2, y2));
+    vec2 major2 = SLUICE_SPLAT(vec2, max(x2, y2));
+    vec2 minor2 = SLUICE_SPLAT(vec2, min(x2, y2));
     float sum = x2 + y2;
     if (sum > 1.0e-30 && sum < 1.0e30) { /* beyond, the squares leave the range */
         float area = (dx.x * dy.y - dx.y * dy.x) / sum; /* -1/2 to 1/2 */
@@ -172,14 +173,14 @@ uvec3 sluiceQuickLevels(SluiceSquares squares, float lodBias, float maxAnisotrop
     return min(uvec3(sluiceFloorLog4(squares.fine * scale * margin),
                      sluiceFloorLog4(squares.coarse * scale * SLUICE_MARGIN_COARSER_4) + 1u,
                      sluiceFloorLog4(squares.widest * scale * SLUICE_MARGIN_COARSER_4) + 1u),
-               uvec3(count - 1u));
+               SLUICE_SPLAT(uvec3, count - 1u));
 }
 
 /** Returns the levels of sluiceQuickLevels for any arguments. Uses logarithms. */
 uvec3 sluiceSafeLevels(vec2 uv, vec2 dx, vec2 dy, float lodBias, float maxAnisotropy, uint count)
 {
     if (!sluiceIsFinite(uv))
-        return uvec3(count - 1u);
+        return SLUICE_SPLAT(uvec3, count - 1u);
     vec2 lods = sluiceComputeLods(dx, dy, lodBias, maxAnisotropy);
     return uvec3(sluiceFinestLevel(lods.x, sluiceLodMargin(maxAnisotropy), count),
                  sluiceCoarsestLevel(lods.y, count),

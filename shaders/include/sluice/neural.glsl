@@ -50,15 +50,20 @@
 #extension GL_EXT_shader_explicit_arithmetic_types : require
 #endif
 
+#include "language.glsl"
+
 /* With SLUICE_NEURAL_SCHEMA sizes of layers are constants. Sums are unrolled then, so that their inputs are
  * registers; outputs are not, so that shaders stay small. Define both as nothing to leave it to the compiler. */
-#ifdef SLUICE_NEURAL_SCHEMA
+#if defined(SLUICE_NEURAL_SCHEMA) && !defined(SLUICE_HLSL)
 #extension GL_EXT_control_flow_attributes : require
 #endif
 #ifndef SLUICE_NEURAL_UNROLL
-#ifdef SLUICE_NEURAL_SCHEMA
+#if defined(SLUICE_NEURAL_SCHEMA) && defined(SLUICE_HLSL)
+#define SLUICE_NEURAL_UNROLL [unroll]
+#define SLUICE_NEURAL_ROLL [loop]
+#elif defined(SLUICE_NEURAL_SCHEMA)
 #define SLUICE_NEURAL_UNROLL [[unroll]]
-#define SLUICE_NEURAL_ROLL [[dont_unroll]]
+#define SLUICE_NEURAL_ROLL SLUICE_DONT_UNROLL
 #else
 #define SLUICE_NEURAL_UNROLL
 #define SLUICE_NEURAL_ROLL
@@ -193,7 +198,7 @@ uint sluiceGetNeuralMipCount(uint s)
 /** Returns the size of a mip in texels. */
 uvec2 sluiceGetNeuralSize(uint s, uint mip)
 {
-    return max(uvec2(SLUICE_NEURAL_CONSTANTS(s).width, SLUICE_NEURAL_CONSTANTS(s).height) >> mip, uvec2(1u));
+    return max(uvec2(SLUICE_NEURAL_CONSTANTS(s).width, SLUICE_NEURAL_CONSTANTS(s).height) >> mip, SLUICE_SPLAT(uvec2, 1u));
 }
 
 /**
@@ -207,7 +212,7 @@ bool sluiceNeuralSample(uint s, ivec2 texel, uint mip, out float channels[SLUICE
 {
     for (uint i = 0u; i < SLUICE_NEURAL_CHANNELS; i++)
         channels[i] = 0.0;
-    if (mip >= sluiceGetNeuralMipCount(s) || any(lessThan(texel, ivec2(0))) ||
+    if (mip >= sluiceGetNeuralMipCount(s) || any(lessThan(texel, SLUICE_SPLAT(ivec2, 0))) ||
         any(greaterThanEqual(uvec2(texel), sluiceGetNeuralSize(s, mip))))
         return false;
     SLUICE_NEURAL_INPUT_TYPE;

@@ -5,6 +5,7 @@
 #ifndef SLUICE_NEURAL_INPUTS_GLSL
 #define SLUICE_NEURAL_INPUTS_GLSL
 
+#include "language.glsl"
 #include "shared/neural.h"
 
 /* Inputs of the widest network, four in a word. */
@@ -41,11 +42,11 @@ ivec2 sluiceNeuralFit(int corner, int grid, int origin, int size, bool clamps)
 {
     ivec2 at = ivec2(corner, corner + 1);
     if (clamps) {
-        at = clamp(at, ivec2(0), ivec2(grid - 1)) - origin;
+        at = clamp(at, SLUICE_SPLAT(ivec2, 0), SLUICE_SPLAT(ivec2, grid - 1)) - origin;
     } else {
-        at += ivec2(lessThan(at, ivec2(0))) * grid;
-        at -= ivec2(greaterThanEqual(at, ivec2(grid))) * grid + origin;
-        at += ivec2(lessThan(at, ivec2(0))) * grid;
+        at += ivec2(lessThan(at, SLUICE_SPLAT(ivec2, 0))) * grid;
+        at -= ivec2(greaterThanEqual(at, SLUICE_SPLAT(ivec2, grid))) * grid + origin;
+        at += ivec2(lessThan(at, SLUICE_SPLAT(ivec2, 0))) * grid;
     }
     return ivec2(at.x >= 0 && at.x < size ? at.x : -1, at.y >= 0 && at.y < size ? at.y : -1);
 }
@@ -78,7 +79,7 @@ uint sluiceNeuralCodes(uint s, uint first, uint texel, uint features, uint bits,
 
 uvec4 sluiceNeuralUnpack(uint codes, uint bits)
 {
-    return (uvec4(codes) >> (uvec4(0u, 1u, 2u, 3u) * bits)) & ((1u << bits) - 1u);
+    return (SLUICE_SPLAT(uvec4, codes) >> (uvec4(0u, 1u, 2u, 3u) * bits)) & ((1u << bits) - 1u);
 }
 
 /** Returns the values of codes of schema 1, in units of 1 / 127.5. */
@@ -136,7 +137,7 @@ bool sluiceNeuralInputs3(uint s, uvec2 texel, uint mip, uvec2 mipSize, out uint 
         if (!resident)
             return false;
         for (uint group = 0u; group < 4u; group++) {
-            uvec4 sum = uvec4(0u);
+            uvec4 sum = SLUICE_SPLAT(uvec4, 0u);
             for (uint i = 0u; i < 4u && 4u * group < features; i++)
                 sum += c.weights[i] *
                        sluiceNeuralUnpack(sluiceNeuralCodes(s, c.first, c.texels[i], features, 4u, group), 4u);
@@ -171,7 +172,7 @@ bool sluiceNeuralInputs1(uint s, uvec2 texel, uint mip, uvec2 mipSize, out uint 
     features = SLUICE_NEURAL_CONSTANTS(s).lowFeatures;
     bits = SLUICE_NEURAL_CONSTANTS(s).lowBits;
     for (uint group = 0u; group < 4u; group++) {
-        ivec4 sum = ivec4(0);
+        ivec4 sum = SLUICE_SPLAT(ivec4, 0);
         for (uint i = 0u; i < 4u && 4u * group < features; i++)
             sum += sluiceNeuralValues(sluiceNeuralCodes(s, c.first, c.texels[i], features, bits, group), bits) *
                    int(c.weights[i] >> 8u);

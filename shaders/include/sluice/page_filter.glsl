@@ -6,6 +6,7 @@
 #ifndef SLUICE_PAGE_FILTER_GLSL
 #define SLUICE_PAGE_FILTER_GLSL
 
+#include "language.glsl"
 #include "shared/texture_table.h"
 
 /* Steps of filter weights. Devices usually have at least these, and sums of weights stay exactly 1. */
@@ -13,7 +14,7 @@
 
 /* The sampler's border color. Define it before to change it. */
 #ifndef SLUICE_BORDER_COLOR
-#define SLUICE_BORDER_COLOR vec4(0.0)
+#define SLUICE_BORDER_COLOR SLUICE_SPLAT(vec4, 0.0)
 #endif
 
 /** Returns the border color, limited to the components of the format. */
@@ -86,7 +87,10 @@ SluicePageAxis sluiceNearestPageAxis(float coordinate, uint addressMode, int siz
     int at = int(floor(coordinate * float(size)));
     int inside = clamp(at, 0, size - 1);
     at = addressMode == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER && at != inside ? -1 : inside;
-    return SluicePageAxis(at, at, 0.0);
+    SluicePageAxis axis;
+    axis.low = axis.high = at;
+    axis.weight = 0.0;
+    return axis;
 }
 
 /* Without non-uniform indexing every element is visited, and one of them is sampled. */
@@ -127,7 +131,7 @@ SluicePagedTaps sluicePlaceTaps(vec2 size, uint levelCount, vec2 dx, vec2 dy, fl
     taps.fraction =
         floor((lod - float(taps.fine)) * SLUICE_FILTER_STEPS + 0.5) / SLUICE_FILTER_STEPS;
     taps.count = 1u;
-    taps.axis = vec2(0.0);
+    taps.axis = SLUICE_SPLAT(vec2, 0.0);
     if (maxTaps > 1.0) {
         float x = length(dx * size), y = length(dy * size);
         taps.axis = x >= y ? dx : dy;

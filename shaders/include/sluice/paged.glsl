@@ -18,7 +18,7 @@
 
 ivec2 sluiceLevelSize(SluiceTextureEntry entry, uint level)
 {
-    return max(ivec2(uvec2(entry.width, entry.height) >> level), ivec2(1));
+    return max(ivec2(uvec2(entry.width, entry.height) >> level), SLUICE_SPLAT(ivec2, 1));
 }
 
 ivec2 sluiceTileShift(SluiceTextureEntry entry)
@@ -40,11 +40,11 @@ vec4 sluiceFetchPaged(SluiceTextureEntry entry, uint level, ivec2 texel)
 {
     ivec2 shift = sluiceTileShift(entry);
     uint page = sluiceReadPage(entry, level, texel >> shift);
-    vec4 color = vec4(0.0);
+    vec4 color = SLUICE_SPLAT(vec4, 0.0);
     if (page == SLUICE_PAGE_NONE)
         return color;
-    ivec3 at = ivec3(texel & ((ivec2(1) << shift) - 1), page & 0xFFFFu);
-    SLUICE_WITH_PAGE(page, color = texelFetch(SLUICE_PAGE_TEXTURE(chunk), at, 0))
+    ivec3 at = ivec3(texel & ((SLUICE_SPLAT(ivec2, 1) << shift) - 1), page & 0xFFFFu);
+    SLUICE_WITH_PAGE(page, color = SLUICE_ARRAY_FETCH(SLUICE_PAGE_TEXTURE(chunk), at))
     return color;
 }
 
@@ -81,12 +81,12 @@ vec4 sluiceSamplePages(SluiceTextureEntry entry, uint level, vec2 uv)
     if (any(notEqual(high, low + 1)) || any(notEqual(high >> shift, tile)) || min(low.x, low.y) < 0)
         return sluiceGatherPaged(entry, level, x, y);
     uint page = sluiceReadPage(entry, level, tile);
-    vec4 color = vec4(0.0);
+    vec4 color = SLUICE_SPLAT(vec4, 0.0);
     if (page == SLUICE_PAGE_NONE)
         return color;
     vec2 local = vec2(low - (tile << shift)) + vec2(x.weight, y.weight) + 0.5;
-    vec3 at = vec3(local / vec2(ivec2(1) << shift), float(page & 0xFFFFu));
-    SLUICE_WITH_PAGE(page, color = textureLod(SLUICE_PAGE_TEXTURE(chunk), at, 0.0))
+    vec3 at = vec3(local / vec2(SLUICE_SPLAT(ivec2, 1) << shift), float(page & 0xFFFFu));
+    SLUICE_WITH_PAGE(page, color = SLUICE_ARRAY_SAMPLE(SLUICE_PAGE_TEXTURE(chunk), SLUICE_PAGE_SAMPLER(chunk), at))
     return color;
 }
 

@@ -71,7 +71,7 @@ bool sluiceIntersectProxyBox(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 directi
 /** The normal of a face, outward. */
 vec3 sluiceProxyFaceNormal(uint face)
 {
-    vec3 normal = vec3(0.0);
+    vec3 normal = SLUICE_SPLAT(vec3, 0.0);
     normal[face / 2u] = (face & 1u) != 0u ? 1.0 : -1.0;
     return normal;
 }

@@ -12,11 +12,13 @@
 #ifndef SLUICE_RESIDENCY_GLSL
 #define SLUICE_RESIDENCY_GLSL
 
+#include "sample.glsl"
+
 #ifndef SLUICE_NO_RESIDENCY_CODES
+#ifndef SLUICE_HLSL
 #extension GL_ARB_sparse_texture2 : require
 #endif
-
-#include "sample.glsl"
+#endif
 
 /*
  * Clamps a coordinate so that its filter stays inside the image. False if that is impossible (one
@@ -34,7 +36,7 @@ bool sluiceStayInside(inout float coordinate, uint size)
  * Border colors use no memory, and drivers disagree on whether they are resident. So with
  * CLAMP_TO_BORDER the nearest coordinate inside is probed.
  */
-uint sluiceProbeNonResident(sampler2D nearestMipTex, SluiceTextureEntry entry, vec2 uv, float level)
+uint sluiceProbeNonResident(SLUICE_SAMPLER_2D(nearestMipTex), SluiceTextureEntry entry, vec2 uv, float level)
 {
 #ifdef SLUICE_PAGED
     if (SLUICE_HAS_PAGES(entry.shape))
@@ -46,13 +48,20 @@ uint sluiceProbeNonResident(sampler2D nearestMipTex, SluiceTextureEntry entry, v
     vec4 texel;
     if ((entry.flags & SLUICE_TEXTURE_FLAG_DENSE) != 0u) /* its image is not sparse */
         return 0u;
-    if (entry.addressModeU == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
-        !sluiceStayInside(uv.x, max(entry.width >> uint(level), 1u)))
+    bool inside = true;
+    if (entry.addressModeU == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER)
+        inside = sluiceStayInside(uv.x, max(entry.width >> uint(level), 1u));
+    if (entry.addressModeV == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER)
+        inside = sluiceStayInside(uv.y, max(entry.height >> uint(level), 1u)) && inside;
+    if (!inside)
         return 0u;
-    if (entry.addressModeV == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
-        !sluiceStayInside(uv.y, max(entry.height >> uint(level), 1u)))
-        return 0u;
+#ifdef SLUICE_HLSL
+    uint status;
+    texel = nearestMipTex.SampleLevel(nearestMipTexSampler, uv, level, int2(0, 0), 0.0, status);
+    return CheckAccessFullyMapped(status) ? 0u : 1u;
+#else
     return sparseTexelsResidentARB(sparseTextureLodARB(nearestMipTex, uv, level, texel)) ? 0u : 1u;
+#endif
 #endif
 }
 
@@ -60,7 +69,7 @@ uint sluiceProbeNonResident(sampler2D nearestMipTex, SluiceTextureEntry entry, v
  * Counts the positions and levels that sluiceSample and sluiceSampleGrad touch with the same
  * arguments and that are not resident. Must be 0.
  */
-uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
+uint sluiceCountNonResident(SLUICE_SAMPLER_2D(nearestMipTex), uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
                             float lodBias, float maxAnisotropy)
 {
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
@@ -72,7 +81,7 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
     float coarse = ceil(clamp(s.lod, 0.0, last));
     float widest = coarse;
     uint taps = 1u;
-    vec2 axis = vec2(0.0);
+    vec2 axis = SLUICE_SPLAT(vec2, 0.0);
     if (maxAnisotropy > 1.0) {
         taps = 9u;
         vec2 size = vec2(entry.width, entry.height);
@@ -83,16 +92,16 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
     bool spline = SLUICE_CUBIC && (entry.shape & SLUICE_SHAPE_SPLINE) != 0u;
     uint count = 0u;
     for (uint i = 0u; i < taps; i++) {
-        vec2 at = s.uv + (taps > 1u ? axis * (float(i) / float(taps - 1u) - 0.5) : vec2(0.0));
+        vec2 at = s.uv + (taps > 1u ? axis * (float(i) / float(taps - 1u) - 0.5) : SLUICE_SPLAT(vec2, 0.0));
         for (float level = fine; level <= widest; level++) {
             if (!spline) {
-                count += sluiceProbeNonResident(nearestMipTex, entry, at, level);
+                count += sluiceProbeNonResident(SLUICE_PASS_SAMPLER(nearestMipTex), entry, at, level);
                 continue;
             }
-            vec2 texel = 1.0 / vec2(max(uvec2(entry.width, entry.height) >> uint(level), uvec2(1u)));
+            vec2 texel = 1.0 / vec2(max(uvec2(entry.width, entry.height) >> uint(level), SLUICE_SPLAT(uvec2, 1u)));
             for (uint corner = 0u; corner < 4u; corner++) { /* of 4x4 texels */
                 vec2 off = texel * (vec2(corner & 1u, corner >> 1u) * 2.0 - 1.0);
-                count += sluiceProbeNonResident(nearestMipTex, entry, at + off, level);
+                count += sluiceProbeNonResident(SLUICE_PASS_SAMPLER(nearestMipTex), entry, at + off, level);
             }
         }
     }

@@ -45,7 +45,7 @@
  * clamped samples get wider derivatives. Both show the same level: devices that clamp also scale
  * the row of an anisotropic footprint.
  */
-#ifdef SLUICE_MIN_LOD
+#if defined(SLUICE_MIN_LOD) && !defined(SLUICE_HLSL)
 #extension GL_ARB_sparse_texture_clamp : require
 #endif
 
@@ -204,7 +204,7 @@ uint sluiceClampedBox(uint shape, float lod, float margin, float coarsestLod, fl
                       uint count, inout vec2 halfBox)
 {
     if (maxAnisotropy > 1.0)
-        halfBox = max(halfBox, vec2(exp2(lod - margin)));
+        halfBox = max(halfBox, SLUICE_SPLAT(vec2, exp2(lod - margin)));
     else if (sluiceSamplerClamps(shape))
         return sluiceCoarsestLevel(max(lod, coarsestLod), count); /* exactly */
     return sluiceCoarsestLevel(lod + margin, count); /* coarser by as much as finer */
@@ -227,7 +227,7 @@ float sluiceLodAround(uint tableIndex, SluiceGrid grid, uint words, uint coarses
     vec2 grown = halfBox;
     if (sluiceClampedBox(grid.shape, lod, margin, coarsestLod, maxAnisotropy, count, grown) <=
             coarsest &&
-        grown == halfBox)
+        all(equal(grown, halfBox)))
         return lod;
     lod = min(sluiceLodLimit(words >> 16u, margin), packed);
     uint level =
@@ -290,28 +290,28 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     float margin = sluiceLodMargin(maxAnisotropy);
     SluiceSampling s;
     float biasScale = exp2(sluiceClampLodBias(lodBias));
-    vec2 largest = vec2(SLUICE_MAX_TEXELS) / (grid.size * max(biasScale, 1.0));
+    vec2 largest = SLUICE_SPLAT(vec2, SLUICE_MAX_TEXELS) / (grid.size * max(biasScale, 1.0));
     bool finite = sluiceIsFinite(uv) && all(lessThanEqual(abs(dx), largest)) &&
                   all(lessThanEqual(abs(dy), largest));
-    s.uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
+    s.uv = sluiceIsFinite(uv) ? uv : SLUICE_SPLAT(vec2, 0.0);
     vec2 lods = finite
                     ? sluiceComputeLods(dx * grid.size, dy * grid.size, lodBias, maxAnisotropy)
-                    : vec2(SLUICE_LOD_LIMIT);
+                    : SLUICE_SPLAT(vec2, SLUICE_LOD_LIMIT);
     s.lod = lods.x;
     s.minLod = 0.0;
     s.wantedLevel = sluiceFinestLevel(s.lod, margin, count);
     s.level = s.wantedLevel;
     s.missing = 0u;
     s.plain = false;
-    s.dx = finite ? dx * biasScale : vec2(0.0);
-    s.dy = finite ? dy * biasScale : vec2(0.0);
+    s.dx = finite ? dx * biasScale : SLUICE_SPLAT(vec2, 0.0);
+    s.dy = finite ? dy * biasScale : SLUICE_SPLAT(vec2, 0.0);
     dx *= grid.size;
     dy *= grid.size;
     /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
-    bool point = !(s.lod > SLUICE_LOD_POINT) && maxAnisotropy > 1.0;
+    bool isPoint = !(s.lod > SLUICE_LOD_POINT) && maxAnisotropy > 1.0;
     bool widened = !finite;
 
-    vec2 halfBox = finite ? sluiceHalfBox(dx, dy, lodBias, maxAnisotropy) : vec2(0.0);
+    vec2 halfBox = finite ? sluiceHalfBox(dx, dy, lodBias, maxAnisotropy) : SLUICE_SPLAT(vec2, 0.0);
     float reach = finite ? sluiceOverreachedLod(grid.shape, dx, dy, lodBias, maxAnisotropy)
                          : -SLUICE_LOD_LIMIT;
     uint coarsest = sluiceCoarsestLevel(lods.y, count);
@@ -319,7 +319,7 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     bool round = sluiceLodLimit(shown, margin) <= s.lod &&
                  !sluiceReachIsThere(first, grid, s.uv, halfBox, coarsest, reach);
     if (round) { /* such a footprint has but one level */
-        halfBox = max(halfBox, vec2(0.5 * exp2(s.lod)));
+        halfBox = max(halfBox, SLUICE_SPLAT(vec2, 0.5 * exp2(s.lod)));
         shown = sluiceReadBox(first, grid, s.uv, halfBox, s.lod, margin, s.level, coarsest) & 0xFFFFu;
     }
     if (shown >= SLUICE_SHOWN_NOTHING) {
@@ -345,14 +345,14 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         s.minLod = sluiceSamplerClamps(grid.shape) ? min(s.lod, float(count - 1u)) : 0.0;
         widened = widened || maxAnisotropy > 1.0 || !sluiceSamplerClamps(grid.shape);
     }
-    s.plain = finite && !point && !round && s.missing == 0u;
+    s.plain = finite && !isPoint && !round && s.missing == 0u;
     if (!finite)
         s.lod = min(s.lod, float(s.level) + margin);
     float width = exp2(widened || round ? max(s.lod, SLUICE_LOD_POINT) : SLUICE_LOD_POINT);
     if (round) {
         s.dx = vec2(width, 0.0) / grid.size;
         s.dy = vec2(0.0, width) / grid.size;
-    } else if (widened || point) {
+    } else if (widened || isPoint) {
         sluiceWiden(s.dx, s.dy, grid.size, width);
     }
     return s;
@@ -375,7 +375,15 @@ SluiceSampling sluiceFindSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, fl
     vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
     float scale = exp2(sluiceClampLodBias(lodBias));
     float lod = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
-    return SluiceSampling(uv, dx * scale, dy * scale, lod, 0u, 0u, 0u, 0.0, false);
+    SluiceSampling s;
+    s.uv = uv;
+    s.dx = dx * scale;
+    s.dy = dy * scale;
+    s.lod = lod;
+    s.wantedLevel = s.level = s.missing = 0u;
+    s.minLod = 0.0;
+    s.plain = false;
+    return s;
 }
 
 bool sluiceHasSpline(uint tableIndex)
@@ -399,7 +407,7 @@ float sluiceSplineShare(uint tableIndex, SluiceSampling s, vec2 dx, vec2 dy, flo
     return sluiceCubicShare(max(s.lod, 0.0) - sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy));
 }
 
-#ifdef GL_FRAGMENT_SHADER
+#ifdef SLUICE_FRAGMENT_SHADER
 
 /** Returns true if the whole texture may be shown, and texture() handles any derivatives. */
 bool sluiceIsWhole(uint tableIndex, float lodBias, float maxAnisotropy)
@@ -426,13 +434,27 @@ bool sluiceDiffersInQuad(uint number)
 
 #endif
 
+#define SLUICE_FORM_GRAD(tex, uv, dx, dy) \
+    SLUICE_TEXTURE_GRAD(SLUICE_FORM_TEXTURE(tex), SLUICE_FORM_SAMPLER(tex), uv, dx, dy)
+#define SLUICE_FORM_GRAD_CLAMP(tex, uv, dx, dy, minLod) \
+    SLUICE_TEXTURE_GRAD_CLAMP(SLUICE_FORM_TEXTURE(tex), SLUICE_FORM_SAMPLER(tex), uv, dx, dy, minLod)
+#define SLUICE_FORM_LOD(tex, uv, lod) \
+    SLUICE_TEXTURE_LOD(SLUICE_FORM_TEXTURE(tex), SLUICE_FORM_SAMPLER(tex), uv, lod)
+#define SLUICE_FORM_BIAS(tex, uv, bias) \
+    SLUICE_TEXTURE_BIAS(SLUICE_FORM_TEXTURE(tex), SLUICE_FORM_SAMPLER(tex), uv, bias)
+#define SLUICE_FORM_FETCH(tex, texel, level) SLUICE_TEXTURE_FETCH(SLUICE_FORM_TEXTURE(tex), texel, level)
+
 /* The functions that take a texture, in both forms. */
-#define SLUICE_FORM sampler2D
+#define SLUICE_FORM(tex) SLUICE_SAMPLER_2D(tex)
+#define SLUICE_FORM_PASS(tex) SLUICE_PASS_SAMPLER(tex)
 #define SLUICE_FORM_TEXTURE(tex) tex
+#define SLUICE_FORM_SAMPLER(tex) SLUICE_SAMPLER_OF(tex)
 #include "sample_textures.glsl"
 #ifdef SLUICE_TEXTURE
-#define SLUICE_FORM uint
+#define SLUICE_FORM(tex) uint tex
+#define SLUICE_FORM_PASS(tex) tex
 #define SLUICE_FORM_TEXTURE(tex) SLUICE_TEXTURE(tex)
+#define SLUICE_FORM_SAMPLER(tex) SLUICE_TEXTURE_SAMPLER(tex)
 #define SLUICE_FORM_IS_NUMBER
 #include "sample_textures.glsl"
 #endif

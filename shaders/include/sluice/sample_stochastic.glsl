@@ -89,28 +89,30 @@ SluicePick sluicePickStreamed(uint tableIndex, vec2 uv, float lod, uint kernel, 
 }
 
 /* The functions that take a texture, in both forms of sample.glsl. */
-#define SLUICE_STOCHASTIC_FORM(form)                                                               \
-    /** Fetches a pick of sluicePickStreamed. `missingLevels` is what that returned. */             \
-    vec4 sluiceFetchPick(form tex, uint tableIndex, SluicePick pick, uint missingLevels)           \
+#define SLUICE_STOCHASTIC_FORM(form, passed)                                                       \
+    /** Fetches a pick of sluicePickStreamed. `missingLevels` is what that returned. */            \
+    vec4 sluiceFetchPick(form(tex), uint tableIndex, SluicePick pick, uint missingLevels)          \
     {                                                                                              \
         if (pick.border)                                                                           \
             return sluiceBorder(SLUICE_TEXTURE_ENTRY(tableIndex));                                 \
         if (missingLevels == SLUICE_MIP_UNTOUCHED)                                                 \
             return SLUICE_FALLBACK_COLOR;                                                          \
-        return sluiceTexelFetch(tex, tableIndex, pick.texel, pick.level);                          \
+        return sluiceTexelFetch(passed(tex), tableIndex, pick.texel, pick.level);                  \
     }                                                                                              \
-    /** Chooses a texel, marks the wanted one with `mark`, and returns the resident one. */         \
-    vec4 sluiceSampleStochastic(form tex, uint tableIndex, vec2 uv, float lod, uint kernel,        \
+    /** Chooses a texel, marks the wanted one with `mark`, and returns the resident one. */        \
+    vec4 sluiceSampleStochastic(form(tex), uint tableIndex, vec2 uv, float lod, uint kernel,       \
                                 float sigma, bool mark, inout vec2 random, out uint missingLevels) \
     {                                                                                              \
         SluicePick pick = sluicePickStreamed(tableIndex, uv, lod, kernel, sigma, mark, random,     \
                                              missingLevels);                                       \
-        return sluiceFetchPick(tex, tableIndex, pick, missingLevels);                              \
+        return sluiceFetchPick(passed(tex), tableIndex, pick, missingLevels);                      \
     }
 
-SLUICE_STOCHASTIC_FORM(sampler2D)
+SLUICE_STOCHASTIC_FORM(SLUICE_SAMPLER_2D, SLUICE_PASS_SAMPLER)
 #ifdef SLUICE_TEXTURE
-SLUICE_STOCHASTIC_FORM(uint)
+#define SLUICE_NUMBER(tex) uint tex
+#define SLUICE_PASS_NUMBER(tex) tex
+SLUICE_STOCHASTIC_FORM(SLUICE_NUMBER, SLUICE_PASS_NUMBER)
 #endif
 
 #endif

@@ -9,37 +9,37 @@
  */
 #ifdef SLUICE_PAGED
 /** Returns a bilinear sample of any level. `tail` has the packed levels. */
-vec4 sluiceSampleLevel(SLUICE_FORM tail, SluiceTextureEntry entry, uint level, vec2 uv)
+vec4 sluiceSampleLevel(SLUICE_FORM(tail), SluiceTextureEntry entry, uint level, vec2 uv)
 {
     if (level >= entry.regularMipCount)
-        return textureLod(SLUICE_FORM_TEXTURE(tail), uv, float(level - entry.regularMipCount));
+        return SLUICE_FORM_LOD(tail, uv, float(level - entry.regularMipCount));
     return sluiceSamplePages(entry, level, uv);
 }
 
-vec4 sluiceSampleTail(SLUICE_FORM tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy)
+vec4 sluiceSampleTail(SLUICE_FORM(tail), SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy)
 {
     vec2 scale = sluiceTailScale(entry);
-    return textureGrad(SLUICE_FORM_TEXTURE(tail), uv, dx * scale, dy * scale);
+    return SLUICE_FORM_GRAD(tail, uv, dx * scale, dy * scale);
 }
 
 /**
  * Samples like a trilinear or anisotropic sampler at `lod`. `dx` and `dy` include all LOD bias.
  */
-vec4 sluiceSamplePaged(SLUICE_FORM tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy,
+vec4 sluiceSamplePaged(SLUICE_FORM(tail), SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy,
                        float lod, float maxAnisotropy)
 {
     lod = sluiceClampPagedLod(entry, lod);
     if (lod >= float(entry.regularMipCount))
-        return sluiceSampleTail(tail, entry, uv, dx, dy);
+        return sluiceSampleTail(SLUICE_FORM_PASS(tail), entry, uv, dx, dy);
     SluicePagedTaps taps = sluicePlacePagedTaps(entry, dx, dy, lod, maxAnisotropy);
-    vec4 sum = vec4(0.0);
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0);
     for (uint i = 0u; i < taps.count; i++) {
         vec2 at = sluicePagedTap(taps, uv, i);
-        vec4 fine = vec4(0.0), coarse = vec4(0.0);
+        vec4 fine = SLUICE_SPLAT(vec4, 0.0), coarse = SLUICE_SPLAT(vec4, 0.0);
         if (taps.fraction < 1.0)
-            fine = sluiceSampleLevel(tail, entry, taps.fine, at);
+            fine = sluiceSampleLevel(SLUICE_FORM_PASS(tail), entry, taps.fine, at);
         if (taps.fraction > 0.0)
-            coarse = sluiceSampleLevel(tail, entry, taps.coarse, at);
+            coarse = sluiceSampleLevel(SLUICE_FORM_PASS(tail), entry, taps.coarse, at);
         sum += sluiceMixLevels(taps, fine, coarse);
     }
     return sum / float(taps.count);
@@ -50,41 +50,41 @@ vec4 sluiceSamplePaged(SLUICE_FORM tail, SluiceTextureEntry entry, vec2 uv, vec2
  * Samples after sluiceResolveSampling. For sparse and dense mode. s.level must not be
  * SLUICE_MIP_UNTOUCHED.
  */
-vec4 sluiceTextureGrad(SLUICE_FORM tex, SluiceSampling s)
+vec4 sluiceTextureGrad(SLUICE_FORM(tex), SluiceSampling s)
 {
 #ifdef SLUICE_MIN_LOD
-    return textureGradClampARB(SLUICE_FORM_TEXTURE(tex), s.uv, s.dx, s.dy, s.minLod);
+    return SLUICE_FORM_GRAD_CLAMP(tex, s.uv, s.dx, s.dy, s.minLod);
 #else
-    return textureGrad(SLUICE_FORM_TEXTURE(tex), s.uv, s.dx, s.dy);
+    return SLUICE_FORM_GRAD(tex, s.uv, s.dx, s.dy);
 #endif
 }
 
 /** Samples after sluiceResolveSampling with a linear filter, in any mode. */
-vec4 sluiceSampleResolved(SLUICE_FORM tex, uint tableIndex, SluiceSampling s, float maxAnisotropy)
+vec4 sluiceSampleResolved(SLUICE_FORM(tex), uint tableIndex, SluiceSampling s, float maxAnisotropy)
 {
 #ifdef SLUICE_PAGED
     if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
-        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
+        return sluiceSamplePaged(SLUICE_FORM_PASS(tex), SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
                                  maxAnisotropy);
 #endif
-    return sluiceTextureGrad(tex, s);
+    return sluiceTextureGrad(SLUICE_FORM_PASS(tex), s);
 }
 
 /** Returns a bilinear sample of one level, in any mode. */
-vec4 sluiceSampleAtLevel(SLUICE_FORM tex, uint tableIndex, uint level, vec2 uv)
+vec4 sluiceSampleAtLevel(SLUICE_FORM(tex), uint tableIndex, uint level, vec2 uv)
 {
 #ifdef SLUICE_PAGED
     if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
-        return sluiceSampleLevel(tex, SLUICE_TEXTURE_ENTRY(tableIndex), level, uv);
+        return sluiceSampleLevel(SLUICE_FORM_PASS(tex), SLUICE_TEXTURE_ENTRY(tableIndex), level, uv);
 #endif
-    return textureLod(SLUICE_FORM_TEXTURE(tex), uv, float(level));
+    return SLUICE_FORM_LOD(tex, uv, float(level));
 }
 
 /**
  * Sums color and derivatives of a sample of s.lod, of which `share` is bicubic. With `slopes` false the
  * bicubic color alone.
  */
-mat3x4 sluiceSampleKernels(SLUICE_FORM tex, uint tableIndex, SluiceSampling s, float maxAnisotropy,
+mat3x4 sluiceSampleKernels(SLUICE_FORM(tex), uint tableIndex, SluiceSampling s, float maxAnisotropy,
                            float share, bool slopes)
 {
     vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
@@ -93,14 +93,14 @@ mat3x4 sluiceSampleKernels(SLUICE_FORM tex, uint tableIndex, SluiceSampling s, f
                                            sluiceClampAnisotropy(maxAnisotropy));
     uint parts = slopes ? 12u : 4u;
     uint first = slopes && share < 1.0 ? 0u : parts, end = share > 0.0 ? 2u * parts : parts;
-    mat3x4 sum = mat3x4(0.0);
+    mat3x4 sum = SLUICE_SPLAT(mat3x4, 0.0);
     for (uint i = 0u; i < 2u * taps.count; i++) {
         bool coarse = i >= taps.count;
         float levelWeight = (coarse ? taps.fraction : 1.0 - taps.fraction) / float(taps.count);
         if (!(levelWeight > 0.0))
             continue;
         uint level = coarse ? taps.coarse : taps.fine;
-        vec2 levelSize = vec2(max(uvec2(size) >> level, uvec2(1u)));
+        vec2 levelSize = vec2(max(uvec2(size) >> level, SLUICE_SPLAT(uvec2, 1u)));
         float along = (float(coarse ? i - taps.count : i) + 0.5) / float(taps.count) - 0.5;
         for (uint j = first; j < end; j++) {
             bool cubic = j >= parts;
@@ -111,7 +111,7 @@ mat3x4 sluiceSampleKernels(SLUICE_FORM tex, uint tableIndex, SluiceSampling s, f
                 weight *= cubic ? share : 1.0 - share;
             if (weight == 0.0)
                 continue;
-            vec4 color = weight * sluiceSampleAtLevel(tex, tableIndex, level, at.uv);
+            vec4 color = weight * sluiceSampleAtLevel(SLUICE_FORM_PASS(tex), tableIndex, level, at.uv);
             if (part < 4u)
                 sum[0] += color;
             else if (part < 8u)
@@ -124,7 +124,7 @@ mat3x4 sluiceSampleKernels(SLUICE_FORM tex, uint tableIndex, SluiceSampling s, f
 }
 
 /** Samples a texture with a bicubic filter. */
-vec4 sluiceSampleSpline(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+vec4 sluiceSampleSpline(SLUICE_FORM(tex), uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                         float maxAnisotropy, out uint missingLevels)
 {
     SluiceSampling s = sluiceFindSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
@@ -132,11 +132,11 @@ vec4 sluiceSampleSpline(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;
     float share = sluiceSplineShare(tableIndex, s, dx, dy, lodBias, maxAnisotropy);
-    vec4 color = vec4(0.0);
+    vec4 color = SLUICE_SPLAT(vec4, 0.0);
     if (share < 1.0)
-        color = (1.0 - share) * sluiceSampleResolved(tex, tableIndex, s, maxAnisotropy);
+        color = (1.0 - share) * sluiceSampleResolved(SLUICE_FORM_PASS(tex), tableIndex, s, maxAnisotropy);
     if (share > 0.0)
-        color += share * sluiceSampleKernels(tex, tableIndex, s, maxAnisotropy, 1.0, false)[0];
+        color += share * sluiceSampleKernels(SLUICE_FORM_PASS(tex), tableIndex, s, maxAnisotropy, 1.0, false)[0];
     return color;
 }
 
@@ -150,14 +150,14 @@ vec4 sluiceSampleSpline(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2
  * samples have computed levels, as in paged mode. For formats without a linear filter they are
  * differences of neighboring texels.
  */
-vec4 sluiceSampleDerivatives(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+vec4 sluiceSampleDerivatives(SLUICE_FORM(tex), uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                              float maxAnisotropy, out vec4 du, out vec4 dv, out uint missingLevels)
 {
     SluiceSampling s = sluiceFindSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
     missingLevels = sluiceMissingLevels(s);
-    mat3x4 sum = mat3x4(SLUICE_FALLBACK_COLOR, vec4(0.0), vec4(0.0));
+    mat3x4 sum = mat3x4(SLUICE_FALLBACK_COLOR, SLUICE_SPLAT(vec4, 0.0), SLUICE_SPLAT(vec4, 0.0));
     if (s.level != SLUICE_MIP_UNTOUCHED)
-        sum = sluiceSampleKernels(tex, tableIndex, s, maxAnisotropy,
+        sum = sluiceSampleKernels(SLUICE_FORM_PASS(tex), tableIndex, s, maxAnisotropy,
                                   sluiceSplineShare(tableIndex, s, dx, dy, lodBias, maxAnisotropy), true);
     du = sum[1];
     dv = sum[2];
@@ -166,13 +166,13 @@ vec4 sluiceSampleDerivatives(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx,
 
 #ifdef SLUICE_PAGED
 /** Samples in paged mode if everything is resident. */
-vec4 sluiceSampleAsPages(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+vec4 sluiceSampleAsPages(SLUICE_FORM(tex), uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
 {
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
     vec2 size = vec2(entry.sizeX, entry.sizeY);
     float scale = exp2(sluiceClampLodBias(lodBias));
-    return sluiceSamplePaged(tex, entry, uv, dx * scale, dy * scale,
+    return sluiceSamplePaged(SLUICE_FORM_PASS(tex), entry, uv, dx * scale, dy * scale,
                              sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy),
                              maxAnisotropy);
 }
@@ -183,21 +183,21 @@ vec4 sluiceSampleAsPages(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec
  *
  * `missingLevels` is the result of sluiceMissingLevels: 0 when the texture is as sharp as wanted.
  */
-vec4 sluiceSampleGrad(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+vec4 sluiceSampleGrad(SLUICE_FORM(tex), uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                       float maxAnisotropy, out uint missingLevels)
 {
 #ifdef SLUICE_HAS_CUBIC
     if (SLUICE_CUBIC && sluiceHasSpline(tableIndex))
-        return sluiceSampleSpline(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy, missingLevels);
+        return sluiceSampleSpline(SLUICE_FORM_PASS(tex), tableIndex, uv, dx, dy, lodBias, maxAnisotropy, missingLevels);
 #endif
     if (sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy)) {
         float scale = exp2(sluiceClampLodBias(lodBias));
         missingLevels = 0u;
 #ifdef SLUICE_PAGED
         if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
-            return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+            return sluiceSampleAsPages(SLUICE_FORM_PASS(tex), tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
 #endif
-        return textureGrad(SLUICE_FORM_TEXTURE(tex), uv, dx * scale, dy * scale);
+        return SLUICE_FORM_GRAD(tex, uv, dx * scale, dy * scale);
     }
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
     missingLevels = sluiceMissingLevels(s);
@@ -205,52 +205,52 @@ vec4 sluiceSampleGrad(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 d
         return SLUICE_FALLBACK_COLOR;
 #ifdef SLUICE_PAGED
     if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape))
-        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
+        return sluiceSamplePaged(SLUICE_FORM_PASS(tex), SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
                                  maxAnisotropy);
 #endif
-    return sluiceTextureGrad(tex, s);
+    return sluiceTextureGrad(SLUICE_FORM_PASS(tex), s);
 }
 
 /** Fetches one texel. It must be resident: see sluiceResolveSampling. */
-vec4 sluiceTexelFetch(SLUICE_FORM tex, uint tableIndex, ivec2 texel, uint level)
+vec4 sluiceTexelFetch(SLUICE_FORM(tex), uint tableIndex, ivec2 texel, uint level)
 {
 #ifdef SLUICE_PAGED
     if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape)) {
         SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
         if (level < entry.regularMipCount)
             return sluiceFetchPaged(entry, level, texel);
-        return texelFetch(SLUICE_FORM_TEXTURE(tex), texel, int(level - entry.regularMipCount));
+        return SLUICE_FORM_FETCH(tex, texel, int(level - entry.regularMipCount));
     }
 #endif
-    return texelFetch(SLUICE_FORM_TEXTURE(tex), texel, int(level));
+    return SLUICE_FORM_FETCH(tex, texel, int(level));
 }
 
-#ifdef GL_FRAGMENT_SHADER
+#ifdef SLUICE_FRAGMENT_SHADER
 
 /**
  * Samples like sluiceSampleGrad with the fragment's own derivatives. Call in control flow that is
  * uniform over the quad. A number for SLUICE_TEXTURE, and its tableIndex, may differ in the quad.
  */
-vec4 sluiceSample(SLUICE_FORM tex, uint tableIndex, vec2 uv, float lodBias, float maxAnisotropy,
+vec4 sluiceSample(SLUICE_FORM(tex), uint tableIndex, vec2 uv, float lodBias, float maxAnisotropy,
                   out uint missingLevels)
 {
 #ifdef SLUICE_FORM_IS_NUMBER
     /* Implicit derivatives need a quad that samples one texture. */
     bool differs = sluiceDiffersInQuad(tex), other = sluiceDiffersInQuad(tableIndex);
     if (differs || other)
-        return sluiceSampleGrad(tex, tableIndex, uv, dFdx(uv), dFdy(uv), lodBias, maxAnisotropy,
+        return sluiceSampleGrad(SLUICE_FORM_PASS(tex), tableIndex, uv, dFdx(uv), dFdy(uv), lodBias, maxAnisotropy,
                                 missingLevels);
 #endif
 #ifdef SLUICE_HAS_CUBIC
     if (SLUICE_CUBIC && sluiceHasSpline(tableIndex))
-        return sluiceSampleSpline(tex, tableIndex, uv, dFdx(uv), dFdy(uv), lodBias, maxAnisotropy,
+        return sluiceSampleSpline(SLUICE_FORM_PASS(tex), tableIndex, uv, dFdx(uv), dFdy(uv), lodBias, maxAnisotropy,
                                   missingLevels);
 #endif
     missingLevels = 0u;
     if (sluiceIsWhole(tableIndex, lodBias, maxAnisotropy)) {
         bool finite = sluiceIsFinite(uv);
-        vec4 color = texture(SLUICE_FORM_TEXTURE(tex), finite ? uv : vec2(0.0), lodBias);
-        return finite ? color : textureLod(SLUICE_FORM_TEXTURE(tex), vec2(0.0), SLUICE_LOD_LIMIT);
+        vec4 color = SLUICE_FORM_BIAS(tex, finite ? uv : SLUICE_SPLAT(vec2, 0.0), lodBias);
+        return finite ? color : SLUICE_FORM_LOD(tex, SLUICE_SPLAT(vec2, 0.0), SLUICE_LOD_LIMIT);
     }
     vec2 dx = dFdx(uv);
     vec2 dy = dFdy(uv);
@@ -258,33 +258,35 @@ vec4 sluiceSample(SLUICE_FORM tex, uint tableIndex, vec2 uv, float lodBias, floa
                 sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
 #ifdef SLUICE_PAGED
     if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape) && sure)
-        return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+        return sluiceSampleAsPages(SLUICE_FORM_PASS(tex), tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
 #endif
     /* The quad decides as one, because implicit derivatives need all of it. */
     if (!sluiceAnyInQuad(!sure))
-        return texture(SLUICE_FORM_TEXTURE(tex), uv, lodBias);
+        return SLUICE_FORM_BIAS(tex, uv, lodBias);
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
     missingLevels = sluiceMissingLevels(s);
 #ifdef SLUICE_PAGED
     if (SLUICE_HAS_PAGES(SLUICE_TEXTURE_ENTRY(tableIndex).shape)) {
         if (s.level == SLUICE_MIP_UNTOUCHED)
             return SLUICE_FALLBACK_COLOR;
-        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
+        return sluiceSamplePaged(SLUICE_FORM_PASS(tex), SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
                                  maxAnisotropy);
     }
 #endif
     if (!sluiceAnyInQuad(!(s.plain && abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS)))
-        return texture(SLUICE_FORM_TEXTURE(tex), uv, lodBias);
+        return SLUICE_FORM_BIAS(tex, uv, lodBias);
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;
 #ifndef SLUICE_MIN_LOD
     if (!(maxAnisotropy > 1.0)) /* derivatives need not be kept until here */
-        return textureLod(SLUICE_FORM_TEXTURE(tex), s.uv, s.lod);
+        return SLUICE_FORM_LOD(tex, s.uv, s.lod);
 #endif
-    return sluiceTextureGrad(tex, s);
+    return sluiceTextureGrad(SLUICE_FORM_PASS(tex), s);
 }
 
 #endif
 
 #undef SLUICE_FORM
+#undef SLUICE_FORM_PASS
+#undef SLUICE_FORM_SAMPLER
 #undef SLUICE_FORM_TEXTURE

@@ -8,6 +8,8 @@
 #ifndef SLUICE_STOCHASTIC_GLSL
 #define SLUICE_STOCHASTIC_GLSL
 
+#include "language.glsl"
+
 /**
  * Mixes three words. The upper bits are better distributed. Every pixel runs it, so it is short.
  */

@@ -160,13 +160,17 @@ SluicePick sluiceAddressPick(ivec2 texel, uint level, ivec2 n, uvec2 addressMode
                          sluiceAddressTexel(texel.y, addressModes.y, n.y));
     bool x = addressModes.x == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER && texel.x != inside.x;
     bool y = addressModes.y == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER && texel.y != inside.y;
-    return SluicePick(inside, level, x || y);
+    SluicePick pick;
+    pick.texel = inside;
+    pick.level = level;
+    pick.border = x || y;
+    return pick;
 }
 
 /** Returns the size of a level. `size` is that of level 0. */
 ivec2 sluicePickSize(uvec2 size, uint level)
 {
-    return ivec2(max(size >> level, uvec2(1u)));
+    return ivec2(max(size >> level, SLUICE_SPLAT(uvec2, 1u)));
 }
 
 /** Chooses a texel of a level. Arguments are those of sluicePickTexel. */
@@ -175,7 +179,7 @@ SluicePick sluicePickInLevel(vec2 uv, uint level, uvec2 size, uvec2 addressModes
 {
     ivec2 n = sluicePickSize(size, level);
     if (!sluiceIsFinite(uv))
-        uv = vec2(0.0);
+        uv = SLUICE_SPLAT(vec2, 0.0);
     vec2 at = vec2(sluicePlaceTexel(uv.x, addressModes.x, float(n.x)),
                    sluicePlaceTexel(uv.y, addressModes.y, float(n.y)));
     random = clamp(random, 0.0, SLUICE_RANDOM_LAST);
