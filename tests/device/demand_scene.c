@@ -11,6 +11,7 @@
 
 #include "demand_probe_comp.h"
 #include "demand_probe_frag.h"
+#include "demand_probe_hlsl.h"
 #include "demand_probe_loop_comp.h"
 
 #define BUFFERS 9u
@@ -93,6 +94,9 @@ static VkPipeline create_pipeline(struct demand_scene *s, enum demand_shader sha
         return conform_compute_pipeline(
             h, s->layout, conform_module(h, demand_probe_loop_comp, sizeof demand_probe_loop_comp),
             NULL);
+    if (shader == DEMAND_SHADER_HLSL)
+        return conform_compute_pipeline(
+            h, s->layout, conform_module(h, demand_probe_hlsl, sizeof demand_probe_hlsl), NULL);
     if (shader == DEMAND_SHADER_FRAGMENT)
         return conform_graphics_pipeline(
             h, s->layout, s->pass, conform_vertex_module(h),

@@ -37,6 +37,7 @@ enum demand_shader {
     DEMAND_SHADER_CUBIC, ///< knows bicubic filters of textures
     DEMAND_SHADER_CUBIC_PREVIEW,
     DEMAND_SHADER_LOOP, ///< finds array images by a loop
+    DEMAND_SHADER_HLSL, ///< as DEMAND_SHADER_COMPUTE, but in HLSL and by a loop
     DEMAND_SHADER_FRAGMENT,
     DEMAND_SHADERS,
 };

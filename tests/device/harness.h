@@ -14,7 +14,8 @@
 
 #define HARNESS_CUBIC_KINDS 22u
 #define HARNESS_PROBE_KINDS                                                                        \
-    38u ///< 16 of probers, six of cube rigs, 16 of probers that know cubic filters
+    46u ///< 16 of probers, six of others, 16 of probers that know cubic filters, 4 in HLSL
+#define HARNESS_HLSL_KINDS 38u
 #define HARNESS_PAINT_KINDS 32u
 #define HARNESS_FRAMES 3u
 
@@ -70,6 +71,7 @@ struct harness {
     bool cubic;     ///< probers know bicubic filters
     bool mixes;     ///< probers know textures of several modes; set before there is one
     bool page_loop; ///< probers find pages by a loop instead of an index
+    bool hlsl;      ///< probers are in HLSL; they find pages by a loop, and know no min_lod
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
     bool reads_bytes;              ///< features for addresses and arrays of buffers
     bool runs_bytes;               ///< runners read byte pages, where reads_bytes

@@ -5,6 +5,7 @@
 
 #include "probe_codes_comp.h"
 #include "probe_comp.h"
+#include "probe_hlsl.h"
 #include "probe_loop_comp.h"
 #include "probe_min_lod_codes_comp.h"
 #include "probe_min_lod_comp.h"
@@ -137,6 +138,10 @@ static VkPipeline create_pipeline(const struct prober *p)
         module_info.codeSize = codes ? sizeof probe_min_lod_codes_comp : sizeof probe_min_lod_comp;
         module_info.pCode = codes ? probe_min_lod_codes_comp : probe_min_lod_comp;
     }
+    if (h->hlsl) {
+        module_info.codeSize = sizeof probe_hlsl;
+        module_info.pCode = probe_hlsl;
+    }
     VkShaderModule module;
     assert_int_equal(h->CreateShaderModule(h->device, &module_info, NULL, &module), VK_SUCCESS);
     return conform_compute_pipeline(h, p->layout, module, prober_specialize(p, &specialization));
@@ -149,10 +154,17 @@ static VkPipeline shared_pipeline(const struct prober *p)
     uint32_t kind =
         (p->paged ? 1 : 0) | (p->codes ? 2 : 0) | (h->page_loop ? 4 : 0) | (h->min_lod ? 8 : 0);
     kind += h->cubic ? HARNESS_CUBIC_KINDS : 0;
+    if (h->hlsl)
+        kind = HARNESS_HLSL_KINDS + (p->paged ? 1u : 0) + (h->cubic ? 2u : 0);
     static_assert(HARNESS_PROBE_KINDS >= HARNESS_CUBIC_KINDS + 16, "four switches");
     if (!h->probe_pipelines[kind])
         p->h->probe_pipelines[kind] = create_pipeline(p);
     return h->probe_pipelines[kind];
+}
+
+void prober_choose_pipeline(struct prober *p)
+{
+    p->pipeline = shared_pipeline(p);
 }
 
 void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *streamer)
@@ -170,7 +182,7 @@ void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *stre
                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     create_layouts(p);
     create_page_sets(p);
-    p->pipeline = shared_pipeline(p);
+    prober_choose_pipeline(p);
 }
 
 void prober_finish(struct prober *p)

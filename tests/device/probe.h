@@ -44,6 +44,8 @@ struct prober {
 
 void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *streamer);
 void prober_finish(struct prober *p);
+/** After a switch of the harness changed. */
+void prober_choose_pipeline(struct prober *p);
 
 /** A set for the texture, sampled with these modes; anisotropy 1: none. */
 struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture *texture,

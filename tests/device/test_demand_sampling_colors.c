@@ -123,6 +123,31 @@ static void images_found_by_a_loop_are_those_found_by_an_index(void **state)
     assert_true(sure > DEMAND_SAMPLES / 2);
 }
 
+static void hlsl_samples_and_requests_what_glsl_does(void **state)
+{
+    static struct DemandOutput outputs[2][DEMAND_SAMPLES];
+    static uint8_t requests[2][DEMAND_PAGES / 8];
+    struct demand_scene *scene = *state;
+    for (uint32_t missing = 0; missing < 2; missing++) {
+        for (uint32_t hlsl = 0; hlsl < 2; hlsl++) {
+            enum demand_shader shader = hlsl ? DEMAND_SHADER_HLSL : DEMAND_SHADER_COMPUTE;
+            uint32_t sure = 0;
+            roll_seed(17);
+            try_samplers(scene, DEMAND_SHADER_COMPUTE, false, &sure);
+            if (missing)
+                memset(scene->blocks.mapped, 0xFF, (size_t)scene->blocks.size);
+            if (missing)
+                memset(scene->masks.mapped, 0, (size_t)scene->masks.size);
+            demand_scene_run(scene, shader, DEMAND_SAMPLES);
+            memcpy(outputs[hlsl], demand_outputs(scene), sizeof outputs[hlsl]);
+            memcpy(requests[hlsl], scene->requests.mapped, sizeof requests[hlsl]);
+        }
+        assert_int_equal(outputs[0][3].resident, !missing);
+        assert_memory_equal(outputs[0], outputs[1], sizeof outputs[0]);
+        assert_memory_equal(requests[0], requests[1], sizeof requests[0]);
+    }
+}
+
 static void describe(const struct DemandInput *in, uint32_t mode, int channel, double off)
 {
     print_message("# mode %u, channel %d, %.1f steps: uv %.9g %.9g, dx %.9g %.9g, dy %.9g %.9g\n",
@@ -260,6 +285,7 @@ int main(void)
         cmocka_unit_test(textures_with_bicubic_filters_need_shaders_that_know_them),
         cmocka_unit_test(tails_of_compressed_formats_are_found_in_their_places),
         cmocka_unit_test(images_found_by_a_loop_are_those_found_by_an_index),
+        cmocka_unit_test(hlsl_samples_and_requests_what_glsl_does),
         cmocka_unit_test(isotropic_samples_are_those_of_a_sampler),
         cmocka_unit_test(grids_show_their_textures_clamped_and_a_color_beyond),
     };

@@ -13,6 +13,7 @@
 
 #include "neural_comp.h"
 #include "neural_dot_comp.h"
+#include "neural_hlsl.h"
 #include "neural_schema1_comp.h"
 #include "neural_schema3_comp.h"
 #include "neural_shared.h"
@@ -22,7 +23,7 @@
 #include <string.h>
 
 enum { TEXELS = 1 << 16, LATENT_SIZE = 1 << 22, WEIGHT_SIZE = 1 << 15, WEIGHT_ROOM = 17024 };
-enum variant { ANY, DOT, SCHEMA_1, SCHEMA_3, VARIANTS };
+enum variant { ANY, HLSL, DOT, SCHEMA_1, SCHEMA_3, VARIANTS };
 
 struct rig {
     struct harness *h;
@@ -48,7 +49,9 @@ static struct rig *rig_init(struct rig *rig)
     conform_write_buffers(h, &rig->set, 4,
                           (const struct harness_buffer *const[]){&rig->sets, &rig->latents,
                                                                  &rig->weights, &rig->outputs});
-    VkShaderModule modules[VARIANTS] = {[ANY] = conform_module(h, neural_comp, sizeof neural_comp)};
+    VkShaderModule modules[VARIANTS] = {[ANY] = conform_module(h, neural_comp, sizeof neural_comp),
+                                        [HLSL] =
+                                            conform_module(h, neural_hlsl, sizeof neural_hlsl)};
     if (has_dot)
         modules[DOT] = conform_module(h, neural_dot_comp, sizeof neural_dot_comp);
     if (!harness_is_software(h)) { /* lavapipe unrolls all loops, and compiles for seconds */

@@ -10,6 +10,7 @@
 #include "support/test.h"
 
 #include "stochastic_stream_comp.h"
+#include "stochastic_stream_hlsl.h"
 #include "stochastic_stream_shared.h"
 
 #include <math.h>
@@ -163,6 +164,45 @@ static void chosen_texels_are_the_feedback(void **state)
            VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, 2);
 }
 
+/* In paged mode, where all of the shader is used. */
+static void hlsl_picks_and_marks_what_glsl_does(void **state)
+{
+    struct harness *h = *state;
+    static struct ProbeOutput glsl[SAMPLES];
+    struct prober_specialization specialization;
+    struct rig rig;
+    if (h->mode != SLUICE_RESIDENCY_MODE_PAGED)
+        SKIP_TEST("compared in paged mode");
+    roll_seed(3);
+    rig_init(&rig, h, 1501, 1277, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
+             VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT);
+    VkPipeline hlsl = conform_compute_pipeline(
+        h, rig.scene.prober.layout,
+        conform_module(h, stochastic_stream_hlsl, sizeof stochastic_stream_hlsl),
+        prober_specialize(&rig.scene.prober, &specialization));
+    VkPipeline *pipelines[2] = {rig.pipeline, &hlsl};
+    draw_samples(&rig, false);
+    for (uint32_t kernel = 0; kernel < 4; kernel++) {
+        for (uint32_t i = 0; i < 2; i++) {
+            rig.pipeline = pipelines[i];
+            settle(&rig, 1,
+                   kernel | kernel << STOCHASTIC_SEED_SHIFT | (kernel ? 0 : STOCHASTIC_WANTED));
+            if (i)
+                assert_memory_equal(glsl, prober_outputs(&rig.scene.prober), sizeof glsl);
+            memcpy(glsl, prober_outputs(&rig.scene.prober), sizeof glsl);
+        }
+        rig.pipeline = &hlsl; /* its marks bring tiles for the next one */
+        settle(&rig, 6, kernel | STOCHASTIC_MARK);
+        check_colors(&rig);
+    }
+    uint32_t there = 0;
+    for (uint32_t i = 0; i < SAMPLES; i++)
+        there += prober_outputs(&rig.scene.prober)[i].missingLevels == 0;
+    assert_true(there > SAMPLES / 2);
+    h->DestroyPipeline(h->device, hlsl, NULL);
+    scene_finish(&rig.scene);
+}
+
 static void uneven_sizes_and_borders_too(void **state)
 {
     roll_seed(2);
@@ -180,6 +220,7 @@ int main(void)
         return status;
     struct CMUnitTest tests[] = {
         cmocka_unit_test(chosen_texels_are_the_feedback),
+        cmocka_unit_test(hlsl_picks_and_marks_what_glsl_does),
         cmocka_unit_test(uneven_sizes_and_borders_too),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)

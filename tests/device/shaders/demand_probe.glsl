@@ -2,6 +2,36 @@
 #include "sluice/shared/demand.h"
 #include "demand_probe_shared.h"
 
+#include "sluice/language.glsl"
+
+#ifdef SLUICE_HLSL
+[[vk::binding(0)]] StructuredBuffer<SluiceDemandTexture> textures;
+[[vk::binding(1)]] StructuredBuffer<uint> levels;
+[[vk::binding(2)]] StructuredBuffer<uint> directory;
+[[vk::binding(3)]] StructuredBuffer<uint> blocks;
+[[vk::binding(4)]] RWStructuredBuffer<SluiceDemandBlockMasks> masks;
+[[vk::binding(5)]] RWStructuredBuffer<uint> requests;
+[[vk::binding(6)]] RWStructuredBuffer<uint> sections;
+[[vk::binding(7)]] StructuredBuffer<DemandInput> inputs;
+[[vk::binding(8)]] RWStructuredBuffer<DemandOutput> outputs;
+[[vk::binding(9)]] Texture2DArray pages[DEMAND_CHUNKS];
+[[vk::binding(9)]] SamplerState pageSamplers[DEMAND_CHUNKS];
+[[vk::binding(10)]] Texture2D plain;
+[[vk::binding(10)]] SamplerState plainSampler;
+[[vk::constant_id(0)]] const bool preview = false;
+[[vk::constant_id(1)]] const bool cubic = false;
+struct DemandPush { uint count; };
+[[vk::push_constant]] ConstantBuffer<DemandPush> push;
+
+#define SLUICE_DEMAND_TEXTURE(i) textures[i]
+#define SLUICE_DEMAND_LEVEL_WORD(i) levels[i]
+#define SLUICE_DEMAND_DIRECTORY_WORD(i) directory[i]
+#define SLUICE_DEMAND_BLOCK_WORD(i) blocks[i]
+#define SLUICE_DEMAND_MASKS(i) masks[i]
+#define SLUICE_DEMAND_REQUEST_WORD(i) requests[i]
+#define SLUICE_DEMAND_SECTION_WORD(i) sections[i]
+#define SLUICE_PAGE_SAMPLER(i) pageSamplers[i]
+#else
 layout(std430, binding = 0) readonly buffer Textures { SluiceDemandTexture entries[]; } textures;
 layout(std430, binding = 1) readonly buffer Levels { uint words[]; } levels;
 layout(std430, binding = 2) readonly buffer Directory { uint words[]; } directory;
@@ -24,6 +54,7 @@ layout(push_constant) uniform Push { uint count; };
 #define SLUICE_DEMAND_MASKS(i) masks.entries[i]
 #define SLUICE_DEMAND_REQUEST_WORD(i) requests.words[i]
 #define SLUICE_DEMAND_SECTION_WORD(i) sections.words[i]
+#endif
 #define SLUICE_DEMAND_PREVIEW preview
 #define SLUICE_DEMAND_CUBIC cubic
 #ifdef DEMAND_PAGE_LOOP
@@ -39,7 +70,7 @@ mat3x4 sampleDemand(uint at, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
     uint index = inputs[at].index;
 #ifdef DEMAND_FUNCTION
-    vec4 du = vec4(0.0), dv = vec4(0.0);
+    vec4 du = SLUICE_SPLAT(vec4, 0.0), dv = SLUICE_SPLAT(vec4, 0.0);
     vec4 color = DEMAND_FUNCTION;
     return mat3x4(color, du, dv);
 #else
@@ -57,17 +88,17 @@ void probeDemand(uint at)
     vec2 dx = vec2(inputs[at].dx[0], inputs[at].dx[1]);
     vec2 dy = vec2(inputs[at].dy[0], inputs[at].dy[1]);
     uint kind = inputs[at].kind;
-    uvec2 value = uvec2(0u);
-    mat3x4 color = mat3x4(0.0);
+    uvec2 value = SLUICE_SPLAT(uvec2, 0u);
+    mat3x4 color = SLUICE_SPLAT(mat3x4, 0.0);
     bool resident = true;
     if (kind == DEMAND_MAP)
         resident = sluiceMapOrRequest(inputs[at].index, value);
     else if (kind == DEMAND_FORMULA)
         outputs[at].lod = sluiceDemandComputeLod(dx, dy, inputs[at].lod);
     else if (kind == DEMAND_HARDWARE)
-        color[0] = textureGrad(plain, uv, dx, dy);
+        color[0] = SLUICE_TEXTURE_GRAD(plain, SLUICE_SAMPLER_OF(plain), uv, dx, dy);
     else if (kind == DEMAND_PLACE)
-        value = uvec2(sluiceDemandTailPlace(textures.entries[inputs[at].index].shape, inputs[at].word,
+        value = uvec2(sluiceDemandTailPlace(SLUICE_DEMAND_TEXTURE(inputs[at].index).shape, inputs[at].word,
                                             uint(inputs[at].lod)));
     else
         color = sampleDemand(at, uv, dx, dy, resident);
