@@ -85,12 +85,12 @@ def is_quotation(block, sources):
 
 def check_blocks(pages, quotes):
     sources = [read(path).splitlines() for path in quotes]
-    known = {'', 'sh', 'c', 'glsl'}
+    known = {'', 'sh', 'c', 'glsl', 'hlsl'}
     for page in pages:
         for number, language, lines in page.blocks:
             if language not in known:
                 yield f'{page.path}:{number}: a block in {language}, which nothing checks'
-            elif language in ('c', 'glsl') and not is_quotation(lines, sources):
+            elif language in ('c', 'glsl', 'hlsl') and not is_quotation(lines, sources):
                 yield f'{page.path}:{number}: no compiled file has these lines'
 
 
