@@ -1,6 +1,8 @@
-/* Parts of demand-pbrt's flights that need no device: clusters and cameras. */
+/* Parts of demand-pbrt's flights that need no device: clusters, cameras, and the choice of queues.
+ */
 #include "../../samples/demand-pbrt/camera_path.h"
 #include "../../samples/demand-pbrt/clusters.h"
+#include "../../tools/common/gpu_queues.h"
 
 #include "support/test.h"
 
@@ -171,6 +173,63 @@ static void half_turns_end_where_they_should(void **state)
         }
 }
 
+#define DRAWS (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT)
+
+/** As gpu.c does, with a sparse queue of `sparse`. Returns the index of the queue for builds. */
+static uint32_t choose(const VkQueueFamilyProperties *families, uint32_t count, uint32_t sparse,
+                       struct gpu *gpu, struct gpu_queue_list *list)
+{
+    *list = (struct gpu_queue_list){0};
+    gpu_queue_add(list, families, gpu->family);
+    if (sparse != gpu->family)
+        gpu_queue_add(list, families, sparse);
+    return gpu_queue_add_builder(list, families, count, gpu);
+}
+
+static void builds_have_a_queue_that_computes_alone(void **state)
+{
+    (void)state;
+    static const VkQueueFamilyProperties families[] = {
+        {DRAWS, 16, 0, {0}}, {VK_QUEUE_TRANSFER_BIT, 2, 0, {0}}, {VK_QUEUE_COMPUTE_BIT, 8, 0, {0}}};
+    static struct gpu gpu;
+    struct gpu_queue_list list;
+    assert_int_equal(choose(families, 3, 0, &gpu, &list), 0);
+    assert_int_equal(gpu.build_family, 2);
+    assert_int_equal(list.count, 2);
+    assert_int_equal(choose(families, 3, 1, &gpu, &list), 0);
+    assert_int_equal(gpu.build_family, 2);
+    assert_int_equal(list.count, 3);
+}
+
+static void builds_never_share_the_queue_of_sparse_binds(void **state)
+{
+    (void)state;
+    VkQueueFamilyProperties families[] = {{DRAWS, 1, 0, {0}}, {VK_QUEUE_COMPUTE_BIT, 2, 0, {0}}};
+    static struct gpu gpu;
+    struct gpu_queue_list list;
+    assert_int_equal(choose(families, 2, 1, &gpu, &list), 1);
+    assert_int_equal(gpu.build_family, 1);
+    assert_int_equal(list.infos[1].queueCount, 2);
+    families[1].queueCount = 1;
+    assert_int_equal(choose(families, 2, 1, &gpu, &list), 0);
+    assert_int_equal(gpu.build_family, 0);
+    assert_int_equal(list.infos[1].queueCount, 1);
+}
+
+static void builds_have_the_second_queue_of_a_single_family_or_the_first(void **state)
+{
+    (void)state;
+    VkQueueFamilyProperties family = {DRAWS, 2, 0, {0}};
+    static struct gpu gpu;
+    struct gpu_queue_list list;
+    assert_int_equal(choose(&family, 1, 0, &gpu, &list), 1);
+    assert_int_equal(list.infos[0].queueCount, 2);
+    family.queueCount = 1;
+    assert_int_equal(choose(&family, 1, 0, &gpu, &list), 0);
+    assert_int_equal(list.infos[0].queueCount, 1);
+    assert_int_equal(list.count, 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -181,6 +240,9 @@ int main(void)
         cmocka_unit_test(looking_straight_up_gives_right_angles),
         cmocka_unit_test(the_way_between_cameras_turns_evenly),
         cmocka_unit_test(half_turns_end_where_they_should),
+        cmocka_unit_test(builds_have_a_queue_that_computes_alone),
+        cmocka_unit_test(builds_never_share_the_queue_of_sparse_binds),
+        cmocka_unit_test(builds_have_the_second_queue_of_a_single_family_or_the_first),
     };
     return RUN_TESTS(tests);
 }

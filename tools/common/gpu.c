@@ -1,5 +1,6 @@
 #include "gpu.h"
 
+#include "gpu_queues.h"
 #include "gpu_rays.h"
 #include "log.h"
 #include "no_vulkan.h"
@@ -285,6 +286,19 @@ static bool has_addresses(VkPhysicalDevice device)
     return vulkan12.bufferDeviceAddress;
 }
 
+/** Returns the index of the queue for builds in its family. */
+static uint32_t choose_queues(struct gpu *gpu, struct gpu_queue_list *queues)
+{
+    VkQueueFamilyProperties families[MAX_FAMILIES];
+    uint32_t count = MAX_FAMILIES;
+    vkGetPhysicalDeviceQueueFamilyProperties(gpu->physical_device, &count, families);
+    gpu_queue_add(queues, families, gpu->family);
+    if (gpu->sparse_family != gpu->family)
+        gpu_queue_add(queues, families, gpu->sparse_family);
+    gpu->build_family = gpu->family;
+    return gpu->has_build_queue ? gpu_queue_add_builder(queues, families, count, gpu) : 0;
+}
+
 static bool create_device(struct gpu *gpu)
 {
     VkPhysicalDeviceVulkan12Features vulkan12 = {
@@ -315,19 +329,12 @@ static bool create_device(struct gpu *gpu)
         vulkan12.bufferDeviceAddress = VK_TRUE;
     }
 
-    static const float priority = 1.0f;
-    VkDeviceQueueCreateInfo queues[2];
-    uint32_t queue_count = gpu->family == gpu->sparse_family ? 1 : 2;
-    for (uint32_t i = 0; i < queue_count; i++)
-        queues[i] =
-            (VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                      .queueFamilyIndex = i == 0 ? gpu->family : gpu->sparse_family,
-                                      .queueCount = 1,
-                                      .pQueuePriorities = &priority};
+    struct gpu_queue_list queues = {0};
+    const uint32_t build_index = choose_queues(gpu, &queues);
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                .pNext = &features,
-                               .queueCreateInfoCount = queue_count,
-                               .pQueueCreateInfos = queues};
+                               .queueCreateInfoCount = queues.count,
+                               .pQueueCreateInfos = queues.infos};
     struct gpu_ray_features rays;
     if (gpu->ray_tracing)
         gpu_require_rays(&rays, &vulkan12, &info);
@@ -348,6 +355,8 @@ static bool create_device(struct gpu *gpu)
     vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
     if (gpu->capabilities.sparse)
         vkGetDeviceQueue(gpu->device, gpu->sparse_family, 0, &gpu->sparse_queue);
+    vkGetDeviceQueue(gpu->device, gpu->build_family, build_index, &gpu->build_queue);
+    gpu->has_build_queue = gpu->build_queue != gpu->queue;
     vkGetPhysicalDeviceMemoryProperties(gpu->physical_device, &gpu->memory);
 
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
@@ -367,6 +376,7 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
             !*unsupported && request->ray_tracing && gpu_traces_rays(gpu->physical_device);
         gpu->buffer_addresses = gpu->ray_tracing || (!*unsupported && request->buffer_addresses &&
                                                      has_addresses(gpu->physical_device));
+        gpu->has_build_queue = request->build_queue;
         gpu->byte_pages =
             !*unsupported && request->byte_pages && has_addresses(gpu->physical_device);
         if (!*unsupported && request->neural && !gpu->ray_tracing) {

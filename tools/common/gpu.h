@@ -17,6 +17,7 @@ struct gpu_request {
     SluiceResidencyMode modes[2];
     bool ray_tracing;      ///< the ray-tracing pipeline is enabled, where the device has it
     bool buffer_addresses; ///< buffers have addresses, where the device knows them
+    bool build_queue;      ///< there is a queue beside the others, where the device has one
     bool byte_pages; ///< byte pages of demand loaders, with addresses, where the device has them
     bool neural;     ///< all decode paths that the device has are enabled; without rays
 };
@@ -27,7 +28,9 @@ struct gpu {
     VkDevice device;
     VkQueue queue, sparse_queue; ///< may be the same; the latter VK_NULL_HANDLE without sparse
                                  ///< residency
+    VkQueue build_queue;         ///< asked for and there, or `queue`
     uint32_t family, sparse_family;
+    uint32_t build_family;      ///< if it is not `family`, buffers belong to both
     VkCommandPool command_pool; ///< buffers can be reset one by one
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
@@ -35,6 +38,7 @@ struct gpu {
     SluiceResidencyMode modes[2]; ///< as asked for, never AUTO
     bool is_auto;                 ///< the first was AUTO: gpu_choose_mode may change it
     bool ray_tracing;             ///< asked for and there, with buffer addresses
+    bool has_build_queue;         ///< asked for and there
     bool buffer_addresses;        ///< asked for and there, or rays are traced
     bool byte_pages;              ///< asked for and there
     SluiceNeuralPaths neural;     ///< asked for and there

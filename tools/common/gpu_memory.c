@@ -34,8 +34,14 @@ static bool create_buffer(const struct gpu *gpu, VkDeviceSize size, VkBufferUsag
                           struct gpu_buffer *buffer)
 {
     *buffer = (struct gpu_buffer){.size = size};
+    const uint32_t families[2] = {gpu->family, gpu->build_family};
     VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
+    if (families[0] != families[1]) {
+        info.sharingMode = VK_SHARING_MODE_CONCURRENT;
+        info.queueFamilyIndexCount = 2;
+        info.pQueueFamilyIndices = families;
+    }
     if (!gpu_check(vkCreateBuffer(gpu->device, &info, NULL, &buffer->buffer), "vkCreateBuffer"))
         return false;
     VkMemoryRequirements requirements;
