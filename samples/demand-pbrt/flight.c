@@ -124,15 +124,18 @@ static bool serve_surfaces(struct launches *l, struct flight *f)
     return true;
 }
 
-/* What waits for its file stays a box, and is asked for again. */
+/* What waits for its file or its build stays a box, and is asked for again. */
 static bool serve_nodes(struct launches *l, struct flight *f)
 {
     const struct proxy_requests *r = &l->requests;
     uint64_t count = 0;
     for (uint32_t i = 0; i < r->node_count; i++) {
-        if (!frame_budget_has_time(&f->budget) && count > 0)
+        bool ready;
+        if (!frame_budget_has_time(&f->budget) && count + l->world->meshes.waiting.count > 0)
             break;
-        if (!world_fetch(l->world, r->nodes[i]))
+        if (!world_fetch(l->world, r->nodes[i], &ready))
+            return false;
+        if (!ready)
             continue;
         if (!proxies_take_node(l->proxies, r, i) || !world_resolve(l->world, r->nodes[i]))
             return false;
@@ -142,14 +145,15 @@ static bool serve_nodes(struct launches *l, struct flight *f)
     }
     f->resolved += count;
     f->most_resolved = count > f->most_resolved ? count : f->most_resolved;
-    return world_build_meshes(l->world, l->count + 1);
+    return world_build_meshes(l->world, l->count + 1) && world_begin_builds(l->world);
 }
 
 static bool serve(struct launches *l, struct flight *f)
 {
     return !l->proxies ||
-           (look_at_pictures(l, 0) && proxies_list(l->proxies, l->constants.eye, &l->requests) &&
-            serve_surfaces(l, f) && serve_nodes(l, f));
+           (look_at_pictures(l, 0) && world_continue_builds(l->world, l->count + 1, false) &&
+            proxies_list(l->proxies, l->constants.eye, &l->requests) && serve_surfaces(l, f) &&
+            serve_nodes(l, f));
 }
 
 /* The list of all pixels is the first; launches write the second. */
@@ -186,7 +190,7 @@ static bool fly(struct launches *l, struct flight *f)
         if (l->options->sequence || l->options->contact_sheet)
             memset(l->film->sums.mapped, 0, l->film->sums.size);
     }
-    return look_at_pictures(l, UINT64_MAX);
+    return look_at_pictures(l, UINT64_MAX) && world_continue_builds(l->world, l->count + 1, true);
 }
 
 static int compare(const void *a, const void *b)

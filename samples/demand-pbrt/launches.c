@@ -236,11 +236,12 @@ static void count_memory(struct launches *l)
     if (sluiceGetDemandStatistics(l->loader, &statistics) != SLUICE_SUCCESS)
         return;
     const struct world *w = l->world;
-    const uint64_t size =
-        statistics.deviceMemorySize + statistics.hostVisibleMemorySize + w->structures.arena.size +
-        w->structures.scratch.size + w->meshes.data.size + w->instances.size + w->tree.nodes.size +
-        w->tree.instances.buffer.size + w->place_table.buffer.size + w->meshes.table.buffer.size +
-        l->surfaces->table.buffer.size + l->surfaces->ops.buffer.size;
+    const uint64_t size = statistics.deviceMemorySize + statistics.hostVisibleMemorySize +
+                          w->structures.arena.size + w->structures.scratch.size +
+                          w->meshes.batch.scratch.size + w->meshes.data.size + w->instances.size +
+                          w->tree.nodes.size + w->tree.instances.buffer.size +
+                          w->place_table.buffer.size + w->meshes.table.buffer.size +
+                          l->surfaces->table.buffer.size + l->surfaces->ops.buffer.size;
     if (size > l->peak_device)
         l->peak_device = size;
 }

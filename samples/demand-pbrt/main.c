@@ -84,6 +84,7 @@ static bool create_gpu(struct renderer *r)
         .validation = r->options.validation,
         .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED},
         .ray_tracing = r->options.path != PATH_COMPUTE,
+        .build_queue = r->options.path != PATH_COMPUTE,
         .buffer_addresses = true};
     if (!gpu_create(&request, &r->gpu, &r->unsupported))
         return false;

@@ -6,7 +6,6 @@
 
 #include "../../tools/common/clock.h"
 #include "../../tools/common/text.h"
-#include "compaction.h"
 
 #define AHEAD (MESH_READER_ROOM / 2) /* meshes that are read while another is built */
 
@@ -70,10 +69,20 @@ bool meshes_create(const struct gpu *gpu, const struct scene *scene, uint32_t th
     return done && m->reader && table_grow(gpu, &m->table, m->count + 1u);
 }
 
+static void finish_list(struct mesh_list *list)
+{
+    free(list->items);
+    free(list->builds);
+    *list = (struct mesh_list){0};
+}
+
 void meshes_finish(const struct gpu *gpu, struct structures *structures, struct meshes *m)
 {
     for (uint32_t i = 0; i < m->count; i++)
         structures_give(gpu, structures, &m->items[i].structure);
+    build_batch_finish(gpu, structures, &m->batch);
+    finish_list(&m->waiting);
+    finish_list(&m->building);
     arena_finish(gpu, &m->data);
     if (gpu->device)
         table_finish(gpu, &m->table);
@@ -205,45 +214,95 @@ static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct m
     return done;
 }
 
-bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct structures *structures,
-                  struct meshes *m, const uint32_t *which, uint32_t count, uint32_t launch)
+static bool reserve(struct mesh_list *list)
 {
-    struct structure_build *builds = calloc(count + 1u, sizeof *builds);
-    uint32_t build_count = 0, asked = 0;
-    if (!builds) {
+    if (list->count < list->room)
+        return true;
+    const uint32_t room = list->room ? 2 * list->room : 32;
+    uint32_t *items = realloc(list->items, room * sizeof *items);
+    list->items = items ? items : list->items;
+    struct structure_build *builds = realloc(list->builds, room * sizeof *builds);
+    list->builds = builds ? builds : list->builds;
+    if (!items || !builds) {
         fprintf(stderr, "out of memory\n");
         return false;
     }
-    for (uint32_t i = 0; i < count; i++) {
-        while (asked < count && asked < i + AHEAD &&
-               mesh_reader_ask(m->reader, m->items[which[asked]].shape))
-            asked++;
-        build_count += read_mesh(gpu, scene, m, which[i], &builds[build_count]);
+    list->room = room;
+    return true;
+}
+
+bool meshes_prepare(const struct gpu *gpu, const struct scene *scene, struct meshes *m,
+                    uint32_t index)
+{
+    struct mesh_list *list = &m->waiting;
+    if (!reserve(list))
+        return false;
+    if (read_mesh(gpu, scene, m, index, &list->builds[list->build_count])) {
+        list->build_count += gpu->ray_tracing;
+        list->items[list->count++] = index;
+        m->items[index].state = MESH_BUILDING;
     }
-    double start = clock_seconds();
-    bool done = structures_build(gpu, structures, builds, build_count) &&
-                (m->uncompacted || structures_compact(gpu, structures, builds, build_count));
+    return true;
+}
+
+bool meshes_begin(const struct gpu *gpu, struct structures *structures, struct meshes *m)
+{
+    if (m->building.count > 0 || m->waiting.count == 0)
+        return true;
+    const struct mesh_list list = m->building;
+    m->building = m->waiting;
+    m->waiting = list;
+    return build_batch_begin(gpu, structures, &m->batch, m->building.builds,
+                             m->building.build_count);
+}
+
+bool meshes_continue(const struct gpu *gpu, struct structures *structures, struct meshes *m,
+                     uint32_t launch, bool waits)
+{
+    const double start = clock_seconds();
+    if (m->building.count == 0)
+        return true;
+    const bool done = build_batch_continue(gpu, structures, &m->batch, waits);
     m->build_seconds += clock_seconds() - start;
-    free(builds);
-    for (uint32_t i = 0; i < count; i++) {
-        struct mesh *mesh = &m->items[which[i]];
-        if (mesh->state == MESH_FAILED)
-            continue;
+    if (!done || m->batch.stage != BATCH_IDLE)
+        return done;
+    for (uint32_t i = 0; i < m->building.count; i++) {
+        struct mesh *mesh = &m->items[m->building.items[i]];
         mesh->state = MESH_BUILT;
         mesh->built_at = mesh->used_at = launch;
         m->size += meshes_size_of(mesh);
         m->built_count++;
     }
-    return done;
+    m->building.count = m->building.build_count = 0;
+    return true;
 }
 
-bool meshes_fetch(struct meshes *m, uint32_t index)
+bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct structures *structures,
+                  struct meshes *m, const uint32_t *which, uint32_t count, uint32_t launch)
+{
+    uint32_t asked = 0;
+    bool done = true;
+    for (uint32_t i = 0; i < count && done; i++) {
+        while (asked < count && asked < i + AHEAD &&
+               mesh_reader_ask(m->reader, m->items[which[asked]].shape))
+            asked++;
+        done = m->items[which[i]].state != MESH_ABSENT || meshes_prepare(gpu, scene, m, which[i]);
+    }
+    return done && meshes_continue(gpu, structures, m, launch, true) &&
+           meshes_begin(gpu, structures, m) && meshes_continue(gpu, structures, m, launch, true);
+}
+
+enum mesh_fetch meshes_fetch(struct meshes *m, uint32_t index)
 {
     const struct mesh *mesh = &m->items[index];
-    if (mesh->state != MESH_ABSENT || mesh_reader_is_ready(m->reader, mesh->shape))
-        return true;
+    if (mesh->state == MESH_BUILDING)
+        return MESH_IS_BUILT_LATER;
+    if (mesh->state != MESH_ABSENT)
+        return MESH_IS_THERE;
+    if (mesh_reader_is_ready(m->reader, mesh->shape))
+        return MESH_IS_READ;
     (void)mesh_reader_ask(m->reader, mesh->shape);
-    return false;
+    return MESH_IS_READ_LATER;
 }
 
 uint64_t meshes_size_of(const struct mesh *mesh)

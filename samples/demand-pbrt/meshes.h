@@ -2,6 +2,7 @@
 #ifndef DEMAND_PBRT_MESHES_H
 #define DEMAND_PBRT_MESHES_H
 
+#include "build_batch.h"
 #include "mesh_reader.h"
 #include "mesh_tree.h"
 #include "pbrt_shared.h"
@@ -9,7 +10,7 @@
 #include "structures.h"
 #include "table.h"
 
-enum mesh_state { MESH_ABSENT, MESH_BUILT, MESH_FAILED };
+enum mesh_state { MESH_ABSENT, MESH_BUILDING, MESH_BUILT, MESH_FAILED };
 
 struct mesh {
     enum mesh_state state;
@@ -24,12 +25,21 @@ struct mesh {
     struct mesh_tree tree; ///< of the compute path
 };
 
+/** Meshes and their builds: a mesh that the compute path traces has none. */
+struct mesh_list {
+    uint32_t *items;                ///< owned
+    struct structure_build *builds; ///< owned
+    uint32_t count, room, build_count;
+};
+
 /** Zeroed is empty. */
 struct meshes {
     struct mesh *items; ///< owned
     uint32_t count;
     uint32_t *of_shape; ///< owned; mesh of each shape
     struct mesh_reader *reader;
+    struct mesh_list waiting, building; ///< MESH_BUILDING: read, and in the batch
+    struct build_batch batch;
     struct arena data;
     uint64_t size;      ///< bytes of all meshes on the device
     struct table table; ///< struct PbrtMesh by mesh
@@ -53,8 +63,19 @@ void meshes_finish(const struct gpu *gpu, struct structures *structures, struct 
  */
 bool meshes_build(const struct gpu *gpu, const struct scene *scene, struct structures *structures,
                   struct meshes *meshes, const uint32_t *which, uint32_t count, uint32_t launch);
-/** Whether a mesh need not be read from its file any more; if it must, that begins. */
-bool meshes_fetch(struct meshes *meshes, uint32_t index);
+/** Reads an absent mesh, which waits then for meshes_begin. */
+bool meshes_prepare(const struct gpu *gpu, const struct scene *scene, struct meshes *meshes,
+                    uint32_t index);
+/** Begins to build what waits, unless a batch is under way; meshes_continue ends that. */
+bool meshes_begin(const struct gpu *gpu, struct structures *structures, struct meshes *meshes);
+/** Meshes of a batch that has ended are built, for the launch with that number. `waits` until it
+ *  has. No launch is under way. Says on stderr why it failed. */
+bool meshes_continue(const struct gpu *gpu, struct structures *structures, struct meshes *meshes,
+                     uint32_t launch, bool waits);
+
+enum mesh_fetch { MESH_IS_READ_LATER, MESH_IS_READ, MESH_IS_BUILT_LATER, MESH_IS_THERE };
+/** How far a mesh is; if it must be read, that begins. */
+enum mesh_fetch meshes_fetch(struct meshes *meshes, uint32_t index);
 /** Device memory of a mesh. */
 uint64_t meshes_size_of(const struct mesh *mesh);
 /** Makes a mesh absent. No launch is under way. */

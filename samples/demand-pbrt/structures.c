@@ -11,11 +11,11 @@ static PFN_vkVoidFunction function(const struct gpu *gpu, const char *name)
     return vkGetDeviceProcAddr(gpu->device, name);
 }
 
-void structures_create(const struct gpu *gpu, struct structures *s)
+bool structures_create(const struct gpu *gpu, struct structures *s)
 {
     *s = (struct structures){0};
     if (!gpu->ray_tracing)
-        return;
+        return true;
     VkPhysicalDeviceAccelerationStructurePropertiesKHR properties = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR};
     VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
@@ -36,10 +36,16 @@ void structures_create(const struct gpu *gpu, struct structures *s)
         .record = (PFN_vkCmdBuildAccelerationStructuresKHR)function(
             gpu, "vkCmdBuildAccelerationStructuresKHR"),
     };
+    const VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                            .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+    const VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
+                                        .pNext = &type};
+    return gpu_check(vkCreateSemaphore(gpu->device, &info, NULL, &s->ready), "vkCreateSemaphore");
 }
 
 void structures_finish(const struct gpu *gpu, struct structures *s)
 {
+    vkDestroySemaphore(gpu->device, s->ready, NULL);
     gpu_destroy_buffer(gpu, &s->scratch);
     arena_finish(gpu, &s->arena);
 }
@@ -113,23 +119,26 @@ static VkDeviceSize place_scratch(struct structure_build *builds, uint32_t count
     return most;
 }
 
-static bool reserve_scratch(const struct gpu *gpu, struct structures *s, VkDeviceSize size)
+static bool reserve_scratch(const struct gpu *gpu, const struct structures *s, VkDeviceSize size,
+                            struct gpu_buffer *scratch)
 {
     size += s->scratch_alignment;
-    if (s->scratch.size >= size)
+    if (scratch->size >= size)
         return true;
-    gpu_destroy_buffer(gpu, &s->scratch);
+    gpu_destroy_buffer(gpu, scratch);
     return gpu_create_device_buffer(
         gpu, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
-        &s->scratch);
+        scratch);
 }
 
-struct batch {
-    const struct structures *structures;
-    const struct structure_build *builds;
-    uint32_t count;
-    VkDeviceAddress scratch;
-};
+bool structures_prepare(const struct gpu *gpu, struct structures *s, struct structure_build *builds,
+                        uint32_t count, struct gpu_buffer *scratch)
+{
+    bool done = true;
+    for (uint32_t i = 0; i < count && done; i++)
+        done = create_target(gpu, s, &builds[i]);
+    return done && reserve_scratch(gpu, s, place_scratch(builds, count), scratch);
+}
 
 static void wait_for_builds(VkCommandBuffer commands)
 {
@@ -141,40 +150,51 @@ static void wait_for_builds(VkCommandBuffer commands)
                     VK_ACCESS_ACCELERATION_STRUCTURE_READ_BIT_KHR);
 }
 
-static void record_batch(void *user_data, VkCommandBuffer commands)
+void structures_record(const struct gpu *gpu, const struct structures *s,
+                       const struct structure_build *builds, uint32_t count,
+                       const struct gpu_buffer *scratch, VkCommandBuffer commands)
 {
-    const struct batch *batch = user_data;
-    for (uint32_t i = 0; i < batch->count; i++) {
-        const struct structure_build *build = &batch->builds[i];
+    const VkDeviceSize mask = s->scratch_alignment - 1;
+    const VkDeviceAddress first = (ray_buffer_address(gpu, scratch->buffer) + mask) & ~mask;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct structure_build *build = &builds[i];
         if (build->scratch_at == 0 && i > 0)
             wait_for_builds(commands);
         VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
         const VkAccelerationStructureBuildRangeInfoKHR range = {.primitiveCount =
                                                                     build->primitive_count};
         const VkAccelerationStructureBuildRangeInfoKHR *ranges = &range;
-        info.scratchData.deviceAddress = batch->scratch + build->scratch_at;
-        batch->structures->record(commands, 1, &info, &ranges);
+        info.scratchData.deviceAddress = first + build->scratch_at;
+        s->record(commands, 1, &info, &ranges);
     }
     gpu_barrier(commands, VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
                 VK_ACCESS_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                 VK_ACCESS_ACCELERATION_STRUCTURE_READ_BIT_KHR);
 }
 
+struct batch {
+    const struct gpu *gpu;
+    const struct structures *structures;
+    const struct structure_build *builds;
+    uint32_t count;
+};
+
+static void record_batch(void *user_data, VkCommandBuffer commands)
+{
+    const struct batch *batch = user_data;
+    structures_record(batch->gpu, batch->structures, batch->builds, batch->count,
+                      &batch->structures->scratch, commands);
+}
+
 bool structures_build(const struct gpu *gpu, struct structures *s, struct structure_build *builds,
                       uint32_t count)
 {
-    bool done = true;
-    if (!gpu->ray_tracing)
+    struct batch batch = {gpu, s, builds, count};
+    if (!gpu->ray_tracing || count == 0)
         return true;
-    for (uint32_t i = 0; i < count && done; i++)
-        done = create_target(gpu, s, &builds[i]);
-    done = done && reserve_scratch(gpu, s, place_scratch(builds, count));
-    if (done && count > 0) {
-        const VkDeviceSize mask = s->scratch_alignment - 1;
-        struct batch batch = {s, builds, count,
-                              (ray_buffer_address(gpu, s->scratch.buffer) + mask) & ~mask};
-        done = one_time_run(gpu, record_batch, &batch);
-    }
+    /* What another queue has built is read here, and by launches behind this. */
+    const bool done = structures_prepare(gpu, s, builds, count, &s->scratch) &&
+                      one_time_run_after(gpu, s->ready, s->ready_value, record_batch, &batch);
     for (uint32_t i = 0; i < count && !done; i++)
         structures_give(gpu, s, builds[i].target);
     return done;

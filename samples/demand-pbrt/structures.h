@@ -1,4 +1,4 @@
-/** Acceleration structures: built in batches, with the host waiting. Where rays are traced by a
+/** Acceleration structures: built in batches. Where rays are traced by a
  *  compute shader there are none, and these functions do nothing. */
 #ifndef DEMAND_PBRT_STRUCTURES_H
 #define DEMAND_PBRT_STRUCTURES_H
@@ -17,6 +17,8 @@ struct structures {
     struct arena arena;
     struct gpu_buffer scratch;
     VkDeviceSize scratch_alignment;
+    VkSemaphore ready;    ///< build_batch.c signals it
+    uint64_t ready_value; ///< after the last commands that have ended
     PFN_vkCreateAccelerationStructureKHR create;
     PFN_vkDestroyAccelerationStructureKHR destroy;
     PFN_vkGetAccelerationStructureBuildSizesKHR get_sizes;
@@ -28,20 +30,28 @@ struct structure_build {
     VkAccelerationStructureTypeKHR type;
     VkAccelerationStructureGeometryKHR geometry;
     uint32_t primitive_count;
-    bool compact;              ///< structures_compact follows
+    bool compact;              ///< build_batch.c copies it; all of a batch or none
     struct structure *target;  ///< zeroed; filled
     VkDeviceSize scratch_size; ///< private
     VkDeviceSize scratch_at;   ///< private
 };
 
-void structures_create(const struct gpu *gpu, struct structures *structures);
+/** Says on stderr why it failed. */
+bool structures_create(const struct gpu *gpu, struct structures *structures);
 void structures_finish(const struct gpu *gpu, struct structures *structures);
 
 /** Makes a structure without contents. Says on stderr why it failed. */
 bool structures_take(const struct gpu *gpu, struct structures *structures,
                      VkAccelerationStructureTypeKHR type, VkDeviceSize size,
                      struct structure *structure);
-/** Builds them all, or none. Says on stderr why it failed. */
+/** Makes targets, and room for all builds in `scratch`. Says on stderr why it failed. */
+bool structures_prepare(const struct gpu *gpu, struct structures *structures,
+                        struct structure_build *builds, uint32_t count, struct gpu_buffer *scratch);
+/** Commands that build what was prepared; what follows them reads it. */
+void structures_record(const struct gpu *gpu, const struct structures *structures,
+                       const struct structure_build *builds, uint32_t count,
+                       const struct gpu_buffer *scratch, VkCommandBuffer commands);
+/** Builds them all, or none, while the host waits. Says on stderr why it failed. */
 bool structures_build(const struct gpu *gpu, struct structures *structures,
                       struct structure_build *builds, uint32_t count);
 /** No launch that uses it is under way. A zeroed one is fine. */

@@ -56,6 +56,7 @@ bool summary_print(const struct summary *s, bool json)
     const struct figure figures[] = {
         {"launches", "", l->count},
         {"ray_tracing_pipeline", "", l->gpu->ray_tracing},
+        {"build_queue", "", l->gpu->has_build_queue},
         {"launches_without_rays", "", l->idle_count},
         {"samples_complete", "per pixel", l->sample_count},
         {"pixels_missing", "", l->film->missing_count},

@@ -40,6 +40,18 @@ check() { # figure, condition on v
         complain "$name: $1 is $(value "$1"), but must satisfy: $2"
 }
 
+# Tails of many pictures in blocks, copied by several commands.
+validation=--validation
+status=0
+"$program" "$folder/set/scene.pbrt" --dim 96x54 --validation --file "$folder/silent.pfm" \
+    >"$folder/silent.log" 2>&1 || status=$?
+[ "$status" -eq 0 ] || {
+    validation=
+    grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/silent.log" || [ "$status" -eq 77 ] || {
+        complain "validation is not silent"
+        head -n 5 "$folder/silent.log" >&2
+    }
+}
 render fresh --threads 1
 check geometries_built 'v <= 41'
 check bytes_per_box 'v > 0 && v <= 76'
@@ -50,7 +62,7 @@ render uncompacted --uncompacted
 check geometry_bytes "v >= $compacted"
 render shapes --preload-shapes
 check shapes_entered 'v == 2001'
-render unbounded --fly 20 --threads 4
+render unbounded --fly 20 --threads 4 $validation
 check frames 'v == 20'
 check frame_boxes_resolved_most 'v > 20'
 # Clusters of clusters: no item of a frame adds more than four times the size of a cluster.
@@ -65,15 +77,6 @@ check frames 'v == 8'
 render bounded --fly 20 --frame-budget 0.01
 check frames 'v == 20'
 check frame_boxes_resolved_most 'v == 1'
-# Tails of many pictures in blocks, copied by several commands.
-status=0
-"$program" "$folder/set/scene.pbrt" --dim 96x54 --validation --file "$folder/silent.pfm" \
-    >"$folder/silent.log" 2>&1 || status=$?
-[ "$status" -eq 0 ] || grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/silent.log" || {
-    complain "validation is not silent"
-    head -n 5 "$folder/silent.log" >&2
-}
-
 for options in "--frame-budget 16" "--preload --preload-shapes" "--preload-shapes --budget 1M" "--fly-from 0/0/0/1/0/0" \
     "--camera 0/0/0" "--camera 1/2/3/1/2/3" "--camera 0/0/0/0/0/2/0/0/1" "--camera 0/0/0/1/0/nan" "--cluster-size 1"; do
     status=0

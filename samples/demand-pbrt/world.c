@@ -37,8 +37,8 @@ bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfa
                         .place_table.element = sizeof(struct PbrtPlace),
                         .used.element = sizeof(uint32_t),
                         .changed = true};
-    structures_create(gpu, &w->structures);
-    return (gpu->ray_tracing || top_tree_create(gpu, &w->tree)) &&
+    return structures_create(gpu, &w->structures) &&
+           (gpu->ray_tracing || top_tree_create(gpu, &w->tree)) &&
            meshes_create(gpu, scene, thread_count, &w->meshes) &&
            table_grow(gpu, &w->place_table, 1) && table_grow(gpu, &w->used, 1);
 }
@@ -194,14 +194,34 @@ static bool add_group(struct world *w, uint32_t instance, const SluicePbrtObject
     return add_box(w, (struct scene_node){instance, first | GROUP}, &box);
 }
 
+static bool fetch_mesh(struct world *w, uint32_t shape, bool *ready)
+{
+    const uint32_t mesh = w->meshes.of_shape[shape];
+    const enum mesh_fetch is = meshes_fetch(&w->meshes, mesh);
+    *ready = *ready && (is == MESH_IS_THERE || (is == MESH_IS_READ && w->budget > 0));
+    return is != MESH_IS_READ || w->budget > 0 ||
+           meshes_prepare(w->gpu, w->scene, &w->meshes, mesh);
+}
+
 /** An instance with a single part becomes that part. */
-static bool fetch_single(struct world *w, uint32_t instance)
+static bool fetch_single(struct world *w, uint32_t instance, bool *ready)
 {
     const SluicePbrtObject object = scene_object_of(w->scene, instance);
     const uint32_t first = next_shape(w, &object, object.firstShape, SLUICE_PBRT_NONE);
     return first == SLUICE_PBRT_NONE ||
            next_shape(w, &object, first + 1, SLUICE_PBRT_NONE) != SLUICE_PBRT_NONE ||
-           meshes_fetch(&w->meshes, w->meshes.of_shape[first]);
+           fetch_mesh(w, first, ready);
+}
+
+static bool fetch_group(struct world *w, struct scene_node node, bool *ready)
+{
+    const SluicePbrtObject object = scene_object_of(w->scene, node.instance);
+    const uint32_t first = node.shape & ~GROUP;
+    bool done = true;
+    for (uint32_t i = first; i != SLUICE_PBRT_NONE && done;
+         i = next_shape(w, &object, i + 1, first))
+        done = fetch_mesh(w, i, ready);
+    return done;
 }
 
 /** Boxes for the parts of an instance. A single part needs none. */
@@ -371,12 +391,31 @@ static bool build_within_budget(struct world *w, uint32_t count, uint32_t launch
     return world_evict(w);
 }
 
-bool world_fetch(struct world *w, struct scene_node node)
+bool world_fetch(struct world *w, struct scene_node node, bool *ready)
 {
-    const enum world_box kind = node_kind(node);
-    if (kind == BOX_FREE_SHAPE || kind == BOX_INSTANCE_SHAPE)
-        return meshes_fetch(&w->meshes, w->meshes.of_shape[node.shape]);
-    return kind != BOX_INSTANCE || fetch_single(w, node.instance);
+    *ready = true;
+    switch (node_kind(node)) {
+    case BOX_FREE_SHAPE:
+    case BOX_INSTANCE_SHAPE: return fetch_mesh(w, node.shape, ready);
+    case BOX_INSTANCE: return fetch_single(w, node.instance, ready);
+    case BOX_GROUP: return fetch_group(w, node, ready);
+    default: return true;
+    }
+}
+
+bool world_begin_builds(struct world *w)
+{
+    return meshes_begin(w->gpu, &w->structures, &w->meshes);
+}
+
+bool world_continue_builds(struct world *w, uint32_t launch, bool waits)
+{
+    bool done = meshes_continue(w->gpu, &w->structures, &w->meshes, launch, waits);
+    if (done && waits)
+        done = world_begin_builds(w) &&
+               meshes_continue(w->gpu, &w->structures, &w->meshes, launch, true);
+    w->peak_size = w->meshes.size > w->peak_size ? w->meshes.size : w->peak_size;
+    return done;
 }
 
 /* The mesh that the last launch built may be one too many. It stayed for that launch. */

@@ -73,8 +73,17 @@ bool world_begin(struct world *world);
 bool world_resolve(struct world *world, struct scene_node node);
 /** Boxes for shapes of meshes that leave: they are asked for again when a ray enters them. */
 bool world_evict(struct world *world);
-/** Whether a node can be resolved without waiting for a file; if not, that is read from now on. */
-bool world_fetch(struct world *world, struct scene_node node);
+/** Goes on with builds beside the launches, for the launch with that number; `waits` until there
+ *  are none. No launch is under way. */
+bool world_continue_builds(struct world *world, uint32_t launch, bool waits);
+/**
+ * Whether a node can be resolved without waiting, neither for files nor for builds. If not, its
+ * meshes are read from now on, or, where they are read, are built by world_begin_builds. Without a
+ * --budget alone: with one, what is resolved is built at once. Says on stderr why it failed.
+ */
+bool world_fetch(struct world *world, struct scene_node node, bool *ready);
+/** Builds beside the next launches what was fetched. */
+bool world_begin_builds(struct world *world);
 /** Builds meshes of what was resolved, for the launch with that number. No launch is under way. */
 bool world_build_meshes(struct world *world, uint32_t launch);
 /** Builds what has changed, for the launch with that number. No launch is under way. */
