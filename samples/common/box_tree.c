@@ -19,7 +19,7 @@ struct range {
 struct build {
     struct box_tree *tree;
     struct item *items;
-    uint32_t leaf_size;
+    uint32_t leaf_size, depth;
 };
 
 /** A plane across the axis along which the middles of items are spread most. */
@@ -179,7 +179,7 @@ static uint32_t divide(const struct build *build, const struct split *split,
                        const struct range *range)
 {
     static int (*const compare[3])(const void *, const void *) = {compare_x, compare_y, compare_z};
-    const uint64_t most = (uint64_t)build->leaf_size << (BOX_TREE_MOST_DEPTH - 1 - range->depth);
+    const uint64_t most = (uint64_t)build->leaf_size << (build->depth - 1 - range->depth);
     struct item *items = build->items + range->first;
     int bin = 0;
     if (split->scale > 0.0f) {
@@ -223,10 +223,16 @@ static void build_nodes(const struct build *build, uint32_t count)
 bool box_tree_build(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
                     struct box_tree *tree)
 {
+    return box_tree_build_within(boxes, count, leaf_size, BOX_TREE_MOST_DEPTH, tree);
+}
+
+bool box_tree_build_within(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
+                           uint32_t depth, struct box_tree *tree)
+{
     *tree = (struct box_tree){0};
     if (count == 0)
         return true;
-    struct build build = {tree, malloc(count * sizeof *build.items), leaf_size};
+    struct build build = {tree, malloc(count * sizeof *build.items), leaf_size, depth};
     tree->nodes = malloc((2 * (size_t)count - 1) * sizeof *tree->nodes);
     tree->order = malloc(count * sizeof *tree->order);
     const bool done = build.items && tree->nodes && tree->order;

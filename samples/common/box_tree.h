@@ -38,6 +38,10 @@ struct box_tree {
  */
 bool box_tree_build(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
                     struct box_tree *tree);
+/** The same with leaves at `depth` at most, 1 to BOX_TREE_MOST_DEPTH. `count` is at most
+ *  `leaf_size` << `depth`. */
+bool box_tree_build_within(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
+                           uint32_t depth, struct box_tree *tree);
 void box_tree_finish(struct box_tree *tree);
 
 struct box_tree_box box_tree_empty_box(void);

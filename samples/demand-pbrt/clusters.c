@@ -2,11 +2,16 @@
 
 #include <stdlib.h>
 
+/* Levels that a tree may have more than one of halves. */
+#define SPARE_DEPTH 2u
+
 bool clusters_create(const struct box_tree_box *boxes, const uint32_t *keys, uint32_t count,
                      uint32_t size, struct clusters *c)
 {
-    *c = (struct clusters){.size = size};
-    if (!box_tree_build(boxes, count, size, &c->tree))
+    *c = (struct clusters){.size = size, .depth = SPARE_DEPTH};
+    while ((uint64_t)size << (c->depth - SPARE_DEPTH) < count)
+        c->depth++;
+    if (!box_tree_build_within(boxes, count, size, c->depth, &c->tree))
         return false;
     if (count == 0)
         return true;
@@ -23,6 +28,15 @@ void clusters_finish(struct clusters *c)
 {
     box_tree_finish(&c->tree);
     *c = (struct clusters){0};
+}
+
+uint32_t *clusters_list_nodes(const struct clusters *c, uint32_t key_count)
+{
+    uint32_t *nodes = calloc(key_count + 1u, sizeof *nodes);
+    for (uint32_t i = 0; nodes && i < c->tree.node_count; i++)
+        for (uint32_t k = 0; k < c->tree.nodes[i].count; k++)
+            nodes[c->tree.order[c->tree.nodes[i].first + k]] = 1 + i;
+    return nodes;
 }
 
 void clusters_open(const struct clusters *c, uint32_t node, struct cluster_step *step)

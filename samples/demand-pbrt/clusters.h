@@ -12,12 +12,17 @@
 struct clusters {
     struct box_tree tree; ///< leaves are clusters; `order` has the keys of what is in them
     uint32_t size;        ///< most that is in a cluster
+    uint32_t depth;       ///< of the tree, at most
 };
 
 /** Where `keys` has a name for each box. `keys` is copied. False when out of memory. */
 bool clusters_create(const struct box_tree_box *boxes, const uint32_t *keys, uint32_t count,
                      uint32_t size, struct clusters *clusters);
 void clusters_finish(struct clusters *clusters);
+
+/** For each key 1 + the node of its cluster, and 0 for those in none. `key_count` is beyond all
+ * keys. The caller frees it. NULL when out of memory. */
+uint32_t *clusters_list_nodes(const struct clusters *clusters, uint32_t key_count);
 
 /** What a node becomes: keys, if it is a cluster, or else nodes below it. */
 struct cluster_step {
