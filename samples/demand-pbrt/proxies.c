@@ -14,7 +14,7 @@
  * transform mixes the axes, so errors follow the largest coordinate. */
 #define ROUNDING 1.0e-5f
 #define RANK 0u /* before tiles */
-#define RANGE_COUNT 64u
+#define RANGE_COUNT 512u
 #define MOST_BOXES (PBRT_PAGE_CAPACITY / 2)
 
 /* Boxes that a frame of a flight looks at, the nearest ones: to sort 40 000 takes longer than a
@@ -64,7 +64,7 @@ void proxies_finish(const struct gpu *gpu, struct structures *structures, struct
 {
     structures_give(gpu, structures, &p->structure);
     gpu_destroy_buffer(gpu, &p->buffer);
-    free(p->copy);
+    free(p->moved);
     sluiceDestroyProxySet(p->boxes);
     sluiceDestroyProxySet(p->surfaces);
     free(p->nodes);
@@ -101,6 +101,19 @@ static bool reserve(void **items, uint32_t *room, uint32_t count, size_t size)
     return true;
 }
 
+static bool note_move(struct proxies *p, uint32_t index, const SluiceProxyBox *box)
+{
+    if (!p->notes_moves)
+        return true;
+    if (!reserve((void **)&p->moved, &p->moved_room, p->moved_count + 1, sizeof *p->moved))
+        return false;
+    p->moved[p->moved_count] = (struct moved_box){.index = index, .is_there = box};
+    if (box)
+        p->moved[p->moved_count].box = *box;
+    p->moved_count++;
+    return true;
+}
+
 bool proxies_add(struct proxies *p, struct scene_node node, const SluicePbrtBounds *box)
 {
     SluiceProxyBox wide;
@@ -120,7 +133,7 @@ bool proxies_add(struct proxies *p, struct scene_node node, const SluicePbrtBoun
     p->nodes[index] = node;
     p->added_count++;
     p->changed = true;
-    return true;
+    return note_move(p, index, &wide);
 }
 
 /** Lists what is requested in a set, `most` at most. */
@@ -150,7 +163,8 @@ static bool take_nodes(struct proxies *p, const struct proxy_order *order, struc
         return false;
     for (uint32_t i = 0; i < count; i++) {
         r->nodes[i] = p->nodes[(uint32_t)p->ids[i]];
-        if (!check(sluiceRemoveProxy(p->boxes, p->ids[i]), "a box"))
+        if (!check(sluiceRemoveProxy(p->boxes, p->ids[i]), "a box") ||
+            !note_move(p, (uint32_t)p->ids[i], NULL))
             return false;
     }
     r->node_count = count;
@@ -198,7 +212,15 @@ bool proxies_list(struct proxies *p, const float eye[3], struct proxy_requests *
 bool proxies_take_node(struct proxies *p, const struct proxy_requests *r, uint32_t number)
 {
     p->changed = true;
-    return check(sluiceRemoveProxy(p->boxes, r->ids[number]), "a box");
+    return check(sluiceRemoveProxy(p->boxes, r->ids[number]), "a box") &&
+           note_move(p, (uint32_t)r->ids[number], NULL);
+}
+
+void proxies_forget_moves(struct proxies *p)
+{
+    free(p->moved);
+    p->moved = NULL;
+    p->moved_count = p->moved_room = 0;
 }
 
 void proxy_requests_finish(struct proxy_requests *r)
@@ -217,22 +239,7 @@ static bool reserve_boxes(const struct gpu *gpu, struct proxies *p)
         return true;
     gpu_destroy_buffer(gpu, &p->buffer);
     p->version = 0;
-    if (!gpu_create_buffer(gpu, size + size / 16 + 1024, structures_input_usage(gpu), &p->buffer))
-        return false;
-    if (gpu->ray_tracing)
-        return true;
-    free(p->copy);
-    p->copy = malloc(p->buffer.size);
-    if (!p->copy)
-        fprintf(stderr, "out of memory\n");
-    return p->copy;
-}
-
-static void copy_ranges(struct proxies *p, const SluiceProxyRange *ranges, uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++)
-        memcpy((SluiceProxyBox *)p->buffer.mapped + ranges[i].first, p->copy + ranges[i].first,
-               ranges[i].count * sizeof *p->copy);
+    return gpu_create_buffer(gpu, size + size / 16 + 1024, structures_input_usage(gpu), &p->buffer);
 }
 
 /** Brings the buffer up to date; it grows with the largest index. */
@@ -246,20 +253,16 @@ static bool write_boxes(const struct gpu *gpu, struct proxies *p)
     const SluiceProxyBoxWrite write = {.structSize = sizeof write,
                                        .capacity =
                                            (uint32_t)(p->buffer.size / sizeof(SluiceProxyBox)),
-                                       .pBoxes = p->copy ? p->copy : p->buffer.mapped,
+                                       .pBoxes = p->buffer.mapped,
                                        .rangeCapacity = RANGE_COUNT,
                                        .pRanges = ranges};
-    if (!check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, &range_count), "boxes"))
-        return false;
-    if (p->copy)
-        copy_ranges(p, ranges, range_count);
-    return true;
+    return check(sluiceWriteProxyBoxes(p->boxes, &write, &p->version, &range_count), "boxes");
 }
 
 double proxies_memory(const struct proxies *p)
 {
     return (double)get_info(p->boxes).hostMemorySize + (double)p->buffer.size +
-           (p->copy ? (double)p->buffer.size : 0.0) + (double)p->node_room * sizeof *p->nodes +
+           (double)p->moved_room * sizeof *p->moved + (double)p->node_room * sizeof *p->nodes +
            (double)p->structure.storage.size;
 }
 

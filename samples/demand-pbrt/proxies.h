@@ -17,6 +17,13 @@ struct proxy_requests {
     uint32_t id_room;
 };
 
+/** A box that came or left. */
+struct moved_box {
+    uint32_t index;
+    bool is_there;
+    SluiceProxyBox box;
+};
+
 /** Zeroed is empty. */
 struct proxies {
     SluiceDemandLoader *loader;
@@ -28,11 +35,13 @@ struct proxies {
     SluiceProxyId *ids; ///< owned; room for requested ones
     uint32_t id_room;
     struct gpu_buffer buffer; ///< of boxes, 24 bytes each
-    SluiceProxyBox *copy;     ///< owned; of the buffer, for the compute path's tree
     uint32_t box_count;       ///< of the buffer
     uint64_t version;         ///< of the buffer
     struct structure structure;
-    bool changed;         ///< since the structure was built
+    bool changed;            ///< since the structure was built
+    bool notes_moves;        ///< for the compute path's tree, which forgets them
+    struct moved_box *moved; ///< owned
+    uint32_t moved_count, moved_room;
     uint64_t added_count; ///< boxes since the beginning
     uint32_t most_count;  ///< boxes at a time
     double bytes_per_box; ///< on host and device when they were most, without their structure
@@ -65,6 +74,8 @@ bool proxies_list(struct proxies *proxies, const float eye[3], struct proxy_requ
 /** Removes the box of a listed node: the number is that in the list. */
 bool proxies_take_node(struct proxies *proxies, const struct proxy_requests *requests,
                        uint32_t number);
+/** Afterwards no box has moved. */
+void proxies_forget_moves(struct proxies *proxies);
 void proxy_requests_finish(struct proxy_requests *requests);
 
 /** Builds the structure of the boxes if they have changed. Without boxes there is none. */

@@ -88,6 +88,7 @@ bool summary_print(const struct summary *s, bool json)
         {"read_seconds", "s", w->meshes.read_seconds},
         {"build_seconds", "s", w->meshes.build_seconds},
         {"top_level_seconds", "s", w->top_seconds},
+        {"tree_items_built", "", (double)w->tree.tree.built_count},
         {"resolve_per_1000", "ms", resolve},
         {"trace_seconds", "s", l->trace_seconds},
         {"complete_seconds", "s", s->complete_seconds},

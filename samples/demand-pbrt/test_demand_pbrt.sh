@@ -279,7 +279,8 @@ equals leaves-compute
 check materials_evicted 'v > 0'
 scene wood-compute "$data/made/instances/wood.pbrt" --path compute $validation
 check shapes_entered 'v < 1100'
-render wood-compute-coarse "$data/made/instances/wood.pbrt" --path compute --proxy-granularity coarse
+render wood-compute-coarse "$data/made/instances/wood.pbrt" --path compute --proxy-granularity coarse \
+    --cluster-size 16 --fly 3
 succeeds
 equals wood-compute
 

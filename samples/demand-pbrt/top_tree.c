@@ -1,8 +1,6 @@
 #include "top_tree.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "../common/ray_table.h"
@@ -10,17 +8,11 @@
 
 #define NODE_USAGE (VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT)
 
-/* What the tree is built of. */
-struct items {
-    struct box_tree_box *boxes; ///< owned
-    uint32_t *numbers;          ///< owned; what shaders are told
-    uint32_t count;
-};
-
-bool top_tree_create(const struct gpu *gpu, struct top_tree *t)
+bool top_tree_create(const struct gpu *gpu, const struct clusters *clusters, struct top_tree *t)
 {
     *t = (struct top_tree){.instances.element = sizeof(struct PbrtInstance)};
-    return gpu_create_buffer(gpu, 4 * sizeof(uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+    return world_tree_create(clusters, PBRT_ITEM_BOX, &t->tree) &&
+           gpu_create_buffer(gpu, 4 * sizeof(uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                              &t->world) &&
            table_grow(gpu, &t->instances, 1);
 }
@@ -30,7 +22,7 @@ void top_tree_finish(const struct gpu *gpu, struct top_tree *t)
     gpu_destroy_buffer(gpu, &t->world);
     gpu_destroy_buffer(gpu, &t->nodes);
     table_finish(gpu, &t->instances);
-    free(t->boxes);
+    world_tree_finish(&t->tree);
     *t = (struct top_tree){0};
 }
 
@@ -53,106 +45,59 @@ static struct box_tree_box world_box(const float m[12], const struct box_tree_bo
     return world;
 }
 
-static bool reserve(struct top_tree *t, uint32_t count)
-{
-    if (count <= t->room)
-        return true;
-    const uint32_t room = count < 64 ? 64 : count + count / 2;
-    struct box_tree_box *grown = realloc(t->boxes, room * sizeof *grown);
-    if (!grown) {
-        fprintf(stderr, "out of memory\n");
-        return false;
-    }
-    t->boxes = grown;
-    for (uint32_t i = t->room; i < room; i++)
-        t->boxes[i] = box_tree_empty_box();
-    t->room = room;
-    return true;
-}
-
-bool top_tree_set(const struct gpu *gpu, struct top_tree *t, uint32_t index,
+bool top_tree_set(const struct gpu *gpu, struct top_tree *t, uint32_t index, uint32_t part,
                   const struct top_tree_place *place)
 {
     float inverse[12];
-    if (!reserve(t, index + 1) || !table_grow(gpu, &t->instances, index + 1))
+    if (!table_grow(gpu, &t->instances, index + 1))
         return false;
-    t->boxes[index] = box_tree_empty_box();
     if (!place || !transform_invert(place->to_world, inverse))
-        return true;
+        return world_tree_set(&t->tree, WORLD_TREE_PLACE, index, WORLD_TREE_NO_PART, NULL);
     struct PbrtInstance entry = {.nodes = {(uint32_t)place->nodes, (uint32_t)(place->nodes >> 32)},
                                  .flags = place->opaque ? PBRT_INSTANCE_OPAQUE : 0};
     memcpy(entry.toWorld, place->to_world, sizeof entry.toWorld);
     for (int r = 0; r < 3; r++)
         memcpy(entry.toObject + 3 * r, inverse + 4 * r, 3 * sizeof *inverse);
     *(struct PbrtInstance *)table_at(&t->instances, index) = entry;
-    t->boxes[index] = world_box(place->to_world, &place->box);
-    return true;
+    const struct box_tree_box box = world_box(place->to_world, &place->box);
+    return world_tree_set(&t->tree, WORLD_TREE_PLACE, index, part, &box);
 }
 
-static void add_item(struct items *items, const struct box_tree_box *box, uint32_t number)
+bool top_tree_set_box(struct top_tree *t, uint32_t index, uint32_t part, const SluiceProxyBox *box)
 {
-    items->boxes[items->count] = *box;
-    items->numbers[items->count++] = number;
+    struct box_tree_box copy;
+    if (!box)
+        return world_tree_set(&t->tree, WORLD_TREE_BOX, index, WORLD_TREE_NO_PART, NULL);
+    memcpy(copy.low, box->min, sizeof copy.low);
+    memcpy(copy.high, box->max, sizeof copy.high);
+    return world_tree_set(&t->tree, WORLD_TREE_BOX, index, part, &copy);
 }
 
-static bool gather(const struct top_tree *t, const SluiceProxyBox *boxes, uint32_t box_count,
-                   struct items *items)
+/** Nodes behind the end of the buffer are copied when that has grown. */
+static void copy_nodes(void *user_data, uint32_t first, uint32_t count)
 {
-    const size_t most = (size_t)t->instances.count + box_count;
-    items->boxes = malloc(most * sizeof *items->boxes);
-    items->numbers = malloc(most * sizeof *items->numbers);
-    if (!items->boxes || !items->numbers)
-        return false;
-    for (uint32_t i = 0; i < t->instances.count && i < t->room; i++)
-        if (t->boxes[i].low[0] <= t->boxes[i].high[0])
-            add_item(items, &t->boxes[i], i);
-    for (uint32_t i = 0; i < box_count; i++) {
-        struct box_tree_box box;
-        memcpy(box.low, boxes[i].min, sizeof box.low);
-        memcpy(box.high, boxes[i].max, sizeof box.high);
-        if (box.low[0] < box.high[0])
-            add_item(items, &box, i | PBRT_ITEM_BOX);
-    }
-    return true;
-}
-
-static bool write_nodes(const struct gpu *gpu, struct top_tree *t, const struct items *items,
-                        const struct box_tree *tree)
-{
-    const struct box_tree_node nothing = {.first = PBRT_NONE, .count = 1};
-    const uint32_t count = tree->node_count ? tree->node_count : 1;
-    const VkDeviceSize size = (VkDeviceSize)count * sizeof *tree->nodes;
-    if (t->nodes.size < size) {
-        gpu_destroy_buffer(gpu, &t->nodes);
-        if (!gpu_create_buffer(gpu, size + size / 2, NODE_USAGE, &t->nodes))
-            return false;
-        const uint64_t address = ray_buffer_address(gpu, t->nodes.buffer);
-        memcpy(t->world.mapped, &(uint32_t[2]){(uint32_t)address, (uint32_t)(address >> 32)},
-               2 * sizeof(uint32_t));
-    }
+    const struct top_tree *t = user_data;
     struct box_tree_node *nodes = t->nodes.mapped;
-    nodes[0] = nothing;
-    for (uint32_t i = 0; i < tree->node_count; i++) {
-        struct box_tree_node node = tree->nodes[i];
-        if (node.count > 0)
-            node.first = items->numbers[tree->order[node.first]];
-        nodes[i] = node;
-    }
+    if ((first + (VkDeviceSize)count) * sizeof *nodes <= t->nodes.size)
+        memcpy(nodes + first, t->tree.nodes + first, count * sizeof *nodes);
+}
+
+static bool grow_nodes(const struct gpu *gpu, struct top_tree *t)
+{
+    const VkDeviceSize size = (VkDeviceSize)t->tree.node_count * sizeof *t->tree.nodes;
+    if (t->nodes.size >= size)
+        return true;
+    gpu_destroy_buffer(gpu, &t->nodes);
+    if (!gpu_create_buffer(gpu, size + size / 2, NODE_USAGE, &t->nodes))
+        return false;
+    const uint64_t address = ray_buffer_address(gpu, t->nodes.buffer);
+    memcpy(t->world.mapped, &(uint32_t[2]){(uint32_t)address, (uint32_t)(address >> 32)},
+           2 * sizeof(uint32_t));
+    memcpy(t->nodes.mapped, t->tree.nodes, size);
     return true;
 }
 
-bool top_tree_build(const struct gpu *gpu, struct top_tree *t, const SluiceProxyBox *boxes,
-                    uint32_t box_count)
+bool top_tree_build(const struct gpu *gpu, struct top_tree *t)
 {
-    struct items items = {0};
-    struct box_tree tree = {0};
-    bool done =
-        gather(t, boxes, box_count, &items) && box_tree_build(items.boxes, items.count, 1, &tree);
-    if (!done)
-        fprintf(stderr, "out of memory\n");
-    done = done && write_nodes(gpu, t, &items, &tree);
-    box_tree_finish(&tree);
-    free(items.boxes);
-    free(items.numbers);
-    return done;
+    return world_tree_build(&t->tree, copy_nodes, t) && grow_nodes(gpu, t);
 }

@@ -26,6 +26,23 @@ static enum world_box node_kind(struct scene_node node)
     return node.shape & GROUP ? BOX_GROUP : BOX_INSTANCE_SHAPE;
 }
 
+/** Of the compute path. */
+static bool create_tree(struct world *w)
+{
+    const struct clusters *clusters = &w->scene->clusters;
+    if (w->proxies)
+        w->proxies->notes_moves = true;
+    if (clusters->size > 0) {
+        w->part_of =
+            clusters_list_nodes(clusters, w->scene->info.shapeCount + w->scene->info.instanceCount);
+        if (!w->part_of) {
+            fprintf(stderr, "out of memory\n");
+            return false;
+        }
+    }
+    return top_tree_create(w->gpu, clusters, &w->tree);
+}
+
 bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfaces *surfaces,
                   struct proxies *proxies, bool coarse, uint32_t thread_count, struct world *w)
 {
@@ -37,8 +54,7 @@ bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfa
                         .place_table.element = sizeof(struct PbrtPlace),
                         .used.element = sizeof(uint32_t),
                         .changed = true};
-    return structures_create(gpu, &w->structures) &&
-           (gpu->ray_tracing || top_tree_create(gpu, &w->tree)) &&
+    return structures_create(gpu, &w->structures) && (gpu->ray_tracing || create_tree(w)) &&
            meshes_create(gpu, scene, thread_count, &w->meshes) &&
            table_grow(gpu, &w->place_table, 1) && table_grow(gpu, &w->used, 1);
 }
@@ -59,6 +75,7 @@ void world_finish(struct world *w)
     free(w->to_build);
     free(w->moved);
     free(w->step_nodes);
+    free(w->part_of);
     *w = (struct world){0};
 }
 
@@ -493,6 +510,17 @@ static bool build_top(struct world *w)
     return structures_build(w->gpu, &w->structures, &build, 1);
 }
 
+/** The part of the tree that a node belongs to. */
+static uint32_t part_of(const struct world *w, struct scene_node node)
+{
+    const enum world_box kind = node_kind(node);
+    if (!w->part_of || kind == BOX_SCENE || kind == BOX_CLUSTER)
+        return WORLD_TREE_REST;
+    return w
+        ->part_of[node.instance == SLUICE_PBRT_NONE ? node.shape
+                                                    : w->scene->info.shapeCount + node.instance];
+}
+
 static bool place_in_tree(struct world *w, uint32_t index)
 {
     const struct place *place = &w->places[index];
@@ -503,7 +531,7 @@ static bool place_in_tree(struct world *w, uint32_t index)
         .nodes = tree->address,
         .opaque = (instance->flags & VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR) != 0};
     memcpy(at.to_world, instance->transform.matrix, sizeof at.to_world);
-    return top_tree_set(w->gpu, &w->tree, index, place->live ? &at : NULL);
+    return top_tree_set(w->gpu, &w->tree, index, part_of(w, place->node), place->live ? &at : NULL);
 }
 
 /** The same without ray tracing of the device. */
@@ -513,8 +541,15 @@ static bool build_top_tree(struct world *w)
         if (!place_in_tree(w, w->moved[i]))
             return false;
     w->moved_count = 0;
-    return top_tree_build(w->gpu, &w->tree, w->proxies ? w->proxies->copy : NULL,
-                          w->proxies ? w->proxies->box_count : 0);
+    for (uint32_t i = 0; w->proxies && i < w->proxies->moved_count; i++) {
+        const struct moved_box *moved = &w->proxies->moved[i];
+        if (!top_tree_set_box(&w->tree, moved->index, part_of(w, w->proxies->nodes[moved->index]),
+                              moved->is_there ? &moved->box : NULL))
+            return false;
+    }
+    if (w->proxies)
+        proxies_forget_moves(w->proxies);
+    return top_tree_build(w->gpu, &w->tree);
 }
 
 bool world_build(struct world *w, uint32_t launch)

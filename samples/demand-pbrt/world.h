@@ -46,6 +46,7 @@ struct world {
     struct table used;        ///< uint by place: the last launch that hit it
     struct structure top;
     struct top_tree tree; ///< instead, of the compute path
+    uint32_t *part_of;    ///< owned; ... part of its tree by key of the clusters, if there are any
     struct gpu_buffer
         instances;   ///< the boxes, then places by index: those that are not live hit nothing
     uint32_t *moved; ///< owned; places whose instance must be written

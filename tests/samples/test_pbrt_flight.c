@@ -1,7 +1,8 @@
-/* Parts of demand-pbrt's flights that need no device: clusters, cameras, and the choice of queues.
- */
+/* Parts of demand-pbrt's flights that need no device: clusters, the tree of the world, cameras, and
+ * the choice of queues. */
 #include "../../samples/demand-pbrt/camera_path.h"
 #include "../../samples/demand-pbrt/clusters.h"
+#include "../../samples/demand-pbrt/world_tree.h"
 #include "../../tools/common/gpu_queues.h"
 
 #include "support/test.h"
@@ -89,6 +90,170 @@ static void the_way_to_a_cluster_is_short(void **state)
     assert_int_equal(o.deepest, 2);
     assert_int_equal(o.steps, 1 + (clusters.tree.node_count + 1) / 2);
     clusters_finish(&clusters);
+}
+
+#define BOX_BIT 0x80000000u
+#define NODES (8 * MOST)
+
+/** A tree, and what must be in it. */
+struct world {
+    struct clusters clusters;
+    struct world_tree tree;
+    struct box_tree_box boxes[MOST];
+    uint32_t *parts; ///< of keys
+    bool is_there[2][MOST];
+    uint8_t seen[2][MOST];
+    struct box_tree_node copy[NODES]; ///< of what was told to be written
+    uint32_t written;
+};
+
+static void note_written(void *user_data, uint32_t first, uint32_t count)
+{
+    struct world *w = user_data;
+    assert_true(first + count <= w->tree.node_count && first + count <= NODES);
+    memcpy(w->copy + first, w->tree.nodes + first, count * sizeof *w->copy);
+    w->written += count;
+}
+
+static void look_at_item(struct world *w, const struct box_tree_node *leaf)
+{
+    const int kind = leaf->first & BOX_BIT ? WORLD_TREE_BOX : WORLD_TREE_PLACE;
+    const uint32_t index = leaf->first & ~BOX_BIT;
+    assert_int_equal(leaf->count, 1);
+    assert_true(index < MOST && w->is_there[kind][index]);
+    assert_memory_equal(leaf->low, w->boxes[index].low, sizeof leaf->low);
+    assert_memory_equal(leaf->high, w->boxes[index].high, sizeof leaf->high);
+    w->seen[kind][index]++;
+}
+
+static void look_at_node(struct world *w, uint32_t index, uint32_t depth)
+{
+    assert_true(depth <= BOX_TREE_MOST_DEPTH);
+    const struct box_tree_node *node = &w->copy[index];
+    if (node->count > 0) {
+        if (node->first != WORLD_TREE_NOTHING)
+            look_at_item(w, node);
+        return;
+    }
+    for (uint32_t i = node->first; i < node->first + 2; i++) {
+        const struct box_tree_node *child = &w->copy[i];
+        for (int axis = 0; axis < 3 && child->first != WORLD_TREE_NOTHING; axis++) {
+            assert_true(node->low[axis] <= child->low[axis]);
+            assert_true(node->high[axis] >= child->high[axis]);
+        }
+        look_at_node(w, i, depth + 1);
+    }
+}
+
+static void check_world(struct world *w)
+{
+    w->written = 0;
+    assert_true(world_tree_build(&w->tree, note_written, w));
+    memset(w->seen, 0, sizeof w->seen);
+    look_at_node(w, 0, 0);
+    for (int kind = 0; kind < 2; kind++)
+        for (uint32_t i = 0; i < MOST; i++)
+            assert_int_equal(w->seen[kind][i], w->is_there[kind][i]);
+}
+
+static struct world *create_world(uint32_t cluster_size)
+{
+    static struct world w;
+    static uint32_t keys[MOST], own[MOST];
+    memset(&w, 0, sizeof w);
+    fill(w.boxes, keys, MOST, 3);
+    for (uint32_t i = 0; i < MOST; i++)
+        own[i] = i;
+    if (cluster_size < MOST)
+        assert_true(clusters_create(w.boxes, own, MOST, cluster_size, &w.clusters));
+    w.parts = clusters_list_nodes(&w.clusters, MOST);
+    assert_non_null(w.parts);
+    assert_true(world_tree_create(&w.clusters, BOX_BIT, &w.tree));
+    return &w;
+}
+
+static void set(struct world *w, int kind, uint32_t index, bool is_there)
+{
+    w->is_there[kind][index] = is_there;
+    assert_true(world_tree_set(&w->tree, (enum world_tree_kind)kind, index,
+                               is_there ? w->parts[index] : WORLD_TREE_NO_PART, &w->boxes[index]));
+}
+
+static void destroy_world(struct world *w)
+{
+    world_tree_finish(&w->tree);
+    clusters_finish(&w->clusters);
+    free(w->parts);
+}
+
+static void the_world_has_what_came_and_did_not_leave(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[] = {32, 500, MOST};
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+        struct world *w = create_world(sizes[s]);
+        uint32_t seed = 17;
+        check_world(w);
+        for (int round = 0; round < 12; round++) {
+            const uint32_t count = round % 3 == 2 ? 3 : 900;
+            for (uint32_t i = 0; i < count; i++) /* some come, leave and come again in between */
+                set(w, (int)(next(&seed) % 2), next(&seed) % 1500, next(&seed) % 3 > 0);
+            check_world(w);
+        }
+        for (uint32_t i = 0; i < 2 * 1500; i++)
+            set(w, (int)(i % 2), i / 2, false);
+        check_world(w);
+        destroy_world(w);
+    }
+}
+
+/* A box becomes a shape: its cluster is built anew, and nothing else. */
+static void only_parts_that_changed_are_built(void **state)
+{
+    (void)state;
+    struct world *w = create_world(64);
+    const uint32_t above = 2 + w->clusters.tree.node_count;
+    for (uint32_t i = 0; i < MOST; i++)
+        set(w, WORLD_TREE_BOX, i, true);
+    check_world(w);
+    assert_int_equal(w->tree.built_count, MOST);
+    for (uint32_t i = 0; i < MOST; i += 611) {
+        const uint64_t before = w->tree.built_count;
+        set(w, WORLD_TREE_BOX, i, false);
+        set(w, WORLD_TREE_PLACE, i, true);
+        check_world(w);
+        assert_in_range(w->tree.built_count - before, 1, 64);
+        assert_in_range(w->written, above, above + 2 * 64);
+    }
+    check_world(w);
+    assert_int_equal(w->written, above);
+    destroy_world(w);
+}
+
+/* Whatever came first. */
+static void equal_worlds_have_equal_parts(void **state)
+{
+    (void)state;
+    static struct box_tree_node tops[2][MOST];
+    uint32_t count = 0;
+    for (int turn = 0; turn < 2; turn++) {
+        struct world *w = create_world(64);
+        for (uint32_t i = 0; i < 1000; i++)
+            set(w, WORLD_TREE_PLACE, turn ? 999 - i : i, true);
+        if (turn)
+            check_world(w);
+        for (uint32_t i = 0; i < 1000; i += 3)
+            set(w, WORLD_TREE_PLACE, i, false);
+        check_world(w);
+        count = 2 + w->clusters.tree.node_count;
+        for (uint32_t i = 0; i < count; i++) {
+            tops[turn][i] = w->tree.nodes[i];
+            if (i >= 2 && w->clusters.tree.nodes[i - 2].count > 0)
+                tops[turn][i].first = 0; /* where the nodes of a part lie depends on the way */
+        }
+        destroy_world(w);
+    }
+    assert_memory_equal(tops[0], tops[1], count * sizeof **tops);
 }
 
 /* pbrt's own: the camera at the origin looks along z, y is up. */
@@ -235,6 +400,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_step_is_bounded_and_everything_comes_once),
         cmocka_unit_test(the_way_to_a_cluster_is_short),
+        cmocka_unit_test(the_world_has_what_came_and_did_not_leave),
+        cmocka_unit_test(only_parts_that_changed_are_built),
+        cmocka_unit_test(equal_worlds_have_equal_parts),
         cmocka_unit_test(cameras_look_at_points_as_those_of_pbrt),
         cmocka_unit_test(cameras_keep_mirrors_and_units_of_the_scene),
         cmocka_unit_test(looking_straight_up_gives_right_angles),
