@@ -7,9 +7,12 @@
 
 set -euo pipefail
 results=${1:?which results} copy=${2:?where to}
-mkdir -p "$copy/runs" "$copy/clairvoyant"
+mkdir -p "$copy/runs"
 cp "$results"/sweep.* "$results"/program-* "$results/machine.txt" "$results/points.csv" "$copy"
-cp "$results"/clairvoyant/*.jsonl "$copy/clairvoyant"
+if [ -d "$results/clairvoyant" ]; then # of scenes whose tiles are traced
+    mkdir -p "$copy/clairvoyant"
+    cp "$results"/clairvoyant/*.jsonl "$copy/clairvoyant"
+fi
 for run in "$results"/runs/*/; do
     to=$copy/runs/$(basename "$run")
     mkdir -p "$to"
