@@ -7,6 +7,7 @@
 #include "support/failing_allocator.h"
 #include "support/test.h"
 
+#include <sluice/vulkan_control.h>
 #include <sluice/vulkan_neural.h>
 
 #include <math.h>
@@ -24,7 +25,9 @@ struct rig {
     SluiceVulkanNeuralDecoder *decoder;
     uint32_t texture;
     SluiceVulkanNeuralOutput output;
-    bool hlg; ///< values are codes of HLG, and are stored linear
+    bool hlg;      ///< values are codes of HLG, and are stored linear
+    bool requests; ///< the application requests all tiles
+    SluiceTextureRequestId request;
 };
 
 static SluiceVulkanNeuralDecoderCreateInfo decoder_info(const struct rig *rig,
@@ -56,12 +59,26 @@ static void close_set(struct rig *rig)
     sluiceDestroyNeuralSet(rig->set);
 }
 
+/* With decoders, which facts share: their pipelines take long to compile. */
+static struct rig small_rig, large_rig;
+
 static void rig_init(struct rig *rig, struct harness *h, const char *sample)
 {
+    if (rig->decoder)
+        return;
     open_set(rig, sample);
     SluiceVulkanNeuralDecoderCreateInfo info = decoder_info(rig, h->context);
     info.scratchSize = 65536; /* a tile, or a few levels of the mip tail */
     CHECK_OK(sluiceCreateVulkanNeuralDecoder(&info, &rig->decoder));
+}
+
+/* All tiles are wanted, and no shader says so. */
+static void request_all(struct rig *rig)
+{
+    const SluiceVulkanTextureRequest all = {.structSize = sizeof all, .until = UINT64_MAX};
+    CHECK_OK(sluiceRequestVulkanTexture(rig->scene.streamer,
+                                        rig->scene.textures[rig->texture].texture.textureId, &all,
+                                        &rig->request));
 }
 
 /* Values are stored as the network gives them. Of LARGE one corner is looked at. */
@@ -81,7 +98,10 @@ static void show(struct rig *rig, struct harness *h, SluiceFormat format, uint32
         rig->output.from[c] = SLUICE_NEURAL_COLOR_HLG;
     CHECK_OK(sluiceAddVulkanNeuralOutput(rig->decoder, &rig->output, &producer));
     rig->texture = scene_add_produced(&rig->scene, producer);
-    scene_aim(&rig->scene, rig->texture, 64, &corner);
+    if (rig->requests)
+        request_all(rig);
+    else
+        scene_aim(&rig->scene, rig->texture, 64, &corner);
     scene_settle(&rig->scene, 60);
 }
 
@@ -96,7 +116,8 @@ static void hide(struct rig *rig)
 static void rig_finish(struct rig *rig)
 {
     sluiceDestroyVulkanNeuralDecoder(rig->decoder);
-    close_set(rig);
+    if (rig->set)
+        close_set(rig);
 }
 
 struct fetch {
@@ -165,29 +186,47 @@ static struct fetch compare(struct rig *rig)
 
 static void texels_are_those_of_the_decoder_in_C(void **state)
 {
-    struct rig rig;
-    rig_init(&rig, *state, LARGE);
-    show(&rig, *state, SLUICE_FORMAT_R8G8B8A8_UNORM, 1, 3);
-    struct fetch f = compare(&rig);
+    struct rig *rig = &large_rig;
+    rig_init(rig, *state, LARGE);
+    show(rig, *state, SLUICE_FORMAT_R8G8B8A8_UNORM, 1, 3);
+    struct fetch f = compare(rig);
     if (!(f.texel_count > 30000 && f.worst <= 0.5 / 255 + 1e-6))
         fail_msg("%u values, the worst is off by %.9g", f.texel_count, f.worst);
-    hide(&rig);
-    rig_finish(&rig);
+    hide(rig);
 }
 
 /* The numbers of the sample are taken for codes of HLG. */
 static void codes_of_hlg_become_linear_floats(void **state)
 {
-    struct rig rig;
-    rig_init(&rig, *state, SMALL);
-    rig.hlg = true;
-    show(&rig, *state, SLUICE_FORMAT_R16G16B16A16_SFLOAT, 0, 4);
-    struct fetch f = compare(&rig);
+    struct rig *rig = &small_rig;
+    rig_init(rig, *state, SMALL);
+    rig->hlg = true;
+    show(rig, *state, SLUICE_FORMAT_R16G16B16A16_SFLOAT, 0, 4);
+    struct fetch f = compare(rig);
     if (!(f.texel_count > 16000 && f.worst <= 1.0 / 1024 && f.largest > 2))
         fail_msg("%u values up to %g, the worst is off by %.9g of itself", f.texel_count, f.largest,
                  f.worst);
-    hide(&rig);
-    rig_finish(&rig);
+    hide(rig);
+    rig->hlg = false;
+}
+
+/* Inference on load: before anything is drawn. */
+static void a_whole_texture_becomes_blocks_when_it_is_requested(void **state)
+{
+    struct rig *rig = &large_rig;
+    SluiceVulkanRequestProgress progress = {.structSize = sizeof progress};
+    rig_init(rig, *state, LARGE);
+    rig->requests = true;
+    show(rig, *state, SLUICE_FORMAT_BC7_UNORM_BLOCK, 0, 4);
+    CHECK_OK(sluiceGetVulkanRequestProgress(rig->scene.streamer, rig->request, &progress));
+    assert_true(progress.ready && progress.tileCount >= 2);
+    struct fetch f = compare(rig);
+    double psnr = -10 * log10(f.squares / f.texel_count);
+    print_message("# %u tiles: %.2f dB\n", progress.tileCount, psnr);
+    if (!(psnr >= 36))
+        fail_msg("%.2f dB", psnr);
+    hide(rig);
+    rig->requests = false;
 }
 
 static void blocks_are_near_to_them(void **state)
@@ -200,18 +239,17 @@ static void blocks_are_near_to_them(void **state)
                    {SLUICE_FORMAT_BC4_UNORM_BLOCK, 1, 38.5},
                    {SLUICE_FORMAT_BC5_UNORM_BLOCK, 2, 40.5},
                    {SLUICE_FORMAT_BC7_UNORM_BLOCK, 4, 36.4}};
-    struct rig rig;
-    rig_init(&rig, *state, SMALL);
+    struct rig *rig = &small_rig;
+    rig_init(rig, *state, SMALL);
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
-        show(&rig, *state, formats[i].format, 0, formats[i].channels);
-        struct fetch f = compare(&rig);
+        show(rig, *state, formats[i].format, 0, formats[i].channels);
+        struct fetch f = compare(rig);
         double psnr = -10 * log10(f.squares / f.texel_count);
         print_message("# format %d: %.2f dB\n", (int)formats[i].format, psnr);
         if (!(psnr >= formats[i].least))
             fail_msg("format %d: %.2f dB", (int)formats[i].format, psnr);
-        hide(&rig);
+        hide(rig);
     }
-    rig_finish(&rig);
 }
 
 static void wrong_decoders_are_refused(void **state)
@@ -372,6 +410,7 @@ int main(void)
     struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_are_those_of_the_decoder_in_C),
         cmocka_unit_test(codes_of_hlg_become_linear_floats),
+        cmocka_unit_test(a_whole_texture_becomes_blocks_when_it_is_requested),
         cmocka_unit_test(blocks_are_near_to_them),
         cmocka_unit_test(wrong_decoders_are_refused),
         cmocka_unit_test(constants_that_contradict_themselves_are_refused),
@@ -381,5 +420,8 @@ int main(void)
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
-    return harness_finish(&h, RUN_TESTS(tests));
+    status = RUN_TESTS(tests);
+    rig_finish(&small_rig);
+    rig_finish(&large_rig);
+    return harness_finish(&h, status);
 }
