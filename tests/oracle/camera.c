@@ -60,3 +60,9 @@ struct oracle_ray oracle_camera_ray(const struct oracle_camera *camera, double x
     return (struct oracle_ray){apply_point(camera->to_world, origin),
                                unit(apply_vector(camera->to_world, forward)), 1e300, 0};
 }
+
+double oracle_camera_spread(const struct oracle_camera *camera)
+{
+    double height = (camera->window[3] - camera->window[2]) / camera->height;
+    return camera->is_perspective ? atan(height) : 0;
+}

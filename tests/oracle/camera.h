@@ -19,4 +19,7 @@ void oracle_camera_init(struct oracle_camera *camera, const SluicePbrtSceneInfo 
 /** The ray through a point of the picture, in pixels from its upper left corner. */
 struct oracle_ray oracle_camera_ray(const struct oracle_camera *camera, double x, double y);
 
+/** Radians of a pixel in the middle of a picture; 0 for parallel rays. */
+double oracle_camera_spread(const struct oracle_camera *camera);
+
 #endif /* TESTS_ORACLE_CAMERA_H */

@@ -72,22 +72,35 @@ static void print_census(const struct oracle_options *options, const struct orac
            (double)oracle_census_count(census->is_material_visible, o->scene.info.materialCount));
 }
 
+static void print_tiles(const struct oracle_options *options, const struct oracle_tiles *tiles)
+{
+    figure(options, "pictures", (double)tiles->picture_count);
+    figure(options, "tiles_least", (double)oracle_tiles_count(tiles, ORACLE_TILE_SURE));
+    figure(options, "tiles", (double)oracle_tiles_count(tiles, ORACLE_TILE_LIKELY));
+    figure(options, "tiles_most", (double)oracle_tiles_count(tiles, ORACLE_TILE_MAYBE));
+}
+
 static bool count_hits(const struct oracle_options *options, struct oracle *o)
 {
     struct oracle_census census;
+    struct oracle_tiles tiles;
     bool ok = oracle_census_create(&census, &o->scene);
+    ok &= oracle_tiles_create(&tiles, &o->scene, oracle_camera_spread(&o->camera));
     FILE *hits = options->hits ? fopen(options->hits, "w") : NULL;
     ok = ok && (hits || !options->hits);
     if (ok) {
-        oracle_cast(o, &census, hits);
+        ok = oracle_cast(o, &census, options->tiles ? &tiles : NULL, hits);
         print_census(options, o, &census);
+        if (options->tiles)
+            print_tiles(options, &tiles);
     }
     if (hits)
         ok &= fclose(hits) == 0;
     ok = ok && (!options->places || write_places(options->places, o, &census));
     if (!ok)
-        fprintf(stderr, "pbrt_oracle: a table cannot be written\n");
+        fprintf(stderr, "pbrt_oracle: a table cannot be written, or tiles cannot be counted\n");
     oracle_census_finish(&census);
+    oracle_tiles_finish(&tiles);
     return ok;
 }
 

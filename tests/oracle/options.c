@@ -49,6 +49,9 @@ enum option_outcome oracle_options_parse(int argc, char **argv, struct oracle_op
          "uv"},
         {OPTION_TEXT, "places", "FILE", "(none)", &o->places,
          "write a line for each shape in the world: visible, entered, box"},
+        {OPTION_FLAG, "tiles", .value = &o->tiles,
+         .help = "count the tiles of pictures that the hits sample, without anisotropy: at least, "
+                 "exactly and at most"},
         {OPTION_TEXT, "compare", "FILE", "(none)", &o->compare,
          "compare with a picture: .pfm, .exr or .png"},
         {OPTION_FLAG, "quiet", .value = &s->is_quiet, .help = "no warnings about the scene"},

@@ -10,7 +10,7 @@ struct oracle_options {
     const char *scene;
     struct oracle_settings settings;
     const char *file, *hits, *places, *compare;
-    bool json;
+    bool tiles, json;
 };
 
 enum option_outcome oracle_options_parse(int argc, char **argv, struct oracle_options *options);

@@ -93,8 +93,10 @@ static void write_hit(const struct oracle *o, FILE *file, uint32_t x, uint32_t y
             hit->point.u, hit->point.v);
 }
 
-void oracle_cast(struct oracle *o, struct oracle_census *census, FILE *hits)
+bool oracle_cast(struct oracle *o, struct oracle_census *census, struct oracle_tiles *tiles,
+                 FILE *hits)
 {
+    bool ok = true;
     if (hits)
         fputs("x\ty\tshape\tinstance\ttriangle\tt\tbarycentrics\tnormal\tuv\n", hits);
     for (uint32_t y = 0; y < o->camera.height; y++)
@@ -106,5 +108,8 @@ void oracle_cast(struct oracle *o, struct oracle_census *census, FILE *hits)
             oracle_census_add(census, &o->scene, &ray, is_hit ? &hit : NULL);
             if (hits)
                 write_hit(o, hits, x, y, is_hit ? &hit : NULL);
+            if (tiles && is_hit)
+                ok = ok && oracle_tiles_add(tiles, &ray, &hit);
         }
+    return ok;
 }

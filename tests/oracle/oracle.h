@@ -5,6 +5,7 @@
 #include "oracle/camera.h"
 #include "oracle/census.h"
 #include "oracle/path.h"
+#include "oracle/tiles.h"
 
 #include <stdio.h>
 
@@ -37,7 +38,9 @@ void oracle_finish(struct oracle *oracle);
 
 /** Fills [height][width] RGBA floats, row 0 on top. */
 void oracle_render(const struct oracle *oracle, float *rgba);
-/** Casts one ray through the center of each pixel. `hits`: a table of them, or NULL. */
-void oracle_cast(struct oracle *oracle, struct oracle_census *census, FILE *hits);
+/** Casts one ray through the center of each pixel. `hits`: a table of them, or NULL. `tiles` may be
+ *  NULL; false if they cannot be counted. */
+bool oracle_cast(struct oracle *oracle, struct oracle_census *census, struct oracle_tiles *tiles,
+                 FILE *hits);
 
 #endif /* TESTS_ORACLE_ORACLE_H */

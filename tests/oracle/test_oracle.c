@@ -53,7 +53,7 @@ static void check_counts(const char *path, uint32_t width, uint32_t height, size
     struct oracle_census census;
     assert_true(oracle_init(&oracle, path, &settings));
     assert_true(oracle_census_create(&census, &oracle.scene));
-    oracle_cast(&oracle, &census, NULL);
+    assert_true(oracle_cast(&oracle, &census, NULL, NULL));
     assert_int_equal(census.count, placed);
     assert_int_equal(oracle_census_count(census.is_visible, census.count), visible);
     assert_int_equal(oracle_census_count(census.is_entered, census.count), entered);
@@ -91,7 +91,7 @@ static void boxes_behind_a_wall_are_not_entered(void **state)
               &ONE);
     struct oracle_census census;
     assert_true(oracle_census_create(&census, &oracle.scene));
-    oracle_cast(&oracle, &census, NULL);
+    assert_true(oracle_cast(&oracle, &census, NULL, NULL));
     assert_int_equal(census.hit_count, 64);
     assert_true(census.is_entered[0] && !census.is_entered[1] && !census.is_visible[1]);
     oracle_census_finish(&census);
@@ -124,7 +124,7 @@ static double count_hits(void)
 {
     struct oracle_census census;
     assert_true(oracle_census_create(&census, &oracle.scene));
-    oracle_cast(&oracle, &census, NULL);
+    assert_true(oracle_cast(&oracle, &census, NULL, NULL));
     double count = (double)census.hit_count;
     oracle_census_finish(&census);
     return count;

@@ -31,7 +31,7 @@ static const struct oracle_picture *picture_at(struct oracle_values *values, siz
     return values->states[index] == 1 ? &values->pictures[index] : NULL;
 }
 
-static void map(const SluicePbrtTexture *t, const struct oracle_point *point, double *s, double *r)
+void oracle_map(const SluicePbrtTexture *t, const struct oracle_point *point, double *s, double *r)
 {
     double m[12];
     matrix_of(t->worldToTexture, m);
@@ -92,7 +92,7 @@ static struct vec sample(struct oracle_values *values, uint32_t index,
     const SluicePbrtTexture *texture = &values->scene->textures[index];
     bool is_float = texture->isFloat;
     double s, t;
-    map(texture, point, &s, &t);
+    oracle_map(texture, point, &s, &t);
     *alpha = -1;
     switch (texture->kind) {
     case SLUICE_PBRT_TEXTURE_IMAGE: return sample_image(values, index, s, t, alpha);

@@ -22,6 +22,10 @@ struct oracle_point {
     struct vec world;
 };
 
+/** Coordinates of a texture at a point; (0, 0) is the lower left corner of a picture. */
+void oracle_map(const SluicePbrtTexture *texture, const struct oracle_point *point, double *s,
+                double *t);
+
 /** A color, or a constant. */
 struct vec oracle_value(struct oracle_values *values, const SluicePbrtValue *value,
                         const struct oracle_point *point);
