@@ -10,8 +10,8 @@
 #   --triangles N       of a mesh (default: 1000)
 #   --texture-size N    edge of a texture (default: 8192: 45 GB of textures)
 #   --dim WxH           picture (default: 1920x1080; with --quick 160x90)
-#   --frames N          of the flight (default: 600; with --quick 60)
-#   --frame-budget MS   of the flight (default: 16)
+#   --frames N          of each flight (default: 600; with --quick 60)
+#   --frame-budget MS   of each flight (default: 16)
 #   --json              one object per line (name, value, unit) instead of the table
 #   --bin DIR           build folder with both programs, instead of building
 #   --work DIR          keep scene, pictures and build there (default: a scratch folder, removed)
@@ -124,6 +124,11 @@ figure demand.device_memory "$(value demand peak_device_bytes)" B
 figure demand.shapes_entered "$(value demand shapes_entered)" ""
 figure demand.resolve_per_1000 "$(value demand resolve_per_1000)" ms
 figure demand.bytes_per_box "$(value demand bytes_per_box)" B
+figure demand.bytes_per_unresolved "$(value demand bytes_per_unresolved)" B
+figure demand.boxes_added "$(value demand boxes_added)" ""
+figure demand.boxes_added_most "$(value demand boxes_added_most)" "by one"
+figure demand.clusters "$(value demand cluster_seconds)" s
+figure demand.build_queue "$(value demand build_queue)" ""
 figure demand.rate "$(value demand repeat_rate)" Mrays/s
 
 render shapes --preload-shapes --repeat "$repeat"
@@ -141,20 +146,27 @@ else
     figure everything.device_memory_estimated "$(compute "$(value shapes peak_device_bytes) + $textures")" B
 fi
 
-render flight --fly "$frames" --frame-budget "$frame_budget"
-figure flight.frames "$frames" ""
-for name in mean median p99 longest; do
-    figure "flight.$name" "$(value flight "frame_$name")" ms
-done
-figure flight.pixels_missing "$(value flight frame_pixels_missing)" "per frame"
-figure flight.boxes_resolved "$(value flight frame_boxes_resolved)" "per frame"
-figure flight.boxes_resolved_most "$(value flight frame_boxes_resolved_most)" "in a frame"
+fly() { # run, options
+    local name run=$1
+    shift
+    render "$run" --fly "$frames" --frame-budget "$frame_budget" "$@"
+    figure "$run.frames" "$frames" ""
+    for name in mean median p99 longest {work,top_level,launch}_{mean,longest}; do
+        figure "$run.$name" "$(value "$run" "frame_$name")" ms
+    done
+    figure "$run.pixels_missing" "$(value "$run" frame_pixels_missing)" "per frame"
+    figure "$run.boxes_resolved" "$(value "$run" frame_boxes_resolved)" "per frame"
+    figure "$run.boxes_resolved_most" "$(value "$run" frame_boxes_resolved_most)" "in a frame"
+}
+# Once around, and from a corner of the set to its middle.
+fly flight
+fly path --fly-from "$(awk "BEGIN { far = -sqrt($instances); print far \"/\" far \"/12/0/0/1/0/0/1\" }")"
 
 goals() {
     case $1 in
-    demand.bytes_per_box) echo "at most 64" ;;
+    demand.bytes_per_unresolved) echo "at most 64" ;;
     demand.of_shapes) echo "0.95 at least" ;;
-    flight.p99) echo "at most 20 on an H200" ;;
+    flight.p99 | path.p99) echo "at most 20 on an H200" ;;
     esac
 }
 

@@ -163,6 +163,12 @@ static void begin_frame(struct film *film)
     film->missing_count = film->width * film->height;
 }
 
+static void count(struct flight_phase *phase, double seconds)
+{
+    phase->sum += seconds;
+    phase->most = seconds > phase->most ? seconds : phase->most;
+}
+
 static bool fly_frame(struct launches *l, struct flight *f, uint32_t frame)
 {
     SluiceDemandTicket ticket;
@@ -170,10 +176,13 @@ static bool fly_frame(struct launches *l, struct flight *f, uint32_t frame)
     frame_budget_begin(&f->budget);
     if (!serve(l, f))
         return false;
-    frame_budget_end_work(&f->budget);
+    count(&f->work, frame_budget_end_work(&f->budget));
+    const double top_before = l->world->top_seconds;
     begin_frame(l->film);
     if (!launches_trace(l, 0, &ticket, &progress))
         return false;
+    count(&f->top_level, l->world->top_seconds - top_before);
+    count(&f->launch, l->last_seconds);
     f->missing += l->film->missing_count;
     f->seconds[frame] = frame_budget_end(&f->budget);
     return true;
@@ -241,6 +250,12 @@ void flight_print(const struct flight *f, bool json)
         {"frame_pixels_missing", "mean", f->missing / f->frame_count},
         {"frame_boxes_resolved", "mean", (double)f->resolved / f->frame_count},
         {"frame_boxes_resolved_most", "", (double)f->most_resolved},
+        {"frame_work_mean", "ms", 1e3 * f->work.sum / f->frame_count},
+        {"frame_work_longest", "ms", 1e3 * f->work.most},
+        {"frame_top_level_mean", "ms", 1e3 * f->top_level.sum / f->frame_count},
+        {"frame_top_level_longest", "ms", 1e3 * f->top_level.most},
+        {"frame_launch_mean", "ms", 1e3 * f->launch.sum / f->frame_count},
+        {"frame_launch_longest", "ms", 1e3 * f->launch.most},
     };
     for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
         summary_print_figure(&figures[i], json);

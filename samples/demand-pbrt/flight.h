@@ -5,13 +5,19 @@
 #include "frame_budget.h"
 #include "launches.h"
 
-/** Zeroed but for the first four is the beginning. */
+/** Part of the frames. */
+struct flight_phase {
+    double sum, most; ///< seconds
+};
+
+/** Zeroed but for the first two is the beginning. */
 struct flight {
     uint32_t frame_count;
     struct frame_budget budget;
     double *seconds; ///< owned; of each frame
     double missing;  ///< pixels that showed boxes or had no material, of all frames
     uint64_t resolved, most_resolved; ///< boxes, in all and in one frame
+    struct flight_phase work, top_level, launch;
 };
 
 /**

@@ -28,10 +28,11 @@ bool frame_budget_has_time(struct frame_budget *b)
     return b->seconds == 0.0 || time - b->start + b->longest + b->reserve <= b->seconds;
 }
 
-void frame_budget_end_work(struct frame_budget *b)
+double frame_budget_end_work(struct frame_budget *b)
 {
     b->work_end = now(b);
     b->longest = larger(b->longest, b->work_end - b->last);
+    return b->work_end - b->start;
 }
 
 double frame_budget_end(struct frame_budget *b)

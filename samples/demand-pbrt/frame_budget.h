@@ -20,8 +20,8 @@ void frame_budget_begin(struct frame_budget *budget);
 /** Whether another item may begin: it would end in time, if it takes as long as the longest of the
  *  last frames. Call it between any two items. */
 bool frame_budget_has_time(struct frame_budget *budget);
-/** After the last item. */
-void frame_budget_end_work(struct frame_budget *budget);
+/** After the last item. Returns the seconds of all items. */
+double frame_budget_end_work(struct frame_budget *budget);
 /** After the launch. Returns the seconds of the frame. */
 double frame_budget_end(struct frame_budget *budget);
 

@@ -239,7 +239,7 @@ static bool reserve_boxes(const struct gpu *gpu, struct proxies *p)
         return true;
     gpu_destroy_buffer(gpu, &p->buffer);
     p->version = 0;
-    return gpu_create_buffer(gpu, size + size / 16 + 1024, structures_input_usage(gpu), &p->buffer);
+    return gpu_create_buffer(gpu, size + size / 4 + 1024, structures_input_usage(gpu), &p->buffer);
 }
 
 /** Brings the buffer up to date; it grows with the largest index. */

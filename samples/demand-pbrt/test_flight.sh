@@ -54,7 +54,7 @@ status=0
 }
 render fresh --threads 1
 check geometries_built 'v <= 41'
-check bytes_per_box 'v > 0 && v <= 76'
+check bytes_per_box 'v > 0 && v <= 88'
 check bytes_per_unresolved 'v > 0'
 check boxes_added_most 'v > 256 && v <= 1024'
 compacted=$(value geometry_bytes)
@@ -73,6 +73,8 @@ check boxes_added_most 'v == 2001'
 # From another camera to that of the picture.
 render path --fly 8 --fly-from 0/-300/60/0/0/0/0/0/1
 check frames 'v == 8'
+check frame_work_longest 'v > 0'
+check frame_launch_mean 'v > 0'
 # Less time than a launch takes: one box in a frame.
 render bounded --fly 20 --frame-budget 0.01
 check frames 'v == 20'
