@@ -3,6 +3,7 @@
 #define SLUICE_SLUICE_H
 
 #include <sluice/base.h>
+#include <sluice/camera_motion.h>
 #include <sluice/feedback_rate.h>
 #include <sluice/heap.h>
 #include <sluice/image.h>

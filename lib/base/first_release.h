@@ -12,6 +12,8 @@
 
 #define SLC_UP_TO(type, last) (offsetof(type, last) + sizeof(((type *)0)->last))
 
+#define SLC_FIRST_SluiceLookAheadInfo SLC_UP_TO(SluiceLookAheadInfo, shrink)
+#define SLC_FIRST_SluiceLookAhead SLC_UP_TO(SluiceLookAhead, lodBias)
 #define SLC_FIRST_SluiceFormatInfo SLC_UP_TO(SluiceFormatInfo, integer)
 #define SLC_FIRST_SluiceImageInfo SLC_UP_TO(SluiceImageInfo, cube)
 #define SLC_FIRST_SluiceImageSourceInterface                                                       \

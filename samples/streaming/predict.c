@@ -67,12 +67,6 @@ bool predict_create(const struct renderer *renderer, const struct target *pictur
     return created;
 }
 
-/* Where the camera turns, what lies between is seen first and may never have been far ahead. */
-double predict_horizon(double seconds, uint32_t frame)
-{
-    return frame % 2 ? 0.5 * seconds : seconds;
-}
-
 void predict_destroy(struct predict *predict)
 {
     if (!predict->renderer)

@@ -1,7 +1,7 @@
 /**
  * Asks for tiles before they are needed: draws feedback, and nothing else, from where the camera
- * will be (motion.h), small and with a depth test of its own, in the same frame as the picture. The
- * marks go where those of the picture go; Sluice knows no difference.
+ * will be (camera_motion.h), small and with a depth test of its own, in the same frame as the
+ * picture. The marks go where those of the picture go; Sluice knows no difference.
  */
 #ifndef SAMPLES_STREAMING_PREDICT_H
 #define SAMPLES_STREAMING_PREDICT_H
@@ -27,9 +27,6 @@ struct predict {
 /** `picture`: what the frames are drawn to. Says on stderr what is wrong. */
 bool predict_create(const struct renderer *renderer, const struct target *picture,
                     struct predict *predict);
-/** How far a frame looks ahead, of `seconds`: all the way and half of it, in turns. */
-double predict_horizon(double seconds, uint32_t frame);
-
 /** A zeroed struct is fine. */
 void predict_destroy(struct predict *predict);
 

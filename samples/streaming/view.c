@@ -402,10 +402,9 @@ static void write_frame_data(const struct view *view, const struct camera *camer
 static void record_prediction(const struct view *view, VkDescriptorSet streamer_set,
                               VkCommandBuffer commands)
 {
-    const struct camera *now = &view->motion.past[MOTION_FRAMES - 1];
     struct GalleryFrame frame;
     write_frame_data(view, &view->ahead, &frame);
-    memcpy(frame.presentEye, &now->eye, sizeof frame.presentEye);
+    memcpy(frame.presentEye, &view->now.eye, sizeof frame.presentEye);
     frame.pixelScale = (float)view->predict.target.height / (float)view->request.target->height;
     predict_record(&view->predict, commands, streamer_set,
                    view->frame_index % VIEW_FRAMES_IN_FLIGHT, &frame, view->surfaces);
@@ -509,6 +508,35 @@ static bool submit(struct view *view, struct view_slot *slot, const SluiceStream
     return true;
 }
 
+static struct camera camera_of(const float *m)
+{
+    const struct vec3 back = {m[2], m[6], m[10]};
+    const struct vec3 eye = {-(m[0] * m[12] + m[1] * m[13] + m[2] * m[14]),
+                             -(m[4] * m[12] + m[5] * m[13] + m[6] * m[14]),
+                             -(m[8] * m[12] + m[9] * m[13] + m[10] * m[14])};
+    return (struct camera){eye, vec3_sub(eye, back)};
+}
+
+static void look_ahead(struct view *view, const struct camera *camera, double seconds)
+{
+    const struct mat4 look = mat4_look_at(camera->eye, camera->target);
+    const SluiceLookAheadInfo info = {.structSize = sizeof info,
+                                      .seconds = view->request.settings->predict,
+                                      .frameIndex = view->frame_index,
+                                      .pictureWidth = view->request.target->width,
+                                      .pictureHeight = view->request.target->height,
+                                      .shrink = PREDICT_SHRINKS};
+    SluiceLookAhead ahead = {.structSize = sizeof ahead};
+    view->looks_ahead = false;
+    if (!view->predict.renderer)
+        return;
+    (void)sluiceAddCameraFrame(&view->motion, &look.m[0][0], seconds); /* a bad one is no motion */
+    sluicePredictCamera(&view->motion, &info, &ahead);
+    view->looks_ahead = ahead.draw;
+    view->now = *camera;
+    view->ahead = camera_of(ahead.viewMatrix);
+}
+
 bool view_draw(struct view *view, const struct camera *camera, uint64_t time_stamp,
                struct view_frame *out)
 {
@@ -519,10 +547,7 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
     double start = clock_seconds(), needs_seconds;
     slowness_set_time(&view->slowness, time_stamp);
     write_frame_data(view, camera, slot->frame.mapped);
-    motion_add(&view->motion, camera, 1e-6 * (double)time_stamp);
-    double horizon = predict_horizon(view->request.settings->predict, view->frame_index);
-    view->looks_ahead =
-        view->predict.renderer && motion_look_ahead(&view->motion, horizon, &view->ahead);
+    look_ahead(view, camera, 1e-6 * (double)time_stamp);
 
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};

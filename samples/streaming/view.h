@@ -5,13 +5,15 @@
 #ifndef SAMPLES_STREAMING_VIEW_H
 #define SAMPLES_STREAMING_VIEW_H
 
-#include "motion.h"
+#include "camera.h"
 #include "needs_pass.h"
 #include "neural_view.h"
 #include "predict.h"
 #include "renderer.h"
 #include "settings.h"
 #include "slowness.h"
+
+#include <sluice/camera_motion.h>
 
 #define VIEW_FRAMES_IN_FLIGHT 3
 #define VIEW_MAX_REGIONS (1u << 20)
@@ -66,9 +68,9 @@ struct view {
     VkQueryPool timestamps; ///< two per slot
     uint32_t frame_index;   ///< of the next frame
     struct predict predict; ///< only with --predict
-    struct motion motion;   ///< of the camera
-    bool looks_ahead;       ///< the frame that is recorded, to `ahead`
-    struct camera ahead;
+    SluiceCameraMotion motion;
+    bool looks_ahead; ///< the frame that is recorded, from `now` to `ahead`
+    struct camera now, ahead;
 };
 
 struct picture_list;

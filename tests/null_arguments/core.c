@@ -1,6 +1,7 @@
 /* NULL and zero in every argument of the functions of sluice. */
 #include "null_arguments/calls.h"
 
+#include <sluice/camera_motion.h>
 #include <sluice/feedback_rate.h>
 #include <sluice/image.h>
 #include <sluice/input.h>
@@ -17,6 +18,8 @@
 /* CALLS
 sluiceGetResultName(SLUICE_SUCCESS)
 
+!sluiceAddCameraFrame(&f->out.motion, f->view, 1.0)
+sluicePredictCamera(&f->motion, &f->look, &f->out.ahead)
 sluicePredictFeedbackMiss(&f->rate, 0.5, &f->out.number)
 sluiceChooseFeedbackProbability(&f->rate, 0.01, &f->out.probability)
 sluicePredictFeedbackDelay(&f->rate, 0.5, &f->out.delay)
@@ -103,6 +106,9 @@ sluiceEndRecording(?NULL)
 
 struct fixture {
     SluiceFeedbackRate rate;
+    SluiceCameraMotion motion;
+    SluiceLookAheadInfo look;
+    float view[16];
     SluiceProceduralImage image;
     SluiceCompleteChainSourceCreateInfo chain;
     SluiceImageInfo info;
@@ -161,6 +167,8 @@ struct fixture {
         SluiceTextureStatistics texture_statistics;
         uint64_t cursor, lost;
         SluiceTileEvent events[1];
+        SluiceCameraMotion motion;
+        SluiceLookAhead ahead;
         SluiceRecorder *recorder;
         SluiceReplayResult replay;
     } out;
@@ -233,6 +241,8 @@ static void fixture_init(struct fixture *f, void **state)
                                    .frameRate = 60,
                                    .timeoutSeconds = 1};
     f->image = (SluiceProceduralImage){NULL, texel};
+    f->look =
+        (SluiceLookAheadInfo){.structSize = sizeof f->look, .pictureWidth = 4, .pictureHeight = 4};
     f->info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
                                 .width = 256,
                                 .height = 256,
