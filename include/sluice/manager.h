@@ -292,6 +292,10 @@ typedef struct SluiceTextureStatistics {
     bool wanted;                 ///< Some region requests a level now.
     bool seen;                   ///< Some map requested something.
     uint64_t seenTime;           ///< Time stamp of the last map that did. 0 if none did.
+    uint32_t wantedTileCount; ///< Tiles that maps request, resident or not, packed ones included.
+    /** Bytes of the slots of resident tiles, and of all wanted tiles if they were resident. Packed
+     * tiles without slots take none. */
+    uint64_t residentSize, wantedSize;
 } SluiceTextureStatistics;
 
 /**
@@ -733,6 +737,16 @@ SLUICE_API SluiceResult sluiceGetMinMipUpdates(SluiceStreamedTextureManager *man
 SLUICE_API SluiceResult sluiceGetTileState(const SluiceStreamedTextureManager *manager,
                                            SluiceTextureId textureId, uint32_t tileIndex,
                                            SluiceTileState *pState, SluiceTile *pTile);
+
+/**
+ * Gets the tile that is in a slot, in constant time: for pictures of heaps. textureId is
+ * SLUICE_NO_TEXTURE if the slot is free, or retires.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_HEAP; SLUICE_ERROR_INVALID_ARGUMENT, with
+ *         a log message, for a slot that heaps do not have.
+ */
+SLUICE_API SluiceResult sluiceGetSlotTile(const SluiceStreamedTextureManager *manager,
+                                          uint32_t heapId, uint32_t slot, SluiceTile *pTile);
 
 /**
  * Gets the current statistics.

@@ -24,6 +24,14 @@ slc_manager_config(const SluiceStreamedTextureManager *manager);
 /** Returns how often sluiceSetConfig succeeded. */
 uint64_t slc_manager_config_count(const SluiceStreamedTextureManager *manager);
 
+/** Returns the number of the next request: tiles that become REQUESTED count from 0. */
+uint64_t slc_manager_next_request(const SluiceStreamedTextureManager *manager);
+
+/** Returns the number of the request of a tile that was just handed out; UINT64_MAX: nothing
+ *  requested it. */
+uint64_t slc_manager_request_of(const SluiceStreamedTextureManager *manager,
+                                const SluiceTile *tile);
+
 /** Returns statistics whose counts by state leave out tiles that take no slots. */
 SluiceStreamedTextureStatistics
 slc_manager_slot_statistics(const SluiceStreamedTextureManager *manager);

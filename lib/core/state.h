@@ -106,6 +106,7 @@ struct slc_managed_texture {
     uint32_t regular_nodes;   ///< nodes of regular tiles
     uint32_t requested_count;
     uint32_t held_regions;   ///< that hold anything
+    uint32_t wanted_tiles;   ///< regular ones
     uint32_t first_follower; ///< index, SLC_NONE, as those below
 
     /* What every map touches */

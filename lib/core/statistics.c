@@ -58,6 +58,9 @@ SluiceResult sluiceGetTextureStatistics(const SluiceStreamedTextureManager *mana
         result = slc_find_texture(manager, textureId, &t);
     if (result != SLUICE_SUCCESS)
         return result;
+    bool packed_wanted = manager->info.alwaysMapPackedTiles || t->held_regions > 0;
+    uint32_t packed = t->shape->desc.packedTileCount, inside = !t->shape->desc.packedTilesOutside;
+    uint32_t wanted_packed = packed_wanted ? packed : 0;
     const SluiceTextureStatistics statistics = {
         .structSize = sizeof statistics,
         .residentTileCount = t->resident_tiles + t->packed_resident,
@@ -68,6 +71,10 @@ SluiceResult sluiceGetTextureStatistics(const SluiceStreamedTextureManager *mana
         .wanted = t->held_regions > 0,
         .seen = t->seen,
         .seenTime = t->seen_time,
+        .wantedTileCount = t->wanted_tiles + wanted_packed,
+        .residentSize =
+            ((uint64_t)t->resident_tiles + inside * t->packed_resident) * manager->info.tileSize,
+        .wantedSize = ((uint64_t)t->wanted_tiles + inside * wanted_packed) * manager->info.tileSize,
     };
     slc_struct_write(type, pStatistics, &statistics);
     return SLUICE_SUCCESS;

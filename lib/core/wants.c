@@ -286,6 +286,7 @@ static void add_move(slc_manager *m, struct slc_managed_texture *t, struct moves
     if (moves->count == sizeof moves->tiles / sizeof *moves->tiles)
         settle_moves(m, t, moves);
     __builtin_prefetch(&t->nodes[move.tile]);
+    t->wanted_tiles += move.wanted ? 1 : UINT32_MAX;
     moves->tiles[moves->count++] = move;
 }
 

@@ -291,6 +291,48 @@ static void lists_hand_out_what_there_is_room_for(void **state)
     fixture_close(&f);
 }
 
+/* Of a texture whose regions are 2x2: level 0 has tiles 0 to 3, level 1 has 4, 5 is packed. */
+static void check_wanted(const struct fixture *f, SluiceTextureId id,
+                         const SluiceTextureStatistics *s)
+{
+    uint8_t requested[4];
+    uint32_t wanted = 0;
+    CHECK_OK(sluiceWriteRequestedLevels(f->manager, id, 2, 4, requested));
+    for (uint32_t i = 0; i < 4; i++)
+        wanted += requested[i] == 0;
+    const bool any = memcmp(requested, "\377\377\377\377", 4) != 0;
+    for (uint32_t i = 0, found = 0; i < 4 && !found; i++)
+        wanted += found = requested[i] <= 1;
+    assert_int_equal(s->wantedTileCount, wanted + any);
+    assert_int_equal(s->wantedSize, (wanted + any) * (uint64_t)65536);
+}
+
+/* Each resident tile is in its slot, and each slot that has a tile is that tile's. */
+static void check_slots(const struct fixture *f, const SluiceTextureId *ids, uint32_t count)
+{
+    uint32_t used = 0, placed = 0;
+    for (uint32_t heap = 0; heap < FIXTURE_HEAPS; heap++)
+        for (uint32_t slot = 0; f->heaps.living[heap] && slot < 4; slot++) {
+            SluiceTile tile;
+            CHECK_OK(sluiceGetSlotTile(f->manager, heap, slot, &tile));
+            assert_true(tile.heapId == heap && tile.slot == slot);
+            if (tile.textureId == SLUICE_NO_TEXTURE)
+                continue;
+            const SluiceTile same = fixture_tile(f, tile.textureId, tile.tileIndex);
+            assert_memory_equal(&same, &tile, sizeof tile);
+            used++;
+        }
+    for (uint32_t k = 0; k < count; k++)
+        for (uint32_t i = 0; i < fixture_layout(f, ids[k]).tileCount; i++) {
+            SluiceTileState is = fixture_state(f, ids[k], i);
+            placed += is == SLUICE_TILE_STATE_MAPPED || is == SLUICE_TILE_STATE_STANDBY;
+        }
+    assert_int_equal(used, placed); /* nothing is being loaded */
+    SluiceTile tile;
+    CHECK_RESULT(sluiceGetSlotTile(f->manager, 0, 4, &tile), SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceGetSlotTile(f->manager, 200, 0, &tile), SLUICE_ERROR_UNKNOWN_HEAP);
+}
+
 /* Against the states of all tiles, and the totals of the manager. */
 static void check_sums(const struct fixture *f, const SluiceTextureId *ids, uint32_t count)
 {
@@ -305,6 +347,8 @@ static void check_sums(const struct fixture *f, const SluiceTextureId *ids, uint
         assert_int_equal(s.residentTileCount,
                          states[SLUICE_TILE_STATE_MAPPED] + states[SLUICE_TILE_STATE_STANDBY]);
         assert_int_equal(s.requestedTileCount, states[SLUICE_TILE_STATE_REQUESTED]);
+        assert_int_equal(s.residentSize, s.residentTileCount * (uint64_t)65536);
+        check_wanted(f, ids[k], &s);
         mapped += s.mappedTotal, unmapped += s.unmappedTotal, failed += s.failedTotal;
     }
     assert_true(mapped == all.mappedTotal && unmapped == all.unmappedTotal);
@@ -336,6 +380,8 @@ static void statistics_of_textures_add_up(void **state)
                          : sluiceReportFailedTiles(f.manager, f.tiles[i].textureId, 1,
                                                    &f.tiles[i].tileIndex, time));
         check_sums(&f, ids, COUNT);
+        if (f.heaps.living_count > 0)
+            check_slots(&f, ids, COUNT);
         SluiceTextureStatistics s = {.structSize = sizeof s};
         const uint64_t calls = f.memory.calls;
         CHECK_OK(sluiceGetTextureStatistics(f.manager, ids[k], &s));
