@@ -66,6 +66,46 @@ SLUICE_API SluiceResult sluiceExplainVulkanTexture(const SluiceVulkanStreamer *s
                                                    const SluiceTextureRect *pRect,
                                                    SluiceVulkanExplanation *pExplanation);
 
+/** Stages of a tile's way from a mark of a shader to the picture. */
+typedef enum SluiceLoadStage {
+    /** From the frame that reads a feedback map back to the frame whose begin takes it in. The turn
+     * that a mark waits for comes before. */
+    SLUICE_LOAD_STAGE_FEEDBACK = 0,
+    SLUICE_LOAD_STAGE_QUEUE = 1, ///< From a tile's request until a frame takes it up.
+    SLUICE_LOAD_STAGE_READ = 2,  ///< Until its texels are in staging memory.
+    SLUICE_LOAD_STAGE_BIND = 3,  ///< Until it is bound, or has a page, and its copy is recorded.
+    SLUICE_LOAD_STAGE_COPY = 4   ///< Until the frame that copies it is complete.
+} SluiceLoadStage;
+
+#define SLUICE_LOAD_STAGE_COUNT 5
+#define SLUICE_STAGE_BUCKET_COUNT 12
+
+/** How many frames a stage takes. Never grows. */
+typedef struct SluiceLoadStageCounts {
+    uint64_t count;    ///< Maps or loads that left the stage. A mip tail can be several loads.
+    uint64_t frameSum; ///< frameSum / count is the mean.
+    uint64_t frameMax;
+    /** [0]: in the frame that began it. [i]: 2^(i-1) to 2^i - 1 frames later. The last: or more. */
+    uint64_t buckets[SLUICE_STAGE_BUCKET_COUNT];
+} SluiceLoadStageCounts;
+
+/** Histograms of the stages, since creation. */
+typedef struct SluiceVulkanLoadStages {
+    uint32_t structSize;                                   ///< sizeof(SluiceVulkanLoadStages).
+    SluiceLoadStageCounts stages[SLUICE_LOAD_STAGE_COUNT]; ///< By SluiceLoadStage.
+} SluiceVulkanLoadStages;
+
+/**
+ * Gets how many frames the stages of loads take, in constant time. Tiles of producers, tiles that
+ * were restored or shared, canceled and failed loads leave no stage after the queue. A wait of more
+ * than 1023 frames in the queue counts as 1023.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a wrong
+ *         structSize.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanLoadStages(const SluiceVulkanStreamer *streamer,
+                                                  SluiceVulkanLoadStages *pStages);
+
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

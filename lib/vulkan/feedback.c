@@ -1,5 +1,5 @@
 /* Which textures' feedback is resolved in a frame, and what the manager gets of it. */
-#include "vulkan/streamer.h"
+#include "vulkan/load_stages.h"
 #include "vulkan/texture_control.h"
 #include "vulkan/texture_forgetting.h"
 #include "vulkan/texture_requests.h"
@@ -170,6 +170,7 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
         s->counts.feedbackWords += resolved.count;
         if (texture->hidden || texture->primary_id != SLUICE_NO_TEXTURE)
             continue;
+        slc_load_stage_left(s, SLUICE_LOAD_STAGE_FEEDBACK, slot->frame);
         SluiceResult result = give_map_of(s, texture, slot->time_stamp);
         if (result < 0)
             return result;

@@ -8,6 +8,7 @@
 #include "vulkan/load_cancels.h"
 #include "vulkan/load_deferred.h"
 #include "vulkan/load_productions.h"
+#include "vulkan/load_stages.h"
 #include "vulkan/load_starts.h"
 #include "vulkan/residencies.h"
 #include "vulkan/shrink.h"
@@ -231,6 +232,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                   .signalValue = s->frame};
     slc_device_budget_turn(&s->context->device_budget, &s->context->budget);
     sluiceMarkTileEvents(s->manager, s->frame);
+    slc_load_stages_begin(s);
     s->manager_locked = false;
     result = decide(s);
     if (result >= 0)

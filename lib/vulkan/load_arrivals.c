@@ -2,6 +2,7 @@
 
 #include "base/checked.h"
 #include "vulkan/load_reads.h"
+#include "vulkan/load_stages.h"
 #include "vulkan/load_units.h"
 #include "vulkan/read_troubles.h"
 
@@ -43,6 +44,8 @@ SluiceResult slc_packed_unit_back(SluiceVulkanStreamer *s, uint32_t index, Sluic
     struct slc_texture *texture = &s->textures[unit->texture];
     if (answer != SLUICE_SUCCESS)
         texture->packed_result = answer;
+    else
+        slc_load_stage_unit(s, unit, SLUICE_LOAD_STAGE_READ);
     unit->state = SLC_UNIT_ARRIVED;
     unit->next = texture->packed_first_unit;
     texture->packed_first_unit = index;
@@ -74,6 +77,7 @@ SluiceResult slc_tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult
         slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, answer);
     } else {
         slc_read_trouble_delivered(s, unit->texture, unit->tile.tileIndex);
+        slc_load_stage_unit(s, unit, SLUICE_LOAD_STAGE_READ);
         unit->state = SLC_UNIT_ARRIVED;
         slc_unit_list_append(s, &s->arrived, index);
         return SLUICE_SUCCESS;

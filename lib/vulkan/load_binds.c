@@ -2,6 +2,7 @@
 
 #include "vulkan/load_deferred.h"
 #include "vulkan/load_productions.h"
+#include "vulkan/load_stages.h"
 #include "vulkan/load_units.h"
 
 /* Gives what the residency has room for; the units move on when the batch has its number. */
@@ -96,6 +97,7 @@ void slc_loads_recycle(SluiceVulkanStreamer *s)
     while (s->uploaded.first != SLC_NONE &&
            s->units[s->uploaded.first].value <= s->completed_frame) {
         uint32_t unit = slc_unit_list_pop(s, &s->uploaded);
+        slc_load_stage_unit(s, &s->units[unit], SLUICE_LOAD_STAGE_COPY);
         slc_unit_forget_tile(s, &s->units[unit]);
         slc_unit_free(s, unit);
     }

@@ -5,6 +5,7 @@
 #include "vulkan/load_deferred.h"
 #include "vulkan/load_productions.h"
 #include "vulkan/load_reads.h"
+#include "vulkan/load_stages.h"
 #include "vulkan/load_units.h"
 #include "vulkan/read_batch.h"
 #include "vulkan/texture_forgetting.h"
@@ -225,6 +226,7 @@ static SluiceResult start_loads(SluiceVulkanStreamer *s, struct slc_read_batch *
     for (uint32_t i = 0; i < count; i++) {
         uint32_t index = s->by_manager_index[(uint32_t)s->tiles[i].textureId];
         result = SLUICE_SUCCESS;
+        slc_load_stage_handed_out(s, &s->tiles[i]);
         if (slc_tile_is_packed(s, index, &s->tiles[i]))
             result = collect_packed_tile(s, index, &s->tiles[i]);
         else

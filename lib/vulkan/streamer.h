@@ -26,6 +26,7 @@
 #include "vulkan/time_defaults.h"
 
 #include <sluice/shared/texture_table.h>
+#include <sluice/vulkan_explain.h>
 
 #define SLC_MAX_FRAMES 16u
 #define SLC_MAX_TILES_PER_FRAME (1u << 14)
@@ -125,8 +126,9 @@ struct slc_unit {
     bool produced;  ///< the application's commands fill it: it has no memory in its staging slot
     uint64_t asked_frame; ///< frame that first asked its producer; 0: none
     uint64_t ticket;
-    uint64_t value; ///< BINDING: of the bind; UPLOADED: the frame
-    uint32_t next;  ///< in its list
+    uint64_t value;       ///< BINDING: of the bind; UPLOADED: the frame
+    uint64_t stage_frame; ///< in which it entered its stage (load_stages.h)
+    uint32_t next;        ///< in its list
 };
 
 struct slc_unit_list {
@@ -162,6 +164,15 @@ struct slc_texture_requests {
     uint32_t count, room;
     uint32_t first_free; ///< place + 1; 0: none
     uint32_t live_count;
+};
+
+#define SLC_STAGE_FRAMES 1024u
+
+/** See load_stages.h. */
+struct slc_load_stages {
+    uint64_t first_frame;                ///< the oldest one in `requests`
+    uint64_t requests[SLC_STAGE_FRAMES]; ///< number of the next request when a frame began
+    SluiceVulkanLoadStages counts;
 };
 
 struct SluiceVulkanStreamer {
@@ -267,6 +278,7 @@ struct SluiceVulkanStreamer {
     struct slc_readback_ring readback;
     struct slc_resolve resolve;
 
+    struct slc_load_stages stages;
     SluiceVulkanStreamerStatistics counts; ///< but what others count
 };
 

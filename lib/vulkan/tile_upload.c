@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "vulkan/load_reads.h"
+#include "vulkan/load_stages.h"
 #include "vulkan/load_units.h"
 
 #include <assert.h>
@@ -102,6 +103,7 @@ static void upload_block(SluiceVulkanStreamer *s, VkCommandBuffer commands, cons
                                                                  s->copies[j].imageExtent.height);
         copy_count += added;
         assert(copy_count <= s->copy_capacity);
+        slc_load_stage_unit(s, unit, SLUICE_LOAD_STAGE_BIND);
         unit->state = SLC_UNIT_UPLOADED;
         unit->value = s->frame;
         slc_unit_list_append(s, &s->uploaded, units[i]);

@@ -106,10 +106,10 @@ sluiceEndRecording(?NULL)
 /* clang-format on */
 
 struct fixture {
-    SluiceFeedbackRate rate;
     SluiceCameraMotion motion;
     SluiceLookAheadInfo look;
     float view[16];
+    SluiceFeedbackRate rate;
     SluiceProceduralImage image;
     SluiceCompleteChainSourceCreateInfo chain;
     SluiceImageInfo info;
@@ -167,9 +167,9 @@ struct fixture {
         SluiceStreamedTextureStatistics statistics;
         SluiceTextureStatistics texture_statistics;
         uint64_t cursor, lost;
-        SluiceTileEvent events[1];
         SluiceCameraMotion motion;
         SluiceLookAhead ahead;
+        SluiceTileEvent events[1];
         SluiceRecorder *recorder;
         SluiceReplayResult replay;
     } out;
@@ -241,9 +241,9 @@ static void fixture_init(struct fixture *f, void **state)
                                    .textureCount = 10,
                                    .frameRate = 60,
                                    .timeoutSeconds = 1};
-    f->image = (SluiceProceduralImage){NULL, texel};
     f->look =
         (SluiceLookAheadInfo){.structSize = sizeof f->look, .pictureWidth = 4, .pictureHeight = 4};
+    f->image = (SluiceProceduralImage){NULL, texel};
     f->info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
                                 .width = 256,
                                 .height = 256,

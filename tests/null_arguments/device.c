@@ -48,6 +48,7 @@ sluiceChooseVulkanResidencyMode(&f->h->caps, f->h->mode, 1, &f->out.mode)
 sluiceGetVulkanStreamerManager(f->streamer, &f->out.manager)
 sluiceGetVulkanTextureState(f->streamer, f->texture.textureId, ?NULL, &f->out.texture_state)
 sluiceExplainVulkanTexture(f->streamer, f->texture.textureId, ?NULL, &f->out.explanation)
+sluiceGetVulkanLoadStages(f->streamer, &f->out.stages)
 sluiceRequestVulkanTexture(f->streamer, f->texture.textureId, &f->request, ?&f->out.request)
 sluiceGetVulkanRequestProgress(f->streamer, f->request_id, &f->out.request_progress)
 sluiceWithdrawVulkanRequest(f->streamer, f->request_id)
@@ -174,6 +175,7 @@ struct fixture {
         SluiceVulkanStreamerStatistics statistics;
         SluiceVulkanTextureState texture_state;
         SluiceVulkanExplanation explanation;
+        SluiceVulkanLoadStages stages;
         SluiceTextureRequestId request;
         SluiceVulkanTextureControl control;
         SluiceVulkanRequestProgress request_progress;

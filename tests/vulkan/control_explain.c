@@ -179,6 +179,55 @@ void followers_are_explained_by_their_primary(void **state)
     stage_finish(s);
 }
 
+static void check_stage(const SluiceLoadStageCounts *stage, uint64_t count, uint64_t frames_each)
+{
+    assert_int_equal(stage->count, count);
+    assert_int_equal(stage->frameMax, frames_each);
+    assert_true(stage->frameSum == count * frames_each && stage->buckets[frames_each] == count);
+}
+
+void stages_of_loads_are_counted_in_frames(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .tilesPerFrame = 2});
+    const uint32_t regular = 64 + 16 + 4;
+    const uint32_t loads = regular + 2 * TEXTURES; /* level 3 fills a staging slot; the rest */
+    frames(s, 8);
+    memset(s->seen[0], 0, sizeof s->seen[0]);
+    frames(s, 60);
+    SluiceVulkanLoadStages out = {.structSize = sizeof out};
+    CHECK_OK(sluiceGetVulkanLoadStages(s->streamer, &out));
+    /* frames() lets reads, binds and copies be over before the next frame */
+    check_stage(&out.stages[SLUICE_LOAD_STAGE_READ], loads, 1);
+    check_stage(&out.stages[SLUICE_LOAD_STAGE_COPY], loads, 1);
+    /* Two loads are copied per frame. Two mip tails, of two loads each, arrive in one frame, and
+     * two in the next: they wait 1, 1, 2, 2, and 2, 2, 3, 3 frames. */
+    const SluiceLoadStageCounts *bind = &out.stages[SLUICE_LOAD_STAGE_BIND];
+    assert_true(bind->count == loads && bind->frameSum == regular + 16 && bind->frameMax == 3);
+    assert_true(bind->buckets[1] == regular + 2 && bind->buckets[2] == 6);
+    /* Four mip tails are requested before the first frame, then two tiles per frame. */
+    uint64_t sum = 0, buckets[SLUICE_STAGE_BUCKET_COUNT] = {0};
+    for (uint32_t i = 0; i < regular + TEXTURES; i++) {
+        uint32_t waits = (i < TEXTURES ? i : i - TEXTURES) / 2;
+        sum += waits;
+        buckets[waits == 0   ? 0
+                : waits < 2  ? 1
+                : waits < 4  ? 2
+                : waits < 8  ? 3
+                : waits < 16 ? 4
+                : waits < 32 ? 5
+                             : 6]++;
+    }
+    const SluiceLoadStageCounts *queue = &out.stages[SLUICE_LOAD_STAGE_QUEUE];
+    assert_true(queue->count == regular + TEXTURES && queue->frameMax == regular / 2 - 1);
+    assert_int_equal(queue->frameSum, sum);
+    assert_memory_equal(queue->buckets, buckets, sizeof buckets);
+    const SluiceLoadStageCounts *feedback = &out.stages[SLUICE_LOAD_STAGE_FEEDBACK];
+    check_stage(feedback, statistics(s).feedbackMaps, 1);
+    stage_finish(s);
+}
+
 /* Of random scenes, frame by frame: what the other questions answer says the same. */
 void explanations_agree_with_the_state_of_each_tile(void **state)
 {

@@ -531,6 +531,8 @@ static void questions_take_no_memory(void **state)
     s->memory.refuse_from = 0;
     SluiceVulkanTextureState all = {.structSize = sizeof all};
     CHECK_OK(sluiceGetVulkanTextureState(s->streamer, s->textures[0].textureId, NULL, &all));
+    SluiceVulkanLoadStages stages = {.structSize = sizeof stages};
+    CHECK_OK(sluiceGetVulkanLoadStages(s->streamer, &stages));
     SluiceVulkanExplanation why = {.structSize = sizeof why};
     CHECK_OK(sluiceExplainVulkanTexture(s->streamer, s->textures[0].textureId, NULL, &why));
     assert_int_equal(progress_of(s, id).tileCount, TAIL + 1);
@@ -570,6 +572,7 @@ int main(void)
         cmocka_unit_test(failed_loads_are_told),
         cmocka_unit_test(fades_are_told),
         cmocka_unit_test(followers_are_explained_by_their_primary),
+        cmocka_unit_test(stages_of_loads_are_counted_in_frames),
         cmocka_unit_test(explanations_agree_with_the_state_of_each_tile),
     };
     return RUN_TESTS(tests);
