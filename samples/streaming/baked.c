@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "../../tools/common/bake_jobs.h"
 #include "../../tools/common/files.h"
@@ -24,12 +23,6 @@ static bool needs_store(const struct picture_path *picture, enum pixel_format pi
     return !picture->refused &&
            (picture->kind == PICTURE_OTHER ||
             (picture->kind == PICTURE_EXR_LEVEL_ZERO && pixels != PIXEL_FORMAT_RGBA8));
-}
-
-static uint64_t file_size(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 ? (uint64_t)status.st_size : 0;
 }
 
 /** "cache/baked/whole/path.png.store". */
@@ -90,7 +83,7 @@ static size_t make_jobs(struct picture_path *paths, size_t count, const char *ca
     size_t job_count = 0;
     for (size_t i = 0; i < count; i++) {
         struct picture_path *picture = &paths[i];
-        struct bake_job job = {.input = picture->path, .size = file_size(picture->path)};
+        struct bake_job job = {.input = picture->path, .size = files_size(picture->path)};
         if (!needs_store(picture, pixels))
             continue;
         picture->store = store_path(picture->path, cache);

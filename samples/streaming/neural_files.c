@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "../../tools/common/bake_jobs.h"
+#include "../../tools/common/files.h"
 #include "../../tools/common/log.h"
 #include "../../tools/common/text.h"
 #include "cache.h"
@@ -155,7 +156,7 @@ static bool bake(struct hanging *hangings, uint32_t count, const struct settings
         jobs[job_count++] =
             (struct bake_job){.input = hanging->original,
                               .output = hanging->stores[i % 2],
-                              .size = 1,
+                              .size = files_size(hanging->original),
                               .settings = {.structSize = sizeof(SluiceBakeSettings),
                                            .format = i % 2 ? formats.blocks : formats.raw,
                                            .transfer = srgb ? SLUICE_BAKE_TRANSFER_SRGB

@@ -57,6 +57,12 @@ bool files_make_folders_of(const char *path)
     return !slash || slash == path || make_folders(path, (size_t)(slash - path));
 }
 
+uint64_t files_size(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 ? (uint64_t)info.st_size : 0;
+}
+
 bool files_add(const char *path, struct file_list *list)
 {
     if (list->count == list->capacity) {

@@ -1,15 +1,19 @@
-/** Folders: making them, and finding the files in them. */
+/** Folders: making them, and finding the files in them. Sizes of files. */
 #ifndef TOOLS_COMMON_FILES_H
 #define TOOLS_COMMON_FILES_H
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /** Makes a folder and those above it. Says on stderr why it failed. */
 bool files_make_folders(const char *path);
 
 /** Makes the folders above a file. errno says why it failed. */
 bool files_make_folders_of(const char *path);
+
+/** Bytes of a file; 0 if there is none. */
+uint64_t files_size(const char *path);
 
 /** A growing list of paths. Zeroed is empty. */
 struct file_list {

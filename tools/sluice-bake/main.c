@@ -3,6 +3,7 @@
 
 #include "../common/clock.h"
 #include "../common/descriptors.h"
+#include "../common/files.h"
 #include "find.h"
 #include "neural.h"
 #include "options.h"
@@ -13,7 +14,6 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 
 enum { OK = 0, FAILED = 1, WRONG_USAGE = 2 };
 
@@ -29,12 +29,6 @@ static struct bake_job *make_jobs(const struct options *options, const struct fi
                                     .settings = options->settings,
                                     .force = options->force};
     return jobs;
-}
-
-static uint64_t file_size(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 ? (uint64_t)status.st_size : 0;
 }
 
 static struct bake_conditions conditions_of(const struct options *options)
@@ -57,7 +51,7 @@ static int bake_layers(const struct options *options)
                            .settings = options->settings,
                            .force = options->force};
     for (uint32_t i = 0; i < job.layer_count; i++)
-        job.size += file_size(job.layers[i]);
+        job.size += files_size(job.layers[i]);
     double start = clock_seconds();
     if (!bake_jobs_run(&job, 1, &conditions))
         return FAILED;

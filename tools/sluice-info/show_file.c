@@ -3,12 +3,12 @@
 #include "show.h"
 
 #include "open_file.h"
+#include "../common/files.h"
 #include "../common/text.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <sys/stat.h>
 #include <time.h>
 
 #ifdef HAVE_STORE
@@ -21,12 +21,6 @@
 static uint32_t level_size(uint32_t size, uint32_t level)
 {
     return size >> level ? size >> level : 1;
-}
-
-static uint64_t file_size(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 ? (uint64_t)status.st_size : 0;
 }
 
 static uint64_t texel_size(const SluiceImageInfo *image)
@@ -204,7 +198,7 @@ static void print_file(const struct texture_file *file, const char *path)
         printf("  cube maps               %u of six faces each\n", image->arrayLayerCount / 6);
     printf("  format                  %s\n", sluiceGetFormatName(image->format));
     printf("  texels                  %" PRIu64 " bytes\n", texel_size(image));
-    printf("  file                    %" PRIu64 " bytes\n", file_size(path));
+    printf("  file                    %" PRIu64 " bytes\n", files_size(path));
     show_what_is_in_a_store(file, false);
     show_what_is_in_an_exr(file, false);
 }
@@ -219,7 +213,7 @@ static void print_file_json(const struct texture_file *file, const char *path)
            ", \"fileSize\": %" PRIu64,
            file->kind, image->width, image->height, image->mipLevelCount,
            image->arrayLayerCount ? image->arrayLayerCount : 1, image->cube ? "true" : "false",
-           sluiceGetFormatName(image->format), texel_size(image), file_size(path));
+           sluiceGetFormatName(image->format), texel_size(image), files_size(path));
     show_what_is_in_a_store(file, true);
     show_what_is_in_an_exr(file, true);
     printf("}\n");
