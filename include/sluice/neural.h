@@ -435,6 +435,51 @@ typedef struct SluiceNeuralDecodeInfo {
  */
 SLUICE_API SluiceResult sluiceDecodeNeuralTexels(const SluiceNeuralDecodeInfo *pInfo);
 
+/** Latents whose masks are to decode to exactly 0 and 1. */
+typedef struct SluiceNeuralMaskInfo {
+    uint32_t structSize; ///< sizeof(SluiceNeuralMaskInfo).
+    const SluiceNeuralConstants
+        *pConstants;           ///< Of whole grids, as sluicePlanNeuralFile makes them.
+    void *pLatents;            ///< All codes packed. Some are changed.
+    uint64_t latentSize;       ///< Bytes.
+    const void *pInt8Weights;  ///< Of sluiceGetNeuralWeights.
+    uint64_t weightSize;       ///< Bytes.
+    uint32_t channelCount;     ///< Channels of the pictures, outputs of the network. 1 to 16.
+    uint32_t maskChannels;     ///< Bit c: channel c is a mask, and clamped.
+    uint32_t clampedChannels;  ///< Bit c: decoded values of channel c are clamped to 0..1.
+    const float *pLossWeights; ///< Of squared errors, one per channel. NULL: 1.
+    /** Per mip of the constants [height][width][channelCount] floats: what texels should be. */
+    const float *const *ppMips;
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
+    SluiceLogCallback log;                       ///< Arguments that are refused.
+} SluiceNeuralMaskInfo;
+
+/** What a repair did. Texels are of all mips. */
+typedef struct SluiceNeuralMaskReport {
+    uint32_t structSize;  ///< sizeof(SluiceNeuralMaskReport).
+    uint64_t texelCount;  ///< Texels of which a mask should be exactly 0 or 1.
+    uint64_t wrongBefore; ///< Of these, texels that decoded to something else, clamped to 0..1.
+    uint64_t wrongAfter;  ///< The same after the repair. Usually 0.
+} SluiceNeuralMaskReport;
+
+/**
+ * Changes latents until masks decode to exactly 0 and 1 with INT8 weights wherever they should.
+ *
+ * Searches codes around each wrong texel for the change that costs the least squared error in all
+ * texels that the code reaches, and changes two codes if one does not suffice. Repairs what trained
+ * compressors leave, a few texels in a thousand: a wrong texel takes about 20 ms. Equal arguments
+ * give equal bytes.
+ *
+ * Memory: 8 bytes per texel of all mips, a copy of the latents, and 200 KiB. `pReport` may be NULL.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, also for a mip; SLUICE_ERROR_INVALID_ARGUMENT for slices that
+ *         are no whole grids, and as sluiceDecodeNeuralTexels;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. Latents may have been changed then.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceRepairNeuralMasks(const SluiceNeuralMaskInfo *pInfo,
+                                                SluiceNeuralMaskReport *pReport);
+
 /**
  * Converts a value from one color space to another. Negative values of sRGB are on its linear part;
  * HLG is symmetric about 0. Clamp to 0..1 before storing as UNORM.

@@ -68,12 +68,15 @@ void slc_neural_run_int8(const struct slc_neural_shape *shape, const struct slc_
 void slc_neural_run_fp8(const struct slc_neural_shape *shape, const struct slc_neural_blob *at,
                         const uint8_t *weights, const float *inputs, float *outputs);
 
+struct slc_neural_fast;
+
 /** A rectangle to decode. */
 struct slc_neural_job {
     const struct slc_neural_mip_view *view;
     const struct slc_neural_shape *shape;
     SluiceNeuralWeightKind kind;
     const uint8_t *weights;
+    const struct slc_neural_fast *fast; ///< made of the weights; NULL: strips make it again
     uint32_t x, y, width, height;
     uint32_t first_channel, channel_count;
     float *texels;

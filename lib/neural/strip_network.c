@@ -118,11 +118,24 @@ static void decode_strip(const struct slc_neural_job *job, const struct slc_neur
     }
 }
 
-void slc_neural_decode_strips(const struct slc_neural_job *job)
+static void decode_with(const struct slc_neural_job *job, const struct slc_neural_fast *fast)
+{
+    for (uint32_t x = 0; x < job->width; x += SLC_STRIP_LANES)
+        decode_strip(job, fast, x,
+                     job->width - x < SLC_STRIP_LANES ? job->width - x : SLC_STRIP_LANES);
+}
+
+static void decode_once(const struct slc_neural_job *job)
 {
     struct slc_neural_fast fast;
     slc_neural_fast_init(&fast, job->shape, job->kind, job->weights);
-    for (uint32_t x = 0; x < job->width; x += SLC_STRIP_LANES)
-        decode_strip(job, &fast, x,
-                     job->width - x < SLC_STRIP_LANES ? job->width - x : SLC_STRIP_LANES);
+    decode_with(job, &fast);
+}
+
+void slc_neural_decode_strips(const struct slc_neural_job *job)
+{
+    if (job->fast)
+        decode_with(job, job->fast);
+    else
+        decode_once(job);
 }

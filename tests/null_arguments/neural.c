@@ -22,6 +22,7 @@ sluiceReadNeuralLatents(f->set, ?&f->request, &f->out.constants, &f->out.size, ?
 sluiceBoundNeuralLatents(f->set, &f->request, 1, &f->out.size)
 sluiceReadNeuralLatentPart(f->set, 0, 0, &f->out.size, ?NULL)
 sluiceDecodeNeuralTexels(&f->decode)
+sluiceRepairNeuralMasks(&f->masks, ?&f->out.report)
 sluiceConvertNeuralColor(0, 0, 0)
 sluiceCreateNeuralImageSource(&f->source, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceLayOutNeuralPages(f->set, 4096, &f->out.pages)
@@ -38,6 +39,8 @@ struct fixture {
     SluiceNeuralOutput outputs[16];
     SluiceNeuralRequest request;
     SluiceNeuralDecodeInfo decode;
+    SluiceNeuralMaskInfo masks;
+    const float *mips[1];
     SluiceNeuralWriteInfo write;
     uint8_t codes[64];
     SluiceNeuralConstants constants;
@@ -56,6 +59,7 @@ struct fixture {
         SluiceNeuralTexture texture;
         SluiceNeuralColorSpace color_space;
         SluiceNeuralMip mip;
+        SluiceNeuralMaskReport report;
         SluiceNeuralLatentImage image;
         SluiceNeuralLatentPart part;
         SluiceNeuralConstants constants;
@@ -98,6 +102,17 @@ static void fixture_init(struct fixture *f, void **state)
         .height = 4,
         .channelCount = 2,
         .pTexels = f->texels,
+    };
+    f->mips[0] = f->texels;
+    f->masks = (SluiceNeuralMaskInfo){
+        .structSize = sizeof f->masks,
+        .pConstants = &f->constants,
+        .pLatents = f->latents,
+        .latentSize = f->sizes[0],
+        .pInt8Weights = f->weights,
+        .weightSize = f->sizes[1],
+        .channelCount = 2,
+        .ppMips = f->mips,
     };
     f->write = (SluiceNeuralWriteInfo){
         .structSize = sizeof f->write,
