@@ -122,11 +122,12 @@ static bool measure(const struct arguments *a, const struct gpu *gpu,
     bool is_done = make_set(a->folder, material, &set) && training_run(&run);
     if (is_done) {
         printf("{\"material\": \"%s\", \"bits_per_texel\": %s, \"steps\": %u, \"psnr\": %.3f, "
-               "\"fp8_psnr\": %.3f, \"exact_mask\": %.5f, \"size\": %llu, \"seconds\": %.3f, "
+               "\"fp8_psnr\": %.3f, \"exact_mask\": %.5f, \"repaired\": %llu, "
+               "\"repair_seconds\": %.3f, \"size\": %llu, \"seconds\": %.3f, "
                "\"ms_per_step\": %.4f, \"channels\": [",
                material->name, sizes[size].bits, run.steps_run, run.psnr, run.fp8_psnr,
-               run.exact_mask, (unsigned long long)run.file_size, run.seconds,
-               run.seconds * 1e3 / run.steps_run);
+               run.exact_mask, (unsigned long long)run.repaired, run.repair_seconds,
+               (unsigned long long)run.file_size, run.seconds, run.seconds * 1e3 / run.steps_run);
         for (uint32_t c = 0; c < set.channel_count; c++)
             printf("%s%.2f", c ? ", " : "", run.channel_psnr[c]);
         printf("], \"device\": \"%s\"}\n", gpu->properties.deviceName);

@@ -156,67 +156,114 @@ static bool train(struct session *s)
     return run_commands(s, 0, &steps);
 }
 
-/* One byte per code, image after image. */
-static uint8_t *codes_of(const SluiceNeuralTrainedSet *trained)
+/* Codes of 4 bits in the layout of slices. */
+static void pack(const SluiceNeuralTrainedSet *trained, const SluiceNeuralConstants *constants,
+                 uint8_t *latents)
 {
-    size_t count = 0, at = 0;
-    for (uint32_t n = 0; n < trained->latentImageCount; n++)
-        count += (size_t)trained->latentImages[n].width * trained->latentImages[n].height;
-    uint8_t *codes = malloc(count * trained->featureCount);
-    for (uint32_t n = 0; n < trained->latentImageCount && codes; n++) {
+    const uint32_t features = trained->featureCount;
+    for (uint32_t n = 0; n < trained->latentImageCount; n++) {
         const SluiceNeuralTrainedImage *image = &trained->latentImages[n];
-        size_t texels = (size_t)image->width * image->height;
+        uint8_t *slice = latents + constants->slices[n].dataOffset;
+        const size_t texels = (size_t)image->width * image->height;
         for (size_t i = 0; i < texels; i++)
-            for (uint32_t f = 0; f < trained->featureCount; f++)
-                codes[at++] = image->pTexels[f / 4 * texels + i] >> (f % 4 * 4) & 15;
+            for (uint32_t f = 0; f < features; f += 4) {
+                const uint16_t codes = image->pTexels[f / 4 * texels + i];
+                slice[(i * features + f) / 2] = (uint8_t)codes;
+                slice[(i * features + f) / 2 + 1] = (uint8_t)(codes >> 8);
+            }
     }
-    return codes;
+}
+
+static bool repair_masks(struct training_run *run, const SluiceNeuralConstants *constants,
+                         const SluiceNeuralTrainedSet *trained, uint8_t *latents,
+                         uint64_t latent_size)
+{
+    const struct training_set *set = run->set;
+    const double start = clock_seconds();
+    float weights[SLUICE_NEURAL_MAX_CHANNELS];
+    SluiceNeuralMaskReport report = {.structSize = sizeof report};
+    SluiceNeuralMaskInfo info = {.structSize = sizeof info,
+                                 .pConstants = constants,
+                                 .pLatents = latents,
+                                 .latentSize = latent_size,
+                                 .pInt8Weights = trained->pInt8Weights,
+                                 .weightSize = trained->int8Size,
+                                 .channelCount = set->channel_count,
+                                 .pLossWeights = weights,
+                                 .ppMips = (const float *const *)set->mips,
+                                 .log = {NULL, log_say}};
+    for (uint32_t c = 0; c < set->channel_count; c++) {
+        weights[c] = set->meaning[c].weight > 0.0f ? set->meaning[c].weight : 1.0f;
+        info.maskChannels |= (uint32_t)set->meaning[c].mask << c;
+        info.clampedChannels |= (uint32_t)set->meaning[c].clamped << c;
+    }
+    if (info.maskChannels == 0)
+        return true;
+    if (!check(sluiceRepairNeuralMasks(&info, &report), "masks"))
+        return false;
+    run->repaired = report.wrongBefore - report.wrongAfter;
+    run->repair_seconds = clock_seconds() - start;
+    if (report.wrongAfter > 0)
+        fprintf(stderr, "%llu texels of masks that should be 0 or 1 are not exactly that\n",
+                (unsigned long long)report.wrongAfter);
+    return true;
 }
 
 static bool write_file(struct session *s)
 {
-    const struct training_run *run = s->run;
+    struct training_run *run = s->run;
     SluiceNeuralTrainedSet trained = {.structSize = sizeof trained};
+    SluiceNeuralConstants constants;
+    uint64_t latent_size;
     if (!check(sluiceGetNeuralTrainedSet(s->compressor, &trained), "trained set"))
         return false;
-    uint8_t *codes = codes_of(&trained);
-    const SluiceNeuralWriteInfo info = {.structSize = sizeof info,
-                                        .pPath = run->output,
-                                        .schema = 3,
-                                        .width = run->set->width,
-                                        .height = run->set->height,
-                                        .mipCount = run->set->mip_count,
-                                        .channelCount = run->set->channel_count,
-                                        .textureCount = run->set->texture_count,
-                                        .pTextures = run->set->textures,
-                                        .pColorSpaces = run->set->spaces,
-                                        .network = SLUICE_NEURAL_NETWORK_SCHEMA3,
-                                        .highFeatures = run->features,
-                                        .gridScale = run->scale,
-                                        .latentImageCount = trained.latentImageCount,
-                                        .pCodes = codes,
-                                        .pInt8Weights = trained.pInt8Weights,
-                                        .pFp8Weights = trained.pFp8Weights,
-                                        .log = {NULL, log_say}};
-    bool is_written = codes && check(sluiceWriteNeuralFile(&info), run->output);
-    free(codes);
+    SluiceNeuralWriteInfo info = {.structSize = sizeof info,
+                                  .pPath = run->output,
+                                  .schema = 3,
+                                  .width = run->set->width,
+                                  .height = run->set->height,
+                                  .mipCount = run->set->mip_count,
+                                  .channelCount = run->set->channel_count,
+                                  .textureCount = run->set->texture_count,
+                                  .pTextures = run->set->textures,
+                                  .pColorSpaces = run->set->spaces,
+                                  .network = SLUICE_NEURAL_NETWORK_SCHEMA3,
+                                  .highFeatures = run->features,
+                                  .gridScale = run->scale,
+                                  .latentImageCount = trained.latentImageCount,
+                                  .pInt8Weights = trained.pInt8Weights,
+                                  .pFp8Weights = trained.pFp8Weights,
+                                  .log = {NULL, log_say}};
+    if (!check(sluicePlanNeuralFile(&info, &constants, &latent_size), run->output))
+        return false;
+    uint8_t *latents = calloc((size_t)latent_size, 1);
+    if (!latents) {
+        fprintf(stderr, "%s: out of memory\n", run->output);
+        return false;
+    }
+    pack(&trained, &constants, latents);
+    info.pLatents = latents;
+    bool is_written = repair_masks(run, &constants, &trained, latents, latent_size) &&
+                      check(sluiceWriteNeuralFile(&info), run->output);
+    free(latents);
     return is_written;
 }
 
-/* Squared errors of mip 0, by channel; masks are counted. */
+/* Squared errors of mip 0, by channel; masks are counted in all mips. */
 struct errors {
     double squares[SLUICE_NEURAL_MAX_CHANNELS], certain, exact;
 };
 
 static void add_row(const struct training_set *set, const float *decoded, const float *wanted,
-                    struct errors *errors)
+                    uint32_t width, bool is_mip0, struct errors *errors)
 {
-    for (uint32_t i = 0; i < set->width * set->channel_count; i++) {
+    for (uint32_t i = 0; i < width * set->channel_count; i++) {
         uint32_t c = i % set->channel_count;
         float value = decoded[i];
         if (set->meaning[c].clamped)
             value = fmaxf(fminf(value, 1.0f), 0.0f);
-        errors->squares[c] += pow((double)(value - wanted[i]), 2.0);
+        if (is_mip0)
+            errors->squares[c] += pow((double)(value - wanted[i]), 2.0);
         if (set->meaning[c].mask && (wanted[i] <= 0.0f || wanted[i] >= 1.0f)) {
             errors->certain += 1.0;
             errors->exact += value == wanted[i];
@@ -224,15 +271,39 @@ static void add_row(const struct training_set *set, const float *decoded, const 
     }
 }
 
+static bool decode_mip(const struct training_set *set, const SluiceNeuralDecodeInfo *decode,
+                       struct errors *errors)
+{
+    SluiceNeuralDecodeInfo row = *decode;
+    const uint32_t height = set->height >> row.mip ? set->height >> row.mip : 1;
+    bool is_read = true;
+    row.width = set->width >> row.mip ? set->width >> row.mip : 1;
+    row.height = 1;
+    for (row.y = 0; row.y < height && is_read; row.y++) {
+        is_read = check(sluiceDecodeNeuralTexels(&row), "decoding");
+        add_row(set, row.pTexels,
+                set->mips[row.mip] + (size_t)row.y * row.width * set->channel_count, row.width,
+                row.mip == 0, errors);
+    }
+    return is_read;
+}
+
+static bool has_mask(const struct training_set *set)
+{
+    for (uint32_t c = 0; c < set->channel_count; c++)
+        if (set->meaning[c].mask)
+            return true;
+    return false;
+}
+
 /* What a reader of the file gets. */
 static bool decode(const struct training_run *run, SluiceNeuralSet *file,
                    SluiceNeuralWeightKind kind, struct errors *errors)
 {
     const struct training_set *set = run->set;
-    static const SluiceNeuralRequest mip0 = {.mipCount = 1};
     SluiceNeuralConstants constants;
     uint64_t latent_size, weight_size;
-    if (!check(sluiceReadNeuralLatents(file, &mip0, &constants, &latent_size, NULL), "latents") ||
+    if (!check(sluiceReadNeuralLatents(file, NULL, &constants, &latent_size, NULL), "latents") ||
         !check(sluiceGetNeuralWeights(file, kind, NULL, &weight_size, NULL), "weights"))
         return false;
     char *latents = malloc((size_t)latent_size), *weights = malloc((size_t)weight_size);
@@ -244,18 +315,15 @@ static bool decode(const struct training_run *run, SluiceNeuralSet *file,
                                    .pWeights = weights,
                                    .weightSize = weight_size,
                                    .weightKind = kind,
-                                   .width = set->width,
-                                   .height = 1,
                                    .channelCount = set->channel_count,
                                    .pTexels = row};
     bool is_read =
         latents && weights && row &&
-        check(sluiceReadNeuralLatents(file, &mip0, &constants, &latent_size, latents), "latents") &&
+        check(sluiceReadNeuralLatents(file, NULL, &constants, &latent_size, latents), "latents") &&
         check(sluiceGetNeuralWeights(file, kind, NULL, &weight_size, weights), "weights");
-    for (info.y = 0; info.y < set->height && is_read; info.y++) {
-        is_read = check(sluiceDecodeNeuralTexels(&info), "decoding");
-        add_row(set, row, set->mips[0] + (size_t)info.y * set->width * set->channel_count, errors);
-    }
+    const uint32_t mips = has_mask(set) ? set->mip_count : 1;
+    for (info.mip = 0; info.mip < mips && is_read; info.mip++)
+        is_read = decode_mip(set, &info, errors);
     free(row);
     free(weights);
     free(latents);
@@ -296,7 +364,8 @@ bool training_run(struct training_run *run)
 {
     struct session session = {.run = run};
     run->steps_run = 0;
-    run->seconds = 0.0;
+    run->seconds = run->repair_seconds = 0.0;
+    run->repaired = 0;
     bool is_done = create(&session) && train(&session) && write_file(&session);
     destroy(&session);
     return is_done && compare(run);

@@ -18,8 +18,11 @@ struct training_run {
     double seconds;        ///< of training alone
     double psnr, fp8_psnr; ///< dB of mip 0, decoded from the file by the C decoder
     double channel_psnr[SLUICE_NEURAL_MAX_CHANNELS]; ///< of the int8 network
-    double exact_mask;  ///< share of 0s and 1s of masks that are so exactly; 1 without a mask
-    uint64_t file_size; ///< bytes
+    uint64_t repaired;     ///< texels of masks in all mips that training left inexact
+    double repair_seconds; ///< of one processor
+    double exact_mask;     ///< share of 0s and 1s of masks in all mips that are so exactly, int8; 1
+                           ///< without a mask
+    uint64_t file_size;    ///< bytes
 };
 
 /** False, which stderr says. */

@@ -228,9 +228,10 @@ static void print_run(const struct options *options, const struct training_run *
         text_write_json(stdout, options->output);
         printf(", \"bits_per_texel\": %g, \"size\": %" PRIu64
                ", \"psnr\": %.3f, \"fp8_psnr\": %.3f, "
-               "\"exact_mask\": %.5f, \"steps\": %u, \"seconds\": %.3f}\n",
-               bits, run->file_size, run->psnr, run->fp8_psnr, run->exact_mask, run->steps_run,
-               run->seconds);
+               "\"exact_mask\": %.5f, \"repaired\": %" PRIu64
+               ", \"steps\": %u, \"seconds\": %.3f, \"repair_seconds\": %.3f}\n",
+               bits, run->file_size, run->psnr, run->fp8_psnr, run->exact_mask, run->repaired,
+               run->steps_run, run->seconds, run->repair_seconds);
         return;
     }
     text_write(stdout, options->output);
