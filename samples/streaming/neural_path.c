@@ -41,10 +41,7 @@ static enum neural_path choose(const struct gpu *gpu, const SluiceNeuralSetInfo 
 {
     if (!what_lacks(gpu, info, NEURAL_PATH_VECTOR))
         return NEURAL_PATH_VECTOR;
-    /* Its compiler takes long for loops that are unrolled. */
-    bool is_software = gpu->capabilities.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-    return is_software || what_lacks(gpu, info, NEURAL_PATH_DOT) ? NEURAL_PATH_PLAIN
-                                                                 : NEURAL_PATH_DOT;
+    return what_lacks(gpu, info, NEURAL_PATH_DOT) ? NEURAL_PATH_PLAIN : NEURAL_PATH_DOT;
 }
 
 static void choose_words(enum neural_path path, uint32_t schema, struct neural_program *program)

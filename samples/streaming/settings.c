@@ -122,8 +122,8 @@ enum option_outcome settings_parse(int argc, char **argv, struct settings *s)
         {OPTION_CHOICE, "neural-path", "auto|plain|dot|vector|vector-fp8", "auto", &s->neural_path,
          "how the shader of sample runs the network; auto: cooperative vectors where the device "
          "has "
-         "them in fragment shaders and the set is of schema 3, else integer dot products on a GPU "
-         "that has them, else plain. All but vector-fp8 have the same bits"},
+         "them in fragment shaders and the set is of schema 3, else integer dot products where it "
+         "has them, else plain. All but vector-fp8 have the same bits"},
         {OPTION_TEXT, "neural-material", "DIR", "(none)", &s->material,
          "write a material of 512 x 512 texels as PNG files, for sluice-bake --neural, and end"},
 
