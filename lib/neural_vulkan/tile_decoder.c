@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "neural_produce_comp.h"
+#include "neural_produce_comp_schema3.h"
 
 #define DEFAULT_SCRATCH (UINT64_C(4) << 20)
 #define MAX_SCRATCH (UINT64_C(256) << 20)
@@ -167,16 +168,19 @@ static SluiceResult create_buffers(SluiceVulkanNeuralDecoder *d,
     return result;
 }
 
-static SluiceResult create_pipeline(SluiceVulkanNeuralDecoder *d)
+/* A shader of schema 3 alone is twice as fast as one of both; one of schema 1 gains nothing
+ * (docs/neural.md). */
+static SluiceResult create_pipeline(SluiceVulkanNeuralDecoder *d, uint32_t schema)
 {
-    const struct slc_compute_pass pass = {
-        slc_neural_produce_comp, sizeof slc_neural_produce_comp, {0, 0}};
+    static const struct slc_compute_pass passes[2] = {
+        {slc_neural_produce_comp, sizeof slc_neural_produce_comp, {0, 0}},
+        {slc_neural_produce_comp_schema3, sizeof slc_neural_produce_comp_schema3, {0, 0}}};
     SluiceResult result = slc_compute_init(
         &d->compute, &d->context->vk,
         &(struct slc_compute_create_info){.binding_count = SLC_NEURAL_BUFFER_COUNT,
                                           .push_size = sizeof(struct SluiceNeuralTile),
                                           .set_count = 1,
-                                          .passes = &pass,
+                                          .passes = &passes[schema == 3],
                                           .pass_count = 1,
                                           .name = "decode neural tiles"});
     if (result != SLUICE_SUCCESS)
@@ -210,7 +214,7 @@ SluiceResult sluiceCreateVulkanNeuralDecoder(const SluiceVulkanNeuralDecoderCrea
     slc_context_add_child(info.context);
     result = create_buffers(d, &info);
     if (result == SLUICE_SUCCESS)
-        result = create_pipeline(d);
+        result = create_pipeline(d, info.pConstants->schema);
     if (result != SLUICE_SUCCESS) {
         sluiceDestroyVulkanNeuralDecoder(d);
         return result;

@@ -15,7 +15,8 @@
 
 #define SMALL "v9_64_g.ntc" /* the mip tail alone */
 #define LARGE "v9_300x200.ntc"
-#define TILE 128u /* texels of LARGE along a side, in RGBA8 */
+#define OLD "v7_64_g.ntc" /* schema 1 */
+#define TILE 128u         /* texels of LARGE along a side, in RGBA8 */
 
 struct rig {
     struct scene scene;
@@ -195,6 +196,18 @@ static void texels_are_those_of_the_decoder_in_C(void **state)
     hide(rig);
 }
 
+static void texels_of_schema_1_are_those_of_the_decoder_in_C(void **state)
+{
+    struct rig rig = {.decoder = NULL};
+    rig_init(&rig, *state, OLD);
+    show(&rig, *state, SLUICE_FORMAT_R8G8B8A8_UNORM, 0, 4);
+    struct fetch f = compare(&rig);
+    if (!(f.texel_count > 16000 && f.worst <= 0.5 / 255 + 1e-6))
+        fail_msg("%u values, the worst is off by %.9g", f.texel_count, f.worst);
+    hide(&rig);
+    rig_finish(&rig);
+}
+
 /* The numbers of the sample are taken for codes of HLG. */
 static void codes_of_hlg_become_linear_floats(void **state)
 {
@@ -333,41 +346,34 @@ static void buffers_beyond_the_range_of_the_device_are_refused(void **state)
     h->quiet = true;
     CHECK_RESULT(sluiceCreateVulkanNeuralDecoder(&info, &decoder), SLUICE_ERROR_LIMIT_EXCEEDED);
     h->quiet = false;
-    info.scratchSize = 256u << 10;
-    CHECK_OK(sluiceCreateVulkanNeuralDecoder(&info, &decoder));
-    sluiceDestroyVulkanNeuralDecoder(decoder);
     close_set(&rig);
 }
 
 static void wrong_outputs_are_refused(void **state)
 {
     struct harness *h = *state;
-    struct rig rig;
+    struct rig *rig = &small_rig;
     const SluiceTileProducer *producer = NULL;
-    open_set(&rig, SMALL);
-    SluiceVulkanNeuralDecoderCreateInfo info = decoder_info(&rig, h->context);
-    CHECK_OK(sluiceCreateVulkanNeuralDecoder(&info, &rig.decoder));
+    rig_init(rig, h, SMALL);
     SluiceVulkanNeuralOutput output = {
         .structSize = sizeof output, .format = SLUICE_FORMAT_R16_SFLOAT, .channelCount = 1};
     h->quiet = true;
-    CHECK_RESULT(sluiceAddVulkanNeuralOutput(rig.decoder, &output, &producer),
+    CHECK_RESULT(sluiceAddVulkanNeuralOutput(rig->decoder, &output, &producer),
                  SLUICE_ERROR_UNSUPPORTED);
     output.format = SLUICE_FORMAT_BC5_UNORM_BLOCK;
     output.channelCount = 3;
-    CHECK_RESULT(sluiceAddVulkanNeuralOutput(rig.decoder, &output, &producer),
+    CHECK_RESULT(sluiceAddVulkanNeuralOutput(rig->decoder, &output, &producer),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     output.channelCount = 2;
-    output.firstChannel = rig.info.channelCount - 1;
-    CHECK_RESULT(sluiceAddVulkanNeuralOutput(rig.decoder, &output, &producer),
+    output.firstChannel = rig->info.channelCount - 1;
+    CHECK_RESULT(sluiceAddVulkanNeuralOutput(rig->decoder, &output, &producer),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     output = (SluiceVulkanNeuralOutput){
         .structSize = sizeof output, .format = SLUICE_FORMAT_BC7_SRGB_BLOCK, .channelCount = 3};
-    CHECK_RESULT(sluiceAddVulkanNeuralOutput(rig.decoder, &output, &producer),
+    CHECK_RESULT(sluiceAddVulkanNeuralOutput(rig->decoder, &output, &producer),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     assert_null(producer);
     h->quiet = false;
-    sluiceDestroyVulkanNeuralDecoder(rig.decoder);
-    close_set(&rig);
 }
 
 static void every_refused_allocation_is_survived(void **state)
@@ -402,13 +408,14 @@ static void every_refused_allocation_is_survived(void **state)
 int main(void)
 {
     struct harness h;
-    int status = need_neural_samples((const char *const[]){SMALL, LARGE, NULL});
+    int status = need_neural_samples((const char *const[]){SMALL, LARGE, OLD, NULL});
     if (status == 0)
         status = harness_init(&h);
     if (status)
         return status;
     struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_are_those_of_the_decoder_in_C),
+        cmocka_unit_test(texels_of_schema_1_are_those_of_the_decoder_in_C),
         cmocka_unit_test(codes_of_hlg_become_linear_floats),
         cmocka_unit_test(a_whole_texture_becomes_blocks_when_it_is_requested),
         cmocka_unit_test(blocks_are_near_to_them),
