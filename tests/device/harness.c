@@ -140,7 +140,9 @@ static bool pick_device(struct harness *h)
         if (sluiceGetVulkanDeviceCapabilities(h->instance, devices[i], h->get, &caps) !=
             SLUICE_SUCCESS)
             continue;
-        bool named = wanted && (strcmp(wanted, number) == 0 || strstr(caps.deviceName, wanted));
+        bool is_number = wanted && wanted[strspn(wanted, "0123456789")] == '\0';
+        bool named = wanted && (is_number ? strcmp(wanted, number) == 0
+                                          : strstr(caps.deviceName, wanted) != NULL);
         if ((wanted && !named) || !caps.nonUniformIndexing || !can_run(h, devices[i]))
             continue;
         h->physical_device = devices[i];
