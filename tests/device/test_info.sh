@@ -76,5 +76,19 @@ status 0 "$info" --formats --device 0 && grep -q '^  format  *linear  *sparse  *
     [ "$rows" -eq $(($(cat "$folder/count") + 1)) ]
 report formats_has_a_row_for_each_format $?
 
+status 2 "$info" --group fades && status 2 "$info" x --self-test
+report wrong_usage_of_the_self_test_is_refused $?
+
+# A build without it says so.
+status 0 "$info" --self-test --group sampler --json --device 0
+ran=$?
+if grep -q 'has no self-test' "$folder/err"; then
+    n=$((n + 1))
+    echo "ok $n # SKIP this build has no self-test"
+else
+    [ $ran = 0 ] && python3 "$(dirname "$check")/check_self_test.py" <"$folder/out" 2>"$folder/err"
+    report self_test_reports_each_check $?
+fi
+
 echo "1..$n"
 exit $failed

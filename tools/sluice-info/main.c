@@ -52,6 +52,8 @@ int main(int argc, char **argv)
         status = write_picture(&options);
     else if (options.files.count)
         status = show_files(&options);
+    else if (options.self_test)
+        status = self_test(&options);
     else
         status = show_devices(&options);
     return text_flush("sluice-info: ") ? status : NOT_SHOWN;

@@ -13,6 +13,7 @@ static const char usage[] =
     "       sluice-info FILE.ntc --decode MIP [--weights int8|fp8] -o OUT\n"
     "       sluice-info [--device INDEX|NAME] [--image WxH] [--json]\n"
     "       sluice-info --formats [--device INDEX|NAME] [--json]\n"
+    "       sluice-info --self-test [--group NAME] [--device INDEX|NAME] [--json]\n"
     "       sluice-info --list-devices\n"
     "\n"
     "Says what is in tile stores, OpenEXR, DDS, KTX2 and .ntc files (neural textures), or,\n"
@@ -28,8 +29,13 @@ static const char notes[] =
     "--formats says for sparse, paged and dense mode and for demand loading: yes; nearest only,\n"
     "where the device has no linear filter for the format; or why the format is refused.\n"
     "\n"
-    "Exit status: 0 all is shown; 1 a file cannot be read or written, there is no Vulkan, no\n"
-    "device or none of that name; 2 wrong usage.\n";
+    "--self-test checks Sluice on a device, for about two minutes: what shaders request, that\n"
+    "no sample reads what is not resident, fades, formats, extreme arguments. Send the output in:\n"
+    "docs/drivers.md collects such reports. Groups: conformance, sampler, residency, fades,\n"
+    "formats, extremes.\n"
+    "\n"
+    "Exit status: 0 all is shown, and all checks passed; 1 a file cannot be read or written,\n"
+    "there is no Vulkan, no device or none of that name, or a check failed; 2 wrong usage.\n";
 
 /* "column,row" */
 static bool parse_tile(const char *text, void *value)
@@ -52,7 +58,9 @@ static bool is_consistent(const struct option_table *table, const struct options
         return options_refuse(table, "--decode and --output go together; --help says more");
     if (o->decode >= 0 && (o->files.count != 1 || o->png || o->json))
         return options_refuse(table, "--decode takes one file, and no --png or --json");
-    if (o->files.count && (o->device || o->list_devices || o->formats))
+    if (o->group && !o->self_test)
+        return options_refuse(table, "--group goes with --self-test; --help says more");
+    if (o->files.count && (o->device || o->list_devices || o->formats || o->self_test))
         return options_refuse(table, "files or devices, not both; --help says more");
     return true;
 }
@@ -81,6 +89,9 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         option_list_devices(&o->list_devices),
         {OPTION_FLAG, "formats", .value = &o->formats,
          .help = "only the formats: how each residency mode and demand loading streams them"},
+        {OPTION_FLAG, "self-test", .value = &o->self_test,
+         .help = "check Sluice on one device: the first that streams, or that of --device"},
+        {OPTION_TEXT, "group", "NAME", "(all)", &o->group, "only these checks of --self-test"},
         {OPTION_EXTENT, "image", "WxH", "4096x4096", o->image,
          "size of the image whose layout is shown", 1, MOST},
         {OPTION_SECTION, .help = "Output"},

@@ -23,6 +23,8 @@ struct options {
     uint32_t image[2];  ///< width and height of the image whose layout is shown
     bool list_devices, json;
     bool formats; ///< only the formats, by residency mode
+    bool self_test;
+    const char *group; ///< of checks; NULL: all
 };
 
 /** Prints the help text if it was asked for. On failure says on standard error what is wrong. */

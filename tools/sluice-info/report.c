@@ -51,7 +51,7 @@ static void print_queue(const SluiceVulkanDeviceCapabilities *c)
            c->dedicatedSparseQueue ? "neither draws nor computes" : "shared with other work");
 }
 
-static void print_device(const struct device_report *r)
+void print_limits(const struct device_report *r)
 {
     const SluiceVulkanDeviceCapabilities *c = &r->capabilities;
     printf("device %u: %s\n", r->index, c->deviceName);
@@ -113,7 +113,7 @@ void print_table(const struct device_report *r, bool follows)
 {
     if (follows)
         printf("\n");
-    print_device(r);
+    print_limits(r);
     printf("\n  %-26s %-6s %-6s %-7s %-9s %-9s levels apart of %ux%u\n", "format", "sparse",
            "sample", "filter", "says", "tile", r->width, r->height);
     for (uint32_t f = 1; f < SLUICE_FORMAT_COUNT; f++)

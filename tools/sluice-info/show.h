@@ -9,6 +9,9 @@ enum { ALL_SHOWN = 0, NOT_SHOWN = 1, WRONG_USAGE = 2 };
 
 int show_devices(const struct options *options);
 
+/** Runs the device tests on a device and reports each. */
+int self_test(const struct options *options);
+
 /** What a store, an OpenEXR, DDS or KTX2 file says of itself. */
 int show_file(const struct options *options, const char *path);
 
