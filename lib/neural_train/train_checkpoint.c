@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#define MAGIC UINT64_C(0x31304B4854434C53) /* SLCTHK01 */
+#define MAGIC UINT64_C(0x32304B4854434C53) /* SLCTHK02 */
 
 struct header {
     uint64_t magic, fingerprint, checksum;

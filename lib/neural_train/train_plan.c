@@ -138,7 +138,6 @@ SluiceResult slc_train_plan_init(struct slc_train_plan *plan,
         .seed = info->seed,
         .network_rate = info->networkRate > 0.0f ? info->networkRate : default_network_rate,
         .latent_rate = info->latentRate > 0.0f ? info->latentRate : default_latent_rate};
-    plan->refine_steps = plan->step_count / 20;
     plan->fp8_steps = plan->step_count / 20;
     for (uint32_t m = 0; m < plan->mip_count; m++) {
         if (!info->ppMips[m])

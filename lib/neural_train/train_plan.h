@@ -17,8 +17,7 @@ struct slc_train_plan {
     uint32_t width, height, mip_count, channel_count;
     uint32_t scale, feature_count;
     uint32_t step_count, tile_count, seed; ///< a tile is TRAIN_TILE samples
-    uint32_t refine_steps;                 ///< the last of step_count, in which latents are frozen
-    uint32_t fp8_steps;                    ///< after step_count
+    uint32_t fp8_steps;                    ///< after step_count, with frozen latents
     float network_rate, latent_rate;
     uint32_t image_count;
     struct slc_latent_image images[SLC_TRAIN_MAX_LATENT_IMAGES];

@@ -9,16 +9,11 @@
 #define DECAY1 0.9
 #define DECAY2 0.99
 #define QUANTIZE_FROM 0.5 /* of the steps: latents, hidden values and weights are rounded */
-#define REFINE_RATE 0.2   /* of the network's rate, when refinement begins */
+#define FP8_RATE 0.2      /* of the network's rate, when the FP8 network begins */
 
 uint32_t slc_train_total_steps(const struct slc_train_plan *plan)
 {
     return plan->step_count + plan->fp8_steps;
-}
-
-static uint32_t first_refining(const struct slc_train_plan *plan)
-{
-    return plan->step_count - plan->refine_steps;
 }
 
 uint32_t slc_train_flags(const struct slc_train_plan *plan, uint32_t step)
@@ -26,10 +21,7 @@ uint32_t slc_train_flags(const struct slc_train_plan *plan, uint32_t step)
     uint32_t flags = TRAIN_QUANTIZE_INPUTS;
     if ((double)step >= QUANTIZE_FROM * plan->step_count)
         flags |= TRAIN_ROUND_LATENTS | TRAIN_QUANTIZE_NETWORK;
-    if (step < first_refining(plan))
-        flags |= TRAIN_LATENTS;
-    if (step >= plan->step_count)
-        flags |= TRAIN_FP8;
+    flags |= step < plan->step_count ? TRAIN_LATENTS : TRAIN_FP8;
     return flags;
 }
 
@@ -40,13 +32,11 @@ static double cosine(double done)
 
 static double network_rate(const struct slc_train_plan *plan, uint32_t step)
 {
-    if (step < first_refining(plan))
+    if (step < plan->step_count)
         return plan->network_rate * cosine((double)step / plan->step_count);
-    /* The FP8 network goes on from the int8 network as that did from the one before. */
-    bool is_fp8 = step >= plan->step_count;
-    uint32_t first = is_fp8 ? plan->step_count : first_refining(plan);
-    uint32_t count = is_fp8 ? plan->fp8_steps : plan->refine_steps;
-    return plan->network_rate * REFINE_RATE * cosine((double)(step - first) / count);
+    /* The FP8 network goes on from the int8 network. */
+    double done = (double)(step - plan->step_count) / plan->fp8_steps;
+    return plan->network_rate * FP8_RATE * cosine(done);
 }
 
 /* Makes up for moments that start at 0. */

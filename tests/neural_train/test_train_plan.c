@@ -109,7 +109,7 @@ static void sums_of_gradients_fit_into_32_bits(void **state)
     }
 }
 
-static void rates_fall_and_latents_freeze_before_the_end(void **state)
+static void latents_learn_until_the_int8_network_ends(void **state)
 {
     (void)state;
     struct slc_train_plan plan = plan_of(64, 64, 4);
@@ -118,9 +118,11 @@ static void rates_fall_and_latents_freeze_before_the_end(void **state)
     /* Adam's first step has the size of the rate: 0.1 / (1 - 0.9) and so on cancel. */
     assert_float_equal(push.networkRate, 0.005 * sqrt(0.01) / 0.1, 1e-6);
     assert_true(push.flags & TRAIN_LATENTS);
-    slc_train_write_push(&plan, 949, &push);
-    slc_train_write_push(&plan, 950, &last);
+    slc_train_write_push(&plan, 999, &push);
+    slc_train_write_push(&plan, 1000, &last);
     assert_true(push.flags & TRAIN_LATENTS && !(last.flags & TRAIN_LATENTS));
+    assert_true(push.networkRate < 1e-6f && push.latentRate < 1e-5f); /* after the cosine */
+    assert_float_equal(last.networkRate, 0.2 * 0.005, 1e-6);
     assert_true(last.flags & TRAIN_ROUND_LATENTS && last.flags & TRAIN_QUANTIZE_NETWORK);
     assert_int_equal(slc_train_total_steps(&plan), 1050);
     slc_train_write_push(&plan, 999, &push);
@@ -196,7 +198,7 @@ int main(void)
         cmocka_unit_test(mips_use_the_latents_that_the_format_says),
         cmocka_unit_test(every_mip_has_samples),
         cmocka_unit_test(sums_of_gradients_fit_into_32_bits),
-        cmocka_unit_test(rates_fall_and_latents_freeze_before_the_end),
+        cmocka_unit_test(latents_learn_until_the_int8_network_ends),
         cmocka_unit_test(wrong_values_are_named),
         cmocka_unit_test(latents_that_32_bits_cannot_count_are_refused),
         cmocka_unit_test(a_mip_that_is_missing_is_refused),
