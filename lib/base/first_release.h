@@ -106,6 +106,7 @@
 #define SLC_FIRST_SluiceVulkanRequestProgress                                                      \
     SLC_UP_TO(SluiceVulkanRequestProgress, givenUpTileCount)
 #define SLC_FIRST_SluiceVulkanLoadStages SLC_UP_TO(SluiceVulkanLoadStages, stages)
+#define SLC_FIRST_SluiceDemandTileInfo SLC_UP_TO(SluiceDemandTileInfo, state)
 #define SLC_FIRST_SluiceVulkanExplanation SLC_UP_TO(SluiceVulkanExplanation, sentence)
 #define SLC_FIRST_SluiceVulkanTextureControl SLC_UP_TO(SluiceVulkanTextureControl, hidden)
 #define SLC_FIRST_SluiceTileBatch SLC_UP_TO(SluiceTileBatch, pTiles)

@@ -300,7 +300,9 @@ SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreat
     SluiceDemandLoader *loader = allocate(&info);
     if (!loader)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    result = create_parts(loader);
+    loader->misses =
+        slc_alloc(&loader->cb, loader->info.maxRequestsPerLaunch, sizeof *loader->misses);
+    result = loader->misses ? create_parts(loader) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result != SLUICE_SUCCESS) {
         sluiceDestroyDemandLoader(loader);
         return result;
@@ -366,6 +368,8 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
     slc_tickets_finish(&loader->tickets);
     slc_free(&loader->cb, loader->owners, loader->owner_capacity, sizeof *loader->owners);
     slc_free(&loader->cb, loader->forgotten, loader->forgotten_capacity, sizeof *loader->forgotten);
+    slc_free(&loader->cb, loader->misses, loader->info.maxRequestsPerLaunch,
+             sizeof *loader->misses);
     SluiceVulkanContext *context = loader->context;
     slc_free(&context->cb, loader, 1, sizeof *loader);
     slc_context_remove_child(context);

@@ -339,6 +339,8 @@ struct SluiceDemandLoader {
     uint32_t preload_count, preload_capacity;
 
     uint64_t launch, ended, processed; ///< the last of each
+    uint32_t *misses; ///< owned; maxRequestsPerLaunch; pages of the last one processed
+    uint32_t miss_count;
     uint64_t listed_launch;   ///< the last that is processed and left no request to the next scan
     bool cleared;             ///< the device's buffers
     uint64_t cleared_launch;  ///< that did

@@ -85,6 +85,9 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
         slc_image_touch_page(loader, pages[i], launch);
     loader->knows_use = loader->tracked[slot];
     loader->unasked_count = 0;
+    loader->miss_count = scan.listedCount;
+    for (uint32_t i = 0; i < scan.listedCount; i++)
+        loader->misses[i] = pages[i];
     slc_jobs_begin_batch(loader);
     for (uint32_t i = 0; i < scan.listedCount; i++) {
         SluiceResult result; /* without host memory it is one of those that are postponed */

@@ -5,6 +5,8 @@
 
 #include "support/test.h"
 
+#include <sluice/demand_query.h>
+
 #include <sched.h>
 #include <string.h>
 
@@ -115,6 +117,62 @@ static void only_what_is_sampled_is_opened_and_only_its_tiles_are_read(void **st
     runner_finish(&r);
     for (uint32_t i = 0; i < 3; i++)
         runner_image_finish(&images[i]);
+}
+
+static SluiceDemandTileInfo tile_info(struct runner *r, SluiceDemandTextureId id, uint32_t level,
+                                      uint32_t x, uint32_t y)
+{
+    SluiceDemandTileInfo info = {.structSize = sizeof info};
+    CHECK_OK(sluiceGetDemandTileInfo(r->loader, id, level, x, y, &info));
+    return info;
+}
+
+static void tiles_and_misses_are_told(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandMiss misses[8];
+    uint32_t count = 8;
+    runner_init(&r, &h, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 1000, 700, 5);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    CHECK_OK(sluiceGetDemandMisses(r.loader, &count, misses));
+    assert_true(count == 0 && !tile_info(&r, id, 0, 999, 699).isOpen);
+    runner_add_texel(&r, id, 1000, 700, 0, 999, 699); /* tile 7, 5 */
+    runner_add_texel(&r, id, 1000, 700, 2, 130, 3);   /* tile 1, 0 */
+    runner_add_texel(&r, id, 1000, 700, 5, 3, 3);     /* mip tail */
+    runner_launch(&r);
+    CHECK_OK(sluiceGetDemandMisses(r.loader, &(uint32_t){8}, misses));
+    assert_true(misses[0].kind == SLUICE_DEMAND_MISS_OPENING && misses[0].id == id);
+    CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
+    runner_launch(&r); /* sees that it is open */
+    for (uint32_t i = 0; i < 8 && (i == 0 || count < 3); i++, runner_launch(&r)) {
+        CHECK_OK(sluiceGetDemandMisses(r.loader, (count = 8, &count), misses));
+        if (count == 3)
+            break;
+    }
+    assert_int_equal(count, 3); /* coarse ones first */
+    assert_true(misses[0].kind == SLUICE_DEMAND_MISS_TAIL && misses[0].level == 4);
+    assert_true(misses[1].level == 2 && misses[1].x == 1 && misses[1].y == 0);
+    assert_true(misses[2].level == 0 && misses[2].x == 7 && misses[2].y == 5);
+    const SluiceDemandTileInfo last = tile_info(&r, id, 0, 999, 699),
+                               other = tile_info(&r, id, 0, 0, 0),
+                               tail = tile_info(&r, id, 9, 0, 0);
+    assert_true(last.page == misses[2].page && last.state == SLUICE_DEMAND_PAGE_PENDING);
+    assert_true(last.x == 896 && last.y == 640 && last.width == 104 && last.height == 60);
+    assert_true(other.state == SLUICE_DEMAND_PAGE_ABSENT && other.page == last.page - 47);
+    assert_true(tail.isTail && tail.level == 4 && tail.page == misses[0].page);
+    assert_true(tail.width == 62 && tail.height == 43);
+    runner_load(&r, 20);
+    CHECK_OK(sluiceGetDemandMisses(r.loader, &count, NULL));
+    assert_true(count == 0 && tile_info(&r, id, 0, 900, 650).state == SLUICE_DEMAND_PAGE_RESIDENT);
+    assert_int_equal(tile_info(&r, id, 30, 0, 0).state, SLUICE_DEMAND_PAGE_RESIDENT);
+    SluiceDemandTileInfo info = {.structSize = sizeof info};
+    CHECK_RESULT(sluiceGetDemandTileInfo(r.loader, id, 1, 500, 0, &info),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    runner_finish(&r);
+    runner_image_finish(&image);
 }
 
 static void a_texture_smaller_than_a_pixel_needs_no_tile(void **state)
@@ -509,6 +567,7 @@ int main(void)
         return status;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(colors_are_the_images_own_when_nothing_is_missing),
+        cmocka_unit_test(tiles_and_misses_are_told),
         cmocka_unit_test(only_what_is_sampled_is_opened_and_only_its_tiles_are_read),
         cmocka_unit_test(a_texture_smaller_than_a_pixel_needs_no_tile),
         cmocka_unit_test(a_variant_shares_tiles_and_not_the_sampler),

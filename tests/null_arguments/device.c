@@ -5,6 +5,7 @@
 #include <sluice/demand.h>
 #include <sluice/neural_compress.h>
 #include <sluice/neural_paths.h>
+#include <sluice/demand_query.h>
 #include <sluice/vulkan_control.h>
 #include <sluice/vulkan_explain.h>
 #include <sluice/vulkan_neural.h>
@@ -107,6 +108,8 @@ sluiceCancelDemandTicket(f->loader, 0)
 sluiceBeginDemandRecording(f->fresh_loader, &f->recording, &f->out.recorder) => sluiceEndRecording(f->out.recorder)
 sluiceGetDemandLoaderSettings(f->loader, &f->loader_settings)
 sluiceSetDemandLoaderSettings(f->loader, &f->loader_settings)
+sluiceGetDemandTileInfo(f->loader, f->id, 0, 0, 0, &f->out.tile_info)
+sluiceGetDemandMisses(f->loader, &f->out.miss_count, ?f->out.misses)
 sluiceGetDemandStatistics(f->loader, &f->out.demand_statistics)
 */
 /* clang-format on */
@@ -175,6 +178,9 @@ struct fixture {
         SluiceVulkanStreamerStatistics statistics;
         SluiceVulkanTextureState texture_state;
         SluiceVulkanExplanation explanation;
+        SluiceDemandTileInfo tile_info;
+        SluiceDemandMiss misses[1];
+        uint32_t miss_count;
         SluiceVulkanLoadStages stages;
         SluiceTextureRequestId request;
         SluiceVulkanTextureControl control;

@@ -1,0 +1,81 @@
+/**
+ * Says which tiles of a demand loader (demand.h) are resident, and what launches missed. Link
+ * `sluice-vulkan`.
+ *
+ * Thread safety: external on the loader.
+ */
+#ifndef SLUICE_DEMAND_QUERY_H
+#define SLUICE_DEMAND_QUERY_H
+
+#include <sluice/demand.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** State of a page. */
+typedef enum SluiceDemandPageState {
+    SLUICE_DEMAND_PAGE_ABSENT = 0,
+    SLUICE_DEMAND_PAGE_PENDING = 1, ///< It is being loaded, or was refused for now.
+    SLUICE_DEMAND_PAGE_RESIDENT = 2 ///< Launches from the next one on find it.
+} SluiceDemandPageState;
+
+/** Tile, or mip tail, of a texture. */
+typedef struct SluiceDemandTileInfo {
+    uint32_t structSize;          ///< sizeof(SluiceDemandTileInfo).
+    bool isOpen;                  ///< The texture is open. If not, the fields below are 0.
+    bool isTail;                  ///< All coarse levels from `level` on, which share a page.
+    uint32_t page;                ///< Virtual page, as shaders request it.
+    uint32_t level;               ///< First level of the page.
+    uint32_t x, y, width, height; ///< Texels of `level` that the page has.
+    SluiceDemandPageState state;
+} SluiceDemandTileInfo;
+
+/**
+ * Finds the page of a texel of a level, in texels of that level. A variant has the pages of its
+ * texture. Levels above the last one mean the last one.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for grids, for a texel outside, or for
+ *         a wrong structSize.
+ */
+SLUICE_API SluiceResult sluiceGetDemandTileInfo(SluiceDemandLoader *loader,
+                                                SluiceDemandTextureId textureId, uint32_t level,
+                                                uint32_t x, uint32_t y,
+                                                SluiceDemandTileInfo *pInfo);
+
+/** What a missed page is. */
+typedef enum SluiceDemandMissKind {
+    SLUICE_DEMAND_MISS_OPENING = 0, ///< The texture was not open.
+    SLUICE_DEMAND_MISS_TILE = 1,
+    SLUICE_DEMAND_MISS_TAIL = 2,
+    SLUICE_DEMAND_MISS_RESOURCE = 3, ///< Page of a resource.
+    SLUICE_DEMAND_MISS_GONE = 4      ///< Its texture or resource was removed or closed since.
+} SluiceDemandMissKind;
+
+/** Page that a launch missed. Never grows. */
+typedef struct SluiceDemandMiss {
+    SluiceDemandMissKind kind;
+    uint32_t page;  ///< Virtual page. Of resources: page of the resource.
+    uint64_t id;    ///< Texture or resource. 0 if it is gone.
+    uint32_t level; ///< Tiles and tails.
+    uint32_t x, y;  ///< Tiles: column and row in tiles of the level.
+} SluiceDemandMiss;
+
+/**
+ * Lists the pages that the launch processed last missed, in the order in which they are loaded: at
+ * most maxRequestsPerLaunch, and none before the first one.
+ *
+ * Set `*pMissCount` to the capacity of `pMisses`. The call sets it to the number written. Returns
+ * SLUICE_INCOMPLETE if there are more. With `pMisses` NULL, writes the number of misses.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceGetDemandMisses(const SluiceDemandLoader *loader,
+                                              uint32_t *pMissCount, SluiceDemandMiss *pMisses);
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+
+#endif /* SLUICE_DEMAND_QUERY_H */
