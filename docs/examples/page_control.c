@@ -1,0 +1,52 @@
+/* Lines that docs/control.md shows. Compiled, not run. */
+#include <sluice/vulkan_explain.h>
+
+#include <stdio.h>
+
+/* Before a level begins: a loading screen draws a frame between two calls. */
+SluiceResult requestHero(SluiceVulkanStreamer *streamer, SluiceTextureId hero,
+                         SluiceTextureRequestId *pRequest);
+bool isReady(const SluiceVulkanStreamer *streamer, SluiceTextureRequestId request);
+void explain(const SluiceVulkanStreamer *streamer, SluiceTextureId texture,
+             const SluiceTextureRect *pRect);
+void printEvents(const SluiceStreamedTextureManager *manager, uint64_t *pCursor);
+
+SluiceResult requestHero(SluiceVulkanStreamer *streamer, SluiceTextureId hero,
+                         SluiceTextureRequestId *pRequest)
+{
+    const SluiceVulkanTextureRequest pin = {
+        .structSize = sizeof pin, .level = 0, .until = UINT64_MAX};
+    return sluiceRequestVulkanTexture(streamer, hero, &pin, pRequest);
+}
+
+bool isReady(const SluiceVulkanStreamer *streamer, SluiceTextureRequestId request)
+{
+    SluiceVulkanRequestProgress progress = {.structSize = sizeof progress};
+    if (sluiceGetVulkanRequestProgress(streamer, request, &progress) != SLUICE_SUCCESS)
+        return true;
+    return progress.over || progress.ready ||
+           progress.residentTileCount + progress.givenUpTileCount == progress.tileCount;
+}
+
+void explain(const SluiceVulkanStreamer *streamer, SluiceTextureId texture,
+             const SluiceTextureRect *pRect)
+{
+    SluiceVulkanExplanation why = {.structSize = sizeof why};
+    if (sluiceExplainVulkanTexture(streamer, texture, pRect, &why) == SLUICE_SUCCESS)
+        printf("%s\n", why.sentence);
+}
+
+void printEvents(const SluiceStreamedTextureManager *manager, uint64_t *pCursor)
+{
+    SluiceTileEvent events[64];
+    uint64_t lost;
+    SluiceResult more = SLUICE_INCOMPLETE;
+    while (more == SLUICE_INCOMPLETE) {
+        uint32_t count = 64;
+        more = sluiceReadTileEvents(manager, pCursor, &count, events, &lost);
+        for (uint32_t i = 0; more >= 0 && i < count; i++)
+            printf("frame %llu: tile %u, state %d to %d, reason %d\n",
+                   (unsigned long long)events[i].mark, events[i].tileIndex, (int)events[i].from,
+                   (int)events[i].to, (int)events[i].reason);
+    }
+}
