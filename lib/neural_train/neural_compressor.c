@@ -17,7 +17,9 @@
 #include "neural_train_train_network_comp.h"
 #include "neural_train_train_software_comp.h"
 
-#define MAX_GROUPS 512u /* each writes 33 KB of partial sums per step */
+/* Each writes 33 KB of partial sums per step. A multiple of 132, which are the multiprocessors of a
+ * large device: rounds of workgroups are full there. */
+#define MAX_GROUPS 528u
 
 uint64_t slc_train_network_size(void)
 {
@@ -218,8 +220,8 @@ static SluiceResult check_sizes(const SluiceNeuralCompressor *c)
 
 static SluiceResult init(SluiceNeuralCompressor *c, const SluiceNeuralCompressorCreateInfo *info)
 {
-    c->tiles_per_group = slc_div_up_u32(c->plan.tile_count, MAX_GROUPS);
-    c->group_count = slc_div_up_u32(c->plan.tile_count, c->tiles_per_group);
+    c->group_count = slc_min_u32(c->plan.tile_count, MAX_GROUPS);
+    c->tiles_per_group = slc_div_up_u32(c->plan.tile_count, c->group_count);
     SluiceResult result = check_sizes(c);
     if (result == SLUICE_SUCCESS)
         result = create_buffers(c);

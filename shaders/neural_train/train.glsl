@@ -244,7 +244,7 @@ void main()
     float weight = og < push.channelCount ? uintBitsToFloat(table[weight_at]) : 0.0;
 
     ROLLED for (uint turn = 0u; turn < push.tilesPerGroup; turn++) {
-        uint tile = gl_WorkGroupID.x * push.tilesPerGroup + turn;
+        uint tile = gl_WorkGroupID.x + turn * push.groupCount;
         if (tile >= push.tileCount)
             break;
         load_inputs(tile);

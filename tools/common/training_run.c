@@ -10,7 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STEPS_PER_SUBMISSION 64u /* a software device takes a second or more for them */
+#define FIRST_SUBMISSION 64u /* steps; a software device takes a second or more for them */
+#define MOST_STEPS 1024u     /* of a submission */
+#define SHORT_SECONDS 0.1    /* after a shorter submission the next one has twice the steps */
 #define CHECKPOINT_SECONDS 60.0
 #define CHECKPOINT_LIMIT (UINT64_C(4) << 30)
 
@@ -138,13 +140,16 @@ static bool save(struct session *s)
 
 static bool train(struct session *s)
 {
-    uint32_t steps = 1;
+    uint32_t steps = 1, wanted = FIRST_SUBMISSION;
     s->start = clock_seconds();
     s->saved =
         s->start - CHECKPOINT_SECONDS; /* at once, so that a wrong name is no late surprise */
     while (steps > 0) {
-        if (!run_commands(s, STEPS_PER_SUBMISSION, &steps))
+        const double begin = clock_seconds();
+        if (!run_commands(s, wanted, &steps))
             return false;
+        if (clock_seconds() - begin < SHORT_SECONDS && wanted < MOST_STEPS)
+            wanted *= 2;
         s->run->steps_run += steps;
         s->run->seconds = clock_seconds() - s->start;
         if (steps > 0)
