@@ -450,6 +450,7 @@ typedef struct SluiceNeuralMaskInfo {
     const float *pLossWeights; ///< Of squared errors, one per channel. NULL: 1.
     /** Per mip of the constants [height][width][channelCount] floats: what texels should be. */
     const float *const *ppMips;
+    uint64_t maxWrongCount; ///< Nothing is changed if more texels are wrong. Default: no limit.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     SluiceLogCallback log;                       ///< Arguments that are refused.
 } SluiceNeuralMaskInfo;

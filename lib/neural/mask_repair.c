@@ -235,7 +235,9 @@ static SluiceResult repair_all(struct slc_mask_repair *r, SluiceNeuralMaskReport
     const uint32_t mips = r->constants.mipCount;
     SluiceResult result = SLUICE_SUCCESS;
     report->texelCount = count_certain(r->info);
-    report->wrongBefore = count_wrong(r, 0, mips);
+    report->wrongBefore = report->wrongAfter = count_wrong(r, 0, mips);
+    if (r->info->maxWrongCount && report->wrongBefore > r->info->maxWrongCount)
+        return SLUICE_SUCCESS;
     for (uint32_t m = 0; m < mips && result == SLUICE_SUCCESS; m += r->group.mip_count) {
         result = slc_mask_select(r, m);
         if (result == SLUICE_SUCCESS)

@@ -158,7 +158,7 @@ static void damaged_masks_become_exact(void **state)
 
 static const struct made_shape small = {3, 16, 16, 4, 4, 0, 0, 0, SLUICE_NEURAL_NETWORK_SCHEMA3};
 
-static void exact_masks_are_left_alone(void **state)
+static void exact_masks_and_hopeless_ones_are_left_alone(void **state)
 {
     struct masked m;
     SluiceNeuralMaskReport report = {.structSize = sizeof report};
@@ -172,6 +172,13 @@ static void exact_masks_are_left_alone(void **state)
     assert_true(report.texelCount > 0);
     assert_memory_equal(kept, m.decodable.latents, (size_t)m.decodable.latent_size);
     damage(&m);
+    uint64_t certain;
+    m.info.maxWrongCount = count_wrong(&m, &certain) - 1;
+    memcpy(kept, m.decodable.latents, (size_t)m.decodable.latent_size);
+    CHECK_OK(sluiceRepairNeuralMasks(&m.info, &report));
+    assert_int_equal(report.wrongAfter, m.info.maxWrongCount + 1); /* too many */
+    assert_memory_equal(kept, m.decodable.latents, (size_t)m.decodable.latent_size);
+    m.info.maxWrongCount = 0;
     m.info.maskChannels = 0; /* nothing to keep exact */
     memcpy(kept, m.decodable.latents, (size_t)m.decodable.latent_size);
     CHECK_OK(sluiceRepairNeuralMasks(&m.info, NULL));
@@ -254,7 +261,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(damaged_masks_become_exact),
-        cmocka_unit_test(exact_masks_are_left_alone),
+        cmocka_unit_test(exact_masks_and_hopeless_ones_are_left_alone),
         cmocka_unit_test(wrong_arguments_are_named),
         cmocka_unit_test(every_refused_allocation_is_survived),
     };

@@ -187,16 +187,19 @@ static bool repair_masks(struct training_run *run, const SluiceNeuralConstants *
     const double start = clock_seconds();
     float weights[SLUICE_NEURAL_MAX_CHANNELS];
     SluiceNeuralMaskReport report = {.structSize = sizeof report};
-    SluiceNeuralMaskInfo info = {.structSize = sizeof info,
-                                 .pConstants = constants,
-                                 .pLatents = latents,
-                                 .latentSize = latent_size,
-                                 .pInt8Weights = trained->pInt8Weights,
-                                 .weightSize = trained->int8Size,
-                                 .channelCount = set->channel_count,
-                                 .pLossWeights = weights,
-                                 .ppMips = (const float *const *)set->mips,
-                                 .log = {NULL, log_say}};
+    SluiceNeuralMaskInfo info = {
+        .structSize = sizeof info,
+        .pConstants = constants,
+        .pLatents = latents,
+        .latentSize = latent_size,
+        .pInt8Weights = trained->pInt8Weights,
+        .weightSize = trained->int8Size,
+        .channelCount = set->channel_count,
+        .pLossWeights = weights,
+        .ppMips = (const float *const *)set->mips,
+        /* More are no rest: training was too short, repair would be long. */
+        .maxWrongCount = 1 + (uint64_t)set->width * set->height / 50,
+        .log = {NULL, log_say}};
     for (uint32_t c = 0; c < set->channel_count; c++) {
         weights[c] = set->meaning[c].weight > 0.0f ? set->meaning[c].weight : 1.0f;
         info.maskChannels |= (uint32_t)set->meaning[c].mask << c;
