@@ -21,8 +21,8 @@ static SluiceResult fail_read(const struct slc_input_file *file, SluiceResult re
                               uint64_t offset, size_t size, const char *why)
 {
     char message[512];
-    snprintf(message, sizeof message, "cannot read %zu bytes at %llu: %s", size,
-             (unsigned long long)offset, why);
+    snprintf(message, sizeof message, "cannot read %llu bytes at %llu: %s",
+             (unsigned long long)size, (unsigned long long)offset, why);
     return say(file, result, slc_said_key(why), message);
 }
 
@@ -242,8 +242,8 @@ SluiceResult slc_input_file_read(const struct slc_input_file *file, uint64_t off
 {
     if (offset > file->size || size > file->size - offset)
         return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA,
-                              "%zu bytes at %llu lie beyond the end of the file", size,
-                              (unsigned long long)offset);
+                              "%llu bytes at %llu lie beyond the end of the file",
+                              (unsigned long long)size, (unsigned long long)offset);
     int64_t got = slc_input_file_read_some(file, offset, bytes, size);
     if (got == (int64_t)size)
         return SLUICE_SUCCESS;

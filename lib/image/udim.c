@@ -176,8 +176,9 @@ SluiceResult sluiceWriteUdimPath(const char *pPattern, uint32_t number,
         snprintf(cell, sizeof cell, "%u", number);
     size_t before = pattern.folder + pattern.prefix_length, length = strlen(cell);
     if (before + length + pattern.suffix_length >= pathSize)
-        return slc_log_refusal(pLog, "pathSize %zu is below the path's %zu bytes", pathSize,
-                               before + length + pattern.suffix_length + 1);
+        return slc_log_refusal(pLog, "pathSize %llu is below the path's %llu bytes",
+                               (unsigned long long)pathSize,
+                               (unsigned long long)(before + length + pattern.suffix_length + 1));
     memcpy(pPath, pPattern, before);
     memcpy(pPath + before, cell, length);
     memcpy(pPath + before + length, pattern.suffix, pattern.suffix_length + 1);

@@ -41,8 +41,8 @@ void slc_note_divergence(struct slc_replay *replay, uint64_t event, size_t offse
     replay->out->divergedEvent = event;
     replay->out->divergedOffset = offset;
     slc_log(&replay->info->log, SLUICE_LOG_WARNING,
-            "decisions differ from event %" PRIu64 " at byte %zu on: recorded %s, got %s", event,
-            offset, recorded, got);
+            "decisions differ from event %" PRIu64 " at byte %llu on: recorded %s, got %s", event,
+            (unsigned long long)offset, recorded, got);
 }
 
 static SluiceResult read_end(struct slc_replay *replay, size_t start, uint64_t checksum,

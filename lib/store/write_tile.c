@@ -256,8 +256,8 @@ SluiceResult sluiceWriteStoreTile(SluiceStoreWriter *writer, uint32_t arrayLayer
     SluiceImageRegion region = slc_store_chunk_region(grid, &place);
     size_t row_size = slc_format_row_size(&grid->format, region.width);
     if (rowPitch < row_size)
-        return slc_log_refusal(&writer->file.log, "rowPitch is %zu; it must be at least %zu",
-                               rowPitch, row_size);
+        return slc_log_refusal(&writer->file.log, "rowPitch is %llu; it must be at least %llu",
+                               (unsigned long long)rowPitch, (unsigned long long)row_size);
     result = check_unwritten(writer, &place);
     struct slc_store_bench *bench;
     if (result == SLUICE_SUCCESS)
@@ -300,9 +300,9 @@ static SluiceResult check_tail(const SluiceStoreWriter *writer, const void *cons
             return SLUICE_ERROR_NULL_POINTER;
         struct tail_level level = tail_level(grid, i, pitches);
         if (level.pitch < level.row_size)
-            return slc_log_refusal(&writer->file.log,
-                                   "pRowPitches[%u] is %zu; it must be at least %zu", i,
-                                   level.pitch, level.row_size);
+            return slc_log_refusal(
+                &writer->file.log, "pRowPitches[%u] is %llu; it must be at least %llu", i,
+                (unsigned long long)level.pitch, (unsigned long long)level.row_size);
     }
     return SLUICE_SUCCESS;
 }
