@@ -67,12 +67,11 @@ static bool read_shape(struct oracle_tiles *t, uint32_t texture)
 {
     static const uint32_t TILES[5][2] = {{256, 256}, {256, 128}, {128, 128}, {128, 64}, {64, 64}};
     struct oracle_shape *shape = &t->shapes[texture];
+    if (shape->width > 0)
+        return true;
     VipsImage *image = vips_image_new_from_file(t->scene->textures[texture].pImagePath, NULL);
-    if (shape->width > 0 || !image) {
-        if (image)
-            g_object_unref(image);
-        return shape->width > 0;
-    }
+    if (!image)
+        return false;
     uint32_t channels = image->Bands == 3 ? 4 : (uint32_t)image->Bands, power = 0;
     uint32_t bytes = channels * (image->BandFmt == VIPS_FORMAT_UCHAR ? 1 : 2);
     while (1u << power < bytes)
