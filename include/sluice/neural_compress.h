@@ -52,7 +52,7 @@ typedef struct SluiceNeuralCompressorCreateInfo {
     uint32_t stepCount;    ///< Steps for the int8 network. Default: 20000.
     uint32_t batchSize;    ///< Samples of a step: a multiple of 32 up to 2^20. Default: 65536.
     uint32_t seed;         ///< Of initial values, sample positions and noise.
-    float networkRate;     ///< Learning rate of the network. Default: 0.005.
+    float networkRate;     ///< Learning rate of the network. Default: 0.02.
     float latentRate;      ///< Learning rate of latents of 0..1. Default: 0.1.
     /** State of sluiceGetNeuralCheckpoint to go on from. All other fields must be as they were.
      *  NULL: from the start. */

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#define MAGIC UINT64_C(0x32304B4854434C53) /* SLCTHK02 */
+#define MAGIC UINT64_C(0x33304B4854434C53) /* SLCTHK03 */
 
 struct header {
     uint64_t magic, fingerprint, checksum;

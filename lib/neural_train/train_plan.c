@@ -13,7 +13,7 @@
 #define MASK_MARGIN 0.02f               /* five steps of 8 bits beyond 0 and 1 */
 
 static const uint32_t default_steps = 20000, default_batch = 65536;
-static const float default_network_rate = 0.005f, default_latent_rate = 0.1f;
+static const float default_network_rate = 0.02f, default_latent_rate = 0.1f;
 
 struct range {
     const char *name;

@@ -115,14 +115,18 @@ static void latents_learn_until_the_int8_network_ends(void **state)
     struct slc_train_plan plan = plan_of(64, 64, 4);
     struct slc_train_push push, last;
     slc_train_write_push(&plan, 0, &push);
-    /* Adam's first step has the size of the rate: 0.1 / (1 - 0.9) and so on cancel. */
-    assert_float_equal(push.networkRate, 0.005 * sqrt(0.01) / 0.1, 1e-6);
+    /* Adam's first step has the size of the rate, which begins with its half: 0.1 / (1 - 0.9) and
+     * so on cancel. */
+    assert_float_equal(push.networkRate, 0.5 * 0.02 * sqrt(0.01) / 0.1, 1e-6);
+    slc_train_write_push(&plan, 20, &last);
+    assert_float_equal(last.networkRate * (1.0 - pow(0.9, 21.0)) / sqrt(1.0 - pow(0.99, 21.0)),
+                       0.02, 2e-5); /* all of it after a fiftieth of the steps */
     assert_true(push.flags & TRAIN_LATENTS);
     slc_train_write_push(&plan, 999, &push);
     slc_train_write_push(&plan, 1000, &last);
     assert_true(push.flags & TRAIN_LATENTS && !(last.flags & TRAIN_LATENTS));
     assert_true(push.networkRate < 1e-6f && push.latentRate < 1e-5f); /* after the cosine */
-    assert_float_equal(last.networkRate, 0.2 * 0.005, 1e-6);
+    assert_float_equal(last.networkRate, 0.5 * 0.2 * 0.02, 1e-6);
     assert_true(last.flags & TRAIN_ROUND_LATENTS && last.flags & TRAIN_QUANTIZE_NETWORK);
     assert_int_equal(slc_train_total_steps(&plan), 1050);
     slc_train_write_push(&plan, 999, &push);
