@@ -8,7 +8,7 @@
  * are 0.8 to 1.6 dB worse (decision 89 has the figures of all of these). */
 #define DECAY1 0.9
 #define DECAY2 0.99
-#define RISE 0.02         /* of the steps: without it the network's rate of 0.02 is too much at first */
+#define RISE 0.02 /* of the steps: without it the network's rate of 0.02 is too much at first */
 #define QUANTIZE_FROM 0.5 /* of the steps: latents, hidden values and weights are rounded */
 #define FP8_RATE 0.2      /* of the network's rate, when the FP8 network begins */
 

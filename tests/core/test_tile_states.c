@@ -1,5 +1,7 @@
 #include "core/fixture.h"
 
+#include <string.h>
+
 static void pass(struct fixture *f, SluiceTextureId id, uint64_t time)
 {
     fixture_feed(f, id, SLUICE_MIP_UNTOUCHED, time, 0);
