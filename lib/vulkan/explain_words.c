@@ -38,7 +38,8 @@ static void say_budget(const SluiceVulkanStreamer *s, const struct slc_coarse_pl
             p->requested.asked, counts.globalMipBias / 16.0);
     else if (p->is_limit_of_tiles)
         say(p, out, "level %u cannot be bound: %u distinct tiles were, the device's limit.",
-            p->missing, s->info.maxTouchedTiles);
+            p->missing,
+            s->info.maxTouchedTiles ? s->info.maxTouchedTiles : s->caps.public.maxTouchedTiles);
     else if (p->texture->presence != SLC_PRESENT)
         say(p, out, "it has no image: it waits for memory.");
     else

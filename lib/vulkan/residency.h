@@ -81,6 +81,9 @@ struct slc_residency_interface {
     /** False: no more tiles may ever be bound, and this one was not yet. NULL: all may. */
     bool (*reserve)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
 
+    /** Whether that call would return true. NULL: always. */
+    bool (*may_reserve)(const struct slc_residency *residency, uint32_t index, uint32_t tile);
+
     /** Pages that tiles of this image could have now; UINT32_MAX: nobody knows of an end. NULL:
      *  slots of heaps are all they need. */
     uint32_t (*page_room)(const struct slc_residency *residency, uint32_t index);

@@ -121,6 +121,12 @@ static bool reserve(struct slc_residency *residency, uint32_t index, const Sluic
     return false;
 }
 
+static bool may_reserve(const struct slc_residency *residency, uint32_t index, uint32_t tile)
+{
+    const struct sparse_residency *s = (const struct sparse_residency *)residency;
+    return slc_touched_tiles_may_touch(&s->images[index].touched, &s->touched, tile);
+}
+
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
                                  const SluiceImageInfo *info, bool produced, const char **refusal,
                                  struct slc_residency_image *image)
@@ -542,6 +548,7 @@ static const struct slc_residency_interface sparse_interface = {
     .image_is_idle = image_is_idle,
     .revive = revive,
     .reserve = reserve,
+    .may_reserve = may_reserve,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
     .prepare_heaps = prepare_heaps,

@@ -207,10 +207,20 @@ static SluiceCoarseReason why_not_loaded(const SluiceVulkanStreamer *s,
     return s->free_unit_count ? SLUICE_COARSE_BUDGET : SLUICE_COARSE_BANDWIDTH;
 }
 
-/* Without a read that failed it was refused before: it can never be bound. */
-static SluiceCoarseReason why_failed(const SluiceVulkanStreamer *s, struct slc_coarse_place *p)
+static bool may_be_bound(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                         uint32_t tile)
 {
-    p->is_limit_of_tiles = s->textures[p->texture->first].trouble.health == SLC_READS_WELL;
+    const uint32_t index = (uint32_t)(texture - s->textures);
+    const struct slc_residency *residency = slc_residency_of(s, index);
+    return texture->presence != SLC_PRESENT || !residency->interface->may_reserve ||
+           residency->interface->may_reserve(residency, index, tile);
+}
+
+/* Its read failed, or it was refused before one. */
+static SluiceCoarseReason why_failed(const SluiceVulkanStreamer *s, struct slc_coarse_place *p,
+                                     uint32_t tile)
+{
+    p->is_limit_of_tiles = !may_be_bound(s, p->texture, tile);
     return p->is_limit_of_tiles ? SLUICE_COARSE_BUDGET : SLUICE_COARSE_FAILED;
 }
 
@@ -227,7 +237,7 @@ static SluiceCoarseReason why_missing(const SluiceVulkanStreamer *s, struct slc_
     case SLUICE_TILE_STATE_FAILED:
     case SLUICE_TILE_STATE_GIVEN_UP: break;
     }
-    return why_failed(s, p);
+    return why_failed(s, p, tile);
 }
 
 static SluiceCoarseReason why_not_requested(const struct slc_coarse_place *p)

@@ -32,13 +32,24 @@ void slc_touched_tiles_finish(struct slc_touched_tiles *tiles, const SluiceAlloc
     *tiles = (struct slc_touched_tiles){0};
 }
 
+static bool is_touched(const struct slc_touched_tiles *tiles, uint32_t tile)
+{
+    assert(tile < tiles->tile_count);
+    return !tiles->bits || tiles->bits[tile / 32] >> tile % 32 & 1;
+}
+
+bool slc_touched_tiles_may_touch(const struct slc_touched_tiles *tiles,
+                                 const struct slc_touch_budget *budget, uint32_t tile)
+{
+    return is_touched(tiles, tile) || budget->count < budget->limit;
+}
+
 bool slc_touched_tiles_touch(struct slc_touched_tiles *tiles, struct slc_touch_budget *budget,
                              uint32_t tile)
 {
-    assert(tile < tiles->tile_count);
-    if (!tiles->bits || tiles->bits[tile / 32] >> tile % 32 & 1)
+    if (is_touched(tiles, tile))
         return true;
-    if (budget->count >= budget->limit)
+    if (!slc_touched_tiles_may_touch(tiles, budget, tile))
         return false;
     tiles->bits[tile / 32] |= 1u << tile % 32;
     tiles->count++;
