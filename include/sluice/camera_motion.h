@@ -44,8 +44,8 @@ SLUICE_API SluiceResult sluiceAddCameraFrame(SluiceCameraMotion *pMotion, const 
 /** What to look ahead for. */
 typedef struct SluiceLookAheadInfo {
     uint32_t structSize; ///< sizeof(SluiceLookAheadInfo).
-    /** How far to look ahead: about as long as a tile takes from a mark to the picture. At least 0.
-     */
+    /** How far to look ahead: about as long as a tile takes from a mark to the picture. The camera
+     * stays if it is not above 0. */
     double seconds;
     uint64_t frameIndex; ///< Frames look ahead all the way and half of it, in turns.
     uint32_t pictureWidth, pictureHeight; ///< Pixels of the picture, above 0.
@@ -68,7 +68,8 @@ typedef struct SluiceLookAhead {
 /**
  * Predicts the camera from its last 5 frames.
  *
- * A motion that goes on evenly, or speeds up or slows down evenly, is followed exactly; turns, too.
+ * A motion that goes on evenly, or speeds up or slows down evenly, is followed exactly. Turns of
+ * the viewing direction are followed nearly; rolls about it are not predicted.
  * One that slows down ends at a halt and does not turn back; what speeding up adds is at most what
  * the present speed does. A jump is no motion: until it has left the last frames, `draw` is false.
  *

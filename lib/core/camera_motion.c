@@ -157,8 +157,6 @@ static struct vector way_ahead(const double points[FRAMES][3], const double time
 {
     const struct vector none = {0.0, 0.0, 0.0};
     struct vector speed, change;
-    if (has_jump(points, still))
-        return none;
     fit(points, times, &speed, &change);
     double along = dot(speed, change);
     if (along < 0.0) /* slows down, to a halt */
@@ -194,6 +192,8 @@ static bool look_ahead(const SluiceCameraMotion *motion, double seconds, float *
 {
     memcpy(matrix, motion->viewMatrix, sizeof motion->viewMatrix);
     if (motion->count < FRAMES || !(seconds > 0.0))
+        return false;
+    if (has_jump(motion->eyes, STILL_METERS) || has_jump(motion->axes, STILL_RADIANS))
         return false;
     struct vector way = way_ahead(motion->eyes, motion->times, seconds, STILL_METERS);
     struct vector arc = way_ahead(motion->axes, motion->times, seconds, STILL_RADIANS);

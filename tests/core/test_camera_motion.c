@@ -232,6 +232,24 @@ static void a_jump_is_no_motion(void **state)
     }
 }
 
+/* Neither motion alone is drawn while the other jumped. */
+static void a_jump_while_the_camera_turns_is_no_motion(void **state)
+{
+    (void)state;
+    SluiceCameraMotion motion = {0};
+    for (int i = 0; i < 3 * MOTION_FRAMES; i++) {
+        struct camera camera = turned(0.9 * i * FRAME), ahead;
+        if (i >= MOTION_FRAMES) {
+            camera.eye.x += 25.0f;
+            camera.target.x += 25.0f;
+        }
+        motion_add(&motion, &camera, i * FRAME);
+        bool moves = motion_look_ahead(&motion, 0.3, &ahead);
+        bool has_jump = i >= MOTION_FRAMES && i < 2 * MOTION_FRAMES - 1;
+        assert_int_equal(moves, i >= MOTION_FRAMES - 1 && !has_jump);
+    }
+}
+
 static void a_pause_is_forgotten_over(void **state)
 {
     (void)state;
@@ -365,6 +383,7 @@ int main(void)
         cmocka_unit_test(who_stands_still_stays),
         cmocka_unit_test(nothing_is_said_of_now_or_without_a_past),
         cmocka_unit_test(a_jump_is_no_motion),
+        cmocka_unit_test(a_jump_while_the_camera_turns_is_no_motion),
         cmocka_unit_test(a_pause_is_forgotten_over),
         cmocka_unit_test(no_tremble_makes_the_way_longer_than_four_times_the_fastest_step),
         cmocka_unit_test(nothing_makes_a_place_that_is_no_number),
