@@ -471,10 +471,12 @@ typedef struct SluiceNeuralMaskReport {
  * compressors leave, a few texels in a thousand: a wrong texel takes about 20 ms. Equal arguments
  * give equal bytes.
  *
- * Memory: 8 bytes per texel of all mips, a copy of the latents, and 200 KiB. `pReport` may be NULL.
+ * Memory: 8 bytes per texel of all mips, a copy of the latents, 64 bytes per texel of a row of mip
+ * 0, and some per row and column of the grids. `pReport` may be NULL.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, also for a mip; SLUICE_ERROR_INVALID_ARGUMENT for slices that
- *         are no whole grids, and as sluiceDecodeNeuralTexels;
+ *         are no whole grids or lie in two groups of mips, for texels and loss weights that are not
+ *         finite, and as sluiceDecodeNeuralTexels;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. Latents may have been changed then.
  * Thread safety: any thread.
  */

@@ -200,6 +200,26 @@ static uint64_t count_certain(const SluiceNeuralMaskInfo *info)
     return certain;
 }
 
+/* Costs are compared, which NaN would make random. */
+static SluiceResult check_values(const SluiceNeuralMaskInfo *info)
+{
+    const SluiceNeuralConstants *k = info->pConstants;
+    for (uint32_t c = 0; info->pLossWeights && c < info->channelCount; c++)
+        if (!isfinite(info->pLossWeights[c]))
+            return slc_log_refusal(&info->log, "pLossWeights[%u] is not finite", c);
+    for (uint32_t m = 0; m < k->mipCount; m++) {
+        const uint32_t width = slc_mip_size(k->width, m);
+        const size_t row = (size_t)width * info->channelCount;
+        const size_t count = row * slc_mip_size(k->height, m);
+        for (size_t i = 0; i < count; i++)
+            if (!isfinite(info->ppMips[m][i]))
+                return slc_log_refusal(
+                    &info->log, "channel %zu of texel %zu, %zu of mip %u is not finite",
+                    i % info->channelCount, i % row / info->channelCount, i / row, m);
+    }
+    return SLUICE_SUCCESS;
+}
+
 /* Others than whole grids cannot be addressed by place. What is left is checked by decoding. */
 static SluiceResult check(const SluiceNeuralMaskInfo *info)
 {
@@ -220,6 +240,12 @@ static SluiceResult check(const SluiceNeuralMaskInfo *info)
         if (k->mips[m].firstSlice > 14)
             return slc_log_refusal(&info->log, "mips[%u].firstSlice is %u, must be 0 to 14", m,
                                    k->mips[m].firstSlice);
+        if (m > 0 && k->mips[m].firstSlice != k->mips[m - 1].firstSlice &&
+            k->mips[m].firstSlice < k->mips[m - 1].firstSlice + 2u)
+            return slc_log_refusal(&info->log,
+                                   "mips[%u].firstSlice is %u after %u: must be equal or "
+                                   "at least 2 more",
+                                   m, k->mips[m].firstSlice, k->mips[m - 1].firstSlice);
         for (uint32_t g = 0; g < 2; g++) {
             const SluiceNeuralSlice *slice = &k->slices[k->mips[m].firstSlice + g];
             if (slice->origin != 0 || slice->sliceSize != slice->gridSize)
@@ -263,6 +289,8 @@ SluiceResult sluiceRepairNeuralMasks(const SluiceNeuralMaskInfo *pInfo,
         !slc_allocator_is_valid(info.pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
     result = check(&info);
+    if (result == SLUICE_SUCCESS)
+        result = check_values(&info);
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_mask_repair repair;

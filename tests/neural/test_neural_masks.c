@@ -220,6 +220,9 @@ static void wrong_arguments_are_named(void **state)
     k.mips[1].firstSlice = 15;
     check_refused(&m, &k, "mips[1].firstSlice is 15, must be 0 to 14");
     k = m.decodable.constants;
+    k.mips[1].firstSlice = 1;
+    check_refused(&m, &k, "mips[1].firstSlice is 1 after 0: must be equal or at least 2 more");
+    k = m.decodable.constants;
     k.slices[1].sliceSize--;
     check_refused(&m, &k, "slices[1] is no whole grid");
     k = m.decodable.constants;
@@ -229,7 +232,11 @@ static void wrong_arguments_are_named(void **state)
     m.info.latentSize = 8;
     check_refused(&m, &k, "latentSize of a decode is 8, which does not fit");
     m.info.latentSize = m.decodable.latent_size;
-    const float *some[SLUICE_NEURAL_MAX_MIPS];
+    const float *some[SLUICE_NEURAL_MAX_MIPS], numberless[CHANNELS] = {0.0f, 0.0f, 0.0f, NAN};
+    memcpy(some, m.mips, sizeof some);
+    some[k.mipCount - 1] = numberless;
+    m.info.ppMips = some;
+    check_refused(&m, &k, "channel 3 of texel 0, 0 of mip 4 is not finite");
     memcpy(some, m.mips, sizeof some);
     some[2] = NULL;
     m.info.ppMips = some;
