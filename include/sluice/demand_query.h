@@ -66,6 +66,9 @@ typedef struct SluiceDemandMiss {
  * Lists the pages that the launch processed last missed, in the order in which they are loaded: at
  * most maxRequestsPerLaunch, and none before the first one.
  *
+ * Pages are looked up when this is called: a page that was given away since then and taken by
+ * another texture is listed as that one's. Call it before textures are removed.
+ *
  * Set `*pMissCount` to the capacity of `pMisses`. The call sets it to the number written. Returns
  * SLUICE_INCOMPLETE if there are more. With `pMisses` NULL, writes the number of misses.
  *

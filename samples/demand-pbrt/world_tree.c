@@ -171,11 +171,13 @@ static bool build_tree(struct world_tree *t, uint32_t index, struct box_tree *tr
 {
     struct world_tree_part *part = &t->parts[index];
     const uint32_t above = index == WORLD_TREE_REST ? 1 : 1 + t->clusters->depth;
-    const uint32_t depth = BOX_TREE_MOST_DEPTH - above;
+    const uint32_t depth = above < BOX_TREE_MOST_DEPTH ? BOX_TREE_MOST_DEPTH - above : 0;
     struct box_tree_box *boxes = malloc((part->count + 1u) * sizeof *boxes);
     if (part->count > 1u << depth) {
-        fprintf(stderr, "%u shapes and boxes are in one cluster: choose a smaller --cluster-size\n",
-                part->count);
+        fprintf(stderr,
+                "%u shapes and boxes are in one cluster, and at most %u have room: render with the "
+                "pipelines, or fewer instances\n",
+                part->count, 1u << depth);
         free(boxes);
         return false;
     }

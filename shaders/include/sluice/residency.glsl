@@ -57,7 +57,7 @@ uint sluiceProbeNonResident(SLUICE_SAMPLER_2D(nearestMipTex), SluiceTextureEntry
         return 0u;
 #ifdef SLUICE_HLSL
     uint status;
-    texel = nearestMipTex.SampleLevel(nearestMipTexSampler, uv, level, int2(0, 0), 0.0, status);
+    texel = nearestMipTex.SampleLevel(nearestMipTexSampler, uv, level, int2(0, 0), status);
     return CheckAccessFullyMapped(status) ? 0u : 1u;
 #else
     return sparseTexelsResidentARB(sparseTextureLodARB(nearestMipTex, uv, level, texel)) ? 0u : 1u;
