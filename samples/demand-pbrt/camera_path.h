@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/** What --camera and --fly-from name. */
+/** What --look-from and --fly-from name. */
 struct camera_view {
     float eye[3], look[3], up[3];
     bool given, has_up;

@@ -113,7 +113,7 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
         {OPTION_UINT, "samples", "N", "1", &o->samples, "rays per pixel; the first is its center",
          1, 65536},
         {OPTION_UINT, "depth", "N", "3", &o->bounces, "bounces of paths", 0, PBRT_MAX_BOUNCES},
-        {OPTION_CUSTOM, "camera", "EYE/POINT[/UP]", "(that of the scene)", &o->camera,
+        {OPTION_CUSTOM, "look-from", "EYE/POINT[/UP]", "(that of the scene)", &o->camera,
          "where the camera is, what it looks at, and which way is up: three numbers each, as in "
          "0/-5/2/0/0/0",
          .parse = parse_view},

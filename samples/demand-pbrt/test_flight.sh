@@ -80,7 +80,7 @@ render bounded --fly 20 --frame-budget 0.01
 check frames 'v == 20'
 check frame_boxes_resolved_most 'v == 1'
 for options in "--frame-budget 16" "--preload --preload-shapes" "--preload-shapes --budget 1M" "--fly-from 0/0/0/1/0/0" \
-    "--camera 0/0/0" "--camera 1/2/3/1/2/3" "--camera 0/0/0/0/0/2/0/0/1" "--camera 0/0/0/1/0/nan" "--cluster-size 1"; do
+    "--look-from 0/0/0" "--look-from 1/2/3/1/2/3" "--look-from 0/0/0/0/0/2/0/0/1" "--look-from 0/0/0/1/0/nan" "--cluster-size 1"; do
     status=0
     # shellcheck disable=SC2086
     "$program" "$folder/set/scene.pbrt" --file "$folder/no.png" $options >/dev/null 2>&1 || status=$?
