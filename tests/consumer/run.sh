@@ -97,6 +97,14 @@ meson_project() {
         meson test -C "$work/meson"
 }
 
+# Of what is installed, shared; the folder may lie anywhere.
+cmake_project() {
+    local components
+    components=$(installed_modules | sed -n 's/^sluice-//p' | paste -sd ';')
+    cmake -S "$root/tests/consumer" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$1" -DCOMPONENTS="$components" &&
+        cmake --build "$work/cmake" && "$work/cmake/from_c" && "$work/cmake/from_cpp"
+}
+
 # -DWITH_EXR and so on
 with_modules() { installed_modules | sed -n 's/sluice-\(.*\)/-DWITH_\1/p' | tr '[:lower:]' '[:upper:]'; }
 
@@ -190,7 +198,7 @@ every_program_does_its_work() {
         runs libexec/sluice/demand-tracer --size 64x36 --samples 1 --texture-count 5 --texture-size 1024
 }
 
-echo 1..17
+echo 1..18
 check installs install_copy
 check pkg_config_file_is_installed find_installed
 find_installed && relocate
@@ -199,6 +207,12 @@ check pkg_config_answers_for_shared_and_static_programs pkg_config_answers
 check vulkan_module_needs_no_package_of_the_loader vulkan_module_stands_alone
 check every_public_header_is_installed every_public_header_is_installed
 check meson_project_builds_against_the_installed_copy meson_project
+if command -v cmake >/dev/null; then
+    check cmake_project_builds_against_the_installed_copy cmake_project "$prefix"
+else
+    number=$((number + 1))
+    echo "ok $number - cmake_project_builds_against_the_installed_copy # SKIP there is no CMake"
+fi
 check compiler_builds_against_the_installed_copy plain main.c "${CC:-cc}" -std=c11 -Wall -Wextra -Werror
 check cpp_compiler_builds_against_the_installed_copy plain main.cpp "${CXX:-c++}" -std=c++11 -Wall -Wextra -Werror
 check static_program_needs_only_libc plain_static
