@@ -40,7 +40,7 @@ struct tiles {
     double copy_rate;               ///< texels per second, from device memory
 };
 
-/* What one run records, and with what. */
+/* The commands of one run, and the objects that they use. */
 struct job {
     const struct format *format;
     const SluiceTileProducer *producer; ///< NULL: a copy

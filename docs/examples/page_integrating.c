@@ -7,7 +7,7 @@
 
 #define FRAMES_IN_FLIGHT 2
 
-/* What the renderer has. */
+/* Objects that the renderer owns. */
 struct renderer {
     VkInstance instance;
     VkPhysicalDevice physical_device;
@@ -18,7 +18,7 @@ struct renderer {
     const SluiceDeviceMemoryCallbacks *memory; /* of its allocator, such as VMA; or NULL */
 };
 
-/* What it adds. */
+/* Objects for streaming. */
 struct streaming {
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;

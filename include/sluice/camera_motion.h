@@ -41,7 +41,7 @@ typedef struct SluiceCameraMotion {
 SLUICE_API SluiceResult sluiceAddCameraFrame(SluiceCameraMotion *pMotion, const float *pViewMatrix,
                                              double seconds);
 
-/** What to look ahead for. */
+/** Settings of a prediction. */
 typedef struct SluiceLookAheadInfo {
     uint32_t structSize; ///< sizeof(SluiceLookAheadInfo).
     /** How far to look ahead: about as long as a tile takes from a mark to the picture. The camera
@@ -52,7 +52,7 @@ typedef struct SluiceLookAheadInfo {
     uint32_t shrink; ///< Width and height of the picture over those of the feedback. Default: 4.
 } SluiceLookAheadInfo;
 
-/** What to draw feedback of. */
+/** The predicted camera, for a draw that marks tiles alone. */
 typedef struct SluiceLookAhead {
     uint32_t structSize; ///< sizeof(SluiceLookAhead).
     /** The camera is going to move. If false, the picture's own feedback says all. */

@@ -44,7 +44,7 @@ SLUICE_API SluiceResult sluiceGetDemandTileInfo(SluiceDemandLoader *loader,
                                                 uint32_t x, uint32_t y,
                                                 SluiceDemandTileInfo *pInfo);
 
-/** What a missed page is. */
+/** Kinds of missed pages. */
 typedef enum SluiceDemandMissKind {
     SLUICE_DEMAND_MISS_OPENING = 0, ///< The texture was not open.
     SLUICE_DEMAND_MISS_TILE = 1,

@@ -455,7 +455,7 @@ typedef struct SluiceNeuralMaskInfo {
     SluiceLogCallback log;                       ///< Arguments that are refused.
 } SluiceNeuralMaskInfo;
 
-/** What a repair did. Texels are of all mips. */
+/** Counts of a repair. Texels are of all mips. */
 typedef struct SluiceNeuralMaskReport {
     uint32_t structSize;  ///< sizeof(SluiceNeuralMaskReport).
     uint64_t texelCount;  ///< Texels of which a mask should be exactly 0 or 1.

@@ -47,9 +47,9 @@ void slc_file_close(int descriptor);
 uint64_t slc_get_descriptor_limit(void);
 
 bool slc_file_get_status(int descriptor, struct slc_file_status *status);
-/** Of the file that a link names. */
+/** Follows links to the file that they name. */
 bool slc_path_get_status(const char *path, struct slc_file_status *status);
-/** Of the link itself. */
+/** Describes the link itself. */
 bool slc_path_get_link_status(const char *path, struct slc_file_status *status);
 
 /** Reads 1 to `size` bytes at an offset, or returns 0 at the end. -1: EINTR, or an error. */

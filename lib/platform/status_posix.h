@@ -1,4 +1,4 @@
-/** What stat answers. */
+/** Converts results of stat. */
 #ifndef SLC_PLATFORM_STATUS_POSIX_H
 #define SLC_PLATFORM_STATUS_POSIX_H
 

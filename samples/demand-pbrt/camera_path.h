@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/** What --look-from and --fly-from name. */
+/** A camera that --look-from or --fly-from names. */
 struct camera_view {
     float eye[3], look[3], up[3];
     bool given, has_up;

@@ -267,7 +267,7 @@ bool launches_trace(struct launches *l, uint32_t sample, SluiceDemandTicket *tic
     return !l->after_launch || l->after_launch(l->user_data);
 }
 
-/** Of those that there are. */
+/* Doubles the budgets that are set. */
 static bool grow_budgets(struct launches *l)
 {
     uint64_t *meshes = &l->world->budget, *materials = &l->surfaces->budget;
