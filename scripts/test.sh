@@ -4,6 +4,7 @@
 #   scripts/test.sh [options]
 #
 #   --quick        only the gcc build, its tests but for the long ones, and the style check
+#   --cross        also build for Windows, aarch64 and s390x, and run what can run there (Wine, qemu-user)
 #   --no-install   install nothing; say what is missing
 #   --clean        throw away earlier test builds first
 #   --help
@@ -18,15 +19,16 @@
 
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-for part in common packages mesa build stages; do
+for part in common packages mesa build stages cross; do
     # shellcheck source=/dev/null
     . "$here/lib/$part.sh"
 done
 
-install=yes quick=no clean=no
+install=yes quick=no clean=no cross=no
 while [ $# -gt 0 ]; do
     case $1 in
     --quick) quick=yes ;;
+    --cross) cross=yes ;;
     --no-install) install=no ;;
     --clean) clean=yes ;;
     --help) usage_of "$0"; exit 0 ;;
@@ -71,5 +73,6 @@ if [ "$quick" = no ]; then
     }
 fi
 
+[ "$cross" = no ] || cross_stages "$install"
 print_extremes gcc
 end_stages

@@ -1,0 +1,108 @@
+# Builds for other systems and runs them: Windows with MinGW-w64 and Wine, aarch64 and s390x with
+# clang and qemu-user. What is missing for that is unpacked into a folder; nothing is installed.
+# shellcheck shell=bash disable=SC2154
+
+cross_root=$SLUICE_BUILD/cross-root
+packages_to_cross=(gcc-mingw-w64-x86-64-win32 wine64 qemu-user binutils-s390x-linux-gnu
+    libc6-dev-arm64-cross libc6-dev-s390x-cross)
+
+# Packages that the compiler's version names.
+cross_runtime_packages() {
+    local version
+    version=$(apt-cache pkgnames libgcc- 2>/dev/null |
+        sed -n 's/^libgcc-\([0-9]*\)-dev-arm64-cross$/\1/p' | sort -n | tail -n 1)
+    [ -n "$version" ] && say "libgcc-$version-dev-arm64-cross" "libgcc-$version-dev-s390x-cross"
+}
+
+# apt resolves what this machine lacks. Wine's 32-bit half and what nobody links stay packed.
+unpack_cross_tools() {
+    local archives=$SLUICE_BUILD/cross-archives file
+    rm -rf "$archives" "$cross_root"
+    mkdir -p "$archives/partial" "$cross_root"
+    # shellcheck disable=SC2046 # lists of words
+    apt-get install --download-only -y --no-install-recommends -o Debug::NoLocking=1 \
+        -o APT::Sandbox::User=root -o "Dir::Cache::archives=$archives" \
+        "${packages_to_cross[@]}" $(cross_runtime_packages) || return 1
+    for file in "$archives"/*.deb; do
+        [ ! -e "$file" ] || dpkg-deb --fsys-tarfile "$file" | tar -x -C "$cross_root" --exclude='*/i386-windows/*' \
+            --exclude='*/i686-w64-mingw32/*' --exclude='./usr/share/doc/*' --exclude='./usr/share/man/*' || return 1
+    done
+    rm -rf "$archives"
+    touch "$cross_root/complete"
+}
+
+# with_root PATH: the folder under which it is, the unpacked one first; fails if it is nowhere
+with_root() {
+    local root
+    for root in "$cross_root" ''; do
+        if [ -e "$root/$1" ]; then
+            say "$root"
+            return 0
+        fi
+    done
+    return 1
+}
+
+# cross_stage SYSTEM CONSTANTS: builds and runs the programs of tests/cross
+cross_stage() {
+    local system=$1 folder=$tests_folder/$1
+    stage_title "$system"
+    printf '[constants]\n%s\n' "$2" >"$folder.ini"
+    local off='-Dexr=disabled -Dzstd=disabled -Dstore=disabled -Dbake=disabled -Dvulkan=disabled -Dsamples=disabled -Dneural=disabled -Dpbrt=disabled'
+    # shellcheck disable=SC2086 # a list of words
+    if configure "$folder" --cross-file "$SLUICE_ROOT/scripts/cross/$system.ini" --cross-file "$folder.ini" \
+        --wrap-mode=nofallback --werror -Dbuildtype=plain -Ddefault_library=static $off &&
+        compile "$folder" cross-tests; then
+        fact passed "$system" build "compiles without a warning" ""
+        run_meson_tests "$system" --no-rebuild --suite cross
+    else
+        fact failed "$system" build "compiles without a warning" "see $folder.build.log"
+    fi
+}
+
+# A prefix of Wine that is complete enough for programs of the console, without Wine's own set-up,
+# which copies 700 MB.
+make_wine_prefix() {
+    local prefix=$SLUICE_BUILD/wine libraries=$1/usr/lib/x86_64-linux-gnu/wine/x86_64-windows
+    rm -rf "$prefix"
+    mkdir -p "$prefix/dosdevices" "$prefix/drive_c/windows"
+    ln -s "$libraries" "$prefix/drive_c/windows/system32"
+    ln -s ../drive_c "$prefix/dosdevices/c:"
+    ln -s / "$prefix/dosdevices/z:"
+    echo disable >"$prefix/.update-timestamp"
+    say "$prefix"
+}
+
+windows_stage() {
+    local gcc wine name=x86_64-w64-mingw32
+    gcc=$(with_root "usr/bin/$name-gcc-win32") && wine=$(with_root usr/lib/wine/wine64) || return 1
+    local -x WINEPREFIX WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml,winemenubuilder.exe='
+    WINEPREFIX=$(make_wine_prefix "$wine")
+    cross_stage $name "gcc = '$gcc/usr/bin/$name-gcc-win32'
+ar = '$(with_root usr/bin/$name-ar)/usr/bin/$name-ar'
+wine = '$wine/usr/lib/wine/wine64'"
+}
+
+# processor_stage PROCESSOR
+processor_stage() {
+    local root qemu
+    root=$(with_root "usr/$1-linux-gnu/include/stdio.h") && qemu=$(with_root "usr/bin/qemu-$1") || return 1
+    cross_stage "$1-linux-gnu" "root = '${root:-/}'
+qemu = '$qemu/usr/bin/qemu-$1'
+tools = '$(with_root usr/s390x-linux-gnu/bin/ld)/usr/s390x-linux-gnu/bin'"
+}
+
+# cross_stages INSTALL: INSTALL is yes or no.
+cross_stages() {
+    local system
+    if [ ! -f "$cross_root/complete" ] && { [ "$1" = no ] || ! command -v apt-get >/dev/null ||
+        ! logged "$SLUICE_BUILD/logs/cross-tools.log" unpack_cross_tools; }; then
+        warn "not every package for other systems can be had: ${packages_to_cross[*]}"
+    fi
+    # Of the unpacked programs: Wine and qemu find their libraries here.
+    local -x LD_LIBRARY_PATH=$cross_root/usr/lib/x86_64-linux-gnu${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+    windows_stage || fact skipped windows cross "all of it" "MinGW-w64 or Wine cannot be had"
+    for system in aarch64 s390x; do
+        processor_stage $system || fact skipped $system cross "all of it" "a C library or qemu-user cannot be had"
+    done
+}
