@@ -10,7 +10,8 @@ struct slc_requested_level {
     uint8_t asked; ///< before the bias
 };
 
-/** Of the tile of level 0 at (x, y), a texel of the MinMip map. The texture exists. */
+/** Returns the levels of a tile of level 0: (x, y) is its texel of the MinMip map. The texture
+ * exists. */
 struct slc_requested_level slc_requested_level(const SluiceStreamedTextureManager *manager,
                                                SluiceTextureId id, uint32_t x, uint32_t y);
 

@@ -145,7 +145,7 @@ void slc_mask_finish(struct slc_mask_repair *repair)
     }
 }
 
-/* Of one mip: both grids, columns and rows. */
+/* Counts the runs of one mip: of both grids, columns and rows. */
 static size_t runs_per_mip(const struct slc_mask_group *group)
 {
     return 2 * ((size_t)group->grid_size[0][0] + group->grid_size[0][1] + group->grid_size[1][0] +

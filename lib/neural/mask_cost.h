@@ -1,4 +1,4 @@
-/** What texels cost while masks are repaired, and which texels a code reaches. */
+/** Costs of texels while masks are repaired, and the texels that a code reaches. */
 #ifndef SLC_NEURAL_MASK_COST_H
 #define SLC_NEURAL_MASK_COST_H
 

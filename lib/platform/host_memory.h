@@ -6,7 +6,7 @@
 
 /** `alignment` is a power of two. NULL: there is none. */
 void *slc_host_allocate(size_t size, size_t alignment);
-/** What slc_host_allocate returned, whatever its alignment is. */
+/** Frees memory of slc_host_allocate, whatever its alignment is. */
 void slc_host_free(void *memory);
 
 #endif /* SLC_PLATFORM_HOST_MEMORY_H */

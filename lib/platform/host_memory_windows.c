@@ -2,7 +2,7 @@
 
 #include <malloc.h>
 
-/* What _aligned_malloc returns is not for free(), so that everything comes from it. */
+/* free() must not get memory of _aligned_malloc, so all memory comes from that. */
 void *slc_host_allocate(size_t size, size_t alignment)
 {
     size_t least = _Alignof(max_align_t);
