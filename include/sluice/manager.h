@@ -439,7 +439,8 @@ SLUICE_API SluiceResult sluiceUpdateWithSamplerFeedback(SluiceStreamedTextureMan
 /**
  * Merges the last feedback map of a primary texture into a follower once, matched in UV.
  *
- * Sizes, tile shapes and level counts may differ. Level m of the primary becomes level m +
+ * Sizes, tile shapes and level counts may differ, and sluiceSetUvTransform moves the follower
+ * against the primary. Level m of the primary becomes level m +
  * floor(log2(min(width ratio, height ratio))) of the follower, at least 0. The result is merged
  * like a map of the follower's own; a follower that is matched with several primaries within
  * `timeout` holds the union. Does nothing if the primary never had a map, or if the follower has no
@@ -466,6 +467,42 @@ SLUICE_API SluiceResult sluiceMatchPrimaryTexture(SluiceStreamedTextureManager *
 SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *manager,
                                                 SluiceTextureId followerId,
                                                 SluiceTextureId primaryId);
+
+/** How a texture continues outside of UV 0 to 1. Values as VkSamplerAddressMode, but for borders.
+ */
+typedef enum SluiceUvWrap {
+    SLUICE_UV_WRAP_REPEAT = 0,
+    SLUICE_UV_WRAP_MIRROR = 1,
+    SLUICE_UV_WRAP_CLAMP = 2,
+    SLUICE_UV_WRAP_MIRROR_CLAMP = 3 ///< Mirrored once, at 0; then clamped.
+} SluiceUvWrap;
+
+/** Where a follower is sampled: at UV * scale + offset, where UV is the primary's. Never grows. */
+typedef struct SluiceUvTransform {
+    float scaleU, scaleV;      ///< 1/4096 to 4096, or the negative of that.
+    float offsetU, offsetV;    ///< -4096 to 4096.
+    SluiceUvWrap wrapU, wrapV; ///< Of the follower.
+} SluiceUvTransform;
+
+/**
+ * Sets where a texture is sampled when it follows a primary: a detail map that repeats 8 times has
+ * scales of 8. NULL: where the primary is. Counts from the next map that is matched, until it is
+ * set again.
+ *
+ * Regions: a region of the follower requests the finest level of the primary's regions that sample
+ * it. Levels: level m of the primary becomes level m + floor(log2(min(width ratio * |scaleU|,
+ * height ratio * |scaleV|))), at least 0. Scales and offsets are rounded to multiples of 2^-24.
+ *
+ * The primary's map knows UVs within 0 to 1 only. So if the primary repeats, scales must be whole
+ * numbers. A texture with other UVs, or rotated ones, needs feedback of its own: no primary.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a value out of range;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. Nothing has changed after an error.
+ */
+SLUICE_API SluiceResult sluiceSetUvTransform(SluiceStreamedTextureManager *manager,
+                                             SluiceTextureId textureId,
+                                             const SluiceUvTransform *pTransform);
 
 /**
  * Returns tiles to load. Reserves a slot for each and makes it ALLOCATED.

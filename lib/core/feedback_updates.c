@@ -36,14 +36,13 @@ static size_t log_size(const struct slc_managed_texture *t)
 }
 
 /** Scratch for the maps of a texture and of those that follow it, and for the log before them. */
-static SluiceResult reserve_scratch(slc_manager *m, const struct slc_managed_texture *t,
-                                    bool followers)
+static SluiceResult reserve_scratch(slc_manager *m, const struct slc_managed_texture *t)
 {
     size_t work = t->shape->work_size;
     uint64_t bytes = slc_padded(t->shape->region_count) + log_size(t);
-    for (uint32_t i = followers ? t->first_follower : SLC_NONE; i != SLC_NONE;) {
+    for (uint32_t i = t->first_follower; i != SLC_NONE;) {
         const struct slc_managed_texture *f = slc_texture_at(m, i);
-        bytes += slc_padded(f->shape->region_count);
+        bytes += slc_follower_scratch(t, f);
         work = f->shape->work_size > work ? f->shape->work_size : work;
         i = f->next_follower;
     }
@@ -71,8 +70,9 @@ static bool may_share(const slc_manager *m, const struct slc_managed_texture *t,
                       const struct slc_managed_texture *follower)
 {
     return t->history && (t->history->next || follower->nodes) && !follower->history &&
-           m->bias.value == 0 && t->hits == follower->hits && t->returns == follower->returns &&
-           t->shape->regular_tile_count <= MAX_SHARED_TILES && slc_have_same_shape(t, follower);
+           !follower->uv && m->bias.value == 0 && t->hits == follower->hits &&
+           t->returns == follower->returns && t->shape->regular_tile_count <= MAX_SHARED_TILES &&
+           slc_have_same_shape(t, follower);
 }
 
 static SluiceResult prepare_followers(slc_manager *m, struct slc_managed_texture *t, bool is_new,
@@ -103,7 +103,7 @@ static SluiceResult prepare(slc_manager *m, struct slc_managed_texture *t,
 {
     struct slc_wants_need need = {.scratch = log_size(t)};
     bool is_new = !t->history;
-    SluiceResult result = reserve_scratch(m, t, true);
+    SluiceResult result = reserve_scratch(m, t);
     if (result == SLUICE_SUCCESS)
         result = slc_wants_prepare(m, t, feedback, users_of_history(m, t), &need);
     if (result == SLUICE_SUCCESS)
@@ -207,7 +207,7 @@ static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceText
         return SLUICE_ERROR_TIME_BACKWARDS;
     if (p->has_map && (p->nodes || t->nodes)) {
         struct slc_wants_need need = {0};
-        result = reserve_scratch(m, t, false);
+        result = slc_wants_reserve_scratch(m, slc_follower_scratch(p, t), t->shape->work_size);
         const struct slc_history *h = p->history;
         if (result == SLUICE_SUCCESS)
             result = slc_wants_prepare_follower(m, p, h ? h->asked : NULL, t, &need);

@@ -3,6 +3,7 @@
 #include "base/bytes.h"
 #include "core/history.h"
 #include "core/overlap.h"
+#include "core/uv_transform.h"
 
 #include <string.h>
 
@@ -53,6 +54,32 @@ bool slc_have_same_shape(const struct slc_managed_texture *a, const struct slc_m
            c->regularMipCount == d->regularMipCount && c->packedTileCount == d->packedTileCount;
 }
 
+uint64_t slc_follower_scratch(const struct slc_managed_texture *primary,
+                              const struct slc_managed_texture *follower)
+{
+    uint64_t work = 0;
+    if (follower->uv)
+        work = (uint64_t)primary->shape->feedback_height * follower->shape->feedback_width;
+    return work + SLC_BLOCK + slc_padded(slc_region_count(follower));
+}
+
+/* The follower's map, in levels of the primary; `*offset` turns them into its own. */
+static void match_regions(slc_manager *m, const struct slc_managed_texture *primary,
+                          const uint8_t *asked, const struct slc_managed_texture *follower,
+                          uint8_t *map, int *offset, struct slc_wants_need *need)
+{
+    const struct slc_grid from = region_grid(primary), to = region_grid(follower);
+    const SluiceStreamedTextureDesc *p = &primary->shape->desc, *f = &follower->shape->desc;
+    if (!follower->uv) {
+        slc_least_overlapped(&from, asked, &to, map);
+        *offset = level_offset(p, f);
+        return;
+    }
+    uint8_t *work = slc_wants_take_scratch(m, (size_t)from.rows * to.columns, need);
+    slc_least_transformed(follower->uv, &from, asked, &to, work, map);
+    *offset = slc_uv_level_offset(follower->uv, p, f);
+}
+
 SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_managed_texture *primary,
                                         const uint8_t *asked, struct slc_managed_texture *follower,
                                         struct slc_wants_need *need)
@@ -69,12 +96,11 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_managed
     const uint8_t *values = map;
     if (!asked) {
         memset(map, SLUICE_MIP_UNTOUCHED, slc_region_count(follower));
-    } else if (has_same_regions(primary, follower)) {
+    } else if (!follower->uv && has_same_regions(primary, follower)) {
         values = asked;
     } else {
-        struct slc_grid from = region_grid(primary), to = region_grid(follower);
-        slc_least_overlapped(&from, asked, &to, map);
-        int offset = level_offset(&primary->shape->desc, &follower->shape->desc);
+        int offset;
+        match_regions(m, primary, asked, follower, map, &offset, need);
         levels.up = (uint8_t)(offset > 0 ? offset : 0);
         levels.down = (uint8_t)(offset < 0 ? -offset : 0);
     }

@@ -14,6 +14,7 @@
 #include "core/sets.h"
 #include "core/shape.h"
 #include "core/texture_tiles.h"
+#include "core/uv_transform.h"
 #include "core/visits.h"
 #include "residency/node.h"
 #include "residency/nodes.h"
@@ -83,6 +84,8 @@ static void destroy_texture_memory(slc_manager *m, struct slc_managed_texture *t
     slc_state_destroy(m, t);
     slc_free(&m->cb, t->packed_nodes, t->shape->desc.packedTileCount, sizeof *t->packed_nodes);
     t->packed_nodes = NULL;
+    slc_free(&m->cb, t->uv, 1, sizeof *t->uv);
+    t->uv = NULL;
     slc_shape_give(m, t->shape);
     t->shape = NULL;
 }

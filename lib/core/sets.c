@@ -1,8 +1,11 @@
 #include "core/sets.h"
 
+#include "base/alloc.h"
+#include "core/history.h"
 #include "core/lookup.h"
 #include "core/observer.h"
 #include "core/refusal.h"
+#include "core/uv_transform.h"
 
 void slc_unfollow(slc_manager *m, struct slc_managed_texture *t)
 {
@@ -60,6 +63,60 @@ SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *manager,
                             .texture_id = followerId,
                             .primary_id = primaryId,
                             .result = set_primary(manager, followerId, primaryId)};
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+/* It does not get its primary's maps any longer: what both have got so far stays with both. */
+static SluiceResult leave_shared_history(slc_manager *m, struct slc_managed_texture *t)
+{
+    if (!t->history || t->history->users == 1)
+        return SLUICE_SUCCESS;
+    return slc_history_make(m, t, 1);
+}
+
+static SluiceResult set_uv(slc_manager *m, SluiceTextureId id, const SluiceUvTransform *transform)
+{
+    struct slc_managed_texture *t;
+    struct slc_uv_transform uv, *own = NULL;
+    SluiceResult result = slc_find_texture(m, id, &t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    const char *wrong = transform ? slc_uv_transform_read(&uv, transform) : NULL;
+    if (wrong)
+        return slc_refuse(m, "sluiceSetUvTransform", "scale %g, %g, offset %g, %g, wrap %d, %d: %s",
+                          (double)transform->scaleU, (double)transform->scaleV,
+                          (double)transform->offsetU, (double)transform->offsetV,
+                          (int)transform->wrapU, (int)transform->wrapV, wrong);
+    if (transform && !slc_uv_transform_is_none(&uv)) {
+        own = t->uv ? t->uv : slc_alloc(&m->cb, 1, sizeof *own);
+        if (!own)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        result = leave_shared_history(m, t);
+    }
+    if (result != SLUICE_SUCCESS) {
+        slc_free(&m->cb, t->uv ? NULL : own, 1, sizeof *own);
+        return result;
+    }
+    if (own)
+        *own = uv;
+    else
+        slc_free(&m->cb, t->uv, 1, sizeof *t->uv);
+    t->uv = own;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceSetUvTransform(SluiceStreamedTextureManager *manager, SluiceTextureId textureId,
+                                  const SluiceUvTransform *pTransform)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (slc_is_locked(manager))
+        return slc_refuse_locked(manager, __func__);
+    struct slc_call call = {.kind = SLC_CALL_SET_UV,
+                            .texture_id = textureId,
+                            .uv = pTransform,
+                            .result = set_uv(manager, textureId, pTransform)};
     slc_notify(manager, &call);
     return call.result;
 }

@@ -134,7 +134,8 @@ struct slc_managed_texture {
     uint32_t trouble_prev, trouble_next; ///< indices, SLC_NONE; in the list of its trouble
     uint64_t trouble_time;               ///< when it entered that
 
-    uint64_t seen_time; ///< of the last map that did
+    uint64_t seen_time;          ///< of the last map that did
+    struct slc_uv_transform *uv; ///< owned; NULL: none, it is sampled where its primary is
     uint32_t mapped_total, unmapped_total, failed_total;
 };
 

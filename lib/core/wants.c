@@ -135,13 +135,18 @@ static struct compared compare_all(const struct slc_managed_texture *t, const ui
     return c;
 }
 
+uint8_t *slc_wants_take_scratch(slc_manager *m, size_t size, struct slc_wants_need *need)
+{
+    uint8_t *scratch = m->scratch + need->scratch;
+    need->scratch += slc_padded(size);
+    assert(need->scratch <= m->scratch_room);
+    return scratch;
+}
+
 uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_managed_texture *t,
                             struct slc_wants_need *need)
 {
-    uint8_t *map = m->scratch + need->scratch;
-    need->scratch += slc_padded(slc_region_count(t));
-    assert(need->scratch <= m->scratch_room);
-    return map;
+    return slc_wants_take_scratch(m, slc_region_count(t), need);
 }
 
 void slc_wants_set_map(slc_manager *m, struct slc_managed_texture *t, const uint8_t *values,

@@ -34,6 +34,8 @@ struct slc_levels {
     uint8_t lowest, last;
 };
 
+/** Takes bytes of the scratch, padded. */
+uint8_t *slc_wants_take_scratch(slc_manager *m, size_t size, struct slc_wants_need *need);
 /** Takes room for the texture's map from the scratch. */
 uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_managed_texture *t,
                             struct slc_wants_need *need);

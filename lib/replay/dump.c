@@ -29,6 +29,7 @@ static const char *const call_names[] = {
     [SLC_CALL_EVACUATE_HEAPS] = "evacuate-heaps",
     [SLC_CALL_FORGET_TEXTURE] = "forget-texture",
     [SLC_CALL_EVICT_TEXTURE] = "evict-texture",
+    [SLC_CALL_SET_UV] = "set-uv-transform",
     [SLC_CALL_DEFRAGMENT] = "defragment",
     [SLC_CALL_RELEASE_HEAP] = "release-heap",
     [SLC_CALL_GET_MINMIP_UPDATES] = "get-minmip-updates",
@@ -192,6 +193,17 @@ static void add_list(struct slc_dump *dump, const struct slc_call *call)
         add(dump, " room=%" PRIu32, call->room);
 }
 
+static void add_uv(struct slc_dump *dump, const SluiceUvTransform *uv)
+{
+    if (!uv) {
+        add(dump, " transform=none");
+        return;
+    }
+    add(dump, " scale=%.9g,%.9g offset=%.9g,%.9g wrap=%d,%d", (double)uv->scaleU,
+        (double)uv->scaleV, (double)uv->offsetU, (double)uv->offsetV, (int)uv->wrapU,
+        (int)uv->wrapV);
+}
+
 void slc_dump_inputs(struct slc_dump *dump, const struct slc_call *call)
 {
     if (!dump->line)
@@ -222,6 +234,8 @@ void slc_dump_inputs(struct slc_dump *dump, const struct slc_call *call)
         add_indices(dump, call);
     if (fields & SLC_FIELD_LIST)
         add_list(dump, call);
+    if (fields & SLC_FIELD_UV)
+        add_uv(dump, call->uv);
     end_line(dump);
 }
 

@@ -28,6 +28,7 @@ uint32_t slc_call_fields(uint32_t kind)
         [SLC_CALL_EVACUATE_HEAPS] = SLC_FIELD_KEEP,
         [SLC_CALL_FORGET_TEXTURE] = SLC_FIELD_TEXTURE | SLC_FIELD_RETIRE,
         [SLC_CALL_EVICT_TEXTURE] = SLC_FIELD_TEXTURE | SLC_FIELD_KEEP,
+        [SLC_CALL_SET_UV] = SLC_FIELD_TEXTURE | SLC_FIELD_UV,
         [SLC_CALL_DEFRAGMENT] = SLC_FIELD_RETIRE | SLC_FIELD_LIST,
         [SLC_CALL_RELEASE_HEAP] = SLC_FIELD_HEAP,
         [SLC_CALL_GET_MINMIP_UPDATES] = SLC_FIELD_LIST,
@@ -177,6 +178,26 @@ static void put_indices(struct slc_bytes *out, const struct slc_call *call)
     }
 }
 
+static void put_float(struct slc_bytes *out, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    slc_put_u32(out, bits);
+}
+
+static void put_uv(struct slc_bytes *out, const SluiceUvTransform *uv)
+{
+    slc_put_u8(out, uv ? SLC_INPUT_PRESENT : SLC_INPUT_NULL);
+    if (!uv)
+        return;
+    put_float(out, uv->scaleU);
+    put_float(out, uv->scaleV);
+    put_float(out, uv->offsetU);
+    put_float(out, uv->offsetV);
+    slc_put_varint(out, (uint32_t)uv->wrapU);
+    slc_put_varint(out, (uint32_t)uv->wrapV);
+}
+
 static void put_list(struct slc_bytes *out, const struct slc_call *call, uint64_t hash)
 {
     slc_put_u8(out, call->query);
@@ -214,6 +235,8 @@ void slc_put_record(struct slc_bytes *out, const struct slc_call *call, uint64_t
         put_indices(out, call);
     if (fields & SLC_FIELD_LIST)
         put_list(out, call, hash);
+    if (fields & SLC_FIELD_UV)
+        put_uv(out, call->uv);
 }
 
 static SluiceTextureId get_id(struct slc_cursor *in)
@@ -339,6 +362,27 @@ static void get_indices(struct slc_cursor *in, struct slc_record *record)
     }
 }
 
+static float get_float(struct slc_cursor *in)
+{
+    uint32_t bits = slc_get_u32(in);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static void get_uv(struct slc_cursor *in, struct slc_record *record)
+{
+    if (get_input(in) == SLC_INPUT_NULL)
+        return;
+    record->uv.scaleU = get_float(in);
+    record->uv.scaleV = get_float(in);
+    record->uv.offsetU = get_float(in);
+    record->uv.offsetV = get_float(in);
+    record->uv.wrapU = (SluiceUvWrap)slc_get_varint32(in);
+    record->uv.wrapV = (SluiceUvWrap)slc_get_varint32(in);
+    record->call.uv = &record->uv;
+}
+
 static void get_list(struct slc_cursor *in, struct slc_record *record)
 {
     size_t start = in->pos;
@@ -386,6 +430,8 @@ void slc_get_record(struct slc_cursor *in, struct slc_record *record)
         get_indices(in, record);
     if (fields & SLC_FIELD_LIST)
         get_list(in, record);
+    if (fields & SLC_FIELD_UV)
+        get_uv(in, record);
 }
 
 void slc_get_tile_indices(struct slc_record *record, uint32_t *indices)

@@ -29,7 +29,8 @@ enum slc_field {
     SLC_FIELD_DESC = 256, ///< and the id it got
     SLC_FIELD_FEEDBACK = 512,
     SLC_FIELD_INDICES = 1024,
-    SLC_FIELD_LIST = 2048
+    SLC_FIELD_LIST = 2048,
+    SLC_FIELD_UV = 4096
 };
 
 /** The fields of a kind of call; 0 if there is no such kind. */
@@ -43,6 +44,7 @@ struct slc_record {
     SluiceStreamedTextureManagerConfig config;
     SluiceStreamedTextureDesc desc;
     SluiceFeedbackDesc feedback;
+    SluiceUvTransform uv;
     /** Encoded map or tile indices, in the trace. */
     struct slc_cursor encoded;
 };

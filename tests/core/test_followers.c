@@ -1,5 +1,8 @@
 #include "core/fixture.h"
 
+#include "core/check.h"
+
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -195,6 +198,153 @@ static void regions_match_in_uv_whatever_the_shapes(void **state)
         free(expected);
         fixture_close(&f);
     }
+}
+
+/* Scale and offset in eighths. */
+struct moved_axis {
+    int scale, offset;
+    SluiceUvWrap wrap;
+};
+
+/* Cell of the follower at numerator / (16 steps), which is on no border. */
+static uint32_t wrapped_cell(int64_t numerator, int64_t whole, SluiceUvWrap wrap, uint32_t size,
+                             uint32_t cell)
+{
+    bool mirrors = wrap == SLUICE_UV_WRAP_MIRROR || wrap == SLUICE_UV_WRAP_MIRROR_CLAMP;
+    if (wrap == SLUICE_UV_WRAP_MIRROR_CLAMP)
+        numerator = numerator < -whole ? -whole + 1 : numerator > whole ? whole - 1 : numerator;
+    if (wrap == SLUICE_UV_WRAP_CLAMP)
+        numerator = numerator < 0 ? 0 : numerator > whole ? whole - 1 : numerator;
+    int64_t period = mirrors ? 2 * whole : whole;
+    numerator = (numerator % period + period) % period;
+    numerator = numerator > whole ? period - numerator : numerator;
+    return (uint32_t)(numerator * size / whole / cell);
+}
+
+/* Looks at points so dense that none of the borders of both grids lies between two of one cell. */
+static void meet_moved(uint32_t from_size, uint32_t from_cell, uint32_t to_size, uint32_t to_cell,
+                       const struct moved_axis *axis, bool out[MOST_REGIONS][MOST_REGIONS])
+{
+    int64_t steps = (int64_t)from_size * to_size * abs(axis->scale) * 8;
+    memset(out, 0, sizeof(bool) * MOST_REGIONS * MOST_REGIONS);
+    for (int64_t i = 0; i < steps; i++) {
+        uint32_t from = (uint32_t)(i * from_size / steps / from_cell);
+        int64_t numerator = (2 * i + 1) * axis->scale + 2 * steps * axis->offset;
+        uint32_t to = wrapped_cell(numerator, 16 * steps, axis->wrap, to_size, to_cell);
+        out[from][to] = true;
+    }
+}
+
+static int shift_of(uint32_t from_size, uint32_t to_size, int scale)
+{
+    int shift = -12;
+    while (ldexp(from_size, shift + 1) <= to_size * abs(scale) / 8.0)
+        shift++;
+    return shift;
+}
+
+static void compare_moved(struct fixture *f, SluiceTextureId primary, SluiceTextureId follower,
+                          SluiceTextureId twin, const struct moved_axis axes[2], uint64_t *random)
+{
+    const SluiceStreamedTextureLayout from = fixture_layout(f, primary);
+    const SluiceStreamedTextureLayout to = fixture_layout(f, follower);
+    const SluiceStreamedTextureDesc *p = &from.desc, *q = &to.desc;
+    static struct meeting meeting;
+    uint8_t map[MOST_REGIONS * MOST_REGIONS], expected[MOST_REGIONS * MOST_REGIONS];
+    meet_moved(p->width, p->feedbackRegionWidth, q->width, q->feedbackRegionWidth, &axes[0],
+               meeting.x);
+    meet_moved(p->height, p->feedbackRegionHeight, q->height, q->feedbackRegionHeight, &axes[1],
+               meeting.y);
+    int shift = shift_of(p->width, q->width, axes[0].scale);
+    int shift_v = shift_of(p->height, q->height, axes[1].scale);
+    const SluiceUvTransform uv = {axes[0].scale / 8.0f,  axes[1].scale / 8.0f,
+                                  axes[0].offset / 8.0f, axes[1].offset / 8.0f,
+                                  axes[0].wrap,          axes[1].wrap};
+    CHECK_OK(sluiceSetUvTransform(f->manager, follower, &uv));
+    for (uint64_t t = 0; t < 3; t++) {
+        for (uint32_t r = 0; r < from.feedbackWidth * from.feedbackHeight; r++)
+            map[r] = next_random(random) % 8 ? SLUICE_MIP_UNTOUCHED : next_random(random) % 5;
+        fixture_feed_map(f, primary, map, t, 2);
+        expected_map(&from, map, &to, &meeting, shift < shift_v ? shift : shift_v, expected);
+        fixture_feed_map(f, twin, expected, t, 2);
+        for (uint32_t tile = 0; tile < to.tileCount; tile++)
+            assert_int_equal(fixture_state(f, follower, tile), fixture_state(f, twin, tile));
+    }
+}
+
+static void followers_with_scale_and_offset_want_what_is_sampled(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[][4] = {/* width, height, tile */
+                                        {32, 32, 4, 4},
+                                        {31, 17, 4, 2},
+                                        {8, 40, 2, 4},
+                                        {19, 19, 3, 5},
+                                        {16, 16, 16, 16}};
+    uint64_t random = 5;
+    for (uint32_t i = 0; i < 160; i++) {
+        struct fixture f;
+        fixture_open(&f, 64, false);
+        const uint32_t *p = sizes[i % 5], *q = sizes[next_random(&random) % 5];
+        SluiceTextureId primary = add(&f, p[0], p[1], p[2], p[3]);
+        SluiceTextureId follower = add(&f, q[0], q[1], q[2], q[3]);
+        SluiceTextureId twin = add(&f, q[0], q[1], q[2], q[3]);
+        CHECK_OK(sluiceSetPrimaryTexture(f.manager, follower, primary));
+        struct moved_axis axes[2];
+        for (int k = 0; k < 2; k++) {
+            axes[k].scale = (int)(next_random(&random) % 21) - 10;
+            axes[k].scale = axes[k].scale ? axes[k].scale : 64;
+            axes[k].offset = (int)(next_random(&random) % 49) - 24;
+            axes[k].wrap = (SluiceUvWrap)(next_random(&random) % 4);
+        }
+        compare_moved(&f, primary, follower, twin, axes, &random);
+        fixture_close(&f);
+    }
+}
+
+static void a_detail_map_repeated_8_times_wants_levels_3_coarser(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    SluiceTextureId primary = add(&f, 512, 512, 64, 64), detail = add(&f, 512, 512, 64, 64);
+    const SluiceUvTransform eight = {.scaleU = 8, .scaleV = 8};
+    CHECK_OK(sluiceSetPrimaryTexture(f.manager, detail, primary));
+    fixture_feed(&f, primary, 2, 0, 9); /* both have one history */
+    CHECK_OK(sluiceSetUvTransform(f.manager, detail, &eight));
+    assert_null(slc_manager_check(f.manager));
+    assert_int_equal(finest_requested(&f, detail), 2); /* until its request expires */
+    fixture_feed_region(&f, primary, 9, 0, 20, 9);     /* an eighth of each axis: all of it */
+    assert_int_equal(finest_requested(&f, detail), 3);
+    fixture_feed_region(&f, primary, 9, 0, 40, 9);
+    assert_int_equal(requested_at(&f, detail, 3), 1);
+    CHECK_OK(sluiceSetUvTransform(f.manager, detail, NULL));
+    fixture_feed_region(&f, primary, 9, 0, 60, 9);
+    assert_int_equal(finest_requested(&f, detail), 0);
+    assert_int_equal(requested_at(&f, detail, 0), 1);
+    assert_null(slc_manager_check(f.manager));
+    fixture_close(&f);
+}
+
+static void transforms_out_of_range_are_refused(void **state)
+{
+    (void)state;
+    static const SluiceUvTransform wrong[] = {{0, 1, 0, 0, 0, 0},
+                                              {1, 5000, 0, 0, 0, 0},
+                                              {1, 1.0f / 5000, 0, 0, 0, 0},
+                                              {1, 1, NAN, 0, 0, 0},
+                                              {1, INFINITY, 0, 0, 0, 0},
+                                              {1, 1, 0, -4097, 0, 0},
+                                              {1, 1, 0, 0, (SluiceUvWrap)4, 0}};
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    SluiceTextureId id = fixture_add_small(&f);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        CHECK_RESULT(sluiceSetUvTransform(f.manager, id, &wrong[i]), SLUICE_ERROR_INVALID_ARGUMENT);
+    const SluiceUvTransform good = {-4096, 1.0f / 4096, 4096, -4096, 0, 3};
+    CHECK_OK(sluiceSetUvTransform(f.manager, id, &good));
+    CHECK_RESULT(sluiceSetUvTransform(f.manager, id + 1, &good), SLUICE_ERROR_UNKNOWN_TEXTURE);
+    fixture_close(&f);
 }
 
 static void two_primaries_within_the_timeout_are_united(void **state)
@@ -399,6 +549,9 @@ int main(void)
         cmocka_unit_test(levels_shift_by_the_smaller_ratio_rounded_down),
         cmocka_unit_test(levels_are_those_asked_for_not_those_cut_into_tiles),
         cmocka_unit_test(bias_and_limit_of_the_primary_go_over),
+        cmocka_unit_test(followers_with_scale_and_offset_want_what_is_sampled),
+        cmocka_unit_test(a_detail_map_repeated_8_times_wants_levels_3_coarser),
+        cmocka_unit_test(transforms_out_of_range_are_refused),
         cmocka_unit_test(regions_match_in_uv_whatever_the_shapes),
         cmocka_unit_test(two_primaries_within_the_timeout_are_united),
         cmocka_unit_test(a_follower_without_regular_tiles_wants_its_packed_ones),

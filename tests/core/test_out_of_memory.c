@@ -95,6 +95,7 @@ static SluiceResult apply(struct fixture *f, const struct op *op, uint64_t *out)
     SluiceStreamedTextureDesc desc = op_desc(op->number);
     SluiceStreamedTextureManagerConfig config = {sizeof config,  op->number % 9, 0, 2, 3,
                                                  op->number % 2, op->number % 5};
+    const SluiceUvTransform eight = {.scaleU = 8, .scaleV = 8, .offsetU = 0.5f};
     SluiceTextureId id = 0;
     SluiceResult result;
     switch (op->kind) {
@@ -118,6 +119,8 @@ static SluiceResult apply(struct fixture *f, const struct op *op, uint64_t *out)
     case 17:
         if (op->number % 3 == 0)
             return sluiceSetPrimaryTexture(m, op->a, op->number % 2 ? op->b : SLUICE_NO_TEXTURE);
+        if (op->number % 12 == 5)
+            return sluiceSetUvTransform(m, op->a, &eight);
         return op->number % 3 == 1 ? sluiceRetryFailedTiles(m, op->a) : sluiceSetConfig(m, &config);
     case 18:
         if (op->number % 3 == 0)

@@ -64,6 +64,7 @@ sluiceGetTextureLayout(f->manager, f->id, &f->out.layout)
 sluiceUpdateWithSamplerFeedback(f->manager, f->id, &f->feedback, 1, 1)
 sluiceMatchPrimaryTexture(f->manager, f->id, f->follower, 1, 1)
 sluiceSetPrimaryTexture(f->manager, f->follower, f->id)
+sluiceSetUvTransform(f->manager, f->follower, ?&f->uv)
 sluiceGetTilesToMap(f->manager, f->id, one(f), ?f->out.tiles)
 !sluiceUpdateTilesMapping(f->manager, f->id, 1, f->indices)
 !sluiceReportFailedTiles(f->manager, f->id, 1, f->indices, 1)
@@ -128,6 +129,7 @@ struct fixture {
     SluiceStreamedTextureManager *manager, *fresh;
     SluiceStreamedTextureDesc desc;
     SluiceTextureId id, follower;
+    SluiceUvTransform uv;
     SluiceFeedbackDesc feedback;
     uint8_t map[4];
     uint32_t indices[1];
@@ -229,6 +231,7 @@ static void init_manager(struct fixture *f)
     CHECK_OK(sluiceAddStreamedTexture(f->manager, &f->desc, &f->follower));
     f->feedback = (SluiceFeedbackDesc){
         .structSize = sizeof(SluiceFeedbackDesc), .pMinMip = f->map, .width = 2, .height = 2};
+    f->uv = (SluiceUvTransform){.scaleU = 8, .scaleV = 8};
     f->rect = (SluiceMinMipRect){.textureId = f->id, .width = 2, .height = 2};
 }
 

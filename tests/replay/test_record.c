@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#define KIND_COUNT 23
+#define KIND_COUNT 24
 
 static uint64_t next_random(uint64_t *seed)
 {
@@ -24,6 +24,7 @@ struct example {
     SluiceStreamedTextureManagerConfig config;
     SluiceStreamedTextureDesc desc;
     SluiceFeedbackDesc feedback;
+    SluiceUvTransform uv;
     uint8_t map[64];
     uint32_t indices[16];
 };
@@ -55,6 +56,13 @@ static void fill_inputs(struct example *e, uint64_t *seed)
         e->map[i] = (uint8_t)next_random(seed);
     for (int i = 0; i < 16; i++)
         e->indices[i] = (uint32_t)next_random(seed);
+    e->uv = (SluiceUvTransform){.scaleU = (float)(int64_t)next_random(seed),
+                                .scaleV = (float)(int64_t)next_random(seed) / 3,
+                                .offsetU = (float)(int64_t)next_random(seed) / 5,
+                                .offsetV = (float)(int64_t)next_random(seed) / 7,
+                                .wrapU = (SluiceUvWrap)(next_random(seed) % 4),
+                                .wrapV = (SluiceUvWrap)(next_random(seed) % 4)};
+    e->call.uv = r & 32 ? &e->uv : NULL;
     e->call.config = r & 2 ? &e->config : NULL;
     e->call.desc = r & 4 ? &e->desc : NULL;
     e->call.feedback = r & 8 ? &e->feedback : NULL;
@@ -169,6 +177,11 @@ static void check_same(const struct example *e, struct slc_record *back)
         check_map(e, back);
     if (fields & SLC_FIELD_INDICES)
         check_indices(e, back);
+    if (fields & SLC_FIELD_UV) {
+        assert_true(!a->uv == !b->uv);
+        if (a->uv)
+            assert_memory_equal(a->uv, b->uv, sizeof *a->uv);
+    }
     if (fields & SLC_FIELD_LIST) {
         assert_int_equal(a->query, b->query);
         assert_int_equal(a->room, b->room);
