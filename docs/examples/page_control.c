@@ -4,6 +4,8 @@
 #include <stdio.h>
 
 /* Before a level begins: a loading screen draws a frame between two calls. */
+SluiceResult addDetailMap(SluiceVulkanStreamer *streamer, SluiceImageSource *source,
+                          SluiceTextureId base, SluiceVulkanTexture *pDetail);
 SluiceResult requestHero(SluiceVulkanStreamer *streamer, SluiceTextureId hero,
                          SluiceTextureRequestId *pRequest);
 bool isReady(const SluiceVulkanStreamer *streamer, SluiceTextureRequestId request);
@@ -49,4 +51,13 @@ void printEvents(const SluiceStreamedTextureManager *manager, uint64_t *pCursor)
                    (unsigned long long)events[i].mark, events[i].tileIndex, (int)events[i].from,
                    (int)events[i].to, (int)events[i].reason);
     }
+}
+
+SluiceResult addDetailMap(SluiceVulkanStreamer *streamer, SluiceImageSource *source,
+                          SluiceTextureId base, SluiceVulkanTexture *pDetail)
+{
+    const SluiceUvTransform eight = {.scaleU = 8, .scaleV = 8};
+    const SluiceVulkanTextureCreateInfo info = {
+        .structSize = sizeof info, .source = source, .primaryId = base, .pUvTransform = &eight};
+    return sluiceAddVulkanTexture(streamer, &info, pDetail);
 }

@@ -480,6 +480,8 @@ typedef struct SluiceVulkanTextureCreateInfo {
      * Default: AUTO.
      */
     SluiceResidencyMode residencyMode;
+    /** As sluiceSetVulkanUvTransform (vulkan_control.h). Copied. Default: none. */
+    const SluiceUvTransform *pUvTransform;
 } SluiceVulkanTextureCreateInfo;
 
 /** Texture as the application draws with it. Never grows. */

@@ -193,6 +193,23 @@ SLUICE_API SluiceResult sluiceSetVulkanPrimaryTexture(SluiceVulkanStreamer *stre
                                                       SluiceTextureId textureId,
                                                       SluiceTextureId primaryId);
 
+/**
+ * Sets where a texture is sampled while it follows a primary: at UV * scale + offset, where UV is
+ * the primary's. A detail map that repeats 8 times has scales of 8; KHR_texture_transform without
+ * rotation has the same numbers. The wraps of `pTransform` are ignored: the texture's address modes
+ * count. NULL: it is sampled where its primary is. sluiceSetUvTransform (manager.h) has the rules.
+ *
+ * The next frame begun gives the map of the primary to the texture. Only its loads change: shaders
+ * sample it with their own UVs, and must not write its feedback.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a value out of range or a cube
+ *         map; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Nothing has changed after an error.
+ */
+SLUICE_API SluiceResult sluiceSetVulkanUvTransform(SluiceVulkanStreamer *streamer,
+                                                   SluiceTextureId textureId,
+                                                   const SluiceUvTransform *pTransform);
+
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -16,6 +16,7 @@
 #include "vulkan/texture_control.h"
 #include "vulkan/texture_forgetting.h"
 #include "vulkan/texture_mode.h"
+#include "vulkan/texture_primary.h"
 
 #include <assert.h>
 #include <math.h>
@@ -102,7 +103,7 @@ static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *t
 }
 
 static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *texture,
-                                   SluiceTextureId primary)
+                                   const SluiceVulkanTextureCreateInfo *info)
 {
     SluiceResult result = sluiceAddStreamedTexture(s->manager, &texture->image.desc, &texture->id);
     if (result != SLUICE_SUCCESS)
@@ -110,8 +111,10 @@ static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *
     /* Ids of what was taken back, below or in build_all, are not free before the next frame. */
     if ((uint32_t)texture->id >= s->info.maxTextureCount)
         result = SLUICE_ERROR_LIMIT_EXCEEDED;
-    else if (primary != SLUICE_NO_TEXTURE)
-        result = sluiceSetPrimaryTexture(s->manager, texture->id, primary);
+    else if (info->primaryId != SLUICE_NO_TEXTURE)
+        result = sluiceSetPrimaryTexture(s->manager, texture->id, info->primaryId);
+    if (result == SLUICE_SUCCESS && info->pUvTransform)
+        result = slc_texture_set_uv(s, texture, info->pUvTransform);
     if (result != SLUICE_SUCCESS)
         sluiceRemoveStreamedTexture(s->manager, texture->id, s->frame);
     return result;
@@ -255,7 +258,7 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
         result = build(s, &s->textures[first + i]);
     uint32_t added = 0;
     while (added < count && result == SLUICE_SUCCESS) {
-        result = add_to_manager(s, &s->textures[first + added], info->primaryId);
+        result = add_to_manager(s, &s->textures[first + added], info);
         added += result == SLUICE_SUCCESS;
     }
     if (result == SLUICE_SUCCESS)

@@ -1,4 +1,7 @@
 /* Textures that begin to follow another one while they stream, and that end it. */
+#include "vulkan/texture_primary.h"
+
+#include "base/log.h"
 #include "vulkan/due_maps.h"
 #include "vulkan/texture_control.h"
 #include "vulkan/texture_forgetting.h"
@@ -26,6 +29,49 @@ static void end_to_follow(SluiceVulkanStreamer *s, struct slc_texture *texture)
         return;
     texture->primary_id = SLUICE_NO_TEXTURE;
     slc_feedback_join(s, (uint32_t)(texture - s->textures));
+}
+
+static SluiceUvWrap wrap_of(VkSamplerAddressMode mode)
+{
+    switch (mode) {
+    case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT: return SLUICE_UV_WRAP_MIRROR;
+    case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE:
+    case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER: return SLUICE_UV_WRAP_CLAMP;
+    case VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE: return SLUICE_UV_WRAP_MIRROR_CLAMP;
+    default: return SLUICE_UV_WRAP_REPEAT;
+    }
+}
+
+SluiceResult slc_texture_set_uv(SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                                const SluiceUvTransform *transform)
+{
+    if (!transform)
+        return sluiceSetUvTransform(s->manager, texture->id, NULL);
+    if (texture->info.cube)
+        return slc_log_refusal(&s->vk.log, "%s: a cube map has no UVs to transform",
+                               texture->info.pName ? texture->info.pName : "image");
+    SluiceUvTransform uv = *transform;
+    uv.wrapU = wrap_of(texture->sampler_kind.modes[0]);
+    uv.wrapV = wrap_of(texture->sampler_kind.modes[1]);
+    return sluiceSetUvTransform(s->manager, texture->id, &uv);
+}
+
+SluiceResult sluiceSetVulkanUvTransform(SluiceVulkanStreamer *streamer, SluiceTextureId textureId,
+                                        const SluiceUvTransform *pTransform)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_texture *texture;
+    SluiceResult result = slc_streamer_find(s, textureId, &texture);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    s->manager_locked = false;
+    result = slc_texture_set_uv(s, texture, pTransform);
+    s->manager_locked = true;
+    if (result == SLUICE_SUCCESS && texture->primary_id != SLUICE_NO_TEXTURE)
+        slc_due_map_add(s, slc_streamer_texture(s, texture->primary_id));
+    return result;
 }
 
 SluiceResult sluiceSetVulkanPrimaryTexture(SluiceVulkanStreamer *streamer,

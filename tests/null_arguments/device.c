@@ -57,6 +57,7 @@ sluiceGetVulkanTextureControl(f->streamer, f->texture.textureId, &f->out.control
 sluiceSetVulkanTextureControl(f->streamer, f->texture.textureId, &f->control)
 sluiceEvictVulkanTexture(f->streamer, f->texture.textureId, ?1)
 sluiceSetVulkanPrimaryTexture(f->streamer, f->texture.textureId, ?SLUICE_NO_TEXTURE)
+sluiceSetVulkanUvTransform(f->streamer, f->texture.textureId, ?&f->uv)
 
 sluiceCreateNeuralCompressor(f->h->context, &f->compressor_info, &f->out.compressor) => sluiceDestroyNeuralCompressor(f->out.compressor)
 !sluiceDestroyNeuralCompressor(f->compressor)
@@ -129,6 +130,7 @@ struct fixture {
     SluiceVulkanTextureRequest request;
     SluiceTextureRequestId request_id;
     SluiceVulkanTextureControl control;
+    SluiceUvTransform uv;
     SluiceDemandLoaderSettings loader_settings;
     SluiceDemandLoaderCreateInfo loader_info;
     SluiceDemandLoader *loader, *fresh_loader;
@@ -245,6 +247,7 @@ static void init_streamer(struct fixture *f)
         .structSize = sizeof(SluiceVulkanTextureCreateInfo), .source = f->source};
     CHECK_OK(sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->texture));
     f->control.structSize = sizeof f->control;
+    f->uv = (SluiceUvTransform){.scaleU = 8, .scaleV = 8};
     f->request = (SluiceVulkanTextureRequest){.structSize = sizeof f->request, .until = UINT64_MAX};
     CHECK_OK(
         sluiceRequestVulkanTexture(f->streamer, f->texture.textureId, &f->request, &f->request_id));

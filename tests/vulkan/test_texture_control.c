@@ -499,6 +499,49 @@ static void primaries_change_while_textures_stream(void **state)
     stage_finish(s);
 }
 
+/* Tile 3, 2 of 8 x 8 becomes 5.5 to 7.5, 4 to 6: tiles 5 to 7, 4 and 5, of which level 1 has 2 to
+ * 3,
+ * 2. The wrap given does not count. */
+static void followers_load_where_their_transform_samples(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 4});
+    const SluiceUvTransform two = {
+        .scaleU = 2, .scaleV = 2, .offsetU = -0.0625f, .wrapU = SLUICE_UV_WRAP_CLAMP};
+    CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, s->textures[0].textureId,
+                                           s->textures[1].textureId));
+    CHECK_OK(sluiceSetVulkanUvTransform(s->streamer, s->textures[0].textureId, &two));
+    s->seen[1][2 * TILES + 3] = 0;
+    frames(s, 10);
+    for (uint32_t y = 0; y < TILES; y++)
+        for (uint32_t x = 0; x < TILES; x++) {
+            const SluiceTextureRect tile = {x * 128, y * 128, 128, 128};
+            uint32_t level = x < 4 || y < 4 ? TAIL : y < 6 ? 1 : 2;
+            assert_int_equal(state_of(s, 0, tile).residentLevel, level);
+        }
+    CHECK_OK(sluiceSetVulkanUvTransform(s->streamer, s->textures[0].textureId, NULL));
+    frames(s, 20);
+    assert_int_equal(state_of(s, 0, tile_3_2).residentLevel, 0);
+    stage_finish(s);
+}
+
+static void transforms_survive_every_refused_allocation(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){0});
+    const SluiceUvTransform eight = {.scaleU = 8, .scaleV = 8};
+    const SluiceTextureId id = s->textures[0].textureId;
+    s->memory.refuse_from = s->memory.calls;
+    CHECK_RESULT(sluiceSetVulkanUvTransform(s->streamer, id, &eight),
+                 SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    s->memory.refuse_from = UINT64_MAX;
+    CHECK_OK(sluiceSetVulkanUvTransform(s->streamer, id, &eight));
+    CHECK_RESULT(sluiceSetVulkanUvTransform(s->streamer, id, &(SluiceUvTransform){0}),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(s->last, "scale 0, 0, offset 0, 0"));
+    stage_finish(s);
+}
+
 static void controls_survive_every_refused_allocation(void **state)
 {
     (void)state;
@@ -563,6 +606,8 @@ int main(void)
         cmocka_unit_test(hidden_textures_leave_their_turns_and_their_tiles_stand_by),
         cmocka_unit_test(evicted_tiles_are_unmapped_with_the_next_frame),
         cmocka_unit_test(primaries_change_while_textures_stream),
+        cmocka_unit_test(followers_load_where_their_transform_samples),
+        cmocka_unit_test(transforms_survive_every_refused_allocation),
         cmocka_unit_test(controls_survive_every_refused_allocation),
         cmocka_unit_test(questions_take_no_memory),
         cmocka_unit_test(each_step_of_a_load_is_told),
