@@ -1,0 +1,656 @@
+#include "ui.h"
+
+#include "keys.h"
+
+#include <imgui.h>
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static_assert(sizeof(ui_vertex) == sizeof(ImDrawVert), "vertices are those of ImGui");
+static_assert(sizeof(ImDrawIdx) == 2, "indices are those of ImGui");
+
+namespace
+{
+
+struct array {
+    void *items;
+    size_t size, capacity;
+};
+
+/* Lives from ui_create to ui_destroy, as ImGui's own context does. */
+struct state {
+    float scale;
+    ImFont *font, *large;
+    uint8_t *font_pixels;
+    int font_width, font_height;
+    array vertices, indices, draws;
+    void (*set_clipboard)(void *, const char *);
+    const char *(*get_clipboard)(void *);
+    void *clipboard_user;
+    char *clipboard;
+    ImGuiTableSortSpecs *sort;
+} * ui;
+
+const char *const fonts[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                             "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
+                             "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+                             "/usr/share/fonts/TTF/DejaVuSans.ttf",
+                             "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf"};
+
+ImGuiKey imgui_key(int key)
+{
+    switch (key) {
+    case VIEW_KEY_TAB: return ImGuiKey_Tab;
+    case VIEW_KEY_LEFT: return ImGuiKey_LeftArrow;
+    case VIEW_KEY_RIGHT: return ImGuiKey_RightArrow;
+    case VIEW_KEY_UP: return ImGuiKey_UpArrow;
+    case VIEW_KEY_DOWN: return ImGuiKey_DownArrow;
+    case VIEW_KEY_PAGE_UP: return ImGuiKey_PageUp;
+    case VIEW_KEY_PAGE_DOWN: return ImGuiKey_PageDown;
+    case VIEW_KEY_HOME: return ImGuiKey_Home;
+    case VIEW_KEY_END: return ImGuiKey_End;
+    case VIEW_KEY_INSERT: return ImGuiKey_Insert;
+    case VIEW_KEY_DELETE: return ImGuiKey_Delete;
+    case VIEW_KEY_BACKSPACE: return ImGuiKey_Backspace;
+    case VIEW_KEY_SPACE: return ImGuiKey_Space;
+    case VIEW_KEY_ENTER: return ImGuiKey_Enter;
+    case VIEW_KEY_ESCAPE: return ImGuiKey_Escape;
+    case 'A': return ImGuiKey_A;
+    case 'C': return ImGuiKey_C;
+    case 'V': return ImGuiKey_V;
+    case 'X': return ImGuiKey_X;
+    case 'Y': return ImGuiKey_Y;
+    case 'Z': return ImGuiKey_Z;
+    default: return ImGuiKey_COUNT;
+    }
+}
+
+bool is_file(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode);
+}
+
+void load_fonts()
+{
+    static const ImWchar ranges[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193,
+                                     0x221E, 0x221E, 0x25A0, 0x25CF, 0};
+    ImFontAtlas *atlas = ImGui::GetIO().Fonts;
+    const char *path = nullptr;
+    for (const char *candidate : fonts)
+        if (!path && is_file(candidate))
+            path = candidate;
+    if (path) {
+        ui->font = atlas->AddFontFromFileTTF(path, 15.0f * ui->scale, nullptr, ranges);
+        ui->large = atlas->AddFontFromFileTTF(path, 22.0f * ui->scale, nullptr, ranges);
+    }
+    if (!ui->font || !ui->large) {
+        ImFontConfig config;
+        config.SizePixels = 13.0f * ui->scale;
+        ui->font = atlas->AddFontDefault(&config);
+        config.SizePixels = 20.0f * ui->scale;
+        ui->large = atlas->AddFontDefault(&config);
+    }
+    atlas->GetTexDataAsRGBA32(&ui->font_pixels, &ui->font_width, &ui->font_height);
+    atlas->SetTexID((ImTextureID)(intptr_t)UI_TEXTURE_FONT);
+}
+
+void choose_style()
+{
+    ImGuiStyle &style = ImGui::GetStyle();
+    ImGui::StyleColorsDark();
+    style.WindowRounding = 6.0f;
+    style.FrameRounding = 4.0f;
+    style.GrabRounding = 4.0f;
+    style.WindowBorderSize = 0.0f;
+    style.WindowPadding = ImVec2(12.0f, 10.0f);
+    style.ItemSpacing = ImVec2(8.0f, 5.0f);
+    style.Colors[ImGuiCol_WindowBg] = ImVec4(0.07f, 0.08f, 0.10f, 0.88f);
+    style.Colors[ImGuiCol_ChildBg] = ImVec4(0.0f, 0.0f, 0.0f, 0.0f);
+    style.Colors[ImGuiCol_PopupBg] = ImVec4(0.07f, 0.08f, 0.10f, 0.96f);
+    style.Colors[ImGuiCol_TitleBg] = ImVec4(0.10f, 0.12f, 0.16f, 0.95f);
+    style.Colors[ImGuiCol_TitleBgActive] = ImVec4(0.13f, 0.20f, 0.30f, 0.95f);
+    style.Colors[ImGuiCol_FrameBg] = ImVec4(0.19f, 0.22f, 0.27f, 1.0f);
+    style.Colors[ImGuiCol_Button] = ImVec4(0.19f, 0.24f, 0.31f, 1.0f);
+    style.Colors[ImGuiCol_ButtonHovered] = ImVec4(0.24f, 0.38f, 0.56f, 1.0f);
+    style.Colors[ImGuiCol_TableHeaderBg] = ImVec4(0.13f, 0.16f, 0.21f, 1.0f);
+    style.ScaleAllSizes(ui->scale);
+}
+
+void set_clipboard(void *, const char *text)
+{
+    if (ui->set_clipboard) {
+        ui->set_clipboard(ui->clipboard_user, text);
+        return;
+    }
+    free(ui->clipboard);
+    ui->clipboard = strdup(text);
+}
+
+const char *get_clipboard(void *)
+{
+    if (ui->get_clipboard)
+        return ui->get_clipboard(ui->clipboard_user);
+    return ui->clipboard ? ui->clipboard : "";
+}
+
+void *array_add(array *array, const void *items, size_t size)
+{
+    if (array->size + size > array->capacity) {
+        size_t capacity = 2 * (array->size + size);
+        void *grown = realloc(array->items, capacity);
+        if (!grown)
+            return nullptr;
+        array->items = grown;
+        array->capacity = capacity;
+    }
+    void *added = (char *)array->items + array->size;
+    memcpy(added, items, size);
+    array->size += size;
+    return added;
+}
+
+int32_t clamp(float value, float most)
+{
+    return (int32_t)(value < 0.0f ? 0.0f : value > most ? most : value);
+}
+
+void add_draw(const ImDrawCmd &command, uint32_t first_index, uint32_t first_vertex)
+{
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const uintptr_t id = (uintptr_t)command.GetTexID();
+    const ui_draw draw = {{clamp(command.ClipRect.x, size.x), clamp(command.ClipRect.y, size.y),
+                           clamp(command.ClipRect.z, size.x), clamp(command.ClipRect.w, size.y)},
+                          (uint32_t)(id & ((1u << UI_MODE_SHIFT) - 1)),
+                          (uint32_t)(id >> UI_MODE_SHIFT),
+                          first_index + command.IdxOffset,
+                          command.ElemCount,
+                          (int32_t)(first_vertex + command.VtxOffset)};
+    if (draw.clip[2] > draw.clip[0] && draw.clip[3] > draw.clip[1] && draw.index_count > 0)
+        array_add(&ui->draws, &draw, sizeof draw);
+}
+
+/* Without memory a list is left out. */
+void add_list(const ImDrawList *list)
+{
+    const uint32_t first_index = (uint32_t)(ui->indices.size / sizeof(uint16_t));
+    const uint32_t first_vertex = (uint32_t)(ui->vertices.size / sizeof(ui_vertex));
+    if (list->CmdBuffer.Size == 0 || list->VtxBuffer.Size == 0 ||
+        !array_add(&ui->vertices, list->VtxBuffer.Data,
+                   (size_t)list->VtxBuffer.Size * sizeof(ui_vertex)) ||
+        !array_add(&ui->indices, list->IdxBuffer.Data,
+                   (size_t)list->IdxBuffer.Size * sizeof(uint16_t)))
+        return;
+    for (const ImDrawCmd &command : list->CmdBuffer)
+        add_draw(command, first_index, first_vertex);
+}
+
+ImDrawList *panel_list()
+{
+    return ImGui::GetWindowDrawList();
+}
+
+void pass_keys(const ui_input *input)
+{
+    ImGuiIO &io = ImGui::GetIO();
+#if IMGUI_VERSION_NUM >= 18700
+    io.AddKeyEvent(ImGuiMod_Shift, input->shift);
+    io.AddKeyEvent(ImGuiMod_Ctrl, input->control);
+    io.AddKeyEvent(ImGuiMod_Alt, input->alt);
+#else
+    io.KeyShift = input->shift;
+    io.KeyCtrl = input->control;
+    io.KeyAlt = input->alt;
+#endif
+    for (uint32_t i = 0; i < input->key_count; i++) {
+        const ui_key_event &event = input->keys[i];
+        const ImGuiKey key = imgui_key(event.key);
+        if (key == ImGuiKey_COUNT)
+            continue;
+#if IMGUI_VERSION_NUM >= 18700
+        io.AddKeyEvent(key, event.down);
+#else
+        io.KeysDown[event.key] = event.down;
+#endif
+    }
+    io.AddInputCharactersUTF8(input->text);
+}
+
+} // namespace
+
+bool ui_create(float scale)
+{
+    ui = (state *)calloc(1, sizeof *ui);
+    if (!ui) {
+        fprintf(stderr, "sluice-view: out of memory\n");
+        return false;
+    }
+    ui->scale = scale;
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGuiIO &io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.LogFilename = nullptr;
+    io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+    io.ConfigWindowsMoveFromTitleBarOnly = true;
+    io.SetClipboardTextFn = set_clipboard;
+    io.GetClipboardTextFn = get_clipboard;
+#if IMGUI_VERSION_NUM < 18700
+    for (int key = 0; key < VIEW_KEY_COUNT; key++)
+        if (imgui_key(key) != ImGuiKey_COUNT)
+            io.KeyMap[imgui_key(key)] = key;
+#endif
+    load_fonts();
+    choose_style();
+    return true;
+}
+
+void ui_destroy(void)
+{
+    if (!ui)
+        return;
+    ImGui::DestroyContext();
+    free(ui->vertices.items);
+    free(ui->indices.items);
+    free(ui->draws.items);
+    free(ui->clipboard);
+    free(ui);
+    ui = nullptr;
+}
+
+const uint8_t *ui_font_pixels(uint32_t *width, uint32_t *height)
+{
+    *width = (uint32_t)ui->font_width;
+    *height = (uint32_t)ui->font_height;
+    return ui->font_pixels;
+}
+
+void ui_set_clipboard(void (*set)(void *, const char *), const char *(*get)(void *),
+                      void *user_data)
+{
+    ui->set_clipboard = set;
+    ui->get_clipboard = get;
+    ui->clipboard_user = user_data;
+}
+
+void ui_begin_frame(const ui_input *input)
+{
+    ImGuiIO &io = ImGui::GetIO();
+    io.DisplaySize = ImVec2(input->width, input->height);
+    io.DeltaTime = input->seconds;
+#if IMGUI_VERSION_NUM >= 18700
+    io.AddMousePosEvent(input->mouse_x, input->mouse_y);
+    for (int i = 0; i < 3; i++)
+        io.AddMouseButtonEvent(i, input->buttons[i]);
+    if (input->wheel != 0.0f)
+        io.AddMouseWheelEvent(0.0f, input->wheel);
+#else
+    io.MousePos = ImVec2(input->mouse_x, input->mouse_y);
+    for (int i = 0; i < 3; i++)
+        io.MouseDown[i] = input->buttons[i];
+    io.MouseWheel = input->wheel;
+#endif
+    pass_keys(input);
+    ImGui::NewFrame();
+    ImGui::PushFont(ui->font);
+}
+
+void ui_end_frame(ui_geometry *geometry)
+{
+    ImGui::PopFont();
+    ImGui::Render();
+    const ImDrawData *data = ImGui::GetDrawData();
+    ui->vertices.size = ui->indices.size = ui->draws.size = 0;
+    for (int i = 0; i < data->CmdListsCount; i++)
+        add_list(data->CmdLists[i]);
+    *geometry = ui_geometry{(const ui_vertex *)ui->vertices.items,
+                            (const uint16_t *)ui->indices.items,
+                            (const ui_draw *)ui->draws.items,
+                            (uint32_t)(ui->vertices.size / sizeof(ui_vertex)),
+                            (uint32_t)(ui->indices.size / sizeof(uint16_t)),
+                            (uint32_t)(ui->draws.size / sizeof(ui_draw)),
+                            data->DisplaySize.x,
+                            data->DisplaySize.y};
+}
+
+void ui_copy_text(const char *text)
+{
+    ImGui::SetClipboardText(text);
+}
+
+bool ui_owns_mouse(void)
+{
+    return ImGui::GetIO().WantCaptureMouse;
+}
+
+/* Keys that move the focus of the keyboard belong to a panel while one has it. */
+bool ui_owns_key(int key)
+{
+    const ImGuiIO &io = ImGui::GetIO();
+    if (io.WantTextInput)
+        return true;
+    const bool moves = key == VIEW_KEY_TAB || key == VIEW_KEY_SPACE || key == VIEW_KEY_ENTER ||
+                       (key >= VIEW_KEY_RIGHT && key <= VIEW_KEY_UP);
+    return io.NavVisible && io.WantCaptureKeyboard && moves;
+}
+
+float ui_scale(void)
+{
+    return ui->scale;
+}
+
+float ui_line_height(void)
+{
+    return ImGui::GetTextLineHeightWithSpacing();
+}
+
+float ui_text_width(const char *text)
+{
+    return ImGui::CalcTextSize(text).x;
+}
+
+bool ui_begin_panel(const char *title, bool *open, const float placement[4], const float pivot[2],
+                    unsigned flags)
+{
+    ImGuiWindowFlags window =
+        ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings;
+    if (flags & UI_PANEL_PLAIN)
+        window |= ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
+    if (flags & UI_PANEL_FIT)
+        window |= ImGuiWindowFlags_AlwaysAutoResize;
+    if (flags & UI_PANEL_NO_INPUT)
+        window |= ImGuiWindowFlags_NoInputs;
+    const ImGuiCond when = flags & UI_PANEL_PLAIN ? ImGuiCond_Always : ImGuiCond_Appearing;
+    ImGui::SetNextWindowPos(ImVec2(placement[0], placement[1]), when, ImVec2(pivot[0], pivot[1]));
+    if (!(flags & UI_PANEL_FIT))
+        ImGui::SetNextWindowSize(ImVec2(placement[2], placement[3]), when);
+    return ImGui::Begin(title, open, window);
+}
+
+void ui_end_panel(void)
+{
+    ImGui::End();
+}
+
+void ui_begin_part(const char *id, float width, float height)
+{
+    ImGui::BeginChild(id, ImVec2(width, height), false);
+}
+
+void ui_end_part(void)
+{
+    ImGui::EndChild();
+}
+
+bool ui_begin_group(const char *label, bool open_at_first)
+{
+    return ImGui::CollapsingHeader(label, open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+void ui_text(uint32_t color, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::TextV(format, arguments);
+    ImGui::PopStyleColor();
+    va_end(arguments);
+}
+
+void ui_paragraph(uint32_t color, const char *text)
+{
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+void ui_same_line(float x)
+{
+    ImGui::SameLine(x);
+}
+
+void ui_space(float height)
+{
+    ImGui::Dummy(ImVec2(0.0f, height));
+}
+
+void ui_line(void)
+{
+    ImGui::Separator();
+}
+
+bool ui_button(const char *label, float width, float height, bool pressed)
+{
+    if (pressed)
+        ImGui::PushStyleColor(ImGuiCol_Button, UI_COLOR(40, 105, 180, 255));
+    const bool clicked = ImGui::Button(label, ImVec2(width, height));
+    if (pressed)
+        ImGui::PopStyleColor();
+    return clicked;
+}
+
+bool ui_check(const char *label, bool *value)
+{
+    return ImGui::Checkbox(label, value);
+}
+
+bool ui_slider_real(const char *label, double *value, double minimum, double maximum,
+                    bool logarithmic, const char *format)
+{
+    return ImGui::SliderScalar(label, ImGuiDataType_Double, value, &minimum, &maximum, format,
+                               ImGuiSliderFlags_AlwaysClamp |
+                                   (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+}
+
+bool ui_slider_whole(const char *label, uint32_t *value, uint32_t minimum, uint32_t maximum,
+                     bool logarithmic)
+{
+    return ImGui::SliderScalar(label, ImGuiDataType_U32, value, &minimum, &maximum, "%u",
+                               ImGuiSliderFlags_AlwaysClamp |
+                                   (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+}
+
+bool ui_choice(const char *label, const char *words, int *value)
+{
+    char items[256];
+    size_t length = strlen(words);
+    if (length > sizeof items - 2)
+        length = sizeof items - 2;
+    for (size_t i = 0; i < length; i++)
+        items[i] = words[i] == '|' ? '\0' : words[i];
+    items[length] = items[length + 1] = '\0';
+    return ImGui::Combo(label, value, items);
+}
+
+bool ui_type_text(const char *label, const char *hint, char *text, size_t size)
+{
+    return ImGui::InputTextWithHint(label, hint, text, size);
+}
+
+void ui_item_width(float width)
+{
+    ImGui::SetNextItemWidth(width);
+}
+
+bool ui_hovered(void)
+{
+    return ImGui::IsItemHovered();
+}
+
+bool ui_double_clicked(void)
+{
+    return ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0);
+}
+
+void ui_show_hint(const char *text)
+{
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(360.0f * ui->scale);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void ui_hint(const char *format, ...)
+{
+    if (!ImGui::IsItemHovered())
+        return;
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    ui_show_hint(text);
+}
+
+bool ui_begin_table(const char *id, const char *columns, float height, bool sortable)
+{
+    int count = 1;
+    for (const char *c = columns; *c; c++)
+        count += *c == '|';
+    const ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
+                                  ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable |
+                                  ImGuiTableFlags_SizingFixedFit |
+                                  (sortable ? ImGuiTableFlags_Sortable : 0);
+    if (!ImGui::BeginTable(id, count, flags, ImVec2(0.0f, height)))
+        return false;
+    ImGui::TableSetupScrollFreeze(1, 1);
+    char title[64];
+    for (const char *c = columns; count > 0; count--) {
+        const size_t length = strcspn(c, "|");
+        snprintf(title, sizeof title, "%.*s", (int)length, c);
+        ImGui::TableSetupColumn(title,
+                                c == columns ? 0 : ImGuiTableColumnFlags_PreferSortDescending);
+        c += length + 1;
+    }
+    ImGui::TableHeadersRow();
+    ui->sort = ImGui::TableGetSortSpecs();
+    return true;
+}
+
+bool ui_table_sort(uint32_t *column, bool *descending)
+{
+    if (!ui->sort || ui->sort->SpecsCount == 0)
+        return false;
+    *column = (uint32_t)ui->sort->Specs[0].ColumnIndex;
+    *descending = ui->sort->Specs[0].SortDirection == ImGuiSortDirection_Descending;
+    const bool dirty = ui->sort->SpecsDirty;
+    ui->sort->SpecsDirty = false;
+    return dirty;
+}
+
+bool ui_table_row(int id, bool selected)
+{
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::PushID(id);
+    const bool clicked = ImGui::Selectable("##row", selected, ImGuiSelectableFlags_SpanAllColumns);
+    ImGui::PopID();
+    ImGui::SameLine(0.0f, 0.0f);
+    return clicked;
+}
+
+void ui_table_cell(uint32_t color, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::TextV(format, arguments);
+    ImGui::PopStyleColor();
+    va_end(arguments);
+    ImGui::TableNextColumn();
+}
+
+void ui_end_table(void)
+{
+    ImGui::EndTable();
+    ui->sort = nullptr;
+}
+
+void ui_canvas(float width, float height, float rectangle[4])
+{
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (width <= 0.0f)
+        width = ImGui::GetContentRegionAvail().x;
+    ImGui::Dummy(ImVec2(width, height));
+    rectangle[0] = at.x;
+    rectangle[1] = at.y;
+    rectangle[2] = width;
+    rectangle[3] = height;
+}
+
+void ui_fill(float x, float y, float width, float height, uint32_t color)
+{
+    panel_list()->AddRectFilled(ImVec2(x, y), ImVec2(x + width, y + height), color);
+}
+
+void ui_frame(float x, float y, float width, float height, uint32_t color)
+{
+    panel_list()->AddRect(ImVec2(x, y), ImVec2(x + width, y + height), color);
+}
+
+void ui_stroke(float x0, float y0, float x1, float y1, uint32_t color, float thickness)
+{
+    panel_list()->AddLine(ImVec2(x0, y0), ImVec2(x1, y1), color, thickness);
+}
+
+void ui_polyline(const float *xy, uint32_t count, uint32_t color, float thickness)
+{
+    panel_list()->AddPolyline((const ImVec2 *)xy, (int)count, color, 0, thickness);
+}
+
+void ui_label(float x, float y, uint32_t color, const char *text)
+{
+    panel_list()->AddText(ImVec2(x, y), color, text);
+}
+
+void ui_begin_large(void)
+{
+    ImGui::PushFont(ui->large);
+}
+
+void ui_end_large(void)
+{
+    ImGui::PopFont();
+}
+
+void ui_picture(uint32_t texture, uint32_t mode, const float rectangle[4], const float uv[4],
+                uint32_t color)
+{
+    ImGui::GetBackgroundDrawList()->AddImage(
+        (ImTextureID)(uintptr_t)(texture | mode << UI_MODE_SHIFT),
+        ImVec2(rectangle[0], rectangle[1]),
+        ImVec2(rectangle[0] + rectangle[2], rectangle[1] + rectangle[3]), ImVec2(uv[0], uv[1]),
+        ImVec2(uv[2], uv[3]), color);
+}
+
+void ui_fill_behind(float x, float y, float width, float height, uint32_t color)
+{
+    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(x, y), ImVec2(x + width, y + height),
+                                                  color);
+}
+
+void ui_image(uint32_t texture, float width, float height, const float uv[4])
+{
+    ImGui::Image((ImTextureID)(uintptr_t)texture, ImVec2(width, height), ImVec2(uv[0], uv[1]),
+                 ImVec2(uv[2], uv[3]));
+}
+
+void ui_mouse(float *x, float *y)
+{
+    const ImVec2 at = ImGui::GetIO().MousePos;
+    *x = at.x;
+    *y = at.y;
+}
+
+bool ui_mouse_clicked(int button)
+{
+    return ImGui::IsMouseClicked(button);
+}
