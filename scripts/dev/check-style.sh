@@ -21,9 +21,9 @@ files() {
     fi
 }
 
-text=('*.c' '*.h' '*.cpp' '*.glsl' '*.comp' '*.vert' '*.frag' '*.build' '*.txt' '*.md' '*.sh' '*.py'
+text=('*.c' '*.h' '*.cpp' '*.hpp' '*.glsl' '*.comp' '*.vert' '*.frag' '*.build' '*.txt' '*.md' '*.sh' '*.py'
     '*.awk' '*.wrap' '*.supp' '*.ci/run' '*.csv')
-code=('*.c' '*.h' '*.cpp' '*.glsl' '*.comp' '*.vert' '*.frag' '*.build' '*.sh' '*.py' '*.awk' '*.ci/run')
+code=('*.c' '*.h' '*.cpp' '*.hpp' '*.glsl' '*.comp' '*.vert' '*.frag' '*.build' '*.sh' '*.py' '*.awk' '*.ci/run')
 number=0 status=0
 
 # report FACT: what is wrong, one line each, is on stdin
@@ -127,7 +127,7 @@ fi
 
 formatter=$(command -v clang-format-14 || command -v clang-format || true)
 if [ -n "$formatter" ] && "$formatter" --version | grep -q 'version 14\.'; then
-    files '*.c' '*.h' '*.cpp' | tr '\n' '\0' | xargs -0 "$formatter" --dry-run -Werror 2>&1 |
+    files '*.c' '*.h' '*.cpp' '*.hpp' | tr '\n' '\0' | xargs -0 "$formatter" --dry-run -Werror 2>&1 |
         sed -n 's/:.*error:.*//p' | sort | uniq -c | report sources_are_formatted
 else
     skipped sources_are_formatted "clang-format 14 is not installed"

@@ -90,6 +90,7 @@ every_public_header_is_installed() {
         esac
         [ -f "$prefix/include/sluice/$name.h" ] || { echo "$name.h is missing"; return 1; }
     done
+    [ -f "$prefix/include/sluice/sluice.hpp" ]
 }
 
 meson_project() {
@@ -198,7 +199,7 @@ every_program_does_its_work() {
         runs libexec/sluice/demand-tracer --size 64x36 --samples 1 --texture-count 5 --texture-size 1024
 }
 
-echo 1..18
+echo 1..19
 check installs install_copy
 check pkg_config_file_is_installed find_installed
 find_installed && relocate
@@ -215,6 +216,7 @@ else
 fi
 check compiler_builds_against_the_installed_copy plain main.c "${CC:-cc}" -std=c11 -Wall -Wextra -Werror
 check cpp_compiler_builds_against_the_installed_copy plain main.cpp "${CXX:-c++}" -std=c++11 -Wall -Wextra -Werror
+check owners_of_cpp17_build_against_the_installed_copy plain main.cpp "${CXX:-c++}" -std=c++17 -Wall -Wextra -Werror
 check static_program_needs_only_libc plain_static
 check all_libraries_link_statically_into_one_program all_static
 check static_libraries_define_every_name_once all_static -Wl,--whole-archive
