@@ -165,6 +165,11 @@ bool slc_file_reserve(int descriptor, uint64_t size)
 
 bool slc_file_sync(int descriptor)
 {
+#ifdef F_FULLFSYNC /* macOS: fsync leaves bytes in the drive's memory. Not all file systems know   \
+                      it. */
+    if (fcntl(descriptor, F_FULLFSYNC) == 0)
+        return true;
+#endif
     return fsync(descriptor) == 0;
 }
 
