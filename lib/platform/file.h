@@ -74,12 +74,13 @@ void slc_file_set_permissions(int descriptor, uint32_t permissions);
 const char *slc_path_name(const char *path);
 /** False if this process may not write to it. */
 bool slc_path_is_writable(const char *path);
-/** Gives a file another name, in one step, in place of a file that has the name. */
+/** Gives a file another name, in one step, in place of a file that has the name, also of one that
+ * is open. Windows before 10 refuses that (EACCES). */
 bool slc_path_replace(const char *from, const char *to);
 bool slc_path_remove(const char *path);
 /** Notes that the file was read now. */
 void slc_path_touch(const char *path);
-/** The absolute path without links, or NULL. Free it with free(). */
+/** The absolute path of what is there, without links, or NULL. Free it with free(). */
 char *slc_path_resolve(const char *path);
 
 /** A number that no other process has now. */

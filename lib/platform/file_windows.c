@@ -5,10 +5,22 @@
 #include <fcntl.h>
 #include <io.h>
 #include <stdlib.h>
+#include <wchar.h>
 
 #define MAX_TRANSFER ((size_t)1 << 30)
 #define SHARE_ALL (FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE)
 #define DESCRIPTOR_LIMIT 2048 /* of the C library, msvcrt.dll */
+
+/* FileRenameInfoEx and FILE_RENAME_INFO, which headers have for Windows 10 alone. */
+#define RENAME_INFO_EX ((FILE_INFO_BY_HANDLE_CLASS)22)
+#define RENAME_REPLACE 1
+#define RENAME_POSIX 2
+struct rename {
+    DWORD flags;
+    HANDLE folder;
+    DWORD name_size;
+    WCHAR name[SLC_WIDE_PATH];
+};
 
 static const struct {
     DWORD error;
@@ -17,23 +29,49 @@ static const struct {
     {ERROR_FILE_NOT_FOUND, ENOENT},
     {ERROR_PATH_NOT_FOUND, ENOENT},
     {ERROR_BAD_NETPATH, ENOENT},
+    {ERROR_BAD_NET_NAME, ENOENT},
+    {ERROR_DEV_NOT_EXIST, ENOENT},
+    {ERROR_DELETE_PENDING, ENOENT},
     {ERROR_INVALID_NAME, ENOENT},
     {ERROR_BAD_PATHNAME, ENOENT},
     {ERROR_INVALID_DRIVE, ENOENT},
     {ERROR_DIRECTORY, ENOTDIR},
+    {ERROR_DIR_NOT_EMPTY, ENOTEMPTY},
+    {ERROR_FILENAME_EXCED_RANGE, ENAMETOOLONG},
+    {ERROR_BUFFER_OVERFLOW, ENAMETOOLONG}, /* "the file name is too long" */
+    {ERROR_CANT_RESOLVE_FILENAME, ELOOP},
     {ERROR_ACCESS_DENIED, EACCES},
+    {ERROR_NETWORK_ACCESS_DENIED, EACCES},
     {ERROR_SHARING_VIOLATION, EACCES},
+    {ERROR_CANNOT_MAKE, EACCES},
+    {ERROR_USER_MAPPED_FILE, EACCES},
+    {ERROR_PRIVILEGE_NOT_HELD, EPERM},
     {ERROR_WRITE_PROTECT, EROFS},
+    {ERROR_NOT_SAME_DEVICE, EXDEV},
     {ERROR_LOCK_VIOLATION, EWOULDBLOCK},
     {ERROR_IO_PENDING, EAGAIN},
+    {ERROR_OPERATION_ABORTED, EINTR},
     {ERROR_TOO_MANY_OPEN_FILES, EMFILE},
+    {ERROR_SHARING_BUFFER_EXCEEDED, ENFILE},
     {ERROR_NOT_ENOUGH_MEMORY, ENOMEM},
     {ERROR_OUTOFMEMORY, ENOMEM},
+    {ERROR_NO_SYSTEM_RESOURCES, ENOMEM},
+    {ERROR_NONPAGED_SYSTEM_RESOURCES, ENOMEM},
+    {ERROR_PAGED_SYSTEM_RESOURCES, ENOMEM},
+    {ERROR_WORKING_SET_QUOTA, ENOMEM},
+    {ERROR_COMMITMENT_LIMIT, ENOMEM},
+    {ERROR_NOT_ENOUGH_QUOTA, ENOMEM}, /* of memory */
     {ERROR_FILE_EXISTS, EEXIST},
     {ERROR_ALREADY_EXISTS, EEXIST},
     {ERROR_DISK_FULL, ENOSPC},
     {ERROR_HANDLE_DISK_FULL, ENOSPC},
+    {ERROR_FILE_TOO_LARGE, EFBIG},
+    {ERROR_BROKEN_PIPE, EPIPE},
+    {ERROR_NO_DATA, EPIPE},
     {ERROR_INVALID_PARAMETER, EINVAL},
+    {ERROR_NEGATIVE_SEEK, EINVAL},
+    {ERROR_INVALID_FUNCTION, EOPNOTSUPP},
+    {ERROR_NOT_SUPPORTED, EOPNOTSUPP},
     {ERROR_NO_UNICODE_TRANSLATION, EILSEQ},
     {ERROR_INVALID_HANDLE, EBADF},
 };
@@ -61,6 +99,16 @@ bool slc_widen_path(const char *path, WCHAR wide[SLC_WIDE_PATH])
 static HANDLE handle_of(int descriptor)
 {
     return (HANDLE)_get_osfhandle(descriptor);
+}
+
+/* Of a reparse point that was opened itself; 0 for all else. */
+static DWORD reparse_tag(HANDLE handle)
+{
+    FILE_ATTRIBUTE_TAG_INFO info;
+    return GetFileInformationByHandleEx(handle, FileAttributeTagInfo, &info, sizeof info) &&
+                   (info.FileAttributes & FILE_ATTRIBUTE_REPARSE_POINT)
+               ? info.ReparseTag
+               : 0;
 }
 
 /* Folders need FILE_FLAG_BACKUP_SEMANTICS, which changes nothing for files. */
@@ -94,16 +142,22 @@ int slc_file_open(const char *path)
     return slc_open_windows(path, GENERIC_READ, OPEN_EXISTING, 0, _O_RDONLY);
 }
 
+static int create(const char *path, DWORD flags)
+{
+    return slc_open_windows(path, GENERIC_READ | GENERIC_WRITE, OPEN_ALWAYS, flags, _O_RDWR);
+}
+
 /* Windows has a bit for "read-only" alone, which a file that is being written does not need. */
 int slc_file_create(const char *path, uint32_t permissions)
 {
-    struct slc_file_status status;
     (void)permissions;
-    int descriptor = slc_open_windows(path, GENERIC_READ | GENERIC_WRITE, OPEN_ALWAYS,
-                                      FILE_FLAG_OPEN_REPARSE_POINT, _O_RDWR);
-    if (descriptor < 0 || !slc_file_get_status(descriptor, &status) || status.kind != SLC_NODE_LINK)
+    int descriptor = create(path, FILE_FLAG_OPEN_REPARSE_POINT);
+    DWORD tag = descriptor < 0 ? 0 : reparse_tag(handle_of(descriptor));
+    if (tag == 0)
         return descriptor;
     slc_file_close(descriptor);
+    if (!IsReparseTagNameSurrogate(tag))
+        return create(path, 0); /* by the driver that keeps the contents elsewhere */
     errno = ELOOP;
     return -1;
 }
@@ -136,9 +190,12 @@ static uint64_t join(DWORD high, DWORD low)
     return (uint64_t)high << 32 | low;
 }
 
-static enum slc_node_kind kind_of(DWORD attributes)
+/* Reparse points of OneDrive and of deduplication are files. Links and mounted folders stand for
+ * another name. */
+static enum slc_node_kind kind_of(HANDLE handle, DWORD attributes)
 {
-    if (attributes & FILE_ATTRIBUTE_REPARSE_POINT)
+    if ((attributes & FILE_ATTRIBUTE_REPARSE_POINT) &&
+        IsReparseTagNameSurrogate(reparse_tag(handle)))
         return SLC_NODE_LINK;
     return attributes & FILE_ATTRIBUTE_DIRECTORY ? SLC_NODE_FOLDER : SLC_NODE_FILE;
 }
@@ -154,7 +211,7 @@ bool slc_read_handle_status(HANDLE handle, struct slc_file_status *status)
     if (!GetFileInformationByHandle(handle, &info) ||
         !GetFileInformationByHandleEx(handle, FileBasicInfo, &basic, sizeof basic))
         return slc_fail_windows();
-    status->kind = kind_of(info.dwFileAttributes);
+    status->kind = kind_of(handle, info.dwFileAttributes);
     if (info.dwFileAttributes & FILE_ATTRIBUTE_READONLY)
         status->permissions = 0444;
     status->device = info.dwVolumeSerialNumber;
@@ -290,11 +347,32 @@ bool slc_path_is_writable(const char *path)
     return (status.permissions & 0222) != 0;
 }
 
+/* Windows 10 1607 renames as POSIX does: who has the old file open keeps it.
+ * FILE_FLAG_WRITE_THROUGH puts the name on the disk before the call returns. */
+static bool replace_open(const char *from, const WCHAR *to)
+{
+    struct rename rename = {.flags = RENAME_REPLACE | RENAME_POSIX};
+    DWORD length = GetFullPathNameW(to, SLC_WIDE_PATH, rename.name, NULL);
+    if (length == 0 || length >= SLC_WIDE_PATH)
+        return false;
+    rename.name_size = length * (DWORD)sizeof *rename.name;
+    HANDLE handle = open_handle(from, DELETE | SYNCHRONIZE, OPEN_EXISTING,
+                                FILE_FLAG_OPEN_REPARSE_POINT | FILE_FLAG_WRITE_THROUGH);
+    if (handle == INVALID_HANDLE_VALUE)
+        return false;
+    bool is_done = SetFileInformationByHandle(handle, RENAME_INFO_EX, &rename, sizeof rename);
+    CloseHandle(handle);
+    return is_done;
+}
+
+/* The second way is for older systems, and for file systems that know no such renaming. */
 bool slc_path_replace(const char *from, const char *to)
 {
     WCHAR wide_from[SLC_WIDE_PATH], wide_to[SLC_WIDE_PATH];
     if (!slc_widen_path(from, wide_from) || !slc_widen_path(to, wide_to))
         return false;
+    if (replace_open(from, wide_to))
+        return true;
     return MoveFileExW(wide_from, wide_to, MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH)
                ? true
                : slc_fail_windows();
@@ -317,17 +395,39 @@ void slc_path_touch(const char *path)
     CloseHandle(handle);
 }
 
+/* "\\?\C:\a" as "C:\a" and "\\?\UNC\server\a" as "\\server\a", in place. */
+static WCHAR *without_prefix(WCHAR *path)
+{
+    if (wcsncmp(path, L"\\\\?\\", 4) != 0)
+        return path;
+    if (wcsncmp(path + 4, L"UNC\\", 4) != 0)
+        return path + 4;
+    path[6] = L'\\';
+    return path + 6;
+}
+
+static char *narrow(const WCHAR *wide)
+{
+    int size = WideCharToMultiByte(CP_UTF8, 0, wide, -1, NULL, 0, NULL, NULL);
+    char *path = size > 0 ? malloc((size_t)size) : NULL;
+    if (path)
+        WideCharToMultiByte(CP_UTF8, 0, wide, -1, path, size, NULL, NULL);
+    return path;
+}
+
 char *slc_path_resolve(const char *path)
 {
-    WCHAR wide[SLC_WIDE_PATH], full[SLC_WIDE_PATH];
-    if (!slc_widen_path(path, wide))
+    WCHAR full[SLC_WIDE_PATH];
+    HANDLE handle = open_handle(path, 0, OPEN_EXISTING, 0);
+    if (handle == INVALID_HANDLE_VALUE)
         return NULL;
-    DWORD length = GetFullPathNameW(wide, SLC_WIDE_PATH, full, NULL);
-    int size = WideCharToMultiByte(CP_UTF8, 0, full, -1, NULL, 0, NULL, NULL);
-    char *resolved = length > 0 && length < SLC_WIDE_PATH && size > 0 ? malloc((size_t)size) : NULL;
-    if (resolved)
-        WideCharToMultiByte(CP_UTF8, 0, full, -1, resolved, size, NULL, NULL);
-    return resolved;
+    DWORD length = GetFinalPathNameByHandleW(handle, full, SLC_WIDE_PATH, 0);
+    if (length == 0)
+        slc_fail_windows();
+    else if (length >= SLC_WIDE_PATH)
+        errno = ENAMETOOLONG;
+    CloseHandle(handle);
+    return length > 0 && length < SLC_WIDE_PATH ? narrow(without_prefix(full)) : NULL;
 }
 
 uint64_t slc_get_process_id(void)

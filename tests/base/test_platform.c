@@ -10,6 +10,7 @@
 #include "support/test.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct meeting {
@@ -178,6 +179,78 @@ static void a_part_file_takes_its_name_when_it_is_whole(void **state)
     assert_true(slc_path_remove(OTHER));
 }
 
+static int create_with(const char *name, const char *bytes)
+{
+    int file = slc_file_create(name, 0666);
+    assert_true(file >= 0 && slc_file_set_size(file, 0));
+    assert_int_equal(slc_file_write_at(file, 0, bytes, strlen(bytes)), strlen(bytes));
+    return file;
+}
+
+/* As a store that is baked again while it streams. */
+static void an_open_file_is_replaced_and_stays_readable(void **state)
+{
+    (void)state;
+    char bytes[8] = {0};
+    slc_file_close(create_with(OTHER, "old"));
+    int old = slc_file_open(OTHER), new = create_with(NAME, "new");
+    bool is_done = slc_path_replace(NAME, OTHER);
+    int error = errno;
+    if (is_done) {
+        assert_int_equal(slc_file_read_at(old, 0, bytes, sizeof bytes), 3);
+        assert_string_equal(bytes, "old");
+        assert_int_equal(slc_file_read_at(new, 0, bytes, sizeof bytes), 3);
+        assert_string_equal(bytes, "new");
+    }
+    slc_file_close(old);
+    slc_file_close(new);
+    assert_true(is_done || slc_path_remove(NAME));
+    assert_true(slc_path_remove(OTHER));
+#ifdef _WIN32
+    if (!is_done && error == EACCES)
+        SKIP_TEST("this Windows does not replace files that are open");
+#endif
+    assert_true(is_done || error == 0);
+}
+
+static void a_path_is_resolved_if_something_is_there(void **state)
+{
+    (void)state;
+    slc_file_close(create_with(OTHER, ""));
+    char *direct = slc_path_resolve(OTHER), *roundabout = slc_path_resolve("./././" OTHER);
+    assert_non_null(direct);
+    assert_non_null(roundabout);
+    assert_string_equal(direct, roundabout);
+    assert_string_equal(slc_path_name(direct), OTHER);
+    assert_true(direct != slc_path_name(direct));
+    free(direct);
+    free(roundabout);
+    assert_true(slc_path_remove(OTHER));
+    assert_null(slc_path_resolve(OTHER));
+    assert_int_equal(errno, ENOENT);
+    assert_null(slc_path_resolve(""));
+    assert_int_equal(errno, ENOENT);
+}
+
+static void failures_have_their_number(void **state)
+{
+    (void)state;
+    struct slc_file_status status;
+    char name[300];
+    memset(name, 'n', sizeof name - 1);
+    name[sizeof name - 1] = '\0';
+    assert_int_equal(slc_file_create("there is no such folder/file", 0666), -1);
+    assert_int_equal(errno, ENOENT);
+    assert_false(slc_path_get_status(name, &status));
+    assert_true(errno == ENAMETOOLONG || errno == ENOENT);
+    assert_false(slc_folder_make("."));
+    assert_int_equal(errno, EEXIST);
+    assert_false(slc_path_replace("there is no such file", OTHER));
+    assert_int_equal(errno, ENOENT);
+    assert_false(slc_path_remove("."));
+    assert_true(errno == EACCES || errno == EISDIR || errno == EPERM);
+}
+
 static void a_path_ends_with_its_name(void **state)
 {
     (void)state;
@@ -198,6 +271,9 @@ int main(void)
         cmocka_unit_test(bytes_are_where_they_were_written),
         cmocka_unit_test(a_file_is_locked_once),
         cmocka_unit_test(a_part_file_takes_its_name_when_it_is_whole),
+        cmocka_unit_test(an_open_file_is_replaced_and_stays_readable),
+        cmocka_unit_test(a_path_is_resolved_if_something_is_there),
+        cmocka_unit_test(failures_have_their_number),
         cmocka_unit_test(a_path_ends_with_its_name),
     };
     return RUN_TESTS(tests);
