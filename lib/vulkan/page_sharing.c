@@ -146,6 +146,19 @@ void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struc
     slc_mutex_unlock(&pool->mutex);
 }
 
+bool slc_page_is_shared(struct slc_page_pool *pool, uint32_t user, uint32_t page)
+{
+    bool shared = false;
+    slc_mutex_lock(&pool->mutex);
+    uint32_t index = slc_page_layer(&pool->chunks, page)->shared;
+    if (index) {
+        const struct slc_shared_tile *tile = &pool->shared.entries[index - 1];
+        shared = tile->holds[user] > 1 || (tile->users | tile->readers) & ~(1u << user);
+    }
+    slc_mutex_unlock(&pool->mutex);
+    return shared;
+}
+
 /* A tile without a page is nothing without its name. */
 static void unlist(struct slc_page_pool *pool, uint32_t index)
 {

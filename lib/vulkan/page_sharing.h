@@ -42,6 +42,9 @@ void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t 
 void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
                           uint32_t page);
 
+/** Whether another tile is on the page, or another user has read it. */
+bool slc_page_is_shared(struct slc_page_pool *pool, uint32_t user, uint32_t page);
+
 /** A texture of the source goes: its tiles are not found any more, but for those that others hold,
  *  for whom the source must live on. */
 void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,

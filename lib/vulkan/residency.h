@@ -78,6 +78,15 @@ struct slc_residency_interface {
     /** The image is removed: its source need not live longer. */
     void (*leave_source)(struct slc_residency *residency, uint32_t index);
 
+    /** The texels of the source have changed: what is shared of it is shared no longer. */
+    void (*drop_source)(struct slc_residency *residency, uint32_t index);
+
+    /** A tile that is not mapped cannot be revived: its texels have changed. NULL: none can. */
+    void (*spoil)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
+    /** Other texels are about to be copied to a mapped tile: it gets a page of its own if others
+     *  have its page. False: there is none now. NULL: tiles have their own. */
+    bool (*renew)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
+
     /** False: no more tiles may ever be bound, and this one was not yet. NULL: all may. */
     bool (*reserve)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
 

@@ -281,6 +281,37 @@ static void leave_source(struct slc_residency *residency, uint32_t index)
     slc_page_share_leave(p->pool, p->user, p->images[index].source);
 }
 
+static void drop_source(struct slc_residency *residency, uint32_t index)
+{
+    struct paged_residency *p = paged(residency);
+    slc_page_share_drop(p->pool, p->images[index].source);
+}
+
+static void spoil(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    uint32_t *entry = &p->table.entries[word_of(p, index, tile)];
+    if (!slc_page_is_taken(*entry))
+        *entry = SLUICE_PAGE_NONE;
+}
+
+static bool renew(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    uint32_t *entry = &p->table.entries[word_of(p, index, tile)];
+    assert(slc_page_is_taken(*entry));
+    uint32_t page = slc_page_of_entry(*entry);
+    if (!slc_page_is_shared(p->pool, p->user, page))
+        return true;
+    uint32_t own = slc_page_pool_take(p->pool, p->user, p->images[index].page_format);
+    count_memory(p);
+    if (own == SLUICE_PAGE_NONE)
+        return false;
+    slc_page_pool_give(p->pool, p->user, page, SLC_NO_OWNER);
+    *entry = own | SLC_PAGE_SHOWN;
+    return true;
+}
+
 static SluiceResult map(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct paged_residency *p = paged(residency);
@@ -524,6 +555,9 @@ static const struct slc_residency_interface paged_interface = {
     .announce = announce,
     .withdraw = withdraw,
     .leave_source = leave_source,
+    .drop_source = drop_source,
+    .spoil = spoil,
+    .renew = renew,
     .page_room = page_room,
     .gather = gather,
     .compact = compact,

@@ -323,6 +323,17 @@ static bool revive(struct slc_residency *residency, uint32_t index, const Sluice
            slc_sparse_bindings_restore(&s->pages, index, place, tile->heapId, tile->slot);
 }
 
+static void spoil(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct sparse_residency *s = sparse(residency);
+    struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
+    uint32_t pending = slc_map_get(&s->pending_tiles, slc_place_key(index, place));
+    if (pending != SLC_MAP_NONE)
+        s->pending[pending].filled = false;
+    else
+        slc_sparse_bindings_spoil_evicted(&s->pages, index, place);
+}
+
 /* Tiles that no incomplete frame reads any more: their pages may go to others. */
 static void release_pending(struct sparse_residency *s, uint64_t completed_frame)
 {
@@ -547,6 +558,7 @@ static const struct slc_residency_interface sparse_interface = {
     .destroy_image = destroy_image,
     .image_is_idle = image_is_idle,
     .revive = revive,
+    .spoil = spoil,
     .reserve = reserve,
     .may_reserve = may_reserve,
     .allocate_heap = allocate_heap,

@@ -208,6 +208,16 @@ void slc_sparse_bindings_spoil(struct slc_sparse_bindings *bindings, uint32_t im
     bindings->pages[page].spoiled = true;
 }
 
+void slc_sparse_bindings_spoil_evicted(struct slc_sparse_bindings *bindings, uint32_t image,
+                                       struct slc_tile_place place)
+{
+    if (bindings->places.count == 0)
+        return; /* before the first heap there is no map */
+    uint32_t page = slc_map_get(&bindings->places, slc_place_key(image, place));
+    if (page != SLC_MAP_NONE)
+        bindings->pages[page].spoiled = true;
+}
+
 bool slc_sparse_bindings_is_spoiled(const struct slc_sparse_bindings *bindings, uint32_t image,
                                     struct slc_tile_place place)
 {
