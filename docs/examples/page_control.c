@@ -4,6 +4,9 @@
 #include <stdio.h>
 
 /* Before a level begins: a loading screen draws a frame between two calls. */
+SluiceResult showSavedFile(SluiceVulkanStreamer *streamer, SluiceTextureId texture,
+                           SluiceImageSource *opened);
+void destroyWhenUnused(const SluiceVulkanStreamer *streamer, SluiceImageSource **pOld);
 SluiceResult addDetailMap(SluiceVulkanStreamer *streamer, SluiceImageSource *source,
                           SluiceTextureId base, SluiceVulkanTexture *pDetail);
 SluiceResult requestHero(SluiceVulkanStreamer *streamer, SluiceTextureId hero,
@@ -60,4 +63,22 @@ SluiceResult addDetailMap(SluiceVulkanStreamer *streamer, SluiceImageSource *sou
     const SluiceVulkanTextureCreateInfo info = {
         .structSize = sizeof info, .source = source, .primaryId = base, .pUvTransform = &eight};
     return sluiceAddVulkanTexture(streamer, &info, pDetail);
+}
+
+SluiceResult showSavedFile(SluiceVulkanStreamer *streamer, SluiceTextureId texture,
+                           SluiceImageSource *opened)
+{
+    SluiceResult result = sluiceReplaceVulkanSource(streamer, texture, opened);
+    if (result == SLUICE_ERROR_INVALID_ARGUMENT)
+        printf("other size or format: remove the texture and add a new one\n");
+    return result;
+}
+
+void destroyWhenUnused(const SluiceVulkanStreamer *streamer, SluiceImageSource **pOld)
+{
+    bool inUse = true;
+    if (*pOld && sluiceIsVulkanSourceInUse(streamer, *pOld, &inUse) == SLUICE_SUCCESS && !inUse) {
+        sluiceDestroyImageSource(*pOld);
+        *pOld = NULL;
+    }
 }

@@ -773,6 +773,9 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t tilesProduced;      ///< Tiles that producers wrote, without those of mip tails.
     uint64_t texturesForgotten;  ///< Times that a texture was forgotten; see forgetTextures.
     uint32_t absentTextureCount; ///< Textures without an image: forgotten, or not sampled yet.
+    /** Resident tiles, and 64 KiB of mip tails, that were read again because their texels changed
+     *  (vulkan_control.h). */
+    uint64_t tilesReloaded;
 } SluiceVulkanStreamerStatistics;
 
 /**

@@ -33,6 +33,11 @@ typedef struct SluiceVulkanTextureState {
      * regions fade in (residencyFadeTicks). SLUICE_MIP_UNTOUCHED if it is not drawable.
      */
     float shownLevel;
+    /**
+     * Resident tiles of the whole texture that still show texels from before
+     * sluiceInvalidateVulkanTexture or sluiceReplaceVulkanSource. A mip tail counts as one.
+     */
+    uint32_t reloadingTileCount;
 } SluiceVulkanTextureState;
 
 /**
@@ -209,6 +214,58 @@ SLUICE_API SluiceResult sluiceSetVulkanPrimaryTexture(SluiceVulkanStreamer *stre
 SLUICE_API SluiceResult sluiceSetVulkanUvTransform(SluiceVulkanStreamer *streamer,
                                                    SluiceTextureId textureId,
                                                    const SluiceUvTransform *pTransform);
+
+/**
+ * Reads tiles again whose texels have changed in the source (hot reload).
+ *
+ * `pRegion` is a rectangle of a level; its array layer is ignored. NULL: all texels of level 0.
+ * `mipLevelCount` levels from that level on have changed: 1 for that level alone, UINT32_MAX for
+ * all coarser ones, which change where the rectangle covers them. A mip tail is read as a whole.
+ *
+ * The next frames read resident tiles again, a quarter of maxLoadsInFlight at a time, and copy the
+ * texels over the old ones. Frames show the old texels until then. Reads under way are not used:
+ * they begin again. Tiles that are not resident are read when they are requested. If a read fails,
+ * the old texels stay, and the tile is read again retryDelayTicks later.
+ *
+ * Only this texture changes: call the function for each texture of a set, or of the source, whose
+ * texels have changed. The source must deliver the new texels by now, and must not identify them
+ * with the old ones (pfnIdentifyRegion).
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a rectangle that leaves its level
+ *         or a texture with a producer; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Nothing has changed after
+ *         an error.
+ */
+SLUICE_API SluiceResult sluiceInvalidateVulkanTexture(SluiceVulkanStreamer *streamer,
+                                                      SluiceTextureId textureId,
+                                                      const SluiceImageRegion *pRegion,
+                                                      uint32_t mipLevelCount);
+
+/**
+ * Replaces the source of a texture, and of all layers of its array, and reads all resident tiles
+ * again as sluiceInvalidateVulkanTexture does. Image, views, indices and settings stay.
+ *
+ * The new source must outlive the texture. Destroy the old one when sluiceIsVulkanSourceInUse says
+ * that nothing uses it: reads under way go on for some frames.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if size, format, levels or layers
+ *         differ (remove the texture and add a new one), or for a texture with a producer;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; errors of the source. Nothing has changed after an
+ *         error.
+ */
+SLUICE_API SluiceResult sluiceReplaceVulkanSource(SluiceVulkanStreamer *streamer,
+                                                  SluiceTextureId textureId,
+                                                  SluiceImageSource *source);
+
+/**
+ * Gets whether a texture has the source, or a read of it is under way. Frames end reads, and so do
+ * sluiceWaitVulkanStreamerIdle and sluiceDestroyVulkanStreamer.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceIsVulkanSourceInUse(const SluiceVulkanStreamer *streamer,
+                                                  const SluiceImageSource *source, bool *pInUse);
 
 #ifdef __cplusplus
 } /* extern "C" */

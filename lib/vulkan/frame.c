@@ -8,6 +8,7 @@
 #include "vulkan/load_cancels.h"
 #include "vulkan/load_deferred.h"
 #include "vulkan/load_productions.h"
+#include "vulkan/load_reloads.h"
 #include "vulkan/load_stages.h"
 #include "vulkan/load_starts.h"
 #include "vulkan/residencies.h"
@@ -102,6 +103,8 @@ static SluiceResult decide(SluiceVulkanStreamer *s)
         result = unmap_tiles(s);
     if (result >= 0)
         result = bind(s);
+    if (result >= 0)
+        result = slc_reloads_start(s);
     if (result >= 0)
         result = slc_loads_start(s);
     return result;

@@ -2,6 +2,7 @@
 
 #include "base/checked.h"
 #include "vulkan/load_reads.h"
+#include "vulkan/load_reloads.h"
 #include "vulkan/load_stages.h"
 #include "vulkan/load_units.h"
 #include "vulkan/read_troubles.h"
@@ -106,10 +107,16 @@ static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResul
         return SLUICE_SUCCESS;
     }
     SluiceResult answer = read->result;
+    if (unit->stale && !unit->canceled && !unit->dropped && slc_unit_read_again(s, index, &answer))
+        return SLUICE_SUCCESS;
     if (answer == SLUICE_NOT_READY && !unit->canceled && slc_loads_can_wait(s)) {
         answer = slc_unit_submit(s, index);
         if (answer == SLUICE_SUCCESS)
             return SLUICE_SUCCESS;
+    }
+    if (unit->reload) {
+        slc_reload_back(s, index, answer);
+        return SLUICE_SUCCESS;
     }
     return unit->packed_unit != SLC_NONE ? slc_packed_unit_back(s, index, answer)
                                          : slc_tile_back(s, index, answer);

@@ -1,7 +1,9 @@
 #include "vulkan/load_binds.h"
 
+#include "vulkan/load_arrivals.h"
 #include "vulkan/load_deferred.h"
 #include "vulkan/load_productions.h"
+#include "vulkan/load_reloads.h"
 #include "vulkan/load_stages.h"
 #include "vulkan/load_units.h"
 
@@ -52,6 +54,12 @@ void slc_loads_bind(SluiceVulkanStreamer *s)
             slc_unit_free(s, unit);
             continue;
         }
+        SluiceResult answer;
+        if (u->stale) {
+            if (!slc_unit_read_again(s, unit, &answer))
+                slc_tile_back(s, unit, answer);
+            continue;
+        }
         struct slc_residency *residency = slc_residency_of(s, u->texture);
         SluiceResult result = residency->interface->map(residency, u->texture, &u->tile);
         if (result < 0)
@@ -98,6 +106,7 @@ void slc_loads_recycle(SluiceVulkanStreamer *s)
            s->units[s->uploaded.first].value <= s->completed_frame) {
         uint32_t unit = slc_unit_list_pop(s, &s->uploaded);
         slc_load_stage_unit(s, &s->units[unit], SLUICE_LOAD_STAGE_COPY);
+        s->counts.tilesReloaded += s->units[unit].reload;
         slc_unit_forget_tile(s, &s->units[unit]);
         slc_unit_free(s, unit);
     }
@@ -108,13 +117,16 @@ bool slc_loads_unmap(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile
 {
     if (slc_tile_is_packed(s, texture, tile)) {
         s->textures[texture].packed_mapped--;
+        slc_reloads_drop_tail(s, texture);
         return true;
     }
     uint32_t unit = slc_map_get(&s->tile_units, slc_pair_key(texture, tile->tileIndex));
     if (unit == SLC_MAP_NONE)
-        return true;
+        return !slc_reload_is_due(s, texture, tile->tileIndex);
     slc_unit_forget_tile(s, &s->units[unit]);
     s->units[unit].dropped = true;
+    if (s->units[unit].state == SLC_UNIT_READING)
+        sluiceCancelTileRead(s->loader, s->units[unit].ticket);
     return false;
 }
 

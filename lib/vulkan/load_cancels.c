@@ -2,6 +2,7 @@
 
 #include "base/checked.h"
 #include "vulkan/load_deferred.h"
+#include "vulkan/load_reloads.h"
 #include "vulkan/load_units.h"
 
 #define BATCH 64u
@@ -81,6 +82,7 @@ void slc_loads_drop(SluiceVulkanStreamer *s, uint32_t index)
 {
     slc_deferred_tiles_drop(&s->deferred, index);
     slc_deferred_tiles_drop(&s->awaited, index);
+    slc_reloads_drop(s, index);
     struct slc_residency *residency = slc_residency_of(s, index);
     if (residency->interface->leave_source)
         residency->interface->leave_source(residency, index);

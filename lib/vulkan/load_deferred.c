@@ -31,7 +31,7 @@ static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
     for (uint32_t i = 0; i < s->info.maxLoadsInFlight; i++) {
         const struct slc_unit *unit = &s->units[i];
         bool is_coming = unit->state == SLC_UNIT_READING || unit->state == SLC_UNIT_ARRIVED;
-        count += is_coming && unit->packed_unit == SLC_NONE &&
+        count += is_coming && !unit->reload && unit->packed_unit == SLC_NONE &&
                  slc_residency_of(s, unit->texture)->interface->page_room &&
                  slc_texture_page_format(&s->textures[unit->texture]) == format;
     }

@@ -26,8 +26,9 @@ SluiceImageRegion slc_tile_region(const struct slc_texture *texture, const Sluic
 void slc_fill_tile_read(SluiceVulkanStreamer *s, uint32_t index, SluiceTileRead *read,
                         SluiceImageRegion *region, void **texels)
 {
-    const struct slc_unit *unit = &s->units[index];
+    struct slc_unit *unit = &s->units[index];
     const struct slc_texture *texture = &s->textures[unit->texture];
+    unit->source = texture->source;
     *region = slc_tile_region(texture, &unit->tile);
     *texels = unit_memory(s, index);
     *read = (SluiceTileRead){.source = texture->source,
@@ -64,5 +65,6 @@ SluiceResult slc_unit_submit(SluiceVulkanStreamer *s, uint32_t index)
         }
     }
     unit->state = SLC_UNIT_READING;
+    unit->source = texture->source;
     return sluiceSubmitTileRead(s->loader, &read, &unit->ticket);
 }

@@ -84,6 +84,7 @@ void slc_unit_free(SluiceVulkanStreamer *s, uint32_t unit)
 {
     s->textures[s->units[unit].texture].unit_count--;
     s->units[unit].state = SLC_UNIT_FREE;
+    s->reload_unit_count -= s->units[unit].reload;
     s->free_unit_count++;
     if (!s->units[unit].produced)
         slc_staging_give(&s->staging, unit);
@@ -116,6 +117,8 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
         slc_unit_list_append(s, &s->free_units, i);
     s->free_unit_count = count;
     SluiceResult result = slc_map_init(&s->tile_units, &s->cb, count);
+    if (result == SLUICE_SUCCESS)
+        result = slc_remakes_init(&s->reloads, &s->cb, count);
     if (result != SLUICE_SUCCESS)
         return result;
     result =
@@ -134,6 +137,7 @@ void slc_loads_finish(SluiceVulkanStreamer *s)
                               s->loader); /* first: its threads write into the staging slots */
     slc_staging_finish(&s->staging);
     slc_map_finish(&s->tile_units, &s->cb);
+    slc_remakes_finish(&s->reloads);
     slc_deferred_tiles_finish(&s->deferred, &s->cb);
     slc_deferred_tiles_finish(&s->awaited, &s->cb);
     slc_free(&s->cb, s->units, s->info.maxLoadsInFlight, sizeof *s->units);

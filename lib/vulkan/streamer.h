@@ -17,6 +17,7 @@
 #include "vulkan/read_health.h"
 #include "vulkan/readback_ring.h"
 #include "vulkan/region_arena.h"
+#include "vulkan/remakes.h"
 #include "vulkan/residency.h"
 #include "vulkan/resolve.h"
 #include "vulkan/sparse_layout.h"
@@ -94,6 +95,9 @@ struct slc_texture {
     uint64_t used_frame;
     uint32_t used_before, used_after; ///< in that order; SLC_NONE
     uint32_t unit_count;              ///< staging slots that name it
+    uint32_t reload_next;             ///< first unit of its mip tail that is not read again yet
+    bool reload_waits;                ///< a read again failed: the next one is not before ...
+    uint64_t reload_time;             ///< ... this time stamp
 
     struct slc_packed_units packed;
     SluiceTile *packed_tiles;  ///< owned; desc.packedTileCount, of which packed_collected
@@ -123,7 +127,10 @@ struct slc_unit {
     bool canceled;
     bool published; ///< the manager counts it as mapped: copied by a frame that was abandoned
     bool dropped;   ///< its tile was unmapped, and is not in tile_units; what it copied is no use
-    bool produced;  ///< the application's commands fill it: it has no memory in its staging slot
+    bool reload;    ///< its tile is resident already; see load_reloads.h
+    bool stale;     ///< READING, ARRIVED: the texels have changed since; it is read again
+    const SluiceImageSource *source; ///< READING: that the loader reads
+    bool produced; ///< the application's commands fill it: it has no memory in its staging slot
     uint64_t asked_frame; ///< frame that first asked its producer; 0: none
     uint64_t ticket;
     uint64_t value;       ///< BINDING: of the bind; UPLOADED: the frame
@@ -245,7 +252,9 @@ struct SluiceVulkanStreamer {
     struct slc_unit_list unproduced; ///< bound, not recorded
     struct slc_unit_list produced;   ///< recorded, not complete
     uint32_t free_unit_count;
-    struct slc_map tile_units; ///< (texture, tile) -> unit, until the unit is free
+    struct slc_map tile_units;  ///< (texture, tile) -> unit, until the unit is free
+    struct slc_remakes reloads; ///< (texture, tile); see load_reloads.h
+    uint32_t reload_unit_count;
     struct slc_deferred_tiles deferred;
     struct slc_deferred_tiles awaited; ///< that another front end is about to have
     uint32_t lacking_pages; ///< deferred tiles that could not have a page when the frame began

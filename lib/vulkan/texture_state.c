@@ -1,6 +1,7 @@
 #include "vulkan/texture_state.h"
 
 #include "base/struct_size.h"
+#include "vulkan/load_reloads.h"
 
 /* The coarsest of a rectangle. */
 struct coarsest {
@@ -36,11 +37,12 @@ SluiceVulkanTextureState slc_texture_state(const SluiceVulkanStreamer *s,
     if (texture->shown_frame && texture->presence == SLC_PRESENT)
         c = find_coarsest(s, texture, rect);
     bool drawable = c.level != SLUICE_MIP_UNTOUCHED;
-    return (SluiceVulkanTextureState){.structSize = sizeof(SluiceVulkanTextureState),
-                                      .drawable = drawable,
-                                      .residentLevel = c.level,
-                                      .shownLevel = drawable ? shown_level(c.texel)
-                                                             : (float)SLUICE_MIP_UNTOUCHED};
+    return (SluiceVulkanTextureState){
+        .structSize = sizeof(SluiceVulkanTextureState),
+        .drawable = drawable,
+        .residentLevel = c.level,
+        .reloadingTileCount = slc_reload_count(s, (uint32_t)(texture - s->textures)),
+        .shownLevel = drawable ? shown_level(c.texel) : (float)SLUICE_MIP_UNTOUCHED};
 }
 
 SluiceResult sluiceGetVulkanTextureState(const SluiceVulkanStreamer *streamer,

@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "vulkan/load_reads.h"
+#include "vulkan/load_reloads.h"
 #include "vulkan/load_stages.h"
 #include "vulkan/load_units.h"
 
@@ -97,7 +98,8 @@ static void upload_block(SluiceVulkanStreamer *s, VkCommandBuffer commands, cons
     for (uint32_t i = 0; i < count; i++) {
         struct slc_unit *unit = &s->units[units[i]];
         uint32_t added = unit_copies(s, units[i], &s->copies[copy_count]);
-        for (uint32_t j = copy_count; j < copy_count + added && !unit->published; j++)
+        bool counts = !unit->published || unit->reload;
+        for (uint32_t j = copy_count; j < copy_count + added && counts; j++)
             s->counts.bytesUploaded += sluiceGetFormatRegionSize(s->textures[texture].info.format,
                                                                  s->copies[j].imageExtent.width,
                                                                  s->copies[j].imageExtent.height);
@@ -211,6 +213,7 @@ static SluiceResult record_units(SluiceVulkanStreamer *s, VkCommandBuffer comman
 static uint32_t take_units(SluiceVulkanStreamer *s, uint32_t *left)
 {
     uint64_t completed = s->residency->interface->completed_value(s->residency);
+    struct slc_unit_list later = {SLC_NONE, SLC_NONE};
     uint32_t count = 0;
     while (count < s->info.tilesPerFrame && s->binding.first != SLC_NONE) {
         const struct slc_unit *unit = &s->units[s->binding.first];
@@ -221,11 +224,15 @@ static uint32_t take_units(SluiceVulkanStreamer *s, uint32_t *left)
         uint32_t taken = slc_unit_list_pop(s, &s->binding);
         if (useless)
             slc_unit_free(s, taken);
+        else if (!slc_reload_has_place(s, unit))
+            slc_unit_list_append(s, &later, taken);
         else if (unit->produced)
             slc_unit_list_append(s, &s->unproduced, taken);
         else
             s->frame_units[count++] = taken;
     }
+    for (uint32_t unit; (unit = slc_unit_list_pop(s, &later)) != SLC_NONE;)
+        slc_unit_list_append(s, &s->binding, unit);
     return count;
 }
 
@@ -233,6 +240,8 @@ SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer co
 {
     uint32_t left = s->info.tilesPerFrame, count;
     SluiceResult result = SLUICE_SUCCESS;
+    if (s->reload_unit_count) /* pages may have moved in this frame */
+        wait_for_copies(s, commands);
     for (bool first = true; result >= 0 && (count = take_units(s, &left)) > 0; first = false) {
         if (!first && (s->residency->interface->ordinary_images || s->plain))
             wait_for_copies(s, commands); /* see needs_barriers */

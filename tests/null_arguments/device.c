@@ -57,6 +57,9 @@ sluiceGetVulkanTextureControl(f->streamer, f->texture.textureId, &f->out.control
 sluiceSetVulkanTextureControl(f->streamer, f->texture.textureId, &f->control)
 sluiceEvictVulkanTexture(f->streamer, f->texture.textureId, ?1)
 sluiceSetVulkanPrimaryTexture(f->streamer, f->texture.textureId, ?SLUICE_NO_TEXTURE)
+sluiceInvalidateVulkanTexture(f->streamer, f->texture.textureId, ?NULL, ?1)
+sluiceReplaceVulkanSource(f->streamer, f->texture.textureId, f->source)
+sluiceIsVulkanSourceInUse(f->streamer, f->source, &f->out.in_use)
 sluiceSetVulkanUvTransform(f->streamer, f->texture.textureId, ?&f->uv)
 
 sluiceCreateNeuralCompressor(f->h->context, &f->compressor_info, &f->out.compressor) => sluiceDestroyNeuralCompressor(f->out.compressor)
@@ -186,6 +189,7 @@ struct fixture {
         SluiceVulkanLoadStages stages;
         SluiceTextureRequestId request;
         SluiceVulkanTextureControl control;
+        bool in_use;
         SluiceVulkanRequestProgress request_progress;
         SluiceTileLoaderStatistics reads;
         SluiceDemandLoader *loader;

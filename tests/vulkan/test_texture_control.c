@@ -1,4 +1,5 @@
 /* What an application may know and decide about single textures. */
+#include "vulkan/control_reload.h"
 #include "vulkan/control_stage.h"
 
 #include <sluice/vulkan_explain.h>
@@ -610,6 +611,13 @@ int main(void)
         cmocka_unit_test(transforms_survive_every_refused_allocation),
         cmocka_unit_test(controls_survive_every_refused_allocation),
         cmocka_unit_test(questions_take_no_memory),
+        cmocka_unit_test(changed_tiles_are_copied_again_in_place),
+        cmocka_unit_test(mip_tails_and_all_tiles_are_copied_again),
+        cmocka_unit_test(a_reload_that_fails_keeps_the_old_texels),
+        cmocka_unit_test(a_replaced_source_is_in_use_until_its_reads_end),
+        cmocka_unit_test(sources_of_another_shape_are_refused),
+        cmocka_unit_test(equal_tiles_get_pages_of_their_own),
+        cmocka_unit_test(reloads_survive_every_refused_allocation),
         cmocka_unit_test(each_step_of_a_load_is_told),
         cmocka_unit_test(what_the_application_decides_is_told),
         cmocka_unit_test(what_nobody_sees_is_told),

@@ -1,0 +1,241 @@
+#include "vulkan/load_reloads.h"
+
+#include "base/checked.h"
+#include "vulkan/load_reads.h"
+#include "vulkan/load_units.h"
+#include "vulkan/read_troubles.h"
+#include "vulkan/source_uses.h"
+
+SluiceResult slc_reloads_reserve(SluiceVulkanStreamer *s, uint32_t tile_count)
+{
+    return slc_remakes_reserve(&s->reloads, tile_count);
+}
+
+/* The packed levels have the index of the first packed tile. */
+static uint64_t tail_key(const SluiceVulkanStreamer *s, uint32_t texture)
+{
+    return slc_pair_key(texture, s->textures[texture].layout.regularTileCount);
+}
+
+bool slc_reload_is_due(const SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile)
+{
+    return s->reloads.count &&
+           slc_map_get(&s->reloads.keys, slc_pair_key(texture, tile)) != SLC_MAP_NONE;
+}
+
+/* Changes ------------------------------------------------------------------------------------ */
+
+static bool is_resident(const SluiceVulkanStreamer *s, uint32_t texture, uint32_t index,
+                        SluiceTile *tile)
+{
+    SluiceTileState state = SLUICE_TILE_STATE_FREE;
+    sluiceGetTileState(s->manager, s->textures[texture].id, index, &state, tile);
+    return state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
+}
+
+void slc_reload_tile(SluiceVulkanStreamer *s, uint32_t texture, uint32_t index)
+{
+    struct slc_residency *residency = slc_residency_of(s, texture);
+    uint64_t key = slc_pair_key(texture, index);
+    uint32_t unit = slc_map_get(&s->tile_units, key);
+    SluiceTile tile = {0};
+    if (unit != SLC_MAP_NONE && s->units[unit].state <= SLC_UNIT_ARRIVED) {
+        s->units[unit].stale = true;
+        if (s->units[unit].state == SLC_UNIT_READING)
+            sluiceCancelTileRead(s->loader, s->units[unit].ticket);
+    } else if (unit != SLC_MAP_NONE || is_resident(s, texture, index, &tile)) {
+        slc_remakes_add(&s->reloads, key);
+    } else if (residency->interface->spoil && s->textures[texture].presence == SLC_PRESENT) {
+        is_resident(s, texture, index, &tile);
+        residency->interface->spoil(residency, texture, &tile);
+    }
+}
+
+void slc_reload_tail(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    bool started = texture->packed_state > SLC_PACKED_READY;
+    if (texture->image.desc.packedTileCount == 0 || (!started && texture->packed_mapped == 0))
+        return;
+    texture->reload_next = 0;
+    slc_remakes_add(&s->reloads, tail_key(s, index));
+}
+
+uint32_t slc_reload_count(const SluiceVulkanStreamer *s, uint32_t texture)
+{
+    const struct slc_remakes *r = &s->reloads;
+    uint32_t tail = s->textures[texture].layout.regularTileCount, count = 0;
+    bool has_tail = slc_reload_is_due(s, texture, tail);
+    for (uint32_t i = 0; i < r->count; i++)
+        count += r->queue[(r->first + i) % r->capacity] >> 32 == texture;
+    for (uint32_t i = 0; s->reload_unit_count && i < s->info.maxLoadsInFlight; i++) {
+        const struct slc_unit *unit = &s->units[i];
+        if (unit->state == SLC_UNIT_FREE || unit->state == SLC_UNIT_UPLOADED || !unit->reload ||
+            unit->dropped || unit->texture != texture)
+            continue;
+        if (unit->packed_unit != SLC_NONE)
+            count += !has_tail, has_tail = true;
+        else
+            count += !slc_reload_is_due(s, texture, unit->tile.tileIndex);
+    }
+    return count;
+}
+
+/* Reads -------------------------------------------------------------------------------------- */
+
+static bool may_start(SluiceVulkanStreamer *s, uint32_t started)
+{
+    uint32_t most = slc_max_u32(1, s->info.maxLoadsInFlight / 4);
+    return s->reload_unit_count < most && started < s->info.tilesPerFrame &&
+           slc_units_are_ready(s, 1);
+}
+
+static void start_unit(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile,
+                       uint32_t packed_unit)
+{
+    uint32_t unit = slc_unit_take(s, texture, packed_unit);
+    struct slc_unit *u = &s->units[unit];
+    u->reload = u->published = true;
+    u->tile = *tile;
+    s->reload_unit_count++;
+    if (packed_unit == SLC_NONE)
+        slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
+    SluiceResult result = slc_unit_submit(s, unit);
+    if (result != SLUICE_SUCCESS)
+        slc_reload_back(s, unit, result);
+}
+
+/* True: the key is done with. */
+static bool start_tail(SluiceVulkanStreamer *s, uint32_t index, uint32_t *started)
+{
+    struct slc_texture *texture = &s->textures[index];
+    const SluiceTile tile = {.tileIndex = texture->layout.regularTileCount};
+    if (texture->packed_state != SLC_PACKED_COLLECTING || texture->packed_collected)
+        return false; /* its load goes on first */
+    if (texture->packed_mapped < texture->image.desc.packedTileCount)
+        return true; /* it is read as a whole when it comes */
+    for (; texture->reload_next < texture->packed.unit_count; texture->reload_next++, ++*started) {
+        if (!may_start(s, *started))
+            return false;
+        start_unit(s, index, &tile, texture->reload_next);
+    }
+    return true;
+}
+
+static bool start_tile(SluiceVulkanStreamer *s, uint32_t texture, uint32_t index, uint32_t *started)
+{
+    SluiceTile tile;
+    if (slc_map_get(&s->tile_units, slc_pair_key(texture, index)) != SLC_MAP_NONE)
+        return false;
+    if (!is_resident(s, texture, index, &tile))
+        return true; /* it is read anew when it comes */
+    ++*started;
+    start_unit(s, texture, &tile, SLC_NONE);
+    return true;
+}
+
+/* After a read that failed. Time stamps may wrap. */
+static bool waits(const SluiceVulkanStreamer *s, struct slc_texture *texture)
+{
+    if (texture->reload_waits && s->time_stamp - texture->reload_time <= UINT64_MAX / 2)
+        texture->reload_waits = false;
+    return texture->reload_waits;
+}
+
+SluiceResult slc_reloads_start(SluiceVulkanStreamer *s)
+{
+    uint32_t started = 0;
+    for (uint32_t left = s->reloads.count; left > 0 && may_start(s, started); left--) {
+        uint64_t key = slc_remakes_take(&s->reloads);
+        uint32_t index = (uint32_t)(key >> 32), tile = (uint32_t)key;
+        struct slc_texture *texture = &s->textures[index];
+        /* A read that fails at once asks for its tile again. */
+        slc_remakes_end(&s->reloads, key);
+        bool done = false;
+        if (texture->presence != SLC_PRESENT)
+            done = true;
+        else if (waits(s, texture))
+            done = false;
+        else if (tile == texture->layout.regularTileCount)
+            done = start_tail(s, index, &started);
+        else
+            done = start_tile(s, index, tile, &started);
+        if (!done)
+            slc_remakes_add(&s->reloads, key);
+    }
+    return SLUICE_SUCCESS;
+}
+
+bool slc_unit_read_again(SluiceVulkanStreamer *s, uint32_t index, SluiceResult *answer)
+{
+    struct slc_unit *unit = &s->units[index];
+    const SluiceImageSource *before = unit->source;
+    unit->stale = false;
+    *answer = slc_unit_submit(s, index);
+    if (before != unit->source)
+        slc_source_left(s, before);
+    return *answer == SLUICE_SUCCESS;
+}
+
+static void fail(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
+{
+    struct slc_unit *unit = &s->units[index];
+    struct slc_texture *texture = &s->textures[unit->texture];
+    s->counts.tilesFailed++;
+    slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, answer);
+    texture->reload_waits = true;
+    texture->reload_time = s->time_stamp + s->info.retryDelayTicks;
+    if (unit->packed_unit != SLC_NONE)
+        texture->reload_next = 0;
+    slc_remakes_add(&s->reloads, slc_pair_key(unit->texture, unit->tile.tileIndex));
+    slc_unit_forget_tile(s, unit);
+    slc_unit_free(s, index);
+}
+
+void slc_reload_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
+{
+    struct slc_unit *unit = &s->units[index];
+    if (unit->dropped) {
+        slc_unit_free(s, index);
+    } else if (answer != SLUICE_SUCCESS) {
+        fail(s, index, answer);
+    } else {
+        slc_read_trouble_delivered(s, unit->texture, unit->tile.tileIndex);
+        unit->state = SLC_UNIT_BINDING;
+        unit->value = 0; /* nothing has to be bound */
+        slc_unit_list_append(s, &s->binding, index);
+    }
+}
+
+bool slc_reload_has_place(SluiceVulkanStreamer *s, const struct slc_unit *unit)
+{
+    struct slc_residency *residency = slc_residency_of(s, unit->texture);
+    return !unit->reload || unit->packed_unit != SLC_NONE || !residency->interface->renew ||
+           residency->interface->renew(residency, unit->texture, &unit->tile);
+}
+
+/* Ends --------------------------------------------------------------------------------------- */
+
+void slc_reloads_drop_tail(SluiceVulkanStreamer *s, uint32_t texture)
+{
+    for (uint32_t i = 0; s->reload_unit_count && i < s->info.maxLoadsInFlight; i++) {
+        struct slc_unit *unit = &s->units[i];
+        if (unit->state == SLC_UNIT_FREE || !unit->reload || unit->texture != texture ||
+            unit->packed_unit == SLC_NONE)
+            continue;
+        unit->dropped = true;
+        if (unit->state == SLC_UNIT_READING)
+            sluiceCancelTileRead(s->loader, unit->ticket);
+    }
+}
+
+static bool is_of_texture(void *user, uint64_t key)
+{
+    return key >> 32 == *(const uint32_t *)user;
+}
+
+void slc_reloads_drop(SluiceVulkanStreamer *s, uint32_t texture)
+{
+    if (s->reloads.count)
+        slc_remakes_drop(&s->reloads, is_of_texture, &texture);
+}

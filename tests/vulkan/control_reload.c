@@ -1,0 +1,308 @@
+/* Texels that change while their tiles are resident, and sources that are replaced. */
+#include "vulkan/control_reload.h"
+
+#include "vulkan/control_stage.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+static atomic_uint shade; ///< of all texels, 1 to 255
+
+static void shaded_texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                         uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = (float)shade / 255;
+}
+
+static SluiceImageSource *make_source(uint32_t width, SluiceFormat format)
+{
+    SluiceProceduralImage image = {NULL, shaded_texel};
+    SluiceImageInfo info = {.structSize = sizeof info,
+                            .width = width,
+                            .height = SIZE,
+                            .format = format,
+                            .pName = "shades"};
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
+    return source;
+}
+
+/* Texture 0 has the source, and all of its tiles are resident. */
+static struct stage *begin(SluiceResidencyMode mode, SluiceImageSource *source)
+{
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
+        .feedbackTimeoutTicks = 1000, .residencyMode = mode, .retryDelayTicks = 5});
+    atomic_store(&shade, 1);
+    CHECK_OK(sluiceReplaceVulkanSource(s->streamer, s->textures[0].textureId, source));
+    memset(s->seen[0], 0, sizeof s->seen[0]);
+    frames(s, 12);
+    return s;
+}
+
+static SluiceVulkanTextureState state_now(const struct stage *s)
+{
+    SluiceVulkanTextureState now = {.structSize = sizeof now};
+    CHECK_OK(sluiceGetVulkanTextureState(s->streamer, s->textures[0].textureId, NULL, &now));
+    return now;
+}
+
+static bool is_copy_of(const struct fake_copy *copy, uint32_t texel)
+{
+    return copy->texel == texel * 0x01010101u;
+}
+
+/* Frames until nothing shows old texels. Returns how many copies they made, all of this shade. */
+static uint32_t settle(struct stage *s, uint32_t texel)
+{
+    uint32_t count = 0;
+    for (uint32_t frame = 0; state_now(s).reloadingTileCount; frame++) {
+        assert_true(frame < 100);
+        assert_int_equal(state_now(s).residentLevel, 0);
+        frames(s, 1);
+        for (uint32_t i = 0; i < s->fake.copy_count; i++)
+            assert_true(is_copy_of(&s->fake.copies[i], texel));
+        count += s->fake.copy_count;
+    }
+    return count;
+}
+
+static const SluiceResidencyMode modes[] = {
+    SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_DENSE};
+
+void changed_tiles_are_copied_again_in_place(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        SluiceImageSource *source = make_source(SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
+        struct stage *s = begin(modes[i], source);
+        const SluiceTextureId id = s->textures[0].textureId;
+        CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, s->textures[1].textureId, id));
+        frames(s, 12);
+        const SluiceVulkanStreamerStatistics before = statistics(s);
+        atomic_store(&shade, 2);
+        CHECK_OK(sluiceInvalidateVulkanTexture(
+            s->streamer, id, &(SluiceImageRegion){0, 3 * 128 + 5, 2 * 128 + 5, 1, 1, 0}, 1));
+        assert_int_equal(state_now(s).reloadingTileCount, 1);
+        assert_int_equal(settle(s, 2), 1); /* neither its neighbors nor its follower */
+        const struct fake_copy *copy = &s->fake.copies[0];
+        if (modes[i] != SLUICE_RESIDENCY_MODE_PAGED)
+            assert_true(copy->image == s->textures[0].image && copy->level == 0 && copy->x == 3 &&
+                        copy->y == 2);
+        atomic_store(&shade, 3); /* that tile and those over it; level 3 is in the mip tail */
+        CHECK_OK(sluiceInvalidateVulkanTexture(
+            s->streamer, id, &(SluiceImageRegion){0, 3 * 128 + 5, 2 * 128 + 5, 1, 1, 0}, 3));
+        assert_int_equal(settle(s, 3), 3);
+        frames(s, 2);
+        const SluiceVulkanStreamerStatistics after = statistics(s);
+        assert_int_equal(after.tilesReloaded, before.tilesReloaded + 4);
+        assert_int_equal(after.tilesMapped, before.tilesMapped);
+        assert_int_equal(after.tilesUnmapped, before.tilesUnmapped);
+        stage_finish(s);
+        sluiceDestroyImageSource(source);
+    }
+}
+
+void mip_tails_and_all_tiles_are_copied_again(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        SluiceImageSource *source = make_source(SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
+        struct stage *s = begin(modes[i], source);
+        const SluiceTextureId id = s->textures[0].textureId;
+        atomic_store(&shade, 4);
+        CHECK_OK(sluiceInvalidateVulkanTexture(s->streamer, id, NULL, UINT32_MAX));
+        assert_int_equal(state_now(s).reloadingTileCount, 64 + 16 + 4 + 1);
+        assert_int_equal(settle(s, 4), 64 + 16 + 4 + 8); /* a tail of eight levels */
+        /* What is not resident is read anew; what was unmapped is not restored. */
+        memset(s->seen[0], SLUICE_MIP_UNTOUCHED, sizeof s->seen[0]);
+        frames(s, 2);
+        CHECK_OK(sluiceEvictVulkanTexture(s->streamer, id, 0));
+        frames(s, 3);
+        assert_int_equal(state_now(s).residentLevel, TAIL);
+        atomic_store(&shade, 5);
+        CHECK_OK(sluiceInvalidateVulkanTexture(s->streamer, id, NULL, UINT32_MAX));
+        assert_int_equal(state_now(s).reloadingTileCount, 1);
+        memset(s->seen[0], 0, sizeof s->seen[0]);
+        uint32_t count = 0;
+        for (uint32_t frame = 0; frame < 20; frame++) {
+            frames(s, 1);
+            for (uint32_t k = 0; k < s->fake.copy_count; k++)
+                assert_true(is_copy_of(&s->fake.copies[k], 5));
+            count += s->fake.copy_count;
+        }
+        assert_int_equal(count, 64 + 16 + 4 + 8);
+        assert_int_equal(state_now(s).residentLevel, 0);
+        stage_finish(s);
+        sluiceDestroyImageSource(source);
+    }
+}
+
+void a_reload_that_fails_keeps_the_old_texels(void **state)
+{
+    (void)state;
+    SluiceImageSource *source = make_source(SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
+    struct fault_source faults;
+    fault_source_init(&faults, source);
+    struct stage *s = begin(SLUICE_RESIDENCY_MODE_SPARSE, &faults.base);
+    atomic_store(&shade, 6);
+    faults.failure = SLUICE_ERROR_IO;
+    faults.fail_at = faults.read_count + 1;
+    faults.fails_on = true;
+    CHECK_OK(sluiceInvalidateVulkanTexture(s->streamer, s->textures[0].textureId,
+                                           &(SluiceImageRegion){.width = 1, .height = 1}, 1));
+    for (uint32_t frame = 0; frame < 12; frame++) { /* two reads of four attempts each */
+        frames(s, 1);
+        assert_int_equal(s->fake.copy_count, 0);
+        assert_int_equal(state_now(s).residentLevel, 0);
+        assert_int_equal(state_now(s).reloadingTileCount, 1);
+    }
+    assert_int_equal(faults.read_count, faults.fail_at + 7);
+    assert_non_null(strstr(s->last, "shades"));
+    faults.fail_at = 0;
+    assert_int_equal(settle(s, 6), 1);
+    stage_finish(s);
+    fault_source_finish(&faults);
+    sluiceDestroyImageSource(source);
+}
+
+/* One frame that waits for no read. */
+static void hasty_frame(struct stage *s)
+{
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
+    s->fake.published = false;
+    s->fake.copy_count = s->fake.bind_count = 0;
+    CHECK_OK(
+        sluiceBeginStreamingFrame(s->streamer, fake_vulkan_commands(&s->fake), ++s->time, &frame));
+    CHECK_OK(sluiceEndStreamingFrame(s->streamer, fake_vulkan_commands(&s->fake)));
+    s->fake.frame_semaphore = frame.semaphore;
+    s->fake.frame_value = frame.signalValue;
+}
+
+static bool is_in_use(const struct stage *s, const SluiceImageSource *source)
+{
+    bool in_use;
+    CHECK_OK(sluiceIsVulkanSourceInUse(s->streamer, source, &in_use));
+    return in_use;
+}
+
+void a_replaced_source_is_in_use_until_its_reads_end(void **state)
+{
+    (void)state;
+    SluiceImageSource *old = make_source(SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
+    struct fault_source slow, fast;
+    fault_source_init(&slow, old);
+    fault_source_init(&fast, old);
+    struct stage *s = begin(SLUICE_RESIDENCY_MODE_SPARSE, &slow.base);
+    assert_true(is_in_use(s, &slow.base) && !is_in_use(s, &fast.base));
+    slow.holds = true;
+    CHECK_OK(sluiceInvalidateVulkanTexture(s->streamer, s->textures[0].textureId,
+                                           &(SluiceImageRegion){.width = 1, .height = 1}, 1));
+    hasty_frame(s);
+    fault_source_await(&slow, 1);
+    atomic_store(&shade, 7);
+    CHECK_OK(sluiceReplaceVulkanSource(s->streamer, s->textures[0].textureId, &fast.base));
+    const uint64_t calls = s->memory.calls;
+    assert_true(is_in_use(s, &slow.base) && is_in_use(s, &fast.base));
+    assert_int_equal(s->memory.calls, calls);
+    hasty_frame(s);
+    assert_true(is_in_use(s, &slow.base));
+    const uint64_t reads = slow.read_count;
+    fault_source_release(&slow);
+    assert_int_equal(settle(s, 7), 64 + 16 + 4 + 8);
+    assert_true(!is_in_use(s, &slow.base) && slow.read_count == reads);
+    stage_finish(s);
+    fault_source_finish(&slow);
+    fault_source_finish(&fast);
+    sluiceDestroyImageSource(old);
+}
+
+void sources_of_another_shape_are_refused(void **state)
+{
+    (void)state;
+    SluiceImageSource *wide = make_source(2 * SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
+    SluiceImageSource *srgb = make_source(SIZE, SLUICE_FORMAT_R8G8B8A8_SRGB);
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){0});
+    const SluiceTextureId id = s->textures[0].textureId;
+    CHECK_RESULT(sluiceReplaceVulkanSource(s->streamer, id, wide), SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(s->last, "the new source has 2048 x 1024"));
+    assert_non_null(strstr(s->last, "remove the texture and add a new one"));
+    CHECK_RESULT(sluiceReplaceVulkanSource(s->streamer, id, srgb), SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceInvalidateVulkanTexture(s->streamer, id,
+                                               &(SluiceImageRegion){0, 1000, 0, 25, 1, 0}, 1),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    frames(s, 3);
+    assert_true(!is_in_use(s, wide) && is_in_use(s, &s->faults.base));
+    stage_finish(s);
+    sluiceDestroyImageSource(wide);
+    sluiceDestroyImageSource(srgb);
+}
+
+/* All tiles of one size are equal. */
+static bool identify(SluiceImageSource *source, const SluiceImageRegion *region, uint64_t *identity)
+{
+    (void)source, (void)region;
+    *identity = 1;
+    return true;
+}
+
+void equal_tiles_get_pages_of_their_own(void **state)
+{
+    (void)state;
+    SluiceImageSource *source = make_source(SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
+    struct fault_source equal;
+    fault_source_init(&equal, source);
+    SluiceImageSourceInterface interface = *equal.base.pInterface;
+    interface.pfnIdentifyRegion = identify;
+    equal.base.pInterface = &interface;
+    struct stage *s = begin(SLUICE_RESIDENCY_MODE_PAGED, &equal.base);
+    CHECK_OK(sluiceReplaceVulkanSource(s->streamer, s->textures[1].textureId, &equal.base));
+    s->seen[1][0] = 0;
+    frames(s, 12);
+    assert_true(statistics(s).tilesShared > 64); /* two pages at most, with the tail's */
+    const SluiceImageRegion first = {.width = 1, .height = 1};
+    struct fake_copy targets[3] = {{0}};
+    for (uint32_t i = 0; i < 3; i++) { /* shared with all others, and then no longer */
+        atomic_store(&shade, 8 + i);
+        CHECK_OK(sluiceInvalidateVulkanTexture(s->streamer, s->textures[0].textureId, &first, 1));
+        assert_int_equal(settle(s, 8 + i), 1);
+        targets[i] = s->fake.copies[0];
+    }
+    assert_true(targets[1].image == targets[0].image && targets[1].layer == targets[0].layer);
+    CHECK_OK(sluiceInvalidateVulkanTexture(s->streamer, s->textures[1].textureId, &first, 1));
+    frames(s, 1);
+    for (uint32_t i = 0; i < 4 && s->fake.copy_count == 0; i++)
+        frames(s, 1);
+    assert_int_equal(s->fake.copy_count, 1); /* not to the page of texture 0 */
+    assert_true(s->fake.copies[0].image != targets[0].image ||
+                s->fake.copies[0].layer != targets[0].layer);
+    stage_finish(s);
+    fault_source_finish(&equal);
+    sluiceDestroyImageSource(source);
+}
+
+void reloads_survive_every_refused_allocation(void **state)
+{
+    (void)state;
+    SluiceImageSource *source = make_source(SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
+    for (uint32_t replaces = 0; replaces < 2; replaces++) {
+        struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){0});
+        const SluiceTextureId id = s->textures[0].textureId;
+        memset(s->seen[0], 0, sizeof s->seen[0]);
+        frames(s, 12);
+        SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+            s->memory.refuse_from = s->memory.calls + n;
+            result = replaces ? sluiceReplaceVulkanSource(s->streamer, id, source)
+                              : sluiceInvalidateVulkanTexture(s->streamer, id, NULL, UINT32_MAX);
+            s->memory.refuse_from = UINT64_MAX;
+            assert_true(n > 0 || result == SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+            assert_int_equal(state_now(s).reloadingTileCount, result ? 0 : 85);
+            assert_true(is_in_use(s, &s->faults.base)); /* other textures have it, too */
+        }
+        frames(s, 12);
+        assert_int_equal(state_now(s).reloadingTileCount, 0);
+        stage_finish(s);
+    }
+    sluiceDestroyImageSource(source);
+}
