@@ -4,7 +4,7 @@
 #   scripts/test.sh [options]
 #
 #   --quick        only the gcc build, its tests but for the long ones, and the style check
-#   --cross        also build for Windows, aarch64 and s390x, and run what can run there (Wine, qemu-user)
+#   --cross        also build for Windows, aarch64, s390x and macOS, and run what can run there (Wine, qemu-user)
 #   --no-install   install nothing; say what is missing
 #   --clean        throw away earlier test builds first
 #   --help

@@ -1,5 +1,5 @@
 # Builds for other systems and runs them: Windows with MinGW-w64 and Wine, aarch64 and s390x with
-# clang and qemu-user. What is missing for that is unpacked into a folder; nothing is installed.
+# clang and qemu-user, macOS with clang alone. What is missing for that is unpacked into a folder; nothing is installed.
 # shellcheck shell=bash disable=SC2154
 
 cross_root=$SLUICE_BUILD/cross-root
@@ -92,6 +92,16 @@ qemu = '$qemu/usr/bin/qemu-$1'
 tools = '$(with_root usr/s390x-linux-gnu/bin/ld)/usr/s390x-linux-gnu/bin'"
 }
 
+# Compiles and runs nothing: there is no macOS to run it.
+macos_stage() {
+    local log=$tests_folder/macos.log status=0
+    command -v clang >/dev/null || return 1
+    stage_title macos
+    "$SLUICE_ROOT/tests/cross/check_macos.sh" "$SLUICE_ROOT" clang all >"$log" 2>&1 || status=$?
+    collect tap macos tests/cross/check_macos.sh "$log" "$status" >>"$facts"
+    grep -v '^ok ' "$log" || true
+}
+
 # cross_stages INSTALL: INSTALL is yes or no.
 cross_stages() {
     local system
@@ -101,6 +111,7 @@ cross_stages() {
     fi
     # Of the unpacked programs: Wine and qemu find their libraries here.
     local -x LD_LIBRARY_PATH=$cross_root/usr/lib/x86_64-linux-gnu${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+    macos_stage || fact skipped macos cross "all of it" "there is no clang"
     windows_stage || fact skipped windows cross "all of it" "MinGW-w64 or Wine cannot be had"
     for system in aarch64 s390x; do
         processor_stage $system || fact skipped $system cross "all of it" "a C library or qemu-user cannot be had"

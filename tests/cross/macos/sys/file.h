@@ -1,0 +1,12 @@
+/* flock */
+#ifndef MACOS_STUB_SYS_FILE_H
+#define MACOS_STUB_SYS_FILE_H
+
+#define LOCK_SH 1
+#define LOCK_EX 2
+#define LOCK_NB 4
+#define LOCK_UN 8
+
+int flock(int descriptor, int operation);
+
+#endif /* MACOS_STUB_SYS_FILE_H */
