@@ -298,6 +298,15 @@ typedef struct SluiceTextureStatistics {
     uint64_t residentSize, wantedSize;
 } SluiceTextureStatistics;
 
+/** Statistics of a level of a texture. Sizes are bytes of slots. */
+typedef struct SluiceTextureLevelStatistics {
+    uint32_t structSize; ///< sizeof(SluiceTextureLevelStatistics).
+    uint32_t tileCount;  ///< Of the level. All packed levels are one.
+    uint32_t residentTileCount;
+    uint32_t wantedTileCount; ///< That maps request, resident or not.
+    uint64_t residentSize, wantedSize;
+} SluiceTextureLevelStatistics;
+
 /**
  * Creates a manager without textures and heaps.
  *
@@ -803,6 +812,18 @@ SLUICE_API SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *
 SLUICE_API SluiceResult sluiceGetTextureStatistics(const SluiceStreamedTextureManager *manager,
                                                    SluiceTextureId textureId,
                                                    SluiceTextureStatistics *pStatistics);
+
+/**
+ * Gets statistics of one level of a texture, in constant time. regularMipCount stands for all
+ * packed levels. Packed tiles without slots have sizes of 0.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a level that the texture does not
+ *         have, or a wrong structSize.
+ */
+SLUICE_API SluiceResult sluiceGetTextureLevelStatistics(const SluiceStreamedTextureManager *manager,
+                                                        SluiceTextureId textureId, uint32_t level,
+                                                        SluiceTextureLevelStatistics *pStatistics);
 
 /**
  * Keeps the last `capacity` state changes of tiles. 0 keeps none, and frees the memory: 40 bytes

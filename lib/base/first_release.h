@@ -32,6 +32,7 @@
 #define SLC_FIRST_SluiceFeedbackDesc SLC_UP_TO(SluiceFeedbackDesc, streamedMipLevels)
 #define SLC_FIRST_SluiceStreamedTextureStatistics                                                  \
     SLC_UP_TO(SluiceStreamedTextureStatistics, givenUpRetriedTotal)
+#define SLC_FIRST_SluiceTextureLevelStatistics SLC_UP_TO(SluiceTextureLevelStatistics, wantedSize)
 #define SLC_FIRST_SluiceTextureStatistics SLC_UP_TO(SluiceTextureStatistics, seenTime)
 #define SLC_FIRST_SluiceFileRecordingInfo SLC_UP_TO(SluiceFileRecordingInfo, log)
 #define SLC_FIRST_SluiceReplayInfo SLC_UP_TO(SluiceReplayInfo, pStatistics)

@@ -149,13 +149,23 @@ static bool is_hidden(const struct slc_managed_texture *t, uint32_t tile)
 
 static const char *check_resident(const struct slc_managed_texture *t)
 {
-    uint32_t resident = 0, hidden = 0;
+    uint32_t resident = 0, hidden = 0, levels[SLUICE_MAX_MIP_LEVELS] = {0};
+    uint32_t wanted = 0, wanted_levels[SLUICE_MAX_MIP_LEVELS] = {0};
     for (uint32_t i = 0; t->nodes && i < t->shape->regular_tile_count; i++) {
+        uint32_t level = slc_tile_place(t, i).level;
+        wanted_levels[level] += level_under(t, i) <= level;
         if (!(t->nodes[i] & SLC_RESIDENT))
             continue;
         resident++;
         hidden += is_hidden(t, i);
+        levels[level]++;
     }
+    for (uint32_t l = 0; t->nodes && l < t->shape->desc.regularMipCount; l++) {
+        REQUIRE(*slc_resident_in_level(t, l) == levels[l]);
+        REQUIRE(*slc_wanted_in_level(t, l) == wanted_levels[l]);
+        wanted += wanted_levels[l];
+    }
+    REQUIRE(wanted == t->wanted_tiles);
     REQUIRE(resident == t->resident_tiles && hidden == t->hidden_tiles);
     return NULL;
 }

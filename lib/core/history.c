@@ -25,10 +25,11 @@ static size_t texel_count(const struct slc_managed_texture *t)
     return (size_t)t->shape->min_mip_width * t->shape->min_mip_height;
 }
 
-/** Nodes and MinMip map. */
+/** Nodes, counts by level and MinMip map. */
 static size_t state_size(const struct slc_shape *s)
 {
-    return s->regular_tile_count * sizeof(uint32_t) + (size_t)s->min_mip_width * s->min_mip_height;
+    return (s->regular_tile_count + 2 * (size_t)s->desc.regularMipCount) * sizeof(uint32_t) +
+           (size_t)s->min_mip_width * s->min_mip_height;
 }
 
 static size_t history_size(const struct slc_shape *s)
@@ -45,11 +46,12 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_managed_texture *t)
     if (9 * (uint64_t)SLUICE_MAX_TILES_PER_TEXTURE > SIZE_MAX / 2 &&
         t->shape->regular_tile_count + (uint64_t)slc_padded(slc_region_count(t)) > SIZE_MAX / 32)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    size_t nodes = t->shape->regular_tile_count * sizeof *t->nodes;
+    size_t counts = 2 * (size_t)t->shape->desc.regularMipCount;
+    size_t nodes = (t->shape->regular_tile_count + counts) * sizeof *t->nodes;
     t->nodes = slc_spares_take(m, state_size(t->shape));
     if (!t->nodes)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    t->min_mip = (uint8_t *)(t->nodes + t->shape->regular_tile_count);
+    t->min_mip = (uint8_t *)(t->nodes + t->shape->regular_tile_count + counts);
     memset(t->nodes, 0, nodes);
     memset(t->min_mip, slc_min_mip_floor(t), texel_count(t));
     return SLUICE_SUCCESS;

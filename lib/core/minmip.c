@@ -277,6 +277,7 @@ void slc_min_mip_changed(slc_manager *m, struct slc_managed_texture *t, const st
         return;
     }
     t->nodes[n->tile] ^= SLC_RESIDENT;
+    *slc_resident_in_level(t, n->level) += resident ? 1 : UINT32_MAX;
     if (n->level == 0 && shape->desc.regularMipCount > 1) {
         finest_changed(m, t, n->tile, 1, resident);
         return;

@@ -92,8 +92,9 @@ struct slc_texture_list {
 
 struct slc_managed_texture {
     /* What every answer and every map touches comes first: it is one cache line. */
-    uint32_t *nodes;  ///< [regular tiles]: node index, 0: FREE; owned, NULL until sampled
-    uint8_t *min_mip; ///< [minMipHeight][minMipWidth], behind the nodes
+    uint32_t *nodes;  ///< [regular tiles]: node index, 0: FREE; owned, NULL until sampled. Behind
+                      ///< them: tiles resident, then wanted, by regular level
+    uint8_t *min_mip; ///< [minMipHeight][minMipWidth], behind these
     struct slc_history *history; ///< may be shared; NULL: empty
     struct slc_shape *shape;
     uint32_t generation;
@@ -288,6 +289,16 @@ struct slc_tile_range {
     uint32_t x0, y0, x1, y1; ///< inclusive
 };
 
+/** How many tiles of a regular level are resident. The texture has a state. */
+static inline uint32_t *slc_resident_in_level(const struct slc_managed_texture *t, uint32_t level)
+{
+    return &t->nodes[t->shape->regular_tile_count + level];
+}
+/** How many are wanted. */
+static inline uint32_t *slc_wanted_in_level(const struct slc_managed_texture *t, uint32_t level)
+{
+    return slc_resident_in_level(t, t->shape->desc.regularMipCount + level);
+}
 /** Where a tile keeps its node; NULL for a regular one without a state. */
 static inline uint32_t *slc_node_cell(const struct slc_managed_texture *t, uint32_t tile)
 {

@@ -1,6 +1,7 @@
 #include "base/struct_size.h"
 #include "core/lookup.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 #include "core/state.h"
 
 SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
@@ -76,6 +77,50 @@ SluiceResult sluiceGetTextureStatistics(const SluiceStreamedTextureManager *mana
             ((uint64_t)t->resident_tiles + inside * t->packed_resident) * manager->info.tileSize,
         .wantedSize = ((uint64_t)t->wanted_tiles + inside * wanted_packed) * manager->info.tileSize,
     };
+    slc_struct_write(type, pStatistics, &statistics);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceTextureLevelStatistics
+level_statistics(const slc_manager *m, const struct slc_managed_texture *t, uint32_t level)
+{
+    const SluiceStreamedTextureDesc *d = &t->shape->desc;
+    SluiceTextureLevelStatistics s = {.structSize = sizeof s};
+    uint64_t size = m->info.tileSize;
+    if (level == d->regularMipCount) {
+        s.tileCount = d->packedTileCount;
+        s.residentTileCount = t->packed_resident;
+        s.wantedTileCount =
+            m->info.alwaysMapPackedTiles || t->held_regions > 0 ? d->packedTileCount : 0;
+        size = d->packedTilesOutside ? 0 : size;
+    } else {
+        s.tileCount = t->shape->levels[level].width * t->shape->levels[level].height;
+        s.residentTileCount = t->nodes ? *slc_resident_in_level(t, level) : 0;
+        s.wantedTileCount = t->nodes ? *slc_wanted_in_level(t, level) : 0;
+    }
+    s.residentSize = s.residentTileCount * size;
+    s.wantedSize = s.wantedTileCount * size;
+    return s;
+}
+
+SluiceResult sluiceGetTextureLevelStatistics(const SluiceStreamedTextureManager *manager,
+                                             SluiceTextureId textureId, uint32_t level,
+                                             SluiceTextureLevelStatistics *pStatistics)
+{
+    if (!manager || !pStatistics)
+        return SLUICE_ERROR_NULL_POINTER;
+    const struct slc_struct *type = SLC_STRUCT(SluiceTextureLevelStatistics);
+    struct slc_managed_texture *t;
+    SluiceResult result = slc_struct_check(type, pStatistics, &manager->info.log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_find_texture(manager, textureId, &t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (level > t->shape->desc.regularMipCount)
+        return slc_refuse(manager, "sluiceGetTextureLevelStatistics",
+                          "level is %u; regular levels end at %u, which stands for packed levels",
+                          level, t->shape->desc.regularMipCount);
+    const SluiceTextureLevelStatistics statistics = level_statistics(manager, t, level);
     slc_struct_write(type, pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }

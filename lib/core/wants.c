@@ -292,6 +292,7 @@ static void add_move(slc_manager *m, struct slc_managed_texture *t, struct moves
         settle_moves(m, t, moves);
     __builtin_prefetch(&t->nodes[move.tile]);
     t->wanted_tiles += move.wanted ? 1 : UINT32_MAX;
+    *slc_wanted_in_level(t, move.level) += move.wanted ? 1 : UINT32_MAX;
     moves->tiles[moves->count++] = move;
 }
 

@@ -346,6 +346,24 @@ static void check_sums(const struct fixture *f, const SluiceTextureId *ids, uint
         uint32_t states[8] = {0};
         for (uint32_t i = 0; i < fixture_layout(f, ids[k]).tileCount; i++)
             states[fixture_state(f, ids[k], i)]++;
+        uint32_t resident = 0, wanted = 0, tiles = 0;
+        for (uint32_t l = 0; l <= fixture_layout(f, ids[k]).desc.regularMipCount; l++) {
+            SluiceTextureLevelStatistics level = {.structSize = sizeof level};
+            CHECK_OK(sluiceGetTextureLevelStatistics(f->manager, ids[k], l, &level));
+            uint32_t here = 0;
+            for (uint32_t i = 0; i < fixture_layout(f, ids[k]).tileCount; i++) {
+                SluiceTileState is = fixture_state(f, ids[k], i);
+                here += fixture_tile(f, ids[k], i).mipLevel == l &&
+                        (is == SLUICE_TILE_STATE_MAPPED || is == SLUICE_TILE_STATE_STANDBY);
+            }
+            assert_int_equal(level.residentTileCount, here);
+            assert_int_equal(level.residentSize, here * (uint64_t)65536);
+            assert_int_equal(level.wantedSize, level.wantedTileCount * (uint64_t)65536);
+            resident += here, wanted += level.wantedTileCount, tiles += level.tileCount;
+        }
+        assert_int_equal(resident, s.residentTileCount);
+        assert_int_equal(wanted, s.wantedTileCount);
+        assert_int_equal(tiles, fixture_layout(f, ids[k]).tileCount);
         assert_int_equal(s.residentTileCount,
                          states[SLUICE_TILE_STATE_MAPPED] + states[SLUICE_TILE_STATE_STANDBY]);
         assert_int_equal(s.requestedTileCount, states[SLUICE_TILE_STATE_REQUESTED]);

@@ -64,6 +64,7 @@ sluiceGetTextureLayout(f->manager, f->id, &f->out.layout)
 sluiceUpdateWithSamplerFeedback(f->manager, f->id, &f->feedback, 1, 1)
 sluiceMatchPrimaryTexture(f->manager, f->id, f->follower, 1, 1)
 sluiceSetPrimaryTexture(f->manager, f->follower, f->id)
+sluiceGetTextureLevelStatistics(f->manager, f->id, ?0, &f->out.level_statistics)
 sluiceSetUvTransform(f->manager, f->follower, ?&f->uv)
 sluiceGetTilesToMap(f->manager, f->id, one(f), ?f->out.tiles)
 !sluiceUpdateTilesMapping(f->manager, f->id, 1, f->indices)
@@ -168,6 +169,7 @@ struct fixture {
         SluiceTileState state;
         SluiceStreamedTextureStatistics statistics;
         SluiceTextureStatistics texture_statistics;
+        SluiceTextureLevelStatistics level_statistics;
         uint64_t cursor, lost;
         SluiceCameraMotion motion;
         SluiceLookAhead ahead;
