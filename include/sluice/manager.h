@@ -307,6 +307,9 @@ typedef struct SluiceTextureLevelStatistics {
     uint64_t residentSize, wantedSize;
 } SluiceTextureLevelStatistics;
 
+/** Greatest priority of a texture; the least is the negative of it. */
+#define SLUICE_MAX_PRIORITY 16
+
 /**
  * Creates a manager without textures and heaps.
  *
@@ -476,6 +479,24 @@ SLUICE_API SluiceResult sluiceMatchPrimaryTexture(SluiceStreamedTextureManager *
 SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *manager,
                                                 SluiceTextureId followerId,
                                                 SluiceTextureId primaryId);
+
+/**
+ * Sets the priority of a texture: -SLUICE_MAX_PRIORITY to SLUICE_MAX_PRIORITY. Default: 0. A
+ * texture that follows a primary has the primary's.
+ *
+ * Priorities order tiles of one level; coarser levels still come first. One more counts as if twice
+ * as much of level 0 requested each tile of the texture. While slots are short, a wanted tile makes
+ * room for a request of more priority of the same or a coarser level, and of the finest wanted
+ * tiles those of the least priority go first. The number of slots, and the global mip bias, are the
+ * same for all: where not even coarse levels fit, use finestLevel or mipBias.
+ *
+ * Waiting requests of the texture get their new places at once, behind those that are there.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a priority out of range.
+ */
+SLUICE_API SluiceResult sluiceSetTexturePriority(SluiceStreamedTextureManager *manager,
+                                                 SluiceTextureId textureId, int32_t priority);
 
 /** How a texture continues outside of UV 0 to 1. Values as VkSamplerAddressMode, but for borders.
  */

@@ -141,6 +141,9 @@ typedef struct SluiceVulkanTextureControl {
      * view again: its first map then restores what is still resident.
      */
     bool hidden;
+    /** As sluiceSetTexturePriority (manager.h): who gets the level that does not fit for all.
+     *  -SLUICE_MAX_PRIORITY to SLUICE_MAX_PRIORITY. */
+    int32_t priority;
 } SluiceVulkanTextureControl;
 
 /**

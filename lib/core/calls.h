@@ -30,7 +30,8 @@ enum slc_call_kind {
     SLC_CALL_EVACUATE_HEAPS = 21,
     SLC_CALL_FORGET_TEXTURE = 22,
     SLC_CALL_EVICT_TEXTURE = 23,
-    SLC_CALL_SET_UV = 24
+    SLC_CALL_SET_UV = 24,
+    SLC_CALL_SET_PRIORITY = 25
 };
 
 /**
@@ -50,6 +51,7 @@ struct slc_call {
     const SluiceStreamedTextureDesc *desc;            ///< ADD_TEXTURE
     const SluiceFeedbackDesc *feedback;               ///< UPDATE_FEEDBACK
     const SluiceUvTransform *uv;                      ///< SET_UV
+    int32_t priority;                                 ///< SET_PRIORITY
     uint32_t keep_count; ///< TRIM_STANDBY, EVICT_TEXTURE; EVACUATE_HEAPS: the most tiles
     uint32_t heap_id;    ///< RELEASE_HEAP, HEAP_ANSWER
     uint32_t room;       ///< of the list calls: *pCount on entry

@@ -8,6 +8,7 @@
 #include "base/checked.h"
 #include "core/history.h"
 #include "core/observer.h"
+#include "core/priority.h"
 #include "core/wants.h"
 #include "residency/node.h"
 #include "residency/node_list.h"
@@ -53,12 +54,13 @@ enum { MAX_LOOKED_FOR = 1024 };
 /** Where the search is: each tile is looked at once. */
 struct eviction {
     uint32_t looks;
+    uint32_t compares;                    ///< of priorities
     uint32_t left[SLUICE_MAX_MIP_LEVELS]; ///< of m->residency.mapped
 };
 
 static struct eviction begin_eviction(const slc_manager *m)
 {
-    struct eviction d = {.looks = MAX_LOOKED_FOR};
+    struct eviction d = {.looks = MAX_LOOKED_FOR, .compares = MAX_LOOKED_FOR};
     for (uint32_t l = 0; l < SLUICE_MAX_MIP_LEVELS; l++)
         d.left[l] = m->residency.mapped[l].count;
     return d;
@@ -82,12 +84,50 @@ static uint32_t unseen_mapped(slc_manager *m, struct eviction *d, uint32_t end)
     return 0;
 }
 
+static int32_t priority_of(const slc_manager *m, uint32_t node)
+{
+    return slc_priority_of(m, slc_texture_at(m, slc_node_at(&m->residency, node)->owner));
+}
+
+/** Tiles at the head of a list among which the least priority is looked for. */
+enum { MAX_COMPARED = 64 };
+
+/** Of the first tiles of a list, the first one of the least priority. */
+static uint32_t least_of(const slc_manager *m, const struct slc_list *list)
+{
+    uint32_t least = list->head, node = list->head;
+    for (uint32_t i = 0; i < MAX_COMPARED && node && slc_has_priorities(m); i++) {
+        if (priority_of(m, node) < priority_of(m, least))
+            least = node;
+        node = slc_node_at(&m->residency, node)->next;
+    }
+    return least;
+}
+
 /** The finest wanted tile of a level below `end`, the first in its list; 0 if there is none. */
 static uint32_t finest_mapped(const slc_manager *m, uint32_t end)
 {
     for (uint32_t l = 0; l < end && l < SLUICE_MAX_MIP_LEVELS; l++)
         if (m->residency.mapped[l].head)
-            return m->residency.mapped[l].head;
+            return least_of(m, &m->residency.mapped[l]);
+    return 0;
+}
+
+/** The finest wanted tile of less priority than the request and of no coarser level. */
+static uint32_t minor_mapped(slc_manager *m, struct eviction *d, uint32_t request)
+{
+    const struct slc_node *n = slc_node_at(&m->residency, request);
+    int32_t priority = priority_of(m, request);
+    for (uint32_t l = 0; l <= n->level && slc_has_priorities(m); l++) {
+        struct slc_list *list = &m->residency.mapped[l];
+        for (uint32_t left = list->count; left && d->compares; left--, d->compares--) {
+            uint32_t node = list->head;
+            if (priority_of(m, node) < priority)
+                return node;
+            slc_list_remove(&m->residency, list, node);
+            slc_list_append(&m->residency, list, node);
+        }
+    }
     return 0;
 }
 
@@ -107,7 +147,9 @@ static uint32_t victim_for(slc_manager *m, struct eviction *d, uint32_t request)
     bool waited = n->order < m->round.waited, waited_long = n->order < m->round.waited_long;
     uint32_t node = unseen_mapped(m, d, n->level + waited);
     uint32_t gap = waited_long ? 0 : waited ? 1 : 2;
-    return node ? node : n->level > gap ? finest_mapped(m, n->level - gap) : 0;
+    if (!node && n->level > gap)
+        node = finest_mapped(m, n->level - gap);
+    return node ? node : minor_mapped(m, d, request);
 }
 
 /**

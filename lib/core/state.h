@@ -132,6 +132,7 @@ struct slc_managed_texture {
     uint8_t trouble;                                  ///< enum slc_trouble
     bool retried_all;                                 ///< since the last probe
     bool seen;                                        ///< some map asked for something
+    int8_t priority;                                  ///< its followers have it, too
     uint32_t trouble_prev, trouble_next; ///< indices, SLC_NONE; in the list of its trouble
     uint64_t trouble_time;               ///< when it entered that
 

@@ -32,7 +32,7 @@ static void tile_released(void *user, const struct slc_node *n)
 struct slc_machine_user slc_tiles_user(slc_manager *m)
 {
     return (struct slc_machine_user){
-        m, tile_requested, tile_resident, tile_given_up, tile_released, NULL};
+        m, tile_requested, tile_resident, tile_given_up, tile_released, NULL, NULL};
 }
 
 void slc_tile_requested(slc_manager *m, struct slc_managed_texture *t, uint32_t *cell,

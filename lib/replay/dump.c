@@ -30,6 +30,7 @@ static const char *const call_names[] = {
     [SLC_CALL_FORGET_TEXTURE] = "forget-texture",
     [SLC_CALL_EVICT_TEXTURE] = "evict-texture",
     [SLC_CALL_SET_UV] = "set-uv-transform",
+    [SLC_CALL_SET_PRIORITY] = "set-priority",
     [SLC_CALL_DEFRAGMENT] = "defragment",
     [SLC_CALL_RELEASE_HEAP] = "release-heap",
     [SLC_CALL_GET_MINMIP_UPDATES] = "get-minmip-updates",
@@ -236,6 +237,8 @@ void slc_dump_inputs(struct slc_dump *dump, const struct slc_call *call)
         add_list(dump, call);
     if (fields & SLC_FIELD_UV)
         add_uv(dump, call->uv);
+    if (fields & SLC_FIELD_PRIORITY)
+        add(dump, " priority=%" PRId32, call->priority);
     end_line(dump);
 }
 

@@ -182,6 +182,7 @@ static SluiceResult make_simple_call(struct slc_player *player, struct slc_call 
         return sluiceMatchPrimaryTexture(m, call->primary_id, id, call->time_stamp, call->timeout);
     case SLC_CALL_SET_PRIMARY: return sluiceSetPrimaryTexture(m, id, call->primary_id);
     case SLC_CALL_SET_UV: return sluiceSetUvTransform(m, id, call->uv);
+    case SLC_CALL_SET_PRIORITY: return sluiceSetTexturePriority(m, id, call->priority);
     case SLC_CALL_UPDATE_MAPPING:
         return sluiceUpdateTilesMapping(m, id, call->count, call->tile_indices);
     case SLC_CALL_REPORT_FAILED:

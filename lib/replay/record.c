@@ -29,6 +29,7 @@ uint32_t slc_call_fields(uint32_t kind)
         [SLC_CALL_FORGET_TEXTURE] = SLC_FIELD_TEXTURE | SLC_FIELD_RETIRE,
         [SLC_CALL_EVICT_TEXTURE] = SLC_FIELD_TEXTURE | SLC_FIELD_KEEP,
         [SLC_CALL_SET_UV] = SLC_FIELD_TEXTURE | SLC_FIELD_UV,
+        [SLC_CALL_SET_PRIORITY] = SLC_FIELD_TEXTURE | SLC_FIELD_PRIORITY,
         [SLC_CALL_DEFRAGMENT] = SLC_FIELD_RETIRE | SLC_FIELD_LIST,
         [SLC_CALL_RELEASE_HEAP] = SLC_FIELD_HEAP,
         [SLC_CALL_GET_MINMIP_UPDATES] = SLC_FIELD_LIST,
@@ -237,6 +238,8 @@ void slc_put_record(struct slc_bytes *out, const struct slc_call *call, uint64_t
         put_list(out, call, hash);
     if (fields & SLC_FIELD_UV)
         put_uv(out, call->uv);
+    if (fields & SLC_FIELD_PRIORITY)
+        slc_put_signed(out, call->priority);
 }
 
 static SluiceTextureId get_id(struct slc_cursor *in)
@@ -432,6 +435,8 @@ void slc_get_record(struct slc_cursor *in, struct slc_record *record)
         get_list(in, record);
     if (fields & SLC_FIELD_UV)
         get_uv(in, record);
+    if (fields & SLC_FIELD_PRIORITY)
+        call->priority = slc_get_signed32(in);
 }
 
 void slc_get_tile_indices(struct slc_record *record, uint32_t *indices)

@@ -30,7 +30,8 @@ enum slc_field {
     SLC_FIELD_FEEDBACK = 512,
     SLC_FIELD_INDICES = 1024,
     SLC_FIELD_LIST = 2048,
-    SLC_FIELD_UV = 4096
+    SLC_FIELD_UV = 4096,
+    SLC_FIELD_PRIORITY = 8192
 };
 
 /** The fields of a kind of call; 0 if there is no such kind. */

@@ -35,7 +35,7 @@ struct slc_node {
     uint32_t failures;
     uint8_t state;
     uint8_t level; ///< 0 is the finest; SLC_PACKED_CLASS, SLC_OUTSIDE_CLASS
-    uint8_t need;  ///< log2 of the tiles of level 0 that want it
+    uint8_t need;  ///< log2 of the tiles of level 0 that want it, and the owner's weight
     uint8_t flags;
     /** REQUESTED: sequence; FAILED: due; GIVEN_UP: the user's; retiring: retire value. */
     uint64_t order;
@@ -87,6 +87,8 @@ struct slc_machine_user {
     void (*released)(void *user, const struct slc_node *node);
     /** The tile changed its state. NULL: nobody asks. */
     void (*changed)(void *user, const struct slc_node *node, uint8_t from, uint8_t to);
+    /** Added to the need of the owner's requests. NULL: 0 for all. */
+    int32_t (*weight)(void *user, uint32_t owner);
 };
 
 struct slc_machine_limits {

@@ -2,10 +2,18 @@
 
 #include "residency/node_list.h"
 
+static uint8_t weighted(uint8_t need, int32_t weight)
+{
+    int32_t sum = need + weight;
+    return (uint8_t)(sum < 0 ? 0 : sum < SLC_REQUEST_NEEDS ? sum : SLC_REQUEST_NEEDS - 1);
+}
+
 void slc_request_append(struct slc_machine *r, uint32_t node)
 {
     struct slc_requests *q = &r->requests;
     struct slc_node *n = slc_node_at(r, node);
+    if (r->user.weight)
+        n->need = weighted(n->need, r->user.weight(r->user.user, n->owner));
     n->order = q->next_sequence++;
     slc_list_append(r, &q->lists[n->level][n->need], node);
     q->needs[n->level] |= 1u << n->need;

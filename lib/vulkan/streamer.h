@@ -80,9 +80,10 @@ struct slc_texture {
     uint32_t first_request;           ///< place + 1 of a request; 0: none
     bool map_due;                     ///< in due_maps
     bool drop_due;                    ///< what earlier maps requested does not count any longer
-    uint8_t finest_level;             ///< SluiceVulkanTextureControl of primaries, as the next two
+    uint8_t finest_level; ///< SluiceVulkanTextureControl of primaries, as the next three
     int8_t mip_bias;
     bool hidden;
+    int8_t priority;
     uint64_t added_frame;    ///< the last one begun before; its feedback and table entry come later
     uint64_t recorded_frame; ///< that recorded its layout and table entry; 0: in new_textures
     uint64_t cleared_frame;  ///< that cleared its feedback; 0: none did

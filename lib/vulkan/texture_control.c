@@ -58,7 +58,8 @@ static SluiceVulkanTextureControl get_control(const struct slc_texture *texture)
     return (SluiceVulkanTextureControl){.structSize = sizeof(SluiceVulkanTextureControl),
                                         .finestLevel = texture->finest_level,
                                         .mipBias = texture->mip_bias,
-                                        .hidden = texture->hidden};
+                                        .hidden = texture->hidden,
+                                        .priority = texture->priority};
 }
 
 SluiceResult sluiceGetVulkanTextureControl(const SluiceVulkanStreamer *streamer,
@@ -79,6 +80,16 @@ SluiceResult sluiceGetVulkanTextureControl(const SluiceVulkanStreamer *streamer,
     return SLUICE_SUCCESS;
 }
 
+void slc_control_set_priority(SluiceVulkanStreamer *s, struct slc_texture *texture,
+                              int32_t priority)
+{
+    s->manager_locked = false;
+    slc_streamer_check(s, sluiceSetTexturePriority(s->manager, texture->id, priority),
+                       "sluiceSetTexturePriority");
+    s->manager_locked = true;
+    texture->priority = (int8_t)priority;
+}
+
 static void set_control(SluiceVulkanStreamer *s, struct slc_texture *texture,
                         const SluiceVulkanTextureControl *control)
 {
@@ -88,6 +99,7 @@ static void set_control(SluiceVulkanStreamer *s, struct slc_texture *texture,
         (uint8_t)slc_min_u32(control->finestLevel, texture->layout.desc.mipLevelCount - 1);
     texture->mip_bias = (int8_t)control->mipBias;
     texture->hidden = control->hidden;
+    slc_control_set_priority(s, texture, control->priority);
     if (before.hidden && !control->hidden)
         slc_feedback_join(s, index);
     else if (!before.hidden && control->hidden)
@@ -115,6 +127,10 @@ SluiceResult sluiceSetVulkanTextureControl(SluiceVulkanStreamer *streamer,
         (control.mipBias < -MAX_MIP_BIAS || control.mipBias > MAX_MIP_BIAS))
         result = slc_log_refusal(&s->vk.log, "mipBias is %d; it must be %d to %d", control.mipBias,
                                  -MAX_MIP_BIAS, MAX_MIP_BIAS);
+    if (result == SLUICE_SUCCESS &&
+        (control.priority < -SLUICE_MAX_PRIORITY || control.priority > SLUICE_MAX_PRIORITY))
+        result = slc_log_refusal(&s->vk.log, "priority is %d; it must be %d to %d",
+                                 control.priority, -SLUICE_MAX_PRIORITY, SLUICE_MAX_PRIORITY);
     if (result == SLUICE_SUCCESS)
         result = slc_due_map_reserve(s, texture);
     if (result == SLUICE_SUCCESS)

@@ -16,6 +16,7 @@ static void begin_to_follow(SluiceVulkanStreamer *s, struct slc_texture *texture
     texture->finest_level = 0;
     texture->mip_bias = 0;
     texture->hidden = texture->drop_due = false;
+    slc_control_set_priority(s, texture, 0);
     slc_control_drop(s, texture);
     slc_feedback_leave(s, index);
     slc_forgetting_keep(s, index);

@@ -59,6 +59,70 @@ static void equal_requests_are_served_in_the_order_in_which_they_came(void **sta
     fixture_close(&f);
 }
 
+/* Levels come first, then priorities, then age. A follower has its primary's priority. */
+static void priorities_order_tiles_of_one_level(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    SluiceTextureId ids[3] = {add_wide(&f), add_wide(&f), add_wide(&f)};
+    CHECK_OK(sluiceSetPrimaryTexture(f.manager, ids[2], ids[1]));
+    fixture_feed(&f, ids[0], 0, 0, 100);
+    fixture_feed(&f, ids[1], 0, 0, 100);
+    const uint64_t calls = f.memory.calls;
+    CHECK_OK(sluiceSetTexturePriority(f.manager, ids[1], 4)); /* of requests that wait, too */
+    CHECK_OK(sluiceSetTexturePriority(f.manager, ids[2], -9));
+    assert_int_equal(f.memory.calls, calls);
+    CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
+    assert_int_equal(f.count, 3 * 11);
+    for (uint32_t i = 1; i < f.count; i++) {
+        bool last = f.tiles[i].textureId == ids[0], before = f.tiles[i - 1].textureId == ids[0];
+        assert_true(f.tiles[i].mipLevel <= f.tiles[i - 1].mipLevel);
+        assert_true(f.tiles[i].mipLevel < f.tiles[i - 1].mipLevel || last >= before);
+    }
+    CHECK_RESULT(sluiceSetTexturePriority(f.manager, ids[0], 17), SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceSetTexturePriority(f.manager, ids[0], -17), SLUICE_ERROR_INVALID_ARGUMENT);
+    fixture_close(&f);
+}
+
+static uint32_t resident_in(const struct fixture *f, SluiceTextureId id, uint32_t level)
+{
+    SluiceTextureLevelStatistics s = {.structSize = sizeof s};
+    CHECK_OK(sluiceGetTextureLevelStatistics(f->manager, id, level, &s));
+    return s.residentTileCount;
+}
+
+/* 8 slots for two textures of 4, 1 and 1 tiles: coarse levels of both fit, and one level 0. */
+static void the_level_that_does_not_fit_goes_to_priority(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 8, false);
+    f.heaps.limit = 1;
+    SluiceTextureId ids[2] = {fixture_add_small(&f), fixture_add_small(&f)};
+    uint64_t time = 0;
+    for (uint32_t turn = 0; turn < 4; turn++) {
+        CHECK_OK(sluiceSetTexturePriority(f.manager, ids[turn % 2], 2));
+        CHECK_OK(sluiceSetTexturePriority(f.manager, ids[1 - turn % 2], turn / 2 ? -3 : 1));
+        for (uint32_t frame = 0; frame < 8; frame++) {
+            time++;
+            fixture_feed(&f, ids[0], 0, time, 100);
+            fixture_feed(&f, ids[1], 0, time, 100);
+            fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0);
+            fixture_to_map(&f, SLUICE_ALL_TEXTURES);
+            fixture_answer_mapped(&f);
+        }
+        assert_int_equal(resident_in(&f, ids[turn % 2], 0), 4);
+        for (uint32_t k = 0; k < 2; k++)
+            assert_true(resident_in(&f, ids[k], 1) == 1 && resident_in(&f, ids[k], 2) == 1);
+        const uint64_t loads = fixture_statistics(&f).mappedTotal;
+        fixture_feed(&f, ids[1], 0, ++time, 100);
+        CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+        assert_true(f.count == 0 && fixture_statistics(&f).mappedTotal == loads); /* it ends */
+    }
+    fixture_close(&f);
+}
+
 static void within_one_map_regions_are_served_row_by_row(void **state)
 {
     (void)state;
@@ -215,6 +279,8 @@ int main(void)
         cmocka_unit_test(packed_tiles_come_first_and_coarse_before_fine),
         cmocka_unit_test(within_a_level_what_more_regions_want_comes_first),
         cmocka_unit_test(equal_requests_are_served_in_the_order_in_which_they_came),
+        cmocka_unit_test(priorities_order_tiles_of_one_level),
+        cmocka_unit_test(the_level_that_does_not_fit_goes_to_priority),
         cmocka_unit_test(within_one_map_regions_are_served_row_by_row),
         cmocka_unit_test(one_texture_can_be_asked_for_alone),
         cmocka_unit_test(little_room_keeps_the_order),

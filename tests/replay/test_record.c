@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#define KIND_COUNT 24
+#define KIND_COUNT 25
 
 static uint64_t next_random(uint64_t *seed)
 {
@@ -87,6 +87,7 @@ static void make_example(struct example *e, uint32_t kind, uint64_t *seed)
     e->call.keep_count = (uint32_t)next_random(seed);
     e->call.heap_id = (uint32_t)next_random(seed);
     e->call.room = (uint32_t)next_random(seed);
+    e->call.priority = (int32_t)next_random(seed);
     e->call.query = next_random(seed) & 1;
     e->call.count = next_random(seed) % 16;
 }
@@ -177,6 +178,8 @@ static void check_same(const struct example *e, struct slc_record *back)
         check_map(e, back);
     if (fields & SLC_FIELD_INDICES)
         check_indices(e, back);
+    if (fields & SLC_FIELD_PRIORITY)
+        assert_int_equal(a->priority, b->priority);
     if (fields & SLC_FIELD_UV) {
         assert_true(!a->uv == !b->uv);
         if (a->uv)

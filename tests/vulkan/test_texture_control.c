@@ -559,9 +559,16 @@ static void controls_survive_every_refused_allocation(void **state)
     CHECK_OK(sluiceGetVulkanTextureControl(s->streamer, id, &control));
     assert_int_equal(control.mipBias, 0);
     s->memory.refuse_from = UINT64_MAX;
-    set_control(s, 0, (SluiceVulkanTextureControl){.finestLevel = 2, .mipBias = 3, .hidden = true});
+    control.priority = 17;
+    CHECK_RESULT(sluiceSetVulkanTextureControl(s->streamer, id, &control),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(s->last, "priority is 17"));
+    set_control(s, 0,
+                (SluiceVulkanTextureControl){
+                    .finestLevel = 2, .mipBias = 3, .hidden = true, .priority = -5});
     CHECK_OK(sluiceGetVulkanTextureControl(s->streamer, id, &control));
     assert_true(control.finestLevel == 2 && control.mipBias == 3 && control.hidden);
+    assert_int_equal(control.priority, -5);
     stage_finish(s);
 }
 
