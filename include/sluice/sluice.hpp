@@ -35,6 +35,8 @@
     X(DemandLoader, SluiceDemandLoader)                                                            \
     X(ExrMemoryBudget, SluiceExrMemoryBudget)                                                      \
     X(FilePool, SluiceFilePool)                                                                    \
+    X(HttpClient, SluiceHttpClient)                                                                \
+    X(HttpFile, SluiceHttpFile)                                                                    \
     X(ImageOpener, SluiceImageOpener)                                                              \
     X(ImageSource, SluiceImageSource)                                                              \
     X(NeuralCompressor, SluiceNeuralCompressor)                                                    \

@@ -60,6 +60,10 @@
 #define SLC_FIRST_SluiceDdsImageSourceCreateInfo SLC_UP_TO(SluiceDdsImageSourceCreateInfo, filePool)
 #define SLC_FIRST_SluiceKtx2ImageSourceCreateInfo                                                  \
     SLC_UP_TO(SluiceKtx2ImageSourceCreateInfo, filePool)
+#define SLC_FIRST_SluiceS3Access SLC_UP_TO(SluiceS3Access, pSessionToken)
+#define SLC_FIRST_SluiceHttpClientCreateInfo SLC_UP_TO(SluiceHttpClientCreateInfo, log)
+#define SLC_FIRST_SluiceHttpStatistics SLC_UP_TO(SluiceHttpStatistics, headerBytes)
+#define SLC_FIRST_SluiceInput SLC_UP_TO(SluiceInput, pfnRead)
 #define SLC_FIRST_SluiceStoreCreateInfo SLC_UP_TO(SluiceStoreCreateInfo, cube)
 #define SLC_FIRST_SluiceStoreImageSourceCreateInfo                                                 \
     SLC_UP_TO(SluiceStoreImageSourceCreateInfo, filePool)
@@ -86,7 +90,6 @@
 #define SLC_FIRST_SluiceDemandRequests SLC_UP_TO(SluiceDemandRequests, lodBias)
 #define SLC_FIRST_SluiceDemandTicketStatus SLC_UP_TO(SluiceDemandTicketStatus, failedCount)
 #define SLC_FIRST_SluiceDemandStatistics SLC_UP_TO(SluiceDemandStatistics, texturesForgotten)
-#define SLC_FIRST_SluiceInput SLC_UP_TO(SluiceInput, pfnRead)
 #define SLC_FIRST_SluiceFilePoolCreateInfo SLC_UP_TO(SluiceFilePoolCreateInfo, pAllocator)
 #define SLC_FIRST_SluiceFilePoolStatistics SLC_UP_TO(SluiceFilePoolStatistics, replacedTotal)
 #define SLC_FIRST_SluiceImageOpenerCreateInfo SLC_UP_TO(SluiceImageOpenerCreateInfo, log)

@@ -5,7 +5,7 @@
 packages_to_build=(gcc libc6-dev meson ninja-build pkg-config glslang-tools spirv-tools
     libvulkan-dev mesa-vulkan-drivers libopenexr-dev libimath-dev libpng-dev zlib1g-dev libzstd-dev
     libxxhash-dev libvips-dev libsquish-dev libastcenc-dev g++
-    libglfw3-dev libimgui-dev libassimp-dev libcjson-dev fonts-dejavu-core)
+    libcurl4-openssl-dev libglfw3-dev libimgui-dev libassimp-dev libcjson-dev fonts-dejavu-core)
 # lld: a build links 500 programs, and it takes half as long for each as the default.
 # llvm: the leak sanitizer needs its symbolizer to know which leaks are a driver's.
 packages_to_test=(binutils clang cmake lld llvm libcmocka-dev libembree-dev vulkan-validationlayers xvfb xdotool

@@ -45,7 +45,7 @@ find_installed() {
 
 installed_modules() {
     local name
-    for name in sluice sluice-exr sluice-container sluice-store sluice-bake sluice-neural sluice-pbrt sluice-open sluice-vulkan; do
+    for name in sluice sluice-exr sluice-container sluice-store sluice-bake sluice-neural sluice-pbrt sluice-http sluice-open sluice-vulkan; do
         [ ! -f "$PKG_CONFIG_PATH/$name.pc" ] || echo "$name"
     done
 }

@@ -1,0 +1,394 @@
+#include "http/http_attempt.h"
+
+#include "http/http_header.h"
+#include "platform/time_now.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Bodies of answers that are errors are read up to here, so that the connection lives on. */
+#define MAX_SWALLOWED ((uint64_t)64 << 10)
+
+struct attempt {
+    const struct slc_http_request *request;
+    struct slc_http_answer *answer;
+    struct slc_http_header header;
+    uint64_t expected; ///< bytes of the body; valid once checked
+    bool is_checked, is_accepted, is_stalled;
+    curl_off_t last_count; ///< bytes of the body when one last came
+    uint64_t last_time;
+};
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 4, 5)))
+#endif
+static void
+end_as(struct attempt *attempt, enum slc_http_outcome outcome, SluiceResult result,
+       const char *format, ...)
+{
+    struct slc_http_answer *answer = attempt->answer;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(answer->why, sizeof answer->why, format, arguments);
+    va_end(arguments);
+    answer->outcome = outcome;
+    answer->result = result;
+}
+
+static void end_changed(struct attempt *attempt, const char *field)
+{
+    end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_IO,
+           "the file was changed on the server (%s differs); open it again", field);
+    attempt->answer->is_changed = true;
+}
+
+static bool is_transient(uint32_t status)
+{
+    return status == 408 || status == 425 || status == 429 || status == 500 || status == 502 ||
+           status == 503 || status == 504;
+}
+
+/* An answer that is neither 200 nor 206. */
+static void check_status(struct attempt *attempt, uint32_t status)
+{
+    bool is_missing = status == 404 || status == 410;
+    attempt->answer->is_refused = is_missing || status == 401 || status == 403;
+    attempt->answer->is_host_fault = status == 429 || status == 503;
+    if (is_transient(status))
+        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO, "the server answers %u", status);
+    else if (is_missing)
+        end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_FILE_NOT_FOUND, "the server answers %u",
+               status);
+    else if (status == 412)
+        end_changed(attempt, "its ETag or date");
+    else if (status == 416 && attempt->request->file)
+        end_changed(attempt, "its size");
+    else if (status == 416)
+        end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_IO, "the file is empty");
+    else if (status == 401 || status == 403)
+        end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_IO,
+               "the server answers %u; check user, password, keys and the machine's clock", status);
+    else
+        end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_IO, "the server answers %u", status);
+}
+
+/* A redirect is no failure: whoever asked goes there. */
+static bool is_redirect(uint32_t status)
+{
+    return status == 301 || status == 302 || status == 303 || status == 307 || status == 308;
+}
+
+static bool check_version(struct attempt *attempt)
+{
+    const SluiceHttpFile *file = attempt->request->file;
+    const struct slc_http_header *header = &attempt->header;
+    if (!file)
+        return true;
+    if (header->total_size != UINT64_MAX && header->total_size != file->size)
+        end_changed(attempt, "its size");
+    else if (file->etag[0] && header->etag[0] && strcmp(file->etag, header->etag) != 0)
+        end_changed(attempt, "its ETag");
+    else if (!file->etag[0] && file->modified[0] && header->modified[0] &&
+             strcmp(file->modified, header->modified) != 0)
+        end_changed(attempt, "its date");
+    return !attempt->answer->is_changed;
+}
+
+static void check_range(struct attempt *attempt)
+{
+    const struct slc_http_request *request = attempt->request;
+    struct slc_http_header *header = &attempt->header;
+    uint64_t end = request->offset + request->size;
+    if (!header->has_range) {
+        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO, "the answer 206 lacks a Content-Range");
+        return;
+    }
+    if (!request->file && header->total_size == UINT64_MAX) {
+        end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_UNSUPPORTED,
+               "the server does not tell the size of the file");
+        return;
+    }
+    if (!check_version(attempt))
+        return;
+    if (!request->file && end > header->total_size)
+        end = header->total_size;
+    if (header->first != request->offset || header->last + 1 != end) {
+        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO,
+               "the server sends bytes %llu to %llu, not %llu to %llu",
+               (unsigned long long)header->first, (unsigned long long)header->last,
+               (unsigned long long)request->offset, (unsigned long long)(end - 1));
+        return;
+    }
+    attempt->expected = end - request->offset;
+    attempt->is_accepted = true;
+}
+
+/* A small file may come whole when it is opened. */
+static void check_whole(struct attempt *attempt)
+{
+    const struct slc_http_request *request = attempt->request;
+    struct slc_http_header *header = &attempt->header;
+    if (request->file && request->file->size > request->file->head_size) {
+        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO,
+               "the server answers 200 with the whole file, not 206 with a range");
+    } else if (header->length == 0) {
+        end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_IO, "the file is empty");
+    } else if (header->length > request->size) {
+        end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_UNSUPPORTED,
+               "the server ignores ranges: it answers 200 with the whole file");
+    } else {
+        header->total_size = header->length;
+        attempt->expected = header->length;
+        attempt->is_accepted = true;
+    }
+}
+
+/* Decides about an answer once its header is there. */
+static void check_header(struct attempt *attempt)
+{
+    const struct slc_http_header *header = &attempt->header;
+    if (attempt->is_checked)
+        return;
+    attempt->is_checked = true;
+    if (is_redirect(header->status))
+        return;
+    if (header->status != 200 && header->status != 206)
+        check_status(attempt, header->status);
+    else if (header->is_encoded)
+        end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_UNSUPPORTED,
+               "the server compresses the file (Content-Encoding), so its bytes have no offsets");
+    else if (header->status == 206)
+        check_range(attempt);
+    else
+        check_whole(attempt);
+}
+
+/* Copies bytes from `at` of the file on to the parts that want them. */
+static void scatter(const struct slc_http_request *request, uint64_t at, const char *bytes,
+                    size_t size)
+{
+    for (uint32_t i = 0; i < request->part_count; i++) {
+        const struct slc_http_part *part = &request->parts[i];
+        uint64_t first = part->offset > at ? part->offset : at;
+        uint64_t end =
+            part->offset + part->size < at + size ? part->offset + part->size : at + size;
+        if (first < end)
+            memcpy(part->bytes + (first - part->offset), bytes + (first - at),
+                   (size_t)(end - first));
+    }
+}
+
+static size_t write_body(char *bytes, size_t size, size_t count, void *user)
+{
+    struct attempt *attempt = user;
+    struct slc_http_answer *answer = attempt->answer;
+    size *= count;
+    check_header(attempt);
+    if (!attempt->is_accepted) {
+        answer->received += size;
+        return answer->received <= MAX_SWALLOWED && attempt->header.length <= MAX_SWALLOWED ? size
+                                                                                            : 0;
+    }
+    if (size > attempt->expected - answer->received) {
+        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO, "the body is longer than %llu bytes",
+               (unsigned long long)attempt->expected);
+        attempt->is_accepted = false;
+        return 0;
+    }
+    scatter(attempt->request, attempt->request->offset + answer->received, bytes, size);
+    answer->received += size;
+    return size;
+}
+
+static size_t write_header(char *line, size_t size, size_t count, void *user)
+{
+    struct attempt *attempt = user;
+    slc_http_header_line(&attempt->header, line, size * count);
+    return size * count;
+}
+
+/* Called once a second at least. libcurl's own limit on speed looks at the mean of five seconds. */
+static int progress(void *user, curl_off_t a, curl_off_t received, curl_off_t b, curl_off_t c)
+{
+    struct attempt *attempt = user;
+    const SluiceHttpClient *client = attempt->request->client;
+    uint64_t now = slc_monotonic_time();
+    (void)a, (void)b, (void)c;
+    if (received != attempt->last_count || attempt->last_time == 0) {
+        attempt->last_count = received;
+        attempt->last_time = now;
+    }
+    attempt->is_stalled =
+        now - attempt->last_time >= (uint64_t)client->settings.stall_timeout * 1000000;
+    return attempt->is_stalled || atomic_load(&client->is_cancelled);
+}
+
+/* Failures of libcurl that repeat themselves. */
+static bool is_lasting(CURLcode code)
+{
+    return code == CURLE_PEER_FAILED_VERIFICATION || code == CURLE_SSL_CACERT_BADFILE ||
+           code == CURLE_URL_MALFORMAT || code == CURLE_SSL_CERTPROBLEM ||
+           code == CURLE_SSL_ENGINE_NOTFOUND;
+}
+
+static void check_failure(struct attempt *attempt, CURLcode code, const char *text)
+{
+    struct slc_http_answer *answer = attempt->answer;
+    if (code == CURLE_ABORTED_BY_CALLBACK && attempt->is_stalled) {
+        answer->is_host_fault = true;
+        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO, "no byte came for %u ms",
+               attempt->request->client->settings.stall_timeout);
+    } else if (code == CURLE_ABORTED_BY_CALLBACK) {
+        answer->outcome = SLC_HTTP_CANCELLED;
+        answer->result = SLUICE_ERROR_IO;
+    } else if (code == CURLE_WRITE_ERROR) {
+        if (answer->outcome == SLC_HTTP_OK) /* a large body of a redirect */
+            attempt->is_accepted = false;
+    } else if (code == CURLE_OUT_OF_MEMORY) {
+        end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_OUT_OF_HOST_MEMORY, "libcurl: no memory");
+    } else {
+        const char *words = text[0] ? text : curl_easy_strerror(code);
+        bool is_cut = code == CURLE_PARTIAL_FILE || code == CURLE_GOT_NOTHING;
+        answer->is_host_fault = !is_cut && !is_lasting(code);
+        end_as(attempt, is_lasting(code) ? SLC_HTTP_FAILED : SLC_HTTP_AGAIN, SLUICE_ERROR_IO, "%s",
+               words);
+    }
+}
+
+static void check_end(struct attempt *attempt)
+{
+    struct slc_http_answer *answer = attempt->answer;
+    check_header(attempt); /* of an answer without a body */
+    if (!attempt->is_accepted || answer->outcome != SLC_HTTP_OK)
+        return;
+    if (answer->received != attempt->expected)
+        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO, "the body ends after %llu of %llu bytes",
+               (unsigned long long)answer->received, (unsigned long long)attempt->expected);
+}
+
+static void take_version(struct attempt *attempt)
+{
+    struct slc_http_version *version = &attempt->answer->version;
+    version->size = attempt->header.total_size;
+    memcpy(version->etag, attempt->header.etag, sizeof version->etag);
+    memcpy(version->modified, attempt->header.modified, sizeof version->modified);
+}
+
+/* The condition under which the opened version is meant. Weak ETags never match. */
+static struct curl_slist *condition_header(const struct slc_http_request *request,
+                                           struct curl_slist *list)
+{
+    char line[300];
+    const SluiceHttpFile *file = request->file;
+    if (!file || (!file->etag[0] && !file->modified[0]))
+        return list;
+    if (file->etag[0] == '"')
+        snprintf(line, sizeof line, "If-Match: %s", file->etag);
+    else if (file->modified[0])
+        snprintf(line, sizeof line, "If-Unmodified-Since: %s", file->modified);
+    else
+        return list;
+    return curl_slist_append(list, line);
+}
+
+static struct curl_slist *make_headers(const struct slc_http_request *request)
+{
+    const SluiceHttpClient *client = request->client;
+    struct curl_slist *list = curl_slist_append(NULL, "Accept-Encoding: identity");
+    struct curl_slist *grown = list ? condition_header(request, list) : NULL;
+    for (const struct curl_slist *line = client->headers; grown && request->is_own && line;
+         line = line->next)
+        grown = curl_slist_append(list, line->data);
+    for (const struct curl_slist *line = client->s3_headers;
+         grown && request->is_own && request->url->is_s3 && line; line = line->next)
+        grown = curl_slist_append(list, line->data);
+    if (!grown)
+        curl_slist_free_all(list);
+    return grown;
+}
+
+static void set_options(struct attempt *attempt, struct curl_slist *headers, char *error)
+{
+    const struct slc_http_request *request = attempt->request;
+    const SluiceHttpClient *client = request->client;
+    CURL *easy = request->easy;
+    char range[64];
+    snprintf(range, sizeof range, "%llu-%llu", (unsigned long long)request->offset,
+             (unsigned long long)(request->offset + request->size - 1));
+    curl_easy_reset(easy);
+    curl_easy_setopt(easy, CURLOPT_URL, request->url->full);
+    curl_easy_setopt(easy, CURLOPT_RANGE, range);
+    curl_easy_setopt(easy, CURLOPT_HTTPHEADER, headers);
+    curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1);
+    curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
+    curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)client->settings.connect_timeout);
+    curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, error);
+    curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, write_body);
+    curl_easy_setopt(easy, CURLOPT_WRITEDATA, attempt);
+    curl_easy_setopt(easy, CURLOPT_HEADERFUNCTION, write_header);
+    curl_easy_setopt(easy, CURLOPT_HEADERDATA, attempt);
+    curl_easy_setopt(easy, CURLOPT_NOPROGRESS, 0L);
+    curl_easy_setopt(easy, CURLOPT_XFERINFOFUNCTION, progress);
+    curl_easy_setopt(easy, CURLOPT_XFERINFODATA, attempt);
+    curl_easy_setopt(easy, CURLOPT_BUFFERSIZE, 128L << 10);
+    if (client->certificate_file)
+        curl_easy_setopt(easy, CURLOPT_CAINFO, client->certificate_file);
+    if (request->is_own && request->url->is_s3 && client->signature) {
+        curl_easy_setopt(easy, CURLOPT_AWS_SIGV4, client->signature);
+        curl_easy_setopt(easy, CURLOPT_USERNAME, client->s3.access_key);
+        curl_easy_setopt(easy, CURLOPT_PASSWORD, client->s3.secret_key);
+    }
+}
+
+static void count(SluiceHttpClient *client, CURL *easy)
+{
+    long connects = 0, header = 0;
+    curl_off_t body = 0;
+    curl_easy_getinfo(easy, CURLINFO_NUM_CONNECTS, &connects);
+    curl_easy_getinfo(easy, CURLINFO_HEADER_SIZE, &header);
+    curl_easy_getinfo(easy, CURLINFO_SIZE_DOWNLOAD_T, &body);
+    atomic_fetch_add(&client->counts.requests, 1);
+    atomic_fetch_add(&client->counts.connects, (uint64_t)connects);
+    atomic_fetch_add(&client->counts.header, (uint64_t)header);
+    atomic_fetch_add(&client->counts.body, (uint64_t)body);
+}
+
+static void take_answer(struct attempt *attempt, CURL *easy)
+{
+    struct slc_http_answer *answer = attempt->answer;
+    curl_off_t seconds = 0;
+    curl_easy_getinfo(easy, CURLINFO_RETRY_AFTER, &seconds);
+    answer->retry_after = seconds > 0 ? (uint64_t)seconds * 1000 : 0;
+    if (answer->outcome == SLC_HTTP_OK && !attempt->is_accepted) {
+        curl_easy_getinfo(easy, CURLINFO_REDIRECT_URL, &answer->redirect);
+        if (!answer->redirect)
+            end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_IO,
+                   "the server answers %u without a place to go to", attempt->header.status);
+    }
+    take_version(attempt);
+}
+
+void slc_http_attempt(const struct slc_http_request *request, struct slc_http_answer *answer)
+{
+    char error[CURL_ERROR_SIZE] = "";
+    struct attempt attempt = {.request = request, .answer = answer};
+    *answer = (struct slc_http_answer){.outcome = SLC_HTTP_OK};
+    slc_http_header_begin(&attempt.header);
+    struct curl_slist *headers = make_headers(request);
+    if (!headers) {
+        end_as(&attempt, SLC_HTTP_FAILED, SLUICE_ERROR_OUT_OF_HOST_MEMORY, "libcurl: no memory");
+        return;
+    }
+    set_options(&attempt, headers, error);
+    CURLcode code = curl_easy_perform(request->easy);
+    count(request->client, request->easy);
+    if (code == CURLE_OK)
+        check_end(&attempt);
+    else
+        check_failure(&attempt, code, error);
+    take_answer(&attempt, request->easy);
+    curl_easy_setopt(request->easy, CURLOPT_ERRORBUFFER, NULL);
+    curl_easy_setopt(request->easy, CURLOPT_HTTPHEADER, NULL);
+    curl_slist_free_all(headers);
+}

@@ -1,0 +1,30 @@
+/** A request with its redirects and further attempts. */
+#ifndef SLC_HTTP_HTTP_FETCH_H
+#define SLC_HTTP_HTTP_FETCH_H
+
+#include "http/http_attempt.h"
+
+/** What is fetched. */
+struct slc_http_fetch {
+    SluiceHttpClient *client;
+    const SluiceHttpFile *file;        ///< NULL: opens `url`
+    const struct slc_http_url *url;    ///< as it was opened
+    const struct slc_http_url *target; ///< where to begin, or NULL: at `url`
+    const struct slc_http_part *parts; ///< sorted by offset, side by side
+    uint32_t part_count;
+    struct slc_said *said;
+};
+
+/**
+ * Fetches on a connection. Logs failures with URL and range. `landed` may be NULL; otherwise it
+ * gets the URL that redirects led to, or zeros, and the caller frees it. `answer` is the last one.
+ * Errors: IO, FILE_NOT_FOUND, UNSUPPORTED, OUT_OF_HOST_MEMORY.
+ */
+SluiceResult slc_http_fetch(const struct slc_http_fetch *fetch,
+                            struct slc_http_connection *connection, uint32_t max_attempts,
+                            struct slc_http_url *landed, struct slc_http_answer *answer);
+
+/** What the answer says about the host that was asked. */
+enum slc_http_verdict slc_http_verdict_of(const struct slc_http_answer *answer);
+
+#endif /* SLC_HTTP_HTTP_FETCH_H */
