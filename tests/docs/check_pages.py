@@ -246,7 +246,7 @@ def check_options(root, pages, programs):
     # What scripts pass on, behind "--", goes to the program that they start.
     passes_to = {'sluice-tradeoff': 'streaming', 'demo.sh': 'streaming'}
     own = re.compile(r'(?:^|[\s/;|&(])(sluice-[a-z]+)(?=$|[\s;|&)])')
-    modules = {'sluice-exr', 'sluice-store', 'sluice-bake', 'sluice-container', 'sluice-vulkan', 'sluice-open'}
+    modules = {'sluice-exr', 'sluice-store', 'sluice-bake', 'sluice-container', 'sluice-vulkan', 'sluice-open', 'sluice-http'}
 
     def check(where, line):
         for name in own.findall(line):
