@@ -7,6 +7,8 @@
 SluiceResult showSavedFile(SluiceVulkanStreamer *streamer, SluiceTextureId texture,
                            SluiceImageSource *opened);
 void destroyWhenUnused(const SluiceVulkanStreamer *streamer, SluiceImageSource **pOld);
+SluiceVulkanWaitStatus loadNow(SluiceVulkanStreamer *streamer, SluiceTextureRequestId request,
+                               void (*drawFrame)(void *user), void *user);
 SluiceResult addDetailMap(SluiceVulkanStreamer *streamer, SluiceImageSource *source,
                           SluiceTextureId base, SluiceVulkanTexture *pDetail);
 SluiceResult requestHero(SluiceVulkanStreamer *streamer, SluiceTextureId hero,
@@ -81,4 +83,18 @@ void destroyWhenUnused(const SluiceVulkanStreamer *streamer, SluiceImageSource *
         sluiceDestroyImageSource(*pOld);
         *pOld = NULL;
     }
+}
+
+SluiceVulkanWaitStatus loadNow(SluiceVulkanStreamer *streamer, SluiceTextureRequestId request,
+                               void (*drawFrame)(void *user), void *user)
+{
+    const uint64_t second = 1000000000;
+    SluiceVulkanWaitStatus status = SLUICE_VULKAN_WAIT_FRAME;
+    while (status == SLUICE_VULKAN_WAIT_FRAME) {
+        if (sluiceWaitVulkanRequest(streamer, request, 5 * second, &status) != SLUICE_SUCCESS)
+            return SLUICE_VULKAN_WAIT_OVER;
+        if (status == SLUICE_VULKAN_WAIT_FRAME)
+            drawFrame(user); /* begins, ends and submits a streaming frame */
+    }
+    return status;
 }

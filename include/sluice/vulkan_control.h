@@ -125,6 +125,33 @@ SLUICE_API SluiceResult sluiceGetVulkanRequestProgress(const SluiceVulkanStreame
                                                        SluiceTextureRequestId requestId,
                                                        SluiceVulkanRequestProgress *pProgress);
 
+/** Why sluiceWaitVulkanRequest returned. */
+typedef enum SluiceVulkanWaitStatus {
+    SLUICE_VULKAN_WAIT_READY = 0,  ///< Every sample of the rectangle can show its level.
+    SLUICE_VULKAN_WAIT_FAILED = 1, ///< Some tiles were given up, all others are resident.
+    SLUICE_VULKAN_WAIT_OVER = 2,   ///< The request is over.
+    /** The next step is a frame: begin, end and submit one, and wait again. */
+    SLUICE_VULKAN_WAIT_FRAME = 3,
+    SLUICE_VULKAN_WAIT_TIMEOUT = 4 ///< Reads are still under way, and a frame has nothing to do.
+} SluiceVulkanWaitStatus;
+
+/**
+ * Waits for a request, at most `timeoutNanoseconds`: for loading screens. 0: only says how it is.
+ *
+ * Frames give requests to the manager, take what was read, bind and copy it. So this function
+ * returns SLUICE_VULKAN_WAIT_FRAME at once when a frame has something to do, and sleeps only while
+ * nothing but reads is under way. While memory is short it asks for frames without end: give up
+ * after a time of your own. Threads of the context read meanwhile. If reads run on threads of the
+ * application, these must not be the one that waits: pass 0 there.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for an id
+ *         that no request had.
+ */
+SLUICE_API SluiceResult sluiceWaitVulkanRequest(SluiceVulkanStreamer *streamer,
+                                                SluiceTextureRequestId requestId,
+                                                uint64_t timeoutNanoseconds,
+                                                SluiceVulkanWaitStatus *pStatus);
+
 /** Limits, bias and visibility of a texture and of its followers. All zero: no limit, no bias,
  *  visible. */
 typedef struct SluiceVulkanTextureControl {

@@ -104,7 +104,8 @@ static void report_failure(const SluiceTileLoader *loader, const struct slc_read
 
 void slc_loader_signal_if_idle(SluiceTileLoader *loader)
 {
-    if (slc_read_queue_is_idle(&loader->queue))
+    if (slc_read_queue_is_idle(&loader->queue) ||
+        (loader->awaited && loader->queue.finished_count > 0))
         slc_condition_broadcast(&loader->pool->idle);
 }
 

@@ -35,6 +35,7 @@ struct SluiceTileLoader {
     SluiceTileReadEndCallback end;
     struct slc_read_pool *pool;
     bool owns_pool;
+    bool awaited;  ///< its owner waits for a read to end
     bool uncached; ///< texels are read to the cache first: the host reads their memory slowly
     /** Interfaces of sources that are no images: their reads go straight to the memory that was
      *  given, which may have more bytes than the region. */
@@ -71,5 +72,8 @@ bool slc_read_pool_has_startable(const struct slc_read_pool *pool);
 /** With the mutex held: ends a read and tells the loader's owner. */
 void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, SluiceResult result);
 void slc_loader_signal_if_idle(SluiceTileLoader *loader);
+/** Waits until a read can be collected, none is under way, or slc_monotonic_time() is `until`.
+ *  Returns false in the last case. Without the mutex, on the thread that collects. */
+bool slc_loader_wait_for_read(SluiceTileLoader *loader, uint64_t until);
 
 #endif /* SLC_IMAGE_READ_POOL_H */

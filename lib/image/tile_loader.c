@@ -236,3 +236,16 @@ SluiceResult sluiceDropTileLoaderStatistics(SluiceTileLoader *loader,
     slc_mutex_unlock(&loader->pool->mutex);
     return result;
 }
+
+bool slc_loader_wait_for_read(SluiceTileLoader *loader, uint64_t until)
+{
+    bool in_time = true;
+    slc_mutex_lock(&loader->pool->mutex);
+    loader->awaited = true;
+    while (in_time && loader->queue.finished_count == 0 && !slc_read_queue_is_idle(&loader->queue))
+        in_time = slc_condition_wait_until(&loader->pool->idle, &loader->pool->mutex, until);
+    loader->awaited = false;
+    in_time |= loader->queue.finished_count > 0;
+    slc_mutex_unlock(&loader->pool->mutex);
+    return in_time;
+}

@@ -52,6 +52,7 @@ sluiceExplainVulkanTexture(f->streamer, f->texture.textureId, ?NULL, &f->out.exp
 sluiceGetVulkanLoadStages(f->streamer, &f->out.stages)
 sluiceRequestVulkanTexture(f->streamer, f->texture.textureId, &f->request, ?&f->out.request)
 sluiceGetVulkanRequestProgress(f->streamer, f->request_id, &f->out.request_progress)
+sluiceWaitVulkanRequest(f->streamer, f->request_id, ?0, &f->out.wait)
 sluiceWithdrawVulkanRequest(f->streamer, f->request_id)
 sluiceGetVulkanTextureControl(f->streamer, f->texture.textureId, &f->out.control)
 sluiceSetVulkanTextureControl(f->streamer, f->texture.textureId, &f->control)
@@ -190,6 +191,7 @@ struct fixture {
         SluiceTextureRequestId request;
         SluiceVulkanTextureControl control;
         bool in_use;
+        SluiceVulkanWaitStatus wait;
         SluiceVulkanRequestProgress request_progress;
         SluiceTileLoaderStatistics reads;
         SluiceDemandLoader *loader;

@@ -217,6 +217,77 @@ void a_replaced_source_is_in_use_until_its_reads_end(void **state)
     sluiceDestroyImageSource(old);
 }
 
+static SluiceVulkanWaitStatus wait_for(const struct stage *s, SluiceTextureRequestId request,
+                                       uint64_t timeout)
+{
+    SluiceVulkanWaitStatus status;
+    const uint64_t calls = s->memory.calls;
+    CHECK_OK(sluiceWaitVulkanRequest(s->streamer, request, timeout, &status));
+    assert_int_equal(s->memory.calls, calls);
+    return status;
+}
+
+static SluiceTextureRequestId request_all(const struct stage *s)
+{
+    SluiceTextureRequestId request;
+    const SluiceVulkanTextureRequest all = {.structSize = sizeof all, .until = UINT64_MAX};
+    CHECK_OK(sluiceRequestVulkanTexture(s->streamer, s->textures[0].textureId, &all, &request));
+    return request;
+}
+
+/* Any frame takes what the timeout of a minute waited for. */
+void waits_end_with_reads_and_ask_for_frames(void **state)
+{
+    (void)state;
+    const uint64_t minute = 60000000000;
+    for (int i = 0; i < 3; i++) {
+        struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.residencyMode = modes[i]});
+        SluiceTextureRequestId request = request_all(s);
+        assert_int_equal(wait_for(s, request, minute), SLUICE_VULKAN_WAIT_FRAME);
+        s->faults.holds = true;
+        hasty_frame(s);
+        fault_source_await(&s->faults, 1);
+        SluiceVulkanWaitStatus status = wait_for(s, request, 0);
+        for (uint32_t n = 0; n < 10 && status == SLUICE_VULKAN_WAIT_FRAME; n++) {
+            hasty_frame(s);
+            status = wait_for(s, request, 1000);
+        }
+        assert_int_equal(status, SLUICE_VULKAN_WAIT_TIMEOUT); /* nothing but reads is left */
+        fault_source_release(&s->faults);
+        uint32_t count = 0;
+        while ((status = wait_for(s, request, minute)) == SLUICE_VULKAN_WAIT_FRAME) {
+            s->fake.bind_value = s->fake.submitted_bind_value;
+            hasty_frame(s);
+            assert_true(++count < 200);
+        }
+        assert_int_equal(status, SLUICE_VULKAN_WAIT_READY);
+        assert_int_equal(state_now(s).residentLevel, 0);
+        stage_finish(s);
+    }
+}
+
+void waits_tell_of_failures_and_of_requests_that_are_over(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
+    SluiceTextureRequestId request = request_all(s);
+    frames(s, 1);
+    s->faults.failure = SLUICE_ERROR_IO;
+    s->faults.fails_on = true;
+    s->faults.fail_at = s->faults.read_count + 20;
+    SluiceVulkanWaitStatus status = SLUICE_VULKAN_WAIT_FRAME;
+    for (uint32_t n = 0; n < 60 && status == SLUICE_VULKAN_WAIT_FRAME; n++) {
+        frames(s, 1);
+        status = wait_for(s, request, 60000000000);
+    }
+    assert_int_equal(status, SLUICE_VULKAN_WAIT_FAILED);
+    CHECK_OK(sluiceWithdrawVulkanRequest(s->streamer, request));
+    assert_int_equal(wait_for(s, request, 0), SLUICE_VULKAN_WAIT_OVER);
+    CHECK_RESULT(sluiceWaitVulkanRequest(s->streamer, request + 7, 0, &status),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    stage_finish(s);
+}
+
 void sources_of_another_shape_are_refused(void **state)
 {
     (void)state;

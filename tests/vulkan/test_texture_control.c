@@ -622,6 +622,8 @@ int main(void)
         cmocka_unit_test(mip_tails_and_all_tiles_are_copied_again),
         cmocka_unit_test(a_reload_that_fails_keeps_the_old_texels),
         cmocka_unit_test(a_replaced_source_is_in_use_until_its_reads_end),
+        cmocka_unit_test(waits_end_with_reads_and_ask_for_frames),
+        cmocka_unit_test(waits_tell_of_failures_and_of_requests_that_are_over),
         cmocka_unit_test(sources_of_another_shape_are_refused),
         cmocka_unit_test(equal_tiles_get_pages_of_their_own),
         cmocka_unit_test(reloads_survive_every_refused_allocation),
