@@ -1,20 +1,22 @@
 #include "draw_pipeline.h"
 
-static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits kind, VkShaderModule module)
+static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits kind, VkShaderModule module,
+                                             const VkSpecializationInfo *constants)
 {
     return (VkPipelineShaderStageCreateInfo){
         .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
         .stage = kind,
         .module = module,
-        .pName = "main"};
+        .pName = "main",
+        .pSpecializationInfo = constants};
 }
 
 bool draw_pipeline_create(const struct gpu *gpu, const struct draw_pipeline_info *info,
                           VkPipeline *pipeline)
 {
     const VkPipelineShaderStageCreateInfo stages[] = {
-        stage(VK_SHADER_STAGE_VERTEX_BIT, info->vertex),
-        stage(VK_SHADER_STAGE_FRAGMENT_BIT, info->fragment)};
+        stage(VK_SHADER_STAGE_VERTEX_BIT, info->vertex, NULL),
+        stage(VK_SHADER_STAGE_FRAGMENT_BIT, info->fragment, info->constants)};
     const VkPipelineVertexInputStateCreateInfo no_input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     const VkPipelineInputAssemblyStateCreateInfo triangles = {

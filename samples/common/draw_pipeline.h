@@ -9,6 +9,7 @@ struct draw_pipeline_info {
     const struct target *target; ///< viewport and scissor are dynamic
     VkPipelineLayout layout;
     VkShaderModule vertex, fragment;
+    const VkSpecializationInfo *constants;             ///< of the fragment shader; may be NULL
     const VkPipelineVertexInputStateCreateInfo *input; ///< NULL: the vertex shader reads none
     VkCullModeFlags culled;
     bool no_color; ///< writes depth, and buffers of the shader, but no color

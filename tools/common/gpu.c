@@ -13,6 +13,7 @@
 
 #define MAX_DEVICES 32
 #define MAX_FAMILIES 32
+#define MAX_WINDOW_EXTENSIONS 8
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
 
 static const char *vulkan_result_string(VkResult result)
@@ -66,13 +67,18 @@ static VkDebugUtilsMessengerCreateInfoEXT messenger_info(struct gpu *gpu)
 }
 
 /** `*no_driver` tells a machine without any Vulkan driver from other failures. */
-static bool create_instance(bool validation, struct gpu *gpu, bool *no_driver)
+static bool create_instance(const struct gpu_request *request, struct gpu *gpu, bool *no_driver)
 {
     static const VkValidationFeatureEnableEXT synchronization[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     static const char *const layers[] = {VALIDATION_LAYER};
-    static const char *const extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
-                                             VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    const char *extensions[2 + MAX_WINDOW_EXTENSIONS] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                                         VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    const bool validation = request->validation;
+    const uint32_t first = validation ? 0 : 2;
+    uint32_t end = 2;
+    for (; end < 2 + request->instance_extension_count && end < 2 + MAX_WINDOW_EXTENSIONS; end++)
+        extensions[end] = request->instance_extensions[end - 2];
 
     VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(gpu);
     VkValidationFeaturesEXT features = {.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
@@ -83,13 +89,13 @@ static bool create_instance(bool validation, struct gpu *gpu, bool *no_driver)
                                      .pApplicationName = "sluice samples",
                                      .apiVersion = VK_API_VERSION_1_2};
     VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                 .pApplicationInfo = &application};
+                                 .pApplicationInfo = &application,
+                                 .enabledExtensionCount = end - first,
+                                 .ppEnabledExtensionNames = extensions + first};
     if (validation) {
         info.pNext = &features;
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = layers;
-        info.enabledExtensionCount = 2;
-        info.ppEnabledExtensionNames = extensions;
     }
     VkResult result = vkCreateInstance(&info, NULL, &gpu->instance);
     *no_driver = result == VK_ERROR_INCOMPATIBLE_DRIVER;
@@ -157,7 +163,7 @@ uint32_t gpu_list_devices(void)
 {
     struct gpu gpu = {0};
     bool no_driver;
-    if (!create_instance(false, &gpu, &no_driver))
+    if (!create_instance(&(struct gpu_request){0}, &gpu, &no_driver))
         return 0;
     VkPhysicalDevice devices[MAX_DEVICES];
     uint32_t count = enumerate_devices(gpu.instance, devices);
@@ -335,6 +341,11 @@ static bool create_device(struct gpu *gpu)
                                .pNext = &features,
                                .queueCreateInfoCount = queues.count,
                                .pQueueCreateInfos = queues.infos};
+    static const char *const swapchain[] = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+    if (gpu->presents) {
+        info.enabledExtensionCount = 1;
+        info.ppEnabledExtensionNames = swapchain;
+    }
     struct gpu_ray_features rays;
     if (gpu->ray_tracing)
         gpu_require_rays(&rays, &vulkan12, &info);
@@ -370,7 +381,8 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
 {
     memset(gpu, 0, sizeof *gpu);
     memcpy(gpu->modes, request->modes, sizeof gpu->modes);
-    if (create_instance(request->validation, gpu, unsupported)) {
+    gpu->presents = request->instance_extension_count > 0;
+    if (create_instance(request, gpu, unsupported)) {
         *unsupported = !choose_device(request->device, gpu) || !choose_queue_family(gpu);
         gpu->ray_tracing =
             !*unsupported && request->ray_tracing && gpu_traces_rays(gpu->physical_device);

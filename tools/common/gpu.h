@@ -20,6 +20,10 @@ struct gpu_request {
     bool build_queue;      ///< there is a queue beside the others, where the device has one
     bool byte_pages; ///< byte pages of demand loaders, with addresses, where the device has them
     bool neural;     ///< all decode paths that the device has are enabled; without rays
+    /** Of a window's surface; with them the device can present (VK_KHR_swapchain). Without rays and
+     *  neural. At most 8. */
+    const char *const *instance_extensions;
+    uint32_t instance_extension_count;
 };
 
 struct gpu {
@@ -41,6 +45,7 @@ struct gpu {
     bool has_build_queue;         ///< asked for and there
     bool buffer_addresses;        ///< asked for and there, or rays are traced
     bool byte_pages;              ///< asked for and there
+    bool presents;                ///< extensions of a window were asked for
     SluiceNeuralPaths neural;     ///< asked for and there
     VkDebugUtilsMessengerEXT messenger;
     atomic_uint validation_messages; ///< warnings and errors of the validation layers so far

@@ -79,8 +79,9 @@ static bool create_images(const struct gpu *gpu, struct target *target)
     const VkImageUsageFlags color_usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     uint32_t width = target->width, height = target->height;
     if (!gpu_create_image(gpu, TARGET_FORMAT, width, height, VK_SAMPLE_COUNT_1_BIT,
-                          color_usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT,
-                          &target->color) ||
+                          color_usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                              VK_IMAGE_USAGE_SAMPLED_BIT,
+                          VK_IMAGE_ASPECT_COLOR_BIT, &target->color) ||
         !gpu_create_image(gpu, DEPTH_FORMAT, width, height, target->samples,
                           VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT,
                           &target->depth))
