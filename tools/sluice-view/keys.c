@@ -1,3 +1,6 @@
+/* strdup, realpath, strtok_r, strcasecmp */
+#define _XOPEN_SOURCE 700
+
 #include "keys.h"
 
 #include <string.h>

@@ -1,0 +1,58 @@
+/** The camera: where it is, how input moves it, and paths that it follows. */
+#ifndef SLUICE_VIEW_CAMERA_H
+#define SLUICE_VIEW_CAMERA_H
+
+#include "settings.h"
+
+#include "../../samples/common/vecmath.h"
+
+#include <stddef.h>
+
+/** Radians. Yaw 0 looks along -z, growing to the right; pitch is above the horizon. */
+struct view_camera {
+    struct vec3 position;
+    float yaw, pitch;
+    float fov; ///< vertical
+};
+
+struct vec3 view_camera_forward(const struct view_camera *camera);
+struct vec3 view_camera_right(const struct view_camera *camera);
+/** A camera at `eye` that looks at `target`. */
+struct view_camera view_camera_at(struct vec3 eye, struct vec3 target, float fov);
+/** Angles take the shorter way. */
+struct view_camera view_camera_mix(const struct view_camera *a, const struct view_camera *b,
+                                   float part);
+
+/** What the user wants in this frame. */
+struct camera_wish {
+    float forward, right, up;  ///< -1 to 1
+    float look_right, look_up; ///< radians
+    float pan_right, pan_up;   ///< part of the picture
+    float dolly;               ///< turns of the wheel
+    float factor;              ///< of the speed
+    float seconds;
+};
+
+/** Moves the camera. `center` is what VIEW_ORBIT turns round, and moves with panning. */
+void view_camera_move(struct view_camera *camera, const struct camera_wish *wish, int motion,
+                      double speed, struct vec3 *center);
+
+/** Cameras at times that grow from 0. Zeroed is empty. */
+struct camera_path {
+    struct camera_path_point {
+        float seconds;
+        struct view_camera camera;
+    } * points; ///< owned
+    size_t count, capacity;
+};
+
+bool camera_path_add(struct camera_path *path, float seconds, const struct view_camera *camera);
+void camera_path_finish(struct camera_path *path);
+/** False if the path is empty. Stays at the last point after the end. */
+bool camera_path_get(const struct camera_path *path, float seconds, struct view_camera *camera);
+float camera_path_length(const struct camera_path *path);
+/** Text files: a line "seconds x y z yaw pitch fov" per point. Say on stderr what is wrong. */
+bool camera_path_read(const char *file, struct camera_path *path);
+bool camera_path_write(const char *file, const struct camera_path *path);
+
+#endif /* SLUICE_VIEW_CAMERA_H */

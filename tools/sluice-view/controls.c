@@ -1,0 +1,368 @@
+#include "controls.h"
+
+#include "../common/option_value.h"
+#include "../common/text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define FIELD(name) offsetof(struct view_settings, name)
+#define MIB 1048576.0
+
+/* Options that other programs have keep their names, defaults and meanings (tests/programs). */
+static const struct control table[] = {
+    {"Memory",
+     "Budget",
+     {OPTION_BYTES, "budget", "SIZE", "0", NULL,
+      "most memory for tiles, 4M or more; 0: as much as the device has", 0, 1099511627776.0},
+     FIELD(budget),
+     "%.0f MiB",
+     CONTROL_LOGARITHMIC},
+    {"Memory",
+     "Standby tiles",
+     {OPTION_UINT, "standby", "N", "1024", NULL,
+      "tiles that are kept in memory after nothing requests them", 0, UINT32_MAX},
+     FIELD(standby),
+     NULL,
+     CONTROL_LOGARITHMIC},
+    {"Memory",
+     "Timeout",
+     {OPTION_SECONDS, "timeout", "SECONDS", "1", NULL,
+      "time that a tile stays requested after it was last seen", 1e-6, 1e9},
+     FIELD(timeout),
+     "%.2f s",
+     CONTROL_LOGARITHMIC},
+    {"Memory",
+     "Residency",
+     {OPTION_CHOICE, "residency", "auto|sparse|paged|dense", "auto", NULL,
+      "sparse images, a page table, or memory for everything; auto: sparse where the device has "
+      "it, "
+      "else paged"},
+     FIELD(residency),
+     NULL,
+     CONTROL_REOPENS},
+
+    {"Feedback",
+     "Feedback",
+     {OPTION_CHOICE, "feedback", "on|off", "on", NULL,
+      "whether shaders report what they sample; off: nothing new is loaded"},
+     FIELD(feedback),
+     NULL,
+     0},
+    {"Feedback",
+     "Probability",
+     {OPTION_REAL, "probability", "P", "1/16", NULL,
+      "probability that a pixel quad writes feedback", 0, 1},
+     FIELD(probability),
+     "%.4f",
+     CONTROL_LOGARITHMIC},
+    {"Feedback",
+     "Textures per frame",
+     {OPTION_UINT, "textures-per-frame", "N", "10", NULL, "feedback maps read back per frame", 1,
+      65536},
+     FIELD(textures_per_frame),
+     NULL,
+     CONTROL_LOGARITHMIC},
+
+    {"Loading",
+     "Tiles per frame",
+     {OPTION_UINT, "tiles-per-frame", "N", "256", NULL, "most tiles that are loaded per frame", 1,
+      8192},
+     FIELD(tiles_per_frame),
+     NULL,
+     CONTROL_LOGARITHMIC},
+    {"Loading",
+     "Loads in flight",
+     {OPTION_UINT, "loads-in-flight", "N", "0", NULL,
+      "most tiles that are being read or wait for their upload; 0: 4 times --tiles-per-frame", 0,
+      65536},
+     FIELD(loads_in_flight),
+     NULL,
+     CONTROL_LOGARITHMIC | CONTROL_REOPENS},
+    {"Loading",
+     "Fade",
+     {OPTION_SECONDS, "fade", "SECONDS", "0.1", NULL,
+      "time that a texel takes to become one level sharper; 0: at once", 0, 3600},
+     FIELD(fade),
+     "%.2f s",
+     CONTROL_LOGARITHMIC},
+    {"Loading",
+     "Source latency",
+     {OPTION_MILLISECONDS, "source-latency", "MS", "0", NULL,
+      "time that each read takes longer, whatever else is read meanwhile", 0, 60000},
+     FIELD(source_latency),
+     "%.0f ms",
+     CONTROL_LOGARITHMIC},
+    {"Loading",
+     "Source bandwidth",
+     {OPTION_REAL, "source-bandwidth", "MB/S", "0", NULL,
+      "10^6 bytes of texels per second that all reads share; 0: no limit", 0, 1e9},
+     FIELD(source_bandwidth),
+     "%.0f MB/s",
+     CONTROL_LOGARITHMIC},
+    {"Loading",
+     "Pause streaming",
+     {OPTION_CHOICE, "pause", "off|on", "off", NULL, "streaming stands still; the camera does not"},
+     FIELD(pause),
+     NULL,
+     CONTROL_PASSING},
+    {"Loading",
+     "Freeze wants",
+     {OPTION_CHOICE, "freeze-wants", "off|on", "off", NULL,
+      "tiles are requested for the camera as it was, while one flies on"},
+     FIELD(freeze_wants),
+     NULL,
+     CONTROL_PASSING},
+
+    {"Sampling",
+     "Mip bias",
+     {OPTION_REAL, "lod-bias", "B", "0", NULL, "levels; positive is blurrier", -8, 8},
+     FIELD(lod_bias),
+     "%+.2f",
+     0},
+    {"Sampling",
+     "Anisotropy",
+     {OPTION_UINT, "anisotropy", "N", "8", NULL, "of the filter, at most; 1: trilinear", 1, 16},
+     FIELD(anisotropy),
+     NULL,
+     CONTROL_REOPENS},
+
+    {"Picture",
+     "View",
+     {OPTION_UINT, "view", "N", "1", NULL,
+      "1 picture, 2 resident level, 3 missing levels, 4 wanted level, 5 age, 6 textures, 7 "
+      "feedback "
+      "written, 8 difference to the truth, 9 checks",
+      1, 9},
+     FIELD(view),
+     NULL,
+     CONTROL_PASSING},
+    {"Picture",
+     "Tint",
+     {OPTION_REAL, "tint", "T", "0.7", NULL,
+      "how strong the colors of views 2 to 6 cover the picture", 0, 1},
+     FIELD(tint),
+     "%.2f",
+     0},
+    {"Picture",
+     "Tile borders",
+     {OPTION_CHOICE, "borders", "off|on", "off", NULL, "draw the borders of tiles"},
+     FIELD(borders),
+     NULL,
+     0},
+    {"Picture",
+     "Render scale",
+     {OPTION_REAL, "render-scale", "S", "0", NULL,
+      "pixels of the picture per pixel of the window, in each direction; 0: 1, on CPUs 1/2", 0, 2},
+     FIELD(render_scale),
+     "%.2f",
+     0},
+
+    {"Compare",
+     "Compare",
+     {OPTION_CHOICE, "compare-as", "off|divider|difference|flicker", "off", NULL,
+      "show a second picture of the same camera: beside, subtracted, or in turns"},
+     FIELD(compare),
+     NULL,
+     CONTROL_PASSING},
+    {"Compare",
+     "Compare to",
+     {OPTION_CHOICE, "compare-to", "everything|budget", "everything", NULL,
+      "the second picture: everything resident, or 16 MiB for tiles"},
+     FIELD(compared),
+     NULL,
+     0},
+    {"Compare",
+     "Divider",
+     {OPTION_REAL, "divider", "X", "0.5", NULL,
+      "where the pictures meet, from the left; the divider can be dragged", 0, 1},
+     FIELD(divider),
+     "%.2f",
+     0},
+    {"Compare",
+     "Gain",
+     {OPTION_REAL, "gain", "K", "4", NULL, "the difference is multiplied by it", 1, 16},
+     FIELD(gain),
+     "x%.0f",
+     0},
+
+    {"Camera",
+     "Motion",
+     {OPTION_CHOICE, "motion", "walk|fly|orbit", "walk", NULL,
+      "walk: keeps its height; fly: goes where it looks; orbit: turns round a point"},
+     FIELD(motion),
+     NULL,
+     0},
+    {"Camera",
+     "Speed",
+     {OPTION_REAL, "speed", "M/S", "2.5", NULL, "meters per second", 0.01, 1000},
+     FIELD(speed),
+     "%.2f m/s",
+     CONTROL_LOGARITHMIC},
+
+    {"Window",
+     "Size",
+     {OPTION_EXTENT, "size", "WxH", "1280x720", NULL,
+      "pixels of the window, or of the pictures of "
+      "--headless",
+      160, 8192},
+     FIELD(size),
+     NULL,
+     0},
+    {"Window",
+     "Full screen",
+     {OPTION_CHOICE, "full-screen", "off|on", "off", NULL, "the window takes the whole monitor"},
+     FIELD(full_screen),
+     NULL,
+     0},
+    {"Window",
+     "Frame cap",
+     {OPTION_UINT, "frame-cap", "N", "60", NULL,
+      "most frames per second; 0: no limit. The time step of --headless", 0, 1000},
+     FIELD(frame_cap),
+     NULL,
+     0},
+    {"Window",
+     "UI scale",
+     {OPTION_REAL, "ui-scale", "S", "0", NULL, "size of letters; 0: as the monitor wants", 0, 4},
+     FIELD(ui_scale),
+     "%.2f",
+     CONTROL_REOPENS},
+    {"Window",
+     "Panels",
+     {OPTION_CHOICE, "panels", "on|off", "on", NULL, "off: the picture alone"},
+     FIELD(panels),
+     NULL,
+     CONTROL_PASSING},
+};
+
+#define COUNT (sizeof table / sizeof *table)
+_Static_assert(COUNT <= CONTROLS_MAX, "callers have room for CONTROLS_MAX");
+
+const struct control *controls_get(uint32_t *count)
+{
+    *count = (uint32_t)COUNT;
+    return table;
+}
+
+struct option control_option(const struct control *control, struct view_settings *settings)
+{
+    struct option option = control->option;
+    option.value = (char *)settings + control->offset;
+    return option;
+}
+
+size_t controls_write_options(struct view_settings *settings, struct option *options)
+{
+    size_t count = 0;
+    const char *group = "";
+    for (size_t i = 0; i < COUNT; i++) {
+        if (strcmp(group, table[i].group) != 0)
+            options[count++] = (struct option){OPTION_SECTION, .help = table[i].group};
+        group = table[i].group;
+        options[count++] = control_option(&table[i], settings);
+    }
+    return count;
+}
+
+void control_reset(const struct control *control, struct view_settings *settings)
+{
+    const struct option option = control_option(control, settings);
+    option_value_read(&option, option.initial);
+}
+
+void controls_set_defaults(struct view_settings *settings)
+{
+    *settings = (struct view_settings){0};
+    for (size_t i = 0; i < COUNT; i++)
+        control_reset(&table[i], settings);
+}
+
+static const struct control *find(const char *name)
+{
+    for (size_t i = 0; i < COUNT; i++)
+        if (strcmp(table[i].option.name, name) == 0)
+            return &table[i];
+    return NULL;
+}
+
+bool controls_set(struct view_settings *settings, const char *name, const char *value,
+                  const char *speaker)
+{
+    char wanted[512];
+    const struct control *control = find(name);
+    if (!control) {
+        text_say("%s: there is no setting %s", speaker, name);
+        return false;
+    }
+    struct view_settings changed = *settings;
+    const struct option option = control_option(control, &changed);
+    if (!option_value_read(&option, value)) {
+        text_say("%s: %s %s: wants %s", speaker, name, value,
+                 option_value_wanted(&option, value, wanted, sizeof wanted));
+        return false;
+    }
+    *settings = changed;
+    return true;
+}
+
+static void write_choice(const char *words, int choice, char *text, size_t size)
+{
+    for (; choice > 0 && strchr(words, '|'); choice--)
+        words = strchr(words, '|') + 1;
+    snprintf(text, size, "%.*s", (int)strcspn(words, "|"), words);
+}
+
+const char *control_write(const struct control *control, const struct view_settings *settings,
+                          char *text, size_t size)
+{
+    const void *value = (const char *)settings + control->offset;
+    const uint64_t *bytes = value;
+    const uint32_t *extent = value;
+    switch (control->option.kind) {
+    case OPTION_UINT: snprintf(text, size, "%u", (unsigned)*extent); break;
+    case OPTION_BYTES:
+        if (*bytes % 1048576 == 0)
+            snprintf(text, size, "%.0f", (double)*bytes / MIB);
+        else
+            snprintf(text, size, "%.0fK", (double)*bytes / 1024.0);
+        break;
+    case OPTION_CHOICE:
+        write_choice(control->option.operand, *(const int *)value, text, size);
+        break;
+    case OPTION_EXTENT: snprintf(text, size, "%ux%u", extent[0], extent[1]); break;
+    default: snprintf(text, size, "%.9g", *(const double *)value); break;
+    }
+    return text;
+}
+
+bool control_is_default(const struct control *control, const struct view_settings *settings)
+{
+    char now[64], initial[64];
+    struct view_settings defaults = *settings;
+    control_reset(control, &defaults);
+    return strcmp(control_write(control, settings, now, sizeof now),
+                  control_write(control, &defaults, initial, sizeof initial)) == 0;
+}
+
+void controls_write_command(const struct view_settings *settings, char *text, size_t size)
+{
+    char value[64];
+    size_t length = 0;
+    text[0] = '\0';
+    for (size_t i = 0; i < COUNT && length < size; i++)
+        if (!control_is_default(&table[i], settings))
+            length +=
+                (size_t)snprintf(text + length, size - length, " --%s %s", table[i].option.name,
+                                 control_write(&table[i], settings, value, sizeof value));
+}
+
+void controls_take_changes(const struct view_settings *from, struct view_settings *to)
+{
+    char text[64];
+    for (size_t i = 0; i < COUNT; i++)
+        if (!control_is_default(&table[i], from)) {
+            const struct option option = control_option(&table[i], to);
+            option_value_read(&option, control_write(&table[i], from, text, sizeof text));
+        }
+}

@@ -1,0 +1,49 @@
+/**
+ * The table of all controls. A row makes the option, the widget with its hint, the line in the file
+ * of settings, the event `set` of scripts, and the part of "copy command line".
+ */
+#ifndef SLUICE_VIEW_CONTROLS_H
+#define SLUICE_VIEW_CONTROLS_H
+
+#include "settings.h"
+
+#include "../common/option_table.h"
+
+#include <stdio.h>
+
+enum control_flags {
+    CONTROL_LOGARITHMIC = 1,
+    CONTROL_REOPENS = 2, ///< takes effect when the scene is opened again
+    CONTROL_PASSING = 4  ///< not kept in files of settings
+};
+
+struct control {
+    const char *group, *label;
+    struct option option; ///< `value` is an offset into view_settings; see control_option
+    size_t offset;
+    const char *format; ///< of the widget: "%.2f s"
+    unsigned flags;
+};
+
+#define CONTROLS_MAX 48
+
+const struct control *controls_get(uint32_t *count);
+/** The row as an option over these settings. */
+struct option control_option(const struct control *control, struct view_settings *settings);
+/** Writes headings and options. Returns how many; there is room for 2 * CONTROLS_MAX. */
+size_t controls_write_options(struct view_settings *settings, struct option *options);
+void controls_set_defaults(struct view_settings *settings);
+void control_reset(const struct control *control, struct view_settings *settings);
+/** False, with a line on stderr behind `speaker`, for an unknown name or a wrong value. */
+bool controls_set(struct view_settings *settings, const char *name, const char *value,
+                  const char *speaker);
+/** The value as a user would write it. Returns `text`. */
+const char *control_write(const struct control *control, const struct view_settings *settings,
+                          char *text, size_t size);
+bool control_is_default(const struct control *control, const struct view_settings *settings);
+/** Takes over what is not the default in `from`. */
+void controls_take_changes(const struct view_settings *from, struct view_settings *to);
+/** " --budget 64 --view 3": what is not the default. */
+void controls_write_command(const struct view_settings *settings, char *text, size_t size);
+
+#endif /* SLUICE_VIEW_CONTROLS_H */

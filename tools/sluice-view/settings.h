@@ -1,0 +1,58 @@
+/** What people set: one plain struct that options, panels, scripts and files of settings share. */
+#ifndef SLUICE_VIEW_SETTINGS_H
+#define SLUICE_VIEW_SETTINGS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum view_residency { VIEW_AUTO, VIEW_SPARSE, VIEW_PAGED, VIEW_DENSE };
+enum view_feedback { VIEW_FEEDBACK_ON, VIEW_FEEDBACK_OFF };
+enum view_motion { VIEW_WALK, VIEW_FLY, VIEW_ORBIT };
+enum view_compare { VIEW_COMPARE_OFF, VIEW_DIVIDER, VIEW_DIFFERENCE, VIEW_FLICKER };
+enum view_compared { VIEW_WITH_EVERYTHING, VIEW_WITH_BUDGET };
+
+/** Views of the picture, by the number of their key. */
+enum view_number {
+    VIEW_PICTURE = 1,
+    VIEW_RESIDENT,
+    VIEW_MISSING,
+    VIEW_WANTED,
+    VIEW_IDENTITY = 6,
+    VIEW_WRITTEN,
+    VIEW_CHECKS = 9
+};
+
+/** Rows of controls.c. Choices are int, "off|on" among them. */
+struct view_settings {
+    uint64_t budget; ///< bytes; 0: no limit
+    double lod_bias;
+    int feedback; ///< enum view_feedback
+    double probability;
+    uint32_t textures_per_frame, tiles_per_frame, loads_in_flight;
+    double timeout; ///< seconds
+    uint32_t standby;
+    double fade;   ///< seconds
+    int residency; ///< enum view_residency
+    uint32_t anisotropy;
+    double source_latency, source_bandwidth; ///< milliseconds, MB/s
+    int pause, freeze_wants;
+
+    uint32_t view; ///< enum view_number
+    double render_scale;
+    double tint;
+    int borders;
+    int compare, compared; ///< enum view_compare, enum view_compared
+    double divider;        ///< 0 to 1
+    double gain;           ///< of the difference
+
+    int motion; ///< enum view_motion
+    double speed;
+
+    uint32_t size[2];
+    int full_screen;
+    uint32_t frame_cap;
+    double ui_scale; ///< 0: the monitor's
+    int panels;      ///< 0: shown
+};
+
+#endif /* SLUICE_VIEW_SETTINGS_H */
