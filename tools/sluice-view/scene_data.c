@@ -1,0 +1,57 @@
+#include "scene_data.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+void scene_data_finish(struct scene_data *scene)
+{
+    for (uint32_t i = 0; i < scene->image_count; i++) {
+        sluiceDestroyImageSource(scene->images[i].source);
+        free(scene->images[i].name);
+        free(scene->images[i].path);
+    }
+    sluiceDestroyImageOpener(scene->opener);
+    free(scene->name);
+    free(scene->vertices);
+    free(scene->indices);
+    free(scene->parts);
+    free(scene->images);
+    free(scene->paints);
+    camera_path_finish(&scene->tour);
+    *scene = (struct scene_data){0};
+}
+
+static void measure(struct scene_data *scene)
+{
+    struct vec3 low = {FLT_MAX, FLT_MAX, FLT_MAX}, high = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    for (uint32_t i = 0; i < scene->vertex_count; i++) {
+        const float *p = scene->vertices[i].position;
+        low = (struct vec3){fminf(low.x, p[0]), fminf(low.y, p[1]), fminf(low.z, p[2])};
+        high = (struct vec3){fmaxf(high.x, p[0]), fmaxf(high.y, p[1]), fmaxf(high.z, p[2])};
+    }
+    scene->bounds[0] = low;
+    scene->bounds[1] = high;
+}
+
+void scene_data_complete(struct scene_data *scene)
+{
+    measure(scene);
+    const struct vec3 center = vec3_mix(scene->bounds[0], scene->bounds[1], 0.5f);
+    const struct vec3 half = vec3_sub(scene->bounds[1], center);
+    const float distance = 1.9f * sqrtf(vec3_dot(half, half));
+    if (scene->camera.fov <= 0)
+        scene->camera = view_camera_at(
+            vec3_add(center, (struct vec3){0.35f * distance, 0.25f * distance, 0.9f * distance}),
+            center, 0.9f);
+    const bool has_tour = scene->tour.count > 0;
+    for (int i = 0; !has_tour && i <= 24; i++) {
+        const float angle = 6.2831853f * (float)i / 24;
+        const struct vec3 eye = {center.x + 0.8f * distance * sinf(angle),
+                                 center.y + 0.25f * distance,
+                                 center.z + 0.8f * distance * cosf(angle)};
+        const struct view_camera camera = view_camera_at(eye, center, 0.9f);
+        if (!camera_path_add(&scene->tour, (float)i, &camera))
+            break;
+    }
+}

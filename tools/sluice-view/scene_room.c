@@ -1,0 +1,201 @@
+/* strdup, realpath, strtok_r, strcasecmp */
+#define _XOPEN_SOURCE 700
+
+#include "scene_data.h"
+
+#include <vulkan/vulkan_core.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PANELS 24u
+#define IMAGES (PANELS + 2u) /* floor and walls */
+#define QUADS (PANELS + 5u)
+#define TAU 6.2831853f
+
+/* A different picture for each seed. */
+struct paint {
+    float colors[3][3];
+    float waves, turn;
+};
+
+static float fraction(float x)
+{
+    return x - floorf(x);
+}
+
+static float hash(uint32_t i)
+{
+    i = (i ^ 61u ^ i >> 16) * 9u;
+    i = (i ^ i >> 4) * 0x27d4eb2du;
+    return (float)((i ^ i >> 15) & 0xFFFFu) / 65535.0f;
+}
+
+/* Bands of waves and, at finer and finer scale, grids of lines: what is coarse shows fewer of them.
+ */
+static void paint_texel(void *user_data, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                        uint32_t height, float rgba[4])
+{
+    const struct paint *paint = user_data;
+    const float u = ((float)x + 0.5f) / (float)width, v = ((float)y + 0.5f) / (float)height;
+    const float texel = 1.0f / (float)(width < height ? width : height);
+    const float along = u * cosf(paint->turn) + v * sinf(paint->turn);
+    const float across = v * cosf(paint->turn) - u * sinf(paint->turn);
+    const float wave =
+        0.5f + 0.5f * sinf(TAU * paint->waves * (along + 0.13f * sinf(TAU * across * 2)));
+    const float second = 0.5f + 0.5f * sinf(TAU * (across * paint->waves * 0.7f + along));
+    float shade = 1.0f;
+    (void)level;
+    for (float lines = 8; lines <= 1024; lines *= 4) {
+        const float wide = 0.10f / lines;
+        if (wide < 0.7f * texel)
+            break;
+        const float du = fabsf(fraction(u * lines + 0.5f) - 0.5f) / lines;
+        const float dv = fabsf(fraction(v * lines + 0.5f) - 0.5f) / lines;
+        if (du < 0.5f * wide || dv < 0.5f * wide)
+            shade *= 0.72f;
+    }
+    for (int c = 0; c < 3; c++) {
+        const float mixed =
+            paint->colors[0][c] + (paint->colors[1][c] - paint->colors[0][c]) * wave;
+        rgba[c] = (mixed + (paint->colors[2][c] - mixed) * second * 0.45f) * shade;
+    }
+    rgba[3] = 1.0f;
+}
+
+static void choose_paint(uint32_t seed, struct paint *paint)
+{
+    const float hue = hash(seed * 7 + 1) * TAU;
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++)
+            paint->colors[k][c] = 0.42f + 0.34f * cosf(hue + (float)k * 1.9f + (float)c * 2.1f);
+    paint->waves = 1.5f + 3.0f * hash(seed * 7 + 2);
+    paint->turn = TAU * hash(seed * 7 + 3);
+    if (seed >= PANELS)
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; c < 3; c++)
+                paint->colors[k][c] = (seed == PANELS ? 0.26f : 0.42f) + 0.03f * (float)k;
+}
+
+/* Sources point to it; the scene frees it behind them. */
+static struct paint *paints_of_room(void)
+{
+    struct paint *paints = calloc(IMAGES, sizeof *paints);
+    for (uint32_t i = 0; paints && i < IMAGES; i++)
+        choose_paint(i, &paints[i]);
+    return paints;
+}
+
+static bool add_image(struct scene_data *scene, struct paint *paints, uint32_t i)
+{
+    char name[32];
+    if (i < PANELS)
+        snprintf(name, sizeof name, "picture %02u", i + 1);
+    else
+        snprintf(name, sizeof name, "%s", i == PANELS ? "floor" : "walls");
+    const SluiceProceduralImage image = {&paints[i], paint_texel};
+    const SluiceImageInfo info = {.structSize = sizeof info,
+                                  .width = i % 5 == 4 ? 4096 : 2048,
+                                  .height = i % 3 == 2 ? 4096 : 2048,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_SRGB,
+                                  .pName = name};
+    struct scene_image *added = &scene->images[i];
+    added->name = strdup(name);
+    added->path = strdup("");
+    added->wrap_u = added->wrap_v = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    scene->image_count = i + 1;
+    return added->name && added->path &&
+           sluiceCreateProceduralImageSource(&image, &info, NULL, &added->source) == SLUICE_SUCCESS;
+}
+
+/* `right` and `down` span it from its top left corner. */
+static void add_quad(struct scene_data *scene, struct vec3 corner, struct vec3 right,
+                     struct vec3 down, uint32_t image, float repeat_u, float repeat_v)
+{
+    const uint32_t first = scene->vertex_count;
+    const struct vec3 normal = vec3_normalize(vec3_cross(down, right));
+    for (int i = 0; i < 4; i++) {
+        const float u = (float)(i & 1), v = (float)(i >> 1);
+        const struct vec3 at =
+            vec3_add(corner, vec3_add(vec3_scale(right, u), vec3_scale(down, v)));
+        scene->vertices[scene->vertex_count++] = (struct scene_vertex){
+            {at.x, at.y, at.z}, {normal.x, normal.y, normal.z}, {u * repeat_u, v * repeat_v}};
+    }
+    static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
+    scene->parts[scene->part_count++] =
+        (struct scene_part){scene->index_count, 6, image, {0.9f, 0.9f, 0.9f, 1}};
+    for (int i = 0; i < 6; i++)
+        scene->indices[scene->index_count++] = first + corners[i];
+}
+
+static void add_panel(struct scene_data *scene, uint32_t i)
+{
+    const bool left = i % 2 == 0;
+    const float z = -2.4f * (float)(i / 2), x = left ? -2.48f : 2.48f;
+    if (left)
+        add_quad(scene, (struct vec3){x, 2.25f, z + 0.95f}, (struct vec3){0, 0, -1.9f},
+                 (struct vec3){0, -1.9f, 0}, i, 1, 1);
+    else
+        add_quad(scene, (struct vec3){x, 2.25f, z - 0.95f}, (struct vec3){0, 0, 1.9f},
+                 (struct vec3){0, -1.9f, 0}, i, 1, 1);
+}
+
+static void add_walls(struct scene_data *scene)
+{
+    const float length = 2.4f * (float)(PANELS / 2) + 3.0f, front = 3.5f;
+    add_quad(scene, (struct vec3){-2.5f, 0, front - length}, (struct vec3){5, 0, 0},
+             (struct vec3){0, 0, length}, PANELS, 2, 2 * length / 5);
+    add_quad(scene, (struct vec3){-2.5f, 2.8f, front}, (struct vec3){5, 0, 0},
+             (struct vec3){0, 0, -length}, SCENE_NO_IMAGE, 1, 1);
+    add_quad(scene, (struct vec3){-2.5f, 2.8f, front}, (struct vec3){0, 0, -length},
+             (struct vec3){0, -2.8f, 0}, PANELS + 1, length / 4, 1);
+    add_quad(scene, (struct vec3){2.5f, 2.8f, front - length}, (struct vec3){0, 0, length},
+             (struct vec3){0, -2.8f, 0}, PANELS + 1, length / 4, 1);
+    add_quad(scene, (struct vec3){-2.5f, 2.8f, front - length}, (struct vec3){5, 0, 0},
+             (struct vec3){0, -2.8f, 0}, PANELS + 1, 2, 1);
+}
+
+/* Along the room with looks to both sides, and back. */
+static bool add_tour(struct scene_data *scene)
+{
+    static const float stops[][4] = {
+        /* seconds, z, yaw, pitch */
+        {0, 2.6f, 0, -0.02f},    {4, -1.5f, 0.35f, 0},         {8, -6.0f, -0.75f, 0},
+        {11, -8.5f, -1.35f, 0},  {15, -13.0f, 0.6f, 0},        {18, -17.0f, 1.3f, 0},
+        {22, -22.0f, 0, -0.05f}, {25, -22.5f, -1.57f, 0},      {28, -20.0f, -3.14159f, 0},
+        {40, 2.2f, -3.3f, 0},    {43, 2.6f, -6.28318f, -0.02f}};
+    for (size_t i = 0; i < sizeof stops / sizeof *stops; i++) {
+        const struct view_camera camera = {{0, 1.5f, stops[i][1]}, stops[i][2], stops[i][3], 1.0f};
+        if (!camera_path_add(&scene->tour, stops[i][0], &camera))
+            return false;
+    }
+    scene->camera = scene->tour.points[0].camera;
+    return true;
+}
+
+bool scene_data_make_room(struct scene_data *scene)
+{
+    struct paint *paints = paints_of_room();
+    *scene = (struct scene_data){.name = strdup("room of computed pictures")};
+    scene->vertices = calloc(4 * QUADS, sizeof *scene->vertices);
+    scene->indices = calloc(6 * QUADS, sizeof *scene->indices);
+    scene->parts = calloc(QUADS, sizeof *scene->parts);
+    scene->images = calloc(IMAGES, sizeof *scene->images);
+    bool made = paints && scene->name && scene->vertices && scene->indices && scene->parts &&
+                scene->images && add_tour(scene);
+    scene->paints = paints;
+    for (uint32_t i = 0; made && i < IMAGES; i++)
+        made = add_image(scene, paints, i);
+    if (!made) {
+        fprintf(stderr, "sluice-view: out of memory\n");
+        scene_data_finish(scene);
+        return false;
+    }
+    add_walls(scene);
+    for (uint32_t i = 0; i < PANELS; i++)
+        add_panel(scene, i);
+    scene_data_complete(scene);
+    return true;
+}

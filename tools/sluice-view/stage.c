@@ -1,0 +1,351 @@
+#include "stage.h"
+
+#include "scene_data.h"
+#include "scene_import.h"
+#include "stage_draw.h"
+
+#include "../../samples/common/slow_source.h"
+#include "../common/log.h"
+#include "../common/text.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TICKS_PER_SECOND 1000000u
+#define LEAST_BUDGET (4ull << 20)
+
+struct stage {
+    const struct gpu *gpu;
+    struct scene_data scene;
+    struct view_settings settings; ///< applied last
+    SluiceVulkanContext *context;
+    SluiceVulkanStreamer *streamer;
+    struct stage_drawing drawing;
+    struct stage_texture *textures;
+    uint32_t *table_indices;
+    SluiceImageSource **slow; ///< around the scene's sources; NULL without a slow line
+    struct slow_line line;
+    bool is_slow;
+    atomic_uint_least64_t now;
+};
+
+static bool check(SluiceResult result, const char *what)
+{
+    if (result == SLUICE_SUCCESS)
+        return true;
+    text_say("sluice-view: %s: %s", what, sluiceGetResultName(result));
+    return false;
+}
+
+static uint64_t slow_now(void *user_data)
+{
+    return atomic_load(&((struct stage *)user_data)->now);
+}
+
+static bool begin_slowness(struct stage *s)
+{
+    if (s->settings.source_latency <= 0 && s->settings.source_bandwidth <= 0)
+        return true;
+    const struct slow_line_info info = {1e3 * s->settings.source_latency,
+                                        s->settings.source_bandwidth, slow_now, s};
+    s->slow = calloc(s->scene.image_count + 1, sizeof *s->slow);
+    s->is_slow = s->slow && slow_line_init(&s->line, &info);
+    for (uint32_t i = 0; s->is_slow && i < s->scene.image_count; i++)
+        if (!check(slow_source_create(&s->line, s->scene.images[i].source, &s->slow[i]),
+                   "slow_source_create"))
+            return false;
+    return s->is_slow;
+}
+
+static SluiceResidencyMode mode_of(const struct view_settings *settings)
+{
+    static const SluiceResidencyMode modes[] = {
+        SLUICE_RESIDENCY_MODE_AUTO, SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED,
+        SLUICE_RESIDENCY_MODE_DENSE};
+    return modes[settings->residency];
+}
+
+static bool create_streamer(struct stage *s, const struct stage_request *request)
+{
+    const SluiceVulkanStreamerDebugInfo debug = {.structSize = sizeof debug,
+                                                 .mapEverything = request->everything};
+    const struct gpu *gpu = s->gpu;
+    const SluiceVulkanContextCreateInfo context = {.structSize = sizeof context,
+                                                   .queueFamilyIndex = gpu->family,
+                                                   .instance = gpu->instance,
+                                                   .physicalDevice = gpu->physical_device,
+                                                   .device = gpu->device,
+                                                   .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
+                                                   .sparseQueue = gpu->sparse_queue,
+                                                   .sparseQueueFamilyIndex = gpu->sparse_family,
+                                                   .log = {NULL, log_say},
+                                                   .loaderThreadCount = request->threads};
+    const SluiceVulkanStreamerCreateInfo streamer = {
+        .structSize = sizeof streamer,
+        .residencyMode = mode_of(&s->settings),
+        .framesInFlight = FRAMES_SLOTS,
+        .maxTextureCount = s->scene.image_count + 1,
+        .maxTexturesPerFrame = s->scene.image_count < 1024 ? 1024 : s->scene.image_count,
+        .texturesPerFrame = s->settings.textures_per_frame,
+        .tilesPerFrame = s->settings.tiles_per_frame,
+        .maxLoadsInFlight = s->settings.loads_in_flight,
+        .heapTileCapacity = STAGE_HEAP_TILES,
+        .textureArray = SLUICE_TEXTURE_ARRAY_COMBINED,
+        .ticksPerSecond = TICKS_PER_SECOND,
+        .pDebug = &debug};
+    if (!check(sluiceCreateVulkanContext(&context, &s->context), "sluiceCreateVulkanContext"))
+        return false;
+    SluiceVulkanStreamerCreateInfo info = streamer;
+    info.context = s->context;
+    return check(sluiceCreateVulkanStreamer(&info, &s->streamer), "sluiceCreateVulkanStreamer");
+}
+
+static const char *format_name(SluiceFormat format)
+{
+    switch (format) {
+    case SLUICE_FORMAT_R8_UNORM: return "R8";
+    case SLUICE_FORMAT_R8G8B8A8_UNORM: return "RGBA8";
+    case SLUICE_FORMAT_R8G8B8A8_SRGB: return "RGBA8 sRGB";
+    case SLUICE_FORMAT_R16G16B16A16_SFLOAT: return "RGBA16F";
+    case SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK:
+    case SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK: return "BC1";
+    default: return "other";
+    }
+}
+
+static bool add_texture(struct stage *s, uint32_t i)
+{
+    const struct scene_image *image = &s->scene.images[i];
+    SluiceVulkanTexture texture;
+    SluiceImageInfo about = {.structSize = sizeof about};
+    const SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
+                                                .source = s->slow ? s->slow[i] : image->source,
+                                                .addressModeU = (VkSamplerAddressMode)image->wrap_u,
+                                                .addressModeV = (VkSamplerAddressMode)image->wrap_v,
+                                                .explicitAddressModes = true,
+                                                .maxAnisotropy = (float)s->settings.anisotropy};
+    SluiceStreamedTextureManager *manager = NULL;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    if (!check(sluiceAddVulkanTexture(s->streamer, &info, &texture), image->name) ||
+        !check(sluiceGetVulkanStreamerManager(s->streamer, &manager), image->name) ||
+        !check(sluiceGetTextureLayout(manager, texture.textureId, &layout), image->name) ||
+        !check(sluiceGetImageInfo(image->source, &about), image->name))
+        return false;
+    s->table_indices[i] = texture.tableIndex;
+    s->textures[i] = (struct stage_texture){texture.textureId,
+                                            image->name,
+                                            image->path,
+                                            texture.width,
+                                            texture.height,
+                                            texture.mipLevelCount,
+                                            STAGE_NO_TEXTURE,
+                                            format_name(about.format),
+                                            (uint64_t)layout.tileCount * SLUICE_DEFAULT_TILE_SIZE};
+    return true;
+}
+
+static bool create_drawing(struct stage *s)
+{
+    SluiceResidencyMode mode;
+    VkDescriptorSetLayout layout;
+    return check(sluiceGetVulkanResidencyMode(s->streamer, &mode),
+                 "sluiceGetVulkanResidencyMode") &&
+           check(sluiceGetVulkanDescriptorSetLayout(s->streamer, &layout),
+                 "sluiceGetVulkanDescriptorSetLayout") &&
+           stage_drawing_create(s->gpu, &s->scene, layout, mode == SLUICE_RESIDENCY_MODE_PAGED,
+                                &s->drawing);
+}
+
+struct stage *stage_create(const struct stage_request *request,
+                           const struct view_settings *settings)
+{
+    struct stage *s = calloc(1, sizeof *s);
+    if (!s)
+        return NULL;
+    s->gpu = request->gpu;
+    s->settings = *settings;
+    bool created = request->path_count == 0 ? scene_data_make_room(&s->scene)
+                                            : scene_import(request->paths[0], request->cache,
+                                                           request->deterministic, &s->scene);
+    s->textures = calloc(s->scene.image_count + 1, sizeof *s->textures);
+    s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
+    created = created && s->textures && s->table_indices && begin_slowness(s) &&
+              create_streamer(s, request);
+    for (uint32_t i = 0; created && i < s->scene.image_count; i++)
+        created = add_texture(s, i);
+    if (created && create_drawing(s)) {
+        stage_apply(s, settings);
+        return s;
+    }
+    stage_destroy(s);
+    return NULL;
+}
+
+void stage_destroy(struct stage *s)
+{
+    if (!s)
+        return;
+    sluiceDestroyVulkanStreamer(s->streamer);
+    sluiceDestroyVulkanContext(s->context);
+    stage_drawing_destroy(&s->drawing);
+    for (uint32_t i = 0; s->slow && i < s->scene.image_count; i++)
+        sluiceDestroyImageSource(s->slow[i]);
+    if (s->is_slow)
+        slow_line_finish(&s->line);
+    free(s->slow);
+    scene_data_finish(&s->scene);
+    free(s->textures);
+    free(s->table_indices);
+    free(s);
+}
+
+void stage_apply(struct stage *s, const struct view_settings *settings)
+{
+    SluiceVulkanStreamerSettings now = {.structSize = sizeof now};
+    const uint64_t budget =
+        settings->budget && settings->budget < LEAST_BUDGET ? LEAST_BUDGET : settings->budget;
+    check(sluiceSetVulkanMemoryBudget(s->context, budget), "sluiceSetVulkanMemoryBudget");
+    if (!check(sluiceGetVulkanStreamerSettings(s->streamer, &now),
+               "sluiceGetVulkanStreamerSettings"))
+        return;
+    now.texturesPerFrame =
+        settings->textures_per_frame < 1024 ? settings->textures_per_frame : 1024;
+    now.tilesPerFrame = settings->tiles_per_frame;
+    now.numExtraStandbyTiles = settings->standby;
+    now.feedbackTimeoutTicks = (uint64_t)(settings->timeout * TICKS_PER_SECOND);
+    now.residencyFadeTicks = (uint64_t)(settings->fade * TICKS_PER_SECOND);
+    check(sluiceSetVulkanStreamerSettings(s->streamer, &now), "sluiceSetVulkanStreamerSettings");
+    s->settings = *settings;
+}
+
+bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffer commands,
+                  struct frames_end *end)
+{
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
+    atomic_store(&s->now, draw->time_stamp);
+    if (!check(sluiceBeginStreamingFrame(s->streamer, commands, draw->time_stamp, &frame),
+               "sluiceBeginStreamingFrame"))
+        return false;
+    end->views[UI_TEXTURE_PICTURE] =
+        stage_drawing_record(&s->drawing, &s->scene, draw, s->table_indices, frame.descriptorSet,
+                             (uint32_t)(draw->number % FRAMES_SLOTS), commands);
+    end->signals[end->signal_count++] = (struct frames_signal){frame.semaphore, frame.signalValue};
+    return end->views[UI_TEXTURE_PICTURE] &&
+           check(sluiceEndStreamingFrame(s->streamer, commands), "sluiceEndStreamingFrame");
+}
+
+bool stage_settle(struct stage *s)
+{
+    return check(sluiceWaitVulkanStreamerIdle(s->streamer), "sluiceWaitVulkanStreamerIdle");
+}
+
+void stage_restart(struct stage *s)
+{
+    for (uint32_t i = 0; i < s->scene.image_count; i++)
+        sluiceEvictVulkanTexture(s->streamer, s->textures[i].id, 0);
+}
+
+const char *stage_name(const struct stage *s)
+{
+    return s->scene.name;
+}
+
+SluiceVulkanStreamer *stage_streamer(const struct stage *s)
+{
+    return s->streamer;
+}
+
+SluiceVulkanContext *stage_context(const struct stage *s)
+{
+    return s->context;
+}
+
+uint32_t stage_texture_count(const struct stage *s)
+{
+    return s->scene.image_count;
+}
+
+const struct stage_texture *stage_texture(const struct stage *s, uint32_t index)
+{
+    return &s->textures[index];
+}
+
+struct view_camera stage_camera(const struct stage *s)
+{
+    return s->scene.camera;
+}
+
+void stage_bounds(const struct stage *s, struct vec3 bounds[2])
+{
+    bounds[0] = s->scene.bounds[0];
+    bounds[1] = s->scene.bounds[1];
+}
+
+const struct camera_path *stage_tour(const struct stage *s)
+{
+    return &s->scene.tour;
+}
+
+static struct vec3 position_of(const struct scene_vertex *vertex)
+{
+    return (struct vec3){vertex->position[0], vertex->position[1], vertex->position[2]};
+}
+
+/* Moeller and Trumbore: "Fast, Minimum Storage Ray/Triangle Intersection", 1997. */
+static bool meets(struct vec3 eye, struct vec3 ray, const struct scene_vertex *const corners[3],
+                  float *t, float *b, float *c)
+{
+    const struct vec3 first = position_of(corners[0]);
+    const struct vec3 e1 = vec3_sub(position_of(corners[1]), first);
+    const struct vec3 e2 = vec3_sub(position_of(corners[2]), first);
+    const struct vec3 p = vec3_cross(ray, e2), to = vec3_sub(eye, first), q = vec3_cross(to, e1);
+    const float determinant = vec3_dot(e1, p);
+    if (fabsf(determinant) < 1e-12f)
+        return false;
+    *b = vec3_dot(to, p) / determinant;
+    *c = vec3_dot(ray, q) / determinant;
+    *t = vec3_dot(e2, q) / determinant;
+    return *b >= 0 && *c >= 0 && *b + *c <= 1 && *t > 0;
+}
+
+static float wrap(float x)
+{
+    return x - floorf(x);
+}
+
+static void try_part(const struct scene_data *scene, const struct scene_part *part, struct vec3 eye,
+                     struct vec3 ray, float *nearest, struct stage_pick *pick)
+{
+    for (uint32_t i = 0; i + 2 < part->index_count; i += 3) {
+        const uint32_t *index = scene->indices + part->first_index + i;
+        const struct scene_vertex *const corners[3] = {
+            &scene->vertices[index[0]], &scene->vertices[index[1]], &scene->vertices[index[2]]};
+        float t, b, c, uv[2];
+        if (!meets(eye, ray, corners, &t, &b, &c) || t >= *nearest)
+            continue;
+        *nearest = t;
+        for (int k = 0; k < 2; k++)
+            uv[k] = corners[0]->uv[k] * (1 - b - c) + corners[1]->uv[k] * b + corners[2]->uv[k] * c;
+        *pick = (struct stage_pick){true,
+                                    part->image == SCENE_NO_IMAGE ? STAGE_NO_TEXTURE : part->image,
+                                    wrap(uv[0]), wrap(uv[1]), vec3_add(eye, vec3_scale(ray, t))};
+    }
+}
+
+struct stage_pick stage_pick(const struct stage *s, const struct view_camera *camera, float aspect,
+                             float x, float y)
+{
+    struct stage_pick pick = {.texture = STAGE_NO_TEXTURE};
+    const float tangent = tanf(camera->fov / 2);
+    const struct vec3 forward = view_camera_forward(camera), right = view_camera_right(camera);
+    const struct vec3 up = vec3_cross(right, forward);
+    const struct vec3 ray =
+        vec3_add(forward, vec3_add(vec3_scale(right, (2 * x - 1) * tangent * aspect),
+                                   vec3_scale(up, (1 - 2 * y) * tangent)));
+    float nearest = INFINITY;
+    for (uint32_t i = 0; i < s->scene.part_count; i++)
+        try_part(&s->scene, &s->scene.parts[i], camera->position, ray, &nearest, &pick);
+    return pick;
+}

@@ -1,0 +1,80 @@
+/** The scene that is shown, with its streamer: what the window, the panels and the twin see of it.
+ */
+#ifndef SLUICE_VIEW_STAGE_H
+#define SLUICE_VIEW_STAGE_H
+
+#include "camera.h"
+#include "frames.h"
+#include "settings.h"
+
+#include <sluice/vulkan_explain.h>
+
+#define STAGE_NO_TEXTURE UINT32_MAX
+#define STAGE_HEAP_TILES 64u ///< 4 MiB, so that small budgets are kept to
+
+struct stage;
+
+struct stage_texture {
+    SluiceTextureId id;
+    const char *name, *path; ///< "" if it has none
+    uint32_t width, height, level_count;
+    uint32_t primary; ///< index of the texture that it follows; STAGE_NO_TEXTURE: none
+    const char *format;
+    uint64_t size; ///< bytes of all its tiles
+};
+
+/** What is under a pixel. */
+struct stage_pick {
+    bool hit;
+    uint32_t texture; ///< STAGE_NO_TEXTURE: none
+    float u, v;       ///< 0 to 1, within the texture
+    struct vec3 position;
+};
+
+struct stage_draw {
+    const struct view_settings *settings;
+    struct view_camera camera;
+    uint32_t width, height; ///< of the picture
+    uint64_t number;        ///< of the frame
+    uint64_t time_stamp;    ///< microseconds
+};
+
+/** Options that are fixed while a scene is open. */
+struct stage_request {
+    const struct gpu *gpu;
+    const char *const *paths; ///< none: the hall
+    uint32_t path_count, threads;
+    const char *cache;
+    bool deterministic;
+    bool everything; ///< all tiles are resident, whatever is seen
+};
+
+/** Says on stderr what failed. */
+struct stage *stage_create(const struct stage_request *request,
+                           const struct view_settings *settings);
+void stage_destroy(struct stage *stage);
+/** Records the picture of a frame. Its views and signals go into `end`. */
+bool stage_record(struct stage *stage, const struct stage_draw *draw, VkCommandBuffer commands,
+                  struct frames_end *end);
+/** Settings that change while the scene is open. */
+void stage_apply(struct stage *stage, const struct view_settings *settings);
+/** Evicts everything that can be evicted. */
+void stage_restart(struct stage *stage);
+/** Waits until all reads are done, for pictures that are the same in every run. */
+bool stage_settle(struct stage *stage);
+
+const char *stage_name(const struct stage *stage);
+SluiceVulkanStreamer *stage_streamer(const struct stage *stage);
+SluiceVulkanContext *stage_context(const struct stage *stage);
+uint32_t stage_texture_count(const struct stage *stage);
+const struct stage_texture *stage_texture(const struct stage *stage, uint32_t index);
+/** What a camera sees at x, y, 0 to 1 from the left and the top. */
+struct stage_pick stage_pick(const struct stage *stage, const struct view_camera *camera,
+                             float aspect, float x, float y);
+/** A place to begin, and the box around everything. */
+struct view_camera stage_camera(const struct stage *stage);
+void stage_bounds(const struct stage *stage, struct vec3 bounds[2]);
+/** The path that the camera walks before anybody touches it. */
+const struct camera_path *stage_tour(const struct stage *stage);
+
+#endif /* SLUICE_VIEW_STAGE_H */
