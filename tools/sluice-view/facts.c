@@ -1,0 +1,194 @@
+#include "facts.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MB 1e6
+#define TILE_SIZE 65536u
+/* Maps of all textures are looked at in turns, so that a frame takes little time. */
+#define TEXELS_PER_FRAME 16384u
+
+static const char *const names[SERIES_COUNT] = {
+    "resident_mb",   "wanted_mb", "standby_mb", "budget_mb", "read_mb_s",
+    "uploaded_mb_s", "mapped",    "unmapped",   "canceled",  "failed",
+    "sharp_percent", "bias",      "frame_ms",   "host_ms",   "gpu_ms"};
+
+const char *facts_series_name(enum facts_series series)
+{
+    return names[series];
+}
+
+static SluiceStreamedTextureManager *manager_of(const struct stage *stage)
+{
+    SluiceStreamedTextureManager *manager = NULL;
+    sluiceGetVulkanStreamerManager(stage_streamer(stage), &manager);
+    return manager;
+}
+
+static size_t map_size_of(const SluiceStreamedTextureManager *manager, SluiceTextureId id,
+                          uint32_t *width)
+{
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    if (sluiceGetTextureLayout(manager, id, &layout) != SLUICE_SUCCESS)
+        return 0;
+    *width = layout.minMipWidth;
+    return (size_t)layout.minMipWidth * layout.minMipHeight;
+}
+
+bool facts_create(struct view_facts *f, const struct stage *stage)
+{
+    *f = (struct view_facts){.texture_count = stage_texture_count(stage)};
+    bool created = true;
+    f->textures = calloc(f->texture_count + 1, sizeof *f->textures);
+    f->events = calloc(FACTS_EVENTS, sizeof *f->events);
+    for (int i = 0; i < SERIES_COUNT; i++)
+        created = (f->history[i] = calloc(FACTS_HISTORY, sizeof **f->history)) && created;
+    for (uint32_t i = 0; i < f->texture_count; i++) {
+        uint32_t width;
+        size_t size = map_size_of(manager_of(stage), stage_texture(stage, i)->id, &width);
+        f->map_size = size > f->map_size ? size : f->map_size;
+        f->all_size += stage_texture(stage, i)->size;
+    }
+    f->maps = malloc(2 * f->map_size + 1);
+    if (created && f->textures && f->events && f->maps) {
+        sluiceSetTileEventCapacity(manager_of(stage), 16 * FACTS_EVENTS);
+        return true;
+    }
+    fprintf(stderr, "sluice-view: out of memory\n");
+    facts_destroy(f);
+    return false;
+}
+
+void facts_destroy(struct view_facts *f)
+{
+    for (int i = 0; i < SERIES_COUNT; i++)
+        free(f->history[i]);
+    free(f->textures);
+    free(f->events);
+    free(f->maps);
+    *f = (struct view_facts){0};
+}
+
+static void read_events(struct view_facts *f, const SluiceStreamedTextureManager *manager)
+{
+    SluiceResult result;
+    do {
+        uint32_t count = FACTS_EVENTS - f->event_next;
+        uint64_t lost = 0;
+        result = sluiceReadTileEvents(manager, &f->event_cursor, &count, f->events + f->event_next,
+                                      &lost);
+        f->event_next = (f->event_next + count) % FACTS_EVENTS;
+        f->event_count =
+            f->event_count + count > FACTS_EVENTS ? FACTS_EVENTS : f->event_count + count;
+    } while (result == SLUICE_INCOMPLETE);
+}
+
+/* Compares what is requested with what is resident, tile by tile of level 0. */
+static size_t compare_maps(struct view_facts *f, const SluiceStreamedTextureManager *manager,
+                           SluiceTextureId id, struct facts_texture *texture)
+{
+    uint32_t width = 0;
+    const size_t size = map_size_of(manager, id, &width);
+    uint8_t *resident = f->maps, *wanted = f->maps + f->map_size;
+    if (size == 0 || size > f->map_size ||
+        sluiceWriteMinMipData(manager, id, width, size, resident) != SLUICE_SUCCESS ||
+        sluiceWriteRequestedLevels(manager, id, width, size, wanted) != SLUICE_SUCCESS)
+        return 1;
+    texture->finest_level = SLUICE_MIP_UNTOUCHED;
+    for (size_t i = 0; i < size; i++) {
+        if (resident[i] < texture->finest_level)
+            texture->finest_level = resident[i];
+        f->seen_count += wanted[i] != SLUICE_MIP_UNTOUCHED;
+        f->sharp_count += wanted[i] != SLUICE_MIP_UNTOUCHED && resident[i] <= wanted[i];
+    }
+    return size;
+}
+
+static void look_at_maps(struct view_facts *f, const struct stage *stage)
+{
+    const SluiceStreamedTextureManager *manager = manager_of(stage);
+    for (size_t done = 0, i = 0; i < f->texture_count && done < TEXELS_PER_FRAME; i++) {
+        done += compare_maps(f, manager, stage_texture(stage, f->map_texture)->id,
+                             &f->textures[f->map_texture]);
+        if (++f->map_texture < f->texture_count)
+            continue;
+        f->sharp = f->seen_count ? (double)f->sharp_count / (double)f->seen_count : 1.0;
+        f->map_texture = 0;
+        f->seen_count = f->sharp_count = 0;
+    }
+}
+
+static void sum_textures(struct view_facts *f, const struct stage *stage)
+{
+    const SluiceStreamedTextureManager *manager = manager_of(stage);
+    f->resident_size = f->wanted_size = 0;
+    for (uint32_t i = 0; i < f->texture_count; i++) {
+        struct facts_texture *texture = &f->textures[i];
+        texture->statistics = (SluiceTextureStatistics){.structSize = sizeof texture->statistics};
+        if (sluiceGetTextureStatistics(manager, stage_texture(stage, i)->id,
+                                       &texture->statistics) != SLUICE_SUCCESS)
+            continue;
+        f->resident_size += texture->statistics.residentSize;
+        f->wanted_size += texture->statistics.wantedSize;
+        texture->thrash =
+            texture->statistics.residentTileCount
+                ? texture->statistics.mappedTotal / (double)texture->statistics.residentTileCount
+                : 0.0;
+    }
+}
+
+static void remember(struct view_facts *f, double seconds)
+{
+    const SluiceVulkanStreamerStatistics *now = &f->now, *before = &f->before;
+    const double values[SERIES_COUNT] = {
+        [SERIES_RESIDENT] = (double)f->resident_size / MB,
+        [SERIES_WANTED] = (double)f->wanted_size / MB,
+        [SERIES_STANDBY] = (double)f->standby_size / MB,
+        [SERIES_BUDGET] = (double)f->budget / MB,
+        [SERIES_READ] = (double)(now->bytesRead - before->bytesRead) / MB / seconds,
+        [SERIES_UPLOADED] = (double)(now->bytesUploaded - before->bytesUploaded) / MB / seconds,
+        [SERIES_MAPPED] = (double)(now->tilesMapped - before->tilesMapped),
+        [SERIES_UNMAPPED] = (double)(now->tilesUnmapped - before->tilesUnmapped),
+        [SERIES_CANCELED] = (double)(now->tilesCanceled - before->tilesCanceled),
+        [SERIES_FAILED] = (double)(now->tilesFailed - before->tilesFailed),
+        [SERIES_SHARP] = 100.0 * f->sharp,
+        [SERIES_BIAS] = now->globalMipBias / 16.0,
+        [SERIES_FRAME] = 1e3 * seconds,
+        [SERIES_HOST] = 1e3 * f->host_seconds,
+        [SERIES_GPU] = 1e3 * f->gpu_seconds};
+    for (int i = 0; i < SERIES_COUNT; i++)
+        f->history[i][f->history_next] = (float)values[i];
+    f->history_next = (f->history_next + 1) % FACTS_HISTORY;
+    f->history_count += f->history_count < FACTS_HISTORY;
+}
+
+void facts_update(struct view_facts *f, const struct stage *stage,
+                  const struct view_settings *settings, double seconds)
+{
+    f->before = f->now;
+    f->now = (SluiceVulkanStreamerStatistics){.structSize = sizeof f->now};
+    f->context = (SluiceVulkanContextStatistics){.structSize = sizeof f->context};
+    f->stages = (SluiceVulkanLoadStages){.structSize = sizeof f->stages};
+    sluiceGetVulkanStreamerStatistics(stage_streamer(stage), &f->now);
+    sluiceGetVulkanContextStatistics(stage_context(stage), &f->context);
+    sluiceGetVulkanLoadStages(stage_streamer(stage), &f->stages);
+    if (f->frame == 0)
+        f->before = f->now;
+    f->budget = settings->budget;
+    f->standby_size = (uint64_t)f->now.standbyTileCount * TILE_SIZE;
+    f->memory_size = f->now.tileMemorySize;
+    sum_textures(f, stage);
+    look_at_maps(f, stage);
+    read_events(f, manager_of(stage));
+    f->seconds += seconds;
+    f->frame_seconds = f->frame == 0 ? seconds : f->frame_seconds * 0.9 + seconds * 0.1;
+    remember(f, seconds);
+    f->frame++;
+}
+
+float facts_value(const struct view_facts *f, enum facts_series series, uint32_t age)
+{
+    return f->history[series]
+                     [(f->history_next + FACTS_HISTORY - 1 - age % FACTS_HISTORY) % FACTS_HISTORY];
+}

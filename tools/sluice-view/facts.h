@@ -1,0 +1,72 @@
+/** What the panels show: figures of the streamer, gathered once per frame. */
+#ifndef SLUICE_VIEW_FACTS_H
+#define SLUICE_VIEW_FACTS_H
+
+#include "settings.h"
+#include "stage.h"
+
+#include <sluice/vulkan_explain.h>
+
+#define FACTS_HISTORY 3600
+#define FACTS_EVENTS 2048
+
+enum facts_series {
+    SERIES_RESIDENT, ///< MB
+    SERIES_WANTED,
+    SERIES_STANDBY,
+    SERIES_BUDGET,
+    SERIES_READ, ///< MB/s
+    SERIES_UPLOADED,
+    SERIES_MAPPED, ///< tiles per frame
+    SERIES_UNMAPPED,
+    SERIES_CANCELED,
+    SERIES_FAILED,
+    SERIES_SHARP, ///< percent
+    SERIES_BIAS,  ///< levels
+    SERIES_FRAME, ///< ms
+    SERIES_HOST,
+    SERIES_GPU,
+    SERIES_COUNT
+};
+
+struct facts_texture {
+    SluiceTextureStatistics statistics;
+    uint32_t finest_level; ///< resident somewhere; SLUICE_MIP_UNTOUCHED: none
+    double thrash;         ///< loads per resident tile
+};
+
+struct view_facts {
+    double seconds;       ///< since the first frame
+    double frame_seconds; ///< smoothed
+    double host_seconds, gpu_seconds, present_seconds, ui_seconds;
+    uint64_t frame;
+    uint64_t all_size, resident_size, standby_size, wanted_size, memory_size;
+    uint64_t budget; ///< 0: none
+    double sharp;    ///< part of the regions in view that have the level that they request
+    SluiceVulkanStreamerStatistics now, before;
+    SluiceVulkanContextStatistics context;
+    SluiceVulkanLoadStages stages;
+    struct facts_texture *textures; ///< owned
+    uint32_t texture_count;
+    float *history[SERIES_COUNT]; ///< owned; rings of FACTS_HISTORY
+    uint32_t history_count, history_next;
+    SluiceTileEvent *events; ///< owned; the last FACTS_EVENTS, a ring
+    uint32_t event_count, event_next;
+    uint64_t event_cursor;
+    uint8_t *maps; ///< owned; scratch for two maps of the largest texture
+    size_t map_size;
+    uint32_t map_texture; ///< the next texture whose maps are looked at
+    uint64_t sharp_count, seen_count;
+};
+
+/** False, with a line on stderr, without memory. */
+bool facts_create(struct view_facts *facts, const struct stage *stage);
+void facts_destroy(struct view_facts *facts);
+/** Once per frame, after it was recorded. */
+void facts_update(struct view_facts *facts, const struct stage *stage,
+                  const struct view_settings *settings, double seconds);
+/** A value of a series, `age` frames ago. */
+float facts_value(const struct view_facts *facts, enum facts_series series, uint32_t age);
+const char *facts_series_name(enum facts_series series);
+
+#endif /* SLUICE_VIEW_FACTS_H */
