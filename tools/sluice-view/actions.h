@@ -1,0 +1,20 @@
+/** Everything that a key does: one table for keys, the menu and the page of keys. */
+#ifndef SLUICE_VIEW_ACTIONS_H
+#define SLUICE_VIEW_ACTIONS_H
+
+#include "app.h"
+
+struct action {
+    const char *group;
+    const char *chord; ///< as view_chord_read takes it; NULL: `shown` is not a key of this table
+    const char *shown; ///< NULL: the chord
+    const char *words;
+    void (*act)(struct view_app *app, int argument);
+    int argument;
+};
+
+const struct action *actions_get(uint32_t *count);
+/** Acts if the chord is in the table. */
+bool actions_press(struct view_app *app, int key, unsigned modifiers);
+
+#endif /* SLUICE_VIEW_ACTIONS_H */

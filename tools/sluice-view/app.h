@@ -1,0 +1,87 @@
+/** State of the viewer between frames, and what input does to it. */
+#ifndef SLUICE_VIEW_APP_H
+#define SLUICE_VIEW_APP_H
+
+#include "camera.h"
+#include "facts.h"
+#include "keys.h"
+#include "settings.h"
+#include "stage.h"
+#include "ui.h"
+
+#define APP_BOOKMARKS 9
+
+enum app_panel {
+    PANEL_CONTROLS,
+    PANEL_GRAPHS,
+    PANEL_LATENCY,
+    PANEL_MEMORY,
+    PANEL_TEXTURES,
+    PANEL_INSPECTOR,
+    PANEL_EVENTS,
+    PANEL_DEVICE,
+    PANEL_KEYS,
+    PANEL_MENU,
+    PANEL_COUNT
+};
+
+enum app_follow { FOLLOW_NOTHING, FOLLOW_TOUR, FOLLOW_PATH };
+
+struct view_app {
+    struct view_settings settings;
+    const struct gpu *gpu; ///< borrowed
+    struct stage *stage;   ///< borrowed; NULL while none is open
+    struct view_facts facts;
+    struct view_camera camera;
+    struct vec3 center; ///< of VIEW_ORBIT
+    enum app_follow follow;
+    double follow_seconds;
+    struct camera_path path; ///< owned
+    bool recording;
+    struct view_camera bookmarks[APP_BOOKMARKS];
+    bool bookmark_set[APP_BOOKMARKS];
+    bool open[PANEL_COUNT];
+    bool touched;  ///< the visitor has the camera
+    bool dragging; ///< the mouse turns the camera
+    bool dragging_divider;
+    float mouse_x, mouse_y; ///< of the frame before
+    float press_x, press_y;
+    bool buttons[3]; ///< of the frame before
+    bool held[VIEW_KEY_COUNT];
+    double click_age; ///< seconds since the last click on the picture
+    uint32_t last_view;
+    struct stage_pick pick;    ///< under the mouse
+    struct stage_pick inspect; ///< what was inspected
+    uint32_t selected;         ///< texture; STAGE_NO_TEXTURE: none
+    bool demonstrating;        ///< the budget moves by itself
+    double demonstration;      ///< seconds
+    uint64_t budget_before;
+    char said[256];
+    double said_seconds; ///< how long it is still shown
+    float width, height; ///< of the picture
+    double seconds;      ///< of the viewer's life
+    bool deterministic;  ///< figures that differ between runs are not shown
+    bool headless;       ///< time is that of the frame's number
+    const char *program; ///< words of the command line before the options
+    /* What the loop is asked for; it resets them. */
+    bool quit, reload, step, restart, screenshot, screenshot_plain;
+};
+
+void app_init(struct view_app *app);
+void app_finish(struct view_app *app);
+/** A scene was opened: the camera begins its tour. False without memory. */
+bool app_open(struct view_app *app, struct stage *stage, bool walks);
+void app_close(struct view_app *app);
+/** Input of a frame, behind ui_begin_frame. */
+void app_input(struct view_app *app, const struct ui_input *input);
+/** Moves what moves by itself. */
+void app_move(struct view_app *app, double seconds);
+/** A line that is shown for some seconds. */
+void app_say(struct view_app *app, const char *format, ...) UI_PRINTF(2, 3);
+void app_set_view(struct view_app *app, uint32_t view);
+/** Opens or closes a panel. One that opens takes the place of the others on its side. */
+void app_set_panel(struct view_app *app, enum app_panel panel, bool open);
+void app_inspect(struct view_app *app, const struct stage_pick *pick);
+void app_copy_command(struct view_app *app);
+
+#endif /* SLUICE_VIEW_APP_H */

@@ -1,0 +1,136 @@
+#include "panels.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static SluiceStreamedTextureManager *manager_of(const struct view_app *app)
+{
+    SluiceStreamedTextureManager *manager = NULL;
+    sluiceGetVulkanStreamerManager(stage_streamer(app->stage), &manager);
+    return manager;
+}
+
+/* The texel that was inspected, as a rectangle of level 0. */
+static SluiceTextureRect rect_of(const struct view_app *app, const struct stage_texture *texture)
+{
+    SluiceTextureRect rect = {(uint32_t)(app->inspect.u * (float)texture->width),
+                              (uint32_t)(app->inspect.v * (float)texture->height), 1, 1};
+    if (rect.x >= texture->width)
+        rect.x = texture->width - 1;
+    if (rect.y >= texture->height)
+        rect.y = texture->height - 1;
+    return rect;
+}
+
+static void draw_reason(const struct view_app *app, const struct stage_texture *texture)
+{
+    SluiceVulkanExplanation why = {.structSize = sizeof why};
+    const SluiceTextureRect rect = rect_of(app, texture);
+    const bool at_point = app->inspect.hit && app->inspect.texture == app->selected;
+    const SluiceTextureId id = texture->primary == STAGE_NO_TEXTURE ? texture->id : texture->id;
+    if (sluiceExplainVulkanTexture(stage_streamer(app->stage), id, at_point ? &rect : NULL, &why) !=
+        SLUICE_SUCCESS)
+        return;
+    ui_text(UI_GRAY,
+            at_point ? "Here: why no finer level?" : "Its coarsest part: why no finer level?");
+    const bool good = why.reason == SLUICE_COARSE_FINEST || why.reason == SLUICE_COARSE_ENOUGH;
+    ui_paragraph(why.reason == SLUICE_COARSE_FAILED ? UI_RED
+                 : good                             ? UI_WHITE
+                                                    : UI_ORANGE,
+                 why.sentence);
+}
+
+/* A map of a texture, a square per tile of level 0 or several of them. */
+static void draw_map(const char *title, const uint8_t *map,
+                     const SluiceStreamedTextureLayout *layout, float width)
+{
+    float r[4];
+    const uint32_t columns = layout->minMipWidth, rows = layout->minMipHeight;
+    const uint32_t step = 1 + (columns > rows ? columns : rows) / 64;
+    const float cell = width / (float)(columns > rows ? columns : rows);
+    ui_canvas(width, (float)rows * cell + ui_line_height(), r);
+    ui_label(r[0], r[1], UI_GRAY, title);
+    r[1] += ui_line_height();
+    ui_fill(r[0], r[1], (float)columns * cell, (float)rows * cell, UI_COLOR(30, 34, 40, 255));
+    for (uint32_t y = 0; y < rows; y += step)
+        for (uint32_t x = 0; x < columns; x += step) {
+            const uint8_t level = map[(size_t)y * columns + x];
+            if (level != SLUICE_MIP_UNTOUCHED)
+                ui_fill(r[0] + (float)x * cell, r[1] + (float)y * cell, cell * (float)step,
+                        cell * (float)step, panel_level_color(level));
+        }
+}
+
+static void draw_maps(const struct view_app *app, const struct stage_texture *texture)
+{
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    if (sluiceGetTextureLayout(manager_of(app), texture->id, &layout) != SLUICE_SUCCESS)
+        return;
+    const size_t size = (size_t)layout.minMipWidth * layout.minMipHeight;
+    uint8_t *maps = malloc(2 * size);
+    const float width = 130 * ui_scale();
+    if (maps &&
+        sluiceWriteMinMipData(manager_of(app), texture->id, layout.minMipWidth, size, maps) ==
+            SLUICE_SUCCESS &&
+        sluiceWriteRequestedLevels(manager_of(app), texture->id, layout.minMipWidth, size,
+                                   maps + size) == SLUICE_SUCCESS) {
+        draw_map("resident", maps, &layout, width);
+        ui_hint("A square per tile of level 0: the finest level that is resident. Red: level 0.");
+        ui_same_line(0);
+        draw_map("wanted", maps + size, &layout, width);
+        ui_hint("A square per tile of level 0: the finest level that is requested. Dark: none.");
+    }
+    free(maps);
+}
+
+static void draw_buttons(struct view_app *app, const struct stage_texture *texture)
+{
+    SluiceVulkanStreamer *streamer = stage_streamer(app->stage);
+    SluiceVulkanTextureControl control = {.structSize = sizeof control};
+    if (ui_button("Evict", 0, 0, false))
+        sluiceEvictVulkanTexture(streamer, texture->id, 0);
+    ui_hint("Evicts its tiles. What is still seen comes again.");
+    if (texture->primary != STAGE_NO_TEXTURE ||
+        sluiceGetVulkanTextureControl(streamer, texture->id, &control) != SLUICE_SUCCESS)
+        return;
+    ui_same_line(0);
+    if (ui_button(control.hidden ? "Show" : "Hide", 0, 0, control.hidden)) {
+        control.hidden = !control.hidden;
+        sluiceSetVulkanTextureControl(streamer, texture->id, &control);
+    }
+    ui_hint("Hidden: its feedback is not read, its tiles leave when others need the memory.");
+    ui_same_line(0);
+    if (ui_button("Retry", 0, 0, false))
+        sluiceRetryVulkanSource(streamer, NULL);
+    ui_hint("Reads again at once what failed to load.");
+}
+
+void panel_inspector(struct view_app *app)
+{
+    if (!app->open[PANEL_INSPECTOR])
+        return;
+    if (panel_begin(app, PANEL_INSPECTOR, "Inspector (I)", 380, 430)) {
+        if (app->selected >= app->facts.texture_count) {
+            ui_paragraph(UI_GRAY, "Right click a surface, or click a row of the textures (T).");
+        } else {
+            const struct stage_texture *texture = stage_texture(app->stage, app->selected);
+            const SluiceTextureStatistics *s = &app->facts.textures[app->selected].statistics;
+            char resident[32], all[32];
+            ui_text(UI_BLUE, "%s", texture->name);
+            ui_text(UI_GRAY, "%u x %u, %u levels, %s", texture->width, texture->height,
+                    texture->level_count, texture->format);
+            draw_reason(app, texture);
+            ui_line();
+            ui_text(UI_WHITE, "%s of %s resident, %u tiles wanted",
+                    panel_size(s->residentSize, resident, sizeof resident),
+                    panel_size(texture->size, all, sizeof all), s->wantedTileCount);
+            ui_text(UI_GRAY, "%u loads, %u evictions, %u failures", s->mappedTotal,
+                    s->unmappedTotal, s->failedTotal);
+            draw_maps(app, texture);
+            draw_buttons(app, texture);
+            if (texture->path[0])
+                ui_paragraph(UI_GRAY, texture->path);
+        }
+    }
+    ui_end_panel();
+}

@@ -1,0 +1,199 @@
+#include "panels.h"
+
+#include "actions.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define BUTTON_SECONDS 30.0
+
+/* The line that counts, and the line of hints below it. */
+static void draw_line(struct view_app *app)
+{
+    char all[32], now[32], line[160] = "Opening the scene ...";
+    const float scale = ui_scale(), pivot[2] = {0.5f, 1.0f};
+    const float placement[4] = {app->width / 2, app->height - 12 * scale, 0, 0};
+    const char *hints =
+        "drag look  ·  WASD walk  ·  right click a surface  ·  1–9 views  ·  F1 all keys";
+    if (app->stage)
+        snprintf(line, sizeof line, "%s of textures  ·  %s in memory  ·  %.0f %% sharp",
+                 panel_size(app->facts.all_size, all, sizeof all),
+                 panel_size(app->facts.resident_size, now, sizeof now),
+                 floor(100.0 * app->facts.sharp));
+    if (app->said_seconds > 0)
+        hints = app->said;
+    if (ui_begin_panel("line", NULL, placement, pivot,
+                       UI_PANEL_PLAIN | UI_PANEL_FIT | UI_PANEL_NO_INPUT)) {
+        ui_begin_large();
+        const float large = ui_text_width(line);
+        ui_end_large();
+        const float small = ui_text_width(hints), wide = large > small ? large : small;
+        ui_begin_large();
+        ui_same_line(12 * scale + (wide - large) / 2);
+        ui_text(UI_WHITE, "%s", line);
+        ui_end_large();
+        ui_space(0);
+        ui_same_line(12 * scale + (wide - small) / 2);
+        ui_text(app->said_seconds > 0 ? UI_ORANGE : UI_GRAY, "%s", hints);
+    }
+    ui_end_panel();
+}
+
+static void draw_buttons(struct view_app *app)
+{
+    const float scale = ui_scale(), pivot[2] = {0.5f, 0};
+    const float placement[4] = {app->width / 2, 12 * scale, 0, 0};
+    const float height = 40 * scale, width = 190 * scale;
+    if (ui_begin_panel("buttons", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
+        const uint32_t view = app->settings.view;
+        if (ui_button("What is in memory? (2)", width, height, view == VIEW_RESIDENT))
+            app_set_view(app, view == VIEW_RESIDENT ? VIEW_PICTURE : VIEW_RESIDENT);
+        ui_hint(
+            "Colors the picture by the level of detail that is in memory. Key 2; 1 comes back.");
+        ui_same_line(0);
+        if (ui_button("Why is this blurry? (3)", width, height, view == VIEW_MISSING))
+            app_set_view(app, view == VIEW_MISSING ? VIEW_PICTURE : VIEW_MISSING);
+        ui_hint("Colors what is coarser than the camera asks for. Right click it for the reason. "
+                "Key 3; 1 comes back.");
+        ui_same_line(0);
+        if (ui_button("With 16 MB (B)", width, height, app->demonstrating))
+            actions_press(app, 'B', 0);
+        ui_hint("Takes memory away until 16 MB are left, and gives it back. Key B.");
+    }
+    ui_end_panel();
+}
+
+void panel_start(struct view_app *app)
+{
+    draw_line(app);
+    if (app->stage && (!app->touched || app->seconds < BUTTON_SECONDS || app->demonstrating))
+        draw_buttons(app);
+}
+
+/* Resident, standby hatched, over the budget or everything. */
+static void draw_bar(const struct view_app *app, float width, float height)
+{
+    const struct view_facts *f = &app->facts;
+    const double whole = f->budget ? (double)f->budget : (double)f->all_size;
+    float r[4];
+    ui_canvas(width, height, r);
+    if (whole <= 0)
+        return;
+    const double resident = fmin(1.0, (double)f->resident_size / whole);
+    const double standby = fmin(resident, (double)f->standby_size / whole);
+    ui_fill(r[0], r[1], r[2], r[3], UI_COLOR(50, 56, 66, 255));
+    ui_fill(r[0], r[1], r[2] * (float)resident, r[3], UI_COLOR(70, 150, 220, 255));
+    const float left = r[0] + r[2] * (float)(resident - standby);
+    for (float x = left; x < r[0] + r[2] * (float)resident; x += 4 * ui_scale())
+        ui_fill(x, r[1], 2 * ui_scale(), r[3], UI_COLOR(40, 80, 120, 255));
+    const double wanted = (double)f->wanted_size / whole;
+    if (wanted < 1.0)
+        ui_fill(r[0] + r[2] * (float)wanted, r[1], 2 * ui_scale(), r[3], UI_WHITE);
+    ui_hint("Blue: resident. Hatched: resident and not wanted (standby). White mark: wanted now. "
+            "The bar is %s.",
+            f->budget ? "the budget" : "all textures");
+}
+
+void panel_now(struct view_app *app)
+{
+    const struct view_facts *f = &app->facts;
+    char resident[32], whole[32];
+    const float scale = ui_scale(), pivot[2] = {1, 0};
+    const float placement[4] = {app->width - 12 * scale, 12 * scale, 0, 0};
+    if (ui_begin_panel("now", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
+        if (app->deterministic)
+            ui_text(UI_WHITE, "frame %llu", (unsigned long long)f->frame);
+        else if (app->headless)
+            ui_text(UI_WHITE, "frame %llu   host %.1f ms   GPU %.1f ms",
+                    (unsigned long long)f->frame, 1e3 * f->host_seconds, 1e3 * f->gpu_seconds);
+        else
+            ui_text(UI_WHITE, "%.0f fps   host %.1f ms   GPU %.1f ms",
+                    f->frame_seconds > 0 ? 1.0 / f->frame_seconds : 0.0, 1e3 * f->host_seconds,
+                    1e3 * f->gpu_seconds);
+        ui_hint("Frames per second; time of the viewer and the library on the host; time of the "
+                "frame on the GPU.");
+        ui_text(UI_WHITE, "%s of %s", panel_size(f->resident_size, resident, sizeof resident),
+                panel_size(f->budget ? f->budget : f->all_size, whole, sizeof whole));
+        draw_bar(app, 230 * scale, 10 * scale);
+        ui_text(UI_GRAY, "%.0f %% sharp   %u loads in flight", floor(100.0 * f->sharp),
+                f->now.loadsInFlight);
+        if (f->now.globalMipBias > 0)
+            ui_text(UI_RED, "memory is short: +%.1f level", f->now.globalMipBias / 16.0);
+        if (f->now.failedTileCount + f->now.givenUpTileCount > 0)
+            ui_text(UI_RED, "%u tiles failed to load (K)",
+                    f->now.failedTileCount + f->now.givenUpTileCount);
+        if (app->settings.pause)
+            ui_text(UI_ORANGE, "streaming is paused (P)");
+        if (app->settings.freeze_wants)
+            ui_text(UI_ORANGE, "wants are frozen (L)");
+    }
+    ui_end_panel();
+}
+
+static void draw_color(uint32_t color, const char *words)
+{
+    float r[4];
+    const float height = ui_line_height() - 4 * ui_scale();
+    ui_canvas(18 * ui_scale(), height, r);
+    ui_fill(r[0], r[1] + 2 * ui_scale(), r[2], r[3] - 2 * ui_scale(), color);
+    ui_same_line(0);
+    ui_text(UI_WHITE, "%s", words);
+}
+
+static void draw_levels(void)
+{
+    char words[32];
+    for (uint32_t level = 0; level < 8; level++) {
+        snprintf(words, sizeof words, "level %u%s", level,
+                 level == 0   ? ", finest"
+                 : level == 7 ? " or coarser"
+                              : "");
+        draw_color(panel_level_color(level), words);
+    }
+}
+
+static const char *const view_names[] = {"",
+                                         "Picture",
+                                         "Resident level",
+                                         "Missing levels",
+                                         "Wanted level",
+                                         "",
+                                         "Textures",
+                                         "Feedback of this frame",
+                                         "",
+                                         "Checks"};
+
+static void draw_legend(uint32_t view)
+{
+    switch (view) {
+    case VIEW_RESIDENT:
+    case VIEW_WANTED: draw_levels(); break;
+    case VIEW_MISSING:
+        draw_color(UI_COLOR(255, 255, 255, 60), "as sharp as wanted");
+        draw_color(UI_COLOR(240, 228, 66, 255), "1 level is missing");
+        draw_color(UI_COLOR(230, 159, 0, 255), "2 levels");
+        draw_color(UI_COLOR(213, 94, 0, 255), "3 levels or more");
+        break;
+    case VIEW_IDENTITY: ui_text(UI_GRAY, "a color per texture"); break;
+    case VIEW_WRITTEN: ui_text(UI_GRAY, "dots: pixels that reported what they sample"); break;
+    case VIEW_CHECKS:
+        draw_color(UI_COLOR(255, 0, 255, 255), "sampled, not resident: must not be");
+        break;
+    default: break;
+    }
+}
+
+void panel_legend(const struct view_app *app)
+{
+    const float scale = ui_scale(), pivot[2] = {0, 1};
+    const float placement[4] = {12 * scale, app->height - 12 * scale, 0, 0};
+    const uint32_t view = app->settings.view;
+    if (view <= VIEW_PICTURE || !view_names[view][0])
+        return;
+    if (ui_begin_panel("legend", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
+        ui_text(UI_BLUE, "%u  %s", view, view_names[view]);
+        draw_legend(view);
+    }
+    ui_end_panel();
+}

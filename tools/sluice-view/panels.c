@@ -1,0 +1,104 @@
+#include "panels.h"
+
+#include <stdio.h>
+
+const char *panel_size(uint64_t bytes, char *text, size_t size)
+{
+    const unsigned mega = (unsigned)((bytes + 500000) / 1000000);
+    if (mega >= 1000)
+        snprintf(text, size, "%u %03u MB", mega / 1000, mega % 1000);
+    else if (bytes < 10000000)
+        snprintf(text, size, "%.1f MB", (double)bytes / 1e6);
+    else
+        snprintf(text, size, "%u MB", mega);
+    return text;
+}
+
+/* From dark blue through green to yellow they differ in brightness, too; level 0 is red. */
+uint32_t panel_level_color(uint32_t level)
+{
+    static const uint32_t colors[] = {UI_COLOR(214, 40, 40, 255),   UI_COLOR(247, 127, 0, 255),
+                                      UI_COLOR(252, 191, 73, 255),  UI_COLOR(190, 210, 110, 255),
+                                      UI_COLOR(102, 194, 165, 255), UI_COLOR(50, 136, 189, 255),
+                                      UI_COLOR(70, 80, 170, 255),   UI_COLOR(50, 40, 100, 255)};
+    const uint32_t count = sizeof colors / sizeof *colors;
+    return colors[level < count ? level : count - 1];
+}
+
+bool panel_is_right(enum app_panel panel)
+{
+    return panel == PANEL_GRAPHS || panel == PANEL_TEXTURES || panel == PANEL_MEMORY ||
+           panel == PANEL_DEVICE;
+}
+
+/* One panel on each side, below what is always there, so that none covers another. */
+bool panel_begin(struct view_app *app, enum app_panel panel, const char *title, float width,
+                 float height)
+{
+    const float scale = ui_scale(), margin = 12.0f * scale;
+    const bool right = panel_is_right(panel);
+    const float top = (right ? 128.0f : 84.0f) * scale;
+    const bool legend = !right && app->settings.view > VIEW_PICTURE;
+    const float room = app->height - top - (legend ? 236.0f : 84.0f) * scale;
+    const float most = app->width * app->height / 4;
+    width *= scale;
+    height *= scale;
+    if (width > app->width - 2 * margin)
+        width = app->width - 2 * margin;
+    if (width * height > most)
+        height = most / width;
+    if (height > room)
+        height = room > 8 * margin ? room : 8 * margin;
+    const float pivot[2] = {right ? 1.0f : 0.0f, 0};
+    const float placement[4] = {right ? app->width - margin : margin, top, width, height};
+    return ui_begin_panel(title, &app->open[panel], placement, pivot, 0);
+}
+
+void panels_draw_picture(const struct view_app *app)
+{
+    const struct view_settings *s = &app->settings;
+    const float all[4] = {0, 0, app->width, app->height}, uv[4] = {0, 0, 1, 1};
+    if (!app->stage) {
+        ui_fill_behind(0, 0, app->width, app->height, UI_COLOR(38, 44, 52, 255));
+        return;
+    }
+    const bool flicker_other = s->compare == VIEW_FLICKER && (uint64_t)(app->seconds * 4) % 2 == 1;
+    if (s->compare == VIEW_DIFFERENCE) {
+        const uint32_t gain = (uint32_t)(s->gain / 16.0 * 255.0);
+        ui_picture(UI_TEXTURE_PICTURE, UI_MODE_DIFFERENCE, all, uv, UI_COLOR(255, 255, 255, gain));
+        return;
+    }
+    ui_picture(flicker_other ? UI_TEXTURE_OTHER : UI_TEXTURE_PICTURE, UI_MODE_PLAIN, all, uv,
+               UI_COLOR(255, 255, 255, 255));
+    if (s->compare != VIEW_DIVIDER)
+        return;
+    const float part = (float)s->divider, x = part * app->width;
+    const float half[4] = {x, 0, app->width - x, app->height}, half_uv[4] = {part, 0, 1, 1};
+    ui_picture(UI_TEXTURE_OTHER, UI_MODE_PLAIN, half, half_uv, UI_COLOR(255, 255, 255, 255));
+    ui_fill_behind(x - ui_scale(), 0, 2 * ui_scale(), app->height, UI_COLOR(255, 255, 255, 255));
+}
+
+void panels_draw(struct view_app *app)
+{
+    panels_draw_picture(app);
+    if (app->settings.panels != 0)
+        return;
+    if (app->open[PANEL_KEYS] && app->stage) {
+        panel_keys(app);
+        return;
+    }
+    panel_start(app);
+    if (!app->stage)
+        return;
+    panel_now(app);
+    panel_legend(app);
+    panel_controls(app);
+    panel_graphs(app);
+    panel_latency(app);
+    panel_memory(app);
+    panel_textures(app);
+    panel_inspector(app);
+    panel_events(app);
+    panel_device(app);
+    panel_menu(app);
+}
