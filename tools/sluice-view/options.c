@@ -1,0 +1,66 @@
+#include "options.h"
+
+#include "controls.h"
+
+#include "../common/shared_options.h"
+
+#include <string.h>
+
+static const char usage[] =
+    "usage: sluice-view [OPTION ...] [SCENE]\n\n"
+    "Shows a scene whose textures are streamed, and why they look as they do. SCENE is a glTF\n"
+    "or OBJ file; without one, a room of computed pictures. Drop a file onto the window to open\n"
+    "it.\n";
+
+static const char notes[] =
+    "Without a display, use --headless: it draws the same frames, with the panels, into pictures.\n"
+    "Exit status: 0; 1 if something failed; 2 for wrong usage; 77 without a Vulkan device that "
+    "can\n"
+    "stream.\n";
+
+enum option_outcome options_read(int argc, char **argv, struct view_options *o)
+{
+    const struct option own[] = {
+        {OPTION_WORDS, .value = &o->words, .help = "a scene", .minimum = 0},
+        {OPTION_SECTION, .help = "Without a window"},
+        {OPTION_FLAG, "headless", .value = &o->headless,
+         .help = "open no window: draw into pictures, with time by the number of the frame"},
+        {OPTION_TEXT, "script", "FILE", "(none)", &o->script,
+         "events: \"40 key 3\", \"60 click 312 200\", \"80 set budget 16\", \"90 screenshot "
+         "out.png\", \"120 quit\"; also hold, type, hover, double-click, drag, wheel and drop"},
+        {OPTION_UINT, "frames", "N", "0", &o->frames,
+         "frames in all; 0: until the script or the visitor ends it, without either 120", 0,
+         10000000},
+        {OPTION_TEXT, "screenshot", "FILE", "(none)", &o->screenshot,
+         "write the last picture as PNG"},
+        {OPTION_TEXT, "csv", "FILE", "(none)", &o->csv, "write a line of figures per frame"},
+        {OPTION_FLAG, "deterministic", .value = &o->deterministic,
+         .help = "wait for loads in each frame, so that each run is the same"},
+        option_json(&o->json),
+        {OPTION_TEXT, "play", "FILE", "(none)", &o->play,
+         "a camera path that the camera follows: lines of seconds, x, y, z, yaw, pitch, fov"},
+        {OPTION_FLAG, "still", .value = &o->still,
+         .help = "the camera stands still until somebody moves it"},
+        {OPTION_FLAG, "fresh", .value = &o->fresh,
+         .help = "pass over the settings that were kept from the last time"},
+        {OPTION_TEXT, "cache", "DIR", "($XDG_CACHE_HOME/sluice, ~/.cache/sluice)", &o->cache,
+         "folder for generated pictures and tile stores"},
+        option_threads(&o->threads),
+        option_validation(&o->validation),
+        {OPTION_SECTION, .help = "Device"},
+        option_device(&o->device),
+        option_list_devices(&o->list_devices),
+    };
+    struct option all[sizeof own / sizeof *own + 2 * CONTROLS_MAX];
+    *o = (struct view_options){0};
+    size_t count = controls_write_options(&o->settings, all);
+    memcpy(all + count, own, sizeof own);
+    count += sizeof own / sizeof *own;
+    const struct option_table table = {"sluice-view", usage, notes, all, count};
+    const enum option_outcome outcome = options_parse(&table, argc, argv);
+    if (outcome == OPTIONS_RUN && o->words.count > 1) {
+        options_refuse(&table, "%s: one scene at a time", o->words.items[1]);
+        return OPTIONS_ERROR;
+    }
+    return outcome;
+}

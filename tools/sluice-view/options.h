@@ -1,0 +1,21 @@
+/** What the command line asks of the viewer. */
+#ifndef SLUICE_VIEW_OPTIONS_H
+#define SLUICE_VIEW_OPTIONS_H
+
+#include "settings.h"
+
+#include "../common/option_table.h"
+
+struct view_options {
+    struct view_settings settings;
+    struct option_list words; ///< scenes
+    bool headless, deterministic, fresh, json, validation, list_devices, still;
+    uint32_t frames; ///< 0: until the script ends, or the window is closed
+    uint32_t threads;
+    const char *script, *screenshot, *csv, *play, *cache, *device;
+};
+
+/** Settings that stand before the options: defaults, or those of a file, which options change. */
+enum option_outcome options_read(int argc, char **argv, struct view_options *options);
+
+#endif /* SLUICE_VIEW_OPTIONS_H */

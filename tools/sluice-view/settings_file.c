@@ -1,0 +1,145 @@
+/* strdup, realpath, strtok_r, strcasecmp */
+#define _XOPEN_SOURCE 700
+
+#include "settings_file.h"
+
+#include "controls.h"
+
+#include "../common/files.h"
+#include "../common/input.h"
+#include "../common/output_file.h"
+#include "../common/text.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define HEADER "sluice-view settings 1"
+#define MAX_SIZE (1u << 20)
+
+/* FNV-1a: files of scenes with the same name in other folders differ. */
+static uint64_t hash(const char *text)
+{
+    uint64_t h = 0xcbf29ce484222325u;
+    for (; *text; text++)
+        h = (h ^ (unsigned char)*text) * 0x100000001b3u;
+    return h;
+}
+
+bool settings_file_path(const char *scene, char *path, size_t size)
+{
+    char resolved[4096];
+    const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
+    const char *named = scene[0] ? realpath(scene, resolved) : scene;
+    const uint64_t number = hash(named ? named : scene);
+    int length = -1;
+    if (config && config[0] == '/')
+        length = snprintf(path, size, "%s/sluice/view-%016llx.settings", config,
+                          (unsigned long long)number);
+    else if (home && home[0] == '/')
+        length = snprintf(path, size, "%s/.config/sluice/view-%016llx.settings", home,
+                          (unsigned long long)number);
+    return length > 0 && (size_t)length < size;
+}
+
+static bool read_camera(const char *text, struct view_camera *camera)
+{
+    float n[6];
+    char *end = NULL;
+    for (int i = 0; i < 6; i++, text = end) {
+        n[i] = strtof(text, &end);
+        if (end == text || !isfinite(n[i]))
+            return false;
+    }
+    *camera = (struct view_camera){{n[0], n[1], n[2]}, n[3], n[4], n[5]};
+    return *end == '\0' && n[5] > 0.01f && n[5] < 3.0f;
+}
+
+static bool read_line(char *line, struct view_app *app)
+{
+    char *value = line + strcspn(line, " ");
+    if (*value)
+        *value++ = '\0';
+    if (strncmp(line, "bookmark-", 9) == 0 && line[9] >= '1' && line[9] <= '9' && !line[10]) {
+        app->bookmark_set[line[9] - '1'] = true;
+        return read_camera(value, &app->bookmarks[line[9] - '1']);
+    }
+    return controls_set(&app->settings, line, value, "sluice-view");
+}
+
+static bool read_text(char *text, struct view_app *app)
+{
+    char *rest = NULL;
+    char *line = strtok_r(text, "\n", &rest);
+    if (!line || strcmp(line, HEADER) != 0)
+        return false;
+    while ((line = strtok_r(NULL, "\n", &rest)))
+        if (!read_line(line, app))
+            return false;
+    return true;
+}
+
+static void set_aside(const char *path)
+{
+    char aside[4200];
+    snprintf(aside, sizeof aside, "%s.damaged", path);
+    if (rename(path, aside) == 0)
+        text_say("sluice-view: %s is damaged: it is %s now, and all settings are the defaults",
+                 path, aside);
+    else
+        text_say("sluice-view: %s is damaged and cannot be renamed: %s", path, strerror(errno));
+}
+
+void settings_file_read(const char *path, struct view_app *app)
+{
+    char *text = NULL;
+    size_t size = 0;
+    const struct view_settings before = app->settings;
+    struct view_camera bookmarks[APP_BOOKMARKS];
+    bool set[APP_BOOKMARKS];
+    memcpy(bookmarks, app->bookmarks, sizeof bookmarks);
+    memcpy(set, app->bookmark_set, sizeof set);
+    if (!input_read_file(path, MAX_SIZE, &text, &size)) {
+        if (errno != ENOENT)
+            text_say("sluice-view: %s: %s", path, input_reason(errno));
+        return;
+    }
+    if (strlen(text) != size || !read_text(text, app)) {
+        app->settings = before;
+        memcpy(app->bookmarks, bookmarks, sizeof bookmarks);
+        memcpy(app->bookmark_set, set, sizeof set);
+        set_aside(path);
+    }
+    free(text);
+}
+
+bool settings_file_write(const char *path, const struct view_app *app)
+{
+    char value[64];
+    uint32_t count;
+    const struct control *controls = controls_get(&count);
+    if (!files_make_folders_of(path)) {
+        text_say("sluice-view: %s: %s", path, strerror(errno));
+        return false;
+    }
+    struct output_file *output = output_file_begin(path);
+    if (!output)
+        return false;
+    FILE *file = output_file_stream(output);
+    fprintf(file, HEADER "\n");
+    for (uint32_t i = 0; i < count; i++)
+        if (!(controls[i].flags & CONTROL_PASSING) &&
+            !control_is_default(&controls[i], &app->settings))
+            fprintf(file, "%s %s\n", controls[i].option.name,
+                    control_write(&controls[i], &app->settings, value, sizeof value));
+    for (int i = 0; i < APP_BOOKMARKS; i++) {
+        const struct view_camera *c = &app->bookmarks[i];
+        if (app->bookmark_set[i])
+            fprintf(file, "bookmark-%d %.9g %.9g %.9g %.9g %.9g %.9g\n", i + 1,
+                    (double)c->position.x, (double)c->position.y, (double)c->position.z,
+                    (double)c->yaw, (double)c->pitch, (double)c->fov);
+    }
+    return output_file_end(output, true);
+}

@@ -1,0 +1,477 @@
+/* strdup, realpath, strtok_r, strcasecmp */
+#define _XOPEN_SOURCE 700
+
+#include "viewer.h"
+
+#include "controls.h"
+#include "panels.h"
+#include "settings_file.h"
+
+#include "../common/clock.h"
+#include "../common/log.h"
+#include "../common/output_file.h"
+#include "../common/text.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define EXIT_NO_DEVICE 77
+#define USUAL_FRAMES 120u
+#define MAX_STEP 0.1
+
+static bool is_cpu(const struct viewer *v)
+{
+    return v->gpu.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+static double render_scale(const struct viewer *v)
+{
+    const double scale = v->app.settings.render_scale;
+    return scale > 0 ? scale : is_cpu(v) ? 0.5 : 1.0;
+}
+
+static bool create_gpu(struct viewer *v, bool *unsupported)
+{
+    static const SluiceResidencyMode modes[] = {
+        SLUICE_RESIDENCY_MODE_AUTO, SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED,
+        SLUICE_RESIDENCY_MODE_DENSE};
+    struct gpu_request request = {.device = v->options->device,
+                                  .validation = v->options->validation,
+                                  .modes = {modes[v->app.settings.residency], modes[0]}};
+    if (v->window)
+        request.instance_extensions =
+            window_extensions(v->window, &request.instance_extension_count);
+    return gpu_create(&request, &v->gpu, unsupported);
+}
+
+static struct stage *create_stage(struct viewer *v, const struct view_settings *settings,
+                                  bool everything)
+{
+    const char *const paths[] = {v->scene};
+    const struct stage_request request = {.gpu = &v->gpu,
+                                          .paths = paths,
+                                          .path_count = v->scene[0] ? 1 : 0,
+                                          .threads = v->options->threads,
+                                          .cache = v->options->cache,
+                                          .deterministic = v->options->deterministic,
+                                          .everything = everything};
+    return stage_create(&request, settings);
+}
+
+/* The second streamer of a comparison lives as long as the comparison is shown. */
+static bool fit_other(struct viewer *v)
+{
+    const struct view_settings *s = &v->app.settings;
+    const bool wanted = v->stage && s->compare != VIEW_COMPARE_OFF;
+    if (v->other && (!wanted || v->other_kind != s->compared)) {
+        if (!frames_wait(&v->frames))
+            return false;
+        stage_destroy(v->other);
+        v->other = NULL;
+    }
+    if (!wanted || v->other)
+        return true;
+    struct view_settings settings = *s;
+    settings.budget = s->compared == VIEW_WITH_BUDGET ? 16u << 20 : 0;
+    v->other_kind = s->compared;
+    v->other = create_stage(v, &settings, s->compared == VIEW_WITH_EVERYTHING);
+    if (!v->other)
+        v->app.settings.compare = VIEW_COMPARE_OFF;
+    return true;
+}
+
+static bool open_scene(struct viewer *v, bool walks)
+{
+    v->stage = create_stage(v, &v->app.settings, false);
+    v->applied = v->app.settings;
+    if (!v->stage)
+        return false;
+    return app_open(&v->app, v->stage, walks);
+}
+
+static void close_scene(struct viewer *v)
+{
+    frames_wait(&v->frames);
+    app_close(&v->app);
+    stage_destroy(v->other);
+    stage_destroy(v->stage);
+    v->stage = v->other = NULL;
+}
+
+/* Another scene, or this one with other settings. A file that cannot be read leaves the old one. */
+static void reopen(struct viewer *v, const char *path)
+{
+    char before[sizeof v->scene];
+    const struct view_camera camera = v->app.camera;
+    const bool same = path == NULL;
+    memcpy(before, v->scene, sizeof before);
+    close_scene(v);
+    if (!same)
+        snprintf(v->scene, sizeof v->scene, "%s", path);
+    if (!open_scene(v, false)) {
+        close_scene(v);
+        app_say(&v->app, "Cannot open %s; the terminal says why", path ? path : before);
+        memcpy(v->scene, before, sizeof v->scene);
+        if (!same)
+            open_scene(v, false);
+    } else if (same) {
+        v->app.camera = camera;
+    } else {
+        app_say(&v->app, "Opened %s", stage_name(v->stage));
+    }
+}
+
+static void take_script_step(struct viewer *v, const struct script_step *step)
+{
+    struct ui_input *in = &v->input;
+    switch (step->kind) {
+    case SCRIPT_MOVE:
+        in->mouse_x = step->x;
+        in->mouse_y = step->y;
+        break;
+    case SCRIPT_BUTTON: in->buttons[step->number] = step->down; break;
+    case SCRIPT_KEY: window_note_key(in, step->number, step->down); break;
+    case SCRIPT_WHEEL: in->wheel += step->x; break;
+    case SCRIPT_TYPE: snprintf(in->text, sizeof in->text, "%s", step->text); break;
+    case SCRIPT_DROP: reopen(v, step->text); break;
+    case SCRIPT_SET: controls_set(&v->app.settings, step->text, step->value, "sluice-view"); break;
+    case SCRIPT_SCREENSHOT: snprintf(v->screenshot, sizeof v->screenshot, "%s", step->text); break;
+    case SCRIPT_QUIT: v->app.quit = true; break;
+    }
+}
+
+static void gather_input(struct viewer *v)
+{
+    char dropped[4096];
+    v->input.wheel = 0;
+    v->input.key_count = 0;
+    v->input.text[0] = '\0';
+    if (v->window) {
+        window_poll(v->window, &v->input);
+        if (window_dropped(v->window, dropped, sizeof dropped))
+            reopen(v, dropped);
+        v->app.quit |= window_closed(v->window);
+    }
+    for (const struct script_step *step; (step = script_next(&v->script, v->frame));)
+        take_script_step(v, step);
+}
+
+static double next_step(struct viewer *v)
+{
+    const uint32_t cap = v->app.settings.frame_cap;
+    if (!v->window)
+        return 1.0 / (cap ? cap : 60);
+    if (cap > 0)
+        clock_sleep_until(v->last_time + 1.0 / cap);
+    const double now = clock_seconds();
+    double step = now - v->last_time;
+    v->last_time = now;
+    return step > MAX_STEP ? MAX_STEP : step > 1e-4 ? step : 1e-4;
+}
+
+static void name_screenshot(struct viewer *v)
+{
+    do
+        snprintf(v->screenshot, sizeof v->screenshot, "sluice-view-%02u.png",
+                 ++v->screenshot_number);
+    while (access(v->screenshot, F_OK) == 0 && v->screenshot_number < 1000);
+}
+
+static void answer_requests(struct viewer *v)
+{
+    struct view_app *app = &v->app;
+    if (app->restart && v->stage)
+        stage_restart(v->stage);
+    if (app->reload)
+        reopen(v, NULL);
+    if (app->screenshot)
+        name_screenshot(v);
+    if (v->stage && memcmp(&v->applied, &app->settings, sizeof v->applied) != 0) {
+        stage_apply(v->stage, &app->settings);
+        v->applied = app->settings;
+    }
+    if (v->window)
+        window_set_full_screen(v->window, app->settings.full_screen != 0);
+    app->restart = app->reload = false;
+}
+
+static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer commands)
+{
+    const double scale = render_scale(v);
+    struct stage_draw draw = {.settings = &v->app.settings,
+                              .camera = v->app.camera,
+                              .width = (uint32_t)(v->input.width * scale + 0.5),
+                              .height = (uint32_t)(v->input.height * scale + 0.5),
+                              .number = v->frames.number,
+                              .time_stamp = v->clock};
+    struct view_settings stepping;
+    if (v->app.step) {
+        stepping = v->app.settings;
+        stepping.pause = 0;
+        draw.settings = &stepping;
+    }
+    draw.width = draw.width < 16 ? 16 : draw.width;
+    draw.height = draw.height < 16 ? 16 : draw.height;
+    if (!v->stage)
+        return true;
+    if (v->other) {
+        if (!stage_record(v->other, &draw, commands, end))
+            return false;
+        end->views[UI_TEXTURE_OTHER] = end->views[UI_TEXTURE_PICTURE];
+    }
+    return stage_record(v->stage, &draw, commands, end);
+}
+
+static bool write_figures(struct viewer *v)
+{
+    if (!v->csv)
+        return true;
+    FILE *file = output_file_stream(v->csv);
+    if (v->frame == 0) {
+        fprintf(file, "frame");
+        for (int i = 0; i < SERIES_COUNT; i++)
+            fprintf(file, ",%s", facts_series_name((enum facts_series)i));
+        fprintf(file, "\n");
+    }
+    fprintf(file, "%u", v->frame);
+    for (int i = 0; i < SERIES_COUNT; i++)
+        fprintf(file, ",%.6g", (double)facts_value(&v->app.facts, (enum facts_series)i, 0));
+    return fprintf(file, "\n") > 0;
+}
+
+/* The swapchain's image is taken before anything is recorded: nothing has to be abandoned then. */
+static enum swapchain_outcome acquire(struct viewer *v, struct frames_end *end)
+{
+    uint32_t width, height;
+    window_size(v->window, &width, &height);
+    if (width == 0 || height == 0)
+        return SWAPCHAIN_OUTDATED;
+    if (v->swapchain.outdated || width != v->swapchain.width || height != v->swapchain.height) {
+        if (!frames_wait(&v->frames))
+            return SWAPCHAIN_FAILED;
+        vkQueueWaitIdle(v->gpu.queue);
+        enum swapchain_outcome outcome =
+            swapchain_create(&v->gpu, window_surface(v->window), width, height, &v->swapchain);
+        if (outcome != SWAPCHAIN_GOOD)
+            return outcome;
+    }
+    if ((v->frames.target.width != v->swapchain.width ||
+         v->frames.target.height != v->swapchain.height) &&
+        !frames_resize(&v->frames, v->swapchain.width, v->swapchain.height))
+        return SWAPCHAIN_FAILED;
+    end->swapchain = &v->swapchain;
+    return swapchain_acquire(&v->swapchain, frames_slot(&v->frames), &end->image);
+}
+
+static bool draw_frame(struct viewer *v, double step)
+{
+    struct ui_geometry geometry;
+    struct frames_end end = {.geometry = &geometry};
+    if (v->window) {
+        enum swapchain_outcome outcome = acquire(v, &end);
+        if (outcome != SWAPCHAIN_GOOD)
+            return outcome == SWAPCHAIN_OUTDATED;
+    }
+    VkCommandBuffer commands = fit_other(v) ? frames_begin(&v->frames) : VK_NULL_HANDLE;
+    if (!commands)
+        return false;
+    const double begin = clock_seconds();
+    v->input.width = (float)v->frames.target.width;
+    v->input.height = (float)v->frames.target.height;
+    v->input.seconds = (float)step;
+    const int panels = v->app.settings.panels;
+    ui_begin_frame(&v->input);
+    app_input(&v->app, &v->input);
+    app_move(&v->app, step);
+    if (v->app.screenshot && v->app.screenshot_plain)
+        v->app.settings.panels = 1;
+    panels_draw(&v->app);
+    if (v->app.screenshot && v->app.screenshot_plain)
+        v->app.settings.panels = panels;
+    ui_end_frame(&geometry);
+    answer_requests(v);
+    if (!v->app.settings.pause || v->app.step)
+        v->clock += (uint64_t)(step * 1e6);
+    end.read = v->screenshot[0] != '\0';
+    if (!record(v, &end, commands) || !frames_end(&v->frames, &end))
+        return false;
+    v->app.step = v->app.screenshot = false;
+    v->app.facts.host_seconds = clock_seconds() - begin;
+    v->app.facts.gpu_seconds = v->frames.gpu_seconds;
+    if (v->window && swapchain_present(&v->swapchain, end.image) == SWAPCHAIN_FAILED)
+        return false;
+    if (v->stage)
+        facts_update(&v->app.facts, v->stage, &v->app.settings, step);
+    return true;
+}
+
+static bool finish_frame(struct viewer *v)
+{
+    bool good = write_figures(v);
+    if (v->screenshot[0]) {
+        good = frames_write(&v->frames, v->screenshot) && good;
+        app_say(&v->app, "Wrote %s", v->screenshot);
+        v->screenshot[0] = '\0';
+    }
+    if (v->options->deterministic && v->stage)
+        good = frames_wait(&v->frames) && stage_settle(v->stage) &&
+               (!v->other || stage_settle(v->other)) && good;
+    return good;
+}
+
+static uint32_t frame_count(const struct viewer *v)
+{
+    if (v->options->frames)
+        return v->options->frames;
+    if (v->window)
+        return UINT32_MAX;
+    return v->script.count ? script_last_frame(&v->script) + 1 : USUAL_FRAMES;
+}
+
+static bool run_frames(struct viewer *v)
+{
+    const uint32_t count = frame_count(v);
+    v->last_time = clock_seconds();
+    for (v->frame = 0; v->frame < count && !v->app.quit; v->frame++) {
+        const double step = next_step(v);
+        gather_input(v);
+        if (v->options->screenshot && v->frame + 1 == count)
+            snprintf(v->screenshot, sizeof v->screenshot, "%s", v->options->screenshot);
+        if (!draw_frame(v, step) || !finish_frame(v))
+            return false;
+    }
+    return true;
+}
+
+static void print_summary(struct viewer *v)
+{
+    const struct view_facts *f = &v->app.facts;
+    if (!v->stage)
+        return;
+    if (v->options->json) {
+        gpu_print_json(&v->gpu);
+        printf("{\"name\": \"frames\", \"value\": %u, \"unit\": \"\"}\n"
+               "{\"name\": \"textures\", \"value\": %llu, \"unit\": \"B\"}\n"
+               "{\"name\": \"resident\", \"value\": %llu, \"unit\": \"B\"}\n"
+               "{\"name\": \"sharp\", \"value\": %.4f, \"unit\": \"\"}\n"
+               "{\"name\": \"tiles loaded\", \"value\": %llu, \"unit\": \"\"}\n"
+               "{\"name\": \"tiles failed\", \"value\": %llu, \"unit\": \"\"}\n",
+               v->frame, (unsigned long long)f->all_size, (unsigned long long)f->resident_size,
+               f->sharp, (unsigned long long)f->now.tilesMapped,
+               (unsigned long long)f->now.tilesFailed);
+        return;
+    }
+    char all[32], resident[32];
+    printf("%s: %u frames, %s of textures, %s in memory, %.0f %% sharp\n", stage_name(v->stage),
+           v->frame, panel_size(f->all_size, all, sizeof all),
+           panel_size(f->resident_size, resident, sizeof resident), 100.0 * f->sharp);
+}
+
+static bool prepare(struct viewer *v, bool *unsupported)
+{
+    const struct view_options *o = v->options;
+    double scale = v->app.settings.ui_scale;
+    uint32_t width = v->app.settings.size[0], height = v->app.settings.size[1];
+    if (!o->headless && !(v->window = window_open("Sluice", width, height)))
+        return false;
+    if (scale <= 0)
+        scale = v->window ? window_scale(v->window) : 1.0;
+    if (!ui_create((float)scale) || !create_gpu(v, unsupported))
+        return false;
+    if (v->window) {
+        if (!window_create_surface(v->window, &v->gpu))
+            return false;
+        window_size(v->window, &width, &height);
+        window_share_clipboard(v->window);
+        v->swapchain.outdated = true;
+    }
+    v->app.gpu = &v->gpu;
+    return frames_create(&v->gpu, width, height, &v->frames);
+}
+
+/* Files of settings stand between the defaults and the command line. The twin keeps none. */
+static void read_settings(struct viewer *v)
+{
+    const struct view_options *o = v->options;
+    if (o->words.count > 0)
+        snprintf(v->scene, sizeof v->scene, "%s", o->words.items[0]);
+    v->app.settings = o->settings;
+    if (o->headless || !settings_file_path(v->scene, v->settings_path, sizeof v->settings_path)) {
+        v->settings_path[0] = '\0';
+        return;
+    }
+    if (o->fresh)
+        return;
+    controls_set_defaults(&v->app.settings);
+    settings_file_read(v->settings_path, &v->app);
+    controls_take_changes(&o->settings, &v->app.settings);
+}
+
+static bool begin(struct viewer *v)
+{
+    const struct view_options *o = v->options;
+    if (o->script && !script_read(o->script, &v->script))
+        return false;
+    if (o->csv && !(v->csv = output_file_begin(o->csv)))
+        return false;
+    if (o->play && !camera_path_read(o->play, &v->app.path))
+        return false;
+    if (v->window && !draw_frame(v, 0.016)) /* "Opening the scene ..." */
+        return false;
+    if (!open_scene(v, !o->still))
+        return false;
+    if (o->play)
+        v->app.follow = FOLLOW_PATH;
+    if (is_cpu(v) && v->app.settings.render_scale <= 0 && !o->deterministic)
+        app_say(&v->app, "Drawn by the CPU: the picture has half the window's resolution "
+                         "(--render-scale)");
+    return true;
+}
+
+static void finish(struct viewer *v)
+{
+    frames_destroy(&v->frames);
+    app_finish(&v->app);
+    stage_destroy(v->other);
+    stage_destroy(v->stage);
+    swapchain_destroy(&v->swapchain);
+    window_destroy_surface(v->window, &v->gpu);
+    gpu_destroy(&v->gpu);
+    ui_destroy();
+    window_close(v->window);
+    script_finish(&v->script);
+    log_finish();
+}
+
+int viewer_run(const struct view_options *options)
+{
+    struct viewer *v = calloc(1, sizeof *v);
+    bool unsupported = false, good = false;
+    if (!v)
+        return EXIT_FAILURE;
+    v->options = options;
+    app_init(&v->app);
+    read_settings(v);
+    snprintf(v->command, sizeof v->command, "sluice-view%s%s", v->scene[0] ? " " : "", v->scene);
+    v->app.program = v->command;
+    v->app.deterministic = options->deterministic;
+    v->app.headless = options->headless;
+    if (prepare(v, &unsupported) && begin(v))
+        good = run_frames(v);
+    if (good)
+        print_summary(v);
+    if (good && v->settings_path[0])
+        settings_file_write(v->settings_path, &v->app);
+    if (v->csv)
+        good = output_file_end(v->csv, good) && good;
+    const unsigned messages = atomic_load(&v->gpu.validation_messages);
+    finish(v);
+    free(v);
+    if (messages > 0)
+        fprintf(stderr, "the validation layers had %u messages\n", messages);
+    if (unsupported)
+        return EXIT_NO_DEVICE;
+    return good && messages == 0 ? text_exit_status(EXIT_SUCCESS) : EXIT_FAILURE;
+}

@@ -1,0 +1,38 @@
+/** The viewer as a whole: device, scene, frames and, if there is one, the window. */
+#ifndef SLUICE_VIEW_VIEWER_H
+#define SLUICE_VIEW_VIEWER_H
+
+#include "app.h"
+#include "frames.h"
+#include "options.h"
+#include "script.h"
+#include "window.h"
+
+struct viewer {
+    const struct view_options *options;
+    struct gpu gpu;
+    struct view_app app;
+    struct frames frames;
+    struct stage *stage;
+    struct stage *other;   ///< what is compared with; NULL: nothing
+    int other_kind;        ///< enum view_compared of `other`
+    struct window *window; ///< NULL: headless
+    struct swapchain swapchain;
+    struct script script;
+    struct ui_input input;
+    struct view_settings applied; ///< what the streamer has
+    char scene[4096];             ///< path; "": the room
+    char command[4200];           ///< of "copy command line", without options
+    char settings_path[4096];     ///< "": none are kept
+    char screenshot[4096];        ///< to write after this frame; "": none
+    struct output_file *csv;
+    uint32_t frame;
+    double last_time, host_seconds;
+    uint64_t clock; ///< microseconds; stands while streaming is paused
+    unsigned screenshot_number;
+};
+
+/** Returns the exit status: 0, 1, or 77 without a device. */
+int viewer_run(const struct view_options *options);
+
+#endif /* SLUICE_VIEW_VIEWER_H */
