@@ -15,8 +15,8 @@
  *
  * Front ends of a context may be used on different threads at the same time: a render thread and a
  * thread that traces paths need no lock for Sluice. Use one front end on one thread at a time.
- * Vulkan's rules stay: lock a queue that several threads submit to, and the sparse queue while a
- * streamer in sparse mode begins a frame.
+ * Vulkan's rules stay: lock a queue that several threads submit to. pQueueLock gives Sluice the
+ * lock for its own calls.
  */
 #ifndef SLUICE_VULKAN_CONTEXT_H
 #define SLUICE_VULKAN_CONTEXT_H
@@ -91,6 +91,27 @@ typedef struct SluiceDeviceMemoryCallbacks {
     /** Frees a block. The GPU does not use it any more, and nothing is bound to it. */
     void (*pfnFree)(void *pUserData, const SluiceDeviceMemory *pMemory);
 } SluiceDeviceMemoryCallbacks;
+
+/**
+ * Functions that lock queues, for applications that submit on several threads. Never grows.
+ *
+ * Sluice submits no command buffers: it records into those of the application. It calls
+ * vkQueueBindSparse on sparseQueue, in sparse mode, in sluiceBeginStreamingFrame. It calls
+ * vkDeviceWaitIdle when a streamer or demand loader waits for work that does not end (vulkan.h,
+ * demand.h). Both calls are made between pfnLock and pfnUnlock, on the thread that called Sluice.
+ *
+ * pfnLock may wait. Neither function may call Sluice. A thread that holds a lock which pfnLock
+ * takes must not call sluiceBeginStreamingFrame or destroy a streamer or demand loader, unless that
+ * lock is recursive.
+ */
+typedef struct SluiceVulkanQueueLockCallbacks {
+    void *pUserData;
+    /** Waits until no other thread uses `queue`, and keeps others away from it. VK_NULL_HANDLE
+     *  stands for all queues of the device. */
+    void (*pfnLock)(void *pUserData, VkQueue queue);
+    /** Ends pfnLock with the same `queue`. */
+    void (*pfnUnlock)(void *pUserData, VkQueue queue);
+} SluiceVulkanQueueLockCallbacks;
 
 /** Settings of a context. A field of zero selects its default. */
 typedef struct SluiceVulkanContextCreateInfo {
@@ -180,6 +201,15 @@ typedef struct SluiceVulkanContextCreateInfo {
      * else: images and buffers of the application are not counted. Default: 0.
      */
     uint64_t minTileMemorySize;
+    /** Locks queues around the library's use of them. Copied. Default: none; then no other thread
+     *  may use sparseQueue while a streamer in sparse mode begins a frame. */
+    const SluiceVulkanQueueLockCallbacks *pQueueLock;
+    /**
+     * Most regions (VkSparseImageMemoryBind and VkSparseMemoryBind) of one vkQueueBindSparse. A
+     * frame with more binds makes several calls; each waits for the one before it by a semaphore.
+     * Some drivers fail on calls with many regions. Default: 512.
+     */
+    uint32_t maxBindsPerCall;
 } SluiceVulkanContextCreateInfo;
 
 /**

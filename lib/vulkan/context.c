@@ -9,6 +9,7 @@
 
 #define MIN_BUDGET (UINT64_C(4) << 20)
 #define MAX_THREADS 1024u
+#define DEFAULT_BINDS_PER_CALL 512u
 
 static SluiceResult check_budget(const SluiceLogCallback *log, uint64_t bytes)
 {
@@ -29,14 +30,15 @@ static SluiceResult check_shared_limits(const SluiceVulkanContextCreateInfo *inf
 static SluiceResult check_fields(const SluiceVulkanContextCreateInfo *info)
 {
     const SluiceDeviceMemoryCallbacks *memory = info->pDeviceMemory;
+    const SluiceVulkanQueueLockCallbacks *lock = info->pQueueLock;
     const struct slc_required fields[] = {
         {"instance", info->instance},
         {"physicalDevice", info->physicalDevice},
         {"device", info->device},
         {"pfnGetInstanceProcAddr", info->pfnGetInstanceProcAddr},
         {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)},
-        {"a function of pDeviceMemory",
-         memory == NULL || (memory->pfnAllocate && memory->pfnFree)}};
+        {"a function of pDeviceMemory", memory == NULL || (memory->pfnAllocate && memory->pfnFree)},
+        {"a function of pQueueLock", lock == NULL || (lock->pfnLock && lock->pfnUnlock)}};
     SluiceResult result = slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
     if (result == SLUICE_SUCCESS)
         result = check_shared_limits(info);
@@ -91,6 +93,12 @@ static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContext
         return result;
     slc_caps_init(&context->caps, &context->vk);
     context->sparse_queue = info->sparseQueue;
+    context->max_binds_per_call =
+        info->maxBindsPerCall ? info->maxBindsPerCall : DEFAULT_BINDS_PER_CALL;
+    if (info->pQueueLock) {
+        context->queue_lock = *info->pQueueLock;
+        context->vk.queue_lock = &context->queue_lock;
+    }
     slc_shared_parts_init(&context->shared, &context->vk, &context->caps, &context->cb, info);
     atomic_init(&context->child_count, 0);
     if (info->pDeviceMemory) {

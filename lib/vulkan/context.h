@@ -19,6 +19,8 @@ struct SluiceVulkanContext {
     struct slc_caps caps;
     struct slc_shared_parts shared;
     SluiceDeviceMemoryCallbacks memory_callbacks; ///< of vk, if the application has any
+    SluiceVulkanQueueLockCallbacks queue_lock;    ///< of vk, if the application has any
+    uint32_t max_binds_per_call;
     struct slc_memory_budget budget;
     struct slc_device_budget device_budget;
     struct slc_memory_client memory; ///< of vk: what all front ends share

@@ -43,6 +43,7 @@ struct slc_vk {
     SluiceLogCallback log;
     struct slc_memory_client *memory_client;             ///< NULL: nobody counts
     const SluiceDeviceMemoryCallbacks *memory_callbacks; ///< NULL: Vulkan allocates
+    const SluiceVulkanQueueLockCallbacks *queue_lock;    ///< NULL: none; queues.h uses it
 };
 
 /** Only what needs no device. Errors: UNSUPPORTED if a function is missing. */

@@ -40,6 +40,7 @@ static struct slc_residency_create_info create_info(const SluiceVulkanStreamer *
         .caps = &s->caps,
         .cb = &s->cb,
         .sparse_queue = s->context->sparse_queue,
+        .max_binds_per_call = s->context->max_binds_per_call,
         .max_image_count = s->info.maxTextureCount,
         .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
         .max_touched_tiles =

@@ -189,6 +189,7 @@ struct slc_residency_create_info {
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     VkQueue sparse_queue;
+    uint32_t max_binds_per_call; ///< at least 1
     uint32_t max_image_count;
     uint32_t max_changes;       ///< maps and unmaps per frame
     uint32_t max_touched_tiles; ///< 0: no limit

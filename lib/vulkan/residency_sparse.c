@@ -1,7 +1,7 @@
 /*
- * Residency by sparse binding: one vkQueueBindSparse with one batch per frame, signaling a
- * timeline semaphore that is only ever polled. Tiles that are unmapped keep their bindings until
- * their pages are needed (sparse_bindings.h).
+ * Residency by sparse binding: one batch per frame, in as few calls of vkQueueBindSparse as
+ * maxBindsPerCall allows, signaling a timeline semaphore that is only ever polled. Tiles that are
+ * unmapped keep their bindings until their pages are needed (sparse_bindings.h).
  */
 #include "vulkan/residency.h"
 
@@ -9,11 +9,11 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "base/map.h"
+#include "vulkan/bind_calls.h"
 #include "vulkan/bind_list.h"
 #include "vulkan/device_heap.h"
 #include "vulkan/sparse_bindings.h"
 #include "vulkan/sparse_image.h"
-#include "vulkan/timeline.h"
 
 #include <assert.h>
 
@@ -42,8 +42,6 @@ struct sparse_residency {
     const struct slc_vk *vk;
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
-    VkQueue queue;
-    VkSemaphore semaphore;
     uint32_t memory_type;
     uint32_t max_image_count, max_changes;
     struct slc_device_heaps heaps;
@@ -60,12 +58,9 @@ struct sparse_residency {
     uint32_t dying_count, dying_capacity;
 
     struct slc_bind_list list;
-    VkSparseImageMemoryBind *tile_binds; ///< owned, as the next ones
-    VkSparseMemoryBind *page_binds;
-    VkSparseImageMemoryBindInfo *tile_infos;
-    VkSparseImageOpaqueMemoryBindInfo *page_infos;
-
-    uint64_t submitted_value, completed_value;
+    struct slc_bind_calls calls;
+    uint64_t submitted_value, completed_value; ///< batches
+    uint64_t batch_ends[MAX_BATCHES];          ///< of the semaphore, by batch
 };
 
 static struct sparse_residency *sparse(struct slc_residency *residency)
@@ -357,12 +352,14 @@ static SluiceResult update(struct slc_residency *residency, uint64_t frame,
     struct sparse_residency *s = sparse(residency);
     (void)frame;
     uint64_t value = 0;
-    SluiceResult result =
-        slc_vk_result(s->vk, s->vk->GetSemaphoreCounterValue(s->vk->device, s->semaphore, &value),
-                      "vkGetSemaphoreCounterValue");
+    SluiceResult result = slc_vk_result(
+        s->vk, s->vk->GetSemaphoreCounterValue(s->vk->device, s->calls.semaphore, &value),
+        "vkGetSemaphoreCounterValue");
     if (result != SLUICE_SUCCESS)
         return result;
-    s->completed_value = value;
+    while (s->completed_value < s->submitted_value &&
+           s->batch_ends[(s->completed_value + 1) % MAX_BATCHES] <= value)
+        s->completed_value++;
     release_pending(s, completed_frame);
     release_dying(s);
     s->base.counters.unbinds = s->pages.unbind_count;
@@ -434,37 +431,53 @@ static VkSparseMemoryBind page_bind(const struct sparse_residency *s,
                                 .memoryOffset = heap.offset};
 }
 
-/* The binds of one image: runs[0..count), all of it, and its metadata if that is not bound yet. */
-static void add_image(struct sparse_residency *s, VkBindSparseInfo *info, uint32_t *tile_count,
-                      uint32_t *page_count, const struct slc_bind_run *runs, uint32_t count)
+static VkSparseMemoryBind metadata_bind(const struct slc_sparse_image *image)
 {
-    struct slc_sparse_image *image = &s->images[runs[0].image];
-    uint32_t first_tile = *tile_count, first_page = *page_count;
-    for (uint32_t i = 0; i < count; i++) {
-        if (runs[i].place.level == SLC_TAIL_LEVEL)
-            s->page_binds[(*page_count)++] = page_bind(s, image, &runs[i]);
-        else
-            s->tile_binds[(*tile_count)++] = tile_bind(s, image, &runs[i]);
-    }
-    if (image->metadata.memory && !image->metadata_bound) {
-        s->page_binds[(*page_count)++] = (VkSparseMemoryBind){
-            .resourceOffset =
-                image->layout.metadata_offset + image->layer * image->layout.metadata_stride,
-            .size = image->layout.metadata_size,
-            .memory = image->metadata.memory,
-            .memoryOffset = image->metadata.offset + image->layer * image->layout.metadata_size,
-            .flags = VK_SPARSE_MEMORY_BIND_METADATA_BIT};
-        image->metadata_bound = true;
-    }
-    if (*tile_count > first_tile)
-        s->tile_infos[info->imageBindCount++] = (VkSparseImageMemoryBindInfo){
-            image->image, *tile_count - first_tile, &s->tile_binds[first_tile]};
-    if (*page_count > first_page)
-        s->page_infos[info->imageOpaqueBindCount++] = (VkSparseImageOpaqueMemoryBindInfo){
-            image->image, *page_count - first_page, &s->page_binds[first_page]};
-    image->last_value = s->submitted_value + 1;
+    const struct slc_sparse_layout *layout = &image->layout;
+    return (VkSparseMemoryBind){
+        .resourceOffset = layout->metadata_offset + image->layer * layout->metadata_stride,
+        .size = layout->metadata_size,
+        .memory = image->metadata.memory,
+        .memoryOffset = image->metadata.offset + image->layer * layout->metadata_size,
+        .flags = VK_SPARSE_MEMORY_BIND_METADATA_BIT};
 }
 
+/* Before the first run of an image. */
+static SluiceResult begin_image(struct sparse_residency *s, struct slc_sparse_image *image)
+{
+    image->last_value = s->submitted_value + 1;
+    if (!image->metadata.memory || image->metadata_bound)
+        return SLUICE_SUCCESS;
+    const VkSparseMemoryBind bind = metadata_bind(image);
+    return slc_bind_calls_add_page(&s->calls, image->image, &bind);
+}
+
+static SluiceResult add_run(struct sparse_residency *s, const struct slc_bind_run *run)
+{
+    const struct slc_sparse_image *image = &s->images[run->image];
+    if (run->place.level == SLC_TAIL_LEVEL) {
+        const VkSparseMemoryBind page = page_bind(s, image, run);
+        return slc_bind_calls_add_page(&s->calls, image->image, &page);
+    }
+    const VkSparseImageMemoryBind tile = tile_bind(s, image, run);
+    return slc_bind_calls_add_tile(&s->calls, image->image, &tile);
+}
+
+static SluiceResult submit_runs(struct sparse_residency *s)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    slc_bind_calls_begin(&s->calls);
+    for (uint32_t i = 0; result == SLUICE_SUCCESS && i < s->list.run_count; i++) {
+        const struct slc_bind_run *run = &s->list.runs[i];
+        if (i == 0 || run->image != s->list.runs[i - 1].image)
+            result = begin_image(s, &s->images[run->image]);
+        if (result == SLUICE_SUCCESS)
+            result = add_run(s, run);
+    }
+    return result == SLUICE_SUCCESS ? slc_bind_calls_end(&s->calls) : result;
+}
+
+/* After an error the list stays, and the next batch binds all of it again. */
 static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
 {
     struct sparse_residency *s = sparse(residency);
@@ -474,35 +487,14 @@ static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
     if (s->list.count == 0 || s->submitted_value - s->completed_value == MAX_BATCHES)
         return SLUICE_SUCCESS;
     slc_bind_list_build_runs(&s->list);
-    /* Batches are ordered by semaphores only, and a later one may rebind what an earlier one
-     * unbinds. */
-    VkTimelineSemaphoreSubmitInfo timeline = {.sType =
-                                                  VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
-                                              .waitSemaphoreValueCount = 1,
-                                              .pWaitSemaphoreValues = &s->submitted_value,
-                                              .signalSemaphoreValueCount = 1,
-                                              .pSignalSemaphoreValues = value};
-    VkBindSparseInfo info = {.sType = VK_STRUCTURE_TYPE_BIND_SPARSE_INFO,
-                             .pNext = &timeline,
-                             .waitSemaphoreCount = 1,
-                             .pWaitSemaphores = &s->semaphore,
-                             .pImageBinds = s->tile_infos,
-                             .pImageOpaqueBinds = s->page_infos,
-                             .signalSemaphoreCount = 1,
-                             .pSignalSemaphores = &s->semaphore};
-    uint32_t tile_count = 0, page_count = 0;
-    for (uint32_t i = 0, next; i < s->list.run_count; i = next) {
-        for (next = i + 1; next < s->list.run_count; next++)
-            if (s->list.runs[next].image != s->list.runs[i].image)
-                break;
-        add_image(s, &info, &tile_count, &page_count, &s->list.runs[i], next - i);
-    }
-    SluiceResult result = slc_vk_result(
-        s->vk, s->vk->QueueBindSparse(s->queue, 1, &info, VK_NULL_HANDLE), "vkQueueBindSparse");
+    SluiceResult result = submit_runs(s);
+    s->base.counters.bind_calls = s->calls.count;
     if (result != SLUICE_SUCCESS)
         return result;
+    for (uint32_t i = 0; i < s->list.run_count; i++)
+        s->images[s->list.runs[i].image].metadata_bound = true;
     s->submitted_value++;
-    s->base.counters.bind_calls++;
+    s->batch_ends[s->submitted_value % MAX_BATCHES] = s->calls.signaled;
     s->base.counters.bind_runs += s->list.run_count;
     slc_bind_list_clear(&s->list);
     return SLUICE_SUCCESS;
@@ -513,8 +505,8 @@ static SluiceResult wait(struct slc_residency *residency)
     struct sparse_residency *s = sparse(residency);
     VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
                                 .semaphoreCount = 1,
-                                .pSemaphores = &s->semaphore,
-                                .pValues = &s->submitted_value};
+                                .pSemaphores = &s->calls.semaphore,
+                                .pValues = &s->calls.signaled};
     return slc_vk_result(s->vk, s->vk->WaitSemaphores(s->vk->device, &info, UINT64_MAX),
                          "vkWaitSemaphores");
 }
@@ -537,12 +529,7 @@ static void destroy(struct slc_residency *residency)
             if (s->images[i].layer == 0)
                 destroy_image(residency, i);
     slc_device_heaps_finish(&s->heaps, s->vk, cb);
-    s->vk->DestroySemaphore(s->vk->device, s->semaphore, NULL);
-    uint32_t capacity = s->list.capacity, page_capacity = capacity + s->max_image_count;
-    slc_free(cb, s->tile_binds, capacity, sizeof *s->tile_binds);
-    slc_free(cb, s->page_binds, page_capacity, sizeof *s->page_binds);
-    slc_free(cb, s->tile_infos, s->max_image_count, sizeof *s->tile_infos);
-    slc_free(cb, s->page_infos, s->max_image_count, sizeof *s->page_infos);
+    slc_bind_calls_finish(&s->calls, cb);
     slc_bind_list_finish(&s->list, cb);
     slc_sparse_bindings_finish(&s->pages, cb);
     slc_free(cb, s->dying, s->dying_capacity, sizeof *s->dying);
@@ -593,15 +580,18 @@ static SluiceResult create_arrays(struct sparse_residency *s)
         return result;
     s->images = slc_calloc(s->cb, s->max_image_count, sizeof *s->images);
     s->pending = slc_alloc(s->cb, s->pending_capacity, sizeof *s->pending);
-    s->tile_binds = slc_alloc(s->cb, capacity, sizeof *s->tile_binds);
-    /* and once in its life each image's metadata */
-    s->page_binds = slc_alloc(s->cb, capacity + s->max_image_count, sizeof *s->page_binds);
-    s->tile_infos = slc_alloc(s->cb, s->max_image_count, sizeof *s->tile_infos);
-    s->page_infos = slc_alloc(s->cb, s->max_image_count, sizeof *s->page_infos);
-    if (!s->images || !s->pending || !s->tile_binds || !s->page_binds || !s->tile_infos ||
-        !s->page_infos)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    return SLUICE_SUCCESS;
+    return s->images && s->pending ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+static SluiceResult create_calls(struct sparse_residency *s,
+                                 const struct slc_residency_create_info *info)
+{
+    const struct slc_bind_calls_limits limits = {
+        .regions_per_call = info->max_binds_per_call,
+        .tile_count = s->list.capacity,
+        .page_count = s->list.capacity + s->max_image_count, /* metadata once for each image */
+        .image_count = s->max_image_count};
+    return slc_bind_calls_init(&s->calls, s->vk, info->sparse_queue, s->cb, &limits);
 }
 
 SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,
@@ -614,14 +604,13 @@ SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info 
     s->vk = info->vk;
     s->caps = info->caps;
     s->cb = info->cb;
-    s->queue = info->sparse_queue;
     s->max_image_count = info->max_image_count;
     s->max_changes = info->max_changes;
     s->touched.limit = info->max_touched_tiles;
     s->heaps.kept_size = info->kept_heap_size;
     SluiceResult result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
-        result = slc_timeline_create(s->vk, "binds", &s->semaphore);
+        result = create_calls(s, info);
     if (result == SLUICE_SUCCESS)
         result = slc_sparse_memory_type(s->vk, s->caps, &s->memory_type);
     if (result != SLUICE_SUCCESS) {

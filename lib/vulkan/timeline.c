@@ -1,6 +1,7 @@
 #include "vulkan/timeline.h"
 
 #include "base/log.h"
+#include "vulkan/queues.h"
 
 #define SECOND 1000000000ull
 #define PATIENCE 5u /* seconds without progress */
@@ -49,5 +50,5 @@ void slc_timeline_wait(const struct slc_vk *vk, VkSemaphore semaphore, uint64_t 
             "%s %llu was ended, but its semaphore is still at %llu after %u seconds: if it was not "
             "submitted, abandon it; waiting for the whole device instead",
             what, (unsigned long long)value, (unsigned long long)reached, PATIENCE);
-    vk->DeviceWaitIdle(vk->device);
+    slc_wait_for_device(vk);
 }

@@ -116,6 +116,10 @@ search '\b(bur[y]|burie[ds]|exhum[e]|ghos[t]s?|displac(e[ds]?|ing))\b' "${text[@
 search '#include <(pthread|unistd|fcntl|dirent|process|io|windows|sys/[a-z]+)\.h>' 'lib/*.c' 'lib/*.h' 'lib/*.cpp' |
     grep -v '^lib/platform/' | report only_platform_calls_the_system
 
+# The application may use the same queues on other threads: its lock is in queues.c.
+search '->(QueueBindSparse|QueueSubmit2?|QueueWaitIdle|DeviceWaitIdle)[(]' 'lib/*.c' |
+    grep -v '^lib/vulkan/queues.c:' | report queues_are_used_in_one_place
+
 names_in_two_places | report names_of_lib_are_unique
 unlisted_refusals | report refused_arguments_are_logged
 

@@ -2,6 +2,8 @@
 #include "vulkan/fake_functions.h"
 #include "vulkan/fake_objects.h"
 
+#define DEFAULT_BINDS_PER_CALL 512u
+
 static VKAPI_ATTR VkResult VKAPI_CALL create_semaphore(VkDevice device,
                                                        const VkSemaphoreCreateInfo *info,
                                                        const VkAllocationCallbacks *cb,
@@ -74,13 +76,35 @@ static void note_tiles(struct fake_vulkan *fake, VkImage image, const VkSparseIm
                                             b->memoryOffset + i * 65536ull});
 }
 
+/* Every use of a queue is inside the application's lock, by the queue that it is about. */
+static void check_lock(const struct fake_vulkan *fake, VkQueue queue)
+{
+    if (fake->no_queue_lock)
+        return;
+    assert_int_equal(fake->lock_depth, 1);
+    assert_ptr_equal(fake->locked_queue, queue);
+}
+
+static uint32_t count_regions(const VkBindSparseInfo *info)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < info->imageBindCount; i++)
+        count += info->pImageBinds[i].bindCount;
+    for (uint32_t i = 0; i < info->imageOpaqueBindCount; i++)
+        count += info->pImageOpaqueBinds[i].bindCount;
+    return count;
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
                                                   const VkBindSparseInfo *info, VkFence fence)
 {
-    FAKE_MAY_FAIL(queue);
     (void)fence;
     struct fake_vulkan *fake = fake_of(queue);
+    check_lock(fake, queue);
+    FAKE_MAY_FAIL(queue);
     assert_int_equal(count, 1);
+    assert_in_range(count_regions(info), 1,
+                    fake->maxBindsPerCall ? fake->maxBindsPerCall : DEFAULT_BINDS_PER_CALL);
     for (uint32_t i = 0; i < info->imageBindCount; i++)
         for (uint32_t j = 0; j < info->pImageBinds[i].bindCount; j++)
             note_tiles(fake, info->pImageBinds[i].image, &info->pImageBinds[i].pBinds[j]);
@@ -116,6 +140,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
 static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
 {
     struct fake_vulkan *fake = fake_of(device);
+    check_lock(fake, VK_NULL_HANDLE);
     fake->device_waits++;
     bool is_lost = fake->fails_on && fake->failing_call && fake->calls >= fake->failing_call;
     return is_lost ? fake->failure : VK_SUCCESS;

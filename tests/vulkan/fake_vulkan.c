@@ -1,5 +1,6 @@
 #include "vulkan/fake_vulkan.h"
 
+#include "support/test.h"
 #include "vulkan/fake_functions.h"
 #include "vulkan/fake_objects.h"
 #include "vulkan/streamer.h"
@@ -55,8 +56,26 @@ void fake_vulkan_fill(SluiceVulkanStreamerCreateInfo *info)
         info->retryDelayTicks = 1;
 }
 
+static void lock_queue(void *user, VkQueue queue)
+{
+    struct fake_vulkan *fake = user;
+    assert_int_equal(fake->lock_depth, 0);
+    fake->lock_depth++;
+    fake->lock_count++;
+    fake->locked_queue = queue;
+}
+
+static void unlock_queue(void *user, VkQueue queue)
+{
+    struct fake_vulkan *fake = user;
+    assert_int_equal(fake->lock_depth, 1);
+    assert_ptr_equal(fake->locked_queue, queue);
+    fake->lock_depth--;
+}
+
 SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake)
 {
+    fake->queue_lock = (SluiceVulkanQueueLockCallbacks){fake, lock_queue, unlock_queue};
     return (SluiceVulkanContextCreateInfo){
         .structSize = sizeof(SluiceVulkanContextCreateInfo),
         .instance = (VkInstance)(void *)fake,
@@ -70,7 +89,9 @@ SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake)
         .readRetry = fake->readRetry,
         .maxPageChunkCount = fake->maxPageChunkCount,
         .minStagingSize = fake->minStagingSize,
-        .minTileMemorySize = fake->minTileMemorySize};
+        .minTileMemorySize = fake->minTileMemorySize,
+        .pQueueLock = fake->no_queue_lock ? NULL : &fake->queue_lock,
+        .maxBindsPerCall = fake->maxBindsPerCall};
 }
 
 SluiceResult fake_vulkan_create(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info,

@@ -115,6 +115,13 @@ struct fake_vulkan {
     uint32_t loaderThreadCount, maxPageChunkCount;
     SluiceTileRetryPolicy readRetry;
     uint64_t minStagingSize, minTileMemorySize;
+    uint32_t maxBindsPerCall;
+    bool no_queue_lock; ///< else calls outside the queue lock are failures
+
+    SluiceVulkanQueueLockCallbacks queue_lock;
+    VkQueue locked_queue; ///< VK_NULL_HANDLE: all
+    uint32_t lock_depth;  ///< 0: unlocked
+    uint64_t lock_count;  ///< since the start
 
     bool no_linear_filter;              ///< Its format is sampled with NEAREST filters only.
     VkSamplerCreateInfo newest_sampler; ///< pNext is NULL

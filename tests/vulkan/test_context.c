@@ -8,6 +8,7 @@
 
 #include <sluice/demand.h>
 
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -120,7 +121,7 @@ static void another_struct_size_is_refused(void **state)
     SluiceVulkanContextCreateInfo info = start();
     info.structSize = 0;
     CHECK_RESULT(sluiceCreateVulkanContext(&info, &context), SLUICE_ERROR_INVALID_ARGUMENT);
-    info.structSize = sizeof info - 1;
+    info.structSize = offsetof(SluiceVulkanContextCreateInfo, minTileMemorySize);
     CHECK_RESULT(sluiceCreateVulkanContext(&info, &context), SLUICE_ERROR_INVALID_ARGUMENT);
     assert_null(context);
 }
@@ -239,6 +240,25 @@ static void answers_of_memory_callbacks_are_checked(void **state)
         assert_int_equal(block.live, 0);
         assert_int_equal(context->memory.host, 0);
         sluiceDestroyVulkanContext(context);
+    }
+}
+
+static void lock_without_unlock(void *user, VkQueue queue)
+{
+    (void)user, (void)queue;
+}
+
+static void queue_locks_must_be_whole(void **state)
+{
+    (void)state;
+    const SluiceVulkanQueueLockCallbacks halves[] = {{NULL, lock_without_unlock, NULL},
+                                                     {NULL, NULL, lock_without_unlock}};
+    for (int i = 0; i < 2; i++) {
+        SluiceVulkanContext *context;
+        SluiceVulkanContextCreateInfo info = start();
+        info.pQueueLock = &halves[i];
+        CHECK_RESULT(sluiceCreateVulkanContext(&info, &context), SLUICE_ERROR_NULL_POINTER);
+        check_line(&lines, "a function of pQueueLock is NULL");
     }
 }
 
@@ -546,6 +566,7 @@ int main(void)
         cmocka_unit_test(contexts_outlive_their_children),
         cmocka_unit_test(answers_of_memory_callbacks_are_checked),
         cmocka_unit_test(memory_callbacks_must_be_whole),
+        cmocka_unit_test(queue_locks_must_be_whole),
         cmocka_unit_test(budgets_below_4_mib_are_refused),
         cmocka_unit_test(objects_go_without_names_if_the_instance_has_no_debug_utils),
         cmocka_unit_test(a_given_pipeline_cache_is_used_and_kept),

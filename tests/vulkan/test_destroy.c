@@ -203,6 +203,8 @@ static void ended_frame_that_was_not_submitted_does_not_hang_destruction(void **
         assert_int_equal(frame_waits(s), 5);
         assert_int_equal(s->fake.device_waits, 1);
         assert_int_equal(s->warnings, 1);
+        assert_int_equal(s->fake.lock_depth, 0);
+        assert_true(s->fake.lock_count >= 1);
     }
 }
 

@@ -193,13 +193,14 @@ static SluiceResult stream(struct fake_vulkan *fake, SluiceVulkanStreamer *strea
 #define STAGING_CALLS (3u * 4u)
 
 /* All that may be done with a streamer whose frame failed is to destroy it. */
-static void frames_survive(uint32_t packed_count, uint32_t harmless_calls)
+static void frames_survive(uint32_t packed_count, uint32_t binds_per_call, uint32_t harmless_calls)
 {
     uint32_t harmless = 0;
     for (size_t f = 0; f < FAILURES; f++)
         for (uint64_t n = 1;; n++) {
             static struct fake_vulkan fake; /* large */
-            fake = (struct fake_vulkan){.tail_page_count = 1, .want = want_all};
+            fake = (struct fake_vulkan){
+                .tail_page_count = 1, .want = want_all, .maxBindsPerCall = binds_per_call};
             SluiceVulkanStreamer *streamer;
             CHECK_OK(create(&fake, &streamer));
             SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
@@ -259,14 +260,15 @@ static void frames_survive_every_failing_call(void **state)
 {
     (void)state;
     mode = SLUICE_RESIDENCY_MODE_SPARSE;
-    frames_survive(1,
-                   STAGING_CALLS + 2); /* heaps that the device refuses are only a smaller budget */
+    /* Heaps that the device refuses are only a smaller budget. */
+    frames_survive(1, 0, STAGING_CALLS + 2);
+    frames_survive(1, 1, STAGING_CALLS + 2);
     mode = SLUICE_RESIDENCY_MODE_PAGED;
     /* Packed levels fill two tiles; a chunk that is refused is tried again with half of the pages.
      */
-    frames_survive(2, STAGING_CALLS + 4);
+    frames_survive(2, 0, STAGING_CALLS + 4);
     mode = SLUICE_RESIDENCY_MODE_DENSE;
-    frames_survive(2, STAGING_CALLS + 0);
+    frames_survive(2, 0, STAGING_CALLS + 0);
 }
 
 int main(void)

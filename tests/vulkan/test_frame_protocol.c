@@ -15,6 +15,9 @@
 
 #include <string.h>
 
+static uint32_t binds_per_call; /* 0: the default */
+static uint32_t binds_in_parts; /* frames of the last run that made several calls */
+
 enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 64, FRAMES_IN_FLIGHT = 6 };
 
 struct tile {
@@ -50,6 +53,7 @@ struct model {
     uint32_t
         shrink_one_in; ///< frames, before which the budget changes or heaps are emptied; 0: none
     uint32_t moved;    ///< tiles moved by emptying heaps
+    uint32_t frames_in_parts; ///< that made several calls
 };
 
 static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
@@ -159,7 +163,8 @@ static void take_binds(struct model *m)
         *tile = (struct tile){bind->memory, bind->offset, m->fake.submitted_bind_value,
                               tile->memory, false};
     }
-    assert_true(m->fake.bind_calls <= 1);
+    assert_true(m->fake.bind_calls <= 1 || binds_per_call);
+    m->frames_in_parts += m->fake.bind_calls > 1;
     for (uint32_t i = 0; i < m->fake.bind_count; i++) { /* when all of them are done */
         const struct fake_bind *bind = &m->fake.binds[i];
         const struct texture *t = find_image(m, bind->image);
@@ -403,6 +408,7 @@ static void run_plan(uint32_t tail_page_count, uint64_t metadata_size,
     struct model *m = &model;
     *m = (struct model){.fake = {.tail_page_count = tail_page_count,
                                  .metadata_size = metadata_size,
+                                 .maxBindsPerCall = binds_per_call,
                                  .want = want,
                                  .user = m},
                         .submitted = UINT64_MAX,
@@ -442,6 +448,7 @@ static void run_plan(uint32_t tail_page_count, uint64_t metadata_size,
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.unbinds + stats.unbindsSaved > 50);
     assert_true(stats.unbindsSaved > 0);
+    binds_in_parts = m->frames_in_parts;
     assert_true(stats.tilesRestored > 100);
     assert_true(!abandon_one_in || m->abandoned_in_all > 500);
     assert_in_range(m->fake.frame_value, 1000, m->frame); /* the timeline went on */
@@ -517,6 +524,16 @@ static void promises_hold_with_metadata_that_is_bound_once(void **state)
 {
     (void)state;
     run(1, 196608, 64, 6, 45);
+}
+
+/* The binding queue stands between two calls of a frame as often as between frames. */
+static void promises_hold_where_a_call_binds_two_regions(void **state)
+{
+    (void)state;
+    binds_per_call = 2;
+    run(1, 196608, 64, 6, 48);
+    binds_per_call = 0;
+    assert_true(binds_in_parts > 100);
 }
 
 static void promises_hold_with_room_for_everything(void **state)
@@ -613,6 +630,7 @@ int main(void)
         cmocka_unit_test(promises_hold_with_a_tail_of_one_page),
         cmocka_unit_test(promises_hold_with_a_tail_of_many_pages_and_little_memory),
         cmocka_unit_test(promises_hold_with_metadata_that_is_bound_once),
+        cmocka_unit_test(promises_hold_where_a_call_binds_two_regions),
         cmocka_unit_test(promises_hold_with_room_for_everything),
         cmocka_unit_test(promises_hold_where_frames_are_abandoned),
         cmocka_unit_test(promises_hold_while_the_budget_changes),
