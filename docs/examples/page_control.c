@@ -1,5 +1,6 @@
 /* Lines that docs/control.md shows. Compiled, not run. */
 #include <sluice/vulkan_explain.h>
+#include <sluice/vulkan_strict.h>
 
 #include <stdio.h>
 
@@ -9,6 +10,7 @@ SluiceResult showSavedFile(SluiceVulkanStreamer *streamer, SluiceTextureId textu
 void destroyWhenUnused(const SluiceVulkanStreamer *streamer, SluiceImageSource **pOld);
 SluiceVulkanWaitStatus loadNow(SluiceVulkanStreamer *streamer, SluiceTextureRequestId request,
                                void (*drawFrame)(void *user), void *user);
+void reportMisuse(void *pUserData, const SluiceMisuse *pMisuse);
 SluiceResult addDetailMap(SluiceVulkanStreamer *streamer, SluiceImageSource *source,
                           SluiceTextureId base, SluiceVulkanTexture *pDetail);
 SluiceResult requestHero(SluiceVulkanStreamer *streamer, SluiceTextureId hero,
@@ -97,4 +99,10 @@ SluiceVulkanWaitStatus loadNow(SluiceVulkanStreamer *streamer, SluiceTextureRequ
             drawFrame(user); /* begins, ends and submits a streaming frame */
     }
     return status;
+}
+
+void reportMisuse(void *pUserData, const SluiceMisuse *pMisuse)
+{
+    fprintf(stderr, "%s: misuse %d: %s\n", (const char *)pUserData, (int)pMisuse->kind,
+            pMisuse->pMessage);
 }

@@ -109,6 +109,7 @@
 #define SLC_FIRST_SluiceVulkanTextureRequest SLC_UP_TO(SluiceVulkanTextureRequest, until)
 #define SLC_FIRST_SluiceVulkanRequestProgress                                                      \
     SLC_UP_TO(SluiceVulkanRequestProgress, givenUpTileCount)
+#define SLC_FIRST_SluiceVulkanStrictMode SLC_UP_TO(SluiceVulkanStrictMode, pfnReport)
 #define SLC_FIRST_SluiceVulkanLoadStages SLC_UP_TO(SluiceVulkanLoadStages, stages)
 #define SLC_FIRST_SluiceDemandTileInfo SLC_UP_TO(SluiceDemandTileInfo, state)
 #define SLC_FIRST_SluiceVulkanExplanation SLC_UP_TO(SluiceVulkanExplanation, sentence)

@@ -13,6 +13,7 @@
 #include "vulkan/load_starts.h"
 #include "vulkan/residencies.h"
 #include "vulkan/shrink.h"
+#include "vulkan/strict_mode.h"
 #include "vulkan/texture_forgetting.h"
 #include "vulkan/tile_upload.h"
 
@@ -212,16 +213,20 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                 (unsigned long long)timeStamp, (unsigned long long)s->time_stamp);
         return SLUICE_ERROR_TIME_BACKWARDS;
     }
-    if (s->ended_frame != s->frame)
+    if (s->ended_frame != s->frame) {
+        slc_strict_not_ended(s);
         return slc_log_refusal(
             &s->vk.log, "frame %llu was neither ended nor abandoned: no other one can be begun",
             (unsigned long long)s->frame);
+    }
     SluiceResult result = poll_frames(s);
     if (result != SLUICE_SUCCESS)
         return result;
     s->slot = slot_of(s, s->slot_turn);
-    if (s->in_flight[s->slot] > s->completed_frame)
+    if (s->in_flight[s->slot] > s->completed_frame) {
+        slc_strict_not_ready(s, s->in_flight[s->slot]);
         return SLUICE_NOT_READY;
+    }
     s->in_flight[s->slot] = ++s->frame;
     s->submittable[s->slot] = false;
     s->slot_turn++;
@@ -241,6 +246,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     if (result >= 0)
         result = record(s, commandBuffer);
     s->manager_locked = true;
+    slc_strict_begun(s);
     if (result < 0) {
         s->ended_frame = s->frame;
         return result;
@@ -256,10 +262,12 @@ SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer, VkCommandBu
 {
     if (!streamer || !commandBuffer)
         return SLUICE_ERROR_NULL_POINTER;
-    if (streamer->ended_frame == streamer->frame)
+    if (streamer->ended_frame == streamer->frame) {
+        slc_strict_not_begun(streamer);
         return slc_log_refusal(
             &streamer->vk.log,
             "no frame can be ended: none was begun since the last one was ended or abandoned");
+    }
     streamer->ended_frame = streamer->frame;
     streamer->submittable[streamer->slot] = true;
     slc_feedback_record(streamer, commandBuffer);

@@ -223,6 +223,7 @@ static SluiceResult start_loads(SluiceVulkanStreamer *s, struct slc_read_batch *
         return SLUICE_SUCCESS; /* they stay requested */
     if (result < 0)
         return slc_streamer_check(s, result, "sluiceGetTilesToMap");
+    s->strict.budget_reached = result == SLUICE_BUDGET_REACHED;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t index = s->by_manager_index[(uint32_t)s->tiles[i].textureId];
         result = SLUICE_SUCCESS;

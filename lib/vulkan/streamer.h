@@ -28,6 +28,7 @@
 
 #include <sluice/shared/texture_table.h>
 #include <sluice/vulkan_explain.h>
+#include <sluice/vulkan_strict.h>
 
 #define SLC_MAX_FRAMES 16u
 #define SLC_MAX_TILES_PER_FRAME (1u << 14)
@@ -183,6 +184,17 @@ struct slc_load_stages {
     SluiceVulkanLoadStages counts;
 };
 
+/** See strict_mode.h. */
+struct slc_strict {
+    SluiceVulkanStrictMode mode; ///< pfnReport NULL: off
+    uint64_t marked_frame;       ///< the last one in which some map had marks, as far as was looked
+    uint64_t refused_frame;      ///< that begins waited for
+    uint32_t refused_count;
+    bool budget_reached;              ///< the frame's requests stopped for lack of slots
+    uint64_t heaps_told, chunks_told; ///< frames; 0: never
+    uint64_t shortages;               ///< of page images, as of the last frame
+};
+
 struct SluiceVulkanStreamer {
     SluiceAllocationCallbacks cb;
     SluiceVulkanStreamerCreateInfo info; ///< defaults filled in
@@ -288,6 +300,7 @@ struct SluiceVulkanStreamer {
     struct slc_readback_ring readback;
     struct slc_resolve resolve;
 
+    struct slc_strict strict;
     struct slc_load_stages stages;
     SluiceVulkanStreamerStatistics counts; ///< but what others count
 };

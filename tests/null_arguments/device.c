@@ -7,6 +7,7 @@
 #include <sluice/neural_paths.h>
 #include <sluice/demand_query.h>
 #include <sluice/vulkan_control.h>
+#include <sluice/vulkan_strict.h>
 #include <sluice/vulkan_explain.h>
 #include <sluice/vulkan_neural.h>
 #include <sluice/vulkan_proxy.h>
@@ -58,6 +59,8 @@ sluiceGetVulkanTextureControl(f->streamer, f->texture.textureId, &f->out.control
 sluiceSetVulkanTextureControl(f->streamer, f->texture.textureId, &f->control)
 sluiceEvictVulkanTexture(f->streamer, f->texture.textureId, ?1)
 sluiceSetVulkanPrimaryTexture(f->streamer, f->texture.textureId, ?SLUICE_NO_TEXTURE)
+sluiceSetVulkanStrictMode(f->streamer, ?NULL)
+!sluiceDestroyVulkanSource(f->streamer, f->source)
 sluiceInvalidateVulkanTexture(f->streamer, f->texture.textureId, ?NULL, ?1)
 sluiceReplaceVulkanSource(f->streamer, f->texture.textureId, f->source)
 sluiceIsVulkanSourceInUse(f->streamer, f->source, &f->out.in_use)

@@ -4,6 +4,7 @@
 #include "support/streamer_manager.h"
 #include "support/test.h"
 
+#include <sluice/vulkan_strict.h>
 #include <string.h>
 
 enum { BEARABLE = 3 };
@@ -90,6 +91,14 @@ static uint8_t want_all(void *user, uint32_t region)
     return 0;
 }
 
+static void count_misuse(void *user, const SluiceMisuse *misuse)
+{
+    assert_true(misuse->kind == SLUICE_MISUSE_CHUNKS_EXHAUSTED && misuse->value == 2);
+    assert_non_null(strstr(misuse->pMessage, "all 2 images of pages are in use"));
+    assert_non_null(strstr(misuse->pMessage, "Raise maxPageChunkCount"));
+    ++*(uint32_t *)user;
+}
+
 static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
 {
     (void)state;
@@ -115,6 +124,10 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &create.source));
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
+    uint32_t misuse_count = 0;
+    const SluiceVulkanStrictMode strict = {
+        .structSize = sizeof strict, .pUserData = &misuse_count, .pfnReport = count_misuse};
+    CHECK_OK(sluiceSetVulkanStrictMode(streamer, &strict));
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     CHECK_OK(sluiceGetVulkanStreamerStatistics(streamer, &stats));
     assert_int_equal(stats.pageChunkCount, 0);
@@ -124,6 +137,7 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     assert_int_equal(stats.pageChunkCount, 2); /* of 64 tiles each; level 0 alone has 256 */
     assert_in_range(stats.pageChunkShortages, 2, 10);
     assert_int_equal(warnings, 1);
+    assert_int_equal(misuse_count, 1); /* 600 frames until the next */
     assert_int_equal(stats.tilesMapped - stats.tilesUnmapped, 2 * 64 + 2);
     fake_vulkan_destroy(streamer);
     sluiceDestroyImageSource(create.source);

@@ -1,6 +1,7 @@
 /* What an application may know and decide about single textures. */
 #include "vulkan/control_reload.h"
 #include "vulkan/control_stage.h"
+#include "vulkan/control_strict.h"
 
 #include <sluice/vulkan_explain.h>
 
@@ -627,6 +628,11 @@ int main(void)
         cmocka_unit_test(sources_of_another_shape_are_refused),
         cmocka_unit_test(equal_tiles_get_pages_of_their_own),
         cmocka_unit_test(reloads_survive_every_refused_allocation),
+        cmocka_unit_test(unpaired_frames_are_reported),
+        cmocka_unit_test(frames_that_are_never_signaled_are_reported_once),
+        cmocka_unit_test(frames_without_feedback_are_reported),
+        cmocka_unit_test(exhausted_heaps_are_reported),
+        cmocka_unit_test(sources_in_use_are_reported_and_kept),
         cmocka_unit_test(each_step_of_a_load_is_told),
         cmocka_unit_test(what_the_application_decides_is_told),
         cmocka_unit_test(what_nobody_sees_is_told),

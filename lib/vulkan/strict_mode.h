@@ -1,0 +1,14 @@
+/** Reports of misuse. Each function does nothing unless strict mode is on. */
+#ifndef SLC_VULKAN_STRICT_MODE_H
+#define SLC_VULKAN_STRICT_MODE_H
+
+#include "vulkan/streamer.h"
+
+void slc_strict_not_ended(SluiceVulkanStreamer *s);
+void slc_strict_not_begun(SluiceVulkanStreamer *s);
+/** A begin is not ready: `frame` is not complete. */
+void slc_strict_not_ready(SluiceVulkanStreamer *s, uint64_t frame);
+/** A frame has begun: its decisions are made. */
+void slc_strict_begun(SluiceVulkanStreamer *s);
+
+#endif /* SLC_VULKAN_STRICT_MODE_H */
