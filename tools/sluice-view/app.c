@@ -104,24 +104,27 @@ static void touch(struct view_app *app)
     app->touched = true;
 }
 
+/* As they were at this event: a chord may begin and end between two frames. */
+static unsigned modifiers_held(const struct view_app *app)
+{
+    return (app->held[VIEW_KEY_SHIFT] ? VIEW_SHIFT : 0) |
+           (app->held[VIEW_KEY_CONTROL] ? VIEW_CONTROL : 0) |
+           (app->held[VIEW_KEY_ALT] ? VIEW_ALT : 0);
+}
+
 static void read_keys(struct view_app *app, const struct ui_input *input)
 {
-    const unsigned modifiers = (input->shift ? VIEW_SHIFT : 0) |
-                               (input->control ? VIEW_CONTROL : 0) | (input->alt ? VIEW_ALT : 0);
     for (uint32_t i = 0; i < input->key_count; i++) {
         const struct ui_key_event *event = &input->keys[i];
-        if (event->key < 0 || event->key >= VIEW_KEY_COUNT)
+        if (event->key < 0 || event->key >= VIEW_KEY_COUNT ||
+            (event->down && ui_owns_key(event->key)))
             continue;
-        if (event->down && ui_owns_key(event->key))
+        app->held[event->key] = event->down;
+        if (!event->down || (event->key >= VIEW_KEY_SHIFT && event->key <= VIEW_KEY_ALT))
             continue;
-        app->held[event->key] =
-            event->down && !(modifiers & VIEW_CONTROL && event->key != 'W' && event->key != 'A' &&
-                             event->key != 'S' && event->key != 'D');
-        const bool modifier = event->key >= VIEW_KEY_SHIFT && event->key <= VIEW_KEY_ALT;
-        if (event->down && !modifier) {
-            touch(app);
-            actions_press(app, event->key, modifiers);
-        }
+        touch(app);
+        if (actions_press(app, event->key, modifiers_held(app)))
+            app->held[event->key] = false;
     }
 }
 

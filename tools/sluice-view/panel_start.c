@@ -23,6 +23,8 @@ static void draw_line(struct view_app *app)
                  floor(100.0 * app->facts.sharp));
     if (app->said_seconds > 0)
         hints = app->said;
+    if (app->width < 620 * scale) /* the figures are in the corner, too */
+        return;
     if (ui_begin_panel("line", NULL, placement, pivot,
                        UI_PANEL_PLAIN | UI_PANEL_FIT | UI_PANEL_NO_INPUT)) {
         ui_begin_large();
@@ -42,9 +44,12 @@ static void draw_line(struct view_app *app)
 
 static void draw_buttons(struct view_app *app)
 {
-    const float scale = ui_scale(), pivot[2] = {0.5f, 0};
-    const float placement[4] = {app->width / 2, 12 * scale, 0, 0};
-    const float height = 40 * scale, width = 190 * scale;
+    const float scale = ui_scale(), height = 40 * scale, width = 190 * scale;
+    const bool centered = app->width >= 1160 * scale;
+    const float pivot[2] = {centered ? 0.5f : 0, 0};
+    const float placement[4] = {centered ? app->width / 2 : 12 * scale, 12 * scale, 0, 0};
+    if (app->width < 900 * scale) /* no room beside the figures: the keys are left */
+        return;
     if (ui_begin_panel("buttons", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
         const uint32_t view = app->settings.view;
         if (ui_button("What is in memory? (2)", width, height, view == VIEW_RESIDENT))
@@ -193,7 +198,8 @@ void panel_legend(const struct view_app *app)
         return;
     if (ui_begin_panel("legend", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
         ui_text(UI_BLUE, "%u  %s", view, view_names[view]);
-        draw_legend(view);
+        if (app->height >= 480 * scale)
+            draw_legend(view);
     }
     ui_end_panel();
 }

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# test_headless.sh FACTS SLUICE-VIEW: the viewer without a window, in TAP.
+set -u
+facts=$1 tool=$2
+"$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
+# shellcheck source=/dev/null
+. "$facts"
+
+cat >script <<'END'
+4 key 2
+6 click 200 120 right
+8 key t
+10 key v
+12 set compare-to budget
+16 screenshot with-panels.png
+18 key H
+20 screenshot picture.png
+21 key F1
+22 set budget 16
+24 quit
+END
+twin="--headless --deterministic --size 480x270 --residency paged"
+# shellcheck disable=SC2086 # a list of words
+view() { run 0 $twin --validation "$@"; }
+
+view --script script --csv first.csv --screenshot last.png && mkdir first && mv ./*.png first
+fact a_script_of_keys_clicks_and_settings_runs_with_silent_validation
+view --script script --csv second.csv --screenshot last.png &&
+    cmp with-panels.png first/with-panels.png && cmp picture.png first/picture.png
+fact two_runs_have_the_same_pictures
+! cmp -s with-panels.png picture.png
+fact panels_are_in_pictures_and_h_hides_them
+[ "$(wc -l <second.csv)" -eq 26 ] && head -n 1 second.csv | grep -q '^frame,resident_mb,' &&
+    cmp <(cut -d , -f 1-5,8-13 first.csv) <(cut -d , -f 1-5,8-13 second.csv)
+fact figures_are_written_for_each_frame_and_are_the_same
+echo '1 kye 3' >wrong
+run 1 --headless --script wrong && grep -q 'wrong:1: there is no event kye' err
+fact a_wrong_script_is_named_with_its_line
+run 2 --view 12 && run 2 one two
+fact wrong_words_are_refused
+printf '{"asset":{"version":"2.0"},"buffers":[{"byteLength":9999999999,"uri":"no.bin"}]}' >broken.gltf
+head -c 100 /dev/urandom >noise.glb
+run 1 --headless --frames 2 --cache . broken.gltf && run 1 --headless --frames 2 --cache . noise.glb &&
+    run 1 --headless --frames 2 --cache . none.gltf
+fact broken_scenes_are_refused
+printf '2 drop noise.glb\n3 drop none.gltf\n' >drops
+run 0 --headless --size 160x160 --cache . --script drops --frames 6 && grep -q 'noise.glb' err
+fact a_dropped_file_that_cannot_be_read_leaves_the_scene
+end_facts

@@ -1,0 +1,313 @@
+/* mkdtemp */
+#define _XOPEN_SOURCE 700
+
+#include "support/test.h"
+
+#include "camera.h"
+#include "controls.h"
+#include "keys.h"
+#include "script.h"
+#include "settings_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/view-parts-XXXXXX";
+
+static void path_in_folder(const char *name, char path[128])
+{
+    snprintf(path, 128, "%s/%s", folder, name);
+}
+
+static void write_text(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void a_click_is_a_move_and_a_button_that_is_held_for_a_frame(void **state)
+{
+    (void)state;
+    struct script script;
+    assert_true(script_parse("s", "# begin\n10 click 3 4 right\n", &script));
+    assert_int_equal(script.count, 3);
+    const struct script_step *step = script_next(&script, 10);
+    assert_int_equal(step->kind, SCRIPT_MOVE);
+    assert_float_equal(step->x, 3, 0);
+    assert_null(script_next(&script, 10));
+    step = script_next(&script, 11);
+    assert_true(step->kind == SCRIPT_BUTTON && step->number == 1 && step->down);
+    assert_null(script_next(&script, 11));
+    step = script_next(&script, 12);
+    assert_true(step->kind == SCRIPT_BUTTON && step->number == 1 && !step->down);
+    assert_int_equal(script_last_frame(&script), 12);
+    script_finish(&script);
+}
+
+static void a_drag_ends_where_it_is_to_end(void **state)
+{
+    (void)state;
+    struct script script;
+    float x = 0, y = 0;
+    bool down = false;
+    assert_true(script_parse("s", "0 drag 10 20 50 -20 4\n", &script));
+    for (uint32_t frame = 0; frame <= script_last_frame(&script); frame++)
+        for (const struct script_step *step; (step = script_next(&script, frame));) {
+            if (step->kind == SCRIPT_BUTTON)
+                down = step->down;
+            else
+                x = step->x, y = step->y;
+            if (frame == 3)
+                assert_true(down);
+        }
+    assert_false(down);
+    assert_float_equal(x, 50, 0);
+    assert_float_equal(y, -20, 0);
+    script_finish(&script);
+}
+
+static void lines_of_scripts_are_put_in_order_of_frames(void **state)
+{
+    (void)state;
+    struct script script;
+    assert_true(script_parse("s", "9 quit\n3 set budget 16\n3 key Shift+R\n", &script));
+    const struct script_step *step = script_next(&script, 3);
+    assert_int_equal(step->kind, SCRIPT_SET);
+    assert_string_equal(step->text, "budget");
+    assert_string_equal(step->value, "16");
+    step = script_next(&script, 3);
+    assert_true(step->kind == SCRIPT_KEY && step->number == VIEW_KEY_SHIFT && step->down);
+    step = script_next(&script, 3);
+    assert_true(step->kind == SCRIPT_KEY && step->number == 'R' && step->down);
+    script_finish(&script);
+}
+
+static void wrong_scripts_are_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {
+        "x key 3",     "1 kei 3",      "1 key",         "1 key 33",        "1 click 3",
+        "1 click a b", "1 drag 1 2 3", "1 wheel",       "1 set budget",    "1 quit now",
+        "-1 key 3",    "1 hold a 0",   "1 click 1e9 3", "99999999999 quit"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        struct script script;
+        assert_false(script_parse("wrong", wrong[i], &script));
+        assert_null(script.steps);
+    }
+}
+
+static void keys_have_names(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        int key;
+        unsigned modifiers;
+    } known[] = {{"3", '3', 0},
+                 {"a", 'A', 0},
+                 {"F12", VIEW_KEY_F12, 0},
+                 {"Shift+R", 'R', VIEW_SHIFT},
+                 {"Ctrl-q", 'Q', VIEW_CONTROL},
+                 {"space", VIEW_KEY_SPACE, 0},
+                 {"[", '[', 0},
+                 {"Ctrl+Alt+-", '-', VIEW_CONTROL | VIEW_ALT}};
+    struct view_chord chord;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        assert_true(view_chord_read(known[i].text, &chord));
+        assert_int_equal(chord.key, known[i].key);
+        assert_int_equal(chord.modifiers, known[i].modifiers);
+    }
+    assert_false(view_chord_read("F13", &chord));
+    assert_false(view_chord_read("Shift+", &chord));
+    assert_false(view_chord_read("", &chord));
+}
+
+static void what_a_control_writes_it_reads(void **state)
+{
+    (void)state;
+    uint32_t count;
+    const struct control *controls = controls_get(&count);
+    struct view_settings settings, other;
+    char text[64], again[64];
+    controls_set_defaults(&settings);
+    assert_true(controls_set(&settings, "budget", "100K", "t"));
+    assert_true(controls_set(&settings, "fade", "250ms", "t"));
+    assert_true(controls_set(&settings, "compare-as", "flicker", "t"));
+    assert_true(controls_set(&settings, "size", "320x200", "t"));
+    controls_set_defaults(&other);
+    for (uint32_t i = 0; i < count; i++) {
+        control_write(&controls[i], &settings, text, sizeof text);
+        assert_true(controls_set(&other, controls[i].option.name, text, "t"));
+        assert_string_equal(control_write(&controls[i], &other, again, sizeof again), text);
+    }
+    assert_int_equal(other.budget, 102400);
+    assert_int_equal(other.compare, VIEW_FLICKER);
+}
+
+static void the_command_has_what_is_not_the_default(void **state)
+{
+    (void)state;
+    struct view_settings settings;
+    char text[256];
+    controls_set_defaults(&settings);
+    controls_write_command(&settings, text, sizeof text);
+    assert_string_equal(text, "");
+    settings.budget = 64u << 20;
+    settings.view = VIEW_MISSING;
+    controls_write_command(&settings, text, sizeof text);
+    assert_string_equal(text, " --budget 64 --view 3");
+}
+
+static void wrong_values_change_nothing(void **state)
+{
+    (void)state;
+    struct view_settings settings, before;
+    controls_set_defaults(&settings);
+    before = settings;
+    assert_false(controls_set(&settings, "view", "10", "t"));
+    assert_false(controls_set(&settings, "pause", "maybe", "t"));
+    assert_false(controls_set(&settings, "probability", "2", "t"));
+    assert_false(controls_set(&settings, "nothing", "1", "t"));
+    assert_memory_equal(&settings, &before, sizeof settings);
+}
+
+static void a_camera_at_a_place_looks_at_its_target(void **state)
+{
+    (void)state;
+    const struct vec3 eye = {1, 2, 3}, target = {-4, 3, 7};
+    const struct view_camera camera = view_camera_at(eye, target, 1);
+    const struct vec3 to = vec3_normalize(vec3_sub(target, eye));
+    const struct vec3 forward = view_camera_forward(&camera);
+    assert_float_equal(vec3_dot(to, forward), 1, 1e-5f);
+    assert_float_equal(vec3_dot(view_camera_right(&camera), forward), 0, 1e-5f);
+}
+
+static void walking_forward_keeps_the_height(void **state)
+{
+    (void)state;
+    struct view_camera camera = {{0, 1.5f, 0}, 0, -0.7f, 1};
+    struct vec3 center = {0, 0, 0};
+    const struct camera_wish wish = {.forward = 1, .factor = 2, .seconds = 0.5f};
+    view_camera_move(&camera, &wish, VIEW_WALK, 3.0, &center);
+    assert_float_equal(camera.position.y, 1.5f, 1e-6f);
+    assert_float_equal(camera.position.z, -3.0f, 1e-5f);
+}
+
+static void orbit_keeps_the_distance(void **state)
+{
+    (void)state;
+    struct vec3 center = {1, 0, -2};
+    struct view_camera camera = view_camera_at((struct vec3){1, 1, 3}, center, 1);
+    const struct camera_wish wish = {.look_right = 0.7f, .look_up = 0.2f, .seconds = 0.1f};
+    view_camera_move(&camera, &wish, VIEW_ORBIT, 1.0, &center);
+    const struct vec3 away = vec3_sub(camera.position, center);
+    assert_float_equal(sqrtf(vec3_dot(away, away)), sqrtf(26), 1e-4f);
+    assert_float_equal(vec3_dot(vec3_normalize(away), view_camera_forward(&camera)), -1, 1e-5f);
+}
+
+static void paths_are_read_as_they_were_written(void **state)
+{
+    (void)state;
+    char file[128];
+    struct camera_path path = {0}, read;
+    struct view_camera camera;
+    path_in_folder("path", file);
+    const struct view_camera a = {{0, 1, 2}, 3.0f, 0.1f, 1}, b = {{4, 1, 2}, -3.0f, 0.3f, 1};
+    assert_true(camera_path_add(&path, 0, &a));
+    assert_true(camera_path_add(&path, 2, &b));
+    assert_true(camera_path_write(file, &path));
+    assert_true(camera_path_read(file, &read));
+    assert_int_equal(read.count, 2);
+    assert_true(camera_path_get(&read, 1, &camera));
+    assert_float_equal(camera.position.x, 2, 1e-6f);
+    /* 3 to -3 radians is a turn of 0.28, not of 6 */
+    assert_float_equal(cosf(camera.yaw), -1, 1e-4f);
+    camera_path_finish(&path);
+    camera_path_finish(&read);
+    write_text(file, "0 1 2 3 0 0 1\nnot a number\n");
+    assert_false(camera_path_read(file, &read));
+    write_text(file, "1 1 2 3 0 0 1\n0 1 2 3 0 0 1\n");
+    assert_false(camera_path_read(file, &read));
+}
+
+static void settings_come_back_from_their_file(void **state)
+{
+    (void)state;
+    char file[128];
+    struct view_app *app = calloc(1, sizeof *app), *read = calloc(1, sizeof *read);
+    path_in_folder("settings", file);
+    controls_set_defaults(&app->settings);
+    controls_set_defaults(&read->settings);
+    app->settings.budget = 32u << 20;
+    app->settings.pause = 1; /* passes */
+    app->bookmarks[2] = (struct view_camera){{1, 2, 3}, 0.5f, 0.25f, 1};
+    app->bookmark_set[2] = true;
+    assert_true(settings_file_write(file, app));
+    settings_file_read(file, read);
+    assert_int_equal(read->settings.budget, 32u << 20);
+    assert_int_equal(read->settings.pause, 0);
+    assert_true(read->bookmark_set[2] && !read->bookmark_set[1]);
+    assert_float_equal(read->bookmarks[2].pitch, 0.25f, 0);
+    free(app);
+    free(read);
+}
+
+static void a_damaged_file_of_settings_is_set_aside(void **state)
+{
+    (void)state;
+    char file[128], aside[160];
+    struct view_app *app = calloc(1, sizeof *app);
+    path_in_folder("damaged", file);
+    snprintf(aside, sizeof aside, "%s.damaged", file);
+    write_text(file, "sluice-view settings 1\nbudget 16\nspeed fast\n");
+    controls_set_defaults(&app->settings);
+    settings_file_read(file, app);
+    assert_int_equal(app->settings.budget, 0);
+    assert_int_equal(access(file, F_OK), -1);
+    assert_int_equal(access(aside, F_OK), 0);
+    free(app);
+}
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    static const char *const names[] = {"path", "settings", "damaged.damaged"};
+    char path[128];
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        path_in_folder(names[i], path);
+        unlink(path);
+    }
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_click_is_a_move_and_a_button_that_is_held_for_a_frame),
+        cmocka_unit_test(a_drag_ends_where_it_is_to_end),
+        cmocka_unit_test(lines_of_scripts_are_put_in_order_of_frames),
+        cmocka_unit_test(wrong_scripts_are_refused),
+        cmocka_unit_test(keys_have_names),
+        cmocka_unit_test(what_a_control_writes_it_reads),
+        cmocka_unit_test(the_command_has_what_is_not_the_default),
+        cmocka_unit_test(wrong_values_change_nothing),
+        cmocka_unit_test(a_camera_at_a_place_looks_at_its_target),
+        cmocka_unit_test(walking_forward_keeps_the_height),
+        cmocka_unit_test(orbit_keeps_the_distance),
+        cmocka_unit_test(paths_are_read_as_they_were_written),
+        cmocka_unit_test(settings_come_back_from_their_file),
+        cmocka_unit_test(a_damaged_file_of_settings_is_set_aside),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# test_window.sh FACTS SLUICE-VIEW: a real window with real input, in an X server of its own, in TAP.
+set -u
+facts=$1 tool=$2
+for program in Xvfb xdotool xclip; do
+    command -v $program >/dev/null || { echo "1..0 # SKIP no $program"; exit 0; }
+done
+"$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
+# shellcheck source=/dev/null
+. "$facts"
+
+mkfifo number
+Xvfb -displayfd 3 -screen 0 1000x700x24 -nolisten tcp 3>number >xvfb.log 2>&1 &
+server=$!
+trap 'kill $viewer $server 2>/dev/null; wait 2>/dev/null; rm -rf "$folder"' EXIT
+viewer=
+read -r display <number
+export DISPLAY=:$display XDG_CONFIG_HOME=$folder/config
+
+# until SECONDS COMMAND...: whether the command succeeds within this time
+until_true() {
+    local tries=$(($1 * 10))
+    shift
+    while ! "$@" >/dev/null 2>&1; do
+        tries=$((tries - 1))
+        [ $tries -gt 0 ] || return 1
+        sleep 0.1
+    done
+}
+open_viewer() {
+    "$tool" --size 480x270 --frame-cap 30 --still "$@" >out 2>err &
+    viewer=$!
+    until_true 20 xdotool search --name Sluice && window=$(xdotool search --name Sluice | tail -n 1) &&
+        xdotool mousemove --window "$window" 240 200
+}
+size_is() { xdotool getwindowgeometry "$window" | grep -q "Geometry: $1"; }
+picture() { # picture FILE: F12 writes the next number
+    xdotool key F12
+    until_true 20 sh -c 'mv sluice-view-??.png "$0"' "$1"
+}
+png_size() { od -An -tu1 -j16 -N8 "$1" | awk '{print $3 * 256 + $4 "x" $7 * 256 + $8}'; }
+ended_well() {
+    local tries=200 got=0
+    while kill -0 "$viewer" 2>/dev/null && [ $tries -gt 0 ]; do
+        tries=$((tries - 1))
+        sleep 0.1
+    done
+    [ $tries -gt 0 ] && { wait "$viewer" || got=$?; [ $got -eq 0 ]; }
+}
+
+open_viewer --validation && sleep 1 && picture first.png && [ "$(png_size first.png)" = 480x270 ]
+fact a_window_opens_and_f12_writes_its_picture
+xdotool mousedown 1 && sleep 0.2 && xdotool mousemove_relative 60 10 && sleep 0.2 && xdotool mouseup 1 &&
+    picture dragged.png && ! cmp -s first.png dragged.png
+fact a_drag_turns_the_camera
+xdotool key 2 && picture levels.png && ! cmp -s dragged.png levels.png
+fact keys_choose_views
+xdotool key bracketleft c && until_true 10 sh -c 'xclip -o -selection clipboard | grep -q "^sluice-view.* --budget "'
+fact the_command_line_is_in_the_clipboard
+for i in 1 2 3 4 5 6 7 8 9 10; do
+    xdotool windowsize "$window" $((300 + 40 * i)) $((200 + 20 * i))
+done
+until_true 10 size_is 700x400 && picture resized.png && [ "$(png_size resized.png)" = 700x400 ]
+fact the_picture_has_the_size_of_the_window
+xdotool key F11 && until_true 10 size_is 1000x700 && xdotool key F11 && until_true 10 size_is 700x400
+fact f11_fills_the_screen_and_comes_back
+xdotool mousemove --window "$window" 240 200 key ctrl+q && ended_well
+fact ctrl_q_ends_it_with_silent_validation
+grep -q '^budget ' config/sluice/view-*.settings
+fact settings_are_kept
+open_viewer && xdotool key ctrl+q && ended_well
+fact it_can_be_closed_while_the_scene_is_loading
+end_facts
