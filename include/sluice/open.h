@@ -14,6 +14,7 @@
 #define SLUICE_OPEN_H
 
 #include <sluice/image.h>
+#include <sluice/input.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -24,6 +25,19 @@ extern "C" {
 
 /** Opens files. Its sources share a file pool, memory limits and the cache folder. */
 typedef struct SluiceImageOpener SluiceImageOpener;
+
+/** Opens paths that name no file of the system, such as URLs. */
+typedef struct SluicePathOpener {
+    void *pUserData; ///< Passed to both functions. Must outlive the opener.
+    /**
+     * Opens a path and fills `pInput`, whose structSize is set, and `*ppOpened`, which pfnClosePath
+     * gets. Returns any result; an error is the result of sluiceOpenImageSource.
+     */
+    SluiceResult (*pfnOpenPath)(void *pUserData, const char *path, SluiceInput *pInput,
+                                void **ppOpened);
+    /** Ends the use of an input. Its reads have ended. */
+    void (*pfnClosePath)(void *pUserData, void *pOpened);
+} SluicePathOpener;
 
 /** Settings of an opener. A field of zero selects its default. */
 typedef struct SluiceImageOpenerCreateInfo {
@@ -52,6 +66,13 @@ typedef struct SluiceImageOpenerCreateInfo {
     /** Default: malloc and free. Called from all threads that use the sources and from bakes. */
     const SluiceAllocationCallbacks *pAllocator;
     SluiceLogCallback log; ///< Problems of files, with their names. Called from any thread.
+    /**
+     * Opens paths that contain "://", on any threads: set both functions, or none.
+     * sluiceOpenHttpPath and sluiceCloseHttpPath (http.h) open URLs. Tile stores, OpenEXR, DDS and
+     * KTX2 files and neural sets can be opened so; pictures without tiles are refused with
+     * SLUICE_ERROR_UNSUPPORTED. Default: none, such paths are files.
+     */
+    SluicePathOpener pathOpener;
 } SluiceImageOpenerCreateInfo;
 
 /**
@@ -78,6 +99,8 @@ SLUICE_API void sluiceDestroyImageOpener(SluiceImageOpener *opener);
  * has the same device, inode, size and time of the last change of its contents, the same source is
  * returned. Destroy it as many times as it was opened, on any threads. A file that was changed
  * gives a new source. Reads of older sources may then return SLUICE_ERROR_IO (SluiceFilePool).
+ *
+ * A path of the pathOpener is opened once until it was destroyed as many times as it was opened.
  *
  * A DDS or KTX2 file of an uncompressed format that lacks levels gets them as by
  * sluiceCreateCompleteChainSource with its defaults: the first read of such a level builds them,

@@ -90,6 +90,23 @@ SluiceResult slc_file_kind_find(SluiceFilePool *pool, const char *path,
     return slc_system_result(error);
 }
 
+SluiceResult slc_input_kind_find(const SluiceInput *input, const char *path,
+                                 const SluiceLogCallback *log, SluiceImageFileKind *kind)
+{
+    char bytes[SLC_SIGNATURE_SIZE] = {0};
+    size_t size = input->size < sizeof bytes ? (size_t)input->size : sizeof bytes;
+    SluiceResult result = SLUICE_SUCCESS;
+    if (input->pBytes)
+        memcpy(bytes, input->pBytes, size);
+    else
+        result = input->pfnRead(input->pUserData, 0, bytes, size);
+    if (result == SLUICE_SUCCESS)
+        *kind = kind_of(bytes);
+    else
+        slc_log(log, SLUICE_LOG_ERROR, "%s: cannot read the first %u bytes", path, (unsigned)size);
+    return result;
+}
+
 #if !defined(SLC_HAVE_STORE) || !defined(SLC_HAVE_EXR) || !defined(SLC_HAVE_CONTAINER)
 static SluiceResult refuse(const char *path, const SluiceLogCallback *log, const char *kind,
                            const char *library)
@@ -100,43 +117,47 @@ static SluiceResult refuse(const char *path, const SluiceLogCallback *log, const
 }
 #endif
 
-static SluiceResult open_store(const char *path, const struct slc_shared_files *files,
+static SluiceResult open_store(const char *path, const SluiceInput *input,
+                               const struct slc_shared_files *files,
                                const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
                                SluiceImageSource **source)
 {
 #ifdef SLC_HAVE_STORE
     SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info,
                                              .pPath = path,
+                                             .pInput = input,
                                              .pAllocator = cb,
                                              .log = *log,
                                              .readPool = files->read_pool,
                                              .filePool = files->pool};
     return sluiceCreateStoreImageSource(&info, source);
 #else
-    (void)files, (void)cb, (void)source;
+    (void)input, (void)files, (void)cb, (void)source;
     return refuse(path, log, "a tile store", "sluice-store");
 #endif
 }
 
-static SluiceResult open_exr(const char *path, const struct slc_shared_files *files,
+static SluiceResult open_exr(const char *path, const SluiceInput *input,
+                             const struct slc_shared_files *files,
                              const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
                              SluiceImageSource **source)
 {
 #ifdef SLC_HAVE_EXR
     SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info,
                                            .pPath = path,
+                                           .pInput = input,
                                            .pAllocator = cb,
                                            .log = *log,
                                            .memoryBudget = files->exr_memory,
                                            .filePool = files->pool};
     return sluiceCreateExrImageSource(&info, source);
 #else
-    (void)files, (void)cb, (void)source;
+    (void)input, (void)files, (void)cb, (void)source;
     return refuse(path, log, "an OpenEXR file", "sluice-exr");
 #endif
 }
 
-static SluiceResult open_container(const char *path, bool is_dds,
+static SluiceResult open_container(const char *path, const SluiceInput *input, bool is_dds,
                                    const struct slc_shared_files *files,
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, SluiceImageSource **source)
@@ -144,24 +165,26 @@ static SluiceResult open_container(const char *path, bool is_dds,
 #ifdef SLC_HAVE_CONTAINER
     SluiceDdsImageSourceCreateInfo dds = {.structSize = sizeof dds,
                                           .pPath = path,
+                                          .pInput = input,
                                           .pAllocator = cb,
                                           .log = *log,
                                           .filePool = files->pool};
     SluiceKtx2ImageSourceCreateInfo ktx2 = {.structSize = sizeof ktx2,
                                             .pPath = path,
+                                            .pInput = input,
                                             .pAllocator = cb,
                                             .log = *log,
                                             .filePool = files->pool};
     return is_dds ? sluiceCreateDdsImageSource(&dds, source)
                   : sluiceCreateKtx2ImageSource(&ktx2, source);
 #else
-    (void)files, (void)cb, (void)source;
+    (void)input, (void)files, (void)cb, (void)source;
     return refuse(path, log, is_dds ? "a DDS file" : "a KTX2 file", "sluice-container");
 #endif
 }
 
 SluiceResult slc_file_kind_open(SluiceImageFileKind kind, const char *path,
-                                const struct slc_shared_files *files,
+                                const SluiceInput *input, const struct slc_shared_files *files,
                                 const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
                                 SluiceImageSource **source)
 {
@@ -169,11 +192,12 @@ SluiceResult slc_file_kind_open(SluiceImageFileKind kind, const char *path,
     SluiceResult result;
     *source = NULL;
     if (kind == SLUICE_IMAGE_FILE_KIND_STORE)
-        result = open_store(path, files, cb, log, source);
+        result = open_store(path, input, files, cb, log, source);
     else if (kind == SLUICE_IMAGE_FILE_KIND_EXR)
-        result = open_exr(path, files, cb, log, source);
+        result = open_exr(path, input, files, cb, log, source);
     else
-        result = open_container(path, kind == SLUICE_IMAGE_FILE_KIND_DDS, files, cb, log, source);
+        result =
+            open_container(path, input, kind == SLUICE_IMAGE_FILE_KIND_DDS, files, cb, log, source);
     if (result == SLUICE_SUCCESS) /* some sources open their file now */
         result = sluiceGetImageInfo(*source, &image);
     if (result != SLUICE_SUCCESS) {

@@ -25,9 +25,14 @@ SluiceResult slc_file_kind_find(SluiceFilePool *pool, const char *path,
                                 const SluiceLogCallback *log, SluiceImageFileKind *kind,
                                 struct slc_file_identity *identity);
 
-/** Opens any kind but PICTURE and NEURAL. Errors: as sluiceOpenImageSource, logged. */
+/** Tells the kind of an input by its first bytes. Errors: those of its reads, logged. */
+SluiceResult slc_input_kind_find(const SluiceInput *input, const char *path,
+                                 const SluiceLogCallback *log, SluiceImageFileKind *kind);
+
+/** Opens any kind but PICTURE and NEURAL. `input` NULL: the file. Errors: as
+ *  sluiceOpenImageSource, logged. */
 SluiceResult slc_file_kind_open(SluiceImageFileKind kind, const char *path,
-                                const struct slc_shared_files *files,
+                                const SluiceInput *input, const struct slc_shared_files *files,
                                 const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
                                 SluiceImageSource **source);
 

@@ -67,12 +67,16 @@ static SluiceResult choose(const SluiceNeuralSet *set, const char *path, const c
     return SLUICE_SUCCESS;
 }
 
-SluiceResult slc_neural_file_open(const char *path, const char *texture, SluiceFilePool *pool,
-                                  const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
-                                  SluiceImageSource **source)
+SluiceResult slc_neural_file_open(const char *path, const SluiceInput *input, const char *texture,
+                                  SluiceFilePool *pool, const SluiceAllocationCallbacks *cb,
+                                  const SluiceLogCallback *log, SluiceImageSource **source)
 {
-    const SluiceNeuralSetCreateInfo open = {
-        .structSize = sizeof open, .pPath = path, .pAllocator = cb, .log = *log, .filePool = pool};
+    const SluiceNeuralSetCreateInfo open = {.structSize = sizeof open,
+                                            .pPath = path,
+                                            .pInput = input,
+                                            .pAllocator = cb,
+                                            .log = *log,
+                                            .filePool = pool};
     SluiceNeuralImageSourceCreateInfo info = {
         .structSize = sizeof info, .pAllocator = cb, .log = *log};
     SluiceResult result = sluiceOpenNeuralSet(&open, &info.ownedSet);
@@ -87,11 +91,11 @@ SluiceResult slc_neural_file_open(const char *path, const char *texture, SluiceF
 
 #else
 
-SluiceResult slc_neural_file_open(const char *path, const char *texture, SluiceFilePool *pool,
-                                  const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
-                                  SluiceImageSource **source)
+SluiceResult slc_neural_file_open(const char *path, const SluiceInput *input, const char *texture,
+                                  SluiceFilePool *pool, const SluiceAllocationCallbacks *cb,
+                                  const SluiceLogCallback *log, SluiceImageSource **source)
 {
-    (void)texture, (void)pool, (void)cb, (void)source;
+    (void)input, (void)texture, (void)pool, (void)cb, (void)source;
     slc_log(log, SLUICE_LOG_ERROR,
             "%s: is a neural set; this build of Sluice was made without sluice-neural", path);
     return SLUICE_ERROR_UNSUPPORTED;

@@ -5,10 +5,10 @@
 #include <sluice/image.h>
 #include <sluice/input.h>
 
-/** Opens the texture of that name; NULL: the first one. Errors: as sluiceOpenNamedImageSource,
- *  logged. */
-SluiceResult slc_neural_file_open(const char *path, const char *texture, SluiceFilePool *pool,
-                                  const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
-                                  SluiceImageSource **source);
+/** Opens the texture of that name; NULL: the first one. `input` NULL: the file. Errors: as
+ * sluiceOpenNamedImageSource, logged. */
+SluiceResult slc_neural_file_open(const char *path, const SluiceInput *input, const char *texture,
+                                  SluiceFilePool *pool, const SluiceAllocationCallbacks *cb,
+                                  const SluiceLogCallback *log, SluiceImageSource **source);
 
 #endif /* SLC_OPEN_NEURAL_FILE_H */

@@ -33,7 +33,8 @@ SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
         slc_struct_read(SLC_STRUCT(SluiceImageOpenerCreateInfo), &info, pInfo, &pInfo->log);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (!slc_allocator_is_valid(info.pAllocator))
+    if (!slc_allocator_is_valid(info.pAllocator) ||
+        !info.pathOpener.pfnOpenPath != !info.pathOpener.pfnClosePath)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     SluiceImageOpener *opener = slc_calloc(&cb, 1, sizeof *opener);
@@ -41,6 +42,7 @@ SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     opener->allocator = cb;
     opener->log = info.log;
+    opener->path_opener = info.pathOpener;
     opener->cache_log = (SluiceLogCallback){opener, log_cached_store};
     opener->max_cache_size = info.maxCacheSize ? info.maxCacheSize : SLUICE_OPEN_DEFAULT_CACHE_SIZE;
     opener->max_bake_memory = info.maxBakeMemory;
@@ -103,6 +105,9 @@ static void free_image(struct slc_opened_image *image)
 #endif
     sluiceDestroyImageSource(image->complete);
     sluiceDestroyImageSource(image->source);
+    if (image->opened)
+        image->opener->path_opener.pfnClosePath(image->opener->path_opener.pUserData,
+                                                image->opened);
     if (image->path)
         slc_free(&cb, image->path, strlen(image->path) + 1, 1);
     if (image->texture)
@@ -256,18 +261,65 @@ static struct slc_opened_image *create_image(SluiceImageOpener *opener, const ch
     return NULL;
 }
 
+static bool is_own_path(const SluiceImageOpener *opener, const char *path)
+{
+    return opener->path_opener.pfnOpenPath && strstr(path, "://");
+}
+
+/* Errors: of a path opener, of what it opened; UNSUPPORTED, logged. */
+static SluiceResult open_path(struct slc_opened_image *image)
+{
+    const SluiceImageOpener *opener = image->opener;
+    const SluicePathOpener *by = &opener->path_opener;
+    image->input.structSize = sizeof image->input;
+    SluiceResult result =
+        by->pfnOpenPath(by->pUserData, image->path, &image->input, &image->opened);
+    if (result != SLUICE_SUCCESS) {
+        image->opened = NULL;
+        return result;
+    }
+    result = slc_input_kind_find(&image->input, image->path, &opener->log, &image->kind);
+    if (result != SLUICE_SUCCESS || image->kind != SLUICE_IMAGE_FILE_KIND_PICTURE)
+        return result;
+    slc_log(&opener->log, SLUICE_LOG_ERROR,
+            "%s: is no tile store, OpenEXR, DDS, KTX2 file or neural set; make a tile store of it "
+            "with sluice-bake, and put that there",
+            image->path);
+    return SLUICE_ERROR_UNSUPPORTED;
+}
+
+static SluiceResult check_texture(const SluiceImageOpener *opener, const char *path,
+                                  const char *texture, SluiceImageFileKind kind)
+{
+    if (!texture || kind == SLUICE_IMAGE_FILE_KIND_NEURAL)
+        return SLUICE_SUCCESS;
+    return slc_log_refusal(&opener->log,
+                           "%s: is no neural set, so it has no texture of a name; open it with "
+                           "sluiceOpenImageSource",
+                           path);
+}
+
 static SluiceResult open_image(struct slc_opened_image *image)
 {
     SluiceImageOpener *opener = image->opener;
-    SluiceResult result;
+    const SluiceInput *input = NULL;
+    SluiceResult result = SLUICE_SUCCESS;
+    if (is_own_path(opener, image->path)) {
+        result = open_path(image);
+        input = &image->input;
+        if (result == SLUICE_SUCCESS)
+            result = check_texture(opener, image->path, image->texture, image->kind);
+    }
+    if (result != SLUICE_SUCCESS)
+        return result;
     if (image->kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
         return slc_picture_stream_create(opener, image->path, &image->identity, &image->stream);
     if (image->kind == SLUICE_IMAGE_FILE_KIND_NEURAL)
-        result = slc_neural_file_open(image->path, image->texture, opener->files.pool,
+        result = slc_neural_file_open(image->path, input, image->texture, opener->files.pool,
                                       &opener->allocator, &opener->log, &image->source);
     else
-        result = slc_file_kind_open(image->kind, image->path, &opener->files, &opener->allocator,
-                                    &opener->log, &image->source);
+        result = slc_file_kind_open(image->kind, image->path, input, &opener->files,
+                                    &opener->allocator, &opener->log, &image->source);
     return result == SLUICE_SUCCESS ? complete_chain(image) : result;
 }
 
@@ -297,17 +349,16 @@ static void wait_until_open(struct slc_opened_image *image)
 static SluiceResult open_texture(SluiceImageOpener *opener, const char *path, const char *texture,
                                  SluiceImageSource **source)
 {
-    SluiceImageFileKind kind;
+    SluiceImageFileKind kind = SLUICE_IMAGE_FILE_KIND_PICTURE;
     struct slc_file_identity identity = {0};
-    SluiceResult result =
-        slc_file_kind_find(opener->files.pool, path, &opener->log, &kind, &identity);
+    SluiceResult result = SLUICE_SUCCESS;
+    if (!is_own_path(opener, path)) {
+        result = slc_file_kind_find(opener->files.pool, path, &opener->log, &kind, &identity);
+        if (result == SLUICE_SUCCESS)
+            result = check_texture(opener, path, texture, kind);
+    }
     if (result != SLUICE_SUCCESS)
         return result;
-    if (texture && kind != SLUICE_IMAGE_FILE_KIND_NEURAL)
-        return slc_log_refusal(&opener->log,
-                               "%s: is no neural set, so it has no texture of a name; open it with "
-                               "sluiceOpenImageSource",
-                               path);
     slc_mutex_lock(&opener->mutex);
     struct slc_opened_image *image = find_image(opener, path, texture, &identity);
     if (image)

@@ -18,6 +18,8 @@ struct slc_background;
 struct slc_opened_image {
     SluiceImageSource base;
     SluiceImageOpener *opener;
+    SluiceInput input;             ///< of a path that is no file; zeroed: a file
+    void *opened;                  ///< what the path opener closes
     struct slc_opened_image *next; ///< in the same bucket
     uint32_t reference_count;      ///< threads that wait until it is open included
     bool is_opening;
@@ -34,8 +36,9 @@ struct slc_opened_image {
 struct SluiceImageOpener {
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;
-    SluiceLogCallback cache_log; ///< for stores of the cache folder: errors are warnings
-    char *cache_folder;          ///< owned; NULL: none
+    SluiceLogCallback cache_log;  ///< for stores of the cache folder: errors are warnings
+    SluicePathOpener path_opener; ///< zeroed: none
+    char *cache_folder;           ///< owned; NULL: none
     uint64_t max_cache_size, max_bake_memory;
     uint32_t bake_thread_count;
     struct slc_shared_files files;

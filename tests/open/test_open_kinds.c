@@ -310,6 +310,84 @@ static void every_refused_allocation_is_survived(void **state)
     bake_folder_finish(&folder);
 }
 
+/* A path opener of bytes in memory. */
+struct shelf {
+    const char *folder;
+    uint32_t opened, closed;
+};
+
+static SluiceResult open_from_shelf(void *user, const char *path, SluiceInput *input, void **opened)
+{
+    struct shelf *shelf = user;
+    char name[300];
+    snprintf(name, sizeof name, "%s/%s", shelf->folder, strstr(path, "://") + 3);
+    FILE *file = fopen(name, "rb");
+    if (!file)
+        return SLUICE_ERROR_FILE_NOT_FOUND;
+    fseek(file, 0, SEEK_END);
+    input->size = (uint64_t)ftell(file);
+    rewind(file);
+    unsigned char *bytes = malloc(input->size);
+    assert_int_equal(fread(bytes, 1, input->size, file), input->size);
+    fclose(file);
+    input->pBytes = *opened = bytes;
+    shelf->opened++;
+    return SLUICE_SUCCESS;
+}
+
+static void put_back(void *user, void *opened)
+{
+    struct shelf *shelf = user;
+    shelf->closed++;
+    free(opened);
+}
+
+static void a_path_opener_opens_what_contains_a_scheme_once_and_closes_it(void **state)
+{
+    (void)state;
+    struct fixture f;
+    char path[1024];
+    SluiceImageSource *source, *again;
+    setup(&f);
+    sluiceDestroyImageOpener(f.opener);
+    struct shelf shelf = {.folder = f.folder.path};
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                        .log = {&f, on_log},
+                                        .pathOpener = {&shelf, open_from_shelf, put_back}};
+    CHECK_OK(sluiceCreateImageOpener(&info, &f.opener));
+    snprintf(path, sizeof path, "%s/wall", f.folder.path);
+    write_store(path, 100);
+    CHECK_OK(sluiceOpenImageSource(f.opener, "shelf://wall", &source));
+    CHECK_OK(sluiceOpenImageSource(f.opener, "shelf://wall", &again));
+    assert_ptr_equal(source, again);
+    assert_int_equal(state_of(source).kind, SLUICE_IMAGE_FILE_KIND_STORE);
+    sluiceDestroyImageSource(again);
+    CHECK_OK(sluiceOpenImageSource(f.opener, path, &again)); /* the file itself */
+    uint8_t texel[1];
+    SluiceImageRegion region = {0, 0, 0, 1, 1, 0};
+    CHECK_OK(sluiceReadImageRegion(source, &region, texel, 1));
+    SluiceImageSource *refused;
+    CHECK_RESULT(sluiceOpenNamedImageSource(f.opener, "shelf://wall", "x", &refused),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceOpenImageSource(f.opener, "shelf://none", &refused),
+                 SLUICE_ERROR_FILE_NOT_FOUND);
+    snprintf(path, sizeof path, "%s/note", f.folder.path);
+    FILE *note = fopen(path, "wb");
+    fputs("no picture", note);
+    fclose(note);
+    CHECK_RESULT(sluiceOpenImageSource(f.opener, "shelf://note", &refused),
+                 SLUICE_ERROR_UNSUPPORTED);
+    assert_non_null(strstr(f.last, "shelf://note"));
+    sluiceDestroyImageSource(again);
+    assert_int_equal(shelf.opened, shelf.closed + 1);
+    info.pathOpener.pfnClosePath = NULL;
+    SluiceImageOpener *half;
+    CHECK_RESULT(sluiceCreateImageOpener(&info, &half), SLUICE_ERROR_NULL_POINTER);
+    sluiceDestroyImageSource(source);
+    assert_int_equal(shelf.opened, shelf.closed);
+    teardown(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -317,6 +395,7 @@ int main(void)
         cmocka_unit_test(a_file_is_open_once_until_it_changes),
         cmocka_unit_test(what_cannot_be_opened_is_refused_by_name),
         cmocka_unit_test(three_hundred_files_are_open_with_sixty_descriptors),
+        cmocka_unit_test(a_path_opener_opens_what_contains_a_scheme_once_and_closes_it),
         cmocka_unit_test(threads_share_a_source),
         cmocka_unit_test(every_refused_allocation_is_survived),
     };
