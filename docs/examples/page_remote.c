@@ -1,5 +1,6 @@
 /* Lines that remote.md shows. Compiled, not run. */
 #include <sluice/http.h>
+#include <sluice/open.h>
 #include <sluice/store.h>
 
 SluiceResult open_remote_store(SluiceHttpClient *client, const char *url, SluiceHttpFile **file,
@@ -16,5 +17,15 @@ SluiceResult open_remote_store(SluiceHttpClient *client, const char *url, Sluice
         result = sluiceGetHttpInput(*file, &input);
     if (result == SLUICE_SUCCESS)
         result = sluiceCreateStoreImageSource(&info, source);
+    return result;
+}
+
+SluiceResult create_url_opener(SluiceHttpClient *client, SluiceImageOpener **opener);
+
+SluiceResult create_url_opener(SluiceHttpClient *client, SluiceImageOpener **opener)
+{
+    SluiceImageOpenerCreateInfo info = {
+        .structSize = sizeof info, .pathOpener = {client, sluiceOpenHttpPath, sluiceCloseHttpPath}};
+    SluiceResult result = sluiceCreateImageOpener(&info, opener);
     return result;
 }

@@ -145,6 +145,19 @@ SLUICE_API void sluiceDestroyHttpFile(SluiceHttpFile *file);
  */
 SLUICE_API SluiceResult sluiceGetHttpInput(SluiceHttpFile *file, SluiceInput *pInput);
 
+/**
+ * Opens a URL for an opener (SluicePathOpener, whose pUserData is the client): sluiceOpenHttpFile
+ * and sluiceGetHttpInput in one. `*ppOpened` becomes the SluiceHttpFile.
+ *
+ * Errors: as sluiceOpenHttpFile and sluiceGetHttpInput.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceOpenHttpPath(void *pClient, const char *path, SluiceInput *pInput,
+                                           void **ppOpened);
+
+/** Closes what sluiceOpenHttpPath opened. NULL is allowed. Thread safety: external on `pOpened`. */
+SLUICE_API void sluiceCloseHttpPath(void *pClient, void *pOpened);
+
 /** Counts of a client since its creation. */
 typedef struct SluiceHttpStatistics {
     uint32_t structSize;      ///< sizeof(SluiceHttpStatistics).

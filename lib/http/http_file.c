@@ -183,3 +183,26 @@ SluiceResult sluiceGetHttpInput(SluiceHttpFile *file, SluiceInput *pInput)
     slc_struct_write(SLC_STRUCT(SluiceInput), pInput, &input);
     return SLUICE_SUCCESS;
 }
+
+SluiceResult sluiceOpenHttpPath(void *pClient, const char *path, SluiceInput *pInput,
+                                void **ppOpened)
+{
+    SluiceHttpFile *file = NULL;
+    if (!pInput || !ppOpened)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = sluiceOpenHttpFile(pClient, path, &file);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceGetHttpInput(file, pInput);
+    if (result != SLUICE_SUCCESS) {
+        sluiceDestroyHttpFile(file);
+        return result;
+    }
+    *ppOpened = file;
+    return SLUICE_SUCCESS;
+}
+
+void sluiceCloseHttpPath(void *pClient, void *pOpened)
+{
+    (void)pClient;
+    sluiceDestroyHttpFile(pOpened);
+}

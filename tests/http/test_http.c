@@ -62,12 +62,18 @@ static SluiceHttpClient *create(const SluiceHttpClientCreateInfo *info)
     return client;
 }
 
+/* Valid until the next call. */
+static const char *path_url(const char *path)
+{
+    static char url[512];
+    snprintf(url, sizeof url, "http://127.0.0.1:%u/%s", web_server.ports[0], path);
+    return url;
+}
+
 static SluiceResult open_path(SluiceHttpClient *client, const char *path, SluiceHttpFile **file)
 {
-    char url[512];
-    snprintf(url, sizeof url, "http://127.0.0.1:%u/%s", web_server.ports[0], path);
     *file = NULL;
-    return sluiceOpenHttpFile(client, url, file);
+    return sluiceOpenHttpFile(client, path_url(path), file);
 }
 
 static SluiceInput input_of(SluiceHttpFile *file)
@@ -540,6 +546,8 @@ static void out_of_memory_is_an_ordinary_result(void **state)
         SluiceHttpClientCreateInfo info = quick();
         SluiceHttpClient *client = NULL;
         SluiceHttpFile *file = NULL;
+        void *opened = NULL;
+        SluiceInput input = {.structSize = sizeof input};
         SluiceS3Access access = {.structSize = sizeof access,
                                  .pEndpoint = "http://127.0.0.1:1",
                                  .pAccessKey = "a",
@@ -554,8 +562,11 @@ static void out_of_memory_is_an_ordinary_result(void **state)
             result = open_path(client, "redirect-here/x?from=0", &file);
         if (result == SLUICE_SUCCESS)
             result = read_at(file, READ_AT, READ_SIZE);
-        else
+        if (result == SLUICE_SUCCESS)
+            result = sluiceOpenHttpPath(client, path_url("plain/x"), &input, &opened);
+        if (result != SLUICE_SUCCESS)
             CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        sluiceCloseHttpPath(client, opened);
         sluiceDestroyHttpFile(file);
         sluiceDestroyHttpClient(client);
         assert_int_equal(allocator.live_count, 0);

@@ -15,6 +15,8 @@ sluiceCreateHttpClient(?&f->create, &f->out.client) => sluiceDestroyHttpClient(f
 sluiceOpenHttpFile(f->client, f->url, &f->out.file) => sluiceDestroyHttpFile(f->out.file)
 !sluiceDestroyHttpFile(f->file)
 sluiceGetHttpInput(f->file, &f->out.input)
+sluiceOpenHttpPath(f->client, f->url, &f->out.input, &f->out.opened) => sluiceCloseHttpPath(f->client, f->out.opened)
+~sluiceCloseHttpPath(f->client, f->nothing)
 sluiceGetHttpStatistics(f->client, &f->out.statistics)
 */
 /* clang-format on */
@@ -24,10 +26,12 @@ struct fixture {
     SluiceHttpClient *client, *other;
     SluiceHttpFile *file;
     char url[64];
+    void *nothing;
     struct {
         SluiceHttpClient *client;
         SluiceHttpFile *file;
         SluiceInput input;
+        void *opened;
         SluiceHttpStatistics statistics;
     } out;
 };

@@ -28,6 +28,24 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
     file->has_spoken = true;
 }
 
+static bool read_remote_start(struct texture_file *file, const char *url, SluiceLogCallback log,
+                              char bytes[12])
+{
+    if (!remote_open(&file->remote, url, &log))
+        return false;
+    const SluiceInput *input = &file->remote.input;
+    SluiceResult result = SLUICE_SUCCESS;
+    if (input->size >= 12)
+        result = input->pfnRead(input->pUserData, 0, bytes, 12);
+    return result == SLUICE_SUCCESS;
+}
+
+/* What the file is read from. NULL: its path. */
+static const SluiceInput *input_of(const struct texture_file *file)
+{
+    return file->remote.client ? &file->remote.input : NULL;
+}
+
 static bool read_start(const char *path, char bytes[12])
 {
     FILE *file = input_open(path);
@@ -45,7 +63,8 @@ static bool read_start(const char *path, char bytes[12])
 static SluiceResult open_store(struct texture_file *file, const char *path, SluiceLogCallback log)
 {
 #ifdef HAVE_STORE
-    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info, .pPath = path, .log = log};
+    SluiceStoreImageSourceCreateInfo info = {
+        .structSize = sizeof info, .pPath = path, .log = log, .pInput = input_of(file)};
     file->kind = "tile store";
     file->is_store = true;
     return sluiceCreateStoreImageSource(&info, &file->source);
@@ -62,6 +81,7 @@ static SluiceResult open_exr(struct texture_file *file, const char *path,
     SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info,
                                            .pPath = path,
                                            .log = log,
+                                           .pInput = input_of(file),
                                            .maxImageSize = UINT64_MAX,
                                            .levelZeroAlone = opening->level_zero_alone,
                                            .maxMemorySize = opening->memory};
@@ -80,9 +100,13 @@ static SluiceResult open_container(struct texture_file *file, const char *path, 
                                    const struct texture_opening *opening, SluiceLogCallback log)
 {
 #ifdef HAVE_CONTAINER
-    SluiceDdsImageSourceCreateInfo dds = {.structSize = sizeof dds, .pPath = path, .log = log};
-    SluiceKtx2ImageSourceCreateInfo ktx2 = {
-        .structSize = sizeof ktx2, .pPath = path, .log = log, .maxCacheSize = opening->memory};
+    SluiceDdsImageSourceCreateInfo dds = {
+        .structSize = sizeof dds, .pPath = path, .log = log, .pInput = input_of(file)};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.structSize = sizeof ktx2,
+                                            .pPath = path,
+                                            .log = log,
+                                            .pInput = input_of(file),
+                                            .maxCacheSize = opening->memory};
     file->kind = is_dds ? "DDS" : "KTX2";
     return is_dds ? sluiceCreateDdsImageSource(&dds, &file->source)
                   : sluiceCreateKtx2ImageSource(&ktx2, &file->source);
@@ -96,12 +120,15 @@ bool open_texture_file(struct texture_file *file, const char *path,
                        const struct texture_opening *opening)
 {
     static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n", store[] = "\x89SLS\r\n\x1A\n";
-    char start[12];
+    char start[12] = {0};
     SluiceLogCallback log = {file, on_log};
     SluiceResult result;
     *file = (struct texture_file){0};
-    if (!read_start(path, start))
+    if (remote_is_url(path) ? !read_remote_start(file, path, log, start)
+                            : !read_start(path, start)) {
+        close_texture_file(file);
         return false;
+    }
     if (memcmp(start, "\x76\x2F\x31\x01", 4) == 0)
         result = open_exr(file, path, opening, log);
     else if (memcmp(start, "DDS ", 4) == 0 || memcmp(start, ktx2, 12) == 0)
@@ -113,6 +140,7 @@ bool open_texture_file(struct texture_file *file, const char *path,
             "sluice-info: %s: is not a tile store, OpenEXR, DDS, KTX2 or .ntc file; sluice-bake "
             "makes tile stores of other pictures",
             path);
+        close_texture_file(file);
         return false;
     }
     file->image.structSize = sizeof file->image;
@@ -130,4 +158,5 @@ void close_texture_file(struct texture_file *file)
 {
     sluiceDestroyImageSource(file->source);
     file->source = NULL;
+    remote_close(&file->remote);
 }

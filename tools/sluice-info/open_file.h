@@ -4,7 +4,10 @@
 
 #include <sluice/image.h>
 
+#include "../common/remote.h"
+
 struct texture_file {
+    struct remote_file remote; ///< of a URL
     SluiceImageSource *source;
     SluiceImageInfo image;
     const char *kind; ///< "tile store" and so on

@@ -34,6 +34,10 @@ static const char notes[] =
     "docs/drivers.md collects such reports. Groups: conformance, sampler, residency, fades,\n"
     "formats, extremes.\n"
     "\n"
+    "FILE may be a URL of http, https or s3, but for .ntc files. Keys for s3 come from the usual\n"
+    "variables: AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, AWS_SESSION_TOKEN, AWS_REGION and\n"
+    "AWS_ENDPOINT_URL. SSL_CERT_FILE names the certificates that are trusted.\n"
+    "\n"
     "Exit status: 0 all is shown, and all checks passed; 1 a file cannot be read or written,\n"
     "there is no Vulkan, no device or none of that name, or a check failed; 2 wrong usage.\n";
 

@@ -72,7 +72,7 @@ static void print_store(const SluiceStoreInfo *s)
 {
     printf("  version                 %u.%u\n", s->versionMajor, s->versionMinor);
     printf("  meaning                 %s\n", name_of(meanings, 5, s->meaning));
-    printf("  color space            %s\n", name_of(spaces, 5, s->colorSpace));
+    printf("  color space             %s\n", name_of(spaces, 5, s->colorSpace));
     printf("  beyond the edges        %s, %s\n", name_of(modes, 4, s->addressModeU),
            name_of(modes, 4, s->addressModeV));
     printf("  made from               ");
@@ -186,6 +186,11 @@ static void show_what_is_in_an_exr(const struct texture_file *file, bool json)
 #endif
 }
 
+static uint64_t size_of(const struct texture_file *file, const char *path)
+{
+    return file->remote.client ? file->remote.input.size : files_size(path);
+}
+
 static void print_file(const struct texture_file *file, const char *path)
 {
     const SluiceImageInfo *image = &file->image;
@@ -198,7 +203,7 @@ static void print_file(const struct texture_file *file, const char *path)
         printf("  cube maps               %u of six faces each\n", image->arrayLayerCount / 6);
     printf("  format                  %s\n", sluiceGetFormatName(image->format));
     printf("  texels                  %" PRIu64 " bytes\n", texel_size(image));
-    printf("  file                    %" PRIu64 " bytes\n", files_size(path));
+    printf("  file                    %" PRIu64 " bytes\n", size_of(file, path));
     show_what_is_in_a_store(file, false);
     show_what_is_in_an_exr(file, false);
 }
@@ -213,7 +218,7 @@ static void print_file_json(const struct texture_file *file, const char *path)
            ", \"fileSize\": %" PRIu64,
            file->kind, image->width, image->height, image->mipLevelCount,
            image->arrayLayerCount ? image->arrayLayerCount : 1, image->cube ? "true" : "false",
-           sluiceGetFormatName(image->format), texel_size(image), files_size(path));
+           sluiceGetFormatName(image->format), texel_size(image), size_of(file, path));
     show_what_is_in_a_store(file, true);
     show_what_is_in_an_exr(file, true);
     printf("}\n");

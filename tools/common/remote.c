@@ -1,0 +1,56 @@
+#include "remote.h"
+
+#include <sluice/http.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+bool remote_is_url(const char *name)
+{
+    return strncmp(name, "http://", 7) == 0 || strncmp(name, "https://", 8) == 0 ||
+           strncmp(name, "s3://", 5) == 0;
+}
+
+/* The first variable that is set, or NULL. */
+static const char *either(const char *a, const char *b)
+{
+    const char *value = getenv(a);
+    return value && value[0] ? value : getenv(b);
+}
+
+static SluiceResult create_client(const SluiceLogCallback *log, SluiceHttpClient **client)
+{
+    SluiceS3Access access = {.structSize = sizeof access,
+                             .pEndpoint = either("AWS_ENDPOINT_URL_S3", "AWS_ENDPOINT_URL"),
+                             .pRegion = either("AWS_REGION", "AWS_DEFAULT_REGION"),
+                             .pAccessKey = getenv("AWS_ACCESS_KEY_ID"),
+                             .pSecretKey = getenv("AWS_SECRET_ACCESS_KEY"),
+                             .pSessionToken = getenv("AWS_SESSION_TOKEN")};
+    SluiceHttpClientCreateInfo info = {.structSize = sizeof info,
+                                       .pCertificateFile = getenv("SSL_CERT_FILE"),
+                                       .pS3 = access.pEndpoint ? &access : NULL,
+                                       .log = *log};
+    return sluiceCreateHttpClient(&info, client);
+}
+
+bool remote_open(struct remote_file *remote, const char *url, const SluiceLogCallback *log)
+{
+    SluiceHttpClient *client = NULL;
+    *remote = (struct remote_file){.input = {.structSize = sizeof remote->input}};
+    SluiceResult result = create_client(log, &client);
+    remote->client = client;
+    if (result == SLUICE_SUCCESS)
+        result = sluiceOpenHttpPath(client, url, &remote->input, &remote->file);
+    if (result != SLUICE_SUCCESS)
+        remote_close(remote);
+    return result == SLUICE_SUCCESS;
+}
+
+void remote_close(struct remote_file *remote)
+{
+    if (remote->client)
+        sluiceCloseHttpPath(remote->client, remote->file);
+    sluiceDestroyHttpClient(remote->client);
+    remote->client = NULL;
+    remote->file = NULL;
+}

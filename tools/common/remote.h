@@ -1,0 +1,26 @@
+/** Files on servers, for programs that take names of files: URLs. */
+#ifndef TOOLS_COMMON_REMOTE_H
+#define TOOLS_COMMON_REMOTE_H
+
+#include <sluice/input.h>
+
+#include <stdbool.h>
+
+struct remote_file {
+    void *client, *file;
+    SluiceInput input; ///< for the source that reads the file
+};
+
+/** Whether a name is a URL of http, https or s3. */
+bool remote_is_url(const char *name);
+
+/**
+ * Opens a URL. Keys for s3:// come from AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY,
+ * AWS_SESSION_TOKEN, AWS_REGION or AWS_DEFAULT_REGION, AWS_ENDPOINT_URL_S3 or AWS_ENDPOINT_URL;
+ * trusted certificates from SSL_CERT_FILE. False: said on `log`.
+ */
+bool remote_open(struct remote_file *remote, const char *url, const SluiceLogCallback *log);
+/** A zeroed struct is allowed. Destroy the sources that read it first. */
+void remote_close(struct remote_file *remote);
+
+#endif /* TOOLS_COMMON_REMOTE_H */
