@@ -65,7 +65,7 @@ SLUICE_API SluiceResult sluiceSetVulkanStrictMode(SluiceVulkanStreamer *streamer
  *
  * Errors: SLUICE_ERROR_NULL_POINTER.
  */
-SLUICE_API SluiceResult sluiceDestroyVulkanSource(SluiceVulkanStreamer *streamer,
+SLUICE_API SluiceResult sluiceReleaseVulkanSource(SluiceVulkanStreamer *streamer,
                                                   SluiceImageSource *source);
 
 #ifdef __cplusplus

@@ -170,7 +170,7 @@ SluiceResult sluiceSetVulkanStrictMode(SluiceVulkanStreamer *streamer,
     return SLUICE_SUCCESS;
 }
 
-SluiceResult sluiceDestroyVulkanSource(SluiceVulkanStreamer *streamer, SluiceImageSource *source)
+SluiceResult sluiceReleaseVulkanSource(SluiceVulkanStreamer *streamer, SluiceImageSource *source)
 {
     SluiceVulkanStreamer *s = streamer;
     bool in_use = false;

@@ -141,7 +141,7 @@ void sources_in_use_are_reported_and_kept(void **state)
 {
     (void)state;
     struct stage *s = begin(&(SluiceVulkanStreamerCreateInfo){0});
-    CHECK_RESULT(sluiceDestroyVulkanSource(s->streamer, &s->faults.base), SLUICE_NOT_READY);
+    CHECK_RESULT(sluiceReleaseVulkanSource(s->streamer, &s->faults.base), SLUICE_NOT_READY);
     check_heard(SLUICE_MISUSE_SOURCE_IN_USE, 1, (uint64_t)(uintptr_t)&s->faults.base,
                 "gray: the source is destroyed");
     const SluiceImageInfo info = {
@@ -149,7 +149,7 @@ void sources_in_use_are_reported_and_kept(void **state)
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageSource *unused;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &unused));
-    CHECK_OK(sluiceDestroyVulkanSource(s->streamer, unused)); /* leak checkers see the rest */
+    CHECK_OK(sluiceReleaseVulkanSource(s->streamer, unused)); /* leak checkers see the rest */
     assert_int_equal(heard.counts[SLUICE_MISUSE_SOURCE_IN_USE], 1);
     stage_finish(s);
 }
