@@ -675,8 +675,10 @@ typedef struct SluiceStreamingFrame {
  * frame, and signal `pFrame->semaphore` with `pFrame->signalValue`. If you cannot submit, call
  * sluiceAbandonStreamingFrame. End or abandon every frame before you begin the next one.
  *
- * Returns SLUICE_NOT_READY, with nothing recorded, while framesInFlight frames are incomplete. Wait
- * until `semaphore` reaches the signalValue of an earlier frame, and call again.
+ * Returns SLUICE_NOT_READY, with nothing recorded, while framesInFlight frames are incomplete,
+ * after waiting for the oldest one up to 5 ms. Wait until `semaphore` reaches the signalValue of an
+ * earlier frame, and call again. A fence of the same submission may be signaled a little earlier
+ * than the semaphore; the 5 ms are for that.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the last
  *         frame was neither ended nor abandoned; SLUICE_ERROR_TIME_BACKWARDS if `timeStamp` is

@@ -18,6 +18,7 @@
 #include "vulkan/tile_upload.h"
 
 #define MAX_BARRIERS 64u
+#define GRACE 5000000ull /* nanoseconds */
 
 static SluiceResult poll_frames(SluiceVulkanStreamer *s)
 {
@@ -28,6 +29,24 @@ static SluiceResult poll_frames(SluiceVulkanStreamer *s)
     if (result == SLUICE_SUCCESS && value > s->completed_frame)
         s->completed_frame = value;
     return result;
+}
+
+/* A fence may be signaled before the semaphore of the same submission: lavapipe does that. So
+ * whoever waited for the fence waits a moment more here, and needs no second wait. */
+static SluiceResult await_frame(SluiceVulkanStreamer *s, uint64_t value)
+{
+    if (value <= s->completed_frame)
+        return SLUICE_SUCCESS;
+    const VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                      .semaphoreCount = 1,
+                                      .pSemaphores = &s->semaphore,
+                                      .pValues = &value};
+    VkResult waited = s->vk.WaitSemaphores(s->vk.device, &info, GRACE);
+    SluiceResult result =
+        slc_vk_result(&s->vk, waited == VK_TIMEOUT ? VK_SUCCESS : waited, "vkWaitSemaphores");
+    if (result == SLUICE_SUCCESS)
+        result = poll_frames(s);
+    return result == SLUICE_SUCCESS && value > s->completed_frame ? SLUICE_NOT_READY : result;
 }
 
 /* What the GPU has finished: slots, images and staging memory come back. */
@@ -223,10 +242,11 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     if (result != SLUICE_SUCCESS)
         return result;
     s->slot = slot_of(s, s->slot_turn);
-    if (s->in_flight[s->slot] > s->completed_frame) {
+    result = await_frame(s, s->in_flight[s->slot]);
+    if (result == SLUICE_NOT_READY)
         slc_strict_not_ready(s, s->in_flight[s->slot]);
-        return SLUICE_NOT_READY;
-    }
+    if (result != SLUICE_SUCCESS)
+        return result;
     s->in_flight[s->slot] = ++s->frame;
     s->submittable[s->slot] = false;
     s->slot_turn++;

@@ -95,6 +95,29 @@ void frames_that_are_never_signaled_are_reported_once(void **state)
     stage_finish(s);
 }
 
+/* As after a wait for a fence that was signaled before the semaphore. */
+void a_semaphore_that_is_late_by_a_moment_is_waited_for(void **state)
+{
+    (void)state;
+    struct stage *s = begin(&(SluiceVulkanStreamerCreateInfo){.framesInFlight = 2});
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
+    frames(s, 3);
+    for (uint32_t i = 0; i < 2; i++) {
+        CHECK_OK(begin_frame(s, &frame));
+        CHECK_OK(sluiceEndStreamingFrame(s->streamer, fake_vulkan_commands(&s->fake)));
+    }
+    uint32_t waits = s->fake.wait_count;
+    CHECK_RESULT(begin_frame(s, &frame), SLUICE_NOT_READY);
+    assert_int_equal(s->fake.wait_count, waits + 1);
+    assert_int_equal(s->fake.waits[waits % 64].value, 4);
+    assert_true(s->fake.waits[waits % 64].timeout <= 10000000);
+    s->fake.waits_signal = true;
+    CHECK_OK(begin_frame(s, &frame));
+    CHECK_OK(sluiceEndStreamingFrame(s->streamer, fake_vulkan_commands(&s->fake)));
+    s->fake.frame_value = 6;
+    stage_finish(s);
+}
+
 void frames_without_feedback_are_reported(void **state)
 {
     (void)state;

@@ -46,6 +46,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device,
     struct fake_vulkan *fake = fake_of(device);
     struct fake_wait wait = {info->pSemaphores[0], info->pValues[0], timeout, fake->live_objects};
     fake->waits[fake->wait_count++ % 64] = wait;
+    if (fake->waits_signal && fake->frame_value < wait.value)
+        fake->frame_value = wait.value;
     bool waits = fake->waits_time_out && value_of(fake, wait.semaphore) < wait.value;
     return waits ? VK_TIMEOUT : VK_SUCCESS;
 }

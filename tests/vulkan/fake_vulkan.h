@@ -106,6 +106,7 @@ struct fake_vulkan {
         uint64_t live_objects; ///< at that time
     } waits[64];
     uint32_t wait_count;
+    bool waits_signal;   ///< a wait moves the frames' timeline to its value
     bool waits_time_out; ///< where the timeline has not reached the value; else all waits succeed
     bool no_resolve;     ///< compute passes leave no trace: for the demand loader
 

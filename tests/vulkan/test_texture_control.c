@@ -630,6 +630,7 @@ int main(void)
         cmocka_unit_test(reloads_survive_every_refused_allocation),
         cmocka_unit_test(unpaired_frames_are_reported),
         cmocka_unit_test(frames_that_are_never_signaled_are_reported_once),
+        cmocka_unit_test(a_semaphore_that_is_late_by_a_moment_is_waited_for),
         cmocka_unit_test(frames_without_feedback_are_reported),
         cmocka_unit_test(exhausted_heaps_are_reported),
         cmocka_unit_test(sources_in_use_are_reported_and_kept),
