@@ -6,6 +6,8 @@
 #include "support/roll.h"
 #include "support/test.h"
 
+#include <sluice/vulkan_control.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -248,6 +250,69 @@ static void followers_get_what_their_primary_wants(void **state)
     scene_finish(&scene);
 }
 
+/* The texels of a pattern with another alpha. */
+struct faint {
+    SluiceImageSource base;
+    SluiceImageSource *inner;
+};
+
+static SluiceResult faint_info(SluiceImageSource *source, SluiceImageInfo *info)
+{
+    return sluiceGetImageInfo(((struct faint *)source)->inner, info);
+}
+
+static SluiceResult faint_read(SluiceImageSource *source, const SluiceImageRegion *region,
+                               void *texels, size_t row_pitch)
+{
+    SluiceResult result =
+        sluiceReadImageRegion(((struct faint *)source)->inner, region, texels, row_pitch);
+    for (uint32_t y = 0; y < region->height; y++)
+        for (uint32_t x = 0; x < region->width; x++)
+            ((uint8_t *)texels)[y * row_pitch + 4 * (size_t)x + 3] = 51;
+    return result;
+}
+
+static void faint_destroy(SluiceImageSource *source)
+{
+    (void)source;
+}
+
+static const SluiceImageSourceInterface faint_interface = {sizeof faint_interface, faint_info,
+                                                           faint_read, faint_destroy, NULL};
+
+/* No sample gets coarser, and in the end all texels are new. */
+static void replaced_texels_come_without_a_coarser_picture(void **state)
+{
+    struct scene scene;
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000});
+    uint32_t t =
+        scene_add(&scene, pattern_source(PATTERN_LEVEL, 1024, 512, SLUICE_FORMAT_R8G8B8A8_UNORM));
+    const SluiceTextureId id = scene.textures[t].texture.textureId;
+    struct faint faint = {{&faint_interface}, scene.textures[t].source};
+    SluiceVulkanTextureState now = {.structSize = sizeof now};
+    roll_seed(4);
+    scene_aim(&scene, t, SCENE_SAMPLES, &everywhere);
+    scene_settle(&scene, 14);
+    for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
+        assert_float_equal(scene_outputs(&scene, t)[i].color[3], 1.0, 0.001);
+    CHECK_OK(sluiceReplaceVulkanSource(scene.streamer, id, &faint.base));
+    for (uint32_t frame = 0; frame == 0 || now.reloadingTileCount > 0; frame++) {
+        assert_true(frame < 100);
+        scene_settle(&scene, 1);
+        scene_check_levels(&scene);
+        assert_int_equal(scene_missing(&scene), 0);
+        CHECK_OK(sluiceGetVulkanTextureState(scene.streamer, id, NULL, &now));
+    }
+    scene_settle(&scene, 1);
+    for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
+        assert_float_equal(scene_outputs(&scene, t)[i].color[3], 0.2, 0.001);
+    assert_int_equal(scene_non_resident(&scene), 0);
+    scene_finish(&scene);
+}
+
 int main(void)
 {
     struct harness h;
@@ -261,6 +326,7 @@ int main(void)
         cmocka_unit_test(settled_colors_are_those_of_a_resident_texture),
         cmocka_unit_test(tiles_nobody_wants_any_more_are_unmapped_and_come_back_right),
         cmocka_unit_test(followers_get_what_their_primary_wants),
+        cmocka_unit_test(replaced_texels_come_without_a_coarser_picture),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
