@@ -201,6 +201,14 @@ typedef struct SluiceImageRegion {
 
 typedef struct SluiceImageSource SluiceImageSource;
 
+/** Names one read that a source was asked to start. Copy it. Values are never used again while the
+ *  reader exists. Never grows. */
+typedef struct SluiceImageReadToken {
+    void *pReader; ///< Belongs to Sluice, as the other fields.
+    uint64_t ticket;
+    uint32_t region, attempt;
+} SluiceImageReadToken;
+
 /** File offset of a failure whose position is unknown, or of data that is not in a file. */
 #define SLUICE_UNKNOWN_OFFSET UINT64_MAX
 
@@ -258,6 +266,36 @@ typedef struct SluiceImageSourceInterface {
      */
     bool (*pfnIdentifyRegion)(SluiceImageSource *source, const SluiceImageRegion *pRegion,
                               uint64_t *pIdentity);
+    /**
+     * Starts an asynchronous read, for sources that would block a thread or answer
+     * SLUICE_NOT_READY. May be NULL. If set, loaders, and so streamers and demand loaders, call it
+     * instead of pfnReadRegion. Others still call pfnReadRegion, which is required.
+     *
+     * After SLUICE_SUCCESS the source fills `pTexels` as pfnReadRegion does, and then calls
+     * sluiceCompleteImageRead with the token, once, on any thread. It may do so before this call
+     * returns. `pTexels` stays writable until then, and the region is copied by the source. Rows
+     * may lie in memory that the host reads slowly: write in order, and read nothing back.
+     *
+     * After any other result the token means nothing. SLUICE_ERROR_UNSUPPORTED makes the reader
+     * call pfnReadRegion for this region. Other errors end the attempt, as in pfnReadRegion.
+     *
+     * A started read occupies no thread and does not count for maxReadsPerSource. Its bytes count
+     * for maxBytesInFlight.
+     *
+     * Thread safety: any thread, several calls at the same time. No lock of Sluice is held.
+     */
+    SluiceResult (*pfnStartRead)(SluiceImageSource *source, const SluiceImageRegion *pRegion,
+                                 void *pTexels, size_t rowPitch,
+                                 const SluiceImageReadToken *pToken);
+    /**
+     * Says that nobody needs a started read. May be NULL. The source must still complete it, now
+     * or later, for example with SLUICE_ERROR_CANCELED; it may do so before this call returns. May
+     * be called for a read that was completed a moment ago: ignore unknown tokens.
+     *
+     * Thread safety: any thread, after pfnStartRead has returned. No lock of Sluice is held.
+     */
+    void (*pfnCancelRead)(SluiceImageSource *source, const SluiceImageRegion *pRegion,
+                          const SluiceImageReadToken *pToken);
 } SluiceImageSourceInterface;
 
 /** Base of every source: the first member of the implementation's struct. */
@@ -299,6 +337,22 @@ SLUICE_API SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
                                                      const SluiceImageRegion *pRegion,
                                                      void *pTexels, size_t rowPitch,
                                                      SluiceImageFault *pFault);
+
+/**
+ * Completes a read of pfnStartRead with any result.
+ *
+ * The reader may collect the read as soon as this call begins: do not write texels any more. A read
+ * of several regions ends when all started ones are completed. Temporary results are retried as
+ * loader.h says. Callbacks of the loader for failures and ends run in this call.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with nothing changed, if the
+ *         read was completed before. The loader must exist: its destruction waits for all started
+ *         reads.
+ * Thread safety: any thread. Hold no lock that pfnStartRead, pfnCancelRead or a callback of the
+ *         loader takes.
+ */
+SLUICE_API SluiceResult sluiceCompleteImageRead(const SluiceImageReadToken *pToken,
+                                                SluiceResult result);
 
 /**
  * Destroys a source. NULL is allowed. No call on the source may be in progress.

@@ -2,6 +2,7 @@
 #include "base/checked.h"
 #include "image/identity.h"
 #include "image/info.h"
+#include "image/start_read.h"
 
 #include <sluice/image.h>
 
@@ -27,6 +28,24 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     inner.arrayLayer = 0;
     return sluiceReadImageRegionLocated(((struct array_source *)base)->layers[region->arrayLayer],
                                         &inner, texels, row_pitch, fault);
+}
+
+static SluiceResult start_read(SluiceImageSource *base, const SluiceImageRegion *region,
+                               void *texels, size_t row_pitch, const SluiceImageReadToken *token)
+{
+    const struct array_source *source = (struct array_source *)base;
+    SluiceImageRegion inner = *region;
+    inner.arrayLayer = 0;
+    return slc_start_read(source->layers[region->arrayLayer], &source->info, &inner, texels,
+                          row_pitch, token);
+}
+
+static void cancel_read(SluiceImageSource *base, const SluiceImageRegion *region,
+                        const SluiceImageReadToken *token)
+{
+    SluiceImageRegion inner = *region;
+    inner.arrayLayer = 0;
+    slc_cancel_read(((struct array_source *)base)->layers[region->arrayLayer], &inner, token);
 }
 
 /* Regions of different layers are not compared. */
@@ -55,7 +74,9 @@ static const SluiceImageSourceInterface array_interface = {.structSize = sizeof 
                                                            .pfnGetInfo = get_info,
                                                            .pfnDestroy = destroy,
                                                            .pfnReadRegionLocated = read_region,
-                                                           .pfnIdentifyRegion = identify};
+                                                           .pfnIdentifyRegion = identify,
+                                                           .pfnStartRead = start_read,
+                                                           .pfnCancelRead = cancel_read};
 
 static SluiceResult check_layers(SluiceImageSource *const *layers, uint32_t count,
                                  SluiceImageInfo *info)

@@ -2,19 +2,13 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "image/start_read.h"
+#include "image/started_reads.h"
 #include "platform/time_now.h"
 
 #include <string.h>
 
 #define TILE_SIZE 65536u
-
-/* One try at the regions of a read that are left. */
-struct attempt {
-    SluiceResult result;
-    SluiceImageInfo info; ///< zeroed if the source did not tell
-    SluiceImageFault fault;
-    uint64_t latency; ///< ns
-};
 
 static bool is_dropped(const struct slc_read *read)
 {
@@ -40,64 +34,58 @@ static bool goes_through_cache(const SluiceTileLoader *loader, const SluiceImage
            source->pInterface != loader->direct[1];
 }
 
-static SluiceResult read_regions(const SluiceTileLoader *loader, struct slc_read *read,
-                                 SluiceImageInfo *info, SluiceImageFault *fault)
+SluiceResult slc_loader_read_region(const SluiceTileLoader *loader, const struct slc_read *read,
+                                    const SluiceImageInfo *info, uint32_t region,
+                                    SluiceImageFault *fault)
 {
     SluiceImageSource *source = read->source->source;
-    info->structSize = sizeof *info;
-    SluiceResult result = sluiceGetImageInfo(source, info);
-    if (result != SLUICE_SUCCESS) {
-        *info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo)};
-        return result;
-    }
-    for (; read->done_count < read->region_count; read->done_count++) {
-        if (is_dropped(read))
-            return SLUICE_ERROR_CANCELED;
-        const SluiceImageRegion *region = &read->regions[read->done_count];
-        void *texels = read->texels[read->done_count];
-        size_t row_pitch = sluiceGetFormatRegionSize(info->format, region->width, 1);
-        size_t size = sluiceGetFormatRegionSize(info->format, region->width, region->height);
-        result = goes_through_cache(loader, source, size)
-                     ? read_to_cache(source, region, texels, size, row_pitch, fault)
-                     : sluiceReadImageRegionLocated(source, region, texels, row_pitch, fault);
-        if (result != SLUICE_SUCCESS)
-            return result;
-        read->done_size += size;
-    }
-    return SLUICE_SUCCESS;
+    const SluiceImageRegion *at = &read->regions[region];
+    size_t row_pitch = sluiceGetFormatRegionSize(info->format, at->width, 1);
+    size_t size = sluiceGetFormatRegionSize(info->format, at->width, at->height);
+    void *texels = read->texels[region];
+    return goes_through_cache(loader, source, size)
+               ? read_to_cache(source, at, texels, size, row_pitch, fault)
+               : sluiceReadImageRegionLocated(source, at, texels, row_pitch, fault);
 }
 
-static struct attempt make_attempt(const SluiceTileLoader *loader, struct slc_read *read)
+static void read_regions(const SluiceTileLoader *loader, struct slc_read *read,
+                         const SluiceImageInfo *info, struct slc_read_outcome *outcome)
 {
-    struct attempt attempt = {.fault = {"", SLUICE_UNKNOWN_OFFSET}};
-    uint64_t start = slc_monotonic_time();
-    attempt.result = read_regions(loader, read, &attempt.info, &attempt.fault);
-    attempt.latency = slc_monotonic_time() - start;
-    read->attempts.count++;
-    read->attempts.corrupt_count += attempt.result == SLUICE_ERROR_CORRUPT_DATA;
-    return attempt;
+    for (uint32_t i = 0; i < read->region_count; i++) {
+        const SluiceImageRegion *region = &read->regions[i];
+        if (read->done >> i & 1)
+            continue;
+        outcome->region = i;
+        outcome->result = is_dropped(read)
+                              ? SLUICE_ERROR_CANCELED
+                              : slc_loader_read_region(loader, read, info, i, &outcome->fault);
+        if (outcome->result != SLUICE_SUCCESS)
+            return;
+        read->done |= 1u << i;
+        read->done_size += sluiceGetFormatRegionSize(info->format, region->width, region->height);
+    }
 }
 
 /* Before the read is over, because the source need not live longer. */
 static void report_failure(const SluiceTileLoader *loader, const struct slc_read *read,
-                           const struct attempt *attempt, bool will_retry, uint64_t delay)
+                           const struct slc_read_outcome *outcome, bool will_retry, uint64_t delay)
 {
-    bool is_failure = attempt->result != SLUICE_SUCCESS &&
-                      attempt->result != SLUICE_ERROR_CANCELED &&
-                      (attempt->result != SLUICE_NOT_READY || !will_retry);
+    bool is_failure = outcome->result != SLUICE_SUCCESS &&
+                      outcome->result != SLUICE_ERROR_CANCELED &&
+                      (outcome->result != SLUICE_NOT_READY || !will_retry);
     if (!is_failure || !loader->failure.pfnFailed)
         return;
     SluiceTileReadFailure failure = {
         .structSize = sizeof failure,
         .source = read->source->source,
-        .pName = attempt->fault.pName,
-        .region = read->regions[read->done_count],
-        .result = attempt->result,
+        .pName = outcome->fault.pName,
+        .region = read->regions[outcome->region],
+        .result = outcome->result,
         .attempt = read->attempts.count,
         .willRetry = will_retry,
         .retryDelayNs = will_retry ? delay : 0,
         .userValue = read->result.userValue,
-        .offset = attempt->fault.offset,
+        .offset = outcome->fault.offset,
     };
     loader->failure.pfnFailed(loader->failure.pUserData, &failure);
 }
@@ -116,22 +104,21 @@ void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, Sluice
         loader->end.pfnEnded(loader->end.pUserData, read->result.userValue, result);
 }
 
-/* With the mutex held, which is given up meanwhile. */
-static void run(SluiceTileLoader *loader, struct slc_read *read)
+void slc_loader_settle_read(SluiceTileLoader *loader, struct slc_read *read,
+                            const struct slc_read_outcome *outcome)
 {
     struct slc_mutex *mutex = &loader->pool->mutex;
     uint64_t delay = 0;
+    read->attempts.count++;
+    read->attempts.corrupt_count += outcome->result == SLUICE_ERROR_CORRUPT_DATA;
+    bool will_retry = slc_retry_is_due(&loader->retry, &read->attempts, outcome->result, &delay);
     slc_mutex_unlock(mutex);
-    struct attempt attempt = make_attempt(loader, read);
-    bool will_retry = slc_retry_is_due(&loader->retry, &read->attempts, attempt.result, &delay);
-    report_failure(loader, read, &attempt, will_retry, delay);
+    report_failure(loader, read, outcome, will_retry, delay);
     slc_mutex_lock(mutex);
-    if (attempt.info.format != SLUICE_FORMAT_UNDEFINED)
-        read->source->format = attempt.info.format;
-    slc_read_queue_add_attempt(&loader->queue, read, attempt.result, attempt.fault.offset,
-                               attempt.latency);
+    slc_read_queue_add_attempt(&loader->queue, read, outcome->result, outcome->fault.offset,
+                               outcome->latency);
     if (!will_retry) {
-        slc_loader_end_read(loader, read, attempt.result);
+        slc_loader_end_read(loader, read, outcome->result);
     } else if (is_dropped(read)) {
         slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELED);
     } else {
@@ -140,6 +127,31 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
                              delay < UINT64_MAX - now ? now + delay : UINT64_MAX - 1);
     }
     slc_loader_signal_if_idle(loader);
+}
+
+/* With the mutex held, which is given up meanwhile. */
+static void run(SluiceTileLoader *loader, struct slc_read *read)
+{
+    struct slc_mutex *mutex = &loader->pool->mutex;
+    SluiceImageSource *source = read->source->source;
+    SluiceImageInfo info = {.structSize = sizeof info};
+    struct slc_read_outcome outcome = {.fault = {"", SLUICE_UNKNOWN_OFFSET}};
+    slc_mutex_unlock(mutex);
+    uint64_t start = slc_monotonic_time();
+    outcome.result = sluiceGetImageInfo(source, &info);
+    bool is_known = outcome.result == SLUICE_SUCCESS;
+    if (is_known && slc_starts_reads(source)) {
+        slc_mutex_lock(mutex);
+        slc_start_regions(loader, read, &info, start);
+        return;
+    }
+    if (is_known)
+        read_regions(loader, read, &info, &outcome);
+    outcome.latency = slc_monotonic_time() - start;
+    slc_mutex_lock(mutex);
+    if (is_known && info.format != SLUICE_FORMAT_UNDEFINED)
+        read->source->format = info.format;
+    slc_loader_settle_read(loader, read, &outcome);
 }
 
 static uint64_t next_due(const struct slc_read_pool *pool)
@@ -185,7 +197,7 @@ bool slc_read_pool_has_startable(const struct slc_read_pool *pool)
     return false;
 }
 
-static bool has_work(const struct slc_read_pool *pool)
+bool slc_read_pool_has_work(const struct slc_read_pool *pool)
 {
     for (const SluiceTileLoader *loader = pool->loaders; loader; loader = loader->next)
         if (loader->queue.startable.root || loader->queue.delayed.root)
@@ -225,7 +237,7 @@ static void *worker_main(void *argument)
             continue;
         }
         /* This thread may be gone for long: another one looks after what else there is. */
-        if (has_work(pool))
+        if (slc_read_pool_has_work(pool))
             slc_read_pool_signal(pool);
         run(loader, read);
     }

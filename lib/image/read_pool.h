@@ -69,11 +69,29 @@ SluiceResult slc_create_pool_loader(struct slc_read_pool *pool,
 void slc_read_pool_signal(struct slc_read_pool *pool);
 /** With the mutex held: something can be started or waits for a retry. */
 bool slc_read_pool_has_startable(const struct slc_read_pool *pool);
+bool slc_read_pool_has_work(const struct slc_read_pool *pool);
 /** With the mutex held: ends a read and tells the loader's owner. */
 void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, SluiceResult result);
 void slc_loader_signal_if_idle(SluiceTileLoader *loader);
 /** Waits until a read can be collected, none is under way, or slc_monotonic_time() is `until`.
  *  Returns false in the last case. Without the mutex, on the thread that collects. */
 bool slc_loader_wait_for_read(SluiceTileLoader *loader, uint64_t until);
+
+/** End of one attempt at a read. */
+struct slc_read_outcome {
+    SluiceResult result;
+    SluiceImageFault fault;
+    uint32_t region;  ///< that failed
+    uint64_t latency; ///< ns
+};
+
+/** Reads one region at once. */
+SluiceResult slc_loader_read_region(const SluiceTileLoader *loader, const struct slc_read *read,
+                                    const SluiceImageInfo *info, uint32_t region,
+                                    SluiceImageFault *fault);
+/** With the mutex held, which is given up meanwhile: reports an attempt at a running read, and ends
+ *  or delays the read. */
+void slc_loader_settle_read(SluiceTileLoader *loader, struct slc_read *read,
+                            const struct slc_read_outcome *outcome);
 
 #endif /* SLC_IMAGE_READ_POOL_H */

@@ -141,7 +141,8 @@ static void undelay(struct slc_read_queue *queue, struct slc_read *read)
 static void stop_running(struct slc_read_queue *queue, struct slc_read *read)
 {
     source_leave(queue, read->source);
-    read->source->running_count--;
+    read->source->running_count -= read->holds_thread;
+    read->holds_thread = false;
     queue->running_count--;
     queue->load->running_count--;
     queue->load->running_size -= read->running_size;
@@ -163,7 +164,7 @@ bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *g
     read->source = source;
     read->attempts = (struct slc_attempts){0};
     read->region_count = given->regionCount;
-    read->done_count = 0;
+    read->done = 0;
     read->done_size = 0;
     atomic_store_explicit(&read->dropped, false, memory_order_relaxed);
     memcpy(read->regions, given->pRegions, given->regionCount * sizeof *read->regions);
@@ -180,7 +181,9 @@ bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *g
 static uint64_t size_of(const struct slc_read *read)
 {
     uint64_t size = 0;
-    for (uint32_t i = read->done_count; i < read->region_count; i++) {
+    for (uint32_t i = 0; i < read->region_count; i++) {
+        if (read->done >> i & 1)
+            continue;
         const SluiceImageRegion *region = &read->regions[i];
         uint64_t bytes =
             sluiceGetFormatRegionSize(read->source->format, region->width, region->height);
@@ -216,12 +219,22 @@ struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now
     read->state = SLC_READ_RUNNING;
     read->running_size = size;
     source->running_count++;
+    read->holds_thread = true;
     queue->running_count++;
     load->running_count++;
     load->running_size += size;
     source_return(queue, source);
     update_twins(source);
     return read;
+}
+
+void slc_read_queue_release_thread(struct slc_read_queue *queue, struct slc_read *read)
+{
+    source_leave(queue, read->source);
+    read->source->running_count--;
+    read->holds_thread = false;
+    source_return(queue, read->source);
+    update_twins(read->source);
 }
 
 uint64_t slc_read_queue_next_due(const struct slc_read_queue *queue)

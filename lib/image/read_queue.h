@@ -19,6 +19,19 @@ enum slc_read_state {
     SLC_READ_FINISHED
 };
 
+/** Regions of a running read that its source has started. With the lock held. */
+struct slc_started {
+    uint32_t pending; ///< a bit for each region that is not completed
+    uint32_t calls;   ///< of the source that are in progress: the read cannot end
+    bool starting;    ///< one of them starts regions
+    bool was_canceled;
+    SluiceResult result; ///< the first one that is not SLUICE_SUCCESS
+    uint32_t failed_region;
+    SluiceFormat format;
+    const char *name;
+    uint64_t start_time; ///< ns
+};
+
 struct slc_read {
     enum slc_read_state state;
     uint64_t generation;       ///< of the slot, so that old tickets are recognized
@@ -32,12 +45,14 @@ struct slc_read {
 
     /* The thread that runs it has these to itself, and reads those above that do not change. */
     struct slc_attempts attempts;
-    uint32_t region_count, done_count; ///< of which so many are delivered
-    uint64_t done_size;                ///< their bytes
+    uint32_t region_count, done; ///< a bit for each region that is delivered
+    uint64_t done_size;          ///< their bytes
     SluiceImageRegion regions[SLUICE_MAX_READ_REGIONS];
     void *texels[SLUICE_MAX_READ_REGIONS];
 
     atomic_bool dropped; ///< nobody wants it any more
+    bool holds_thread;   ///< while it runs
+    struct slc_started started;
 };
 
 /** Limits, and what runs of them. Several queues may share it. */
@@ -88,6 +103,9 @@ bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *r
 
 /** The most urgent read that may run, running from now on; NULL if there is none at this time. */
 struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now);
+
+/** The thread of a running read is free for other reads: its source completes it. */
+void slc_read_queue_release_thread(struct slc_read_queue *queue, struct slc_read *read);
 
 /** When the first delayed read is due; UINT64_MAX: none is delayed. */
 uint64_t slc_read_queue_next_due(const struct slc_read_queue *queue);

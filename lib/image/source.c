@@ -2,6 +2,9 @@
 
 #include "base/struct_size.h"
 #include "image/format_size.h"
+#include "image/start_read.h"
+
+#include <stddef.h>
 
 SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInfo)
 {
@@ -72,6 +75,40 @@ SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
     return source_interface->pfnReadRegionLocated
                ? source_interface->pfnReadRegionLocated(source, pRegion, pTexels, rowPitch, pFault)
                : source_interface->pfnReadRegion(source, pRegion, pTexels, rowPitch);
+}
+
+/* Sources of older programs have a shorter interface. */
+static bool can_start(const SluiceImageSourceInterface *source)
+{
+    size_t size = offsetof(SluiceImageSourceInterface, pfnStartRead) + sizeof source->pfnStartRead;
+    return source->structSize >= size && source->pfnStartRead;
+}
+
+bool slc_starts_reads(const SluiceImageSource *source)
+{
+    return can_start(source->pInterface);
+}
+
+SluiceResult slc_start_read(SluiceImageSource *source, const SluiceImageInfo *info,
+                            const SluiceImageRegion *region, void *texels, size_t row_pitch,
+                            const SluiceImageReadToken *token)
+{
+    SluiceFormatInfo format = {.structSize = sizeof format};
+    if (!can_start(source->pInterface))
+        return SLUICE_ERROR_UNSUPPORTED;
+    if (sluiceGetFormatInfo(info->format, &format) != SLUICE_SUCCESS ||
+        !region_is_inside(region, info) || !region_is_aligned(region, info, &format))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    return source->pInterface->pfnStartRead(source, region, texels, row_pitch, token);
+}
+
+void slc_cancel_read(SluiceImageSource *source, const SluiceImageRegion *region,
+                     const SluiceImageReadToken *token)
+{
+    size_t size = offsetof(SluiceImageSourceInterface, pfnCancelRead) +
+                  sizeof source->pInterface->pfnCancelRead;
+    if (source->pInterface->structSize >= size && source->pInterface->pfnCancelRead)
+        source->pInterface->pfnCancelRead(source, region, token);
 }
 
 void sluiceDestroyImageSource(SluiceImageSource *source)

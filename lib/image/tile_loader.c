@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/struct_size.h"
+#include "image/started_reads.h"
 
 /* Of reads, and of sources that are remembered. */
 #define MAX_COUNT (1u << 29)
@@ -86,12 +87,15 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
     return SLUICE_SUCCESS;
 }
 
+/* With the mutex held, which is given up while a source is told. */
 static void drop_read(SluiceTileLoader *loader, struct slc_read *read)
 {
     if (read->state == SLC_READ_QUEUED || read->state == SLC_READ_DELAYED)
         slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELED);
-    else if (read->state == SLC_READ_RUNNING)
-        atomic_store_explicit(&read->dropped, true, memory_order_relaxed);
+    if (read->state != SLC_READ_RUNNING)
+        return;
+    atomic_store_explicit(&read->dropped, true, memory_order_relaxed);
+    slc_cancel_regions(loader, read);
 }
 
 /* With the mutex held. What waited behind its reads may start now. */

@@ -32,6 +32,7 @@ sluiceGetStandardTileShape(SLUICE_FORMAT_R8_UNORM, &f->out.width, &f->out.height
 sluiceGetImageInfo(f->source, &f->out.info)
 sluiceReadImageRegion(f->source, &f->region, f->out.texels, sizeof f->out.texels)
 sluiceReadImageRegionLocated(f->source, &f->region, f->out.texels, sizeof f->out.texels, &f->out.fault)
+!sluiceCompleteImageRead(&f->token, ?SLUICE_SUCCESS)
 !sluiceDestroyImageSource(f->source)
 sluiceCreateProceduralImageSource(&f->image, &f->info, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceCreateMemoryImageSource(f->texels, &f->info, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
@@ -118,6 +119,7 @@ struct fixture {
     SluiceImageInfo info;
     SluiceImageSource *source;
     SluiceImageRegion region;
+    SluiceImageReadToken token;
     uint8_t texels[4 * 256 * 256];
     SluiceFilePoolCreateInfo pool_info;
     SluiceFilePool *pool;

@@ -1,0 +1,18 @@
+/** Asynchronous reads of a source: pfnStartRead and pfnCancelRead, which it may lack. */
+#ifndef SLC_IMAGE_START_READ_H
+#define SLC_IMAGE_START_READ_H
+
+#include <sluice/image.h>
+
+/** `source` has an interface. */
+bool slc_starts_reads(const SluiceImageSource *source);
+
+/** Checks the region and starts a read. Errors: UNSUPPORTED if the source reads at once only. */
+SluiceResult slc_start_read(SluiceImageSource *source, const SluiceImageInfo *info,
+                            const SluiceImageRegion *region, void *texels, size_t row_pitch,
+                            const SluiceImageReadToken *token);
+/** Tells a source that can be told. */
+void slc_cancel_read(SluiceImageSource *source, const SluiceImageRegion *region,
+                     const SluiceImageReadToken *token);
+
+#endif /* SLC_IMAGE_START_READ_H */

@@ -1,0 +1,140 @@
+#include "image/started_reads.h"
+
+#include "image/start_read.h"
+#include "platform/time_now.h"
+
+static SluiceImageReadToken token_of(SluiceTileLoader *loader, const struct slc_read *read,
+                                     uint32_t region)
+{
+    return (SluiceImageReadToken){loader, read->result.ticket, region, read->attempts.count};
+}
+
+static bool is_pending(const struct slc_read *read, uint32_t region)
+{
+    return read->started.pending >> region & 1;
+}
+
+static void complete_region(struct slc_read *read, uint32_t region, SluiceResult result)
+{
+    struct slc_started *started = &read->started;
+    const SluiceImageRegion *at = &read->regions[region];
+    if (!is_pending(read, region))
+        return;
+    started->pending &= ~(1u << region);
+    if (result == SLUICE_SUCCESS) {
+        read->done |= 1u << region;
+        read->done_size += sluiceGetFormatRegionSize(started->format, at->width, at->height);
+    } else if (started->result == SLUICE_SUCCESS) {
+        started->result = result;
+        started->failed_region = region;
+    }
+}
+
+/* Exactly one caller finds the last region completed and the last call returned. */
+static void settle_if_over(SluiceTileLoader *loader, struct slc_read *read)
+{
+    const struct slc_started *started = &read->started;
+    if (started->pending || started->calls)
+        return;
+    const struct slc_read_outcome outcome = {.result = started->result,
+                                             .fault = {started->name, SLUICE_UNKNOWN_OFFSET},
+                                             .region = started->failed_region,
+                                             .latency = slc_monotonic_time() - started->start_time};
+    slc_loader_settle_read(loader, read, &outcome);
+    if (slc_read_pool_has_work(loader->pool))
+        slc_read_pool_signal(loader->pool);
+}
+
+/* With the mutex held, which is given up meanwhile. */
+static void start_region(SluiceTileLoader *loader, struct slc_read *read,
+                         const SluiceImageInfo *info, uint32_t region)
+{
+    struct slc_mutex *mutex = &loader->pool->mutex;
+    const SluiceImageReadToken token = token_of(loader, read, region);
+    const SluiceImageRegion *at = &read->regions[region];
+    SluiceImageFault fault;
+    read->started.pending |= 1u << region;
+    slc_mutex_unlock(mutex);
+    SluiceResult result =
+        slc_start_read(read->source->source, info, at, read->texels[region],
+                       sluiceGetFormatRegionSize(info->format, at->width, 1), &token);
+    bool is_started = result == SLUICE_SUCCESS;
+    if (result == SLUICE_ERROR_UNSUPPORTED)
+        result = slc_loader_read_region(loader, read, info, region, &fault);
+    slc_mutex_lock(mutex);
+    if (!is_started)
+        complete_region(read, region, result);
+}
+
+void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const SluiceImageInfo *info,
+                       uint64_t start_time)
+{
+    struct slc_started *started = &read->started;
+    *started = (struct slc_started){.calls = 1,
+                                    .starting = true,
+                                    .format = info->format,
+                                    .name = info->pName ? info->pName : "",
+                                    .start_time = start_time};
+    read->source->format = info->format;
+    for (uint32_t i = 0; i < read->region_count && started->result == SLUICE_SUCCESS; i++) {
+        if (read->done >> i & 1)
+            continue;
+        if (atomic_load_explicit(&read->dropped, memory_order_relaxed)) {
+            started->result = SLUICE_ERROR_CANCELED;
+            started->failed_region = i;
+        } else {
+            start_region(loader, read, info, i);
+        }
+    }
+    started->starting = false;
+    started->calls--;
+    if (started->pending)
+        slc_read_queue_release_thread(&loader->queue, read);
+    if (started->pending && atomic_load_explicit(&read->dropped, memory_order_relaxed))
+        slc_cancel_regions(loader, read);
+    else
+        settle_if_over(loader, read);
+}
+
+void slc_cancel_regions(SluiceTileLoader *loader, struct slc_read *read)
+{
+    struct slc_started *started = &read->started;
+    uint32_t pending = started->pending;
+    if (!pending || started->starting || started->was_canceled)
+        return;
+    started->was_canceled = true;
+    started->calls++;
+    for (uint32_t i = 0; i < read->region_count; i++) {
+        if (!(pending >> i & 1))
+            continue;
+        const SluiceImageReadToken token = token_of(loader, read, i);
+        slc_mutex_unlock(&loader->pool->mutex);
+        slc_cancel_read(read->source->source, &read->regions[i], &token);
+        slc_mutex_lock(&loader->pool->mutex);
+    }
+    started->calls--;
+    settle_if_over(loader, read);
+}
+
+static bool is_awaited(const struct slc_read *read, const SluiceImageReadToken *token)
+{
+    return read && read->state == SLC_READ_RUNNING && token->region < read->region_count &&
+           is_pending(read, token->region) && read->attempts.count == token->attempt;
+}
+
+SluiceResult sluiceCompleteImageRead(const SluiceImageReadToken *pToken, SluiceResult result)
+{
+    if (!pToken || !pToken->pReader)
+        return SLUICE_ERROR_NULL_POINTER;
+    const SluiceImageReadToken token = *pToken; /* its memory may go with the read */
+    SluiceTileLoader *loader = token.pReader;
+    slc_mutex_lock(&loader->pool->mutex);
+    struct slc_read *read = slc_read_queue_find(&loader->queue, token.ticket);
+    bool awaited = is_awaited(read, &token);
+    if (awaited) {
+        complete_region(read, token.region, result);
+        settle_if_over(loader, read);
+    }
+    slc_mutex_unlock(&loader->pool->mutex);
+    return awaited ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
+}

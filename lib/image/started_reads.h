@@ -1,0 +1,16 @@
+/** Reads that sources do asynchronously: from the start of their regions to the last completion. */
+#ifndef SLC_IMAGE_STARTED_READS_H
+#define SLC_IMAGE_STARTED_READS_H
+
+#include "image/read_pool.h"
+
+/** With the mutex held, which is given up meanwhile: starts the regions of a running read that are
+ *  left. The read ends when its source has completed them. */
+void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const SluiceImageInfo *info,
+                       uint64_t start_time);
+
+/** With the mutex held, which is given up meanwhile: tells the source of a running read that was
+ *  dropped. */
+void slc_cancel_regions(SluiceTileLoader *loader, struct slc_read *read);
+
+#endif /* SLC_IMAGE_STARTED_READS_H */

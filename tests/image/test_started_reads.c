@@ -1,0 +1,465 @@
+/* Sources that start reads and complete them later, on any thread. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <sluice/loader.h>
+
+#include "support/test.h"
+
+#include <pthread.h>
+#include <time.h>
+
+enum { SIZE = 16, LEVELS = 5, MAX_PENDING = 512 };
+
+struct pending {
+    SluiceImageReadToken token;
+    SluiceImageRegion region;
+    float *texels;
+};
+
+/* R32_SFLOAT: a texel is 1000 level + its x. */
+struct source {
+    SluiceImageSource base; ///< must be first
+    pthread_mutex_t mutex;
+    struct pending pending[MAX_PENDING];
+    uint32_t count, start_count, read_count, cancel_count;
+    bool at_once;          ///< completes before pfnStartRead returns
+    SluiceResult refusal;  ///< result of pfnStartRead, if not SLUICE_SUCCESS
+    bool obeys;            ///< completes reads that are canceled
+    bool ends;             ///< for complete_all
+    SluiceResult failures; ///< result of the next `failure_count` completions
+    uint32_t failure_count;
+};
+
+static void pause_briefly(void)
+{
+    nanosleep(&(struct timespec){0, 50000}, NULL);
+}
+
+static void fill(const SluiceImageRegion *region, float *texels)
+{
+    for (uint32_t i = 0; i < region->width * region->height; i++)
+        texels[i] = (float)(1000 * region->mipLevel + region->x + i % region->width);
+}
+
+static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    (void)base;
+    info->width = info->height = SIZE;
+    info->mipLevelCount = LEVELS;
+    info->format = SLUICE_FORMAT_R32_SFLOAT;
+    info->pName = "started";
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
+                                void *texels, size_t row_pitch)
+{
+    struct source *source = (struct source *)base;
+    (void)row_pitch;
+    pthread_mutex_lock(&source->mutex);
+    source->read_count++;
+    pthread_mutex_unlock(&source->mutex);
+    fill(region, texels);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult complete(struct source *source, const struct pending *read)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    pthread_mutex_lock(&source->mutex);
+    if (source->failure_count) {
+        source->failure_count--;
+        result = source->failures;
+    }
+    pthread_mutex_unlock(&source->mutex);
+    fill(&read->region, read->texels);
+    return sluiceCompleteImageRead(&read->token, result);
+}
+
+static SluiceResult start_read(SluiceImageSource *base, const SluiceImageRegion *region,
+                               void *texels, size_t row_pitch, const SluiceImageReadToken *token)
+{
+    struct source *source = (struct source *)base;
+    const struct pending read = {*token, *region, texels};
+    assert_int_equal(row_pitch, region->width * sizeof(float));
+    if (source->refusal != SLUICE_SUCCESS)
+        return source->refusal;
+    pthread_mutex_lock(&source->mutex);
+    source->start_count++;
+    assert_true(source->count < MAX_PENDING);
+    if (!source->at_once)
+        source->pending[source->count++] = read;
+    pthread_mutex_unlock(&source->mutex);
+    if (source->at_once)
+        CHECK_OK(complete(source, &read));
+    return SLUICE_SUCCESS;
+}
+
+/* Takes the newest pending read, or that of a token. */
+static bool take(struct source *source, const SluiceImageReadToken *token, struct pending *read)
+{
+    pthread_mutex_lock(&source->mutex);
+    uint32_t at = source->count - 1;
+    while (token && at < source->count &&
+           (source->pending[at].token.ticket != token->ticket ||
+            source->pending[at].token.region != token->region ||
+            source->pending[at].token.attempt != token->attempt))
+        at--;
+    bool found = at < source->count;
+    if (found) {
+        *read = source->pending[at];
+        source->pending[at] = source->pending[--source->count];
+    }
+    pthread_mutex_unlock(&source->mutex);
+    return found;
+}
+
+static void cancel_read(SluiceImageSource *base, const SluiceImageRegion *region,
+                        const SluiceImageReadToken *token)
+{
+    struct source *source = (struct source *)base;
+    struct pending read;
+    pthread_mutex_lock(&source->mutex);
+    source->cancel_count++;
+    pthread_mutex_unlock(&source->mutex);
+    if (source->obeys && take(source, token, &read)) {
+        assert_memory_equal(&read.region, region, sizeof *region);
+        CHECK_OK(sluiceCompleteImageRead(token, SLUICE_ERROR_CANCELED));
+    }
+}
+
+static void destroy(SluiceImageSource *base)
+{
+    (void)base;
+}
+
+static const SluiceImageSourceInterface interface = {.structSize = sizeof interface,
+                                                     .pfnGetInfo = get_info,
+                                                     .pfnReadRegion = read_region,
+                                                     .pfnDestroy = destroy,
+                                                     .pfnStartRead = start_read,
+                                                     .pfnCancelRead = cancel_read};
+
+/* One thread, which a source that blocks would occupy. */
+static SluiceTileLoader *begin(struct source *source, uint64_t max_bytes)
+{
+    *source = (struct source){.base = {&interface}};
+    pthread_mutex_init(&source->mutex, NULL);
+    const SluiceTileLoaderCreateInfo info = {.structSize = sizeof info,
+                                             .threadCount = 1,
+                                             .maxReadsPerSource = 1,
+                                             .maxBytesInFlight = max_bytes,
+                                             .retry = {3, 1, 1}};
+    SluiceTileLoader *loader;
+    CHECK_OK(sluiceCreateTileLoader(&info, &loader));
+    return loader;
+}
+
+static void await_pending(struct source *source, uint32_t count)
+{
+    for (uint32_t now = 0; now < count; pause_briefly()) {
+        pthread_mutex_lock(&source->mutex);
+        now = source->count;
+        pthread_mutex_unlock(&source->mutex);
+    }
+}
+
+static uint32_t count_starts(struct source *source)
+{
+    pthread_mutex_lock(&source->mutex);
+    uint32_t count = source->start_count;
+    pthread_mutex_unlock(&source->mutex);
+    return count;
+}
+
+static uint64_t submit(SluiceTileLoader *loader, SluiceImageSource *source, uint32_t region_count,
+                       uint32_t level, float *texels)
+{
+    SluiceImageRegion regions[LEVELS];
+    void *places[LEVELS];
+    for (uint32_t i = 0; i < region_count; i++) {
+        regions[i] = (SluiceImageRegion){level + i, 0, 0, 1, 1, 0};
+        places[i] = &texels[i];
+    }
+    const SluiceTileRead read = {source, region_count, regions, places, 0, 7};
+    uint64_t ticket = 0;
+    CHECK_OK(sluiceSubmitTileRead(loader, &read, &ticket));
+    return ticket;
+}
+
+static SluiceTileReadResult collect(SluiceTileLoader *loader)
+{
+    SluiceTileReadResult result;
+    for (uint32_t count = 0; count == 0; pause_briefly()) {
+        count = 1;
+        assert_true(sluiceCollectTileReads(loader, &count, &result) >= 0); /* or INCOMPLETE */
+    }
+    return result;
+}
+
+static uint32_t count_finished(SluiceTileLoader *loader)
+{
+    SluiceTileReadResult result;
+    uint32_t count = 1;
+    CHECK_OK(sluiceCollectTileReads(loader, &count, &result));
+    return count;
+}
+
+static void started_reads_occupy_no_thread_and_are_not_polled(void **state)
+{
+    (void)state;
+    enum { COUNT = 20 };
+    struct source source;
+    struct pending read;
+    float texels[COUNT] = {0};
+    SluiceTileLoader *loader = begin(&source, 0);
+    for (uint32_t i = 0; i < COUNT; i++)
+        submit(loader, &source.base, 1, i % LEVELS, &texels[i]);
+    await_pending(&source, COUNT);
+    assert_int_equal(count_finished(loader), 0);
+    while (take(&source, NULL, &read)) {
+        CHECK_OK(complete(&source, &read));
+        CHECK_RESULT(sluiceCompleteImageRead(&read.token, SLUICE_SUCCESS),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+        CHECK_OK(collect(loader).result);
+    }
+    for (uint32_t i = 0; i < COUNT; i++)
+        assert_true(texels[i] == (float)(1000 * (i % LEVELS)));
+    SluiceTileLoaderStatistics statistics = {.structSize = sizeof statistics};
+    CHECK_OK(sluiceGetTileLoaderStatistics(loader, &source.base, &statistics));
+    assert_int_equal(statistics.attemptCount, COUNT);
+    assert_int_equal(statistics.byteCount, COUNT * sizeof(float));
+    assert_int_equal(source.read_count, 0);
+    sluiceDestroyTileLoader(loader);
+}
+
+static void a_read_may_be_completed_before_its_start_returns(void **state)
+{
+    (void)state;
+    struct source source;
+    float texels[3] = {0};
+    SluiceTileLoader *loader = begin(&source, 0);
+    source.at_once = true;
+    submit(loader, &source.base, 3, 1, texels);
+    CHECK_OK(collect(loader).result);
+    assert_true(texels[0] == 1000 && texels[1] == 2000 && texels[2] == 3000);
+    sluiceDestroyTileLoader(loader);
+}
+
+static void regions_are_started_together_and_the_last_one_ends_the_read(void **state)
+{
+    (void)state;
+    struct source source;
+    struct pending read;
+    float texels[LEVELS] = {0};
+    SluiceTileLoader *loader = begin(&source, 0);
+    submit(loader, &source.base, LEVELS, 0, texels);
+    await_pending(&source, LEVELS);
+    for (uint32_t i = 0; i < LEVELS; i++) {
+        assert_int_equal(count_finished(loader), 0);
+        assert_true(take(&source, NULL, &read));
+        CHECK_OK(complete(&source, &read));
+    }
+    SluiceTileReadResult result = collect(loader);
+    CHECK_OK(result.result);
+    assert_int_equal(result.size, sizeof texels);
+    sluiceDestroyTileLoader(loader);
+}
+
+static void regions_that_failed_are_started_again_alone(void **state)
+{
+    (void)state;
+    struct source source;
+    struct pending read;
+    float texels[3] = {0};
+    SluiceTileLoader *loader = begin(&source, 0);
+    source.failures = SLUICE_ERROR_IO;
+    source.failure_count = 1;
+    submit(loader, &source.base, 3, 0, texels);
+    await_pending(&source, 3);
+    struct pending first[3];
+    for (int i = 0; i < 3; i++)
+        assert_true(take(&source, NULL, &first[i]));
+    for (int i = 0; i < 3; i++)
+        CHECK_OK(complete(&source, &first[i]));
+    await_pending(&source, 1);
+    assert_int_equal(count_starts(&source), 4);
+    CHECK_RESULT(sluiceCompleteImageRead(&first[0].token, SLUICE_SUCCESS),
+                 SLUICE_ERROR_INVALID_ARGUMENT); /* of the first attempt */
+    assert_true(take(&source, NULL, &read));
+    assert_int_equal(read.region.mipLevel, 2); /* the newest one failed */
+    CHECK_OK(complete(&source, &read));
+    CHECK_OK(collect(loader).result);
+    source.failures = SLUICE_ERROR_UNSUPPORTED; /* final */
+    source.failure_count = 1;
+    submit(loader, &source.base, 1, 0, texels);
+    await_pending(&source, 1);
+    assert_true(take(&source, NULL, &read));
+    CHECK_OK(complete(&source, &read));
+    CHECK_RESULT(collect(loader).result, SLUICE_ERROR_UNSUPPORTED);
+    sluiceDestroyTileLoader(loader);
+}
+
+static void canceled_reads_end_when_their_source_completes_them(void **state)
+{
+    (void)state;
+    for (int obeys = 0; obeys < 2; obeys++) {
+        struct source source;
+        struct pending read;
+        float texels[2];
+        SluiceTileLoader *loader = begin(&source, 0);
+        source.obeys = obeys;
+        uint64_t ticket = submit(loader, &source.base, 2, 0, texels);
+        await_pending(&source, 2);
+        for (uint32_t told = 0; told < 2; pause_briefly()) { /* once its start is over */
+            CHECK_OK(sluiceCancelTileRead(loader, ticket));
+            pthread_mutex_lock(&source.mutex);
+            told = source.cancel_count;
+            pthread_mutex_unlock(&source.mutex);
+        }
+        if (!obeys)
+            assert_int_equal(count_finished(loader), 0);
+        while (take(&source, NULL, &read))
+            CHECK_OK(complete(&source, &read));
+        CHECK_RESULT(collect(loader).result, obeys ? SLUICE_ERROR_CANCELED : SLUICE_SUCCESS);
+        assert_int_equal(source.cancel_count, 2);
+        sluiceDestroyTileLoader(loader);
+    }
+}
+
+static void *complete_all(void *user)
+{
+    struct source *source = user;
+    struct pending read;
+    for (bool ends = false; !ends; pause_briefly()) {
+        while (take(source, NULL, &read))
+            complete(source, &read);
+        pthread_mutex_lock(&source->mutex);
+        ends = source->ends;
+        pthread_mutex_unlock(&source->mutex);
+    }
+    return NULL;
+}
+
+static void finish(struct source *source, pthread_t thread)
+{
+    pthread_mutex_lock(&source->mutex);
+    source->ends = true;
+    pthread_mutex_unlock(&source->mutex);
+    pthread_join(thread, NULL);
+}
+
+/* Two threads complete, one of the loader starts, this one cancels; some reads fail and go on. */
+static void completions_cancels_and_destruction_may_meet(void **state)
+{
+    (void)state;
+    enum { COUNT = 300 };
+    static float texels[COUNT][2];
+    for (int round = 0; round < 3; round++) {
+        struct source source;
+        pthread_t threads[2];
+        SluiceTileLoader *loader = begin(&source, 0);
+        source.obeys = true;
+        source.failures = SLUICE_ERROR_IO;
+        source.failure_count = 40;
+        for (int i = 0; i < 2; i++)
+            assert_int_equal(pthread_create(&threads[i], NULL, complete_all, &source), 0);
+        for (uint32_t i = 0; i < COUNT; i++) {
+            uint64_t ticket = submit(loader, &source.base, 2, 0, texels[i]);
+            if (i % 3 == 0)
+                CHECK_OK(sluiceCancelTileRead(loader, ticket));
+        }
+        for (uint32_t i = 0; round > 0 && i < COUNT; i++) {
+            SluiceResult result = collect(loader).result;
+            assert_true(result == SLUICE_SUCCESS || result == SLUICE_ERROR_CANCELED ||
+                        result == SLUICE_ERROR_IO);
+        }
+        sluiceDestroyTileLoader(loader);
+        for (int i = 0; i < 2; i++)
+            finish(&source, threads[i]);
+        assert_int_equal(source.count, 0);
+    }
+}
+
+static void sources_may_have_a_region_read_at_once(void **state)
+{
+    (void)state;
+    struct source source;
+    float texel = 0;
+    SluiceTileLoader *loader = begin(&source, 0);
+    source.refusal = SLUICE_ERROR_UNSUPPORTED;
+    submit(loader, &source.base, 1, 2, &texel);
+    CHECK_OK(collect(loader).result);
+    assert_true(texel == 2000);
+    assert_int_equal(source.read_count, 1);
+    source.refusal = SLUICE_ERROR_CORRUPT_DATA;
+    submit(loader, &source.base, 1, 2, &texel);
+    CHECK_RESULT(collect(loader).result, SLUICE_ERROR_CORRUPT_DATA);
+    sluiceDestroyTileLoader(loader);
+}
+
+static void layers_of_arrays_start_their_own_reads(void **state)
+{
+    (void)state;
+    struct source source;
+    struct pending read;
+    float texel = 0;
+    SluiceImageSource *array;
+    SluiceTileLoader *loader = begin(&source, 0);
+    source.obeys = true;
+    CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){&source.base, &source.base}, 2,
+                                          NULL, &array));
+    const SluiceImageRegion region = {3, 0, 0, 1, 1, 1};
+    void *place = &texel;
+    const SluiceTileRead layer = {array, 1, &region, &place, 0, 0};
+    uint64_t ticket;
+    CHECK_OK(sluiceSubmitTileRead(loader, &layer, &ticket));
+    await_pending(&source, 1);
+    assert_true(take(&source, NULL, &read));
+    assert_int_equal(read.region.arrayLayer, 0);
+    CHECK_OK(complete(&source, &read));
+    CHECK_OK(collect(loader).result);
+    assert_true(texel == 3000);
+    sluiceDestroyTileLoader(loader);
+    sluiceDestroyImageSource(array);
+}
+
+static void bytes_of_started_reads_are_in_flight(void **state)
+{
+    (void)state;
+    struct source source;
+    struct pending read;
+    float texels[6];
+    SluiceTileLoader *loader = begin(&source, 2 * sizeof(float));
+    submit(loader, &source.base, 1, 0, texels); /* tells the format */
+    await_pending(&source, 1);
+    assert_true(take(&source, NULL, &read));
+    CHECK_OK(complete(&source, &read));
+    CHECK_OK(collect(loader).result);
+    for (uint32_t i = 1; i < 6; i++)
+        submit(loader, &source.base, 1, 0, &texels[i]);
+    for (uint32_t i = 5; i > 0; i--) {
+        await_pending(&source, i < 2 ? i : 2);
+        assert_true(count_starts(&source) <= 6 - i + 3);
+        assert_true(take(&source, NULL, &read));
+        CHECK_OK(complete(&source, &read));
+        CHECK_OK(collect(loader).result);
+    }
+    sluiceDestroyTileLoader(loader);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(started_reads_occupy_no_thread_and_are_not_polled),
+        cmocka_unit_test(a_read_may_be_completed_before_its_start_returns),
+        cmocka_unit_test(regions_are_started_together_and_the_last_one_ends_the_read),
+        cmocka_unit_test(regions_that_failed_are_started_again_alone),
+        cmocka_unit_test(canceled_reads_end_when_their_source_completes_them),
+        cmocka_unit_test(completions_cancels_and_destruction_may_meet),
+        cmocka_unit_test(sources_may_have_a_region_read_at_once),
+        cmocka_unit_test(layers_of_arrays_start_their_own_reads),
+        cmocka_unit_test(bytes_of_started_reads_are_in_flight),
+    };
+    return RUN_TESTS(tests);
+}
