@@ -101,6 +101,22 @@ static void wrong_scripts_are_refused(void **state)
     }
 }
 
+static void scripts_of_the_page_are_read(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"blurry", "budget", "cut",       "driver", "feedback",
+                                        "file",   "memory", "reproduce", "thrash", "unseen"};
+    char path[512];
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        struct script script;
+        snprintf(path, sizeof path, "%s/docs/viewer/%s.txt", getenv("SLUICE_SOURCE_ROOT"),
+                 names[i]);
+        assert_true(script_read(path, &script));
+        assert_true(script.count > 0);
+        script_finish(&script);
+    }
+}
+
 static void keys_have_names(void **state)
 {
     (void)state;
@@ -298,6 +314,7 @@ int main(void)
         cmocka_unit_test(a_drag_ends_where_it_is_to_end),
         cmocka_unit_test(lines_of_scripts_are_put_in_order_of_frames),
         cmocka_unit_test(wrong_scripts_are_refused),
+        cmocka_unit_test(scripts_of_the_page_are_read),
         cmocka_unit_test(keys_have_names),
         cmocka_unit_test(what_a_control_writes_it_reads),
         cmocka_unit_test(the_command_has_what_is_not_the_default),

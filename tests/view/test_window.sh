@@ -12,6 +12,7 @@ done
 mkfifo number
 Xvfb -displayfd 3 -screen 0 1000x700x24 -nolisten tcp 3>number >xvfb.log 2>&1 &
 server=$!
+# shellcheck disable=SC2154 # facts.sh makes the folder
 trap 'kill $viewer $server 2>/dev/null; wait 2>/dev/null; rm -rf "$folder"' EXIT
 viewer=
 read -r display <number
@@ -34,9 +35,10 @@ open_viewer() {
         xdotool mousemove --window "$window" 240 200
 }
 size_is() { xdotool getwindowgeometry "$window" | grep -q "Geometry: $1"; }
+mv_picture() { mv sluice-view-??.png "$1"; }
 picture() { # picture FILE: F12 writes the next number
     xdotool key F12
-    until_true 20 sh -c 'mv sluice-view-??.png "$0"' "$1"
+    until_true 20 mv_picture "$1"
 }
 png_size() { od -An -tu1 -j16 -N8 "$1" | awk '{print $3 * 256 + $4 "x" $7 * 256 + $8}'; }
 ended_well() {
@@ -55,7 +57,8 @@ xdotool mousedown 1 && sleep 0.2 && xdotool mousemove_relative 60 10 && sleep 0.
 fact a_drag_turns_the_camera
 xdotool key 2 && picture levels.png && ! cmp -s dragged.png levels.png
 fact keys_choose_views
-xdotool key bracketleft c && until_true 10 sh -c 'xclip -o -selection clipboard | grep -q "^sluice-view.* --budget "'
+clipboard_has() { xclip -o -selection clipboard | grep -q "$1"; }
+xdotool key bracketleft c && until_true 10 clipboard_has '^sluice-view.* --budget '
 fact the_command_line_is_in_the_clipboard
 for i in 1 2 3 4 5 6 7 8 9 10; do
     xdotool windowsize "$window" $((300 + 40 * i)) $((200 + 20 * i))

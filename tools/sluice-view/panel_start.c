@@ -165,7 +165,7 @@ static const char *const view_names[] = {"",
                                          "Wanted level",
                                          "",
                                          "Textures",
-                                         "Feedback of this frame",
+                                         "Feedback written",
                                          "",
                                          "Checks"};
 
@@ -181,24 +181,34 @@ static void draw_legend(uint32_t view)
         draw_color(UI_COLOR(213, 94, 0, 255), "3 levels or more");
         break;
     case VIEW_IDENTITY: ui_text(UI_GRAY, "a color per texture"); break;
-    case VIEW_WRITTEN: ui_text(UI_GRAY, "dots: pixels that reported what they sample"); break;
-    case VIEW_CHECKS:
-        draw_color(UI_COLOR(255, 0, 255, 255), "sampled, not resident: must not be");
-        break;
+    case VIEW_WRITTEN: ui_text(UI_GRAY, "dots: pixels that wrote"); break;
+    case VIEW_CHECKS: draw_color(UI_COLOR(255, 0, 255, 255), "not resident (never)"); break;
     default: break;
     }
 }
 
+static bool side_is_open(const struct view_app *app, bool right)
+{
+    for (int i = 0; i < PANEL_COUNT; i++)
+        if (app->open[i] && panel_is_right((enum app_panel)i) == right)
+            return true;
+    return false;
+}
+
+/* In the corner that no panel is above; between two panels there is room for its title alone. */
 void panel_legend(const struct view_app *app)
 {
-    const float scale = ui_scale(), pivot[2] = {0, 1};
-    const float placement[4] = {12 * scale, app->height - 12 * scale, 0, 0};
+    const float scale = ui_scale(), margin = 12 * scale;
+    const bool left = side_is_open(app, false), right = side_is_open(app, true);
+    const float pivot[2] = {left && !right ? 1 : 0, 1};
+    const float placement[4] = {left && !right ? app->width - margin : margin, app->height - margin,
+                                0, 0};
     const uint32_t view = app->settings.view;
     if (view <= VIEW_PICTURE || !view_names[view][0])
         return;
     if (ui_begin_panel("legend", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
         ui_text(UI_BLUE, "%u  %s", view, view_names[view]);
-        if (app->height >= 480 * scale)
+        if (!(left && right) && app->height >= 480 * scale)
             draw_legend(view);
     }
     ui_end_panel();

@@ -38,13 +38,12 @@ bool panel_begin(struct view_app *app, enum app_panel panel, const char *title, 
     const float scale = ui_scale(), margin = 12.0f * scale;
     const bool right = panel_is_right(panel);
     const float top = (right ? 128.0f : 84.0f) * scale;
-    const bool legend = !right && app->settings.view > VIEW_PICTURE;
-    const float room = app->height - top - (legend ? 236.0f : 84.0f) * scale;
+    const float room = app->height - top - 84.0f * scale;
     const float most = app->width * app->height / 4;
     width *= scale;
     height *= scale;
-    if (width > app->width - 2 * margin)
-        width = app->width - 2 * margin;
+    if (width > (app->width - 3 * margin) / 2)
+        width = (app->width - 3 * margin) / 2;
     if (width * height > most)
         height = most / width;
     if (height > room)
@@ -76,6 +75,10 @@ void panels_draw_picture(const struct view_app *app)
     const float half[4] = {x, 0, app->width - x, app->height}, half_uv[4] = {part, 0, 1, 1};
     ui_picture(UI_TEXTURE_OTHER, UI_MODE_PLAIN, half, half_uv, UI_COLOR(255, 255, 255, 255));
     ui_fill_behind(x - ui_scale(), 0, 2 * ui_scale(), app->height, UI_COLOR(255, 255, 255, 255));
+    const char *b = s->compared == VIEW_WITH_BUDGET ? "B: 16 MB" : "B: everything";
+    const float y = app->height * 0.8f, pad = 6 * ui_scale();
+    ui_label_behind(x - ui_text_width("A: now") - 2 * pad, y, pad, "A: now");
+    ui_label_behind(x + 2 * pad, y, pad, b);
 }
 
 void panels_draw(struct view_app *app)

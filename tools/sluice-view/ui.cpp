@@ -637,6 +637,13 @@ void ui_fill_behind(float x, float y, float width, float height, uint32_t color)
                                                   color);
 }
 
+void ui_label_behind(float x, float y, float pad, const char *text)
+{
+    const ImVec2 size = ImGui::CalcTextSize(text);
+    ui_fill_behind(x - pad, y - pad, size.x + 2 * pad, size.y + 2 * pad, UI_COLOR(18, 20, 26, 235));
+    ImGui::GetBackgroundDrawList()->AddText(ImVec2(x, y), UI_WHITE, text);
+}
+
 void ui_image(uint32_t texture, float width, float height, const float uv[4])
 {
     ImGui::Image((ImTextureID)(uintptr_t)texture, ImVec2(width, height), ImVec2(uv[0], uv[1]),

@@ -132,6 +132,8 @@ void ui_end_table(void);
 /** Reserves a rectangle in the panel: x, y, width, height. Width 0: all there is. */
 void ui_canvas(float width, float height, float rectangle[4]);
 void ui_fill(float x, float y, float width, float height, uint32_t color);
+/** Behind all panels; a text on a dark rectangle that is larger by `pad`. */
+void ui_label_behind(float x, float y, float pad, const char *text);
 void ui_fill_behind(float x, float y, float width, float height, uint32_t color);
 void ui_frame(float x, float y, float width, float height, uint32_t color);
 void ui_stroke(float x0, float y0, float x1, float y1, uint32_t color, float thickness);

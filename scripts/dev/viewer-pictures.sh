@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# viewer-pictures.sh SLUICE-VIEW FOLDER: draws the pictures of docs/viewer.md by the event scripts in docs/viewer,
+# without a window, and the same in every run. Pictures that the page shows are copied to docs/images.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+viewer=$(realpath "${1:?sluice-view}") folder=${2:?a folder}
+mkdir -p "$folder"
+cd "$folder"
+for script in "$root"/docs/viewer/*.txt; do
+    basename "$script" .txt
+    "$viewer" --headless --deterministic --size 1000x562 --render-scale 1 --script "$script"
+done
+for picture in blurry memory budget; do
+    cp "$picture.png" "$root/docs/images/viewer-$picture.png"
+done
