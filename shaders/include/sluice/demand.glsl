@@ -89,6 +89,62 @@ vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv)
     return sum * step;
 }
 
+/** Returns coordinates that sluicePlaceInTile takes: inside the texture if it repeats. */
+vec2 sluiceDemandPlaceable(uint shape, vec2 uv)
+{
+    uvec2 modes = sluiceDemandModes(shape);
+    return uv - vec2(modes.x == SLUICE_ADDRESS_MODE_REPEAT ? floor(uv.x) : 0.0,
+                     modes.y == SLUICE_ADDRESS_MODE_REPEAT ? floor(uv.y) : 0.0);
+}
+
+/** Returns the page of a sample of a level with tiles. */
+uint sluiceDemandPageAt(SluiceDemandState s, uint level, vec2 tile)
+{
+    int shift = sluiceDemandTileShift(s.shape).x;
+    uint columns = (max(s.size.x >> level, 1u) + (1u << uint(shift)) - 1u) >> uint(shift);
+    return SLUICE_DEMAND_LEVEL_WORD(s.levels + level) + uint(tile.y) * columns + uint(tile.x);
+}
+
+/**
+ * Takes a sample of one or two levels if all its texels lie in one resident tile of each. False for
+ * all other samples: sluiceSumDemand takes those.
+ *
+ * Most samples end here. Both levels are looked up before either is sampled, because loads take long.
+ */
+bool sluiceSampleQuickDemand(SluiceDemandState s, SluicePagedTaps taps, vec2 uv, out vec4 color)
+{
+    color = SLUICE_SPLAT(vec4, 0.0);
+    uint fine = taps.fraction < 1.0 ? taps.fine : taps.coarse;
+    uint coarse = taps.fraction > 0.0 ? taps.coarse : taps.fine;
+    if (coarse >= sluiceDemandRegularCount(s.shape) || (s.shape & SLUICE_DEMAND_NEAREST) != 0u)
+        return false;
+    vec2 share = sluiceTileShare(sluiceDemandTileShift(s.shape));
+    uv = sluiceDemandPlaceable(s.shape, uv);
+    SluicePagePlace a = sluicePlaceInTile(uv, vec2(max(s.size >> fine, SLUICE_SPLAT(uvec2, 1u))), share);
+    SluicePagePlace b = sluicePlaceInTile(uv, vec2(max(s.size >> coarse, SLUICE_SPLAT(uvec2, 1u))), share);
+    if (!(a.inside && b.inside))
+        return false;
+    uint at, fineWord, coarseWord;
+    bool hasFine = sluiceFindDemandPage(sluiceDemandPageAt(s, fine, a.tile), at, fineWord);
+    bool hasCoarse = sluiceFindDemandPage(sluiceDemandPageAt(s, coarse, b.tile), at, coarseWord);
+    if (!(hasFine && hasCoarse && max(fineWord, coarseWord) < SLUICE_DEMAND_PAGE_REFUSED))
+        return false;
+    fineWord &= SLUICE_DEMAND_PLACE_MASK;
+    coarseWord &= SLUICE_DEMAND_PLACE_MASK;
+    vec3 fineAt = vec3(a.local, float(fineWord & 0xFFFFu));
+    vec3 coarseAt = vec3(b.local, float(coarseWord & 0xFFFFu));
+    vec4 other = SLUICE_SPLAT(vec4, 0.0);
+    SLUICE_WITH_PAGE(fineWord, color = SLUICE_ARRAY_SAMPLE(SLUICE_DEMAND_PAGE_TEXTURE(chunk),
+                                                           SLUICE_DEMAND_PAGE_SAMPLER(chunk), fineAt))
+    if (fine == coarse)
+        return true;
+    SLUICE_WITH_PAGE(coarseWord, other = SLUICE_ARRAY_SAMPLE(SLUICE_DEMAND_PAGE_TEXTURE(chunk),
+                                                             SLUICE_DEMAND_PAGE_SAMPLER(chunk), coarseAt))
+    color = (1.0 - taps.fraction) * color;
+    color += taps.fraction * other;
+    return true;
+}
+
 /** Sums all samples of one sample in any filter: color and derivatives. */
 mat3x4 sluiceSumKernels(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv,
                         SluiceDemandKernel kernel, float lod)
@@ -187,6 +243,12 @@ mat3x4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, 
         taps.fine = uint(max(ceil(lod - 0.5), 0.0));
         taps.fraction = 0.0;
     }
+    vec4 color;
+    bool done = false;
+    if (taps.count == 1u && !any)
+        done = sluiceSampleQuickDemand(s, taps, uv, color);
+    if (done)
+        return mat3x4(color, SLUICE_SPLAT(vec4, 0.0), SLUICE_SPLAT(vec4, 0.0));
     if (taps.fine == last) /* it has no page */
         sluiceMarkDemandPage(s.tailPage);
     if (taps.count > 1u || any) /* steps of a row are small beside some coordinates */

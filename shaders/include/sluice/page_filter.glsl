@@ -93,6 +93,39 @@ SluicePageAxis sluiceNearestPageAxis(float coordinate, uint addressMode, int siz
     return axis;
 }
 
+/** Where the four texels of a bilinear sample lie among the tiles of a level. */
+struct SluicePagePlace {
+    vec2 tile;   /* column and row */
+    vec2 local;  /* coordinates in the tile, 0 to 1 */
+    bool inside; /* all four lie in this tile; else the other members mean nothing */
+};
+
+/**
+ * Places a bilinear sample of a level of `size` texels, with floats alone. `share` is 1 divided by the
+ * width and height of tiles, powers of two.
+ *
+ * `uv` need not be folded, except that of REPEAT: coordinates outside the texture are not inside. All
+ * steps after the first are exact, so the bits are those of SluicePageAxis.
+ */
+SluicePagePlace sluicePlaceInTile(vec2 uv, vec2 size, vec2 share)
+{
+    vec2 at = floor(uv * size * SLUICE_FILTER_STEPS - (0.5 * SLUICE_FILTER_STEPS - 0.5));
+    vec2 tiles = at * (share / SLUICE_FILTER_STEPS), end = (size - 1.0) * SLUICE_FILTER_STEPS;
+    SluicePagePlace place;
+    place.tile = floor(tiles);
+    vec2 rest = tiles - place.tile;
+    place.local = rest + 0.5 * share;
+    place.inside = min(at.x, at.y) >= 0.0 && at.x < end.x && at.y < end.y &&
+                   rest.x < 1.0 - share.x && rest.y < 1.0 - share.y;
+    return place;
+}
+
+/** Returns 1 divided by the width and height of tiles, of which `shift` is log2. */
+vec2 sluiceTileShare(ivec2 shift)
+{
+    return uintBitsToFloat(uvec2(127 - shift) << 23u);
+}
+
 /* Without non-uniform indexing every element is visited, and one of them is sampled. */
 #ifdef SLUICE_PAGE_LOOP
 #define SLUICE_WITH_PAGE(page, statement)                                                          \
