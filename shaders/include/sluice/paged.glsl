@@ -48,44 +48,67 @@ vec4 sluiceFetchPaged(SluiceTextureEntry entry, uint level, ivec2 texel)
     return color;
 }
 
-vec4 sluiceFetchOrBorder(SluiceTextureEntry entry, uint level, int x, int y)
+/** Looks up the page of a texel. SLUICE_PAGE_NONE for a texel beyond the border. */
+uint sluiceFindTexelPage(SluiceTextureEntry entry, uint level, int x, int y)
 {
-    return min(x, y) < 0 ? sluiceBorder(entry) : sluiceFetchPaged(entry, level, ivec2(x, y));
+    uint page = SLUICE_PAGE_NONE;
+    if (min(x, y) >= 0)
+        page = sluiceReadPage(entry, level, ivec2(x, y) >> sluiceTileShift(entry));
+    return page;
+}
+
+/** Fetches a texel of `page`. 0 if it is not resident. */
+vec4 sluiceFetchOrBorder(SluiceTextureEntry entry, uint page, int x, int y)
+{
+    vec4 color = SLUICE_SPLAT(vec4, 0.0);
+    if (min(x, y) < 0)
+        return sluiceBorder(entry);
+    if (page == SLUICE_PAGE_NONE)
+        return color;
+    ivec3 at = ivec3(ivec2(x, y) & ((SLUICE_SPLAT(ivec2, 1) << sluiceTileShift(entry)) - 1), page & 0xFFFFu);
+    SLUICE_WITH_PAGE(page, color = SLUICE_ARRAY_FETCH(SLUICE_PAGE_TEXTURE(chunk), at))
+    return color;
 }
 
 /**
- * Samples across borders of pages. Texels of weight 0 are not read, because they may be infinite.
+ * Samples across borders of pages. Texels of weight 0 are not read, because they may be infinite. Pages
+ * are looked up before texels are fetched, because loads take long.
  */
 vec4 sluiceGatherPaged(SluiceTextureEntry entry, uint level, SluicePageAxis x, SluicePageAxis y)
 {
-    vec4 color = sluiceFetchOrBorder(entry, level, x.low, y.low);
-    if (x.weight > 0.0 && x.high != x.low)
-        color = mix(color, sluiceFetchOrBorder(entry, level, x.high, y.low), x.weight);
-    if (!(y.weight > 0.0) || y.high == y.low)
-        return color;
-    vec4 below = sluiceFetchOrBorder(entry, level, x.low, y.high);
-    if (x.weight > 0.0 && x.high != x.low)
-        below = mix(below, sluiceFetchOrBorder(entry, level, x.high, y.high), x.weight);
-    return mix(color, below, y.weight);
+    int right = x.weight > 0.0 ? x.high : x.low, below = y.weight > 0.0 ? y.high : y.low;
+    uint pages[4];
+    pages[0] = sluiceFindTexelPage(entry, level, x.low, y.low);
+    pages[1] = sluiceFindTexelPage(entry, level, right, y.low);
+    pages[2] = sluiceFindTexelPage(entry, level, x.low, below);
+    pages[3] = sluiceFindTexelPage(entry, level, right, below);
+    vec4 upper = sluiceFetchOrBorder(entry, pages[0], x.low, y.low);
+    vec4 upperRight = sluiceFetchOrBorder(entry, pages[1], right, y.low);
+    vec4 lower = sluiceFetchOrBorder(entry, pages[2], x.low, below);
+    vec4 lowerRight = sluiceFetchOrBorder(entry, pages[3], right, below);
+    if (right != x.low) {
+        upper = mix(upper, upperRight, x.weight);
+        lower = mix(lower, lowerRight, x.weight);
+    }
+    return below != y.low ? mix(upper, lower, y.weight) : upper;
 }
 
 /** Returns a bilinear sample of a regular level. */
 vec4 sluiceSamplePages(SluiceTextureEntry entry, uint level, vec2 uv)
 {
     ivec2 size = sluiceLevelSize(entry, level);
-    SluicePageAxis x = sluicePageAxis(uv.x, entry.addressModeU, size.x);
-    SluicePageAxis y = sluicePageAxis(uv.y, entry.addressModeV, size.y);
-    ivec2 low = ivec2(x.low, y.low), high = ivec2(x.high, y.high);
-    ivec2 shift = sluiceTileShift(entry);
-    ivec2 tile = low >> shift;
-    if (any(notEqual(high, low + 1)) || any(notEqual(high >> shift, tile)) || min(low.x, low.y) < 0)
-        return sluiceGatherPaged(entry, level, x, y);
-    uint page = sluiceReadPage(entry, level, tile);
+    bool repeatsU = (entry.shape >> SLUICE_SHAPE_MODE_U_SHIFT & 7u) == SLUICE_ADDRESS_MODE_REPEAT;
+    bool repeatsV = (entry.shape >> SLUICE_SHAPE_MODE_V_SHIFT & 7u) == SLUICE_ADDRESS_MODE_REPEAT;
+    vec2 folded = uv - vec2(repeatsU ? floor(uv.x) : 0.0, repeatsV ? floor(uv.y) : 0.0);
+    SluicePagePlace place = sluicePlaceInTile(folded, vec2(size), sluiceTileShare(sluiceTileShift(entry)));
+    if (!place.inside)
+        return sluiceGatherPaged(entry, level, sluicePageAxis(uv.x, entry.addressModeU, size.x),
+                                 sluicePageAxis(uv.y, entry.addressModeV, size.y));
+    uint page = sluiceReadPage(entry, level, ivec2(place.tile));
     vec4 color = SLUICE_SPLAT(vec4, 0.0);
     if (page == SLUICE_PAGE_NONE)
         return color;
-    vec2 local = vec2(low - (tile << shift)) + vec2(x.weight, y.weight) + 0.5;
-    vec3 at = vec3(local / vec2(SLUICE_SPLAT(ivec2, 1) << shift), float(page & 0xFFFFu));
+    vec3 at = vec3(place.local, float(page & 0xFFFFu));
     SLUICE_WITH_PAGE(page, color = SLUICE_ARRAY_SAMPLE(SLUICE_PAGE_TEXTURE(chunk), SLUICE_PAGE_SAMPLER(chunk), at))
     return color;
 }
