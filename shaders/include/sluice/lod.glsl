@@ -85,6 +85,14 @@ vec2 sluiceComputeLods(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 /** Returns the finest LOD of sluiceComputeLods. */
 float sluiceComputeLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
+    if (!(maxAnisotropy > 1.0)) { /* the longer derivative decides */
+        float x2 = dx.x * dx.x + dx.y * dx.y;
+        float y2 = dy.x * dy.x + dy.y * dy.y;
+        if (!(x2 >= 0.0 && y2 >= 0.0)) /* NaN */
+            return SLUICE_LOD_LIMIT;
+        float lod = 0.5 * log2(clamp(max(x2, y2), 5.4e-20, 1.8e19)) + sluiceClampLodBias(lodBias);
+        return clamp(lod, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT);
+    }
     return sluiceComputeLods(dx, dy, lodBias, maxAnisotropy).x;
 }
 
