@@ -186,12 +186,18 @@ void sluiceMarkSample(uint tableIndex, SluiceGrid grid, vec2 uv, vec2 dx, vec2 d
         sluiceMarkBox(first, grid, uv, halfBox, coarsest + 1u, widest);
 }
 
+/** Returns whether sluiceQuickLevels has the levels of a sample. */
+bool sluiceAreQuick(SluiceSquares squares, vec2 uv, float lodBias)
+{
+    return squares.sum < SLUICE_QUICK_SQUARES && abs(lodBias) <= SLUICE_QUICK_BIAS && sluiceIsFinite(uv);
+}
+
 /** Returns the finest, coarsest and widest level of a sample. Derivatives are in texels. */
 uvec3 sluiceMarkedLevels(SluiceGrid grid, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
 {
     SluiceSquares squares = sluiceSquareLods(dx, dy, maxAnisotropy);
-    if (squares.sum < SLUICE_QUICK_SQUARES && abs(lodBias) <= SLUICE_QUICK_BIAS && sluiceIsFinite(uv))
+    if (sluiceAreQuick(squares, uv, lodBias))
         return sluiceQuickLevels(squares, lodBias, maxAnisotropy, sluiceMipCount(grid));
     return sluiceSafeLevels(uv, dx, dy, lodBias, maxAnisotropy, sluiceMipCount(grid));
 }
@@ -216,19 +222,18 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
                      levels.z);
 }
 
-/**
- * Marks one corner of the box of a sample of `level` to `coarsest`. False if the sample has no such
- * box.
- */
-bool sluiceMarkCorner(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint level, uint coarsest,
-                      vec2 direction)
+/** Returns `reach` toward one corner of a box: both signs follow from bits 0 of `pixel` and a seed. */
+vec2 sluiceCornerOffset(vec2 reach, uvec2 pixel, uint frameSeed)
 {
-    vec2 reach = sluiceBoxReach(grid, halfBox, coarsest);
-    if (!sluiceCornersAreAll(grid, halfBox, reach, level))
-        return false;
-    uvec2 region = sluiceCornerRegion(grid, sluiceQuickTexel(grid, uv) + direction * reach);
+    uvec2 negative = ~(pixel ^ uvec2(frameSeed, frameSeed >> 1u)) << 31u;
+    return uintBitsToFloat(floatBitsToUint(reach) ^ negative);
+}
+
+/** Marks the region of a texel coordinate. For textures of SLUICE_SHAPE_QUICK. */
+void sluiceMarkTexel(uint first, SluiceGrid grid, vec2 texel, uint level)
+{
+    uvec2 region = sluiceCornerRegion(grid, texel);
     sluiceMarkRegionAt(first + region.y * (grid.last.x + 1u) + region.x, level);
-    return true;
 }
 
 /**
@@ -248,17 +253,23 @@ void sluiceWriteQuadFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float l
         return;
     SluiceGrid grid = sluiceReadGrid(tableIndex);
     uint first = SLUICE_TEXTURE_ENTRY(tableIndex).feedbackOffset;
-    dx *= grid.size;
-    dy *= grid.size;
-    uvec3 levels = sluiceMarkedLevels(grid, uv, dx, dy, lodBias, maxAnisotropy);
-    vec2 halfBox = sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
-    vec2 direction = vec2((pixel ^ uvec2(frameSeed, frameSeed >> 1u)) & 1u) * 2.0 - 1.0;
-    bool marked = sluiceMarkCorner(first, grid, uv, halfBox, levels.x, levels.y, direction);
-    if (marked && maxAnisotropy > 1.0 && levels.z > levels.y)
-        marked = sluiceMarkCorner(first, grid, uv, halfBox, levels.y + 1u, levels.z, direction);
-    if (!marked)
-        sluiceMarkSample(tableIndex, grid, uv, dx, dy, lodBias, maxAnisotropy, levels.x, levels.y,
-                         levels.z);
+    vec2 tx = dx * grid.size, ty = dy * grid.size;
+    SluiceSquares squares = sluiceSquareLods(tx, ty, maxAnisotropy);
+    uvec3 levels = sluiceQuickLevels(squares, lodBias, maxAnisotropy, sluiceMipCount(grid));
+    vec2 halfBox = sluiceHalfBox(tx, ty, lodBias, maxAnisotropy);
+    vec2 reach = sluiceBoxReach(grid, halfBox, levels.y), wide = sluiceBoxReach(grid, halfBox, levels.z);
+    bool wider = maxAnisotropy > 1.0 && levels.z > levels.y;
+    /* One branch, at the end: the code before it has no other way to go. */
+    bool quick = sluiceAreQuick(squares, uv, lodBias) && sluiceCornersAreAll(grid, halfBox, reach, levels.x) &&
+                 (!wider || sluiceCornersAreAll(grid, halfBox, wide, levels.y + 1u));
+    if (!quick) {
+        sluiceWriteFeedback(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+        return;
+    }
+    vec2 at = sluiceQuickTexel(grid, uv);
+    sluiceMarkTexel(first, grid, at + sluiceCornerOffset(reach, pixel, frameSeed), levels.x);
+    if (wider)
+        sluiceMarkTexel(first, grid, at + sluiceCornerOffset(wide, pixel, frameSeed), levels.y + 1u);
 }
 
 /**
