@@ -93,10 +93,12 @@ sampling.fragment.floor_aniso8.speed|sampling, fragment, floor, anisotropy 8|
 feedback.compute.floor.all.added|feedback, p = 1, compute, floor|
 feedback.compute.floor.quads_16.added|feedback, p = 1/16, compute, floor|at most 8
 feedback.compute.floor.quads_64.added|feedback, p = 1/64, compute, floor|at most 1
+feedback.compute.floor.blocks_16.added|feedback, blocks of 4x4 pixels, 1 in 16, compute, floor|
 feedback.compute.floor.lattice_64.added|feedback, lattice, compute, floor|
 feedback.fragment.floor.all.added|feedback, p = 1, fragment, floor|
 feedback.fragment.floor.quads_16.added|feedback, p = 1/16, fragment, floor|at most 18
 feedback.fragment.floor.quads_64.added|feedback, p = 1/64, fragment, floor|at most 4
+feedback.fragment.floor.blocks_16.added|feedback, blocks of 4x4 pixels, 1 in 16, fragment, floor|at most 18
 feedback.fragment.floor.lattice_64.added|feedback, lattice, fragment, floor|
 fill.rate|cold fill, source free|paged 120 000, sparse 60 000 at least
 fill.256_per_frame.rate|... with the default of 256 tiles per frame|
@@ -131,6 +133,7 @@ host_share_10.still.driver|... driver calls|
 host_share_10.still.allocations|... allocations per frame|0
 sharp.all.frames|first visible to sharp, p = 1|at most 4
 sharp.quads_16.frames_99|first visible to sharp, p = 1/16, 99 % of regions|at most 8
+sharp.blocks_16.frames_99|first visible to sharp, blocks of 4x4 pixels, 99 % of regions|at most 16
 unseen.always.tile_memory|1 000 unseen textures of 4096 x 4096, packed levels always there: heaps, pages, images|
 unseen.always.device_memory|all device memory that is not mapped|
 unseen.always.host_visible|mapped memory|

@@ -131,7 +131,7 @@ bool measure_sampling(const struct bench *bench)
 static bool feed_scene(struct scene *scene, bool fragment, uint32_t which)
 {
     const struct bench *bench = scene->rig.bench;
-    struct variant variants[6] = {
+    struct variant variants[7] = {
         {.name = "plain", .constants = {.streamed = false}},
         {.name = "none", .constants = {.streamed = true}},
         {.name = "all", .constants = {.feedback = BENCH_FEEDBACK_ALL}},
@@ -141,21 +141,22 @@ static bool feed_scene(struct scene *scene, bool fragment, uint32_t which)
         {.name = "quads_64",
          .constants = {.feedback = BENCH_FEEDBACK_QUADS},
          .probability = 1.0f / 64},
+        {.name = "blocks_16", .constants = {.feedback = BENCH_FEEDBACK_BLOCKS}},
         {.name = "lattice_64", .constants = {.feedback = BENCH_FEEDBACK_LATTICE}},
     };
-    for (uint32_t i = 0; i < 6; i++) {
+    for (uint32_t i = 0; i < 7; i++) {
         variants[i].constants.fragment = fragment;
         variants[i].constants.streamed = i > 0;
         variants[i].constants.scene = which;
         variants[i].constants.anisotropy = 1.0f;
     }
-    bool done = prepare(scene, variants, 6) && run(scene, variants, 6);
+    bool done = prepare(scene, variants, 7) && run(scene, variants, 7);
     double plain = done ? typical(bench, &variants[0].samples) : NAN;
     double none = done ? typical(bench, &variants[1].samples) : NAN;
     const char *stage = stage_names[fragment], *name = scene_names[which];
     if (done)
         report(bench, none / 1e3, "us", "feedback.%s.%s.none", stage, name);
-    for (uint32_t i = 2; done && i < 6; i++) {
+    for (uint32_t i = 2; done && i < 7; i++) {
         double added = typical(bench, &variants[i].samples) - none;
         report(bench, added / 1e3, "us", "feedback.%s.%s.%s.time", stage, name, variants[i].name);
         report(bench, 100 * added / none, "%", "feedback.%s.%s.%s.added", stage, name,
@@ -163,7 +164,7 @@ static bool feed_scene(struct scene *scene, bool fragment, uint32_t which)
         report(bench, 100 * added / plain, "% of plain", "feedback.%s.%s.%s.added_to_plain", stage,
                name, variants[i].name);
     }
-    finish(variants, 6);
+    finish(variants, 7);
     return done;
 }
 

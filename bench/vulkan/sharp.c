@@ -73,5 +73,6 @@ static bool watch_cold(const struct bench *bench, uint32_t feedback, float proba
 bool measure_sharp(const struct bench *bench)
 {
     return watch_cold(bench, BENCH_FEEDBACK_ALL, 1.0f, "all") &&
-           watch_cold(bench, BENCH_FEEDBACK_QUADS, 1.0f / 16, "quads_16");
+           watch_cold(bench, BENCH_FEEDBACK_QUADS, 1.0f / 16, "quads_16") &&
+           (options.quick || watch_cold(bench, BENCH_FEEDBACK_BLOCKS, 1.0f / 16, "blocks_16"));
 }

@@ -52,6 +52,14 @@ static inline bool slc_twin_select_lattice(uint32_t pixel_x, uint32_t pixel_y, u
     return (pixel_x & 7) == (x ^ y) && (pixel_y & 7) == y;
 }
 
+static inline bool slc_twin_select_block(uint32_t pixel_x, uint32_t pixel_y, uint32_t frame_index)
+{
+    uint32_t f = frame_index & 15;
+    uint32_t x = (f & 1) << 1 | (f & 4) >> 2;
+    uint32_t y = (f & 2) | (f & 8) >> 3;
+    return ((pixel_x >> 2) & 3) == (x ^ y) && ((pixel_y >> 2) & 3) == y;
+}
+
 /* lod.glsl */
 
 #define SLC_TWIN_LOD_LIMIT 32.0f

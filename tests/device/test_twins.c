@@ -112,6 +112,7 @@ static void call_twin(uint32_t function, const uint32_t *a, uint32_t *out)
         out[0] = slc_twin_select_random_quad(a[0], a[1], a[2], real(a, 3));
         break;
     case TWIN_SELECT_LATTICE: out[0] = slc_twin_select_lattice(a[0], a[1], a[2]); break;
+    case TWIN_SELECT_BLOCK: out[0] = slc_twin_select_block(a[0], a[1], a[2]); break;
     case TWIN_CLAMP_ANISOTROPY: out[0] = bits(slc_twin_clamp_anisotropy(real(a, 0))); break;
     case TWIN_CLAMP_LOD: out[0] = bits(slc_twin_clamp_lod(real(a, 0))); break;
     case TWIN_CLAMP_LOD_BIAS: out[0] = bits(slc_twin_clamp_lod_bias(real(a, 0))); break;
@@ -204,6 +205,7 @@ static const struct function functions[TWIN_COUNT] = {
     [TWIN_HASH] = {"hash", "uuu", "u"},
     [TWIN_SELECT_RANDOM_QUAD] = {"select_random_quad", "uuuf", "u"},
     [TWIN_SELECT_LATTICE] = {"select_lattice", "uuu", "u"},
+    [TWIN_SELECT_BLOCK] = {"select_block", "uuu", "u"},
     [TWIN_CLAMP_ANISOTROPY] = {"clamp_anisotropy", "f", "x"},
     [TWIN_CLAMP_LOD] = {"clamp_lod", "f", "x"},
     [TWIN_CLAMP_LOD_BIAS] = {"clamp_lod_bias", "f", "x"},

@@ -37,6 +37,25 @@ static void four_consecutive_lattice_frames_hit_four_quadrants(void **state)
     assert_int_equal(quadrants, 15);
 }
 
+/* Four visits in a row have four frame seeds, frame >> 4, so each corner is marked once. */
+static void every_pixel_is_in_a_block_once_in_any_16_frames(void **state)
+{
+    (void)state;
+    for (uint32_t first = 0; first < 40; first += 3)
+        for (uint32_t y = 100; y < 116; y++)
+            for (uint32_t x = 33; x < 49; x++) {
+                uint32_t hits = 0, corners = 0;
+                for (uint32_t frame = first; frame < first + 64; frame++) {
+                    bool selected = slc_twin_select_block(x, y, frame);
+                    assert_int_equal(selected, slc_twin_select_block(x & ~3u, y & ~3u, frame));
+                    hits += selected && frame < first + 16;
+                    corners |= selected ? 1u << (frame >> 4 & 3) : 0;
+                }
+                assert_int_equal(hits, 1);
+                assert_int_equal(corners, 15);
+            }
+}
+
 static void random_selection_decides_per_quad(void **state)
 {
     (void)state;
@@ -342,6 +361,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_pixel_is_on_the_lattice_once_in_any_64_frames),
         cmocka_unit_test(four_consecutive_lattice_frames_hit_four_quadrants),
+        cmocka_unit_test(every_pixel_is_in_a_block_once_in_any_16_frames),
         cmocka_unit_test(random_selection_decides_per_quad),
         cmocka_unit_test(random_selection_has_its_probability_and_no_memory),
         cmocka_unit_test(probability_beyond_its_ends_is_never_or_always),

@@ -21,7 +21,8 @@
 #define BENCH_FEEDBACK_NONE 0
 #define BENCH_FEEDBACK_QUADS 1 /* quads of pixels at random */
 #define BENCH_FEEDBACK_LATTICE 2
-#define BENCH_FEEDBACK_ALL 3 /* every pixel */
+#define BENCH_FEEDBACK_ALL 3    /* every pixel */
+#define BENCH_FEEDBACK_BLOCKS 4 /* one block of 4x4 pixels in 16x16 */
 
 /* wants.comp: which level each region wants, one thread per region */
 #define BENCH_WANTS_PATCH 0  /* level, and one finer within patch[] regions from the origin */

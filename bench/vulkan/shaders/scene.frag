@@ -16,5 +16,5 @@ void main()
         outColor = sluiceSample(streamedTexture, params.tableIndex, p.uv, 0.0, anisotropy, missing);
     else
         outColor = texture(plainTexture, p.uv);
-    writeSceneFeedback(uvec2(gl_FragCoord.xy), p);
+    writeSceneFeedback(sluiceFragmentPixel(gl_FragCoord.xy), p);
 }

@@ -51,6 +51,24 @@ Place scenePlace(vec2 pixel)
     return p;
 }
 
+bool isSelected(uvec2 pixel)
+{
+    if (feedbackKind == BENCH_FEEDBACK_ALL)
+        return true;
+    if (feedbackKind == BENCH_FEEDBACK_BLOCKS)
+        return sluiceSelectBlock(pixel, params.seed);
+#ifdef GL_FRAGMENT_SHADER
+    return feedbackKind == BENCH_FEEDBACK_LATTICE
+               ? sluiceSelectFragmentLattice(gl_FragCoord.xy, params.seed)
+               : sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, params.seed, params.probability);
+#else
+    return feedbackKind == BENCH_FEEDBACK_LATTICE
+               ? sluiceSelectLattice(pixel, params.seed)
+               : sluiceSelectRandomQuad(pixel, params.seed, params.probability);
+#endif
+}
+
+/* `pixel`: bits 0 to 22 count */
 void writeSceneFeedback(uvec2 pixel, Place p)
 {
     if (feedbackKind == BENCH_FEEDBACK_NONE)
@@ -61,23 +79,19 @@ void writeSceneFeedback(uvec2 pixel, Place p)
         p.dx = dFdx(p.uv);
         p.dy = dFdy(p.uv);
     }
-    bool selected = feedbackKind == BENCH_FEEDBACK_ALL ||
-                    (lattice ? sluiceSelectFragmentLattice(gl_FragCoord.xy, params.seed)
-                             : sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, params.seed,
-                                                              params.probability));
-    if (selected && !lattice) {
+#endif
+    if (!isSelected(pixel))
+        return;
+#ifdef GL_FRAGMENT_SHADER
+    if (!lattice) {
         p.dx = dFdx(p.uv);
         p.dy = dFdy(p.uv);
     }
-#else
-    bool selected = feedbackKind == BENCH_FEEDBACK_ALL ||
-                    (feedbackKind == BENCH_FEEDBACK_LATTICE
-                         ? sluiceSelectLattice(pixel, params.seed)
-                         : sluiceSelectRandomQuad(pixel, params.seed, params.probability));
 #endif
-    if (selected && feedbackKind == BENCH_FEEDBACK_QUADS)
+    bool blocks = feedbackKind == BENCH_FEEDBACK_BLOCKS;
+    if (blocks || feedbackKind == BENCH_FEEDBACK_QUADS)
         sluiceWriteQuadFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy, pixel,
-                                params.seed);
-    else if (selected)
+                                blocks ? params.seed >> 4u : params.seed);
+    else
         sluiceWriteFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy);
 }

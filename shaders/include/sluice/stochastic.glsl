@@ -72,12 +72,41 @@ bool sluiceSelectLattice(uvec2 pixel, uint frameIndex)
 }
 
 /**
+ * Returns the pixel of gl_FragCoord.xy without the slow conversion to integers. The bits from 23 on are
+ * those of a float; the bits below are right. For sluiceSelectBlock and sluiceWriteQuadFeedback.
+ */
+uvec2 sluiceFragmentPixel(vec2 fragCoord)
+{
+    return floatBitsToUint(fragCoord + SLUICE_PIXEL_ORIGIN);
+}
+
+/**
  * Selects like sluiceSelectLattice, for gl_FragCoord.xy. Pixels of a quad decide differently: take
  * derivatives before the branch.
  */
 bool sluiceSelectFragmentLattice(vec2 fragCoord, uint frameIndex)
 {
-    return sluiceSelectLattice(floatBitsToUint(fragCoord + SLUICE_PIXEL_ORIGIN), frameIndex);
+    return sluiceSelectLattice(sluiceFragmentPixel(fragCoord), frameIndex);
+}
+
+/**
+ * Selects one block of 4x4 pixels in 16x16 on a lattice that moves each frame. Every pixel is selected
+ * exactly once in any 16 consecutive frames.
+ *
+ * Devices run fragment shaders in groups of 32 or 64 neighboring pixels, and a group waits for its pixels
+ * that write. As many quads at random lie in three times as many groups. Blocks cost less, and meet every
+ * pixel in time; most regions are met later than by random quads (docs/feedback.md).
+ *
+ * All pixels of a quad decide alike, so derivatives may be taken in the branch. With
+ * sluiceWriteQuadFeedback pass `frameIndex >> 4` as frameSeed: with frameIndex a quad would mark the same
+ * corners whenever it is selected. Count turns instead of frames if feedback is read back in turns.
+ */
+bool sluiceSelectBlock(uvec2 pixel, uint frameIndex)
+{
+    uint f = frameIndex;
+    uint x = ((f & 1u) << 3u) | (f & 4u);
+    uint y = ((f & 2u) << 2u) | ((f & 8u) >> 1u);
+    return (((pixel.x ^ x ^ y) | (pixel.y ^ y)) & 12u) == 0u;
 }
 
 #endif

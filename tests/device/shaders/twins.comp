@@ -134,6 +134,9 @@ void main()
     case TWIN_SELECT_LATTICE:
         result(0u, sluiceSelectLattice(range(0u).xy, argument(2u)) ? 1u : 0u);
         break;
+    case TWIN_SELECT_BLOCK:
+        result(0u, sluiceSelectBlock(range(0u).xy, argument(2u)) ? 1u : 0u);
+        break;
     default:
         if (params.function < TWIN_REGION_INDEX)
             callLod();
