@@ -10,8 +10,7 @@ cat >script <<'END'
 4 key 2
 6 click 200 120 right
 8 key t
-10 key v
-12 set compare-to budget
+10 key g
 16 screenshot with-panels.png
 18 key H
 20 screenshot picture.png
@@ -19,9 +18,11 @@ cat >script <<'END'
 22 set budget 16
 24 quit
 END
-twin="--headless --deterministic --size 480x270 --residency paged"
-# shellcheck disable=SC2086 # a list of words
-view() { run 0 $twin --validation "$@"; }
+# The stage of the sanitizers switches layers off.
+validation=--validation
+[ -z "${VK_LOADER_LAYERS_DISABLE:-}" ] || validation=
+# shellcheck disable=SC2086 # nothing, or a word
+view() { run 0 --headless --deterministic --size 480x270 --residency paged $validation "$@"; }
 
 view --script script --csv first.csv --screenshot last.png && mkdir first && mv ./*.png first
 fact a_script_of_keys_clicks_and_settings_runs_with_silent_validation
@@ -43,7 +44,8 @@ head -c 100 /dev/urandom >noise.glb
 run 1 --headless --frames 2 --cache . broken.gltf && run 1 --headless --frames 2 --cache . noise.glb &&
     run 1 --headless --frames 2 --cache . none.gltf
 fact broken_scenes_are_refused
-printf '2 drop noise.glb\n3 drop none.gltf\n' >drops
-run 0 --headless --size 160x160 --cache . --script drops --frames 6 && grep -q 'noise.glb' err
-fact a_dropped_file_that_cannot_be_read_leaves_the_scene
+printf '2 drop noise.glb\n4 set compare-to budget\n4 key v\n' >drops
+# shellcheck disable=SC2086
+run 0 --headless $validation --size 160x160 --cache . --script drops --frames 6 && grep -q 'noise.glb' err
+fact a_dropped_file_that_cannot_be_read_leaves_the_scene_which_can_be_compared
 end_facts

@@ -50,7 +50,11 @@ ended_well() {
     [ $tries -gt 0 ] && { wait "$viewer" || got=$?; [ $got -eq 0 ]; }
 }
 
-open_viewer --validation && sleep 1 && picture first.png && [ "$(png_size first.png)" = 480x270 ]
+# The stage of the sanitizers switches layers off.
+validation=--validation
+[ -z "${VK_LOADER_LAYERS_DISABLE:-}" ] || validation=
+# shellcheck disable=SC2086 # nothing, or a word
+open_viewer $validation && sleep 1 && picture first.png && [ "$(png_size first.png)" = 480x270 ]
 fact a_window_opens_and_f12_writes_its_picture
 xdotool mousedown 1 && sleep 0.2 && xdotool mousemove_relative 60 10 && sleep 0.2 && xdotool mouseup 1 &&
     picture dragged.png && ! cmp -s first.png dragged.png
