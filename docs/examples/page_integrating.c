@@ -123,6 +123,8 @@ VkDescriptorSet begin_frame(struct streaming *s, VkCommandBuffer commands, uint6
     SluiceStreamingFrame *streaming = &s->frames[frame % FRAMES_IN_FLIGHT];
     streaming->structSize = sizeof *streaming;
     SluiceResult result = sluiceBeginStreamingFrame(s->streamer, commands, nanoseconds, streaming);
+    if (result != SLUICE_SUCCESS)
+        fprintf(stderr, "sluiceBeginStreamingFrame: %s\n", sluiceGetResultName(result));
     return result == SLUICE_SUCCESS ? streaming->descriptorSet : VK_NULL_HANDLE;
 }
 
