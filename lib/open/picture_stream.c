@@ -90,8 +90,8 @@ SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *pa
 {
     if (!opener->cache_folder) {
         slc_log(&opener->log, SLUICE_LOG_ERROR,
-                "%s: is no tile store, OpenEXR, DDS or KTX2 file; set pCacheFolder, where the "
-                "stores of such pictures are kept",
+                "%s: is no tile store, OpenEXR, DDS or KTX2 file; if it is a picture, make a tile "
+                "store of it with sluice-bake, or set pCacheFolder, where such stores are kept",
                 path);
         return SLUICE_ERROR_UNSUPPORTED;
     }

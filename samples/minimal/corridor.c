@@ -100,6 +100,8 @@ void print_statistics(const SluiceVulkanStreamer *streamer, uint32_t frames)
 
 bool write_picture(const struct settings *settings, const uint8_t *texels)
 {
-    return png_file_write(settings->output, texels, settings->size[0], settings->size[1]) &&
-           text_flush("");
+    if (!png_file_write(settings->output, texels, settings->size[0], settings->size[1]))
+        return false;
+    printf("wrote %s\n", settings->output);
+    return text_flush("");
 }

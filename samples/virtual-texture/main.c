@@ -3,6 +3,7 @@
  * are looked at. At the end the program compares every texel shown with the function that makes it.
  */
 #include "../../tools/common/log.h"
+#include "../../tools/common/progress.h"
 #include "../../tools/common/shared_options.h"
 #include "../common/paged_sample.h"
 #include "../common/png_file.h"
@@ -197,18 +198,25 @@ static bool settle(struct app *app)
 
 static bool run(struct app *app)
 {
-    for (uint32_t i = 0; i < app->settings.frames; i++)
+    struct progress progress;
+    progress_begin(&progress, "zooming", "frames", app->settings.frames);
+    for (uint32_t i = 0; i < app->settings.frames; i++) {
         if (!draw_frame(app, (double)i / app->settings.frames, false))
             return false;
+        progress_update(&progress, i + 1);
+    }
+    progress_end(&progress);
     if (!settle(app) || !print_figures(app))
         return false;
     const struct FractalCounts *counts = viewer_counts(&app->viewer);
     if (counts->wrong > 0 || counts->coarse > 0)
         fprintf(stderr, "virtual-texture: %u of %u texels are wrong, %u pixels are too coarse\n",
                 counts->wrong, counts->compared, counts->coarse);
-    return png_file_write(app->settings.common.output, app->viewer.pixels.mapped,
-                          app->settings.width, app->settings.height) &&
-           counts->wrong == 0 && counts->coarse == 0;
+    if (!png_file_write(app->settings.common.output, app->viewer.pixels.mapped, app->settings.width,
+                        app->settings.height))
+        return false;
+    fprintf(stderr, "virtual-texture: wrote %s\n", app->settings.common.output);
+    return counts->wrong == 0 && counts->coarse == 0;
 }
 
 static void destroy(struct app *app)

@@ -20,6 +20,9 @@ fact one_picture_becomes_one_file
 run 0 in/a.png -o made.d/ && [ -s made.d/a.store ]
 fact an_output_that_ends_in_a_slash_is_a_folder
 
+run 2 in/a.png in/d.jpg -o both.store && grep -q 'the name of one tile store, and there are 2 inputs' err && [ ! -e both.store ]
+fact several_pictures_are_refused_for_one_store
+
 run 2 in/a.png -o picture.PNG && grep -q 'a tile store is written, not a picture' err &&
     [ ! -e picture.PNG ] && mkdir folder.png && run 0 in/a.png -o folder.png && [ -s folder.png/a.store ]
 fact an_output_named_as_a_picture_is_refused_unless_it_is_a_folder

@@ -142,6 +142,12 @@ static bool has_one_output(const struct option_table *table, const struct option
     return true;
 }
 
+static bool is_named_as_store(const char *name)
+{
+    size_t length = strlen(name);
+    return length > 6 && strcmp(name + length - 6, ".store") == 0;
+}
+
 static bool is_complete(const struct option_table *table, const struct options *o,
                         const struct choices *c)
 {
@@ -155,6 +161,12 @@ static bool is_complete(const struct option_table *table, const struct options *
                               "-o %s: a tile store is written, not a picture; name it .store, or "
                               "make pictures with sluice-info --png",
                               o->output);
+    if (o->output && o->inputs.count > 1 && !(o->cube || o->array || o->neural) &&
+        is_named_as_store(o->output) && !is_folder(o->output))
+        return options_refuse(table,
+                              "-o %s: is the name of one tile store, and there are %zu inputs; end "
+                              "it with / for a folder",
+                              o->output, (size_t)o->inputs.count);
     if (c->srgb && (c->linear || o->settings.normalMap))
         return options_refuse(table, "--srgb or --%s, not both; --help says more",
                               c->linear ? "linear" : "normal");

@@ -87,6 +87,9 @@ void print_report(const SluiceReplayResult *result, const SluiceStreamedTextureS
         printf("%-18s %12" PRIu64 " %s\n", figures[i].name, figures[i].value, figures[i].unit);
     if (has_host_memory(result))
         printf("%-18s %12" PRIu64 " bytes\n", "host_memory", s->hostMemorySize);
+    if (result->recordedHash)
+        printf("%-18s %s\n", "as_recorded",
+               result->decisionHash == result->recordedHash ? "yes, all decisions" : "no");
     printf("hash %016" PRIx64 " events %" PRIu64 "\n", result->decisionHash, result->eventCount);
 }
 
