@@ -108,8 +108,7 @@ sanitizer_stage() {
             return 0
         fi
     fi
-    if build_stage "$stage" CC=clang CXX=clang++ -- "-Db_sanitize=$sanitizers" -Db_lundef=false \
-        -Ddefault_library=static "$@"; then
+    if build_stage "$stage" CC=clang CXX=clang++ -- "-Db_sanitize=$sanitizers" -Db_lundef=false "$@"; then
         run_meson_tests "$stage" --setup "$setup"
     fi
 }
