@@ -21,6 +21,9 @@ extern "C" {
 /** Default number of bytes that are asked for when a URL is opened. */
 #define SLUICE_HTTP_DEFAULT_HEAD_SIZE ((uint32_t)128 << 10)
 
+/** Default limit of the cache folder: 4 GiB. */
+#define SLUICE_HTTP_DEFAULT_CACHE_SIZE ((uint64_t)4 << 30)
+
 /** Keeps connections to hosts, and settings that all of its files share. */
 typedef struct SluiceHttpClient SluiceHttpClient;
 /** A file on a server. */
@@ -75,14 +78,27 @@ typedef struct SluiceHttpClientCreateInfo {
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     /** Failures, with URL and range. Passwords and queries of URLs are left out. Any thread. */
     SluiceLogCallback log;
+    /**
+     * Folder where ranges that were read are kept, so that the next start does not ask for them.
+     * Made if its parent is there. Several processes may use it, and may be killed while they do.
+     * What is read from it is checked; what is damaged is asked for again. Files that have neither
+     * ETag nor date are not kept. The query of a URL is part of its name, so presigned URLs find
+     * nothing. Copied. Default: NULL, nothing is kept.
+     */
+    const char *pCacheFolder;
+    /** Most bytes in the folder. Beyond, what was read longest ago is removed. Default:
+     * SLUICE_HTTP_DEFAULT_CACHE_SIZE. */
+    uint64_t maxCacheSize;
 } SluiceHttpClientCreateInfo;
 
 /**
  * Creates a client. Opens no connection. `pInfo` may be NULL: every setting has its default.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, also for SluiceS3Access::pEndpoint;
- * SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a setting out of range;
- * SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_UNSUPPORTED if libcurl lacks HTTPS or threads.
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a setting out of range;
+ *         SLUICE_ERROR_IO, with a log message, if the cache folder cannot be made;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_UNSUPPORTED if libcurl lacks HTTPS or
+ *         threads.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateHttpClient(const SluiceHttpClientCreateInfo *pInfo,
@@ -175,6 +191,8 @@ typedef struct SluiceHttpStatistics {
     uint64_t askedBytes;       ///< Bytes that successful reads by sources asked for.
     uint64_t bodyBytes;        ///< Bytes of bodies received.
     uint64_t headerBytes;      ///< Bytes of answers' headers received.
+    uint64_t cacheHitTotal;    ///< Reads that were answered from the cache folder.
+    uint64_t cacheSize;        ///< Bytes in the cache folder, as far as this client knows.
 } SluiceHttpStatistics;
 
 /**

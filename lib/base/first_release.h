@@ -61,8 +61,8 @@
 #define SLC_FIRST_SluiceKtx2ImageSourceCreateInfo                                                  \
     SLC_UP_TO(SluiceKtx2ImageSourceCreateInfo, filePool)
 #define SLC_FIRST_SluiceS3Access SLC_UP_TO(SluiceS3Access, pSessionToken)
-#define SLC_FIRST_SluiceHttpClientCreateInfo SLC_UP_TO(SluiceHttpClientCreateInfo, log)
-#define SLC_FIRST_SluiceHttpStatistics SLC_UP_TO(SluiceHttpStatistics, headerBytes)
+#define SLC_FIRST_SluiceHttpClientCreateInfo SLC_UP_TO(SluiceHttpClientCreateInfo, maxCacheSize)
+#define SLC_FIRST_SluiceHttpStatistics SLC_UP_TO(SluiceHttpStatistics, cacheSize)
 #define SLC_FIRST_SluiceInput SLC_UP_TO(SluiceInput, pfnRead)
 #define SLC_FIRST_SluiceStoreCreateInfo SLC_UP_TO(SluiceStoreCreateInfo, cube)
 #define SLC_FIRST_SluiceStoreImageSourceCreateInfo                                                 \

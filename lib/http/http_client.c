@@ -167,6 +167,11 @@ static SluiceResult set_up(SluiceHttpClient *client, const SluiceHttpClientCreat
     if (result == SLUICE_SUCCESS &&
         !copy_string(client, &client->certificate_file, info->pCertificateFile))
         result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (result == SLUICE_SUCCESS && info->pCacheFolder)
+        result = slc_http_cache_init(&client->cache, info->pCacheFolder,
+                                     info->maxCacheSize ? info->maxCacheSize
+                                                        : SLUICE_HTTP_DEFAULT_CACHE_SIZE,
+                                     &client->allocator, &client->log);
     return result;
 }
 
@@ -222,6 +227,7 @@ void sluiceDestroyHttpClient(SluiceHttpClient *client)
         return;
     SluiceAllocationCallbacks cb = client->allocator;
     free_hosts(client);
+    slc_http_cache_finish(&client->cache);
     curl_slist_free_all(client->headers);
     curl_slist_free_all(client->s3_headers);
     char *strings[] = {client->s3.endpoint,     client->s3.region,        client->s3.access_key,
@@ -271,6 +277,8 @@ SluiceResult sluiceGetHttpStatistics(SluiceHttpClient *client, SluiceHttpStatist
     statistics.askedBytes = atomic_load(&c->asked);
     statistics.bodyBytes = atomic_load(&c->body);
     statistics.headerBytes = atomic_load(&c->header);
+    statistics.cacheHitTotal = atomic_load(&client->cache.hits);
+    statistics.cacheSize = atomic_load(&client->cache.size);
     slc_struct_write(SLC_STRUCT(SluiceHttpStatistics), pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }

@@ -6,6 +6,7 @@
 #define SLC_HTTP_HTTP_CLIENT_H
 
 #include "base/said.h"
+#include "http/http_cache.h"
 #include "http/http_url.h"
 #include "platform/thread.h"
 
@@ -78,6 +79,7 @@ struct SluiceHttpClient {
     struct slc_http_host *hosts;
     uint32_t connection_count, in_flight, waiting;
     struct slc_http_counts counts;
+    struct slc_http_cache cache; ///< zeroed: none
 };
 
 struct SluiceHttpFile {
@@ -87,6 +89,7 @@ struct SluiceHttpFile {
     struct slc_http_host *host;
     uint64_t size;
     char etag[256], modified[64]; ///< of the opened version; empty: not told
+    char version[384];            ///< both and the size, for the cache; empty: not to be kept
     unsigned char *head;
     size_t head_size;
     struct slc_said said;

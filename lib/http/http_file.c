@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/struct_size.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Fetches the first bytes on a connection. `landed` gets where redirects led to. */
@@ -30,6 +31,9 @@ static SluiceResult keep_head(SluiceHttpFile *file, const unsigned char *head,
     file->size = answer->version.size;
     memcpy(file->etag, answer->version.etag, sizeof file->etag);
     memcpy(file->modified, answer->version.modified, sizeof file->modified);
+    if (file->etag[0] || file->modified[0])
+        snprintf(file->version, sizeof file->version, "%s %s %llu", file->etag, file->modified,
+                 (unsigned long long)file->size);
     return SLUICE_SUCCESS;
 }
 
@@ -147,6 +151,22 @@ static SluiceResult read_far(SluiceHttpFile *file, const struct slc_http_part *p
     }
 }
 
+/* From the cache folder, or from the server into it. */
+static SluiceResult read_through(SluiceHttpFile *file, const struct slc_http_part *part)
+{
+    struct slc_http_cache *cache = &file->client->cache;
+    if (!cache->folder || !file->version[0])
+        return read_far(file, part);
+    struct slc_http_key key =
+        slc_http_cache_key(file->url.full, file->version, part->offset, part->size);
+    if (slc_http_cache_read(cache, key, part->bytes, (size_t)part->size))
+        return SLUICE_SUCCESS;
+    SluiceResult result = read_far(file, part);
+    if (result == SLUICE_SUCCESS)
+        slc_http_cache_write(cache, key, part->bytes, (size_t)part->size);
+    return result;
+}
+
 static SluiceResult read_input(void *user, uint64_t offset, void *bytes, size_t size)
 {
     SluiceHttpFile *file = user;
@@ -163,7 +183,7 @@ static SluiceResult read_input(void *user, uint64_t offset, void *bytes, size_t 
         atomic_fetch_add(&counts->kept, 1);
     } else {
         struct slc_http_part part = {offset, size, bytes};
-        result = read_far(file, &part);
+        result = read_through(file, &part);
     }
     if (result == SLUICE_SUCCESS) {
         atomic_fetch_add(&counts->reads, 1);

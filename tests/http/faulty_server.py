@@ -154,6 +154,10 @@ class Handler(BaseHTTPRequestHandler):
         headers['Last-Modified'] = 'Mon, 02 Nov 2026 10:00:0%d GMT' % late
         self.send(206, headers, content(first, last + 1))
 
+    def fault_untagged(self, fault, parts, query, headers, first, last, size):
+        del headers['ETag']
+        self.send(206, headers, content(first, last + 1))
+
     def fault_size(self, fault, parts, query, headers, first, last, size):
         headers['Content-Range'] = 'bytes %d-%d/%d' % (first, last, size + 1)
         self.send(206, headers, content(first, last + 1))

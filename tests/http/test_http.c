@@ -8,11 +8,13 @@
 #include <sluice/http.h>
 
 #include <pthread.h>
-#include <stdatomic.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
 
 #define DEFAULT_SIZE ((uint64_t)1 << 20)
 #define READ_AT ((uint64_t)500000) /* behind what is kept at opening */
@@ -536,11 +538,117 @@ static void urls_of_other_kinds_and_bad_settings_are_refused(void **state)
     CHECK_RESULT(sluiceCreateHttpClient(&info, &client), SLUICE_ERROR_INVALID_ARGUMENT);
 }
 
+/* Opens a path with a cache folder and reads `count` ranges of 64 KiB. */
+static SluiceHttpStatistics read_cached(const char *folder, uint64_t max_size, const char *path,
+                                        uint32_t count)
+{
+    SluiceHttpClientCreateInfo info = quick();
+    info.pCacheFolder = folder;
+    info.maxCacheSize = max_size;
+    SluiceHttpClient *client = create(&info);
+    SluiceHttpFile *file;
+    CHECK_OK(open_path(client, path, &file));
+    for (uint32_t i = 0; i < count; i++)
+        CHECK_OK(read_at(file, (3 + i) * READ_SIZE, READ_SIZE));
+    SluiceHttpStatistics statistics = statistics_of(client);
+    sluiceDestroyHttpFile(file);
+    sluiceDestroyHttpClient(client);
+    return statistics;
+}
+
+/* Runs commands in a folder. */
+static void shell(const char *folder, const char *commands)
+{
+    char line[512];
+    snprintf(line, sizeof line, "cd '%s' && %s", folder, commands);
+    assert_int_equal(system(line), 0);
+}
+
+static void remove_folder(const char *folder)
+{
+    char line[128];
+    snprintf(line, sizeof line, "rm -r '%s'", folder);
+    assert_int_equal(system(line), 0);
+}
+
+static void a_second_start_reads_no_range_twice(void **state)
+{
+    char folder[] = "/tmp/sluice-http-cache-XXXXXX";
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(read_cached(folder, 0, "plain/kept", 8).requestTotal, 9);
+    SluiceHttpStatistics again = read_cached(folder, 0, "plain/kept", 8);
+    assert_int_equal(again.requestTotal, 1);
+    assert_int_equal(again.cacheHitTotal, 8);
+    assert_int_equal(again.cacheSize, 8 * (READ_SIZE + 40));
+    /* Another version, another file, and one without ETag and date. */
+    assert_int_equal(read_cached(folder, 0, "etag/kept?careless=1", 8).requestTotal, 9);
+    assert_int_equal(read_cached(folder, 0, "plain/kept?size=1048575", 8).requestTotal, 9);
+    assert_int_equal(read_cached(folder, 0, "untagged/kept", 2).requestTotal, 3);
+    assert_int_equal(read_cached(folder, 0, "untagged/kept", 2).requestTotal, 3);
+    remove_folder(folder);
+}
+
+static void damaged_and_cut_ranges_are_asked_for_again(void **state)
+{
+    char folder[] = "/tmp/sluice-http-cache-XXXXXX";
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    read_cached(folder, 0, "plain/hurt", 4);
+    shell(folder,
+          "set -- *.range && truncate -s 100 $1 && : >$2 && : >$1-1-2-3.part && echo >notes && "
+          "printf x | dd of=$3 bs=1 seek=5000 conv=notrunc 2>/dev/null");
+    assert_int_equal(read_cached(folder, 0, "plain/hurt", 4).cacheHitTotal, 1);
+    assert_int_equal(read_cached(folder, 0, "plain/hurt", 4).cacheHitTotal, 4);
+    shell(folder, "[ -e notes ] && [ \"$(ls | wc -l)\" = 6 ]");
+    remove_folder(folder);
+}
+
+static void the_folder_stays_within_its_limit_and_keeps_what_was_read_last(void **state)
+{
+    char folder[] = "/tmp/sluice-http-cache-XXXXXX";
+    const uint64_t limit = 6 * (READ_SIZE + 40);
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(read_cached(folder, limit, "plain/limit", 6).cacheSize, limit);
+    nanosleep(&(struct timespec){0, 20000000}, NULL);
+    assert_int_equal(read_cached(folder, limit, "plain/limit", 3).cacheHitTotal, 3);
+    assert_true(read_cached(folder, limit, "plain/other", 2).cacheSize <= limit);
+    assert_int_equal(read_cached(folder, limit, "plain/limit", 3).cacheHitTotal, 3);
+    remove_folder(folder);
+}
+
+static void a_folder_that_cannot_be_written_is_said_once_and_reads_go_on(void **state)
+{
+    char folder[] = "/tmp/sluice-http-cache-XXXXXX";
+    struct rlimit limit, small;
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
+    small = (struct rlimit){30000, limit.rlim_max};
+    signal(SIGXFSZ, SIG_IGN);
+    fflush(stdout);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    SluiceHttpStatistics statistics = read_cached(folder, 0, "plain/full", 3);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    assert_int_equal(statistics.requestTotal, 4);
+    char *first = strstr(logged, "cannot keep what was read");
+    assert_non_null(first);
+    assert_null(strstr(first + 1, "cannot keep what was read"));
+    assert_int_equal(rmdir(folder), 0); /* nothing was left in it */
+    SluiceHttpClientCreateInfo info = quick();
+    info.pCacheFolder = "/dev/null/cache";
+    SluiceHttpClient *client;
+    CHECK_RESULT(sluiceCreateHttpClient(&info, &client), SLUICE_ERROR_IO);
+}
+
 /* With each allocation failing once, in turn. */
 static void out_of_memory_is_an_ordinary_result(void **state)
 {
     SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    char folder[] = "/tmp/sluice-http-cache-XXXXXX";
     (void)state;
+    assert_non_null(mkdtemp(folder));
     for (uint64_t n = 0; result != SLUICE_SUCCESS && n < 100; n++) {
         struct failing_allocator allocator;
         SluiceHttpClientCreateInfo info = quick();
@@ -557,6 +665,7 @@ static void out_of_memory_is_an_ordinary_result(void **state)
         info.pAllocator = &allocator.callbacks;
         info.pS3 = &access;
         info.pCertificateFile = "x";
+        info.pCacheFolder = folder;
         result = sluiceCreateHttpClient(&info, &client);
         if (result == SLUICE_SUCCESS)
             result = open_path(client, "redirect-here/x?from=0", &file);
@@ -572,6 +681,7 @@ static void out_of_memory_is_an_ordinary_result(void **state)
         assert_int_equal(allocator.live_count, 0);
     }
     CHECK_OK(result);
+    remove_folder(folder);
 }
 
 int main(void)
@@ -594,6 +704,10 @@ int main(void)
         cmocka_unit_test(certificates_are_checked),
         cmocka_unit_test(objects_are_asked_for_with_signatures_that_a_server_accepts),
         cmocka_unit_test(urls_of_other_kinds_and_bad_settings_are_refused),
+        cmocka_unit_test(a_second_start_reads_no_range_twice),
+        cmocka_unit_test(damaged_and_cut_ranges_are_asked_for_again),
+        cmocka_unit_test(the_folder_stays_within_its_limit_and_keeps_what_was_read_last),
+        cmocka_unit_test(a_folder_that_cannot_be_written_is_said_once_and_reads_go_on),
         cmocka_unit_test(out_of_memory_is_an_ordinary_result),
     };
     tap_filter_stdout();

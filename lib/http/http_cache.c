@@ -1,0 +1,288 @@
+#include "http/http_cache.h"
+
+#include "base/alloc.h"
+#include "base/little_endian.h"
+#include "base/log.h"
+#include "platform/folder.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <xxhash.h>
+
+#define SUFFIX ".range"
+#define PART_SUFFIX ".part"
+#define DIGITS 32u
+#define HEADER_SIZE 40u
+#define NAME_SIZE 112u
+#define SECONDS_UNTIL_LEFT (24 * 3600) /* a part that nobody has written for so long */
+static const char magic[8] = {'S', 'L', 'H', 'C', '0', '0', '0', '1'};
+
+struct slc_http_key slc_http_cache_key(const char *url, const char *version, uint64_t offset,
+                                       uint64_t size)
+{
+    uint8_t place[16];
+    slc_put_u64(place, offset);
+    slc_put_u64(place + 8, size);
+    XXH128_hash_t hash = XXH3_128bits(url, strlen(url));
+    hash = XXH3_128bits_withSeed(version, strlen(version), hash.low64 ^ hash.high64 * 3);
+    hash = XXH3_128bits_withSeed(place, sizeof place, hash.low64 ^ hash.high64 * 3);
+    return (struct slc_http_key){hash.low64, hash.high64};
+}
+
+static void make_header(uint8_t header[HEADER_SIZE], struct slc_http_key key, const void *bytes,
+                        size_t size)
+{
+    memcpy(header, magic, sizeof magic);
+    slc_put_u64(header + 8, key.low);
+    slc_put_u64(header + 16, key.high);
+    slc_put_u64(header + 24, size);
+    slc_put_u64(header + 32, XXH3_64bits_withSeed(bytes, size, key.low));
+}
+
+/* False if it does not fit. */
+static bool make_path(const struct slc_http_cache *cache, struct slc_http_key key, char *path,
+                      size_t size)
+{
+    int length = snprintf(path, size, "%s/%016llx%016llx" SUFFIX, cache->folder,
+                          (unsigned long long)key.high, (unsigned long long)key.low);
+    return length > 0 && (size_t)length < size;
+}
+
+static bool read_all(int descriptor, uint64_t offset, void *bytes, size_t size)
+{
+    size_t done = 0;
+    while (done < size) {
+        int64_t got =
+            slc_file_read_at(descriptor, offset + done, (char *)bytes + done, size - done);
+        if (got > 0)
+            done += (size_t)got;
+        else if (got == 0 || errno != EINTR)
+            return false;
+    }
+    return true;
+}
+
+static bool write_all(int descriptor, uint64_t offset, const void *bytes, size_t size)
+{
+    size_t done = 0;
+    while (done < size) {
+        int64_t got =
+            slc_file_write_at(descriptor, offset + done, (const char *)bytes + done, size - done);
+        if (got > 0)
+            done += (size_t)got;
+        else if (got == 0 || errno != EINTR)
+            return false;
+    }
+    return true;
+}
+
+bool slc_http_cache_read(struct slc_http_cache *cache, struct slc_http_key key, void *bytes,
+                         size_t size)
+{
+    char path[4096];
+    uint8_t found[HEADER_SIZE], expected[HEADER_SIZE];
+    int descriptor = make_path(cache, key, path, sizeof path) ? slc_file_open(path) : -1;
+    if (descriptor < 0)
+        return false;
+    bool is_whole = read_all(descriptor, 0, found, HEADER_SIZE) &&
+                    read_all(descriptor, HEADER_SIZE, bytes, size);
+    slc_file_close(descriptor);
+    if (is_whole)
+        make_header(expected, key, bytes, size);
+    if (!is_whole || memcmp(found, expected, HEADER_SIZE) != 0) {
+        slc_path_remove(path);
+        return false;
+    }
+    slc_path_touch(path);
+    atomic_fetch_add(&cache->hits, 1);
+    return true;
+}
+
+/* A file of the folder. */
+struct entry {
+    char name[NAME_SIZE];
+    uint64_t size;
+    struct slc_file_time read;
+    bool is_part;
+};
+
+struct entries {
+    struct entry *items;
+    size_t count, capacity;
+    uint64_t size;
+};
+
+/* False: the name is none of ours. */
+static bool is_ours(const char *name, bool *is_part)
+{
+    if (strspn(name, "0123456789abcdef") != DIGITS || strncmp(name + DIGITS, SUFFIX, 6) != 0)
+        return false;
+    name += DIGITS + 6;
+    size_t length = strlen(name);
+    *is_part = length > 5 && strcmp(name + length - 5, PART_SUFFIX) == 0;
+    return *is_part || length == 0;
+}
+
+static bool add_entry(struct entries *entries, const SluiceAllocationCallbacks *cb,
+                      const struct entry *entry)
+{
+    if (entries->count == entries->capacity) {
+        size_t capacity = entries->capacity ? 2 * entries->capacity : 256;
+        struct entry *grown = entries->items ? slc_regrow(cb, entries->items, entries->capacity,
+                                                          capacity, sizeof *grown)
+                                             : slc_alloc(cb, capacity, sizeof *grown);
+        if (!grown)
+            return false;
+        entries->items = grown;
+        entries->capacity = capacity;
+    }
+    entries->items[entries->count++] = *entry;
+    entries->size += entry->size;
+    return true;
+}
+
+static bool list_entries(struct slc_folder *folder, const SluiceAllocationCallbacks *cb,
+                         struct entries *entries)
+{
+    const char *name;
+    while ((name = slc_folder_next(folder))) {
+        struct entry entry;
+        struct slc_file_status status;
+        size_t length = strlen(name);
+        if (length >= NAME_SIZE || !is_ours(name, &entry.is_part) ||
+            !slc_folder_get_status(folder, name, true, &status) || status.kind != SLC_NODE_FILE)
+            continue;
+        memcpy(entry.name, name, length + 1);
+        entry.size = status.size;
+        entry.read = entry.is_part ? status.modified : status.read;
+        if (!add_entry(entries, cb, &entry))
+            return false;
+    }
+    return true;
+}
+
+static int compare_read(const void *a, const void *b)
+{
+    const struct slc_file_time *x = &((const struct entry *)a)->read;
+    const struct slc_file_time *y = &((const struct entry *)b)->read;
+    if (x->seconds != y->seconds)
+        return x->seconds < y->seconds ? -1 : 1;
+    return (x->nanoseconds > y->nanoseconds) - (x->nanoseconds < y->nanoseconds);
+}
+
+/* Removes the ranges read longest ago until `most` bytes are left, and parts left behind. */
+static void remove_entries(struct slc_folder *folder, struct entries *entries, uint64_t most)
+{
+    int64_t now = (int64_t)time(NULL);
+    if (entries->count > 0)
+        qsort(entries->items, entries->count, sizeof *entries->items, compare_read);
+    for (size_t i = 0; i < entries->count; i++) {
+        const struct entry *entry = &entries->items[i];
+        bool goes =
+            entry->is_part ? now - entry->read.seconds > SECONDS_UNTIL_LEFT : entries->size > most;
+        if (goes && slc_folder_remove(folder, entry->name))
+            entries->size -= entry->size;
+    }
+}
+
+/* Counts what is there. Above the limit it makes room for a tenth more, so that this is rare. */
+static void trim(struct slc_http_cache *cache)
+{
+    struct entries entries = {0};
+    struct slc_folder *folder = slc_folder_begin(cache->folder);
+    if (!folder)
+        return;
+    if (list_entries(folder, &cache->allocator, &entries)) {
+        bool is_full = entries.size > cache->max_size;
+        remove_entries(folder, &entries,
+                       is_full ? cache->max_size - cache->max_size / 10 : UINT64_MAX);
+        atomic_store(&cache->size, entries.size);
+    }
+    slc_free(&cache->allocator, entries.items, entries.capacity, sizeof *entries.items);
+    slc_folder_end(folder);
+}
+
+SluiceResult slc_http_cache_init(struct slc_http_cache *cache, const char *folder,
+                                 uint64_t max_size, const SluiceAllocationCallbacks *cb,
+                                 const SluiceLogCallback *log)
+{
+    struct slc_file_status status;
+    cache->allocator = *cb;
+    cache->log = *log;
+    cache->max_size = max_size;
+    slc_mutex_init(&cache->trimming);
+    cache->folder = slc_strdup(cb, folder);
+    if (!cache->folder)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (!slc_folder_make(folder) && !(errno == EEXIST && slc_path_get_status(folder, &status) &&
+                                      status.kind == SLC_NODE_FOLDER)) {
+        slc_log(log, SLUICE_LOG_ERROR, "%s: cannot make this folder: %s", folder, strerror(errno));
+        return SLUICE_ERROR_IO;
+    }
+    trim(cache);
+    return SLUICE_SUCCESS;
+}
+
+void slc_http_cache_finish(struct slc_http_cache *cache)
+{
+    if (!cache->folder)
+        return;
+    slc_free(&cache->allocator, cache->folder, strlen(cache->folder) + 1, 1);
+    cache->folder = NULL;
+    slc_mutex_finish(&cache->trimming);
+}
+
+static bool write_part(const char *path, const uint8_t header[HEADER_SIZE], const void *bytes,
+                       size_t size)
+{
+    int descriptor = slc_file_create(path, 0600);
+    if (descriptor < 0)
+        return false;
+    bool is_written = write_all(descriptor, 0, header, HEADER_SIZE) &&
+                      write_all(descriptor, HEADER_SIZE, bytes, size);
+    int error = errno;
+    slc_file_close(descriptor);
+    if (!is_written)
+        slc_path_remove(path);
+    errno = error;
+    return is_written;
+}
+
+static void fail_write(struct slc_http_cache *cache)
+{
+    if (!atomic_exchange(&cache->has_failed, true))
+        slc_log(&cache->log, SLUICE_LOG_WARNING,
+                "%s: cannot keep what was read: %s; reading goes on without, as long as this lasts",
+                cache->folder, strerror(errno));
+}
+
+void slc_http_cache_write(struct slc_http_cache *cache, struct slc_http_key key, const void *bytes,
+                          size_t size)
+{
+    char path[4096], part[4096 + 64];
+    uint8_t header[HEADER_SIZE];
+    if (size + HEADER_SIZE > cache->max_size || !make_path(cache, key, path, sizeof path))
+        return;
+    snprintf(part, sizeof part, "%s-%llx-%llx-%llx" PART_SUFFIX, path,
+             (unsigned long long)slc_get_process_id(), (unsigned long long)(uintptr_t)cache,
+             (unsigned long long)atomic_fetch_add(&cache->turn, 1));
+    make_header(header, key, bytes, size);
+    if (!write_part(part, header, bytes, size)) {
+        fail_write(cache);
+        return;
+    }
+    if (!slc_path_replace(part, path)) {
+        fail_write(cache);
+        slc_path_remove(part);
+        return;
+    }
+    atomic_store(&cache->has_failed, false);
+    if (atomic_fetch_add(&cache->size, size + HEADER_SIZE) + size + HEADER_SIZE <= cache->max_size)
+        return;
+    slc_mutex_lock(&cache->trimming);
+    if (atomic_load(&cache->size) > cache->max_size) /* nobody else has just done it */
+        trim(cache);
+    slc_mutex_unlock(&cache->trimming);
+}
