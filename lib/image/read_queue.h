@@ -28,8 +28,8 @@ struct slc_started {
     SluiceResult result; ///< the first one that is not SLUICE_SUCCESS
     uint32_t failed_region;
     SluiceFormat format;
-    const char *name;
-    uint64_t start_time; ///< ns
+    SluiceImageFault fault; ///< of the failed region
+    uint64_t start_time;    ///< ns
 };
 
 struct slc_read {

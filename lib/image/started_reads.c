@@ -14,7 +14,9 @@ static bool is_pending(const struct slc_read *read, uint32_t region)
     return read->started.pending >> region & 1;
 }
 
-static void complete_region(struct slc_read *read, uint32_t region, SluiceResult result)
+/* `fault` NULL: the source's name, and no offset. */
+static void complete_region(struct slc_read *read, uint32_t region, SluiceResult result,
+                            const SluiceImageFault *fault)
 {
     struct slc_started *started = &read->started;
     const SluiceImageRegion *at = &read->regions[region];
@@ -27,6 +29,8 @@ static void complete_region(struct slc_read *read, uint32_t region, SluiceResult
     } else if (started->result == SLUICE_SUCCESS) {
         started->result = result;
         started->failed_region = region;
+        if (fault)
+            started->fault = *fault;
     }
 }
 
@@ -37,7 +41,7 @@ static void settle_if_over(SluiceTileLoader *loader, struct slc_read *read)
     if (started->pending || started->calls)
         return;
     const struct slc_read_outcome outcome = {.result = started->result,
-                                             .fault = {started->name, SLUICE_UNKNOWN_OFFSET},
+                                             .fault = started->fault,
                                              .region = started->failed_region,
                                              .latency = slc_monotonic_time() - started->start_time};
     slc_loader_settle_read(loader, read, &outcome);
@@ -52,29 +56,31 @@ static void start_region(SluiceTileLoader *loader, struct slc_read *read,
     struct slc_mutex *mutex = &loader->pool->mutex;
     const SluiceImageReadToken token = token_of(loader, read, region);
     const SluiceImageRegion *at = &read->regions[region];
-    SluiceImageFault fault;
+    SluiceImageFault fault = {"", SLUICE_UNKNOWN_OFFSET};
     read->started.pending |= 1u << region;
     slc_mutex_unlock(mutex);
     SluiceResult result =
         slc_start_read(read->source->source, info, at, read->texels[region],
                        sluiceGetFormatRegionSize(info->format, at->width, 1), &token);
     bool is_started = result == SLUICE_SUCCESS;
-    if (result == SLUICE_ERROR_UNSUPPORTED)
+    bool is_read = result == SLUICE_ERROR_UNSUPPORTED;
+    if (is_read)
         result = slc_loader_read_region(loader, read, info, region, &fault);
     slc_mutex_lock(mutex);
     if (!is_started)
-        complete_region(read, region, result);
+        complete_region(read, region, result, is_read ? &fault : NULL);
 }
 
 void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const SluiceImageInfo *info,
                        uint64_t start_time)
 {
     struct slc_started *started = &read->started;
-    *started = (struct slc_started){.calls = 1,
-                                    .starting = true,
-                                    .format = info->format,
-                                    .name = info->pName ? info->pName : "",
-                                    .start_time = start_time};
+    *started =
+        (struct slc_started){.calls = 1,
+                             .starting = true,
+                             .format = info->format,
+                             .fault = {info->pName ? info->pName : "", SLUICE_UNKNOWN_OFFSET},
+                             .start_time = start_time};
     read->source->format = info->format;
     for (uint32_t i = 0; i < read->region_count && started->result == SLUICE_SUCCESS; i++) {
         if (read->done >> i & 1)
@@ -132,7 +138,7 @@ SluiceResult sluiceCompleteImageRead(const SluiceImageReadToken *pToken, SluiceR
     struct slc_read *read = slc_read_queue_find(&loader->queue, token.ticket);
     bool awaited = is_awaited(read, &token);
     if (awaited) {
-        complete_region(read, token.region, result);
+        complete_region(read, token.region, result, NULL);
         settle_if_over(loader, read);
     }
     slc_mutex_unlock(&loader->pool->mutex);

@@ -102,6 +102,6 @@ bool write_picture(const struct settings *settings, const uint8_t *texels)
 {
     if (!png_file_write(settings->output, texels, settings->size[0], settings->size[1]))
         return false;
-    printf("wrote %s\n", settings->output);
+    fprintf(stderr, "wrote %s\n", settings->output);
     return text_flush("");
 }
