@@ -115,6 +115,7 @@ struct slc_managed_texture {
     uint32_t hits, returns;     ///< how reliable maps are; see history.c
     uint32_t bias_epoch;        ///< of the global bias that the last map was merged with
     uint32_t next_follower;     ///< index, SLC_NONE
+    uint32_t failed_total;      ///< fills what would be padding, as unmapped_total below
     uint64_t map_time;          ///< of the last map
     uint64_t interval, timeout; ///< between the last two maps; of the last one
     uint32_t *packed_nodes;     ///< owned, [packedTileCount], NULL if there are none
@@ -134,11 +135,12 @@ struct slc_managed_texture {
     bool seen;                                        ///< some map asked for something
     int8_t priority;                                  ///< its followers have it, too
     uint32_t trouble_prev, trouble_next; ///< indices, SLC_NONE; in the list of its trouble
-    uint64_t trouble_time;               ///< when it entered that
+    uint32_t unmapped_total;
+    uint64_t trouble_time; ///< when it entered that
 
     uint64_t seen_time;          ///< of the last map that did
     struct slc_uv_transform *uv; ///< owned; NULL: none, it is sampled where its primary is
-    uint32_t mapped_total, unmapped_total, failed_total;
+    uint32_t mapped_total;
 };
 
 #define SLC_TEXTURES_PER_CHUNK 64

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # test_headless.sh FACTS SLUICE-VIEW: the viewer without a window, in TAP.
 set -u
-facts=$1 tool=$2
+facts=$(realpath "$1") tool=$(realpath "$2")
 "$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
 # shellcheck source=/dev/null
 . "$facts"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # test_window.sh FACTS SLUICE-VIEW: a real window with real input, in an X server of its own, in TAP.
 set -u
-facts=$1 tool=$2
+facts=$(realpath "$1") tool=$(realpath "$2")
 for program in Xvfb xdotool xclip; do
     command -v $program >/dev/null || { echo "1..0 # SKIP no $program"; exit 0; }
 done
