@@ -1,0 +1,93 @@
+/** A glTF file as JSON with its buffers, checked: every index leads somewhere, every accessor lies
+ *  within its buffer, and nodes form trees. Files are not trusted. */
+#ifndef SLUICE_VIEW_GLTF_FILE_H
+#define SLUICE_VIEW_GLTF_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cjson/cJSON.h>
+
+#define GLTF_NONE UINT32_MAX
+#define GLTF_MAX_ITEMS (1u << 20)
+#define GLTF_MAX_DEPTH 256u
+
+enum gltf_kind {
+    GLTF_BUFFERS,
+    GLTF_BUFFER_VIEWS,
+    GLTF_ACCESSORS,
+    GLTF_MESHES,
+    GLTF_NODES,
+    GLTF_SCENES,
+    GLTF_MATERIALS,
+    GLTF_TEXTURES,
+    GLTF_IMAGES,
+    GLTF_SAMPLERS,
+    GLTF_CAMERAS,
+    GLTF_SKINS,
+    GLTF_ANIMATIONS,
+    GLTF_KIND_COUNT
+};
+
+struct gltf_bytes {
+    const uint8_t *bytes;
+    uint64_t size;
+    uint8_t *owned; ///< NULL: they belong to the .glb
+};
+
+struct gltf_file {
+    const char *path; ///< borrowed
+    cJSON *json;
+    struct gltf_list {
+        cJSON **items;
+        uint32_t count;
+    } lists[GLTF_KIND_COUNT];
+    struct gltf_bytes *buffers; ///< one per item of GLTF_BUFFERS
+    struct gltf_bytes whole;    ///< the file
+    struct gltf_bytes chunk;    ///< binary chunk of a .glb; no bytes: none
+    char error[512];            ///< file and cause, after a failure
+};
+
+/** Whether the name ends in .gltf or .glb. */
+bool gltf_is_name(const char *path);
+/** Reads the file, its buffers and checks everything. After a failure `error` says why; finish it
+ *  anyway. */
+bool gltf_open(const char *path, struct gltf_file *file);
+/** From bytes, copied, that lie at `path`. */
+bool gltf_open_bytes(const char *path, const void *bytes, size_t size, struct gltf_file *file);
+void gltf_finish(struct gltf_file *file);
+
+/** Writes `error`, unless there is one; returns false. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+bool
+gltf_fail(struct gltf_file *file, const char *format, ...);
+const char *gltf_kind_name(enum gltf_kind kind);
+
+/** A member that is a whole number from `least` to `most`. Absent: `*value` stays. */
+bool gltf_get_whole(struct gltf_file *file, const cJSON *object, const char *where,
+                    const char *member, uint64_t least, uint64_t most, uint64_t *value);
+/** A member that is the index of an item. Absent: GLTF_NONE. */
+bool gltf_get_index(struct gltf_file *file, const cJSON *object, const char *where,
+                    const char *member, enum gltf_kind kind, uint32_t *index);
+/** Finite numbers of an array member, exactly `count`. Absent: `values` stay. */
+bool gltf_get_floats(struct gltf_file *file, const cJSON *object, const char *where,
+                     const char *member, uint32_t count, float *values);
+/** A finite number. Absent: `*value` stays. */
+bool gltf_get_float(struct gltf_file *file, const cJSON *object, const char *where,
+                    const char *member, float *value);
+
+/** Path of a URI beside the file, without %-escapes. False if it is no path or too long. */
+bool gltf_path(const struct gltf_file *file, const char *uri, char *path, size_t size);
+/** Bytes of "data:...;base64,...". NULL: it is none, or damaged, or there is no memory. */
+uint8_t *gltf_decode_data_uri(const char *uri, size_t *size);
+/** Reads a regular file of at most 4 GiB. `*cause` says why not. */
+bool gltf_read_file(const char *path, struct gltf_bytes *bytes, const char **cause);
+/** Part of gltf_open. */
+bool gltf_check(struct gltf_file *file);
+/** A buffer view, checked. */
+struct gltf_bytes gltf_view_bytes(const struct gltf_file *file, uint32_t view);
+
+#endif /* SLUICE_VIEW_GLTF_FILE_H */
