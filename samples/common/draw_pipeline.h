@@ -1,4 +1,4 @@
-/** A graphics pipeline for the samples: opaque triangles with a depth test. */
+/** A graphics pipeline for the samples: triangles with a depth test. */
 #ifndef SAMPLES_COMMON_DRAW_PIPELINE_H
 #define SAMPLES_COMMON_DRAW_PIPELINE_H
 
@@ -12,6 +12,7 @@ struct draw_pipeline_info {
     const VkSpecializationInfo *constants;             ///< of the fragment shader; may be NULL
     const VkPipelineVertexInputStateCreateInfo *input; ///< NULL: the vertex shader reads none
     VkCullModeFlags culled;
+    bool blended;  ///< by the color's alpha, and writes no depth
     bool no_color; ///< writes depth, and buffers of the shader, but no color
 };
 
