@@ -48,4 +48,31 @@ printf '2 drop noise.glb\n4 set compare-to budget\n4 key v\n' >drops
 # shellcheck disable=SC2086
 run 0 --headless $validation --size 160x160 --cache . --script drops --frames 6 && grep -q 'noise.glb' err
 fact a_dropped_file_that_cannot_be_read_leaves_the_scene_which_can_be_compared
+
+# Quads of [-1, 1]: a wall, a small one in front that sets the bounds, and two between them that must not be seen.
+quad='\0\0\x80\xbf\0\0\x80\xbf\0\0\0\0\0\0\x80\x3f\0\0\x80\xbf\0\0\0\0'
+quad+='\0\0\x80\x3f\0\0\x80\x3f\0\0\0\0\0\0\x80\xbf\0\0\x80\x3f\0\0\0\0\0\0\1\0\2\0\0\0\2\0\3\0'
+quad=$(printf %b "$quad" | base64 -w 0)
+accessors='{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+  {"bufferView":0,"byteOffset":48,"componentType":5123,"count":6,"type":"SCALAR"}'
+mesh() { printf '{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":%s}]}' "$1"; }
+write_quads() { # NODES
+    printf '{"asset":{"version":"2.0"},"scenes":[{"nodes":%s}],"nodes":[{"mesh":0,"translation":[0,0,-2],
+  "scale":[2,2,1]},{"mesh":0,"scale":[0.1,0.1,1]},{"mesh":1,"translation":[0,0,-1]},
+  {"mesh":2,"translation":[0,0,-0.5]}],"meshes":[%s,%s,%s],"materials":[{"doubleSided":true,
+  "pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0}}},
+  {"alphaMode":"MASK","doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,0.4]}},
+  {"alphaMode":"BLEND","doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,0]}}],
+  "textures":[{"source":0}],"images":[{"uri":"no such.png"}],"accessors":[%s],
+  "bufferViews":[{"buffer":0,"byteLength":60}],
+  "buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,%s"}]}' \
+        "$1" "$(mesh 0)" "$(mesh 1)" "$(mesh 2)" "$accessors" "$quad" >"$2"
+}
+write_quads '[0,1]' wall.gltf && write_quads '[0,1,2,3]' quads.gltf
+for scene in wall quads; do
+    # shellcheck disable=SC2086
+    run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --frames 2 \
+        --screenshot "$scene.png" "$scene.gltf" && grep -q 'no such.png' err || break
+done && cmp wall.png quads.png
+fact masked_and_transparent_quads_are_not_seen_and_a_missing_image_is_named
 end_facts

@@ -100,6 +100,21 @@ static void draw_bar(const struct view_app *app, float width, float height)
             f->budget ? "the budget" : "all textures");
 }
 
+/* The scene's: what is missing, or not supported. */
+static void draw_messages(const struct view_app *app)
+{
+    char text[900] = "";
+    const uint32_t count = stage_message_count(app->stage);
+    size_t length = 0;
+    if (count == 0)
+        return;
+    for (uint32_t i = 0; i < count && length < sizeof text; i++)
+        length += (size_t)snprintf(text + length, sizeof text - length, "%s%s", i > 0 ? "\n" : "",
+                                   stage_message(app->stage, i));
+    ui_text(UI_ORANGE, "%u part%s of the scene cannot be shown", count, count == 1 ? "" : "s");
+    ui_hint("%s", text);
+}
+
 void panel_now(struct view_app *app)
 {
     const struct view_facts *f = &app->facts;
@@ -128,6 +143,7 @@ void panel_now(struct view_app *app)
         if (f->now.failedTileCount + f->now.givenUpTileCount > 0)
             ui_text(UI_RED, "%u tiles failed to load (K)",
                     f->now.failedTileCount + f->now.givenUpTileCount);
+        draw_messages(app);
         if (app->settings.pause)
             ui_text(UI_ORANGE, "streaming is paused (P)");
         if (app->settings.freeze_wants)

@@ -3,23 +3,25 @@
 #define SLUICE_VIEW_SCENE_DATA_H
 
 #include "camera.h"
+#include "scene_material.h"
 
+#include <sluice/manager.h>
 #include <sluice/open.h>
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#define SCENE_NO_IMAGE UINT32_MAX
+#define SCENE_MAX_MESSAGES 64u
 
 struct scene_vertex {
-    float position[3], normal[3], uv[2];
+    float position[3], normal[3], uv[2][2];
 };
 
 /** Triangles of one material. */
 struct scene_part {
     uint32_t first_index, index_count;
-    uint32_t image; ///< SCENE_NO_IMAGE: only the color
-    float color[4];
+    uint32_t material;
+    struct vec3 center;
 };
 
 struct scene_image {
@@ -27,6 +29,11 @@ struct scene_image {
     char *path;                ///< owned; "" if it is computed
     SluiceImageSource *source; ///< owned
     int wrap_u, wrap_v;        ///< VkSamplerAddressMode
+    bool linear;               ///< its bytes are numbers, not colors
+    /** Image whose feedback it follows; SCENE_NO_IMAGE: none. That one follows none. */
+    uint32_t primary;
+    bool transformed;            ///< not sampled where its primary is
+    SluiceUvTransform transform; ///< against the primary
 };
 
 struct scene_data {
@@ -35,7 +42,10 @@ struct scene_data {
     uint32_t *indices;
     struct scene_part *parts;
     struct scene_image *images;
-    uint32_t vertex_count, index_count, part_count, image_count;
+    struct scene_material *materials;
+    uint32_t vertex_count, index_count, part_count, image_count, material_count;
+    char *messages[SCENE_MAX_MESSAGES]; ///< owned: what is missing or not supported
+    uint32_t message_count;
     struct vec3 bounds[2];
     struct view_camera camera;
     struct camera_path tour;
@@ -47,7 +57,15 @@ struct scene_data {
 bool scene_data_make_room(struct scene_data *scene);
 /** A zeroed struct is fine. */
 void scene_data_finish(struct scene_data *scene);
-/** Bounds of all vertices; a camera and a tour around them, where there are none. */
+/** Says on stderr that something is missing, and keeps it for the panels. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+void
+scene_data_note(struct scene_data *scene, const char *format, ...);
+/** Finds the images that can follow the color image of their material (scene_sets.c). */
+void scene_data_find_sets(struct scene_data *scene);
+/** Bounds and centers; a camera and a tour around them, where there are none. */
 void scene_data_complete(struct scene_data *scene);
 
 #endif /* SLUICE_VIEW_SCENE_DATA_H */

@@ -3,10 +3,10 @@
 
 #include "scene_import.h"
 
-#include "../../samples/streaming/cache.h"
-#include "../common/clock.h"
-#include "../common/files.h"
-#include "../common/log.h"
+#include "gltf_geometry.h"
+#include "scene_gltf.h"
+#include "scene_images.h"
+
 #include "../common/text.h"
 
 #include <assimp/cimport.h>
@@ -14,55 +14,32 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <sluice/open.h>
 #include <vulkan/vulkan_core.h>
 
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define MAX_VERTICES (64u << 20)
-#define MAX_DEPTH 64u
+#define MAX_DEPTH (GLTF_MAX_DEPTH + 2) /* Assimp adds a root */
 #define MAX_NODES 1000000u
 #define MAX_KEYS 100000u
-#define BAKE_SECONDS 600.0
+#define STACK_SIZE ((size_t)256 << 20)
 
 struct import {
     const struct aiScene *from;
-    const char *path;
+    const char *path, *cache;
     struct scene_data *scene;
-    uint32_t *images_of_materials; ///< SCENE_NO_IMAGE: none
+    struct gltf_file gltf;
+    bool is_gltf;
 };
-
-static char *copy_text(const char *text)
-{
-    return strdup(text);
-}
 
 static const char *base_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
-}
-
-/* Blanks and other characters may be escaped in glTF. */
-static void join(const char *scene, const char *name, char *path, size_t size)
-{
-    const char *slash = strrchr(scene, '/');
-    size_t length = 0;
-    if (name[0] != '/' && slash)
-        length = (size_t)snprintf(path, size, "%.*s/", (int)(slash - scene), scene);
-    while (*name && length + 1 < size) {
-        unsigned code;
-        if (name[0] == '%' && sscanf(name + 1, "%2x", &code) == 1 && code > 0) {
-            path[length++] = (char)code;
-            name += 3;
-        } else {
-            path[length++] = *name++;
-        }
-    }
-    path[length < size ? length : size - 1] = '\0';
 }
 
 static int wrap_of(enum aiTextureMapMode mode)
@@ -74,84 +51,97 @@ static int wrap_of(enum aiTextureMapMode mode)
     }
 }
 
-static uint32_t find_image(const struct scene_data *scene, const char *path, const int wraps[2])
-{
-    for (uint32_t i = 0; i < scene->image_count; i++)
-        if (strcmp(scene->images[i].path, path) == 0 && scene->images[i].wrap_u == wraps[0] &&
-            scene->images[i].wrap_v == wraps[1])
-            return i;
-    return SCENE_NO_IMAGE;
-}
-
-/* An image that cannot be opened is named and left out. */
+/* An image that cannot be opened is named. */
 static uint32_t add_image(struct import *import, const char *name, const int wraps[2])
 {
     char path[4096];
-    struct scene_data *scene = import->scene;
+    const char *slash = strrchr(import->path, '/');
+    const int length = name[0] != '/' && slash ? (int)(slash - import->path) + 1 : 0;
+    const struct scene_image_request request = {base_name(path), path, wraps[0], wraps[1], false};
     if (name[0] == '*') {
-        text_say("sluice-view: %s: image %s is inside the file, which is not supported",
-                 import->path, name);
+        scene_data_note(import->scene, "%s: image %s is inside the file, which is not supported",
+                        import->path, name);
         return SCENE_NO_IMAGE;
     }
-    join(import->path, name, path, sizeof path);
-    const uint32_t known = find_image(scene, path, wraps);
-    if (known != SCENE_NO_IMAGE)
-        return known;
-    struct scene_image *image = &scene->images[scene->image_count];
-    *image = (struct scene_image){.wrap_u = wraps[0], .wrap_v = wraps[1]};
-    const SluiceResult result = sluiceOpenImageSource(scene->opener, path, &image->source);
-    if (result != SLUICE_SUCCESS) {
-        text_say("sluice-view: %s: %s", path, sluiceGetResultName(result));
+    if (snprintf(path, sizeof path, "%.*s%s", length, import->path, name) >= (int)sizeof path)
         return SCENE_NO_IMAGE;
-    }
-    image->name = copy_text(base_name(path));
-    image->path = copy_text(path);
-    scene->image_count++;
-    return image->name && image->path ? scene->image_count - 1 : SCENE_NO_IMAGE;
+    struct scene_image_request named = request;
+    named.name = base_name(path);
+    return scene_images_add(import->scene, &named);
 }
 
-static uint32_t image_of_material(struct import *import, const struct aiMaterial *material)
-{
-    struct aiString name;
-    enum aiTextureMapMode modes[2] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
-    enum aiTextureType type = aiTextureType_BASE_COLOR;
-    if (aiGetMaterialTextureCount(material, type) == 0)
-        type = aiTextureType_DIFFUSE;
-    if (aiGetMaterialTextureCount(material, type) == 0 ||
-        aiGetMaterialTexture(material, type, 0, &name, NULL, NULL, NULL, NULL, modes, NULL) !=
-            aiReturn_SUCCESS)
-        return SCENE_NO_IMAGE;
-    const int wraps[2] = {wrap_of(modes[0]), wrap_of(modes[1])};
-    return add_image(import, name.data, wraps);
-}
-
-static void read_color(const struct aiMaterial *material, float color[4])
-{
-    struct aiColor4D read = {1, 1, 1, 1};
-    if (aiGetMaterialColor(material, "$clr.base", 0, 0, &read) != aiReturn_SUCCESS)
-        aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &read);
-    const float read_channels[4] = {read.r, read.g, read.b, read.a};
-    for (int i = 0; i < 4; i++)
-        color[i] = isfinite(read_channels[i]) ? read_channels[i] : 1.0f;
-}
-
-/* Assimp has transformed coordinates with V up; here V grows downwards. */
-static void transform_uv(const struct aiMaterial *material, float uv[2])
+/* Assimp has coordinates with V up: v = 1 - V. The same with V down. */
+static void read_transform(const struct aiMaterial *material, enum aiTextureType type, float m[6])
 {
     struct aiUVTransform t;
-    if (aiGetMaterialUVTransform(material, AI_MATKEY_UVTRANSFORM(aiTextureType_DIFFUSE, 0), &t) !=
+    if (aiGetMaterialUVTransform(material, AI_MATKEY_UVTRANSFORM(type, 0), &t) != aiReturn_SUCCESS)
+        return;
+    const float c = cosf(t.mRotation), s = sinf(t.mRotation);
+    const float up[4] = {c * t.mScaling.x, -s * t.mScaling.y, s * t.mScaling.x, c * t.mScaling.y};
+    const float down[6] = {
+        up[0], -up[1], -up[2], up[3], up[1] + t.mTranslation.x, 1 - up[3] - t.mTranslation.y};
+    for (int i = 0; i < 6; i++)
+        if (!isfinite(down[i]))
+            return;
+    memcpy(m, down, sizeof down);
+}
+
+static void read_color_image(struct import *import, const struct aiMaterial *from,
+                             struct scene_material *to)
+{
+    struct aiString name, mask;
+    enum aiTextureMapMode modes[2] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+    enum aiTextureType type = aiTextureType_BASE_COLOR;
+    if (aiGetMaterialTextureCount(from, type) == 0)
+        type = aiTextureType_DIFFUSE;
+    if (aiGetMaterialTexture(from, type, 0, &name, NULL, NULL, NULL, NULL, modes, NULL) !=
         aiReturn_SUCCESS)
         return;
-    const float u = uv[0] * t.mScaling.x, v = (1 - uv[1]) * t.mScaling.y;
-    const float c = cosf(t.mRotation), s = sinf(t.mRotation);
-    uv[0] = c * u - s * v + t.mTranslation.x;
-    uv[1] = 1 - (s * u + c * v + t.mTranslation.y);
+    const int wraps[2] = {wrap_of(modes[0]), wrap_of(modes[1])};
+    to->slots[SLOT_COLOR].image = add_image(import, name.data, wraps);
+    to->missing = to->slots[SLOT_COLOR].image == SCENE_NO_IMAGE;
+    read_transform(from, type, to->slots[SLOT_COLOR].m);
+    if (aiGetMaterialTexture(from, aiTextureType_OPACITY, 0, &mask, NULL, NULL, NULL, NULL, NULL,
+                             NULL) != aiReturn_SUCCESS)
+        return;
+    to->alpha = ALPHA_MASK;
+    if (strcmp(mask.data, name.data) != 0)
+        scene_data_note(import->scene, "%s: opacity image %s is not supported", import->path,
+                        mask.data);
+}
+
+static void read_material(struct import *import, const struct aiMaterial *from,
+                          struct scene_material *to)
+{
+    struct aiColor4D color = {1, 1, 1, 1};
+    scene_material_init(to);
+    if (aiGetMaterialColor(from, "$clr.base", 0, 0, &color) != aiReturn_SUCCESS)
+        aiGetMaterialColor(from, AI_MATKEY_COLOR_DIFFUSE, &color);
+    const float channels[4] = {color.r, color.g, color.b, color.a};
+    for (int i = 0; i < 4; i++)
+        to->color[i] = isfinite(channels[i]) ? channels[i] : 1.0f;
+    read_color_image(import, from, to);
+}
+
+/* Of other files than glTF. */
+static bool take_materials(struct import *import)
+{
+    const uint32_t count = import->from->mNumMaterials;
+    struct scene_data *scene = import->scene;
+    scene->materials = calloc(count + 1u, sizeof *scene->materials);
+    scene->images = calloc(count + 1u, sizeof *scene->images);
+    if (!scene->materials || !scene->images)
+        return false;
+    scene->material_count = count + 1;
+    for (uint32_t i = 0; i < count; i++)
+        read_material(import, import->from->mMaterials[i], &scene->materials[i]);
+    scene_material_init(&scene->materials[count]);
+    return true;
 }
 
 static void add_vertices(struct import *import, const struct aiMesh *mesh,
                          const struct aiMatrix4x4 *to_world)
 {
-    const struct aiMaterial *material = import->from->mMaterials[mesh->mMaterialIndex];
     struct aiMatrix4x4 inverse = *to_world;
     struct aiMatrix3x3 normals;
     aiMatrix4Inverse(&inverse);
@@ -164,27 +154,49 @@ static void add_vertices(struct import *import, const struct aiMesh *mesh,
         if (mesh->mNormals)
             n = mesh->mNormals[i];
         aiTransformVecByMatrix3(&n, &normals);
-        *v = (struct scene_vertex){{p.x, p.y, p.z}, {n.x, n.y, n.z}, {0, 0}};
-        if (mesh->mTextureCoords[0]) {
-            memcpy(v->uv, &mesh->mTextureCoords[0][i], sizeof v->uv);
-            transform_uv(material, v->uv);
-        }
+        *v = (struct scene_vertex){{p.x, p.y, p.z}, {n.x, n.y, n.z}, {{0}}};
+        for (int set = 0; set < 2; set++)
+            if (mesh->mTextureCoords[set])
+                memcpy(v->uv[set], &mesh->mTextureCoords[set][i], sizeof v->uv[set]);
     }
 }
 
+/* Assimp does not check indices. */
+static bool is_triangle(const struct aiMesh *mesh, const struct aiFace *face)
+{
+    for (unsigned k = 0; face->mNumIndices == 3 && k < 3; k++)
+        if (face->mIndices[k] >= mesh->mNumVertices)
+            return false;
+    return face->mNumIndices == 3;
+}
+
+/* The last material is for meshes without one. */
+static uint32_t material_of(const struct import *import, const struct aiMesh *mesh)
+{
+    const uint32_t last = import->scene->material_count - 1;
+    const uint32_t index = mesh->mMaterialIndex;
+    if (index >= import->from->mNumMaterials)
+        return last;
+    return import->is_gltf ? gltf_material_number(&import->gltf, import->from->mMaterials[index])
+                           : index;
+}
+
+/* Mirrored triangles turn the other way. */
 static void add_mesh(struct import *import, const struct aiMesh *mesh,
                      const struct aiMatrix4x4 *to_world)
 {
     struct scene_data *scene = import->scene;
     const uint32_t first = scene->vertex_count;
+    const bool mirrored = aiMatrix4Determinant(to_world) < 0;
     struct scene_part *part = &scene->parts[scene->part_count++];
-    *part = (struct scene_part){.first_index = scene->index_count,
-                                .image = import->images_of_materials[mesh->mMaterialIndex]};
-    read_color(import->from->mMaterials[mesh->mMaterialIndex], part->color);
+    *part = (struct scene_part){.first_index = scene->index_count};
+    part->material = material_of(import, mesh);
     add_vertices(import, mesh, to_world);
-    for (unsigned i = 0; i < mesh->mNumFaces; i++)
-        for (unsigned k = 0; mesh->mFaces[i].mNumIndices == 3 && k < 3; k++)
-            scene->indices[scene->index_count++] = first + mesh->mFaces[i].mIndices[k];
+    for (unsigned i = 0; i < mesh->mNumFaces; i++) {
+        const struct aiFace *face = &mesh->mFaces[i];
+        for (unsigned k = 0; is_triangle(mesh, face) && k < 3; k++)
+            scene->indices[scene->index_count++] = first + face->mIndices[mirrored ? 2 - k : k];
+    }
     part->index_count = scene->index_count - part->first_index;
 }
 
@@ -223,14 +235,18 @@ static void visit_all(struct import *import, struct sums *sums)
     visit(import, import->from->mRootNode, &identity, sums, 0);
 }
 
-/* A camera of the file at a place of its path. Its node stands in the root. */
+/* A camera of the file at a place of its path. `parent` is around its node. */
 static struct view_camera camera_of(const struct aiCamera *camera, struct aiVector3D position,
-                                    const struct aiQuaternion *rotation)
+                                    const struct aiQuaternion *rotation,
+                                    const struct aiMatrix4x4 *parent)
 {
-    struct aiMatrix3x3 turn;
+    struct aiMatrix3x3 turn, outer;
     struct aiVector3D look = camera->mLookAt;
     aiMatrix3FromQuaternion(&turn, rotation);
     aiTransformVecByMatrix3(&look, &turn);
+    aiMatrix3FromMatrix4(&outer, parent);
+    aiTransformVecByMatrix3(&look, &outer);
+    aiTransformVecByMatrix4(&position, parent);
     const struct vec3 eye = {position.x, position.y, position.z};
     const float aspect = camera->mAspect > 0 ? camera->mAspect : 1.777f;
     const float fov = 2 * atanf(tanf(camera->mHorizontalFOV / 2) / aspect);
@@ -240,7 +256,8 @@ static struct view_camera camera_of(const struct aiCamera *camera, struct aiVect
 
 /* Keys of a channel are joined by straight lines; rotations take the nearest key before them. */
 static struct view_camera camera_at_time(const struct aiCamera *camera,
-                                         const struct aiNodeAnim *channel, double time)
+                                         const struct aiNodeAnim *channel, double time,
+                                         const struct aiMatrix4x4 *parent)
 {
     unsigned p = 0, r = 0;
     while (p + 1 < channel->mNumPositionKeys && channel->mPositionKeys[p + 1].mTime <= time)
@@ -255,11 +272,12 @@ static struct view_camera camera_at_time(const struct aiCamera *camera,
                                  at.y + (b->mValue.y - at.y) * part,
                                  at.z + (b->mValue.z - at.z) * part};
     }
-    return camera_of(camera, at, &channel->mRotationKeys[r].mValue);
+    return camera_of(camera, at, &channel->mRotationKeys[r].mValue, parent);
 }
 
 static void take_path(struct import *import, const struct aiCamera *camera,
-                      const struct aiNodeAnim *channel, double ticks)
+                      const struct aiNodeAnim *channel, double ticks,
+                      const struct aiMatrix4x4 *parent)
 {
     const double per_second = ticks > 0 ? ticks : 1000.0;
     if (channel->mNumPositionKeys == 0 || channel->mNumRotationKeys == 0)
@@ -267,96 +285,82 @@ static void take_path(struct import *import, const struct aiCamera *camera,
     float last = -1;
     for (unsigned i = 0; i < channel->mNumRotationKeys && i < MAX_KEYS; i++) {
         const double time = channel->mRotationKeys[i].mTime;
-        const struct view_camera at = camera_at_time(camera, channel, time);
+        const struct view_camera at = camera_at_time(camera, channel, time, parent);
         if ((float)(time / per_second) > last)
             camera_path_add(&import->scene->tour, last = (float)(time / per_second), &at);
     }
     for (unsigned i = 0;
          i < channel->mNumPositionKeys && channel->mNumRotationKeys == 1 && i < MAX_KEYS; i++) {
         const double time = channel->mPositionKeys[i].mTime;
-        const struct view_camera at = camera_at_time(camera, channel, time);
+        const struct view_camera at = camera_at_time(camera, channel, time, parent);
         if ((float)(time / per_second) > last)
             camera_path_add(&import->scene->tour, last = (float)(time / per_second), &at);
     }
 }
 
+static const struct aiNode *find_node(const struct aiNode *node, const char *name, unsigned depth)
+{
+    const struct aiNode *found = strcmp(node->mName.data, name) == 0 ? node : NULL;
+    for (unsigned i = 0; !found && depth < MAX_DEPTH && i < node->mNumChildren; i++)
+        found = find_node(node->mChildren[i], name, depth + 1);
+    return found;
+}
+
+static struct aiMatrix4x4 world_of(const struct aiNode *node)
+{
+    struct aiMatrix4x4 product, inner;
+    aiIdentityMatrix4(&product);
+    for (; node; node = node->mParent) {
+        inner = product;
+        product = node->mTransformation;
+        aiMultiplyMatrix4(&product, &inner);
+    }
+    return product;
+}
+
 static void take_camera(struct import *import)
 {
     const struct aiScene *from = import->from;
-    if (from->mNumCameras == 0)
-        return;
-    const struct aiCamera *camera = from->mCameras[0];
-    const struct aiNode *node = NULL;
-    for (unsigned i = 0; i < from->mRootNode->mNumChildren; i++)
-        if (strcmp(from->mRootNode->mChildren[i]->mName.data, camera->mName.data) == 0)
-            node = from->mRootNode->mChildren[i];
+    const struct aiCamera *camera = from->mNumCameras > 0 ? from->mCameras[0] : NULL;
+    const struct aiNode *node = camera ? find_node(from->mRootNode, camera->mName.data, 0) : NULL;
     if (!node)
         return;
+    const struct aiMatrix4x4 parent = world_of(node->mParent);
     struct aiVector3D scaling, position;
     struct aiQuaternion rotation;
     aiDecomposeMatrix(&node->mTransformation, &scaling, &rotation, &position);
-    import->scene->camera = camera_of(camera, position, &rotation);
+    import->scene->camera = camera_of(camera, position, &rotation, &parent);
     for (unsigned a = 0; a < from->mNumAnimations; a++)
         for (unsigned c = 0; c < from->mAnimations[a]->mNumChannels; c++)
             if (import->scene->tour.count == 0 &&
                 strcmp(from->mAnimations[a]->mChannels[c]->mNodeName.data, camera->mName.data) == 0)
                 take_path(import, camera, from->mAnimations[a]->mChannels[c],
-                          from->mAnimations[a]->mTicksPerSecond);
+                          from->mAnimations[a]->mTicksPerSecond, &parent);
 }
 
 static bool allocate(struct import *import, const struct sums *sums)
 {
-    const struct aiScene *from = import->from;
     struct scene_data *scene = import->scene;
     if (sums->vertices > MAX_VERTICES || sums->indices > 3 * (size_t)MAX_VERTICES)
         return false;
-    scene->name = copy_text(base_name(import->path));
+    scene->name = strdup(base_name(import->path));
     scene->vertices = calloc(sums->vertices + 1, sizeof *scene->vertices);
     scene->indices = calloc(sums->indices + 1, sizeof *scene->indices);
     scene->parts = calloc(sums->parts + 1, sizeof *scene->parts);
-    scene->images = calloc(from->mNumMaterials + 1u, sizeof *scene->images);
-    import->images_of_materials =
-        calloc(from->mNumMaterials + 1u, sizeof *import->images_of_materials);
-    return scene->name && scene->vertices && scene->indices && scene->parts && scene->images &&
-           import->images_of_materials;
-}
-
-/* Pictures without tiles are baked in the background; what waits for them is the same in each run.
- */
-static void wait_for_bakes(const struct scene_data *scene)
-{
-    const double end = clock_seconds() + BAKE_SECONDS;
-    for (uint32_t i = 0; i < scene->image_count; i++) {
-        SluiceOpenedImageInfo info = {.structSize = sizeof info};
-        while (sluiceGetOpenedImageInfo(scene->images[i].source, &info) == SLUICE_SUCCESS &&
-               !info.ready && info.failure == SLUICE_SUCCESS && clock_seconds() < end)
-            clock_sleep_until(clock_seconds() + 0.01);
-    }
-}
-
-static bool create_opener(const char *cache, struct scene_data *scene)
-{
-    char folder[4096];
-    if (!cache_path(cache, "pictures", folder, sizeof folder) || !files_make_folders(folder))
-        return false;
-    const SluiceImageOpenerCreateInfo info = {
-        .structSize = sizeof info, .pCacheFolder = folder, .log = {NULL, log_say}};
-    const SluiceResult result = sluiceCreateImageOpener(&info, &scene->opener);
-    if (result != SLUICE_SUCCESS)
-        text_say("sluice-view: %s", sluiceGetResultName(result));
-    return result == SLUICE_SUCCESS;
+    return scene->name && scene->vertices && scene->indices && scene->parts;
 }
 
 static bool take_scene(struct import *import)
 {
     struct sums sums;
+    if (import->is_gltf ? !scene_gltf_materials(&import->gltf, import->cache, import->scene)
+                        : !take_materials(import))
+        return false;
     visit_all(import, &sums);
     if (!allocate(import, &sums)) {
         text_say("sluice-view: %s: too large, or out of memory", import->path);
         return false;
     }
-    for (unsigned i = 0; i < import->from->mNumMaterials; i++)
-        import->images_of_materials[i] = image_of_material(import, import->from->mMaterials[i]);
     visit_all(import, &sums);
     take_camera(import);
     if (import->scene->index_count > 0)
@@ -365,25 +369,55 @@ static bool take_scene(struct import *import)
     return false;
 }
 
+/* Of Assimp and of all that recurses into its nodes. */
+static void *import_file(void *user)
+{
+    struct import *import = user;
+    const unsigned flags =
+        aiProcess_Triangulate | aiProcess_GenNormals | aiProcess_SortByPType | aiProcess_FlipUVs;
+    import->from = import->is_gltf ? gltf_import_geometry(&import->gltf, flags)
+                                   : aiImportFile(import->path, flags);
+    if (!import->from)
+        text_say("sluice-view: %s: %s", import->path, aiGetErrorString());
+    const bool taken = import->from && take_scene(import);
+    aiReleaseImport(import->from);
+    return taken ? import : NULL;
+}
+
+/* Assimp recurses into what it reads: the stack is large, which costs only what is used of it. */
+static bool import_on_thread(struct import *import)
+{
+    pthread_attr_t attributes;
+    pthread_t thread;
+    void *taken = NULL;
+    if (pthread_attr_init(&attributes) != 0)
+        return false;
+    const bool began = pthread_attr_setstacksize(&attributes, STACK_SIZE) == 0 &&
+                       pthread_create(&thread, &attributes, import_file, import) == 0;
+    pthread_attr_destroy(&attributes);
+    if (!began)
+        text_say("sluice-view: no thread for %s", import->path);
+    return began && pthread_join(thread, &taken) == 0 && taken;
+}
+
 bool scene_import(const char *path, const char *cache, bool wait, struct scene_data *scene)
 {
-    struct import import = {.path = path, .scene = scene};
+    struct import import = {
+        .path = path, .cache = cache, .scene = scene, .is_gltf = gltf_is_name(path)};
     *scene = (struct scene_data){0};
-    if (!create_opener(cache, scene))
-        return false;
-    import.from = aiImportFile(path, aiProcess_Triangulate | aiProcess_GenNormals |
-                                         aiProcess_SortByPType | aiProcess_FlipUVs);
-    bool taken = false;
-    if (!import.from)
-        text_say("sluice-view: %s: %s", path, aiGetErrorString());
-    else
-        taken = take_scene(&import);
-    aiReleaseImport(import.from);
-    free(import.images_of_materials);
+    bool taken = scene_images_create_opener(cache, scene);
+    if (taken && import.is_gltf && !gltf_open(path, &import.gltf)) {
+        text_say("sluice-view: %s", import.gltf.error);
+        taken = false;
+    }
+    taken = taken && import_on_thread(&import);
+    if (import.is_gltf)
+        gltf_finish(&import.gltf);
     if (!taken)
         return false;
+    scene_data_find_sets(scene);
     scene_data_complete(scene);
     if (wait)
-        wait_for_bakes(scene);
+        scene_images_wait(scene);
     return true;
 }

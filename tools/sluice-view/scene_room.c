@@ -105,6 +105,7 @@ static bool add_image(struct scene_data *scene, struct paint *paints, uint32_t i
     added->name = strdup(name);
     added->path = strdup("");
     added->wrap_u = added->wrap_v = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    added->primary = SCENE_NO_IMAGE;
     scene->image_count = i + 1;
     return added->name && added->path &&
            sluiceCreateProceduralImageSource(&image, &info, NULL, &added->source) == SLUICE_SUCCESS;
@@ -121,11 +122,16 @@ static void add_quad(struct scene_data *scene, struct vec3 corner, struct vec3 r
         const struct vec3 at =
             vec3_add(corner, vec3_add(vec3_scale(right, u), vec3_scale(down, v)));
         scene->vertices[scene->vertex_count++] = (struct scene_vertex){
-            {at.x, at.y, at.z}, {normal.x, normal.y, normal.z}, {u * repeat_u, v * repeat_v}};
+            {at.x, at.y, at.z}, {normal.x, normal.y, normal.z}, {{u * repeat_u, v * repeat_v}}};
     }
-    static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
-    scene->parts[scene->part_count++] =
-        (struct scene_part){scene->index_count, 6, image, {0.9f, 0.9f, 0.9f, 1}};
+    static const uint32_t corners[6] = {0, 2, 1, 1, 2, 3};
+    struct scene_material *material = &scene->materials[scene->material_count];
+    scene_material_init(material);
+    for (int i = 0; i < 3; i++)
+        material->color[i] = 0.9f;
+    material->slots[SLOT_COLOR].image = image;
+    scene->parts[scene->part_count++] = (struct scene_part){
+        .first_index = scene->index_count, .index_count = 6, .material = scene->material_count++};
     for (int i = 0; i < 6; i++)
         scene->indices[scene->index_count++] = first + corners[i];
 }
@@ -183,8 +189,9 @@ bool scene_data_make_room(struct scene_data *scene)
     scene->indices = calloc(6 * QUADS, sizeof *scene->indices);
     scene->parts = calloc(QUADS, sizeof *scene->parts);
     scene->images = calloc(IMAGES, sizeof *scene->images);
+    scene->materials = calloc(QUADS, sizeof *scene->materials);
     bool made = paints && scene->name && scene->vertices && scene->indices && scene->parts &&
-                scene->images && add_tour(scene);
+                scene->images && scene->materials && add_tour(scene);
     scene->paints = paints;
     for (uint32_t i = 0; made && i < IMAGES; i++)
         made = add_image(scene, paints, i);

@@ -111,38 +111,62 @@ static const char *format_name(SluiceFormat format)
     case SLUICE_FORMAT_R16G16B16A16_SFLOAT: return "RGBA16F";
     case SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK:
     case SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK: return "BC1";
+    case SLUICE_FORMAT_BC3_SRGB_BLOCK:
+    case SLUICE_FORMAT_BC3_UNORM_BLOCK: return "BC3";
+    case SLUICE_FORMAT_BC7_SRGB_BLOCK:
+    case SLUICE_FORMAT_BC7_UNORM_BLOCK: return "BC7";
     default: return "other";
     }
+}
+
+static bool describe_texture(struct stage *s, uint32_t i, const SluiceVulkanTexture *texture)
+{
+    const struct scene_image *image = &s->scene.images[i];
+    SluiceImageInfo about = {.structSize = sizeof about};
+    SluiceStreamedTextureManager *manager = NULL;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    if (!check(sluiceGetVulkanStreamerManager(s->streamer, &manager), image->name) ||
+        !check(sluiceGetTextureLayout(manager, texture->textureId, &layout), image->name) ||
+        !check(sluiceGetImageInfo(image->source, &about), image->name))
+        return false;
+    s->table_indices[i] = texture->tableIndex;
+    s->textures[i] = (struct stage_texture){texture->textureId,
+                                            image->name,
+                                            image->path,
+                                            texture->width,
+                                            texture->height,
+                                            texture->mipLevelCount,
+                                            image->primary,
+                                            format_name(about.format),
+                                            (uint64_t)layout.tileCount * SLUICE_DEFAULT_TILE_SIZE};
+    return true;
 }
 
 static bool add_texture(struct stage *s, uint32_t i)
 {
     const struct scene_image *image = &s->scene.images[i];
+    const bool follows = image->primary != SCENE_NO_IMAGE;
     SluiceVulkanTexture texture;
-    SluiceImageInfo about = {.structSize = sizeof about};
-    const SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
-                                                .source = s->slow ? s->slow[i] : image->source,
-                                                .addressModeU = (VkSamplerAddressMode)image->wrap_u,
-                                                .addressModeV = (VkSamplerAddressMode)image->wrap_v,
-                                                .explicitAddressModes = true,
-                                                .maxAnisotropy = (float)s->settings.anisotropy};
-    SluiceStreamedTextureManager *manager = NULL;
-    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    if (!check(sluiceAddVulkanTexture(s->streamer, &info, &texture), image->name) ||
-        !check(sluiceGetVulkanStreamerManager(s->streamer, &manager), image->name) ||
-        !check(sluiceGetTextureLayout(manager, texture.textureId, &layout), image->name) ||
-        !check(sluiceGetImageInfo(image->source, &about), image->name))
-        return false;
-    s->table_indices[i] = texture.tableIndex;
-    s->textures[i] = (struct stage_texture){texture.textureId,
-                                            image->name,
-                                            image->path,
-                                            texture.width,
-                                            texture.height,
-                                            texture.mipLevelCount,
-                                            STAGE_NO_TEXTURE,
-                                            format_name(about.format),
-                                            (uint64_t)layout.tileCount * SLUICE_DEFAULT_TILE_SIZE};
+    const SluiceVulkanTextureCreateInfo info = {
+        .structSize = sizeof info,
+        .source = s->slow ? s->slow[i] : image->source,
+        .primaryId = follows ? s->textures[image->primary].id : SLUICE_NO_TEXTURE,
+        .pUvTransform = image->transformed ? &image->transform : NULL,
+        .addressModeU = (VkSamplerAddressMode)image->wrap_u,
+        .addressModeV = (VkSamplerAddressMode)image->wrap_v,
+        .explicitAddressModes = true,
+        .maxAnisotropy = (float)s->settings.anisotropy};
+    return check(sluiceAddVulkanTexture(s->streamer, &info, &texture), image->name) &&
+           describe_texture(s, i, &texture);
+}
+
+/* Primaries first, whose ids the others need. */
+static bool add_textures(struct stage *s)
+{
+    for (int follows = 0; follows < 2; follows++)
+        for (uint32_t i = 0; i < s->scene.image_count; i++)
+            if ((s->scene.images[i].primary != SCENE_NO_IMAGE) == follows && !add_texture(s, i))
+                return false;
     return true;
 }
 
@@ -154,8 +178,8 @@ static bool create_drawing(struct stage *s)
                  "sluiceGetVulkanResidencyMode") &&
            check(sluiceGetVulkanDescriptorSetLayout(s->streamer, &layout),
                  "sluiceGetVulkanDescriptorSetLayout") &&
-           stage_drawing_create(s->gpu, &s->scene, layout, mode == SLUICE_RESIDENCY_MODE_PAGED,
-                                &s->drawing);
+           stage_drawing_create(s->gpu, &s->scene, s->table_indices, layout,
+                                mode == SLUICE_RESIDENCY_MODE_PAGED, &s->drawing);
 }
 
 struct stage *stage_create(const struct stage_request *request,
@@ -172,9 +196,7 @@ struct stage *stage_create(const struct stage_request *request,
     s->textures = calloc(s->scene.image_count + 1, sizeof *s->textures);
     s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
     created = created && s->textures && s->table_indices && begin_slowness(s) &&
-              create_streamer(s, request);
-    for (uint32_t i = 0; created && i < s->scene.image_count; i++)
-        created = add_texture(s, i);
+              create_streamer(s, request) && add_textures(s);
     if (created && create_drawing(s)) {
         stage_apply(s, settings);
         return s;
@@ -210,8 +232,10 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
     if (!check(sluiceGetVulkanStreamerSettings(s->streamer, &now),
                "sluiceGetVulkanStreamerSettings"))
         return;
+    /* As create_streamer allows it; the streamer has no more maps than textures. */
+    const uint32_t most = s->scene.image_count < 1024 ? s->scene.image_count + 1 : 1024;
     now.texturesPerFrame =
-        settings->textures_per_frame < 1024 ? settings->textures_per_frame : 1024;
+        settings->textures_per_frame < most ? settings->textures_per_frame : most;
     now.tilesPerFrame = settings->tiles_per_frame;
     now.numExtraStandbyTiles = settings->standby;
     now.feedbackTimeoutTicks = (uint64_t)(settings->timeout * TICKS_PER_SECOND);
@@ -229,7 +253,7 @@ bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffe
                "sluiceBeginStreamingFrame"))
         return false;
     end->views[UI_TEXTURE_PICTURE] =
-        stage_drawing_record(&s->drawing, &s->scene, draw, s->table_indices, frame.descriptorSet,
+        stage_drawing_record(&s->drawing, &s->scene, draw, frame.descriptorSet,
                              (uint32_t)(draw->number % FRAMES_SLOTS), commands);
     end->signals[end->signal_count++] = (struct frames_signal){frame.semaphore, frame.signalValue};
     return end->views[UI_TEXTURE_PICTURE] &&
@@ -260,6 +284,16 @@ SluiceVulkanStreamer *stage_streamer(const struct stage *s)
 SluiceVulkanContext *stage_context(const struct stage *s)
 {
     return s->context;
+}
+
+uint32_t stage_message_count(const struct stage *s)
+{
+    return s->scene.message_count;
+}
+
+const char *stage_message(const struct stage *s, uint32_t index)
+{
+    return s->scene.messages[index];
 }
 
 uint32_t stage_texture_count(const struct stage *s)
@@ -315,6 +349,22 @@ static float wrap(float x)
     return x - floorf(x);
 }
 
+static struct stage_pick pick_of(const struct scene_data *scene, const struct scene_part *part,
+                                 const struct scene_vertex *const corners[3], float b, float c)
+{
+    const struct scene_slot *slot = &scene->materials[part->material].slots[SLOT_COLOR];
+    const float *m = slot->m;
+    float uv[2];
+    for (int k = 0; k < 2; k++)
+        uv[k] = corners[0]->uv[slot->uv_set][k] * (1 - b - c) +
+                corners[1]->uv[slot->uv_set][k] * b + corners[2]->uv[slot->uv_set][k] * c;
+    return (struct stage_pick){.hit = true,
+                               .texture =
+                                   slot->image == SCENE_NO_IMAGE ? STAGE_NO_TEXTURE : slot->image,
+                               .u = wrap(m[0] * uv[0] + m[1] * uv[1] + m[4]),
+                               .v = wrap(m[2] * uv[0] + m[3] * uv[1] + m[5])};
+}
+
 static void try_part(const struct scene_data *scene, const struct scene_part *part, struct vec3 eye,
                      struct vec3 ray, float *nearest, struct stage_pick *pick)
 {
@@ -322,15 +372,12 @@ static void try_part(const struct scene_data *scene, const struct scene_part *pa
         const uint32_t *index = scene->indices + part->first_index + i;
         const struct scene_vertex *const corners[3] = {
             &scene->vertices[index[0]], &scene->vertices[index[1]], &scene->vertices[index[2]]};
-        float t, b, c, uv[2];
+        float t, b, c;
         if (!meets(eye, ray, corners, &t, &b, &c) || t >= *nearest)
             continue;
         *nearest = t;
-        for (int k = 0; k < 2; k++)
-            uv[k] = corners[0]->uv[k] * (1 - b - c) + corners[1]->uv[k] * b + corners[2]->uv[k] * c;
-        *pick = (struct stage_pick){true,
-                                    part->image == SCENE_NO_IMAGE ? STAGE_NO_TEXTURE : part->image,
-                                    wrap(uv[0]), wrap(uv[1]), vec3_add(eye, vec3_scale(ray, t))};
+        *pick = pick_of(scene, part, corners, b, c);
+        pick->position = vec3_add(eye, vec3_scale(ray, t));
     }
 }
 

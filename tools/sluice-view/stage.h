@@ -66,6 +66,9 @@ bool stage_settle(struct stage *stage);
 const char *stage_name(const struct stage *stage);
 SluiceVulkanStreamer *stage_streamer(const struct stage *stage);
 SluiceVulkanContext *stage_context(const struct stage *stage);
+/** What the scene lacks: images that are missing, extensions that are not supported. */
+uint32_t stage_message_count(const struct stage *stage);
+const char *stage_message(const struct stage *stage, uint32_t index);
 uint32_t stage_texture_count(const struct stage *stage);
 const struct stage_texture *stage_texture(const struct stage *stage, uint32_t index);
 /** What a camera sees at x, y, 0 to 1 from the left and the top. */

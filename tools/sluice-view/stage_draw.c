@@ -3,23 +3,49 @@
 #include "../../samples/common/draw_pipeline.h"
 
 #include "scene_frag.h"
+#include "scene_masked_frag.h"
 #include "scene_vert.h"
 
+#include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
-#define NEAR_PLANE 0.05f
+#define NEAR_PLANE 0.05f /* meters, if the scene is about as large as a room */
 #define FAR_PLANE 500.0f
+#define BOTH_SIDES 3u
+#define SLOT_SECOND_UV 1u
+#define SLOT_WRITES 2u
+#define MATERIAL_MISSING 1u
 
 /* As in shaders/scene_push.glsl. */
 struct push {
     struct mat4 view_projection;
-    float color[4];
-    uint32_t table_index, view, seed;
+    struct vec3 eye;
+    uint32_t material, view, seed;
     float probability, lod_bias, anisotropy, tint;
     uint32_t flags;
 };
-_Static_assert(sizeof(struct push) == 112, "as in scene_push.glsl");
+_Static_assert(sizeof(struct push) == 108, "as in scene_push.glsl");
+
+/* As in shaders/scene_material.glsl. */
+struct gpu_slot {
+    float turn[4], offset[2];
+    uint32_t table_index, flags;
+};
+struct gpu_material {
+    float color[4], emissive[3], cutoff;
+    float metalness, roughness, normal_scale, occlusion;
+    uint32_t flags, unused[3];
+    struct gpu_slot slots[SLOT_COUNT];
+};
+_Static_assert(sizeof(struct gpu_material) == 224, "as in scene_material.glsl");
+
+/** A part that blends, and how far away it is. */
+struct stage_order {
+    float distance;
+    uint32_t part;
+};
 
 static bool fill(const struct gpu *gpu, const void *items, size_t size, VkBufferUsageFlags usage,
                  struct gpu_buffer *buffer)
@@ -30,33 +56,133 @@ static bool fill(const struct gpu *gpu, const void *items, size_t size, VkBuffer
     return true;
 }
 
+/* Followers and slots that are sampled like an earlier one write no feedback. */
+static bool writes(const struct scene_data *scene, const struct scene_material *material, int k)
+{
+    const struct scene_slot *slot = &material->slots[k];
+    if (scene->images[slot->image].primary != SCENE_NO_IMAGE)
+        return false;
+    for (int i = 0; i < k; i++)
+        if (memcmp(&material->slots[i], slot, sizeof *slot) == 0)
+            return false;
+    return true;
+}
+
+static struct gpu_material pack(const struct scene_data *scene,
+                                const struct scene_material *material, const uint32_t *tables)
+{
+    struct gpu_material to = {.cutoff = material->alpha == ALPHA_MASK ? material->cutoff : -1.0f,
+                              .metalness = material->metalness,
+                              .roughness = material->roughness,
+                              .normal_scale = material->normal_scale,
+                              .occlusion = material->occlusion,
+                              .flags = material->missing ? MATERIAL_MISSING : 0u};
+    memcpy(to.color, material->color, sizeof to.color);
+    memcpy(to.emissive, material->emissive, sizeof to.emissive);
+    if (material->alpha == ALPHA_OPAQUE)
+        to.color[3] = 1.0f;
+    for (int k = 0; k < SLOT_COUNT; k++) {
+        const struct scene_slot *slot = &material->slots[k];
+        memcpy(to.slots[k].turn, slot->m, sizeof to.slots[k].turn);
+        memcpy(to.slots[k].offset, slot->m + 4, sizeof to.slots[k].offset);
+        to.slots[k].table_index = UINT32_MAX;
+        if (slot->image == SCENE_NO_IMAGE)
+            continue;
+        to.slots[k].table_index = tables[slot->image];
+        to.slots[k].flags =
+            (slot->uv_set ? SLOT_SECOND_UV : 0u) | (writes(scene, material, k) ? SLOT_WRITES : 0u);
+    }
+    return to;
+}
+
+static bool fill_materials(struct stage_drawing *d, const struct scene_data *scene,
+                           const uint32_t *tables)
+{
+    if (!gpu_create_buffer(d->gpu, (scene->material_count + 1u) * sizeof(struct gpu_material),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &d->materials))
+        return false;
+    struct gpu_material *to = d->materials.mapped;
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        to[i] = pack(scene, &scene->materials[i], tables);
+    return true;
+}
+
+static bool create_set(struct stage_drawing *d)
+{
+    VkDevice device = d->gpu->device;
+    const VkDescriptorSetLayoutBinding binding = {0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+                                                  VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
+    const VkDescriptorSetLayoutCreateInfo layout = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = 1,
+        .pBindings = &binding};
+    const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
+    const VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                             .maxSets = 1,
+                                             .poolSizeCount = 1,
+                                             .pPoolSizes = &size};
+    if (!gpu_check(vkCreateDescriptorSetLayout(device, &layout, NULL, &d->set_layout),
+                   "vkCreateDescriptorSetLayout") ||
+        !gpu_check(vkCreateDescriptorPool(device, &pool, NULL, &d->pool), "vkCreateDescriptorPool"))
+        return false;
+    const VkDescriptorSetAllocateInfo set = {.sType =
+                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                             .descriptorPool = d->pool,
+                                             .descriptorSetCount = 1,
+                                             .pSetLayouts = &d->set_layout};
+    if (!gpu_check(vkAllocateDescriptorSets(device, &set, &d->set), "vkAllocateDescriptorSets"))
+        return false;
+    const VkDescriptorBufferInfo buffer = {d->materials.buffer, 0, VK_WHOLE_SIZE};
+    const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                        .dstSet = d->set,
+                                        .descriptorCount = 1,
+                                        .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                        .pBufferInfo = &buffer};
+    vkUpdateDescriptorSets(device, 1, &write, 0, NULL);
+    return true;
+}
+
 static bool create_layout(struct stage_drawing *d, VkDescriptorSetLayout set_layout)
 {
+    const VkDescriptorSetLayout layouts[2] = {set_layout, d->set_layout};
     const VkPushConstantRange range = {.stageFlags = VK_SHADER_STAGE_VERTEX_BIT |
                                                      VK_SHADER_STAGE_FRAGMENT_BIT,
                                        .size = sizeof(struct push)};
     const VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                             .setLayoutCount = 1,
-                                             .pSetLayouts = &set_layout,
+                                             .setLayoutCount = 2,
+                                             .pSetLayouts = layouts,
                                              .pushConstantRangeCount = 1,
                                              .pPushConstantRanges = &range};
     return gpu_check(vkCreatePipelineLayout(d->gpu->device, &info, NULL, &d->layout),
                      "vkCreatePipelineLayout");
 }
 
-static bool create_pipeline(struct stage_drawing *d, bool paged)
+static uint32_t pipeline_of(const struct scene_material *material)
+{
+    return (uint32_t)material->alpha + (material->double_sided ? BOTH_SIDES : 0u);
+}
+
+static VkShaderModule create_fragment(const struct gpu *gpu, uint32_t pipeline)
+{
+    return pipeline % BOTH_SIDES == ALPHA_MASK
+               ? gpu_create_shader(gpu, scene_masked_frag, sizeof scene_masked_frag)
+               : gpu_create_shader(gpu, scene_frag, sizeof scene_frag);
+}
+
+static bool create_pipeline(struct stage_drawing *d, uint32_t pipeline, bool paged)
 {
     const VkVertexInputBindingDescription binding = {0, sizeof(struct scene_vertex),
                                                      VK_VERTEX_INPUT_RATE_VERTEX};
     const VkVertexInputAttributeDescription attributes[] = {
         {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct scene_vertex, position)},
         {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct scene_vertex, normal)},
-        {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct scene_vertex, uv)}};
+        {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct scene_vertex, uv)},
+        {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct scene_vertex, uv[1])}};
     const VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
         .vertexBindingDescriptionCount = 1,
         .pVertexBindingDescriptions = &binding,
-        .vertexAttributeDescriptionCount = 3,
+        .vertexAttributeDescriptionCount = 4,
         .pVertexAttributeDescriptions = attributes};
     const VkBool32 constant = paged;
     const VkSpecializationMapEntry entry = {0, 0, sizeof constant};
@@ -65,27 +191,42 @@ static bool create_pipeline(struct stage_drawing *d, bool paged)
         .target = &d->targets[0],
         .layout = d->layout,
         .vertex = gpu_create_shader(d->gpu, scene_vert, sizeof scene_vert),
-        .fragment = gpu_create_shader(d->gpu, scene_frag, sizeof scene_frag),
+        .fragment = create_fragment(d->gpu, pipeline),
         .constants = &constants,
         .input = &input,
-        .culled = VK_CULL_MODE_NONE};
-    bool created =
-        info.vertex && info.fragment && draw_pipeline_create(d->gpu, &info, &d->pipeline);
+        .culled = pipeline >= BOTH_SIDES ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT,
+        .blended = pipeline % BOTH_SIDES == ALPHA_BLEND};
+    bool created = info.vertex && info.fragment &&
+                   draw_pipeline_create(d->gpu, &info, &d->pipelines[pipeline]);
     vkDestroyShaderModule(d->gpu->device, info.vertex, NULL);
     vkDestroyShaderModule(d->gpu->device, info.fragment, NULL);
     return created;
 }
 
+static bool create_pipelines(struct stage_drawing *d, const struct scene_data *scene, bool paged)
+{
+    for (uint32_t i = 0; i < scene->part_count; i++) {
+        const uint32_t pipeline = pipeline_of(&scene->materials[scene->parts[i].material]);
+        if (!d->pipelines[pipeline] && !create_pipeline(d, pipeline, paged))
+            return false;
+    }
+    return true;
+}
+
 bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
-                          VkDescriptorSetLayout set_layout, bool paged, struct stage_drawing *d)
+                          const uint32_t *table_indices, VkDescriptorSetLayout set_layout,
+                          bool paged, struct stage_drawing *d)
 {
     *d = (struct stage_drawing){.gpu = gpu};
-    if (fill(gpu, scene->vertices, scene->vertex_count * sizeof *scene->vertices,
+    d->order = calloc(scene->part_count + 1u, sizeof *d->order);
+    if (d->order &&
+        fill(gpu, scene->vertices, scene->vertex_count * sizeof *scene->vertices,
              VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, &d->vertices) &&
         fill(gpu, scene->indices, scene->index_count * sizeof *scene->indices,
              VK_BUFFER_USAGE_INDEX_BUFFER_BIT, &d->indices) &&
+        fill_materials(d, scene, table_indices) && create_set(d) &&
         target_create(gpu, 16, 16, 1, &d->targets[0]) && create_layout(d, set_layout) &&
-        create_pipeline(d, paged))
+        create_pipelines(d, scene, paged))
         return true;
     stage_drawing_destroy(d);
     return false;
@@ -97,8 +238,13 @@ void stage_drawing_destroy(struct stage_drawing *d)
         return;
     for (int i = 0; i < FRAMES_SLOTS; i++)
         target_destroy(d->gpu, &d->targets[i]);
-    vkDestroyPipeline(d->gpu->device, d->pipeline, NULL);
+    for (int i = 0; i < STAGE_PIPELINES; i++)
+        vkDestroyPipeline(d->gpu->device, d->pipelines[i], NULL);
     vkDestroyPipelineLayout(d->gpu->device, d->layout, NULL);
+    vkDestroyDescriptorPool(d->gpu->device, d->pool, NULL);
+    vkDestroyDescriptorSetLayout(d->gpu->device, d->set_layout, NULL);
+    gpu_destroy_buffer(d->gpu, &d->materials);
+    free(d->order);
     gpu_destroy_buffer(d->gpu, &d->vertices);
     gpu_destroy_buffer(d->gpu, &d->indices);
     *d = (struct stage_drawing){0};
@@ -114,37 +260,86 @@ static bool fit_target(struct stage_drawing *d, struct target *target, uint32_t 
     return target_create(d->gpu, width, height, 1, target);
 }
 
-static struct mat4 matrix_of(const struct view_camera *camera, float aspect)
+static struct mat4 matrix_of(const struct scene_data *scene, const struct view_camera *camera,
+                             float aspect)
 {
+    const struct vec3 box = vec3_sub(scene->bounds[1], scene->bounds[0]);
+    const float size = sqrtf(vec3_dot(box, box));
+    const float near = size < 20 ? NEAR_PLANE * fmaxf(size, 1e-3f) / 20 : NEAR_PLANE;
+    const float far = fmaxf(FAR_PLANE * near / NEAR_PLANE, 8 * size);
     const struct mat4 view =
         mat4_look_at(camera->position, vec3_add(camera->position, view_camera_forward(camera)));
-    const struct mat4 projection = mat4_perspective(camera->fov, aspect, NEAR_PLANE, FAR_PLANE);
+    const struct mat4 projection = mat4_perspective(camera->fov, aspect, near, far);
     return mat4_multiply(&projection, &view);
 }
 
-static void draw_parts(const struct stage_drawing *d, const struct scene_data *scene,
-                       const struct stage_draw *draw, const uint32_t *table_indices,
-                       VkCommandBuffer commands)
+static struct push push_of(const struct scene_data *scene, const struct stage_draw *draw)
 {
     const struct view_settings *s = draw->settings;
     const bool writes = s->feedback == VIEW_FEEDBACK_ON && !s->pause && !s->freeze_wants;
-    struct push push = {.view_projection =
-                            matrix_of(&draw->camera, (float)draw->width / (float)draw->height),
-                        .view = s->view,
-                        .seed = (uint32_t)draw->number,
-                        .probability = writes ? (float)s->probability : 0.0f,
-                        .lod_bias = (float)s->lod_bias,
-                        .anisotropy = (float)s->anisotropy,
-                        .tint = (float)s->tint,
-                        .flags = s->borders ? 1u : 0u};
+    return (struct push){.view_projection = matrix_of(scene, &draw->camera,
+                                                      (float)draw->width / (float)draw->height),
+                         .eye = draw->camera.position,
+                         .view = s->view,
+                         .seed = (uint32_t)draw->number,
+                         .probability = writes ? (float)s->probability : 0.0f,
+                         .lod_bias = (float)s->lod_bias,
+                         .anisotropy = (float)s->anisotropy,
+                         .tint = (float)s->tint,
+                         .flags = s->borders ? 1u : 0u};
+}
+
+static void draw_part(const struct stage_drawing *d, const struct scene_part *part,
+                      struct push *push, VkCommandBuffer commands)
+{
+    push->material = part->material;
+    vkCmdPushConstants(commands, d->layout,
+                       VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof *push,
+                       push);
+    vkCmdDrawIndexed(commands, part->index_count, 1, part->first_index, 0, 0);
+}
+
+static int compare_far_first(const void *a, const void *b)
+{
+    const struct stage_order *left = a, *right = b;
+    if (left->distance != right->distance)
+        return left->distance < right->distance ? 1 : -1;
+    return left->part < right->part ? -1 : 1;
+}
+
+/* Returns how many. */
+static uint32_t order_blended(struct stage_drawing *d, const struct scene_data *scene,
+                              const struct vec3 eye)
+{
+    uint32_t count = 0;
     for (uint32_t i = 0; i < scene->part_count; i++) {
-        const struct scene_part *part = &scene->parts[i];
-        push.table_index = part->image == SCENE_NO_IMAGE ? UINT32_MAX : table_indices[part->image];
-        memcpy(push.color, part->color, sizeof push.color);
-        vkCmdPushConstants(commands, d->layout,
-                           VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                           sizeof push, &push);
-        vkCmdDrawIndexed(commands, part->index_count, 1, part->first_index, 0, 0);
+        const struct vec3 to = vec3_sub(scene->parts[i].center, eye);
+        if (scene->materials[scene->parts[i].material].alpha == ALPHA_BLEND)
+            d->order[count++] = (struct stage_order){vec3_dot(to, to), i};
+    }
+    qsort(d->order, count, sizeof *d->order, compare_far_first);
+    return count;
+}
+
+/* Parts that blend come last. */
+static void draw_parts(struct stage_drawing *d, const struct scene_data *scene,
+                       const struct stage_draw *draw, VkCommandBuffer commands)
+{
+    struct push push = push_of(scene, draw);
+    for (uint32_t pipeline = 0; pipeline < STAGE_PIPELINES; pipeline++) {
+        if (!d->pipelines[pipeline] || pipeline % BOTH_SIDES == ALPHA_BLEND)
+            continue;
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, d->pipelines[pipeline]);
+        for (uint32_t i = 0; i < scene->part_count; i++)
+            if (pipeline_of(&scene->materials[scene->parts[i].material]) == pipeline)
+                draw_part(d, &scene->parts[i], &push, commands);
+    }
+    const uint32_t blended = order_blended(d, scene, draw->camera.position);
+    for (uint32_t i = 0; i < blended; i++) {
+        const struct scene_part *part = &scene->parts[d->order[i].part];
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                          d->pipelines[pipeline_of(&scene->materials[part->material])]);
+        draw_part(d, part, &push, commands);
     }
 }
 
@@ -167,8 +362,8 @@ static void record_layout(const struct target *target, VkCommandBuffer commands)
 }
 
 VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_data *scene,
-                                 const struct stage_draw *draw, const uint32_t *table_indices,
-                                 VkDescriptorSet set, uint32_t slot, VkCommandBuffer commands)
+                                 const struct stage_draw *draw, VkDescriptorSet set, uint32_t slot,
+                                 VkCommandBuffer commands)
 {
     static const float sky[4] = {0.16f, 0.18f, 0.21f, 1};
     const VkDeviceSize offset = 0;
@@ -176,12 +371,12 @@ VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_dat
     if (!fit_target(d, target, draw->width, draw->height))
         return VK_NULL_HANDLE;
     target_begin(target, commands, sky);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, d->pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, d->layout, 0, 1, &set, 0,
+    const VkDescriptorSet sets[2] = {set, d->set};
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, d->layout, 0, 2, sets, 0,
                             NULL);
     vkCmdBindVertexBuffers(commands, 0, 1, &d->vertices.buffer, &offset);
     vkCmdBindIndexBuffer(commands, d->indices.buffer, 0, VK_INDEX_TYPE_UINT32);
-    draw_parts(d, scene, draw, table_indices, commands);
+    draw_parts(d, scene, draw, commands);
     target_end(target, commands);
     record_layout(target, commands);
     return target->color.view;

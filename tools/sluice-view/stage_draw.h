@@ -6,24 +6,31 @@
 #include "scene_data.h"
 #include "stage.h"
 
+/** By enum scene_alpha; the second half shows both sides of triangles. */
+#define STAGE_PIPELINES 6
+
 struct stage_drawing {
     const struct gpu *gpu; ///< borrowed
-    struct gpu_buffer vertices, indices;
+    struct gpu_buffer vertices, indices, materials;
+    VkDescriptorSetLayout set_layout; ///< of the materials
+    VkDescriptorPool pool;
+    VkDescriptorSet set;
     VkPipelineLayout layout;
-    VkPipeline pipeline;
-    struct target targets[FRAMES_SLOTS]; ///< one for each frame in flight
+    VkPipeline pipelines[STAGE_PIPELINES]; ///< those that materials need
+    struct stage_order *order;             ///< owned; of the parts that blend
+    struct target targets[FRAMES_SLOTS];   ///< one for each frame in flight
 };
 
-/** `set_layout`: the streamer's. Says on stderr what failed. */
+/** `table_indices`: of the images. `set_layout`: the streamer's. Says on stderr what failed. */
 bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
-                          VkDescriptorSetLayout set_layout, bool paged,
-                          struct stage_drawing *drawing);
+                          const uint32_t *table_indices, VkDescriptorSetLayout set_layout,
+                          bool paged, struct stage_drawing *drawing);
 /** No frame may be in flight. A zeroed struct is fine. */
 void stage_drawing_destroy(struct stage_drawing *drawing);
 /** Records the picture into the slot's target, whose view it returns in SHADER_READ_ONLY_OPTIMAL.
- *  `table_indices`: of the images. VK_NULL_HANDLE if that failed. */
+ *  VK_NULL_HANDLE if that failed. */
 VkImageView stage_drawing_record(struct stage_drawing *drawing, const struct scene_data *scene,
-                                 const struct stage_draw *draw, const uint32_t *table_indices,
-                                 VkDescriptorSet set, uint32_t slot, VkCommandBuffer commands);
+                                 const struct stage_draw *draw, VkDescriptorSet set, uint32_t slot,
+                                 VkCommandBuffer commands);
 
 #endif /* SLUICE_VIEW_STAGE_DRAW_H */

@@ -1,0 +1,130 @@
+#include "scene_gltf.h"
+
+#include "gltf_materials.h"
+#include "scene_images.h"
+
+#include "../common/text.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define UNKNOWN (UINT32_MAX - 1)
+
+struct opening {
+    struct gltf_file *file;
+    const char *cache;
+    struct scene_data *scene;
+    uint32_t *images; ///< of the scene; two per texture: colors and numbers
+};
+
+static void say_extension(void *user, const char *extension, bool required)
+{
+    static const char *const harmless[] = {"KHR_lights_punctual", "KHR_texture_basisu"};
+    struct opening *o = user;
+    for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
+        if (strcmp(extension, harmless[i]) == 0 && !required)
+            return;
+    scene_data_note(o->scene, "%s: %s %.100s, which is not supported", o->file->path,
+                    required ? "requires" : "uses", extension);
+}
+
+static uint32_t open_image(struct opening *o, const struct gltf_texture *texture, bool linear)
+{
+    char path[4096], name[64];
+    struct gltf_image image = gltf_read_image(o->file, texture->image);
+    uint32_t index = SCENE_NO_IMAGE;
+    struct scene_image_request request = {
+        .path = path, .wrap_u = texture->wrap_u, .wrap_v = texture->wrap_v, .linear = linear};
+    snprintf(name, sizeof name, "image %u", texture->image);
+    request.name = name;
+    if (image.problem) {
+        scene_data_note(o->scene, "%s: images[%u]: %s", o->file->path, texture->image,
+                        image.problem);
+    } else if (!image.uri) {
+        if (scene_images_keep(o->cache, image.bytes.bytes, (size_t)image.bytes.size, path,
+                              sizeof path))
+            index = scene_images_add(o->scene, &request);
+    } else if (!gltf_path(o->file, image.uri, path, sizeof path)) {
+        scene_data_note(o->scene, "%s: images[%u]: %.200s is no file", o->file->path,
+                        texture->image, image.uri);
+    } else {
+        const char *slash = strrchr(path, '/');
+        request.name = slash ? slash + 1 : path;
+        index = scene_images_add(o->scene, &request);
+    }
+    free(image.bytes.owned);
+    return index;
+}
+
+static uint32_t image_of(struct opening *o, uint32_t texture_index, bool linear)
+{
+    uint32_t *known = &o->images[2 * (size_t)texture_index + (linear ? 1 : 0)];
+    if (*known != UNKNOWN)
+        return *known;
+    const struct gltf_texture texture = gltf_read_texture(o->file, texture_index);
+    *known = SCENE_NO_IMAGE;
+    if (texture.problem)
+        scene_data_note(o->scene, "%s: textures[%u]: %s", o->file->path, texture_index,
+                        texture.problem);
+    else
+        *known = open_image(o, &texture, linear);
+    return *known;
+}
+
+static bool read_material(struct opening *o, uint32_t index)
+{
+    struct scene_material *material = &o->scene->materials[index];
+    if (!gltf_read_material(o->file, index, material))
+        return false;
+    for (int k = 0; k < SLOT_COUNT; k++) {
+        struct scene_slot *slot = &material->slots[k];
+        const bool has_image = slot->image != SCENE_NO_IMAGE;
+        if (slot->uv_set > 1) {
+            scene_data_note(o->scene, "%s: materials[%u]: TEXCOORD_%u is not supported",
+                            o->file->path, index, slot->uv_set);
+            slot->image = SCENE_NO_IMAGE;
+            slot->uv_set = 0;
+        } else if (has_image) {
+            slot->image = image_of(o, slot->image, k != SLOT_COLOR && k != SLOT_EMISSIVE);
+        }
+        if (k == SLOT_COLOR)
+            material->missing = has_image && slot->image == SCENE_NO_IMAGE;
+    }
+    /* Light of an image that is missing would be everywhere. */
+    if (material->slots[SLOT_EMISSIVE].image == SCENE_NO_IMAGE &&
+        cJSON_GetObjectItemCaseSensitive(o->file->lists[GLTF_MATERIALS].items[index],
+                                         "emissiveTexture"))
+        memset(material->emissive, 0, sizeof material->emissive);
+    return true;
+}
+
+static bool read_all(struct opening *o)
+{
+    const uint32_t materials = o->file->lists[GLTF_MATERIALS].count;
+    const uint32_t textures = o->file->lists[GLTF_TEXTURES].count;
+    o->scene->materials = calloc(materials + 1u, sizeof *o->scene->materials);
+    o->scene->images = calloc(2 * (size_t)textures + 1, sizeof *o->scene->images);
+    o->images = malloc((2 * (size_t)textures + 1) * sizeof *o->images);
+    if (!o->scene->materials || !o->scene->images || !o->images)
+        return gltf_fail(o->file, "out of memory");
+    o->scene->material_count = materials + 1;
+    scene_material_init(&o->scene->materials[materials]);
+    for (size_t i = 0; i < 2 * (size_t)textures; i++)
+        o->images[i] = UNKNOWN;
+    gltf_name_extensions(o->file, say_extension, o);
+    for (uint32_t i = 0; i < materials; i++)
+        if (!read_material(o, i))
+            return false;
+    return true;
+}
+
+bool scene_gltf_materials(struct gltf_file *file, const char *cache, struct scene_data *scene)
+{
+    struct opening opening = {file, cache, scene, NULL};
+    const bool read = read_all(&opening);
+    free(opening.images);
+    if (!read)
+        text_say("sluice-view: %s", file->error);
+    return read;
+}

@@ -1,0 +1,27 @@
+/** Opens the images of a scene. */
+#ifndef SLUICE_VIEW_SCENE_IMAGES_H
+#define SLUICE_VIEW_SCENE_IMAGES_H
+
+#include "scene_data.h"
+
+struct scene_image_request {
+    const char *name; ///< for people
+    const char *path;
+    int wrap_u, wrap_v;
+    bool linear;
+};
+
+/** `cache`: folder for baked pictures and for images that lie inside other files. */
+bool scene_images_create_opener(const char *cache, struct scene_data *scene);
+/** The index of an image, opened once; SCENE_NO_IMAGE and a note if it cannot be. scene->images has
+ *  room for it. */
+uint32_t scene_images_add(struct scene_data *scene, const struct scene_image_request *request);
+/** Writes bytes into a file of the cache, named by what they are, unless it is there. The opener
+ *  reads pictures from files alone. False with a line on stderr. */
+bool scene_images_keep(const char *cache, const void *bytes, size_t size, char *path,
+                       size_t path_size);
+/** Pictures without tiles are baked in the background; what waits for them is the same in each
+ *  run. */
+void scene_images_wait(const struct scene_data *scene);
+
+#endif /* SLUICE_VIEW_SCENE_IMAGES_H */
