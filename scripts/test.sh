@@ -58,7 +58,7 @@ if [ "$quick" = no ]; then
     tap_stage consumer tests/consumer/run.sh
     # The library, its tools and its tests; CONTRIBUTING.md says how samples are looked at.
     sanitizer_stage clang-sanitizers sanitize address,undefined -Dbuildtype=debugoptimized -Ddefault_library=static -Dsamples=disabled -Dviewer=disabled
-    sanitizer_stage clang-threads tsan thread -Dbuildtype=debugoptimized -Ddefault_library=shared -Dsamples=disabled -Dviewer=disabled -Dpbrt=disabled -Dneural=disabled
+    sanitizer_stage clang-threads tsan thread -Dbuildtype=debugoptimized -Ddefault_library=static -Dsamples=disabled -Dviewer=disabled -Dpbrt=disabled -Dneural=disabled
 
     # Every feature off, as a static library; replays must decide the same as with -O2 of gcc and of
     # clang. What is slow has run twice by now and depends on none of this.

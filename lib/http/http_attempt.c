@@ -9,6 +9,8 @@
 
 /* Bodies of answers that are errors are read up to here, so that the connection lives on. */
 #define MAX_SWALLOWED ((uint64_t)64 << 10)
+#define MAX_REDIRECT_BODY ((uint64_t)1 << 20)
+#define MAX_RETRY_AFTER 86400 /* seconds */
 
 struct attempt {
     const struct slc_http_request *request;
@@ -79,20 +81,25 @@ static bool is_redirect(uint32_t status)
     return status == 301 || status == 302 || status == 303 || status == 307 || status == 308;
 }
 
+/* The version of an answer must be told as that of the opened file was. */
 static bool check_version(struct attempt *attempt)
 {
     const SluiceHttpFile *file = attempt->request->file;
     const struct slc_http_header *header = &attempt->header;
     if (!file)
         return true;
+    bool have_etags = file->etag[0] && header->etag[0];
+    bool have_dates = file->modified[0] && header->modified[0];
     if (header->total_size != UINT64_MAX && header->total_size != file->size)
         end_changed(attempt, "its size");
-    else if (file->etag[0] && header->etag[0] && strcmp(file->etag, header->etag) != 0)
+    else if (have_etags && strcmp(file->etag, header->etag) != 0)
         end_changed(attempt, "its ETag");
-    else if (!file->etag[0] && file->modified[0] && header->modified[0] &&
-             strcmp(file->modified, header->modified) != 0)
+    else if (!have_etags && have_dates && strcmp(file->modified, header->modified) != 0)
         end_changed(attempt, "its date");
-    return !attempt->answer->is_changed;
+    else if ((file->etag[0] || file->modified[0]) && !have_etags && !have_dates)
+        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO,
+               "the answer tells no ETag and no date, and the opened file had one");
+    return attempt->answer->outcome == SLC_HTTP_OK;
 }
 
 static void check_range(struct attempt *attempt)
@@ -179,6 +186,15 @@ static void scatter(const struct slc_http_request *request, uint64_t at, const c
     }
 }
 
+/* Of an answer that is not the range: the rest is read, unless it is long. libcurl tells the place
+ * of a redirect only when its body has ended. */
+static bool is_worth_reading(const struct attempt *attempt)
+{
+    uint64_t most = is_redirect(attempt->header.status) ? MAX_REDIRECT_BODY : MAX_SWALLOWED;
+    uint64_t length = attempt->header.length;
+    return attempt->answer->received <= most && (length == UINT64_MAX || length <= most);
+}
+
 static size_t write_body(char *bytes, size_t size, size_t count, void *user)
 {
     struct attempt *attempt = user;
@@ -187,8 +203,7 @@ static size_t write_body(char *bytes, size_t size, size_t count, void *user)
     check_header(attempt);
     if (!attempt->is_accepted) {
         answer->received += size;
-        return answer->received <= MAX_SWALLOWED && attempt->header.length <= MAX_SWALLOWED ? size
-                                                                                            : 0;
+        return is_worth_reading(attempt) ? size : 0;
     }
     if (size > attempt->expected - answer->received) {
         end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO, "the body is longer than %llu bytes",
@@ -204,7 +219,8 @@ static size_t write_body(char *bytes, size_t size, size_t count, void *user)
 static size_t write_header(char *line, size_t size, size_t count, void *user)
 {
     struct attempt *attempt = user;
-    slc_http_header_line(&attempt->header, line, size * count);
+    if (!attempt->is_checked) /* else it is a trailer, behind the body */
+        slc_http_header_line(&attempt->header, line, size * count);
     return size * count;
 }
 
@@ -228,7 +244,8 @@ static int progress(void *user, curl_off_t a, curl_off_t received, curl_off_t b,
 static bool is_lasting(CURLcode code)
 {
     return code == CURLE_PEER_FAILED_VERIFICATION || code == CURLE_SSL_CACERT_BADFILE ||
-           code == CURLE_URL_MALFORMAT || code == CURLE_SSL_CERTPROBLEM ||
+           code == CURLE_URL_MALFORMAT || code == CURLE_UNKNOWN_OPTION ||
+           code == CURLE_NOT_BUILT_IN || code == CURLE_SSL_CERTPROBLEM ||
            code == CURLE_SSL_ENGINE_NOTFOUND;
 }
 
@@ -243,8 +260,9 @@ static void check_failure(struct attempt *attempt, CURLcode code, const char *te
         answer->outcome = SLC_HTTP_CANCELLED;
         answer->result = SLUICE_ERROR_IO;
     } else if (code == CURLE_WRITE_ERROR) {
-        if (answer->outcome == SLC_HTTP_OK) /* a large body of a redirect */
-            attempt->is_accepted = false;
+        if (answer->outcome == SLC_HTTP_OK)
+            end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_IO,
+                   "the server redirects with a body of more than 1 MiB");
     } else if (code == CURLE_OUT_OF_MEMORY) {
         end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_OUT_OF_HOST_MEMORY, "libcurl: no memory");
     } else {
@@ -308,7 +326,27 @@ static struct curl_slist *make_headers(const struct slc_http_request *request)
     return grown;
 }
 
-static void set_options(struct attempt *attempt, struct curl_slist *headers, char *error)
+/* Where to ask, and for whom. Nothing is asked if one of these fails: a password could go out in
+ * the open, or a certificate be trusted that should not. */
+static CURLcode set_target(CURL *easy, const struct slc_http_request *request, const char *range)
+{
+    const SluiceHttpClient *client = request->client;
+    CURLcode code = curl_easy_setopt(easy, CURLOPT_URL, request->url->full);
+    if (code == CURLE_OK)
+        code = curl_easy_setopt(easy, CURLOPT_RANGE, range);
+    if (code == CURLE_OK && client->certificate_file)
+        code = curl_easy_setopt(easy, CURLOPT_CAINFO, client->certificate_file);
+    if (code != CURLE_OK || !request->is_own || !request->url->is_s3 || !client->signature)
+        return code;
+    code = curl_easy_setopt(easy, CURLOPT_AWS_SIGV4, client->signature);
+    if (code == CURLE_OK)
+        code = curl_easy_setopt(easy, CURLOPT_USERNAME, client->s3.access_key);
+    if (code == CURLE_OK)
+        code = curl_easy_setopt(easy, CURLOPT_PASSWORD, client->s3.secret_key);
+    return code;
+}
+
+static CURLcode set_options(struct attempt *attempt, struct curl_slist *headers, char *error)
 {
     const struct slc_http_request *request = attempt->request;
     const SluiceHttpClient *client = request->client;
@@ -317,11 +355,13 @@ static void set_options(struct attempt *attempt, struct curl_slist *headers, cha
     snprintf(range, sizeof range, "%llu-%llu", (unsigned long long)request->offset,
              (unsigned long long)(request->offset + request->size - 1));
     curl_easy_reset(easy);
-    curl_easy_setopt(easy, CURLOPT_URL, request->url->full);
-    curl_easy_setopt(easy, CURLOPT_RANGE, range);
     curl_easy_setopt(easy, CURLOPT_HTTPHEADER, headers);
+    curl_easy_setopt(easy, CURLOPT_PATH_AS_IS, 1L);
     curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1);
     curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
+#if LIBCURL_VERSION_NUM >= 0x075700
+    curl_easy_setopt(easy, CURLOPT_QUICK_EXIT, 1L); /* does not await a name that is looked up */
+#endif
     curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)client->settings.connect_timeout);
     curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, error);
     curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, write_body);
@@ -332,13 +372,7 @@ static void set_options(struct attempt *attempt, struct curl_slist *headers, cha
     curl_easy_setopt(easy, CURLOPT_XFERINFOFUNCTION, progress);
     curl_easy_setopt(easy, CURLOPT_XFERINFODATA, attempt);
     curl_easy_setopt(easy, CURLOPT_BUFFERSIZE, 128L << 10);
-    if (client->certificate_file)
-        curl_easy_setopt(easy, CURLOPT_CAINFO, client->certificate_file);
-    if (request->is_own && request->url->is_s3 && client->signature) {
-        curl_easy_setopt(easy, CURLOPT_AWS_SIGV4, client->signature);
-        curl_easy_setopt(easy, CURLOPT_USERNAME, client->s3.access_key);
-        curl_easy_setopt(easy, CURLOPT_PASSWORD, client->s3.secret_key);
-    }
+    return set_target(easy, request, range);
 }
 
 static void count(SluiceHttpClient *client, CURL *easy)
@@ -359,6 +393,8 @@ static void take_answer(struct attempt *attempt, CURL *easy)
     struct slc_http_answer *answer = attempt->answer;
     curl_off_t seconds = 0;
     curl_easy_getinfo(easy, CURLINFO_RETRY_AFTER, &seconds);
+    if (seconds > MAX_RETRY_AFTER)
+        seconds = MAX_RETRY_AFTER;
     answer->retry_after = seconds > 0 ? (uint64_t)seconds * 1000 : 0;
     if (answer->outcome == SLC_HTTP_OK && !attempt->is_accepted) {
         curl_easy_getinfo(easy, CURLINFO_REDIRECT_URL, &answer->redirect);
@@ -380,9 +416,11 @@ void slc_http_attempt(const struct slc_http_request *request, struct slc_http_an
         end_as(&attempt, SLC_HTTP_FAILED, SLUICE_ERROR_OUT_OF_HOST_MEMORY, "libcurl: no memory");
         return;
     }
-    set_options(&attempt, headers, error);
-    CURLcode code = curl_easy_perform(request->easy);
-    count(request->client, request->easy);
+    CURLcode code = set_options(&attempt, headers, error);
+    if (code == CURLE_OK) {
+        code = curl_easy_perform(request->easy);
+        count(request->client, request->easy);
+    }
     if (code == CURLE_OK)
         check_end(&attempt);
     else

@@ -129,11 +129,12 @@ void slc_http_finish_joined(SluiceHttpClient *client, struct slc_http_wait *cons
 /** How a request ended, for its host. */
 enum slc_http_verdict { SLC_HTTP_IN_ORDER, SLC_HTTP_OUT_OF_ORDER, SLC_HTTP_UNKNOWN };
 
-/** Gives the connection to the next read that waits. */
+/** Gives the connection to the next read that waits. `least_delay`: milliseconds that an overloaded
+ *  server asked for. */
 void slc_http_release(SluiceHttpClient *client, struct slc_http_connection *connection,
-                      enum slc_http_verdict verdict);
+                      enum slc_http_verdict verdict, uint64_t least_delay);
 
-/** Waits `delay` milliseconds, less a random part of up to a half. False: cancelled. */
-bool slc_http_pause(SluiceHttpClient *client, uint64_t delay);
+/** Waits `least` milliseconds, and `delay` less a random part of up to a half. False: cancelled. */
+bool slc_http_pause(SluiceHttpClient *client, uint64_t least, uint64_t delay);
 
 #endif /* SLC_HTTP_HTTP_CLIENT_H */

@@ -27,9 +27,10 @@ static bool follow(const struct slc_http_fetch *fetch, struct slc_http_url *at, 
                    struct slc_http_answer *answer)
 {
     const SluiceHttpClient *client = fetch->client;
+    const struct slc_s3_access none = {0};
     struct slc_http_url next;
     SluiceResult result =
-        slc_http_url_parse(&next, answer->redirect, &client->s3, &client->allocator, NULL);
+        slc_http_url_parse(&next, answer->redirect, &none, &client->allocator, NULL);
     if (result == SLUICE_SUCCESS && was_secure && !slc_http_is_secure(&next)) {
         result = SLUICE_ERROR_IO;
         fail(answer, result, "the server redirects from https to http");
@@ -135,9 +136,7 @@ SluiceResult slc_http_fetch(const struct slc_http_fetch *fetch,
             answer->retry_after > settings->max_retry_delay)
             break;
         delay = slc_min_u64(delay, settings->max_retry_delay);
-        /* The random part is taken off, and a server's wish is a least time. */
-        uint64_t wait = answer->retry_after > delay / 2 ? answer->retry_after * 2 : delay;
-        if (!slc_http_pause(client, wait)) {
+        if (!slc_http_pause(client, answer->retry_after, delay)) {
             answer->outcome = SLC_HTTP_CANCELLED;
             break;
         }

@@ -64,7 +64,7 @@ static SluiceResult read_head(SluiceHttpFile *file, unsigned char *head)
     result = fetch_head(file, connection, is_probe, head, &file->target, &answer);
     if (result == SLUICE_SUCCESS)
         result = keep_head(file, head, &answer);
-    slc_http_release(file->client, connection, slc_http_verdict_of(&answer));
+    slc_http_release(file->client, connection, slc_http_verdict_of(&answer), answer.retry_after);
     return result;
 }
 
@@ -79,6 +79,10 @@ static SluiceResult open_file(SluiceHttpFile *file, const char *url)
     unsigned char *head = slc_alloc(&client->allocator, client->settings.head_size, 1);
     result = file->host && head ? read_head(file, head) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     slc_free(&client->allocator, head, client->settings.head_size, 1);
+    if (result == SLUICE_SUCCESS && file->target.full) { /* its connections and back-off count */
+        file->host = slc_http_get_host(client, file->target.origin);
+        result = file->host ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
     return result;
 }
 
@@ -134,7 +138,7 @@ static SluiceResult read_on(SluiceHttpFile *file, const struct slc_http_part *pa
     if (result == SLUICE_ERROR_FILE_NOT_FOUND || result == SLUICE_ERROR_UNSUPPORTED)
         result = SLUICE_ERROR_IO;
     slc_http_finish_joined(client, waits, count, result);
-    slc_http_release(client, connection, slc_http_verdict_of(&answer));
+    slc_http_release(client, connection, slc_http_verdict_of(&answer), answer.retry_after);
     return result;
 }
 

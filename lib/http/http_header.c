@@ -79,7 +79,10 @@ static void read_range(struct slc_http_header *header, const char *at, size_t si
 static void copy_value(char *to, size_t room, const char *value, size_t size)
 {
     to[0] = '\0';
-    if (size >= room || memchr(value, '\0', size))
+    for (size_t i = 0; i < size; i++)
+        if ((unsigned char)value[i] < ' ' || value[i] == 0x7f) /* it is sent back */
+            return;
+    if (size >= room)
         return;
     memcpy(to, value, size);
     to[size] = '\0';

@@ -24,9 +24,10 @@ static uint64_t with_jitter(SluiceHttpClient *client, uint64_t nanoseconds)
     return nanoseconds - roll(client) % (nanoseconds / 2 + 1);
 }
 
-bool slc_http_pause(SluiceHttpClient *client, uint64_t delay)
+bool slc_http_pause(SluiceHttpClient *client, uint64_t least, uint64_t delay)
 {
-    uint64_t end = slc_monotonic_time() + with_jitter(client, delay * NANOSECONDS_PER_MILLISECOND);
+    uint64_t end = slc_monotonic_time() + least * NANOSECONDS_PER_MILLISECOND +
+                   with_jitter(client, delay * NANOSECONDS_PER_MILLISECOND);
     slc_mutex_lock(&client->mutex);
     while (!atomic_load(&client->is_cancelled) &&
            slc_condition_wait_until(&client->cancelled, &client->mutex, end))
@@ -244,12 +245,19 @@ void slc_http_finish_joined(SluiceHttpClient *client, struct slc_http_wait *cons
     slc_mutex_unlock(&client->mutex);
 }
 
-static void set_down(SluiceHttpClient *client, struct slc_http_host *host)
+/* `least`: milliseconds that the server asked for. */
+static void set_down(SluiceHttpClient *client, struct slc_http_host *host, uint64_t least)
 {
     uint64_t delay = client->settings.retry_delay;
+    if (slc_monotonic_time() <
+        host->down_until) { /* of requests that were under way: one failure */
+        refuse_waiting(client, host);
+        return;
+    }
     for (uint32_t i = 0; i < host->failures && delay < client->settings.max_retry_delay; i++)
         delay *= 2;
     delay = slc_min_u64(delay, client->settings.max_retry_delay);
+    delay = delay > least ? delay : least;
     host->failures++;
     host->down_until =
         slc_monotonic_time() + with_jitter(client, delay * NANOSECONDS_PER_MILLISECOND);
@@ -257,11 +265,11 @@ static void set_down(SluiceHttpClient *client, struct slc_http_host *host)
 }
 
 static void note_verdict(SluiceHttpClient *client, struct slc_http_host *host,
-                         enum slc_http_verdict verdict)
+                         enum slc_http_verdict verdict, uint64_t least)
 {
     host->is_probed = false;
     if (verdict == SLC_HTTP_OUT_OF_ORDER) {
-        set_down(client, host);
+        set_down(client, host, least);
     } else if (verdict == SLC_HTTP_IN_ORDER) {
         host->failures = 0;
         host->down_until = 0;
@@ -269,12 +277,12 @@ static void note_verdict(SluiceHttpClient *client, struct slc_http_host *host,
 }
 
 void slc_http_release(SluiceHttpClient *client, struct slc_http_connection *connection,
-                      enum slc_http_verdict verdict)
+                      enum slc_http_verdict verdict, uint64_t least_delay)
 {
     struct slc_http_host *host = connection->host;
     slc_mutex_lock(&client->mutex);
     client->in_flight--;
-    note_verdict(client, host, verdict);
+    note_verdict(client, host, verdict, least_delay);
     if (atomic_load(&client->is_cancelled))
         refuse_waiting(client, host);
     struct slc_http_wait *wait = host->first_wait;

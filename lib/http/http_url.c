@@ -66,7 +66,8 @@ static char *make_origin(CURLU *parts, const SluiceAllocationCallbacks *cb)
 static SluiceResult take_apart(struct slc_http_url *url, CURLU *parts, const char *text,
                                const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log)
 {
-    CURLUcode code = curl_url_set(parts, CURLUPART_URL, text, CURLU_NON_SUPPORT_SCHEME);
+    CURLUcode code =
+        curl_url_set(parts, CURLUPART_URL, text, CURLU_NON_SUPPORT_SCHEME | CURLU_PATH_AS_IS);
     if (code == CURLUE_OUT_OF_MEMORY)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     char *scheme = code == CURLUE_OK ? get_part(parts, CURLUPART_SCHEME, 0) : NULL;

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/shown_url.h"
 #include "base/struct_size.h"
 #include "base/system.h"
 
@@ -78,8 +79,15 @@ SluiceResult slc_input_file_init_choice(struct slc_input_file *file,
         *file = (struct slc_input_file){.allocator = *cb, .descriptor = -1};
         return SLUICE_ERROR_NULL_POINTER;
     }
+    /* The name of an input may be a URL, and messages have it. */
+    char *shown = slc_shown_url(cb, choice->path && choice->input ? choice->path : "(memory)");
+    if (!shown) {
+        *file = (struct slc_input_file){.allocator = *cb, .descriptor = -1};
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
     SluiceResult result =
-        slc_input_file_init(file, choice->path ? choice->path : "(memory)", cb, log);
+        slc_input_file_init(file, choice->path && !choice->input ? choice->path : shown, cb, log);
+    slc_free(cb, shown, strlen(shown) + 1, 1);
     if (result == SLUICE_SUCCESS && choice->input)
         return check_input(file, choice->input);
     if (result != SLUICE_SUCCESS || !choice->pool)

@@ -96,7 +96,9 @@ SluiceResult slc_input_kind_find(const SluiceInput *input, const char *path,
     char bytes[SLC_SIGNATURE_SIZE] = {0};
     size_t size = input->size < sizeof bytes ? (size_t)input->size : sizeof bytes;
     SluiceResult result = SLUICE_SUCCESS;
-    if (input->pBytes)
+    if (size == 0 || (!input->pBytes && !input->pfnRead))
+        result = SLUICE_ERROR_IO;
+    else if (input->pBytes)
         memcpy(bytes, input->pBytes, size);
     else
         result = input->pfnRead(input->pUserData, 0, bytes, size);

@@ -6,6 +6,7 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "base/said.h"
+#include "base/shown_url.h"
 #include "base/struct_size.h"
 #include "image/identity.h"
 #include "open/neural_file.h"
@@ -110,6 +111,8 @@ static void free_image(struct slc_opened_image *image)
                                                 image->opened);
     if (image->path)
         slc_free(&cb, image->path, strlen(image->path) + 1, 1);
+    if (image->shown)
+        slc_free(&cb, image->shown, strlen(image->shown) + 1, 1);
     if (image->texture)
         slc_free(&cb, image->texture, strlen(image->texture) + 1, 1);
     slc_free(&cb, image, 1, sizeof *image);
@@ -253,9 +256,10 @@ static struct slc_opened_image *create_image(SluiceImageOpener *opener, const ch
     image->kind = kind;
     image->identity = *identity;
     image->path = slc_strdup(&opener->allocator, path);
+    image->shown = slc_shown_url(&opener->allocator, path);
     if (texture)
         image->texture = slc_strdup(&opener->allocator, texture);
-    if (image->path && (image->texture || !texture))
+    if (image->path && image->shown && (image->texture || !texture))
         return image;
     free_image(image);
     return NULL;
@@ -278,13 +282,13 @@ static SluiceResult open_path(struct slc_opened_image *image)
         image->opened = NULL;
         return result;
     }
-    result = slc_input_kind_find(&image->input, image->path, &opener->log, &image->kind);
+    result = slc_input_kind_find(&image->input, image->shown, &opener->log, &image->kind);
     if (result != SLUICE_SUCCESS || image->kind != SLUICE_IMAGE_FILE_KIND_PICTURE)
         return result;
     slc_log(&opener->log, SLUICE_LOG_ERROR,
             "%s: is no tile store, OpenEXR, DDS, KTX2 file or neural set; make a tile store of it "
             "with sluice-bake, and put that there",
-            image->path);
+            image->shown);
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
@@ -308,18 +312,20 @@ static SluiceResult open_image(struct slc_opened_image *image)
         result = open_path(image);
         input = &image->input;
         if (result == SLUICE_SUCCESS)
-            result = check_texture(opener, image->path, image->texture, image->kind);
+            result = check_texture(opener, image->shown, image->texture, image->kind);
     }
     if (result != SLUICE_SUCCESS)
         return result;
     if (image->kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
         return slc_picture_stream_create(opener, image->path, &image->identity, &image->stream);
     if (image->kind == SLUICE_IMAGE_FILE_KIND_NEURAL)
-        result = slc_neural_file_open(image->path, input, image->texture, opener->files.pool,
-                                      &opener->allocator, &opener->log, &image->source);
+        result = slc_neural_file_open(input ? image->shown : image->path, input, image->texture,
+                                      opener->files.pool, &opener->allocator, &opener->log,
+                                      &image->source);
     else
-        result = slc_file_kind_open(image->kind, image->path, input, &opener->files,
-                                    &opener->allocator, &opener->log, &image->source);
+        result =
+            slc_file_kind_open(image->kind, input ? image->shown : image->path, input,
+                               &opener->files, &opener->allocator, &opener->log, &image->source);
     return result == SLUICE_SUCCESS ? complete_chain(image) : result;
 }
 

@@ -25,6 +25,7 @@ struct slc_opened_image {
     bool is_opening;
     SluiceResult result; ///< of opening it
     char *path;          ///< owned
+    char *shown;         ///< owned; the path without passwords and queries, for messages
     char *texture;       ///< owned; name that was asked for; NULL: none
     struct slc_file_identity identity;
     SluiceImageFileKind kind;

@@ -100,7 +100,7 @@ no_final_newline | report files_end_with_a_newline
 search '\b(TOD[O]|FIXM[E]|XX[X])\b' "${text[@]}" | report no_work_is_left_marked
 search '(deb|archive|security|ports|snapshot|mirrors?|registry|proxy)\.[a-z0-9-]+\.(org|com|net|io|dev)\b' \
     "${text[@]}" | report no_package_mirror_is_named
-search 'https?://' "${code[@]}" | grep -v -E '://(registry\.khronos\.org/|[a-z]+\.example/|[a-z:@]*127\.0\.0\.1:|["%, ]|HOST\[)' |
+search 'https?://' "${code[@]}" | grep -v -E '://(registry\.khronos\.org/|[a-z]+\.example/|[a-z:@]*127\.0\.0\.1:|([a-z:]*@)?h[:/"]|["%, ]|HOST\[)' |
     report code_names_no_host
 
 search '\b(s?rand(om)?|rand_r|s?[delmnj]rand48|arc4random(_uniform|_buf)?)[[:blank:]]*\(|\bRAND_MAX\b' \

@@ -174,6 +174,13 @@ class Handler(BaseHTTPRequestHandler):
 
     def fault_redirect(self, fault, parts, query, headers, first, last, size):
         kind = fault.split('-')[1]
+        if kind == 'chunked':
+            self.send_response_only(302)
+            self.send_header('Location', '/plain/x?' + parts.query)
+            self.send_header('Transfer-Encoding', 'chunked')
+            self.end_headers()
+            self.wfile.write(b'9\r\nelsewhere\r\n0\r\n\r\n')
+            return
         web = 'http://127.0.0.1:%d' % (ports[1] if kind == 'away' else ports[0])
         place = {'loop': self.path, 'away': web + '/bare/x?' + parts.query, 'file': 'file:///etc/passwd',
                  'here': '/plain/x?' + parts.query, 'web': web + '/plain/x'}[kind]

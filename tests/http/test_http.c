@@ -1,6 +1,8 @@
 /* Files on a web server that delays, cuts and lies on request: faulty_server.py. */
 #define _XOPEN_SOURCE 700
 
+#include "base/alloc.h"
+#include "base/shown_url.h"
 #include "http/web_server.h"
 #include "support/failing_allocator.h"
 #include "support/test.h"
@@ -177,6 +179,7 @@ static void faults_that_stay_are_io_and_name_url_and_range(void **state)
         {"norange", "lacks a Content-Range", 2},
         {"whole", "200 with the whole file", 2},
         {"gzip", "Content-Encoding", 0},
+        {"untagged", "tells no ETag and no date", 2},
     };
     (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -273,6 +276,30 @@ static void headers_of_the_application_stay_with_its_host(void **state)
     CHECK_OK(read_at(file, READ_AT, READ_SIZE));
     sluiceDestroyHttpFile(file);
     sluiceDestroyHttpClient(client);
+}
+
+static void a_redirect_may_have_a_body_of_unknown_length(void **state)
+{
+    SluiceHttpStatistics statistics;
+    (void)state;
+    CHECK_OK(read_path("redirect-chunked/x", &statistics));
+    assert_int_equal(statistics.connectTotal, 1);
+}
+
+static void names_in_messages_have_no_password_and_no_query(void **state)
+{
+    static const char *const rows[][2] = {
+        {"https://u:p@h:1/a/b.store?X-Amz-Signature=s#f", "https://h:1/a/b.store"},
+        {"https://h/a@b?x", "https://h/a@b"},
+        {"http://u@h", "http://h"},
+        {"/folder/file?@#", "/folder/file?@#"}};
+    SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char *shown = slc_shown_url(&cb, rows[i][0]);
+        assert_string_equal(shown, rows[i][1]);
+        slc_free(&cb, shown, strlen(shown) + 1, 1);
+    }
 }
 
 static void a_redirect_is_followed_once_and_again_when_its_target_is_gone(void **state)
@@ -694,6 +721,8 @@ int main(void)
         cmocka_unit_test(a_small_file_may_come_whole_or_shorter_than_asked),
         cmocka_unit_test(a_changed_file_is_never_mixed_with_its_old_version),
         cmocka_unit_test(headers_of_the_application_stay_with_its_host),
+        cmocka_unit_test(a_redirect_may_have_a_body_of_unknown_length),
+        cmocka_unit_test(names_in_messages_have_no_password_and_no_query),
         cmocka_unit_test(a_redirect_is_followed_once_and_again_when_its_target_is_gone),
         cmocka_unit_test(a_host_that_is_down_is_left_alone_until_its_back_off_has_passed),
         cmocka_unit_test(retry_after_is_obeyed_up_to_the_limit),

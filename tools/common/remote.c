@@ -11,11 +11,17 @@ bool remote_is_url(const char *name)
            strncmp(name, "s3://", 5) == 0;
 }
 
-/* The first variable that is set, or NULL. */
+/* NULL if it is not set, or empty. */
+static const char *variable(const char *name)
+{
+    const char *value = getenv(name);
+    return value && value[0] ? value : NULL;
+}
+
 static const char *either(const char *a, const char *b)
 {
-    const char *value = getenv(a);
-    return value && value[0] ? value : getenv(b);
+    const char *value = variable(a);
+    return value ? value : variable(b);
 }
 
 static SluiceResult create_client(const SluiceLogCallback *log, SluiceHttpClient **client)
@@ -23,11 +29,11 @@ static SluiceResult create_client(const SluiceLogCallback *log, SluiceHttpClient
     SluiceS3Access access = {.structSize = sizeof access,
                              .pEndpoint = either("AWS_ENDPOINT_URL_S3", "AWS_ENDPOINT_URL"),
                              .pRegion = either("AWS_REGION", "AWS_DEFAULT_REGION"),
-                             .pAccessKey = getenv("AWS_ACCESS_KEY_ID"),
-                             .pSecretKey = getenv("AWS_SECRET_ACCESS_KEY"),
-                             .pSessionToken = getenv("AWS_SESSION_TOKEN")};
+                             .pAccessKey = variable("AWS_ACCESS_KEY_ID"),
+                             .pSecretKey = variable("AWS_SECRET_ACCESS_KEY"),
+                             .pSessionToken = variable("AWS_SESSION_TOKEN")};
     SluiceHttpClientCreateInfo info = {.structSize = sizeof info,
-                                       .pCertificateFile = getenv("SSL_CERT_FILE"),
+                                       .pCertificateFile = variable("SSL_CERT_FILE"),
                                        .pS3 = access.pEndpoint ? &access : NULL,
                                        .log = *log};
     return sluiceCreateHttpClient(&info, client);
