@@ -80,14 +80,16 @@ SluiceResult slc_input_file_init_choice(struct slc_input_file *file,
         return SLUICE_ERROR_NULL_POINTER;
     }
     /* The name of an input may be a URL, and messages have it. */
-    char *shown = slc_shown_url(cb, choice->path && choice->input ? choice->path : "(memory)");
-    if (!shown) {
+    bool is_named = choice->input && choice->path;
+    char *shown = is_named ? slc_shown_url(cb, choice->path) : NULL;
+    if (is_named && !shown) {
         *file = (struct slc_input_file){.allocator = *cb, .descriptor = -1};
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
-    SluiceResult result =
-        slc_input_file_init(file, choice->path && !choice->input ? choice->path : shown, cb, log);
-    slc_free(cb, shown, strlen(shown) + 1, 1);
+    const char *path = choice->path ? choice->path : "(memory)";
+    SluiceResult result = slc_input_file_init(file, shown ? shown : path, cb, log);
+    if (shown)
+        slc_free(cb, shown, strlen(shown) + 1, 1);
     if (result == SLUICE_SUCCESS && choice->input)
         return check_input(file, choice->input);
     if (result != SLUICE_SUCCESS || !choice->pool)

@@ -241,6 +241,11 @@ static SluiceResult complete_chain(struct slc_opened_image *image)
     return result == SLUICE_SUCCESS ? sluiceGetImageInfo(image->complete, &info) : result;
 }
 
+static bool is_own_path(const SluiceImageOpener *opener, const char *path)
+{
+    return opener->path_opener.pfnOpenPath && strstr(path, "://");
+}
+
 /* NULL: no memory. */
 static struct slc_opened_image *create_image(SluiceImageOpener *opener, const char *path,
                                              const char *texture, SluiceImageFileKind kind,
@@ -256,18 +261,14 @@ static struct slc_opened_image *create_image(SluiceImageOpener *opener, const ch
     image->kind = kind;
     image->identity = *identity;
     image->path = slc_strdup(&opener->allocator, path);
-    image->shown = slc_shown_url(&opener->allocator, path);
+    if (is_own_path(opener, path))
+        image->shown = slc_shown_url(&opener->allocator, path);
     if (texture)
         image->texture = slc_strdup(&opener->allocator, texture);
-    if (image->path && image->shown && (image->texture || !texture))
+    if (image->path && (image->shown || !is_own_path(opener, path)) && (image->texture || !texture))
         return image;
     free_image(image);
     return NULL;
-}
-
-static bool is_own_path(const SluiceImageOpener *opener, const char *path)
-{
-    return opener->path_opener.pfnOpenPath && strstr(path, "://");
 }
 
 /* Errors: of a path opener, of what it opened; UNSUPPORTED, logged. */

@@ -25,7 +25,7 @@ struct slc_opened_image {
     bool is_opening;
     SluiceResult result; ///< of opening it
     char *path;          ///< owned
-    char *shown;         ///< owned; the path without passwords and queries, for messages
+    char *shown;         ///< owned; a URL without password and query, for messages; NULL: a file
     char *texture;       ///< owned; name that was asked for; NULL: none
     struct slc_file_identity identity;
     SluiceImageFileKind kind;
