@@ -81,7 +81,7 @@ typedef struct SluiceHttpClientCreateInfo {
     /**
      * Folder where ranges that were read are kept, so that the next start does not ask for them.
      * Made if its parent is there. Several processes may use it, and may be killed while they do.
-     * What is read from it is checked; what is damaged is asked for again. Files that have neither
+     * Ranges from it are checked; damaged ones are asked for again. Files that have neither
      * ETag nor date are not kept. The query of a URL is part of its name, so presigned URLs find
      * nothing. Copied. Default: NULL, nothing is kept.
      */

@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/** What is wrong. */
+/** A kind of misuse. */
 typedef enum SluiceMisuseKind {
     SLUICE_MISUSE_FRAME_NOT_ENDED = 0,    ///< A frame is begun before the last one was ended.
     SLUICE_MISUSE_FRAME_NOT_BEGUN = 1,    ///< A frame is ended that was not begun.

@@ -92,7 +92,7 @@ static int32_t priority_of(const slc_manager *m, uint32_t node)
 /** Tiles at the head of a list among which the least priority is looked for. */
 enum { MAX_COMPARED = 64 };
 
-/** Of the first tiles of a list, the first one of the least priority. */
+/** Finds the first tile of the least priority among the first ones of a list. */
 static uint32_t least_of(const slc_manager *m, const struct slc_list *list)
 {
     uint32_t least = list->head, node = list->head;

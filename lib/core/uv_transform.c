@@ -72,7 +72,7 @@ struct interval {
     uint64_t begin, end; ///< within a period
 };
 
-/** What an interval of the axis becomes within [0, period). */
+/** Maps an interval of the axis into [0, period). */
 struct intervals {
     struct interval list[4];
     uint32_t count;
@@ -165,7 +165,10 @@ static void cells_of(const struct pair *p, const struct interval *in, uint32_t *
                      uint32_t *last)
 {
     uint64_t unit = (uint64_t)p->from_size << SLC_UV_BITS;
-    uint64_t end = in->end * p->to_size / unit + (in->end * p->to_size % unit > 0);
+    /* 2^44 times 2^20, the largest texture, would be 2^64 */
+    uint64_t end = in->end == unit
+                       ? p->to_size
+                       : in->end * p->to_size / unit + (in->end * p->to_size % unit > 0);
     *first = (uint32_t)(in->begin * p->to_size / unit / p->to_cell);
     *last = (uint32_t)((end - 1) / p->to_cell);
 }

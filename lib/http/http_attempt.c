@@ -186,7 +186,7 @@ static void scatter(const struct slc_http_request *request, uint64_t at, const c
     }
 }
 
-/* Of an answer that is not the range: the rest is read, unless it is long. libcurl tells the place
+/* An answer that is not the range is read to its end, unless it is long. libcurl tells the place
  * of a redirect only when its body has ended. */
 static bool is_worth_reading(const struct attempt *attempt)
 {

@@ -109,7 +109,7 @@ static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResul
     SluiceResult answer = read->result;
     if (unit->stale && !unit->canceled && !unit->dropped && slc_unit_read_again(s, index, &answer))
         return SLUICE_SUCCESS;
-    if (answer == SLUICE_NOT_READY && !unit->canceled && slc_loads_can_wait(s)) {
+    if (answer == SLUICE_NOT_READY && !unit->canceled && !unit->dropped && slc_loads_can_wait(s)) {
         answer = slc_unit_submit(s, index);
         if (answer == SLUICE_SUCCESS)
             return SLUICE_SUCCESS;

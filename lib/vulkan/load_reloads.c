@@ -57,6 +57,7 @@ void slc_reload_tail(SluiceVulkanStreamer *s, uint32_t index)
     bool started = texture->packed_state > SLC_PACKED_READY;
     if (texture->image.desc.packedTileCount == 0 || (!started && texture->packed_mapped == 0))
         return;
+    slc_reloads_drop_tail(s, index); /* older reads must not end after the new ones */
     texture->reload_next = 0;
     slc_remakes_add(&s->reloads, tail_key(s, index));
 }
