@@ -1,4 +1,5 @@
 /* Waiting for requests: who has the next step, the reads or a frame. */
+#include "core/observer.h"
 #include "image/read_pool.h"
 #include "platform/time_now.h"
 #include "vulkan/streamer.h"
@@ -21,8 +22,8 @@ static bool is_empty(const struct slc_unit_list *list)
 /* Something can be started, bound, copied or shown before any read ends. */
 static bool frame_has_work(const SluiceVulkanStreamer *s)
 {
-    uint32_t requested = 0;
-    sluiceGetTilesToMap(s->manager, SLUICE_ALL_TEXTURES, &requested, NULL);
+    /* Outside of frames the manager is locked for calls of its interface. */
+    uint32_t requested = slc_manager_slot_statistics(s->manager).requestedTileCount;
     return s->due_map_count || !is_empty(&s->arrived) || !is_empty(&s->binding) ||
            !is_empty(&s->unproduced) || !is_empty(&s->produced) || s->packed_queue_count ||
            s->ended_frame != s->frame || (requested && s->free_unit_count);
