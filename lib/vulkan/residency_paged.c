@@ -307,6 +307,11 @@ static bool renew(struct slc_residency *residency, uint32_t index, const SluiceT
     count_memory(p);
     if (own == SLUICE_PAGE_NONE)
         return false;
+    if (!slc_page_views_has(slc_page_pool_views(p->pool, p->user), own >> 16)) {
+        /* A chunk of this frame has neither layout nor view before the next one. */
+        slc_page_pool_give(p->pool, p->user, own, SLC_NO_OWNER);
+        return false;
+    }
     slc_page_pool_give(p->pool, p->user, page, SLC_NO_OWNER);
     *entry = own | SLC_PAGE_SHOWN;
     return true;
