@@ -1,13 +1,5 @@
 #include "remote.h"
 
-#include <string.h>
-
-bool remote_is_url(const char *name)
-{
-    return strncmp(name, "http://", 7) == 0 || strncmp(name, "https://", 8) == 0 ||
-           strncmp(name, "s3://", 5) == 0;
-}
-
 bool remote_open(struct remote_file *remote, const char *url, const SluiceLogCallback *log)
 {
     (void)url;

@@ -3,13 +3,6 @@
 #include <sluice/http.h>
 
 #include <stdlib.h>
-#include <string.h>
-
-bool remote_is_url(const char *name)
-{
-    return strncmp(name, "http://", 7) == 0 || strncmp(name, "https://", 8) == 0 ||
-           strncmp(name, "s3://", 5) == 0;
-}
 
 /* NULL if it is not set, or empty. */
 static const char *variable(const char *name)

@@ -5,14 +5,19 @@
 #include <sluice/input.h>
 
 #include <stdbool.h>
+#include <string.h>
 
 struct remote_file {
     void *client, *file;
     SluiceInput input; ///< for the source that reads the file
 };
 
-/** Whether a name is a URL of http, https or s3. */
-bool remote_is_url(const char *name);
+/** True if a name is a URL of http, https or s3. */
+static inline bool remote_is_url(const char *name)
+{
+    return strncmp(name, "http://", 7) == 0 || strncmp(name, "https://", 8) == 0 ||
+           strncmp(name, "s3://", 5) == 0;
+}
 
 /**
  * Opens a URL. Keys for s3:// come from AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY,
