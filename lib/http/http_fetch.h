@@ -4,7 +4,7 @@
 
 #include "http/http_attempt.h"
 
-/** What is fetched. */
+/** Names the bytes of a fetch, and where they come from. */
 struct slc_http_fetch {
     SluiceHttpClient *client;
     const SluiceHttpFile *file;        ///< NULL: opens `url`
@@ -24,7 +24,7 @@ SluiceResult slc_http_fetch(const struct slc_http_fetch *fetch,
                             struct slc_http_connection *connection, uint32_t max_attempts,
                             struct slc_http_url *landed, struct slc_http_answer *answer);
 
-/** What the answer says about the host that was asked. */
+/** Judges the host by its last answer. */
 enum slc_http_verdict slc_http_verdict_of(const struct slc_http_answer *answer);
 
 #endif /* SLC_HTTP_HTTP_FETCH_H */

@@ -101,7 +101,7 @@ static HANDLE handle_of(int descriptor)
     return (HANDLE)_get_osfhandle(descriptor);
 }
 
-/* Of a reparse point that was opened itself; 0 for all else. */
+/* Returns the tag of a reparse point that was opened itself; 0 for all else. */
 static DWORD reparse_tag(HANDLE handle)
 {
     FILE_ATTRIBUTE_TAG_INFO info;

@@ -89,7 +89,7 @@ void slc_sparse_bindings_evict(struct slc_sparse_bindings *bindings, uint32_t im
 /** Marks a bound tile: its page may hold other texels. Holds until the tile is bound again. */
 void slc_sparse_bindings_spoil(struct slc_sparse_bindings *bindings, uint32_t image,
                                struct slc_tile_place place);
-/** The same of a tile that may have no page. */
+/** As the function above, for a tile that may have no page. */
 void slc_sparse_bindings_spoil_evicted(struct slc_sparse_bindings *bindings, uint32_t image,
                                        struct slc_tile_place place);
 bool slc_sparse_bindings_is_spoiled(const struct slc_sparse_bindings *bindings, uint32_t image,

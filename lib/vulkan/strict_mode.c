@@ -105,7 +105,7 @@ static bool may_repeat(const SluiceVulkanStreamer *s, uint64_t *told)
     return true;
 }
 
-/* Of a paged streamer, or of a sparse one whose other textures are paged. */
+/* For paged streamers, and sparse ones whose other textures are paged. */
 static const struct slc_residency_counters *page_counters(const SluiceVulkanStreamer *s)
 {
     return s->paged ? &s->paged->counters : &s->residency->counters;

@@ -12,7 +12,7 @@ static const char *name_of(const struct slc_texture *texture)
     return texture->info.pName ? texture->info.pName : "image";
 }
 
-/* What is read, or waits to be copied, may be resident before its turn comes. */
+/* A tile that is read, or waits to be copied, may be resident before its turn comes. */
 static uint32_t most_reloads(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
                              const struct slc_remake_area *area)
 {

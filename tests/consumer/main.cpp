@@ -1,4 +1,4 @@
-// The same from C++: the headers compile, the names link. C++17: owners of handles, too.
+// main.c's part in C++: the headers compile, the names link. C++17: owners of handles, too.
 #include <sluice/sluice.h>
 #if __cplusplus >= 201703L
 #include <sluice/sluice.hpp>

@@ -140,7 +140,7 @@ static void any_range_has_the_bytes_of_the_file(void **state)
     sluiceDestroyHttpClient(client);
 }
 
-/* What a read becomes when its first requests go wrong. */
+/* The first requests of a read go wrong, and a later one does not. */
 static void faults_that_pass_cost_attempts_alone(void **state)
 {
     static const char *const faults[] = {"status-500", "status-502", "status-503", "status-504",

@@ -114,7 +114,7 @@ void mip_tails_and_all_tiles_are_copied_again(void **state)
         CHECK_OK(sluiceInvalidateVulkanTexture(s->streamer, id, NULL, UINT32_MAX));
         assert_int_equal(state_now(s).reloadingTileCount, 64 + 16 + 4 + 1);
         assert_int_equal(settle(s, 4), 64 + 16 + 4 + 8); /* a tail of eight levels */
-        /* What is not resident is read anew; what was unmapped is not restored. */
+        /* Tiles that are not resident are read anew; unmapped ones are not restored. */
         memset(s->seen[0], SLUICE_MIP_UNTOUCHED, sizeof s->seen[0]);
         frames(s, 2);
         CHECK_OK(sluiceEvictVulkanTexture(s->streamer, id, 0));

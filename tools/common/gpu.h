@@ -20,8 +20,8 @@ struct gpu_request {
     bool build_queue;      ///< there is a queue beside the others, where the device has one
     bool byte_pages; ///< byte pages of demand loaders, with addresses, where the device has them
     bool neural;     ///< all decode paths that the device has are enabled; without rays
-    /** Of a window's surface; with them the device can present (VK_KHR_swapchain). Without rays and
-     *  neural. At most 8. */
+    /** Extensions for a window's surface; with them the device can present (VK_KHR_swapchain).
+     * Without rays and neural. At most 8. */
     const char *const *instance_extensions;
     uint32_t instance_extension_count;
 };

@@ -40,7 +40,7 @@ static bool read_remote_start(struct texture_file *file, const char *url, Sluice
     return result == SLUICE_SUCCESS;
 }
 
-/* What the file is read from. NULL: its path. */
+/* Returns the input that the file is read from. NULL: its path. */
 static const SluiceInput *input_of(const struct texture_file *file)
 {
     return file->remote.client ? &file->remote.input : NULL;

@@ -63,7 +63,7 @@ struct view_app {
     bool deterministic;  ///< figures that differ between runs are not shown
     bool headless;       ///< time is that of the frame's number
     const char *program; ///< words of the command line before the options
-    /* What the loop is asked for; it resets them. */
+    /* Requests to the loop, which resets them. */
     bool quit, reload, step, restart, screenshot, screenshot_plain;
 };
 

@@ -23,7 +23,7 @@ struct view_camera view_camera_at(struct vec3 eye, struct vec3 target, float fov
 struct view_camera view_camera_mix(const struct view_camera *a, const struct view_camera *b,
                                    float part);
 
-/** What the user wants in this frame. */
+/** Moves that the user asks for in this frame. */
 struct camera_wish {
     float forward, right, up;  ///< -1 to 1
     float look_right, look_up; ///< radians

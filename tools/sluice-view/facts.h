@@ -1,4 +1,4 @@
-/** What the panels show: figures of the streamer, gathered once per frame. */
+/** Facts for the panels: figures of the streamer, gathered once per frame. */
 #ifndef SLUICE_VIEW_FACTS_H
 #define SLUICE_VIEW_FACTS_H
 

@@ -29,7 +29,7 @@ struct frames_signal {
     uint64_t value;
 };
 
-/** What a frame consists of besides its commands. */
+/** Parts of a frame besides its commands. */
 struct frames_end {
     const struct ui_geometry *geometry;
     VkImageView views[UI_TEXTURE_COUNT]; ///< in SHADER_READ_ONLY_OPTIMAL

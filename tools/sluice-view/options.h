@@ -1,4 +1,4 @@
-/** What the command line asks of the viewer. */
+/** Options of the command line. */
 #ifndef SLUICE_VIEW_OPTIONS_H
 #define SLUICE_VIEW_OPTIONS_H
 

@@ -55,7 +55,7 @@ static void measure(struct scene_data *scene)
     scene->bounds[1] = high;
 }
 
-/* Of a part's box; parts that blend are drawn from far to near. */
+/* The center of the part; parts that blend are drawn from far to near. */
 static void find_center(const struct scene_data *scene, struct scene_part *part)
 {
     struct vec3 low = {FLT_MAX, FLT_MAX, FLT_MAX}, high = {-FLT_MAX, -FLT_MAX, -FLT_MAX};

@@ -123,7 +123,7 @@ static void read_material(struct import *import, const struct aiMaterial *from,
     read_color_image(import, from, to);
 }
 
-/* Of other files than glTF. */
+/* For files other than glTF. */
 static bool take_materials(struct import *import)
 {
     const uint32_t count = import->from->mNumMaterials;
@@ -200,7 +200,7 @@ static void add_mesh(struct import *import, const struct aiMesh *mesh,
     part->index_count = scene->index_count - part->first_index;
 }
 
-/* What the visits of all nodes come to. Assimp refuses circles; depth and sums are bounded here. */
+/* Sums over the visits of all nodes. Assimp refuses circles; depth and sums are bounded here. */
 struct sums {
     size_t vertices, indices, parts;
     unsigned visits;
@@ -369,7 +369,7 @@ static bool take_scene(struct import *import)
     return false;
 }
 
-/* Of Assimp and of all that recurses into its nodes. */
+/* For Assimp, and for functions that recurse into its nodes. */
 static void *import_file(void *user)
 {
     struct import *import = user;

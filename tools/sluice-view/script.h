@@ -30,7 +30,7 @@ enum script_kind {
     SCRIPT_QUIT
 };
 
-/** What happens in one frame: a click is a move and two buttons. */
+/** Input of one frame: a click is a move and two buttons. */
 struct script_step {
     uint32_t frame, order; ///< steps of a frame have the order of the file
     enum script_kind kind;
@@ -47,7 +47,7 @@ struct script {
 
 /** False, with file, line and cause on stderr. Zero or finish the script before. */
 bool script_read(const char *path, struct script *script);
-/** The same from a text. `name` stands in messages. */
+/** Reads a script from a text. `name` stands in messages. */
 bool script_parse(const char *name, const char *text, struct script *script);
 void script_finish(struct script *script);
 /** The next step of this frame; NULL when there is none left. */

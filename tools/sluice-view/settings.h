@@ -1,4 +1,4 @@
-/** What people set: one plain struct that options, panels, scripts and files of settings share. */
+/** Settings: one plain struct that options, panels, scripts and files of settings share. */
 #ifndef SLUICE_VIEW_SETTINGS_H
 #define SLUICE_VIEW_SETTINGS_H
 
