@@ -270,11 +270,11 @@ void waits_tell_of_failures_and_of_requests_that_are_over(void **state)
 {
     (void)state;
     struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
+    s->faults.failure = SLUICE_ERROR_IO; /* before the first read: readers look at these */
+    s->faults.fails_on = true;
+    s->faults.fail_at = 20;
     SluiceTextureRequestId request = request_all(s);
     frames(s, 1);
-    s->faults.failure = SLUICE_ERROR_IO;
-    s->faults.fails_on = true;
-    s->faults.fail_at = s->faults.read_count + 20;
     SluiceVulkanWaitStatus status = SLUICE_VULKAN_WAIT_FRAME;
     for (uint32_t n = 0; n < 60 && status == SLUICE_VULKAN_WAIT_FRAME; n++) {
         frames(s, 1);
