@@ -19,6 +19,12 @@ static inline bool remote_is_url(const char *name)
            strncmp(name, "s3://", 5) == 0;
 }
 
+/** Returns the input to read from. NULL: the file is not remote, and its path is read. */
+static inline const SluiceInput *remote_input(const struct remote_file *remote)
+{
+    return remote->client ? &remote->input : NULL;
+}
+
 /**
  * Opens a URL. Keys for s3:// come from AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY,
  * AWS_SESSION_TOKEN, AWS_REGION or AWS_DEFAULT_REGION, AWS_ENDPOINT_URL_S3 or AWS_ENDPOINT_URL;

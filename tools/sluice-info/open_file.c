@@ -40,12 +40,6 @@ static bool read_remote_start(struct texture_file *file, const char *url, Sluice
     return result == SLUICE_SUCCESS;
 }
 
-/* Returns the input that the file is read from. NULL: its path. */
-static const SluiceInput *input_of(const struct texture_file *file)
-{
-    return file->remote.client ? &file->remote.input : NULL;
-}
-
 static bool read_start(const char *path, char bytes[12])
 {
     FILE *file = input_open(path);
@@ -64,7 +58,7 @@ static SluiceResult open_store(struct texture_file *file, const char *path, Slui
 {
 #ifdef HAVE_STORE
     SluiceStoreImageSourceCreateInfo info = {
-        .structSize = sizeof info, .pPath = path, .log = log, .pInput = input_of(file)};
+        .structSize = sizeof info, .pPath = path, .log = log, .pInput = remote_input(&file->remote)};
     file->kind = "tile store";
     file->is_store = true;
     return sluiceCreateStoreImageSource(&info, &file->source);
@@ -81,7 +75,7 @@ static SluiceResult open_exr(struct texture_file *file, const char *path,
     SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info,
                                            .pPath = path,
                                            .log = log,
-                                           .pInput = input_of(file),
+                                           .pInput = remote_input(&file->remote),
                                            .maxImageSize = UINT64_MAX,
                                            .levelZeroAlone = opening->level_zero_alone,
                                            .maxMemorySize = opening->memory};
@@ -101,11 +95,11 @@ static SluiceResult open_container(struct texture_file *file, const char *path, 
 {
 #ifdef HAVE_CONTAINER
     SluiceDdsImageSourceCreateInfo dds = {
-        .structSize = sizeof dds, .pPath = path, .log = log, .pInput = input_of(file)};
+        .structSize = sizeof dds, .pPath = path, .log = log, .pInput = remote_input(&file->remote)};
     SluiceKtx2ImageSourceCreateInfo ktx2 = {.structSize = sizeof ktx2,
                                             .pPath = path,
                                             .log = log,
-                                            .pInput = input_of(file),
+                                            .pInput = remote_input(&file->remote),
                                             .maxCacheSize = opening->memory};
     file->kind = is_dds ? "DDS" : "KTX2";
     return is_dds ? sluiceCreateDdsImageSource(&dds, &file->source)
