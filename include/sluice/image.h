@@ -18,10 +18,11 @@ extern "C" {
 #endif
 
 /**
- * Texel formats, named as in Vulkan.
+ * Texel formats, named as in Vulkan. In memory, words of 16 and 32 bits are in the host's byte
+ * order, as Vulkan takes them. In files they are little endian.
  *
  * - No suffix: channels in memory order.
- * - PACK32: little-endian words of 32 bits. The channel named last is in the lowest bits.
+ * - PACK32: words of 32 bits. The channel named last is in the lowest bits.
  * - SRGB: sRGB-encoded color and linear alpha.
  * - UINT, SINT: integers, which are never filtered. Coarser levels hold texels of the finer ones.
  * - BLOCK: compressed blocks of 8 bytes (BC1, BC4, ETC2_R8G8B8, ETC2_R8G8B8A1, EAC_R11) or 16

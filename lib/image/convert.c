@@ -63,7 +63,22 @@ static void snorm_from_rgba(uint32_t channels, uint32_t size, const float *rgba,
         }
 }
 
-/* Little endian, as the machines that Vulkan runs on. */
+static void put_word(char *out, uint32_t value, uint32_t size)
+{
+    uint8_t byte = (uint8_t)value;
+    uint16_t half = (uint16_t)value;
+    memcpy(out, size == 1 ? (const void *)&byte : size == 2 ? (const void *)&half : &value, size);
+}
+
+static uint32_t word_at(const char *in, uint32_t size)
+{
+    uint8_t byte = 0;
+    uint16_t half = 0;
+    uint32_t word = 0;
+    memcpy(size == 1 ? (void *)&byte : size == 2 ? (void *)&half : &word, in, size);
+    return byte | half | word;
+}
+
 static void integers_from_rgba(SluiceFormat format, uint32_t channels, const float *rgba, char *out,
                                size_t count)
 {
@@ -74,8 +89,7 @@ static void integers_from_rgba(SluiceFormat format, uint32_t channels, const flo
         for (uint32_t c = 0; c < channels; c++, out += size) {
             double value = isnan(rgba[4 * i + c]) ? 0 : (double)rgba[4 * i + c];
             int64_t integer = llround(fmin(fmax(value, least), least + span - 1));
-            uint32_t word = (uint32_t)integer;
-            memcpy(out, &word, size);
+            put_word(out, (uint32_t)integer, size);
         }
 }
 
@@ -88,8 +102,7 @@ static void rgba_from_integers(SluiceFormat format, uint32_t channels, const cha
         rgba[0] = rgba[1] = rgba[2] = 0.0f;
         rgba[3] = 1.0f;
         for (uint32_t c = 0; c < channels; c++, in += size) {
-            uint32_t word = 0;
-            memcpy(&word, in, size);
+            uint32_t word = word_at(in, size);
             rgba[c] = (float)((int64_t)(word ^ sign) - (int64_t)sign);
         }
     }

@@ -131,6 +131,14 @@ static const struct format *find(SluiceFormat format)
     return &formats[(uint32_t)format < SLUICE_FORMAT_COUNT ? format : SLUICE_FORMAT_UNDEFINED];
 }
 
+uint32_t slc_format_word_size(SluiceFormat format)
+{
+    const SluiceFormatInfo *info = &find(format)->info;
+    if (slc_format_is_compressed(info) || info->blockSize == 0)
+        return 1;
+    return slc_format_is_packed(format) ? info->blockSize : info->blockSize / info->channelCount;
+}
+
 SluiceResult sluiceGetFormatInfo(SluiceFormat format, SluiceFormatInfo *pInfo)
 {
     if (!pInfo)

@@ -62,6 +62,12 @@ static inline bool slc_format_is_half(SluiceFormat format)
            format == SLUICE_FORMAT_R16G16B16A16_SFLOAT;
 }
 
+/**
+ * Bytes of the words that texels consist of: 1, 2 or 4. Words have the host's byte order in memory.
+ * Compressed blocks are strings of bytes on every host: 1.
+ */
+uint32_t slc_format_word_size(SluiceFormat format);
+
 /** Returns the sRGB or the linear format with the same bytes; `format` itself if there is none. */
 SluiceFormat slc_format_twin(SluiceFormat format, bool srgb);
 bool slc_format_has_srgb_twin(SluiceFormat format);

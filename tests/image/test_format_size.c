@@ -1,7 +1,9 @@
+#include "image/byte_order.h"
 #include "image/convert.h"
 #include "image/format_size.h"
 #include "support/test.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 struct expected {
@@ -122,6 +124,32 @@ static void formats_are_described_as_vulkan_does(void **state)
     }
 }
 
+/* Words as names have them: R16 is of 16 bits, PACK32 of 32, a block of bytes. */
+static void words_have_the_bits_that_the_name_says(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT; i++) {
+        const char *name = all[i].name;
+        uint32_t bits = strstr(name, "_BLOCK")    ? 8
+                        : strstr(name, "_PACK32") ? 32
+                                                  : (uint32_t)strtoul(name + 1, NULL, 10);
+        assert_int_equal(slc_format_word_size(all[i].format), bits / 8);
+    }
+    assert_int_equal(slc_format_word_size(SLUICE_FORMAT_UNDEFINED), 1);
+}
+
+static void each_word_is_reversed_by_itself(void **state)
+{
+    (void)state;
+    char bytes[] = "abcdefgh";
+    slc_reverse_words(bytes, 8, 1);
+    assert_string_equal(bytes, "abcdefgh");
+    slc_reverse_words(bytes, 8, 2);
+    assert_string_equal(bytes, "badcfehg");
+    slc_reverse_words(bytes + 1, 4, 4);
+    assert_string_equal(bytes, "bfcdaehg");
+}
+
 static void standard_tiles_are_64_kib(void **state)
 {
     (void)state;
@@ -172,6 +200,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_is_in_the_table_once),
         cmocka_unit_test(formats_are_described_as_vulkan_does),
+        cmocka_unit_test(words_have_the_bits_that_the_name_says),
+        cmocka_unit_test(each_word_is_reversed_by_itself),
         cmocka_unit_test(standard_tiles_are_64_kib),
         cmocka_unit_test(cut_blocks_count_as_whole_ones),
         cmocka_unit_test(unknown_formats_are_refused),
