@@ -1,6 +1,7 @@
 #include "store/reader.h"
 
 #include "base/alloc.h"
+#include "image/byte_order.h"
 #include "store/codec.h"
 
 #include <string.h>
@@ -196,7 +197,10 @@ SluiceResult slc_store_read_chunk(struct slc_store_reader *reader,
     if (result != SLUICE_SUCCESS)
         return result;
     uint32_t texel_size = slc_store_chunk_size(&reader->header.grid, place);
-    if (find->entry.size == texel_size)
-        return read_raw(reader, find, texels);
-    return read_compressed(reader, find, bench, texels, texel_size);
+    result = find->entry.size == texel_size
+                 ? read_raw(reader, find, texels)
+                 : read_compressed(reader, find, bench, texels, texel_size);
+    if (result == SLUICE_SUCCESS)
+        slc_exchange_file_order(reader->header.grid.layout.format, texels, texel_size);
+    return result;
 }

@@ -1,7 +1,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
-#include "image/format_size.h"
+#include "image/byte_order.h"
 #include "store/store_writer.h"
 
 #include <string.h>
@@ -197,11 +197,24 @@ static SluiceResult write_stored(SluiceStoreWriter *writer, const struct slc_sto
     return write_entry(writer, number, &entry);
 }
 
+/* Texels as the file has them: `texels`, or bench->texels, which `texels` may be. */
+static const void *in_file_order(SluiceFormat format, struct slc_store_bench *bench,
+                                 const void *texels, size_t size)
+{
+    if (!slc_file_order_differs(format))
+        return texels;
+    if (texels != bench->texels)
+        memcpy(bench->texels, texels, size);
+    slc_exchange_file_order(format, bench->texels, size);
+    return bench->texels;
+}
+
 /* `texels`: the whole chunk, rows tight. */
 static SluiceResult write_texels(SluiceStoreWriter *writer, const struct slc_store_place *place,
                                  struct slc_store_bench *bench, const void *texels)
 {
     size_t size = slc_store_chunk_size(&writer->header.grid, place);
+    texels = in_file_order(writer->header.grid.layout.format, bench, texels, size);
     if (writer->header.compression_level == 0)
         return write_stored(writer, place, texels, size);
     size_t stored_size;
