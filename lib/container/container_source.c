@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/log.h"
 #include "container/level_cache.h"
-#include "image/format_size.h"
+#include "image/byte_order.h"
 #include "platform/thread.h"
 
 #include <stdatomic.h>
@@ -88,6 +88,8 @@ static SluiceResult fetch_region(const struct slc_container_layout *layout,
         result = layout->changes
                      ? fetch_changed(from, layout->changes, offset, (uint8_t *)row, size)
                      : fetch(from, offset, row, size);
+        if (result == SLUICE_SUCCESS)
+            slc_exchange_file_order(layout->format, row, size);
     }
     return result;
 }

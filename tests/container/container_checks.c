@@ -40,6 +40,13 @@ static void check_refusal(const char *path, open_function *open, const struct re
     sluiceDestroyImageSource(source);
 }
 
+static void write_number(const struct scratch *scratch, uint32_t at, uint32_t value)
+{
+    const uint8_t bytes[4] = {(uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16),
+                              (uint8_t)(value >> 24)};
+    assert_int_equal(pwrite(scratch->descriptor, bytes, sizeof bytes, at), sizeof bytes);
+}
+
 void check_refusals(struct file_bytes file, open_function *open, const struct refusal *refusals,
                     size_t count)
 {
@@ -48,9 +55,9 @@ void check_refusals(struct file_bytes file, open_function *open, const struct re
     for (size_t i = 0; i < count; i++) {
         const struct refusal *r = &refusals[i];
         scratch_replace(&scratch, file.bytes, file.size);
-        assert_int_equal(pwrite(scratch.descriptor, &r->value, 4, r->at), 4);
+        write_number(&scratch, r->at, r->value);
         if (r->at2)
-            assert_int_equal(pwrite(scratch.descriptor, &r->value2, 4, r->at2), 4);
+            write_number(&scratch, r->at2, r->value2);
         check_refusal(scratch.path, open, r, i);
     }
     scratch_finish(&scratch);

@@ -286,6 +286,17 @@ void scratch_finish(struct scratch *scratch)
     unlink(scratch->path);
 }
 
+/* In memory, words have the host's order; the name says how long they are. */
+static uint64_t host_index(SluiceFormat format, uint64_t index)
+{
+    const uint16_t one = 1;
+    const char *name = sluiceGetFormatName(format);
+    uint64_t size = strstr(name, "_PACK32") ? 4 : strtoul(name + 1, NULL, 10) / 8;
+    if (*(const uint8_t *)&one || strstr(name, "_BLOCK"))
+        return index;
+    return index - index % size + (size - 1 - index % size);
+}
+
 static uint8_t delivered_byte(const struct picture *p, uint32_t layer, uint32_t level,
                               uint64_t index)
 {
@@ -294,7 +305,7 @@ static uint8_t delivered_byte(const struct picture *p, uint32_t layer, uint32_t 
         return 255;
     if (p->format->is_bgra && channel != 3)
         index = index - channel + (2 - channel);
-    return picture_byte(layer, level, index);
+    return picture_byte(layer, level, host_index(p->format->format, index));
 }
 
 /* Reads a rectangle of blocks into rows that are `gap` bytes apart and looks at every byte. */
