@@ -57,8 +57,10 @@ static bool read_start(const char *path, char bytes[12])
 static SluiceResult open_store(struct texture_file *file, const char *path, SluiceLogCallback log)
 {
 #ifdef HAVE_STORE
-    SluiceStoreImageSourceCreateInfo info = {
-        .structSize = sizeof info, .pPath = path, .log = log, .pInput = remote_input(&file->remote)};
+    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info,
+                                             .pPath = path,
+                                             .log = log,
+                                             .pInput = remote_input(&file->remote)};
     file->kind = "tile store";
     file->is_store = true;
     return sluiceCreateStoreImageSource(&info, &file->source);
