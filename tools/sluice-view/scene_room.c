@@ -1,7 +1,7 @@
 /* strdup, realpath, strtok_r, strcasecmp */
 #define _XOPEN_SOURCE 700
 
-#include "scene_data.h"
+#include "scene_room.h"
 
 #include <vulkan/vulkan_core.h>
 
@@ -11,8 +11,8 @@
 #include <string.h>
 
 #define PANELS 24u
-#define IMAGES (PANELS + 2u) /* floor and walls */
-#define QUADS (PANELS + 5u)
+#define STEP 2.4f /* meters from a panel to the next one on its side */
+#define SIDE 1.9f /* of panels, at most */
 #define TAU 6.2831853f
 
 /* A different picture for each seed. */
@@ -79,34 +79,28 @@ static void choose_paint(uint32_t seed, struct paint *paint)
                 paint->colors[k][c] = (seed == PANELS ? 0.26f : 0.42f) + 0.03f * (float)k;
 }
 
-/* Sources point to it; the scene frees it behind them. */
-static struct paint *paints_of_room(void)
-{
-    struct paint *paints = calloc(IMAGES, sizeof *paints);
-    for (uint32_t i = 0; paints && i < IMAGES; i++)
-        choose_paint(i, &paints[i]);
-    return paints;
-}
-
-static bool add_image(struct scene_data *scene, struct paint *paints, uint32_t i)
+/* Paints `seed`, which is one of PANELS pictures, the floor or the walls, behind the images that
+ * are there. Its source points to `paint`, which the scene frees behind it. */
+static bool add_image(struct scene_data *scene, struct paint *paint, uint32_t seed)
 {
     char name[32];
+    const uint32_t i = seed;
+    choose_paint(seed, paint);
     if (i < PANELS)
         snprintf(name, sizeof name, "picture %02u", i + 1);
     else
         snprintf(name, sizeof name, "%s", i == PANELS ? "floor" : "walls");
-    const SluiceProceduralImage image = {&paints[i], paint_texel};
+    const SluiceProceduralImage image = {paint, paint_texel};
     const SluiceImageInfo info = {.structSize = sizeof info,
                                   .width = i % 5 == 4 ? 4096 : 2048,
                                   .height = i % 3 == 2 ? 4096 : 2048,
                                   .format = SLUICE_FORMAT_R8G8B8A8_SRGB,
                                   .pName = name};
-    struct scene_image *added = &scene->images[i];
+    struct scene_image *added = &scene->images[scene->image_count++];
     added->name = strdup(name);
     added->path = strdup("");
     added->wrap_u = added->wrap_v = VK_SAMPLER_ADDRESS_MODE_REPEAT;
     added->primary = SCENE_NO_IMAGE;
-    scene->image_count = i + 1;
     return added->name && added->path &&
            sluiceCreateProceduralImageSource(&image, &info, NULL, &added->source) == SLUICE_SUCCESS;
 }
@@ -136,31 +130,54 @@ static void add_quad(struct scene_data *scene, struct vec3 corner, struct vec3 r
         scene->indices[scene->index_count++] = first + corners[i];
 }
 
-static void add_panel(struct scene_data *scene, uint32_t i)
+/* As high or as wide as the wall allows. */
+static void fit_panel(const struct scene_data *scene, uint32_t image, float *width, float *height)
 {
-    const bool left = i % 2 == 0;
-    const float z = -2.4f * (float)(i / 2), x = left ? -2.48f : 2.48f;
-    if (left)
-        add_quad(scene, (struct vec3){x, 2.25f, z + 0.95f}, (struct vec3){0, 0, -1.9f},
-                 (struct vec3){0, -1.9f, 0}, i, 1, 1);
+    SluiceImageInfo info = {.structSize = sizeof info};
+    *width = *height = SIDE;
+    if (image == SCENE_NO_IMAGE ||
+        sluiceGetImageInfo(scene->images[image].source, &info) != SLUICE_SUCCESS)
+        return;
+    const float aspect = (float)info.width / (float)info.height;
+    if (aspect < 1)
+        *width = fmaxf(SIDE * aspect, 0.02f);
     else
-        add_quad(scene, (struct vec3){x, 2.25f, z - 0.95f}, (struct vec3){0, 0, 1.9f},
-                 (struct vec3){0, -1.9f, 0}, i, 1, 1);
+        *height = fmaxf(SIDE / aspect, 0.02f);
 }
 
-static void add_walls(struct scene_data *scene)
+static struct vec3 panel_center(uint32_t i)
 {
-    const float length = 2.4f * (float)(PANELS / 2) + 3.0f, front = 3.5f;
+    return (struct vec3){i % 2 == 0 ? -2.48f : 2.48f, 2.25f - SIDE / 2, -STEP * (float)(i / 2)};
+}
+
+static void add_panel(struct scene_data *scene, uint32_t i, uint32_t image)
+{
+    float width, height;
+    const float toward = i % 2 == 0 ? -1.0f : 1.0f;
+    fit_panel(scene, image, &width, &height);
+    struct vec3 corner = panel_center(i);
+    corner.y += height / 2;
+    corner.z -= toward * width / 2;
+    add_quad(scene, corner, (struct vec3){0, 0, toward * width}, (struct vec3){0, -height, 0},
+             image, 1, 1);
+    scene->materials[scene->material_count - 1].missing = image == SCENE_NO_IMAGE;
+}
+
+/* The floor's and the walls' images are the last two. */
+static void add_walls(struct scene_data *scene, uint32_t panels)
+{
+    const float length = STEP * (float)((panels + 1) / 2) + 3.0f, front = 3.5f;
+    const uint32_t floor = scene->image_count - 2, walls = floor + 1;
     add_quad(scene, (struct vec3){-2.5f, 0, front - length}, (struct vec3){5, 0, 0},
-             (struct vec3){0, 0, length}, PANELS, 2, 2 * length / 5);
+             (struct vec3){0, 0, length}, floor, 2, 2 * length / 5);
     add_quad(scene, (struct vec3){-2.5f, 2.8f, front}, (struct vec3){5, 0, 0},
              (struct vec3){0, 0, -length}, SCENE_NO_IMAGE, 1, 1);
     add_quad(scene, (struct vec3){-2.5f, 2.8f, front}, (struct vec3){0, 0, -length},
-             (struct vec3){0, -2.8f, 0}, PANELS + 1, length / 4, 1);
+             (struct vec3){0, -2.8f, 0}, walls, length / 4, 1);
     add_quad(scene, (struct vec3){2.5f, 2.8f, front - length}, (struct vec3){0, 0, length},
-             (struct vec3){0, -2.8f, 0}, PANELS + 1, length / 4, 1);
+             (struct vec3){0, -2.8f, 0}, walls, length / 4, 1);
     add_quad(scene, (struct vec3){-2.5f, 2.8f, front - length}, (struct vec3){5, 0, 0},
-             (struct vec3){0, -2.8f, 0}, PANELS + 1, 2, 1);
+             (struct vec3){0, -2.8f, 0}, walls, 2, 1);
 }
 
 /* Along the room with looks to both sides, and back. */
@@ -181,28 +198,65 @@ static bool add_tour(struct scene_data *scene)
     return true;
 }
 
-bool scene_data_make_room(struct scene_data *scene)
+/* Stands before each panel, and goes back. */
+static bool add_tour_of(struct scene_data *scene, uint32_t panels)
 {
-    struct paint *paints = paints_of_room();
-    *scene = (struct scene_data){.name = strdup("room of computed pictures")};
-    scene->vertices = calloc(4 * QUADS, sizeof *scene->vertices);
-    scene->indices = calloc(6 * QUADS, sizeof *scene->indices);
-    scene->parts = calloc(QUADS, sizeof *scene->parts);
-    scene->images = calloc(IMAGES, sizeof *scene->images);
-    scene->materials = calloc(QUADS, sizeof *scene->materials);
-    bool made = paints && scene->name && scene->vertices && scene->indices && scene->parts &&
-                scene->images && scene->materials && add_tour(scene);
-    scene->paints = paints;
-    for (uint32_t i = 0; made && i < IMAGES; i++)
-        made = add_image(scene, paints, i);
-    if (!made) {
-        fprintf(stderr, "sluice-view: out of memory\n");
-        scene_data_finish(scene);
-        return false;
+    struct view_camera first = {0};
+    float seconds = 0;
+    for (uint32_t i = 0; i < panels; i++, seconds += 2.5f) {
+        const struct vec3 center = panel_center(i);
+        const struct vec3 eye = {0, 1.45f, center.z + 0.25f};
+        const struct view_camera camera = view_camera_at(eye, center, 1.0f);
+        if (i == 0)
+            first = camera;
+        if (!camera_path_add(&scene->tour, seconds, &camera) ||
+            !camera_path_add(&scene->tour, seconds + 1.5f, &camera))
+            return false;
     }
-    add_walls(scene);
-    for (uint32_t i = 0; i < PANELS; i++)
-        add_panel(scene, i);
+    scene->camera = first;
+    return camera_path_add(&scene->tour, seconds + 0.2f * (float)panels, &first);
+}
+
+bool scene_room_allocate(struct scene_data *scene, const char *name, uint32_t panels)
+{
+    const size_t quads = (size_t)panels + 5;
+    scene->name = strdup(name);
+    scene->vertices = calloc(4 * quads, sizeof *scene->vertices);
+    scene->indices = calloc(6 * quads, sizeof *scene->indices);
+    scene->parts = calloc(quads, sizeof *scene->parts);
+    scene->images = calloc((size_t)panels + 2, sizeof *scene->images);
+    scene->materials = calloc(quads, sizeof *scene->materials);
+    scene->paints = calloc((size_t)panels + 2, sizeof(struct paint));
+    return scene->name && scene->vertices && scene->indices && scene->parts && scene->images &&
+           scene->materials && scene->paints;
+}
+
+bool scene_room_hang(struct scene_data *scene, const uint32_t *images, uint32_t panels)
+{
+    struct paint *paints = scene->paints;
+    if (!add_image(scene, &paints[panels], PANELS) ||
+        !add_image(scene, &paints[panels + 1], PANELS + 1) ||
+        (scene->tour.count == 0 && !add_tour_of(scene, panels)))
+        return false;
+    add_walls(scene, panels);
+    for (uint32_t i = 0; i < panels; i++)
+        add_panel(scene, i, images[i]);
     scene_data_complete(scene);
     return true;
+}
+
+bool scene_data_make_room(struct scene_data *scene)
+{
+    uint32_t images[PANELS];
+    *scene = (struct scene_data){0};
+    bool made = scene_room_allocate(scene, "room of computed pictures", PANELS) && add_tour(scene);
+    for (uint32_t i = 0; made && i < PANELS; i++) {
+        images[i] = i;
+        made = add_image(scene, (struct paint *)scene->paints + i, i);
+    }
+    if (made && scene_room_hang(scene, images, PANELS))
+        return true;
+    fprintf(stderr, "sluice-view: out of memory\n");
+    scene_data_finish(scene);
+    return false;
 }
