@@ -46,81 +46,12 @@ static bool create_gpu(struct viewer *v, bool *unsupported)
     return gpu_create(&request, &v->gpu, unsupported);
 }
 
-static struct stage *create_stage(struct viewer *v, const struct view_settings *settings,
-                                  bool everything)
+static void drop(struct viewer *v, const char *path)
 {
-    const char *const paths[] = {v->scene};
-    const struct stage_request request = {.gpu = &v->gpu,
-                                          .paths = paths,
-                                          .path_count = v->scene[0] ? 1 : 0,
-                                          .threads = v->options->threads,
-                                          .cache = v->options->cache,
-                                          .deterministic = v->options->deterministic,
-                                          .everything = everything};
-    return stage_create(&request, settings);
-}
-
-/* The second streamer of a comparison lives as long as the comparison is shown. */
-static bool fit_other(struct viewer *v)
-{
-    const struct view_settings *s = &v->app.settings;
-    const bool wanted = v->stage && s->compare != VIEW_COMPARE_OFF;
-    if (v->other && (!wanted || v->other_kind != s->compared)) {
-        if (!frames_wait(&v->frames))
-            return false;
-        stage_destroy(v->other);
-        v->other = NULL;
-    }
-    if (!wanted || v->other)
-        return true;
-    struct view_settings settings = *s;
-    settings.budget = s->compared == VIEW_WITH_BUDGET ? 16u << 20 : 0;
-    v->other_kind = s->compared;
-    v->other = create_stage(v, &settings, s->compared == VIEW_WITH_EVERYTHING);
-    if (!v->other)
-        v->app.settings.compare = VIEW_COMPARE_OFF;
-    return true;
-}
-
-static bool open_scene(struct viewer *v, bool walks)
-{
-    v->stage = create_stage(v, &v->app.settings, false);
-    v->applied = v->app.settings;
-    if (!v->stage)
-        return false;
-    return app_open(&v->app, v->stage, walks);
-}
-
-static void close_scene(struct viewer *v)
-{
-    frames_wait(&v->frames);
-    app_close(&v->app);
-    stage_destroy(v->other);
-    stage_destroy(v->stage);
-    v->stage = v->other = NULL;
-}
-
-/* Another scene, or this one with other settings. A file that cannot be read leaves the old one. */
-static void reopen(struct viewer *v, const char *path)
-{
-    char before[sizeof v->scene];
-    const struct view_camera camera = v->app.camera;
-    const bool same = path == NULL;
-    memcpy(before, v->scene, sizeof before);
-    close_scene(v);
-    if (!same)
-        snprintf(v->scene, sizeof v->scene, "%s", path);
-    if (!open_scene(v, false)) {
-        close_scene(v);
-        app_say(&v->app, "Cannot open %s; the terminal says why", path ? path : before);
-        memcpy(v->scene, before, sizeof v->scene);
-        if (!same)
-            open_scene(v, false);
-    } else if (same) {
-        v->app.camera = camera;
-    } else {
-        app_say(&v->app, "Opened %s", stage_name(v->stage));
-    }
+    struct file_list paths = {0};
+    if (files_add(path, &paths))
+        viewer_reopen(v, &paths);
+    files_finish(&paths);
 }
 
 static void take_script_step(struct viewer *v, const struct script_step *step)
@@ -135,7 +66,7 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
     case SCRIPT_KEY: window_note_key(in, step->number, step->down); break;
     case SCRIPT_WHEEL: in->wheel += step->x; break;
     case SCRIPT_TYPE: snprintf(in->text, sizeof in->text, "%s", step->text); break;
-    case SCRIPT_DROP: reopen(v, step->text); break;
+    case SCRIPT_DROP: drop(v, step->text); break;
     case SCRIPT_SET: controls_set(&v->app.settings, step->text, step->value, "sluice-view"); break;
     case SCRIPT_SCREENSHOT: snprintf(v->screenshot, sizeof v->screenshot, "%s", step->text); break;
     case SCRIPT_QUIT: v->app.quit = true; break;
@@ -144,14 +75,15 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
 
 static void gather_input(struct viewer *v)
 {
-    char dropped[4096];
+    struct file_list dropped;
     v->input.wheel = 0;
     v->input.key_count = 0;
     v->input.text[0] = '\0';
     if (v->window) {
         window_poll(v->window, &v->input);
-        if (window_dropped(v->window, dropped, sizeof dropped))
-            reopen(v, dropped);
+        if (window_dropped(v->window, &dropped))
+            viewer_reopen(v, &dropped);
+        files_finish(&dropped);
         v->app.quit |= window_closed(v->window);
     }
     for (const struct script_step *step; (step = script_next(&v->script, v->frame));)
@@ -185,7 +117,7 @@ static void answer_requests(struct viewer *v)
     if (app->restart && v->stage)
         stage_restart(v->stage);
     if (app->reload)
-        reopen(v, NULL);
+        viewer_reopen(v, NULL);
     if (app->screenshot)
         name_screenshot(v);
     if (v->stage && memcmp(&v->applied, &app->settings, sizeof v->applied) != 0) {
@@ -274,7 +206,7 @@ static bool draw_frame(struct viewer *v, double step)
         if (outcome != SWAPCHAIN_GOOD)
             return outcome == SWAPCHAIN_OUTDATED;
     }
-    VkCommandBuffer commands = fit_other(v) ? frames_begin(&v->frames) : VK_NULL_HANDLE;
+    VkCommandBuffer commands = viewer_fit_other(v) ? frames_begin(&v->frames) : VK_NULL_HANDLE;
     if (!commands)
         return false;
     const double begin = clock_seconds();
@@ -395,10 +327,9 @@ static bool prepare(struct viewer *v, bool *unsupported)
 static void read_settings(struct viewer *v)
 {
     const struct view_options *o = v->options;
-    if (o->words.count > 0)
-        snprintf(v->scene, sizeof v->scene, "%s", o->words.items[0]);
+    const char *scene = o->words.count > 0 ? o->words.items[0] : "";
     v->app.settings = o->settings;
-    if (o->headless || !settings_file_path(v->scene, v->settings_path, sizeof v->settings_path)) {
+    if (o->headless || !settings_file_path(scene, v->settings_path, sizeof v->settings_path)) {
         v->settings_path[0] = '\0';
         return;
     }
@@ -420,7 +351,7 @@ static bool begin(struct viewer *v)
         return false;
     if (v->window && !draw_frame(v, 0.016)) /* "Opening the scene ..." */
         return false;
-    if (!open_scene(v, !o->still))
+    if (!viewer_open_scene(v, !o->still))
         return false;
     if (o->play)
         v->app.follow = FOLLOW_PATH;
@@ -432,16 +363,16 @@ static bool begin(struct viewer *v)
 
 static void finish(struct viewer *v)
 {
+    viewer_close_scene(v);
     frames_destroy(&v->frames);
     app_finish(&v->app);
-    stage_destroy(v->other);
-    stage_destroy(v->stage);
     swapchain_destroy(&v->swapchain);
     window_destroy_surface(v->window, &v->gpu);
     gpu_destroy(&v->gpu);
     ui_destroy();
     window_close(v->window);
     script_finish(&v->script);
+    files_finish(&v->paths);
     log_finish();
 }
 
@@ -453,8 +384,10 @@ int viewer_run(const struct view_options *options)
         return EXIT_FAILURE;
     v->options = options;
     app_init(&v->app);
+    for (size_t i = 0; i < options->words.count; i++)
+        if (!files_add(options->words.items[i], &v->paths))
+            return EXIT_FAILURE;
     read_settings(v);
-    snprintf(v->command, sizeof v->command, "sluice-view%s%s", v->scene[0] ? " " : "", v->scene);
     v->app.program = v->command;
     v->app.deterministic = options->deterministic;
     v->app.headless = options->headless;

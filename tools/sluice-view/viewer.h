@@ -8,6 +8,8 @@
 #include "script.h"
 #include "window.h"
 
+#include "../common/files.h"
+
 struct viewer {
     const struct view_options *options;
     struct gpu gpu;
@@ -21,7 +23,7 @@ struct viewer {
     struct script script;
     struct ui_input input;
     struct view_settings applied; ///< what the streamer has
-    char scene[4096];             ///< path; "": the room
+    struct file_list paths;       ///< owned; of the scene; none: the room
     char command[4200];           ///< of "copy command line", without options
     char settings_path[4096];     ///< "": none are kept
     char screenshot[4096];        ///< to write after this frame; "": none
@@ -32,6 +34,16 @@ struct viewer {
     unsigned screenshot_number;
 };
 
+/** Opens the scene of the paths. False, with lines on stderr, if it cannot be shown. */
+bool viewer_open_scene(struct viewer *viewer, bool walks);
+/** Waits for the frames. */
+void viewer_close_scene(struct viewer *viewer);
+/** Opens other paths, which it takes; NULL: the same scene with other settings. Paths that cannot
+ * be shown leave the old scene. */
+void viewer_reopen(struct viewer *viewer, struct file_list *paths);
+/** Creates or destroys the second streamer, as the settings of the comparison want it. False if the
+ *  device failed. */
+bool viewer_fit_other(struct viewer *viewer);
 /** Returns the exit status: 0, 1, or 77 without a device. */
 int viewer_run(const struct view_options *options);
 

@@ -24,7 +24,7 @@ struct window {
     VkSurfaceKHR surface;
     struct ui_input pending; ///< since the last poll
     bool pressed[3];         ///< since the last poll: a click shorter than a frame is held for one
-    char dropped[4096];
+    struct file_list dropped;
     bool full;
     int x, y, width, height; ///< before it was full screen
 };
@@ -97,8 +97,10 @@ static void on_wheel(GLFWwindow *glfw, double x, double y)
 
 static void on_drop(GLFWwindow *glfw, int count, const char **paths)
 {
-    if (count > 0)
-        snprintf(of(glfw)->dropped, sizeof of(glfw)->dropped, "%s", paths[0]);
+    struct file_list *dropped = &of(glfw)->dropped;
+    files_finish(dropped);
+    for (int i = 0; i < count && files_add(paths[i], dropped); i++)
+        continue;
 }
 
 static void on_focus(GLFWwindow *glfw, int focused)
@@ -151,6 +153,7 @@ void window_close(struct window *window)
     if (window->glfw)
         glfwDestroyWindow(window->glfw);
     glfwTerminate();
+    files_finish(&window->dropped);
     free(window);
 }
 
@@ -246,13 +249,11 @@ bool window_closed(const struct window *window)
     return glfwWindowShouldClose(window->glfw);
 }
 
-bool window_dropped(struct window *window, char *path, size_t size)
+bool window_dropped(struct window *window, struct file_list *paths)
 {
-    if (!window->dropped[0])
-        return false;
-    snprintf(path, size, "%s", window->dropped);
-    window->dropped[0] = '\0';
-    return true;
+    *paths = window->dropped;
+    window->dropped = (struct file_list){0};
+    return paths->count > 0;
 }
 
 void window_set_full_screen(struct window *window, bool full)

@@ -4,6 +4,7 @@
 
 #include "ui.h"
 
+#include "../common/files.h"
 #include "../common/gpu.h"
 
 struct window;
@@ -26,8 +27,8 @@ void window_share_clipboard(struct window *window);
 /** Adds what happened since the last call. */
 void window_poll(struct window *window, struct ui_input *input);
 bool window_closed(const struct window *window);
-/** The first file that was dropped since the last call. */
-bool window_dropped(struct window *window, char *path, size_t size);
+/** Moves out the files that were dropped since the last call. False if there are none. */
+bool window_dropped(struct window *window, struct file_list *paths);
 void window_set_full_screen(struct window *window, bool full);
 /** Adds a key, and sets the modifiers by it. */
 void window_note_key(struct ui_input *input, int key, bool down);
