@@ -1,16 +1,17 @@
 #include "options.h"
 
 #include "controls.h"
+#include "scene_open.h"
 
 #include "../common/shared_options.h"
 
 #include <string.h>
 
 static const char usage[] =
-    "usage: sluice-view [OPTION ...] [SCENE]\n\n"
+    "usage: sluice-view [OPTION ...] [SCENE | PICTURE ... | FOLDER ...]\n\n"
     "Shows a scene whose textures are streamed, and why they look as they do. SCENE is a glTF\n"
-    "or OBJ file; without one, a room of computed pictures. Drop a file onto the window to open\n"
-    "it.\n";
+    "or OBJ file. Pictures, and those of folders, hang in a room; without any, computed pictures.\n"
+    "Drop files onto the window to open them.\n";
 
 static const char notes[] =
     "Without a display, use --headless: it draws the same frames, with the panels, into pictures.\n"
@@ -21,7 +22,7 @@ static const char notes[] =
 enum option_outcome options_read(int argc, char **argv, struct view_options *o)
 {
     const struct option own[] = {
-        {OPTION_WORDS, .value = &o->words, .help = "a scene", .minimum = 0},
+        {OPTION_WORDS, .value = &o->words, .help = "a scene, or pictures", .minimum = 0},
         {OPTION_SECTION, .help = "Without a window"},
         {OPTION_FLAG, "headless", .value = &o->headless,
          .help = "open no window: draw into pictures, with time by the number of the frame"},
@@ -58,9 +59,8 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
     count += sizeof own / sizeof *own;
     const struct option_table table = {"sluice-view", usage, notes, all, count};
     const enum option_outcome outcome = options_parse(&table, argc, argv);
-    if (outcome == OPTIONS_RUN && o->words.count > 1) {
-        options_refuse(&table, "%s: one scene at a time", o->words.items[1]);
+    if (outcome == OPTIONS_RUN &&
+        !scene_open_takes((const char *const *)o->words.items, (uint32_t)o->words.count))
         return OPTIONS_ERROR;
-    }
     return outcome;
 }

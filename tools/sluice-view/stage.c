@@ -1,7 +1,7 @@
 #include "stage.h"
 
 #include "scene_data.h"
-#include "scene_import.h"
+#include "scene_open.h"
 #include "stage_draw.h"
 
 #include "../../samples/common/slow_source.h"
@@ -190,9 +190,8 @@ struct stage *stage_create(const struct stage_request *request,
         return NULL;
     s->gpu = request->gpu;
     s->settings = *settings;
-    bool created = request->path_count == 0 ? scene_data_make_room(&s->scene)
-                                            : scene_import(request->paths[0], request->cache,
-                                                           request->deterministic, &s->scene);
+    bool created = scene_open(request->paths, request->path_count, request->cache,
+                              request->deterministic, &s->scene);
     s->textures = calloc(s->scene.image_count + 1, sizeof *s->textures);
     s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
     created = created && s->textures && s->table_indices && begin_slowness(s) &&
