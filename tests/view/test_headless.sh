@@ -49,6 +49,16 @@ printf '2 drop noise.glb\n4 set compare-to budget\n4 key v\n' >drops
 run 0 --headless $validation --size 160x160 --cache . --script drops --frames 6 && grep -q 'noise.glb' err
 fact a_dropped_file_that_cannot_be_read_leaves_the_scene_which_can_be_compared
 
+mkdir -p pictures/below none && printf 'P6 2 2 255\n%012d' 0 >pictures/black.ppm &&
+    printf 'P6 2 2 255\n%s' zzzzzzzzzzzz >pictures/below/light.ppm && cp noise.glb pictures/noise.png
+hang() { run 0 --headless --deterministic --size 160x160 --panels off --cache . --frames 2 "$@"; }
+hang pictures && grep -q 'pictures/noise.png' err && grep -q '^3 pictures: ' out &&
+    hang --screenshot black.png pictures/black.ppm gone.png && hang --screenshot missing.png gone.png \
+    pictures/black.ppm && grep -q 'gone.png: cannot be shown' err && ! cmp -s black.png missing.png
+fact pictures_and_folders_hang_in_the_room_and_one_that_is_missing_is_named
+run 1 --headless --frames 2 --cache . none && grep -q 'there is no picture to show' err
+fact a_folder_without_pictures_is_refused
+
 # Quads of [-1, 1]: a wall, a small one in front that sets the bounds, and two between them that must not be seen.
 quad='\0\0\x80\xbf\0\0\x80\xbf\0\0\0\0\0\0\x80\x3f\0\0\x80\xbf\0\0\0\0'
 quad+='\0\0\x80\x3f\0\0\x80\x3f\0\0\0\0\0\0\x80\xbf\0\0\x80\x3f\0\0\0\0\0\0\1\0\2\0\0\0\2\0\3\0'

@@ -58,6 +58,19 @@ static SluiceResult open_source(struct scene_data *scene, const struct scene_ima
     return result;
 }
 
+/* Views and picks know single pictures, and filters know numbers that can be mixed. */
+static const char *find_refusal(SluiceImageSource *source)
+{
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceFormatInfo format = {.structSize = sizeof format};
+    if (sluiceGetImageInfo(source, &info) != SLUICE_SUCCESS ||
+        sluiceGetFormatInfo(info.format, &format) != SLUICE_SUCCESS)
+        return "its format is unknown";
+    if (info.arrayLayerCount > 1)
+        return "it has several layers";
+    return format.integer ? "its texels are integers" : NULL;
+}
+
 uint32_t scene_images_add(struct scene_data *scene, const struct scene_image_request *r)
 {
     const uint32_t known = find(scene, r);
@@ -71,6 +84,12 @@ uint32_t scene_images_add(struct scene_data *scene, const struct scene_image_req
         scene_data_note(scene, "%s: cannot be shown: %s", r->path, sluiceGetResultName(result));
         return SCENE_NO_IMAGE;
     }
+    const char *refusal = find_refusal(image->source);
+    if (refusal) {
+        sluiceDestroyImageSource(image->source);
+        scene_data_note(scene, "%s: cannot be shown: %s", r->path, refusal);
+        return SCENE_NO_IMAGE;
+    }
     image->name = strdup(r->name);
     image->path = strdup(r->path);
     if (image->name && image->path)
@@ -80,6 +99,33 @@ uint32_t scene_images_add(struct scene_data *scene, const struct scene_image_req
     free(image->path);
     scene_data_note(scene, "%s: out of memory", r->path);
     return SCENE_NO_IMAGE;
+}
+
+static void paint_gray(void *user_data, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                       uint32_t height, float rgba[4])
+{
+    (void)user_data, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = 0.5f;
+    rgba[3] = 1.0f;
+}
+
+bool scene_images_replace(struct scene_data *scene, uint32_t index, SluiceResult why)
+{
+    struct scene_image *image = &scene->images[index];
+    const SluiceProceduralImage gray = {NULL, paint_gray};
+    const SluiceImageInfo info = {
+        .structSize = sizeof info, .width = 64, .height = 64, .format = SLUICE_FORMAT_R8_UNORM};
+    SluiceImageSource *source;
+    scene_data_note(scene, "%s: cannot be shown: %s", image->path[0] ? image->path : image->name,
+                    sluiceGetResultName(why));
+    if (sluiceCreateProceduralImageSource(&gray, &info, NULL, &source) != SLUICE_SUCCESS)
+        return false;
+    sluiceDestroyImageSource(image->source);
+    image->source = source;
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        if (scene->materials[i].slots[SLOT_COLOR].image == index)
+            scene->materials[i].missing = true;
+    return true;
 }
 
 /* FNV-1a. */

@@ -16,6 +16,9 @@ bool scene_images_create_opener(const char *cache, struct scene_data *scene);
 /** The index of an image, opened once; SCENE_NO_IMAGE and a note if it cannot be. scene->images has
  *  room for it. */
 uint32_t scene_images_add(struct scene_data *scene, const struct scene_image_request *request);
+/** Puts a gray image in the place of one that the device cannot stream, and names that one.
+ * Materials with its colors show a checkerboard. */
+bool scene_images_replace(struct scene_data *scene, uint32_t index, SluiceResult why);
 /** Writes bytes into a file of the cache, named by what they are, unless it is there. The opener
  *  reads pictures from files alone. False with a line on stderr. */
 bool scene_images_keep(const char *cache, const void *bytes, size_t size, char *path,

@@ -1,6 +1,7 @@
 #include "stage.h"
 
 #include "scene_data.h"
+#include "scene_images.h"
 #include "scene_open.h"
 #include "stage_draw.h"
 
@@ -142,12 +143,19 @@ static bool describe_texture(struct stage *s, uint32_t i, const SluiceVulkanText
     return true;
 }
 
+/* Faults of a file or of its format; others end the scene. */
+static bool can_be_replaced(SluiceResult result)
+{
+    return result == SLUICE_ERROR_UNSUPPORTED || result == SLUICE_ERROR_INVALID_ARGUMENT ||
+           result == SLUICE_ERROR_CORRUPT_DATA || result == SLUICE_ERROR_IO;
+}
+
 static bool add_texture(struct stage *s, uint32_t i)
 {
     const struct scene_image *image = &s->scene.images[i];
     const bool follows = image->primary != SCENE_NO_IMAGE;
     SluiceVulkanTexture texture;
-    const SluiceVulkanTextureCreateInfo info = {
+    SluiceVulkanTextureCreateInfo info = {
         .structSize = sizeof info,
         .source = s->slow ? s->slow[i] : image->source,
         .primaryId = follows ? s->textures[image->primary].id : SLUICE_NO_TEXTURE,
@@ -156,8 +164,12 @@ static bool add_texture(struct stage *s, uint32_t i)
         .addressModeV = (VkSamplerAddressMode)image->wrap_v,
         .explicitAddressModes = true,
         .maxAnisotropy = (float)s->settings.anisotropy};
-    return check(sluiceAddVulkanTexture(s->streamer, &info, &texture), image->name) &&
-           describe_texture(s, i, &texture);
+    SluiceResult result = sluiceAddVulkanTexture(s->streamer, &info, &texture);
+    if (can_be_replaced(result) && !s->slow && scene_images_replace(&s->scene, i, result)) {
+        info.source = image->source;
+        result = sluiceAddVulkanTexture(s->streamer, &info, &texture);
+    }
+    return check(result, image->name) && describe_texture(s, i, &texture);
 }
 
 /* Primaries first, whose ids the others need. */
