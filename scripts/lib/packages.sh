@@ -9,7 +9,7 @@ packages_to_build=(gcc libc6-dev meson ninja-build pkg-config glslang-tools spir
 # lld: a build links 500 programs, and it takes half as long for each as the default.
 # llvm: the leak sanitizer needs its symbolizer to know which leaks are a driver's.
 packages_to_test=(binutils clang cmake lld llvm libcmocka-dev libembree-dev vulkan-validationlayers xvfb xdotool
-    xclip)
+    xclip nginx-light iproute2)
 
 package_is_installed() {
     [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
