@@ -226,7 +226,8 @@ SLUICE_API SluiceResult sluiceIsStoreTileWritten(SluiceStoreWriter *writer, uint
  *
  * In a compressed file tiles are placed in the order in which writes finish, so on one thread the
  * same calls give the same bytes. An uncompressed file is the same for any order. Both hold for a
- * file written by an interrupted and a resumed writer together.
+ * file written by an interrupted and a resumed writer together. sluiceWriteStoreTileInTurn gives
+ * the same bytes on several threads.
  *
  * After an error the tile is not written and can be written again. Exception: if the disk refuses a
  * part of the index that had space reserved, every later write returns SLUICE_ERROR_IO.
@@ -240,6 +241,28 @@ SLUICE_API SluiceResult sluiceIsStoreTileWritten(SluiceStoreWriter *writer, uint
 SLUICE_API SluiceResult sluiceWriteStoreTile(SluiceStoreWriter *writer, uint32_t arrayLayer,
                                              uint32_t mipLevel, uint32_t tileX, uint32_t tileY,
                                              const void *pTexels, size_t rowPitch);
+
+/**
+ * Writes one tile in its turn, so that several threads write the same bytes as one. The turns of a
+ * writer are 0, 1, 2 and so on. Each is ended by one call, on any thread, and the tile is placed
+ * behind those of all earlier turns. `pTexels` NULL ends a turn without a tile, for tiles that are
+ * written already or could not be made.
+ *
+ * Compresses on the caller's thread. If an earlier turn has not ended, the compressed tile waits in
+ * memory, and the call that ends the earlier turn writes both. When 16 tiles wait, calls block, but
+ * not that of the earliest turn: give turns to threads in ascending order.
+ *
+ * The turn ends whatever is returned. A failure to write makes this writer return SLUICE_ERROR_IO
+ * from then on, also from sluiceFinishStore; the file can be resumed.
+ *
+ * Errors: as sluiceWriteStoreTile, but for NULL texels; SLUICE_ERROR_INVALID_ARGUMENT also if the
+ *         turn has ended before.
+ * Thread safety: any thread, several calls at the same time, but only one per turn and per tile.
+ */
+SLUICE_API SluiceResult sluiceWriteStoreTileInTurn(SluiceStoreWriter *writer, uint64_t turn,
+                                                   uint32_t arrayLayer, uint32_t mipLevel,
+                                                   uint32_t tileX, uint32_t tileY,
+                                                   const void *pTexels, size_t rowPitch);
 
 /**
  * Writes the mip tail of a layer. `ppLevels` are its mipLevelCount - tailFirstLevel levels, finest

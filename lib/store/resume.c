@@ -31,6 +31,20 @@ static SluiceResult check_chunk(const struct resume *resume, uint64_t number,
     return result;
 }
 
+/* The chunk is in resume->chunk. Chunks come by number, not in the order of writing; where two have
+ * one place of the table, the one that lies behind was written last. */
+static void remember(const struct resume *resume, const struct slc_store_entry *entry)
+{
+    struct slc_store_repeats *repeats = resume->resumed->repeats;
+    if (!repeats)
+        return;
+    const struct slc_store_repeat repeat = {slc_store_repeat_hash(resume->chunk, entry->size),
+                                            entry->offset, entry->size};
+    const struct slc_store_repeat *old = &repeats->at[repeat.hash % SLC_STORE_REPEATS];
+    if (old->size == 0 || old->offset < repeat.offset)
+        slc_store_repeats_add(repeats, &repeat);
+}
+
 /* An entry of a chunk that does not exist is wrong as well. */
 static SluiceResult check_entry(const struct resume *resume, uint64_t number, unsigned char *bytes,
                                 bool *has_changed)
@@ -49,6 +63,7 @@ static SluiceResult check_entry(const struct resume *resume, uint64_t number, un
         *has_changed = true;
         return SLUICE_SUCCESS;
     }
+    remember(resume, &entry);
     resume->resumed->chunk_count++;
     if (entry.offset + entry.size > resume->resumed->end)
         resume->resumed->end = entry.offset + entry.size;
@@ -77,11 +92,17 @@ SluiceResult slc_store_resume(const struct slc_store_file *file,
     const SluiceAllocationCallbacks *cb = &file->allocator;
     *resumed = (struct slc_store_resumed){.end = header->data_offset};
     struct resume resume = {file, header, resumed, slc_alloc(cb, SLC_STORE_MAX_CHUNK_SIZE, 1)};
-    if (!resume.chunk)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    SluiceResult result = SLUICE_SUCCESS;
+    if (header->compression_level)
+        resumed->repeats = slc_calloc(cb, 1, sizeof *resumed->repeats);
+    SluiceResult result = resume.chunk && (resumed->repeats || !header->compression_level)
+                              ? SLUICE_SUCCESS
+                              : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     for (uint64_t block = 0; block < header->block_count && result == SLUICE_SUCCESS; block++)
         result = check_block(&resume, block);
     slc_free(cb, resume.chunk, SLC_STORE_MAX_CHUNK_SIZE, 1);
+    if (result != SLUICE_SUCCESS) {
+        slc_free(cb, resumed->repeats, 1, sizeof *resumed->repeats);
+        resumed->repeats = NULL;
+    }
     return result;
 }

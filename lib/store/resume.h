@@ -2,12 +2,16 @@
 #ifndef SLC_STORE_RESUME_H
 #define SLC_STORE_RESUME_H
 
+#include "store/repeats.h"
 #include "store/store_file.h"
 #include "store/store_layout.h"
 
 struct slc_store_resumed {
     uint64_t chunk_count;
     uint64_t end; ///< of the last chunk, at least data_offset
+    /** What the earlier writer remembered at its end, so that both together write the bytes of one.
+     *  Owned by the caller. NULL if nothing is compressed. */
+    struct slc_store_repeats *repeats;
 };
 
 /**

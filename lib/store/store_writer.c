@@ -100,6 +100,7 @@ static SluiceResult go_on(SluiceStoreWriter *writer)
         return result;
     writer->end = resumed.end;
     writer->written_count = resumed.chunk_count;
+    writer->repeats = resumed.repeats;
     slc_log(&writer->file.log, SLUICE_LOG_INFO, "%s: goes on with %llu of %llu tiles",
             writer->file.path, (unsigned long long)resumed.chunk_count,
             (unsigned long long)writer->header.grid.chunk_count);
@@ -132,7 +133,11 @@ static SluiceResult begin(SluiceStoreWriter *writer, const SluiceStoreCreateInfo
     }
     if (result != SLUICE_SUCCESS)
         return result;
-    writer->has_mutex = slc_mutex_init(&writer->mutex);
+    if (!slc_mutex_init(&writer->mutex))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    writer->has_mutex = slc_condition_init(&writer->turn_changed);
+    if (!writer->has_mutex)
+        slc_mutex_finish(&writer->mutex);
     return writer->has_mutex ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
@@ -177,8 +182,10 @@ void sluiceDestroyStoreWriter(SluiceStoreWriter *writer)
     slc_part_file_close(&writer->part);
     slc_store_writer_free_benches(writer);
     slc_free(&writer->allocator, writer->repeats, 1, sizeof *writer->repeats);
-    if (writer->has_mutex)
+    if (writer->has_mutex) {
+        slc_condition_finish(&writer->turn_changed);
         slc_mutex_finish(&writer->mutex);
+    }
     SluiceAllocationCallbacks cb = writer->allocator;
     slc_free(&cb, writer, 1, sizeof *writer);
 }

@@ -12,6 +12,10 @@
 /** What one call needs to make a chunk; as many as there were calls at a time. */
 struct slc_store_bench {
     struct slc_store_bench *next;
+    uint64_t turn; ///< while it waits
+    struct slc_store_place place;
+    const void *bytes; ///< of the chunk as they are stored: in `texels` or `stored`
+    size_t size;
     struct slc_store_compressor *compressor; ///< NULL: nothing is compressed
     unsigned char texels[SLC_STORE_MAX_CHUNK_SIZE];
     unsigned char stored[SLC_STORE_MAX_CHUNK_SIZE];
@@ -30,12 +34,16 @@ struct SluiceStoreWriter {
     struct slc_store_header header;
     unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
     bool may_resume;
-    bool has_mutex;
+    bool has_mutex;         ///< and the condition
     struct slc_mutex mutex; ///< around what follows
     enum slc_store_state state;
     uint64_t end; ///< where the next compressed chunk goes
     uint64_t written_count;
     struct slc_store_bench *idle;
+    uint64_t turn;                   ///< the earliest that has not ended
+    struct slc_store_bench *waiting; ///< chunks of later turns, by turn
+    uint32_t waiting_count;
+    struct slc_condition turn_changed;
     struct slc_store_repeats *repeats; ///< owned; NULL before the first chunk
 };
 
@@ -52,6 +60,21 @@ static inline bool slc_store_entry_is_written(const struct slc_store_entry *entr
 {
     return entry->size > 0;
 }
+
+/** What one call needs, from those of earlier calls if there is one. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_store_writer_take_bench(SluiceStoreWriter *writer, struct slc_store_bench **bench);
+void slc_store_writer_give_bench(SluiceStoreWriter *writer, struct slc_store_bench *bench);
+
+/** Finds a tile's chunk and checks that it can be written. Errors: as sluiceWriteStoreTile. */
+SluiceResult slc_store_writer_check_tile(SluiceStoreWriter *writer, uint32_t layer, uint32_t level,
+                                         uint32_t x, uint32_t y, size_t row_pitch,
+                                         struct slc_store_place *place);
+/** Compresses a tile: place, bytes and size of the bench, which may point to `texels`. */
+SluiceResult slc_store_writer_compress(SluiceStoreWriter *writer,
+                                       const struct slc_store_place *place, const void *texels,
+                                       size_t row_pitch, struct slc_store_bench *bench);
+/** Writes the chunk of a bench and its entry. Errors: IO, logged. */
+SluiceResult slc_store_writer_write(SluiceStoreWriter *writer, const struct slc_store_bench *bench);
 
 /** Gives back what sluiceWriteStoreTile keeps between calls. */
 void slc_store_writer_free_benches(SluiceStoreWriter *writer);

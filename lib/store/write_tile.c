@@ -50,13 +50,19 @@ static void free_bench(const SluiceAllocationCallbacks *cb, struct slc_store_ben
     slc_free(cb, bench, 1, sizeof *bench);
 }
 
-void slc_store_writer_free_benches(SluiceStoreWriter *writer)
+static void free_list(SluiceStoreWriter *writer, struct slc_store_bench **list)
 {
-    while (writer->idle) {
-        struct slc_store_bench *bench = writer->idle;
-        writer->idle = bench->next;
+    while (*list) {
+        struct slc_store_bench *bench = *list;
+        *list = bench->next;
         free_bench(&writer->allocator, bench);
     }
+}
+
+void slc_store_writer_free_benches(SluiceStoreWriter *writer)
+{
+    free_list(writer, &writer->idle);
+    free_list(writer, &writer->waiting);
 }
 
 /* With the lock held. Makes them if the file is compressed. Returns false without host memory. */
@@ -67,7 +73,7 @@ static bool has_repeats(SluiceStoreWriter *writer)
     return writer->header.compression_level == 0 || writer->repeats;
 }
 
-static SluiceResult take_bench(SluiceStoreWriter *writer, struct slc_store_bench **out)
+SluiceResult slc_store_writer_take_bench(SluiceStoreWriter *writer, struct slc_store_bench **out)
 {
     slc_mutex_lock(&writer->mutex);
     bool ready = has_repeats(writer);
@@ -93,7 +99,7 @@ static SluiceResult take_bench(SluiceStoreWriter *writer, struct slc_store_bench
     return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-static void give_bench(SluiceStoreWriter *writer, struct slc_store_bench *bench)
+void slc_store_writer_give_bench(SluiceStoreWriter *writer, struct slc_store_bench *bench)
 {
     slc_mutex_lock(&writer->mutex);
     bench->next = writer->idle;
@@ -172,22 +178,21 @@ static void note_repeat(SluiceStoreWriter *writer, uint64_t hash,
     slc_mutex_unlock(&writer->mutex);
 }
 
-static SluiceResult write_stored(SluiceStoreWriter *writer, const struct slc_store_place *place,
-                                 const void *bytes, size_t size)
+SluiceResult slc_store_writer_write(SluiceStoreWriter *writer, const struct slc_store_bench *bench)
 {
-    uint64_t number = slc_store_chunk_number(&writer->header.grid, place);
+    uint64_t number = slc_store_chunk_number(&writer->header.grid, &bench->place);
     struct slc_store_entry entry = {
-        .checksum = slc_store_chunk_checksum(&writer->header, number, bytes, size),
-        .size = (uint32_t)size,
+        .checksum = slc_store_chunk_checksum(&writer->header, number, bench->bytes, bench->size),
+        .size = (uint32_t)bench->size,
     };
     bool compressed = writer->header.compression_level != 0;
-    uint64_t hash = compressed ? slc_store_repeat_hash(bytes, size) : 0;
-    if (compressed && find_repeat(writer, hash, bytes, &entry))
+    uint64_t hash = compressed ? slc_store_repeat_hash(bench->bytes, bench->size) : 0;
+    if (compressed && find_repeat(writer, hash, bench->bytes, &entry))
         return write_entry(writer, number, &entry);
-    SluiceResult result = take_place(writer, place, &entry);
+    SluiceResult result = take_place(writer, &bench->place, &entry);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = slc_store_file_write(&writer->file, entry.offset, bytes, size);
+    result = slc_store_file_write(&writer->file, entry.offset, bench->bytes, bench->size);
     if (result != SLUICE_SUCCESS) {
         return_place(writer, &entry);
         return result;
@@ -210,22 +215,24 @@ static const void *in_file_order(SluiceFormat format, struct slc_store_bench *be
 }
 
 /* `texels`: the whole chunk, rows tight. */
-static SluiceResult write_texels(SluiceStoreWriter *writer, const struct slc_store_place *place,
-                                 struct slc_store_bench *bench, const void *texels)
+static SluiceResult compress_chunk(SluiceStoreWriter *writer, const struct slc_store_place *place,
+                                   const void *texels, struct slc_store_bench *bench)
 {
-    size_t size = slc_store_chunk_size(&writer->header.grid, place);
-    texels = in_file_order(writer->header.grid.layout.format, bench, texels, size);
+    bench->place = *place;
+    bench->size = slc_store_chunk_size(&writer->header.grid, place);
+    texels = in_file_order(writer->header.grid.layout.format, bench, texels, bench->size);
+    bench->bytes = texels;
     if (writer->header.compression_level == 0)
-        return write_stored(writer, place, texels, size);
+        return SLUICE_SUCCESS;
     size_t stored_size;
     SluiceResult result =
-        slc_store_compress(bench->compressor, (int)writer->header.compression_level, texels, size,
-                           bench->stored, &stored_size);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    if (stored_size == 0)
-        return write_stored(writer, place, texels, size);
-    return write_stored(writer, place, bench->stored, stored_size);
+        slc_store_compress(bench->compressor, (int)writer->header.compression_level, texels,
+                           bench->size, bench->stored, &stored_size);
+    if (result == SLUICE_SUCCESS && stored_size > 0) {
+        bench->bytes = bench->stored;
+        bench->size = stored_size;
+    }
+    return result;
 }
 
 /* `size` bytes of each of `rows` rows, from `row_pitch` apart to none apart. */
@@ -251,39 +258,59 @@ static SluiceResult check_unwritten(SluiceStoreWriter *writer, const struct slc_
     return slc_store_entry_is_written(&entry) ? SLUICE_ERROR_INVALID_TILE_STATE : SLUICE_SUCCESS;
 }
 
+SluiceResult slc_store_writer_check_tile(SluiceStoreWriter *writer, uint32_t layer, uint32_t level,
+                                         uint32_t x, uint32_t y, size_t row_pitch,
+                                         struct slc_store_place *place)
+{
+    const struct slc_store_grid *grid = &writer->header.grid;
+    SluiceResult result = slc_store_writer_find(writer, layer, level, x, y, place);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (slc_store_is_tail(grid, place))
+        return slc_log_refusal(&writer->file.log,
+                               "mipLevel is %u; levels from %u are the tail (sluiceWriteStoreTail)",
+                               level, grid->layout.tailFirstLevel);
+    SluiceImageRegion region = slc_store_chunk_region(grid, place);
+    size_t row_size = slc_format_row_size(&grid->format, region.width);
+    if (row_pitch < row_size)
+        return slc_log_refusal(&writer->file.log, "rowPitch is %llu; it must be at least %llu",
+                               (unsigned long long)row_pitch, (unsigned long long)row_size);
+    return check_unwritten(writer, place);
+}
+
+SluiceResult slc_store_writer_compress(SluiceStoreWriter *writer,
+                                       const struct slc_store_place *place, const void *texels,
+                                       size_t row_pitch, struct slc_store_bench *bench)
+{
+    const struct slc_store_grid *grid = &writer->header.grid;
+    SluiceImageRegion region = slc_store_chunk_region(grid, place);
+    size_t row_size = slc_format_row_size(&grid->format, region.width);
+    if (row_pitch != row_size) {
+        pack_rows(texels, row_pitch, row_size, slc_format_row_count(&grid->format, region.height),
+                  bench->texels);
+        texels = bench->texels;
+    }
+    return compress_chunk(writer, place, texels, bench);
+}
+
 SluiceResult sluiceWriteStoreTile(SluiceStoreWriter *writer, uint32_t arrayLayer, uint32_t mipLevel,
                                   uint32_t tileX, uint32_t tileY, const void *pTexels,
                                   size_t rowPitch)
 {
     if (!writer || !pTexels)
         return SLUICE_ERROR_NULL_POINTER;
-    const struct slc_store_grid *grid = &writer->header.grid;
     struct slc_store_place place;
-    SluiceResult result = slc_store_writer_find(writer, arrayLayer, mipLevel, tileX, tileY, &place);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    if (slc_store_is_tail(grid, &place))
-        return slc_log_refusal(&writer->file.log,
-                               "mipLevel is %u; levels from %u are the tail (sluiceWriteStoreTail)",
-                               mipLevel, grid->layout.tailFirstLevel);
-    SluiceImageRegion region = slc_store_chunk_region(grid, &place);
-    size_t row_size = slc_format_row_size(&grid->format, region.width);
-    if (rowPitch < row_size)
-        return slc_log_refusal(&writer->file.log, "rowPitch is %llu; it must be at least %llu",
-                               (unsigned long long)rowPitch, (unsigned long long)row_size);
-    result = check_unwritten(writer, &place);
+    SluiceResult result =
+        slc_store_writer_check_tile(writer, arrayLayer, mipLevel, tileX, tileY, rowPitch, &place);
     struct slc_store_bench *bench;
     if (result == SLUICE_SUCCESS)
-        result = take_bench(writer, &bench);
+        result = slc_store_writer_take_bench(writer, &bench);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (rowPitch != row_size) {
-        pack_rows(pTexels, rowPitch, row_size, slc_format_row_count(&grid->format, region.height),
-                  bench->texels);
-        pTexels = bench->texels;
-    }
-    result = write_texels(writer, &place, bench, pTexels);
-    give_bench(writer, bench);
+    result = slc_store_writer_compress(writer, &place, pTexels, rowPitch, bench);
+    if (result == SLUICE_SUCCESS)
+        result = slc_store_writer_write(writer, bench);
+    slc_store_writer_give_bench(writer, bench);
     return result;
 }
 
@@ -335,7 +362,7 @@ SluiceResult sluiceWriteStoreTail(SluiceStoreWriter *writer, uint32_t arrayLayer
         result = check_unwritten(writer, &place);
     struct slc_store_bench *bench;
     if (result == SLUICE_SUCCESS)
-        result = take_bench(writer, &bench);
+        result = slc_store_writer_take_bench(writer, &bench);
     if (result != SLUICE_SUCCESS)
         return result;
     for (uint32_t i = 0; first + i < grid->layout.mipLevelCount; i++) {
@@ -343,7 +370,9 @@ SluiceResult sluiceWriteStoreTail(SluiceStoreWriter *writer, uint32_t arrayLayer
         pack_rows(ppLevels[i], level.pitch, level.row_size, level.rows,
                   bench->texels + slc_store_tail_offset(grid, first + i));
     }
-    result = write_texels(writer, &place, bench, bench->texels);
-    give_bench(writer, bench);
+    result = compress_chunk(writer, &place, bench->texels, bench);
+    if (result == SLUICE_SUCCESS)
+        result = slc_store_writer_write(writer, bench);
+    slc_store_writer_give_bench(writer, bench);
     return result;
 }

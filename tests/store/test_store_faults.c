@@ -295,6 +295,44 @@ static void what_is_no_tile_is_not_written(void **state)
     scratch_finish(&scratch);
 }
 
+/* Turn by turn as tiles of level 0 lie. */
+static SluiceResult write_turn(SluiceStoreWriter *writer, uint64_t turn)
+{
+    static unsigned char texels[65536];
+    SluiceStoreLayout layout;
+    SluiceImageRegion region;
+    uint32_t x = (uint32_t)turn % 3, y = (uint32_t)turn / 3;
+    CHECK_OK(sluiceGetStoreWriterLayout(writer, &layout));
+    CHECK_OK(sluiceGetStoreTileRegion(&layout, 0, x, y, &region));
+    paint(PICTURE_MIXED, layout.format, &region, texels, 512);
+    return sluiceWriteStoreTileInTurn(writer, turn, 0, 0, x, y, texels, 512);
+}
+
+/* Writes are a chunk and an entry for each tile. */
+static void a_disk_that_refuses_a_tile_that_waited_is_told_later(void **state)
+{
+    (void)state;
+    for (uint64_t number = 1; number <= 6; number++) {
+        struct scratch scratch;
+        SluiceStoreWriter *writer;
+        scratch_init(&scratch);
+        SluiceStoreCreateInfo info = describe(&scratch, 3);
+        info.flags = SLUICE_STORE_WRITER_RESUME;
+        CHECK_OK(sluiceCreateStoreWriter(&info, &writer));
+        CHECK_OK(write_turn(writer, 1));
+        CHECK_OK(write_turn(writer, 2));
+        fault_io = (struct fault_io){.fail_at[FAULT_WRITE] = number, .error = ENOSPC};
+        CHECK_RESULT(write_turn(writer, 0), SLUICE_ERROR_IO);
+        no_faults();
+        CHECK_RESULT(write_turn(writer, 3), SLUICE_ERROR_IO);
+        CHECK_RESULT(sluiceFinishStore(writer), SLUICE_ERROR_IO);
+        sluiceDestroyStoreWriter(writer);
+        CHECK_OK(write_store(&info, PICTURE_MIXED));
+        CHECK_OK(read_store(scratch.path, PICTURE_MIXED, NULL));
+        scratch_finish(&scratch);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -307,6 +345,7 @@ int main(void)
         cmocka_unit_test(a_disk_that_is_full_is_an_error),
         cmocka_unit_test(what_cannot_be_created_is_refused),
         cmocka_unit_test(what_is_no_tile_is_not_written),
+        cmocka_unit_test(a_disk_that_refuses_a_tile_that_waited_is_told_later),
     };
     return RUN_TESTS(tests);
 }

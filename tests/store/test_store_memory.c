@@ -75,6 +75,33 @@ static void a_write_without_memory_can_be_repeated(void **state)
     scratch_finish(&scratch);
 }
 
+static void a_turn_without_memory_ends_without_its_tile(void **state)
+{
+    (void)state;
+    struct scratch scratch;
+    struct failing_allocator allocator;
+    static unsigned char texels[65536];
+    scratch_init(&scratch);
+    failing_allocator_init(&allocator, UINT64_MAX);
+    SluiceStoreCreateInfo info = describe(&scratch, &allocator.callbacks);
+    SluiceStoreWriter *writer;
+    CHECK_OK(sluiceCreateStoreWriter(&info, &writer));
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    uint64_t turn = 0;
+    for (; result != SLUICE_SUCCESS; turn++) {
+        bool is_written = true;
+        CHECK_OK(sluiceIsStoreTileWritten(writer, 0, 0, 0, 0, &is_written));
+        assert_false(is_written);
+        allocator.refuse_from = allocator.calls + turn;
+        result = sluiceWriteStoreTileInTurn(writer, turn, 0, 0, 0, 0, texels, 512);
+        assert_true(result == SLUICE_SUCCESS || result == SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    }
+    assert_true(turn >= 3); /* two were refused */
+    allocator.refuse_from = UINT64_MAX;
+    sluiceDestroyStoreWriter(writer);
+    scratch_finish(&scratch);
+}
+
 static void resuming_without_memory_loses_nothing(void **state)
 {
     (void)state;
@@ -183,6 +210,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_writer_without_memory_can_be_resumed_at_every_point),
         cmocka_unit_test(a_write_without_memory_can_be_repeated),
+        cmocka_unit_test(a_turn_without_memory_ends_without_its_tile),
         cmocka_unit_test(resuming_without_memory_loses_nothing),
         cmocka_unit_test(reading_without_memory_is_an_error_and_nothing_is_lost),
         cmocka_unit_test(an_allocator_of_one_function_is_refused),
