@@ -15,6 +15,8 @@
 
 /* What zstd and the store's writer take per thread. */
 #define MEMORY_PER_THREAD ((uint64_t)3 << 20)
+/* Compressed tiles that wait for their turn: 16 of 128 KiB. */
+#define MEMORY_OF_TURNS ((uint64_t)2 << 20)
 
 /* One call of sluiceBakeFile. */
 struct bake {
@@ -31,6 +33,7 @@ struct bake {
     SluiceImageInfo image; ///< of the first picture, as it is stored
     uint64_t memory;       ///< bytes, for any of the pictures
     SluiceStoreWriter *writer;
+    uint64_t next_turn; ///< of the writer
 };
 
 static void report_image(struct bake *bake, const SluiceStoreLayout *layout, uint32_t layer_count)
@@ -269,6 +272,7 @@ static SluiceResult filter_levels(struct bake *bake, const SluiceStoreLayout *la
                                 .astc = &bake->baker->astc,
                                 .plan = bake->plan,
                                 .layer = layer,
+                                .next_turn = &bake->next_turn,
                                 .layer_count = bake->store.arrayLayerCount,
                                 .user = bake->info->pUserData,
                                 .progress = bake->info->pfnProgress};
@@ -291,6 +295,7 @@ static SluiceResult copy_levels(struct bake *bake, const SluiceStoreLayout *layo
                             .jobs = &bake->baker->jobs,
                             .source = bake->picture->levels,
                             .writer = bake->writer,
+                            .next_turn = &bake->next_turn,
                             .layout = *layout,
                             .first_layer = first_layer,
                             .layer_count = bake->image.arrayLayerCount,
@@ -364,6 +369,7 @@ static uint64_t memory_for_picture(const struct bake *bake, const SluiceStoreLay
 {
     const struct slc_bake_jobs *jobs = &bake->baker->jobs;
     uint64_t size = bake->picture->memory + MEMORY_PER_THREAD * (jobs->thread_count + 1);
+    size += jobs->thread_count ? MEMORY_OF_TURNS : 0;
     return size + (bake->picture->levels ? slc_copy_memory(layout, jobs->thread_count)
                                          : slc_baking_memory(bake->picture, &bake->plan, layout));
 }

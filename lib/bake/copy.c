@@ -9,7 +9,8 @@ struct slot {
     struct slc_job base;
     struct run *run;
     uint32_t layer, level, x, y;
-    bool is_busy; /* under the pool's mutex */
+    uint64_t turn; /* of the writer */
+    bool is_busy;  /* under the pool's mutex */
     char texels[TILE_SIZE];
 };
 
@@ -31,7 +32,15 @@ uint64_t slc_copy_memory(const SluiceStoreLayout *layout, uint32_t thread_count)
     return count_slots(thread_count) * (uint64_t)sizeof(struct slot) + layout->tailSize;
 }
 
-static SluiceResult copy_tile(struct slot *slot, bool *found)
+/* NULL texels pass the tile's turn. */
+static SluiceResult end_turn(const struct slot *slot, const void *texels, size_t pitch)
+{
+    const struct slc_copy *copy = slot->run->copy;
+    return sluiceWriteStoreTileInTurn(copy->writer, slot->turn, copy->first_layer + slot->layer,
+                                      slot->level, slot->x, slot->y, texels, pitch);
+}
+
+static SluiceResult copy_tile(struct slot *slot, bool *found, bool *has_ended)
 {
     struct slc_copy *copy = slot->run->copy;
     SluiceImageRegion region;
@@ -47,16 +56,18 @@ static SluiceResult copy_tile(struct slot *slot, bool *found)
     result = sluiceReadImageRegion(copy->source, &region, slot->texels, pitch);
     if (result != SLUICE_SUCCESS)
         return result;
-    return sluiceWriteStoreTile(copy->writer, copy->first_layer + slot->layer, slot->level, slot->x,
-                                slot->y, slot->texels, pitch);
+    *has_ended = true;
+    return end_turn(slot, slot->texels, pitch);
 }
 
 static void run_slot(struct slc_job *base)
 {
     struct slot *slot = (struct slot *)base;
     struct run *run = slot->run;
-    bool found = false;
-    SluiceResult result = copy_tile(slot, &found);
+    bool found = false, has_ended = false;
+    SluiceResult result = copy_tile(slot, &found, &has_ended);
+    if (!has_ended)
+        end_turn(slot, NULL, 0);
     slc_bake_jobs_lock(run->copy->jobs);
     if (run->result == SLUICE_SUCCESS)
         run->result = result;
@@ -105,6 +116,7 @@ static SluiceResult start(struct run *run, uint32_t layer, uint32_t level, uint3
     slot->level = level;
     slot->x = x;
     slot->y = y;
+    slot->turn = (*copy->next_turn)++;
     slc_bake_jobs_submit(copy->jobs, &slot->base);
     if (x == 0 && copy->progress && !copy->progress(copy->user, done, run->total))
         return SLUICE_ERROR_CANCELED;
@@ -146,7 +158,10 @@ static SluiceResult copy_layer(struct run *run, uint32_t layer, char *tail)
         for (uint32_t y = 0; y < layout->levelHeightInTiles[l]; y++)
             for (uint32_t x = 0; x < layout->levelWidthInTiles[l] && result == SLUICE_SUCCESS; x++)
                 result = start(run, layer, l, x, y);
-    return result == SLUICE_SUCCESS ? copy_tail(run->copy, layer, tail) : result;
+    if (result != SLUICE_SUCCESS)
+        return result;
+    slc_bake_jobs_help_until(run->copy->jobs, all_are_free, run); /* the tail comes behind them */
+    return copy_tail(run->copy, layer, tail);
 }
 
 SluiceResult slc_copy_run(struct slc_copy *copy)

@@ -11,6 +11,7 @@ struct slc_copy {
     struct slc_bake_jobs *jobs;
     SluiceImageSource *source;
     SluiceStoreWriter *writer;
+    uint64_t *next_turn; ///< of the writer, for all sources of a store
     SluiceStoreLayout layout;
     uint32_t first_layer;      ///< of the store: where the source's first layer goes
     uint32_t layer_count;      ///< of the source

@@ -132,6 +132,7 @@ SluiceResult slc_baking_run(struct slc_baking *baking, SluiceStoreWriter *writer
     uint64_t texels = (uint64_t)baking->picture->width * baking->picture->height;
     baking->tiler.writer = writer;
     baking->tiler.layer = baking->layer;
+    baking->tiler.next_turn = baking->next_turn;
     baking->tiler.encoder = (struct slc_block_encoder){baking->plan.format,
                                                        baking->plan.settings.quality, baking->astc};
     texels = baking->plan.threshold > 0.0f ? 2 * texels : texels;

@@ -13,6 +13,7 @@ struct slc_baking {
     struct slc_astc_pool *astc;
     struct slc_plan plan;
     uint32_t layer;       ///< of the store
+    uint64_t *next_turn;  ///< of the writer, for all layers of the store
     uint32_t layer_count; ///< of the store, for the progress
     struct slc_pyramid pyramid;
     struct slc_tiler tiler;

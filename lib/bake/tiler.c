@@ -97,27 +97,37 @@ void slc_tiler_finish(struct slc_tiler *tiler)
     tiler->jobs = NULL;
 }
 
-static SluiceResult write_encoded(struct slc_tiler *tiler, const SluiceImageRegion *region,
-                                  uint32_t x, uint32_t y, const char *texels, size_t pitch)
+/* NULL texels pass the job's turn. */
+static SluiceResult end_turn(const struct slc_tile_job *job, const void *texels, size_t pitch)
 {
+    const struct slc_tiler *tiler = job->band->tiler;
+    return sluiceWriteStoreTileInTurn(tiler->writer, job->turn, tiler->layer, job->band->level,
+                                      job->x, job->band->y, texels, pitch);
+}
+
+/* Ends the turn unless it fails. */
+static SluiceResult write_encoded(const struct slc_tile_job *job, const SluiceImageRegion *region,
+                                  const char *texels, size_t pitch, bool *has_ended)
+{
+    struct slc_tiler *tiler = job->band->tiler;
     SluiceFormat format = tiler->layout.format;
-    if (format == tiler->texel_format)
-        return sluiceWriteStoreTile(tiler->writer, tiler->layer, region->mipLevel, x, y, texels,
-                                    pitch);
+    *has_ended = format == tiler->texel_format;
+    if (*has_ended)
+        return end_turn(job, texels, pitch);
     size_t size = (size_t)sluiceGetFormatRegionSize(format, region->width, region->height);
     void *blocks = slc_alloc(&tiler->allocator, size, 1);
     if (!blocks)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     SluiceResult result =
         slc_encode_blocks(&tiler->encoder, texels, pitch, region->width, region->height, blocks);
-    if (result == SLUICE_SUCCESS)
-        result = sluiceWriteStoreTile(tiler->writer, tiler->layer, region->mipLevel, x, y, blocks,
-                                      (size_t)sluiceGetFormatRegionSize(format, region->width, 1));
+    *has_ended = result == SLUICE_SUCCESS;
+    if (*has_ended)
+        result = end_turn(job, blocks, (size_t)sluiceGetFormatRegionSize(format, region->width, 1));
     slc_free(&tiler->allocator, blocks, size, 1);
     return result;
 }
 
-static SluiceResult write_tile(struct slc_tile_job *job, bool *found)
+static SluiceResult write_tile(const struct slc_tile_job *job, bool *found, bool *has_ended)
 {
     struct slc_band *band = job->band;
     struct slc_tiler *tiler = band->tiler;
@@ -130,8 +140,8 @@ static SluiceResult write_tile(struct slc_tile_job *job, bool *found)
     if (result != SLUICE_SUCCESS)
         return result;
     size_t texel_size = sluiceGetFormatTexelSize(tiler->texel_format);
-    return write_encoded(tiler, &region, job->x, band->y, band->texels + region.x * texel_size,
-                         tiler->levels[band->level].width * texel_size);
+    return write_encoded(job, &region, band->texels + region.x * texel_size,
+                         tiler->levels[band->level].width * texel_size, has_ended);
 }
 
 static void run_tile_job(struct slc_job *base)
@@ -139,10 +149,12 @@ static void run_tile_job(struct slc_job *base)
     struct slc_tile_job *job = (struct slc_tile_job *)base;
     struct slc_tiler *tiler = job->band->tiler;
     struct slc_bake_jobs *jobs = tiler->jobs;
-    bool found = false;
+    bool found = false, has_ended = false;
     SluiceResult result = slc_tiler_result(tiler);
     if (result == SLUICE_SUCCESS)
-        result = write_tile(job, &found);
+        result = write_tile(job, &found, &has_ended);
+    if (!has_ended)
+        end_turn(job, NULL, 0);
     slc_bake_jobs_lock(jobs);
     if (tiler->result == SLUICE_SUCCESS)
         tiler->result = result;
@@ -224,7 +236,8 @@ void slc_tiler_end_row(struct slc_tiler *tiler, uint32_t l, uint32_t y)
     band->pending = tile_count;
     slc_mutex_unlock(&tiler->jobs->mutex);
     for (uint32_t x = 0; x < tile_count; x++) {
-        band->jobs[x] = (struct slc_tile_job){.base.run = run_tile_job, .band = band, .x = x};
+        band->jobs[x] = (struct slc_tile_job){
+            .base.run = run_tile_job, .band = band, .x = x, .turn = (*tiler->next_turn)++};
         slc_bake_jobs_submit(tiler->jobs, &band->jobs[x].base);
     }
 }

@@ -20,6 +20,7 @@ struct slc_tile_job {
     struct slc_job base;
     struct slc_band *band;
     uint32_t x;
+    uint64_t turn; ///< of the writer
 };
 
 /** The rows of one row of tiles. */
@@ -48,6 +49,7 @@ struct slc_tiler {
     struct slc_block_encoder encoder; ///< set it after init
     SluiceStoreWriter *writer;
     uint32_t layer;            ///< of the store; set it after init
+    uint64_t *next_turn;       ///< of the writer, for all layers of a store; set it after init
     SluiceResult result;       ///< the first failure; under the pool's mutex
     uint64_t found_tile_count; ///< written by an earlier run; under the pool's mutex
     char *tail;                ///< texels of the tail's levels, one after the other
