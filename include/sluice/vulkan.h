@@ -219,6 +219,12 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * its turn in so many frames. maxTexturesPerFrame still limits them. Default: 0, never.
      */
     uint32_t framesPerRound;
+    /**
+     * The buffers of SluiceVulkanBuffers have VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT:
+     * sluiceGetVulkanBuffers returns their addresses, for shaders that read by address and for
+     * descriptor buffers. Requires the feature bufferDeviceAddress, enabled. Default: false.
+     */
+    bool bufferDeviceAddress;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
@@ -227,7 +233,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
  * Errors: SLUICE_ERROR_NULL_POINTER without a context, or in sparse mode if the context has no
  *         sparseQueue; SLUICE_ERROR_INVALID_ARGUMENT for values out of range, and for
  *         a setting together with the one that turns it off; SLUICE_ERROR_UNSUPPORTED if the device
- *         does not support the requested mode; SLUICE_ERROR_LIMIT_EXCEEDED if maxTextureCount,
+ *         does not support the requested mode, or has no bufferDeviceAddress that is asked for;
+ *         SLUICE_ERROR_LIMIT_EXCEEDED if maxTextureCount,
  *         maxRegionCount, maxTexturesPerFrame or feedbackReadbackSize require a storage buffer
  * above the device's maxStorageBufferRange, or if textureArray needs more images or samplers per
  *         shader stage than the device has; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -596,6 +603,12 @@ typedef struct SluiceVulkanBuffers {
     VkBuffer minMip;        ///< uint[], two texels each, read.
     VkBuffer feedbackTurns; ///< uint[], read. All bits are set without feedbackInTurns.
     VkBuffer pageTable;     ///< uint[], read only in paged mode; else any valid buffer.
+    /** Device addresses, as constant as the handles. 0 without
+     *  SluiceVulkanStreamerCreateInfo.bufferDeviceAddress. */
+    VkDeviceAddress textureTableAddress, feedbackAddress, minMipAddress, feedbackTurnsAddress,
+        pageTableAddress;
+    /** Bytes of the buffers: `range` of VkDescriptorAddressInfoEXT. */
+    uint64_t textureTableSize, feedbackSize, minMipSize, feedbackTurnsSize, pageTableSize;
 } SluiceVulkanBuffers;
 
 /**

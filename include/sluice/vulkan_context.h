@@ -60,7 +60,7 @@ typedef struct SluiceDeviceMemoryRequest {
     bool images; ///< For images of VK_IMAGE_TILING_OPTIMAL, else for a buffer or for sparse binds.
     const char *pName; ///< For debuggers. Valid during the call.
     /** Allocate with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT: shaders get the address of the buffer.
-     *  Only for loaders with bufferDeviceAddress. */
+     *  Only for streamers and loaders with bufferDeviceAddress. */
     bool deviceAddress;
 } SluiceDeviceMemoryRequest;
 

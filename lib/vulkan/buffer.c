@@ -84,13 +84,14 @@ static const char *name_of(enum slc_buffer_kind kind)
 /* If the GPU's memory is full, staging memory is the host's. */
 static VkResult allocate(struct slc_buffer *buffer, const struct slc_vk *vk,
                          const struct slc_caps *caps, const VkMemoryRequirements *memory,
-                         enum slc_buffer_kind kind)
+                         enum slc_buffer_kind kind, bool device_address)
 {
     struct slc_memory_request request = {.size = memory->size,
                                          .alignment = memory->alignment,
                                          .type = find_type(caps, memory->memoryTypeBits, kind),
                                          .purpose = purpose_of(kind),
                                          .mapped = kind != SLC_BUFFER_DEVICE,
+                                         .device_address = device_address,
                                          .name = name_of(kind)};
     if (request.type == UINT32_MAX)
         return VK_ERROR_OUT_OF_DEVICE_MEMORY;
@@ -108,7 +109,11 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
                              const struct slc_caps *caps, uint64_t size, VkBufferUsageFlags usage,
                              enum slc_buffer_kind kind)
 {
+    bool device_address = vk->GetBufferDeviceAddress && kind == SLC_BUFFER_DEVICE &&
+                          usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     *buffer = (struct slc_buffer){.size = size};
+    if (device_address)
+        usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
     VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                .size = size,
                                .usage = usage,
@@ -119,7 +124,7 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
         return result;
     VkMemoryRequirements memory;
     vk->GetBufferMemoryRequirements(vk->device, buffer->buffer, &memory);
-    VkResult status = allocate(buffer, vk, caps, &memory, kind);
+    VkResult status = allocate(buffer, vk, caps, &memory, kind, device_address);
     buffer->mapped = buffer->memory.mapped;
     if (status == VK_SUCCESS)
         status = vk->BindBufferMemory(vk->device, buffer->buffer, buffer->memory.memory,
@@ -129,6 +134,10 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
         slc_buffer_finish(buffer, vk);
     else
         slc_buffer_set_name(buffer, vk, name_of(kind));
+    const VkBufferDeviceAddressInfo address = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, .buffer = buffer->buffer};
+    if (result == SLUICE_SUCCESS && device_address)
+        buffer->address = vk->GetBufferDeviceAddress(vk->device, &address);
     return result;
 }
 

@@ -17,13 +17,15 @@ struct slc_buffer {
     VkBuffer buffer;
     struct slc_memory memory;
     uint64_t size;
-    void *mapped; ///< NULL for DEVICE
+    void *mapped;            ///< NULL for DEVICE
+    VkDeviceAddress address; ///< 0: it has none
 };
 
 /** True if the host reads STAGING buffers slowly: they are the GPU's, and not cached. */
 bool slc_staging_is_uncached(const struct slc_caps *caps);
 
-/** A zeroed buffer is finished with nothing to do. Errors: OUT_OF_DEVICE_MEMORY, VULKAN, ... */
+/** A zeroed buffer is finished with nothing to do. Storage buffers of kind DEVICE have an address
+ * if vk->GetBufferDeviceAddress is set. Errors: OUT_OF_DEVICE_MEMORY, VULKAN, ... */
 SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
                              const struct slc_caps *caps, uint64_t size, VkBufferUsageFlags usage,
                              enum slc_buffer_kind kind);

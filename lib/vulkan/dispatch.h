@@ -39,7 +39,8 @@ struct slc_vk {
     SLC_VK_DEVICE_FUNCTIONS(SLC_VK_MEMBER)
 #undef SLC_VK_MEMBER
     PFN_vkSetDebugUtilsObjectNameEXT SetDebugUtilsObjectNameEXT; ///< NULL: names go nowhere
-    VkPipelineCache pipeline_cache;                              ///< may be VK_NULL_HANDLE
+    PFN_vkGetBufferDeviceAddress GetBufferDeviceAddress; ///< NULL: buffers have no addresses
+    VkPipelineCache pipeline_cache;                      ///< may be VK_NULL_HANDLE
     SluiceLogCallback log;
     struct slc_memory_client *memory_client;             ///< NULL: nobody counts
     const SluiceDeviceMemoryCallbacks *memory_callbacks; ///< NULL: Vulkan allocates

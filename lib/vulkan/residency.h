@@ -19,6 +19,7 @@
 #ifndef SLC_VULKAN_RESIDENCY_H
 #define SLC_VULKAN_RESIDENCY_H
 
+#include "vulkan/buffer.h"
 #include "vulkan/caps.h"
 #include "vulkan/page_sharing.h"
 
@@ -164,8 +165,8 @@ struct slc_residency_interface {
     /** What frames from `frame` on recorded is recorded by the next one; uploads come again by
      *  themselves. */
     void (*abandon)(struct slc_residency *residency, uint64_t frame);
-    /** The same for its whole life. */
-    VkBuffer (*page_table)(const struct slc_residency *residency);
+    /** Its handle and address never change. */
+    const struct slc_buffer *(*page_table)(const struct slc_residency *residency);
     /** Of SluiceTextureEntry. */
     uint32_t (*page_table_offset)(const struct slc_residency *residency, uint32_t index);
 };

@@ -526,9 +526,9 @@ static void record_publish(struct slc_residency *residency, VkCommandBuffer comm
     slc_page_table_record_publish(&paged(residency)->table, commands);
 }
 
-static VkBuffer page_table(const struct slc_residency *residency)
+static const struct slc_buffer *page_table(const struct slc_residency *residency)
 {
-    return ((const struct paged_residency *)residency)->table.buffer.buffer;
+    return &((const struct paged_residency *)residency)->table.buffer;
 }
 
 static uint32_t page_table_offset(const struct slc_residency *residency, uint32_t index)

@@ -265,20 +265,6 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
     return result;
 }
 
-static void fill_buffers(const SluiceVulkanStreamer *s, SluiceVulkanBuffers *buffers)
-{
-    const struct slc_residency *residency = slc_residency_of_pages(s);
-    VkBuffer table = s->texture_table.buffer;
-    *buffers = (SluiceVulkanBuffers){
-        .structSize = sizeof(SluiceVulkanBuffers),
-        .textureTable = table,
-        .feedback = s->feedback.buffer,
-        .minMip = s->min_mip.buffer,
-        .feedbackTurns = s->feedback_turns.buffer,
-        /* any buffer will do where it is not read */
-        .pageTable = residency ? residency->interface->page_table(residency) : table};
-}
-
 /* Without pages one element makes the layout that the shaders expect. */
 static SluiceResult create_descriptors(SluiceVulkanStreamer *s)
 {
@@ -288,7 +274,7 @@ static SluiceResult create_descriptors(SluiceVulkanStreamer *s)
                                                .textures = &s->texture_array,
                                                .set_count = s->info.framesInFlight};
     SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
-    fill_buffers(s, &buffers);
+    slc_streamer_fill_buffers(s, &buffers);
     info.buffers[SLUICE_BINDING_TEXTURE_TABLE] = buffers.textureTable;
     info.buffers[SLUICE_BINDING_MIN_MIP] = buffers.minMip;
     info.buffers[SLUICE_BINDING_FEEDBACK] = buffers.feedback;
@@ -357,7 +343,9 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
     s->debug = debug;
     s->page_user = SLC_MAX_PAGE_USERS;
     s->time_check.on = pCreateInfo->ticksPerSecond == 0;
-    result = create_arrays(s);
+    result = slc_streamer_use_addresses(s);
+    if (result == SLUICE_SUCCESS)
+        result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
         result = slc_forgetting_init(s);
     if (result == SLUICE_SUCCESS)
@@ -453,21 +441,6 @@ SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer)
         return SLUICE_ERROR_NULL_POINTER;
     sluiceWaitTileLoaderIdle(s->loader);
     return s->residency->interface->wait(s->residency);
-}
-
-SluiceResult sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
-                                    SluiceVulkanBuffers *pBuffers)
-{
-    if (!streamer || !pBuffers)
-        return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult checked =
-        slc_struct_check(SLC_STRUCT(SluiceVulkanBuffers), pBuffers, &streamer->vk.log);
-    if (checked != SLUICE_SUCCESS)
-        return checked;
-    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
-    fill_buffers(streamer, &buffers);
-    slc_struct_write(SLC_STRUCT(SluiceVulkanBuffers), pBuffers, &buffers);
-    return SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceGetVulkanDescriptorSetLayout(const SluiceVulkanStreamer *streamer,

@@ -345,6 +345,13 @@ void slc_settings_apply(SluiceVulkanStreamer *s);
 /** The last frame that may be under way on the GPU: ended, and not abandoned. 0: none. */
 uint64_t slc_streamer_last_submittable(const SluiceVulkanStreamer *s);
 
+/* streamer_buffers.c */
+/** Gives buffers that are created later an address, if the application asks for it. Errors:
+ *  UNSUPPORTED, with a log message. */
+SluiceResult slc_streamer_use_addresses(SluiceVulkanStreamer *s);
+/** Fills in all fields. */
+void slc_streamer_fill_buffers(const SluiceVulkanStreamer *s, SluiceVulkanBuffers *buffers);
+
 /* residencies.c */
 /** Chooses the streamer's mode, and creates what its textures need. Errors: UNSUPPORTED and
  *  NULL_POINTER, with a log message; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */

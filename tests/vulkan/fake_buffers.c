@@ -1,3 +1,4 @@
+#include "support/test.h"
 #include "vulkan/fake_functions.h"
 #include "vulkan/fake_objects.h"
 
@@ -9,8 +10,21 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBuf
 {
     FAKE_MAY_FAIL(device);
     (void)cb;
-    *buffer = fake_make_shown(fake_of(device), info->size);
+    struct fake_object *object = fake_make_shown(fake_of(device), info->size);
+    object->usage = info->usage;
+    *buffer = (VkBuffer)object;
     return VK_SUCCESS;
+}
+
+/* Buffer and memory must have been made for it. */
+static VKAPI_ATTR VkDeviceAddress VKAPI_CALL buffer_address(VkDevice device,
+                                                            const VkBufferDeviceAddressInfo *info)
+{
+    (void)device;
+    const struct fake_object *buffer = FAKE_OBJECT(info->buffer);
+    assert_true(buffer->usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT);
+    assert_true(FAKE_OBJECT(buffer->memory)->flags & VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT);
+    return (VkDeviceAddress)(uintptr_t)buffer;
 }
 
 static VKAPI_ATTR void VKAPI_CALL destroy_buffer(VkDevice device, VkBuffer buffer,
@@ -39,6 +53,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAl
     if (fake->refused_size == info->allocationSize)
         return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     struct fake_object *object = fake_make_shown(fake, info->allocationSize);
+    const VkMemoryAllocateFlagsInfo *flags = info->pNext;
+    object->flags = flags ? flags->flags : 0;
     fake->live_memory += info->allocationSize;
     *memory = (VkDeviceMemory)object;
     return VK_SUCCESS;
@@ -93,6 +109,7 @@ const struct fake_function fake_buffer_functions[] = {
     FAKE_FUNCTION(CreateBuffer, create_buffer),
     FAKE_FUNCTION(DestroyBuffer, destroy_buffer),
     FAKE_FUNCTION(FreeMemory, free_memory),
+    FAKE_FUNCTION(GetBufferDeviceAddress, buffer_address),
     FAKE_FUNCTION(GetBufferMemoryRequirements, buffer_requirements),
     FAKE_FUNCTION(MapMemory, map_memory),
     {NULL, NULL},

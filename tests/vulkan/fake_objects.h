@@ -14,8 +14,10 @@ struct fake_object {
     uint32_t level_count, layer_count;
     uint64_t size;
     void *memory;
-    VkImage image; ///< of a view
-    bool general;  ///< the layout of an image
+    VkBufferUsageFlags usage;    ///< of a buffer
+    VkMemoryAllocateFlags flags; ///< of memory
+    VkImage image;               ///< of a view
+    bool general;                ///< the layout of an image
     bool has_name, needs_name;
     uint32_t first_image; ///< binding of a set layout; UINT32_MAX: it has buffers alone
 };

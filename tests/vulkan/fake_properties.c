@@ -4,15 +4,18 @@
 static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
                                                VkPhysicalDeviceFeatures2 *features)
 {
-    (void)device;
+    const bool has_addresses = fake_of(device)->has_addresses;
     features->features =
         (VkPhysicalDeviceFeatures){.sparseBinding = VK_TRUE,
                                    .sparseResidencyImage2D = VK_TRUE,
                                    .shaderSampledImageArrayDynamicIndexing = VK_TRUE,
                                    .fragmentStoresAndAtomics = VK_TRUE};
-    for (VkBaseOutStructure *next = features->pNext; next; next = next->pNext)
-        if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES)
-            ((VkPhysicalDeviceVulkan12Features *)next)->timelineSemaphore = VK_TRUE;
+    for (VkBaseOutStructure *next = features->pNext; next; next = next->pNext) {
+        if (next->sType != VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES)
+            continue;
+        ((VkPhysicalDeviceVulkan12Features *)next)->timelineSemaphore = VK_TRUE;
+        ((VkPhysicalDeviceVulkan12Features *)next)->bufferDeviceAddress = has_addresses;
+    }
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
