@@ -489,6 +489,22 @@ typedef struct SluiceVulkanTextureCreateInfo {
     SluiceResidencyMode residencyMode;
     /** As sluiceSetVulkanUvTransform (vulkan_control.h). Copied. Default: none. */
     const SluiceUvTransform *pUvTransform;
+    /**
+     * The image has VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT: you may make views of other formats of
+     * SluiceVulkanTexture.image, for example UNORM beside SRGB. The formats must be compatible with
+     * the image's as in Vulkan. Destroy your views before you remove the texture.
+     *
+     * Not for textures in paged mode, whose texels lie in images of pages. Such textures are never
+     * forgotten (forgetTextures). Default: false.
+     */
+    bool mutableFormat;
+    /**
+     * Formats of all views that you make (VkImageFormatListCreateInfo); some devices sample faster
+     * if they know them. At most 16, and not the format of the image, which is added. Sets
+     * mutableFormat. Default: none, any compatible format.
+     */
+    const VkFormat *pViewFormats;
+    uint32_t viewFormatCount;
 } SluiceVulkanTextureCreateInfo;
 
 /** Texture as the application draws with it. Never grows. */
@@ -532,8 +548,8 @@ typedef struct SluiceVulkanTexture {
  *         producer, an unknown address mode or filter, a primary that follows another texture, or
  * an image whose info is out of range (image.h), for example without a level that fits into a tile;
  *         SLUICE_ERROR_UNKNOWN_TEXTURE and SLUICE_ERROR_STALE_TEXTURE for the primary;
- *         SLUICE_ERROR_UNSUPPORTED if the device cannot stream the format or size, or for a
- *         residencyMode that the streamer does not have;
+ *         SLUICE_ERROR_UNSUPPORTED if the device cannot stream the format or size, for a
+ *         residencyMode that the streamer does not have, or for mutableFormat in paged mode;
  *         SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount, maxRegionCount or
  *         feedbackReadbackSize; errors of the source; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
  *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.

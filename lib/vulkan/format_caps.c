@@ -81,12 +81,18 @@ uint32_t slc_max_sparse_cube_width(const struct slc_vk *vk, SluiceFormat format)
                : 0;
 }
 
-bool slc_image_may_store(const struct slc_vk *vk, const VkImageCreateInfo *image)
+bool slc_image_is_supported(const struct slc_vk *vk, const VkImageCreateInfo *image,
+                            VkImageUsageFlags usage)
 {
     VkImageFormatProperties limits;
     return vk->GetPhysicalDeviceImageFormatProperties(
                vk->physical_device, image->format, image->imageType, image->tiling,
-               image->usage | VK_IMAGE_USAGE_STORAGE_BIT, image->flags, &limits) == VK_SUCCESS;
+               image->usage | usage, image->flags, &limits) == VK_SUCCESS;
+}
+
+bool slc_image_may_store(const struct slc_vk *vk, const VkImageCreateInfo *image)
+{
+    return slc_image_is_supported(vk, image, VK_IMAGE_USAGE_STORAGE_BIT);
 }
 
 SluiceResult sluiceGetVulkanFormatCapabilities(VkInstance instance, VkPhysicalDevice physicalDevice,

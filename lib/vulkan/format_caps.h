@@ -25,6 +25,10 @@ bool slc_filters_linear(const struct slc_vk *vk, SluiceFormat format);
 /** The largest face of a sparse cube map, in texels. 0: the device has none of this format. */
 uint32_t slc_max_sparse_cube_width(const struct slc_vk *vk, SluiceFormat format);
 
+/** True if the device supports the image with `usage` added. */
+bool slc_image_is_supported(const struct slc_vk *vk, const VkImageCreateInfo *image,
+                            VkImageUsageFlags usage);
+
 /** True if the device supports the image with VK_IMAGE_USAGE_STORAGE_BIT added. */
 bool slc_image_may_store(const struct slc_vk *vk, const VkImageCreateInfo *image);
 

@@ -70,6 +70,7 @@ static SluiceResult create_chunk(struct slc_page_chunks *chunks, struct slc_page
     SluiceResult result = sluiceGetStandardTileShape(info.format, &info.width, &info.height);
     if (result != SLUICE_SUCCESS)
         return result;
+    const struct slc_image_use use = {.produced = format & SLC_PAGE_PRODUCED};
     *chunk = (struct slc_page_chunk){.format = format, .layer_count = layer_count, .fresh = true};
     chunk->layers = slc_alloc(chunks->cb, layer_count + 1, sizeof *chunk->layers);
     if (!chunk->layers)
@@ -80,7 +81,7 @@ static SluiceResult create_chunk(struct slc_page_chunks *chunks, struct slc_page
                                                    .owner = SLC_NO_OWNER};
     chunk->free_count = layer_count;
     result = slc_plain_image_create(&chunk->image, &chunks->memory, chunks->vk, chunks->caps,
-                                    chunks->cb, &info, 0, layer_count, format & SLC_PAGE_PRODUCED);
+                                    chunks->cb, &info, 0, layer_count, &use);
     if (result == SLUICE_SUCCESS)
         result = slc_create_array_view(chunks->vk, chunk->image.image, slc_vk_format(info.format),
                                        &chunk->view);

@@ -45,6 +45,7 @@ SluiceResult slc_page_views_init(struct slc_page_views *views, const struct slc_
     views->views = slc_calloc(cb, count, sizeof *views->views);
     if (!views->views)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    const struct slc_image_use sampled = {0};
     const SluiceImageInfo info = {.structSize = sizeof info,
                                   .width = 1,
                                   .height = 1,
@@ -53,7 +54,7 @@ SluiceResult slc_page_views_init(struct slc_page_views *views, const struct slc_
                                   .cube = true, /* for arrays of textures */
                                   .pName = "empty page"};
     SluiceResult result =
-        slc_plain_image_create(&views->image, &views->memory, vk, caps, cb, &info, 0, 6, false);
+        slc_plain_image_create(&views->image, &views->memory, vk, caps, cb, &info, 0, 6, &sampled);
     if (result == SLUICE_SUCCESS)
         result =
             slc_create_array_view(vk, views->image.image, VK_FORMAT_R8G8B8A8_UNORM, &views->empty);

@@ -37,7 +37,7 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
                                     const struct slc_vk *vk, const struct slc_caps *caps,
                                     const SluiceAllocationCallbacks *cb,
                                     const SluiceImageInfo *info, uint32_t first_level,
-                                    uint32_t layer_count, bool storage)
+                                    uint32_t layer_count, const struct slc_image_use *use)
 {
     *image = (struct slc_plain_image){0};
     VkImageCreateInfo create = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
@@ -56,13 +56,15 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
                                 .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
     if (memory->purpose == SLUICE_DEVICE_MEMORY_PURPOSE_PAGES)
         create.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT; /* tiles move from one to another */
+    struct slc_image_formats formats;
+    slc_image_use_apply(use, &create, &formats);
     const char *trouble = check_format(vk, &create, texel_bytes(info, first_level));
     if (trouble) {
         slc_log(&vk->log, SLUICE_LOG_ERROR, "%s: %ux%u %s %s", info->pName ? info->pName : "image",
                 info->width, info->height, sluiceGetFormatName(info->format), trouble);
         return SLUICE_ERROR_UNSUPPORTED;
     }
-    image->storage = storage && slc_image_may_store(vk, &create);
+    image->storage = use->produced && slc_image_may_store(vk, &create);
     if (image->storage)
         create.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
     SluiceResult result = slc_vk_result(

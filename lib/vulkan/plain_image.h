@@ -3,6 +3,7 @@
 #define SLC_VULKAN_PLAIN_IMAGE_H
 
 #include "vulkan/image_memory.h"
+#include "vulkan/image_use.h"
 
 struct slc_plain_image {
     VkImage image;
@@ -12,14 +13,14 @@ struct slc_plain_image {
 
 /**
  * Creates an image of the levels of `info` from `first_level` on, with `layer_count` layers.
- * `storage`: lets shaders store to it, if the device can with this format. Errors: UNSUPPORTED,
+ * Shaders can store to a produced one, if the device can with this format. Errors: UNSUPPORTED,
  * with a log message; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_image_memory *memory,
                                     const struct slc_vk *vk, const struct slc_caps *caps,
                                     const SluiceAllocationCallbacks *cb,
                                     const SluiceImageInfo *info, uint32_t first_level,
-                                    uint32_t layer_count, bool storage);
+                                    uint32_t layer_count, const struct slc_image_use *use);
 /** Of a zeroed one, too. */
 void slc_plain_image_destroy(struct slc_plain_image *image, struct slc_image_memory *memory,
                              const struct slc_vk *vk, const SluiceAllocationCallbacks *cb);

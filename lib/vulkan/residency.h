@@ -21,6 +21,7 @@
 
 #include "vulkan/buffer.h"
 #include "vulkan/caps.h"
+#include "vulkan/image_use.h"
 #include "vulkan/page_sharing.h"
 
 struct slc_residency;
@@ -49,11 +50,11 @@ struct slc_residency_interface {
     void (*destroy)(struct slc_residency *residency);
 
     /** `index` is the streamer's; it names the image in the other calls. The layers of an array
-     *  have the indices from `index` on. `produced`: shaders may store to it. Logs what it refuses;
+     *  have the indices from `index` on. Logs what it refuses;
      *  sparse: if `refusal` is not NULL, says there what UNSUPPORTED means instead. */
     SluiceResult (*create_image)(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, bool produced, const char **refusal,
-                                 struct slc_residency_image *image);
+                                 const SluiceImageInfo *info, const struct slc_image_use *use,
+                                 const char **refusal, struct slc_residency_image *image);
     /** No frame that uses it is incomplete and image_is_idle. Of an array with its first layer. */
     void (*destroy_image)(struct slc_residency *residency, uint32_t index);
     /** True when no change of it is pending or under way. */

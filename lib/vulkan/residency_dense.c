@@ -37,8 +37,8 @@ static struct dense_residency *dense(struct slc_residency *residency)
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, bool produced, const char **refusal,
-                                 struct slc_residency_image *image)
+                                 const SluiceImageInfo *info, const struct slc_image_use *use,
+                                 const char **refusal, struct slc_residency_image *image)
 {
     (void)refusal;
     struct dense_residency *d = dense(residency);
@@ -49,7 +49,7 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
         d->whole ? slc_whole_layout_init(&layout, info) : slc_standard_layout_init(&layout, info);
     if (result == SLUICE_SUCCESS)
         result = slc_plain_image_create(&layers[0].own, &d->memory, d->vk, d->caps, d->cb, info, 0,
-                                        layer_count, produced);
+                                        layer_count, use);
     if (result != SLUICE_SUCCESS)
         return result;
     layers[0].layer_count = layer_count;

@@ -121,11 +121,18 @@ static SluiceResult create_layer(struct paged_residency *p, uint32_t index, Slui
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, bool produced, const char **refusal,
-                                 struct slc_residency_image *out)
+                                 const SluiceImageInfo *info, const struct slc_image_use *use,
+                                 const char **refusal, struct slc_residency_image *out)
 {
     (void)refusal;
     struct paged_residency *p = paged(residency);
+    if (use->mutable_format) {
+        slc_log(&p->vk->log, SLUICE_LOG_ERROR,
+                "%s: mutableFormat is not for textures in paged mode: pages have views of one "
+                "format",
+                info->pName ? info->pName : "image");
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
     struct paged_image *first = &p->images[index];
     uint32_t layer_count = slc_max_u32(1, info->arrayLayerCount);
     struct slc_sparse_layout layout;
@@ -134,7 +141,7 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
         layout.desc.packedTilesOutside = true;
     if (result == SLUICE_SUCCESS)
         result = slc_plain_image_create(&first->own_tail, &p->memory, p->vk, p->caps, p->cb, info,
-                                        layout.desc.regularMipCount, layer_count, produced);
+                                        layout.desc.regularMipCount, layer_count, use);
     if (result != SLUICE_SUCCESS)
         return result;
     first->layer_count = layer_count;
@@ -142,12 +149,12 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     for (uint32_t i = 0; i < layer_count && result == SLUICE_SUCCESS; i++)
         result = create_layer(p, index + i, info->format, &layout.desc, first->own_tail.image);
     for (uint32_t i = 0; i < layer_count; i++)
-        p->images[index + i].page_format = slc_page_format(info->format, produced);
+        p->images[index + i].page_format = slc_page_format(info->format, use->produced);
     if (result != SLUICE_SUCCESS) {
         destroy_image(residency, index);
         return result;
     }
-    slc_page_pool_prepare(p->pool, p->user, slc_page_format(info->format, produced));
+    slc_page_pool_prepare(p->pool, p->user, slc_page_format(info->format, use->produced));
     count_memory(p);
     *out = (struct slc_residency_image){.image = first->tail,
                                         .desc = layout.desc,

@@ -123,18 +123,18 @@ static bool may_reserve(const struct slc_residency *residency, uint32_t index, u
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, bool produced, const char **refusal,
-                                 struct slc_residency_image *image)
+                                 const SluiceImageInfo *info, const struct slc_image_use *use,
+                                 const char **refusal, struct slc_residency_image *image)
 {
     struct sparse_residency *s = sparse(residency);
     struct slc_sparse_image *sparse_image = &s->images[index];
     assert(!sparse_image->image);
-    SluiceResult result = slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type,
-                                                  info, produced, refusal);
+    SluiceResult result =
+        slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info, use, refusal);
     if (result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY &&
         slc_device_heaps_free_spare(&s->heaps, s->vk, UINT64_MAX))
-        result = slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info,
-                                         produced, refusal);
+        result = slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info, use,
+                                         refusal);
     for (uint32_t i = 0; result == SLUICE_SUCCESS && i < sparse_image->layer_count; i++)
         result = reserve_packed(s, &sparse_image[i], info);
     if (result != SLUICE_SUCCESS) {

@@ -146,18 +146,22 @@ static void fill_layers(struct slc_sparse_image *images, uint32_t count)
 
 SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struct slc_vk *vk,
                                      const struct slc_caps *caps, uint32_t memory_type,
-                                     const SluiceImageInfo *info, bool storage,
+                                     const SluiceImageInfo *info, const struct slc_image_use *use,
                                      const char **refusal)
 {
     *image = (struct slc_sparse_image){0};
     VkImageCreateInfo create =
         image_create_info(slc_vk_format(info->format), info->width, info->height,
                           info->mipLevelCount, layer_count(info));
+    struct slc_image_formats formats;
     create.flags |= slc_image_flags(info);
+    slc_image_use_apply(use, &create, &formats);
     const char *trouble = check_format(vk, caps, info);
     SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
+    if (!trouble && use->mutable_format && !slc_image_is_supported(vk, &create, 0))
+        trouble = "is not available as a sparse image with mutableFormat";
     if (!trouble) {
-        image->storage = storage && slc_image_may_store(vk, &create);
+        image->storage = use->produced && slc_image_may_store(vk, &create);
         if (image->storage)
             create.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
         result = slc_vk_result(vk, vk->CreateImage(vk->device, &create, NULL, &image->image),
@@ -238,6 +242,7 @@ SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDev
     struct slc_caps caps;
     struct slc_sparse_image image;
     uint32_t memory_type;
+    const struct slc_image_use sampled = {0};
     SluiceImageInfo info = {.structSize = sizeof info};
     SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceImageInfo), &info, pImage, pLog);
     if (result != SLUICE_SUCCESS)
@@ -257,7 +262,7 @@ SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDev
     }
     result = slc_sparse_memory_type(&vk, &caps, &memory_type);
     if (result == SLUICE_SUCCESS)
-        result = slc_sparse_image_create(&image, &vk, &caps, memory_type, &info, false, NULL);
+        result = slc_sparse_image_create(&image, &vk, &caps, memory_type, &info, &sampled, NULL);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceVulkanSparseImageLayout layout = {.structSize = sizeof layout};

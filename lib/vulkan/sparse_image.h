@@ -3,6 +3,7 @@
 #define SLC_VULKAN_SPARSE_IMAGE_H
 
 #include "vulkan/caps.h"
+#include "vulkan/image_use.h"
 #include "vulkan/memory.h"
 #include "vulkan/sparse_layout.h"
 #include "vulkan/touched_tiles.h"
@@ -21,13 +22,13 @@ struct slc_sparse_image {
 };
 
 /**
- * Creates info->arrayLayerCount `images`, one for 0. `storage`: lets shaders store to them, if the
+ * Creates info->arrayLayerCount `images`, one for 0. Shaders can store to produced ones, if the
  * device can with this format. Errors: UNSUPPORTED, with a log message, or if `refusal` is not
  * NULL, with the reason there; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
  */
 SluiceResult slc_sparse_image_create(struct slc_sparse_image *images, const struct slc_vk *vk,
                                      const struct slc_caps *caps, uint32_t memory_type,
-                                     const SluiceImageInfo *info, bool storage,
+                                     const SluiceImageInfo *info, const struct slc_image_use *use,
                                      const char **refusal);
 /** `images` is the first layer; all of them go. */
 void slc_sparse_image_destroy(struct slc_sparse_image *images, const struct slc_vk *vk);

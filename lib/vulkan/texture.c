@@ -215,7 +215,8 @@ static void choose_kind(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreate
 static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                               const SluiceVulkanTextureCreateInfo *info,
                               const struct slc_tile_producer *producer,
-                              const SluiceImageInfo *image, uint32_t count)
+                              const struct slc_image_use *use, const SluiceImageInfo *image,
+                              uint32_t count)
 {
     struct slc_residency_image residency_image;
     struct slc_residency *residency = NULL;
@@ -230,8 +231,8 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
         result = slc_forgetting_describe(s, first, info->residencyMode, image, &residency,
                                          &residency_image);
     else if (result == SLUICE_SUCCESS)
-        result = slc_texture_create_image(s, first, info->residencyMode, image, producer->pfn,
-                                          &residency, &residency_image);
+        result = slc_texture_create_image(s, first, info->residencyMode, image, use, &residency,
+                                          &residency_image);
     if (result != SLUICE_SUCCESS)
         return result;
     for (uint32_t i = 0; i < count; i++)
@@ -334,11 +335,14 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
         return SLUICE_ERROR_NULL_POINTER;
     SluiceImageInfo image = {.structSize = sizeof image};
     struct slc_tile_producer producer = {0};
+    struct slc_image_use use;
     SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info};
     SluiceResult result =
         slc_struct_read(SLC_STRUCT(SluiceVulkanTextureCreateInfo), &info, pCreateInfo, &s->vk.log);
     if (result == SLUICE_SUCCESS)
         result = check_create_info(s, &info);
+    if (result == SLUICE_SUCCESS)
+        result = slc_image_use_init(&use, &s->vk.log, &info);
     if (result == SLUICE_SUCCESS)
         result = describe(s, &info, &producer, &image);
     image.cube |= info.cube;
@@ -357,7 +361,8 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     if (first == SLC_NONE)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
     s->manager_locked = false;
-    result = build_all(s, first, &info, &producer, &image, layerCount);
+    use.produced = producer.pfn;
+    result = build_all(s, first, &info, &producer, &use, &image, layerCount);
     s->manager_locked = true;
     if (result != SLUICE_SUCCESS)
         return result;

@@ -99,7 +99,8 @@ bool slc_forgetting_allows(const SluiceVulkanStreamer *s, const SluiceVulkanText
                            const SluiceImageInfo *image)
 {
     return s->info.forgetTextures && info->source && info->primaryId == SLUICE_NO_TEXTURE &&
-           image->arrayLayerCount <= 1 && !image->cube && !slc_format_is_integer(image->format);
+           image->arrayLayerCount <= 1 && !image->cube && !info->mutableFormat &&
+           info->viewFormatCount == 0 && !slc_format_is_integer(image->format);
 }
 
 /* As residency_dense.c and residency_paged.c lay images out. */
@@ -164,9 +165,10 @@ static SluiceResult make_image(SluiceVulkanStreamer *s, uint32_t index)
     struct slc_texture *texture = &s->textures[index];
     struct slc_residency *residency = texture->residency;
     const struct slc_residency_interface *interface = residency->interface;
+    const struct slc_image_use sampled = {0};
     struct slc_residency_image image;
     SluiceResult result =
-        interface->create_image(residency, index, &texture->info, false, NULL, &image);
+        interface->create_image(residency, index, &texture->info, &sampled, NULL, &image);
     if (result != SLUICE_SUCCESS)
         return result;
     assert(image.desc.regularMipCount == texture->image.desc.regularMipCount);

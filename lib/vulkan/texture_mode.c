@@ -28,28 +28,29 @@ static bool is_plain(const SluiceVulkanStreamer *s, SluiceResidencyMode mode,
 }
 
 static SluiceResult create(struct slc_residency *in, uint32_t first, const SluiceImageInfo *image,
-                           bool produced, const char **refusal, struct slc_residency **residency,
-                           struct slc_residency_image *out)
+                           const struct slc_image_use *use, const char **refusal,
+                           struct slc_residency **residency, struct slc_residency_image *out)
 {
     *residency = in;
-    return in->interface->create_image(in, first, image, produced, refusal, out);
+    return in->interface->create_image(in, first, image, use, refusal, out);
 }
 
 /* A texture that sparse mode refuses is paged, unless it has to be sparse. */
 static SluiceResult create_sparse_or_paged(SluiceVulkanStreamer *s, uint32_t first,
                                            SluiceResidencyMode mode, const SluiceImageInfo *image,
-                                           bool produced, struct slc_residency **residency,
+                                           const struct slc_image_use *use,
+                                           struct slc_residency **residency,
                                            struct slc_residency_image *out)
 {
     bool may_be_paged = mode == SLUICE_RESIDENCY_MODE_AUTO;
     const char *refusal = "is not available as a sparse image";
     SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
     if (s->debug.notSparse == SLUICE_FORMAT_UNDEFINED || s->debug.notSparse != image->format)
-        result = create(s->residency, first, image, produced, &refusal, residency, out);
+        result = create(s->residency, first, image, use, &refusal, residency, out);
     if (result != SLUICE_ERROR_UNSUPPORTED)
         return result;
     if (may_be_paged)
-        result = create(s->paged, first, image, produced, NULL, residency, out);
+        result = create(s->paged, first, image, use, NULL, residency, out);
     if (result == SLUICE_ERROR_UNSUPPORTED)
         slc_log(&s->vk.log, SLUICE_LOG_ERROR, "%s: %ux%u %s %s%s",
                 image->pName ? image->pName : "image", image->width, image->height,
@@ -63,26 +64,28 @@ SluiceResult slc_texture_try_image(SluiceVulkanStreamer *s, uint32_t index,
                                    struct slc_residency **residency,
                                    struct slc_residency_image *out)
 {
+    const struct slc_image_use sampled = {0};
     return is_plain(s, mode, image)
-               ? create(s->plain, index, image, false, NULL, residency, out)
-               : slc_texture_create_image(s, index, mode, image, false, residency, out);
+               ? create(s->plain, index, image, &sampled, NULL, residency, out)
+               : slc_texture_create_image(s, index, mode, image, &sampled, residency, out);
 }
 
 SluiceResult slc_texture_create_image(SluiceVulkanStreamer *s, uint32_t first,
                                       SluiceResidencyMode mode, const SluiceImageInfo *image,
-                                      bool produced, struct slc_residency **residency,
+                                      const struct slc_image_use *use,
+                                      struct slc_residency **residency,
                                       struct slc_residency_image *out)
 {
     if (is_plain(s, mode, image)) {
-        SluiceResult result = create(s->plain, first, image, produced, NULL, residency, out);
+        SluiceResult result = create(s->plain, first, image, use, NULL, residency, out);
         if (result != SLUICE_ERROR_OUT_OF_DEVICE_MEMORY || mode != SLUICE_RESIDENCY_MODE_AUTO)
             return result; /* heaps may have taken the whole budget, and have a slot for it */
     }
     if (!s->paged)
-        return create(s->residency, first, image, produced, NULL, residency, out);
+        return create(s->residency, first, image, use, NULL, residency, out);
     if (mode == SLUICE_RESIDENCY_MODE_PAGED)
-        return create(s->paged, first, image, produced, NULL, residency, out);
-    return create_sparse_or_paged(s, first, mode, image, produced, residency, out);
+        return create(s->paged, first, image, use, NULL, residency, out);
+    return create_sparse_or_paged(s, first, mode, image, use, residency, out);
 }
 
 SluiceResidencyMode slc_texture_mode(const SluiceVulkanStreamer *s,

@@ -12,7 +12,8 @@ SluiceResult slc_texture_check_mode(const SluiceVulkanStreamer *s, SluiceResiden
  */
 SluiceResult slc_texture_create_image(SluiceVulkanStreamer *s, uint32_t first,
                                       SluiceResidencyMode mode, const SluiceImageInfo *image,
-                                      bool produced, struct slc_residency **residency,
+                                      const struct slc_image_use *use,
+                                      struct slc_residency **residency,
                                       struct slc_residency_image *out);
 
 /** Like slc_texture_create_image, of one layer, but for one thing: a texture that is to be dense is
