@@ -10,6 +10,10 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_image(VkDevice device, const VkImag
     object->extent = info->extent;
     object->level_count = info->mipLevels;
     object->layer_count = info->arrayLayers;
+    object->image_flags = info->flags;
+    const VkImageFormatListCreateInfo *list = info->pNext;
+    for (; list && object->format_count < list->viewFormatCount; object->format_count++)
+        object->view_formats[object->format_count] = list->pViewFormats[object->format_count];
     *image = (VkImage)object;
     return VK_SUCCESS;
 }

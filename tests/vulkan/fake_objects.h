@@ -17,7 +17,10 @@ struct fake_object {
     VkBufferUsageFlags usage;    ///< of a buffer
     VkMemoryAllocateFlags flags; ///< of memory
     VkImage image;               ///< of a view
-    bool general;                ///< the layout of an image
+    VkImageCreateFlags image_flags;
+    VkFormat view_formats[32]; ///< of an image; format_count of them
+    uint32_t format_count;
+    bool general; ///< the layout of an image
     bool has_name, needs_name;
     uint32_t first_image; ///< binding of a set layout; UINT32_MAX: it has buffers alone
 };

@@ -104,12 +104,14 @@ static VKAPI_ATTR VkResult VKAPI_CALL get_format(VkPhysicalDevice device, VkForm
                                                  VkImageUsageFlags usage, VkImageCreateFlags flags,
                                                  VkImageFormatProperties *properties)
 {
-    (void)device, (void)type, (void)tiling, (void)usage, (void)flags;
+    (void)type, (void)tiling, (void)usage;
     *properties = (VkImageFormatProperties){.maxExtent = {16384, 16384, 1},
                                             .maxMipLevels = 15,
                                             .maxArrayLayers = 256,
                                             .maxResourceSize = 1ull << 40};
-    return format == VK_FORMAT_R8G8B8A8_UNORM ? VK_SUCCESS : VK_ERROR_FORMAT_NOT_SUPPORTED;
+    bool lacks = flags & fake_of(device)->lacking_flags;
+    return format == VK_FORMAT_R8G8B8A8_UNORM && !lacks ? VK_SUCCESS
+                                                        : VK_ERROR_FORMAT_NOT_SUPPORTED;
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_sparse_format(VkPhysicalDevice device, VkFormat format,

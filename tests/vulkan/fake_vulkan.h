@@ -124,6 +124,7 @@ struct fake_vulkan {
     uint32_t lock_depth;  ///< 0: unlocked
     uint64_t lock_count;  ///< since the start
 
+    VkImageCreateFlags lacking_flags;   ///< It has no images with any of these.
     bool has_addresses;                 ///< It has the feature bufferDeviceAddress.
     bool no_linear_filter;              ///< Its format is sampled with NEAREST filters only.
     VkSamplerCreateInfo newest_sampler; ///< pNext is NULL

@@ -74,12 +74,116 @@ static void addresses_that_the_device_lacks_are_refused(void **state)
     assert_int_equal(fake.live_objects, 0);
 }
 
+static SluiceResult read_nothing(SluiceImageSource *source, const SluiceImageRegion *region,
+                                 void *texels, size_t row_pitch)
+{
+    (void)source, (void)region, (void)texels, (void)row_pitch;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
+{
+    (void)source;
+    *info = (SluiceImageInfo){.structSize = sizeof *info,
+                              .width = 1024,
+                              .height = 1024,
+                              .mipLevelCount = 11,
+                              .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                              .pName = "test"};
+    return SLUICE_SUCCESS;
+}
+
+static const SluiceImageSourceInterface interface = {sizeof interface, get_info, read_nothing, NULL,
+                                                     NULL};
+static SluiceImageSource source = {&interface};
+
+/* Adds a texture to a streamer of its own; `image` is the object behind its image. */
+static SluiceResult add(SluiceVulkanStreamerCreateInfo info, SluiceVulkanTextureCreateInfo create,
+                        struct fake_object *image)
+{
+    SluiceVulkanTexture texture;
+    SluiceVulkanStreamer *streamer;
+    create.structSize = sizeof create;
+    create.source = &source;
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
+    SluiceResult result = sluiceAddVulkanTexture(streamer, &create, &texture);
+    if (result == SLUICE_SUCCESS)
+        *image = *FAKE_OBJECT(texture.image);
+    fake_vulkan_destroy(streamer);
+    assert_int_equal(fake.live_objects, 0);
+    return result;
+}
+
+static const SluiceResidencyMode with_images[] = {SLUICE_RESIDENCY_MODE_SPARSE,
+                                                  SLUICE_RESIDENCY_MODE_DENSE};
+
+static void images_are_mutable_if_asked_for(void **state)
+{
+    (void)state;
+    const VkFormat formats[] = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R32_UINT};
+    for (int i = 0; i < 2; i++) {
+        SluiceVulkanStreamerCreateInfo info = streamer_info(with_images[i]);
+        struct fake_object image;
+        CHECK_OK(add(info, (SluiceVulkanTextureCreateInfo){0}, &image));
+        assert_false(image.image_flags & VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT);
+        CHECK_OK(add(info, (SluiceVulkanTextureCreateInfo){.mutableFormat = true}, &image));
+        assert_true(image.image_flags & VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT);
+        assert_int_equal(image.format_count, 0);
+        CHECK_OK(add(info,
+                     (SluiceVulkanTextureCreateInfo){.pViewFormats = formats, .viewFormatCount = 2},
+                     &image));
+        assert_true(image.image_flags & VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT);
+        assert_int_equal(image.format_count, 3);
+        assert_int_equal(image.view_formats[0], VK_FORMAT_R8G8B8A8_UNORM); /* the image's own */
+        assert_int_equal(image.view_formats[1], formats[0]);
+        assert_int_equal(image.view_formats[2], formats[1]);
+    }
+}
+
+static void mutable_formats_that_cannot_be_had_are_refused(void **state)
+{
+    (void)state;
+    static const VkFormat formats[17] = {VK_FORMAT_R8G8B8A8_SRGB};
+    SluiceVulkanStreamerCreateInfo info = streamer_info(SLUICE_RESIDENCY_MODE_SPARSE);
+    struct fake_object image;
+    SluiceVulkanTextureCreateInfo create = {.viewFormatCount = 1};
+    CHECK_RESULT(add(info, create, &image), SLUICE_ERROR_NULL_POINTER);
+    create.pViewFormats = formats;
+    create.viewFormatCount = 17;
+    CHECK_RESULT(add(info, create, &image), SLUICE_ERROR_INVALID_ARGUMENT);
+    create.viewFormatCount = 2; /* the second one is VK_FORMAT_UNDEFINED */
+    CHECK_RESULT(add(info, create, &image), SLUICE_ERROR_INVALID_ARGUMENT);
+    create.viewFormatCount = 1;
+    CHECK_OK(add(info, create, &image));
+    for (int i = 0; i < 2; i++) {
+        info = streamer_info(with_images[i]);
+        fake.lacking_flags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT;
+        CHECK_RESULT(add(info, create, &image), SLUICE_ERROR_UNSUPPORTED);
+    }
+    info = streamer_info(SLUICE_RESIDENCY_MODE_PAGED);
+    CHECK_RESULT(add(info, create, &image), SLUICE_ERROR_UNSUPPORTED);
+}
+
+static void mutable_textures_are_not_forgotten(void **state)
+{
+    (void)state;
+    SluiceVulkanStreamerCreateInfo info = streamer_info(SLUICE_RESIDENCY_MODE_DENSE);
+    struct fake_object image = {0};
+    info.forgetTextures = true;
+    info.textureArray = SLUICE_TEXTURE_ARRAY_COMBINED;
+    CHECK_OK(add(info, (SluiceVulkanTextureCreateInfo){.mutableFormat = true}, &image));
+    assert_true(image.image_flags & VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT); /* it is there at once */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(buffers_have_addresses_and_sizes),
         cmocka_unit_test(addresses_are_0_unless_they_are_asked_for),
         cmocka_unit_test(addresses_that_the_device_lacks_are_refused),
+        cmocka_unit_test(images_are_mutable_if_asked_for),
+        cmocka_unit_test(mutable_formats_that_cannot_be_had_are_refused),
+        cmocka_unit_test(mutable_textures_are_not_forgotten),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
