@@ -71,6 +71,9 @@ bool slc_thread_start(struct slc_thread *thread, void *(*run)(void *argument), v
 /** Waits until `run` has returned, and frees the thread. */
 void slc_thread_join(struct slc_thread *thread);
 
+/** A number that no other running thread has. */
+uint64_t slc_thread_id(void);
+
 /** Processors that run threads now, at least 1. */
 uint32_t slc_get_processor_count(void);
 

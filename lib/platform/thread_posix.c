@@ -149,6 +149,11 @@ void slc_thread_join(struct slc_thread *thread)
     pthread_join(thread->native, NULL);
 }
 
+uint64_t slc_thread_id(void)
+{
+    return (uint64_t)(uintptr_t)pthread_self();
+}
+
 uint32_t slc_get_processor_count(void)
 {
     long count = sysconf(_SC_NPROCESSORS_ONLN);

@@ -143,6 +143,11 @@ void slc_thread_join(struct slc_thread *thread)
     CloseHandle(thread->native);
 }
 
+uint64_t slc_thread_id(void)
+{
+    return GetCurrentThreadId();
+}
+
 uint32_t slc_get_processor_count(void)
 {
     SYSTEM_INFO info;
