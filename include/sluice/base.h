@@ -130,6 +130,28 @@ typedef struct SluiceLogCallback {
     void (*pfnLog)(void *pUserData, SluiceLogSeverity severity, const char *pMessage);
 } SluiceLogCallback;
 
+/**
+ * Runs jobs of Sluice on threads of the application, instead of threads that Sluice starts. Never
+ * grows.
+ *
+ * Jobs read files and decompress texels: each may block for some milliseconds.
+ */
+typedef struct SluiceJobSystem {
+    void *pUserData;
+    /**
+     * Arranges that `pfnRun(pJob)` is called exactly once, on any thread. The call may be made
+     * before pfnSubmitJob returns, on the same thread; then the caller of Sluice waits for it.
+     *
+     * Returns SLUICE_SUCCESS, or an error to refuse the job: then pfnRun must not be called. No
+     * work is lost: running jobs go on with it, and the next call of the object submits a job
+     * again.
+     *
+     * Called on threads that call Sluice and inside jobs, several at the same time. No lock of
+     * Sluice is held. Must not call Sluice, except `pfnRun`.
+     */
+    SluiceResult (*pfnSubmitJob)(void *pUserData, void (*pfnRun)(void *pJob), void *pJob);
+} SluiceJobSystem;
+
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -88,6 +88,17 @@ typedef struct SluiceTileLoaderCreateInfo {
      *  raised to it. Default: requestCapacity. */
     uint32_t maxSourceCount;
     SluiceTileReadEndCallback end;
+    /**
+     * Reads in jobs of the application: the loader starts no threads. Copied. Default: none.
+     *
+     * threadCount is then the most jobs that read at the same time. A job reads once, submits its
+     * successor if reads are left, and returns. A thread that waits for reads
+     * (sluiceWaitTileLoaderIdle) reads itself while no job runs. A retry begins with the first call
+     * of the loader, or end of a job, after its delay: collect reads now and then.
+     *
+     * sluiceDestroyTileLoader waits for all submitted jobs: run them on another thread.
+     */
+    const SluiceJobSystem *pJobSystem;
 } SluiceTileLoaderCreateInfo;
 
 /**
@@ -117,11 +128,11 @@ typedef struct SluiceTileReadResult {
 } SluiceTileReadResult;
 
 /**
- * Creates a loader and starts its threads.
+ * Creates a loader and starts its threads, unless it has a job system.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if a count is above its limit;
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY, also if a thread cannot be started.
- * Thread safety: any thread.
+ * Errors: SLUICE_ERROR_NULL_POINTER, also for a job system without function;
+ * SLUICE_ERROR_INVALID_ARGUMENT if a count is above its limit; SLUICE_ERROR_OUT_OF_HOST_MEMORY,
+ * also if a thread cannot be started. Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInfo,
                                                SluiceTileLoader **pLoader);

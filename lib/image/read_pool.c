@@ -136,7 +136,7 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
     SluiceImageSource *source = read->source->source;
     SluiceImageInfo info = {.structSize = sizeof info};
     struct slc_read_outcome outcome = {.fault = {"", SLUICE_UNKNOWN_OFFSET}};
-    slc_mutex_unlock(mutex);
+    slc_read_pool_unlock(loader->pool); /* submits the job that reads meanwhile */
     uint64_t start = slc_monotonic_time();
     outcome.result = sluiceGetImageInfo(source, &info);
     bool is_known = outcome.result == SLUICE_SUCCESS;
@@ -154,7 +154,7 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
     slc_loader_settle_read(loader, read, &outcome);
 }
 
-static uint64_t next_due(const struct slc_read_pool *pool)
+uint64_t slc_read_pool_next_due(const struct slc_read_pool *pool)
 {
     uint64_t due = UINT64_MAX;
     for (const SluiceTileLoader *loader = pool->loaders; loader; loader = loader->next) {
@@ -167,7 +167,7 @@ static uint64_t next_due(const struct slc_read_pool *pool)
 /* Until something is said, or until the first delayed read is due. */
 static void wait_for_work(struct slc_read_pool *pool)
 {
-    uint64_t due = next_due(pool);
+    uint64_t due = slc_read_pool_next_due(pool);
     pool->waiting_count++;
     if (due == UINT64_MAX)
         slc_condition_wait(&pool->work, &pool->mutex);
@@ -177,16 +177,36 @@ static void wait_for_work(struct slc_read_pool *pool)
     pool->signaled_count -= pool->signaled_count > 0;
 }
 
+void slc_read_pool_wait(struct slc_read_pool *pool, uint64_t until)
+{
+    if (slc_uses_jobs(pool))
+        slc_read_jobs_wait(pool, until);
+    else if (until == UINT64_MAX)
+        slc_condition_wait(&pool->idle, &pool->mutex);
+    else
+        slc_condition_wait_until(&pool->idle, &pool->mutex, until);
+}
+
 /*
  * One thread at a time, which will wake the next one if there is more: where reads are quick, few
  * threads that are awake do them sooner than many that wait for each other.
  */
 void slc_read_pool_signal(struct slc_read_pool *pool)
 {
+    if (slc_uses_jobs(pool)) {
+        slc_read_jobs_want(pool);
+        return;
+    }
     if (pool->waiting_count == 0 || pool->signaled_count > 0)
         return;
     pool->signaled_count++;
     slc_condition_signal(&pool->work);
+}
+
+void slc_read_pool_unlock(struct slc_read_pool *pool)
+{
+    slc_read_jobs_submit(pool);
+    slc_mutex_unlock(&pool->mutex);
 }
 
 bool slc_read_pool_has_startable(const struct slc_read_pool *pool)
@@ -223,23 +243,29 @@ static struct slc_read *start(struct slc_read_pool *pool, SluiceTileLoader **loa
     return NULL;
 }
 
+bool slc_read_pool_read(struct slc_read_pool *pool)
+{
+    SluiceTileLoader *loader = NULL;
+    struct slc_read *read = start(pool, &loader);
+    if (!read)
+        return false;
+    /* This thread may be gone for long: another one looks after what else there is. */
+    if (slc_read_pool_has_work(pool))
+        slc_read_pool_signal(pool);
+    run(loader, read);
+    return true;
+}
+
 static void *worker_main(void *argument)
 {
     struct slc_read_pool *pool = argument;
     slc_mutex_lock(&pool->mutex);
     for (;;) {
-        SluiceTileLoader *loader = NULL;
-        struct slc_read *read = start(pool, &loader);
-        if (!read && pool->stopping)
-            break;
-        if (!read) {
-            wait_for_work(pool);
+        if (slc_read_pool_read(pool))
             continue;
-        }
-        /* This thread may be gone for long: another one looks after what else there is. */
-        if (slc_read_pool_has_work(pool))
-            slc_read_pool_signal(pool);
-        run(loader, read);
+        if (pool->stopping)
+            break;
+        wait_for_work(pool);
     }
     slc_mutex_unlock(&pool->mutex);
     return NULL;
@@ -258,6 +284,7 @@ static void stop(struct slc_read_pool *pool, uint32_t wanted)
     slc_mutex_lock(&pool->mutex);
     pool->stopping = true;
     slc_condition_broadcast(&pool->work);
+    slc_read_jobs_finish(pool);
     slc_mutex_unlock(&pool->mutex);
     for (uint32_t i = 0; i < pool->thread_count; i++)
         slc_thread_join(&pool->threads[i]);
@@ -267,6 +294,15 @@ static void stop(struct slc_read_pool *pool, uint32_t wanted)
     SluiceAllocationCallbacks cb = pool->allocator;
     slc_free(&cb, pool->threads, wanted, sizeof *pool->threads);
     slc_free(&cb, pool, 1, sizeof *pool);
+}
+
+static bool start_threads(struct slc_read_pool *pool, uint32_t wanted)
+{
+    pool->threads = slc_calloc(&pool->allocator, wanted, sizeof *pool->threads);
+    while (pool->threads && pool->thread_count < wanted &&
+           slc_thread_start(&pool->threads[pool->thread_count], worker_main, pool))
+        pool->thread_count++;
+    return pool->thread_count == wanted;
 }
 
 SluiceResult slc_read_pool_create(const SluiceTileLoaderCreateInfo *info,
@@ -283,18 +319,13 @@ SluiceResult slc_read_pool_create(const SluiceTileLoaderCreateInfo *info,
         .max_running_per_source = slc_max_u32(1, per_source),
         .max_running_size = info->maxBytesInFlight ? info->maxBytesInFlight : (uint64_t)1 << 28,
     };
-    pool->threads = slc_calloc(&cb, wanted, sizeof *pool->threads);
-    if (!pool->threads) {
-        slc_free(&cb, pool, 1, sizeof *pool);
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    }
     slc_mutex_init_spinning(&pool->mutex);
     slc_condition_init(&pool->work);
     slc_condition_init(&pool->idle);
-    while (pool->thread_count < wanted &&
-           slc_thread_start(&pool->threads[pool->thread_count], worker_main, pool))
-        pool->thread_count++;
-    if (pool->thread_count < wanted) {
+    if (info->pJobSystem) {
+        pool->jobs.system = *info->pJobSystem;
+        pool->jobs.max_count = wanted;
+    } else if (!start_threads(pool, wanted)) {
         stop(pool, wanted);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }

@@ -1,5 +1,5 @@
 /**
- * Threads that read for several tile loaders.
+ * Threads, or jobs of the application, that read for several tile loaders.
  *
  * The loaders of a pool take turns, one read each, so that none of them starves. Limits of bytes
  * and of reads per source count the reads of all loaders together. Each loader has its own
@@ -10,6 +10,7 @@
 
 #include <sluice/loader.h>
 
+#include "image/read_jobs.h"
 #include "image/read_queue.h"
 #include "platform/thread.h"
 
@@ -26,6 +27,7 @@ struct slc_read_pool {
     uint32_t signaled_count; ///< of these, threads that were signaled and have not woken yet
     uint32_t thread_count;
     struct slc_thread *threads;
+    struct slc_read_jobs jobs; ///< in place of threads
 };
 
 struct SluiceTileLoader {
@@ -45,14 +47,15 @@ struct SluiceTileLoader {
 };
 
 /**
- * Creates a pool and starts its threads. Uses pAllocator, threadCount, maxReadsPerSource and
- * maxBytesInFlight of `info`.
+ * Creates a pool and starts its threads. Uses pAllocator, threadCount, pJobSystem,
+ * maxReadsPerSource and maxBytesInFlight of `info`.
  *
  * Errors: OUT_OF_HOST_MEMORY, also if a thread cannot be started.
  */
 SluiceResult slc_read_pool_create(const SluiceTileLoaderCreateInfo *info,
                                   struct slc_read_pool **pool);
-/** Stops the threads. All loaders of the pool are destroyed. NULL is allowed. */
+/** Stops the threads, or waits for all jobs. All loaders of the pool are destroyed. NULL is
+ * allowed. */
 void slc_read_pool_destroy(struct slc_read_pool *pool);
 
 /**
@@ -65,8 +68,20 @@ SluiceResult slc_create_pool_loader(struct slc_read_pool *pool,
                                     const SluiceTileLoaderCreateInfo *info,
                                     SluiceTileLoader **loader);
 
-/** With the mutex held: reads may have become startable. Wakes a thread. */
+/** With the mutex held: reads may have become startable. Wakes a thread, or notes that a job is
+ *  needed. */
 void slc_read_pool_signal(struct slc_read_pool *pool);
+/** Unlocks the mutex, after it has submitted the job that slc_read_pool_signal has noted. Allowed
+ *  where the pool may be destroyed once the mutex is unlocked. */
+void slc_read_pool_unlock(struct slc_read_pool *pool);
+/** With the mutex held, which is given up meanwhile: reads once. False, at once, if nothing can be
+ *  started. */
+bool slc_read_pool_read(struct slc_read_pool *pool);
+/** With the mutex held: waits on `idle` until slc_monotonic_time() is `until`, at the latest.
+ *  UINT64_MAX: for ever. A pool with jobs may read meanwhile, on this thread. */
+void slc_read_pool_wait(struct slc_read_pool *pool, uint64_t until);
+/** With the mutex held: when the first delayed read is due. UINT64_MAX: none is delayed. */
+uint64_t slc_read_pool_next_due(const struct slc_read_pool *pool);
 /** With the mutex held: something can be started or waits for a retry. */
 bool slc_read_pool_has_startable(const struct slc_read_pool *pool);
 bool slc_read_pool_has_work(const struct slc_read_pool *pool);

@@ -134,13 +134,14 @@ SluiceResult sluiceCompleteImageRead(const SluiceImageReadToken *pToken, SluiceR
         return SLUICE_ERROR_NULL_POINTER;
     const SluiceImageReadToken token = *pToken; /* its memory may go with the read */
     SluiceTileLoader *loader = token.pReader;
-    slc_mutex_lock(&loader->pool->mutex);
+    struct slc_read_pool *pool = loader->pool;
+    slc_mutex_lock(&pool->mutex);
     struct slc_read *read = slc_read_queue_find(&loader->queue, token.ticket);
     bool awaited = is_awaited(read, &token);
     if (awaited) {
         complete_region(read, token.region, result, NULL);
         settle_if_over(loader, read);
     }
-    slc_mutex_unlock(&loader->pool->mutex);
+    slc_read_pool_unlock(pool); /* loader and pool may be destroyed from here on */
     return awaited ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
 }

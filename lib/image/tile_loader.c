@@ -5,6 +5,7 @@
 #include "base/checked.h"
 #include "base/struct_size.h"
 #include "image/started_reads.h"
+#include "platform/time_now.h"
 
 /* Of reads, and of sources that are remembered. */
 #define MAX_COUNT (1u << 29)
@@ -70,6 +71,8 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
         slc_struct_read(SLC_STRUCT(SluiceTileLoaderCreateInfo), &info, pCreateInfo, NULL);
     if (result != SLUICE_SUCCESS)
         return result;
+    if (info.pJobSystem && !info.pJobSystem->pfnSubmitJob)
+        return SLUICE_ERROR_NULL_POINTER;
     if (info.requestCapacity > MAX_COUNT || info.maxSourceCount > MAX_COUNT)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     struct slc_read_pool *pool;
@@ -123,7 +126,7 @@ void sluiceDestroyTileLoader(SluiceTileLoader *loader)
     while (!slc_read_queue_is_idle(&loader->queue))
         slc_condition_wait(&pool->idle, &pool->mutex);
     leave(loader);
-    slc_mutex_unlock(&pool->mutex);
+    slc_read_pool_unlock(pool);
     if (loader->owns_pool)
         slc_read_pool_destroy(pool);
     SluiceAllocationCallbacks cb = loader->allocator;
@@ -160,7 +163,7 @@ SluiceResult sluiceSubmitTileReads(SluiceTileLoader *loader, uint32_t count,
         slc_read_queue_submit(&loader->queue, &pReads[i], &pTickets[i]);
     if (room)
         slc_read_pool_signal(loader->pool);
-    slc_mutex_unlock(&loader->pool->mutex);
+    slc_read_pool_unlock(loader->pool);
     return room ? SLUICE_SUCCESS : SLUICE_NOT_READY;
 }
 
@@ -182,7 +185,7 @@ SluiceResult sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)
     if (slc_read_pool_has_startable(loader->pool))
         slc_read_pool_signal(loader->pool);
     slc_loader_signal_if_idle(loader);
-    slc_mutex_unlock(&loader->pool->mutex);
+    slc_read_pool_unlock(loader->pool);
     return SLUICE_SUCCESS;
 }
 
@@ -196,7 +199,9 @@ SluiceResult sluiceCollectTileReads(SluiceTileLoader *loader, uint32_t *pResultC
     while (count < room && slc_read_queue_collect(&loader->queue, &pResults[count]))
         count++;
     bool more = loader->queue.finished_count > 0;
-    slc_mutex_unlock(&loader->pool->mutex);
+    if (slc_uses_jobs(loader->pool)) /* a retry may be due, or a job was refused */
+        slc_read_pool_signal(loader->pool);
+    slc_read_pool_unlock(loader->pool);
     *pResultCount = count;
     return more ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
 }
@@ -207,7 +212,7 @@ SluiceResult sluiceWaitTileLoaderIdle(SluiceTileLoader *loader)
         return SLUICE_ERROR_NULL_POINTER;
     slc_mutex_lock(&loader->pool->mutex);
     while (!slc_read_queue_is_idle(&loader->queue))
-        slc_condition_wait(&loader->pool->idle, &loader->pool->mutex);
+        slc_read_pool_wait(loader->pool, UINT64_MAX);
     slc_mutex_unlock(&loader->pool->mutex);
     return SLUICE_SUCCESS;
 }
@@ -246,8 +251,11 @@ bool slc_loader_wait_for_read(SluiceTileLoader *loader, uint64_t until)
     bool in_time = true;
     slc_mutex_lock(&loader->pool->mutex);
     loader->awaited = true;
-    while (in_time && loader->queue.finished_count == 0 && !slc_read_queue_is_idle(&loader->queue))
-        in_time = slc_condition_wait_until(&loader->pool->idle, &loader->pool->mutex, until);
+    while (in_time && loader->queue.finished_count == 0 &&
+           !slc_read_queue_is_idle(&loader->queue)) {
+        slc_read_pool_wait(loader->pool, until);
+        in_time = slc_monotonic_time() < until;
+    }
     loader->awaited = false;
     in_time |= loader->queue.finished_count > 0;
     slc_mutex_unlock(&loader->pool->mutex);
