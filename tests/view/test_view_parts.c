@@ -6,6 +6,7 @@
 #include "camera.h"
 #include "controls.h"
 #include "keys.h"
+#include "mark_words.h"
 #include "script.h"
 #include "settings_file.h"
 
@@ -289,6 +290,32 @@ static void a_damaged_file_of_settings_is_set_aside(void **state)
     free(app);
 }
 
+/* Bits as shaders/scene_marks.glsl reads them. */
+static void words_of_tiles_hold_reason_thrash_and_age(void **state)
+{
+    (void)state;
+    assert_int_equal(mark_word(MARK_BUDGET, false, 0), 2);
+    assert_int_equal(mark_word(MARK_FAILED, true, 62499), 3 + 16);
+    assert_int_equal(mark_word(MARK_NOTHING, false, 2 * 1000000), 32u << 16);
+    assert_int_equal(mark_word(MARK_LIMIT, true, UINT64_MAX), 5u + 16 + 0xFFFF0000u);
+    assert_int_equal(mark_word(MARK_NOTHING, false, 65535u * 62500ull), 0xFFFF0000u);
+}
+
+static void each_reason_has_its_pattern(void **state)
+{
+    static const enum mark_reason patterns[] = {
+        [SLUICE_COARSE_FINEST] = MARK_NOTHING,    [SLUICE_COARSE_ENOUGH] = MARK_NOT_SEEN,
+        [SLUICE_COARSE_NOT_SEEN] = MARK_NOT_SEEN, [SLUICE_COARSE_HIDDEN] = MARK_LIMIT,
+        [SLUICE_COARSE_LIMIT] = MARK_LIMIT,       [SLUICE_COARSE_MIP_BIAS] = MARK_LIMIT,
+        [SLUICE_COARSE_QUEUED] = MARK_COMING,     [SLUICE_COARSE_BANDWIDTH] = MARK_COMING,
+        [SLUICE_COARSE_READING] = MARK_COMING,    [SLUICE_COARSE_UPLOADING] = MARK_COMING,
+        [SLUICE_COARSE_FADING] = MARK_COMING,     [SLUICE_COARSE_BUDGET] = MARK_BUDGET,
+        [SLUICE_COARSE_FAILED] = MARK_FAILED};
+    (void)state;
+    for (size_t i = 0; i < sizeof patterns / sizeof *patterns; i++)
+        assert_int_equal(mark_reason_of((SluiceCoarseReason)i), patterns[i]);
+}
+
 static int make_folder(void **state)
 {
     (void)state;
@@ -325,6 +352,8 @@ int main(void)
         cmocka_unit_test(paths_are_read_as_they_were_written),
         cmocka_unit_test(settings_come_back_from_their_file),
         cmocka_unit_test(a_damaged_file_of_settings_is_set_aside),
+        cmocka_unit_test(words_of_tiles_hold_reason_thrash_and_age),
+        cmocka_unit_test(each_reason_has_its_pattern),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
