@@ -51,10 +51,8 @@ bool facts_create(struct view_facts *f, const struct stage *stage)
         f->all_size += stage_texture(stage, i)->size;
     }
     f->maps = malloc(2 * f->map_size + 1);
-    if (created && f->textures && f->events && f->maps) {
-        sluiceSetTileEventCapacity(manager_of(stage), 16 * FACTS_EVENTS);
+    if (created && f->textures && f->events && f->maps)
         return true;
-    }
     fprintf(stderr, "sluice-view: out of memory\n");
     facts_destroy(f);
     return false;

@@ -17,9 +17,11 @@ enum view_number {
     VIEW_RESIDENT,
     VIEW_MISSING,
     VIEW_WANTED,
-    VIEW_IDENTITY = 6,
+    VIEW_AGE,
+    VIEW_IDENTITY,
     VIEW_WRITTEN,
-    VIEW_CHECKS = 9
+    VIEW_TRUTH,
+    VIEW_CHECKS
 };
 
 /** Rows of controls.c. Choices are int, "off|on" among them. */

@@ -26,6 +26,7 @@ struct stage {
     struct stage_drawing drawing;
     struct stage_texture *textures;
     uint32_t *table_indices;
+    struct tile_marks marks;
     SluiceImageSource **slow; ///< around the scene's sources; NULL without a slow line
     struct slow_line line;
     bool is_slow;
@@ -182,6 +183,19 @@ static bool add_textures(struct stage *s)
     return true;
 }
 
+static bool create_marks(struct stage *s)
+{
+    SluiceTextureId *ids = malloc((s->scene.image_count + 1u) * sizeof *ids);
+    for (uint32_t i = 0; ids && i < s->scene.image_count; i++)
+        ids[i] = s->textures[i].id;
+    const bool created =
+        ids && tile_marks_create(s->streamer, ids, s->scene.image_count, &s->marks);
+    if (!created)
+        text_say("sluice-view: out of memory for the marks of tiles");
+    free(ids);
+    return created;
+}
+
 static bool create_drawing(struct stage *s)
 {
     SluiceResidencyMode mode;
@@ -190,8 +204,10 @@ static bool create_drawing(struct stage *s)
                  "sluiceGetVulkanResidencyMode") &&
            check(sluiceGetVulkanDescriptorSetLayout(s->streamer, &layout),
                  "sluiceGetVulkanDescriptorSetLayout") &&
-           stage_drawing_create(s->gpu, &s->scene, s->table_indices, layout,
-                                mode == SLUICE_RESIDENCY_MODE_PAGED, &s->drawing);
+           stage_drawing_create(s->gpu, &s->scene,
+                                &(struct stage_drawing_info){s->table_indices, layout, &s->marks,
+                                                             mode == SLUICE_RESIDENCY_MODE_PAGED},
+                                &s->drawing);
 }
 
 struct stage *stage_create(const struct stage_request *request,
@@ -207,7 +223,7 @@ struct stage *stage_create(const struct stage_request *request,
     s->textures = calloc(s->scene.image_count + 1, sizeof *s->textures);
     s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
     created = created && s->textures && s->table_indices && begin_slowness(s) &&
-              create_streamer(s, request) && add_textures(s);
+              create_streamer(s, request) && add_textures(s) && create_marks(s);
     if (created && create_drawing(s)) {
         stage_apply(s, settings);
         return s;
@@ -223,6 +239,7 @@ void stage_destroy(struct stage *s)
     sluiceDestroyVulkanStreamer(s->streamer);
     sluiceDestroyVulkanContext(s->context);
     stage_drawing_destroy(&s->drawing);
+    tile_marks_destroy(&s->marks);
     for (uint32_t i = 0; s->slow && i < s->scene.image_count; i++)
         sluiceDestroyImageSource(s->slow[i]);
     if (s->is_slow)
@@ -263,6 +280,8 @@ bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffe
     if (!check(sluiceBeginStreamingFrame(s->streamer, commands, draw->time_stamp, &frame),
                "sluiceBeginStreamingFrame"))
         return false;
+    const uint32_t view = draw->settings->view;
+    tile_marks_update(&s->marks, draw->time_stamp, view == VIEW_MISSING || view == VIEW_AGE);
     end->views[UI_TEXTURE_PICTURE] =
         stage_drawing_record(&s->drawing, &s->scene, draw, frame.descriptorSet,
                              (uint32_t)(draw->number % FRAMES_SLOTS), commands);
@@ -280,6 +299,16 @@ void stage_restart(struct stage *s)
 {
     for (uint32_t i = 0; i < s->scene.image_count; i++)
         sluiceEvictVulkanTexture(s->streamer, s->textures[i].id, 0);
+}
+
+double stage_resident_part(const struct stage *s)
+{
+    SluiceStreamedTextureManager *manager = NULL;
+    SluiceStreamedTextureStatistics now = {.structSize = sizeof now};
+    sluiceGetVulkanStreamerManager(s->streamer, &manager);
+    if (sluiceGetStatistics(manager, &now) != SLUICE_SUCCESS || now.tileCount == 0)
+        return 1.0;
+    return (double)(now.mappedTileCount + now.standbyTileCount) / (double)now.tileCount;
 }
 
 const char *stage_name(const struct stage *s)

@@ -63,6 +63,8 @@ void stage_restart(struct stage *stage);
 /** Waits until all reads are done, for pictures that are the same in every run. */
 bool stage_settle(struct stage *stage);
 
+/** Part of all tiles that is resident. */
+double stage_resident_part(const struct stage *stage);
 const char *stage_name(const struct stage *stage);
 SluiceVulkanStreamer *stage_streamer(const struct stage *stage);
 SluiceVulkanContext *stage_context(const struct stage *stage);

@@ -14,9 +14,6 @@
 #define NEAR_PLANE 0.05f /* meters, if the scene is about as large as a room */
 #define FAR_PLANE 500.0f
 #define BOTH_SIDES 3u
-#define SLOT_SECOND_UV 1u
-#define SLOT_WRITES 2u
-#define MATERIAL_MISSING 1u
 
 /* As in shaders/scene_push.glsl. */
 struct push {
@@ -27,19 +24,6 @@ struct push {
     uint32_t flags;
 };
 _Static_assert(sizeof(struct push) == 108, "as in scene_push.glsl");
-
-/* As in shaders/scene_material.glsl. */
-struct gpu_slot {
-    float turn[4], offset[2];
-    uint32_t table_index, flags;
-};
-struct gpu_material {
-    float color[4], emissive[3], cutoff;
-    float metalness, roughness, normal_scale, occlusion;
-    uint32_t flags, unused[3];
-    struct gpu_slot slots[SLOT_COUNT];
-};
-_Static_assert(sizeof(struct gpu_material) == 224, "as in scene_material.glsl");
 
 /** A part that blends, and how far away it is. */
 struct stage_order {
@@ -56,95 +40,9 @@ static bool fill(const struct gpu *gpu, const void *items, size_t size, VkBuffer
     return true;
 }
 
-/* Followers and slots that are sampled like an earlier one write no feedback. */
-static bool writes(const struct scene_data *scene, const struct scene_material *material, int k)
-{
-    const struct scene_slot *slot = &material->slots[k];
-    if (scene->images[slot->image].primary != SCENE_NO_IMAGE)
-        return false;
-    for (int i = 0; i < k; i++)
-        if (memcmp(&material->slots[i], slot, sizeof *slot) == 0)
-            return false;
-    return true;
-}
-
-static struct gpu_material pack(const struct scene_data *scene,
-                                const struct scene_material *material, const uint32_t *tables)
-{
-    struct gpu_material to = {.cutoff = material->alpha == ALPHA_MASK ? material->cutoff : -1.0f,
-                              .metalness = material->metalness,
-                              .roughness = material->roughness,
-                              .normal_scale = material->normal_scale,
-                              .occlusion = material->occlusion,
-                              .flags = material->missing ? MATERIAL_MISSING : 0u};
-    memcpy(to.color, material->color, sizeof to.color);
-    memcpy(to.emissive, material->emissive, sizeof to.emissive);
-    if (material->alpha == ALPHA_OPAQUE)
-        to.color[3] = 1.0f;
-    for (int k = 0; k < SLOT_COUNT; k++) {
-        const struct scene_slot *slot = &material->slots[k];
-        memcpy(to.slots[k].turn, slot->m, sizeof to.slots[k].turn);
-        memcpy(to.slots[k].offset, slot->m + 4, sizeof to.slots[k].offset);
-        to.slots[k].table_index = UINT32_MAX;
-        if (slot->image == SCENE_NO_IMAGE)
-            continue;
-        to.slots[k].table_index = tables[slot->image];
-        to.slots[k].flags =
-            (slot->uv_set ? SLOT_SECOND_UV : 0u) | (writes(scene, material, k) ? SLOT_WRITES : 0u);
-    }
-    return to;
-}
-
-static bool fill_materials(struct stage_drawing *d, const struct scene_data *scene,
-                           const uint32_t *tables)
-{
-    if (!gpu_create_buffer(d->gpu, (scene->material_count + 1u) * sizeof(struct gpu_material),
-                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &d->materials))
-        return false;
-    struct gpu_material *to = d->materials.mapped;
-    for (uint32_t i = 0; i < scene->material_count; i++)
-        to[i] = pack(scene, &scene->materials[i], tables);
-    return true;
-}
-
-static bool create_set(struct stage_drawing *d)
-{
-    VkDevice device = d->gpu->device;
-    const VkDescriptorSetLayoutBinding binding = {0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                                                  VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    const VkDescriptorSetLayoutCreateInfo layout = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = 1,
-        .pBindings = &binding};
-    const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
-    const VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                             .maxSets = 1,
-                                             .poolSizeCount = 1,
-                                             .pPoolSizes = &size};
-    if (!gpu_check(vkCreateDescriptorSetLayout(device, &layout, NULL, &d->set_layout),
-                   "vkCreateDescriptorSetLayout") ||
-        !gpu_check(vkCreateDescriptorPool(device, &pool, NULL, &d->pool), "vkCreateDescriptorPool"))
-        return false;
-    const VkDescriptorSetAllocateInfo set = {.sType =
-                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                             .descriptorPool = d->pool,
-                                             .descriptorSetCount = 1,
-                                             .pSetLayouts = &d->set_layout};
-    if (!gpu_check(vkAllocateDescriptorSets(device, &set, &d->set), "vkAllocateDescriptorSets"))
-        return false;
-    const VkDescriptorBufferInfo buffer = {d->materials.buffer, 0, VK_WHOLE_SIZE};
-    const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                        .dstSet = d->set,
-                                        .descriptorCount = 1,
-                                        .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                        .pBufferInfo = &buffer};
-    vkUpdateDescriptorSets(device, 1, &write, 0, NULL);
-    return true;
-}
-
 static bool create_layout(struct stage_drawing *d, VkDescriptorSetLayout set_layout)
 {
-    const VkDescriptorSetLayout layouts[2] = {set_layout, d->set_layout};
+    const VkDescriptorSetLayout layouts[2] = {set_layout, d->sets.layout};
     const VkPushConstantRange range = {.stageFlags = VK_SHADER_STAGE_VERTEX_BIT |
                                                      VK_SHADER_STAGE_FRAGMENT_BIT,
                                        .size = sizeof(struct push)};
@@ -214,19 +112,18 @@ static bool create_pipelines(struct stage_drawing *d, const struct scene_data *s
 }
 
 bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
-                          const uint32_t *table_indices, VkDescriptorSetLayout set_layout,
-                          bool paged, struct stage_drawing *d)
+                          const struct stage_drawing_info *info, struct stage_drawing *d)
 {
-    *d = (struct stage_drawing){.gpu = gpu};
+    *d = (struct stage_drawing){.gpu = gpu, .marks = info->marks};
     d->order = calloc(scene->part_count + 1u, sizeof *d->order);
     if (d->order &&
         fill(gpu, scene->vertices, scene->vertex_count * sizeof *scene->vertices,
              VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, &d->vertices) &&
         fill(gpu, scene->indices, scene->index_count * sizeof *scene->indices,
              VK_BUFFER_USAGE_INDEX_BUFFER_BIT, &d->indices) &&
-        fill_materials(d, scene, table_indices) && create_set(d) &&
-        target_create(gpu, 16, 16, 1, &d->targets[0]) && create_layout(d, set_layout) &&
-        create_pipelines(d, scene, paged))
+        stage_sets_create(gpu, scene, info->table_indices, tile_marks_size(d->marks), &d->sets) &&
+        target_create(gpu, 16, 16, 1, &d->targets[0]) && create_layout(d, info->set_layout) &&
+        create_pipelines(d, scene, info->paged))
         return true;
     stage_drawing_destroy(d);
     return false;
@@ -241,9 +138,7 @@ void stage_drawing_destroy(struct stage_drawing *d)
     for (int i = 0; i < STAGE_PIPELINES; i++)
         vkDestroyPipeline(d->gpu->device, d->pipelines[i], NULL);
     vkDestroyPipelineLayout(d->gpu->device, d->layout, NULL);
-    vkDestroyDescriptorPool(d->gpu->device, d->pool, NULL);
-    vkDestroyDescriptorSetLayout(d->gpu->device, d->set_layout, NULL);
-    gpu_destroy_buffer(d->gpu, &d->materials);
+    stage_sets_destroy(&d->sets);
     free(d->order);
     gpu_destroy_buffer(d->gpu, &d->vertices);
     gpu_destroy_buffer(d->gpu, &d->indices);
@@ -280,7 +175,7 @@ static struct push push_of(const struct scene_data *scene, const struct stage_dr
     return (struct push){.view_projection = matrix_of(scene, &draw->camera,
                                                       (float)draw->width / (float)draw->height),
                          .eye = draw->camera.position,
-                         .view = s->view,
+                         .view = s->view == VIEW_TRUTH ? VIEW_PICTURE : s->view,
                          .seed = (uint32_t)draw->number,
                          .probability = writes ? (float)s->probability : 0.0f,
                          .lod_bias = (float)s->lod_bias,
@@ -370,8 +265,9 @@ VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_dat
     struct target *target = &d->targets[slot];
     if (!fit_target(d, target, draw->width, draw->height))
         return VK_NULL_HANDLE;
+    tile_marks_copy(d->marks, d->sets.marks[slot].mapped);
     target_begin(target, commands, sky);
-    const VkDescriptorSet sets[2] = {set, d->set};
+    const VkDescriptorSet sets[2] = {set, d->sets.sets[slot]};
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, d->layout, 0, 2, sets, 0,
                             NULL);
     vkCmdBindVertexBuffers(commands, 0, 1, &d->vertices.buffer, &offset);

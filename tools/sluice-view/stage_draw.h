@@ -2,29 +2,35 @@
 #ifndef SLUICE_VIEW_STAGE_DRAW_H
 #define SLUICE_VIEW_STAGE_DRAW_H
 
-#include "frames.h"
 #include "scene_data.h"
 #include "stage.h"
+#include "stage_sets.h"
+#include "tile_marks.h"
 
 /** By enum scene_alpha; the second half shows both sides of triangles. */
 #define STAGE_PIPELINES 6
 
 struct stage_drawing {
-    const struct gpu *gpu; ///< borrowed
-    struct gpu_buffer vertices, indices, materials;
-    VkDescriptorSetLayout set_layout; ///< of the materials
-    VkDescriptorPool pool;
-    VkDescriptorSet set;
+    const struct gpu *gpu;          ///< borrowed
+    const struct tile_marks *marks; ///< borrowed
+    struct gpu_buffer vertices, indices;
+    struct stage_sets sets;
     VkPipelineLayout layout;
     VkPipeline pipelines[STAGE_PIPELINES]; ///< those that materials need
     struct stage_order *order;             ///< owned; of the parts that blend
     struct target targets[FRAMES_SLOTS];   ///< one for each frame in flight
 };
 
-/** `table_indices`: of the images. `set_layout`: the streamer's. Says on stderr what failed. */
+struct stage_drawing_info {
+    const uint32_t *table_indices;    ///< of the images
+    VkDescriptorSetLayout set_layout; ///< the streamer's
+    const struct tile_marks *marks;   ///< outlive the drawing
+    bool paged;
+};
+
+/** Says on stderr what failed. */
 bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
-                          const uint32_t *table_indices, VkDescriptorSetLayout set_layout,
-                          bool paged, struct stage_drawing *drawing);
+                          const struct stage_drawing_info *info, struct stage_drawing *drawing);
 /** No frame may be in flight. A zeroed struct is fine. */
 void stage_drawing_destroy(struct stage_drawing *drawing);
 /** Records the picture into the slot's target, whose view it returns in SHADER_READ_ONLY_OPTIMAL.

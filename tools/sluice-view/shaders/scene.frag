@@ -17,6 +17,7 @@ layout(constant_id = 0) const bool paged = false;
 #include "scene_push.glsl"
 
 #include "scene_material.glsl"
+#include "scene_marks.glsl"
 #include "scene_light.glsl"
 
 layout(location = 0) in vec3 position;
@@ -24,8 +25,8 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 uvs;
 layout(location = 0) out vec4 outColor;
 
-const uint VIEW_RESIDENT = 2, VIEW_MISSING = 3, VIEW_WANTED = 4, VIEW_IDENTITY = 6, VIEW_WRITTEN = 7,
-           VIEW_CHECKS = 9;
+const uint VIEW_RESIDENT = 2, VIEW_MISSING = 3, VIEW_WANTED = 4, VIEW_AGE = 5, VIEW_IDENTITY = 6,
+           VIEW_WRITTEN = 7, VIEW_CHECKS = 9;
 
 /* panels.c has the same colors. */
 const vec3 levelColors[8] = vec3[](vec3(214, 40, 40), vec3(247, 127, 0), vec3(252, 191, 73), vec3(190, 210, 110),
@@ -60,7 +61,7 @@ vec3 cover(vec3 picture, vec3 color)
     return mix(vec3(gray), color * (0.6 + 0.4 * gray), push.tint);
 }
 
-bool onBorder(vec2 texels, vec2 perPixel, float tileSize)
+bool onBorder(vec2 texels, vec2 perPixel, vec2 tileSize)
 {
     vec2 away = abs(fract(texels / tileSize + 0.5) - 0.5) * tileSize;
     return any(lessThan(away, perPixel * 0.75));
@@ -68,7 +69,7 @@ bool onBorder(vec2 texels, vec2 perPixel, float tileSize)
 
 /* Texels of the slots, and how many levels are missing at most. */
 vec4 texels[SLOT_COUNT] = vec4[](vec4(1.0), vec4(1.0), vec4(0.5, 0.5, 1.0, 1.0), vec4(1.0), vec4(1.0));
-uint missingLevels = 0u;
+uint missingLevels = 0u, missingSlot = 0u;
 /* Of the coordinates, taken before masks end pixels. */
 vec4 uvsDx, uvsDy;
 
@@ -88,7 +89,10 @@ void sampleSlots()
             continue;
         texels[i] = sluiceSample(slot.tableIndex, slot.tableIndex, turnBySlot(slot, uvs) + slot.offset,
                                  push.lodBias, push.anisotropy, missing);
-        missingLevels = max(missingLevels, missing);
+        if (missing > missingLevels) {
+            missingLevels = missing;
+            missingSlot = i;
+        }
     }
 }
 
@@ -143,35 +147,88 @@ vec3 lit(vec3 color)
                            toEye, open);
 }
 
-vec3 bordered(vec3 picture, vec3 color, Slot slot, vec2 uv, vec2 dx, vec2 dy, float tileSize)
+/* A place in the image of a slot. */
+struct Place {
+    vec2 uv, dx, dy, size; // size: of level 0, in texels
+};
+
+Place placeOf(Slot slot)
 {
     vec2 size = vec2(SLUICE_TEXTURE_ENTRY(slot.tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(slot.tableIndex).sizeY);
-    bool border = (push.flags & 1u) != 0u && onBorder(uv * size, (abs(dx) + abs(dy)) * size, tileSize);
-    return border ? color : picture;
+    return Place(turnBySlot(slot, uvs) + slot.offset, turnBySlot(slot, uvsDx), turnBySlot(slot, uvsDy), size);
+}
+
+uint markOf(Slot slot, Place at)
+{
+    return markAt(slot.flags >> SLOT_IMAGE_SHIFT, uvec2(fract(at.uv) * at.size));
+}
+
+vec3 bordered(vec3 picture, vec3 color, Slot slot, Place at, float level)
+{
+    if ((push.flags & 1u) == 0u)
+        return picture;
+    vec2 tileSize = vec2(markTileSize(slot.flags >> SLOT_IMAGE_SHIFT)) * exp2(level);
+    return onBorder(at.uv * at.size, (abs(at.dx) + abs(at.dy)) * at.size, tileSize) ? color : picture;
+}
+
+/* Texels of level 0 per pixel, along the shorter side of the pixel's footprint. */
+float densityOf(Place at)
+{
+    vec2 x = at.dx * at.size, y = at.dy * at.size;
+    return sqrt(min(dot(x, x), dot(y, y)));
+}
+
+vec3 patterned(vec3 color, uint reason)
+{
+    return markPattern(reason, uvec2(gl_FragCoord.xy)) ? color * 0.12 : color;
+}
+
+vec3 showMissing(vec3 picture)
+{
+    Slot slot = materials[push.material].slots[missingSlot];
+    if (slot.tableIndex == NO_TEXTURE)
+        return picture;
+    Place at = placeOf(slot);
+    if (missingLevels == 0u)
+        return densityOf(at) < 0.5 && markReason(markOf(slot, at)) == MARK_NOTHING
+                   ? cover(picture, markPattern(MARK_FINEST, uvec2(gl_FragCoord.xy)) ? vec3(0.34, 0.71, 0.91) : picture)
+                   : picture;
+    return patterned(cover(picture, missingColor(missingLevels)), markReason(markOf(slot, at)));
+}
+
+vec3 showAge(vec3 picture, Slot slot, Place at)
+{
+    uint word = markOf(slot, at);
+    if ((word & MARK_THRASHES) != 0u)
+        return patterned(vec3(1.0, 0.0, 1.0), MARK_FAILED);
+    return cover(picture, ageColor(markAge(word)));
 }
 
 /* Views show the color image of a material. */
 vec3 show(vec3 picture, Slot slot, bool wrote)
 {
-    vec2 uv = turnBySlot(slot, uvs) + slot.offset, dx = turnBySlot(slot, uvsDx), dy = turnBySlot(slot, uvsDy);
     if (push.view == VIEW_WRITTEN)
         return wrote ? vec3(1.0, 0.85, 0.2) : picture * 0.35;
     if (push.view == VIEW_MISSING)
-        return missingLevels == 0u ? picture : cover(picture, missingColor(missingLevels));
+        return showMissing(picture);
     if (slot.tableIndex == NO_TEXTURE)
         return picture;
     if (push.view == VIEW_IDENTITY)
         return cover(picture, identityColor(slot.tableIndex));
+    Place at = placeOf(slot);
+    if (push.view == VIEW_AGE)
+        return showAge(picture, slot, at);
     if (push.view <= 1u)
-        return bordered(picture, vec3(1.0, 0.85, 0.2), slot, uv, dx, dy, 128.0);
-    SluiceSampling wanted = sluiceResolveSampling(slot.tableIndex, uv, dx, dy, push.lodBias, push.anisotropy);
-    SluiceSampling here = sluiceResolveSampling(slot.tableIndex, uv, dx * 1e-5, dy * 1e-5, 0.0, 1.0);
+        return bordered(picture, vec3(1.0, 0.85, 0.2), slot, at, 0.0);
+    SluiceSampling wanted =
+        sluiceResolveSampling(slot.tableIndex, at.uv, at.dx, at.dy, push.lodBias, push.anisotropy);
+    SluiceSampling here =
+        sluiceResolveSampling(slot.tableIndex, at.uv, at.dx * 1e-5, at.dy * 1e-5, 0.0, 1.0);
     if (push.view == VIEW_WANTED)
         return cover(picture, levelColor(wanted.wantedLevel));
     if (push.view == VIEW_CHECKS)
-        return here.level == 255u ? vec3(1.0, 0.0, 1.0) : picture;
-    return bordered(cover(picture, levelColor(here.level)), vec3(0.05), slot, uv, dx, dy,
-                    128.0 * exp2(float(here.level)));
+        return here.level == 255u ? vec3(1.0, 0.0, 1.0) : cover(picture, densityColor(densityOf(at)));
+    return bordered(cover(picture, levelColor(here.level)), vec3(0.05), slot, at, float(here.level));
 }
 
 void main()

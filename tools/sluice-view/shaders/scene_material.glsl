@@ -2,7 +2,7 @@
 const uint NO_TEXTURE = 0xFFFFFFFFu;
 const uint SLOT_COLOR = 0, SLOT_ROUGHNESS = 1, SLOT_NORMAL = 2, SLOT_OCCLUSION = 3, SLOT_EMISSIVE = 4,
            SLOT_COUNT = 5;
-const uint SLOT_SECOND_UV = 1, SLOT_WRITES = 2; // flags of slots
+const uint SLOT_SECOND_UV = 1, SLOT_WRITES = 2, SLOT_IMAGE_SHIFT = 8; // flags of slots
 const uint MATERIAL_MISSING = 1;
 
 struct Slot {
