@@ -85,4 +85,9 @@ for scene in wall quads; do
         --screenshot "$scene.png" "$scene.gltf" && grep -q 'no such.png' err || break
 done && cmp wall.png quads.png
 fact masked_and_transparent_quads_are_not_seen_and_a_missing_image_is_named
+printf '1 key 8\n3 set gain 1\n4 screenshot little.png\n5 set gain 16\n6 screenshot much.png\n7 key 5\n9 key 9\n' >truth
+# shellcheck disable=SC2086
+run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --script truth \
+    --frames 12 --screenshot last.png wall.gltf && cmp little.png much.png && ! cmp -s much.png wall.png
+fact view_8_is_black_where_nothing_is_missing_and_all_views_are_valid
 end_facts

@@ -214,9 +214,11 @@ static const struct action table[] = {
     {"Views", "2", NULL, "resident level", show_view, VIEW_RESIDENT},
     {"Views", "3", NULL, "missing levels: why is it blurry?", show_view, VIEW_MISSING},
     {"Views", "4", NULL, "wanted level", show_view, VIEW_WANTED},
+    {"Views", "5", NULL, "age: how long tiles are in memory", show_view, VIEW_AGE},
     {"Views", "6", NULL, "textures", show_view, VIEW_IDENTITY},
     {"Views", "7", NULL, "feedback written", show_view, VIEW_WRITTEN},
-    {"Views", "9", NULL, "checks", show_view, VIEW_CHECKS},
+    {"Views", "8", NULL, "difference to the truth: everything resident", show_view, VIEW_TRUTH},
+    {"Views", "9", NULL, "checks: texels per pixel, reads that miss", show_view, VIEW_CHECKS},
     {"Views", "tab", "Tab or `", "last view, and back", show_last_view, 0},
     {"Views", "V", NULL, "compare: divider, difference, flicker, off", compare, 0},
 

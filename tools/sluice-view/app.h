@@ -53,6 +53,7 @@ struct view_app {
     struct stage_pick pick;    ///< under the mouse
     struct stage_pick inspect; ///< what was inspected
     uint32_t selected;         ///< texture; STAGE_NO_TEXTURE: none
+    double truth_part;         ///< of the tiles of view 8's second picture that are loaded
     bool demonstrating;        ///< the budget moves by itself
     double demonstration;      ///< seconds
     uint64_t budget_before;

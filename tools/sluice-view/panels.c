@@ -61,8 +61,9 @@ void panels_draw_picture(const struct view_app *app)
         ui_fill_behind(0, 0, app->width, app->height, UI_COLOR(38, 44, 52, 255));
         return;
     }
-    const bool flicker_other = s->compare == VIEW_FLICKER && (uint64_t)(app->seconds * 4) % 2 == 1;
-    if (s->compare == VIEW_DIFFERENCE) {
+    const bool flicker_other = s->compare == VIEW_FLICKER && s->view != VIEW_TRUTH &&
+                               (uint64_t)(app->seconds * 4) % 2 == 1;
+    if (s->compare == VIEW_DIFFERENCE || s->view == VIEW_TRUTH) {
         const uint32_t gain = (uint32_t)(s->gain / 16.0 * 255.0);
         ui_picture(UI_TEXTURE_PICTURE, UI_MODE_DIFFERENCE, all, uv, UI_COLOR(255, 255, 255, gain));
         return;

@@ -151,6 +151,7 @@ static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer com
     if (v->other) {
         if (!stage_record(v->other, &draw, commands, end))
             return false;
+        v->app.truth_part = stage_resident_part(v->other);
         end->views[UI_TEXTURE_OTHER] = end->views[UI_TEXTURE_PICTURE];
     }
     return stage_record(v->stage, &draw, commands, end);

@@ -20,8 +20,10 @@ static struct stage *create_stage(struct viewer *v, const struct view_settings *
 bool viewer_fit_other(struct viewer *v)
 {
     const struct view_settings *s = &v->app.settings;
-    const bool wanted = v->stage && s->compare != VIEW_COMPARE_OFF;
-    if (v->other && (!wanted || v->other_kind != s->compared)) {
+    const bool truth = s->view == VIEW_TRUTH;
+    const bool wanted = v->stage && (truth || s->compare != VIEW_COMPARE_OFF);
+    const int kind = truth ? VIEW_WITH_EVERYTHING : s->compared;
+    if (v->other && (!wanted || v->other_kind != kind)) {
         if (!frames_wait(&v->frames))
             return false;
         stage_destroy(v->other);
@@ -30,11 +32,14 @@ bool viewer_fit_other(struct viewer *v)
     if (!wanted || v->other)
         return true;
     struct view_settings settings = *s;
-    settings.budget = s->compared == VIEW_WITH_BUDGET ? 16u << 20 : 0;
-    v->other_kind = s->compared;
-    v->other = create_stage(v, &settings, s->compared == VIEW_WITH_EVERYTHING);
-    if (!v->other)
-        v->app.settings.compare = VIEW_COMPARE_OFF;
+    settings.budget = kind == VIEW_WITH_BUDGET ? 16u << 20 : 0;
+    v->other_kind = kind;
+    v->other = create_stage(v, &settings, kind == VIEW_WITH_EVERYTHING);
+    if (v->other)
+        return true;
+    v->app.settings.compare = VIEW_COMPARE_OFF;
+    if (truth)
+        v->app.settings.view = VIEW_PICTURE;
     return true;
 }
 
