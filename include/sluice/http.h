@@ -57,8 +57,8 @@ typedef struct SluiceHttpClientCreateInfo {
      * most so many bytes. 1: never. At most 2^26. Default: 2^20. */
     uint32_t maxJoinedSize;
     uint32_t connectTimeout; ///< Milliseconds. Default: 10 000.
-    /** Milliseconds without a byte after which an attempt ends, within a second. Default: 10 000.
-     */
+    /** Milliseconds after which an attempt ends, within a second, if no more than 500 bytes per
+     * second of the body came in them. Default: 10 000. */
     uint32_t stallTimeout;
     /** Attempts of a request before it fails, the first one included. 1 to 100. Default: 4. */
     uint32_t maxAttemptCount;

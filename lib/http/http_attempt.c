@@ -11,6 +11,7 @@
 #define MAX_SWALLOWED ((uint64_t)64 << 10)
 #define MAX_REDIRECT_BODY ((uint64_t)1 << 20)
 #define MAX_RETRY_AFTER 86400 /* seconds */
+#define MIN_SPEED 500u        /* bytes per second, over the stall time-out */
 
 struct attempt {
     const struct slc_http_request *request;
@@ -18,7 +19,7 @@ struct attempt {
     struct slc_http_header header;
     uint64_t expected; ///< bytes of the body; valid once checked
     bool is_checked, is_accepted, is_stalled;
-    curl_off_t last_count; ///< bytes of the body when one last came
+    curl_off_t last_count; ///< bytes of the body when enough had last come
     uint64_t last_time;
 };
 
@@ -224,6 +225,13 @@ static size_t write_header(char *line, size_t size, size_t count, void *user)
     return size * count;
 }
 
+/* Bytes that must come within the stall time-out. One alone would let a server drip for hours. */
+static curl_off_t least_count(const SluiceHttpClient *client)
+{
+    curl_off_t count = (curl_off_t)client->settings.stall_timeout * MIN_SPEED / 1000;
+    return count > 0 ? count : 1;
+}
+
 /* Called once a second at least. libcurl's own limit on speed looks at the mean of five seconds. */
 static int progress(void *user, curl_off_t a, curl_off_t received, curl_off_t b, curl_off_t c)
 {
@@ -231,7 +239,7 @@ static int progress(void *user, curl_off_t a, curl_off_t received, curl_off_t b,
     const SluiceHttpClient *client = attempt->request->client;
     uint64_t now = slc_monotonic_time();
     (void)a, (void)b, (void)c;
-    if (received != attempt->last_count || attempt->last_time == 0) {
+    if (received - attempt->last_count >= least_count(client) || attempt->last_time == 0) {
         attempt->last_count = received;
         attempt->last_time = now;
     }
@@ -254,7 +262,8 @@ static void check_failure(struct attempt *attempt, CURLcode code, const char *te
     struct slc_http_answer *answer = attempt->answer;
     if (code == CURLE_ABORTED_BY_CALLBACK && attempt->is_stalled) {
         answer->is_host_fault = true;
-        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO, "no byte came for %u ms",
+        end_as(attempt, SLC_HTTP_AGAIN, SLUICE_ERROR_IO, "fewer than %llu bytes came in %u ms",
+               (unsigned long long)least_count(attempt->request->client),
                attempt->request->client->settings.stall_timeout);
     } else if (code == CURLE_ABORTED_BY_CALLBACK) {
         answer->outcome = SLC_HTTP_CANCELLED;

@@ -168,6 +168,14 @@ class Handler(BaseHTTPRequestHandler):
         quitting.wait(20)
         self.close_connection = True
 
+    def fault_drip(self, fault, parts, query, headers, first, last, size):
+        self.send(206, headers, b'', last + 1 - first)
+        for i in range(first, last + 1):
+            self.wfile.write(content(i, i + 1))
+            if quitting.wait(0.02):
+                break
+        self.close_connection = True
+
     def fault_garbage(self, fault, parts, query, headers, first, last, size):
         self.wfile.write(b'\x00\x01no http\r\n\r\n')
         self.close_connection = True

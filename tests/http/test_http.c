@@ -374,6 +374,14 @@ static void a_body_that_stalls_is_given_up(void **state)
     assert_int_equal(statistics.connectTotal, 2);
 }
 
+static void a_body_that_drips_is_given_up(void **state)
+{
+    SluiceHttpStatistics statistics;
+    (void)state;
+    CHECK_OK(read_path("drip/x?from=1&count=1", &statistics)); /* 50 bytes per second */
+    assert_int_equal(statistics.retryTotal, 1);
+}
+
 struct reader {
     pthread_t thread;
     SluiceHttpFile *file;
@@ -727,6 +735,7 @@ int main(void)
         cmocka_unit_test(a_host_that_is_down_is_left_alone_until_its_back_off_has_passed),
         cmocka_unit_test(retry_after_is_obeyed_up_to_the_limit),
         cmocka_unit_test(a_body_that_stalls_is_given_up),
+        cmocka_unit_test(a_body_that_drips_is_given_up),
         cmocka_unit_test(reads_that_wait_side_by_side_share_requests),
         cmocka_unit_test(connections_are_bounded_and_failures_reach_every_reader),
         cmocka_unit_test(cancelling_ends_reads_under_way_and_those_that_wait),
