@@ -151,8 +151,10 @@ static SluiceResult start_curl(SluiceHttpClient *client)
                 version->version);
         return SLUICE_ERROR_UNSUPPORTED;
     }
-    client->has_curl = curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK;
-    return client->has_curl ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    /* Never undone by curl_global_cleanup. An application that calls curl_easy_init alone, without
+     * curl_global_init, uses this initialization and would lose it. */
+    return curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK ? SLUICE_SUCCESS
+                                                             : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
 static SluiceResult set_up(SluiceHttpClient *client, const SluiceHttpClientCreateInfo *info)
@@ -235,8 +237,6 @@ void sluiceDestroyHttpClient(SluiceHttpClient *client)
                        client->certificate_file};
     for (size_t i = 0; i < sizeof strings / sizeof *strings; i++)
         free_string(client, strings[i]);
-    if (client->has_curl)
-        curl_global_cleanup();
     slc_condition_finish(&client->cancelled);
     slc_mutex_finish(&client->mutex);
     slc_free(&cb, client, 1, sizeof *client);

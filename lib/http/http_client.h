@@ -72,7 +72,6 @@ struct SluiceHttpClient {
     char *signature, *credentials_user; ///< for CURLOPT_AWS_SIGV4; the access key
     struct curl_slist *headers;         ///< the application's
     struct curl_slist *s3_headers;      ///< for signed requests
-    bool has_curl;
     atomic_bool is_cancelled;
     struct slc_mutex mutex;
     struct slc_condition cancelled; ///< wakes those that wait for their next attempt
