@@ -81,11 +81,17 @@ struct SluiceHttpClient {
     struct slc_http_cache cache; ///< zeroed: none
 };
 
+/** Where requests of a file go. Reads that use it keep it alive. */
+struct slc_http_target {
+    struct slc_http_url url; ///< where redirects led; zeroed: nowhere else than the opened URL
+    struct slc_http_host *host;
+    uint32_t user_count; ///< the file, and reads; guarded by the client's mutex
+};
+
 struct SluiceHttpFile {
     SluiceHttpClient *client;
-    struct slc_http_url url;    ///< as it was opened
-    struct slc_http_url target; ///< where redirects led when it was opened; zeroed: nowhere else
-    struct slc_http_host *host;
+    struct slc_http_url url;        ///< as it was opened
+    struct slc_http_target *target; ///< guarded by the client's mutex
     uint64_t size;
     char etag[256], modified[64]; ///< of the opened version; empty: not told
     char version[384];            ///< both and the size, for the cache; empty: not to be kept

@@ -67,7 +67,8 @@ static struct slc_http_request make_request(const struct slc_http_fetch *fetch, 
     };
 }
 
-/* One attempt from `begin` on, along redirects. `landed` is zeroed if there were none. */
+/* One attempt from `begin` on, along redirects. `landed` may be NULL, and is zeroed if there were
+ * none. */
 static void attempt_along(const struct slc_http_fetch *fetch, CURL *easy,
                           const struct slc_http_url *begin, struct slc_http_url *landed,
                           struct slc_http_answer *answer)
@@ -95,14 +96,15 @@ static void attempt_along(const struct slc_http_fetch *fetch, CURL *easy,
 
 /* A target that redirects led to may expire: then the opened URL is asked again. */
 static void attempt(const struct slc_http_fetch *fetch, CURL *easy, struct slc_http_url *landed,
-                    struct slc_http_answer *answer)
+                    bool *is_moved, struct slc_http_answer *answer)
 {
     if (fetch->target) {
-        attempt_along(fetch, easy, fetch->target, landed, answer);
+        attempt_along(fetch, easy, fetch->target, NULL, answer);
         if (!answer->is_refused)
             return;
     }
     attempt_along(fetch, easy, fetch->url, landed, answer);
+    *is_moved = answer->outcome == SLC_HTTP_OK;
 }
 
 static SluiceResult log_failure(const struct slc_http_fetch *fetch, uint32_t attempts,
@@ -123,14 +125,16 @@ static SluiceResult log_failure(const struct slc_http_fetch *fetch, uint32_t att
 
 SluiceResult slc_http_fetch(const struct slc_http_fetch *fetch,
                             struct slc_http_connection *connection, uint32_t max_attempts,
-                            struct slc_http_url *landed, struct slc_http_answer *answer)
+                            struct slc_http_url *landed, bool *is_moved,
+                            struct slc_http_answer *answer)
 {
     SluiceHttpClient *client = fetch->client;
     const struct slc_http_settings *settings = &client->settings;
     uint64_t delay = settings->retry_delay;
     uint32_t done = 0;
+    *is_moved = false;
     for (;;) {
-        attempt(fetch, connection->easy, landed, answer);
+        attempt(fetch, connection->easy, landed, is_moved, answer);
         done++;
         if (answer->outcome != SLC_HTTP_AGAIN || done == max_attempts ||
             answer->retry_after > settings->max_retry_delay)

@@ -16,13 +16,15 @@ struct slc_http_fetch {
 };
 
 /**
- * Fetches on a connection. Logs failures with URL and range. `landed` may be NULL; otherwise it
- * gets the URL that redirects led to, or zeros, and the caller frees it. `answer` is the last one.
+ * Fetches on a connection. Logs failures with URL and range. If this succeeds from the opened URL,
+ * not from a target, `is_moved` becomes true, and `landed` is the URL that redirects led to, or
+ * zeros. The caller frees it. `answer` is the last one.
  * Errors: IO, FILE_NOT_FOUND, UNSUPPORTED, OUT_OF_HOST_MEMORY.
  */
 SluiceResult slc_http_fetch(const struct slc_http_fetch *fetch,
                             struct slc_http_connection *connection, uint32_t max_attempts,
-                            struct slc_http_url *landed, struct slc_http_answer *answer);
+                            struct slc_http_url *landed, bool *is_moved,
+                            struct slc_http_answer *answer);
 
 /** Judges the host by its last answer. */
 enum slc_http_verdict slc_http_verdict_of(const struct slc_http_answer *answer);

@@ -1,4 +1,5 @@
 #include "http/http_fetch.h"
+#include "http/http_target.h"
 
 #include "base/alloc.h"
 #include "base/log.h"
@@ -7,17 +8,20 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Fetches the first bytes on a connection. `landed` gets where redirects led to. */
+/* Fetches the first bytes on a connection, and notes where redirects led to. */
 static SluiceResult fetch_head(SluiceHttpFile *file, struct slc_http_connection *connection,
-                               bool is_probe, unsigned char *head, struct slc_http_url *landed,
-                               struct slc_http_answer *answer)
+                               bool is_probe, unsigned char *head, struct slc_http_answer *answer)
 {
     SluiceHttpClient *client = file->client;
     struct slc_http_part part = {0, client->settings.head_size, head};
     struct slc_http_fetch fetch = {
         .client = client, .url = &file->url, .parts = &part, .part_count = 1, .said = &file->said};
-    return slc_http_fetch(&fetch, connection, is_probe ? 1 : client->settings.max_attempts, landed,
-                          answer);
+    struct slc_http_url landed = {0};
+    bool is_moved;
+    SluiceResult result =
+        slc_http_fetch(&fetch, connection, is_probe ? 1 : client->settings.max_attempts, &landed,
+                       &is_moved, answer);
+    return result == SLUICE_SUCCESS ? slc_http_target_move(file, &landed) : result;
 }
 
 static SluiceResult keep_head(SluiceHttpFile *file, const unsigned char *head,
@@ -42,7 +46,10 @@ static SluiceResult get_connection(SluiceHttpFile *file, struct slc_http_connect
                                    bool *is_probe)
 {
     struct slc_http_wait wait = {0};
-    switch (slc_http_acquire(file->client, file->host, &wait, connection, is_probe)) {
+    struct slc_http_host *host = slc_http_get_host(file->client, file->url.origin);
+    if (!host)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    switch (slc_http_acquire(file->client, host, &wait, connection, is_probe)) {
     case SLC_HTTP_GO: return SLUICE_SUCCESS;
     case SLC_HTTP_NO_MEMORY: return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     default:
@@ -61,7 +68,7 @@ static SluiceResult read_head(SluiceHttpFile *file, unsigned char *head)
     SluiceResult result = get_connection(file, &connection, &is_probe);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = fetch_head(file, connection, is_probe, head, &file->target, &answer);
+    result = fetch_head(file, connection, is_probe, head, &answer);
     if (result == SLUICE_SUCCESS)
         result = keep_head(file, head, &answer);
     slc_http_release(file->client, connection, slc_http_verdict_of(&answer), answer.retry_after);
@@ -75,14 +82,9 @@ static SluiceResult open_file(SluiceHttpFile *file, const char *url)
         slc_http_url_parse(&file->url, url, &client->s3, &client->allocator, &client->log);
     if (result != SLUICE_SUCCESS)
         return result;
-    file->host = slc_http_get_host(client, file->url.origin);
     unsigned char *head = slc_alloc(&client->allocator, client->settings.head_size, 1);
-    result = file->host && head ? read_head(file, head) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    result = head ? read_head(file, head) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     slc_free(&client->allocator, head, client->settings.head_size, 1);
-    if (result == SLUICE_SUCCESS && file->target.full) { /* its connections and back-off count */
-        file->host = slc_http_get_host(client, file->target.origin);
-        result = file->host ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    }
     return result;
 }
 
@@ -109,29 +111,37 @@ void sluiceDestroyHttpFile(SluiceHttpFile *file)
         return;
     SluiceAllocationCallbacks cb = file->client->allocator;
     slc_http_url_free(&file->url, &cb);
-    slc_http_url_free(&file->target, &cb);
+    slc_http_target_finish(file);
     slc_free(&cb, file->head, file->head_size, 1);
     slc_free(&cb, file, 1, sizeof *file);
 }
 
 /* Makes the request, and those of waiting reads beside it. */
-static SluiceResult read_on(SluiceHttpFile *file, const struct slc_http_part *part,
+static SluiceResult read_on(SluiceHttpFile *file, const struct slc_http_target *target,
+                            const struct slc_http_part *part,
                             struct slc_http_connection *connection, bool is_probe)
 {
     SluiceHttpClient *client = file->client;
     struct slc_http_part parts[SLC_HTTP_MAX_PARTS] = {*part};
     struct slc_http_wait *waits[SLC_HTTP_MAX_PARTS];
     struct slc_http_answer answer;
-    uint32_t count = slc_http_join(client, file->host, file, parts, waits);
+    struct slc_http_url landed = {0};
+    bool is_moved;
+    uint32_t count = slc_http_join(client, target->host, file, parts, waits);
     struct slc_http_fetch fetch = {.client = client,
                                    .file = file,
                                    .url = &file->url,
-                                   .target = file->target.full ? &file->target : NULL,
+                                   .target = target->url.full ? &target->url : NULL,
                                    .parts = parts,
                                    .part_count = count,
                                    .said = &file->said};
-    SluiceResult result = slc_http_fetch(
-        &fetch, connection, is_probe ? 1 : client->settings.max_attempts, NULL, &answer);
+    SluiceResult result =
+        slc_http_fetch(&fetch, connection, is_probe ? 1 : client->settings.max_attempts, &landed,
+                       &is_moved, &answer);
+    if (is_moved && (fetch.target || landed.full))
+        (void)slc_http_target_move(file, &landed); /* without memory the old one stays */
+    else
+        slc_http_url_free(&landed, &client->allocator);
     if (answer.is_changed)
         atomic_store(&file->is_stale, true);
     /* A file that was there when it was opened is not "not found". */
@@ -146,13 +156,17 @@ static SluiceResult read_far(SluiceHttpFile *file, const struct slc_http_part *p
 {
     struct slc_http_wait wait = {.file = file, .part = *part};
     struct slc_http_connection *connection = NULL;
+    struct slc_http_target *target = slc_http_target_use(file);
     bool is_probe = false;
-    switch (slc_http_acquire(file->client, file->host, &wait, &connection, &is_probe)) {
-    case SLC_HTTP_GO: return read_on(file, part, connection, is_probe);
-    case SLC_HTTP_DONE: return wait.result;
-    case SLC_HTTP_NO_MEMORY: return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    default: return SLUICE_ERROR_IO;
+    SluiceResult result = SLUICE_ERROR_IO;
+    switch (slc_http_acquire(file->client, target->host, &wait, &connection, &is_probe)) {
+    case SLC_HTTP_GO: result = read_on(file, target, part, connection, is_probe); break;
+    case SLC_HTTP_DONE: result = wait.result; break;
+    case SLC_HTTP_NO_MEMORY: result = SLUICE_ERROR_OUT_OF_HOST_MEMORY; break;
+    case SLC_HTTP_REFUSED: break;
     }
+    slc_http_target_leave(file, target);
+    return result;
 }
 
 /* From the cache folder, or from the server into it. */

@@ -191,7 +191,8 @@ class Handler(BaseHTTPRequestHandler):
             return
         web = 'http://127.0.0.1:%d' % (ports[1] if kind == 'away' else ports[0])
         place = {'loop': self.path, 'away': web + '/bare/x?' + parts.query, 'file': 'file:///etc/passwd',
-                 'here': '/plain/x?' + parts.query, 'web': web + '/plain/x'}[kind]
+                 'here': '/plain/x?' + parts.query,
+                 'expiring': '/status-403/x?from=2&turn=%d' % counts[self.path], 'web': web + '/plain/x'}[kind]
         self.send(302, {'Location': place}, b'elsewhere')
 
     def fault_key(self, fault, parts, query, headers, first, last, size):

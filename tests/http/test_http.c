@@ -316,6 +316,24 @@ static void a_redirect_is_followed_once_and_again_when_its_target_is_gone(void *
     sluiceDestroyHttpClient(client);
 }
 
+/* Each target answers two requests and then 403. */
+static void reads_go_to_the_new_target_when_the_old_one_has_expired(void **state)
+{
+    SluiceHttpClientCreateInfo info = quick();
+    SluiceHttpClient *client = create(&info);
+    SluiceHttpFile *file;
+    (void)state;
+    CHECK_OK(open_path(client, "redirect-expiring/x", &file));
+    const uint64_t requests[] = {3, 6, 7, 10, 11};
+    for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
+        CHECK_OK(read_at(file, READ_AT, READ_SIZE));
+        assert_int_equal(statistics_of(client).requestTotal, requests[i]);
+    }
+    assert_string_equal(logged, "");
+    sluiceDestroyHttpFile(file);
+    sluiceDestroyHttpClient(client);
+}
+
 static void a_host_that_is_down_is_left_alone_until_its_back_off_has_passed(void **state)
 {
     SluiceHttpClientCreateInfo info = quick();
@@ -732,6 +750,7 @@ int main(void)
         cmocka_unit_test(a_redirect_may_have_a_body_of_unknown_length),
         cmocka_unit_test(names_in_messages_have_no_password_and_no_query),
         cmocka_unit_test(a_redirect_is_followed_once_and_again_when_its_target_is_gone),
+        cmocka_unit_test(reads_go_to_the_new_target_when_the_old_one_has_expired),
         cmocka_unit_test(a_host_that_is_down_is_left_alone_until_its_back_off_has_passed),
         cmocka_unit_test(retry_after_is_obeyed_up_to_the_limit),
         cmocka_unit_test(a_body_that_stalls_is_given_up),
