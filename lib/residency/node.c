@@ -339,3 +339,30 @@ void slc_node_release(struct slc_machine *r, uint32_t node)
     detach_node(r, node);
     slc_nodes_give(r, node);
 }
+
+bool slc_node_restore(struct slc_machine *r, const struct slc_node *from, uint32_t *cell)
+{
+    uint32_t node = slc_nodes_take(r);
+    struct slc_node *n = slc_node_at(r, node);
+    *n = *from;
+    if (n->heap != SLC_NONE && !slc_tile_heaps_restore_slot(&r->heaps, n->heap, n->slot, node))
+        return false;
+    if (n->state == SLC_NODE_RETIRING) {
+        r->heaps.heaps[n->heap].retiring_count++;
+        slc_list_append(r, &r->retiring, node);
+        return true;
+    }
+    *cell = node;
+    count_node(r, n);
+    if (n->state == SLUICE_TILE_STATE_STANDBY && n->flags & SLC_NODE_LISTED)
+        slc_list_append(r, &r->evicted, node);
+    else if (!(n->flags & SLC_NODE_LISTED))
+        enter_list(r, node);
+    if (n->state == SLUICE_TILE_STATE_STANDBY)
+        r->evicted_wanted += (n->flags & SLC_NODE_WANTED) != 0;
+    if (n->state == SLUICE_TILE_STATE_REQUESTED)
+        n->order = from->order;
+    if (is_resident(n->state))
+        r->user.resident(r->user.user, n, true);
+    return true;
+}

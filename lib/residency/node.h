@@ -39,4 +39,11 @@ void slc_node_evict_wanted(struct slc_machine *r, uint32_t node);
 /** An evicted tile that is wanted is unmapped and REQUESTED; false without memory. */
 bool slc_node_unmap_wanted(struct slc_machine *r, uint32_t node, uint64_t retire_value);
 
+/**
+ * Makes a node as a snapshot has it, at the end of its list. Takes a node, which was reserved.
+ * `cell` is where the owner keeps it; unused for retiring slots. Returns false if its slot is
+ * taken: the machine can only be destroyed then.
+ */
+bool slc_node_restore(struct slc_machine *r, const struct slc_node *from, uint32_t *cell);
+
 #endif /* SLC_RESIDENCY_NODE_H */

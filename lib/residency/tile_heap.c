@@ -118,7 +118,7 @@ static uint32_t word_count(const struct slc_tile_heaps *h)
     return (h->capacity + 63) / 64;
 }
 
-static void free_books(struct slc_tile_heaps *h, struct slc_tile_heap *heap)
+static void free_books(const struct slc_tile_heaps *h, const struct slc_tile_heap *heap)
 {
     slc_free(h->cb, heap->free, word_count(h), sizeof *heap->free);
     slc_free(h->cb, heap->nodes, h->capacity, sizeof *heap->nodes);
@@ -141,11 +141,8 @@ void slc_tile_heaps_finish(struct slc_tile_heaps *h)
     *h = (struct slc_tile_heaps){0};
 }
 
-/** Room for one more heap in the table. */
-static SluiceResult reserve_entry(struct slc_tile_heaps *h)
+static SluiceResult grow_table(struct slc_tile_heaps *h)
 {
-    if (h->live_count < h->room)
-        return SLUICE_SUCCESS; /* a dead entry or room behind the end */
     uint32_t room = h->room ? h->room * 2 : 8;
     if (room >= 1u << 30 || slc_map_reserve(&h->ids, h->cb, room) != SLUICE_SUCCESS)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -155,6 +152,12 @@ static SluiceResult reserve_entry(struct slc_tile_heaps *h)
     h->heaps = heaps;
     h->room = room;
     return SLUICE_SUCCESS;
+}
+
+/** Room for one more heap in the table: a dead entry or room behind the end. */
+static SluiceResult reserve_entry(struct slc_tile_heaps *h)
+{
+    return h->live_count < h->room ? SLUICE_SUCCESS : grow_table(h);
 }
 
 /** The first one that is dead, or one more. */
@@ -167,12 +170,37 @@ static uint32_t unused_entry(struct slc_tile_heaps *h)
     return h->dead_from;
 }
 
+/** A heap whose slots are all free. False, with nothing allocated, without memory. */
+static bool make_books(const struct slc_tile_heaps *h, struct slc_tile_heap *heap)
+{
+    *heap = (struct slc_tile_heap){.free_count = h->capacity};
+    heap->free = slc_alloc(h->cb, word_count(h), sizeof *heap->free);
+    heap->nodes = slc_calloc(h->cb, h->capacity, sizeof *heap->nodes);
+    if (!heap->free || !heap->nodes) {
+        free_books(h, heap);
+        return false;
+    }
+    memset(heap->free, 0xFF, word_count(h) * sizeof *heap->free);
+    if (h->capacity % 64)
+        heap->free[word_count(h) - 1] = (UINT64_C(1) << h->capacity % 64) - 1;
+    return true;
+}
+
+static void enter_heap(struct slc_tile_heaps *h, uint32_t index, const struct slc_tile_heap *heap)
+{
+    h->heaps[index] = *heap;
+    slc_map_add(&h->ids, heap->id, index);
+    h->live_count++;
+    h->empty_count++;
+    h->free_total += h->capacity;
+}
+
 SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, uint32_t *heap_id)
 {
-    struct slc_tile_heap heap = {0};
-    heap.free = slc_alloc(h->cb, word_count(h), sizeof *heap.free);
-    heap.nodes = slc_calloc(h->cb, h->capacity, sizeof *heap.nodes);
-    if (!heap.free || !heap.nodes || reserve_entry(h) != SLUICE_SUCCESS) {
+    struct slc_tile_heap heap;
+    if (!make_books(h, &heap))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (reserve_entry(h) != SLUICE_SUCCESS) {
         free_books(h, &heap);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
@@ -184,17 +212,9 @@ SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, 
         return SLUICE_BUDGET_REACHED;
     }
     heap.id = *heap_id;
-    heap.free_count = h->capacity;
-    memset(heap.free, 0xFF, word_count(h) * sizeof *heap.free);
-    if (h->capacity % 64)
-        heap.free[word_count(h) - 1] = (UINT64_C(1) << h->capacity % 64) - 1;
     uint32_t index = unused_entry(h);
-    h->heaps[index] = heap;
-    slc_map_add(&h->ids, heap.id, index);
+    enter_heap(h, index, &heap);
     bucket_insert(h, index);
-    h->live_count++;
-    h->empty_count++;
-    h->free_total += h->capacity;
     return SLUICE_SUCCESS;
 }
 
@@ -366,4 +386,71 @@ uint32_t slc_tile_heaps_reserved(const struct slc_tile_heaps *h)
 {
     uint64_t slots = (uint64_t)h->live_count * h->capacity;
     return slots / 16 < 64 ? (uint32_t)(slots / 16) : 64;
+}
+
+/* Snapshots --------------------------------------------------------------------------------- */
+
+/** `prev` of a heap that is neither in a bucket nor loose. */
+#define UNLINKED (UINT32_MAX - 1)
+
+SluiceResult slc_tile_heaps_restore_dead(struct slc_tile_heaps *h)
+{
+    if (h->end == h->room && grow_table(h) != SLUICE_SUCCESS)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    h->heaps[h->end++] = (struct slc_tile_heap){.free_count = SLC_HEAP_DEAD};
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_tile_heaps_restore(struct slc_tile_heaps *h, uint32_t id, bool packed)
+{
+    struct slc_tile_heap heap;
+    if (slc_tile_heaps_find(h, id) != UINT32_MAX)
+        return SLUICE_ERROR_CORRUPT_DATA;
+    if (!make_books(h, &heap))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (h->end == h->room && grow_table(h) != SLUICE_SUCCESS) {
+        free_books(h, &heap);
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    heap.id = id;
+    heap.packed = packed;
+    heap.prev = UNLINKED;
+    enter_heap(h, h->end++, &heap);
+    h->packed_free += packed ? h->capacity : 0;
+    return SLUICE_SUCCESS;
+}
+
+bool slc_tile_heaps_restore_slot(struct slc_tile_heaps *h, uint32_t index, uint32_t slot,
+                                 uint32_t node)
+{
+    if (index >= h->end || slot >= h->capacity)
+        return false;
+    struct slc_tile_heap *heap = &h->heaps[index];
+    if (heap->free_count == SLC_HEAP_DEAD || heap->nodes[slot])
+        return false;
+    take_slot(h, heap, slot, node);
+    return true;
+}
+
+bool slc_tile_heaps_restore_order(struct slc_tile_heaps *h, uint32_t index, uint32_t behind,
+                                  bool loose)
+{
+    if (index >= h->end)
+        return false;
+    struct slc_tile_heap *heap = &h->heaps[index];
+    if (heap->free_count == SLC_HEAP_DEAD || heap->packed || heap->prev != UNLINKED)
+        return false;
+    uint32_t *first = loose ? &h->loose : &h->buckets[heap->free_count];
+    if (behind == UINT32_MAX && *first != UINT32_MAX)
+        return false;
+    heap->loose = loose;
+    heap->prev = behind;
+    heap->next = UINT32_MAX;
+    if (behind != UINT32_MAX)
+        h->heaps[behind].next = index;
+    else
+        *first = index;
+    if (!loose)
+        set_bit(h, heap->free_count);
+    return true;
 }

@@ -82,4 +82,24 @@ uint32_t slc_tile_heaps_find(const struct slc_tile_heaps *h, uint32_t id);
 /** The heap must be empty. */
 void slc_tile_heaps_release(struct slc_tile_heaps *h, uint32_t heap);
 
+/*
+ * Snapshots: entries are restored in the order of their indices, then slots, then the order of the
+ * heaps.
+ */
+
+/** Appends an unused entry. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_tile_heaps_restore_dead(struct slc_tile_heaps *h);
+/** Appends a heap whose slots are all free. Errors: OUT_OF_HOST_MEMORY; CORRUPT_DATA: the id lives.
+ */
+SluiceResult slc_tile_heaps_restore(struct slc_tile_heaps *h, uint32_t id, bool packed);
+/** Takes one slot. Returns false, with nothing changed, if there is none or it is taken. */
+bool slc_tile_heaps_restore_slot(struct slc_tile_heaps *h, uint32_t heap, uint32_t slot,
+                                 uint32_t node);
+/**
+ * Appends a heap to the loose ones or to its bucket, behind the last heap of that list; UINT32_MAX:
+ * it is the first one. Returns false if the heap cannot stand there.
+ */
+bool slc_tile_heaps_restore_order(struct slc_tile_heaps *h, uint32_t heap, uint32_t behind,
+                                  bool loose);
+
 #endif /* SLC_RESIDENCY_TILE_HEAP_H */
