@@ -174,7 +174,8 @@ static const char *check_texture(const slc_manager *m, const struct slc_managed_
                                  uint64_t *nodes)
 {
     uint32_t requested = 0, resident_packed = 0, count = 0;
-    for (uint32_t tile = 0; tile < t->shape->tile_count; tile++) {
+    for (uint32_t tile = t->nodes ? 0 : t->shape->regular_tile_count; tile < t->shape->tile_count;
+         tile++) {
         uint32_t node = slc_find_node(t, tile);
         if (!node)
             continue;
@@ -379,7 +380,22 @@ static const char *check_outside(const slc_manager *m)
     return NULL;
 }
 
+static const char *check_all_users(const slc_manager *m)
+{
+    const char *wrong = NULL;
+    for (uint32_t i = 0; i < m->texture_end && !wrong; i++)
+        if (slc_texture_at(m, i)->live)
+            wrong = check_users(m, slc_texture_at(m, i));
+    return wrong;
+}
+
 const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
+{
+    const char *wrong = slc_manager_check_restored(manager);
+    return wrong ? wrong : check_all_users(manager);
+}
+
+const char *slc_manager_check_restored(const SluiceStreamedTextureManager *manager)
 {
     const slc_manager *m = manager;
     const char *wrong = check_lists(m);
@@ -396,8 +412,6 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
         if (!t->live)
             continue;
         wrong = check_texture(m, t, &nodes);
-        if (!wrong)
-            wrong = check_users(m, t);
         tiles += t->shape->tile_count;
         textures++;
     }

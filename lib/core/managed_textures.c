@@ -109,14 +109,57 @@ static SluiceResult reserve_for_add(slc_manager *m, const SluiceStreamedTextureD
     return t->packed_nodes ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
+/** What was reserved becomes a texture at an index. */
+static struct slc_managed_texture *enter_texture(slc_manager *m, uint32_t index,
+                                                 uint32_t generation,
+                                                 const struct slc_managed_texture *reserved)
+{
+    struct slc_managed_texture *t = slc_texture_at(m, index);
+    *t = *reserved;
+    t->generation = generation;
+    t->live = true;
+    t->index = index;
+    t->primary = SLC_NONE;
+    t->first_follower = t->last_follower = SLC_NONE;
+    t->prev_follower = t->next_follower = SLC_NONE;
+    m->texture_count++;
+    m->tile_count += t->shape->tile_count;
+    return t;
+}
+
+SluiceResult slc_texture_restore(slc_manager *m, uint32_t generation,
+                                 const SluiceStreamedTextureDesc *desc)
+{
+    struct slc_managed_texture reserved = {0};
+    SluiceResult result = desc ? reserve_for_add(m, desc, &reserved) : reserve_texture(m);
+    if (result != SLUICE_SUCCESS) {
+        if (reserved.shape)
+            slc_shape_give(m, reserved.shape);
+        return result;
+    }
+    uint32_t index = m->texture_end++;
+    slc_texture_at(m, index)->generation = generation;
+    slc_texture_at(m, index)->index = index;
+    if (desc)
+        enter_texture(m, index, generation, &reserved);
+    return SLUICE_SUCCESS;
+}
+
+void slc_textures_restored(slc_manager *m)
+{
+    for (uint32_t i = 0; i < m->texture_end; i++)
+        if (!slc_texture_at(m, i)->live && slc_texture_at(m, i)->generation < UINT32_MAX)
+            heap_push(m->free_indices, m->free_index_count++, i);
+}
+
 static SluiceResult add_texture(slc_manager *m, const SluiceStreamedTextureDesc *desc,
                                 SluiceTextureId *id)
 {
-    struct slc_managed_texture new_texture = {0};
-    SluiceResult result = reserve_for_add(m, desc, &new_texture);
+    struct slc_managed_texture reserved = {0};
+    SluiceResult result = reserve_for_add(m, desc, &reserved);
     if (result != SLUICE_SUCCESS) {
-        if (new_texture.shape)
-            slc_shape_give(m, new_texture.shape);
+        if (reserved.shape)
+            slc_shape_give(m, reserved.shape);
         return result;
     }
     uint32_t index = m->texture_end;
@@ -124,16 +167,8 @@ static SluiceResult add_texture(slc_manager *m, const SluiceStreamedTextureDesc 
         index = heap_pop(m->free_indices, m->free_index_count--);
     else
         m->texture_end++;
-    struct slc_managed_texture *t = slc_texture_at(m, index);
-    new_texture.generation = t->generation + 1;
-    new_texture.live = true;
-    new_texture.index = index;
-    new_texture.primary = SLC_NONE;
-    new_texture.first_follower = new_texture.last_follower = SLC_NONE;
-    new_texture.prev_follower = new_texture.next_follower = SLC_NONE;
-    *t = new_texture;
-    m->texture_count++;
-    m->tile_count += t->shape->tile_count;
+    struct slc_managed_texture *t =
+        enter_texture(m, index, slc_texture_at(m, index)->generation + 1, &reserved);
     slc_min_mip_dirty_all(m, t);
     m->events.reason = SLUICE_TILE_EVENT_ADDED;
     if (m->info.alwaysMapPackedTiles)

@@ -7,4 +7,13 @@
 /** Frees all textures. */
 void slc_textures_finish(slc_manager *m);
 
+/**
+ * Adds the texture with the next index as a snapshot has it, without tiles. `desc` NULL: the index
+ * is free. Errors: OUT_OF_HOST_MEMORY; those of sluiceAddStreamedTexture for `desc`.
+ */
+SluiceResult slc_texture_restore(slc_manager *m, uint32_t generation,
+                                 const SluiceStreamedTextureDesc *desc);
+/** All textures are restored: free indices can be handed out. */
+void slc_textures_restored(slc_manager *m);
+
 #endif /* SLC_CORE_MANAGED_TEXTURES_H */

@@ -17,10 +17,10 @@
  * gets a whole level finer. So what failed is remembered until something is different.
  */
 
-enum { STEPS = 16, BLOCK = 8, MAX_BIAS = 20 * STEPS, OVERCOMMIT_HALVES = 7 };
+enum { STEPS = 16, BLOCK = 8, MAX_BIAS = SLC_MAX_MIP_BIAS, OVERCOMMIT_HALVES = 7 };
 
 /** Rounds that maps which are due are waited for; trials of what failed before. */
-enum { PATIENCE = 16, MAX_TRIALS = 12, TRIAL_PERIODS = 8 };
+enum { PATIENCE = 16, MAX_TRIALS = SLC_MAX_BIAS_TRIALS, TRIAL_PERIODS = 8 };
 
 static uint8_t dither(uint32_t texture, uint32_t x, uint32_t y)
 {

@@ -4,6 +4,11 @@
 
 #include "core/state.h"
 
+/** The greatest bias, in sixteenths of a level. */
+#define SLC_MAX_MIP_BIAS 320u
+/** Values below the floor that can fail one after the other. */
+#define SLC_MAX_BIAS_TRIALS 12u
+
 /** How many tiles may be wanted: a multiple of the slots that there can be, as far as is known. */
 uint64_t slc_slot_limit(const slc_manager *m);
 /**

@@ -10,6 +10,11 @@ static int32_t weight(void *user, uint32_t owner)
     return slc_priority_of(user, slc_texture_at(user, owner));
 }
 
+void slc_use_priorities(slc_manager *m)
+{
+    m->residency.user.weight = weight;
+}
+
 /* Its requests get their new places, behind those that are there. */
 static void sort_requests(slc_manager *m, const struct slc_managed_texture *t, int32_t change)
 {
@@ -39,7 +44,7 @@ static SluiceResult set_priority(slc_manager *m, SluiceTextureId id, int32_t pri
     int32_t before = t->priority;
     if (priority == before)
         return SLUICE_SUCCESS;
-    m->residency.user.weight = weight;
+    slc_use_priorities(m);
     t->priority = (int8_t)priority;
     if (t->primary == SLC_NONE)
         sort_requests(m, t, before);

@@ -16,4 +16,7 @@ static inline bool slc_has_priorities(const slc_manager *m)
     return m->residency.user.weight;
 }
 
+/** From now on requests are weighted by the priority of their texture. */
+void slc_use_priorities(slc_manager *m);
+
 #endif /* SLC_CORE_PRIORITY_H */

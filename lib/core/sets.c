@@ -23,6 +23,17 @@ void slc_unfollow(slc_manager *m, struct slc_managed_texture *t)
     t->primary = t->prev_follower = t->next_follower = SLC_NONE;
 }
 
+void slc_follow(slc_manager *m, struct slc_managed_texture *t, struct slc_managed_texture *primary)
+{
+    t->primary = primary->index;
+    t->prev_follower = primary->last_follower;
+    if (primary->last_follower == SLC_NONE)
+        primary->first_follower = t->index;
+    else
+        slc_texture_at(m, primary->last_follower)->next_follower = t->index;
+    primary->last_follower = t->index;
+}
+
 static SluiceResult set_primary(slc_manager *m, SluiceTextureId follower_id,
                                 SluiceTextureId primary_id)
 {
@@ -40,15 +51,8 @@ static SluiceResult set_primary(slc_manager *m, SluiceTextureId follower_id,
     if (p && t->primary == p->index)
         return SLUICE_SUCCESS;
     slc_unfollow(m, t);
-    if (!p)
-        return SLUICE_SUCCESS;
-    t->primary = p->index;
-    t->prev_follower = p->last_follower;
-    if (p->last_follower == SLC_NONE)
-        p->first_follower = t->index;
-    else
-        slc_texture_at(m, p->last_follower)->next_follower = t->index;
-    p->last_follower = t->index;
+    if (p)
+        slc_follow(m, t, p);
     return SLUICE_SUCCESS;
 }
 

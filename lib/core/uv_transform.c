@@ -32,6 +32,14 @@ const char *slc_uv_transform_read(struct slc_uv_transform *t, const SluiceUvTran
     return NULL;
 }
 
+bool slc_uv_axis_is_valid(const struct slc_uv_axis *axis)
+{
+    const int64_t most = (int64_t)MOST << SLC_UV_BITS, least = (INT64_C(1) << SLC_UV_BITS) / 4096;
+    return axis->scale >= -most && axis->scale <= most &&
+           (axis->scale >= least || axis->scale <= -least) && axis->offset >= -most &&
+           axis->offset <= most && (unsigned)axis->wrap <= SLUICE_UV_WRAP_MIRROR_CLAMP;
+}
+
 static bool is_none(const struct slc_uv_axis *axis)
 {
     return axis->scale == 1 << SLC_UV_BITS &&

@@ -23,6 +23,8 @@ struct slc_uv_transform {
 
 /** Returns NULL, or what is wrong with the transform. */
 const char *slc_uv_transform_read(struct slc_uv_transform *t, const SluiceUvTransform *from);
+/** Whether slc_uv_transform_read can have made the axis. */
+bool slc_uv_axis_is_valid(const struct slc_uv_axis *axis);
 /** It moves nothing: follower and primary match cell by cell. */
 bool slc_uv_transform_is_none(const struct slc_uv_transform *t);
 

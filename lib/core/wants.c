@@ -221,6 +221,7 @@ struct moves {
     uint32_t count;
     struct slc_move tiles[64];
     struct slc_move_log *log; ///< NULL: nobody repeats them
+    bool counted_only;        ///< a snapshot has the tiles
 };
 
 /** 255 in the first `count` bytes, at most a block. */
@@ -293,7 +294,8 @@ static void add_move(slc_manager *m, struct slc_managed_texture *t, struct moves
     __builtin_prefetch(&t->nodes[move.tile]);
     t->wanted_tiles += move.wanted ? 1 : UINT32_MAX;
     *slc_wanted_in_level(t, move.level) += move.wanted ? 1 : UINT32_MAX;
-    moves->tiles[moves->count++] = move;
+    if (!moves->counted_only)
+        moves->tiles[moves->count++] = move;
 }
 
 /**
@@ -438,6 +440,28 @@ static void packed_after(slc_manager *m, struct slc_managed_texture *t, bool hel
         slc_packed_tiles_unwanted(m, t);
 }
 
+/** Returns whether some tile of level 0 holds another level. The texture has regular levels. */
+static bool settle_levels(slc_manager *m, struct slc_managed_texture *t, struct moves *moves,
+                          struct slc_range regions)
+{
+    struct slc_range rows = settle_level_0(m, t, moves, regions);
+    bool changed = rows.end > 0;
+    for (uint32_t l = 1; l < t->shape->desc.regularMipCount && rows.end > 0; l++)
+        rows = settle_level(m, t, moves, l, rows);
+    return changed;
+}
+
+void slc_wants_restore(slc_manager *m, struct slc_managed_texture *t)
+{
+    struct moves moves = {.counted_only = true};
+    struct slc_range all = {0, (uint32_t)slc_padded(slc_region_count(t))};
+    uint32_t bias = m->bias.value;
+    m->bias.value = t->history->bias;
+    if (t->shape->desc.regularMipCount > 0)
+        settle_levels(m, t, &moves, all);
+    m->bias.value = bias;
+}
+
 /** Some region holds another level. Returns whether some tile of level 0 does. */
 static bool settle(slc_manager *m, struct slc_managed_texture *t, struct slc_range regions,
                    bool held_before, struct slc_move_log *log)
@@ -446,10 +470,7 @@ static bool settle(slc_manager *m, struct slc_managed_texture *t, struct slc_ran
     packed_before(m, t, held_before);
     if (t->shape->desc.regularMipCount > 0) {
         struct moves moves = {.count = 0, .log = log};
-        struct slc_range rows = settle_level_0(m, t, &moves, regions);
-        changed = rows.end > 0;
-        for (uint32_t l = 1; l < t->shape->desc.regularMipCount && rows.end > 0; l++)
-            rows = settle_level(m, t, &moves, l, rows);
+        changed = settle_levels(m, t, &moves, regions);
         settle_moves(m, t, &moves);
     }
     packed_after(m, t, held_before);

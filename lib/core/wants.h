@@ -67,6 +67,12 @@ void slc_wants_repeat(slc_manager *m, const struct slc_managed_texture *leader,
                       struct slc_managed_texture *t, uint64_t time, uint64_t timeout,
                       const struct slc_move_log *log);
 
+/**
+ * Finds which regular tiles a restored history wants, and counts them. The tiles are restored
+ * apart. Scratch for the texture's work is reserved.
+ */
+void slc_wants_restore(slc_manager *m, struct slc_managed_texture *t);
+
 /** A preparation came to nothing: gives back what it made. */
 void slc_wants_abandon(slc_manager *m, struct slc_managed_texture *t);
 
