@@ -88,8 +88,10 @@ static SluiceResult play_block(struct slc_replay *replay, size_t end)
 SluiceResult slc_play_demand_recording(struct slc_replay *replay)
 {
     uint32_t words[SLC_TRACE_WORDS];
+    uint32_t version;
     uint64_t checksum;
-    SluiceResult result = slc_read_trace_header(replay, SLC_DEMAND_TRACE_VERSION, &checksum, words);
+    SluiceResult result =
+        slc_read_trace_header(replay, SLC_DEMAND_TRACE_VERSION, &version, &checksum, words);
     if (result != SLUICE_SUCCESS)
         return result;
     replay->out->kind = SLUICE_TRACE_KIND_DEMAND_RECORDING;

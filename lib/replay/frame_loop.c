@@ -78,6 +78,8 @@ static SluiceResult start(struct frame_loop *loop)
         .alwaysMapPackedTiles = true,
     };
     SluiceResult result = slc_replay_start(loop->replay, &create, false);
+    if (result == SLUICE_SUCCESS)
+        result = slc_replay_record(loop->replay);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,

@@ -127,18 +127,6 @@ static void put_desc(struct slc_bytes *out, const struct slc_call *call)
         put_id(out, call->texture_id);
 }
 
-/* The size of what follows is known only afterwards, so it is encoded apart first. */
-static void put_map(struct slc_bytes *out, const uint8_t *map, size_t size)
-{
-    struct slc_bytes runs;
-    slc_bytes_init(&runs, &out->cb);
-    slc_put_runs(&runs, map, size);
-    slc_put_varint(out, runs.size);
-    slc_put_bytes(out, runs.data, runs.size);
-    out->failed |= runs.failed;
-    slc_bytes_finish(&runs);
-}
-
 static void put_feedback(struct slc_bytes *out, const struct slc_call *call)
 {
     const SluiceFeedbackDesc *feedback = call->feedback;
@@ -155,7 +143,7 @@ static void put_feedback(struct slc_bytes *out, const struct slc_call *call)
                     : feedback->pMinMip ? SLC_INPUT_ABSENT
                                         : SLC_INPUT_NULL);
     if (kept)
-        put_map(out, feedback->pMinMip, (size_t)feedback->width * feedback->height);
+        slc_put_map(out, feedback->pMinMip, (size_t)feedback->width * feedback->height);
 }
 
 /* A list for a texture that is not there may come with any count; else the manager looked at it. */

@@ -7,6 +7,8 @@
 
 #define SLC_TRACE_MAGIC "SLUICERT"
 #define SLC_TRACE_VERSION 1u
+/** The calls follow a snapshot. */
+#define SLC_TRACE_VERSION_SNAPSHOT 2u
 #define SLC_TRACE_FLAG_PACKED 1u
 
 /** What is written of an input that the caller gives by pointer. */

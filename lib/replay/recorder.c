@@ -94,8 +94,11 @@ SluiceResult sluiceBeginFileRecording(SluiceStreamedTextureManager *manager,
     if (!manager || !pInfo || !pInfo->pPath || !pRecorder)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceFileRecordingInfo info;
-    SluiceResult result =
-        slc_recorder_read_info(pInfo, "manager", slc_manager_is_used(manager), &info);
+    SluiceResult result = slc_recorder_read_info(
+        pInfo,
+        slc_manager_is_used(manager) ? "the manager was used before or is being recorded already"
+                                     : NULL,
+        &info);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);

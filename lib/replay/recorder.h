@@ -35,12 +35,12 @@ struct SluiceRecorder {
 SluiceRecorder *slc_recorder_create(const SluiceAllocationCallbacks *cb, void *source,
                                     void (*stop)(void *source));
 /**
- * Reads and checks the info of a recording to a file. `name` is the recorded object, for messages.
- * `used`: the object was used before, so that its trace could not be played.
+ * Reads and checks the info of a recording to a file. `refusal`: why the object cannot be recorded,
+ * or NULL.
  * Errors, with a message: INVALID_ARGUMENT; those of slc_struct_read.
  */
-SluiceResult slc_recorder_read_info(const SluiceFileRecordingInfo *given, const char *name,
-                                    bool used, SluiceFileRecordingInfo *info);
+SluiceResult slc_recorder_read_info(const SluiceFileRecordingInfo *given, const char *refusal,
+                                    SluiceFileRecordingInfo *info);
 /** The file becomes the writer. After an error the recorder is gone. */
 SluiceResult slc_recorder_open_file(SluiceRecorder *recorder, const SluiceFileRecordingInfo *info);
 void slc_recorder_write_header(SluiceRecorder *recorder, const char magic[8], uint32_t version,
@@ -49,6 +49,8 @@ void slc_recorder_write_header(SluiceRecorder *recorder, const char magic[8], ui
 SluiceResult slc_recorder_begin(SluiceRecorder *recorder, SluiceRecorder **out);
 /** A record was appended to `block`; the block may end with it. */
 void slc_recorder_end_record(SluiceRecorder *recorder);
+/** The state of the source was appended; writes the mark behind it. */
+void slc_recorder_end_snapshot(SluiceRecorder *recorder);
 /** What sluiceEndRecording does. */
 SluiceResult slc_recorder_end(SluiceRecorder *recorder);
 

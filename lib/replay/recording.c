@@ -113,8 +113,10 @@ static SluiceResult play_block(struct slc_replay *replay, size_t end)
 SluiceResult slc_play_recording(struct slc_replay *replay)
 {
     uint32_t words[SLC_TRACE_WORDS];
+    uint32_t version;
     uint64_t checksum;
-    SluiceResult result = slc_read_trace_header(replay, SLC_TRACE_VERSION, &checksum, words);
+    SluiceResult result =
+        slc_read_trace_header(replay, SLC_TRACE_VERSION, &version, &checksum, words);
     if (result != SLUICE_SUCCESS)
         return result;
     replay->out->kind = SLUICE_TRACE_KIND_RECORDING;
@@ -128,6 +130,8 @@ SluiceResult slc_play_recording(struct slc_replay *replay)
     result = slc_replay_start(replay, &info, true);
     if (result == SLUICE_ERROR_ZERO_HEAP_CAPACITY || result == SLUICE_ERROR_INVALID_ARGUMENT)
         return slc_replay_corrupt(replay, 16, "no manager has such heaps");
+    if (result == SLUICE_SUCCESS)
+        result = slc_replay_record(replay);
     if (result != SLUICE_SUCCESS)
         return result;
     const struct slc_trace_player player = {play_block, &replay->player.hash,

@@ -25,6 +25,11 @@ SluiceResult slc_replay_start(struct slc_replay *replay,
     slc_dump_line(&replay->player.dump, "manager heap-tiles=%" PRIu32 " tile-size=%" PRIu32 "%s",
                   info->heapTileCapacity, info->tileSize,
                   info->alwaysMapPackedTiles ? " always-map-packed" : "");
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_replay_record(struct slc_replay *replay)
+{
     if (!replay->info->pRecordPath)
         return SLUICE_SUCCESS;
     const SluiceFileRecordingInfo recording = {.structSize = sizeof recording,

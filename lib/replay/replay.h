@@ -21,9 +21,11 @@ struct slc_replay {
     SluiceRecorder *recorder; ///< owned; NULL unless the run is to be recorded
 };
 
-/** Makes the player and, if it was asked for, records it. */
+/** Makes the player. */
 SluiceResult slc_replay_start(struct slc_replay *replay,
                               const SluiceStreamedTextureManagerCreateInfo *info, bool scripted);
+/** Records the player from now on, if that was asked for. */
+SluiceResult slc_replay_record(struct slc_replay *replay);
 
 /** Logs and returns CORRUPT_DATA, with the offset in the result. */
 SluiceResult slc_replay_corrupt(struct slc_replay *replay, uint64_t offset, const char *why);

@@ -36,6 +36,18 @@ void slc_put_runs(struct slc_bytes *bytes, const uint8_t *map, size_t size)
     }
 }
 
+/* The size of what follows is known only afterwards, so it is encoded apart first. */
+void slc_put_map(struct slc_bytes *out, const uint8_t *map, size_t size)
+{
+    struct slc_bytes runs;
+    slc_bytes_init(&runs, &out->cb);
+    slc_put_runs(&runs, map, size);
+    slc_put_varint(out, runs.size);
+    slc_put_bytes(out, runs.data, runs.size);
+    out->failed |= runs.failed;
+    slc_bytes_finish(&runs);
+}
+
 void slc_get_runs(struct slc_cursor *cursor, uint8_t *map, size_t size)
 {
     size_t done = 0;

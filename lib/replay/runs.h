@@ -10,6 +10,9 @@
  */
 void slc_put_runs(struct slc_bytes *bytes, const uint8_t *map, size_t size);
 
+/** Appends the size of the runs in bytes, a varint, and the runs. */
+void slc_put_map(struct slc_bytes *bytes, const uint8_t *map, size_t size);
+
 /**
  * Reads runs up to the cursor's end, which must yield exactly `size` bytes. With `map` NULL they
  * are only checked.

@@ -5,8 +5,8 @@
 
 #include <inttypes.h>
 
-SluiceResult slc_read_trace_header(struct slc_replay *replay, uint32_t version, uint64_t *checksum,
-                                   uint32_t words[SLC_TRACE_WORDS])
+SluiceResult slc_read_trace_header(struct slc_replay *replay, uint32_t newest, uint32_t *version,
+                                   uint64_t *checksum, uint32_t words[SLC_TRACE_WORDS])
 {
     struct slc_cursor *in = &replay->in;
     slc_get_bytes(in, 8);
@@ -20,10 +20,11 @@ SluiceResult slc_read_trace_header(struct slc_replay *replay, uint32_t version, 
         slc_cursor_fail(in, 0, "the header's checksum is wrong");
     if (in->why)
         return slc_replay_check(replay, in);
-    if (found != version) {
+    *version = found;
+    if (found == 0 || found > newest) {
         slc_log(&replay->info->log, SLUICE_LOG_ERROR,
-                "trace has version %" PRIu32 " of the format, this library reads version %" PRIu32,
-                found, version);
+                "trace has version %" PRIu32 " of the format, this library reads 1 to %" PRIu32,
+                found, newest);
         replay->out->errorOffset = 8;
         return SLUICE_ERROR_UNSUPPORTED;
     }
@@ -67,31 +68,41 @@ static SluiceResult read_end(struct slc_replay *replay, size_t start, uint64_t c
     return SLUICE_SUCCESS;
 }
 
+SluiceResult slc_read_block(struct slc_replay *replay, uint64_t *checksum, size_t *end)
+{
+    struct slc_cursor *in = &replay->in;
+    size_t start = in->pos;
+    uint32_t size = slc_get_u32(in);
+    *checksum = slc_hash_bytes(*checksum, in->data + start, in->pos - start);
+    uint64_t stored = slc_get_u64(in);
+    size_t payload = in->pos;
+    if (!in->why && size > in->end - payload)
+        slc_cursor_fail(in, start, "the block that begins here is cut off");
+    if (!in->why) {
+        *checksum = slc_hash_bytes(*checksum, in->data + payload, size);
+        if (stored != *checksum)
+            slc_cursor_fail(in, start, "the checksum of the block that begins here is wrong");
+    }
+    if (in->why)
+        return slc_replay_check(replay, in);
+    in->pos = payload;
+    *end = payload + size;
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult slc_play_blocks(struct slc_replay *replay, uint64_t checksum,
                              const struct slc_trace_player *player)
 {
     struct slc_cursor *in = &replay->in;
     SluiceResult result = SLUICE_SUCCESS;
     while (result == SLUICE_SUCCESS) {
-        size_t start = in->pos;
-        uint32_t size = slc_get_u32(in);
-        if (!in->why && size == 0)
+        size_t start = in->pos, end;
+        if (slc_get_u32(in) == 0 && !in->why)
             return read_end(replay, start, checksum, player);
-        checksum = slc_hash_bytes(checksum, in->data + start, in->pos - start);
-        uint64_t stored = slc_get_u64(in);
-        size_t payload = in->pos;
-        if (!in->why && size > in->end - payload)
-            slc_cursor_fail(in, start, "the block that begins here is cut off");
-        if (!in->why) {
-            checksum = slc_hash_bytes(checksum, in->data + payload, size);
-            if (stored != checksum)
-                slc_cursor_fail(in, start, "the checksum of the block that begins here is wrong");
-        }
-        result = slc_replay_check(replay, in);
-        if (result != SLUICE_SUCCESS)
-            return result;
-        in->pos = payload;
-        result = player->play_block(replay, payload + size);
+        in->pos = in->why ? in->pos : start;
+        result = slc_read_block(replay, &checksum, &end);
+        if (result == SLUICE_SUCCESS)
+            result = player->play_block(replay, end);
     }
     return result;
 }

@@ -7,10 +7,16 @@
 
 /**
  * Reads and checks the header; `words` are those of slc_recorder_write_header. Errors:
- * CORRUPT_DATA; UNSUPPORTED if the recording has another version.
+ * CORRUPT_DATA; UNSUPPORTED if the recording has a version that is not 1 to `newest`.
  */
-SluiceResult slc_read_trace_header(struct slc_replay *replay, uint32_t version, uint64_t *checksum,
-                                   uint32_t words[SLC_TRACE_WORDS]);
+SluiceResult slc_read_trace_header(struct slc_replay *replay, uint32_t newest, uint32_t *version,
+                                   uint64_t *checksum, uint32_t words[SLC_TRACE_WORDS]);
+
+/**
+ * Reads the head of a block and checks its checksum. Its records begin at replay->in and end at
+ * `end`. Errors: CORRUPT_DATA.
+ */
+SluiceResult slc_read_block(struct slc_replay *replay, uint64_t *checksum, size_t *end);
 
 /** Who plays the records. */
 struct slc_trace_player {

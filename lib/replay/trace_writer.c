@@ -68,6 +68,13 @@ void slc_recorder_end_record(SluiceRecorder *recorder)
         write_block(recorder);
 }
 
+void slc_recorder_end_snapshot(SluiceRecorder *recorder)
+{
+    if (recorder->block.failed || recorder->block.size > 0)
+        write_block(recorder);
+    write_block(recorder); /* an empty one */
+}
+
 static void release(SluiceRecorder *recorder)
 {
     SluiceAllocationCallbacks cb = recorder->cb;
@@ -97,8 +104,8 @@ static SluiceResult write_to_file(void *user, const void *data, size_t size)
     return slc_part_file_append(&recorder->file, data, size);
 }
 
-SluiceResult slc_recorder_read_info(const SluiceFileRecordingInfo *given, const char *name,
-                                    bool used, SluiceFileRecordingInfo *info)
+SluiceResult slc_recorder_read_info(const SluiceFileRecordingInfo *given, const char *refusal,
+                                    SluiceFileRecordingInfo *info)
 {
     *info = (SluiceFileRecordingInfo){.structSize = sizeof *info};
     SluiceResult result =
@@ -107,11 +114,9 @@ SluiceResult slc_recorder_read_info(const SluiceFileRecordingInfo *given, const 
         return result;
     if (!slc_allocator_is_valid(info->pAllocator))
         return slc_log_refusal(&info->log, "pAllocator lacks pfnAllocate or pfnFree");
-    if (!used)
+    if (!refusal)
         return SLUICE_SUCCESS;
-    return slc_log_refusal(&info->log,
-                           "%s: cannot record: the %s was used before or is being recorded already",
-                           info->pPath, name);
+    return slc_log_refusal(&info->log, "%s: cannot record: %s", info->pPath, refusal);
 }
 
 SluiceResult slc_recorder_open_file(SluiceRecorder *recorder, const SluiceFileRecordingInfo *info)
