@@ -23,12 +23,13 @@ typedef struct SluiceRecordWriter {
 } SluiceRecordWriter;
 
 /**
- * Starts to record a manager. The manager may be configured but must have no textures and no heaps.
- * End the recording before you destroy the manager.
+ * Starts to record a manager, at any time. If the manager was used before, its whole state is
+ * written first, in pieces of 4 KiB: about 10 bytes per tile that is not FREE, 60 per texture, and
+ * the maps that are still remembered. End the recording before you destroy the manager.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if the manager was used before
- *         or is being recorded; SLUICE_ERROR_OUT_OF_HOST_MEMORY; errors of the writer.
- * Thread safety: external on `manager`. The recorder runs on the threads that call the manager.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if the manager is being
+ * recorded; SLUICE_ERROR_OUT_OF_HOST_MEMORY; errors of the writer. Thread safety: external on
+ * `manager`. The recorder runs on the threads that call the manager.
  */
 SLUICE_API SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manager,
                                              const SluiceRecordWriter *pWriter,

@@ -52,6 +52,13 @@ static void set_limits(slc_manager *m)
     };
 }
 
+void slc_manager_take_config(SluiceStreamedTextureManager *manager,
+                             const SluiceStreamedTextureManagerConfig *config)
+{
+    manager->config = *config;
+    set_limits(manager);
+}
+
 static void destroy(slc_manager *m)
 {
     slc_textures_finish(m);

@@ -9,7 +9,12 @@ void slc_manager_set_observer(SluiceStreamedTextureManager *manager, struct slc_
 
 bool slc_manager_is_used(const SluiceStreamedTextureManager *manager)
 {
-    return manager->used || manager->observer.notify;
+    return manager->used;
+}
+
+bool slc_manager_is_observed(const SluiceStreamedTextureManager *manager)
+{
+    return manager->observer.notify;
 }
 
 const SluiceStreamedTextureManagerCreateInfo *

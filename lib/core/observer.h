@@ -10,8 +10,11 @@ void slc_manager_set_observer(SluiceStreamedTextureManager *manager, struct slc_
 /** Tells the observer, if there is one. */
 void slc_notify(SluiceStreamedTextureManager *manager, const struct slc_call *call);
 
-/** Whether a changing call but sluiceSetConfig was made, or an observer is there. */
+/** Whether a changing call but sluiceSetConfig was made. */
 bool slc_manager_is_used(const SluiceStreamedTextureManager *manager);
+
+/** Whether an observer is there. */
+bool slc_manager_is_observed(const SluiceStreamedTextureManager *manager);
 
 /** Read only; what the player needs to make an equal manager. */
 const SluiceStreamedTextureManagerCreateInfo *
@@ -20,6 +23,10 @@ slc_manager_create_info(const SluiceStreamedTextureManager *manager);
 /** What sluiceSetConfig was given last; all 0 before. */
 const SluiceStreamedTextureManagerConfig *
 slc_manager_config(const SluiceStreamedTextureManager *manager);
+
+/** Sets a configuration that a snapshot has. Tells nobody. */
+void slc_manager_take_config(SluiceStreamedTextureManager *manager,
+                             const SluiceStreamedTextureManagerConfig *config);
 
 /** Returns how often sluiceSetConfig succeeded. */
 uint64_t slc_manager_config_count(const SluiceStreamedTextureManager *manager);

@@ -4,14 +4,16 @@
 #include "core/refusal.h"
 #include "replay/decisions.h"
 #include "replay/record.h"
+#include "replay/snapshot.h"
 
-static void write_header(SluiceRecorder *recorder, const SluiceStreamedTextureManager *manager)
+static void write_header(SluiceRecorder *recorder, const SluiceStreamedTextureManager *manager,
+                         uint32_t version)
 {
     const SluiceStreamedTextureManagerCreateInfo *info = slc_manager_create_info(manager);
     const uint32_t words[SLC_TRACE_WORDS] = {info->heapTileCapacity, info->tileSize,
                                              info->alwaysMapPackedTiles ? SLC_TRACE_FLAG_PACKED : 0,
                                              0};
-    slc_recorder_write_header(recorder, SLC_TRACE_MAGIC, SLC_TRACE_VERSION, words);
+    slc_recorder_write_header(recorder, SLC_TRACE_MAGIC, version, words);
 }
 
 static void notify(void *user, const SluiceStreamedTextureManager *manager,
@@ -54,8 +56,13 @@ static void stop(void *manager)
 static SluiceResult begin(SluiceRecorder *recorder, SluiceStreamedTextureManager *manager,
                           SluiceRecorder **out)
 {
-    write_header(recorder, manager);
-    write_configuration(recorder, manager);
+    if (slc_manager_is_used(manager)) {
+        write_header(recorder, manager, SLC_TRACE_VERSION_SNAPSHOT);
+        slc_write_snapshot(recorder, manager);
+    } else {
+        write_header(recorder, manager, SLC_TRACE_VERSION);
+        write_configuration(recorder, manager);
+    }
     SluiceResult result = slc_recorder_begin(recorder, out);
     if (result == SLUICE_SUCCESS)
         slc_manager_set_observer(manager, (struct slc_observer){recorder, notify});
@@ -73,9 +80,8 @@ SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manager,
         return SLUICE_ERROR_NULL_POINTER;
     if (!slc_allocator_is_valid(pAllocator))
         return slc_refuse(manager, __func__, "pAllocator lacks pfnAllocate or pfnFree");
-    /* What a manager that was used before decides from is not in the trace. */
-    if (slc_manager_is_used(manager))
-        return slc_refuse(manager, __func__, "the manager was used before or is being recorded");
+    if (slc_manager_is_observed(manager))
+        return slc_refuse(manager, __func__, "the manager is being recorded already");
 
     SluiceAllocationCallbacks cb = slc_allocator(pAllocator);
     SluiceRecorder *recorder = slc_recorder_create(&cb, manager, stop);
@@ -95,9 +101,7 @@ SluiceResult sluiceBeginFileRecording(SluiceStreamedTextureManager *manager,
         return SLUICE_ERROR_NULL_POINTER;
     SluiceFileRecordingInfo info;
     SluiceResult result = slc_recorder_read_info(
-        pInfo,
-        slc_manager_is_used(manager) ? "the manager was used before or is being recorded already"
-                                     : NULL,
+        pInfo, slc_manager_is_observed(manager) ? "the manager is being recorded already" : NULL,
         &info);
     if (result != SLUICE_SUCCESS)
         return result;

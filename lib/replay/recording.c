@@ -4,6 +4,7 @@
 #include "replay/record.h"
 #include "replay/replay.h"
 #include "replay/runs.h"
+#include "replay/snapshot.h"
 #include "replay/trace_reader.h"
 
 #include <string.h>
@@ -116,7 +117,7 @@ SluiceResult slc_play_recording(struct slc_replay *replay)
     uint32_t version;
     uint64_t checksum;
     SluiceResult result =
-        slc_read_trace_header(replay, SLC_TRACE_VERSION, &version, &checksum, words);
+        slc_read_trace_header(replay, SLC_TRACE_VERSION_SNAPSHOT, &version, &checksum, words);
     if (result != SLUICE_SUCCESS)
         return result;
     replay->out->kind = SLUICE_TRACE_KIND_RECORDING;
@@ -130,6 +131,8 @@ SluiceResult slc_play_recording(struct slc_replay *replay)
     result = slc_replay_start(replay, &info, true);
     if (result == SLUICE_ERROR_ZERO_HEAP_CAPACITY || result == SLUICE_ERROR_INVALID_ARGUMENT)
         return slc_replay_corrupt(replay, 16, "no manager has such heaps");
+    if (result == SLUICE_SUCCESS && version == SLC_TRACE_VERSION_SNAPSHOT)
+        result = slc_read_snapshot(replay, &checksum);
     if (result == SLUICE_SUCCESS)
         result = slc_replay_record(replay);
     if (result != SLUICE_SUCCESS)

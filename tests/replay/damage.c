@@ -48,11 +48,12 @@ void reseal_trace(uint8_t *data, size_t size)
         return;
     uint64_t hash = fnv(UINT64_C(0xCBF29CE484222325), data, 32);
     put_u64(data + 32, hash);
+    bool snapshot = data[8] == 2; /* whose end is an empty block */
     for (size_t at = 40; size - at >= 12;) {
         uint8_t *block = data + at;
         uint64_t length = block[0] | (uint64_t)block[1] << 8 | (uint64_t)block[2] << 16 |
                           (uint64_t)block[3] << 24;
-        if (length == 0) {
+        if (length == 0 && !snapshot) {
             if (size - at >= 28)
                 put_u64(block + 20, fnv(hash, block, 20));
             return;
@@ -62,6 +63,7 @@ void reseal_trace(uint8_t *data, size_t size)
         hash = fnv(fnv(hash, block, 4), block + 12, (size_t)length);
         put_u64(block + 4, hash);
         at += 12 + (size_t)length;
+        snapshot = snapshot && length > 0;
     }
 }
 

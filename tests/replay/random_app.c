@@ -422,6 +422,19 @@ void trace_buffer_free(struct trace_buffer *buffer)
     *buffer = (struct trace_buffer){0};
 }
 
+void record_late_run(struct trace_buffer *buffer, uint64_t seed, uint32_t before, uint32_t steps)
+{
+    struct random_app app;
+    SluiceRecorder *recorder;
+    const SluiceRecordWriter writer = trace_buffer_writer(buffer);
+    random_app_init(&app, seed, false);
+    random_app_run(&app, before);
+    CHECK_OK(sluiceBeginRecording(app.manager, &writer, NULL, &recorder));
+    random_app_run(&app, steps);
+    CHECK_OK(sluiceEndRecording(recorder));
+    random_app_finish(&app);
+}
+
 void record_random_run(struct trace_buffer *buffer, uint64_t seed, uint32_t steps, bool starved)
 {
     struct random_app app;

@@ -57,4 +57,7 @@ void trace_buffer_free(struct trace_buffer *buffer);
 /** Records `steps` random steps. */
 void record_random_run(struct trace_buffer *buffer, uint64_t seed, uint32_t steps, bool starved);
 
+/** Records `steps` random steps after `before` others. */
+void record_late_run(struct trace_buffer *buffer, uint64_t seed, uint32_t before, uint32_t steps);
+
 #endif /* TESTS_REPLAY_RANDOM_APP_H */

@@ -11,11 +11,25 @@
 /* A block and the longest record after which it may have ended. */
 #define LONGEST_BLOCK (4096 + 1024)
 
-static void every_truncation_is_found_at_or_before_the_cut(void **state)
+/** Of a manager in use, so that it begins with a snapshot. */
+static struct trace_buffer record_in_use(uint64_t seed, uint32_t before, uint32_t steps)
 {
-    (void)state;
     struct trace_buffer trace;
-    record_random_run(&trace, 21, STEPS, false);
+    record_late_run(&trace, seed, before, steps);
+    assert_int_equal(trace.data[8], 2);
+    return trace;
+}
+
+static struct trace_buffer record_new(uint64_t seed, uint32_t steps)
+{
+    struct trace_buffer trace;
+    record_random_run(&trace, seed, steps, false);
+    assert_int_equal(trace.data[8], 1);
+    return trace;
+}
+
+static void check_truncations(struct trace_buffer trace)
+{
     for (size_t cut = 0; cut < trace.size; cut++) {
         uint8_t *copy = malloc(cut + 1); /* so that reading beyond it is seen */
         assert_non_null(copy);
@@ -28,12 +42,15 @@ static void every_truncation_is_found_at_or_before_the_cut(void **state)
     trace_buffer_free(&trace);
 }
 
-static void every_changed_byte_is_found_in_its_block(void **state)
+static void every_truncation_is_found_at_or_before_the_cut(void **state)
 {
     (void)state;
-    struct trace_buffer trace;
-    record_random_run(&trace, 22, STEPS + STEPS / 2, false);
-    assert_true(trace.size > 4500); /* more than one block */
+    check_truncations(record_new(21, STEPS));
+    check_truncations(record_in_use(21, STEPS, 10));
+}
+
+static void check_changed_bytes(struct trace_buffer trace)
+{
     for (size_t at = 0; at < trace.size; at++) {
         const uint8_t was = trace.data[at];
         const uint8_t values[] = {was ^ 1, was ^ 0x80, (uint8_t)(was + 1)};
@@ -53,12 +70,18 @@ static void every_changed_byte_is_found_in_its_block(void **state)
     trace_buffer_free(&trace);
 }
 
-/* What a checksum cannot stop: a trace that was made to do harm. */
-static void changed_bytes_under_right_checksums_do_no_harm(void **state)
+static void every_changed_byte_is_found_in_its_block(void **state)
 {
     (void)state;
-    struct trace_buffer trace;
-    record_random_run(&trace, 23, STEPS / 4, false);
+    struct trace_buffer trace = record_new(22, STEPS + STEPS / 2);
+    assert_true(trace.size > 4500); /* more than one block */
+    check_changed_bytes(trace);
+    check_changed_bytes(record_in_use(22, STEPS, 10));
+}
+
+/* What a checksum cannot stop: a trace that was made to do harm. */
+static void check_resealed(struct trace_buffer trace)
+{
     uint8_t *copy = malloc(trace.size);
     assert_non_null(copy);
     uint32_t corrupt = 0, played = 0;
@@ -84,13 +107,21 @@ static void changed_bytes_under_right_checksums_do_no_harm(void **state)
     trace_buffer_free(&trace);
 }
 
+static void changed_bytes_under_right_checksums_do_no_harm(void **state)
+{
+    (void)state;
+    check_resealed(record_new(23, STEPS / 4));
+    for (uint64_t seed = 30; seed < 33; seed++)
+        check_resealed(record_in_use(seed, STEPS / 2, STEPS / 4));
+}
+
 static void newer_version_is_unsupported(void **state)
 {
     (void)state;
     struct trace_buffer trace;
     SluiceReplayResult result = {.structSize = sizeof result};
     record_random_run(&trace, 24, 5, false);
-    trace.data[8] = 2;
+    trace.data[8] = 3;
     reseal_trace(trace.data, trace.size);
     CHECK_RESULT(play_damaged(trace.data, trace.size, &result), SLUICE_ERROR_UNSUPPORTED);
     trace_buffer_free(&trace);

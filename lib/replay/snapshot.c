@@ -1,0 +1,166 @@
+/*
+ * A snapshot is blocks of numbers, which are varints, and of maps, which are coded as those of
+ * feedback. No number or map is split between blocks.
+ */
+#include "replay/snapshot.h"
+
+#include "core/manager_snapshot.h"
+#include "replay/runs.h"
+#include "replay/trace_reader.h"
+
+#include <inttypes.h>
+
+/* Writing ----------------------------------------------------------------------------------- */
+
+static uint64_t write_number(void *user, uint64_t value)
+{
+    SluiceRecorder *recorder = user;
+    slc_put_varint(&recorder->block, value);
+    return value;
+}
+
+static void write_bytes(void *user, uint8_t *bytes, size_t size)
+{
+    SluiceRecorder *recorder = user;
+    slc_put_map(&recorder->block, bytes, size);
+}
+
+static void end_part(void *user)
+{
+    slc_recorder_end_record(user);
+}
+
+void slc_write_snapshot(SluiceRecorder *recorder, const SluiceStreamedTextureManager *manager)
+{
+    struct slc_snapshot_io io = {.user = recorder,
+                                 .cb = &recorder->cb,
+                                 .number = write_number,
+                                 .bytes = write_bytes,
+                                 .part = end_part};
+    slc_snapshot_write(manager, &io);
+    if (recorder->result == SLUICE_SUCCESS)
+        recorder->result = io.result;
+    slc_recorder_end_snapshot(recorder);
+}
+
+/* Reading ----------------------------------------------------------------------------------- */
+
+struct reader {
+    struct slc_replay *replay;
+    uint64_t *checksum;
+    struct slc_cursor block;
+    size_t start; ///< of what was read last
+    bool ended;   ///< the mark behind the snapshot was read
+    bool reported;
+    struct slc_snapshot_io io;
+};
+
+static void next_block(struct reader *reader)
+{
+    struct slc_cursor *in = &reader->replay->in;
+    size_t end = 0;
+    in->pos = reader->block.end;
+    reader->io.result = slc_read_block(reader->replay, reader->checksum, &end);
+    reader->reported = reader->io.result != SLUICE_SUCCESS;
+    reader->ended = !reader->reported && end == in->pos;
+    if (!reader->reported)
+        reader->block = (struct slc_cursor){in->data, in->pos, end, NULL};
+}
+
+/** Goes to the next block if this one is read. Returns false after an error. */
+static bool begin_field(struct reader *reader)
+{
+    if (reader->io.result == SLUICE_SUCCESS && reader->block.pos == reader->block.end &&
+        !reader->ended)
+        next_block(reader);
+    reader->start = reader->block.pos;
+    if (reader->io.result == SLUICE_SUCCESS && reader->ended) {
+        reader->io.result = SLUICE_ERROR_CORRUPT_DATA;
+        reader->io.why = "the snapshot ends before all of it was there";
+    }
+    return reader->io.result == SLUICE_SUCCESS;
+}
+
+static void end_field(struct reader *reader)
+{
+    if (!reader->block.why)
+        return;
+    reader->io.result = SLUICE_ERROR_CORRUPT_DATA;
+    reader->io.why = reader->block.why;
+    reader->start = reader->block.pos;
+}
+
+static uint64_t read_number(void *user, uint64_t value)
+{
+    struct reader *reader = user;
+    if (!begin_field(reader))
+        return 0;
+    value = slc_get_varint(&reader->block);
+    end_field(reader);
+    return value;
+}
+
+static void read_bytes(void *user, uint8_t *bytes, size_t size)
+{
+    struct reader *reader = user;
+    if (!begin_field(reader))
+        return;
+    uint64_t coded = slc_get_varint(&reader->block);
+    size_t start = reader->block.pos;
+    if (slc_get_bytes(&reader->block, coded)) {
+        struct slc_cursor runs = {reader->block.data, start, reader->block.pos, NULL};
+        slc_get_runs(&runs, bytes, size);
+        if (runs.why)
+            slc_cursor_fail(&reader->block, runs.pos, runs.why);
+    }
+    end_field(reader);
+}
+
+static void part_was_read(void *user)
+{
+    (void)user;
+}
+
+/** Nothing is left of the block, and the mark follows. */
+static void read_end(struct reader *reader)
+{
+    if (reader->io.result == SLUICE_SUCCESS && reader->block.pos == reader->block.end)
+        next_block(reader);
+    reader->start = reader->block.pos;
+    if (reader->io.result != SLUICE_SUCCESS || reader->ended)
+        return;
+    reader->io.result = SLUICE_ERROR_CORRUPT_DATA;
+    reader->io.why = "there is more behind the snapshot";
+}
+
+static void dump_snapshot(struct slc_player *player)
+{
+    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
+    sluiceGetStatistics(player->manager, &s);
+    slc_dump_line(&player->dump,
+                  "snapshot textures=%" PRIu32 " heaps=%" PRIu32 " requested=%" PRIu32
+                  " allocated=%" PRIu32 " mapped=%" PRIu32 " standby=%" PRIu32,
+                  s.textureCount, s.heapCount, s.requestedTileCount, s.allocatedTileCount,
+                  s.mappedTileCount, s.standbyTileCount);
+}
+
+SluiceResult slc_read_snapshot(struct slc_replay *replay, uint64_t *checksum)
+{
+    struct reader reader = {.replay = replay,
+                            .checksum = checksum,
+                            .block = replay->in,
+                            .io = {.cb = &replay->cb,
+                                   .reading = true,
+                                   .number = read_number,
+                                   .bytes = read_bytes,
+                                   .part = part_was_read}};
+    reader.io.user = &reader;
+    reader.block.end = reader.block.pos;
+    slc_snapshot_read(replay->player.manager, &reader.io);
+    read_end(&reader);
+    if (reader.io.result == SLUICE_ERROR_CORRUPT_DATA && !reader.reported)
+        return slc_replay_corrupt(replay, reader.start, reader.io.why);
+    if (reader.io.result == SLUICE_SUCCESS)
+        dump_snapshot(&replay->player);
+    return reader.io.result;
+}
