@@ -106,3 +106,13 @@ void reportMisuse(void *pUserData, const SluiceMisuse *pMisuse)
     fprintf(stderr, "%s: misuse %d: %s\n", (const char *)pUserData, (int)pMisuse->kind,
             pMisuse->pMessage);
 }
+
+SluiceResult page_record_stutter(SluiceVulkanStreamer *streamer, SluiceRecorder **pRecorder);
+SluiceResult page_record_stutter(SluiceVulkanStreamer *streamer, SluiceRecorder **pRecorder)
+{
+    SluiceStreamedTextureManager *manager;
+    SluiceResult result = sluiceGetVulkanStreamerManager(streamer, &manager);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceBeginRecordingToFile(manager, "stutter.trace", NULL, pRecorder);
+    return result;
+}

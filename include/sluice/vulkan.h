@@ -858,7 +858,7 @@ SLUICE_API SluiceResult sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer 
  * - sluiceGetGivenUpTiles, sluiceRetryFailedTiles
  * - sluiceSetConfig, sluiceTrimStandbyTiles, sluiceReleaseHeap. In sparse mode, frames evacuate and
  *   release heaps beyond targetHeapCount by themselves
- * - sluiceBeginRecording and sluiceBeginFileRecording, before the first texture is added
+ * - sluiceBeginRecording, sluiceBeginFileRecording and sluiceEndRecording
  *
  * The streamer makes all other calls itself, sluiceEvacuateHeaps among them
  * (sluiceCompactVulkanStreamer). They return SLUICE_ERROR_INVALID_ARGUMENT and change
