@@ -3,10 +3,10 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Declared for clang, which checks formats that are passed on. */
-static void log_list(const SluiceLogCallback *log, SluiceLogSeverity severity, const char *format,
-                     va_list arguments) __attribute__((format(printf, 3, 0)));
-
+/* For clang, which checks formats that are passed on. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 0)))
+#endif
 static void log_list(const SluiceLogCallback *log, SluiceLogSeverity severity, const char *format,
                      va_list arguments)
 {

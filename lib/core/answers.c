@@ -1,5 +1,6 @@
 /* What the application answers to tiles that were handed out. */
 #include "base/alloc.h"
+#include "base/bits.h"
 #include "base/checked.h"
 #include "core/clock.h"
 #include "core/given_up_retry.h"
@@ -57,7 +58,7 @@ static SluiceResult check_tiles(slc_manager *m, const struct slc_managed_texture
     bool many = count >= MANY;
     for (uint32_t i = 0; many && i < count; i++)
         if (tiles[i] < t->shape->tile_count)
-            __builtin_prefetch(slc_node_at(&m->residency, slc_find_node(t, tiles[i])));
+            SLC_PREFETCH(slc_node_at(&m->residency, slc_find_node(t, tiles[i])));
     for (uint32_t i = 0; i < count; i++) {
         SluiceResult result = mark_tile(m, t, tiles[i]);
         if (many && result == SLUICE_SUCCESS)

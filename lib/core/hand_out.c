@@ -1,5 +1,6 @@
 /* Which requested tiles are loaded next, and which slots they get. */
 #include "base/alloc.h"
+#include "base/bits.h"
 #include "core/mip_bias.h"
 #include "core/eviction.h"
 #include "core/history.h"
@@ -97,10 +98,10 @@ static void prefetch_request(const slc_manager *m, uint32_t node)
         return;
     const struct slc_node *n = slc_node_at(&m->residency, node);
     const struct slc_managed_texture *t = slc_texture_at(m, n->owner);
-    __builtin_prefetch(t);
+    SLC_PREFETCH(t);
     if (!slc_is_packed_class(n->level))
-        __builtin_prefetch(&t->shape->levels[n->level]);
-    __builtin_prefetch(slc_node_at(&m->residency, n->next));
+        SLC_PREFETCH(&t->shape->levels[n->level]);
+    SLC_PREFETCH(slc_node_at(&m->residency, n->next));
 }
 
 static SluiceResult hand_out(slc_manager *m, const struct slc_managed_texture *scope,

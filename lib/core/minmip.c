@@ -1,5 +1,6 @@
 #include "core/minmip.h"
 
+#include "base/bits.h"
 #include "base/bytes.h"
 #include "base/checked.h"
 
@@ -225,7 +226,7 @@ void slc_min_mip_prefetch(const struct slc_managed_texture *t, const struct slc_
         return;
     struct slc_place p = slc_node_place(t, n);
     size_t row = slc_min_u32(p.y << p.level, t->shape->min_mip_height - 1);
-    __builtin_prefetch(t->min_mip + row * t->shape->min_mip_width + (p.x << p.level));
+    SLC_PREFETCH(t->min_mip + row * t->shape->min_mip_width + (p.x << p.level));
 }
 
 static void tile_came(slc_manager *m, struct slc_managed_texture *t, struct slc_place p,

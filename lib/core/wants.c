@@ -1,6 +1,7 @@
 #include "core/wants.h"
 
 #include "base/alloc.h"
+#include "base/bits.h"
 #include "base/bytes.h"
 #include "base/checked.h"
 #include "core/mip_bias.h"
@@ -251,7 +252,7 @@ static uint32_t need_of(const struct slc_managed_texture *t, uint32_t tile, uint
                 sums = slc_block_of(0);
             }
         }
-    return 31u - (uint32_t)__builtin_clz(count + slc_block_sum(sums));
+    return slc_highest_bit(count + slc_block_sum(sums));
 }
 
 static void settle_move(slc_manager *m, struct slc_managed_texture *t, struct slc_run *run,
@@ -273,8 +274,7 @@ static void settle_moves(slc_manager *m, struct slc_managed_texture *t, struct m
 {
     struct slc_run run = {.count = 0};
     for (uint32_t i = 0; i < moves->count; i++)
-        __builtin_prefetch(
-            slc_node_at(&m->residency, t->nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
+        SLC_PREFETCH(slc_node_at(&m->residency, t->nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
     for (uint32_t i = 0; i < moves->count; i++)
         settle_move(m, t, &run, &moves->tiles[i]);
     slc_run_end(&m->residency, &run);
@@ -291,7 +291,7 @@ static void add_move(slc_manager *m, struct slc_managed_texture *t, struct moves
 {
     if (moves->count == sizeof moves->tiles / sizeof *moves->tiles)
         settle_moves(m, t, moves);
-    __builtin_prefetch(&t->nodes[move.tile]);
+    SLC_PREFETCH(&t->nodes[move.tile]);
     t->wanted_tiles += move.wanted ? 1 : UINT32_MAX;
     *slc_wanted_in_level(t, move.level) += move.wanted ? 1 : UINT32_MAX;
     if (!moves->counted_only)
@@ -321,7 +321,7 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_managed_texture 
         slc_store_block(under + i, now);
         uint32_t bits = slc_block_difference(at_most(before, limit), at_most(now, limit));
         for (; bits; bits &= bits - 1) {
-            uint32_t k = i + (uint32_t)__builtin_ctz(bits);
+            uint32_t k = i + slc_lowest_bit(bits);
             add_move(m, t, moves, (struct slc_move){tile + k, (uint8_t)level, least[k] <= level});
         }
     }
@@ -559,8 +559,7 @@ static void unwant_all(slc_manager *m, struct slc_managed_texture *t)
             bits &= count - i < SLC_BLOCK ? (1u << (count - i)) - 1 : 0xFFFF;
             for (; bits; bits &= bits - 1)
                 add_move(m, t, &moves,
-                         (struct slc_move){first + i + (uint32_t)__builtin_ctz(bits), (uint8_t)l,
-                                           false});
+                         (struct slc_move){first + i + slc_lowest_bit(bits), (uint8_t)l, false});
         }
     }
     settle_moves(m, t, &moves);

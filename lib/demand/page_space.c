@@ -1,6 +1,7 @@
 #include "demand/page_space.h"
 
 #include "base/alloc.h"
+#include "base/bits.h"
 #include "base/checked.h"
 #include "demand/section_runs.h"
 
@@ -91,7 +92,7 @@ static uint32_t first_run(uint32_t bits, uint32_t length)
 {
     for (uint32_t i = 1; i < length; i++)
         bits &= bits >> 1;
-    return (uint32_t)__builtin_ctz(bits);
+    return slc_lowest_bit(bits);
 }
 
 static uint32_t block_mask(uint32_t first, uint32_t count)
@@ -167,7 +168,7 @@ static bool take_blocks(struct slc_page_space *s, uint32_t rank, uint32_t blocks
     uint32_t fits = s->filled_bins[rank] >> blocks;
     if (!fits)
         return false;
-    uint32_t index = s->bins[rank][blocks + (uint32_t)__builtin_ctz(fits)];
+    uint32_t index = s->bins[rank][blocks + slc_lowest_bit(fits)];
     struct section *section = &s->sections[index];
     uint32_t at = first_run(section->free, blocks);
     unlink_section(s, index);

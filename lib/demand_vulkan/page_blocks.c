@@ -1,6 +1,7 @@
 #include "demand_vulkan/page_blocks.h"
 
 #include "base/alloc.h"
+#include "base/bits.h"
 #include "base/checked.h"
 
 #include <assert.h>
@@ -31,7 +32,7 @@ static uint32_t next_bit(const uint64_t *bits, uint32_t from, uint32_t end)
         if (word == from / 64)
             left &= ~(uint64_t)0 << from % 64;
         if (left)
-            return word * 64 + (uint32_t)__builtin_ctzll(left);
+            return word * 64 + slc_lowest_bit64(left);
     }
     return end;
 }

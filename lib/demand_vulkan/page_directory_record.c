@@ -1,6 +1,7 @@
 /* What changed in the page table goes to the device, and what shaders used of it comes back. */
 #include "demand_vulkan/page_directory.h"
 
+#include "base/bits.h"
 #include "base/checked.h"
 
 #include <assert.h>
@@ -21,9 +22,8 @@ static uint64_t count_patches(const struct slc_page_directory *d)
     for (uint32_t i = 0; (i = slc_page_blocks_next_changed(pool, i)) < pool->room; i++) {
         const struct slc_page_block *block = &pool->table[i];
         if (!slc_page_blocks_is_free(pool, i))
-            count += (uint32_t)__builtin_popcount(block->changed) +
-                     (uint32_t)__builtin_popcount(block->changed_wide) + mask_changed(block) +
-                     block->fresh;
+            count += slc_count_ones(block->changed) + slc_count_ones(block->changed_wide) +
+                     mask_changed(block) + block->fresh;
     }
     return count;
 }
@@ -63,7 +63,7 @@ static struct SluiceDemandPatch *put_words(struct SluiceDemandPatch *at, uint32_
                                            const uint32_t *words, uint32_t bits)
 {
     for (; bits; bits &= bits - 1) {
-        uint32_t i = (uint32_t)__builtin_ctz(bits);
+        uint32_t i = slc_lowest_bit(bits);
         at = put(at, SLUICE_PATCH_BLOCKS, first + i, words[i]);
     }
     return at;
@@ -240,7 +240,7 @@ bool slc_page_directory_next_used(const struct slc_page_directory *dir, uint32_t
             iterator->bits = words[(size_t)slot * dir->pool.capacity + block];
     }
     *page = dir->pool.used_owners[first + iterator->block] * SLUICE_DEMAND_BLOCK_PAGES +
-            (uint32_t)__builtin_ctz(iterator->bits);
+            slc_lowest_bit(iterator->bits);
     iterator->bits &= iterator->bits - 1;
     return true;
 }

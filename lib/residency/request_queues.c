@@ -1,5 +1,6 @@
 #include "residency/request_queues.h"
 
+#include "base/bits.h"
 #include "residency/node_list.h"
 
 static uint8_t weighted(uint8_t need, int32_t weight)
@@ -40,7 +41,7 @@ void slc_request_remove(struct slc_machine *r, uint32_t node)
 
 static uint32_t last_bit(uint32_t bits)
 {
-    return 31u - (uint32_t)__builtin_clz(bits);
+    return slc_highest_bit(bits);
 }
 
 static uint32_t first_of(const struct slc_requests *q, uint32_t classes)

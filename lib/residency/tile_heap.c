@@ -1,6 +1,7 @@
 #include "residency/tile_heap.h"
 
 #include "base/alloc.h"
+#include "base/bits.h"
 
 #include <assert.h>
 #include <string.h>
@@ -49,16 +50,16 @@ static uint32_t find_bit_above_zero(const struct slc_tile_heaps *h)
     bit_level_offsets(h->capacity + 1, offsets);
     uint64_t low = h->bits[0] & ~UINT64_C(1);
     if (low)
-        return (uint32_t)__builtin_ctzll(low);
+        return slc_lowest_bit64(low);
     /* the rest of what summary word 0 stands for, then summary by summary */
     for (uint32_t word = 1; word < 64 && offsets[0] + word < offsets[1]; word++)
         if (h->bits[word])
-            return word * 64 + (uint32_t)__builtin_ctzll(h->bits[word]);
+            return word * 64 + slc_lowest_bit64(h->bits[word]);
     for (uint32_t summary = 1; offsets[1] + summary < offsets[2]; summary++) {
         uint64_t words = h->bits[offsets[1] + summary];
         if (words) {
-            uint32_t word = summary * 64 + (uint32_t)__builtin_ctzll(words);
-            return word * 64 + (uint32_t)__builtin_ctzll(h->bits[word]);
+            uint32_t word = summary * 64 + slc_lowest_bit64(words);
+            return word * 64 + slc_lowest_bit64(h->bits[word]);
         }
     }
     return UINT32_MAX;
@@ -250,7 +251,7 @@ static uint32_t lowest_free(struct slc_tile_heap *heap)
 {
     while (!heap->free[heap->low])
         heap->low++;
-    return heap->low * 64 + (uint32_t)__builtin_ctzll(heap->free[heap->low]);
+    return heap->low * 64 + slc_lowest_bit64(heap->free[heap->low]);
 }
 
 static void take_slot(struct slc_tile_heaps *h, struct slc_tile_heap *heap, uint32_t slot,
