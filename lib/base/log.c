@@ -7,8 +7,9 @@
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 0)))
 #endif
-static void log_list(const SluiceLogCallback *log, SluiceLogSeverity severity, const char *format,
-                     va_list arguments)
+static void
+log_list(const SluiceLogCallback *log, SluiceLogSeverity severity, const char *format,
+         va_list arguments)
 {
     char message[1024];
     if (!log || !log->pfnLog)

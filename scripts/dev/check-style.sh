@@ -91,7 +91,39 @@ unlisted_refusals() {
         sed -n 's/^< \(.*\)/\1: use slc_log_refusal/p; s/^> \(.*\)/\1: no longer there/p'
 }
 
-echo 1..15
+# Sources without comments and strings, which may hold anything, as FILE:NUMBER:TEXT. An attribute
+# is dropped in an #if that asks for __GNUC__ and in a #define.
+plain_code() {
+    local -a sources
+    mapfile -t sources < <(files "$@")
+    awk '
+        FNR == 1 { comment = 0; guarded = 0 }
+        /^#if .*__GNUC__/ { guarded = 1 }
+        /^#(else|endif)/ { guarded = 0 }
+        {
+            text = $0
+            gsub(/"([^"\\]|\\.)*"/, "\"\"", text)
+            gsub(/\/\*([^*]|\*[^\/])*\*\//, "", text)
+            sub(/\/\/.*/, "", text)
+            if (comment) { if (!sub(/^.*\*\//, "", text)) text = ""; else comment = 0 }
+            if (sub(/\/\*.*/, "", text)) comment = 1
+            if (guarded || text ~ /^ *# *define/) sub(/__attribute__ *\(\(.*\)\)/, "", text)
+            if (text !~ /^ *$/) print FILENAME ":" FNR ":" text
+        }' "${sources[@]}"
+}
+
+# What gcc and clang add to C11 and MSVC lacks. The compiler finds variable lengths (-Wvla) and
+# arithmetic on void pointers (-Wpointer-arith). Vectors are used in the files that are named here.
+gnu_constructs() {
+    plain_code 'lib/*.c' 'lib/*.h' 'include/*.h' 'tools/*.c' 'tools/*.h' 'shaders/*.h' |
+        grep -v -E '^(\./)?(lib/base/(bits|bytes)\.h|lib/bake/(block_fit|block_lanes)\.h|lib/bake/(blocks|columns)\.c|lib/metrics/window\.c|lib/neural/(strip\.h|strip_(inputs|network)\.c|decode_texels\.c)):' |
+        grep -E -e ':.*(__attribute__|__builtin_|__extension__|__auto_type|__int128|__thread\b|__label__|__FUNCTION__)' \
+            -e ':.*\b(typeof|__typeof__|__?asm__|alloca)\b' -e ':.*(\(\{|\?[[:blank:]]*:|#include_next|#warning|##__VA_ARGS__)' \
+            -e ':.*(\[[^]]*[^].]\.\.\.[^]]*\] *=|case [^:]*\.\.\.)' -e ':.*([=,(] *\{ *\}|\)\{ *\})' \
+            -e ':[[:blank:]]+(const )?((struct|unsigned|signed) )?[a-z_0-9]+ \**[a-z_0-9]+\[0\];'
+}
+
+echo 1..17
 search $'\t' "${code[@]}" | report sources_hold_no_tabs
 search '[[:blank:]]+$' "${text[@]}" | report lines_have_no_trailing_blanks
 search $'\r' "${text[@]}" | report lines_end_with_a_newline_alone
@@ -120,6 +152,7 @@ search '#include <(pthread|unistd|fcntl|dirent|process|io|windows|sys/[a-z]+)\.h
 search '->(QueueBindSparse|QueueSubmit2?|QueueWaitIdle|DeviceWaitIdle)[(]' 'lib/*.c' |
     grep -v '^lib/vulkan/queues.c:' | report queues_are_used_in_one_place
 
+gnu_constructs | report sources_are_c11_without_gnu_constructs
 names_in_two_places | report names_of_lib_are_unique
 unlisted_refusals | report refused_arguments_are_logged
 
