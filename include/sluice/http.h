@@ -81,9 +81,11 @@ typedef struct SluiceHttpClientCreateInfo {
     /**
      * Folder where ranges that were read are kept, so that the next start does not ask for them.
      * Made if its parent is there. Several processes may use it, and may be killed while they do.
-     * Ranges from it are checked; damaged ones are asked for again. Files that have neither
-     * ETag nor date are not kept. The query of a URL is part of its name, so presigned URLs find
-     * nothing. Copied. Default: NULL, nothing is kept.
+     * Ranges from it are checked; damaged ones are asked for again. Whoever may write in the folder
+     * can choose texels, so a folder that everybody may write in is refused. Files are not kept
+     * that have neither ETag nor date, or whose date is less than two seconds old at opening. The
+     * query of a URL is part of its name, so presigned URLs find nothing. Copied. Default: NULL,
+     * nothing is kept.
      */
     const char *pCacheFolder;
     /** Most bytes in the folder. Beyond, what was read longest ago is removed. Default:
@@ -96,7 +98,8 @@ typedef struct SluiceHttpClientCreateInfo {
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, also for SluiceS3Access::pEndpoint;
  *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a setting out of range;
- *         SLUICE_ERROR_IO, with a log message, if the cache folder cannot be made;
+ *         SLUICE_ERROR_IO, with a log message, if the cache folder cannot be made, or everybody may
+ *         write in it;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_UNSUPPORTED if libcurl lacks HTTPS or
  *         threads.
  * Thread safety: any thread.

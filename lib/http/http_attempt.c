@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 /* Bodies of answers that are errors are read up to here, so that the connection lives on. */
 #define MAX_SWALLOWED ((uint64_t)64 << 10)
@@ -294,12 +295,21 @@ static void check_end(struct attempt *attempt)
                (unsigned long long)answer->received, (unsigned long long)attempt->expected);
 }
 
+/* Dates have whole seconds. */
+static bool is_fresh(const struct slc_http_header *header)
+{
+    time_t modified = header->modified[0] ? curl_getdate(header->modified, NULL) : -1;
+    time_t date = header->date[0] ? curl_getdate(header->date, NULL) : -1;
+    return modified != -1 && date != -1 && date - modified < 2;
+}
+
 static void take_version(struct attempt *attempt)
 {
     struct slc_http_version *version = &attempt->answer->version;
     version->size = attempt->header.total_size;
     memcpy(version->etag, attempt->header.etag, sizeof version->etag);
     memcpy(version->modified, attempt->header.modified, sizeof version->modified);
+    version->is_fresh = !attempt->request->file && is_fresh(&attempt->header);
 }
 
 /* The condition under which the opened version is meant. Weak ETags never match. */

@@ -26,6 +26,8 @@ struct slc_http_request {
 struct slc_http_version {
     uint64_t size;
     char etag[256], modified[64];
+    bool is_fresh; ///< when it is opened: so new that another one may get the same date, or an ETag
+                   ///< made of it
 };
 
 struct slc_http_answer {

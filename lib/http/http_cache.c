@@ -14,13 +14,13 @@
 #define SUFFIX ".range"
 #define PART_SUFFIX ".part"
 #define DIGITS 32u
-#define HEADER_SIZE 40u
+#define HEADER_SIZE 56u
 #define NAME_SIZE 112u
 #define SECONDS_UNTIL_LEFT (24 * 3600) /* a part that nobody has written for so long */
-static const char magic[8] = {'S', 'L', 'H', 'C', '0', '0', '0', '1'};
+static const char magic[8] = {'S', 'L', 'H', 'C', '0', '0', '0', '2'};
 
-struct slc_http_key slc_http_cache_key(const char *url, const char *version, uint64_t offset,
-                                       uint64_t size)
+struct slc_http_key slc_http_cache_key(const char *url, const char *name, const char *version,
+                                       uint64_t offset, uint64_t size)
 {
     uint8_t place[16];
     slc_put_u64(place, offset);
@@ -28,9 +28,10 @@ struct slc_http_key slc_http_cache_key(const char *url, const char *version, uin
     XXH128_hash_t hash = XXH3_128bits(url, strlen(url));
     hash = XXH3_128bits_withSeed(version, strlen(version), hash.low64 ^ hash.high64 * 3);
     hash = XXH3_128bits_withSeed(place, sizeof place, hash.low64 ^ hash.high64 * 3);
-    return (struct slc_http_key){hash.low64, hash.high64};
+    return (struct slc_http_key){hash.low64, hash.high64, name, version};
 }
 
+/* The file: header, name, version, bytes. */
 static void make_header(uint8_t header[HEADER_SIZE], struct slc_http_key key, const void *bytes,
                         size_t size)
 {
@@ -38,7 +39,15 @@ static void make_header(uint8_t header[HEADER_SIZE], struct slc_http_key key, co
     slc_put_u64(header + 8, key.low);
     slc_put_u64(header + 16, key.high);
     slc_put_u64(header + 24, size);
-    slc_put_u64(header + 32, XXH3_64bits_withSeed(bytes, size, key.low));
+    slc_put_u64(header + 32, strlen(key.name));
+    slc_put_u64(header + 40, strlen(key.version));
+    slc_put_u64(header + 48, XXH3_64bits_withSeed(bytes, size, key.low));
+}
+
+/* Bytes before those of the range. */
+static uint64_t start_of(struct slc_http_key key)
+{
+    return HEADER_SIZE + strlen(key.name) + strlen(key.version);
 }
 
 /* False if it does not fit. */
@@ -78,6 +87,21 @@ static bool write_all(int descriptor, uint64_t offset, const void *bytes, size_t
     return true;
 }
 
+/* Hashes can be made equal by whoever chooses URLs, and words cannot. */
+static bool has_text(int descriptor, uint64_t offset, const char *text)
+{
+    char found[256];
+    for (size_t left = strlen(text); left > 0;) {
+        size_t size = left < sizeof found ? left : sizeof found;
+        if (!read_all(descriptor, offset, found, size) || memcmp(found, text, size) != 0)
+            return false;
+        offset += size;
+        text += size;
+        left -= size;
+    }
+    return true;
+}
+
 bool slc_http_cache_read(struct slc_http_cache *cache, struct slc_http_key key, void *bytes,
                          size_t size)
 {
@@ -87,7 +111,9 @@ bool slc_http_cache_read(struct slc_http_cache *cache, struct slc_http_key key, 
     if (descriptor < 0)
         return false;
     bool is_whole = read_all(descriptor, 0, found, HEADER_SIZE) &&
-                    read_all(descriptor, HEADER_SIZE, bytes, size);
+                    has_text(descriptor, HEADER_SIZE, key.name) &&
+                    has_text(descriptor, HEADER_SIZE + strlen(key.name), key.version) &&
+                    read_all(descriptor, start_of(key), bytes, size);
     slc_file_close(descriptor);
     if (is_whole)
         make_header(expected, key, bytes, size);
@@ -221,6 +247,11 @@ SluiceResult slc_http_cache_init(struct slc_http_cache *cache, const char *folde
         slc_log(log, SLUICE_LOG_ERROR, "%s: cannot make this folder: %s", folder, strerror(errno));
         return SLUICE_ERROR_IO;
     }
+    if (slc_folder_is_open_to_all(folder)) {
+        slc_log(log, SLUICE_LOG_ERROR,
+                "%s: everybody may write in this folder, and so choose the texels", folder);
+        return SLUICE_ERROR_IO;
+    }
     trim(cache);
     return SLUICE_SUCCESS;
 }
@@ -234,14 +265,17 @@ void slc_http_cache_finish(struct slc_http_cache *cache)
     slc_mutex_finish(&cache->trimming);
 }
 
-static bool write_part(const char *path, const uint8_t header[HEADER_SIZE], const void *bytes,
-                       size_t size)
+static bool write_part(const char *path, const uint8_t header[HEADER_SIZE], struct slc_http_key key,
+                       const void *bytes, size_t size)
 {
     int descriptor = slc_file_create(path, 0600);
     if (descriptor < 0)
         return false;
-    bool is_written = write_all(descriptor, 0, header, HEADER_SIZE) &&
-                      write_all(descriptor, HEADER_SIZE, bytes, size);
+    bool is_written =
+        write_all(descriptor, 0, header, HEADER_SIZE) &&
+        write_all(descriptor, HEADER_SIZE, key.name, strlen(key.name)) &&
+        write_all(descriptor, HEADER_SIZE + strlen(key.name), key.version, strlen(key.version)) &&
+        write_all(descriptor, start_of(key), bytes, size);
     int error = errno;
     slc_file_close(descriptor);
     if (!is_written)
@@ -263,13 +297,14 @@ void slc_http_cache_write(struct slc_http_cache *cache, struct slc_http_key key,
 {
     char path[4096], part[4096 + 64];
     uint8_t header[HEADER_SIZE];
-    if (size + HEADER_SIZE > cache->max_size || !make_path(cache, key, path, sizeof path))
+    uint64_t whole = start_of(key) + size;
+    if (whole > cache->max_size || !make_path(cache, key, path, sizeof path))
         return;
     snprintf(part, sizeof part, "%s-%llx-%llx-%llx" PART_SUFFIX, path,
              (unsigned long long)slc_get_process_id(), (unsigned long long)(uintptr_t)cache,
              (unsigned long long)atomic_fetch_add(&cache->turn, 1));
     make_header(header, key, bytes, size);
-    if (!write_part(part, header, bytes, size)) {
+    if (!write_part(part, header, key, bytes, size)) {
         fail_write(cache);
         return;
     }
@@ -279,7 +314,7 @@ void slc_http_cache_write(struct slc_http_cache *cache, struct slc_http_key key,
         return;
     }
     atomic_store(&cache->has_failed, false);
-    if (atomic_fetch_add(&cache->size, size + HEADER_SIZE) + size + HEADER_SIZE <= cache->max_size)
+    if (atomic_fetch_add(&cache->size, whole) + whole <= cache->max_size)
         return;
     slc_mutex_lock(&cache->trimming);
     if (atomic_load(&cache->size) > cache->max_size) /* nobody else has just done it */

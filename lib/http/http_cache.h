@@ -13,7 +13,8 @@
 
 /** Names a range of a version of a file. */
 struct slc_http_key {
-    uint64_t low, high;
+    uint64_t low, high;         ///< hash of all
+    const char *name, *version; ///< borrowed; written beside the bytes and compared
 };
 
 struct slc_http_cache {
@@ -35,9 +36,10 @@ SluiceResult slc_http_cache_init(struct slc_http_cache *cache, const char *folde
 /** A zeroed struct is allowed. */
 void slc_http_cache_finish(struct slc_http_cache *cache);
 
-/** `version`: ETag, date and size. */
-struct slc_http_key slc_http_cache_key(const char *url, const char *version, uint64_t offset,
-                                       uint64_t size);
+/** `name`: `url` without user, password and query, which are not written. `version`: ETag, date and
+ *  size. */
+struct slc_http_key slc_http_cache_key(const char *url, const char *name, const char *version,
+                                       uint64_t offset, uint64_t size);
 
 /** False: it is not there, or is damaged and was removed. Any thread. */
 bool slc_http_cache_read(struct slc_http_cache *cache, struct slc_http_key key, void *bytes,

@@ -35,7 +35,7 @@ static SluiceResult keep_head(SluiceHttpFile *file, const unsigned char *head,
     file->size = answer->version.size;
     memcpy(file->etag, answer->version.etag, sizeof file->etag);
     memcpy(file->modified, answer->version.modified, sizeof file->modified);
-    if (file->etag[0] || file->modified[0])
+    if ((file->etag[0] || file->modified[0]) && !answer->version.is_fresh)
         snprintf(file->version, sizeof file->version, "%s %s %llu", file->etag, file->modified,
                  (unsigned long long)file->size);
     return SLUICE_SUCCESS;
@@ -175,8 +175,8 @@ static SluiceResult read_through(SluiceHttpFile *file, const struct slc_http_par
     struct slc_http_cache *cache = &file->client->cache;
     if (!cache->folder || !file->version[0])
         return read_far(file, part);
-    struct slc_http_key key =
-        slc_http_cache_key(file->url.full, file->version, part->offset, part->size);
+    struct slc_http_key key = slc_http_cache_key(file->url.full, file->url.shown, file->version,
+                                                 part->offset, part->size);
     if (slc_http_cache_read(cache, key, part->bytes, (size_t)part->size))
         return SLUICE_SUCCESS;
     SluiceResult result = read_far(file, part);

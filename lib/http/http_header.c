@@ -117,5 +117,7 @@ void slc_http_header_line(struct slc_http_header *header, const char *line, size
         copy_value(header->etag, sizeof header->etag, value, length);
     } else if (get_value(line, size, "last-modified", &value, &length)) {
         copy_value(header->modified, sizeof header->modified, value, length);
+    } else if (get_value(line, size, "date", &value, &length)) {
+        copy_value(header->date, sizeof header->date, value, length);
     }
 }

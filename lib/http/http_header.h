@@ -14,6 +14,7 @@ struct slc_http_header {
     uint64_t total_size;          ///< of Content-Range; UINT64_MAX: not told
     uint64_t length;              ///< Content-Length; UINT64_MAX: not told
     char etag[256], modified[64]; ///< empty: not told, or too long
+    char date[64];                ///< when the answer was made; as above
 };
 
 void slc_http_header_begin(struct slc_http_header *header);

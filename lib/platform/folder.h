@@ -6,6 +6,8 @@
 
 /** Makes a folder that others may not read. EEXIST: it is there. */
 bool slc_folder_make(const char *path);
+/** True if any user may write in a folder. False also if there is none, and on Windows. */
+bool slc_folder_is_open_to_all(const char *path);
 
 /** A descriptor of the folder for slc_folder_sync, or -1. Close it with slc_file_close. */
 int slc_folder_open(const char *path);

@@ -14,6 +14,12 @@ bool slc_folder_make(const char *path)
     return mkdir(path, 0700) == 0;
 }
 
+bool slc_folder_is_open_to_all(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && (status.st_mode & S_IWOTH);
+}
+
 int slc_folder_open(const char *path)
 {
     return open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);

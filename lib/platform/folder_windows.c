@@ -23,6 +23,12 @@ bool slc_folder_make(const char *path)
     return slc_widen_path(path, wide) && (CreateDirectoryW(wide, NULL) || slc_fail_windows());
 }
 
+bool slc_folder_is_open_to_all(const char *path)
+{
+    (void)path;
+    return false;
+}
+
 int slc_folder_open(const char *path)
 {
     return slc_open_windows(path, FILE_LIST_DIRECTORY, OPEN_EXISTING, 0, _O_RDONLY);

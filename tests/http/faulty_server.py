@@ -154,6 +154,12 @@ class Handler(BaseHTTPRequestHandler):
         headers['Last-Modified'] = 'Mon, 02 Nov 2026 10:00:0%d GMT' % late
         self.send(206, headers, content(first, last + 1))
 
+    def fault_fresh(self, fault, parts, query, headers, first, last, size):
+        """Answered `age` seconds after the file was written."""
+        headers['Last-Modified'] = 'Mon, 02 Nov 2026 10:00:00 GMT'
+        headers['Date'] = 'Mon, 02 Nov 2026 10:00:0%s GMT' % query['age']
+        self.send(206, headers, content(first, last + 1))
+
     def fault_untagged(self, fault, parts, query, headers, first, last, size):
         del headers['ETag']
         self.send(206, headers, content(first, last + 1))

@@ -21,6 +21,7 @@
 #define DEFAULT_SIZE ((uint64_t)1 << 20)
 #define READ_AT ((uint64_t)500000) /* behind what is kept at opening */
 #define READ_SIZE ((size_t)65536)
+#define KEPT_SIZE (READ_SIZE + 256) /* at most, in the cache folder */
 
 static char logged[4096];
 static pthread_mutex_t log_mutex = PTHREAD_MUTEX_INITIALIZER;
@@ -633,10 +634,14 @@ static void a_second_start_reads_no_range_twice(void **state)
     SluiceHttpStatistics again = read_cached(folder, 0, "plain/kept", 8);
     assert_int_equal(again.requestTotal, 1);
     assert_int_equal(again.cacheHitTotal, 8);
-    assert_int_equal(again.cacheSize, 8 * (READ_SIZE + 40));
-    /* Another version, another file, and one without ETag and date. */
+    assert_in_range(again.cacheSize, 8 * READ_SIZE, 8 * KEPT_SIZE);
+    /* Another version, another file, one that is too new, and one without ETag and date. */
     assert_int_equal(read_cached(folder, 0, "etag/kept?careless=1", 8).requestTotal, 9);
     assert_int_equal(read_cached(folder, 0, "plain/kept?size=1048575", 8).requestTotal, 9);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(read_cached(folder, 0, "fresh/kept?age=1", 2).requestTotal, 3);
+        assert_int_equal(read_cached(folder, 0, "fresh/kept?age=2", 2).requestTotal, i ? 1 : 3);
+    }
     assert_int_equal(read_cached(folder, 0, "untagged/kept", 2).requestTotal, 3);
     assert_int_equal(read_cached(folder, 0, "untagged/kept", 2).requestTotal, 3);
     remove_folder(folder);
@@ -660,10 +665,10 @@ static void damaged_and_cut_ranges_are_asked_for_again(void **state)
 static void the_folder_stays_within_its_limit_and_keeps_what_was_read_last(void **state)
 {
     char folder[] = "/tmp/sluice-http-cache-XXXXXX";
-    const uint64_t limit = 6 * (READ_SIZE + 40);
+    const uint64_t limit = 6 * KEPT_SIZE;
     (void)state;
     assert_non_null(mkdtemp(folder));
-    assert_int_equal(read_cached(folder, limit, "plain/limit", 6).cacheSize, limit);
+    assert_in_range(read_cached(folder, limit, "plain/limit", 6).cacheSize, 6 * READ_SIZE, limit);
     nanosleep(&(struct timespec){0, 20000000}, NULL);
     assert_int_equal(read_cached(folder, limit, "plain/limit", 3).cacheHitTotal, 3);
     assert_true(read_cached(folder, limit, "plain/other", 2).cacheSize <= limit);
@@ -693,6 +698,34 @@ static void a_folder_that_cannot_be_written_is_said_once_and_reads_go_on(void **
     info.pCacheFolder = "/dev/null/cache";
     SluiceHttpClient *client;
     CHECK_RESULT(sluiceCreateHttpClient(&info, &client), SLUICE_ERROR_IO);
+}
+
+static void a_folder_that_everybody_may_write_is_refused(void **state)
+{
+    char folder[] = "/tmp/sluice-http-cache-XXXXXX";
+    SluiceHttpClientCreateInfo info = quick();
+    SluiceHttpClient *client;
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    shell(folder, "chmod 777 .");
+    info.pCacheFolder = folder;
+    CHECK_RESULT(sluiceCreateHttpClient(&info, &client), SLUICE_ERROR_IO);
+    assert_non_null(strstr(logged, "everybody"));
+    assert_int_equal(rmdir(folder), 0);
+}
+
+/* As if both had one hash. */
+static void a_range_of_another_file_is_not_taken(void **state)
+{
+    char folder[] = "/tmp/sluice-http-cache-XXXXXX";
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    read_cached(folder, 0, "plain/two", 1);
+    assert_int_equal(read_cached(folder, 0, "plain/two", 1).cacheHitTotal, 1);
+    shell(folder, "grep -q plain/two *.range && LC_ALL=C sed -i s,plain/two,plain/one, *.range");
+    assert_int_equal(read_cached(folder, 0, "plain/two", 1).cacheHitTotal, 0);
+    assert_int_equal(read_cached(folder, 0, "plain/two", 1).cacheHitTotal, 1);
+    remove_folder(folder);
 }
 
 /* With each allocation failing once, in turn. */
@@ -765,6 +798,8 @@ int main(void)
         cmocka_unit_test(damaged_and_cut_ranges_are_asked_for_again),
         cmocka_unit_test(the_folder_stays_within_its_limit_and_keeps_what_was_read_last),
         cmocka_unit_test(a_folder_that_cannot_be_written_is_said_once_and_reads_go_on),
+        cmocka_unit_test(a_folder_that_everybody_may_write_is_refused),
+        cmocka_unit_test(a_range_of_another_file_is_not_taken),
         cmocka_unit_test(out_of_memory_is_an_ordinary_result),
     };
     tap_filter_stdout();
