@@ -405,6 +405,18 @@ typedef struct SluiceStoreInfo {
  */
 SLUICE_API SluiceResult sluiceGetStoreInfo(SluiceImageSource *source, SluiceStoreInfo *pInfo);
 
+/**
+ * Hashes a file by its index, without reading texels: h = XXH3-64(h, checksum), little endian, for
+ * all tiles in the order of their numbers (docs/store.md), from h = 0. Files with equal hashes have
+ * the same properties and texels, wherever tiles lie. Reads 4 KiB per 204 tiles. `source` is from
+ * sluiceCreateStoreImageSource.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for other sources;
+ *         SLUICE_ERROR_CORRUPT_DATA; SLUICE_ERROR_IO; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Thread safety: any thread, also during reads.
+ */
+SLUICE_API SluiceResult sluiceHashStore(SluiceImageSource *source, uint64_t *pHash);
+
 /** Tile that cannot be read. */
 typedef struct SluiceStoreDefect {
     uint32_t structSize;                         ///< Set by Sluice. sizeof(SluiceStoreDefect).

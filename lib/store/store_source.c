@@ -5,6 +5,7 @@
 #include "store/reader.h"
 
 #include <string.h>
+#include <xxhash.h>
 
 struct store_source {
     SluiceImageSource base;
@@ -228,4 +229,29 @@ SluiceResult sluiceGetStoreInfo(SluiceImageSource *source, SluiceStoreInfo *pInf
     };
     slc_struct_write(SLC_STRUCT(SluiceStoreInfo), pInfo, &info);
     return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceHashStore(SluiceImageSource *source, uint64_t *pHash)
+{
+    if (!source || !pHash)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (source->pInterface != &store_interface)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    struct slc_store_reader *reader = &((struct store_source *)source)->reader;
+    const struct slc_store_grid *grid = &reader->header.grid;
+    unsigned char bytes[16] = {0}; /* the hash of all before, the checksum of this one */
+    SluiceResult result = SLUICE_SUCCESS;
+    uint64_t hash = 0;
+    for (uint64_t number = 0; number < grid->chunk_count && result == SLUICE_SUCCESS; number++) {
+        struct slc_store_find find = {.place = slc_store_chunk_place(grid, number)};
+        result = slc_store_find_chunk(reader, &find);
+        for (uint32_t i = 0; i < 8; i++) {
+            bytes[i] = (unsigned char)(hash >> 8 * i);
+            bytes[8 + i] = (unsigned char)(find.entry.checksum >> 8 * i);
+        }
+        hash = XXH3_64bits(bytes, sizeof bytes);
+    }
+    if (result == SLUICE_SUCCESS)
+        *pHash = hash;
+    return result;
 }

@@ -21,6 +21,7 @@ sluiceCreateStoreReadPool(?NULL, &f->out.pool) => sluiceDestroyStoreReadPool(f->
 !sluiceDestroyStoreReadPool(NULL)
 sluiceCreateStoreImageSource(&f->open, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceGetStoreInfo(f->store, &f->out.info)
+sluiceHashStore(f->store, &f->out.count)
 sluiceVerifyStore(&f->verify, ?&f->out.report)
 */
 /* clang-format on */

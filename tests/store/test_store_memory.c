@@ -144,6 +144,8 @@ static SluiceResult open_and_read(const char *path, struct failing_allocator *al
     SluiceResult result = sluiceCreateStoreImageSource(&create, &source);
     if (result != SLUICE_SUCCESS)
         return result;
+    uint64_t hash;
+    result = sluiceHashStore(source, &hash);
     for (int i = 0; i < 3 && result == SLUICE_SUCCESS; i++) {
         result = sluiceReadImageRegion(source, &regions[i], texels, 512);
         if (result == SLUICE_SUCCESS)
