@@ -8,6 +8,7 @@
 #include "neural.h"
 #include "options.h"
 #include "report.h"
+#include "shards.h"
 #include "../common/text.h"
 #include "verify.h"
 
@@ -17,7 +18,8 @@
 
 enum { OK = 0, FAILED = 1, WRONG_USAGE = 2 };
 
-static struct bake_job *make_jobs(const struct options *options, const struct files *files)
+static struct bake_job *make_jobs(const struct options *options, const SluiceBakeSettings *settings,
+                                  const struct files *files)
 {
     struct bake_job *jobs = calloc(files->count ? files->count : 1, sizeof *jobs);
     if (!jobs)
@@ -26,7 +28,7 @@ static struct bake_job *make_jobs(const struct options *options, const struct fi
         jobs[i] = (struct bake_job){.input = files->files[i].input,
                                     .output = files->files[i].output,
                                     .size = files->files[i].size,
-                                    .settings = options->settings,
+                                    .settings = *settings,
                                     .force = options->force};
     return jobs;
 }
@@ -58,25 +60,46 @@ static int bake_layers(const struct options *options)
     return print_outcomes(&job, 1, clock_seconds() - start, options->json) ? FAILED : OK;
 }
 
+static int bake_files(const struct options *options, const SluiceBakeSettings *settings,
+                      const struct files *files)
+{
+    struct bake_conditions conditions = conditions_of(options);
+    int status = FAILED;
+    struct bake_job *jobs = make_jobs(options, settings, files);
+    double start = clock_seconds();
+    if (jobs && bake_jobs_run(jobs, files->count, &conditions)) {
+        double seconds = clock_seconds() - start;
+        status = print_outcomes(jobs, files->count, seconds, options->json) ? FAILED : OK;
+    }
+    free(jobs);
+    return status;
+}
+
 static int bake(const struct options *options)
 {
     struct files files;
-    struct bake_conditions conditions = conditions_of(options);
     int status = FAILED;
-    if (!find_files(&files, &options->inputs, options->output)) {
-        free_files(&files);
-        return FAILED;
+    if (find_files(&files, &options->inputs, options->output)) {
+        if (options->plan)
+            status = shards_plan(options, &files) ? OK : FAILED;
+        else
+            status = bake_files(options, &options->settings, &files);
+        if (files.unreadable_count > 0)
+            status = FAILED;
     }
-    struct bake_job *jobs = make_jobs(options, &files);
-    double start = clock_seconds();
-    if (jobs && bake_jobs_run(jobs, files.count, &conditions)) {
-        double seconds = clock_seconds() - start;
-        status = print_outcomes(jobs, files.count, seconds, options->json) ? FAILED : OK;
-    }
-    if (files.unreadable_count > 0)
-        status = FAILED;
-    free(jobs);
     free_files(&files);
+    return status;
+}
+
+static int bake_shard(const struct options *options)
+{
+    struct plan plan;
+    struct files files;
+    int status = FAILED;
+    if (shards_choose(options, &plan, &files))
+        status = bake_files(options, &plan.settings, &files);
+    free(files.files); /* names are the plan's */
+    plan_finish(&plan);
     return status;
 }
 
@@ -93,6 +116,10 @@ int main(int argc, char **argv)
         status = OK;
     else if (options.verify)
         status = verify_files(&options.inputs, options.json) ? OK : FAILED;
+    else if (options.merge)
+        status = shards_merge(&options) ? OK : FAILED;
+    else if (options.shard.count)
+        status = bake_shard(&options);
     else if (options.neural)
         status = neural_bake(&options) ? OK : FAILED;
     else

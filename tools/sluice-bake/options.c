@@ -4,6 +4,7 @@
 #include "../common/picture_names.h"
 #include "../common/shared_options.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -14,6 +15,9 @@ static const char usage[] =
     "       sluice-bake --array IN... -o OUT [options]\n"
     "       sluice-bake --neural PICTURE... -o OUT.ntc [options]\n"
     "       sluice-bake --verify FILE|DIR... [--json]\n"
+    "       sluice-bake IN... -o DIR --plan PLAN [options]\n"
+    "       sluice-bake --shard I/N PLAN\n"
+    "       sluice-bake --merge PLAN -o CATALOGUE [--shard 1/N]\n"
     "\n"
     "Makes tile stores of pictures: anything that libvips reads, OpenEXR, DDS, KTX2, larger\n"
     "than memory, too. IN is a picture or a folder, which is searched for pictures and keeps\n"
@@ -22,6 +26,7 @@ static const char usage[] =
     "What was made from the same file with the same settings is left alone. Options end at --.\n";
 
 static const char notes[] =
+    "SLURM_CPUS_PER_TASK sets the worker threads where --threads does not.\n"
     "Exit status: 0 all is well; 1 a file could not be baked, or is damaged; the others are\n"
     "baked all the same; 2 wrong usage.\n";
 
@@ -104,6 +109,27 @@ static bool parse_compression(const char *text, void *value)
     return *text >= '0' && *text <= '9' && *end == '\0' && level >= 1 && level <= 22;
 }
 
+/* "I/N", from 1 to N */
+static bool parse_shard(const char *text, void *value)
+{
+    struct shard *shard = value;
+    unsigned number, count;
+    int end = 0;
+    if (text[0] < '0' || text[0] > '9' || sscanf(text, "%6u/%6u%n", &number, &count, &end) != 2 ||
+        text[end] != '\0' || number < 1 || number > count || count > 100000)
+        return false;
+    *shard = (struct shard){number, count};
+    return true;
+}
+
+/* Slurm gives a task fewer processors than the machine has. 0: by the number of processors. */
+static uint32_t threads_of_task(void)
+{
+    const char *text = getenv("SLURM_CPUS_PER_TASK");
+    unsigned long count = text ? strtoul(text, NULL, 10) : 0;
+    return count <= 256 ? (uint32_t)count : 256;
+}
+
 static bool parse_cutout(const char *text, void *value)
 {
     char *end;
@@ -148,12 +174,39 @@ static bool is_named_as_store(const char *name)
     return length > 6 && strcmp(name + length - 6, ".store") == 0;
 }
 
+/* Plans are made of pictures that have a store each; shards and --merge take one plan. */
+static bool fits_plan(const struct option_table *table, const struct options *o)
+{
+    bool is_shard = o->shard.count && !o->merge;
+    const char *option = o->plan ? "--plan" : o->merge ? "--merge" : is_shard ? "--shard" : NULL;
+    if (!option)
+        return true;
+    if ((o->plan != NULL) + o->merge + is_shard > 1)
+        return options_refuse(table, "--plan, --shard or --merge, one of them; --help says more");
+    if (o->cube || o->array || o->neural || o->verify)
+        return options_refuse(table,
+                              "%s makes no cube maps, arrays or neural sets and verifies "
+                              "nothing",
+                              option);
+    if (!o->plan && o->inputs.count != 1)
+        return options_refuse(table, "%s: one plan is needed, which --plan wrote", option);
+    if (is_shard && o->output)
+        return options_refuse(table, "--shard: the plan says where stores go; leave -o out");
+    return true;
+}
+
 static bool is_complete(const struct option_table *table, const struct options *o,
                         const struct choices *c)
 {
+    if (!fits_plan(table, o))
+        return false;
+    if (o->inputs.count == 1 && ((o->shard.count && !o->merge) || (o->merge && o->output)))
+        return true;
     if (o->inputs.count == 0)
         return options_refuse(table, "%s is needed; --help says more",
                               o->verify ? "a file to verify" : "a picture");
+    if (o->merge)
+        return options_refuse(table, "--merge: -o CATALOGUE is needed");
     if (!o->output && !o->verify)
         return options_refuse(table, "-o is needed: a .store file or a folder; --help says more");
     if (o->output && is_named_as_picture(o->output))
@@ -246,12 +299,23 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_FLAG, "verify", .value = &o->verify,
          .help = "read every tile of stores, of folders all, and compare checksums"},
         option_json(&o->json),
+        {OPTION_SECTION, .help = "Several machines (docs/cluster.md)"},
+        {OPTION_TEXT, "plan", "PLAN", "(off)", &o->plan,
+         "bake nothing; write the list of pictures, settings and estimated work"},
+        {OPTION_CUSTOM, "shard", "I/N", "(off)", &o->shard,
+         "bake the I-th of N shares of a plan, balanced by estimated work; with --merge: name the "
+         "shards to run again",
+         .parse = parse_shard},
+        {OPTION_FLAG, "merge", .value = &o->merge,
+         .help = "check that all stores of a plan are there, and write a catalogue of them"},
     };
     const struct option_table table = {"sluice-bake", usage, notes, options,
                                        sizeof options / sizeof *options};
     enum option_outcome outcome = options_parse(&table, argc, argv);
     if (outcome != OPTIONS_RUN)
         return outcome;
+    if (o->threads == 0)
+        o->threads = threads_of_task();
     s->format = formats[c.format];
     s->quality = qualities[c.quality];
     s->filter = filters[c.filter];

@@ -6,6 +6,11 @@
 
 #include <sluice/bake.h>
 
+/** One of several shares of a plan. */
+struct shard {
+    uint32_t number, count; ///< from 1; 0 0: none
+};
+
 struct options {
     struct option_list inputs;
     const char *output;
@@ -13,8 +18,11 @@ struct options {
     uint64_t memory;  ///< bytes
     uint32_t threads; ///< 0: all processors
     bool force, verify, json;
-    bool cube, array; ///< the inputs become layers of one store
-    bool neural;      ///< the inputs are compressed together
+    bool cube, array;   ///< the inputs become layers of one store
+    const char *plan;   ///< file to write; NULL: none
+    struct shard shard; ///< of the plan that is the input
+    bool merge;         ///< the input is a plan, the output a catalogue
+    bool neural;        ///< the inputs are compressed together
     bool mask, progress;
     int bits;    ///< index into 1.25, 2.5, 5, 10, 20 bits per texel
     double psnr; ///< dB to reach; 0: none
