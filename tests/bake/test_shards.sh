@@ -16,7 +16,8 @@ run 0 in -o one.d "${settings[@]}" --threads 1
 fact pictures_can_be_made_and_baked_by_one_process
 
 run 0 in -o many.d "${settings[@]}" --plan the.plan --json && grep -q '"pictures": 8, "texels": 308400' out &&
-    [ ! -e many.d ] && grep -q '^pictures	8$' the.plan && [ "$(grep -c '	420	130	1	' the.plan)" -eq 1 ]
+    [ ! -e many.d ] && grep -q $'^pictures\t8$' the.plan &&
+    [ "$(grep -c $'\t420\t130\t1\t' the.plan)" -eq 1 ]
 fact a_plan_lists_pictures_and_bakes_none
 
 run 1 --merge the.plan -o the.tsv --shard 1/$shards && [ ! -e the.tsv ] && grep -q '^0 of 8 stores are there' out &&
@@ -49,7 +50,7 @@ PY
 fact shards_are_balanced_by_work
 
 run 0 --merge the.plan -o the.tsv && grep -q '^8 of 8 stores are there' out && [ "$(wc -l <the.tsv)" -eq 10 ] &&
-    grep -q 'BC7_SRGB_BLOCK	420	130	1	[0-9]*	in/p7.png	many.d/p7.store$' the.tsv && cp the.tsv before &&
+    grep -q $'BC7_SRGB_BLOCK\t420\t130\t1\t[0-9]*\tin/p7.png\tmany.d/p7.store$' the.tsv && cp the.tsv before &&
     run 0 --merge the.plan -o the.tsv && cmp the.tsv before
 fact the_catalogue_names_all_stores
 
@@ -90,7 +91,7 @@ run 2 --shard 0/3 the.plan && run 2 --shard 4/3 the.plan && run 2 --shard 1 the.
 fact wrong_usage_is_refused
 
 echo junk >in/junk.png
-run 1 in -o many.d --plan with.plan && grep -q 'in/junk.png: left out of the plan' err && grep -q '^pictures	8$' with.plan
+run 1 in -o many.d --plan with.plan && grep -q 'in/junk.png: left out of the plan' err && grep -q $'^pictures\t8$' with.plan
 fact pictures_that_cannot_be_read_are_named_and_left_out
 
 end_facts
