@@ -210,6 +210,18 @@ typedef struct SluiceVulkanContextCreateInfo {
      * Some drivers fail on calls with many regions. Default: 512.
      */
     uint32_t maxBindsPerCall;
+    /**
+     * Reads in jobs of the application: the context starts no threads. Copied. Default: none.
+     *
+     * loaderThreadCount is then the most jobs that read at the same time. A job reads once, submits
+     * its successor if reads are left, and returns. Jobs are submitted on threads that begin frames
+     * and launches, and inside jobs. A thread that waits for reads reads itself while no job runs.
+     * Delayed retries begin with frames and launches.
+     *
+     * Destroying the last streamer or demand loader waits for all submitted jobs: run them on
+     * another thread.
+     */
+    const SluiceJobSystem *pJobSystem;
 } SluiceVulkanContextCreateInfo;
 
 /**

@@ -83,6 +83,8 @@ static SluiceResult create_reader(SluiceDemandLoader *loader)
     if (result == SLUICE_SUCCESS) { /* before the first read */
         loader->reader->direct[0] = loader->opener.pInterface;
         loader->reader->direct[1] = slc_resource_interface();
+        if (slc_shares_jobs(&loader->context->shared))
+            loader->tickets.reader = loader->reader;
     }
     return result;
 }
@@ -406,7 +408,7 @@ void slc_jobs_wait(SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t 
     slc_mutex_lock(&tickets->mutex);
     tickets->job_waiters++;
     while (is_running(loader, kind, owner))
-        slc_condition_wait(&tickets->changed, &tickets->mutex);
+        slc_tickets_wait(tickets, UINT64_MAX);
     tickets->job_waiters--;
     slc_mutex_unlock(&tickets->mutex);
 }

@@ -1,19 +1,21 @@
 #include "demand_vulkan/tickets.h"
 
 #include "base/alloc.h"
+#include "base/checked.h"
+#include "image/read_pool.h"
 #include "platform/time_now.h"
 
 #include <assert.h>
 
 #define NONE UINT32_MAX
-#define KEPT 1024u /* tickets that are over and can still be asked how it went */
+#define A_WHILE 1000000 /* ns */
+#define KEPT 1024u      /* tickets that are over and can still be asked how it went */
 
-/* The time `timeout` ns from now. False: never. */
-static bool find_deadline(uint64_t timeout, uint64_t *until)
+/* The time `timeout` ns from now. UINT64_MAX: never. */
+static uint64_t find_deadline(uint64_t timeout)
 {
     uint64_t now = slc_monotonic_time();
-    *until = now + timeout;
-    return timeout <= (UINT64_MAX >> 1) - now;
+    return timeout <= (UINT64_MAX >> 1) - now ? now + timeout : UINT64_MAX;
 }
 
 SluiceResult slc_tickets_init(struct slc_tickets *tickets, const SluiceAllocationCallbacks *cb)
@@ -228,18 +230,38 @@ static SluiceResult look(struct slc_tickets *tickets, SluiceDemandTicket ticket,
     return found && found->running ? SLUICE_NOT_READY : SLUICE_SUCCESS;
 }
 
+/* Jobs that are refused, and retries that are due, change nothing that is waited for. */
+static void help_jobs(struct slc_tickets *tickets, uint64_t until)
+{
+    slc_mutex_unlock(&tickets->mutex);
+    bool has_read = slc_loader_help(tickets->reader);
+    uint64_t later = slc_monotonic_time() + A_WHILE;
+    slc_mutex_lock(&tickets->mutex);
+    if (!has_read)
+        slc_condition_wait_until(&tickets->changed, &tickets->mutex, slc_min_u64(until, later));
+}
+
+bool slc_tickets_wait(struct slc_tickets *tickets, uint64_t until)
+{
+    if (tickets->reader) {
+        help_jobs(tickets, until);
+        return slc_monotonic_time() < until;
+    }
+    if (until < UINT64_MAX)
+        return slc_condition_wait_until(&tickets->changed, &tickets->mutex, until);
+    slc_condition_wait(&tickets->changed, &tickets->mutex);
+    return true;
+}
+
 SluiceResult slc_ticket_wait(struct slc_tickets *tickets, SluiceDemandTicket ticket,
                              uint64_t timeout, SluiceDemandTicketStatus *status)
 {
-    uint64_t until;
-    bool ends = find_deadline(timeout, &until), over = timeout == 0;
+    uint64_t until = find_deadline(timeout);
+    bool over = timeout == 0;
     slc_mutex_lock(&tickets->mutex);
     SluiceResult result = look(tickets, ticket, status);
     while (result == SLUICE_NOT_READY && !over) {
-        if (ends)
-            over = !slc_condition_wait_until(&tickets->changed, &tickets->mutex, until);
-        else
-            slc_condition_wait(&tickets->changed, &tickets->mutex);
+        over = !slc_tickets_wait(tickets, until);
         result = look(tickets, ticket, status);
     }
     slc_mutex_unlock(&tickets->mutex);

@@ -6,6 +6,7 @@
 #define SLC_DEMAND_VULKAN_TICKETS_H
 
 #include <sluice/demand.h>
+#include <sluice/loader.h>
 
 #include "platform/thread.h"
 
@@ -27,6 +28,7 @@ struct slc_tickets {
         changed; ///< a ticket has nothing running any more, a job is over, or all end
     bool ready;  ///< mutex and condition exist
     bool aborted;
+    SluiceTileLoader *reader; ///< reads in jobs of the application, which waiters help; or NULL
     uint32_t job_waiters;     ///< threads that wait for the end of any job
     struct slc_ticket *slots; ///< owned
     uint32_t capacity, used;
@@ -57,6 +59,10 @@ void slc_ticket_task_withdraw(struct slc_tickets *tickets, SluiceDemandTicket ti
 /** With the lock held: NULL for 0, and for what is long over; `*known` says which. */
 struct slc_ticket *slc_ticket_find(struct slc_tickets *tickets, SluiceDemandTicket ticket,
                                    bool *known);
+
+/** With the lock held, which is given up meanwhile: waits for a change, or for some time. False:
+ *  slc_monotonic_time() is `until`; UINT64_MAX: never. */
+bool slc_tickets_wait(struct slc_tickets *tickets, uint64_t until);
 
 /** As sluiceGetDemandTicketStatus and sluiceWaitDemandTicket. */
 SluiceResult slc_ticket_get_status(struct slc_tickets *tickets, SluiceDemandTicket ticket,

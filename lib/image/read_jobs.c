@@ -91,13 +91,19 @@ void slc_read_jobs_submit(struct slc_read_pool *pool)
     slc_condition_broadcast(&pool->idle);
 }
 
+bool slc_read_jobs_help(struct slc_read_pool *pool)
+{
+    if (is_running(&pool->jobs) || !slc_read_pool_read(pool))
+        return false;
+    slc_read_jobs_want(pool);
+    slc_read_jobs_submit(pool);
+    return true;
+}
+
 void slc_read_jobs_wait(struct slc_read_pool *pool, uint64_t until)
 {
-    if (!is_running(&pool->jobs) && slc_read_pool_read(pool)) {
-        slc_read_jobs_want(pool);
-        slc_read_jobs_submit(pool);
+    if (slc_read_jobs_help(pool))
         return;
-    }
     /* The mutex was held until here: the caller's condition has not changed. */
     uint64_t due = slc_read_pool_next_due(pool);
     due = due < until ? due : until;

@@ -36,6 +36,8 @@ bool slc_uses_jobs(const struct slc_read_pool *pool);
 void slc_read_jobs_want(struct slc_read_pool *pool);
 /** Submits the jobs that are needed. The mutex is given up meanwhile. */
 void slc_read_jobs_submit(struct slc_read_pool *pool);
+/** Reads once if no job runs. False, at once, if there is nothing to read. */
+bool slc_read_jobs_help(struct slc_read_pool *pool);
 /** Waits for a change, or reads once if no job runs. Returns at slc_monotonic_time() `until` at the
  *  latest, or after that read. */
 void slc_read_jobs_wait(struct slc_read_pool *pool, uint64_t until);

@@ -92,6 +92,10 @@ void slc_loader_signal_if_idle(SluiceTileLoader *loader);
  *  Returns false in the last case. Without the mutex, on the thread that collects. */
 bool slc_loader_wait_for_read(SluiceTileLoader *loader, uint64_t until);
 
+/** Reads once if the pool has jobs, of which none runs. False if it does not read. Without the
+ * mutex: for threads that wait for the end of a read by other means. */
+bool slc_loader_help(SluiceTileLoader *loader);
+
 /** End of one attempt at a read. */
 struct slc_read_outcome {
     SluiceResult result;

@@ -261,3 +261,12 @@ bool slc_loader_wait_for_read(SluiceTileLoader *loader, uint64_t until)
     slc_mutex_unlock(&loader->pool->mutex);
     return in_time;
 }
+
+bool slc_loader_help(SluiceTileLoader *loader)
+{
+    struct slc_read_pool *pool = loader->pool;
+    slc_mutex_lock(&pool->mutex);
+    bool has_read = slc_uses_jobs(pool) && slc_read_jobs_help(pool);
+    slc_mutex_unlock(&pool->mutex);
+    return has_read;
+}

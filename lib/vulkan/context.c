@@ -38,7 +38,8 @@ static SluiceResult check_fields(const SluiceVulkanContextCreateInfo *info)
         {"pfnGetInstanceProcAddr", info->pfnGetInstanceProcAddr},
         {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)},
         {"a function of pDeviceMemory", memory == NULL || (memory->pfnAllocate && memory->pfnFree)},
-        {"a function of pQueueLock", lock == NULL || (lock->pfnLock && lock->pfnUnlock)}};
+        {"a function of pQueueLock", lock == NULL || (lock->pfnLock && lock->pfnUnlock)},
+        {"the function of pJobSystem", info->pJobSystem == NULL || info->pJobSystem->pfnSubmitJob}};
     SluiceResult result = slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
     if (result == SLUICE_SUCCESS)
         result = check_shared_limits(info);

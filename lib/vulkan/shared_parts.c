@@ -16,6 +16,8 @@ void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk 
     shared->cb = cb;
     shared->thread_count = info->loaderThreadCount;
     shared->max_reads_per_source = info->maxReadsPerSource;
+    if (info->pJobSystem)
+        shared->job_system = *info->pJobSystem;
     shared->max_page_chunks =
         info->maxPageChunkCount ? info->maxPageChunkCount : DEFAULT_PAGE_CHUNKS;
     shared->min_tile_memory = info->minTileMemorySize;
@@ -29,6 +31,11 @@ void slc_shared_parts_finish(struct slc_shared_parts *shared)
     assert(!shared->pages && !shared->threads);
     slc_staging_group_finish(&shared->staging);
     slc_mutex_finish(&shared->mutex);
+}
+
+bool slc_shares_jobs(const struct slc_shared_parts *shared)
+{
+    return shared->job_system.pfnSubmitJob;
 }
 
 static SluiceResult create_pages(struct slc_shared_parts *shared)
@@ -95,6 +102,8 @@ SluiceResult slc_create_shared_loader(struct slc_shared_parts *shared,
     create.threadCount = shared->thread_count;
     create.maxReadsPerSource = shared->max_reads_per_source;
     create.retry = shared->retry;
+    if (slc_shares_jobs(shared))
+        create.pJobSystem = &shared->job_system;
     slc_mutex_lock(&shared->mutex);
     if (!shared->threads)
         result = slc_read_pool_create(&create, &shared->threads);

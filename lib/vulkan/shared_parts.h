@@ -19,6 +19,7 @@ struct slc_shared_parts {
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     uint32_t thread_count;         ///< 0: the default of tile loaders
+    SluiceJobSystem job_system;    ///< without function: threads
     uint32_t max_reads_per_source; ///< 0: the default of tile loaders
     uint32_t max_page_chunks;      ///< images of pages
     uint64_t min_tile_memory;      ///< bytes that are made ahead
@@ -34,6 +35,8 @@ struct slc_shared_parts {
 void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk *vk,
                            const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                            const SluiceVulkanContextCreateInfo *info);
+/** True if reads are jobs of the application. */
+bool slc_shares_jobs(const struct slc_shared_parts *shared);
 /** There are no front ends. */
 void slc_shared_parts_finish(struct slc_shared_parts *shared);
 
