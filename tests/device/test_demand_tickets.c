@@ -1,6 +1,7 @@
 /* Tickets from any thread: they end, whatever the reads do. */
 #include "device/demand_runner.h"
 
+#include "support/job_system.h"
 #include "support/test.h"
 
 #include <pthread.h>
@@ -225,6 +226,37 @@ static void many_tickets_end_and_the_last_ones_are_remembered(void **state)
     runner_image_finish(&image);
 }
 
+/* Threads that wait read themselves. Jobs are compared with threads: requests and texels. */
+static void waits_end_whatever_a_job_system_does(void **state)
+{
+    (void)state;
+    static const struct job_system_habits systems[] = {
+        {.thread_count = 2}, {.thread_count = 0}, {.thread_count = 1, .refuse_count = UINT32_MAX}};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info};
+    for (uint32_t i = 0; i < sizeof systems / sizeof systems[0]; i++) {
+        struct job_system system;
+        struct runner r;
+        struct runner_image image;
+        job_system_init(&system, systems[i]);
+        CHECK_OK(harness_set_context(
+            &h, &(SluiceVulkanContextCreateInfo){.pJobSystem = &system.callbacks}));
+        runner_init(&r, &h, &info);
+        runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
+        SluiceDemandTextureId id = runner_add_texture(&r, &image);
+        for (uint32_t k = 0; k < 8; k++)
+            runner_add_texel(&r, id, 1024, 1024, 0, k * 128, 9);
+        assert_in_range(runner_load(&r, 9), 2, 4);
+        assert_true(runner_all_resident(&r));
+        assert_int_equal(image.source.read_count, 1 + 8); /* opened, and eight tiles */
+        runner_finish(&r);
+        runner_image_finish(&image);
+        CHECK_OK(harness_set_context(&h, NULL));
+        job_system_finish(&system);
+        assert_true(system.submitted_count > 0 || system.refused_count > 0);
+    }
+    CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 3}));
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -237,6 +269,7 @@ int main(void)
         cmocka_unit_test(another_thread_may_cancel_what_this_one_waits_for),
         cmocka_unit_test(an_abort_wakes_all_though_reads_are_stuck),
         cmocka_unit_test(many_tickets_end_and_the_last_ones_are_remembered),
+        cmocka_unit_test(waits_end_whatever_a_job_system_does),
     };
     CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 3}));
     return harness_finish(&h, RUN_TESTS(tests));

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+const SluiceJobSystem *stage_job_system;
+
 static uint8_t want(void *user, uint32_t region)
 {
     return ((struct stage *)user)->seen[region / (TILES * TILES)][region % (TILES * TILES)];
@@ -28,6 +30,7 @@ struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
     failing_allocator_init(&s.memory, UINT64_MAX);
     s.fake.log = (SluiceLogCallback){&s, keep_message};
     s.fake.pAllocator = &s.memory.callbacks;
+    s.fake.pJobSystem = stage_job_system;
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = SIZE,

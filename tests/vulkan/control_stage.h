@@ -24,6 +24,9 @@ struct stage {
     char last[256];                        ///< message
 };
 
+/** Reads of the next stages. NULL: threads of the context. */
+extern const SluiceJobSystem *stage_job_system;
+
 /** One at a time. Sets structSize, maxTextureCount and maxRegionCount of the settings. */
 struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings);
 void stage_finish(struct stage *s);

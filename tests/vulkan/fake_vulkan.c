@@ -91,7 +91,8 @@ SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake)
         .minStagingSize = fake->minStagingSize,
         .minTileMemorySize = fake->minTileMemorySize,
         .pQueueLock = fake->no_queue_lock ? NULL : &fake->queue_lock,
-        .maxBindsPerCall = fake->maxBindsPerCall};
+        .maxBindsPerCall = fake->maxBindsPerCall,
+        .pJobSystem = fake->pJobSystem};
 }
 
 SluiceResult fake_vulkan_create(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info,

@@ -117,6 +117,7 @@ struct fake_vulkan {
     SluiceTileRetryPolicy readRetry;
     uint64_t minStagingSize, minTileMemorySize;
     uint32_t maxBindsPerCall;
+    const SluiceJobSystem *pJobSystem;
     bool no_queue_lock; ///< else calls outside the queue lock are failures
 
     SluiceVulkanQueueLockCallbacks queue_lock;

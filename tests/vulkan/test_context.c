@@ -262,6 +262,17 @@ static void queue_locks_must_be_whole(void **state)
     }
 }
 
+static void job_systems_need_their_function(void **state)
+{
+    (void)state;
+    const SluiceJobSystem none = {0};
+    SluiceVulkanContext *context;
+    SluiceVulkanContextCreateInfo info = start();
+    info.pJobSystem = &none;
+    CHECK_RESULT(sluiceCreateVulkanContext(&info, &context), SLUICE_ERROR_NULL_POINTER);
+    check_line(&lines, "the function of pJobSystem is NULL");
+}
+
 static void memory_callbacks_must_be_whole(void **state)
 {
     (void)state;
@@ -565,6 +576,7 @@ int main(void)
         cmocka_unit_test(creation_survives_every_refused_allocation),
         cmocka_unit_test(contexts_outlive_their_children),
         cmocka_unit_test(answers_of_memory_callbacks_are_checked),
+        cmocka_unit_test(job_systems_need_their_function),
         cmocka_unit_test(memory_callbacks_must_be_whole),
         cmocka_unit_test(queue_locks_must_be_whole),
         cmocka_unit_test(budgets_below_4_mib_are_refused),
