@@ -98,6 +98,7 @@ static bool import(const char *from, const char *to, struct scene_data *scene)
     write_file("scene.gltf", text);
     char path[256];
     strcpy(path, path_of("scene.gltf"));
+    *scene = (struct scene_data){0};
     return scene_import(path, folder, false, scene);
 }
 
@@ -285,6 +286,7 @@ static void import_with_image(const char *image, const char *texture, struct sce
     write_file("scene.gltf", text);
     char path[256];
     strcpy(path, path_of("scene.gltf"));
+    *scene = (struct scene_data){0};
     assert_true(scene_import(path, folder, false, scene));
 }
 

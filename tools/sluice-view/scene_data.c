@@ -22,6 +22,11 @@ void scene_data_note(struct scene_data *scene, const char *format, ...)
         scene->messages[scene->message_count++] = strcpy(copy, text);
 }
 
+bool scene_data_canceled(const struct scene_data *scene)
+{
+    return scene->progress && atomic_load(&scene->progress->canceled);
+}
+
 void scene_data_finish(struct scene_data *scene)
 {
     for (uint32_t i = 0; i < scene->image_count; i++) {

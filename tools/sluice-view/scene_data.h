@@ -8,6 +8,7 @@
 #include <sluice/manager.h>
 #include <sluice/open.h>
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -36,6 +37,12 @@ struct scene_image {
     SluiceUvTransform transform; ///< against the primary
 };
 
+/** Shared with the thread that opens a scene. */
+struct scene_progress {
+    atomic_uint done, total; ///< images
+    atomic_bool canceled;    ///< nothing more is opened
+};
+
 struct scene_data {
     char *name;                    ///< owned
     struct scene_vertex *vertices; ///< owned, as all below
@@ -49,11 +56,12 @@ struct scene_data {
     struct vec3 bounds[2];
     struct view_camera camera;
     struct camera_path tour;
-    void *paints;              ///< of computed images
-    SluiceImageOpener *opener; ///< owned; of images from files
+    void *paints;                    ///< of computed images
+    SluiceImageOpener *opener;       ///< owned; of images from files
+    struct scene_progress *progress; ///< borrowed while the scene is opened; NULL: none
 };
 
-/** A room hung with computed pictures: needs no file. False without memory. */
+/** Fills a zeroed scene with a room of computed pictures: needs no file. False without memory. */
 bool scene_data_make_room(struct scene_data *scene);
 /** A zeroed struct is fine. */
 void scene_data_finish(struct scene_data *scene);
@@ -65,6 +73,8 @@ void
 scene_data_note(struct scene_data *scene, const char *format, ...);
 /** Finds the images that can follow the color image of their material (scene_sets.c). */
 void scene_data_find_sets(struct scene_data *scene);
+/** Whether nobody wants the scene any more. */
+bool scene_data_canceled(const struct scene_data *scene);
 /** Bounds and centers; a camera and a tour around them, where there are none. */
 void scene_data_complete(struct scene_data *scene);
 

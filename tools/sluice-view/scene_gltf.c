@@ -99,6 +99,12 @@ static bool read_material(struct opening *o, uint32_t index)
     return true;
 }
 
+/* Textures that are read as colors and as numbers count once. */
+static uint32_t count_images(const struct gltf_file *file)
+{
+    return file->lists[GLTF_TEXTURES].count;
+}
+
 static bool read_all(struct opening *o)
 {
     const uint32_t materials = o->file->lists[GLTF_MATERIALS].count;
@@ -113,8 +119,10 @@ static bool read_all(struct opening *o)
     for (size_t i = 0; i < 2 * (size_t)textures; i++)
         o->images[i] = UNKNOWN;
     gltf_name_extensions(o->file, say_extension, o);
+    if (o->scene->progress)
+        atomic_store(&o->scene->progress->total, count_images(o->file));
     for (uint32_t i = 0; i < materials; i++)
-        if (!read_material(o, i))
+        if (scene_data_canceled(o->scene) || !read_material(o, i))
             return false;
     return true;
 }
@@ -124,7 +132,7 @@ bool scene_gltf_materials(struct gltf_file *file, const char *cache, struct scen
     struct opening opening = {file, cache, scene, NULL};
     const bool read = read_all(&opening);
     free(opening.images);
-    if (!read)
+    if (!read && file->error[0])
         text_say("sluice-view: %s", file->error);
     return read;
 }

@@ -73,6 +73,10 @@ static const char *find_refusal(SluiceImageSource *source)
 
 uint32_t scene_images_add(struct scene_data *scene, const struct scene_image_request *r)
 {
+    if (scene->progress)
+        atomic_fetch_add(&scene->progress->done, 1);
+    if (scene_data_canceled(scene))
+        return SCENE_NO_IMAGE;
     const uint32_t known = find(scene, r);
     if (known != SCENE_NO_IMAGE)
         return known;
@@ -171,7 +175,8 @@ void scene_images_wait(const struct scene_data *scene)
         SluiceImageSource *source = linear_source_inner(scene->images[i].source);
         SluiceOpenedImageInfo info = {.structSize = sizeof info};
         while (sluiceGetOpenedImageInfo(source, &info) == SLUICE_SUCCESS && !info.ready &&
-               info.failure == SLUICE_SUCCESS && clock_seconds() < end)
+               info.failure == SLUICE_SUCCESS && clock_seconds() < end &&
+               !scene_data_canceled(scene))
             clock_sleep_until(clock_seconds() + 0.01);
     }
 }

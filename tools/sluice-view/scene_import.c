@@ -404,7 +404,6 @@ bool scene_import(const char *path, const char *cache, bool wait, struct scene_d
 {
     struct import import = {
         .path = path, .cache = cache, .scene = scene, .is_gltf = gltf_is_name(path)};
-    *scene = (struct scene_data){0};
     bool taken = scene_images_create_opener(cache, scene);
     if (taken && import.is_gltf && !gltf_open(path, &import.gltf)) {
         text_say("sluice-view: %s", import.gltf.error);

@@ -15,14 +15,23 @@ bool scene_open_takes(const char *const *paths, uint32_t count)
     return true;
 }
 
-bool scene_open(const char *const *paths, uint32_t count, const char *cache, bool wait,
-                struct scene_data *scene)
+static bool open_any(const struct scene_request *r, struct scene_data *scene)
 {
-    *scene = (struct scene_data){0};
-    if (count == 0)
+    if (r->path_count == 0)
         return scene_data_make_room(scene);
-    if (!scene_open_takes(paths, count))
+    if (!scene_open_takes(r->paths, r->path_count))
         return false;
-    return scene_pictures_takes(paths[0]) ? scene_pictures(paths, count, cache, wait, scene)
-                                          : scene_import(paths[0], cache, wait, scene);
+    if (scene_pictures_takes(r->paths[0]))
+        return scene_pictures(r->paths, r->path_count, r->cache, r->wait, scene);
+    return scene_import(r->paths[0], r->cache, r->wait, scene);
+}
+
+bool scene_open(const struct scene_request *request, struct scene_data *scene)
+{
+    *scene = (struct scene_data){.progress = request->progress};
+    const bool opened = open_any(request, scene) && !scene_data_canceled(scene);
+    scene->progress = NULL;
+    if (!opened)
+        scene_data_finish(scene);
+    return opened;
 }

@@ -4,11 +4,17 @@
 
 #include "scene_data.h"
 
-/** Opens pictures and folders of pictures, or one file of a scene; without a path, a room of
- * computed pictures. `cache`: folder for baked pictures. `wait`: until all pictures are baked. Says
- * on stderr what is wrong, and which images cannot be shown. */
-bool scene_open(const char *const *paths, uint32_t count, const char *cache, bool wait,
-                struct scene_data *scene);
+struct scene_request {
+    const char *const *paths; ///< pictures and folders, or one file of a scene; none: the room
+    uint32_t path_count;
+    const char *cache;               ///< folder for baked pictures
+    bool wait;                       ///< until all pictures are baked
+    struct scene_progress *progress; ///< NULL: nobody watches
+};
+
+/** Says on stderr what is wrong, and which images cannot be shown. False, with nothing left in
+ *  `scene`, if there is nothing to show or it was canceled. */
+bool scene_open(const struct scene_request *request, struct scene_data *scene);
 /** False, with a line on stderr, for paths that are no scene together. */
 bool scene_open_takes(const char *const *paths, uint32_t count);
 

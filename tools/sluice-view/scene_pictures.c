@@ -73,8 +73,11 @@ static bool hang(const struct file_list *files, const char *cache, struct scene_
     if (!hung)
         text_say("sluice-view: out of memory");
     hung = hung && scene_images_create_opener(cache, scene);
+    if (hung && scene->progress)
+        atomic_store(&scene->progress->total, count);
     if (hung && open_all(scene, files, images) == 0) {
-        text_say("sluice-view: there is no picture to show");
+        if (!scene_data_canceled(scene))
+            text_say("sluice-view: there is no picture to show");
         hung = false;
     }
     hung = hung && scene_room_hang(scene, images, count);
@@ -86,7 +89,6 @@ bool scene_pictures(const char *const *paths, uint32_t count, const char *cache,
                     struct scene_data *scene)
 {
     struct file_list files = {.speaker = "sluice-view: "};
-    *scene = (struct scene_data){0};
     bool hung = collect(paths, count, &files);
     if (hung && files.count > MAX_PICTURES) {
         text_say("sluice-view: %zu pictures are more than %u", files.count, MAX_PICTURES);

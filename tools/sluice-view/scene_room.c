@@ -248,7 +248,6 @@ bool scene_room_hang(struct scene_data *scene, const uint32_t *images, uint32_t 
 bool scene_data_make_room(struct scene_data *scene)
 {
     uint32_t images[PANELS];
-    *scene = (struct scene_data){0};
     bool made = scene_room_allocate(scene, "room of computed pictures", PANELS) && add_tour(scene);
     for (uint32_t i = 0; made && i < PANELS; i++) {
         images[i] = i;

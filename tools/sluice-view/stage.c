@@ -2,7 +2,6 @@
 
 #include "scene_data.h"
 #include "scene_images.h"
-#include "scene_open.h"
 #include "stage_draw.h"
 
 #include "../../samples/common/slow_source.h"
@@ -211,20 +210,21 @@ static bool create_drawing(struct stage *s)
 }
 
 struct stage *stage_create(const struct stage_request *request,
-                           const struct view_settings *settings)
+                           const struct view_settings *settings, struct scene_data *scene)
 {
     struct stage *s = calloc(1, sizeof *s);
-    if (!s)
+    if (!s) {
+        scene_data_finish(scene);
         return NULL;
+    }
+    s->scene = *scene;
+    *scene = (struct scene_data){0};
     s->gpu = request->gpu;
     s->settings = *settings;
-    bool created = scene_open(request->paths, request->path_count, request->cache,
-                              request->deterministic, &s->scene);
     s->textures = calloc(s->scene.image_count + 1, sizeof *s->textures);
     s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
-    created = created && s->textures && s->table_indices && begin_slowness(s) &&
-              create_streamer(s, request) && add_textures(s) && create_marks(s);
-    if (created && create_drawing(s)) {
+    if (s->textures && s->table_indices && begin_slowness(s) && create_streamer(s, request) &&
+        add_textures(s) && create_marks(s) && create_drawing(s)) {
         stage_apply(s, settings);
         return s;
     }

@@ -13,6 +13,7 @@
 #define STAGE_HEAP_TILES 64u ///< 4 MiB, so that small budgets are kept to
 
 struct stage;
+struct scene_data;
 
 struct stage_texture {
     SluiceTextureId id;
@@ -42,16 +43,13 @@ struct stage_draw {
 /** Options that are fixed while a scene is open. */
 struct stage_request {
     const struct gpu *gpu;
-    const char *const *paths; ///< none: the hall
-    uint32_t path_count, threads;
-    const char *cache;
-    bool deterministic;
+    uint32_t threads;
     bool everything; ///< all tiles are resident, whatever is seen
 };
 
-/** Says on stderr what failed. */
+/** Takes the scene, which is empty afterwards. Says on stderr what failed. */
 struct stage *stage_create(const struct stage_request *request,
-                           const struct view_settings *settings);
+                           const struct view_settings *settings, struct scene_data *scene);
 void stage_destroy(struct stage *stage);
 /** Records the picture of a frame. Its views and signals go into `end`. */
 bool stage_record(struct stage *stage, const struct stage_draw *draw, VkCommandBuffer commands,

@@ -1,19 +1,21 @@
 #include "viewer.h"
 
+#include "scene_open.h"
+
 #include <stdio.h>
 #include <string.h>
 
 static struct stage *create_stage(struct viewer *v, const struct view_settings *settings,
                                   bool everything)
 {
-    const struct stage_request request = {.gpu = &v->gpu,
-                                          .paths = (const char *const *)v->paths.paths,
+    struct scene_data scene;
+    const struct scene_request opening = {.paths = (const char *const *)v->paths.paths,
                                           .path_count = (uint32_t)v->paths.count,
-                                          .threads = v->options->threads,
                                           .cache = v->options->cache,
-                                          .deterministic = v->options->deterministic,
-                                          .everything = everything};
-    return stage_create(&request, settings);
+                                          .wait = v->options->deterministic};
+    const struct stage_request request = {
+        .gpu = &v->gpu, .threads = v->options->threads, .everything = everything};
+    return scene_open(&opening, &scene) ? stage_create(&request, settings, &scene) : NULL;
 }
 
 /* The second streamer of a comparison lives as long as the comparison is shown. */
