@@ -23,7 +23,7 @@ static void draw_line(struct view_app *app)
                  floor(100.0 * app->facts.sharp));
     if (app->said_seconds > 0)
         hints = app->said;
-    if (app->width < 620 * scale) /* the figures are in the corner, too */
+    if (app->stage && app->width < 620 * scale) /* the figures are in the corner, too */
         return;
     if (ui_begin_panel("line", NULL, placement, pivot,
                        UI_PANEL_PLAIN | UI_PANEL_FIT | UI_PANEL_NO_INPUT)) {

@@ -73,6 +73,19 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
     }
 }
 
+/* Esc has one meaning more while a scene is opened. */
+static void take_escape(struct viewer *v)
+{
+    struct ui_input *in = &v->input;
+    for (uint32_t i = 0; v->load && i < in->key_count; i++)
+        if (in->keys[i].key == VIEW_KEY_ESCAPE && in->keys[i].down) {
+            memmove(&in->keys[i], &in->keys[i + 1], (in->key_count - i - 1) * sizeof *in->keys);
+            in->key_count--;
+            viewer_cancel_load(v);
+            return;
+        }
+}
+
 static void gather_input(struct viewer *v)
 {
     struct file_list dropped;
@@ -88,6 +101,7 @@ static void gather_input(struct viewer *v)
     }
     for (const struct script_step *step; (step = script_next(&v->script, v->frame));)
         take_script_step(v, step);
+    take_escape(v);
 }
 
 static double next_step(struct viewer *v)
@@ -270,6 +284,8 @@ static bool run_frames(struct viewer *v)
     for (v->frame = 0; v->frame < count && !v->app.quit; v->frame++) {
         const double step = next_step(v);
         gather_input(v);
+        if (!viewer_watch_load(v))
+            return false;
         if (v->options->screenshot && v->frame + 1 == count)
             snprintf(v->screenshot, sizeof v->screenshot, "%s", v->options->screenshot);
         if (!draw_frame(v, step) || !finish_frame(v))
@@ -352,18 +368,12 @@ static bool begin(struct viewer *v)
         return false;
     if (v->window && !draw_frame(v, 0.016)) /* "Opening the scene ..." */
         return false;
-    if (!viewer_open_scene(v, !o->still))
-        return false;
-    if (o->play)
-        v->app.follow = FOLLOW_PATH;
-    if (is_cpu(v) && v->app.settings.render_scale <= 0 && !o->deterministic)
-        app_say(&v->app, "Drawn by the CPU: the picture has half the window's resolution "
-                         "(--render-scale)");
-    return true;
+    return viewer_open_scene(v);
 }
 
 static void finish(struct viewer *v)
 {
+    viewer_end_load(v);
     viewer_close_scene(v);
     frames_destroy(&v->frames);
     app_finish(&v->app);
@@ -396,7 +406,7 @@ int viewer_run(const struct view_options *options)
         good = run_frames(v);
     if (good)
         print_summary(v);
-    if (good && v->settings_path[0])
+    if (v->stage && v->settings_path[0]) /* after a lost device, too */
         settings_file_write(v->settings_path, &v->app);
     if (v->csv)
         good = output_file_end(v->csv, good) && good;

@@ -5,6 +5,7 @@
 #include "app.h"
 #include "frames.h"
 #include "options.h"
+#include "scene_load.h"
 #include "script.h"
 #include "window.h"
 
@@ -24,6 +25,7 @@ struct viewer {
     struct ui_input input;
     struct view_settings applied; ///< what the streamer has
     struct file_list paths;       ///< owned; of the scene; none: the room
+    struct scene_load *load;      ///< of the next scene; NULL: none
     char command[4200];           ///< of "copy command line", without options
     char settings_path[4096];     ///< "": none are kept
     char screenshot[4096];        ///< to write after this frame; "": none
@@ -34,13 +36,20 @@ struct viewer {
     unsigned screenshot_number;
 };
 
-/** Opens the scene of the paths. False, with lines on stderr, if it cannot be shown. */
-bool viewer_open_scene(struct viewer *viewer, bool walks);
+/** Opens the scene of the paths; with a window, on a thread. False, with lines on stderr, if that
+ *  failed. */
+bool viewer_open_scene(struct viewer *viewer);
 /** Waits for the frames. */
 void viewer_close_scene(struct viewer *viewer);
-/** Opens other paths, which it takes; NULL: the same scene with other settings. Paths that cannot
- * be shown leave the old scene. */
+/** Opens other paths, and may take them; NULL: the same scene with other settings. With a window,
+ *  other paths are opened on a thread. The old scene stays until the new one can be shown. */
 void viewer_reopen(struct viewer *viewer, struct file_list *paths);
+/** Shows a scene that a thread has opened, and says before how far it is. False if there is nothing
+ *  to show. */
+bool viewer_watch_load(struct viewer *viewer);
+void viewer_cancel_load(struct viewer *viewer);
+/** Cancels what is being opened, and waits for its thread. */
+void viewer_end_load(struct viewer *viewer);
 /** Creates or destroys the second streamer, as the settings of the comparison want it. False if the
  *  device failed. */
 bool viewer_fit_other(struct viewer *viewer);

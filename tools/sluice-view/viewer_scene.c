@@ -1,21 +1,24 @@
 #include "viewer.h"
 
-#include "scene_open.h"
-
 #include <stdio.h>
 #include <string.h>
 
 static struct stage *create_stage(struct viewer *v, const struct view_settings *settings,
-                                  bool everything)
+                                  bool everything, struct scene_data *scene)
 {
-    struct scene_data scene;
-    const struct scene_request opening = {.paths = (const char *const *)v->paths.paths,
-                                          .path_count = (uint32_t)v->paths.count,
-                                          .cache = v->options->cache,
-                                          .wait = v->options->deterministic};
     const struct stage_request request = {
         .gpu = &v->gpu, .threads = v->options->threads, .everything = everything};
-    return scene_open(&opening, &scene) ? stage_create(&request, settings, &scene) : NULL;
+    return stage_create(&request, settings, scene);
+}
+
+static bool open_now(const struct viewer *v, const struct file_list *paths,
+                     struct scene_data *scene)
+{
+    const struct scene_request request = {.paths = (const char *const *)paths->paths,
+                                          .path_count = (uint32_t)paths->count,
+                                          .cache = v->options->cache,
+                                          .wait = v->options->deterministic};
+    return scene_open(&request, scene);
 }
 
 /* The second streamer of a comparison lives as long as the comparison is shown. */
@@ -36,7 +39,9 @@ bool viewer_fit_other(struct viewer *v)
     struct view_settings settings = *s;
     settings.budget = kind == VIEW_WITH_BUDGET ? 16u << 20 : 0;
     v->other_kind = kind;
-    v->other = create_stage(v, &settings, kind == VIEW_WITH_EVERYTHING);
+    struct scene_data scene;
+    if (open_now(v, &v->paths, &scene))
+        v->other = create_stage(v, &settings, kind == VIEW_WITH_EVERYTHING, &scene);
     if (v->other)
         return true;
     v->app.settings.compare = VIEW_COMPARE_OFF;
@@ -57,16 +62,6 @@ static void name_command(struct viewer *v)
     }
 }
 
-bool viewer_open_scene(struct viewer *v, bool walks)
-{
-    name_command(v);
-    v->stage = create_stage(v, &v->app.settings, false);
-    v->applied = v->app.settings;
-    if (!v->stage)
-        return false;
-    return app_open(&v->app, v->stage, walks);
-}
-
 void viewer_close_scene(struct viewer *v)
 {
     if (v->stage)
@@ -77,32 +72,136 @@ void viewer_close_scene(struct viewer *v)
     v->stage = v->other = NULL;
 }
 
-/* Exchanges the scene's paths with others. */
-static void swap_paths(struct viewer *v, struct file_list *paths)
+static void begin_walk(struct viewer *v)
 {
-    const struct file_list before = v->paths;
-    v->paths = *paths;
-    *paths = before;
+    if (v->options->play)
+        v->app.follow = FOLLOW_PATH;
+    if (v->gpu.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU &&
+        v->app.settings.render_scale <= 0 && !v->options->deterministic)
+        app_say(&v->app, "Drawn by the CPU: the picture has half the window's resolution "
+                         "(--render-scale)");
+}
+
+/* Shows a scene instead of the one that is shown, which stays if this fails. `paths`, if there are
+ * any, are exchanged with those of the scene before. */
+static bool show(struct viewer *v, struct scene_data *scene, struct file_list *paths)
+{
+    const bool first = !v->stage;
+    const struct view_camera camera = v->app.camera;
+    struct stage *stage = create_stage(v, &v->app.settings, false, scene);
+    if (!stage)
+        return false;
+    viewer_close_scene(v);
+    v->stage = stage;
+    v->applied = v->app.settings;
+    if (paths) {
+        const struct file_list before = v->paths;
+        v->paths = *paths;
+        *paths = before;
+    }
+    name_command(v);
+    if (!app_open(&v->app, stage, first && !v->options->still))
+        return false;
+    if (first)
+        begin_walk(v);
+    else if (paths)
+        app_say(&v->app, "Opened %s", stage_name(stage));
+    else
+        v->app.camera = camera;
+    return true;
+}
+
+static void say_failed(struct viewer *v, const struct file_list *paths)
+{
+    app_say(&v->app, "Cannot open %s; the terminal says why",
+            paths->count > 0 ? paths->paths[0] : "the room");
+}
+
+/* A second request takes the place of one that is not done. */
+static bool begin_load(struct viewer *v, struct file_list *paths)
+{
+    viewer_end_load(v);
+    v->load = scene_load_begin(paths, v->options->cache, v->options->deterministic);
+    return v->load != NULL;
+}
+
+bool viewer_open_scene(struct viewer *v)
+{
+    struct scene_data scene;
+    struct file_list paths = v->paths;
+    name_command(v);
+    v->paths = (struct file_list){0};
+    if (v->window)
+        return begin_load(v, &paths);
+    const bool shown = open_now(v, &paths, &scene) && show(v, &scene, &paths);
+    files_finish(&paths);
+    return shown;
 }
 
 void viewer_reopen(struct viewer *v, struct file_list *paths)
 {
-    const struct view_camera camera = v->app.camera;
-    viewer_close_scene(v);
-    if (paths)
-        swap_paths(v, paths);
-    if (viewer_open_scene(v, false)) {
-        if (paths)
-            app_say(&v->app, "Opened %s", stage_name(v->stage));
-        else
-            v->app.camera = camera;
-        return;
+    struct scene_data scene;
+    if (paths && v->window)
+        begin_load(v, paths);
+    else if (!open_now(v, paths ? paths : &v->paths, &scene) || !show(v, &scene, paths))
+        say_failed(v, paths ? paths : &v->paths);
+}
+
+/* The scene that is shown stays. Without one, the room is opened. */
+static bool end_canceled(struct viewer *v, struct file_list *paths)
+{
+    files_finish(paths);
+    *paths = (struct file_list){0};
+    app_say(&v->app, "Canceled");
+    return v->stage || begin_load(v, paths);
+}
+
+static bool end_load(struct viewer *v)
+{
+    struct scene_data scene;
+    struct file_list paths;
+    struct scene_load *load = v->load;
+    const bool canceled = scene_load_canceled(load);
+    v->load = NULL;
+    const bool opened = scene_load_end(load, &scene, &paths);
+    v->app.said_seconds = 0;
+    if (canceled) {
+        scene_data_finish(&scene);
+        return end_canceled(v, &paths);
     }
-    viewer_close_scene(v);
-    app_say(&v->app, "Cannot open %s; the terminal says why",
-            v->paths.count > 0 ? v->paths.paths[0] : "the room");
-    if (!paths)
+    if (!opened || !show(v, &scene, &paths))
+        say_failed(v, &paths);
+    files_finish(&paths);
+    return v->stage != NULL;
+}
+
+bool viewer_watch_load(struct viewer *v)
+{
+    char text[160];
+    if (!v->load)
+        return true;
+    if (scene_load_done(v->load))
+        return end_load(v);
+    scene_load_describe(v->load, text, sizeof text);
+    app_say(&v->app, "%s", text);
+    return true;
+}
+
+void viewer_cancel_load(struct viewer *v)
+{
+    if (v->load)
+        scene_load_cancel(v->load);
+}
+
+void viewer_end_load(struct viewer *v)
+{
+    struct scene_data scene;
+    struct file_list paths;
+    if (!v->load)
         return;
-    swap_paths(v, paths);
-    viewer_open_scene(v, false);
+    scene_load_cancel(v->load);
+    if (scene_load_end(v->load, &scene, &paths))
+        scene_data_finish(&scene);
+    files_finish(&paths);
+    v->load = NULL;
 }

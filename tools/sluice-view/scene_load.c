@@ -1,0 +1,87 @@
+#include "scene_load.h"
+
+#include "../common/text.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct scene_load {
+    pthread_t thread;
+    struct file_list paths;
+    const char *cache;
+    bool wait, opened;
+    struct scene_data scene;
+    struct scene_progress progress;
+    atomic_bool done;
+};
+
+static void *open_scene(void *user)
+{
+    struct scene_load *load = user;
+    const struct scene_request request = {.paths = (const char *const *)load->paths.paths,
+                                          .path_count = (uint32_t)load->paths.count,
+                                          .cache = load->cache,
+                                          .wait = load->wait,
+                                          .progress = &load->progress};
+    load->opened = scene_open(&request, &load->scene);
+    atomic_store(&load->done, true);
+    return NULL;
+}
+
+struct scene_load *scene_load_begin(struct file_list *paths, const char *cache, bool wait)
+{
+    struct scene_load *load = calloc(1, sizeof *load);
+    if (load) {
+        load->paths = *paths;
+        load->cache = cache;
+        load->wait = wait;
+        if (pthread_create(&load->thread, NULL, open_scene, load) == 0) {
+            *paths = (struct file_list){0};
+            return load;
+        }
+    }
+    text_say("sluice-view: no thread to open the scene");
+    free(load);
+    return NULL;
+}
+
+bool scene_load_done(const struct scene_load *load)
+{
+    return atomic_load(&load->done);
+}
+
+void scene_load_describe(const struct scene_load *load, char *text, size_t size)
+{
+    const unsigned total = atomic_load(&load->progress.total);
+    unsigned done = atomic_load(&load->progress.done);
+    const char *path = load->paths.count > 0 ? load->paths.paths[0] : "the room";
+    const char *slash = strrchr(path, '/');
+    const char *name = slash && slash[1] ? slash + 1 : path;
+    done = done < total ? done : total;
+    if (total > 0)
+        snprintf(text, size, "Opening %.80s: %u of %u images; Esc cancels", name, done, total);
+    else
+        snprintf(text, size, "Opening %.80s; Esc cancels", name);
+}
+
+void scene_load_cancel(struct scene_load *load)
+{
+    atomic_store(&load->progress.canceled, true);
+}
+
+bool scene_load_canceled(const struct scene_load *load)
+{
+    return atomic_load(&load->progress.canceled);
+}
+
+bool scene_load_end(struct scene_load *load, struct scene_data *scene, struct file_list *paths)
+{
+    pthread_join(load->thread, NULL);
+    const bool opened = load->opened;
+    *scene = load->scene;
+    *paths = load->paths;
+    free(load);
+    return opened;
+}

@@ -1,0 +1,24 @@
+/** Opens a scene on a thread, while frames are drawn. */
+#ifndef SLUICE_VIEW_SCENE_LOAD_H
+#define SLUICE_VIEW_SCENE_LOAD_H
+
+#include "scene_open.h"
+
+#include "../common/files.h"
+
+struct scene_load;
+
+/** Moves the paths out of the list. NULL, with a line on stderr, without memory or a thread. */
+struct scene_load *scene_load_begin(struct file_list *paths, const char *cache, bool wait);
+/** Whether scene_load_end does not wait. */
+bool scene_load_done(const struct scene_load *load);
+/** Writes "Opening hall.gltf: 3 of 45 images". */
+void scene_load_describe(const struct scene_load *load, char *text, size_t size);
+/** Asks it to end soon, without a scene. A geometry file that is being read is read to its end. */
+void scene_load_cancel(struct scene_load *load);
+bool scene_load_canceled(const struct scene_load *load);
+/** Waits for the thread, and frees the load. Moves its paths out, and its scene if one was opened.
+ */
+bool scene_load_end(struct scene_load *load, struct scene_data *scene, struct file_list *paths);
+
+#endif /* SLUICE_VIEW_SCENE_LOAD_H */
