@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# test_headless.sh FACTS SLUICE-VIEW: the viewer without a window, in TAP.
+# test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE: the viewer without a window, in TAP.
 set -u
-facts=$(realpath "$1") tool=$(realpath "$2")
+facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3")
 "$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
 # shellcheck source=/dev/null
 . "$facts"
@@ -48,6 +48,10 @@ printf '2 drop noise.glb\n4 set compare-to budget\n4 key v\n' >drops
 # shellcheck disable=SC2086
 run 0 --headless $validation --size 160x160 --cache . --script drops --frames 6 && grep -q 'noise.glb' err
 fact a_dropped_file_that_cannot_be_read_leaves_the_scene_which_can_be_compared
+
+lose() { LOSE_AFTER=$1 LD_PRELOAD=$lose_device run 1 --headless --size 160x160 --frames 8 && grep -q DEVICE_LOST err; }
+lose 0 && lose 1 && lose 6
+fact a_lost_device_is_named_and_ends_it_with_status_1
 
 mkdir -p pictures/below none && printf 'P6 2 2 255\n%012d' 0 >pictures/black.ppm &&
     printf 'P6 2 2 255\n%s' zzzzzzzzzzzz >pictures/below/light.ppm && cp noise.glb pictures/noise.png

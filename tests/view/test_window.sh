@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# test_window.sh FACTS SLUICE-VIEW: a real window with real input, in an X server of its own, in TAP.
+# test_window.sh FACTS SLUICE-VIEW LOSE-DEVICE [DROP-FILES]: a real window with real input, in an X server of its own, in TAP.
 set -u
-facts=$(realpath "$1") tool=$(realpath "$2")
+facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3") drop_files=${4:+$(realpath "$4")}
 for program in Xvfb xdotool xclip; do
     command -v $program >/dev/null || { echo "1..0 # SKIP no $program"; exit 0; }
 done
@@ -36,8 +36,8 @@ open_viewer() {
 }
 size_is() { xdotool getwindowgeometry "$window" | grep -q "Geometry: $1"; }
 mv_picture() { mv sluice-view-??.png "$1"; }
-picture() { # picture FILE: F12 writes the next number
-    xdotool key F12
+picture() { # picture FILE [KEY]: F12 writes the next number; with Shift, the panels are on it
+    xdotool key "${2:-F12}"
     until_true 20 mv_picture "$1"
 }
 png_size() { od -An -tu1 -j16 -N8 "$1" | awk '{print $3 * 256 + $4 "x" $7 * 256 + $8}'; }
@@ -61,20 +61,43 @@ xdotool mousedown 1 && sleep 0.2 && xdotool mousemove_relative 60 10 && sleep 0.
 fact a_drag_turns_the_camera
 xdotool key 2 && picture levels.png && ! cmp -s dragged.png levels.png
 fact keys_choose_views
+copies() { xdotool key c && clipboard_has "$1"; }
 clipboard_has() { xclip -o -selection clipboard | grep -q "$1"; }
 xdotool key bracketleft c && until_true 10 clipboard_has '^sluice-view.* --budget '
 fact the_command_line_is_in_the_clipboard
-for i in 1 2 3 4 5 6 7 8 9 10; do
-    xdotool windowsize "$window" $((300 + 40 * i)) $((200 + 20 * i))
+sizes=()
+for i in {1..100}; do
+    sizes+=(windowsize "$window" $((300 + i % 40 * 10)) $((200 + i % 30 * 7)) sleep 0.02)
 done
+xdotool "${sizes[@]}" windowsize "$window" 700 400
 until_true 10 size_is 700x400 && picture resized.png && [ "$(png_size resized.png)" = 700x400 ]
-fact the_picture_has_the_size_of_the_window
+fact the_picture_has_the_size_of_the_window_after_100_resizes
 xdotool key F11 && until_true 10 size_is 1000x700 && xdotool key F11 && until_true 10 size_is 700x400
 fact f11_fills_the_screen_and_comes_back
+printf 'P6 2 2 255\n%012d' 0 >black.ppm
+if [ -n "$drop_files" ]; then
+    "$drop_files" "$window" "$folder/none.glb" && until_true 10 grep -q none.glb err &&
+        "$drop_files" "$window" "$folder/black.ppm" "$folder/none.png" && until_true 10 grep -q none.png err &&
+        xdotool mousemove --window "$window" 240 200 && until_true 20 copies "^sluice-view $folder/black.ppm $folder/none.png"
+    fact dropped_files_are_opened_and_one_that_cannot_be_read_leaves_the_scene
+fi
 xdotool mousemove --window "$window" 240 200 key ctrl+q && ended_well
 fact ctrl_q_ends_it_with_silent_validation
 grep -q '^budget ' config/sluice/view-*.settings
 fact settings_are_kept
-open_viewer && xdotool key ctrl+q && ended_well
+mkdir many
+for i in {1..5000}; do printf 'P6 2 2 255\n%012d' 0 >"many/$i.ppm"; done
+open_viewer many && xdotool key ctrl+q && ended_well
 fact it_can_be_closed_while_the_scene_is_loading
+has_moved() { picture later.png shift+F12 && ! cmp -s early.png later.png; }
+open_viewer many && picture early.png shift+F12 && until_true 3 has_moved &&
+    xdotool key Escape && until_true 10 copies '^sluice-view --size' &&
+    xdotool key ctrl+q && ended_well
+fact loading_says_how_far_it_is_and_escape_opens_the_room_instead
+export LOSE_AFTER=20
+LD_PRELOAD=$lose_device open_viewer
+tries=100
+while kill -0 "$viewer" 2>/dev/null && [ $tries -gt 0 ]; do tries=$((tries - 1)); sleep 0.1; done
+! kill -0 "$viewer" 2>/dev/null && { wait "$viewer"; [ $? -eq 1 ]; } && grep -q DEVICE_LOST err
+fact a_lost_device_is_named_and_ends_it
 end_facts
