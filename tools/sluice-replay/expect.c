@@ -36,7 +36,7 @@ static char *next_line(struct expectation *e)
 static void say_difference(const struct expectation *e, size_t number, const char *expected,
                            const char *got)
 {
-    text_say("sluice-replay: %s:%zu differs", e->path, number);
+    text_say("sluice-replay: %s:%llu differs", e->path, (unsigned long long)number);
     text_say("  expected: %s", expected);
     text_say("  got:      %s", got);
 }

@@ -7,6 +7,7 @@
 #include "../common/input.h"
 #include "../common/output_file.h"
 #include "../common/text.h"
+#include "platform/host_memory.h"
 
 #include <sluice/replay.h>
 
@@ -26,9 +27,7 @@ static void *allocate(void *user, size_t size, size_t alignment)
     struct limited_memory *memory = user;
     if (size > memory->left || size > SIZE_MAX - alignment)
         return NULL;
-    void *block = alignment <= _Alignof(max_align_t)
-                      ? malloc(size)
-                      : aligned_alloc(alignment, (size + alignment - 1) & ~(alignment - 1));
+    void *block = slc_host_allocate(size, alignment);
     if (block)
         memory->left -= size;
     return block;
@@ -38,7 +37,7 @@ static void release(void *user, void *block, size_t size)
 {
     struct limited_memory *memory = user;
     memory->left += size;
-    free(block);
+    slc_host_free(block);
 }
 
 struct output {
