@@ -428,7 +428,7 @@ typedef struct SluiceStoreDefect {
 /** Settings of sluiceVerifyStore. A field of zero selects its default. */
 typedef struct SluiceStoreVerifyInfo {
     uint32_t structSize; ///< sizeof(SluiceStoreVerifyInfo).
-    const char *pPath;   ///< Required.
+    const char *pPath;   ///< Required, unless pInput is set.
     const SluiceAllocationCallbacks *pAllocator;
     SluiceLogCallback log;
     void *pUserData;
@@ -436,6 +436,9 @@ typedef struct SluiceStoreVerifyInfo {
     void (*pfnDefect)(void *pUserData, const SluiceStoreDefect *pDefect);
     /** Reports progress. Return false to stop with SLUICE_ERROR_CANCELED. May be NULL. */
     bool (*pfnProgress)(void *pUserData, uint64_t doneTiles, uint64_t totalTiles);
+    /** Reads these bytes instead of the file (input.h). pPath is then a name for messages and may
+     *  be NULL. Default: NULL, the file. */
+    const SluiceInput *pInput;
 } SluiceStoreVerifyInfo;
 
 /** Findings of sluiceVerifyStore up to its end or the point where it stopped. */

@@ -69,7 +69,7 @@
     SLC_UP_TO(SluiceStoreImageSourceCreateInfo, filePool)
 #define SLC_FIRST_SluiceStoreInfo SLC_UP_TO(SluiceStoreInfo, cube)
 #define SLC_FIRST_SluiceStoreDefect SLC_UP_TO(SluiceStoreDefect, result)
-#define SLC_FIRST_SluiceStoreVerifyInfo SLC_UP_TO(SluiceStoreVerifyInfo, pfnProgress)
+#define SLC_FIRST_SluiceStoreVerifyInfo SLC_UP_TO(SluiceStoreVerifyInfo, pInput)
 #define SLC_FIRST_SluiceStoreReport SLC_UP_TO(SluiceStoreReport, rawTileCount)
 #define SLC_FIRST_SluiceBakeSettings SLC_UP_TO(SluiceBakeSettings, keepPrimaries)
 #define SLC_FIRST_SluiceBakerCreateInfo SLC_UP_TO(SluiceBakerCreateInfo, log)

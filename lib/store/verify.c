@@ -67,11 +67,14 @@ static SluiceResult verify_chunks(struct verifier *verifier, struct slc_store_re
 
 SluiceResult sluiceVerifyStore(const SluiceStoreVerifyInfo *pInfo, SluiceStoreReport *pReport)
 {
-    if (!pInfo || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
+    if (!pInfo)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceStoreVerifyInfo info = {.structSize = sizeof info};
     SluiceResult result =
         slc_struct_read(SLC_STRUCT(SluiceStoreVerifyInfo), &info, pInfo, &pInfo->log);
+    if (result == SLUICE_SUCCESS &&
+        ((!info.pPath && !info.pInput) || !slc_allocator_is_valid(info.pAllocator)))
+        result = SLUICE_ERROR_NULL_POINTER;
     if (result == SLUICE_SUCCESS && pReport)
         result = slc_struct_check(SLC_STRUCT(SluiceStoreReport), pReport, &info.log);
     if (result != SLUICE_SUCCESS)
@@ -79,6 +82,7 @@ SluiceResult sluiceVerifyStore(const SluiceStoreVerifyInfo *pInfo, SluiceStoreRe
     SluiceStoreImageSourceCreateInfo open = {.structSize = sizeof open,
                                              .pPath = info.pPath,
                                              .pAllocator = info.pAllocator,
+                                             .pInput = info.pInput,
                                              .log = info.log};
     struct verifier verifier = {.info = &info};
     struct slc_store_read_bench *bench = NULL;

@@ -115,6 +115,25 @@ static void every_tile_is_equal_to_the_one_on_the_disk(void **state)
     remote_finish(&remote);
 }
 
+static void a_store_is_verified_over_the_network(void **state)
+{
+    struct remote remote;
+    (void)state;
+    remote_init(&remote, "&every=1000");
+    SluiceInput input = {.structSize = sizeof input};
+    SluiceStoreReport here = {.structSize = sizeof here}, there = {.structSize = sizeof there};
+    SluiceStoreVerifyInfo info = {.structSize = sizeof info, .pPath = remote.scratch.path};
+    CHECK_OK(sluiceVerifyStore(&info, &here));
+    CHECK_OK(sluiceGetHttpInput(remote.file, &input));
+    info.pPath = NULL;
+    CHECK_RESULT(sluiceVerifyStore(&info, &there), SLUICE_ERROR_NULL_POINTER);
+    info.pInput = &input;
+    CHECK_OK(sluiceVerifyStore(&info, &there));
+    assert_int_equal(there.tileCount, here.tileCount);
+    assert_int_equal(there.storedSize, here.storedSize);
+    remote_finish(&remote);
+}
+
 static void cut_bodies_cost_attempts_and_no_texel(void **state)
 {
     struct remote remote;
@@ -132,6 +151,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_tile_is_equal_to_the_one_on_the_disk),
+        cmocka_unit_test(a_store_is_verified_over_the_network),
         cmocka_unit_test(cut_bodies_cost_attempts_and_no_texel),
     };
     tap_filter_stdout();

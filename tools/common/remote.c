@@ -32,24 +32,35 @@ static SluiceResult create_client(const SluiceLogCallback *log, SluiceHttpClient
     return sluiceCreateHttpClient(&info, client);
 }
 
-bool remote_open(struct remote_file *remote, const char *url, const SluiceLogCallback *log)
+bool remote_begin(struct remote_session *session, const SluiceLogCallback *log)
 {
     SluiceHttpClient *client = NULL;
-    *remote = (struct remote_file){.input = {.structSize = sizeof remote->input}};
+    if (session->client)
+        return true;
     SluiceResult result = create_client(log, &client);
-    remote->client = client;
-    if (result == SLUICE_SUCCESS)
-        result = sluiceOpenHttpPath(client, url, &remote->input, &remote->file);
-    if (result != SLUICE_SUCCESS)
-        remote_close(remote);
+    session->client = client;
     return result == SLUICE_SUCCESS;
+}
+
+void remote_end(struct remote_session *session)
+{
+    sluiceDestroyHttpClient(session->client);
+    session->client = NULL;
+}
+
+bool remote_open(struct remote_file *remote, struct remote_session *session, const char *url,
+                 const SluiceLogCallback *log)
+{
+    *remote = (struct remote_file){.input = {.structSize = sizeof remote->input}};
+    if (!remote_begin(session, log))
+        return false;
+    remote->session = *session;
+    return sluiceOpenHttpPath(session->client, url, &remote->input, &remote->file) ==
+           SLUICE_SUCCESS;
 }
 
 void remote_close(struct remote_file *remote)
 {
-    if (remote->client)
-        sluiceCloseHttpPath(remote->client, remote->file);
-    sluiceDestroyHttpClient(remote->client);
-    remote->client = NULL;
+    sluiceCloseHttpPath(remote->session.client, remote->file);
     remote->file = NULL;
 }

@@ -7,8 +7,14 @@
 #include <stdbool.h>
 #include <string.h>
 
+/** Connections that files share. Zeroed: none. */
+struct remote_session {
+    void *client;
+};
+
 struct remote_file {
-    void *client, *file;
+    struct remote_session session; ///< borrowed
+    void *file;
     SluiceInput input; ///< for the source that reads the file
 };
 
@@ -22,15 +28,23 @@ static inline bool remote_is_url(const char *name)
 /** Returns the input to read from. NULL: the file is not remote, and its path is read. */
 static inline const SluiceInput *remote_input(const struct remote_file *remote)
 {
-    return remote->client ? &remote->input : NULL;
+    return remote->file ? &remote->input : NULL;
 }
 
 /**
- * Opens a URL. Keys for s3:// come from AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY,
- * AWS_SESSION_TOKEN, AWS_REGION or AWS_DEFAULT_REGION, AWS_ENDPOINT_URL_S3 or AWS_ENDPOINT_URL;
- * trusted certificates from SSL_CERT_FILE. False: said on `log`.
+ * Creates a client, if the session has none. Keys for s3:// come from AWS_ACCESS_KEY_ID,
+ * AWS_SECRET_ACCESS_KEY, AWS_SESSION_TOKEN, AWS_REGION or AWS_DEFAULT_REGION, AWS_ENDPOINT_URL_S3
+ * or AWS_ENDPOINT_URL; trusted certificates from SSL_CERT_FILE. False: said on `log`, which files
+ * use, too.
  */
-bool remote_open(struct remote_file *remote, const char *url, const SluiceLogCallback *log);
+bool remote_begin(struct remote_session *session, const SluiceLogCallback *log);
+/** Close all files first. A zeroed struct is allowed. */
+void remote_end(struct remote_session *session);
+
+/** Opens a URL. Begins the session if it has not. The session stays until the file is closed.
+ *  False: said on `log`. */
+bool remote_open(struct remote_file *remote, struct remote_session *session, const char *url,
+                 const SluiceLogCallback *log);
 /** A zeroed struct is allowed. Destroy the sources that read it first. */
 void remote_close(struct remote_file *remote);
 

@@ -14,7 +14,7 @@ static const char usage[] =
     "       sluice-bake --cube PX NX PY NY PZ NZ -o OUT [options]\n"
     "       sluice-bake --array IN... -o OUT [options]\n"
     "       sluice-bake --neural PICTURE... -o OUT.ntc [options]\n"
-    "       sluice-bake --verify FILE|DIR... [--json]\n"
+    "       sluice-bake --verify FILE|DIR|URL... [--json]\n"
     "       sluice-bake IN... -o DIR --plan PLAN [options]\n"
     "       sluice-bake --shard I/N PLAN\n"
     "       sluice-bake --merge PLAN -o CATALOGUE [--shard 1/N]\n"

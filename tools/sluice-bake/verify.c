@@ -4,6 +4,7 @@
 
 #include "../common/files.h"
 #include "../common/log.h"
+#include "../common/remote.h"
 #include "../common/text.h"
 
 #include <sluice/store.h>
@@ -41,11 +42,23 @@ static void print_row(const char *path, SluiceResult result, const SluiceStoreRe
     putchar('\n');
 }
 
-static bool verify(const char *path, bool json)
+static SluiceResult verify_store(const char *path, struct remote_session *session,
+                                 SluiceStoreReport *report)
+{
+    struct remote_file remote = {0};
+    SluiceStoreVerifyInfo info = {.structSize = sizeof info, .pPath = path, .log = {NULL, on_log}};
+    if (remote_is_url(path) && !remote_open(&remote, session, path, &info.log))
+        return SLUICE_ERROR_IO;
+    info.pInput = remote_input(&remote);
+    SluiceResult result = sluiceVerifyStore(&info, report);
+    remote_close(&remote);
+    return result;
+}
+
+static bool verify(const char *path, struct remote_session *session, bool json)
 {
     SluiceStoreReport report = {.structSize = sizeof report};
-    SluiceStoreVerifyInfo info = {.structSize = sizeof info, .pPath = path, .log = {NULL, on_log}};
-    SluiceResult result = sluiceVerifyStore(&info, &report);
+    SluiceResult result = verify_store(path, session, &report);
     if (json)
         print_object(path, result, &report);
     else
@@ -72,9 +85,11 @@ static bool collect(const struct option_list *paths, struct file_list *list)
 bool verify_files(const struct option_list *paths, bool json)
 {
     struct file_list list = {.speaker = "sluice-bake: "};
+    struct remote_session session = {0};
     bool all_are_whole = collect(paths, &list);
     for (size_t i = 0; i < list.count; i++)
-        all_are_whole = verify(list.paths[i], json) && all_are_whole;
+        all_are_whole = verify(list.paths[i], &session, json) && all_are_whole;
+    remote_end(&session);
     log_finish();
     all_are_whole = all_are_whole && list.unreadable_count == 0;
     if (list.count == 0 && list.unreadable_count == 0) {

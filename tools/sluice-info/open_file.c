@@ -31,7 +31,7 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 static bool read_remote_start(struct texture_file *file, const char *url, SluiceLogCallback log,
                               char bytes[12])
 {
-    if (!remote_open(&file->remote, url, &log))
+    if (!remote_open(&file->remote, &file->session, url, &log))
         return false;
     const SluiceInput *input = &file->remote.input;
     SluiceResult result = SLUICE_SUCCESS;
@@ -155,4 +155,5 @@ void close_texture_file(struct texture_file *file)
     sluiceDestroyImageSource(file->source);
     file->source = NULL;
     remote_close(&file->remote);
+    remote_end(&file->session);
 }

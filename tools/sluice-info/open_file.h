@@ -7,7 +7,8 @@
 #include "../common/remote.h"
 
 struct texture_file {
-    struct remote_file remote; ///< of a URL
+    struct remote_session session; ///< of a URL
+    struct remote_file remote;
     SluiceImageSource *source;
     SluiceImageInfo image;
     const char *kind; ///< "tile store" and so on

@@ -188,7 +188,7 @@ static void show_what_is_in_an_exr(const struct texture_file *file, bool json)
 
 static uint64_t size_of(const struct texture_file *file, const char *path)
 {
-    return file->remote.client ? file->remote.input.size : files_size(path);
+    return file->remote.file ? file->remote.input.size : files_size(path);
 }
 
 static void print_file(const struct texture_file *file, const char *path)
