@@ -24,8 +24,13 @@ bool scene_images_create_opener(const char *cache, struct scene_data *scene)
     char folder[4096];
     if (!cache_path(cache, "pictures", folder, sizeof folder) || !files_make_folders(folder))
         return false;
-    const SluiceImageOpenerCreateInfo info = {
-        .structSize = sizeof info, .pCacheFolder = folder, .log = {NULL, log_say}};
+    /* Frames need a processor, too. */
+    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    const SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                              .pCacheFolder = folder,
+                                              .bakeThreadCount =
+                                                  processors > 2 ? (uint32_t)processors - 1 : 1,
+                                              .log = {NULL, log_say}};
     const SluiceResult result = sluiceCreateImageOpener(&info, &scene->opener);
     if (result != SLUICE_SUCCESS)
         text_say("sluice-view: %s", sluiceGetResultName(result));

@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #define EXIT_NO_DEVICE 77
@@ -277,6 +278,25 @@ static uint32_t frame_count(const struct viewer *v)
     return v->script.count ? script_last_frame(&v->script) + 1 : USUAL_FRAMES;
 }
 
+/* Of all threads. */
+static double processor_seconds(void)
+{
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+/* The one wait for a frame that is not needed: the picture is not there before. */
+static bool note_first_picture(struct viewer *v)
+{
+    if (!v->stage || v->first_picture > 0)
+        return true;
+    if (!frames_wait(&v->frames))
+        return false;
+    v->first_picture = clock_seconds() - v->begin;
+    v->first_processor = processor_seconds();
+    v->first_frame = v->frame;
+    return true;
+}
+
 static bool run_frames(struct viewer *v)
 {
     const uint32_t count = frame_count(v);
@@ -288,7 +308,7 @@ static bool run_frames(struct viewer *v)
             return false;
         if (v->options->screenshot && v->frame + 1 == count)
             snprintf(v->screenshot, sizeof v->screenshot, "%s", v->options->screenshot);
-        if (!draw_frame(v, step) || !finish_frame(v))
+        if (!draw_frame(v, step) || !note_first_picture(v) || !finish_frame(v))
             return false;
     }
     return true;
@@ -306,10 +326,16 @@ static void print_summary(struct viewer *v)
                "{\"name\": \"resident\", \"value\": %llu, \"unit\": \"B\"}\n"
                "{\"name\": \"sharp\", \"value\": %.4f, \"unit\": \"\"}\n"
                "{\"name\": \"tiles loaded\", \"value\": %llu, \"unit\": \"\"}\n"
-               "{\"name\": \"tiles failed\", \"value\": %llu, \"unit\": \"\"}\n",
+               "{\"name\": \"tiles failed\", \"value\": %llu, \"unit\": \"\"}\n"
+               "{\"name\": \"first picture\", \"value\": %.3f, \"unit\": \"s\"}\n"
+               "{\"name\": \"processor time of first picture\", \"value\": %.3f, \"unit\": \"s\"}\n"
+               "{\"name\": \"processor time per frame\", \"value\": %.3f, \"unit\": \"ms\"}\n",
                v->frame, (unsigned long long)f->all_size, (unsigned long long)f->resident_size,
                f->sharp, (unsigned long long)f->now.tilesMapped,
-               (unsigned long long)f->now.tilesFailed);
+               (unsigned long long)f->now.tilesFailed, v->first_picture, v->first_processor,
+               v->frame > v->first_frame + 1 ? (processor_seconds() - v->first_processor) * 1e3 /
+                                                   (v->frame - v->first_frame - 1)
+                                             : 0.0);
         return;
     }
     char all[32], resident[32];
@@ -394,6 +420,7 @@ int viewer_run(const struct view_options *options)
     if (!v)
         return EXIT_FAILURE;
     v->options = options;
+    v->begin = clock_seconds();
     app_init(&v->app);
     for (size_t i = 0; i < options->words.count; i++)
         if (!files_add(options->words.items[i], &v->paths))

@@ -34,6 +34,8 @@ struct viewer {
     double last_time, host_seconds;
     uint64_t clock; ///< microseconds; stands while streaming is paused
     unsigned screenshot_number;
+    double begin, first_picture, first_processor; ///< seconds
+    uint32_t first_frame;                         ///< with a picture of the scene
 };
 
 /** Opens the scene of the paths; with a window, on a thread. False, with lines on stderr, if that
