@@ -138,9 +138,15 @@ void panel_now(struct view_app *app)
         draw_bar(app, 230 * scale, 10 * scale);
         ui_text(UI_GRAY, "%.0f %% sharp   %u loads in flight", floor(100.0 * f->sharp),
                 f->now.loadsInFlight);
+        const uint32_t baking = stage_baking_count(app->stage);
+        if (baking > 0) {
+            ui_text(UI_ORANGE, "%u pictures are being prepared", baking);
+            ui_hint("Tiles of these pictures are made once, and kept in the cache (--cache). Until "
+                    "then coarse levels are shown.");
+        }
         if (f->now.globalMipBias > 0)
             ui_text(UI_RED, "memory is short: +%.1f level", f->now.globalMipBias / 16.0);
-        if (f->now.failedTileCount + f->now.givenUpTileCount > 0)
+        if (f->now.failedTileCount + f->now.givenUpTileCount > 0 && baking == 0)
             ui_text(UI_RED, "%u tiles failed to load (K)",
                     f->now.failedTileCount + f->now.givenUpTileCount);
         draw_messages(app);

@@ -173,6 +173,18 @@ bool scene_images_keep(const char *cache, const void *bytes, size_t size, char *
     return false;
 }
 
+uint32_t scene_images_baking(const struct scene_data *scene)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->image_count; i++) {
+        SluiceImageSource *source = linear_source_inner(scene->images[i].source);
+        SluiceOpenedImageInfo info = {.structSize = sizeof info};
+        count += sluiceGetOpenedImageInfo(source, &info) == SLUICE_SUCCESS && !info.ready &&
+                 info.failure == SLUICE_SUCCESS;
+    }
+    return count;
+}
+
 void scene_images_wait(const struct scene_data *scene)
 {
     const double end = clock_seconds() + BAKE_SECONDS;

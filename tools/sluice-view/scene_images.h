@@ -23,6 +23,8 @@ bool scene_images_replace(struct scene_data *scene, uint32_t index, SluiceResult
  *  reads pictures from files alone. False with a line on stderr. */
 bool scene_images_keep(const char *cache, const void *bytes, size_t size, char *path,
                        size_t path_size);
+/** Pictures whose finer levels are still being made. */
+uint32_t scene_images_baking(const struct scene_data *scene);
 /** Pictures without tiles are baked in the background; what waits for them is the same in each
  *  run. */
 void scene_images_wait(const struct scene_data *scene);

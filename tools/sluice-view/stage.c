@@ -26,6 +26,7 @@ struct stage {
     struct stage_texture *textures;
     uint32_t *table_indices;
     struct tile_marks marks;
+    uint32_t baking_count;
     SluiceImageSource **slow; ///< around the scene's sources; NULL without a slow line
     struct slow_line line;
     bool is_slow;
@@ -225,6 +226,7 @@ struct stage *stage_create(const struct stage_request *request,
     s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
     if (s->textures && s->table_indices && begin_slowness(s) && create_streamer(s, request) &&
         add_textures(s) && create_marks(s) && create_drawing(s)) {
+        s->baking_count = scene_images_baking(&s->scene);
         stage_apply(s, settings);
         return s;
     }
@@ -272,11 +274,23 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
     s->settings = *settings;
 }
 
+/* Reads of a picture that is being made were not ready: they are tried again at once. */
+static void look_at_bakes(struct stage *s)
+{
+    const uint32_t before = s->baking_count;
+    if (before == 0)
+        return;
+    s->baking_count = scene_images_baking(&s->scene);
+    if (s->baking_count < before)
+        sluiceRetryVulkanSource(s->streamer, NULL);
+}
+
 bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffer commands,
                   struct frames_end *end)
 {
     SluiceStreamingFrame frame = {.structSize = sizeof frame};
     atomic_store(&s->now, draw->time_stamp);
+    look_at_bakes(s);
     if (!check(sluiceBeginStreamingFrame(s->streamer, commands, draw->time_stamp, &frame),
                "sluiceBeginStreamingFrame"))
         return false;
@@ -299,6 +313,11 @@ void stage_restart(struct stage *s)
 {
     for (uint32_t i = 0; i < s->scene.image_count; i++)
         sluiceEvictVulkanTexture(s->streamer, s->textures[i].id, 0);
+}
+
+uint32_t stage_baking_count(const struct stage *s)
+{
+    return s->baking_count;
 }
 
 double stage_resident_part(const struct stage *s)

@@ -61,6 +61,8 @@ void stage_restart(struct stage *stage);
 /** Waits until all reads are done, for pictures that are the same in every run. */
 bool stage_settle(struct stage *stage);
 
+/** Pictures whose finer levels are still being made, as of the last frame. */
+uint32_t stage_baking_count(const struct stage *stage);
 /** Part of all tiles that is resident. */
 double stage_resident_part(const struct stage *stage);
 const char *stage_name(const struct stage *stage);
