@@ -22,7 +22,7 @@ END
 validation=--validation
 [ -z "${VK_LOADER_LAYERS_DISABLE:-}" ] || validation=
 # shellcheck disable=SC2086 # nothing, or a word
-view() { run 0 --headless --deterministic --size 480x270 --residency paged $validation "$@"; }
+view() { run 0 --room --headless --deterministic --size 480x270 --residency paged $validation "$@"; }
 
 view --script script --csv first.csv --screenshot last.png && mkdir first && mv ./*.png first
 fact a_script_of_keys_clicks_and_settings_runs_with_silent_validation
@@ -46,7 +46,7 @@ run 1 --headless --frames 2 --cache . broken.gltf && run 1 --headless --frames 2
 fact broken_scenes_are_refused
 printf '2 drop noise.glb\n4 set compare-to budget\n4 key v\n' >drops
 # shellcheck disable=SC2086
-run 0 --headless $validation --size 160x160 --cache . --script drops --frames 6 && grep -q 'noise.glb' err
+run 0 --room --headless $validation --size 160x160 --cache . --script drops --frames 6 && grep -q 'noise.glb' err
 fact a_dropped_file_that_cannot_be_read_leaves_the_scene_which_can_be_compared
 
 lose() { LOSE_AFTER=$1 LD_PRELOAD=$lose_device run 1 --headless --size 160x160 --frames 8 && grep -q DEVICE_LOST err; }
@@ -94,4 +94,7 @@ printf '1 key 8\n3 set gain 1\n4 screenshot little.png\n5 set gain 16\n6 screens
 run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --script truth \
     --frames 12 --screenshot last.png wall.gltf && cmp little.png much.png && ! cmp -s much.png wall.png
 fact view_8_is_black_where_nothing_is_missing_and_all_views_are_valid
+# shellcheck disable=SC2086
+run 0 --headless $validation --size 160x160 --cache . --frames 1 && grep -q '^hall.gltf: 1 frames' out
+fact the_hall_is_opened_without_arguments
 end_facts

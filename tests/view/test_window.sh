@@ -29,7 +29,7 @@ until_true() {
     done
 }
 open_viewer() {
-    "$tool" --size 480x270 --frame-cap 30 --still "$@" >out 2>err &
+    "$tool" --room --size 480x270 --frame-cap 30 --still "$@" >out 2>err &
     viewer=$!
     until_true 20 xdotool search --name Sluice && window=$(xdotool search --name Sluice | tail -n 1) &&
         xdotool mousemove --window "$window" 240 200

@@ -10,8 +10,9 @@
 static const char usage[] =
     "usage: sluice-view [OPTION ...] [SCENE | PICTURE ... | FOLDER ...]\n\n"
     "Shows a scene whose textures are streamed, and why they look as they do. SCENE is a glTF\n"
-    "or OBJ file. Pictures, and those of folders, hang in a room; without any, computed pictures.\n"
-    "Drop files onto the window to open them.\n";
+    "or OBJ file; without one, a hall that comes with this program. Pictures, and those of "
+    "folders,\n"
+    "hang in a room. Drop files onto the window to open them.\n";
 
 static const char notes[] =
     "Without a display, use --headless: it draws the same frames, with the panels, into pictures.\n"
@@ -23,6 +24,8 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
 {
     const struct option own[] = {
         {OPTION_WORDS, .value = &o->words, .help = "a scene, or pictures", .minimum = 0},
+        {OPTION_FLAG, "room", .value = &o->room,
+         .help = "without a scene: a room of computed pictures, which needs no file"},
         {OPTION_SECTION, .help = "Without a window"},
         {OPTION_FLAG, "headless", .value = &o->headless,
          .help = "open no window: draw into pictures, with time by the number of the frame"},

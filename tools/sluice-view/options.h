@@ -9,7 +9,7 @@
 struct view_options {
     struct view_settings settings;
     struct option_list words; ///< scenes
-    bool headless, deterministic, fresh, json, validation, list_devices, still;
+    bool room, headless, deterministic, fresh, json, validation, list_devices, still;
     uint32_t frames; ///< 0: until the script ends, or the window is closed
     uint32_t threads;
     const char *script, *screenshot, *csv, *play, *cache, *device;

@@ -5,6 +5,7 @@
 
 #include "controls.h"
 #include "panels.h"
+#include "scene_hall.h"
 #include "settings_file.h"
 
 #include "../common/clock.h"
@@ -413,6 +414,14 @@ static void finish(struct viewer *v)
     log_finish();
 }
 
+/* Without words it is the hall, if there is one. */
+static bool add_hall(struct viewer *v)
+{
+    char path[4200];
+    return v->paths.count > 0 || v->options->room || !scene_hall_find(path, sizeof path) ||
+           files_add(path, &v->paths);
+}
+
 int viewer_run(const struct view_options *options)
 {
     struct viewer *v = calloc(1, sizeof *v);
@@ -425,6 +434,8 @@ int viewer_run(const struct view_options *options)
     for (size_t i = 0; i < options->words.count; i++)
         if (!files_add(options->words.items[i], &v->paths))
             return EXIT_FAILURE;
+    if (!add_hall(v))
+        return EXIT_FAILURE;
     read_settings(v);
     v->app.program = v->command;
     v->app.deterministic = options->deterministic;

@@ -53,7 +53,8 @@ bool viewer_fit_other(struct viewer *v)
 /* "sluice-view PATH ..."; paths that do not fit are left out. */
 static void name_command(struct viewer *v)
 {
-    size_t length = (size_t)snprintf(v->command, sizeof v->command, "sluice-view");
+    size_t length = (size_t)snprintf(v->command, sizeof v->command, "sluice-view%s",
+                                     v->paths.count > 0 ? "" : " --room");
     for (size_t i = 0; i < v->paths.count; i++) {
         const char *path = v->paths.paths[i];
         if (length + strlen(path) + 2 > sizeof v->command)
