@@ -9,7 +9,9 @@
 #include "support/test.h"
 
 #include "integer_comp.h"
+#include "integer_hlsl.h"
 #include "integer_signed_comp.h"
+#include "integer_signed_hlsl.h"
 
 #include <math.h>
 #include <string.h>
@@ -92,16 +94,21 @@ static bool is_streamed(struct harness *h, SluiceFormat format)
 }
 
 /* The modules are kept by the harness with its pipelines. */
-static VkPipeline pipeline_of(const struct prober *p, bool is_signed)
+static VkPipeline pipeline_of(const struct prober *p, bool is_signed, bool hlsl)
 {
     struct harness *h = p->h;
     struct prober_specialization specialization;
-    VkPipeline *pipeline = &h->probe_pipelines[HARNESS_PROBE_KINDS - 1 - is_signed];
+    VkPipeline *pipeline = hlsl ? &h->probe_pipelines[HARNESS_HLSL_KINDS + is_signed]
+                                : &h->probe_pipelines[HARNESS_PROBE_KINDS - 1 - is_signed];
     VkShaderModule module;
     if (*pipeline)
         return *pipeline;
-    module = is_signed ? conform_module(h, integer_signed_comp, sizeof integer_signed_comp)
-                       : conform_module(h, integer_comp, sizeof integer_comp);
+    if (hlsl)
+        module = is_signed ? conform_module(h, integer_signed_hlsl, sizeof integer_signed_hlsl)
+                           : conform_module(h, integer_hlsl, sizeof integer_hlsl);
+    else
+        module = is_signed ? conform_module(h, integer_signed_comp, sizeof integer_signed_comp)
+                           : conform_module(h, integer_comp, sizeof integer_comp);
     *pipeline =
         conform_compute_pipeline(h, p->layout, module, prober_specialize(p, &specialization));
     return *pipeline;
@@ -126,7 +133,7 @@ static bool rig_init(struct rig *rig, struct harness *h, SluiceFormat format, ui
     if (streamed) {
         assert_true(rig->texture.maxAnisotropy == 1.0f);
         rig->set = prober_nearest(&rig->scene.prober, &rig->texture);
-        rig->pipeline = pipeline_of(&rig->scene.prober, slc_format_is_sint(format));
+        rig->pipeline = pipeline_of(&rig->scene.prober, slc_format_is_sint(format), false);
     }
     return streamed;
 }
@@ -194,6 +201,18 @@ static void check_sample(const struct rig *rig, uint32_t i, uint32_t level)
     }
 }
 
+static void check_all(const struct rig *rig)
+{
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        const struct ProbeOutput *out = &prober_outputs(&rig->scene.prober)[i];
+        uint32_t level = (uint32_t)prober_inputs((struct prober *)&rig->scene.prober)[i].lodBias;
+        assert_int_equal(out->missingLevels, 0);
+        assert_int_equal(out->level, level);
+        check_sample(rig, i, level);
+    }
+}
+
+/* In GLSL, then in HLSL. */
 static void samples_are_texels_of_the_level_nearest_to_their_lod(void **state)
 {
     static const uint32_t sizes[][2] = {{512, 256}, {301, 77}, {5, 3}};
@@ -206,13 +225,11 @@ static void samples_are_texels_of_the_level_nearest_to_their_lod(void **state)
             if (rig_init(&rig, h, (SluiceFormat)f, sizes[s][0], sizes[s][1], true)) {
                 draw_samples(&rig, 1);
                 settle(&rig, 12);
-                for (uint32_t i = 0; i < SAMPLES; i++) {
-                    const struct ProbeOutput *out = &prober_outputs(&rig.scene.prober)[i];
-                    uint32_t level = (uint32_t)prober_inputs(&rig.scene.prober)[i].lodBias;
-                    assert_int_equal(out->missingLevels, 0);
-                    assert_int_equal(out->level, level);
-                    check_sample(&rig, i, level);
-                }
+                check_all(&rig);
+                scene_clear_outputs(&rig.scene);
+                rig.pipeline = pipeline_of(&rig.scene.prober, slc_format_is_sint(f), true);
+                settle(&rig, 1);
+                check_all(&rig);
                 count += s == 0;
             }
             scene_finish(&rig.scene);

@@ -12,6 +12,7 @@
  *     SLUICE_NON_UNIFORM(i)   an index of an array of descriptors that differs between invocations
  *     SLUICE_BUFFER           declares a storage buffer: set, binding, name of the block, type and name
  *     SLUICE_SAMPLER_2D(tex)  a parameter: a sampler2D, or a Texture2D and a SamplerState
+ *     SLUICE_SAMPLER_2D_ARRAY, SLUICE_USAMPLER_2D, SLUICE_ISAMPLER_2D  other kinds of samplers
  *     SLUICE_TEXTURE_*, _ARRAY_*  samples and fetches; GLSL ignores the second argument, a SamplerState
  */
 #ifndef SLUICE_LANGUAGE_GLSL
@@ -43,6 +44,9 @@
     layout(std430, set = set_, binding = binding_) buffer block { type name[]; };
 
 #define SLUICE_SAMPLER_2D(tex) sampler2D tex
+#define SLUICE_SAMPLER_2D_ARRAY(tex) sampler2DArray tex
+#define SLUICE_USAMPLER_2D(tex) usampler2D tex
+#define SLUICE_ISAMPLER_2D(tex) isampler2D tex
 #define SLUICE_PASS_SAMPLER(tex) tex
 #define SLUICE_SAMPLER_OF(tex)
 #define SLUICE_TEXTURE_GRAD(tex, state, uv, dx, dy) textureGrad(tex, uv, dx, dy)
@@ -70,6 +74,9 @@
 #define SLUICE_WRITTEN_BUFFER(set, at, block, type, name) [[vk::binding(at, set)]] RWStructuredBuffer<type> name;
 
 #define SLUICE_SAMPLER_2D(tex) Texture2D tex, SamplerState tex##Sampler
+#define SLUICE_SAMPLER_2D_ARRAY(tex) Texture2DArray tex, SamplerState tex##Sampler
+#define SLUICE_USAMPLER_2D(tex) Texture2D<uint4> tex, SamplerState tex##Sampler
+#define SLUICE_ISAMPLER_2D(tex) Texture2D<int4> tex, SamplerState tex##Sampler
 #define SLUICE_PASS_SAMPLER(tex) tex, tex##Sampler
 #define SLUICE_SAMPLER_OF(tex) tex##Sampler
 #define SLUICE_TEXTURE_GRAD(tex, state, uv, dx, dy) tex.SampleGrad(state, uv, dx, dy)

@@ -5,6 +5,7 @@
  * Integer textures are streamed in sparse and dense mode. Use a usampler2D for UINT and an isampler2D for
  * SINT, a descriptor of SluiceVulkanTexture.imageView, with NEAREST filters between texels and between
  * levels, and otherwise as sample.glsl requires. They are not in a streamer's own array of textures.
+ * HLSL samples integers from shader model 6.7 on.
  *
  * Write feedback by sluiceWriteFeedback with a LOD bias of 0 and without anisotropy (1).
  *
@@ -35,37 +36,37 @@ float sluiceNearestLevel(uint tableIndex, SluiceSampling s)
  *
  * `missingLevels` is the result of sluiceMissingLevels: 0 when the texture is as sharp as wanted.
  */
-uvec4 sluiceSampleUintGrad(usampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, out uint missingLevels)
+uvec4 sluiceSampleUintGrad(SLUICE_USAMPLER_2D(tex), uint tableIndex, vec2 uv, vec2 dx, vec2 dy, out uint missingLevels)
 {
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, 0.0, 1.0);
     missingLevels = sluiceMissingLevels(s);
     if (s.level == SLUICE_MIP_UNTOUCHED)
-        return uvec4(SLUICE_FALLBACK_NUMBER);
-    return textureLod(tex, s.uv, sluiceNearestLevel(tableIndex, s));
+        return SLUICE_SPLAT(uvec4, SLUICE_FALLBACK_NUMBER);
+    return SLUICE_TEXTURE_LOD(tex, SLUICE_SAMPLER_OF(tex), s.uv, sluiceNearestLevel(tableIndex, s));
 }
 
 /** Samples a SINT texture like sluiceSampleUintGrad. */
-ivec4 sluiceSampleIntGrad(isampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, out uint missingLevels)
+ivec4 sluiceSampleIntGrad(SLUICE_ISAMPLER_2D(tex), uint tableIndex, vec2 uv, vec2 dx, vec2 dy, out uint missingLevels)
 {
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, 0.0, 1.0);
     missingLevels = sluiceMissingLevels(s);
     if (s.level == SLUICE_MIP_UNTOUCHED)
-        return ivec4(SLUICE_FALLBACK_NUMBER);
-    return textureLod(tex, s.uv, sluiceNearestLevel(tableIndex, s));
+        return SLUICE_SPLAT(ivec4, SLUICE_FALLBACK_NUMBER);
+    return SLUICE_TEXTURE_LOD(tex, SLUICE_SAMPLER_OF(tex), s.uv, sluiceNearestLevel(tableIndex, s));
 }
 
-#ifdef GL_FRAGMENT_SHADER
+#ifdef SLUICE_FRAGMENT_SHADER
 
 /** Samples like sluiceSampleUintGrad with the fragment's own derivatives. Call in uniform control flow. */
-uvec4 sluiceSampleUint(usampler2D tex, uint tableIndex, vec2 uv, out uint missingLevels)
+uvec4 sluiceSampleUint(SLUICE_USAMPLER_2D(tex), uint tableIndex, vec2 uv, out uint missingLevels)
 {
-    return sluiceSampleUintGrad(tex, tableIndex, uv, dFdx(uv), dFdy(uv), missingLevels);
+    return sluiceSampleUintGrad(SLUICE_PASS_SAMPLER(tex), tableIndex, uv, dFdx(uv), dFdy(uv), missingLevels);
 }
 
 /** Samples a SINT texture like sluiceSampleUint. */
-ivec4 sluiceSampleInt(isampler2D tex, uint tableIndex, vec2 uv, out uint missingLevels)
+ivec4 sluiceSampleInt(SLUICE_ISAMPLER_2D(tex), uint tableIndex, vec2 uv, out uint missingLevels)
 {
-    return sluiceSampleIntGrad(tex, tableIndex, uv, dFdx(uv), dFdy(uv), missingLevels);
+    return sluiceSampleIntGrad(SLUICE_PASS_SAMPLER(tex), tableIndex, uv, dFdx(uv), dFdy(uv), missingLevels);
 }
 
 #endif

@@ -41,7 +41,7 @@ struct SluiceUdimPart {
 /** Returns the weights of the next cells in x and y at a level. `edge` is the distance in uv. */
 vec2 sluiceUdimBeyond(vec2 size, vec2 edge, float level)
 {
-    return max(0.5 - edge * vec2(max(uvec2(size) >> uint(level), uvec2(1u))), 0.0);
+    return max(0.5 - edge * vec2(max(uvec2(size) >> uint(level), SLUICE_SPLAT(uvec2, 1u))), 0.0);
 }
 
 /**
@@ -53,21 +53,24 @@ vec2 sluiceUdimBeyond(vec2 size, vec2 edge, float level)
 SluiceUdimPart sluiceFindUdimPart(uvec2 grid, vec2 size, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                                   float maxAnisotropy, uint part)
 {
-    uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
+    if (!sluiceIsFinite(uv))
+        uv = SLUICE_SPLAT(vec2, 0.0);
     vec2 home = floor(uv), at = clamp(uv - home, 0.0, 1.0);
-    vec2 side = mix(vec2(1.0), vec2(-1.0), lessThan(at, vec2(0.5)));
+    vec2 side = vec2(at.x < 0.5 ? -1.0 : 1.0, at.y < 0.5 ? -1.0 : 1.0);
     float lod = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
     lod = clamp(lod, 0.0, floor(log2(max(size.x, size.y)) + 0.001));
     vec2 edge = min(at, 1.0 - at);
     vec2 beyond = mix(sluiceUdimBeyond(size, edge, floor(lod)),
                       sluiceUdimBeyond(size, edge, floor(lod) + 1.0), fract(lod));
-    bvec2 next = notEqual(uvec2(part) & uvec2(1u, 2u), uvec2(0u));
-    vec2 cell = home + mix(vec2(0.0), side, next), weights = mix(1.0 - beyond, beyond, next);
-    bool inside = all(greaterThanEqual(vec4(home, cell), vec4(0.0))) &&
+    bvec2 next = bvec2((part & 1u) != 0u, (part & 2u) != 0u);
+    vec2 cell = home + vec2(next.x ? side.x : 0.0, next.y ? side.y : 0.0);
+    vec2 weights = vec2(next.x ? beyond.x : 1.0 - beyond.x, next.y ? beyond.y : 1.0 - beyond.y);
+    vec2 opposite = 0.5 - 0.5 * side;
+    bool inside = all(greaterThanEqual(vec4(home, cell), SLUICE_SPLAT(vec4, 0.0))) &&
                   all(lessThan(vec4(home, cell), vec4(grid, grid)));
     SluiceUdimPart p;
     p.cell = inside ? uint(cell.x) + grid.x * uint(cell.y) : 0u;
-    p.uv = mix(at, 0.5 - 0.5 * side, next);
+    p.uv = vec2(next.x ? opposite.x : at.x, next.y ? opposite.y : at.y);
     p.weight = inside ? weights.x * weights.y : 0.0;
     return p;
 }

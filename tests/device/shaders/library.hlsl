@@ -24,11 +24,20 @@
 #include "sluice/feedback_jitter.glsl"
 #include "sluice/proxy.glsl"
 #include "sluice/sample.glsl"
+#include "sluice/sample_array.glsl"
+#include "sluice/sample_integer.glsl"
 #include "sluice/sample_stochastic.glsl"
 #include "sluice/stochastic.glsl"
+#include "sluice/udim.glsl"
 
 [[vk::binding(0, 2)]] Texture2D tex;
 [[vk::binding(0, 2)]] SamplerState texSampler;
+[[vk::binding(1, 2)]] Texture2DArray layers;
+[[vk::binding(1, 2)]] SamplerState layersSampler;
+[[vk::binding(2, 2)]] Texture2D<uint4> numbers;
+[[vk::binding(2, 2)]] SamplerState numbersSampler;
+[[vk::binding(3, 2)]] Texture2D<int4> signedNumbers;
+[[vk::binding(3, 2)]] SamplerState signedNumbersSampler;
 struct Constants {
     uint tableIndex;
     uint seed;
@@ -49,6 +58,10 @@ float4 main(float4 position : SV_Position, float2 uv : TEXCOORD0) : SV_Target0
     sluiceWriteFeedbackLod(index, uv, 1.5);
     color += sluiceSampleStochastic(index, index, uv, 0.5, SLUICE_PICK_GAUSSIAN, 0.7, true, random, missing);
     color += sluiceDemandGrad(index, sluiceDemandJitter(index, uv, dx, dy, SLUICE_JITTER_BOX, random), dx, dy, resident);
+    SluiceUdimPart part = sluiceFindUdimPart(uint2(10u, 2u), float2(512.0, 512.0), uv, dx, dy, 0.0, 1.0, 1u);
+    color += part.weight * sluiceSampleArray(layers, layersSampler, index, part.cell, part.uv, 0.0, 1.0, missing);
+    color += float4(sluiceSampleUint(numbers, numbersSampler, index, uv, missing));
+    color += float4(sluiceSampleInt(signedNumbers, signedNumbersSampler, index, uv, missing));
     SluiceDemandBytes bytes;
     if (sluiceMapBytesOrRequest(index, bytes))
         color.x += sluiceDemandFloat(bytes, 3u) + float(sluiceDemandByte(bytes, 5u));
