@@ -56,7 +56,9 @@ fact a_lost_device_is_named_and_ends_it_with_status_1
 mkdir -p pictures/below none && printf 'P6 2 2 255\n%012d' 0 >pictures/black.ppm &&
     printf 'P6 2 2 255\n%s' zzzzzzzzzzzz >pictures/below/light.ppm && cp noise.glb pictures/noise.png
 hang() { run 0 --headless --deterministic --size 160x160 --panels off --cache . --frames 2 "$@"; }
-hang pictures && grep -q 'pictures/noise.png' err && grep -q '^3 pictures: ' out &&
+set=$(dirname "$facts")/../fuzz/corpus/neural/schema3.ntc
+hang pictures "$set" "$set#gone" && grep -q 'pictures/noise.png' err && grep -q '^5 pictures: ' out &&
+    grep -qE 'has no texture|#gone: .*UNSUPPORTED' err &&
     hang --screenshot black.png pictures/black.ppm gone.png && hang --screenshot missing.png gone.png \
     pictures/black.ppm && grep -q 'gone.png: cannot be shown' err && ! cmp -s black.png missing.png
 fact pictures_and_folders_hang_in_the_room_and_one_that_is_missing_is_named

@@ -48,11 +48,25 @@ static uint32_t find(const struct scene_data *scene, const struct scene_image_re
     return SCENE_NO_IMAGE;
 }
 
+/* "set.ntc#name" is a texture of a neural set, unless a file has this name. */
+static SluiceResult open_path(SluiceImageOpener *opener, const char *path,
+                              SluiceImageSource **source)
+{
+    char set[4096];
+    const char *name = strstr(path, ".ntc#");
+    if (!name || access(path, F_OK) == 0)
+        return sluiceOpenImageSource(opener, path, source);
+    name += strlen(".ntc");
+    if (snprintf(set, sizeof set, "%.*s", (int)(name - path), path) >= (int)sizeof set)
+        return SLUICE_ERROR_FILE_NOT_FOUND;
+    return sluiceOpenNamedImageSource(opener, set, name + 1, source);
+}
+
 static SluiceResult open_source(struct scene_data *scene, const struct scene_image_request *r,
                                 SluiceImageSource **source)
 {
     SluiceImageSource *linear = NULL;
-    SluiceResult result = sluiceOpenImageSource(scene->opener, r->path, source);
+    SluiceResult result = open_path(scene->opener, r->path, source);
     if (result != SLUICE_SUCCESS || !r->linear)
         return result;
     result = linear_source_create(*source, &linear);

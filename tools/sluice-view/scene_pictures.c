@@ -19,7 +19,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define SUFFIXES SLUICE_STORE_EXTENSION "|" PICTURE_SUFFIXES
+#define NEURAL ".ntc" /* its first texture; "set.ntc#name": another one */
+#define SUFFIXES SLUICE_STORE_EXTENSION "|" NEURAL "|" PICTURE_SUFFIXES
 #define MAX_PICTURES 8192u
 
 static bool is_folder(const char *path)
@@ -30,7 +31,7 @@ static bool is_folder(const char *path)
 
 bool scene_pictures_takes(const char *path)
 {
-    return is_folder(path) || files_has_suffix(path, SUFFIXES);
+    return is_folder(path) || files_has_suffix(path, SUFFIXES) || strstr(path, NEURAL "#");
 }
 
 static bool collect(const char *const *paths, uint32_t count, struct file_list *files)
