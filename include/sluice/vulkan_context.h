@@ -11,7 +11,8 @@
  * first needs them, and destroyed with the last front end. A streamer in paged mode and a demand
  * loader that have the same SluiceImageSource read each tile once and keep it on one page.
  *
- * Submit frames and launches of a context to queues of one family.
+ * Submit frames and launches of a context to queues of one family. Queues of other families may
+ * sample (pSamplingQueueFamilies), and the library may upload on one of its own (uploadQueue).
  *
  * Front ends of a context may be used on different threads at the same time: a render thread and a
  * thread that traces paths need no lock for Sluice. Use one front end on one thread at a time.
@@ -95,10 +96,11 @@ typedef struct SluiceDeviceMemoryCallbacks {
 /**
  * Functions that lock queues, for applications that submit on several threads. Never grows.
  *
- * Sluice submits no command buffers: it records into those of the application. It calls
- * vkQueueBindSparse on sparseQueue, in sparse mode, in sluiceBeginStreamingFrame. It calls
- * vkDeviceWaitIdle when a streamer or demand loader waits for work that does not end (vulkan.h,
- * demand.h). Both calls are made between pfnLock and pfnUnlock, on the thread that called Sluice.
+ * Sluice records into command buffers of the application. It calls vkQueueBindSparse on
+ * sparseQueue, in sparse mode, and vkQueueSubmit on uploadQueue, if there is one, both in
+ * sluiceBeginStreamingFrame. It calls vkDeviceWaitIdle when a streamer or demand loader waits for
+ * work that does not end (vulkan.h, demand.h). All calls are made between pfnLock and pfnUnlock, on
+ * the thread that called Sluice.
  *
  * pfnLock may wait. Neither function may call Sluice. A thread that holds a lock which pfnLock
  * takes must not call sluiceBeginStreamingFrame or destroy a streamer or demand loader, unless that
@@ -222,6 +224,27 @@ typedef struct SluiceVulkanContextCreateInfo {
      * another thread.
      */
     const SluiceJobSystem *pJobSystem;
+    /**
+     * Queue on which streamers copy the texels of new tiles, for example of a family with
+     * VK_QUEUE_TRANSFER_BIT alone. The library submits to it. Drawing does not wait for copies:
+     * a tile is shown by the first frame that begins when its copy is complete.
+     *
+     * Frames still copy what is in their way at once: the first levels of new textures, texels that
+     * changed (vulkan_control.h), tiles of producers, and what the granularity of the family
+     * (minImageTransferGranularity) forbids. Demand loaders do not use the queue.
+     *
+     * Images and buffers have VK_SHARING_MODE_CONCURRENT if the family is not queueFamilyIndex.
+     * Default: none, frames copy everything.
+     */
+    VkQueue uploadQueue;
+    uint32_t uploadQueueFamilyIndex; ///< Family of uploadQueue. Ignored if uploadQueue is NULL.
+    /**
+     * Families of further queues that sample textures or use the buffers, for example of async
+     * compute. Copied. Images and buffers have VK_SHARING_MODE_CONCURRENT for these families and
+     * queueFamilyIndex. At most 6; docs/integrating.md has the order of submissions.
+     */
+    const uint32_t *pSamplingQueueFamilies;
+    uint32_t samplingQueueFamilyCount;
 } SluiceVulkanContextCreateInfo;
 
 /**

@@ -84,12 +84,13 @@ static VkResult allocate_buffer(struct slc_byte_memory *m, struct slc_byte_chunk
 static bool create_chunk(struct slc_byte_memory *m, struct slc_byte_chunk *chunk, uint32_t slabs)
 {
     const struct slc_vk *vk = m->vk;
-    const VkBufferCreateInfo info = {
+    VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = (uint64_t)slabs * SLC_BYTE_SLAB_SIZE,
         .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                  (m->get_address ? VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT : 0),
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+    SLC_VK_SHARE(vk, &info);
     *chunk = (struct slc_byte_chunk){.slab_count = slabs};
     chunk->slabs = slc_calloc(&m->cb, slabs, sizeof *chunk->slabs);
     VkResult result = VK_ERROR_OUT_OF_HOST_MEMORY;

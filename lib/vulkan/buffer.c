@@ -118,6 +118,7 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
                                .size = size,
                                .usage = usage,
                                .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+    SLC_VK_SHARE(vk, &info);
     SluiceResult result = slc_vk_result(
         vk, vk->CreateBuffer(vk->device, &info, NULL, &buffer->buffer), "vkCreateBuffer");
     if (result != SLUICE_SUCCESS)

@@ -23,6 +23,7 @@ static SluiceResult check_shared_limits(const SluiceVulkanContextCreateInfo *inf
     const struct slc_limit limits[] = {
         {"loaderThreadCount", info->loaderThreadCount, 0, MAX_THREADS},
         {"maxPageChunkCount", info->maxPageChunkCount, 0, SLC_MAX_PAGE_CHUNKS},
+        {"samplingQueueFamilyCount", info->samplingQueueFamilyCount, 0, SLC_MAX_QUEUE_FAMILIES - 2},
     };
     return slc_check_limits(&info->log, limits, sizeof limits / sizeof limits[0]);
 }
@@ -38,12 +39,52 @@ static SluiceResult check_fields(const SluiceVulkanContextCreateInfo *info)
         {"pfnGetInstanceProcAddr", info->pfnGetInstanceProcAddr},
         {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)},
         {"a function of pDeviceMemory", memory == NULL || (memory->pfnAllocate && memory->pfnFree)},
+        {"pSamplingQueueFamilies",
+         info->samplingQueueFamilyCount == 0 || info->pSamplingQueueFamilies},
         {"a function of pQueueLock", lock == NULL || (lock->pfnLock && lock->pfnUnlock)},
         {"the function of pJobSystem", info->pJobSystem == NULL || info->pJobSystem->pfnSubmitJob}};
     SluiceResult result = slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
     if (result == SLUICE_SUCCESS)
         result = check_shared_limits(info);
     return result == SLUICE_SUCCESS ? check_budget(&info->log, info->memoryBudget) : result;
+}
+
+static void add_family(struct slc_vk *vk, uint32_t family)
+{
+    for (uint32_t i = 0; i < vk->family_count; i++)
+        if (vk->families[i] == family)
+            return;
+    vk->families[vk->family_count++] = family;
+}
+
+/* Families that exist; all of them have queues that sample or copy. */
+static SluiceResult share_families(SluiceVulkanContext *context,
+                                   const SluiceVulkanContextCreateInfo *info)
+{
+    struct slc_vk *vk = &context->vk;
+    const VkQueueFlags copies =
+        VK_QUEUE_TRANSFER_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT;
+    SluiceResult result = SLUICE_SUCCESS;
+    add_family(vk, info->queueFamilyIndex);
+    for (uint32_t i = 0; i < info->samplingQueueFamilyCount && result == SLUICE_SUCCESS; i++) {
+        result = slc_check_queue_family(vk, "an element of pSamplingQueueFamilies",
+                                        info->pSamplingQueueFamilies[i],
+                                        VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT,
+                                        "have VK_QUEUE_COMPUTE_BIT or VK_QUEUE_GRAPHICS_BIT");
+        if (result == SLUICE_SUCCESS)
+            add_family(vk, info->pSamplingQueueFamilies[i]);
+    }
+    if (result != SLUICE_SUCCESS || !info->uploadQueue)
+        return result;
+    result = slc_check_queue_family(vk, "uploadQueueFamilyIndex", info->uploadQueueFamilyIndex,
+                                    copies, "have VK_QUEUE_TRANSFER_BIT");
+    if (result != SLUICE_SUCCESS)
+        return result;
+    add_family(vk, info->uploadQueueFamilyIndex);
+    context->upload_queue = info->uploadQueue;
+    context->upload_family = info->uploadQueueFamilyIndex;
+    context->upload_granularity = slc_transfer_granularity(vk, info->uploadQueueFamilyIndex);
+    return SLUICE_SUCCESS;
 }
 
 static SluiceResult check_queues(const struct slc_vk *vk, const SluiceVulkanContextCreateInfo *info)
@@ -83,6 +124,8 @@ static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContext
         result = slc_vk_init_device(&context->vk, info->device);
     if (result == SLUICE_SUCCESS)
         result = check_queues(&context->vk, info);
+    if (result == SLUICE_SUCCESS)
+        result = share_families(context, info);
     if (result != SLUICE_SUCCESS)
         return result;
     /* Functions of instance extensions are found by the instance alone, and only if enabled. */

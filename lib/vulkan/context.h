@@ -14,6 +14,9 @@
 struct SluiceVulkanContext {
     SluiceAllocationCallbacks cb;
     VkQueue sparse_queue; ///< VK_NULL_HANDLE: none
+    VkQueue upload_queue; ///< VK_NULL_HANDLE: none
+    uint32_t upload_family;
+    VkExtent3D upload_granularity; ///< of its family
     struct slc_vk vk;
     VkPipelineCache pipeline_cache; ///< owned; VK_NULL_HANDLE: vk has the application's
     struct slc_caps caps;

@@ -30,3 +30,12 @@ SluiceResult slc_check_queue_family(const struct slc_vk *vk, const char *field, 
     return slc_log_refusal(&vk->log, "%s is %u, a family with VkQueueFlags 0x%x, but it must %s",
                            field, index, (unsigned)families[index].queueFlags, purpose);
 }
+
+VkExtent3D slc_transfer_granularity(const struct slc_vk *vk, uint32_t family)
+{
+    VkQueueFamilyProperties families[MAX_FAMILIES];
+    uint32_t count = MAX_FAMILIES;
+    vk->GetPhysicalDeviceQueueFamilyProperties(vk->physical_device, &count, families);
+    return family < count ? families[family].minImageTransferGranularity
+                          : (VkExtent3D){0, 0, 0}; /* whole levels, which all can copy */
+}

@@ -22,4 +22,7 @@ SluiceResult slc_check_required(const SluiceLogCallback *log, const struct slc_r
 SluiceResult slc_check_queue_family(const struct slc_vk *vk, const char *field, uint32_t index,
                                     VkQueueFlags any_of, const char *purpose);
 
+/** minImageTransferGranularity of a family that exists. */
+VkExtent3D slc_transfer_granularity(const struct slc_vk *vk, uint32_t family);
+
 #endif /* SLC_VULKAN_CREATE_CHECKS_H */

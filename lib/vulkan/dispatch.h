@@ -28,6 +28,8 @@
     X(WaitSemaphores)
 /* clang-format on */
 
+#define SLC_MAX_QUEUE_FAMILIES 8u
+
 struct slc_memory_client; ///< memory_budget.h
 
 struct slc_vk {
@@ -45,6 +47,9 @@ struct slc_vk {
     struct slc_memory_client *memory_client;             ///< NULL: nobody counts
     const SluiceDeviceMemoryCallbacks *memory_callbacks; ///< NULL: Vulkan allocates
     const SluiceVulkanQueueLockCallbacks *queue_lock;    ///< NULL: none; queues.h uses it
+    /** Different ones, of all queues that use images and buffers; with one they are exclusive. */
+    uint32_t families[SLC_MAX_QUEUE_FAMILIES];
+    uint32_t family_count;
 };
 
 /** Only what needs no device. Errors: UNSUPPORTED if a function is missing. */
@@ -58,6 +63,16 @@ SluiceResult slc_vk_init_device(struct slc_vk *vk, VkDevice device);
 /** Names an object for debuggers, if the instance has VK_EXT_debug_utils: "sluice: " and `name`.
  *  VK_NULL_HANDLE is allowed. */
 void slc_vk_name(const struct slc_vk *vk, VkObjectType type, uint64_t handle, const char *name);
+
+/** Fills in how the queues of all families share a VkImageCreateInfo or VkBufferCreateInfo. */
+#define SLC_VK_SHARE(vk, create)                                                                   \
+    do {                                                                                           \
+        if ((vk)->family_count > 1) {                                                              \
+            (create)->sharingMode = VK_SHARING_MODE_CONCURRENT;                                    \
+            (create)->queueFamilyIndexCount = (vk)->family_count;                                  \
+            (create)->pQueueFamilyIndices = (vk)->families;                                        \
+        }                                                                                          \
+    } while (0)
 
 /** What a VkResult means here; logs `what` and the code unless it is success. */
 SluiceResult slc_vk_result(const struct slc_vk *vk, VkResult result, const char *what);

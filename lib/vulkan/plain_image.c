@@ -57,6 +57,7 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
     if (memory->purpose == SLUICE_DEVICE_MEMORY_PURPOSE_PAGES)
         create.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT; /* tiles move from one to another */
     struct slc_image_formats formats;
+    SLC_VK_SHARE(vk, &create);
     slc_image_use_apply(use, &create, &formats);
     const char *trouble = check_format(vk, &create, texel_bytes(info, first_level));
     if (trouble) {

@@ -31,6 +31,7 @@ SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_ca
 {
     VkImageCreateInfo info = image_create_info(VK_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1, 1);
     VkImage image;
+    SLC_VK_SHARE(vk, &info);
     SluiceResult result =
         slc_vk_result(vk, vk->CreateImage(vk->device, &info, NULL, &image), "vkCreateImage");
     if (result != SLUICE_SUCCESS)
@@ -154,6 +155,7 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
         image_create_info(slc_vk_format(info->format), info->width, info->height,
                           info->mipLevelCount, layer_count(info));
     struct slc_image_formats formats;
+    SLC_VK_SHARE(vk, &create);
     create.flags |= slc_image_flags(info);
     slc_image_use_apply(use, &create, &formats);
     const char *trouble = check_format(vk, caps, info);

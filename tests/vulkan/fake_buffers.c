@@ -12,6 +12,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBuf
     (void)cb;
     struct fake_object *object = fake_make_shown(fake_of(device), info->size);
     object->usage = info->usage;
+    FAKE_SHARE(object, info);
     *buffer = (VkBuffer)object;
     return VK_SUCCESS;
 }

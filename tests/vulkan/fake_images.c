@@ -11,6 +11,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_image(VkDevice device, const VkImag
     object->level_count = info->mipLevels;
     object->layer_count = info->arrayLayers;
     object->image_flags = info->flags;
+    FAKE_SHARE(object, info);
     const VkImageFormatListCreateInfo *list = info->pNext;
     for (; list && object->format_count < list->viewFormatCount; object->format_count++)
         object->view_formats[object->format_count] = list->pViewFormats[object->format_count];

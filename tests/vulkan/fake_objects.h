@@ -20,7 +20,10 @@ struct fake_object {
     VkImageCreateFlags image_flags;
     VkFormat view_formats[32]; ///< of an image; format_count of them
     uint32_t format_count;
-    bool general; ///< the layout of an image
+    uint32_t families[8]; ///< that share an image or buffer; family_count of them, 0: exclusive
+    uint32_t family_count;
+    bool general;           ///< the layout of an image
+    uint64_t general_frame; ///< in which it got that
     bool has_name, needs_name;
     uint32_t first_image; ///< binding of a set layout; UINT32_MAX: it has buffers alone
 };
@@ -42,6 +45,16 @@ VkResult fake_next_call(struct fake_vulkan *fake);
         VkResult status = fake_next_call(fake_of(handle));                                         \
         if (status != VK_SUCCESS)                                                                  \
             return status;                                                                         \
+    } while (0)
+
+/** Notes which families share an image or buffer. */
+#define FAKE_SHARE(object, info)                                                                   \
+    do {                                                                                           \
+        if ((info)->sharingMode == VK_SHARING_MODE_CONCURRENT)                                     \
+            for (; (object)->family_count < (info)->queueFamilyIndexCount;                         \
+                 (object)->family_count++)                                                         \
+                (object)->families[(object)->family_count] =                                       \
+                    (info)->pQueueFamilyIndices[(object)->family_count];                           \
     } while (0)
 
 /** Creates a live object of `size` bytes. */
