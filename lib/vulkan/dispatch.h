@@ -12,19 +12,19 @@
     X(GetPhysicalDeviceQueueFamilyProperties) X(GetPhysicalDeviceSparseImageFormatProperties)
 
 #define SLC_VK_DEVICE_FUNCTIONS(X)                                                                 \
-    X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(BindImageMemory)             \
+    X(AllocateCommandBuffers) X(AllocateDescriptorSets) X(AllocateMemory) X(BeginCommandBuffer) X(BindBufferMemory) X(BindImageMemory)             \
     X(CmdBindDescriptorSets)                                                                       \
     X(CmdBindPipeline) X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdCopyImage) X(CmdDispatch)                     \
     X(CmdFillBuffer)                                                        \
     X(CmdPipelineBarrier) X(CmdPushConstants) X(CmdUpdateBuffer) X(CreateBuffer)                   \
-    X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
+    X(CreateCommandPool) X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
     X(CreateImageView) X(CreatePipelineCache) X(CreatePipelineLayout) X(CreateSampler) X(CreateSemaphore)                 \
     X(CreateShaderModule)                                                                         \
-    X(DestroyBuffer) X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyImage)        \
+    X(DestroyBuffer) X(DestroyCommandPool) X(EndCommandBuffer) X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyImage)        \
     X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineCache) X(DestroyPipelineLayout) X(DestroySampler) X(DestroySemaphore)             \
     X(DestroyShaderModule) X(DeviceWaitIdle) X(FreeMemory) X(GetBufferMemoryRequirements)          \
     X(GetImageMemoryRequirements) X(GetImageSparseMemoryRequirements) X(GetSemaphoreCounterValue)  \
-    X(MapMemory) X(QueueBindSparse) X(UpdateDescriptorSets)        \
+    X(MapMemory) X(QueueBindSparse) X(QueueSubmit) X(UpdateDescriptorSets)        \
     X(WaitSemaphores)
 /* clang-format on */
 

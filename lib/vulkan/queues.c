@@ -20,6 +20,14 @@ VkResult slc_queue_bind_sparse(const struct slc_vk *vk, VkQueue queue, const VkB
     return result;
 }
 
+VkResult slc_queue_submit(const struct slc_vk *vk, VkQueue queue, const VkSubmitInfo *info)
+{
+    lock(vk, queue);
+    VkResult result = vk->QueueSubmit(queue, 1, info, VK_NULL_HANDLE);
+    unlock(vk, queue);
+    return result;
+}
+
 VkResult slc_wait_for_device(const struct slc_vk *vk)
 {
     lock(vk, VK_NULL_HANDLE);

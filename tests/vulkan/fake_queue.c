@@ -24,6 +24,8 @@ static VKAPI_ATTR void VKAPI_CALL destroy_semaphore(VkDevice device, VkSemaphore
 
 static uint64_t value_of(const struct fake_vulkan *fake, VkSemaphore semaphore)
 {
+    if (fake->upload_semaphore && semaphore == fake->upload_semaphore)
+        return fake->upload_value;
     /* until the first bind tells which one is its, both stand at 0 */
     bool binds = fake->submitted_bind_value == 0 || semaphore == fake->bind_semaphore;
     return semaphore == fake->frame_semaphore ? fake->frame_value : binds ? fake->bind_value : 0;
@@ -48,6 +50,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device,
     fake->waits[fake->wait_count++ % 64] = wait;
     if (fake->waits_signal && fake->frame_value < wait.value)
         fake->frame_value = wait.value;
+    if (fake->upload_semaphore && wait.semaphore == fake->upload_semaphore)
+        fake->upload_value = wait.value;
     bool waits = fake->waits_time_out && value_of(fake, wait.semaphore) < wait.value;
     return waits ? VK_TIMEOUT : VK_SUCCESS;
 }
@@ -138,6 +142,71 @@ static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
     return VK_SUCCESS;
 }
 
+static VKAPI_ATTR VkResult VKAPI_CALL create_pool(VkDevice device,
+                                                  const VkCommandPoolCreateInfo *info,
+                                                  const VkAllocationCallbacks *cb,
+                                                  VkCommandPool *pool)
+{
+    FAKE_MAY_FAIL(device);
+    (void)cb;
+    assert_in_range(info->queueFamilyIndex, 0, FAKE_TRANSFER_FAMILY);
+    *pool = fake_make_shown(fake_of(device), 0);
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_pool(VkDevice device, VkCommandPool pool,
+                                               const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    struct fake_vulkan *fake = fake_of(device);
+    assert_int_equal(fake->upload_value, fake->submitted_upload_value);
+    fake_drop(fake, pool);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL allocate_commands(VkDevice device,
+                                                        const VkCommandBufferAllocateInfo *info,
+                                                        VkCommandBuffer *commands)
+{
+    FAKE_MAY_FAIL(device);
+    for (uint32_t i = 0; i < info->commandBufferCount; i++)
+        commands[i] = fake_vulkan_commands(fake_of(device));
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL begin_commands(VkCommandBuffer commands,
+                                                     const VkCommandBufferBeginInfo *info)
+{
+    FAKE_MAY_FAIL(commands);
+    (void)info;
+    assert_false(fake_of(commands)->records_uploads);
+    fake_of(commands)->records_uploads = true;
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL end_commands(VkCommandBuffer commands)
+{
+    fake_of(commands)->records_uploads = false;
+    FAKE_MAY_FAIL(commands);
+    return VK_SUCCESS;
+}
+
+/* A batch of uploads waits only for what has happened: nothing of it can stall. */
+static VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, uint32_t count,
+                                             const VkSubmitInfo *info, VkFence fence)
+{
+    struct fake_vulkan *fake = fake_of(queue);
+    check_lock(fake, queue);
+    FAKE_MAY_FAIL(queue);
+    const VkTimelineSemaphoreSubmitInfo *timeline = info->pNext;
+    assert_true(count == 1 && fence == VK_NULL_HANDLE && !fake->records_uploads);
+    assert_true(info->waitSemaphoreCount == 1 && info->signalSemaphoreCount == 1);
+    assert_ptr_equal(info->pWaitSemaphores[0], fake->frame_semaphore);
+    assert_in_range(timeline->pWaitSemaphoreValues[0], 1, fake->frame_value);
+    assert_int_equal(timeline->pSignalSemaphoreValues[0], ++fake->submitted_upload_value);
+    fake->upload_semaphore = info->pSignalSemaphores[0];
+    return VK_SUCCESS;
+}
+
 /* Fails only if the device is lost. */
 static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
 {
@@ -149,6 +218,12 @@ static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
 }
 
 const struct fake_function fake_queue_functions[] = {
+    FAKE_FUNCTION(AllocateCommandBuffers, allocate_commands),
+    FAKE_FUNCTION(BeginCommandBuffer, begin_commands),
+    FAKE_FUNCTION(CreateCommandPool, create_pool),
+    FAKE_FUNCTION(DestroyCommandPool, destroy_pool),
+    FAKE_FUNCTION(EndCommandBuffer, end_commands),
+    FAKE_FUNCTION(QueueSubmit, submit),
     FAKE_FUNCTION(CreateSemaphore, create_semaphore),
     FAKE_FUNCTION(DestroySemaphore, destroy_semaphore),
     FAKE_FUNCTION(DeviceWaitIdle, wait_idle),

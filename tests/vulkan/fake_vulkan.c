@@ -83,6 +83,8 @@ SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake)
         .device = (VkDevice)(void *)fake,
         .pfnGetInstanceProcAddr = get_instance_function,
         .sparseQueue = (VkQueue)(void *)fake,
+        .uploadQueue = fake->has_upload_queue ? (VkQueue)(void *)fake : VK_NULL_HANDLE,
+        .uploadQueueFamilyIndex = FAKE_TRANSFER_FAMILY,
         .pAllocator = fake->pAllocator,
         .log = fake->log,
         .loaderThreadCount = fake->loaderThreadCount ? fake->loaderThreadCount : 1,

@@ -34,6 +34,7 @@ struct fake_copy {
     VkImage image;
     uint32_t level, layer, x, y; ///< in tiles
     uint32_t texel;              ///< the first four bytes
+    bool early;                  ///< on the upload queue
     VkImage from;                ///< from this layer of an image; VK_NULL_HANDLE: from a buffer
     uint32_t from_layer;
 };
@@ -61,6 +62,15 @@ struct fake_vulkan {
     uint64_t submitted_bind_value;
     VkSemaphore bind_semaphore;
     VkSemaphore frame_semaphore; ///< set by the test once a frame has told
+
+    /** The upload queue. The test sets has_upload_queue before the context, then upload_value. */
+    bool has_upload_queue;
+    VkExtent3D granularity; ///< of its family; zeroed: 1 in all directions
+    bool whole_levels;      ///< its family copies these alone
+    uint64_t upload_value, submitted_upload_value;
+    VkSemaphore upload_semaphore;
+    bool records_uploads; ///< between begin and end of a command buffer of the library
+    uint64_t now_frame;   ///< that the test begins: images get their layout in it
 
     /** Events since the test last set the counts to 0. */
     struct fake_bind binds[FAKE_EVENTS];
