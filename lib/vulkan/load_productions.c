@@ -8,6 +8,7 @@
 #include "vulkan/producer_calls.h"
 #include "vulkan/read_troubles.h"
 #include "vulkan/tile_upload.h"
+#include "vulkan/unit_copies.h"
 
 #include <assert.h>
 

@@ -42,6 +42,9 @@ struct slc_tile_page {
     uint32_t image_index, layer;
 };
 
+/** Bits: copies texels, and shows tiles from the frame that begins on. */
+enum slc_upload_part { SLC_UPLOAD_COPY = 1, SLC_UPLOAD_SHOW = 2 };
+
 struct slc_residency_interface {
     /** Uploads go to images that are not sparse and have all their memory. */
     bool ordinary_images;
@@ -146,10 +149,11 @@ struct slc_residency_interface {
     /** The largest frame such that all unmaps of it and of earlier ones are over. */
     uint64_t (*retire_limit)(const struct slc_residency *residency, uint64_t completed_frame);
 
-    /** One image's texels from `buffer`; the streamer puts barriers around. */
+    /** One image's texels from `buffer`; the streamer puts barriers around. COPY alone may be of
+     *  another queue: the tiles are shown later, by SHOW alone. */
     void (*record_uploads)(struct slc_residency *residency, uint32_t index,
                            VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
-                           const VkBufferImageCopy *regions);
+                           const VkBufferImageCopy *regions, uint32_t parts);
 
     /* What follows may be NULL: there is nothing to do. */
 

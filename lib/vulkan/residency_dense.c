@@ -144,11 +144,12 @@ static uint64_t retire_limit(const struct slc_residency *residency, uint64_t com
 
 static void record_uploads(struct slc_residency *residency, uint32_t index,
                            VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
-                           const VkBufferImageCopy *regions)
+                           const VkBufferImageCopy *regions, uint32_t parts)
 {
     struct dense_residency *d = dense(residency);
-    d->vk->CmdCopyBufferToImage(commands, buffer, d->images[index].image, VK_IMAGE_LAYOUT_GENERAL,
-                                count, regions);
+    if (parts & SLC_UPLOAD_COPY)
+        d->vk->CmdCopyBufferToImage(commands, buffer, d->images[index].image,
+                                    VK_IMAGE_LAYOUT_GENERAL, count, regions);
 }
 
 static void destroy(struct slc_residency *residency)

@@ -477,7 +477,8 @@ static uint32_t round_up(uint32_t size, uint32_t to)
 }
 
 /* The copy into the image that holds the texels; which one that is. */
-static VkImage place_copy(struct paged_residency *p, uint32_t index, VkBufferImageCopy *copy)
+static VkImage place_copy(struct paged_residency *p, uint32_t index, VkBufferImageCopy *copy,
+                          bool shows)
 {
     const struct paged_image *image = &p->images[index];
     const SluiceStreamedTextureDesc *desc = &p->table.parts[index].desc;
@@ -491,8 +492,11 @@ static VkImage place_copy(struct paged_residency *p, uint32_t index, VkBufferIma
     uint32_t word = slc_page_table_word(&p->table, index, level, x, y);
     assert(slc_page_is_taken(p->table.entries[word]));
     uint32_t page = slc_page_of_entry(p->table.entries[word]);
-    p->table.entries[word] |= SLC_PAGE_SHOWN;
-    slc_page_share_written(p->pool, p->user, page, p->frame);
+    if (shows) {
+        p->table.entries[word] |= SLC_PAGE_SHOWN;
+        slc_page_share_written(p->pool, p->user, page, p->frame);
+        slc_page_table_store(&p->table, index, word, p->frame);
+    }
     copy->imageSubresource.mipLevel = 0;
     copy->imageSubresource.baseArrayLayer = page & 0xFFFFu;
     copy->imageOffset.x %= (int32_t)desc->tileWidth;
@@ -500,13 +504,12 @@ static VkImage place_copy(struct paged_residency *p, uint32_t index, VkBufferIma
     /* A tile at the edge ends inside the page, where only whole blocks may end. */
     copy->imageExtent.width = round_up(copy->imageExtent.width, image->block_width);
     copy->imageExtent.height = round_up(copy->imageExtent.height, image->block_height);
-    slc_page_table_store(&p->table, index, word, p->frame);
     return slc_page_image(p->pool, page);
 }
 
 static void record_uploads(struct slc_residency *residency, uint32_t index,
                            VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
-                           const VkBufferImageCopy *regions)
+                           const VkBufferImageCopy *regions, uint32_t parts)
 {
     struct paged_residency *p = paged(residency);
     VkBufferImageCopy copies[COPY_BATCH];
@@ -514,7 +517,9 @@ static void record_uploads(struct slc_residency *residency, uint32_t index,
     uint32_t copy_count = 0;
     for (uint32_t i = 0; i < count; i++) {
         VkBufferImageCopy copy = regions[i];
-        VkImage image = place_copy(p, index, &copy);
+        VkImage image = place_copy(p, index, &copy, parts & SLC_UPLOAD_SHOW);
+        if (!(parts & SLC_UPLOAD_COPY))
+            continue;
         if (copy_count && (image != target || copy_count == COPY_BATCH)) {
             p->vk->CmdCopyBufferToImage(commands, buffer, target, VK_IMAGE_LAYOUT_GENERAL,
                                         copy_count, copies);

@@ -513,11 +513,12 @@ static SluiceResult wait(struct slc_residency *residency)
 
 static void record_uploads(struct slc_residency *residency, uint32_t index,
                            VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
-                           const VkBufferImageCopy *regions)
+                           const VkBufferImageCopy *regions, uint32_t parts)
 {
     struct sparse_residency *s = sparse(residency);
-    s->vk->CmdCopyBufferToImage(commands, buffer, s->images[index].image, VK_IMAGE_LAYOUT_GENERAL,
-                                count, regions);
+    if (parts & SLC_UPLOAD_COPY)
+        s->vk->CmdCopyBufferToImage(commands, buffer, s->images[index].image,
+                                    VK_IMAGE_LAYOUT_GENERAL, count, regions);
 }
 
 static void destroy(struct slc_residency *residency)

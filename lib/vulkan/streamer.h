@@ -25,6 +25,7 @@
 #include "vulkan/texture_views.h"
 #include "vulkan/tile_producer.h"
 #include "vulkan/time_defaults.h"
+#include "vulkan/upload_queue.h"
 
 #include <sluice/shared/texture_table.h>
 #include <sluice/vulkan_explain.h>
@@ -134,6 +135,7 @@ struct slc_unit {
     const SluiceImageSource *source; ///< READING: that the loader reads
     bool produced; ///< the application's commands fill it: it has no memory in its staging slot
     uint64_t asked_frame; ///< frame that first asked its producer; 0: none
+    bool copied;          ///< its texels are in their place, or on their way on the upload queue
     uint64_t ticket;
     uint64_t value;       ///< BINDING: of the bind; UPLOADED: the frame
     uint64_t stage_frame; ///< in which it entered its stage (load_stages.h)

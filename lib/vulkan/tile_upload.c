@@ -6,37 +6,9 @@
 #include "vulkan/load_reloads.h"
 #include "vulkan/load_stages.h"
 #include "vulkan/load_units.h"
+#include "vulkan/unit_copies.h"
 
 #include <assert.h>
-
-static VkBufferImageCopy copy_of(uint64_t offset, const SluiceImageRegion *region, uint32_t layer)
-{
-    return (VkBufferImageCopy){
-        .bufferOffset = offset,
-        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, region->mipLevel, layer, 1},
-        .imageOffset = {(int32_t)region->x, (int32_t)region->y, 0},
-        .imageExtent = {region->width, region->height, 1}};
-}
-
-/* The copies of one unit; how many. */
-static uint32_t unit_copies(const SluiceVulkanStreamer *s, uint32_t index,
-                            VkBufferImageCopy *copies)
-{
-    const struct slc_unit *unit = &s->units[index];
-    const struct slc_texture *texture = &s->textures[unit->texture];
-    uint64_t base = slc_staging_offset(index);
-    if (unit->packed_unit != SLC_NONE) {
-        const struct slc_packed_unit *packed = &texture->packed.units[unit->packed_unit];
-        for (uint32_t i = 0; i < packed->rect_count; i++) {
-            const struct slc_packed_rect *rect = &texture->packed.rects[packed->first_rect + i];
-            copies[i] = copy_of(base + rect->offset, &rect->region, texture->layer);
-        }
-        return packed->rect_count;
-    }
-    const SluiceImageRegion region = slc_tile_region(texture, &unit->tile);
-    copies[0] = copy_of(base, &region, texture->layer);
-    return 1;
-}
 
 SluiceResult slc_packed_publish(SluiceVulkanStreamer *s, uint32_t index)
 {
@@ -90,30 +62,21 @@ static void list_tiles(SluiceVulkanStreamer *s, const uint32_t *units, uint32_t 
     }
 }
 
-/* The copies of units of one texture from one staging buffer. */
-static void upload_block(SluiceVulkanStreamer *s, VkCommandBuffer commands, const uint32_t *units,
+/* The copies of a group, and what shows its tiles. */
+static void upload_group(SluiceVulkanStreamer *s, VkCommandBuffer commands, const uint32_t *units,
                          uint32_t count)
 {
-    uint32_t texture = s->units[units[0]].texture, copy_count = 0;
+    bool copied = s->units[units[0]].copied;
+    slc_record_group(s, commands, units, count,
+                     copied ? SLC_UPLOAD_SHOW : SLC_UPLOAD_COPY | SLC_UPLOAD_SHOW);
     for (uint32_t i = 0; i < count; i++) {
         struct slc_unit *unit = &s->units[units[i]];
-        uint32_t added = unit_copies(s, units[i], &s->copies[copy_count]);
-        bool counts = !unit->published || unit->reload;
-        for (uint32_t j = copy_count; j < copy_count + added && counts; j++)
-            s->counts.bytesUploaded += sluiceGetFormatRegionSize(s->textures[texture].info.format,
-                                                                 s->copies[j].imageExtent.width,
-                                                                 s->copies[j].imageExtent.height);
-        copy_count += added;
-        assert(copy_count <= s->copy_capacity);
-        slc_load_stage_unit(s, unit, SLUICE_LOAD_STAGE_BIND);
+        if (!copied)
+            slc_load_stage_unit(s, unit, SLUICE_LOAD_STAGE_BIND);
         unit->state = SLC_UNIT_UPLOADED;
         unit->value = s->frame;
         slc_unit_list_append(s, &s->uploaded, units[i]);
     }
-    struct slc_residency *residency = slc_residency_of(s, texture);
-    residency->interface->record_uploads(residency, texture, commands,
-                                         slc_staging_buffer(&s->staging, units[0]), copy_count,
-                                         s->copies);
 }
 
 static uint64_t by_texture(const SluiceVulkanStreamer *s, uint32_t unit)
@@ -124,19 +87,6 @@ static uint64_t by_texture(const SluiceVulkanStreamer *s, uint32_t unit)
 static uint64_t by_texture_and_slot(const SluiceVulkanStreamer *s, uint32_t unit)
 {
     return (uint64_t)s->units[unit].texture << 32 | unit;
-}
-
-/* Shell sort: a few hundred entries, no allocation. */
-void slc_sort_units(const SluiceVulkanStreamer *s, uint32_t *units, uint32_t count,
-                    uint64_t (*key)(const SluiceVulkanStreamer *s, uint32_t unit))
-{
-    for (uint32_t gap = count / 2; gap > 0; gap /= 2)
-        for (uint32_t i = gap; i < count; i++) {
-            uint32_t unit = units[i], at = i;
-            for (; at >= gap && key(s, units[at - gap]) > key(s, unit); at -= gap)
-                units[at] = units[at - gap];
-            units[at] = unit;
-        }
 }
 
 /* By texture, and of each texture in the order of arrival. */
@@ -154,24 +104,6 @@ static SluiceResult publish_units(SluiceVulkanStreamer *s, const uint32_t *units
     return result;
 }
 
-/* Copies of a texture are disjoint and need no barrier. But synchronization validation (1.3.239)
- * takes block-compressed texels for rows of texels, and reports disjoint copies of two commands to
- * an ordinary image as overlapping. */
-static bool needs_barriers(const SluiceVulkanStreamer *s, uint32_t texture)
-{
-    return slc_residency_of(s, texture)->interface->ordinary_images &&
-           sluiceGetFormatTexelSize(s->textures[texture].info.format) == 0;
-}
-
-static void wait_for_copies(const SluiceVulkanStreamer *s, VkCommandBuffer commands)
-{
-    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                              .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
-                              .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT};
-    s->vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                             VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &memory, 0, NULL, 0, NULL);
-}
-
 /* Round n has the nth command of each texture that needs barriers; round 0 has all of the others,
  * too. So there is at most one barrier for each staging buffer. False if nothing is left. */
 static bool record_round(SluiceVulkanStreamer *s, VkCommandBuffer commands, const uint32_t *units,
@@ -181,17 +113,14 @@ static bool record_round(SluiceVulkanStreamer *s, VkCommandBuffer commands, cons
     uint32_t turn = 0;
     for (uint32_t i = 0, next; i < count; i = next) {
         uint32_t texture = s->units[units[i]].texture;
-        for (next = i + 1; next < count; next++)
-            if (s->units[units[next]].texture != texture ||
-                slc_staging_block(units[next]) != slc_staging_block(units[i]))
-                break;
+        next = i + slc_unit_group(s, units + i, count - i);
         bool continues = i > 0 && s->units[units[i - 1]].texture == texture;
-        turn = continues && needs_barriers(s, texture) ? turn + 1 : 0;
+        turn = continues && slc_copies_need_barriers(s, texture) ? turn + 1 : 0;
         if (turn != round)
             continue;
         if (round > 0 && !any)
-            wait_for_copies(s, commands);
-        upload_block(s, commands, &units[i], next - i);
+            slc_record_transfer_barrier(&s->vk, commands);
+        upload_group(s, commands, &units[i], next - i);
         any = true;
     }
     return any;
@@ -241,10 +170,10 @@ SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer co
     uint32_t left = s->info.tilesPerFrame, count;
     SluiceResult result = SLUICE_SUCCESS;
     if (s->reload_unit_count) /* pages may have moved in this frame */
-        wait_for_copies(s, commands);
+        slc_record_transfer_barrier(&s->vk, commands);
     for (bool first = true; result >= 0 && (count = take_units(s, &left)) > 0; first = false) {
         if (!first && (s->residency->interface->ordinary_images || s->plain))
-            wait_for_copies(s, commands); /* see needs_barriers */
+            slc_record_transfer_barrier(&s->vk, commands); /* see slc_copies_need_barriers */
         result = record_units(s, commands, count);
     }
     return result;
