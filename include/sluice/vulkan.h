@@ -334,8 +334,8 @@ SLUICE_API SluiceResult sluiceCompactVulkanStreamer(SluiceVulkanStreamer *stream
 SLUICE_API SluiceResult sluiceResolveAllVulkanTextures(SluiceVulkanStreamer *streamer);
 
 /**
- * Waits until no read is in progress and all submitted bindings are complete. Does not wait for
- * frames.
+ * Waits until no read is in progress, and all submitted bindings and uploads are complete. Does not
+ * wait for frames.
  *
  * For tests, offline rendering and shutdown: the next frame then maps everything that was
  * requested.
@@ -693,6 +693,14 @@ typedef struct SluiceStreamingFrame {
      * commands of this frame: later frames write it again. The streamer owns it.
      */
     VkDescriptorSet descriptorSet;
+    /**
+     * Timeline semaphore of SluiceVulkanContextCreateInfo.uploadQueue. Your submission must wait
+     * until it is at uploadValue, at all stages that sample. It is there when the frame begins, so
+     * the GPU never waits; the wait makes the copied texels visible to the frame's queue.
+     * VK_NULL_HANDLE without such a queue.
+     */
+    VkSemaphore uploadSemaphore;
+    uint64_t uploadValue; ///< 0: nothing was copied there yet.
 } SluiceStreamingFrame;
 
 /**
@@ -807,6 +815,7 @@ typedef struct SluiceVulkanStreamerStatistics {
     /** Resident tiles, and 64 KiB of mip tails, that were read again because their texels changed
      *  (vulkan_control.h). */
     uint64_t tilesReloaded;
+    uint64_t uploadQueueCopies; ///< Tiles, and parts of mip tails, copied on uploadQueue.
 } SluiceVulkanStreamerStatistics;
 
 /**

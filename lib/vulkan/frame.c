@@ -258,6 +258,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                   .frameIndex = s->frame,
                                   .semaphore = s->semaphore,
                                   .signalValue = s->frame};
+    frame.uploadSemaphore = s->uploads.semaphore;
     slc_device_budget_turn(&s->context->device_budget, &s->context->budget);
     sluiceMarkTileEvents(s->manager, s->frame);
     slc_load_stages_begin(s);
@@ -271,6 +272,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
         s->ended_frame = s->frame;
         return result;
     }
+    frame.uploadValue = s->uploads.completed;
     frame.descriptorSet =
         slc_descriptors_update(&s->descriptors, &s->vk, s->slot,
                                slc_page_pool_views(s->pages, s->page_user), &s->texture_array);

@@ -96,8 +96,10 @@ void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value)
         slc_packed_queue_remove(s, i);
     }
     for (uint32_t unit = s->binding.first; unit != SLC_NONE; unit = s->units[unit].next)
-        if (s->units[unit].value == UINT64_MAX)
+        if (s->units[unit].value == UINT64_MAX) {
             s->units[unit].value = value;
+            s->units[unit].bound_frame = s->frame;
+        }
 }
 
 void slc_loads_recycle(SluiceVulkanStreamer *s)

@@ -111,7 +111,7 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
     if (!s->units)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     const struct slc_unit_list empty = {SLC_NONE, SLC_NONE};
-    s->free_units = s->arrived = s->binding = s->uploaded = empty;
+    s->free_units = s->arrived = s->binding = s->copying = s->uploaded = empty;
     s->unproduced = s->produced = empty;
     for (uint32_t i = 0; i < count; i++)
         slc_unit_list_append(s, &s->free_units, i);

@@ -48,6 +48,8 @@ enum slc_upload_part { SLC_UPLOAD_COPY = 1, SLC_UPLOAD_SHOW = 2 };
 struct slc_residency_interface {
     /** Uploads go to images that are not sparse and have all their memory. */
     bool ordinary_images;
+    /** A map is complete only when no frame under way can read the tile's place. */
+    bool maps_unread;
 
     /** Nothing of it is in use on the GPU. */
     void (*destroy)(struct slc_residency *residency);

@@ -557,6 +557,7 @@ static const struct slc_residency_interface sparse_interface = {
     .update = update,
     .map = map,
     .unmap = unmap,
+    .maps_unread = true,
     .discard = discard,
     .room_to_unmap = room_to_unmap,
     .submit = submit,

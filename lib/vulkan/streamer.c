@@ -305,6 +305,9 @@ static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
         result = create_manager(s);
     if (result == SLUICE_SUCCESS)
         result = slc_loads_init(s);
+    if (result == SLUICE_SUCCESS && s->context->upload_queue)
+        result = slc_upload_queue_init(&s->uploads, &s->vk, s->context->upload_queue,
+                                       s->context->upload_family);
     return result;
 }
 
@@ -394,11 +397,13 @@ static void wait_for_own_work(SluiceVulkanStreamer *s)
         slc_timeline_wait(&s->vk, s->semaphore, frame, "frame");
     if (s->residency)
         s->residency->interface->wait(s->residency);
+    slc_upload_queue_wait(&s->uploads, &s->vk);
 }
 
 static void destroy_device_parts(SluiceVulkanStreamer *s)
 {
     wait_for_own_work(s);
+    slc_upload_queue_finish(&s->uploads, &s->vk);
     slc_loads_finish(s);
     for (uint32_t i = 0; i < s->texture_high; i++)
         slc_texture_destroy(s, i);
@@ -440,6 +445,7 @@ SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer)
     if (!s)
         return SLUICE_ERROR_NULL_POINTER;
     sluiceWaitTileLoaderIdle(s->loader);
+    slc_upload_queue_wait(&s->uploads, &s->vk);
     return s->residency->interface->wait(s->residency);
 }
 

@@ -136,8 +136,9 @@ struct slc_unit {
     bool produced; ///< the application's commands fill it: it has no memory in its staging slot
     uint64_t asked_frame; ///< frame that first asked its producer; 0: none
     bool copied;          ///< its texels are in their place, or on their way on the upload queue
+    uint64_t bound_frame; ///< in which its bind was submitted
     uint64_t ticket;
-    uint64_t value;       ///< BINDING: of the bind; UPLOADED: the frame
+    uint64_t value;       ///< BINDING: of the bind, in `copying` of the upload; UPLOADED: the frame
     uint64_t stage_frame; ///< in which it entered its stage (load_stages.h)
     uint32_t next;        ///< in its list
 };
@@ -264,6 +265,7 @@ struct SluiceVulkanStreamer {
     struct slc_unit *units;          ///< owned; maxLoadsInFlight
     struct slc_unit_list free_units; ///< used last, first
     struct slc_unit_list arrived, binding, uploaded;
+    struct slc_unit_list copying;    ///< BINDING, on the upload queue; oldest first
     struct slc_unit_list unproduced; ///< bound, not recorded
     struct slc_unit_list produced;   ///< recorded, not complete
     uint32_t free_unit_count;
@@ -276,6 +278,7 @@ struct SluiceVulkanStreamer {
     uint32_t
         pages_left[SLC_PAGE_FORMATS]; ///< for loads that start in this frame; SLC_NONE: unknown
     struct slc_staging staging;       ///< a slot per unit
+    struct slc_upload_queue uploads;  ///< zeroed: frames make all copies
     uint32_t *frame_units;            ///< owned; tilesPerFrame
     VkBufferImageCopy *copies;        ///< owned
     uint32_t copy_capacity;

@@ -25,8 +25,8 @@ static bool frame_has_work(const SluiceVulkanStreamer *s)
     /* Outside of frames the manager is locked for calls of its interface. */
     uint32_t requested = slc_manager_slot_statistics(s->manager).requestedTileCount;
     return s->due_map_count || !is_empty(&s->arrived) || !is_empty(&s->binding) ||
-           !is_empty(&s->unproduced) || !is_empty(&s->produced) || s->packed_queue_count ||
-           s->ended_frame != s->frame || (requested && s->free_unit_count);
+           !is_empty(&s->copying) || !is_empty(&s->unproduced) || !is_empty(&s->produced) ||
+           s->packed_queue_count || s->ended_frame != s->frame || (requested && s->free_unit_count);
 }
 
 static SluiceVulkanWaitStatus status_of(const SluiceVulkanRequestProgress *p)

@@ -2,6 +2,7 @@
 #include "vulkan/tile_upload.h"
 
 #include "base/alloc.h"
+#include "vulkan/early_uploads.h"
 #include "vulkan/load_reads.h"
 #include "vulkan/load_reloads.h"
 #include "vulkan/load_stages.h"
@@ -138,20 +139,41 @@ static SluiceResult record_units(SluiceVulkanStreamer *s, VkCommandBuffer comman
     return result;
 }
 
+/* Units that the upload queue has copied, into frame_units. */
+static uint32_t take_early(SluiceVulkanStreamer *s, uint32_t *left)
+{
+    uint32_t count = 0, unit;
+    while (count < s->info.tilesPerFrame && *left != 0 &&
+           (unit = slc_early_uploads_next(s)) != SLC_NONE) {
+        slc_unit_list_pop(s, &s->copying);
+        if (s->units[unit].dropped ||
+            s->textures[s->units[unit].texture].state == SLC_TEXTURE_REMOVED) {
+            slc_unit_free(s, unit);
+            continue;
+        }
+        s->frame_units[count++] = unit;
+        --*left;
+    }
+    return count;
+}
+
 /* Units whose binding is over, into frame_units: all that the manager knows, and `*left` others. */
 static uint32_t take_units(SluiceVulkanStreamer *s, uint32_t *left)
 {
     uint64_t completed = s->residency->interface->completed_value(s->residency);
     struct slc_unit_list later = {SLC_NONE, SLC_NONE};
-    uint32_t count = 0;
+    uint32_t count = take_early(s, left);
     while (count < s->info.tilesPerFrame && s->binding.first != SLC_NONE) {
         const struct slc_unit *unit = &s->units[s->binding.first];
         if (unit->value > completed || (!unit->published && *left == 0))
             break;
         bool useless = unit->dropped || s->textures[unit->texture].state == SLC_TEXTURE_REMOVED;
-        *left -= !unit->published && !useless && !unit->produced;
+        bool early = !useless && slc_upload_is_early(s, unit);
+        *left -= !unit->published && !useless && !unit->produced && !early;
         uint32_t taken = slc_unit_list_pop(s, &s->binding);
-        if (useless)
+        if (early)
+            slc_unit_list_append(s, &later, taken);
+        else if (useless)
             slc_unit_free(s, taken);
         else if (!slc_reload_has_place(s, unit))
             slc_unit_list_append(s, &later, taken);
@@ -168,7 +190,9 @@ static uint32_t take_units(SluiceVulkanStreamer *s, uint32_t *left)
 SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     uint32_t left = s->info.tilesPerFrame, count;
-    SluiceResult result = SLUICE_SUCCESS;
+    SluiceResult result = slc_upload_queue_poll(&s->uploads, &s->vk);
+    if (result == SLUICE_SUCCESS)
+        result = slc_early_uploads_start(s);
     if (s->reload_unit_count) /* pages may have moved in this frame */
         slc_record_transfer_barrier(&s->vk, commands);
     for (bool first = true; result >= 0 && (count = take_units(s, &left)) > 0; first = false) {

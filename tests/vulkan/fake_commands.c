@@ -11,6 +11,8 @@ static VKAPI_ATTR void VKAPI_CALL copy_to_image(VkCommandBuffer commands, VkBuff
     struct fake_vulkan *fake = fake_of(commands);
     assert_false(fake->published);
     assert_true(layout == VK_IMAGE_LAYOUT_GENERAL && FAKE_OBJECT(image)->general);
+    if (fake->records_uploads) /* the other queue waits for no frame under way */
+        assert_true(FAKE_OBJECT(image)->general_frame <= fake->frame_value);
     for (uint32_t i = 0; i < count; i++) {
         assert_true(fake->copy_count < FAKE_EVENTS);
         struct fake_copy *copy = &fake->copies[fake->copy_count++];
@@ -19,6 +21,9 @@ static VKAPI_ATTR void VKAPI_CALL copy_to_image(VkCommandBuffer commands, VkBuff
                                    regions[i].imageSubresource.baseArrayLayer,
                                    (uint32_t)regions[i].imageOffset.x / FAKE_TILE,
                                    (uint32_t)regions[i].imageOffset.y / FAKE_TILE,
+                                   0,
+                                   fake->records_uploads,
+                                   VK_NULL_HANDLE,
                                    0};
         const uint8_t *texels = FAKE_OBJECT(FAKE_OBJECT(buffer)->memory)->memory;
         memcpy(&copy->texel, texels + regions[i].bufferOffset, sizeof copy->texel);
@@ -103,6 +108,8 @@ static VKAPI_ATTR void VKAPI_CALL barrier(VkCommandBuffer commands, VkPipelineSt
         assert_true(images[i].newLayout == VK_IMAGE_LAYOUT_GENERAL);
         if (!image->general && fake->general_count < FAKE_EVENTS)
             fake->general[fake->general_count++] = image;
+        if (!image->general)
+            image->general_frame = fake->now_frame;
         image->general = true;
     }
 }

@@ -78,7 +78,7 @@ static VKAPI_ATTR void VKAPI_CALL get_memory2(VkPhysicalDevice device,
 static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *count,
                                                VkQueueFamilyProperties *families)
 {
-    (void)device;
+    const struct fake_vulkan *fake = fake_of(device);
     static const VkQueueFlags all[FAKE_FAMILIES] = {
         [0] = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_SPARSE_BINDING_BIT,
         [FAKE_TRANSFER_FAMILY] = VK_QUEUE_TRANSFER_BIT,
@@ -87,7 +87,10 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
     uint32_t room = families ? *count : 0;
     *count = FAKE_FAMILIES;
     for (uint32_t i = 0; i < room && i < FAKE_FAMILIES; i++)
-        families[i] = (VkQueueFamilyProperties){.queueFlags = all[i], .queueCount = 1};
+        families[i] = (VkQueueFamilyProperties){
+            .queueFlags = all[i], .queueCount = 1, .minImageTransferGranularity = {1, 1, 1}};
+    if (room > FAKE_TRANSFER_FAMILY && (fake->granularity.width || fake->whole_levels))
+        families[FAKE_TRANSFER_FAMILY].minImageTransferGranularity = fake->granularity;
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_format_features(VkPhysicalDevice device, VkFormat format,
