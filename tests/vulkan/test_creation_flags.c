@@ -175,6 +175,74 @@ static void mutable_textures_are_not_forgotten(void **state)
     assert_true(image.image_flags & VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT); /* it is there at once */
 }
 
+/* A `count` of 0: one family owns it. */
+static void check_families(const struct fake_object *object, uint32_t count, const uint32_t *list)
+{
+    assert_int_equal(object->family_count, count);
+    for (uint32_t i = 0; i < count; i++)
+        assert_int_equal(object->families[i], list[i]);
+}
+
+static void check_sharing(const SluiceVulkanContextCreateInfo *context, uint32_t count,
+                          const uint32_t *families)
+{
+    for (int i = 0; i < 2; i++) {
+        SluiceVulkanStreamerCreateInfo info = streamer_info(with_images[i]);
+        SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = &source};
+        SluiceVulkanBuffers b = {.structSize = sizeof b};
+        SluiceVulkanTexture texture;
+        SluiceVulkanStreamer *streamer;
+        fake_vulkan_context_info(&fake); /* the lock that `context` points to */
+        CHECK_OK(sluiceCreateVulkanContext(context, &info.context));
+        CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+        CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
+        CHECK_OK(sluiceGetVulkanBuffers(streamer, &b));
+        check_families(FAKE_OBJECT(texture.image), count, families);
+        check_families(FAKE_OBJECT(b.feedback), count, families);
+        fake_vulkan_destroy(streamer);
+    }
+}
+
+static void images_and_buffers_are_shared_by_all_families(void **state)
+{
+    (void)state;
+    const uint32_t sampling[] = {FAKE_COMPUTE_FAMILY, 0}, both[] = {0, FAKE_COMPUTE_FAMILY},
+                   with_uploads[] = {0, FAKE_TRANSFER_FAMILY};
+    SluiceVulkanContextCreateInfo context = fake_vulkan_context_info(&fake);
+    check_sharing(&context, 0, NULL);
+    context.pSamplingQueueFamilies = sampling;
+    context.samplingQueueFamilyCount = 2;
+    check_sharing(&context, 2, both);
+    context.samplingQueueFamilyCount = 0;
+    context.uploadQueue = (VkQueue)(void *)&fake;
+    context.uploadQueueFamilyIndex = 0;
+    check_sharing(&context, 0, NULL);
+    context.uploadQueueFamilyIndex = FAKE_TRANSFER_FAMILY;
+    check_sharing(&context, 2, with_uploads);
+}
+
+static void families_that_cannot_sample_are_refused(void **state)
+{
+    (void)state;
+    const uint32_t none[] = {FAKE_FAMILIES}, copies[] = {FAKE_TRANSFER_FAMILY};
+    SluiceVulkanContext *created;
+    fake = (struct fake_vulkan){.tail_page_count = 1};
+    SluiceVulkanContextCreateInfo context = fake_vulkan_context_info(&fake);
+    context.samplingQueueFamilyCount = 1;
+    CHECK_RESULT(sluiceCreateVulkanContext(&context, &created), SLUICE_ERROR_NULL_POINTER);
+    context.pSamplingQueueFamilies = none;
+    CHECK_RESULT(sluiceCreateVulkanContext(&context, &created), SLUICE_ERROR_INVALID_ARGUMENT);
+    context.pSamplingQueueFamilies = copies;
+    CHECK_RESULT(sluiceCreateVulkanContext(&context, &created), SLUICE_ERROR_INVALID_ARGUMENT);
+    context.samplingQueueFamilyCount = 7;
+    CHECK_RESULT(sluiceCreateVulkanContext(&context, &created), SLUICE_ERROR_INVALID_ARGUMENT);
+    context.samplingQueueFamilyCount = 0;
+    context.uploadQueue = (VkQueue)(void *)&fake;
+    context.uploadQueueFamilyIndex = FAKE_FAMILIES;
+    CHECK_RESULT(sluiceCreateVulkanContext(&context, &created), SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(fake.live_objects, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -184,6 +252,8 @@ int main(void)
         cmocka_unit_test(images_are_mutable_if_asked_for),
         cmocka_unit_test(mutable_formats_that_cannot_be_had_are_refused),
         cmocka_unit_test(mutable_textures_are_not_forgotten),
+        cmocka_unit_test(images_and_buffers_are_shared_by_all_families),
+        cmocka_unit_test(families_that_cannot_sample_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

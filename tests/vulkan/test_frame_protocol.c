@@ -4,6 +4,7 @@
  * - MinMip maps show only tiles that are bound and were copied to since,
  * - no binding of a tile changes, and no image goes, while a frame that may read it is incomplete,
  * - no page belongs to two tiles,
+ * - the upload queue copies only what no incomplete frame may read, and is done before images go,
  * - memory goes only when nothing is bound to it any more, and nothing under way was.
  */
 #include "vulkan/fake_vulkan.h"
@@ -16,6 +17,7 @@
 #include <string.h>
 
 static uint32_t binds_per_call; /* 0: the default */
+static bool uses_upload_queue;
 static uint32_t binds_in_parts; /* frames of the last run that made several calls */
 
 enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 64, FRAMES_IN_FLIGHT = 6 };
@@ -37,6 +39,7 @@ struct texture {
     bool visible[HISTORY][MAX_TILES]; ///< by frame
     uint64_t removed_frame;           ///< when not used, but `removed`
     bool removed;
+    uint64_t upload_value; ///< of the last copy on the upload queue
 };
 
 struct model {
@@ -144,6 +147,7 @@ static void take_destroyed(struct model *m)
         struct texture *t = find_image(m, m->fake.destroyed_images[d]);
         assert_true(t->removed);
         assert_true(t->removed_frame <= m->fake.frame_value);
+        assert_true(t->upload_value <= m->fake.upload_value);
         for (uint32_t i = 0; i < t->layout.tileCount; i++)
             assert_true(t->tiles[i].batch <= m->fake.bind_value);
         sluiceDestroyImageSource(t->source);
@@ -192,20 +196,29 @@ static void check_copied_into(const struct model *m, const struct tile *tile)
     assert_true(tile->batch <= m->fake.bind_value);
 }
 
-static void take_copies(struct model *m)
+/* `early`: on the upload queue, else of the frame. */
+static void take_copies(struct model *m, bool early)
 {
     for (uint32_t i = 0; i < m->fake.copy_count; i++) {
         const struct fake_copy *copy = &m->fake.copies[i];
+        if (copy->early != early)
+            continue;
         struct texture *t = find_image(m, copy->image);
         const SluiceStreamedTextureLayout *l = &t->layout;
+        if (early)
+            t->upload_value = m->fake.submitted_upload_value;
         if (copy->level < l->desc.regularMipCount) {
             struct tile *tile = &t->tiles[tile_index(t, copy->level, copy->x, copy->y)];
             check_copied_into(m, tile);
+            if (early)
+                check_unseen(m, t, (uint32_t)(tile - t->tiles));
             tile->copied = true;
             continue;
         }
         for (uint32_t j = l->regularTileCount; j < l->tileCount; j++) {
             check_copied_into(m, &t->tiles[j]);
+            if (early)
+                check_unseen(m, t, j);
             t->tiles[j].copied = true;
         }
     }
@@ -265,7 +278,7 @@ static bool is_visible(const struct model *m, const struct fake_copy *copy)
 static void check_copies_are_shown(const struct model *m)
 {
     for (uint32_t i = 0; i < m->fake.copy_count; i++)
-        assert_true(is_visible(m, &m->fake.copies[i]));
+        assert_true(m->fake.copies[i].early || is_visible(m, &m->fake.copies[i]));
 }
 
 /* The last frames, one or several, whose commands were undone. */
@@ -296,6 +309,9 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
         m, advance(fake->frame_value, m->frame < m->submitted ? m->frame : m->submitted));
     if (roll() % 4 == 0) /* slow at times, so that batches pile up */
         fake->bind_value = advance(fake->bind_value, fake->submitted_bind_value);
+    if (uses_upload_queue)
+        fake->upload_value = advance(fake->upload_value, fake->submitted_upload_value);
+    fake->now_frame = m->frame + 1;
     if (roll() % 2)
         CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* for the reads */
     SluiceResult result =
@@ -314,6 +330,8 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
     take_destroyed(m);
     take_freed(m); /* before the binds of this frame */
     take_binds(m);
+    take_copies(m, true);
+    assert_int_equal(frame->uploadValue, fake->upload_value);
     CHECK_RESULT(sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, frame),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     return result;
@@ -347,7 +365,7 @@ static uint32_t model_frame(struct model *m, uint64_t time)
         abandoned_frames(m, time);
     if (begin(m, time, &frame) != SLUICE_SUCCESS)
         return 0;
-    take_copies(m);
+    take_copies(m, false);
     uint32_t visible = take_visible(m);
     check_copies_are_shown(m);
     CHECK_OK(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(&m->fake)));
@@ -409,6 +427,7 @@ static void run_plan(uint32_t tail_page_count, uint64_t metadata_size,
     *m = (struct model){.fake = {.tail_page_count = tail_page_count,
                                  .metadata_size = metadata_size,
                                  .maxBindsPerCall = binds_per_call,
+                                 .has_upload_queue = uses_upload_queue,
                                  .want = want,
                                  .user = m},
                         .submitted = UINT64_MAX,
@@ -448,6 +467,7 @@ static void run_plan(uint32_t tail_page_count, uint64_t metadata_size,
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.unbinds + stats.unbindsSaved > 50);
     assert_true(stats.unbindsSaved > 0);
+    assert_true((stats.uploadQueueCopies > 500) == uses_upload_queue);
     binds_in_parts = m->frames_in_parts;
     assert_true(stats.tilesRestored > 100);
     assert_true(!abandon_one_in || m->abandoned_in_all > 500);
@@ -623,6 +643,16 @@ static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state
     assert_int_equal(fake.live_memory, 0);
 }
 
+static void promises_hold_with_an_upload_queue(void **state)
+{
+    (void)state;
+    const struct memory_plan small = {16, 0, 20};
+    uses_upload_queue = true;
+    run_plan(1, 0, &small, 61, 0);
+    run_abandoning(2, 65536, 256, 0, 63, 3);
+    uses_upload_queue = false;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -637,6 +667,7 @@ int main(void)
         cmocka_unit_test(heaps_were_freed_in_some_run),
         cmocka_unit_test(layers_of_an_array_bind_tails_and_metadata_of_their_own),
         cmocka_unit_test(texture_added_inside_a_frame_has_no_feedback_in_it),
+        cmocka_unit_test(promises_hold_with_an_upload_queue),
     };
     return RUN_TESTS(tests);
 }

@@ -7,7 +7,8 @@
  * - the descriptor set of a frame shows all of them, and is not written until the frame is
  * complete.
  *
- * Commands run in the order in which they were recorded, as on one queue behind barriers.
+ * Commands run in the order in which they were recorded, as on one queue behind barriers. Copies on
+ * the upload queue come first, to pages that no incomplete frame may read.
  */
 #include "vulkan/fake_vulkan.h"
 #include "vulkan/streamer.h"
@@ -27,6 +28,8 @@ enum { TEXTURES = 6, CHUNKS = 8, LAYERS = 256, HISTORY = 64, FRAMES_IN_FLIGHT = 
 
 /** By number, level and tile: how often its texels have changed, modulo 16. Any thread reads it. */
 static atomic_uchar versions[256][12][16][16];
+
+static bool uses_upload_queue;
 
 struct texture {
     bool settled;    ///< nothing of it waits to be read again
@@ -49,10 +52,11 @@ struct model {
     uint64_t submitted;                        ///< frames up to this one are
     bool abandoned[HISTORY];
     uint32_t window;
-    uint32_t reload_one_in;         ///< frames, before which texels of a texture change; 0: none
-    uint32_t shrink_one_in;         ///< frames, before which the budget changes; 0: none
-    uint32_t moved;                 ///< tiles, from page to page
-    VkImage shown[HISTORY][CHUNKS]; ///< by frame
+    uint32_t reload_one_in; ///< frames, before which texels of a texture change; 0: none
+    uint32_t shrink_one_in; ///< frames, before which the budget changes; 0: none
+    uint32_t moved;         ///< tiles, from page to page
+    bool seen[HISTORY][CHUNKS][LAYERS]; ///< pages, by frame
+    VkImage shown[HISTORY][CHUNKS];     ///< by frame
     struct {
         const struct fake_set *set;
         uint64_t write_count;
@@ -184,12 +188,21 @@ static uint32_t texel_of(const struct model *m, VkImage image, uint32_t layer)
     return 0;
 }
 
-static void take_copies(struct model *m)
+static void check_unseen(const struct model *m, uint32_t chunk, uint32_t layer)
+{
+    for (uint64_t f = m->fake.frame_value + 1; f < m->frame; f++)
+        assert_false(m->seen[f % HISTORY][chunk][layer]);
+}
+
+/* `early`: on the upload queue, else of the frame. */
+static void take_copies(struct model *m, bool early)
 {
     for (uint32_t i = 0; i < m->fake.copy_count; i++) {
         const struct fake_copy *copy = &m->fake.copies[i];
         for (uint32_t c = 0; c < CHUNKS; c++)
-            if (m->chunks[c].image == copy->image) {
+            if (m->chunks[c].image == copy->image && copy->early == early) {
+                if (early)
+                    check_unseen(m, c, copy->layer);
                 assert_true(copy->level == 0 && copy->layer < LAYERS);
                 m->moved += copy->from != VK_NULL_HANDLE;
                 m->chunks[c].texels[copy->layer] =
@@ -199,7 +212,7 @@ static void take_copies(struct model *m)
 }
 
 /* The page of a tile holds what the tile is called. */
-static void check_tile(const struct model *m, const struct texture *t, uint32_t tile)
+static void check_tile(struct model *m, const struct texture *t, uint32_t tile)
 {
     const SluiceStreamedTextureLayout *l = &t->layout;
     uint32_t level = 0;
@@ -209,6 +222,7 @@ static void check_tile(const struct model *m, const struct texture *t, uint32_t 
     uint32_t page = m->fake.watches[0].words[t->first_word + tile];
     assert_true(page != SLUICE_PAGE_NONE);
     assert_true(page >> 16 < CHUNKS && (page & 0xFFFF) < LAYERS);
+    m->seen[m->frame % HISTORY][page >> 16][page & 0xFFFF] = true;
     uint32_t known = t->settled ? UINT32_MAX : ~0xF000u;
     assert_int_equal(m->chunks[page >> 16].texels[page & 0xFFFF] & known,
                      name_of(t->number, level, at % width, at / width) & known);
@@ -295,6 +309,10 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
     fake->copy_count = fake->destroyed_count = 0;
     fake->published = false;
     fake->frame_value = advance(m);
+    fake->now_frame = m->frame + 1;
+    if (uses_upload_queue)
+        fake->upload_value +=
+            (uint64_t)roll() % (fake->submitted_upload_value - fake->upload_value + 1);
     if (roll() % 2)
         CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* for the reads */
     SluiceResult result =
@@ -308,6 +326,8 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
     take_destroyed(m);
     take_views(m, frame);
     check_sets(m);
+    memset(m->seen[m->frame % HISTORY], 0, sizeof m->seen[0]);
+    take_copies(m, true);
     return result;
 }
 
@@ -345,7 +365,7 @@ static uint32_t model_frame(struct model *m, uint64_t time)
         abandoned_frames(m, time);
     if (begin(m, time, &frame) != SLUICE_SUCCESS)
         return 0;
-    take_copies(m);
+    take_copies(m, false);
     uint32_t shown = check_shown(m);
     CHECK_OK(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(fake)));
     return shown;
@@ -408,6 +428,7 @@ static void run_plan(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint
                                            .maxRegionCount = 1 << 14};
     fake_vulkan_fill(&info);
     m->fake.maxPageChunkCount = CHUNKS;
+    m->fake.has_upload_queue = uses_upload_queue;
     CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
     SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(m->streamer, &buffers);
@@ -429,6 +450,7 @@ static void run_plan(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint
     sluiceGetVulkanPages(m->streamer, &pages);
     generation = pages.generation;
     assert_true(shown > 10000);
+    assert_true((stats.uploadQueueCopies > 500) == uses_upload_queue);
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.tilesRestored > 500);
     assert_true((stats.tilesReloaded > 500) == (reload_one_in > 0));
@@ -508,6 +530,14 @@ static void promises_hold_where_frames_are_abandoned(void **state)
     run(256, 0, 54, 3);
 }
 
+static void promises_hold_with_an_upload_queue(void **state)
+{
+    (void)state;
+    uses_upload_queue = true;
+    run_plan(64, 0, 62, 3, 40, 4);
+    uses_upload_queue = false;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -517,6 +547,7 @@ int main(void)
         cmocka_unit_test(promises_hold_where_frames_are_abandoned),
         cmocka_unit_test(promises_hold_while_the_budget_changes),
         cmocka_unit_test(promises_hold_while_texels_change),
+        cmocka_unit_test(promises_hold_with_an_upload_queue),
     };
     return RUN_TESTS(tests);
 }
