@@ -164,6 +164,40 @@ static uint32_t drawing_family(struct harness *h)
     return 0;
 }
 
+/* A family that copies and does not draw, or the drawing one. */
+static uint32_t copying_family(struct harness *h)
+{
+    VkQueueFamilyProperties families[MAX_FAMILIES];
+    uint32_t count = MAX_FAMILIES;
+    h->GetPhysicalDeviceQueueFamilyProperties(h->physical_device, &count, families);
+    for (uint32_t i = 0; i < count; i++)
+        if (families[i].queueFlags & VK_QUEUE_TRANSFER_BIT &&
+            !(families[i].queueFlags & (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT)))
+            return i;
+    return h->family;
+}
+
+/* A queue of each family, once. Returns how many. */
+static uint32_t list_queues(struct harness *h, VkDeviceQueueCreateInfo queues[3])
+{
+    static const float priority = 1.0f;
+    const uint32_t families[3] = {
+        h->family, h->caps.sparse ? h->caps.sparseQueueFamilyIndex : h->family, h->upload_family};
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < 3; i++) {
+        bool listed = false;
+        for (uint32_t j = 0; j < count; j++)
+            listed |= queues[j].queueFamilyIndex == families[i];
+        if (!listed)
+            queues[count++] =
+                (VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                          .queueFamilyIndex = families[i],
+                                          .queueCount = 1,
+                                          .pQueuePriorities = &priority};
+    }
+    return count;
+}
+
 /* What a test asks for beyond the library's own needs. */
 struct extras {
     const char *const *extensions;
@@ -216,18 +250,13 @@ static bool create_device(struct harness *h, const struct extras *extras)
     if (h->mode == SLUICE_RESIDENCY_MODE_AUTO)
         h->mode = h->caps.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
     h->family = drawing_family(h);
-    bool own_sparse_family = h->caps.sparse && h->caps.sparseQueueFamilyIndex != h->family;
-    float priority = 1.0f;
-    VkDeviceQueueCreateInfo queues[2];
-    for (uint32_t i = 0; i < 2; i++)
-        queues[i] = (VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                              .queueFamilyIndex =
-                                                  i ? h->caps.sparseQueueFamilyIndex : h->family,
-                                              .queueCount = 1,
-                                              .pQueuePriorities = &priority};
+    const char *uploads = getenv("SLUICE_UPLOAD_QUEUE");
+    h->upload_family = uploads ? copying_family(h) : h->family;
+    VkDeviceQueueCreateInfo queues[3];
+    const uint32_t queue_count = list_queues(h, queues);
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                .pNext = &features,
-                               .queueCreateInfoCount = own_sparse_family ? 2 : 1,
+                               .queueCreateInfoCount = queue_count,
                                .pQueueCreateInfos = queues,
                                .enabledExtensionCount = extras->extension_count,
                                .ppEnabledExtensionNames = extras->extensions};
@@ -241,6 +270,8 @@ static bool create_device(struct harness *h, const struct extras *extras)
     h->GetDeviceQueue(h->device, h->family, 0, &h->queue);
     if (h->caps.sparse)
         h->GetDeviceQueue(h->device, h->caps.sparseQueueFamilyIndex, 0, &h->sparse_queue);
+    if (uploads)
+        h->GetDeviceQueue(h->device, h->upload_family, 0, &h->upload_queue);
     h->GetPhysicalDeviceMemoryProperties(h->physical_device, &h->memory);
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
@@ -342,6 +373,8 @@ SluiceVulkanContextCreateInfo harness_context_info(struct harness *h)
                                            .pfnGetInstanceProcAddr = h->get,
                                            .sparseQueue = h->sparse_queue,
                                            .sparseQueueFamilyIndex = h->caps.sparseQueueFamilyIndex,
+                                           .uploadQueue = h->upload_queue,
+                                           .uploadQueueFamilyIndex = h->upload_family,
                                            .log = {h, on_log}};
 }
 
@@ -356,6 +389,8 @@ SluiceResult harness_set_context(struct harness *h, const SluiceVulkanContextCre
     info.device = usual.device;
     info.sparseQueue = usual.sparseQueue;
     info.sparseQueueFamilyIndex = usual.sparseQueueFamilyIndex;
+    info.uploadQueue = usual.uploadQueue;
+    info.uploadQueueFamilyIndex = usual.uploadQueueFamilyIndex;
     info.log = usual.log;
     if (!info.pfnGetInstanceProcAddr)
         info.pfnGetInstanceProcAddr = usual.pfnGetInstanceProcAddr;
@@ -483,10 +518,16 @@ void harness_frame(struct harness *h, SluiceVulkanStreamer *streamer, bool wait,
     assert_int_equal(h->EndCommandBuffer(commands), VK_SUCCESS);
     VkTimelineSemaphoreSubmitInfo timeline = {.sType =
                                                   VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                                              .waitSemaphoreValueCount = 1,
+                                              .pWaitSemaphoreValues = &frame.uploadValue,
                                               .signalSemaphoreValueCount = 1,
                                               .pSignalSemaphoreValues = &frame.signalValue};
+    VkPipelineStageFlags stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
     VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                            .pNext = &timeline,
+                           .waitSemaphoreCount = frame.uploadSemaphore ? 1 : 0,
+                           .pWaitSemaphores = &frame.uploadSemaphore,
+                           .pWaitDstStageMask = &stages,
                            .commandBufferCount = 1,
                            .pCommandBuffers = &commands,
                            .signalSemaphoreCount = 1,
@@ -499,6 +540,12 @@ void harness_frame(struct harness *h, SluiceVulkanStreamer *streamer, bool wait,
 
 void harness_destroy(struct harness *h, SluiceVulkanStreamer *streamer)
 {
+    SluiceVulkanStreamerStatistics counts = {.structSize = sizeof counts};
+    if (h->upload_queue && sluiceGetVulkanStreamerStatistics(streamer, &counts) == SLUICE_SUCCESS) {
+        fprintf(stderr, "# %llu copies on the upload queue\n",
+                (unsigned long long)counts.uploadQueueCopies);
+        h->upload_queue_copies += counts.uploadQueueCopies;
+    }
     sluiceDestroyVulkanStreamer(streamer);
     for (uint32_t i = 0; i < HARNESS_FRAMES; i++)
         h->last[i] = (SluiceStreamingFrame){.structSize = sizeof(SluiceStreamingFrame)};

@@ -5,6 +5,8 @@
  * Environment: SLUICE_DEVICE picks a device by index or by a part of its name. SLUICE_RESIDENCY is
  * the mode that is tested: sparse, paged, dense or auto, which is the default. Without a device
  * that has Vulkan 1.2 and that mode a test program exits with status 77 and says why.
+ * SLUICE_UPLOAD_QUEUE=1: the library copies tiles on a queue of a family that does not draw, if the
+ * device has one, else on the drawing queue.
  * SLUICE_ABANDON=n: one in n frames and launches is recorded and given up, and then begun again.
  */
 #ifndef TESTS_DEVICE_HARNESS_H
@@ -63,6 +65,9 @@ struct harness {
     VkDevice device;
     uint32_t family;
     VkQueue queue, sparse_queue; ///< the latter VK_NULL_HANDLE without sparse residency
+    VkQueue upload_queue;        ///< VK_NULL_HANDLE unless SLUICE_UPLOAD_QUEUE is set
+    uint32_t upload_family;
+    uint64_t upload_queue_copies; ///< of streamers that were destroyed
     SluiceVulkanDeviceCapabilities caps;
     SluiceResidencyMode mode; ///< never AUTO
     const char *mode_name;

@@ -171,6 +171,12 @@ static void a_frame_is_given_up_once_and_not_after_it_was_submitted(void **state
     scene_finish(&scene);
 }
 
+static void an_upload_queue_copied_tiles(void **state)
+{
+    const struct harness *h = *state;
+    assert_true(!h->upload_queue || h->upload_queue_copies > 100);
+}
+
 int main(void)
 {
     struct harness h;
@@ -181,6 +187,7 @@ int main(void)
         cmocka_unit_test(a_walk_with_frames_given_up_ends_as_one_without),
         cmocka_unit_test(any_number_of_frames_in_a_row_can_be_given_up),
         cmocka_unit_test(a_frame_is_given_up_once_and_not_after_it_was_submitted),
+        cmocka_unit_test(an_upload_queue_copied_tiles), /* after all others */
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
