@@ -684,7 +684,8 @@ typedef struct SluiceDemandLaunch {
  *
  * Call outside a render pass. All commands between this call and sluiceEndDemandLaunch see the new
  * tiles; barriers for all stages are recorded. Submit the command buffers in the order of the
- * calls. If you cannot submit, call sluiceAbandonDemandLaunch. After an error, recorded commands
+ * calls. If launches are on different queues, each must wait until the one before is complete. If
+ * you cannot submit, call sluiceAbandonDemandLaunch. After an error, recorded commands
  * have no effect.
  *
  * Returns SLUICE_NOT_READY, with nothing recorded, while launchesInFlight launches are not

@@ -709,7 +709,9 @@ typedef struct SluiceStreamingFrame {
  *
  * Call once per frame, outside a render pass, before the first draw that samples streamed textures.
  * Submit `commandBuffer` to one queue of queueFamilyIndex, before the command buffer of the next
- * frame, and signal `pFrame->semaphore` with `pFrame->signalValue`. If you cannot submit, call
+ * frame, and signal `pFrame->semaphore` with `pFrame->signalValue` when all that samples in the
+ * frame is complete. If other queues sample (pSamplingQueueFamilies), the submission must also wait
+ * until the frame before is complete. If you cannot submit, call
  * sluiceAbandonStreamingFrame. End or abandon every frame before you begin the next one.
  *
  * Returns SLUICE_NOT_READY, with nothing recorded, while framesInFlight frames are incomplete,
