@@ -397,7 +397,7 @@ static void wait_for_own_work(SluiceVulkanStreamer *s)
         slc_timeline_wait(&s->vk, s->semaphore, frame, "frame");
     if (s->residency)
         s->residency->interface->wait(s->residency);
-    slc_upload_queue_wait(&s->uploads, &s->vk);
+    slc_upload_queue_drain(&s->uploads, &s->vk);
 }
 
 static void destroy_device_parts(SluiceVulkanStreamer *s)
@@ -445,8 +445,8 @@ SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer)
     if (!s)
         return SLUICE_ERROR_NULL_POINTER;
     sluiceWaitTileLoaderIdle(s->loader);
-    slc_upload_queue_wait(&s->uploads, &s->vk);
-    return s->residency->interface->wait(s->residency);
+    SluiceResult result = slc_upload_queue_wait(&s->uploads, &s->vk);
+    return result == SLUICE_SUCCESS ? s->residency->interface->wait(s->residency) : result;
 }
 
 SluiceResult sluiceGetVulkanDescriptorSetLayout(const SluiceVulkanStreamer *streamer,

@@ -17,11 +17,11 @@ SluiceResult slc_upload_queue_init(struct slc_upload_queue *q, const struct slc_
         return result;
     }
     slc_vk_name(vk, VK_OBJECT_TYPE_COMMAND_POOL, (uint64_t)q->pool, "uploads");
-    const VkCommandBufferAllocateInfo buffers = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-        .commandPool = q->pool,
-        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-        .commandBufferCount = SLC_UPLOAD_BATCHES};
+    const VkCommandBufferAllocateInfo buffers = {.sType =
+                                                     VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                                 .commandPool = q->pool,
+                                                 .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                                 .commandBufferCount = SLC_UPLOAD_BATCHES};
     result = slc_vk_result(vk, vk->AllocateCommandBuffers(vk->device, &buffers, q->commands),
                            "vkAllocateCommandBuffers");
     return result == SLUICE_SUCCESS ? slc_timeline_create(vk, "uploads", &q->semaphore) : result;
@@ -49,7 +49,18 @@ SluiceResult slc_upload_queue_poll(struct slc_upload_queue *q, const struct slc_
     return result;
 }
 
-void slc_upload_queue_wait(struct slc_upload_queue *q, const struct slc_vk *vk)
+SluiceResult slc_upload_queue_wait(struct slc_upload_queue *q, const struct slc_vk *vk)
+{
+    if (q->completed == q->submitted)
+        return SLUICE_SUCCESS;
+    const VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                      .semaphoreCount = 1,
+                                      .pSemaphores = &q->semaphore,
+                                      .pValues = &q->submitted};
+    return slc_vk_result(vk, vk->WaitSemaphores(vk->device, &info, UINT64_MAX), "vkWaitSemaphores");
+}
+
+void slc_upload_queue_drain(const struct slc_upload_queue *q, const struct slc_vk *vk)
 {
     if (q->completed < q->submitted)
         slc_timeline_wait(vk, q->semaphore, q->submitted, "batch of uploads");
@@ -72,8 +83,7 @@ SluiceResult slc_upload_queue_submit(struct slc_upload_queue *q, const struct sl
                                      VkSemaphore after, uint64_t value)
 {
     const VkCommandBuffer *commands = &q->commands[q->submitted % SLC_UPLOAD_BATCHES];
-    SluiceResult result =
-        slc_vk_result(vk, vk->EndCommandBuffer(*commands), "vkEndCommandBuffer");
+    SluiceResult result = slc_vk_result(vk, vk->EndCommandBuffer(*commands), "vkEndCommandBuffer");
     if (result != SLUICE_SUCCESS)
         return result;
     const uint64_t signal = q->submitted + 1;

@@ -23,8 +23,10 @@ void slc_upload_queue_finish(struct slc_upload_queue *q, const struct slc_vk *vk
 
 /** Updates `completed`. */
 SluiceResult slc_upload_queue_poll(struct slc_upload_queue *q, const struct slc_vk *vk);
-/** Waits until all batches are complete; after 5 seconds without any progress, for the device. */
-void slc_upload_queue_wait(struct slc_upload_queue *q, const struct slc_vk *vk);
+/** Waits until all batches are complete. */
+SluiceResult slc_upload_queue_wait(struct slc_upload_queue *q, const struct slc_vk *vk);
+/** Waits for them before destruction; after 5 seconds without any progress, for the device. */
+void slc_upload_queue_drain(const struct slc_upload_queue *q, const struct slc_vk *vk);
 
 /** True if a batch can begin. */
 static inline bool slc_upload_queue_is_free(const struct slc_upload_queue *q)

@@ -46,6 +46,8 @@ static SluiceImageSource *gray_source(void)
 static SluiceResidencyMode mode; /* that is tested */
 static bool mixes;               /* paged textures are beside those of the streamer */
 
+static bool uses_upload_queue;
+
 static SluiceResult create(struct fake_vulkan *fake, SluiceVulkanStreamer **streamer)
 {
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
@@ -56,6 +58,7 @@ static SluiceResult create(struct fake_vulkan *fake, SluiceVulkanStreamer **stre
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
     info.pagedTextures = mixes;
+    fake->has_upload_queue = uses_upload_queue;
     return fake_vulkan_create(fake, &info, streamer);
 }
 
@@ -216,6 +219,7 @@ static void frames_survive(uint32_t packed_count, uint32_t binds_per_call, uint3
             sluiceGetVulkanStreamerStatistics(streamer, &stats);
             if (result == SLUICE_SUCCESS) {
                 harmless += failed;
+                assert_true((stats.uploadQueueCopies > 0) == uses_upload_queue);
                 assert_int_equal(stats.tilesMapped - stats.tilesUnmapped, 16 + 4 + packed_count);
             } else {
                 assert_true(failed);
@@ -239,6 +243,9 @@ static void creation_survives_every_failing_call(void **state)
     mixes = true;
     creation_survives();
     mixes = false;
+    uses_upload_queue = true;
+    creation_survives();
+    uses_upload_queue = false;
 }
 
 static void adding_survives_every_failing_call(void **state)
@@ -269,6 +276,9 @@ static void frames_survive_every_failing_call(void **state)
     frames_survive(2, 0, STAGING_CALLS + 4);
     mode = SLUICE_RESIDENCY_MODE_DENSE;
     frames_survive(2, 0, STAGING_CALLS + 0);
+    uses_upload_queue = true;
+    frames_survive(2, 0, STAGING_CALLS + 0);
+    uses_upload_queue = false;
 }
 
 int main(void)
