@@ -65,7 +65,7 @@ if [ "$quick" = no ]; then
     # clang. What is slow has run twice by now and depends on none of this.
     # shellcheck disable=SC2034 # read by meson_stage
     test_options=(--no-suite slow --no-suite short --no-suite rare)
-    off='-Dexr=disabled -Dcontainer=disabled -Dzstd=disabled -Dstore=disabled -Dbake=disabled -Dvulkan=disabled -Dsamples=disabled -Dviewer=disabled -Dhttp=disabled'
+    off='-Dexr=disabled -Dcontainer=disabled -Dzstd=disabled -Dstore=disabled -Dbake=disabled -Dvulkan=disabled -Dsamples=disabled -Dviewer=disabled -Dhttp=disabled -Dneural=disabled -Dpbrt=disabled'
     # shellcheck disable=SC2086 # a list of words
     meson_stage gcc-O3-static CC=gcc -- $off -Doptimization=3 -Ddefault_library=static
 fi

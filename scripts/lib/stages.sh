@@ -47,10 +47,13 @@ run_meson_tests() {
     tail -n +"$((before + 1))" "$facts" | cut -f 1 | sort | uniq -c
 }
 
+# test_options go to `meson test`. only_tests=yes builds what these tests need alone.
+test_options=() only_tests=no
+
 # build_stage STAGE NAME=VALUE... -- OPTIONS...: fails, with a fact, if it cannot be built.
 build_stage() {
     local stage=$1 folder=$tests_folder/$1
-    local -a settings=()
+    local -a settings=() targets=()
     shift
     while [ "$1" != -- ]; do
         settings+=("$1")
@@ -66,15 +69,17 @@ build_stage() {
         fact failed "$stage" configure "meson setup" "see $folder.setup.log"
         return 1
     fi
-    if ! compile "$folder"; then
+    if [ "$only_tests" = yes ]; then
+        mapfile -t targets < <(python3 "$SLUICE_ROOT/scripts/lib/test_targets.py" "$folder" "${test_options[@]}")
+    fi
+    if ! compile "$folder" "${targets[@]}"; then
         fact failed "$stage" build "compiles without a warning" "see $folder.build.log"
         return 1
     fi
     fact passed "$stage" build "compiles without a warning" ""
 }
 
-# meson_stage STAGE NAME=VALUE... -- OPTIONS...; test_options go to `meson test`
-test_options=()
+# meson_stage STAGE NAME=VALUE... -- OPTIONS...
 meson_stage() {
     stage_title "$1"
     if build_stage "$@"; then
@@ -93,7 +98,8 @@ sanitizer_works() {
 
 # sanitizer_stage STAGE SETUP SANITIZERS OPTIONS...
 sanitizer_stage() {
-    local stage=$1 setup=$2 sanitizers=$3 disable_aslr=''
+    local stage=$1 sanitizers=$3 disable_aslr='' only_tests=yes
+    local -a test_options=(--setup "$2")
     shift 3
     stage_title "$stage"
     if ! sanitizer_works "$sanitizers"; then
@@ -109,7 +115,7 @@ sanitizer_stage() {
         fi
     fi
     if build_stage "$stage" CC=clang CXX=clang++ -- "-Db_sanitize=$sanitizers" -Db_lundef=false "$@"; then
-        run_meson_tests "$stage" --setup "$setup"
+        run_meson_tests "$stage" --no-rebuild "${test_options[@]}"
     fi
 }
 

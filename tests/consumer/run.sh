@@ -148,7 +148,8 @@ subproject() {
         ln -s "$root" "$work/outside/subprojects/sluice" &&
         meson setup "$work/sub" "$work/outside" --force-fallback-for=sluice --wrap-mode=nodownload \
             -Dsluice:exr=disabled -Dsluice:container=disabled -Dsluice:store=disabled \
-            -Dsluice:bake=disabled -Dsluice:vulkan=disabled -Dsluice:samples=disabled &&
+            -Dsluice:bake=disabled -Dsluice:vulkan=disabled -Dsluice:samples=disabled \
+            -Dsluice:neural=disabled -Dsluice:pbrt=disabled -Dsluice:http=disabled &&
         meson test -C "$work/sub"
 }
 
