@@ -255,7 +255,8 @@ SLUICE_API SluiceResult sluiceSetVulkanUvTransform(SluiceVulkanStreamer *streame
  * The next frames read resident tiles again, a quarter of maxLoadsInFlight at a time, and copy the
  * texels over the old ones. Frames show the old texels until then. Reads under way are not used:
  * they begin again. Tiles that are not resident are read when they are requested. If a read fails,
- * the old texels stay, and the tile is read again retryDelayTicks later.
+ * the old texels stay, and the tile is read again retryDelayTicks later. All tiles of the texture
+ * whose loads failed are tried again at once, also GIVEN_UP ones.
  *
  * Only this texture changes: call the function for each texture of a set, or of the source, whose
  * texels have changed. The source must deliver the new texels by now, and must not identify them

@@ -39,6 +39,16 @@ static void change_level(SluiceVulkanStreamer *s, uint32_t index,
             slc_reload_tile(s, index, layout->levelFirstTile[level] + y * width + x);
 }
 
+/* Loads that failed may succeed with what has changed. */
+static void retry_failed(SluiceVulkanStreamer *s, uint32_t index)
+{
+    SluiceTextureStatistics now = {.structSize = sizeof now};
+    sluiceGetTextureStatistics(s->manager, s->textures[index].id, &now);
+    if (now.failedTotal > 0)
+        slc_streamer_check(s, sluiceRetryFailedTiles(s->manager, s->textures[index].id),
+                           "sluiceRetryFailedTiles");
+}
+
 static void change(SluiceVulkanStreamer *s, uint32_t index, const struct slc_remake_area *area)
 {
     uint32_t regular = s->textures[index].layout.desc.regularMipCount;
@@ -46,6 +56,7 @@ static void change(SluiceVulkanStreamer *s, uint32_t index, const struct slc_rem
         change_level(s, index, area, level);
     if (slc_remake_meets_tail(area, regular))
         slc_reload_tail(s, index);
+    retry_failed(s, index);
 }
 
 static SluiceResult find(const SluiceVulkanStreamer *s, SluiceTextureId id,

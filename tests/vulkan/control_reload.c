@@ -166,6 +166,40 @@ void a_reload_that_fails_keeps_the_old_texels(void **state)
     sluiceDestroyImageSource(source);
 }
 
+/* A failure that is final for the reader, and for the manager too often. */
+void given_up_tiles_are_tried_again_after_a_change(void **state)
+{
+    (void)state;
+    SluiceImageSource *source = make_source(SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
+    struct fault_source faults;
+    fault_source_init(&faults, source);
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
+        .feedbackTimeoutTicks = 1000, .retryDelayTicks = 1, .givenUpRetryDelayTicks = UINT64_MAX});
+    const SluiceTextureId id = s->textures[0].textureId;
+    CHECK_OK(sluiceReplaceVulkanSource(s->streamer, id, &faults.base));
+    frames(s, 12);
+    CHECK_OK(sluiceWaitVulkanStreamerIdle(s->streamer));
+    faults.failure = SLUICE_ERROR_UNSUPPORTED;
+    faults.fail_at = faults.read_count + 1;
+    faults.fails_on = true;
+    s->seen[0][0] = 0;
+    for (uint32_t i = 0; i < 100 && statistics(s).givenUpTileCount < 3; i++)
+        frames(s, 1);
+    assert_int_equal(statistics(s).givenUpTileCount, 3); /* one of each level above the mip tail */
+    faults.fail_at = 0;
+    const uint64_t reads = faults.read_count;
+    frames(s, 10);
+    assert_int_equal(faults.read_count, reads);
+    CHECK_OK(sluiceInvalidateVulkanTexture(s->streamer, id,
+                                           &(SluiceImageRegion){.width = 1, .height = 1}, 3));
+    frames(s, 10);
+    assert_int_equal(faults.read_count, reads + 3);
+    assert_int_equal(statistics(s).givenUpTileCount, 0);
+    stage_finish(s);
+    fault_source_finish(&faults);
+    sluiceDestroyImageSource(source);
+}
+
 /* One frame that waits for no read. */
 static void hasty_frame(struct stage *s)
 {
