@@ -115,10 +115,13 @@ static bool start_tail(SluiceVulkanStreamer *s, uint32_t index, uint32_t *starte
         return false; /* its load goes on first */
     if (texture->packed_mapped < texture->image.desc.packedTileCount)
         return true; /* it is read as a whole when it comes */
-    for (; texture->reload_next < texture->packed.unit_count; texture->reload_next++, ++*started) {
+    while (texture->reload_next < texture->packed.unit_count) {
         if (!may_start(s, *started))
             return false;
-        start_unit(s, index, &tile, texture->reload_next);
+        ++*started;
+        start_unit(s, index, &tile, texture->reload_next++);
+        if (texture->reload_next == 0)
+            return false; /* the loader refused: all units are read later */
     }
     return true;
 }

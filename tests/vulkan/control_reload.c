@@ -1,7 +1,9 @@
 /* Texels that change while their tiles are resident, and sources that are replaced. */
 #include "vulkan/control_reload.h"
 
+#include "image/read_pool.h"
 #include "vulkan/control_stage.h"
+#include "vulkan/streamer.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -163,6 +165,27 @@ void a_reload_that_fails_keeps_the_old_texels(void **state)
     assert_int_equal(settle(s, 6), 1);
     stage_finish(s);
     fault_source_finish(&faults);
+    sluiceDestroyImageSource(source);
+}
+
+/* The loader has no room, once. */
+void a_refused_reload_of_a_mip_tail_is_tried_again(void **state)
+{
+    (void)state;
+    SluiceImageSource *source = make_source(SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
+    struct stage *s = begin(SLUICE_RESIDENCY_MODE_SPARSE, source);
+    struct slc_read_queue *queue = &s->streamer->loader->queue;
+    atomic_store(&shade, 9);
+    CHECK_OK(sluiceInvalidateVulkanTexture(
+        s->streamer, s->textures[0].textureId,
+        &(SluiceImageRegion){.mipLevel = TAIL, .width = 1, .height = 1}, 1));
+    const uint32_t room = queue->free_count;
+    queue->free_count = 0;
+    frames(s, 1);
+    queue->free_count = room;
+    assert_int_equal(state_now(s).reloadingTileCount, 1);
+    assert_int_equal(settle(s, 9), 8);
+    stage_finish(s);
     sluiceDestroyImageSource(source);
 }
 

@@ -622,6 +622,7 @@ int main(void)
         cmocka_unit_test(changed_tiles_are_copied_again_in_place),
         cmocka_unit_test(mip_tails_and_all_tiles_are_copied_again),
         cmocka_unit_test(a_reload_that_fails_keeps_the_old_texels),
+        cmocka_unit_test(a_refused_reload_of_a_mip_tail_is_tried_again),
         cmocka_unit_test(given_up_tiles_are_tried_again_after_a_change),
         cmocka_unit_test(a_replaced_source_is_in_use_until_its_reads_end),
         cmocka_unit_test(waits_end_with_reads_and_ask_for_frames),
