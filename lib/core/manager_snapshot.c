@@ -5,6 +5,7 @@
 #include "core/observer.h"
 #include "core/priority.h"
 #include "core/reports.h"
+#include "core/snapshot_parts.h"
 
 /* First, because lists have limits. */
 static void exchange_config(slc_manager *m, struct slc_snapshot_io *io)

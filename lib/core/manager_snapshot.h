@@ -2,7 +2,9 @@
 #ifndef SLC_CORE_MANAGER_SNAPSHOT_H
 #define SLC_CORE_MANAGER_SNAPSHOT_H
 
-#include "core/snapshot_io.h"
+#include "base/snapshot_io.h"
+
+#include <sluice/manager.h>
 
 /** Writes the state. Changes nothing. Errors: io->result. */
 void slc_snapshot_write(const SluiceStreamedTextureManager *manager, struct slc_snapshot_io *io);

@@ -3,7 +3,7 @@
 #include "core/follower.h"
 #include "core/history.h"
 #include "core/mip_bias.h"
-#include "core/snapshot_io.h"
+#include "core/snapshot_parts.h"
 #include "core/wants.h"
 
 #include <string.h>

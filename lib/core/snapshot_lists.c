@@ -3,7 +3,7 @@
 #include "core/layout.h"
 #include "core/minmip.h"
 #include "core/reports.h"
-#include "core/snapshot_io.h"
+#include "core/snapshot_parts.h"
 #include "core/visits.h"
 
 struct slc_managed_texture *slc_snapshot_texture(slc_manager *m, struct slc_snapshot_io *io,

@@ -2,7 +2,7 @@
 #include "base/alloc.h"
 #include "core/managed_textures.h"
 #include "core/sets.h"
-#include "core/snapshot_io.h"
+#include "core/snapshot_parts.h"
 #include "core/uv_transform.h"
 
 static void exchange_desc(struct slc_snapshot_io *io, SluiceStreamedTextureDesc *d)

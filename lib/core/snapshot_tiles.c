@@ -1,7 +1,7 @@
 /* Tiles that are not FREE, in the order of their lists, and the heaps that hold them. */
 #include "core/history.h"
 #include "core/layout.h"
-#include "core/snapshot_io.h"
+#include "core/snapshot_parts.h"
 #include "core/texture_tiles.h"
 #include "residency/due.h"
 #include "residency/node.h"

@@ -1,14 +1,16 @@
 /**
- * The state of a manager as numbers and bytes. docs/replay.md lists every field.
+ * The state of an object as numbers and bytes. docs/replay.md lists every field.
  *
- * Each function goes through a part of the state. It hands every field out or, while reading, takes
+ * A function goes through a part of the state. It hands every field out or, while reading, takes
  * it in, so that a field cannot be written in one order and read in another. What follows from the
- * rest is not handed out. Lists are in their order; links and node numbers are made anew.
+ * rest is not handed out.
  */
-#ifndef SLC_CORE_SNAPSHOT_IO_H
-#define SLC_CORE_SNAPSHOT_IO_H
+#ifndef SLC_BASE_SNAPSHOT_IO_H
+#define SLC_BASE_SNAPSHOT_IO_H
 
-#include "core/state.h"
+#include <sluice/base.h>
+
+#include <stdbool.h>
 
 /** Once `result` is an error, numbers and bytes are of no use. */
 struct slc_snapshot_io {
@@ -87,16 +89,4 @@ static inline int64_t slc_snapshot_signed(struct slc_snapshot_io *io, int64_t va
     return (int64_t)(coded >> 1 ^ (coded & 1 ? UINT64_MAX : 0));
 }
 
-/** A texture of the snapshot. Returns NULL, with an error, if the index has none. */
-struct slc_managed_texture *slc_snapshot_texture(slc_manager *m, struct slc_snapshot_io *io,
-                                                 uint32_t index);
-
-/* In the order of the snapshot: */
-void slc_snapshot_textures(slc_manager *m, struct slc_snapshot_io *io);
-void slc_snapshot_heaps(slc_manager *m, struct slc_snapshot_io *io);
-void slc_snapshot_tiles(slc_manager *m, struct slc_snapshot_io *io);
-void slc_snapshot_heap_order(slc_manager *m, struct slc_snapshot_io *io);
-void slc_snapshot_histories(slc_manager *m, struct slc_snapshot_io *io);
-void slc_snapshot_lists(slc_manager *m, struct slc_snapshot_io *io);
-
-#endif /* SLC_CORE_SNAPSHOT_IO_H */
+#endif /* SLC_BASE_SNAPSHOT_IO_H */
