@@ -33,6 +33,14 @@ static bool check_lru(const struct slc_demand_residency *r, uint32_t lru)
     return true;
 }
 
+static bool check_class(const struct slc_demand_residency *r, const struct slc_page_list *list,
+                        uint32_t class_index)
+{
+    for (uint32_t i = list->head; i != SLC_NO_NODE; i = r->nodes.at[i].next[SLC_LINK_HOME])
+        REQUIRE(r->nodes.at[i].class_index == class_index);
+    return true;
+}
+
 static bool check_lists(const struct slc_demand_residency *r)
 {
     uint64_t restorable = 0, listed = r->unseen.count + r->overflow.count;
@@ -43,10 +51,12 @@ static bool check_lists(const struct slc_demand_residency *r)
     }
     for (uint32_t c = 0; c < r->class_count; c++) {
         REQUIRE(check_list(r, &r->classes[c].restorable, SLC_HOME_RESTORABLE));
+        REQUIRE(check_class(r, &r->classes[c].restorable, c));
         restorable += r->classes[c].restorable.count;
     }
     REQUIRE(check_list(r, &r->unseen, SLC_HOME_UNSEEN));
     REQUIRE(check_list(r, &r->overflow, SLC_HOME_OVERFLOW));
+    REQUIRE(check_class(r, &r->overflow, SLC_TILES));
     for (uint32_t i = 0; i < r->nodes.end; i++)
         if (slc_page_nodes_find(&r->nodes, r->nodes.at[i].page) == i)
             homes += r->nodes.at[i].home != SLC_HOME_NONE;

@@ -64,6 +64,28 @@ void slc_page_nodes_remove(struct slc_page_nodes *nodes, uint32_t index)
     nodes->count--;
 }
 
+#define UNLISTED (SLC_NO_NODE - 1)
+
+void slc_page_nodes_restore_free(struct slc_page_nodes *nodes)
+{
+    assert(nodes->end < nodes->capacity);
+    nodes->at[nodes->end++] = (struct slc_page_node){.previous = UNLISTED};
+}
+
+bool slc_page_nodes_restore_order(struct slc_page_nodes *nodes, uint32_t index, uint32_t tail)
+{
+    struct slc_page_node *node = &nodes->at[index];
+    if (node->previous != UNLISTED)
+        return false;
+    node->previous = SLC_NO_NODE;
+    node->next[SLC_LINK_HOME] = SLC_NO_NODE;
+    if (tail == SLC_NO_NODE)
+        nodes->free = index;
+    else
+        nodes->at[tail].next[SLC_LINK_HOME] = index;
+    return true;
+}
+
 uint32_t slc_page_nodes_find(const struct slc_page_nodes *nodes, uint32_t page)
 {
     return slc_map_get(&nodes->map, page);

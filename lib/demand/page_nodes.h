@@ -69,6 +69,12 @@ bool slc_page_nodes_reserve(struct slc_page_nodes *nodes, const SluiceAllocation
 uint32_t slc_page_nodes_add(struct slc_page_nodes *nodes, uint32_t page);
 /** In no list. */
 void slc_page_nodes_remove(struct slc_page_nodes *nodes, uint32_t index);
+/** For snapshots: the next index, for which there is room, is free, but not in the list of these.
+ */
+void slc_page_nodes_restore_free(struct slc_page_nodes *nodes);
+/** Lists a free index behind the last one, `tail`; SLC_NO_NODE: it is the first. False if it was
+ *  listed before. */
+bool slc_page_nodes_restore_order(struct slc_page_nodes *nodes, uint32_t index, uint32_t tail);
 /** SLC_NO_NODE if nothing is kept of it. */
 uint32_t slc_page_nodes_find(const struct slc_page_nodes *nodes, uint32_t page);
 
