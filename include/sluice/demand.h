@@ -861,14 +861,14 @@ SLUICE_API SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
  * the format: which pages launches used and requested, when reads ended, and which pages got
  * memory. Neither texels nor shaders nor file names are in it.
  *
- * Call it before the first launch is begun and before anything is preloaded. Textures and
- * resources may exist. End the recording with sluiceEndRecording, before you destroy the loader.
- * The file is written as by sluiceBeginFileRecording.
+ * Call it at any time. If the loader was used before, the state of its pages is written first:
+ * about 25 bytes per page of which something is kept. End the recording with sluiceEndRecording,
+ * before you destroy the loader. The file is written as by sluiceBeginFileRecording.
  *
  * Returns SLUICE_NOT_READY, with nothing recorded, if no file descriptor is free.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if the loader was used before or
- *         is being recorded; SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_BUSY if another writer
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if the loader is being recorded;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_BUSY if another writer
  *         has the file open; SLUICE_ERROR_IO.
  * Thread safety: external on `loader`.
  */

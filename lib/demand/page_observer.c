@@ -23,7 +23,7 @@ void slc_tell_use(const struct slc_demand_residency *r, uint32_t page)
 
 bool slc_residency_is_used(const struct slc_demand_residency *residency)
 {
-    return residency->used || residency->observer.notify;
+    return residency->used;
 }
 
 void slc_residency_get_info(const struct slc_demand_residency *residency,

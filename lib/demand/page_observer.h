@@ -8,7 +8,7 @@
 void slc_residency_set_observer(struct slc_demand_residency *residency,
                                 struct slc_page_observer observer);
 struct slc_page_observer slc_residency_observer(const struct slc_demand_residency *residency);
-/** Whether a page was requested, a launch prepared or begun, or an observer is there. */
+/** Whether a page was requested, or a launch prepared or begun. */
 bool slc_residency_is_used(const struct slc_demand_residency *residency);
 /** What an equal residency is made of; `cb` is NULL. */
 void slc_residency_get_info(const struct slc_demand_residency *residency,

@@ -12,12 +12,11 @@ SluiceResult sluiceBeginDemandRecording(SluiceDemandLoader *loader,
     if (!loader || !pInfo || !pInfo->pPath || !pRecorder)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceFileRecordingInfo info;
-    SluiceResult result = slc_recorder_read_info(
-        pInfo,
-        slc_residency_is_used(loader->residency)
-            ? "the demand loader was used before or is being recorded already"
-            : NULL,
-        &info);
+    SluiceResult result = slc_recorder_read_info(pInfo,
+                                                 slc_residency_observer(loader->residency).notify
+                                                     ? "the demand loader is being recorded already"
+                                                     : NULL,
+                                                 &info);
     if (result != SLUICE_SUCCESS)
         return result;
     return slc_begin_demand_file_recording(loader->residency, &info, pRecorder);

@@ -1,9 +1,12 @@
 #include "replay/demand_player.h"
 
 #include "base/alloc.h"
+#include "demand/page_snapshot.h"
 #include "replay/demand_dump.h"
 #include "replay/demand_record.h"
 #include "replay/hash.h"
+
+#include <inttypes.h>
 
 /* What the residency did ------------------------------------------------------------------- */
 
@@ -77,6 +80,31 @@ SluiceResult slc_demand_player_init(struct slc_demand_player *player,
     struct slc_page_residency_create_info own = *info;
     own.cb = &player->cb;
     return slc_residency_create(&own, &player->residency);
+}
+
+static struct slc_page_memory player_memory(struct slc_demand_player *player)
+{
+    return (struct slc_page_memory){player, take, give, retake};
+}
+
+static void dump_snapshot(struct slc_demand_player *player)
+{
+    SluiceDemandReplayStatistics s = {0};
+    slc_demand_player_statistics(player, &s);
+    slc_dump_line(&player->dump,
+                  "snapshot launch=%" PRIu64 " resident=%" PRIu64 " loading=%" PRIu64
+                  " refused=%" PRIu64,
+                  player->begun, s.residentCount, s.loadingCount, s.refusedCount);
+}
+
+void slc_demand_player_restore(void *user, struct slc_snapshot_io *io)
+{
+    struct slc_demand_player *player = user;
+    const struct slc_page_memory memory = player_memory(player);
+    slc_residency_read_snapshot(player->residency, &memory, io);
+    slc_residency_get_launches(player->residency, &player->begun, &player->prepared);
+    if (slc_snapshot_is_good(io))
+        dump_snapshot(player);
 }
 
 void slc_demand_player_begin(struct slc_demand_player *player)
@@ -192,10 +220,8 @@ static SluiceResult take_list(struct slc_demand_player *player, struct slc_page_
 
 static SluiceResult make_call(struct slc_demand_player *player, struct slc_page_call *call)
 {
-    static const struct slc_page_memory functions = {NULL, take, give, retake};
-    struct slc_page_memory memory = functions;
+    const struct slc_page_memory memory = player_memory(player);
     struct slc_demand_residency *r = player->residency;
-    memory.user = player;
     switch (call->kind) {
     case SLC_PAGE_CALL_SET_CLASS:
         return slc_residency_set_class(r, call->class_index, call->value,

@@ -3,6 +3,7 @@
 #ifndef SLC_REPLAY_DEMAND_PLAYER_H
 #define SLC_REPLAY_DEMAND_PLAYER_H
 
+#include "base/snapshot_io.h"
 #include "demand/page_observer.h"
 #include "replay/dump.h"
 
@@ -31,6 +32,8 @@ SluiceResult slc_demand_player_init(struct slc_demand_player *player,
                                     const SluiceAllocationCallbacks *cb,
                                     const struct slc_page_residency_create_info *info);
 void slc_demand_player_finish(struct slc_demand_player *player);
+/** Gives the player, a struct slc_demand_player, the state of a snapshot, and dumps a line. */
+void slc_demand_player_restore(void *player, struct slc_snapshot_io *io);
 /** From here on all that is played is hashed and dumped, and told to who records the residency. */
 void slc_demand_player_begin(struct slc_demand_player *player);
 

@@ -2,11 +2,11 @@
 
 #include "base/alloc.h"
 #include "demand/page_observer.h"
+#include "demand/page_snapshot.h"
 #include "replay/demand_record.h"
 #include "replay/hash.h"
 #include "replay/recorder.h"
-
-#include <assert.h>
+#include "replay/snapshot.h"
 
 static void notify(void *user, const struct slc_page_call *call)
 {
@@ -39,17 +39,27 @@ static void write_classes(SluiceRecorder *recorder, const struct slc_demand_resi
     }
 }
 
+static void write_state(const void *residency, struct slc_snapshot_io *io)
+{
+    slc_residency_write_snapshot(residency, io);
+}
+
 static SluiceResult begin(SluiceRecorder *recorder, struct slc_demand_residency *residency,
                           SluiceRecorder **out)
 {
     struct slc_page_residency_create_info info;
-    assert(!slc_residency_is_used(residency));
     slc_residency_get_info(residency, &info);
     const uint32_t words[SLC_TRACE_WORDS] = {
         info.class_count, (info.no_eviction ? SLC_DEMAND_FLAG_NO_EVICTION : 0) |
                               (info.no_lod_bias ? SLC_DEMAND_FLAG_NO_LOD_BIAS : 0)};
-    slc_recorder_write_header(recorder, SLC_DEMAND_TRACE_MAGIC, SLC_DEMAND_TRACE_VERSION, words);
-    write_classes(recorder, residency, info.class_count);
+    bool used = slc_residency_is_used(residency);
+    slc_recorder_write_header(recorder, SLC_DEMAND_TRACE_MAGIC,
+                              used ? SLC_DEMAND_TRACE_VERSION_SNAPSHOT : SLC_DEMAND_TRACE_VERSION,
+                              words);
+    if (used)
+        slc_write_snapshot(recorder, write_state, residency);
+    else
+        write_classes(recorder, residency, info.class_count);
     SluiceResult result = slc_recorder_begin(recorder, out);
     if (result == SLUICE_SUCCESS)
         slc_residency_set_observer(residency, (struct slc_page_observer){recorder, notify});

@@ -3,6 +3,7 @@
 #include "replay/demand_player.h"
 #include "replay/demand_record.h"
 #include "replay/demand_recorder.h"
+#include "replay/snapshot.h"
 #include "replay/trace_reader.h"
 
 #include <inttypes.h>
@@ -23,6 +24,13 @@ static SluiceResult start(struct slc_replay *replay, const uint32_t words[SLC_TR
     player->dump.line = replay->info->pfnLine;
     slc_dump_line(&player->dump, "demand classes=%" PRIu32 "%s%s", info.class_count,
                   info.no_eviction ? " no-eviction" : "", info.no_lod_bias ? " no-lod-bias" : "");
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult record(struct slc_replay *replay)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    struct slc_demand_player *player = &replay->demand;
     if (replay->info->pRecordPath) {
         const SluiceFileRecordingInfo recording = {.structSize = sizeof recording,
                                                    .pPath = replay->info->pRecordPath,
@@ -90,8 +98,8 @@ SluiceResult slc_play_demand_recording(struct slc_replay *replay)
     uint32_t words[SLC_TRACE_WORDS];
     uint32_t version;
     uint64_t checksum;
-    SluiceResult result =
-        slc_read_trace_header(replay, SLC_DEMAND_TRACE_VERSION, &version, &checksum, words);
+    SluiceResult result = slc_read_trace_header(replay, SLC_DEMAND_TRACE_VERSION_SNAPSHOT, &version,
+                                                &checksum, words);
     if (result != SLUICE_SUCCESS)
         return result;
     replay->out->kind = SLUICE_TRACE_KIND_DEMAND_RECORDING;
@@ -100,6 +108,10 @@ SluiceResult slc_play_demand_recording(struct slc_replay *replay)
     if (words[1] > SLC_DEMAND_FLAGS || words[2] != 0 || words[3] != 0)
         return slc_replay_corrupt(replay, 20, "unknown flags");
     result = start(replay, words);
+    if (result == SLUICE_SUCCESS && version == SLC_DEMAND_TRACE_VERSION_SNAPSHOT)
+        result = slc_read_snapshot(replay, &checksum, slc_demand_player_restore, &replay->demand);
+    if (result == SLUICE_SUCCESS)
+        result = record(replay);
     if (result != SLUICE_SUCCESS)
         return result;
     const struct slc_trace_player player = {play_block, &replay->demand.hash,

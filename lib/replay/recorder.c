@@ -1,6 +1,7 @@
 #include "replay/recorder.h"
 
 #include "base/alloc.h"
+#include "core/manager_snapshot.h"
 #include "core/refusal.h"
 #include "replay/decisions.h"
 #include "replay/record.h"
@@ -48,6 +49,11 @@ static void write_configuration(SluiceRecorder *recorder,
                &(struct slc_call){.kind = SLC_CALL_SET_CONFIG, .config = config});
 }
 
+static void write_state(const void *manager, struct slc_snapshot_io *io)
+{
+    slc_snapshot_write(manager, io);
+}
+
 static void stop(void *manager)
 {
     slc_manager_set_observer(manager, (struct slc_observer){NULL, NULL});
@@ -58,7 +64,7 @@ static SluiceResult begin(SluiceRecorder *recorder, SluiceStreamedTextureManager
 {
     if (slc_manager_is_used(manager)) {
         write_header(recorder, manager, SLC_TRACE_VERSION_SNAPSHOT);
-        slc_write_snapshot(recorder, manager);
+        slc_write_snapshot(recorder, write_state, manager);
     } else {
         write_header(recorder, manager, SLC_TRACE_VERSION);
         write_configuration(recorder, manager);

@@ -1,5 +1,6 @@
 /* Plays "SLUICERT" recordings; docs/replay.md has the format. */
 #include "base/checked.h"
+#include "core/manager_snapshot.h"
 #include "replay/decisions.h"
 #include "replay/record.h"
 #include "replay/replay.h"
@@ -7,6 +8,7 @@
 #include "replay/snapshot.h"
 #include "replay/trace_reader.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 /* Only a size that the texture has is trusted; any other will be refused before the map is read. */
@@ -111,6 +113,30 @@ static SluiceResult play_block(struct slc_replay *replay, size_t end)
     return SLUICE_SUCCESS;
 }
 
+static void read_state(void *manager, struct slc_snapshot_io *io)
+{
+    slc_snapshot_read(manager, io);
+}
+
+static void dump_snapshot(struct slc_player *player)
+{
+    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
+    sluiceGetStatistics(player->manager, &s);
+    slc_dump_line(&player->dump,
+                  "snapshot textures=%" PRIu32 " heaps=%" PRIu32 " requested=%" PRIu32
+                  " allocated=%" PRIu32 " mapped=%" PRIu32 " standby=%" PRIu32,
+                  s.textureCount, s.heapCount, s.requestedTileCount, s.allocatedTileCount,
+                  s.mappedTileCount, s.standbyTileCount);
+}
+
+static SluiceResult read_snapshot(struct slc_replay *replay, uint64_t *checksum)
+{
+    SluiceResult result = slc_read_snapshot(replay, checksum, read_state, replay->player.manager);
+    if (result == SLUICE_SUCCESS)
+        dump_snapshot(&replay->player);
+    return result;
+}
+
 SluiceResult slc_play_recording(struct slc_replay *replay)
 {
     uint32_t words[SLC_TRACE_WORDS];
@@ -132,7 +158,7 @@ SluiceResult slc_play_recording(struct slc_replay *replay)
     if (result == SLUICE_ERROR_ZERO_HEAP_CAPACITY || result == SLUICE_ERROR_INVALID_ARGUMENT)
         return slc_replay_corrupt(replay, 16, "no manager has such heaps");
     if (result == SLUICE_SUCCESS && version == SLC_TRACE_VERSION_SNAPSHOT)
-        result = slc_read_snapshot(replay, &checksum);
+        result = read_snapshot(replay, &checksum);
     if (result == SLUICE_SUCCESS)
         result = slc_replay_record(replay);
     if (result != SLUICE_SUCCESS)

@@ -4,11 +4,8 @@
  */
 #include "replay/snapshot.h"
 
-#include "core/manager_snapshot.h"
 #include "replay/runs.h"
 #include "replay/trace_reader.h"
-
-#include <inttypes.h>
 
 /* Writing ----------------------------------------------------------------------------------- */
 
@@ -30,14 +27,16 @@ static void end_part(void *user)
     slc_recorder_end_record(user);
 }
 
-void slc_write_snapshot(SluiceRecorder *recorder, const SluiceStreamedTextureManager *manager)
+void slc_write_snapshot(SluiceRecorder *recorder,
+                        void (*write)(const void *source, struct slc_snapshot_io *io),
+                        const void *source)
 {
     struct slc_snapshot_io io = {.user = recorder,
                                  .cb = &recorder->cb,
                                  .number = write_number,
                                  .bytes = write_bytes,
                                  .part = end_part};
-    slc_snapshot_write(manager, &io);
+    write(source, &io);
     if (recorder->result == SLUICE_SUCCESS)
         recorder->result = io.result;
     slc_recorder_end_snapshot(recorder);
@@ -133,18 +132,8 @@ static void read_end(struct reader *reader)
     reader->io.why = "there is more behind the snapshot";
 }
 
-static void dump_snapshot(struct slc_player *player)
-{
-    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
-    sluiceGetStatistics(player->manager, &s);
-    slc_dump_line(&player->dump,
-                  "snapshot textures=%" PRIu32 " heaps=%" PRIu32 " requested=%" PRIu32
-                  " allocated=%" PRIu32 " mapped=%" PRIu32 " standby=%" PRIu32,
-                  s.textureCount, s.heapCount, s.requestedTileCount, s.allocatedTileCount,
-                  s.mappedTileCount, s.standbyTileCount);
-}
-
-SluiceResult slc_read_snapshot(struct slc_replay *replay, uint64_t *checksum)
+SluiceResult slc_read_snapshot(struct slc_replay *replay, uint64_t *checksum,
+                               void (*read)(void *target, struct slc_snapshot_io *io), void *target)
 {
     struct reader reader = {.replay = replay,
                             .checksum = checksum,
@@ -156,11 +145,9 @@ SluiceResult slc_read_snapshot(struct slc_replay *replay, uint64_t *checksum)
                                    .part = part_was_read}};
     reader.io.user = &reader;
     reader.block.end = reader.block.pos;
-    slc_snapshot_read(replay->player.manager, &reader.io);
+    read(target, &reader.io);
     read_end(&reader);
     if (reader.io.result == SLUICE_ERROR_CORRUPT_DATA && !reader.reported)
         return slc_replay_corrupt(replay, reader.start, reader.io.why);
-    if (reader.io.result == SLUICE_SUCCESS)
-        dump_snapshot(&replay->player);
     return reader.io.result;
 }

