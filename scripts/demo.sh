@@ -164,7 +164,8 @@ $(megabytes resident_bytes) at the end, $(megabytes resident_bytes_peak) at most
 $(megabytes device_memory_peak)."
 say "The report, with pictures and figures: $output/report.html"
 say "Pictures: $output/frame-*.png"
-[ ${#comparing[@]} -eq 0 ] || say "The same with everything resident, and the visible difference: truth-*.png, flip-*.png there"
+[ ${#comparing[@]} -eq 0 ] || say "The same with everything resident, and the visible difference: truth-*.png, flip-*.png there. \
+To flip between both, open frame-N.png and truth-N.png in two tabs of a browser."
 say "Figures: $output/frames.csv (by frame), $output/summary.txt"
 [ "$tradeoff" = no ] || say "What settings cost, with plots and pictures: $output/tradeoff/page.html"
 say "Next: your own pictures by '-- --images FOLDER --budget 64'; all that can be set by '-- --help'."
