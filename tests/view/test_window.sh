@@ -91,7 +91,7 @@ open_viewer many && xdotool key ctrl+q && ended_well
 fact it_can_be_closed_while_the_scene_is_loading
 has_moved() { picture later.png shift+F12 && ! cmp -s early.png later.png; }
 open_viewer many && picture early.png shift+F12 && until_true 3 has_moved &&
-    xdotool key Escape && until_true 10 copies '^sluice-view --size' &&
+    xdotool key Escape && until_true 10 copies '^sluice-view --room --size' &&
     xdotool key ctrl+q && ended_well
 fact loading_says_how_far_it_is_and_escape_opens_the_room_instead
 export LOSE_AFTER=20
