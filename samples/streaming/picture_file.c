@@ -113,15 +113,18 @@ static SluiceResult lacking(const char *path, const char *what)
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
-static SluiceResult open_store(const char *path, SluiceStoreReadPool *pool,
+static SluiceResult open_store(const char *path, const struct picture_opening *opening,
                                SluiceImageSource **source)
 {
 #ifdef HAVE_STORE
-    SluiceStoreImageSourceCreateInfo create = {
-        .structSize = sizeof create, .pPath = path, .log = to_stderr, .readPool = pool};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                               .pPath = path,
+                                               .pInput = opening->input,
+                                               .log = to_stderr,
+                                               .readPool = opening->pool};
     return sluiceCreateStoreImageSource(&create, source);
 #else
-    (void)pool, (void)source;
+    (void)opening, (void)source;
     return lacking(path, "sluice-store, which reads tile stores (it needs libzstd and libxxhash)");
 #endif
 }
@@ -184,7 +187,7 @@ SluiceResult picture_file_open(const char *path, enum picture_kind kind,
     *source = NULL;
     info->structSize = sizeof *info;
     switch (kind) {
-    case PICTURE_STORE: result = open_store(path, opening->pool, source); break;
+    case PICTURE_STORE: result = open_store(path, opening, source); break;
     case PICTURE_EXR:
     case PICTURE_EXR_LEVEL_ZERO: result = open_exr(path, opening, source); break;
     case PICTURE_DDS:

@@ -33,6 +33,7 @@ struct picture_opening {
     /** For OpenEXR files without levels together; outlives them. NULL: each has the library's
      *  default. */
     SluiceExrMemoryBudget *memory;
+    const SluiceInput *input; ///< of a store on a server; NULL: the path is a file
 };
 
 /** Says on stderr why it failed. UNSUPPORTED for PICTURE_OTHER. */

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "../../tools/common/files.h"
+#include "../../tools/common/log.h"
 #include "../../tools/common/text.h"
 #include "baked.h"
 #include "exposure.h"
@@ -44,15 +45,20 @@ static bool is_gray(SluiceFormat format)
     return sluiceGetFormatInfo(format, &info) == SLUICE_SUCCESS && info.channelCount == 1;
 }
 
-static SluiceResult open_picture(const struct picture_path *path,
-                                 const struct picture_opening *opening,
+static SluiceResult open_picture(const struct picture_path *path, struct picture_opening opening,
+                                 struct remote_session *session,
                                  const struct picture_limits *limits, struct picture *picture)
 {
+    const SluiceLogCallback to_stderr = {NULL, log_say};
     *picture = (struct picture){.path = strdup(path->path)};
     if (!picture->path)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (remote_is_url(path->path) &&
+        !remote_open(&picture->remote, session, path->path, &to_stderr))
+        return SLUICE_ERROR_IO;
+    opening.input = remote_input(&picture->remote);
     SluiceResult result = picture_file_open(path->store ? path->store : path->path,
-                                            path->store ? PICTURE_STORE : path->kind, opening,
+                                            path->store ? PICTURE_STORE : path->kind, &opening,
                                             &picture->color, &picture->info);
     if (result == SLUICE_SUCCESS && !fits(path->path, &picture->info, limits))
         result = SLUICE_ERROR_UNSUPPORTED;
@@ -65,6 +71,7 @@ static SluiceResult open_picture(const struct picture_path *path,
 static void close_picture(struct picture *picture)
 {
     sluiceDestroyImageSource(picture->color);
+    remote_close(&picture->remote);
     sluiceDestroyImageSource(picture->relief);
     if (picture->neural)
         sluiceDestroyImageSource(picture->neural->original);
@@ -108,7 +115,7 @@ static bool open_all(const struct picture_path *paths, size_t count, enum pixel_
         struct picture *picture = &list->pictures[list->count];
         SluiceResult result = SLUICE_ERROR_IO;
         if (!paths[i].refused) {
-            result = open_picture(&paths[i], &opening, limits, picture);
+            result = open_picture(&paths[i], opening, &list->session, limits, picture);
             if (result == SLUICE_SUCCESS) {
                 list->count++;
                 continue;
@@ -146,7 +153,11 @@ static bool open_files(const struct file_list *files, const struct settings *set
         fprintf(stderr, "out of memory\n");
     for (size_t i = 0; opened && i < count; i++) {
         paths[i].path = files->paths[i];
-        SluiceResult result = picture_file_kind(paths[i].path, &paths[i].kind);
+        SluiceResult result = SLUICE_SUCCESS;
+        if (remote_is_url(paths[i].path)) /* whatever else is there is refused when it is opened */
+            paths[i].kind = PICTURE_STORE;
+        else
+            result = picture_file_kind(paths[i].path, &paths[i].kind);
         paths[i].refused = result != SLUICE_SUCCESS;
         if (result == SLUICE_NOT_READY)
             text_say("%s: left out: %s", paths[i].path, reason(result));
@@ -185,8 +196,11 @@ bool pictures_open(const struct settings *settings, const struct picture_limits 
         return hung;
     }
     bool collected = settings->images.count > 0 || collect_generated(settings, &files);
-    for (size_t i = 0; collected && i < settings->images.count; i++)
-        collected = files_collect(settings->images.items[i], HANGABLE_SUFFIXES, &files);
+    for (size_t i = 0; collected && i < settings->images.count; i++) {
+        const char *name = settings->images.items[i];
+        collected = remote_is_url(name) ? files_add(name, &files)
+                                        : files_collect(name, HANGABLE_SUFFIXES, &files);
+    }
     *list = (struct picture_list){.refused = (uint32_t)files.unreadable_count};
     bool opened = collected && open_files(&files, settings, limits, list);
     files_finish(&files);
@@ -205,5 +219,6 @@ void pictures_close(struct picture_list *list)
     sluiceDestroyStoreReadPool(list->pool);
 #endif
     sluiceDestroyExrMemoryBudget(list->memory);
+    remote_end(&list->session);
     *list = (struct picture_list){0};
 }

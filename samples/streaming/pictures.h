@@ -5,6 +5,7 @@
 #include <sluice/exr.h>
 #include <sluice/store.h>
 
+#include "../../tools/common/remote.h"
 #include "generate.h"
 #include "settings.h"
 
@@ -12,8 +13,9 @@ struct neural_files;
 struct neural_picture;
 
 struct picture {
-    char *path;               ///< owned
-    SluiceImageSource *color; ///< owned; NULL where `neural` says so
+    char *path;                ///< owned
+    struct remote_file remote; ///< of a URL; closed after `color`
+    SluiceImageSource *color;  ///< owned; NULL where `neural` says so
     SluiceImageInfo info;
     float exposure;            ///< factor that brings the picture to a middle brightness
     bool gray;                 ///< one channel, to be shown as gray
@@ -29,6 +31,7 @@ struct picture_list {
     SluiceStoreReadPool *pool;     ///< owned; that all stores share
     SluiceExrMemoryBudget *memory; ///< owned; that all OpenEXR files without levels share
     struct neural_files *neural;   ///< owned; NULL: no neural set hangs
+    struct remote_session session; ///< connections of the URLs
 };
 
 /** What the device can hold of one image. */
