@@ -20,6 +20,7 @@ static double slider_most(const struct control *control)
                   {"source-latency", 1000},
                   {"source-bandwidth", 1000},
                   {"loads-in-flight", 4096},
+                  {"source-fails", 64},
                   {"speed", 100},
                   {"frame-cap", 240}};
     for (size_t i = 0; i < sizeof limits / sizeof *limits; i++)

@@ -37,6 +37,7 @@ struct view_settings {
     int residency; ///< enum view_residency
     uint32_t anisotropy;
     double source_latency, source_bandwidth; ///< milliseconds, MB/s
+    uint32_t source_fails;                   ///< reads of one region in so many fail; 0: none
     int pause, freeze_wants;
 
     uint32_t view; ///< enum view_number

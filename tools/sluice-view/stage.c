@@ -1,5 +1,6 @@
 #include "stage.h"
 
+#include "fault_source.h"
 #include "scene_data.h"
 #include "scene_images.h"
 #include "stage_draw.h"
@@ -27,7 +28,9 @@ struct stage {
     uint32_t *table_indices;
     struct tile_marks marks;
     uint32_t baking_count;
-    SluiceImageSource **slow; ///< around the scene's sources; NULL without a slow line
+    SluiceImageSource **slow;   ///< around the scene's sources; NULL without a slow line
+    SluiceImageSource **faulty; ///< around all these
+    atomic_uint source_fails;
     struct slow_line line;
     bool is_slow;
     atomic_uint_least64_t now;
@@ -59,6 +62,18 @@ static bool begin_slowness(struct stage *s)
                    "slow_source_create"))
             return false;
     return s->is_slow;
+}
+
+static bool begin_faults(struct stage *s)
+{
+    s->faulty = calloc(s->scene.image_count + 1, sizeof *s->faulty);
+    for (uint32_t i = 0; s->faulty && i < s->scene.image_count; i++)
+        if (!check(fault_source_create(&s->source_fails,
+                                       s->slow ? s->slow[i] : s->scene.images[i].source,
+                                       &s->faulty[i]),
+                   "fault_source_create"))
+            return false;
+    return s->faulty;
 }
 
 static SluiceResidencyMode mode_of(const struct view_settings *settings)
@@ -158,7 +173,7 @@ static bool add_texture(struct stage *s, uint32_t i)
     SluiceVulkanTexture texture;
     SluiceVulkanTextureCreateInfo info = {
         .structSize = sizeof info,
-        .source = s->slow ? s->slow[i] : image->source,
+        .source = s->faulty[i],
         .primaryId = follows ? s->textures[image->primary].id : SLUICE_NO_TEXTURE,
         .pUvTransform = image->transformed ? &image->transform : NULL,
         .addressModeU = (VkSamplerAddressMode)image->wrap_u,
@@ -224,8 +239,8 @@ struct stage *stage_create(const struct stage_request *request,
     s->settings = *settings;
     s->textures = calloc(s->scene.image_count + 1, sizeof *s->textures);
     s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
-    if (s->textures && s->table_indices && begin_slowness(s) && create_streamer(s, request) &&
-        add_textures(s) && create_marks(s) && create_drawing(s)) {
+    if (s->textures && s->table_indices && begin_slowness(s) && begin_faults(s) &&
+        create_streamer(s, request) && add_textures(s) && create_marks(s) && create_drawing(s)) {
         s->baking_count = scene_images_baking(&s->scene);
         stage_apply(s, settings);
         return s;
@@ -242,10 +257,13 @@ void stage_destroy(struct stage *s)
     sluiceDestroyVulkanContext(s->context);
     stage_drawing_destroy(&s->drawing);
     tile_marks_destroy(&s->marks);
+    for (uint32_t i = 0; s->faulty && i < s->scene.image_count; i++)
+        sluiceDestroyImageSource(s->faulty[i]);
     for (uint32_t i = 0; s->slow && i < s->scene.image_count; i++)
         sluiceDestroyImageSource(s->slow[i]);
     if (s->is_slow)
         slow_line_finish(&s->line);
+    free(s->faulty);
     free(s->slow);
     scene_data_finish(&s->scene);
     free(s->textures);
@@ -272,6 +290,7 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
     now.residencyFadeTicks = (uint64_t)(settings->fade * TICKS_PER_SECOND);
     check(sluiceSetVulkanStreamerSettings(s->streamer, &now), "sluiceSetVulkanStreamerSettings");
     s->settings = *settings;
+    atomic_store(&s->source_fails, settings->source_fails);
 }
 
 /* Reads of a picture that is being made were not ready: they are tried again at once. */
@@ -358,6 +377,11 @@ const char *stage_message(const struct stage *s, uint32_t index)
 uint32_t stage_texture_count(const struct stage *s)
 {
     return s->scene.image_count;
+}
+
+const SluiceImageSource *stage_source(const struct stage *s, uint32_t index)
+{
+    return s->faulty[index];
 }
 
 const struct stage_texture *stage_texture(const struct stage *s, uint32_t index)

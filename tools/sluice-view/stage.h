@@ -76,6 +76,8 @@ const struct stage_texture *stage_texture(const struct stage *stage, uint32_t in
 /** What a camera sees at x, y, 0 to 1 from the left and the top. */
 struct stage_pick stage_pick(const struct stage *stage, const struct view_camera *camera,
                              float aspect, float x, float y);
+/** The source that the streamer reads. */
+const SluiceImageSource *stage_source(const struct stage *stage, uint32_t index);
 /** A place to begin, and the box around everything. */
 struct view_camera stage_camera(const struct stage *stage);
 void stage_bounds(const struct stage *stage, struct vec3 bounds[2]);
