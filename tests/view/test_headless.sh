@@ -62,6 +62,16 @@ hang pictures "$set" "$set#gone" && grep -q 'pictures/noise.png' err && grep -q 
     hang --screenshot black.png pictures/black.ppm gone.png && hang --screenshot missing.png gone.png \
     pictures/black.ppm && grep -q 'gone.png: cannot be shown' err && ! cmp -s black.png missing.png
 fact pictures_and_folders_hang_in_the_room_and_one_that_is_missing_is_named
+printf '3 click 80 80 right\n7 set source-fails 0\n' >faults && { cat faults && echo '8 do retry'; } >mended
+# shellcheck disable=SC2086
+fails() { run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --still \
+    --frames 12 --json --view 3 --source-fails 1 --script "$@" pictures/black.ppm; }
+fails faults && grep -q '"tiles failed", "value": [1-9]' out && grep -q '"tiles loaded", "value": 0,' out &&
+    fails mended && grep -q '"tiles loaded", "value": [1-9]' out
+fact failing_reads_are_counted_and_a_retry_reads_them_again
+printf '1 do retry\n2 do fly\n' >actions
+run 0 --room --headless --size 160x160 --frames 3 --script actions && grep -q 'retry: no texture is selected' err
+fact an_action_without_a_texture_is_refused
 run 1 --headless --frames 2 --cache . none && grep -q 'there is no picture to show' err
 fact a_folder_without_pictures_is_refused
 

@@ -31,8 +31,9 @@ enum facts_series {
 
 struct facts_texture {
     SluiceTextureStatistics statistics;
-    uint32_t finest_level; ///< resident somewhere; SLUICE_MIP_UNTOUCHED: none
-    double thrash;         ///< loads per resident tile
+    uint32_t finest_level;      ///< resident somewhere; SLUICE_MIP_UNTOUCHED: none
+    double thrash;              ///< loads per resident tile
+    SluiceTextureRequestId pin; ///< of all its tiles; 0: none
 };
 
 struct view_facts {

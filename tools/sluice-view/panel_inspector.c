@@ -1,7 +1,10 @@
 #include "panels.h"
 
+#include "texture_actions.h"
+
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static SluiceStreamedTextureManager *manager_of(const struct view_app *app)
 {
@@ -22,14 +25,21 @@ static SluiceTextureRect rect_of(const struct view_app *app, const struct stage_
     return rect;
 }
 
+/* Sentences begin with the path, shortened if it is long. The name is above them. */
+static const char *without_path(const char *sentence, const struct stage_texture *texture)
+{
+    const char *end = strstr(sentence, ": ");
+    const bool begins = end && strncmp(sentence, texture->path, (size_t)(end - sentence)) == 0;
+    return begins ? end + 2 : sentence;
+}
+
 static void draw_reason(const struct view_app *app, const struct stage_texture *texture)
 {
     SluiceVulkanExplanation why = {.structSize = sizeof why};
     const SluiceTextureRect rect = rect_of(app, texture);
     const bool at_point = app->inspect.hit && app->inspect.texture == app->selected;
-    const SluiceTextureId id = texture->primary == STAGE_NO_TEXTURE ? texture->id : texture->id;
-    if (sluiceExplainVulkanTexture(stage_streamer(app->stage), id, at_point ? &rect : NULL, &why) !=
-        SLUICE_SUCCESS)
+    if (sluiceExplainVulkanTexture(stage_streamer(app->stage), texture->id, at_point ? &rect : NULL,
+                                   &why) != SLUICE_SUCCESS)
         return;
     ui_text(UI_GRAY,
             at_point ? "Here: why no finer level?" : "Its coarsest part: why no finer level?");
@@ -37,7 +47,7 @@ static void draw_reason(const struct view_app *app, const struct stage_texture *
     ui_paragraph(why.reason == SLUICE_COARSE_FAILED ? UI_RED
                  : good                             ? UI_WHITE
                                                     : UI_ORANGE,
-                 why.sentence);
+                 without_path(why.sentence, texture));
 }
 
 /* A map of a texture, a square per tile of level 0 or several of them. */
@@ -83,26 +93,20 @@ static void draw_maps(const struct view_app *app, const struct stage_texture *te
     free(maps);
 }
 
-static void draw_buttons(struct view_app *app, const struct stage_texture *texture)
+static void draw_buttons(struct view_app *app)
 {
-    SluiceVulkanStreamer *streamer = stage_streamer(app->stage);
-    SluiceVulkanTextureControl control = {.structSize = sizeof control};
-    if (ui_button("Evict", 0, 0, false))
-        sluiceEvictVulkanTexture(streamer, texture->id, 0);
-    ui_hint("Evicts its tiles. What is still seen comes again.");
-    if (texture->primary != STAGE_NO_TEXTURE ||
-        sluiceGetVulkanTextureControl(streamer, texture->id, &control) != SLUICE_SUCCESS)
-        return;
-    ui_same_line(0);
-    if (ui_button(control.hidden ? "Show" : "Hide", 0, 0, control.hidden)) {
-        control.hidden = !control.hidden;
-        sluiceSetVulkanTextureControl(streamer, texture->id, &control);
+    uint32_t count;
+    const struct texture_action *actions = texture_actions_get(&count);
+    const uint32_t primary = stage_texture(app->stage, app->selected)->primary;
+    const uint32_t texture = primary == STAGE_NO_TEXTURE ? app->selected : primary;
+    for (uint32_t i = 0; i < count; i++) {
+        const bool done = actions[i].is_done && actions[i].is_done(app, texture);
+        if (i > 0)
+            ui_same_line(0);
+        if (ui_button(done ? actions[i].label_again : actions[i].label, 0, 0, done))
+            texture_actions_do(app, actions[i].name);
+        ui_hint("%s In scripts: do %s", actions[i].hint, actions[i].name);
     }
-    ui_hint("Hidden: its feedback is not read, its tiles leave when others need the memory.");
-    ui_same_line(0);
-    if (ui_button("Retry", 0, 0, false))
-        sluiceRetryVulkanSource(streamer, NULL);
-    ui_hint("Reads again at once what failed to load.");
 }
 
 void panel_inspector(struct view_app *app)
@@ -127,7 +131,7 @@ void panel_inspector(struct view_app *app)
             ui_text(UI_GRAY, "%u loads, %u evictions, %u failures", s->mappedTotal,
                     s->unmappedTotal, s->failedTotal);
             draw_maps(app, texture);
-            draw_buttons(app, texture);
+            draw_buttons(app);
             if (texture->path[0])
                 ui_paragraph(UI_GRAY, texture->path);
         }

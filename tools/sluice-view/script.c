@@ -177,6 +177,11 @@ static bool take_set(struct line *line)
     return line->count == 2 && add_text(line, SCRIPT_SET, line->words[0], line->words[1]);
 }
 
+static bool take_do(struct line *line)
+{
+    return line->count == 1 && add_text(line, SCRIPT_DO, line->words[0], NULL);
+}
+
 static bool take_screenshot(struct line *line)
 {
     return line->count > 0 && add_text(line, SCRIPT_SCREENSHOT, line->rest, NULL);
@@ -201,6 +206,7 @@ static const struct {
     {"wheel", "a number of turns", take_wheel},
     {"drop", "a path", take_drop},
     {"set", "the name of an option and a value", take_set},
+    {"do", "evict, pin, hide or retry", take_do},
     {"screenshot", "a file", take_screenshot},
     {"quit", "nothing else", take_quit},
 };

@@ -8,8 +8,8 @@
  *     120 quit
  *
  * Events are key CHORD, hold CHORD FRAMES, type TEXT, hover X Y, click X Y [left|right|middle],
- * double-click X Y, drag X Y X Y [FRAMES], wheel N, drop PATH, set NAME VALUE, screenshot FILE and
- * quit. Empty lines and what follows '#' are passed over.
+ * double-click X Y, drag X Y X Y [FRAMES], wheel N, drop PATH, set NAME VALUE, do ACTION,
+ * screenshot FILE and quit. Empty lines and what follows '#' are passed over.
  */
 #ifndef SLUICE_VIEW_SCRIPT_H
 #define SLUICE_VIEW_SCRIPT_H
@@ -26,6 +26,7 @@ enum script_kind {
     SCRIPT_TYPE,   ///< text
     SCRIPT_DROP,   ///< text
     SCRIPT_SET,    ///< text, value
+    SCRIPT_DO,     ///< text: texture_actions.h
     SCRIPT_SCREENSHOT,
     SCRIPT_QUIT
 };

@@ -7,6 +7,7 @@
 #include "panels.h"
 #include "scene_hall.h"
 #include "settings_file.h"
+#include "texture_actions.h"
 
 #include "../common/clock.h"
 #include "../common/log.h"
@@ -70,6 +71,7 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
     case SCRIPT_TYPE: snprintf(in->text, sizeof in->text, "%s", step->text); break;
     case SCRIPT_DROP: drop(v, step->text); break;
     case SCRIPT_SET: controls_set(&v->app.settings, step->text, step->value, "sluice-view"); break;
+    case SCRIPT_DO: texture_actions_do(&v->app, step->text); break;
     case SCRIPT_SCREENSHOT: snprintf(v->screenshot, sizeof v->screenshot, "%s", step->text); break;
     case SCRIPT_QUIT: v->app.quit = true; break;
     }
