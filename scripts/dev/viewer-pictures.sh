@@ -10,6 +10,6 @@ for script in "$root"/docs/viewer/*.txt; do
     basename "$script" .txt
     "$viewer" --headless --deterministic --size 1000x562 --render-scale 1 --script "$script"
 done
-for picture in blurry memory budget; do
+for picture in hall blurry memory budget truth; do
     cp "$picture.png" "$root/docs/images/viewer-$picture.png"
 done
