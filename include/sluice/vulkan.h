@@ -818,6 +818,9 @@ typedef struct SluiceVulkanStreamerStatistics {
      *  (vulkan_control.h). */
     uint64_t tilesReloaded;
     uint64_t uploadQueueCopies; ///< Tiles, and parts of mip tails, copied on uploadQueue.
+    /** Tiles whose source had no texels yet (SLUICE_NOT_READY), again and again. They are asked for
+     *  later like failed ones, but count in tilesFailed only if a producer said so. */
+    uint64_t tilesNotReady;
 } SluiceVulkanStreamerStatistics;
 
 /**

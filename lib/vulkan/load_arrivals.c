@@ -33,8 +33,8 @@ SluiceResult slc_packed_fail(SluiceVulkanStreamer *s, uint32_t index)
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = sluiceReportFailedTiles(s->manager, texture->id, 1,
                                          &texture->packed_tiles[i].tileIndex, s->manager_time);
-    s->counts.tilesFailed += count;
-    slc_read_trouble_failed(s, index, texture->packed_tiles[0].tileIndex, texture->packed_result);
+    slc_read_trouble_failed(s, index, texture->packed_tiles[0].tileIndex, count,
+                            texture->packed_result);
     packed_restart(texture);
     return slc_streamer_check(s, result, "sluiceReportFailedTiles");
 }
@@ -74,8 +74,7 @@ SluiceResult slc_tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult
         result = sluiceReportFailedTiles(s->manager, texture->id, 1, &unit->tile.tileIndex,
                                          s->manager_time);
         slc_streamer_check(s, result, "sluiceReportFailedTiles");
-        s->counts.tilesFailed++;
-        slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, answer);
+        slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, 1, answer);
     } else {
         slc_read_trouble_delivered(s, unit->texture, unit->tile.tileIndex);
         slc_load_stage_unit(s, unit, SLUICE_LOAD_STAGE_READ);

@@ -62,8 +62,7 @@ static SluiceResult fail_tile(SluiceVulkanStreamer *s, uint32_t index, SluiceRes
     discard(s, unit->texture, &unit->tile);
     SluiceResult result = sluiceReportFailedTiles(s->manager, s->textures[unit->texture].id, 1,
                                                   &unit->tile.tileIndex, s->manager_time);
-    s->counts.tilesFailed++;
-    slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, answer);
+    slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, 1, answer);
     slc_unit_forget_tile(s, unit);
     slc_unit_free(s, index);
     return slc_streamer_check(s, result, "sluiceReportFailedTiles");

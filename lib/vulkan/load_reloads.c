@@ -185,8 +185,7 @@ static void fail(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
 {
     struct slc_unit *unit = &s->units[index];
     struct slc_texture *texture = &s->textures[unit->texture];
-    s->counts.tilesFailed++;
-    slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, answer);
+    slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, 1, answer);
     texture->reload_waits = true;
     texture->reload_time = s->time_stamp + s->info.retryDelayTicks;
     if (unit->packed_unit != SLC_NONE)

@@ -71,9 +71,14 @@ static void note_spoken(const SluiceVulkanStreamer *s, struct slc_read_trouble *
 }
 
 void slc_read_trouble_failed(SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile,
-                             SluiceResult result)
+                             uint32_t count, SluiceResult result)
 {
     const struct slc_texture *t = &s->textures[texture];
+    if (result == SLUICE_NOT_READY && t->source) {
+        s->counts.tilesNotReady += count;
+        return;
+    }
+    s->counts.tilesFailed += count;
     struct slc_read_trouble *trouble = &s->textures[t->first].trouble;
     SluiceTileState state = SLUICE_TILE_STATE_FREE;
     trouble->failed_count++;

@@ -7,10 +7,12 @@
 
 #include "vulkan/streamer.h"
 
-/** A read of the texture failed, and the manager was told. `tile` is one of those that it was for.
+/**
+ * A read of the texture for `count` tiles failed, and the manager was told. `tile` is one of them.
+ * Counts them. A source that is not ready yet is no trouble: its tiles are counted apart.
  */
 void slc_read_trouble_failed(SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile,
-                             SluiceResult result);
+                             uint32_t count, SluiceResult result);
 /** A read of the texture delivered `tile`. After a recovery other layers are tried again. */
 void slc_read_trouble_delivered(SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile);
 

@@ -356,6 +356,32 @@ static void sources_that_are_not_ready_leave_room_for_others(void **state)
     teardown(&f);
 }
 
+/* Few loads in flight: most tiles are told to the manager as failed, and asked for again. */
+static void sources_that_are_not_ready_are_no_trouble(void **state)
+{
+    (void)state;
+    static struct fixture f; /* large */
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
+    f.loads_in_flight = 8;
+    setup(&f, SLUICE_RESIDENCY_MODE_SPARSE);
+    f.source.is_absent = true;
+    run_frames(&f, 20);
+    sluiceGetVulkanStreamerStatistics(f.streamer, &stats);
+    assert_true(stats.tilesNotReady > 0);
+    assert_int_equal(stats.tilesFailed, 0);
+    f.source.is_absent = false;
+    CHECK_OK(sluiceRetryVulkanSource(f.streamer, &f.source.base));
+    run_frames(&f, 60);
+    for (uint32_t i = 0; i < TILES * TILES; i++) {
+        SluiceTileState tile_state;
+        CHECK_OK(
+            sluiceGetTileState(manager_of(f.streamer), f.texture.textureId, i, &tile_state, NULL));
+        assert_int_equal(tile_state, SLUICE_TILE_STATE_MAPPED);
+    }
+    assert_true(f.warnings == 0 && f.recoveries == 0);
+    teardown(&f);
+}
+
 static void statistics_of_a_removed_texture_are_forgotten(void **state)
 {
     (void)state;
@@ -385,6 +411,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiles_that_are_given_up_stay_coarser_until_they_are_asked_for_again),
         cmocka_unit_test(tiles_that_fail_for_a_while_come_by_themselves),
+        cmocka_unit_test(sources_that_are_not_ready_are_no_trouble),
         cmocka_unit_test(statistics_of_a_removed_texture_are_forgotten),
         cmocka_unit_test(after_an_outage_every_tile_comes_by_itself),
         cmocka_unit_test(a_source_that_is_said_to_be_well_is_read_at_once),
