@@ -18,6 +18,7 @@ struct stat {
 #define S_ISFIFO(mode) (((mode)&0170000) == 0010000)
 #define S_ISLNK(mode) (((mode)&0170000) == 0120000)
 #define S_ISREG(mode) (((mode)&0170000) == 0100000)
+#define S_IWOTH 0000002
 #define UTIME_NOW -1
 #define UTIME_OMIT -2
 
