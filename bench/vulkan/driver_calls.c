@@ -52,6 +52,7 @@
            (VkDevice a, const VkMemoryAllocateInfo *b, const VkAllocationCallbacks *c,             \
             VkDeviceMemory *d),                                                                    \
            (a, b, c, d))                                                                           \
+    RESULT(BeginCommandBuffer, (VkCommandBuffer a, const VkCommandBufferBeginInfo *b), (a, b))     \
     RESULT(BindImageMemory, (VkDevice a, VkImage b, VkDeviceMemory c, VkDeviceSize d),             \
            (a, b, c, d))                                                                           \
     RESULT(CreateImage,                                                                            \
@@ -61,9 +62,11 @@
            (VkDevice a, const VkImageViewCreateInfo *b, const VkAllocationCallbacks *c,            \
             VkImageView *d),                                                                       \
            (a, b, c, d))                                                                           \
+    RESULT(EndCommandBuffer, (VkCommandBuffer a), (a))                                             \
     RESULT(GetSemaphoreCounterValue, (VkDevice a, VkSemaphore b, uint64_t * c), (a, b, c))         \
     RESULT(QueueBindSparse, (VkQueue a, uint32_t b, const VkBindSparseInfo *c, VkFence d),         \
            (a, b, c, d))                                                                           \
+    RESULT(QueueSubmit, (VkQueue a, uint32_t b, const VkSubmitInfo *c, VkFence d), (a, b, c, d))   \
     RESULT(WaitSemaphores, (VkDevice a, const VkSemaphoreWaitInfo *b, uint64_t c), (a, b, c))
 
 static struct {
