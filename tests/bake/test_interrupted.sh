@@ -9,7 +9,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 RANDOM=1
 
-"$make" rgb 2048 2048 7 in.png || exit 1
+"$make" rgb 1280 1280 7 in.png || exit 1
 start=$(date +%s%N)
 "$bake" in.png -o whole.store --threads 1 --compression 3 >/dev/null || exit 1
 duration=$((($(date +%s%N) - start) / 1000000))
