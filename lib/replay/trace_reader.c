@@ -96,7 +96,7 @@ SluiceResult slc_play_blocks(struct slc_replay *replay, uint64_t checksum,
     struct slc_cursor *in = &replay->in;
     SluiceResult result = SLUICE_SUCCESS;
     while (result == SLUICE_SUCCESS) {
-        size_t start = in->pos, end;
+        size_t start = in->pos, end = start;
         if (slc_get_u32(in) == 0 && !in->why)
             return read_end(replay, start, checksum, player);
         in->pos = in->why ? in->pos : start;
