@@ -100,7 +100,7 @@ static void start_readers(struct phase *phase, struct reader *readers, uint32_t 
     pthread_attr_destroy(&attributes);
 }
 
-/* Of all threads of the process. */
+/* All threads of the process count. */
 static double processor_seconds(void)
 {
     struct timespec t;
@@ -143,7 +143,7 @@ static struct rate measure_way(struct way *way, uint32_t count)
     return rate;
 }
 
-/* What else the machine does makes all ways slower, and none faster. */
+/* Other load of the machine makes all ways slower, and none faster. */
 static void keep_best(struct rate *best, const struct rate *rate)
 {
     if (rate->tiles > best->tiles)

@@ -109,7 +109,7 @@ static SluiceResult reserve_for_add(slc_manager *m, const SluiceStreamedTextureD
     return t->packed_nodes ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-/** What was reserved becomes a texture at an index. */
+/** Turns a reservation into a texture at an index. */
 static struct slc_managed_texture *enter_texture(slc_manager *m, uint32_t index,
                                                  uint32_t generation,
                                                  const struct slc_managed_texture *reserved)

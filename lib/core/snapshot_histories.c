@@ -1,4 +1,4 @@
-/* What the maps of textures asked for. Textures that share a history are restored to one again. */
+/* Restores the wants of maps. Textures that share a history are restored to one again. */
 #include "base/bytes.h"
 #include "core/follower.h"
 #include "core/history.h"
@@ -41,7 +41,7 @@ static void exchange_span(slc_manager *m, struct slc_snapshot_io *io, struct slc
     exchange_map(io, t, span->map);
 }
 
-/** What a history knows by its maps. */
+/** The wants that a history has from its maps. */
 static void restore_derived(slc_manager *m, struct slc_snapshot_io *io,
                             struct slc_managed_texture *t)
 {
