@@ -9,7 +9,7 @@
 struct slc_store_resumed {
     uint64_t chunk_count;
     uint64_t end; ///< of the last chunk, at least data_offset
-    /** What the earlier writer remembered at its end, so that both together write the bytes of one.
+    /** The chunks that the earlier writer remembered, so that both together write the bytes of one.
      *  Owned by the caller. NULL if nothing is compressed. */
     struct slc_store_repeats *repeats;
 };

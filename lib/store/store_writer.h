@@ -61,7 +61,7 @@ static inline bool slc_store_entry_is_written(const struct slc_store_entry *entr
     return entry->size > 0;
 }
 
-/** What one call needs, from those of earlier calls if there is one. Errors: OUT_OF_HOST_MEMORY. */
+/** Takes a bench that an earlier call gave back, or makes one. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_store_writer_take_bench(SluiceStoreWriter *writer, struct slc_store_bench **bench);
 void slc_store_writer_give_bench(SluiceStoreWriter *writer, struct slc_store_bench *bench);
 

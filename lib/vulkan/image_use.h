@@ -14,7 +14,7 @@ struct slc_image_use {
     uint32_t format_count;   ///< at most SLC_MAX_VIEW_FORMATS; 0: any that are compatible
 };
 
-/** What a VkImageCreateInfo points to. */
+/** Arrays that a VkImageCreateInfo points to. */
 struct slc_image_formats {
     VkImageFormatListCreateInfo list;
     VkFormat formats[SLC_MAX_VIEW_FORMATS + 1];

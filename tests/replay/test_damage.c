@@ -11,7 +11,7 @@
 /* A block and the longest record after which it may have ended. */
 #define LONGEST_BLOCK (4096 + 1024)
 
-/** Of a manager in use, so that it begins with a snapshot. */
+/** The manager is in use, so the recording begins with a snapshot. */
 static struct trace_buffer record_in_use(uint64_t seed, uint32_t before, uint32_t steps)
 {
     struct trace_buffer trace;
@@ -79,7 +79,7 @@ static void every_changed_byte_is_found_in_its_block(void **state)
     check_changed_bytes(record_in_use(22, STEPS, 10));
 }
 
-/* What a checksum cannot stop: a trace that was made to do harm. */
+/* A trace made to do harm has right checksums. */
 static void check_resealed(struct trace_buffer trace)
 {
     uint8_t *copy = malloc(trace.size);

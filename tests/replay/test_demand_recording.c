@@ -355,7 +355,7 @@ static void every_truncation_is_found_at_or_before_the_cut(void **state)
     trace_buffer_free(&trace);
 }
 
-/* What a checksum cannot stop: a trace that was made to do harm. */
+/* A trace made to do harm has right checksums. */
 static void changed_bytes_under_right_checksums_do_no_harm(void **state)
 {
     (void)state;
