@@ -1,22 +1,18 @@
 #include "http/http_cache.h"
 
 #include "base/alloc.h"
+#include "base/cache_folder.h"
 #include "base/little_endian.h"
 #include "base/log.h"
-#include "platform/folder.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <xxhash.h>
 
 #define SUFFIX ".range"
 #define PART_SUFFIX ".part"
 #define DIGITS 32u
 #define HEADER_SIZE 56u
-#define NAME_SIZE 112u
-#define SECONDS_UNTIL_LEFT (24 * 3600) /* a part that nobody has written for so long */
 static const char magic[8] = {'S', 'L', 'H', 'C', '0', '0', '0', '2'};
 
 struct slc_http_key slc_http_cache_key(const char *url, const char *name, const char *version,
@@ -126,115 +122,34 @@ bool slc_http_cache_read(struct slc_http_cache *cache, struct slc_http_key key, 
     return true;
 }
 
-/* A file of the folder. */
-struct entry {
-    char name[NAME_SIZE];
-    uint64_t size;
-    struct slc_file_time read;
-    bool is_part;
-};
-
-struct entries {
-    struct entry *items;
-    size_t count, capacity;
-    uint64_t size;
-};
-
 /* False: the name is none of ours. */
-static bool is_ours(const char *name, bool *is_part)
+static bool find_kind(struct slc_cache_entry *entry)
 {
+    const char *name = entry->name;
     if (strspn(name, "0123456789abcdef") != DIGITS || strncmp(name + DIGITS, SUFFIX, 6) != 0)
         return false;
     name += DIGITS + 6;
     size_t length = strlen(name);
-    *is_part = length > 5 && strcmp(name + length - 5, PART_SUFFIX) == 0;
-    return *is_part || length == 0;
-}
-
-static bool add_entry(struct entries *entries, const SluiceAllocationCallbacks *cb,
-                      const struct entry *entry)
-{
-    if (entries->count == entries->capacity) {
-        size_t capacity = entries->capacity ? 2 * entries->capacity : 256;
-        struct entry *grown = entries->items ? slc_regrow(cb, entries->items, entries->capacity,
-                                                          capacity, sizeof *grown)
-                                             : slc_alloc(cb, capacity, sizeof *grown);
-        if (!grown)
-            return false;
-        entries->items = grown;
-        entries->capacity = capacity;
-    }
-    entries->items[entries->count++] = *entry;
-    entries->size += entry->size;
-    return true;
-}
-
-static bool list_entries(struct slc_folder *folder, const SluiceAllocationCallbacks *cb,
-                         struct entries *entries)
-{
-    const char *name;
-    while ((name = slc_folder_next(folder))) {
-        struct entry entry;
-        struct slc_file_status status;
-        size_t length = strlen(name);
-        if (length >= NAME_SIZE || !is_ours(name, &entry.is_part) ||
-            !slc_folder_get_status(folder, name, true, &status) || status.kind != SLC_NODE_FILE)
-            continue;
-        memcpy(entry.name, name, length + 1);
-        entry.size = status.size;
-        entry.read = entry.is_part ? status.modified : status.read;
-        if (!add_entry(entries, cb, &entry))
-            return false;
-    }
-    return true;
-}
-
-static int compare_read(const void *a, const void *b)
-{
-    const struct slc_file_time *x = &((const struct entry *)a)->read;
-    const struct slc_file_time *y = &((const struct entry *)b)->read;
-    if (x->seconds != y->seconds)
-        return x->seconds < y->seconds ? -1 : 1;
-    return (x->nanoseconds > y->nanoseconds) - (x->nanoseconds < y->nanoseconds);
-}
-
-/* Removes the ranges read longest ago until `most` bytes are left, and parts left behind. */
-static void remove_entries(struct slc_folder *folder, struct entries *entries, uint64_t most)
-{
-    int64_t now = (int64_t)time(NULL);
-    if (entries->count > 0)
-        qsort(entries->items, entries->count, sizeof *entries->items, compare_read);
-    for (size_t i = 0; i < entries->count; i++) {
-        const struct entry *entry = &entries->items[i];
-        bool goes =
-            entry->is_part ? now - entry->read.seconds > SECONDS_UNTIL_LEFT : entries->size > most;
-        if (goes && slc_folder_remove(folder, entry->name))
-            entries->size -= entry->size;
-    }
+    bool is_part = length > 5 && strcmp(name + length - 5, PART_SUFFIX) == 0;
+    entry->kind = is_part ? SLC_CACHE_TEMPORARY : SLC_CACHE_COMPLETE;
+    return is_part || length == 0;
 }
 
 /* Counts what is there. Above the limit it makes room for a tenth more, so that this is rare. */
 static void trim(struct slc_http_cache *cache)
 {
-    struct entries entries = {0};
-    struct slc_folder *folder = slc_folder_begin(cache->folder);
-    if (!folder)
-        return;
-    if (list_entries(folder, &cache->allocator, &entries)) {
-        bool is_full = entries.size > cache->max_size;
-        remove_entries(folder, &entries,
-                       is_full ? cache->max_size - cache->max_size / 10 : UINT64_MAX);
-        atomic_store(&cache->size, entries.size);
-    }
-    slc_free(&cache->allocator, entries.items, entries.capacity, sizeof *entries.items);
-    slc_folder_end(folder);
+    uint64_t size;
+    const struct slc_cache_rules rules = {.max_size = cache->max_size,
+                                          .remaining_size = cache->max_size - cache->max_size / 10,
+                                          .find_kind = find_kind};
+    if (slc_cache_folder_trim(cache->folder, &rules, &cache->allocator, &size))
+        atomic_store(&cache->size, size);
 }
 
 SluiceResult slc_http_cache_init(struct slc_http_cache *cache, const char *folder,
                                  uint64_t max_size, const SluiceAllocationCallbacks *cb,
                                  const SluiceLogCallback *log)
 {
-    struct slc_file_status status;
     cache->allocator = *cb;
     cache->log = *log;
     cache->max_size = max_size;
@@ -242,11 +157,9 @@ SluiceResult slc_http_cache_init(struct slc_http_cache *cache, const char *folde
     cache->folder = slc_strdup(cb, folder);
     if (!cache->folder)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    if (!slc_folder_make(folder) && !(errno == EEXIST && slc_path_get_status(folder, &status) &&
-                                      status.kind == SLC_NODE_FOLDER)) {
-        slc_log(log, SLUICE_LOG_ERROR, "%s: cannot make this folder: %s", folder, strerror(errno));
-        return SLUICE_ERROR_IO;
-    }
+    SluiceResult result = slc_cache_folder_make(folder, log);
+    if (result != SLUICE_SUCCESS)
+        return result;
     if (slc_folder_is_open_to_all(folder)) {
         slc_log(log, SLUICE_LOG_ERROR,
                 "%s: everybody may write in this folder, and so choose the texels", folder);

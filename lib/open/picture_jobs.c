@@ -166,7 +166,7 @@ SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceIma
     return result == SLUICE_SUCCESS ? SLUICE_ERROR_CORRUPT_DATA : result;
 }
 
-static bool reads(const struct slc_opened_image *image, const struct slc_cached_store *store)
+static bool reads(const struct slc_opened_image *image, const struct slc_cache_entry *store)
 {
     const char *path = image->stream ? strrchr(image->stream->store_path, '/') : NULL;
     return (path && strcmp(path + 1, store->name) == 0) ||
@@ -174,7 +174,7 @@ static bool reads(const struct slc_opened_image *image, const struct slc_cached_
 }
 
 /* Whether the opener has a source that reads it. */
-static bool is_in_use(void *user, const struct slc_cached_store *store)
+static bool is_in_use(void *user, const struct slc_cache_entry *store)
 {
     SluiceImageOpener *opener = user;
     bool is_used = false;

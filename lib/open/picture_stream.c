@@ -64,7 +64,7 @@ static SluiceResult need_background(struct slc_picture_stream *stream)
 static SluiceResult init(struct slc_picture_stream *stream)
 {
     SluiceImageOpener *opener = stream->opener;
-    SluiceResult result = slc_store_cache_make(opener->cache_folder, &opener->log);
+    SluiceResult result = slc_cache_folder_make(opener->cache_folder, &opener->log);
     if (result == SLUICE_SUCCESS)
         result = slc_store_cache_path(opener->cache_folder, stream->path, &opener->allocator,
                                       &stream->store_path);

@@ -4,18 +4,7 @@
 
 #include <sluice/base.h>
 
-#include "platform/file.h"
-
-/** A file of the folder. */
-struct slc_cached_store {
-    char name[96];
-    enum { SLC_CACHED_STORE, SLC_CACHED_PART, SLC_CACHED_PREVIEW } kind;
-    uint64_t device, inode, size;
-    struct slc_file_time touched;
-};
-
-/** Makes the folder unless it is there. Errors: IO, logged. */
-SluiceResult slc_store_cache_make(const char *folder, const SluiceLogCallback *log);
+#include "base/cache_folder.h"
 
 /** "FOLDER/HASH.store": the hash is that of the picture's path without links. Errors:
  *  OUT_OF_HOST_MEMORY. Free with slc_free(cb, s, strlen(s) + 1, 1). */
@@ -40,7 +29,7 @@ bool slc_store_cache_is_busy(const char *store_path, const SluiceAllocationCallb
  */
 void slc_store_cache_trim(const char *folder, uint64_t max_size,
                           const SluiceAllocationCallbacks *cb,
-                          bool (*is_kept)(void *user, const struct slc_cached_store *store),
+                          bool (*is_kept)(void *user, const struct slc_cache_entry *store),
                           void *user);
 
 #endif /* SLC_OPEN_STORE_CACHE_H */

@@ -46,7 +46,7 @@ static bool is_there(const char *folder, const char *name)
     return access(path, F_OK) == 0;
 }
 
-static bool keep_nothing(void *user, const struct slc_cached_store *store)
+static bool keep_nothing(void *user, const struct slc_cache_entry *store)
 {
     (void)user, (void)store;
     return false;

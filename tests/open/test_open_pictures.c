@@ -165,7 +165,7 @@ static void coarse_levels_come_first_and_all_of_them_in_the_end(void **state)
     SluiceImageSource *source;
     SluiceImageInfo image = {.structSize = sizeof image};
     setup(&f);
-    CHECK_OK(slc_store_cache_make(f.cache, NULL));
+    CHECK_OK(slc_cache_folder_make(f.cache, NULL));
     store_path(&f, f.png, path);
     SluiceStoreWriter *writer = begin_writing(path); /* while it is there no bake can begin */
     CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
@@ -475,7 +475,7 @@ static void a_store_that_another_process_writes_holds_up_no_other(void **state)
     char path[512], others[2][256];
     SluiceImageSource *waiting, *sources[2];
     setup(&f);
-    CHECK_OK(slc_store_cache_make(f.cache, NULL));
+    CHECK_OK(slc_cache_folder_make(f.cache, NULL));
     store_path(&f, f.png, path);
     SluiceStoreWriter *writer = begin_writing(path);
     CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &waiting));
@@ -503,7 +503,7 @@ static void a_source_that_waits_for_another_process_can_go(void **state)
     char path[512];
     SluiceImageSource *source;
     setup(&f);
-    CHECK_OK(slc_store_cache_make(f.cache, NULL));
+    CHECK_OK(slc_cache_folder_make(f.cache, NULL));
     store_path(&f, f.png, path);
     SluiceStoreWriter *writer = begin_writing(path);
     CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &source));
@@ -577,7 +577,7 @@ static void a_store_in_the_folder_that_is_open_by_its_own_name_stays(void **stat
     setup(&f);
     sluiceDestroyImageOpener(f.opener);
     open_opener(&f, 1);
-    CHECK_OK(slc_store_cache_make(f.cache, NULL));
+    CHECK_OK(slc_cache_folder_make(f.cache, NULL));
     snprintf(path, sizeof path, "%s/0123456789abcdef-2a.store", f.cache);
     bake_picture_file(f.png, path, NULL);
     for (int i = 0; i < 2; i++) { /* open, and then no more */
