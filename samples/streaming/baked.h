@@ -7,6 +7,7 @@
 /** A picture that was named or found, and what is streamed for it. */
 struct picture_path {
     const char *path;       ///< borrowed
+    char *copy;             ///< owned; `path` of a picture on a server; NULL: none
     char *store;            ///< owned; streamed instead; NULL: the file itself
     enum picture_kind kind; ///< of the file itself
     bool refused;           ///< nothing is; the reason was printed

@@ -10,6 +10,7 @@
 #include "../../tools/common/log.h"
 #include "../../tools/common/text.h"
 #include "baked.h"
+#include "cache.h"
 #include "exposure.h"
 #include "neural_files.h"
 
@@ -141,6 +142,40 @@ static bool create_pool(struct picture_list *list)
 #endif
 }
 
+/* Libraries of pictures read files alone. */
+static SluiceResult copy_picture(const char *url, const char *cache, struct remote_session *session,
+                                 char **copy)
+{
+    const SluiceLogCallback to_stderr = {NULL, log_say};
+    struct remote_file remote;
+    char name[256], path[4096];
+    if (!remote_open(&remote, session, url, &to_stderr))
+        return SLUICE_ERROR_IO;
+    remote_name(url, name, sizeof name);
+    bool kept = cache_keep_input(cache, name, &remote.input, path, sizeof path);
+    remote_close(&remote);
+    *copy = kept ? strdup(path) : NULL;
+    return *copy ? SLUICE_SUCCESS : SLUICE_ERROR_IO;
+}
+
+/* Tile stores on servers are read in place. */
+static SluiceResult find_kind(struct picture_path *path, const char *cache,
+                              struct remote_session *session)
+{
+    char name[256];
+    if (!remote_is_url(path->path))
+        return picture_file_kind(path->path, &path->kind);
+    remote_name(path->path, name, sizeof name);
+    path->kind = PICTURE_STORE; /* whatever else is there is refused when it is opened */
+    if (!files_has_suffix(name, PICTURE_SUFFIXES))
+        return SLUICE_SUCCESS;
+    SluiceResult result = copy_picture(path->path, cache, session, &path->copy);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    path->path = path->copy;
+    return picture_file_kind(path->path, &path->kind);
+}
+
 static bool open_files(const struct file_list *files, const struct settings *settings,
                        const struct picture_limits *limits, struct picture_list *list)
 {
@@ -153,19 +188,17 @@ static bool open_files(const struct file_list *files, const struct settings *set
         fprintf(stderr, "out of memory\n");
     for (size_t i = 0; opened && i < count; i++) {
         paths[i].path = files->paths[i];
-        SluiceResult result = SLUICE_SUCCESS;
-        if (remote_is_url(paths[i].path)) /* whatever else is there is refused when it is opened */
-            paths[i].kind = PICTURE_STORE;
-        else
-            result = picture_file_kind(paths[i].path, &paths[i].kind);
+        SluiceResult result = find_kind(&paths[i], settings->cache, &list->session);
         paths[i].refused = result != SLUICE_SUCCESS;
         if (result == SLUICE_NOT_READY)
             text_say("%s: left out: %s", paths[i].path, reason(result));
     }
     opened = opened && baked_prepare(paths, count, settings->cache, pixels) &&
              open_all(paths, count, pixels, limits, list);
-    for (size_t i = 0; paths && i < count; i++)
+    for (size_t i = 0; paths && i < count; i++) {
         free(paths[i].store);
+        free(paths[i].copy);
+    }
     free(paths);
     return opened;
 }

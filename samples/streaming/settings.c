@@ -96,7 +96,7 @@ enum option_outcome settings_parse(int argc, char **argv, struct settings *s)
         {OPTION_SECTION, .help = "Pictures"},
         {OPTION_LIST, "images", "FILE|DIR|URL ...", "(a generated set)", &s->images,
          "tile stores, also on servers (give 32 --threads then), OpenEXR, DDS and KTX2 files, "
-         "photographs and whatever else libvips reads, "
+         "photographs and whatever else libvips reads, copied from servers, "
          "and folders that hold such. Pictures without tiles and levels of their own are baked "
          "into a tile store once"},
         {OPTION_TEXT, "cache", "DIR", "($XDG_CACHE_HOME/sluice, ~/.cache/sluice)", &s->cache,

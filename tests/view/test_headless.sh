@@ -62,6 +62,19 @@ hang pictures "$set" "$set#gone" && grep -q 'pictures/noise.png' err && grep -q 
     hang --screenshot black.png pictures/black.ppm gone.png && hang --screenshot missing.png gone.png \
     pictures/black.ppm && grep -q 'gone.png: cannot be shown' err && ! cmp -s black.png missing.png
 fact pictures_and_folders_hang_in_the_room_and_one_that_is_missing_is_named
+coproc python3 "$(dirname "$facts")/../http/faulty_server.py"
+read -r port _ <&"${COPROC[0]}"
+from_web() { printf 'http://127.0.0.1:%s/file/%s?path=%s&token=secret' "$port" "$1" "$PWD/$2"; }
+store=$(find pictures -name '*.store' -size +0 | head -n 1)
+if ! hang "$(from_web none.store none)" && grep -q 'without sluice-http' err; then
+    echo "ok $((++number)) - URLs # SKIP made without sluice-http"
+else
+    hang --screenshot web.png "$(from_web black.ppm pictures/black.ppm)" gone.png && cmp black.png web.png &&
+        ! grep -q secret out err && hang "$(from_web x.store "$store")" && ! grep -q 'cannot be shown' err &&
+        run 1 --headless --frames 2 --cache . "$(from_web none.store none)" && grep -q 'none.store: cannot be' err
+    fact pictures_and_stores_on_servers_hang_as_files_do_and_queries_are_not_said
+fi
+exec {COPROC[1]}>&-
 printf '3 click 80 80 right\n7 set source-fails 0\n' >faults && { cat faults && echo '8 do retry'; } >mended
 # shellcheck disable=SC2086
 fails() { run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --still \

@@ -10,6 +10,12 @@ bool remote_begin(struct remote_session *session, const SluiceLogCallback *log)
     return false;
 }
 
+SluicePathOpener remote_path_opener(const struct remote_session *session)
+{
+    (void)session;
+    return (SluicePathOpener){0};
+}
+
 void remote_end(struct remote_session *session)
 {
     (void)session;

@@ -7,4 +7,7 @@
     ".exr|.dds|.ktx2|.png|.jpg|.jpeg|.tif|.tiff|.tx|.webp|.hdr|.gif|.ppm|.pgm|.pfm|.pnm|.bmp|"     \
     ".tga|.jp2|.j2k|.jxl|.heic|.heif|.avif|.psd|.v|.vips"
 
+/** Of those, what sluiceOpenImageSource reads in place. */
+#define TILED_SUFFIXES ".exr|.dds|.ktx2"
+
 #endif /* TOOLS_COMMON_PICTURE_NAMES_H */

@@ -42,6 +42,13 @@ bool remote_begin(struct remote_session *session, const SluiceLogCallback *log)
     return result == SLUICE_SUCCESS;
 }
 
+SluicePathOpener remote_path_opener(const struct remote_session *session)
+{
+    return session->client
+               ? (SluicePathOpener){session->client, sluiceOpenHttpPath, sluiceCloseHttpPath}
+               : (SluicePathOpener){0};
+}
+
 void remote_end(struct remote_session *session)
 {
     sluiceDestroyHttpClient(session->client);

@@ -2,9 +2,10 @@
 #ifndef TOOLS_COMMON_REMOTE_H
 #define TOOLS_COMMON_REMOTE_H
 
-#include <sluice/input.h>
+#include <sluice/open.h>
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 /** Connections that files share. Zeroed: none. */
@@ -25,6 +26,15 @@ static inline bool remote_is_url(const char *name)
            strncmp(name, "s3://", 5) == 0;
 }
 
+/** The last part of a URL's path, without a query, which may hold keys. */
+static inline void remote_name(const char *url, char *name, size_t size)
+{
+    size_t length = strcspn(url, "?#"), first = length;
+    while (first > 0 && url[first - 1] != '/')
+        first--;
+    snprintf(name, size, "%.*s", (int)(length - first), url + first);
+}
+
 /** Returns the input to read from. NULL: the file is not remote, and its path is read. */
 static inline const SluiceInput *remote_input(const struct remote_file *remote)
 {
@@ -38,6 +48,8 @@ static inline const SluiceInput *remote_input(const struct remote_file *remote)
  * use, too.
  */
 bool remote_begin(struct remote_session *session, const SluiceLogCallback *log);
+/** For an opener, which the session must outlive. All zero without a client. */
+SluicePathOpener remote_path_opener(const struct remote_session *session);
 /** Close all files first. A zeroed struct is allowed. */
 void remote_end(struct remote_session *session);
 

@@ -35,6 +35,7 @@ void scene_data_finish(struct scene_data *scene)
         free(scene->images[i].path);
     }
     sluiceDestroyImageOpener(scene->opener);
+    remote_end(&scene->remote);
     free(scene->name);
     free(scene->vertices);
     free(scene->indices);

@@ -5,6 +5,8 @@
 #include "camera.h"
 #include "scene_material.h"
 
+#include "../common/remote.h"
+
 #include <sluice/manager.h>
 #include <sluice/open.h>
 
@@ -58,6 +60,7 @@ struct scene_data {
     struct camera_path tour;
     void *paints;                    ///< of computed images
     SluiceImageOpener *opener;       ///< owned; of images from files
+    struct remote_session remote;    ///< owned; of images from servers
     struct scene_progress *progress; ///< borrowed while the scene is opened; NULL: none
 };
 

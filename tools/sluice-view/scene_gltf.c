@@ -3,6 +3,7 @@
 #include "gltf_materials.h"
 #include "scene_images.h"
 
+#include "../../samples/streaming/cache.h"
 #include "../common/text.h"
 
 #include <stdio.h>
@@ -42,8 +43,8 @@ static uint32_t open_image(struct opening *o, const struct gltf_texture *texture
         scene_data_note(o->scene, "%s: images[%u]: %s", o->file->path, texture->image,
                         image.problem);
     } else if (!image.uri) {
-        if (scene_images_keep(o->cache, image.bytes.bytes, (size_t)image.bytes.size, path,
-                              sizeof path))
+        if (cache_keep(o->cache, "embedded", "", image.bytes.bytes, (size_t)image.bytes.size, path,
+                       sizeof path))
             index = scene_images_add(o->scene, &request);
     } else if (!gltf_path(o->file, image.uri, path, sizeof path)) {
         scene_data_note(o->scene, "%s: images[%u]: %.200s is no file", o->file->path,

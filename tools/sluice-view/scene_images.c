@@ -1,4 +1,4 @@
-/* strdup, getpid */
+/* strdup */
 #define _XOPEN_SOURCE 700
 
 #include "scene_images.h"
@@ -11,7 +11,6 @@
 #include "../common/log.h"
 #include "../common/text.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +29,8 @@ bool scene_images_create_opener(const char *cache, struct scene_data *scene)
                                               .pCacheFolder = folder,
                                               .bakeThreadCount =
                                                   processors > 2 ? (uint32_t)processors - 1 : 1,
-                                              .log = {NULL, log_say}};
+                                              .log = {NULL, log_say},
+                                              .pathOpener = remote_path_opener(&scene->remote)};
     const SluiceResult result = sluiceCreateImageOpener(&info, &scene->opener);
     if (result != SLUICE_SUCCESS)
         text_say("sluice-view: %s", sluiceGetResultName(result));
@@ -104,7 +104,8 @@ uint32_t scene_images_add(struct scene_data *scene, const struct scene_image_req
         .wrap_u = r->wrap_u, .wrap_v = r->wrap_v, .linear = r->linear, .primary = SCENE_NO_IMAGE};
     const SluiceResult result = open_source(scene, r, &image->source);
     if (result != SLUICE_SUCCESS) {
-        scene_data_note(scene, "%s: cannot be shown: %s", r->path, sluiceGetResultName(result));
+        scene_data_note(scene, "%s: cannot be shown: %s",
+                        remote_is_url(r->path) ? r->name : r->path, sluiceGetResultName(result));
         return SCENE_NO_IMAGE;
     }
     const char *refusal = find_refusal(image->source);
@@ -149,42 +150,6 @@ bool scene_images_replace(struct scene_data *scene, uint32_t index, SluiceResult
         if (scene->materials[i].slots[SLOT_COLOR].image == index)
             scene->materials[i].missing = true;
     return true;
-}
-
-/* FNV-1a. */
-static uint64_t hash(const uint8_t *bytes, size_t size)
-{
-    uint64_t value = 0xcbf29ce484222325u;
-    for (size_t i = 0; i < size; i++)
-        value = (value ^ bytes[i]) * 0x100000001b3u;
-    return value;
-}
-
-static bool write_whole(const char *path, const void *bytes, size_t size)
-{
-    char part[4200];
-    snprintf(part, sizeof part, "%s.%ld.part", path, (long)getpid());
-    FILE *file = fopen(part, "wb");
-    bool written = file && fwrite(bytes, 1, size, file) == size;
-    written = file && fclose(file) == 0 && written && rename(part, path) == 0;
-    if (!written)
-        remove(part);
-    return written;
-}
-
-bool scene_images_keep(const char *cache, const void *bytes, size_t size, char *path,
-                       size_t path_size)
-{
-    char name[64];
-    snprintf(name, sizeof name, "embedded/%016" PRIx64 "-%zx", hash(bytes, size), size);
-    if (!cache_path(cache, name, path, path_size) || !files_make_folders_of(path)) {
-        text_say("sluice-view: cannot make the folder of %s", path);
-        return false;
-    }
-    if (files_size(path) == size || write_whole(path, bytes, size))
-        return true;
-    text_say("sluice-view: %s: cannot be written", path);
-    return false;
 }
 
 uint32_t scene_images_baking(const struct scene_data *scene)

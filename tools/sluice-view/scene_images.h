@@ -19,10 +19,6 @@ uint32_t scene_images_add(struct scene_data *scene, const struct scene_image_req
 /** Puts a gray image in the place of one that the device cannot stream, and names that one.
  * Materials with its colors show a checkerboard. */
 bool scene_images_replace(struct scene_data *scene, uint32_t index, SluiceResult why);
-/** Writes bytes into a file of the cache, named by what they are, unless it is there. The opener
- *  reads pictures from files alone. False with a line on stderr. */
-bool scene_images_keep(const char *cache, const void *bytes, size_t size, char *path,
-                       size_t path_size);
 /** Pictures whose finer levels are still being made. */
 uint32_t scene_images_baking(const struct scene_data *scene);
 /** Pictures without tiles are baked in the background; what waits for them is the same in each

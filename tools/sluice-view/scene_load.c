@@ -59,11 +59,13 @@ void scene_load_describe(const struct scene_load *load, char *text, size_t size)
     const char *path = load->paths.count > 0 ? load->paths.paths[0] : "the room";
     const char *slash = strrchr(path, '/');
     const char *name = slash && slash[1] ? slash + 1 : path;
+    const int length = (int)(remote_is_url(path) ? strcspn(name, "?#") : strlen(name));
     done = done < total ? done : total;
     if (total > 0)
-        snprintf(text, size, "Opening %.80s: %u of %u images; Esc cancels", name, done, total);
+        snprintf(text, size, "Opening %.*s: %u of %u images; Esc cancels",
+                 length < 80 ? length : 80, name, done, total);
     else
-        snprintf(text, size, "Opening %.80s; Esc cancels", name);
+        snprintf(text, size, "Opening %.*s; Esc cancels", length < 80 ? length : 80, name);
 }
 
 void scene_load_cancel(struct scene_load *load)

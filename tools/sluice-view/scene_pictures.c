@@ -6,7 +6,9 @@
 #include "scene_images.h"
 #include "scene_room.h"
 
+#include "../../samples/streaming/cache.h"
 #include "../common/files.h"
+#include "../common/log.h"
 #include "../common/picture_names.h"
 #include "../common/text.h"
 
@@ -31,7 +33,8 @@ static bool is_folder(const char *path)
 
 bool scene_pictures_takes(const char *path)
 {
-    return is_folder(path) || files_has_suffix(path, SUFFIXES) || strstr(path, NEURAL "#");
+    return remote_is_url(path) || is_folder(path) || files_has_suffix(path, SUFFIXES) ||
+           strstr(path, NEURAL "#");
 }
 
 static bool collect(const char *const *paths, uint32_t count, struct file_list *files)
@@ -43,40 +46,78 @@ static bool collect(const char *const *paths, uint32_t count, struct file_list *
     return collected;
 }
 
-static const char *base_name(const char *path)
+static void write_name(const char *path, char *name, size_t size)
 {
     const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
+    if (remote_is_url(path))
+        remote_name(path, name, size);
+    else
+        snprintf(name, size, "%s", slash ? slash + 1 : path);
+}
+
+/* Pictures without tiles are read from files alone: replaces such a URL by a copy. */
+static void copy_picture(const char *url, const char *cache, struct remote_session *session,
+                         char **path)
+{
+    const SluiceLogCallback log = {NULL, log_say};
+    struct remote_file remote;
+    char name[256], copy[4096];
+    remote_name(url, name, sizeof name);
+    if (!files_has_suffix(name, PICTURE_SUFFIXES) || files_has_suffix(name, TILED_SUFFIXES) ||
+        !remote_open(&remote, session, url, &log))
+        return;
+    const bool kept = cache_keep_input(cache, name, &remote.input, copy, sizeof copy);
+    remote_close(&remote);
+    char *owned = kept ? strdup(copy) : NULL;
+    if (owned) {
+        free(*path);
+        *path = owned;
+    }
 }
 
 /* Returns how many can be shown. */
-static uint32_t open_all(struct scene_data *scene, const struct file_list *files, uint32_t *images)
+static uint32_t open_all(struct scene_data *scene, const char *cache, struct file_list *files,
+                         uint32_t *images)
 {
     uint32_t shown = 0;
     const int clamp = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     for (size_t i = 0; i < files->count; i++) {
-        const struct scene_image_request request = {base_name(files->paths[i]), files->paths[i],
-                                                    clamp, clamp, false};
+        char name[256];
+        write_name(files->paths[i], name, sizeof name);
+        if (remote_is_url(files->paths[i]) && !scene_data_canceled(scene))
+            copy_picture(files->paths[i], cache, &scene->remote, &files->paths[i]);
+        const struct scene_image_request request = {name, files->paths[i], clamp, clamp, false};
         images[i] = scene_images_add(scene, &request);
         shown += images[i] != SCENE_NO_IMAGE;
     }
     return shown;
 }
 
-static bool hang(const struct file_list *files, const char *cache, struct scene_data *scene)
+static bool has_url(const struct file_list *files)
 {
-    char name[64];
+    for (size_t i = 0; i < files->count; i++)
+        if (remote_is_url(files->paths[i]))
+            return true;
+    return false;
+}
+
+static bool hang(struct file_list *files, const char *cache, struct scene_data *scene)
+{
+    char name[256];
     const uint32_t count = (uint32_t)files->count;
     uint32_t *images = calloc(files->count + 1, sizeof *images);
     snprintf(name, sizeof name, "%u pictures", count);
-    bool hung =
-        images && scene_room_allocate(scene, count == 1 ? base_name(files->paths[0]) : name, count);
+    if (count == 1)
+        write_name(files->paths[0], name, sizeof name);
+    bool hung = images && scene_room_allocate(scene, name, count);
     if (!hung)
         text_say("sluice-view: out of memory");
-    hung = hung && scene_images_create_opener(cache, scene);
+    const SluiceLogCallback log = {NULL, log_say};
+    hung = hung && (!has_url(files) || remote_begin(&scene->remote, &log)) &&
+           scene_images_create_opener(cache, scene);
     if (hung && scene->progress)
         atomic_store(&scene->progress->total, count);
-    if (hung && open_all(scene, files, images) == 0) {
+    if (hung && open_all(scene, cache, files, images) == 0) {
         if (!scene_data_canceled(scene))
             text_say("sluice-view: there is no picture to show");
         hung = false;
