@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE: the viewer without a window, in TAP.
 set -u
+here=$(cd "$(dirname "$0")" && pwd)
 facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3")
 "$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
 # shellcheck source=/dev/null
@@ -114,6 +115,13 @@ for scene in wall quads; do
         --screenshot "$scene.png" "$scene.gltf" && grep -q 'no such.png' err || break
 done && cmp wall.png quads.png
 fact masked_and_transparent_quads_are_not_seen_and_a_missing_image_is_named
+write_quads '[0,1,3]' half.gltf && sed -i 's/"baseColorFactor":\[1,0,0,0\]/"baseColorFactor":[1,0,0,0.5]/' half.gltf &&
+    sed 's/"alphaMode":"BLEND",//' half.gltf >front.gltf
+for scene in wall front half; do
+    run 0 --headless --deterministic --fresh --size 160x160 --render-scale 1 --panels off --cache . --frames 2 \
+        --screenshot "full-$scene.png" "$scene.gltf" || break
+done && python3 "$here/blended.py" full-wall.png full-front.png full-half.png >err
+fact quads_blend_in_linear_light
 printf '1 key 8\n3 set gain 1\n4 screenshot little.png\n5 set gain 16\n6 screenshot much.png\n7 key 5\n9 key 9\n' >truth
 # shellcheck disable=SC2086
 run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --script truth \

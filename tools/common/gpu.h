@@ -98,6 +98,9 @@ void gpu_destroy_buffer(const struct gpu *gpu, struct gpu_buffer *buffer);
 bool gpu_create_image(const struct gpu *gpu, VkFormat format, uint32_t width, uint32_t height,
                       VkSampleCountFlagBits samples, VkImageUsageFlags usage,
                       VkImageAspectFlags aspect, struct gpu_image *image);
+/** As gpu_create_image, of one sample. Views may have both formats; its own has the first. */
+bool gpu_create_viewed_image(const struct gpu *gpu, const VkFormat formats[2], uint32_t width,
+                             uint32_t height, VkImageUsageFlags usage, struct gpu_image *image);
 /** A color image of several levels to be copied to and sampled; the view shows them all. */
 bool gpu_create_texture(const struct gpu *gpu, VkFormat format, uint32_t width, uint32_t height,
                         uint32_t levels, struct gpu_image *image);

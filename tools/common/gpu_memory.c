@@ -135,6 +135,27 @@ bool gpu_create_image(const struct gpu *gpu, VkFormat format, uint32_t width, ui
     return create_image(gpu, &info, aspect, image);
 }
 
+bool gpu_create_viewed_image(const struct gpu *gpu, const VkFormat formats[2], uint32_t width,
+                             uint32_t height, VkImageUsageFlags usage, struct gpu_image *image)
+{
+    const VkImageFormatListCreateInfo list = {.sType =
+                                                  VK_STRUCTURE_TYPE_IMAGE_FORMAT_LIST_CREATE_INFO,
+                                              .viewFormatCount = 2,
+                                              .pViewFormats = formats};
+    VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                              .pNext = &list,
+                              .flags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT,
+                              .imageType = VK_IMAGE_TYPE_2D,
+                              .format = formats[0],
+                              .extent = {width, height, 1},
+                              .mipLevels = 1,
+                              .arrayLayers = 1,
+                              .samples = VK_SAMPLE_COUNT_1_BIT,
+                              .tiling = VK_IMAGE_TILING_OPTIMAL,
+                              .usage = usage};
+    return create_image(gpu, &info, VK_IMAGE_ASPECT_COLOR_BIT, image);
+}
+
 bool gpu_create_texture(const struct gpu *gpu, VkFormat format, uint32_t width, uint32_t height,
                         uint32_t levels, struct gpu_image *image)
 {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #define DEPTH_FORMAT VK_FORMAT_D32_SFLOAT
+#define ENCODING_FORMAT VK_FORMAT_R8G8B8A8_SRGB
 
 static VkAttachmentDescription attachment(VkFormat format, VkSampleCountFlagBits samples,
                                           bool cleared, bool stored, VkImageLayout layout)
@@ -46,13 +47,14 @@ static const VkSubpassDependency dependencies[] = {
 static bool create_pass(const struct gpu *gpu, struct target *target)
 {
     bool resolves = target->samples != VK_SAMPLE_COUNT_1_BIT;
+    const VkFormat format = target->encoding ? ENCODING_FORMAT : TARGET_FORMAT;
     const VkAttachmentDescription attachments[] = {
-        attachment(TARGET_FORMAT, target->samples, true, !resolves,
+        attachment(format, target->samples, true, !resolves,
                    resolves ? VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL
                             : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL),
         attachment(DEPTH_FORMAT, target->samples, true, false,
                    VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL),
-        attachment(TARGET_FORMAT, VK_SAMPLE_COUNT_1_BIT, false, true,
+        attachment(format, VK_SAMPLE_COUNT_1_BIT, false, true,
                    VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL),
     };
     const VkAttachmentReference color = {0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
@@ -74,27 +76,36 @@ static bool create_pass(const struct gpu *gpu, struct target *target)
                      "vkCreateRenderPass");
 }
 
+static const VkImageUsageFlags color_usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                             VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                             VK_IMAGE_USAGE_SAMPLED_BIT;
+
+static bool create_depth(const struct gpu *gpu, struct target *target)
+{
+    return gpu_create_image(gpu, DEPTH_FORMAT, target->width, target->height, target->samples,
+                            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT,
+                            &target->depth);
+}
+
 static bool create_images(const struct gpu *gpu, struct target *target)
 {
-    const VkImageUsageFlags color_usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     uint32_t width = target->width, height = target->height;
-    if (!gpu_create_image(gpu, TARGET_FORMAT, width, height, VK_SAMPLE_COUNT_1_BIT,
-                          color_usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                              VK_IMAGE_USAGE_SAMPLED_BIT,
+    if (!gpu_create_image(gpu, TARGET_FORMAT, width, height, VK_SAMPLE_COUNT_1_BIT, color_usage,
                           VK_IMAGE_ASPECT_COLOR_BIT, &target->color) ||
-        !gpu_create_image(gpu, DEPTH_FORMAT, width, height, target->samples,
-                          VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT,
-                          &target->depth))
+        !create_depth(gpu, target))
         return false;
     return target->samples == VK_SAMPLE_COUNT_1_BIT ||
-           gpu_create_image(gpu, TARGET_FORMAT, width, height, target->samples, color_usage,
-                            VK_IMAGE_ASPECT_COLOR_BIT, &target->multisampled);
+           gpu_create_image(gpu, TARGET_FORMAT, width, height, target->samples,
+                            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, VK_IMAGE_ASPECT_COLOR_BIT,
+                            &target->multisampled);
 }
 
 static bool create_framebuffer(const struct gpu *gpu, struct target *target)
 {
     bool resolves = target->samples != VK_SAMPLE_COUNT_1_BIT;
-    const VkImageView views[] = {resolves ? target->multisampled.view : target->color.view,
+    const VkImageView views[] = {resolves           ? target->multisampled.view
+                                 : target->encoding ? target->encoding
+                                                    : target->color.view,
                                  target->depth.view, target->color.view};
     VkFramebufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
                                     .renderPass = target->pass,
@@ -124,10 +135,36 @@ bool target_create(const struct gpu *gpu, uint32_t width, uint32_t height, uint3
     return false;
 }
 
+static bool create_encoding_view(const struct gpu *gpu, struct target *target)
+{
+    const VkImageViewCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .image = target->color.image,
+        .viewType = VK_IMAGE_VIEW_TYPE_2D,
+        .format = ENCODING_FORMAT,
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+    return gpu_check(vkCreateImageView(gpu->device, &info, NULL, &target->encoding),
+                     "vkCreateImageView");
+}
+
+bool target_create_encoding(const struct gpu *gpu, uint32_t width, uint32_t height,
+                            struct target *target)
+{
+    static const VkFormat formats[2] = {TARGET_FORMAT, ENCODING_FORMAT};
+    *target = (struct target){.width = width, .height = height, .samples = VK_SAMPLE_COUNT_1_BIT};
+    if (gpu_create_viewed_image(gpu, formats, width, height, color_usage, &target->color) &&
+        create_encoding_view(gpu, target) && create_depth(gpu, target) &&
+        create_pass(gpu, target) && create_framebuffer(gpu, target))
+        return true;
+    target_destroy(gpu, target);
+    return false;
+}
+
 void target_destroy(const struct gpu *gpu, struct target *target)
 {
     vkDestroyFramebuffer(gpu->device, target->framebuffer, NULL);
     vkDestroyRenderPass(gpu->device, target->pass, NULL);
+    vkDestroyImageView(gpu->device, target->encoding, NULL);
     gpu_destroy_image(gpu, &target->depth);
     gpu_destroy_image(gpu, &target->multisampled);
     gpu_destroy_image(gpu, &target->color);

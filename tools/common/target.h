@@ -12,6 +12,7 @@ struct target {
     struct gpu_image color;        ///< what is copied out
     struct gpu_image multisampled; ///< only with more than one sample
     struct gpu_image depth;
+    VkImageView encoding; ///< of `color`, as sRGB: only of target_create_encoding
     VkRenderPass pass;
     VkFramebuffer framebuffer;
 };
@@ -19,6 +20,10 @@ struct target {
 /** As many samples as asked for, or the next lower number that the device has. */
 bool target_create(const struct gpu *gpu, uint32_t width, uint32_t height, uint32_t samples,
                    struct target *target);
+/** A target of one sample that shaders and blending give linear light, the color to clear with
+ *  included. Memory holds sRGB: `color` shows and copies encoded values. */
+bool target_create_encoding(const struct gpu *gpu, uint32_t width, uint32_t height,
+                            struct target *target);
 /** A zeroed struct is fine. */
 void target_destroy(const struct gpu *gpu, struct target *target);
 

@@ -122,7 +122,7 @@ bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
         fill(gpu, scene->indices, scene->index_count * sizeof *scene->indices,
              VK_BUFFER_USAGE_INDEX_BUFFER_BIT, &d->indices) &&
         stage_sets_create(gpu, scene, info->table_indices, tile_marks_size(d->marks), &d->sets) &&
-        target_create(gpu, 16, 16, 1, &d->targets[0]) && create_layout(d, info->set_layout) &&
+        target_create_encoding(gpu, 16, 16, &d->targets[0]) && create_layout(d, info->set_layout) &&
         create_pipelines(d, scene, info->paged))
         return true;
     stage_drawing_destroy(d);
@@ -152,7 +152,7 @@ static bool fit_target(struct stage_drawing *d, struct target *target, uint32_t 
         return true;
     target_destroy(d->gpu, target);
     *target = (struct target){0};
-    return target_create(d->gpu, width, height, 1, target);
+    return target_create_encoding(d->gpu, width, height, target);
 }
 
 static struct mat4 matrix_of(const struct scene_data *scene, const struct view_camera *camera,
@@ -260,7 +260,7 @@ VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_dat
                                  const struct stage_draw *draw, VkDescriptorSet set, uint32_t slot,
                                  VkCommandBuffer commands)
 {
-    static const float sky[4] = {0.16f, 0.18f, 0.21f, 1};
+    static const float sky[4] = {0.0220f, 0.0272f, 0.0363f, 1}; /* linear: (41, 46, 54) in sRGB */
     const VkDeviceSize offset = 0;
     struct target *target = &d->targets[slot];
     if (!fit_target(d, target, draw->width, draw->height))

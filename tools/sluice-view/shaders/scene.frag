@@ -38,6 +38,11 @@ vec3 encode(vec3 color)
     return mix(1.055 * pow(color, vec3(1.0 / 2.4)) - 0.055, 12.92 * color, lessThan(color, vec3(0.0031308)));
 }
 
+vec3 decode(vec3 color)
+{
+    return mix(pow((color + 0.055) / 1.055, vec3(2.4)), color / 12.92, lessThanEqual(color, vec3(0.04045)));
+}
+
 vec3 levelColor(uint level)
 {
     return levelColors[min(level, 7u)] / 255.0;
@@ -204,7 +209,7 @@ vec3 showAge(vec3 picture, Slot slot, Place at)
     return cover(picture, ageColor(markAge(word)));
 }
 
-/* Views show the color image of a material. */
+/* Views show the color image of a material. They mix encoded colors, as legends show them. */
 vec3 show(vec3 picture, Slot slot, bool wrote)
 {
     if (push.view == VIEW_WRITTEN)
@@ -237,16 +242,16 @@ void main()
     uvsDy = dFdy(uvs);
     sampleSlots();
     vec4 base = baseColor();
-    vec3 picture = encode(lit(base.rgb));
+    vec3 picture = lit(base.rgb);
     bool writes = push.probability > 0.0 &&
                   sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, push.seed, push.probability);
     if (push.view > 1u || push.flags != 0u)
-        picture = show(picture, materials[push.material].slots[SLOT_COLOR], writes);
+        picture = decode(show(encode(picture), materials[push.material].slots[SLOT_COLOR], writes));
 #ifdef MASKED
     if (base.a < materials[push.material].emissive.w)
         discard;
 #endif
-    outColor = vec4(picture, base.a);
+    outColor = vec4(clamp(picture, 0.0, 1.0), base.a);
     if (writes)
         writeSlots();
 }
