@@ -178,6 +178,7 @@ static enum slc_request_answer turn_away(struct slc_demand_residency *r, uint32_
                                          const struct slc_page_request *request)
 {
     bool refuse = slc_residency_is_hopeless(r, request->class_index);
+    r->use.turned_away += request->class_index != SLC_TILES;
     if (refuse) {
         r->use.refused = true;
         if (index == SLC_NO_NODE)
@@ -257,6 +258,16 @@ enum slc_request_answer slc_residency_request(struct slc_demand_residency *resid
     SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_REQUEST, .request = *request, .result = *result,
                    .request_answer = given);
     return given;
+}
+
+uint64_t slc_residency_turned_away_count(const struct slc_demand_residency *residency)
+{
+    return residency->use.turned_away;
+}
+
+uint64_t slc_residency_overflow_count(const struct slc_demand_residency *residency)
+{
+    return residency->overflow.count;
 }
 
 bool slc_residency_is_absent(const struct slc_demand_residency *residency, uint32_t page)

@@ -196,6 +196,11 @@ struct slc_residency_counts {
 void slc_residency_get_counts(const struct slc_demand_residency *residency, uint32_t class_index,
                               struct slc_residency_counts *counts);
 
+/** Pages that are no tiles and that were requested and found no memory since the last begin. */
+uint64_t slc_residency_turned_away_count(const struct slc_demand_residency *residency);
+/** Tiles that are refused because they found no memory. */
+uint64_t slc_residency_overflow_count(const struct slc_demand_residency *residency);
+
 struct slc_placed_page {
     uint32_t page, place;
     bool stays;  ///< pinned, being loaded, or not seen by any launch that is over

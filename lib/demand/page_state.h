@@ -36,6 +36,7 @@ struct slc_launch_use {
     uint64_t pinned_waiting;    ///< pinned, without a place
     uint64_t requests;          ///< of all classes
     uint64_t loads;
+    uint64_t turned_away; ///< of other classes: not resident, and no memory for them
     bool refused;
     uint64_t full_at; ///< held tiles when there was no place left for one, and none to evict
 };
