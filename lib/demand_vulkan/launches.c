@@ -9,6 +9,7 @@
 #include "demand_vulkan/pages.h"
 #include "demand_vulkan/productions.h"
 #include "demand_vulkan/refused_arguments.h"
+#include "demand_vulkan/strict_mode.h"
 #include "image/half.h"
 #include "vulkan/compute.h"
 #include "vulkan/page_leaving.h"
@@ -223,15 +224,19 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
         slc_struct_check(SLC_STRUCT(SluiceDemandLaunch), pLaunch, &loader->vk.log);
     if (checked != SLUICE_SUCCESS)
         return checked;
-    if (loader->launch > loader->ended)
+    if (loader->launch > loader->ended) {
+        slc_demand_strict_not_ended(loader);
         return slc_log_refusal(
             &loader->vk.log,
             "launch %llu was neither ended nor abandoned: no other one can be begun",
             (unsigned long long)loader->launch);
+    }
     if (is_aborted(loader))
         return SLUICE_ERROR_CANCELED;
-    if (loader->launch - loader->processed >= loader->info.launchesInFlight)
+    if (loader->launch - loader->processed >= loader->info.launchesInFlight) {
+        slc_demand_strict_not_ready(loader);
         return SLUICE_NOT_READY;
+    }
     uint64_t launch = loader->launch + 1;
     slc_loader_settings_apply(loader);
     bool tracking = wants_used(loader);
@@ -268,11 +273,13 @@ SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer c
 {
     if (!loader || !commandBuffer)
         return SLUICE_ERROR_NULL_POINTER;
-    if (loader->launch == loader->ended)
+    if (loader->launch == loader->ended) {
+        slc_demand_strict_not_begun(loader);
         return slc_log_refusal(
             &loader->vk.log,
             "no launch can be ended: none was begun since the last one was ended or "
             "abandoned");
+    }
     uint32_t slot = slot_of(loader, loader->launch);
     if (loader->tracked[slot])
         slc_page_directory_record_used(&loader->directory, commandBuffer, slot);
@@ -349,6 +356,7 @@ SluiceResult sluiceAbandonDemandLaunch(SluiceDemandLoader *loader,
         return result;
     loader->counts.launchCount -= loader->launch - (launch - 1);
     loader->launch = launch - 1;
+    loader->strict.awaited = 0; /* the next launch has the number of this one */
     if (loader->ended > loader->launch)
         loader->ended = loader->launch;
     slc_residency_abandon(loader->residency, launch);
@@ -361,7 +369,13 @@ static SluiceResult wait_for(SluiceDemandLoader *loader, uint64_t launch, uint64
                                       .semaphoreCount = 1,
                                       .pSemaphores = &loader->semaphore,
                                       .pValues = &launch};
-    VkResult result = loader->vk.WaitSemaphores(loader->vk.device, &info, timeout);
+    uint64_t patience = slc_demand_strict_patience(loader, timeout);
+    VkResult result = loader->vk.WaitSemaphores(loader->vk.device, &info, patience);
+    if (result == VK_TIMEOUT)
+        slc_demand_strict_not_ready(loader);
+    if (result == VK_TIMEOUT && patience < timeout)
+        result = loader->vk.WaitSemaphores(loader->vk.device, &info,
+                                           timeout == UINT64_MAX ? timeout : timeout - patience);
     if (result == VK_TIMEOUT)
         return SLUICE_NOT_READY;
     return slc_vk_result(&loader->vk, result, "vkWaitSemaphores");

@@ -6,7 +6,7 @@
 #ifndef SLC_DEMAND_VULKAN_LOADER_H
 #define SLC_DEMAND_VULKAN_LOADER_H
 
-#include <sluice/demand.h>
+#include <sluice/demand_strict.h>
 
 #include "demand/page_space.h"
 #include "base/none.h"
@@ -254,6 +254,14 @@ struct slc_rank_run {
     uint32_t first, count;
 };
 
+/** Strict mode. Launches are those processed. */
+struct slc_demand_strict {
+    SluiceDemandStrictMode mode; ///< pfnReport NULL: off
+    uint64_t awaited;            ///< launch that calls wait for; 0: none yet
+    uint64_t awaited_since;      ///< ns
+    bool awaited_told;
+};
+
 struct SluiceDemandLoader {
     SluiceAllocationCallbacks cb;
     SluiceDemandLoaderCreateInfo info; ///< with the defaults filled in
@@ -346,6 +354,7 @@ struct SluiceDemandLoader {
     uint64_t cleared_launch;  ///< that did
     bool page_table_was_full; ///< it was told
     bool tracked[SLC_MAX_LAUNCHES]; ///< by launch: shaders said what they used
+    struct slc_demand_strict strict;
     uint32_t limited_count;         ///< resources with a limit
     struct slc_retries retries;
     SluiceDemandLoaderSettings settings; ///< from the next launch on

@@ -6,6 +6,7 @@
 #include <sluice/neural_compress.h>
 #include <sluice/neural_paths.h>
 #include <sluice/demand_query.h>
+#include <sluice/demand_strict.h>
 #include <sluice/vulkan_control.h>
 #include <sluice/vulkan_strict.h>
 #include <sluice/vulkan_explain.h>
@@ -118,6 +119,9 @@ sluiceGetDemandLoaderSettings(f->loader, &f->loader_settings)
 sluiceSetDemandLoaderSettings(f->loader, &f->loader_settings)
 sluiceGetDemandTileInfo(f->loader, f->id, 0, 0, 0, &f->out.tile_info)
 sluiceGetDemandMisses(f->loader, &f->out.miss_count, ?f->out.misses)
+sluiceSetDemandStrictMode(f->loader, ?NULL)
+sluiceIsDemandSourceInUse(f->loader, f->source, &f->out.in_use)
+!sluiceReleaseDemandSource(f->loader, f->source)
 sluiceGetDemandStatistics(f->loader, &f->out.demand_statistics)
 */
 /* clang-format on */

@@ -1,0 +1,171 @@
+#include "demand_vulkan/strict_mode.h"
+
+#include "base/log.h"
+#include "base/struct_size.h"
+#include "platform/time_now.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+#define DEFAULT_UNSIGNALED UINT64_C(5000000000)
+
+typedef unsigned long long number;
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 4, 5)))
+#endif
+static void
+report(const SluiceDemandLoader *loader, SluiceDemandMisuseKind kind, uint64_t value,
+       const char *format, ...)
+{
+    char text[400];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    const SluiceDemandMisuse misuse = {kind, value, text};
+    loader->strict.mode.pfnReport(loader->strict.mode.pUserData, &misuse);
+}
+
+static bool is_on(const SluiceDemandLoader *loader)
+{
+    return loader->strict.mode.pfnReport;
+}
+
+void slc_demand_strict_not_ended(SluiceDemandLoader *loader)
+{
+    if (is_on(loader))
+        report(loader, SLUICE_DEMAND_MISUSE_LAUNCH_NOT_ENDED, loader->launch,
+               "launch %llu was begun and not ended: call sluiceEndDemandLaunch after its "
+               "dispatches, or sluiceAbandonDemandLaunch, before the next sluiceBeginDemandLaunch",
+               (number)loader->launch);
+}
+
+void slc_demand_strict_not_begun(SluiceDemandLoader *loader)
+{
+    if (is_on(loader))
+        report(loader, SLUICE_DEMAND_MISUSE_LAUNCH_NOT_BEGUN, loader->launch,
+               "sluiceEndDemandLaunch ends no launch: launch %llu was the last one, and was ended "
+               "or abandoned. Call sluiceBeginDemandLaunch first, and end the launch only if it "
+               "returned SLUICE_SUCCESS",
+               (number)loader->launch);
+}
+
+/* The oldest launch that calls wait for; its time begins with the first call that does. */
+static void note_wait(SluiceDemandLoader *loader, uint64_t now)
+{
+    struct slc_demand_strict *strict = &loader->strict;
+    uint64_t oldest = loader->processed + 1;
+    if (strict->awaited == oldest)
+        return;
+    strict->awaited = oldest;
+    strict->awaited_since = now;
+    strict->awaited_told = false;
+}
+
+uint64_t slc_demand_strict_patience(SluiceDemandLoader *loader, uint64_t timeout)
+{
+    const struct slc_demand_strict *strict = &loader->strict;
+    if (!is_on(loader) || timeout == 0)
+        return timeout;
+    uint64_t now = slc_monotonic_time();
+    note_wait(loader, now);
+    if (strict->awaited_told)
+        return timeout;
+    uint64_t waited = now - strict->awaited_since, most = strict->mode.unsignaledNs;
+    uint64_t rest = waited < most ? most - waited : 0;
+    return rest < timeout ? rest : timeout;
+}
+
+void slc_demand_strict_not_ready(SluiceDemandLoader *loader)
+{
+    struct slc_demand_strict *strict = &loader->strict;
+    uint64_t now, value = 0;
+    if (!is_on(loader))
+        return;
+    now = slc_monotonic_time();
+    note_wait(loader, now);
+    if (strict->awaited_told || now - strict->awaited_since < strict->mode.unsignaledNs)
+        return;
+    if (loader->vk.GetSemaphoreCounterValue(loader->vk.device, loader->semaphore, &value) !=
+        VK_SUCCESS)
+        return;
+    strict->awaited_told = true;
+    if (value >= strict->awaited)
+        report(loader, SLUICE_DEMAND_MISUSE_LAUNCH_NOT_PROCESSED, strict->awaited,
+               "launch %llu is complete and is not processed: call sluiceProcessDemandRequests "
+               "for each launch. At most launchesInFlight, %u, may be unprocessed",
+               (number)strict->awaited, loader->info.launchesInFlight);
+    else
+        report(loader, SLUICE_DEMAND_MISUSE_LAUNCH_NOT_SIGNALED, value + 1,
+               "launch %llu is not complete after %llu ms, and the semaphore has the value %llu: "
+               "submit its commands with signalValue %llu, or call sluiceAbandonDemandLaunch. "
+               "Raise unsignaledNs if launches take as long",
+               (number)(value + 1), (number)((now - strict->awaited_since) / 1000000),
+               (number)value, (number)(value + 1));
+}
+
+SluiceResult sluiceSetDemandStrictMode(SluiceDemandLoader *loader,
+                                       const SluiceDemandStrictMode *pMode)
+{
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceDemandStrictMode mode = {.structSize = sizeof mode};
+    if (pMode) {
+        SluiceResult result =
+            slc_struct_read(SLC_STRUCT(SluiceDemandStrictMode), &mode, pMode, &loader->vk.log);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        if (!mode.pfnReport)
+            return slc_log_refusal(&loader->vk.log, "SluiceDemandStrictMode lacks pfnReport");
+    }
+    if (!mode.unsignaledNs)
+        mode.unsignaledNs = DEFAULT_UNSIGNALED;
+    loader->strict = (struct slc_demand_strict){.mode = mode};
+    return SLUICE_SUCCESS;
+}
+
+/* A worker writes the source of an image that is being opened. */
+static bool is_used(const SluiceDemandLoader *loader, const SluiceImageSource *source)
+{
+    for (uint32_t i = 1; i < loader->texture_high; i++)
+        if (loader->textures[i].kind == SLC_TEXTURE_IMAGE &&
+            loader->textures[i].source.source == source)
+            return true;
+    for (uint32_t i = 0; i < loader->image_high; i++) {
+        const struct slc_demand_image *image = loader->images[i];
+        bool open = image->state == SLC_IMAGE_OPEN || image->state == SLC_IMAGE_DETACHED;
+        if (open && !image->origin.source && image->source == source)
+            return true;
+    }
+    return false;
+}
+
+SluiceResult sluiceIsDemandSourceInUse(const SluiceDemandLoader *loader,
+                                       const SluiceImageSource *source, bool *pInUse)
+{
+    if (!loader || !source || !pInUse)
+        return SLUICE_ERROR_NULL_POINTER;
+    *pInUse = is_used(loader, source);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceReleaseDemandSource(SluiceDemandLoader *loader, SluiceImageSource *source)
+{
+    bool in_use = false;
+    SluiceResult result = sluiceIsDemandSourceInUse(loader, source, &in_use);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!in_use) {
+        sluiceDestroyImageSource(source);
+        return SLUICE_SUCCESS;
+    }
+    SluiceImageInfo info = {.structSize = sizeof info};
+    bool named = sluiceGetImageInfo(source, &info) == SLUICE_SUCCESS && info.pName;
+    if (is_on(loader))
+        report(loader, SLUICE_DEMAND_MISUSE_SOURCE_IN_USE, (uint64_t)(uintptr_t)source,
+               "%s: the source is destroyed while a texture has it. Remove the texture or replace "
+               "its image first, and call again",
+               named ? info.pName : "image");
+    return SLUICE_NOT_READY;
+}

@@ -1,0 +1,15 @@
+/** Reports of misuse. Each function does nothing unless strict mode is on. */
+#ifndef SLC_DEMAND_VULKAN_STRICT_MODE_H
+#define SLC_DEMAND_VULKAN_STRICT_MODE_H
+
+#include "demand_vulkan/loader.h"
+
+void slc_demand_strict_not_ended(SluiceDemandLoader *loader);
+void slc_demand_strict_not_begun(SluiceDemandLoader *loader);
+/** Nanoseconds of `timeout` that a call may wait before slc_demand_strict_not_ready has something
+ *  to report. */
+uint64_t slc_demand_strict_patience(SluiceDemandLoader *loader, uint64_t timeout);
+/** A call is not ready, or has waited as long as slc_demand_strict_patience said. */
+void slc_demand_strict_not_ready(SluiceDemandLoader *loader);
+
+#endif /* SLC_DEMAND_VULKAN_STRICT_MODE_H */
