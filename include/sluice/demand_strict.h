@@ -21,8 +21,14 @@ typedef enum SluiceDemandMisuseKind {
     SLUICE_DEMAND_MISUSE_LAUNCH_NOT_BEGUN = 1, ///< A launch is ended that was not begun.
     SLUICE_DEMAND_MISUSE_LAUNCH_NOT_SIGNALED = 2, ///< Calls wait for a launch without end.
     SLUICE_DEMAND_MISUSE_LAUNCH_NOT_PROCESSED =
-        3,                                  ///< No begin is ready: nobody processes launches.
-    SLUICE_DEMAND_MISUSE_SOURCE_IN_USE = 10 ///< A source is destroyed that is in use.
+        3,                                       ///< No begin is ready: nobody processes launches.
+    SLUICE_DEMAND_MISUSE_NO_REQUESTS = 4,        ///< No shader requests or uses anything.
+    SLUICE_DEMAND_MISUSE_TILES_EXHAUSTED = 5,    ///< Tiles exceed memory: textures are coarser.
+    SLUICE_DEMAND_MISUSE_PAGES_EXHAUSTED = 6,    ///< Pages of resources wait for memory.
+    SLUICE_DEMAND_MISUSE_CHUNKS_EXHAUSTED = 7,   ///< Tiles wait: all images of pages are in use.
+    SLUICE_DEMAND_MISUSE_TEXTURES_EXHAUSTED = 8, ///< A texture is added beyond maxTextureCount.
+    SLUICE_DEMAND_MISUSE_IDS_EXHAUSTED = 9,      ///< A texture opens that finds no virtual pages.
+    SLUICE_DEMAND_MISUSE_SOURCE_IN_USE = 10      ///< A source is destroyed that is in use.
 } SluiceDemandMisuseKind;
 
 /** A report. Valid during the call. Never grows. */
@@ -36,9 +42,15 @@ typedef struct SluiceDemandMisuse {
 /** Settings of strict mode. A field of zero selects its default. */
 typedef struct SluiceDemandStrictMode {
     uint32_t structSize; ///< sizeof(SluiceDemandStrictMode).
+    /** Launches in which no shader requests or uses any page until NO_REQUESTS is reported.
+     *  Default: 600. */
+    uint32_t launchesWithoutRequests;
     /** Nanoseconds for which calls wait for one launch, or return SLUICE_NOT_READY for it, until
      *  LAUNCH_NOT_SIGNALED or LAUNCH_NOT_PROCESSED is reported. Default: 5 s. */
     uint64_t unsignaledNs;
+    /** Launches until TILES_EXHAUSTED, PAGES_EXHAUSTED, CHUNKS_EXHAUSTED and IDS_EXHAUSTED may be
+     *  reported again. Default: 600. */
+    uint32_t repeatLaunches;
     void *pUserData;
     /** Required. Called within calls of the loader, on their thread. Must not call the loader. */
     void (*pfnReport)(void *pUserData, const SluiceDemandMisuse *pMisuse);

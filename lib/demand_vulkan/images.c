@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/pages.h"
+#include "demand_vulkan/strict_mode.h"
 
 #include <sluice/shared/demand.h>
 
@@ -125,6 +126,8 @@ static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image 
     image->blocks = format.blockWidth > 1;
     if (result == SLUICE_SUCCESS)
         result = slc_image_take_levels(loader, image);
+    if (result == SLUICE_ERROR_LIMIT_EXCEEDED)
+        slc_demand_strict_no_ids(loader, slc_image_name(image));
     if (result != SLUICE_SUCCESS)
         return result;
     uint32_t *words =

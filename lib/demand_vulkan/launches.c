@@ -240,6 +240,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     uint64_t launch = loader->launch + 1;
     slc_loader_settings_apply(loader);
     bool tracking = wants_used(loader);
+    bool probing = !tracking && slc_demand_strict_probes(loader, launch);
     slc_device_budget_turn(&loader->context->device_budget, &loader->context->budget);
     note_pressure(loader);
     end_retired(loader);
@@ -248,13 +249,14 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     slc_staging_trim(&loader->staging); /* it counts launches */
     if (loader->large.blocks)
         slc_staging_trim(&loader->large);
-    gather(loader, launch, tracking);
+    gather(loader, launch, tracking || probing);
     SluiceResult result =
         slc_page_directory_record(&loader->directory, commandBuffer, slot_of(loader, launch));
     if (result != SLUICE_SUCCESS)
         return result; /* admitted uploads wait for the next launch */
     loader->launch = launch;
     loader->tracked[slot_of(loader, launch)] = tracking;
+    loader->probed[slot_of(loader, launch)] = probing;
     SluiceDemandLaunch begun = {.structSize = sizeof begun,
                                 .launchIndex = launch,
                                 .semaphore = loader->semaphore,
@@ -281,7 +283,7 @@ SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer c
             "abandoned");
     }
     uint32_t slot = slot_of(loader, loader->launch);
-    if (loader->tracked[slot])
+    if (loader->tracked[slot] || loader->probed[slot])
         slc_page_directory_record_used(&loader->directory, commandBuffer, slot);
     slc_demand_scan_record(&loader->scan, &loader->vk, commandBuffer, slot,
                            slc_page_space_end(loader->space), loader->requests_per_launch);

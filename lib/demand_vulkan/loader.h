@@ -260,6 +260,9 @@ struct slc_demand_strict {
     uint64_t awaited;            ///< launch that calls wait for; 0: none yet
     uint64_t awaited_since;      ///< ns
     bool awaited_told;
+    uint64_t marked; ///< last launch whose shaders requested or used something
+    uint64_t tiles_told, pages_told, chunks_told, ids_told; ///< launch of the last report; 0: none
+    uint64_t shortages;
 };
 
 struct SluiceDemandLoader {
@@ -354,6 +357,7 @@ struct SluiceDemandLoader {
     uint64_t cleared_launch;  ///< that did
     bool page_table_was_full; ///< it was told
     bool tracked[SLC_MAX_LAUNCHES]; ///< by launch: shaders said what they used
+    bool probed[SLC_MAX_LAUNCHES];  ///< by launch: they said so for strict mode alone
     struct slc_demand_strict strict;
     uint32_t limited_count;         ///< resources with a limit
     struct slc_retries retries;

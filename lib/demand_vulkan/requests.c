@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "demand_vulkan/strict_mode.h"
 
 #include <sluice/shared/demand.h>
 
@@ -45,14 +46,27 @@ static bool is_resource(const SluiceDemandLoader *loader, uint32_t page)
     return slc_pages_find(loader, page, &index) == SLC_OWNER_RESOURCE;
 }
 
-static void feed_used(SluiceDemandLoader *loader, uint32_t slot)
+/* True if there are any. */
+static bool feed_used(SluiceDemandLoader *loader, uint32_t slot)
 {
     struct slc_page_used_iterator iterator = {0};
+    bool any = false;
     uint32_t page;
     while (slc_page_directory_next_used(&loader->directory, slot, &iterator, &page)) {
         slc_residency_use(loader->residency, page);
         slc_image_touch_page(loader, page, loader->processed);
+        any = true;
     }
+    return any;
+}
+
+/* Strict mode asks for it, which must not change what is evicted. */
+static bool has_used(const SluiceDemandLoader *loader, uint32_t slot)
+{
+    struct slc_page_used_iterator iterator = {0};
+    uint32_t page;
+    return loader->probed[slot] &&
+           slc_page_directory_next_used(&loader->directory, slot, &iterator, &page);
 }
 
 static void add_counts(SluiceDemandStatistics *counts, const SluiceDemandRequests *requests)
@@ -77,8 +91,9 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     (void)slc_tile_memory_limit(&loader->tiles); /* the pool may have more pages now, or fewer */
     slc_tiles_limit(loader);
     slc_residency_begin(loader->residency, launch);
+    bool marked = scan.requestCount != 0 || has_used(loader, slot);
     if (loader->tracked[slot])
-        feed_used(loader, slot);
+        marked |= feed_used(loader, slot);
     else
         loader->known_since = launch;
     for (uint32_t i = 0; i < scan.listedCount; i++)
@@ -104,6 +119,8 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     if (scan.postponedCount == 0)
         loader->listed_launch = launch;
     add_counts(&loader->counts, &now);
+    slc_demand_strict_processed(loader, marked,
+                                slc_residency_turned_away_count(loader->residency));
     requests->missingCount += now.missingCount;
     requests->servedCount += now.servedCount;
     requests->pendingCount += now.pendingCount;

@@ -3,11 +3,14 @@
 #include "base/log.h"
 #include "base/struct_size.h"
 #include "platform/time_now.h"
+#include "vulkan/page_pool.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 
+#define DEFAULT_LAUNCHES 600
 #define DEFAULT_UNSIGNALED UINT64_C(5000000000)
+#define PROBES 8u /* launches without requests that report what they use, in each period */
 
 typedef unsigned long long number;
 
@@ -105,6 +108,102 @@ void slc_demand_strict_not_ready(SluiceDemandLoader *loader)
                (number)value, (number)(value + 1));
 }
 
+bool slc_demand_strict_probes(const SluiceDemandLoader *loader, uint64_t launch)
+{
+    const SluiceDemandStrictMode *mode = &loader->strict.mode;
+    return is_on(loader) && launch % (mode->launchesWithoutRequests / PROBES + 1) == 0;
+}
+
+static uint32_t count_resources(const SluiceDemandLoader *loader)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < loader->resource_high; i++)
+        count += loader->resources[i]->state == SLC_RESOURCE_LIVE;
+    return count;
+}
+
+static void check_requests(SluiceDemandLoader *loader, bool marked)
+{
+    struct slc_demand_strict *strict = &loader->strict;
+    uint64_t launches = loader->processed - strict->marked;
+    if (marked)
+        strict->marked = loader->processed;
+    if (marked || launches < strict->mode.launchesWithoutRequests)
+        return;
+    uint32_t resources = count_resources(loader);
+    strict->marked = loader->processed;
+    if (loader->texture_count + resources)
+        report(loader, SLUICE_DEMAND_MISUSE_NO_REQUESTS, launches,
+               "no shader has requested or used any page of %u textures and %u resources in the "
+               "last %llu launches: bind the launch's descriptor set, sample with the functions of "
+               "demand.glsl, and end launches after the dispatches",
+               loader->texture_count, resources, (number)launches);
+}
+
+static bool may_repeat(const SluiceDemandLoader *loader, uint64_t *told)
+{
+    if (*told && loader->processed - *told < loader->strict.mode.repeatLaunches)
+        return false;
+    *told = loader->processed;
+    return true;
+}
+
+static void check_tiles(SluiceDemandLoader *loader)
+{
+    uint64_t refused = slc_residency_overflow_count(loader->residency);
+    float bias = slc_residency_lod_bias(loader->residency);
+    if ((refused == 0 && bias == 0) || !may_repeat(loader, &loader->strict.tiles_told))
+        return;
+    report(loader, SLUICE_DEMAND_MISUSE_TILES_EXHAUSTED, loader->tile_limit,
+           "tiles exceed memory, which has room for %llu: textures are %.2f levels coarser, and "
+           "%llu tiles are refused. Raise memoryBudget, or request less",
+           (number)loader->tile_limit, (double)bias, (number)refused);
+}
+
+static void check_memory(SluiceDemandLoader *loader, uint64_t turned_away)
+{
+    struct slc_demand_strict *strict = &loader->strict;
+    struct slc_page_pool_counts pool = slc_page_pool_get_counts(loader->pages);
+    check_tiles(loader);
+    if (turned_away && may_repeat(loader, &strict->pages_told))
+        report(loader, SLUICE_DEMAND_MISUSE_PAGES_EXHAUSTED, turned_away,
+               "%llu pages of resources wait: all others are pinned or in use. Raise "
+               "maxResidentPageCount of the resource or byteMemoryBudget, or request less",
+               (number)turned_away);
+    if (pool.shortages > strict->shortages && may_repeat(loader, &strict->chunks_told))
+        report(loader, SLUICE_DEMAND_MISUSE_CHUNKS_EXHAUSTED, pool.chunk_count,
+               "tiles found no page: all %u images of pages are in use. Raise maxPageChunkCount of "
+               "the context, or use fewer formats",
+               pool.chunk_count);
+    strict->shortages = pool.shortages;
+}
+
+void slc_demand_strict_processed(SluiceDemandLoader *loader, bool marked, uint64_t turned_away)
+{
+    if (!is_on(loader))
+        return;
+    check_requests(loader, marked);
+    check_memory(loader, turned_away);
+}
+
+void slc_demand_strict_no_texture(SluiceDemandLoader *loader)
+{
+    if (is_on(loader))
+        report(loader, SLUICE_DEMAND_MISUSE_TEXTURES_EXHAUSTED, loader->info.maxTextureCount,
+               "a texture, variant or grid is added beyond maxTextureCount, %u, of which removed "
+               "ones count until their launches are processed. Raise it, or remove textures",
+               loader->info.maxTextureCount);
+}
+
+void slc_demand_strict_no_ids(SluiceDemandLoader *loader, const char *name)
+{
+    if (is_on(loader) && may_repeat(loader, &loader->strict.ids_told))
+        report(loader, SLUICE_DEMAND_MISUSE_IDS_EXHAUSTED, loader->info.pageCapacity,
+               "%s: the texture finds no virtual pages, of which there are %llu. Raise "
+               "pageCapacity, or remove textures",
+               name, (number)loader->info.pageCapacity);
+}
+
 SluiceResult sluiceSetDemandStrictMode(SluiceDemandLoader *loader,
                                        const SluiceDemandStrictMode *pMode)
 {
@@ -119,9 +218,16 @@ SluiceResult sluiceSetDemandStrictMode(SluiceDemandLoader *loader,
         if (!mode.pfnReport)
             return slc_log_refusal(&loader->vk.log, "SluiceDemandStrictMode lacks pfnReport");
     }
+    if (!mode.launchesWithoutRequests)
+        mode.launchesWithoutRequests = DEFAULT_LAUNCHES;
     if (!mode.unsignaledNs)
         mode.unsignaledNs = DEFAULT_UNSIGNALED;
-    loader->strict = (struct slc_demand_strict){.mode = mode};
+    if (!mode.repeatLaunches)
+        mode.repeatLaunches = DEFAULT_LAUNCHES;
+    loader->strict =
+        (struct slc_demand_strict){.mode = mode,
+                                   .marked = loader->processed,
+                                   .shortages = slc_page_pool_get_counts(loader->pages).shortages};
     return SLUICE_SUCCESS;
 }
 

@@ -11,5 +11,14 @@ void slc_demand_strict_not_begun(SluiceDemandLoader *loader);
 uint64_t slc_demand_strict_patience(SluiceDemandLoader *loader, uint64_t timeout);
 /** A call is not ready, or has waited as long as slc_demand_strict_patience said. */
 void slc_demand_strict_not_ready(SluiceDemandLoader *loader);
+/** True if shaders are to report what `launch` uses, for strict mode alone. */
+bool slc_demand_strict_probes(const SluiceDemandLoader *loader, uint64_t launch);
+/** A launch was processed. `marked`: shaders requested or used pages. `turned_away`: pages of
+ *  resources that found no memory. */
+void slc_demand_strict_processed(SluiceDemandLoader *loader, bool marked, uint64_t turned_away);
+/** A texture is refused because there are maxTextureCount. */
+void slc_demand_strict_no_texture(SluiceDemandLoader *loader);
+/** `name`: of an image that finds no virtual pages. */
+void slc_demand_strict_no_ids(SluiceDemandLoader *loader, const char *name);
 
 #endif /* SLC_DEMAND_VULKAN_STRICT_MODE_H */

@@ -6,6 +6,7 @@
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/pages.h"
 #include "demand_vulkan/refused_arguments.h"
+#include "demand_vulkan/strict_mode.h"
 #include "image/info.h"
 #include "vulkan/address_mode.h"
 
@@ -117,8 +118,10 @@ SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index)
     if (*index != SLC_NONE) {
         loader->free_texture = loader->textures[*index].next;
     } else {
-        if (loader->texture_high > loader->info.maxTextureCount)
+        if (loader->texture_high > loader->info.maxTextureCount) {
+            slc_demand_strict_no_texture(loader);
             return SLUICE_ERROR_LIMIT_EXCEEDED;
+        }
         SluiceResult result = slc_table_mirror_reserve(&loader->table, loader->texture_high + 1);
         if (result == SLUICE_SUCCESS && loader->texture_high >= loader->texture_capacity)
             result = grow(loader);

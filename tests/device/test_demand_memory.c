@@ -4,6 +4,8 @@
 #include "support/failing_allocator.h"
 #include "support/test.h"
 
+#include <sluice/demand_strict.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -24,6 +26,29 @@ static void check_blurred(struct runner *r, struct runner_image *image, uint32_t
                           uint32_t level, uint32_t x, uint32_t y)
 {
     runner_check_texel(r, sample, image, level, x >> level, y >> level);
+}
+
+/* Strict mode. */
+static struct {
+    uint32_t counts[SLUICE_DEMAND_MISUSE_SOURCE_IN_USE + 1]; ///< by kind
+    uint64_t values[SLUICE_DEMAND_MISUSE_SOURCE_IN_USE + 1]; ///< of the last
+    char text[400];                                          ///< of the last of all
+} heard;
+
+static void listen(void *user, const SluiceDemandMisuse *misuse)
+{
+    (void)user;
+    heard.counts[misuse->kind]++;
+    heard.values[misuse->kind] = misuse->value;
+    strncpy(heard.text, misuse->pMessage, sizeof heard.text - 1);
+}
+
+static void listen_to(SluiceDemandLoader *loader)
+{
+    const SluiceDemandStrictMode strict = {
+        .structSize = sizeof strict, .launchesWithoutRequests = 8, .pfnReport = listen};
+    memset(&heard, 0, sizeof heard);
+    CHECK_OK(sluiceSetDemandStrictMode(loader, &strict));
 }
 
 static void a_new_loader_takes_little_staging_memory_and_more_when_it_reads(void **state)
@@ -111,7 +136,11 @@ static void a_working_set_beyond_the_budget_ends_complete_and_blurrier(void **st
         ids[i] = runner_add_texture(&r, &images[i]);
         add_tiles(&r, ids[i], 0, TILES);
     }
+    listen_to(r.loader);
     uint32_t launches = runner_load(&r, 60);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_TILES_EXHAUSTED], 1);
+    assert_int_equal(heard.values[SLUICE_DEMAND_MISUSE_TILES_EXHAUSTED], info.memoryBudget / 65536);
+    assert_non_null(strstr(heard.text, "room for 640: textures are"));
     print_message("# launches.blurrier %u launches\n", launches);
     assert_in_range(launches, 4, 30);
     assert_true(runner_all_resident(&r));
@@ -147,7 +176,10 @@ static void without_a_bias_some_tiles_stay_away_and_coarser_ones_are_shown_there
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     add_tiles(&r, runner_add_texture(&r, &image), 0, TILES);
+    listen_to(r.loader);
     runner_load(&r, 60);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_TILES_EXHAUSTED], 1);
+    assert_non_null(strstr(heard.text, "0.00 levels coarser, and"));
     assert_true(runner_all_resident(&r));
     SluiceDemandStatistics statistics = runner_statistics(&r);
     assert_true(statistics.lodBias == 0);
@@ -175,6 +207,7 @@ static void tiles_that_nobody_uses_make_room_and_come_back_unread(void **state)
     runner_init(&r, &h, &info); /* 256 tiles: 8 rows */
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    listen_to(r.loader);
     /* Six rows, then two others and the sixth: all that fits. */
     add_tiles(&r, id, 0, 6);
     runner_load(&r, 30);
@@ -186,6 +219,7 @@ static void tiles_that_nobody_uses_make_room_and_come_back_unread(void **state)
     SluiceDemandStatistics statistics = runner_statistics(&r);
     assert_true(statistics.lodBias == 0);
     assert_in_range(statistics.evictedCount, 2 * TILES - 8, 3 * TILES);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_TILES_EXHAUSTED], 0);
     assert_true(statistics.tileMemorySize <= info.memoryBudget);
     runner_finish(&r);
     runner_image_finish(&image);
@@ -324,11 +358,14 @@ static void formats_share_few_images_of_pages(void **state)
                           SIZE, SIZE, i);
         add_tiles(&r, runner_add_texture(&r, &images[i]), 0, TILES);
     }
+    listen_to(r.loader);
     for (uint32_t i = 0; i < 60; i++) {
         runner_launch(&r);
         CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
     }
     assert_in_range(runner_load(&r, 60), 1, 59);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_CHUNKS_EXHAUSTED], 1);
+    assert_int_equal(heard.values[SLUICE_DEMAND_MISUSE_CHUNKS_EXHAUSTED], 2);
     SluiceDemandStatistics statistics = runner_statistics(&r);
     assert_true(runner_all_resident(&r));
     assert_int_equal(statistics.pageChunkCount, 2);
@@ -339,6 +376,72 @@ static void formats_share_few_images_of_pages(void **state)
     for (uint32_t i = 0; i < 2; i++)
         runner_image_finish(&images[i]);
     CHECK_OK(harness_set_context(&h, NULL));
+}
+
+/* Launches that miss nothing must not look like launches without samples. With few tiles in flight
+ * shaders report what they use for strict mode alone. */
+static void resident_tiles_that_are_sampled_are_no_misuse(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .maxTilesInFlight = 16};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
+    runner_add_texel(&r, runner_add_texture(&r, &image), 300, 300, 0, 2, 2);
+    runner_load(&r, 9);
+    listen_to(r.loader);
+    for (uint32_t i = 0; i < 30; i++)
+        runner_launch(&r);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_NO_REQUESTS], 0);
+    runner_clear(&r);
+    for (uint32_t i = 0; i < 9; i++)
+        runner_launch(&r);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_NO_REQUESTS], 1);
+    assert_int_equal(heard.values[SLUICE_DEMAND_MISUSE_NO_REQUESTS], 8);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static SluiceResult fill_page(void *user, uint32_t page, uint64_t *value)
+{
+    (void)user;
+    *value = page;
+    return SLUICE_SUCCESS;
+}
+
+static void pages_and_ids_that_run_out_are_reported(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandResourceId id;
+    uint32_t first;
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .pageCapacity = 1u << 12, .maxTextureCount = 64};
+    const SluiceDemandResourceCreateInfo resource = {.structSize = sizeof resource,
+                                                     .pageCount = 100,
+                                                     .maxResidentPageCount = 10,
+                                                     .pfnFill = fill_page};
+    h.quiet = true;
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 16384, 16384, 1);
+    image.info.pName = "large";
+    CHECK_OK(sluiceAddDemandResource(r.loader, &resource, &id, &first));
+    listen_to(r.loader);
+    for (uint32_t i = 0; i < 25; i++)
+        runner_add_page(&r, first + i);
+    runner_launch(&r);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_PAGES_EXHAUSTED], 1);
+    assert_int_equal(heard.values[SLUICE_DEMAND_MISUSE_PAGES_EXHAUSTED], 15);
+    runner_clear(&r);
+    runner_add_texel(&r, runner_add_texture(&r, &image), 16384, 16384, 0, 2, 2);
+    runner_load(&r, 9);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_IDS_EXHAUSTED], 1);
+    assert_int_equal(heard.values[SLUICE_DEMAND_MISUSE_IDS_EXHAUSTED], 1u << 12);
+    runner_finish(&r);
+    runner_image_finish(&image);
+    h.quiet = false;
 }
 
 static void preloaded_levels_are_there_before_they_are_sampled(void **state)
@@ -742,6 +845,8 @@ int main(void)
         cmocka_unit_test(without_eviction_what_is_there_stays),
         cmocka_unit_test(formats_share_a_budget),
         cmocka_unit_test(formats_share_few_images_of_pages),
+        cmocka_unit_test(resident_tiles_that_are_sampled_are_no_misuse),
+        cmocka_unit_test(pages_and_ids_that_run_out_are_reported),
         cmocka_unit_test(preloaded_levels_are_there_before_they_are_sampled),
         cmocka_unit_test(what_finds_no_memory_is_left_out_of_a_preload),
         cmocka_unit_test(a_device_without_memory_is_a_smaller_budget),

@@ -45,7 +45,9 @@ static SluiceDemandLoader *begin(uint64_t unsignaled)
                                          .maxRequestsPerLaunch = 100};
     CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
     const SluiceDemandStrictMode strict = {.structSize = sizeof strict,
+                                           .launchesWithoutRequests = 20,
                                            .unsignaledNs = unsignaled,
+                                           .repeatLaunches = 30,
                                            .pfnReport = listen};
     CHECK_OK(sluiceSetDemandStrictMode(loader, &strict));
     return loader;
@@ -193,6 +195,43 @@ static SluiceImageSource *create_source(const char *name)
     return source;
 }
 
+static void launches_without_requests_are_reported_if_there_are_textures(void **state)
+{
+    (void)state;
+    SluiceDemandLoader *loader = begin(0);
+    SluiceImageSource *source = create_source("gray");
+    const SluiceDemandTextureCreateInfo create = {.structSize = sizeof create,
+                                                  .image.source = source};
+    SluiceDemandTextureId id;
+    launch_times(loader, 30);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_NO_REQUESTS], 0);
+    CHECK_OK(sluiceAddDemandTexture(loader, &create, &id));
+    launch_times(loader, 9);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_NO_REQUESTS], 0);
+    launch_times(loader, 1);
+    check_heard(SLUICE_DEMAND_MISUSE_NO_REQUESTS, 1, 20, "any page of 1 textures and 0 resources");
+    launch_times(loader, 20);
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_NO_REQUESTS], 2);
+    finish(loader);
+    sluiceDestroyImageSource(source);
+}
+
+static void textures_beyond_their_count_are_reported(void **state)
+{
+    (void)state;
+    SluiceDemandLoader *loader = begin(0);
+    SluiceImageSource *source = create_source("gray");
+    const SluiceDemandTextureCreateInfo create = {.structSize = sizeof create,
+                                                  .image.source = source};
+    SluiceDemandTextureId id;
+    for (uint32_t i = 0; i < 4; i++)
+        CHECK_OK(sluiceAddDemandTexture(loader, &create, &id));
+    CHECK_RESULT(sluiceAddDemandTexture(loader, &create, &id), SLUICE_ERROR_LIMIT_EXCEEDED);
+    check_heard(SLUICE_DEMAND_MISUSE_TEXTURES_EXHAUSTED, 1, 4, "beyond maxTextureCount, 4");
+    finish(loader);
+    sluiceDestroyImageSource(source);
+}
+
 static void sources_in_use_are_reported_and_kept(void **state)
 {
     (void)state;
@@ -224,6 +263,8 @@ int main(void)
         cmocka_unit_test(launches_that_are_never_signaled_are_reported_once),
         cmocka_unit_test(a_wait_without_end_is_reported_while_it_lasts),
         cmocka_unit_test(launches_that_nobody_processes_are_reported),
+        cmocka_unit_test(launches_without_requests_are_reported_if_there_are_textures),
+        cmocka_unit_test(textures_beyond_their_count_are_reported),
         cmocka_unit_test(sources_in_use_are_reported_and_kept),
     };
     return RUN_TESTS(tests);
