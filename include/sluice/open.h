@@ -23,6 +23,8 @@ extern "C" {
 /** Default limit of the cache folder: 16 GiB. */
 #define SLUICE_OPEN_DEFAULT_CACHE_SIZE ((uint64_t)1 << 34)
 
+struct SluiceBakeSettings;
+
 /** Opens files. Its sources share a file pool, memory limits and the cache folder. */
 typedef struct SluiceImageOpener SluiceImageOpener;
 
@@ -146,6 +148,23 @@ SLUICE_API SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const c
  */
 SLUICE_API SluiceResult sluiceOpenNamedImageSource(SluiceImageOpener *opener, const char *path,
                                                    const char *texture,
+                                                   SluiceImageSource **pSource);
+
+/**
+ * Opens an image file as sluiceOpenImageSource does, and bakes a picture without tiles with
+ * `pSettings` (bake.h): as a normal map, with the address modes of its sampler, or
+ * block-compressed. The preview has these settings, too. Files of other kinds do not depend on
+ * them.
+ *
+ * Each combination of a picture and settings has its own source and its own store in the cache
+ * folder. Default settings are those of sluiceOpenImageSource. `pSettings` is copied.
+ *
+ * Errors: as sluiceOpenImageSource; SLUICE_ERROR_NULL_POINTER also for `pSettings`;
+ *         SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize, and for settings that
+ * sluiceBakeFile refuses. Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceOpenBakedImageSource(SluiceImageOpener *opener, const char *path,
+                                                   const struct SluiceBakeSettings *pSettings,
                                                    SluiceImageSource **pSource);
 
 /** Kind of an opened file. */

@@ -2,6 +2,8 @@
 
 #include "open/opener.h"
 
+#include <sluice/bake.h>
+
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
@@ -83,13 +85,15 @@ void sluiceDestroyImageOpener(SluiceImageOpener *opener)
 #ifndef SLC_HAVE_BAKE
 SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *path,
                                        const struct slc_file_identity *identity,
+                                       const SluiceBakeSettings *settings,
                                        struct slc_picture_stream **stream);
 
 SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *path,
                                        const struct slc_file_identity *identity,
+                                       const SluiceBakeSettings *settings,
                                        struct slc_picture_stream **stream)
 {
-    (void)identity, (void)stream;
+    (void)identity, (void)settings, (void)stream;
     slc_log(&opener->log, SLUICE_LOG_ERROR,
             "%s: is no tile store, OpenEXR, DDS, KTX2 file or neural set; this build of Sluice was "
             "made without sluice-bake, which reads other pictures with libvips",
@@ -212,14 +216,24 @@ static bool is_same_name(const char *a, const char *b)
     return a && b ? strcmp(a, b) == 0 : !a && !b;
 }
 
+/** One call. */
+struct request {
+    const char *path, *texture;         ///< texture NULL: none
+    const SluiceBakeSettings *settings; ///< NULL: default
+    uint64_t settings_hash;             ///< 0: default, or of no picture
+    SluiceImageFileKind kind;
+    struct slc_file_identity identity;
+};
+
 /* With the mutex held. */
-static struct slc_opened_image *find_image(SluiceImageOpener *opener, const char *path,
-                                           const char *texture,
-                                           const struct slc_file_identity *identity)
+static struct slc_opened_image *find_image(SluiceImageOpener *opener, const struct request *r)
 {
-    struct slc_opened_image *image = *find_bucket(opener, path);
-    while (image && (strcmp(image->path, path) != 0 || !is_same_name(image->texture, texture) ||
-                     memcmp(&image->identity, identity, sizeof *identity) != 0))
+    const struct slc_file_identity *identity = &r->identity;
+    struct slc_opened_image *image = *find_bucket(opener, r->path);
+    while (image &&
+           (strcmp(image->path, r->path) != 0 || !is_same_name(image->texture, r->texture) ||
+            image->settings_hash != r->settings_hash ||
+            memcmp(&image->identity, identity, sizeof *identity) != 0))
         image = image->next;
     return image;
 }
@@ -247,10 +261,9 @@ static bool is_own_path(const SluiceImageOpener *opener, const char *path)
 }
 
 /* NULL: no memory. */
-static struct slc_opened_image *create_image(SluiceImageOpener *opener, const char *path,
-                                             const char *texture, SluiceImageFileKind kind,
-                                             const struct slc_file_identity *identity)
+static struct slc_opened_image *create_image(SluiceImageOpener *opener, const struct request *r)
 {
+    const char *path = r->path, *texture = r->texture;
     struct slc_opened_image *image = slc_calloc(&opener->allocator, 1, sizeof *image);
     if (!image)
         return NULL;
@@ -258,8 +271,9 @@ static struct slc_opened_image *create_image(SluiceImageOpener *opener, const ch
     image->opener = opener;
     image->reference_count = 1;
     image->is_opening = true;
-    image->kind = kind;
-    image->identity = *identity;
+    image->kind = r->kind;
+    image->identity = r->identity;
+    image->settings_hash = r->settings_hash;
     image->path = slc_strdup(&opener->allocator, path);
     if (is_own_path(opener, path))
         image->shown = slc_shown_url(&opener->allocator, path);
@@ -304,7 +318,7 @@ static SluiceResult check_texture(const SluiceImageOpener *opener, const char *p
                            path);
 }
 
-static SluiceResult open_image(struct slc_opened_image *image)
+static SluiceResult open_image(struct slc_opened_image *image, const SluiceBakeSettings *settings)
 {
     SluiceImageOpener *opener = image->opener;
     const SluiceInput *input = NULL;
@@ -318,7 +332,8 @@ static SluiceResult open_image(struct slc_opened_image *image)
     if (result != SLUICE_SUCCESS)
         return result;
     if (image->kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
-        return slc_picture_stream_create(opener, image->path, &image->identity, &image->stream);
+        return slc_picture_stream_create(opener, image->path, &image->identity, settings,
+                                         &image->stream);
     if (image->kind == SLUICE_IMAGE_FILE_KIND_NEURAL)
         result = slc_neural_file_open(input ? image->shown : image->path, input, image->texture,
                                       opener->files.pool, &opener->allocator, &opener->log,
@@ -331,12 +346,12 @@ static SluiceResult open_image(struct slc_opened_image *image)
 }
 
 /* With the mutex held, but not while the file is opened. Other threads that open it wait. */
-static void open_for_all(struct slc_opened_image *image)
+static void open_for_all(struct slc_opened_image *image, const SluiceBakeSettings *settings)
 {
     SluiceImageOpener *opener = image->opener;
     add_to_bucket(image);
     slc_mutex_unlock(&opener->mutex);
-    SluiceResult result = open_image(image);
+    SluiceResult result = open_image(image, settings);
     slc_mutex_lock(&opener->mutex);
     image->result = result;
     image->is_opening = false;
@@ -353,25 +368,38 @@ static void wait_until_open(struct slc_opened_image *image)
         slc_condition_wait(&image->opener->opened, &image->opener->mutex);
 }
 
-static SluiceResult open_texture(SluiceImageOpener *opener, const char *path, const char *texture,
+/* Settings that are no picture's make no other source. */
+static SluiceResult find_settings(struct request *r)
+{
+#ifdef SLC_HAVE_BAKE
+    if (r->settings && r->kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
+        return slc_picture_settings_hash(r->settings, &r->settings_hash);
+#endif
+    r->settings = NULL;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult open_request(SluiceImageOpener *opener, struct request *r,
                                  SluiceImageSource **source)
 {
-    SluiceImageFileKind kind = SLUICE_IMAGE_FILE_KIND_PICTURE;
-    struct slc_file_identity identity = {0};
     SluiceResult result = SLUICE_SUCCESS;
-    if (!is_own_path(opener, path)) {
-        result = slc_file_kind_find(opener->files.pool, path, &opener->log, &kind, &identity);
+    r->kind = SLUICE_IMAGE_FILE_KIND_PICTURE;
+    if (!is_own_path(opener, r->path)) {
+        result =
+            slc_file_kind_find(opener->files.pool, r->path, &opener->log, &r->kind, &r->identity);
         if (result == SLUICE_SUCCESS)
-            result = check_texture(opener, path, texture, kind);
+            result = check_texture(opener, r->path, r->texture, r->kind);
+        if (result == SLUICE_SUCCESS)
+            result = find_settings(r);
     }
     if (result != SLUICE_SUCCESS)
         return result;
     slc_mutex_lock(&opener->mutex);
-    struct slc_opened_image *image = find_image(opener, path, texture, &identity);
+    struct slc_opened_image *image = find_image(opener, r);
     if (image)
         wait_until_open(image);
-    else if ((image = create_image(opener, path, texture, kind, &identity)))
-        open_for_all(image);
+    else if ((image = create_image(opener, r)))
+        open_for_all(image, r->settings);
     result = image ? image->result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     bool is_unused = image && result != SLUICE_SUCCESS && drop_reference(image);
     slc_mutex_unlock(&opener->mutex);
@@ -385,15 +413,30 @@ static SluiceResult open_texture(SluiceImageOpener *opener, const char *path, co
 SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
                                    SluiceImageSource **pSource)
 {
+    struct request request = {.path = path};
     return !opener || !path || !pSource ? SLUICE_ERROR_NULL_POINTER
-                                        : open_texture(opener, path, NULL, pSource);
+                                        : open_request(opener, &request, pSource);
 }
 
 SluiceResult sluiceOpenNamedImageSource(SluiceImageOpener *opener, const char *path,
                                         const char *texture, SluiceImageSource **pSource)
 {
+    struct request request = {.path = path, .texture = texture};
     return !opener || !path || !texture || !pSource ? SLUICE_ERROR_NULL_POINTER
-                                                    : open_texture(opener, path, texture, pSource);
+                                                    : open_request(opener, &request, pSource);
+}
+
+SluiceResult sluiceOpenBakedImageSource(SluiceImageOpener *opener, const char *path,
+                                        const struct SluiceBakeSettings *pSettings,
+                                        SluiceImageSource **pSource)
+{
+    SluiceBakeSettings settings = {.structSize = sizeof settings};
+    struct request request = {.path = path, .settings = &settings};
+    if (!opener || !path || !pSettings || !pSource)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceBakeSettings), &settings, pSettings, NULL);
+    return result == SLUICE_SUCCESS ? open_request(opener, &request, pSource) : result;
 }
 
 SluiceResult sluiceGetOpenedImageInfo(SluiceImageSource *source, SluiceOpenedImageInfo *pInfo)

@@ -107,6 +107,7 @@ void slc_make_preview(struct slc_background *background, struct slc_picture_stre
     SluiceBakeInfo info = {.structSize = sizeof info,
                            .pInputPath = stream->path,
                            .pOutputPath = path,
+                           .pSettings = &stream->settings,
                            .pUserData = stream,
                            .pfnProgress = keep_going,
                            .firstLevel = stream->preview_level};
@@ -140,7 +141,6 @@ SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceIma
                                              .readPool = opener->files.read_pool,
                                              .filePool = opener->files.pool};
     SluiceStoreInfo found = {.structSize = sizeof found};
-    SluiceBakeSettings settings = {.structSize = sizeof settings};
     uint64_t hash = 0;
     struct slc_file_status status;
     *store = NULL;
@@ -148,7 +148,7 @@ SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceIma
     if (!slc_path_get_status(stream->store_path, &status))
         return SLUICE_ERROR_FILE_NOT_FOUND;
     *identity = slc_file_identity(&status);
-    SluiceResult result = sluiceHashBakeSettings(&settings, &hash);
+    SluiceResult result = sluiceHashBakeSettings(&stream->settings, &hash);
     if (result == SLUICE_SUCCESS)
         result = sluiceCreateStoreImageSource(&info, store);
     if (result == SLUICE_SUCCESS)
@@ -193,6 +193,7 @@ static SluiceResult bake_store(struct slc_background *background, struct slc_pic
     SluiceBakeInfo info = {.structSize = sizeof info,
                            .pInputPath = stream->path,
                            .pOutputPath = stream->store_path,
+                           .pSettings = &stream->settings,
                            .force = force,
                            .pUserData = stream,
                            .pfnProgress = note_progress};

@@ -10,10 +10,31 @@
 
 #include <string.h>
 
+static const SluiceBakeSettings default_settings = {.structSize = sizeof default_settings};
+
+SluiceResult slc_picture_settings_hash(const SluiceBakeSettings *settings, uint64_t *hash)
+{
+    uint64_t usual = 0;
+    SluiceResult result = sluiceHashBakeSettings(settings, hash);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceHashBakeSettings(&default_settings, &usual);
+    if (result == SLUICE_SUCCESS && *hash == usual)
+        *hash = 0;
+    return result;
+}
+
+static SluiceImageAddressMode address_mode(SluiceBakeWrap wrap)
+{
+    return wrap == SLUICE_BAKE_WRAP_REPEAT   ? SLUICE_IMAGE_ADDRESS_MODE_REPEAT
+           : wrap == SLUICE_BAKE_WRAP_MIRROR ? SLUICE_IMAGE_ADDRESS_MODE_MIRRORED_REPEAT
+                                             : SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE;
+}
+
 /* Size and format of a picture that is yet to be baked. */
 static SluiceResult describe(struct slc_picture_stream *stream)
 {
-    SluiceBakeInfo info = {.structSize = sizeof info, .pInputPath = stream->path};
+    SluiceBakeInfo info = {
+        .structSize = sizeof info, .pInputPath = stream->path, .pSettings = &stream->settings};
     SluiceBakeReport report = {.structSize = sizeof report};
     SluiceResult result =
         sluiceDescribeBake(slc_background_baker(stream->background), &info, &report);
@@ -26,8 +47,8 @@ static SluiceResult describe(struct slc_picture_stream *stream)
         .mipLevelCount = report.mipLevelCount,
         .format = report.format,
         .arrayLayerCount = 1,
-        .addressModeU = SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE,
-        .addressModeV = SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE,
+        .addressModeU = address_mode(stream->settings.wrapX),
+        .addressModeV = address_mode(stream->settings.wrapY),
     };
     return SLUICE_SUCCESS;
 }
@@ -66,8 +87,8 @@ static SluiceResult init(struct slc_picture_stream *stream)
     SluiceImageOpener *opener = stream->opener;
     SluiceResult result = slc_cache_folder_make(opener->cache_folder, &opener->log);
     if (result == SLUICE_SUCCESS)
-        result = slc_store_cache_path(opener->cache_folder, stream->path, &opener->allocator,
-                                      &stream->store_path);
+        result = slc_store_cache_path(opener->cache_folder, stream->path, stream->settings_hash,
+                                      &opener->allocator, &stream->store_path);
     if (result == SLUICE_SUCCESS)
         result = need_background(stream);
     if (result != SLUICE_SUCCESS)
@@ -86,6 +107,7 @@ static SluiceResult init(struct slc_picture_stream *stream)
 
 SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *path,
                                        const struct slc_file_identity *identity,
+                                       const SluiceBakeSettings *settings,
                                        struct slc_picture_stream **out)
 {
     if (!opener->cache_folder) {
@@ -102,7 +124,10 @@ SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *pa
     stream->path = path;
     stream->identity = *identity;
     slc_rw_lock_init(&stream->lock);
-    SluiceResult result = init(stream);
+    stream->settings = settings ? *settings : default_settings;
+    SluiceResult result = slc_picture_settings_hash(&stream->settings, &stream->settings_hash);
+    if (result == SLUICE_SUCCESS)
+        result = init(stream);
     if (result != SLUICE_SUCCESS) {
         slc_picture_stream_destroy(stream);
         return result;

@@ -5,6 +5,8 @@
 #ifndef SLC_OPEN_PICTURE_STREAM_H
 #define SLC_OPEN_PICTURE_STREAM_H
 
+#include <sluice/bake.h>
+
 #include "open/opener.h"
 #include "platform/rw_lock.h"
 
@@ -29,6 +31,8 @@ struct slc_picture_stream {
     struct slc_background *background; ///< borrowed from the opener; NULL: it has no jobs yet
     const char *path;                  ///< borrowed
     struct slc_file_identity identity;
+    SluiceBakeSettings settings;
+    uint64_t settings_hash;
     char *store_path; ///< owned
     SluiceImageInfo info;
     uint32_t preview_level; ///< its first; 0: there is no preview
@@ -49,13 +53,17 @@ struct slc_picture_stream {
     bool has_said_busy;  ///< that another process bakes it; only the bake's thread uses it
 };
 
+/** Hash of all settings but the default ones, which have 0. `settings` is of this version. */
+SluiceResult slc_picture_settings_hash(const SluiceBakeSettings *settings, uint64_t *hash);
+
 /**
  * Opens the picture's store, or describes the picture and queues its bake. `path` lives as long as
- * the stream. The opener's mutex is not held. Writes `*stream` with the mutex. Errors: as
- * sluiceOpenImageSource, logged.
+ * the stream. `settings` NULL: default. The opener's mutex is not held. Writes `*stream` with the
+ * mutex. Errors: as sluiceOpenImageSource, logged.
  */
 SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *path,
                                        const struct slc_file_identity *identity,
+                                       const SluiceBakeSettings *settings,
                                        struct slc_picture_stream **stream);
 /** Cancels its jobs and waits for them. NULL is allowed. The opener's mutex is not held. */
 void slc_picture_stream_destroy(struct slc_picture_stream *stream);

@@ -8,12 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-SluiceResult slc_store_cache_path(const char *folder, const char *picture,
+SluiceResult slc_store_cache_path(const char *folder, const char *picture, uint64_t settings_hash,
                                   const SluiceAllocationCallbacks *cb, char **path)
 {
     char *real = slc_path_resolve(picture);
     const char *name = real ? real : picture;
-    uint64_t hash = slc_said_key(name), length = strlen(name);
+    uint64_t hash = slc_said_key(name) ^ settings_hash, length = strlen(name);
     free(real);
     size_t size = strlen(folder) + 1 + 16 + 8 + 8;
     char *made = slc_alloc(cb, size, 1);

@@ -6,9 +6,10 @@
 
 #include "base/cache_folder.h"
 
-/** "FOLDER/HASH.store": the hash is that of the picture's path without links. Errors:
- *  OUT_OF_HOST_MEMORY. Free with slc_free(cb, s, strlen(s) + 1, 1). */
-SluiceResult slc_store_cache_path(const char *folder, const char *picture,
+/** "FOLDER/HASH.store": the hash is that of the picture's path without links, exclusive or that of
+ *  the settings, which is 0 for default ones. Errors: OUT_OF_HOST_MEMORY. Free with slc_free(cb, s,
+ *  strlen(s) + 1, 1). */
+SluiceResult slc_store_cache_path(const char *folder, const char *picture, uint64_t settings_hash,
                                   const SluiceAllocationCallbacks *cb, char **path);
 
 /** Notes that a store was opened now. Its contents and their time stay as they are. */

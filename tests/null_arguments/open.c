@@ -3,6 +3,7 @@
 
 #include "neural/worked_example.h"
 
+#include <sluice/bake.h>
 #include <sluice/open.h>
 
 #include <stdio.h>
@@ -14,6 +15,7 @@ sluiceCreateImageOpener(&f->create, &f->out.opener) => sluiceDestroyImageOpener(
 !sluiceDestroyImageOpener(f->opener)
 sluiceOpenImageSource(f->opener, f->path, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceOpenNamedImageSource(f->opener, f->path, "two", &f->out.source) => sluiceDestroyImageSource(f->out.source)
+sluiceOpenBakedImageSource(f->opener, f->path, &f->settings, &f->out.source) => sluiceDestroyImageSource(f->out.source)
 sluiceGetOpenedImageInfo(f->source, &f->out.info)
 */
 /* clang-format on */
@@ -22,6 +24,7 @@ struct fixture {
     SluiceImageOpenerCreateInfo create;
     SluiceImageOpener *opener;
     SluiceImageSource *source;
+    SluiceBakeSettings settings;
     char path[64];
     struct {
         SluiceImageOpener *opener;
@@ -42,6 +45,7 @@ static void fixture_init(struct fixture *f, void **state)
     assert_int_equal(write(descriptor, bytes, size), size);
     close(descriptor);
     f->create.structSize = sizeof f->create;
+    f->settings.structSize = sizeof f->settings;
     CHECK_OK(sluiceCreateImageOpener(&f->create, &f->opener));
     CHECK_OK(sluiceOpenImageSource(f->opener, f->path, &f->source));
 }

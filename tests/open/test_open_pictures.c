@@ -86,7 +86,7 @@ static void store_path(const struct fixture *f, const char *picture, char path[5
 {
     SluiceAllocationCallbacks cb = slc_allocator(NULL);
     char *made;
-    CHECK_OK(slc_store_cache_path(f->cache, picture, &cb, &made));
+    CHECK_OK(slc_store_cache_path(f->cache, picture, 0, &cb, &made));
     snprintf(path, 512, "%s", made);
     slc_free(&cb, made, strlen(made) + 1, 1);
 }
@@ -832,10 +832,74 @@ static void a_fault_names_the_picture_also_when_its_store_is_gone(void **state)
 }
 
 /* One call is refused; those of the background make the bake fail or nothing. */
+/* Opens it with settings, and compares every level with a bake of our own with these settings. */
+static void check_settings(struct fixture *f, const SluiceBakeSettings *settings,
+                           SluiceFormat format, SluiceImageAddressMode mode)
+{
+    SluiceImageSource *source;
+    char baked[256];
+    SluiceImageInfo before = {.structSize = sizeof before}, after = before;
+    bake_folder_file(&f->folder, "baked.store", baked);
+    bake_picture_file(f->png, baked, settings);
+    CHECK_OK(sluiceOpenBakedImageSource(f->opener, f->png, settings, &source));
+    CHECK_OK(sluiceGetImageInfo(source, &before));
+    assert_true(wait_for(source).ready);
+    for (uint32_t level = 0; level < before.mipLevelCount; level++) {
+        size_t size;
+        uint8_t *expected = read_bytes(baked, level, &size), *texels = malloc(size);
+        SluiceImageRegion region = {
+            level, 0, 0, slc_mip_size(before.width, level), slc_mip_size(before.height, level), 0};
+        CHECK_OK(sluiceReadImageRegion(source, &region, texels, (size_t)region.width * 4));
+        assert_memory_equal(texels, expected, size);
+        free(expected);
+        free(texels);
+    }
+    sluiceDestroyImageSource(source);
+    /* Once more, from the cache. */
+    CHECK_OK(sluiceOpenBakedImageSource(f->opener, f->png, settings, &source));
+    CHECK_OK(sluiceGetImageInfo(source, &after));
+    assert_true(state_of(source).ready);
+    assert_true(before.format == format && after.format == format);
+    assert_true(before.addressModeU == mode && after.addressModeU == mode);
+    sluiceDestroyImageSource(source);
+}
+
+static void pictures_are_baked_with_the_settings_they_are_opened_with(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f);
+    const SluiceBakeSettings usual = {.structSize = sizeof usual},
+                             normals = {.structSize = sizeof normals, .normalMap = true},
+                             repeated = {.structSize = sizeof repeated,
+                                         .wrapX = SLUICE_BAKE_WRAP_REPEAT,
+                                         .transfer = SLUICE_BAKE_TRANSFER_LINEAR},
+                             wrong = {.structSize = sizeof wrong, .cutout = 2};
+    check_settings(&f, &normals, SLUICE_FORMAT_R8G8B8A8_UNORM,
+                   SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE);
+    check_settings(&f, &repeated, SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
+    check_settings(&f, &usual, SLUICE_FORMAT_R8G8B8A8_SRGB,
+                   SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE);
+    SluiceImageSource *sources[3], *none;
+    CHECK_OK(sluiceOpenImageSource(f.opener, f.png, &sources[0]));
+    CHECK_OK(sluiceOpenBakedImageSource(f.opener, f.png, &usual, &sources[1]));
+    CHECK_OK(sluiceOpenBakedImageSource(f.opener, f.png, &normals, &sources[2]));
+    assert_ptr_equal(sources[0], sources[1]);
+    assert_ptr_not_equal(sources[0], sources[2]);
+    for (int i = 0; i < 3; i++)
+        assert_true(state_of(sources[i]).ready);
+    CHECK_RESULT(sluiceOpenBakedImageSource(f.opener, f.png, &wrong, &none),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    for (int i = 0; i < 3; i++)
+        sluiceDestroyImageSource(sources[i]);
+    teardown(&f);
+}
+
 static void every_refused_allocation_is_survived(void **state)
 {
     (void)state;
     struct bake_folder folder;
+    const SluiceBakeSettings normals = {.structSize = sizeof normals, .normalMap = true};
     char path[256], cache[256], command[400];
     bake_folder_init(&folder);
     bake_folder_file(&folder, "a.png", path);
@@ -854,7 +918,7 @@ static void every_refused_allocation_is_survived(void **state)
                                             .pAllocator = &a.callbacks};
         SluiceResult result = sluiceCreateImageOpener(&info, &opener);
         if (result == SLUICE_SUCCESS)
-            result = sluiceOpenImageSource(opener, path, &source);
+            result = sluiceOpenBakedImageSource(opener, path, &normals, &source);
         if (result == SLUICE_SUCCESS) {
             SluiceOpenedImageInfo opened = wait_for(source);
             assert_true(opened.ready || opened.failure == SLUICE_ERROR_OUT_OF_HOST_MEMORY);
@@ -892,6 +956,7 @@ int main(void)
         cmocka_unit_test(a_file_that_opens_slowly_holds_up_no_other),
         cmocka_unit_test(a_preview_of_another_format_is_not_shown),
         cmocka_unit_test(a_fault_names_the_picture_also_when_its_store_is_gone),
+        cmocka_unit_test(pictures_are_baked_with_the_settings_they_are_opened_with),
         cmocka_unit_test(every_refused_allocation_is_survived),
     };
     return RUN_TESTS(tests);
