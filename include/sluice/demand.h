@@ -418,6 +418,23 @@ SLUICE_API SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader,
                                                    uint32_t finestLevel,
                                                    SluiceDemandTicket *pTicket);
 
+/**
+ * Opens a texture and loads the tiles that a rectangle of a level covers, of that level and of all
+ * coarser ones, coarse levels first. The region's array layer is ignored.
+ *
+ * Enlarge the rectangle if your filter is wider. A rectangle that leaves its level is refused if the
+ * texture is open; otherwise it is logged and loads nothing. All else is as
+ * sluicePreloadDemandTexture does it: nothing is evicted, and what could not be read is not tried
+ * again.
+ *
+ * Errors: as sluicePreloadDemandTexture; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for an
+ *         empty rectangle.
+ */
+SLUICE_API SluiceResult sluicePreloadDemandRegion(SluiceDemandLoader *loader,
+                                                  SluiceDemandTextureId textureId,
+                                                  const SluiceImageRegion *pRegion,
+                                                  SluiceDemandTicket *pTicket);
+
 /** Byte page that commands write. Never grows. */
 typedef struct SluiceBytePageTarget {
     uint32_t page;           ///< Page of the resource.

@@ -205,7 +205,9 @@ struct slc_job_batch {
 struct slc_preload {
     SluiceDemandTextureId texture;
     SluiceDemandTicket ticket;
-    uint32_t finest_level, level, next_page; ///< pages of the level, from 0
+    SluiceImageRegion region;    ///< of the finest level; width 0: all of it
+    struct slc_remake_area area; ///< once it is planned
+    uint32_t level, next_page;   ///< tiles of the area in the level, from 0
     bool opening, planned;
     bool detached;          ///< the image that it was planned for is no texture's any more
     uint32_t planned_count; ///< tasks of the ticket that have not begun
@@ -359,7 +361,7 @@ struct SluiceDemandLoader {
     bool tracked[SLC_MAX_LAUNCHES]; ///< by launch: shaders said what they used
     bool probed[SLC_MAX_LAUNCHES];  ///< by launch: they said so for strict mode alone
     struct slc_demand_strict strict;
-    uint32_t limited_count;         ///< resources with a limit
+    uint32_t limited_count; ///< resources with a limit
     struct slc_retries retries;
     SluiceDemandLoaderSettings settings; ///< from the next launch on
     uint32_t requests_per_launch;        ///< of the present one

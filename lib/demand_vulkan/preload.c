@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/refused_arguments.h"
+#include "vulkan/sparse_layout.h"
 
 #include <string.h>
 
@@ -19,21 +20,49 @@ static SluiceResult reserve(SluiceDemandLoader *loader)
     return SLUICE_SUCCESS;
 }
 
-SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader, SluiceDemandTextureId textureId,
-                                        uint32_t finestLevel, SluiceDemandTicket *pTicket)
+/* Of an image that need not be open. The level of a region without width may be above the last. */
+static SluiceResult read_area(const SluiceDemandLoader *loader, const SluiceImageInfo *info,
+                              const SluiceImageRegion *region, const char *function,
+                              struct slc_remake_area *area)
+{
+    SluiceImageRegion all = *region;
+    if (region->width == 0) {
+        all.mipLevel = slc_min_u32(region->mipLevel, info->mipLevelCount - 1);
+        all.width = slc_mip_size(info->width, all.mipLevel);
+        all.height = slc_mip_size(info->height, all.mipLevel);
+    }
+    return slc_remake_area_read(area, info, &all, UINT32_MAX, function, &loader->vk.log);
+}
+
+static const SluiceImageInfo *find_info(const SluiceDemandLoader *loader, uint32_t index)
+{
+    const struct slc_demand_texture *texture = &loader->textures[index];
+    if (texture->made)
+        return &texture->made->info;
+    bool open =
+        texture->image != SLC_NONE && loader->images[texture->image]->state == SLC_IMAGE_OPEN;
+    return open ? &loader->images[texture->image]->info : NULL;
+}
+
+static SluiceResult begin(SluiceDemandLoader *loader, const char *function,
+                          SluiceDemandTextureId id, const SluiceImageRegion *region,
+                          SluiceDemandTicket *given)
 {
     uint32_t index;
     SluiceDemandTicket ticket;
-    if (!loader)
-        return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = slc_texture_find(loader, textureId, &index);
+    struct slc_remake_area area;
+    SluiceResult result = slc_texture_find(loader, id, &index);
     if (result != SLUICE_SUCCESS)
         return result;
     if (loader->textures[index].kind == SLC_TEXTURE_VARIANT)
         index = loader->textures[index].base;
     if (loader->textures[index].kind == SLC_TEXTURE_GRID)
-        return slc_demand_refuse_grid(loader, "sluicePreloadDemandTexture", textureId);
-    result = reserve(loader);
+        return slc_demand_refuse_grid(loader, function, id);
+    const SluiceImageInfo *info = find_info(loader, index);
+    if (info)
+        result = read_area(loader, info, region, function, &area);
+    if (result == SLUICE_SUCCESS)
+        result = reserve(loader);
     if (result == SLUICE_SUCCESS)
         result = slc_ticket_open(&loader->tickets, &ticket);
     if (result != SLUICE_SUCCESS)
@@ -42,12 +71,33 @@ SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader, SluiceDemand
     loader->preloads[loader->preload_count++] =
         (struct slc_preload){.texture = slc_texture_id(loader, index),
                              .ticket = ticket,
-                             .finest_level = finestLevel,
+                             .region = *region,
                              .planned_count = 1};
-    if (pTicket)
-        *pTicket = ticket;
+    if (given)
+        *given = ticket;
     slc_preloads_continue(loader);
     return SLUICE_SUCCESS;
+}
+
+SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader, SluiceDemandTextureId textureId,
+                                        uint32_t finestLevel, SluiceDemandTicket *pTicket)
+{
+    const SluiceImageRegion levels = {.mipLevel = finestLevel};
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    return begin(loader, __func__, textureId, &levels, pTicket);
+}
+
+SluiceResult sluicePreloadDemandRegion(SluiceDemandLoader *loader, SluiceDemandTextureId textureId,
+                                       const SluiceImageRegion *pRegion,
+                                       SluiceDemandTicket *pTicket)
+{
+    if (!loader || !pRegion)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (pRegion->width == 0 || pRegion->height == 0)
+        return slc_demand_refuse(loader, __func__, "the region has %u x %u texels", pRegion->width,
+                                 pRegion->height);
+    return begin(loader, __func__, textureId, pRegion, pTicket);
 }
 
 /* NULL: there is nothing to load, or not yet; `*over`: nor will there be. */
@@ -74,49 +124,51 @@ static struct slc_demand_image *find_image(SluiceDemandLoader *loader, struct sl
     return NULL;
 }
 
-static uint64_t count_pages(const struct slc_demand_image *image, uint32_t finest_level)
-{
-    uint64_t count = 1;
-    for (uint32_t l = finest_level; l < image->regular_count; l++)
-        count += (uint64_t)slc_image_level_width(image, l) * slc_image_level_height(image, l);
-    return count;
-}
-
 static void drop_planned(SluiceDemandLoader *loader, struct slc_preload *preload, uint32_t count)
 {
     slc_ticket_drop(&loader->tickets, preload->ticket, count);
     preload->planned_count -= count;
 }
 
-static void plan(SluiceDemandLoader *loader, struct slc_preload *preload,
+/* False: the image has no such region. */
+static bool plan(SluiceDemandLoader *loader, struct slc_preload *preload,
                  const struct slc_demand_image *image)
 {
-    uint64_t count = count_pages(image, preload->finest_level);
+    if (read_area(loader, &image->info, &preload->region, "sluicePreloadDemandRegion",
+                  &preload->area) != SLUICE_SUCCESS)
+        return false;
+    uint64_t count = slc_remake_count(&preload->area, image->regular_count, image->tile_width,
+                                      image->tile_height);
     uint32_t tasks = count < INT32_MAX ? (uint32_t)count : INT32_MAX;
     preload->planned = true;
     preload->level = image->regular_count; /* the tail */
     slc_ticket_add(&loader->tickets, preload->ticket, tasks);
     preload->planned_count += tasks;
     drop_planned(loader, preload, 1);
+    return true;
 }
 
 /* True: there is another page, which is `*page`. */
 static bool next_page(struct slc_preload *preload, const struct slc_demand_image *image,
                       uint32_t *page)
 {
-    bool tail = preload->level == image->regular_count;
-    uint32_t count = tail ? 1
-                          : slc_image_level_width(image, preload->level) *
-                                slc_image_level_height(image, preload->level);
-    if (preload->next_page == count) {
-        if (preload->level <= preload->finest_level || preload->level == 0)
+    const struct slc_remake_area *area = &preload->area;
+    struct slc_remake_tiles t = {.end_x = 1, .end_y = 1}; /* the tail */
+    if (preload->level < image->regular_count)
+        t = slc_remake_tiles(area, preload->level, image->tile_width, image->tile_height);
+    if (preload->next_page == (t.end_x - t.x) * (t.end_y - t.y)) {
+        if (preload->level <= area->region.mipLevel)
             return false;
         preload->level--;
         preload->next_page = 0;
-        tail = false;
+        t = slc_remake_tiles(area, preload->level, image->tile_width, image->tile_height);
     }
-    *page = tail ? image->tail_page : image->first_pages[preload->level] + preload->next_page;
-    preload->next_page++;
+    uint32_t width = t.end_x - t.x, n = preload->next_page++;
+    *page = preload->level == image->regular_count
+                ? image->tail_page
+                : image->first_pages[preload->level] +
+                      (t.y + n / width) * slc_image_level_width(image, preload->level) + t.x +
+                      n % width;
     return true;
 }
 
@@ -135,8 +187,8 @@ static bool advance(SluiceDemandLoader *loader, struct slc_preload *preload)
     const struct slc_demand_image *image = find_image(loader, preload, &over);
     if (!image)
         return over;
-    if (!preload->planned)
-        plan(loader, preload, image);
+    if (!preload->planned && !plan(loader, preload, image))
+        return true;
     /* It is in use: the next launch counts as one that samples it. */
     slc_image_touch(loader, loader->images[image->slot], loader->launch + 1);
     while (slc_job_is_ready(loader, slc_tile_job_kind(image))) {

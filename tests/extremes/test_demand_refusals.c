@@ -97,8 +97,11 @@ static SluiceResult set_pages(struct life *l)
 
 static SluiceResult preload(struct life *l)
 {
+    const SluiceImageRegion region = {.width = 1, .height = 1};
     SluiceDemandTicket ticket;
-    SluiceResult result = sluicePreloadDemandTexture(l->r.loader, l->texture, 0, &ticket);
+    SluiceResult result = sluicePreloadDemandRegion(l->r.loader, l->texture, &region, NULL);
+    if (result == SLUICE_SUCCESS)
+        result = sluicePreloadDemandTexture(l->r.loader, l->texture, 0, &ticket);
     if (result == SLUICE_SUCCESS)
         result = sluiceWaitDemandTicket(l->r.loader, ticket, UINT64_MAX, NULL);
     return result;

@@ -87,6 +87,7 @@ sluiceRetryDemandTexture(f->loader, f->id)
 sluiceRemakeDemandTiles(f->loader, f->made, ?NULL, ?1)
 sluiceRemakeDemandPages(f->loader, f->made_pages, 0, 1)
 sluicePreloadDemandTexture(f->loader, f->id, 0, ?&f->out.ticket)
+sluicePreloadDemandRegion(f->loader, f->id, &f->demand_region, ?&f->out.ticket)
 sluiceAddDemandResource(f->loader, &f->resource_info, &f->out.resource, &f->out.page)
 sluiceRemoveDemandResource(f->loader, f->resource)
 sluiceInvalidateDemandPages(f->loader, f->resource, 0, 1)
@@ -149,6 +150,7 @@ struct fixture {
     SluiceDemandTextureCreateInfo demand_info;
     SluiceDemandSampler sampler;
     SluiceDemandTextureId id;
+    SluiceImageRegion demand_region;
     SluiceDemandGridCreateInfo grid_info;
     SluiceDemandResourceCreateInfo resource_info;
     SluiceDemandResourceId resource, bytes, proxies, made_pages;
@@ -311,6 +313,7 @@ static void init_loader(struct fixture *f)
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->fresh_loader));
     f->recording = (SluiceFileRecordingInfo){.structSize = sizeof(SluiceFileRecordingInfo),
                                              .pPath = "null_arguments_demand.trace"};
+    f->demand_region = (SluiceImageRegion){.width = 1, .height = 1};
     f->demand_info = (SluiceDemandTextureCreateInfo){
         .structSize = sizeof(SluiceDemandTextureCreateInfo), .image = {.source = f->source}};
     f->sampler.structSize = sizeof f->sampler;
