@@ -1,6 +1,6 @@
 /**
- * Says which tiles of a demand loader (demand.h) are resident, and what launches missed. Link
- * `sluice-vulkan`.
+ * Says which tiles of a demand loader (demand.h) are resident, waits for them, and lists what
+ * launches missed. Link `sluice-vulkan`.
  *
  * Thread safety: external on the loader.
  */
@@ -43,6 +43,62 @@ SLUICE_API SluiceResult sluiceGetDemandTileInfo(SluiceDemandLoader *loader,
                                                 SluiceDemandTextureId textureId, uint32_t level,
                                                 uint32_t x, uint32_t y,
                                                 SluiceDemandTileInfo *pInfo);
+
+/** How far the tiles of a rectangle are. */
+typedef struct SluiceDemandRegionProgress {
+    uint32_t structSize; ///< sizeof(SluiceDemandRegionProgress).
+    bool isOpen;         ///< The texture is open. If not, all tile counts are 0.
+    bool failed;         ///< The texture cannot be opened for now.
+    bool ready;          ///< Launches from the next one on find all tiles.
+    uint32_t tileCount;  ///< Tiles of the level and of all coarser ones; the mip tail counts as one.
+    uint32_t residentTileCount;
+    uint32_t pendingTileCount; ///< They are being read or made.
+    uint32_t refusedTileCount; ///< They cannot be read, or there is no memory, for now.
+} SluiceDemandRegionProgress;
+
+/**
+ * Gets how far the tiles are that a rectangle of a level covers, of that level and of all coarser
+ * ones. Takes time in proportion to the tiles. The region's array layer is ignored. `pRegion` NULL:
+ * all texels of level 0. A variant has the tiles of its texture.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for grids, for a wrong structSize, or
+ *         if the texture is open and the rectangle leaves its level.
+ */
+SLUICE_API SluiceResult sluiceGetDemandRegionProgress(SluiceDemandLoader *loader,
+                                                      SluiceDemandTextureId textureId,
+                                                      const SluiceImageRegion *pRegion,
+                                                      SluiceDemandRegionProgress *pProgress);
+
+/** Why sluiceWaitDemandRegion returned. */
+typedef enum SluiceDemandWaitStatus {
+    SLUICE_DEMAND_WAIT_READY = 0, ///< Launches from the next one on find all tiles.
+    /** The texture cannot be opened, or some tiles are refused and all others are resident. */
+    SLUICE_DEMAND_WAIT_FAILED = 1,
+    /** The next step is a launch: begin, end, submit and process one, and wait again. */
+    SLUICE_DEMAND_WAIT_LAUNCH = 2,
+    SLUICE_DEMAND_WAIT_TIMEOUT = 3, ///< Reads are still under way, and a launch has nothing to do.
+    /** Some tiles are absent, nobody loads them, and no launch is under way: call
+     *  sluicePreloadDemandRegion, or sample them. */
+    SLUICE_DEMAND_WAIT_NOT_REQUESTED = 4
+} SluiceDemandWaitStatus;
+
+/**
+ * Waits for the tiles of a rectangle, at most `timeoutNs` nanoseconds: for loading screens. 0: only
+ * says how it is. `pRegion` is that of sluiceGetDemandRegionProgress.
+ *
+ * Launches take what was read, copy and show it, and start what did not fit into maxTilesInFlight.
+ * So this function returns SLUICE_DEMAND_WAIT_LAUNCH at once when a launch has something to do, and
+ * sleeps only while nothing but reads is under way. It requests nothing: call
+ * sluicePreloadDemandRegion first. Threads of the context read meanwhile. If reads run on threads of
+ * the application, these must not be the one that waits: pass 0 there.
+ *
+ * Errors: as sluiceGetDemandRegionProgress; SLUICE_ERROR_CANCELED after sluiceAbortDemandLoader.
+ */
+SLUICE_API SluiceResult sluiceWaitDemandRegion(SluiceDemandLoader *loader,
+                                               SluiceDemandTextureId textureId,
+                                               const SluiceImageRegion *pRegion, uint64_t timeoutNs,
+                                               SluiceDemandWaitStatus *pStatus);
 
 /** Kinds of missed pages. */
 typedef enum SluiceDemandMissKind {

@@ -4,6 +4,8 @@
 #include "support/job_system.h"
 #include "support/test.h"
 
+#include <sluice/demand_query.h>
+
 #include <pthread.h>
 
 static struct harness h;
@@ -226,6 +228,150 @@ static void many_tickets_end_and_the_last_ones_are_remembered(void **state)
     runner_image_finish(&image);
 }
 
+/* Launches and waits until the region is there. Returns the last status. */
+static SluiceDemandWaitStatus wait_for_region(struct runner *r, SluiceDemandTextureId id,
+                                              const SluiceImageRegion *region)
+{
+    SluiceDemandWaitStatus status = SLUICE_DEMAND_WAIT_LAUNCH;
+    for (uint32_t i = 0; i < 200 && status == SLUICE_DEMAND_WAIT_LAUNCH; i++) {
+        CHECK_OK(sluiceWaitDemandRegion(r->loader, id, region, UINT64_MAX, &status));
+        if (status == SLUICE_DEMAND_WAIT_LAUNCH)
+            runner_launch(r);
+    }
+    return status;
+}
+
+/* Texel by texel: whether the region covers a texel of the tile, a level after the other. */
+static bool is_covered(const SluiceImageRegion *region, uint32_t level, uint32_t x, uint32_t y)
+{
+    for (uint32_t v = region->y; v < region->y + region->height; v++)
+        for (uint32_t u = region->x; u < region->x + region->width; u++)
+            if (u >> (level - region->mipLevel) >> 7 == x &&
+                v >> (level - region->mipLevel) >> 7 == y)
+                return true;
+    return false;
+}
+
+static void a_preloaded_region_is_ready_and_no_other_tile_is_read(void **state)
+{
+    (void)state;
+    static const SluiceImageRegion regions[] = {
+        {.mipLevel = 0, .x = 300, .y = 511, .width = 90, .height = 2},
+        {.mipLevel = 1, .x = 1023, .y = 0, .width = 1, .height = 1},
+        {.mipLevel = 0, .x = 0, .y = 127, .width = 2048, .height = 1},
+        {.mipLevel = 9, .width = 1, .height = 1}};
+    for (uint32_t i = 0; i < sizeof regions / sizeof regions[0]; i++) {
+        struct runner r;
+        struct runner_image image;
+        SluiceDemandRegionProgress progress = {.structSize = sizeof progress};
+        const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                                   .maxTilesInFlight = 3};
+        runner_init(&r, &h, &info);
+        runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 2048, 2048, i);
+        SluiceDemandTextureId id = runner_add_texture(&r, &image);
+        CHECK_OK(sluicePreloadDemandRegion(r.loader, id, &regions[i], NULL));
+        assert_int_equal(wait_for_region(&r, id, &regions[i]), SLUICE_DEMAND_WAIT_READY);
+        uint32_t count = 1; /* the tail */
+        for (uint32_t level = 0; level < 5; level++)
+            for (uint32_t t = 0; t < 256u >> 2 * level; t++) {
+                uint32_t x = t % (16u >> level), y = t / (16u >> level);
+                SluiceDemandTileInfo tile = {.structSize = sizeof tile};
+                CHECK_OK(sluiceGetDemandTileInfo(r.loader, id, level, x * 128, y * 128, &tile));
+                bool covered = level >= regions[i].mipLevel && is_covered(&regions[i], level, x, y);
+                assert_int_equal(tile.state,
+                                 covered ? SLUICE_DEMAND_PAGE_RESIDENT : SLUICE_DEMAND_PAGE_ABSENT);
+                count += covered;
+            }
+        CHECK_OK(sluiceGetDemandRegionProgress(r.loader, id, &regions[i], &progress));
+        assert_true(progress.isOpen && progress.ready && !progress.failed);
+        assert_int_equal(progress.tileCount, count);
+        assert_int_equal(progress.residentTileCount, count);
+        assert_int_equal(progress.pendingTileCount + progress.refusedTileCount, 0);
+        runner_finish(&r);
+        runner_image_finish(&image);
+    }
+}
+
+static SluiceDemandWaitStatus wait_once(const struct held *held, uint64_t timeout)
+{
+    SluiceDemandWaitStatus status;
+    CHECK_OK(sluiceWaitDemandRegion(held->r.loader, held->id, NULL, timeout, &status));
+    return status;
+}
+
+static void waits_say_who_has_the_next_step(void **state)
+{
+    (void)state;
+    struct held held;
+    SluiceDemandRegionProgress progress = {.structSize = sizeof progress};
+    const SluiceImageRegion all = {.width = 1024, .height = 1024};
+    runner_init(&held.r, &h, NULL);
+    runner_image_init(&held.image, SLUICE_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
+    held.id = runner_add_texture(&held.r, &held.image);
+    CHECK_OK(sluiceGetDemandRegionProgress(held.r.loader, held.id, NULL, &progress));
+    assert_true(!progress.isOpen && !progress.ready && progress.tileCount == 0);
+    assert_int_equal(wait_once(&held, UINT64_MAX), SLUICE_DEMAND_WAIT_NOT_REQUESTED);
+    CHECK_OK(runner_submit(&held.r)); /* it might request something */
+    assert_int_equal(wait_once(&held, UINT64_MAX), SLUICE_DEMAND_WAIT_LAUNCH);
+    CHECK_OK(sluiceProcessDemandRequests(held.r.loader, &held.r.launch, UINT64_MAX,
+                                         &held.r.requests, &held.r.ticket));
+    held.image.source.holds = true;
+    CHECK_OK(sluicePreloadDemandRegion(held.r.loader, held.id, &all, NULL));
+    fault_source_await(&held.image.source, 1); /* it is being opened */
+    assert_int_equal(wait_once(&held, 0), SLUICE_DEMAND_WAIT_TIMEOUT);
+    assert_int_equal(wait_once(&held, 2000000), SLUICE_DEMAND_WAIT_TIMEOUT);
+    fault_source_release(&held.image.source);
+    assert_int_equal(wait_once(&held, UINT64_MAX), SLUICE_DEMAND_WAIT_LAUNCH);
+    assert_int_equal(wait_for_region(&held.r, held.id, NULL), SLUICE_DEMAND_WAIT_READY);
+    CHECK_OK(sluiceGetDemandRegionProgress(held.r.loader, held.id, NULL, &progress));
+    assert_int_equal(progress.tileCount, 64 + 16 + 4 + 1 + 1);
+    const SluiceImageRegion beyond = {.mipLevel = 1, .x = 500, .width = 13, .height = 1};
+    h.quiet = true;
+    CHECK_RESULT(sluiceGetDemandRegionProgress(held.r.loader, held.id, &beyond, &progress),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluicePreloadDemandRegion(held.r.loader, held.id, &beyond, NULL),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_OK(sluiceInvalidateDemandTexture(held.r.loader, held.id));
+    held.image.source.fail_at = held.image.source.read_count + 20; /* after the tail */
+    held.image.source.failure = SLUICE_ERROR_CORRUPT_DATA;
+    held.image.source.fails_on = true;
+    CHECK_OK(sluicePreloadDemandRegion(held.r.loader, held.id, &all, NULL));
+    assert_int_equal(wait_for_region(&held.r, held.id, NULL), SLUICE_DEMAND_WAIT_FAILED);
+    CHECK_OK(sluiceGetDemandRegionProgress(held.r.loader, held.id, NULL, &progress));
+    assert_true(progress.refusedTileCount > 0 && !progress.ready);
+    assert_int_equal(progress.residentTileCount + progress.refusedTileCount, progress.tileCount);
+    CHECK_OK(sluiceAbortDemandLoader(held.r.loader));
+    SluiceDemandWaitStatus status;
+    CHECK_RESULT(sluiceWaitDemandRegion(held.r.loader, held.id, NULL, 0, &status),
+                 SLUICE_ERROR_CANCELED);
+    h.quiet = false;
+    teardown(&held);
+}
+
+/* The rectangle is looked at when its texture has been opened. */
+static void a_region_beyond_its_level_loads_nothing(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    const SluiceImageRegion beyond = {.width = 301, .height = 1};
+    SluiceDemandTicketStatus status = {.structSize = sizeof status, .taskCount = 9};
+    SluiceDemandTicket ticket;
+    runner_init(&r, &h, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    h.quiet = true;
+    CHECK_OK(sluicePreloadDemandRegion(r.loader, id, &beyond, &ticket));
+    assert_int_equal(wait_for_region(&r, id, NULL), SLUICE_DEMAND_WAIT_NOT_REQUESTED);
+    assert_memory_equal(h.last_message, "sluicePreloadDemandRegion: level 0, 301 x 1", 43);
+    h.quiet = false;
+    CHECK_OK(sluiceGetDemandTicketStatus(r.loader, ticket, &status));
+    assert_int_equal(status.remainingCount, 0);
+    assert_int_equal(image.source.read_count, 1); /* its base color */
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
 /* Threads that wait read themselves. Jobs are compared with threads: requests and texels. */
 static void waits_end_whatever_a_job_system_does(void **state)
 {
@@ -269,6 +415,9 @@ int main(void)
         cmocka_unit_test(another_thread_may_cancel_what_this_one_waits_for),
         cmocka_unit_test(an_abort_wakes_all_though_reads_are_stuck),
         cmocka_unit_test(many_tickets_end_and_the_last_ones_are_remembered),
+        cmocka_unit_test(a_preloaded_region_is_ready_and_no_other_tile_is_read),
+        cmocka_unit_test(waits_say_who_has_the_next_step),
+        cmocka_unit_test(a_region_beyond_its_level_loads_nothing),
         cmocka_unit_test(waits_end_whatever_a_job_system_does),
     };
     CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 3}));

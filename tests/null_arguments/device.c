@@ -119,6 +119,8 @@ sluiceBeginDemandRecording(f->fresh_loader, &f->recording, &f->out.recorder) => 
 sluiceGetDemandLoaderSettings(f->loader, &f->loader_settings)
 sluiceSetDemandLoaderSettings(f->loader, &f->loader_settings)
 sluiceGetDemandTileInfo(f->loader, f->id, 0, 0, 0, &f->out.tile_info)
+sluiceGetDemandRegionProgress(f->loader, f->id, ?NULL, &f->out.region_progress)
+sluiceWaitDemandRegion(f->loader, f->id, ?NULL, ?0, &f->out.demand_wait)
 sluiceGetDemandMisses(f->loader, &f->out.miss_count, ?f->out.misses)
 sluiceSetDemandStrictMode(f->loader, ?NULL)
 sluiceIsDemandSourceInUse(f->loader, f->source, &f->out.in_use)
@@ -194,6 +196,8 @@ struct fixture {
         SluiceVulkanTextureState texture_state;
         SluiceVulkanExplanation explanation;
         SluiceDemandTileInfo tile_info;
+        SluiceDemandRegionProgress region_progress;
+        SluiceDemandWaitStatus demand_wait;
         SluiceDemandMiss misses[1];
         uint32_t miss_count;
         SluiceVulkanLoadStages stages;
