@@ -277,17 +277,23 @@ static const char pixel[] =
     "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGA"
     "WjR9awAAAABJRU5ErkJggg==";
 
-static void import_with_image(const char *image, const char *texture, struct scene_data *scene)
+#define AS_COLORS "\"baseColorTexture\":{\"index\":0}"
+#define AS_ALL                                                                                     \
+    AS_COLORS ",\"metallicRoughnessTexture\":{\"index\":0}},\"normalTexture\":{\"index\":0},"      \
+              "\"extras\":{"
+
+static void import_with_image(const char *image, const char *texture, const char *uses,
+                              struct scene_data *scene)
 {
     char text[8192], added[2048];
-    make_scene(text, "\"baseColorFactor\":[1,0,0,1]", "\"baseColorTexture\":{\"index\":0}");
+    make_scene(text, "\"baseColorFactor\":[1,0,0,1]", uses);
     snprintf(added, sizeof added, "\"scene\":0,\"textures\":[%s],\"images\":[%s]", texture, image);
     replace(text, sizeof text, "\"scene\":0", added);
     write_file("scene.gltf", text);
     char path[256];
     strcpy(path, path_of("scene.gltf"));
     *scene = (struct scene_data){0};
-    assert_true(scene_import(path, folder, false, scene));
+    assert_true(scene_import(path, folder, true, scene));
 }
 
 static void images_that_cannot_be_shown_are_named(void **state)
@@ -304,7 +310,7 @@ static void images_that_cannot_be_shown_are_named(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct scene_data scene;
-        import_with_image(rows[i].image, rows[i].texture, &scene);
+        import_with_image(rows[i].image, rows[i].texture, AS_COLORS, &scene);
         assert_int_equal(scene.image_count, 0);
         assert_int_equal(scene.message_count, 1);
         assert_non_null(strstr(scene.messages[0], rows[i].words));
@@ -319,10 +325,48 @@ static void images_inside_of_the_file_are_opened(void **state)
     struct scene_data scene;
     (void)state;
     snprintf(image, sizeof image, "{\"uri\":\"%s\"}", pixel);
-    import_with_image(image, "{\"source\":0}", &scene);
+    import_with_image(image, "{\"source\":0}", AS_COLORS, &scene);
     assert_int_equal(scene.image_count, 1);
     assert_int_equal(scene.message_count, 0);
     assert_int_equal(scene.materials[0].slots[SLOT_COLOR].image, 0);
+    scene_data_finish(&scene);
+}
+
+/* Two texels: (255, 128, 128) and (128, 255, 128). */
+static const char two_texels[] =
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR42mP439DQ8L8BAA"
+    "5/A//8Kj2mAAAAAElFTkSuQmCC";
+
+/* The mean of 255 and 128 as colors, as numbers, and of the vectors (1, 0, 0) and (0, 1, 0). */
+static void coarser_levels_are_made_for_what_texels_mean(void **state)
+{
+    static const struct {
+        int slot;
+        SluiceFormat format;
+        int red, blue;
+    } rows[] = {{SLOT_COLOR, SLUICE_FORMAT_R8G8B8A8_SRGB, 205, 128},
+                {SLOT_ROUGHNESS, SLUICE_FORMAT_R8G8B8A8_UNORM, 192, 128},
+                {SLOT_NORMAL, SLUICE_FORMAT_R8G8B8A8_UNORM, 218, 128}};
+    char image[512];
+    struct scene_data scene;
+    (void)state;
+    snprintf(image, sizeof image, "{\"uri\":\"%s\"}", two_texels);
+    import_with_image(image, "{\"source\":0}", AS_ALL, &scene);
+    assert_int_equal(scene.image_count, 3);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        SluiceImageSource *source =
+            scene.images[scene.materials[0].slots[rows[i].slot].image].source;
+        SluiceImageInfo info = {.structSize = sizeof info};
+        const SluiceImageRegion region = {1, 0, 0, 1, 1, 0};
+        uint8_t texel[4];
+        assert_int_equal(sluiceGetImageInfo(source, &info), SLUICE_SUCCESS);
+        assert_int_equal(sluiceReadImageRegion(source, &region, texel, 4), SLUICE_SUCCESS);
+        assert_int_equal(info.format, rows[i].format);
+        assert_int_equal(info.addressModeU, SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
+        assert_in_range(texel[0], rows[i].red - 1, rows[i].red + 1);
+        assert_in_range(texel[1], rows[i].red - 1, rows[i].red + 1);
+        assert_in_range(texel[2], rows[i].blue - 1, rows[i].blue + 1);
+    }
     scene_data_finish(&scene);
 }
 
@@ -405,6 +449,7 @@ int main(void)
         cmocka_unit_test(meshes_keep_their_materials_and_mirrored_ones_turn),
         cmocka_unit_test(images_that_cannot_be_shown_are_named),
         cmocka_unit_test(images_inside_of_the_file_are_opened),
+        cmocka_unit_test(coarser_levels_are_made_for_what_texels_mean),
         cmocka_unit_test(images_follow_where_one_map_tells_what_they_need),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

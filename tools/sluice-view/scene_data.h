@@ -27,12 +27,15 @@ struct scene_part {
     struct vec3 center;
 };
 
+/** Meaning of an image's texels: how its coarser levels are made, and whether they are sRGB. */
+enum scene_content { CONTENT_COLORS, CONTENT_NUMBERS, CONTENT_NORMALS, CONTENT_COUNT };
+
 struct scene_image {
     char *name;                ///< owned
     char *path;                ///< owned; "" if it is computed
     SluiceImageSource *source; ///< owned
     int wrap_u, wrap_v;        ///< VkSamplerAddressMode
-    bool linear;               ///< its bytes are numbers, not colors
+    enum scene_content content;
     /** Image whose feedback it follows; SCENE_NO_IMAGE: none. That one follows none. */
     uint32_t primary;
     bool transformed;            ///< not sampled where its primary is

@@ -16,7 +16,7 @@ struct opening {
     struct gltf_file *file;
     const char *cache;
     struct scene_data *scene;
-    uint32_t *images; ///< of the scene; two per texture: colors and numbers
+    uint32_t *images; ///< of the scene; CONTENT_COUNT per texture
 };
 
 static void say_extension(void *user, const char *extension, bool required)
@@ -30,13 +30,14 @@ static void say_extension(void *user, const char *extension, bool required)
                     required ? "requires" : "uses", extension);
 }
 
-static uint32_t open_image(struct opening *o, const struct gltf_texture *texture, bool linear)
+static uint32_t open_image(struct opening *o, const struct gltf_texture *texture,
+                           enum scene_content content)
 {
     char path[4096], name[64];
     struct gltf_image image = gltf_read_image(o->file, texture->image);
     uint32_t index = SCENE_NO_IMAGE;
     struct scene_image_request request = {
-        .path = path, .wrap_u = texture->wrap_u, .wrap_v = texture->wrap_v, .linear = linear};
+        .path = path, .wrap_u = texture->wrap_u, .wrap_v = texture->wrap_v, .content = content};
     snprintf(name, sizeof name, "image %u", texture->image);
     request.name = name;
     if (image.problem) {
@@ -58,9 +59,9 @@ static uint32_t open_image(struct opening *o, const struct gltf_texture *texture
     return index;
 }
 
-static uint32_t image_of(struct opening *o, uint32_t texture_index, bool linear)
+static uint32_t image_of(struct opening *o, uint32_t texture_index, enum scene_content content)
 {
-    uint32_t *known = &o->images[2 * (size_t)texture_index + (linear ? 1 : 0)];
+    uint32_t *known = &o->images[CONTENT_COUNT * (size_t)texture_index + content];
     if (*known != UNKNOWN)
         return *known;
     const struct gltf_texture texture = gltf_read_texture(o->file, texture_index);
@@ -69,8 +70,15 @@ static uint32_t image_of(struct opening *o, uint32_t texture_index, bool linear)
         scene_data_note(o->scene, "%s: textures[%u]: %s", o->file->path, texture_index,
                         texture.problem);
     else
-        *known = open_image(o, &texture, linear);
+        *known = open_image(o, &texture, content);
     return *known;
+}
+
+static enum scene_content content_of(int slot)
+{
+    return slot == SLOT_COLOR || slot == SLOT_EMISSIVE ? CONTENT_COLORS
+           : slot == SLOT_NORMAL                       ? CONTENT_NORMALS
+                                                       : CONTENT_NUMBERS;
 }
 
 static bool read_material(struct opening *o, uint32_t index)
@@ -87,7 +95,7 @@ static bool read_material(struct opening *o, uint32_t index)
             slot->image = SCENE_NO_IMAGE;
             slot->uv_set = 0;
         } else if (has_image) {
-            slot->image = image_of(o, slot->image, k != SLOT_COLOR && k != SLOT_EMISSIVE);
+            slot->image = image_of(o, slot->image, content_of(k));
         }
         if (k == SLOT_COLOR)
             material->missing = has_image && slot->image == SCENE_NO_IMAGE;
@@ -109,15 +117,15 @@ static uint32_t count_images(const struct gltf_file *file)
 static bool read_all(struct opening *o)
 {
     const uint32_t materials = o->file->lists[GLTF_MATERIALS].count;
-    const uint32_t textures = o->file->lists[GLTF_TEXTURES].count;
+    const size_t most = CONTENT_COUNT * (size_t)o->file->lists[GLTF_TEXTURES].count;
     o->scene->materials = calloc(materials + 1u, sizeof *o->scene->materials);
-    o->scene->images = calloc(2 * (size_t)textures + 1, sizeof *o->scene->images);
-    o->images = malloc((2 * (size_t)textures + 1) * sizeof *o->images);
+    o->scene->images = calloc(most + 1, sizeof *o->scene->images);
+    o->images = malloc((most + 1) * sizeof *o->images);
     if (!o->scene->materials || !o->scene->images || !o->images)
         return gltf_fail(o->file, "out of memory");
     o->scene->material_count = materials + 1;
     scene_material_init(&o->scene->materials[materials]);
-    for (size_t i = 0; i < 2 * (size_t)textures; i++)
+    for (size_t i = 0; i < most; i++)
         o->images[i] = UNKNOWN;
     gltf_name_extensions(o->file, say_extension, o);
     if (o->scene->progress)

@@ -11,6 +11,10 @@
 #include "../common/log.h"
 #include "../common/text.h"
 
+#include <sluice/bake.h>
+
+#include <vulkan/vulkan_core.h>
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,7 +46,7 @@ static uint32_t find(const struct scene_data *scene, const struct scene_image_re
     for (uint32_t i = 0; i < scene->image_count; i++) {
         const struct scene_image *image = &scene->images[i];
         if (image->wrap_u == r->wrap_u && image->wrap_v == r->wrap_v &&
-            image->linear == r->linear && strcmp(image->path, r->path) == 0)
+            image->content == r->content && strcmp(image->path, r->path) == 0)
             return i;
     }
     return SCENE_NO_IMAGE;
@@ -50,24 +54,39 @@ static uint32_t find(const struct scene_data *scene, const struct scene_image_re
 
 /* "set.ntc#name" is a texture of a neural set, unless a file has this name. */
 static SluiceResult open_path(SluiceImageOpener *opener, const char *path,
-                              SluiceImageSource **source)
+                              const SluiceBakeSettings *settings, SluiceImageSource **source)
 {
     char set[4096];
     const char *name = strstr(path, ".ntc#");
     if (!name || access(path, F_OK) == 0)
-        return sluiceOpenImageSource(opener, path, source);
+        return sluiceOpenBakedImageSource(opener, path, settings, source);
     name += strlen(".ntc");
     if (snprintf(set, sizeof set, "%.*s", (int)(name - path), path) >= (int)sizeof set)
         return SLUICE_ERROR_FILE_NOT_FOUND;
     return sluiceOpenNamedImageSource(opener, set, name + 1, source);
 }
 
+static SluiceBakeWrap wrap_of(int mode)
+{
+    return mode == VK_SAMPLER_ADDRESS_MODE_REPEAT            ? SLUICE_BAKE_WRAP_REPEAT
+           : mode == VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT ? SLUICE_BAKE_WRAP_MIRROR
+                                                             : SLUICE_BAKE_WRAP_CLAMP;
+}
+
+/* Files that are no pictures have their levels already: they are only read as numbers. */
 static SluiceResult open_source(struct scene_data *scene, const struct scene_image_request *r,
                                 SluiceImageSource **source)
 {
     SluiceImageSource *linear = NULL;
-    SluiceResult result = open_path(scene->opener, r->path, source);
-    if (result != SLUICE_SUCCESS || !r->linear)
+    const SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                         .transfer = r->content == CONTENT_NUMBERS
+                                                         ? SLUICE_BAKE_TRANSFER_LINEAR
+                                                         : SLUICE_BAKE_TRANSFER_AUTO,
+                                         .wrapX = wrap_of(r->wrap_u),
+                                         .wrapY = wrap_of(r->wrap_v),
+                                         .normalMap = r->content == CONTENT_NORMALS};
+    SluiceResult result = open_path(scene->opener, r->path, &settings, source);
+    if (result != SLUICE_SUCCESS || r->content == CONTENT_COLORS)
         return result;
     result = linear_source_create(*source, &linear);
     if (result == SLUICE_SUCCESS)
@@ -101,7 +120,7 @@ uint32_t scene_images_add(struct scene_data *scene, const struct scene_image_req
         return known;
     struct scene_image *image = &scene->images[scene->image_count];
     *image = (struct scene_image){
-        .wrap_u = r->wrap_u, .wrap_v = r->wrap_v, .linear = r->linear, .primary = SCENE_NO_IMAGE};
+        .wrap_u = r->wrap_u, .wrap_v = r->wrap_v, .content = r->content, .primary = SCENE_NO_IMAGE};
     const SluiceResult result = open_source(scene, r, &image->source);
     if (result != SLUICE_SUCCESS) {
         scene_data_note(scene, "%s: cannot be shown: %s",

@@ -8,7 +8,7 @@ struct scene_image_request {
     const char *name; ///< for people
     const char *path;
     int wrap_u, wrap_v;
-    bool linear;
+    enum scene_content content;
 };
 
 /** `cache`: folder for baked pictures and for images that lie inside other files. */

@@ -57,7 +57,8 @@ static uint32_t add_image(struct import *import, const char *name, const int wra
     char path[4096];
     const char *slash = strrchr(import->path, '/');
     const int length = name[0] != '/' && slash ? (int)(slash - import->path) + 1 : 0;
-    const struct scene_image_request request = {base_name(path), path, wraps[0], wraps[1], false};
+    const struct scene_image_request request = {base_name(path), path, wraps[0], wraps[1],
+                                                CONTENT_COLORS};
     if (name[0] == '*') {
         scene_data_note(import->scene, "%s: image %s is inside the file, which is not supported",
                         import->path, name);

@@ -86,7 +86,8 @@ static uint32_t open_all(struct scene_data *scene, const char *cache, struct fil
         write_name(files->paths[i], name, sizeof name);
         if (remote_is_url(files->paths[i]) && !scene_data_canceled(scene))
             copy_picture(files->paths[i], cache, &scene->remote, &files->paths[i]);
-        const struct scene_image_request request = {name, files->paths[i], clamp, clamp, false};
+        const struct scene_image_request request = {name, files->paths[i], clamp, clamp,
+                                                    CONTENT_COLORS};
         images[i] = scene_images_add(scene, &request);
         shown += images[i] != SCENE_NO_IMAGE;
     }
