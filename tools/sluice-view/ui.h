@@ -1,5 +1,6 @@
 /**
- * Dear ImGui behind a C interface: the widgets that the panels use. ui.cpp is the only C++ file.
+ * Dear ImGui behind a C interface: the widgets that the panels use. ui.cpp has its life,
+ * ui_widgets.cpp the widgets, ui_paint.cpp what is drawn. Nothing else is C++.
  *
  * There is one user interface per process, as ImGui has one context. All sizes are in pixels,
  * colors are 0xAABBGGRR. Texts are UTF-8; labels may hide an id behind "##".

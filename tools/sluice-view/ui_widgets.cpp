@@ -1,0 +1,227 @@
+/* Panels, widgets and tables of ui.h. */
+#include "ui.h"
+
+#include <imgui.h>
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+bool ui_begin_panel(const char *title, bool *open, const float placement[4], const float pivot[2],
+                    unsigned flags)
+{
+    ImGuiWindowFlags window =
+        ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings;
+    if (flags & UI_PANEL_PLAIN)
+        window |= ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
+    if (flags & UI_PANEL_FIT)
+        window |= ImGuiWindowFlags_AlwaysAutoResize;
+    if (flags & UI_PANEL_NO_INPUT)
+        window |= ImGuiWindowFlags_NoInputs;
+    const ImGuiCond when = flags & UI_PANEL_PLAIN ? ImGuiCond_Always : ImGuiCond_Appearing;
+    ImGui::SetNextWindowPos(ImVec2(placement[0], placement[1]), when, ImVec2(pivot[0], pivot[1]));
+    if (!(flags & UI_PANEL_FIT))
+        ImGui::SetNextWindowSize(ImVec2(placement[2], placement[3]), when);
+    return ImGui::Begin(title, open, window);
+}
+
+void ui_end_panel(void)
+{
+    ImGui::End();
+}
+
+void ui_begin_part(const char *id, float width, float height)
+{
+    ImGui::BeginChild(id, ImVec2(width, height), false);
+}
+
+void ui_end_part(void)
+{
+    ImGui::EndChild();
+}
+
+bool ui_begin_group(const char *label, bool open_at_first)
+{
+    return ImGui::CollapsingHeader(label, open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+void ui_text(uint32_t color, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::TextV(format, arguments);
+    ImGui::PopStyleColor();
+    va_end(arguments);
+}
+
+void ui_paragraph(uint32_t color, const char *text)
+{
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+void ui_same_line(float x)
+{
+    ImGui::SameLine(x);
+}
+
+void ui_space(float height)
+{
+    ImGui::Dummy(ImVec2(0.0f, height));
+}
+
+void ui_line(void)
+{
+    ImGui::Separator();
+}
+
+bool ui_button(const char *label, float width, float height, bool pressed)
+{
+    if (pressed)
+        ImGui::PushStyleColor(ImGuiCol_Button, UI_COLOR(40, 105, 180, 255));
+    const bool clicked = ImGui::Button(label, ImVec2(width, height));
+    if (pressed)
+        ImGui::PopStyleColor();
+    return clicked;
+}
+
+bool ui_check(const char *label, bool *value)
+{
+    return ImGui::Checkbox(label, value);
+}
+
+bool ui_slider_real(const char *label, double *value, double minimum, double maximum,
+                    bool logarithmic, const char *format)
+{
+    return ImGui::SliderScalar(label, ImGuiDataType_Double, value, &minimum, &maximum, format,
+                               ImGuiSliderFlags_AlwaysClamp |
+                                   (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+}
+
+bool ui_slider_whole(const char *label, uint32_t *value, uint32_t minimum, uint32_t maximum,
+                     bool logarithmic)
+{
+    return ImGui::SliderScalar(label, ImGuiDataType_U32, value, &minimum, &maximum, "%u",
+                               ImGuiSliderFlags_AlwaysClamp |
+                                   (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+}
+
+bool ui_choice(const char *label, const char *words, int *value)
+{
+    char items[256];
+    size_t length = strlen(words);
+    if (length > sizeof items - 2)
+        length = sizeof items - 2;
+    for (size_t i = 0; i < length; i++)
+        items[i] = words[i] == '|' ? '\0' : words[i];
+    items[length] = items[length + 1] = '\0';
+    return ImGui::Combo(label, value, items);
+}
+
+bool ui_type_text(const char *label, const char *hint, char *text, size_t size)
+{
+    return ImGui::InputTextWithHint(label, hint, text, size);
+}
+
+void ui_item_width(float width)
+{
+    ImGui::SetNextItemWidth(width);
+}
+
+bool ui_hovered(void)
+{
+    return ImGui::IsItemHovered();
+}
+
+bool ui_double_clicked(void)
+{
+    return ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0);
+}
+
+void ui_show_hint(const char *text)
+{
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(360.0f * ui_scale());
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void ui_hint(const char *format, ...)
+{
+    if (!ImGui::IsItemHovered())
+        return;
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    ui_show_hint(text);
+}
+
+bool ui_begin_table(const char *id, const char *columns, float height, bool sortable)
+{
+    int count = 1;
+    for (const char *c = columns; *c; c++)
+        count += *c == '|';
+    const ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
+                                  ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable |
+                                  ImGuiTableFlags_SizingFixedFit |
+                                  (sortable ? ImGuiTableFlags_Sortable : 0);
+    if (!ImGui::BeginTable(id, count, flags, ImVec2(0.0f, height)))
+        return false;
+    ImGui::TableSetupScrollFreeze(1, 1);
+    char title[64];
+    for (const char *c = columns; count > 0; count--) {
+        const size_t length = strcspn(c, "|");
+        snprintf(title, sizeof title, "%.*s", (int)length, c);
+        ImGui::TableSetupColumn(title,
+                                c == columns ? 0 : ImGuiTableColumnFlags_PreferSortDescending);
+        c += length + 1;
+    }
+    ImGui::TableHeadersRow();
+    return true;
+}
+
+bool ui_table_sort(uint32_t *column, bool *descending)
+{
+    ImGuiTableSortSpecs *sort = ImGui::TableGetSortSpecs();
+    if (!sort || sort->SpecsCount == 0)
+        return false;
+    *column = (uint32_t)sort->Specs[0].ColumnIndex;
+    *descending = sort->Specs[0].SortDirection == ImGuiSortDirection_Descending;
+    const bool dirty = sort->SpecsDirty;
+    sort->SpecsDirty = false;
+    return dirty;
+}
+
+bool ui_table_row(int id, bool selected)
+{
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::PushID(id);
+    const bool clicked = ImGui::Selectable("##row", selected, ImGuiSelectableFlags_SpanAllColumns);
+    ImGui::PopID();
+    ImGui::SameLine(0.0f, 0.0f);
+    return clicked;
+}
+
+void ui_table_cell(uint32_t color, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::TextV(format, arguments);
+    ImGui::PopStyleColor();
+    va_end(arguments);
+    ImGui::TableNextColumn();
+}
+
+void ui_end_table(void)
+{
+    ImGui::EndTable();
+}
