@@ -27,13 +27,12 @@ static SluiceStreamedTextureManager *manager_of(const struct stage *stage)
 }
 
 static size_t map_size_of(const SluiceStreamedTextureManager *manager, SluiceTextureId id,
-                          uint32_t *width)
+                          SluiceStreamedTextureLayout *layout)
 {
-    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    if (sluiceGetTextureLayout(manager, id, &layout) != SLUICE_SUCCESS)
+    *layout = (SluiceStreamedTextureLayout){.structSize = sizeof *layout};
+    if (sluiceGetTextureLayout(manager, id, layout) != SLUICE_SUCCESS)
         return 0;
-    *width = layout.minMipWidth;
-    return (size_t)layout.minMipWidth * layout.minMipHeight;
+    return (size_t)layout->minMipWidth * layout->minMipHeight;
 }
 
 bool facts_create(struct view_facts *f, const struct stage *stage)
@@ -45,8 +44,9 @@ bool facts_create(struct view_facts *f, const struct stage *stage)
     for (int i = 0; i < SERIES_COUNT; i++)
         created = (f->history[i] = calloc(FACTS_HISTORY, sizeof **f->history)) && created;
     for (uint32_t i = 0; i < f->texture_count; i++) {
-        uint32_t width;
-        size_t size = map_size_of(manager_of(stage), stage_texture(stage, i)->id, &width);
+        SluiceStreamedTextureLayout layout;
+        size_t size = map_size_of(manager_of(stage), stage_texture(stage, i)->id, &layout);
+        f->tails_size += (uint64_t)layout.desc.packedTileCount * TILE_SIZE;
         f->map_size = size > f->map_size ? size : f->map_size;
         f->all_size += stage_texture(stage, i)->size;
     }
@@ -86,8 +86,9 @@ static void read_events(struct view_facts *f, const SluiceStreamedTextureManager
 static size_t compare_maps(struct view_facts *f, const SluiceStreamedTextureManager *manager,
                            SluiceTextureId id, struct facts_texture *texture)
 {
-    uint32_t width = 0;
-    const size_t size = map_size_of(manager, id, &width);
+    SluiceStreamedTextureLayout layout;
+    const size_t size = map_size_of(manager, id, &layout);
+    const uint32_t width = layout.minMipWidth;
     uint8_t *resident = f->maps, *wanted = f->maps + f->map_size;
     if (size == 0 || size > f->map_size ||
         sluiceWriteMinMipData(manager, id, width, size, resident) != SLUICE_SUCCESS ||

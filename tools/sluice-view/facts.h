@@ -42,8 +42,9 @@ struct view_facts {
     double host_seconds, gpu_seconds, present_seconds, ui_seconds;
     uint64_t frame;
     uint64_t all_size, resident_size, standby_size, wanted_size, memory_size;
-    uint64_t budget; ///< 0: none
-    double sharp;    ///< part of the regions in view that have the level that they request
+    uint64_t tails_size; ///< of all textures; stays whatever the budget
+    uint64_t budget;     ///< 0: none
+    double sharp;        ///< part of the regions in view that have the level that they request
     SluiceVulkanStreamerStatistics now, before;
     SluiceVulkanContextStatistics context;
     SluiceVulkanLoadStages stages;

@@ -104,7 +104,7 @@ static void draw_checks(void)
     draw_color(UI_COLOR(247, 247, 247, 255), "about 1");
     draw_color(UI_COLOR(253, 174, 97, 255), "1.5 to 4");
     draw_color(UI_COLOR(215, 72, 39, 255), "4 to 16");
-    draw_color(UI_COLOR(130, 0, 38, 255), "more: coarser levels serve");
+    draw_color(UI_COLOR(92, 58, 20, 255), "more: coarser levels serve");
     draw_color(UI_COLOR(255, 0, 255, 255), "nothing is resident");
 }
 

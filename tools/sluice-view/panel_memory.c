@@ -85,13 +85,18 @@ static bool draw_heap(struct view_app *app, uint32_t heap, uint32_t columns, flo
 static void draw_sums(struct view_app *app)
 {
     const struct view_facts *f = &app->facts;
-    char resident[32], standby[32], device[32];
+    char resident[32], standby[32], device[32], tails[32];
     ui_text(UI_WHITE, "%s resident, of it %s standby: %.1f %% of all",
             panel_size(f->resident_size, resident, sizeof resident),
             panel_size(f->standby_size, standby, sizeof standby),
             f->all_size ? 100.0 * (double)f->resident_size / (double)f->all_size : 0.0);
     ui_text(UI_GRAY, "%s of device memory for tiles, in %u heaps",
             panel_size(f->memory_size, device, sizeof device), f->now.heapCount);
+    ui_text(f->budget && f->tails_size > f->budget ? UI_ORANGE : UI_GRAY,
+            "%s of mip tails, which no budget evicts",
+            panel_size(f->tails_size, tails, sizeof tails));
+    ui_hint("Each texture keeps the tiles of its coarsest levels (its mip tail), so that there is "
+            "always something to show. Heaps with such tiles stay, too.");
     for (size_t i = 0; i < STATE_COUNT; i++) {
         float r[4];
         ui_canvas(14 * ui_scale(), 14 * ui_scale(), r);

@@ -144,6 +144,12 @@ void panel_now(struct view_app *app)
             ui_hint("Tiles of these pictures are made once, and kept in the cache (--cache). Until "
                     "then coarse levels are shown.");
         }
+        if (f->budget && f->resident_size > f->budget && f->tails_size > 0) {
+            ui_text(UI_ORANGE, "%s are mip tails, which stay",
+                    panel_size(f->tails_size, whole, sizeof whole));
+            ui_hint("Each texture keeps the tiles of its coarsest levels, whatever the budget. "
+                    "Panel M shows them.");
+        }
         if (f->now.globalMipBias > 0)
             ui_text(UI_RED, "memory is short: +%.1f level", f->now.globalMipBias / 16.0);
         if (f->now.failedTileCount + f->now.givenUpTileCount > 0 && baking == 0)

@@ -67,5 +67,5 @@ vec3 densityColor(float texels)
             : texels < 1.5 ? vec3(247, 247, 247)
             : texels < 4.0 ? vec3(253, 174, 97)
             : texels < 16.0 ? vec3(215, 72, 39)
-                           : vec3(130, 0, 38)) / 255.0;
+                           : vec3(92, 58, 20)) / 255.0; // unlike magenta, also mixed with gray
 }
