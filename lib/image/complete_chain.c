@@ -10,6 +10,7 @@
 #include "image/identity.h"
 #include "image/info.h"
 #include "image/mip.h"
+#include "image/start_read.h"
 #include "platform/thread.h"
 
 #include <stdatomic.h>
@@ -234,6 +235,25 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     return SLUICE_SUCCESS;
 }
 
+/* Levels that are built are read at once: they are in memory, or filtered here. */
+static SluiceResult start_read(SluiceImageSource *base, const SluiceImageRegion *region,
+                               void *texels, size_t row_pitch, const SluiceImageReadToken *token)
+{
+    struct complete_source *source = (struct complete_source *)base;
+    SluiceResult result = ensure_open(source);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    return region->mipLevel < source->inner_count
+               ? slc_start_read(source->inner, &source->info, region, texels, row_pitch, token)
+               : SLUICE_ERROR_UNSUPPORTED;
+}
+
+static void cancel_read(SluiceImageSource *base, const SluiceImageRegion *region,
+                        const SluiceImageReadToken *token)
+{
+    slc_cancel_read(((struct complete_source *)base)->inner, region, token);
+}
+
 static bool identify(SluiceImageSource *base, const SluiceImageRegion *region, uint64_t *identity)
 {
     struct complete_source *source = (struct complete_source *)base;
@@ -260,6 +280,16 @@ static const SluiceImageSourceInterface complete_interface = {.structSize =
                                                               .pfnReadRegionLocated = read_region,
                                                               .pfnIdentifyRegion = identify};
 
+/* For sources that start reads. */
+static const SluiceImageSourceInterface starting_interface = {.structSize =
+                                                                  sizeof starting_interface,
+                                                              .pfnGetInfo = get_info,
+                                                              .pfnDestroy = destroy,
+                                                              .pfnReadRegionLocated = read_region,
+                                                              .pfnIdentifyRegion = identify,
+                                                              .pfnStartRead = start_read,
+                                                              .pfnCancelRead = cancel_read};
+
 SluiceResult sluiceCreateCompleteChainSource(const SluiceCompleteChainSourceCreateInfo *pInfo,
                                              SluiceImageSource **pSource)
 {
@@ -276,7 +306,8 @@ SluiceResult sluiceCreateCompleteChainSource(const SluiceCompleteChainSourceCrea
     struct complete_source *source = slc_calloc(&cb, 1, sizeof *source);
     if (!source)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    source->base.pInterface = &complete_interface;
+    bool starts = info.source->pInterface && slc_starts_reads(info.source);
+    source->base.pInterface = starts ? &starting_interface : &complete_interface;
     source->allocator = cb;
     source->log = info.log;
     source->inner = info.source;

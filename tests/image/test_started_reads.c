@@ -22,6 +22,7 @@ struct source {
     pthread_mutex_t mutex;
     struct pending pending[MAX_PENDING];
     uint32_t count, start_count, read_count, cancel_count;
+    uint32_t level_count;  ///< 0: LEVELS
     bool at_once;          ///< completes before pfnStartRead returns
     SluiceResult refusal;  ///< result of pfnStartRead, if not SLUICE_SUCCESS
     bool obeys;            ///< completes reads that are canceled
@@ -43,9 +44,9 @@ static void fill(const SluiceImageRegion *region, float *texels)
 
 static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
 {
-    (void)base;
+    const struct source *source = (struct source *)base;
     info->width = info->height = SIZE;
-    info->mipLevelCount = LEVELS;
+    info->mipLevelCount = source->level_count ? source->level_count : LEVELS;
     info->format = SLUICE_FORMAT_R32_SFLOAT;
     info->pName = "started";
     return SLUICE_SUCCESS;
@@ -424,6 +425,38 @@ static void layers_of_arrays_start_their_own_reads(void **state)
     sluiceDestroyImageSource(array);
 }
 
+static void completed_chains_start_the_levels_that_they_do_not_build(void **state)
+{
+    (void)state;
+    struct source source;
+    struct pending read;
+    float texels[LEVELS] = {0}, built = 0;
+    SluiceImageSource *chain;
+    SluiceTileLoader *loader = begin(&source, 0);
+    source.level_count = 2;
+    source.obeys = true;
+    const SluiceCompleteChainSourceCreateInfo info = {.structSize = sizeof info,
+                                                      .source = &source.base};
+    CHECK_OK(sluiceCreateCompleteChainSource(&info, &chain));
+    submit(loader, chain, LEVELS, 0, texels);
+    await_pending(&source, 2);
+    assert_int_equal(count_finished(loader), 0);
+    while (take(&source, NULL, &read))
+        CHECK_OK(complete(&source, &read));
+    CHECK_OK(collect(loader).result);
+    assert_true(source.read_count > 0); /* of built levels */
+    assert_true(texels[0] == 0 && texels[1] == 1000);
+    assert_true(texels[2] == 1000.5f);                /* the mean of texels 0 and 1 */
+    uint64_t ticket = submit(loader, chain, 1, 1, &built);
+    await_pending(&source, 1);
+    CHECK_OK(sluiceCancelTileRead(loader, ticket));
+    CHECK_RESULT(collect(loader).result, SLUICE_ERROR_CANCELED);
+    assert_int_equal(source.cancel_count, 1);
+    assert_int_equal(count_starts(&source), 3);
+    sluiceDestroyTileLoader(loader);
+    sluiceDestroyImageSource(chain);
+}
+
 static void bytes_of_started_reads_are_in_flight(void **state)
 {
     (void)state;
@@ -459,6 +492,7 @@ int main(void)
         cmocka_unit_test(completions_cancels_and_destruction_may_meet),
         cmocka_unit_test(sources_may_have_a_region_read_at_once),
         cmocka_unit_test(layers_of_arrays_start_their_own_reads),
+        cmocka_unit_test(completed_chains_start_the_levels_that_they_do_not_build),
         cmocka_unit_test(bytes_of_started_reads_are_in_flight),
     };
     return RUN_TESTS(tests);
