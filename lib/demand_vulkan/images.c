@@ -245,6 +245,7 @@ void slc_image_job_back(SluiceDemandLoader *loader, struct slc_demand_image *ima
                         const struct slc_demand_job *job, SluiceResult result)
 {
     bool opening = image->state == SLC_IMAGE_OPENING;
+    slc_image_end_opening(image, result == SLUICE_SUCCESS);
     if (image->state == SLC_IMAGE_OPEN && result == SLUICE_SUCCESS && !job->stale) {
         memcpy(image->base_color, image->read_color, sizeof image->base_color);
         slc_texture_show_image(loader, image);

@@ -96,6 +96,8 @@ struct slc_demand_image {
     SluiceImageSource *source;
     SluiceImageInfo info;
     const char *trouble; ///< why it cannot be used; NULL: it can, or result says why
+    bool is_refused;     ///< opening it said UNSUPPORTED
+    uint8_t *last_level; ///< owned; texels that the source was asked to start; or NULL
     float read_color[4];
 
     uint32_t tile_width, tile_height; ///< texels
@@ -453,6 +455,9 @@ void slc_images_end_retired(SluiceDemandLoader *loader);
 void slc_images_finish(SluiceDemandLoader *loader);
 /** A source whose every texel is an image to be opened: see slc_demand_image.read_color. */
 void slc_image_opener_init(SluiceImageSource *opener);
+/** An opening is over: makes the color of texels that the source read on its own, if there are any,
+ *  and they are good. */
+void slc_image_end_opening(struct slc_demand_image *image, bool is_read);
 /** Returns the interface of sources that fill and read the pages of resources. */
 const SluiceImageSourceInterface *slc_resource_interface(void);
 

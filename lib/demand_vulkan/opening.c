@@ -4,11 +4,13 @@
  */
 #include "demand_vulkan/opening.h"
 
+#include "base/alloc.h"
 #include "base/checked.h"
 #include "demand/tail_place.h"
 #include "image/convert.h"
 #include "image/format_size.h"
 #include "image/info.h"
+#include "image/start_read.h"
 #include "vulkan/sparse_layout.h"
 
 #include <assert.h>
@@ -88,36 +90,98 @@ static void find_base_color(const SluiceImageInfo *info, const uint8_t *texels, 
         rgba[c] = (float)(sum[c] / count);
 }
 
-static SluiceResult read_base_color(struct slc_demand_image *image)
+/* The last level fits into half a tile in both directions. */
+struct last_level {
+    SluiceImageRegion region;
+    size_t pitch, size; ///< bytes
+    uint32_t block_count;
+};
+
+static struct last_level last_level_of(const struct slc_demand_image *image)
 {
-    /* The last level fits into half a tile in both directions. */
-    _Alignas(16) uint8_t texels[SLC_TILE_SIZE / 4];
     const SluiceImageInfo *info = &image->info;
     SluiceFormatInfo format = {.structSize = sizeof format};
     (void)sluiceGetFormatInfo(info->format, &format);
-    SluiceImageRegion last = {.mipLevel = info->mipLevelCount - 1,
-                              .arrayLayer = image->origin.arrayLayer};
-    last.width = slc_mip_size(info->width, last.mipLevel);
-    last.height = slc_mip_size(info->height, last.mipLevel);
-    size_t pitch = (size_t)slc_format_row_size(&format, last.width);
-    size_t size = pitch * slc_format_row_count(&format, last.height);
-    assert(size <= sizeof texels);
-    SluiceResult result = sluiceReadImageRegion(image->source, &last, texels, pitch);
+    struct last_level last = {
+        .region = {.mipLevel = info->mipLevelCount - 1, .arrayLayer = image->origin.arrayLayer}};
+    last.region.width = slc_mip_size(info->width, last.region.mipLevel);
+    last.region.height = slc_mip_size(info->height, last.region.mipLevel);
+    last.pitch = (size_t)slc_format_row_size(&format, last.region.width);
+    last.size = last.pitch * slc_format_row_count(&format, last.region.height);
+    last.block_count = (uint32_t)(last.size / format.blockSize);
+    return last;
+}
+
+static SluiceResult read_base_color(struct slc_demand_image *image)
+{
+    _Alignas(16) uint8_t texels[SLC_TILE_SIZE / 4];
+    const struct last_level last = last_level_of(image);
+    assert(last.size <= sizeof texels);
+    SluiceResult result = sluiceReadImageRegion(image->source, &last.region, texels, last.pitch);
     if (result == SLUICE_SUCCESS)
-        find_base_color(info, texels, (uint32_t)(size / format.blockSize), image->read_color);
+        find_base_color(&image->info, texels, last.block_count, image->read_color);
     return result;
+}
+
+static void drop_last_level(struct slc_demand_image *image)
+{
+    if (image->last_level)
+        slc_free(&image->loader->cb, image->last_level, last_level_of(image).size, 1);
+    image->last_level = NULL;
+}
+
+/* The source completes the read of the opener: the token is passed on. */
+static SluiceResult start_base_color(struct slc_demand_image *image,
+                                     const SluiceImageReadToken *token)
+{
+    const struct last_level last = last_level_of(image);
+    if (!image->last_level) /* else of an attempt before */
+        image->last_level = slc_alloc(&image->loader->cb, last.size, 1);
+    if (!image->last_level)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    SluiceResult result = slc_start_read(image->source, &image->info, &last.region,
+                                         image->last_level, last.pitch, token);
+    if (result != SLUICE_SUCCESS)
+        drop_last_level(image);
+    return result;
+}
+
+void slc_image_end_opening(struct slc_demand_image *image, bool is_read)
+{
+    if (image->last_level && is_read)
+        find_base_color(&image->info, image->last_level, last_level_of(image).block_count,
+                        image->read_color);
+    drop_last_level(image);
+}
+
+static struct slc_demand_image *image_of(void *texels)
+{
+    return (void *)((char *)texels - offsetof(struct slc_demand_image, read_color));
 }
 
 static SluiceResult read_region(SluiceImageSource *source, const SluiceImageRegion *region,
                                 void *texels, size_t row_pitch)
 {
     (void)source, (void)region, (void)row_pitch;
-    struct slc_demand_image *image =
-        (void *)((char *)texels - offsetof(struct slc_demand_image, read_color));
-    if (image->trouble)
+    struct slc_demand_image *image = image_of(texels);
+    if (image->is_refused)
         return SLUICE_ERROR_UNSUPPORTED;
     SluiceResult result = open_source(image);
     return result == SLUICE_SUCCESS ? read_base_color(image) : result;
+}
+
+/* UNSUPPORTED: read_region is called next. */
+static SluiceResult start_read(SluiceImageSource *source, const SluiceImageRegion *region,
+                               void *texels, size_t row_pitch, const SluiceImageReadToken *token)
+{
+    (void)source, (void)region, (void)row_pitch;
+    struct slc_demand_image *image = image_of(texels);
+    SluiceResult result = image->trouble ? SLUICE_ERROR_UNSUPPORTED : open_source(image);
+    image->is_refused = result == SLUICE_ERROR_UNSUPPORTED;
+    if (result != SLUICE_SUCCESS)
+        return result;
+    return slc_starts_reads(image->source) ? start_base_color(image, token)
+                                           : SLUICE_ERROR_UNSUPPORTED;
 }
 
 static void destroy(SluiceImageSource *source)
@@ -125,8 +189,11 @@ static void destroy(SluiceImageSource *source)
     (void)source;
 }
 
-static const SluiceImageSourceInterface interface = {sizeof interface, get_info, read_region,
-                                                     destroy};
+static const SluiceImageSourceInterface interface = {.structSize = sizeof interface,
+                                                     .pfnGetInfo = get_info,
+                                                     .pfnReadRegion = read_region,
+                                                     .pfnDestroy = destroy,
+                                                     .pfnStartRead = start_read};
 
 void slc_image_opener_init(SluiceImageSource *opener)
 {

@@ -387,6 +387,133 @@ static void a_region_beyond_its_level_loads_nothing(void **state)
     runner_image_finish(&image);
 }
 
+/* Reads that are completed on another thread, later; nobody may read at once. */
+struct later {
+    SluiceImageSource base; ///< must be first
+    SluiceImageSource *inner;
+    pthread_mutex_t mutex;
+    pthread_cond_t changed;
+    struct {
+        SluiceImageReadToken token;
+        SluiceImageRegion region;
+        void *texels;
+        size_t pitch;
+    } reads[64];
+    uint32_t count, started, read_at_once;
+    uint32_t failures; ///< so many are completed with NOT_READY first
+    bool ends;
+    pthread_t thread;
+};
+
+static SluiceResult get_later_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    return sluiceGetImageInfo(((struct later *)base)->inner, info);
+}
+
+static SluiceResult read_later_now(SluiceImageSource *base, const SluiceImageRegion *region,
+                                   void *texels, size_t pitch)
+{
+    struct later *later = (struct later *)base;
+    pthread_mutex_lock(&later->mutex);
+    later->read_at_once++;
+    pthread_mutex_unlock(&later->mutex);
+    return sluiceReadImageRegion(later->inner, region, texels, pitch);
+}
+
+static SluiceResult start_later(SluiceImageSource *base, const SluiceImageRegion *region,
+                                void *texels, size_t pitch, const SluiceImageReadToken *token)
+{
+    struct later *later = (struct later *)base;
+    pthread_mutex_lock(&later->mutex);
+    assert_true(later->count < 64);
+    later->reads[later->count].token = *token;
+    later->reads[later->count].region = *region;
+    later->reads[later->count].texels = texels;
+    later->reads[later->count++].pitch = pitch;
+    later->started++;
+    pthread_cond_signal(&later->changed);
+    pthread_mutex_unlock(&later->mutex);
+    return SLUICE_SUCCESS;
+}
+
+static void *complete_later(void *user)
+{
+    struct later *later = user;
+    pthread_mutex_lock(&later->mutex);
+    while (later->count || !later->ends) {
+        if (later->count == 0) {
+            pthread_cond_wait(&later->changed, &later->mutex);
+            continue;
+        }
+        uint32_t at = --later->count;
+        const SluiceImageReadToken token = later->reads[at].token;
+        SluiceResult result = later->failures ? SLUICE_NOT_READY : SLUICE_SUCCESS;
+        later->failures -= later->failures > 0;
+        if (result == SLUICE_SUCCESS)
+            result = sluiceReadImageRegion(later->inner, &later->reads[at].region,
+                                           later->reads[at].texels, later->reads[at].pitch);
+        pthread_mutex_unlock(&later->mutex);
+        sluiceCompleteImageRead(&token, result);
+        pthread_mutex_lock(&later->mutex);
+    }
+    pthread_mutex_unlock(&later->mutex);
+    return NULL;
+}
+
+static void keep_later(SluiceImageSource *base)
+{
+    (void)base;
+}
+
+/* Openings, too: the color of the last level comes by a completion, as tiles and mip tails do. */
+static void sources_that_start_reads_are_never_read_at_once(void **state)
+{
+    (void)state;
+    static const SluiceImageSourceInterface interface = {.structSize = sizeof interface,
+                                                         .pfnGetInfo = get_later_info,
+                                                         .pfnReadRegion = read_later_now,
+                                                         .pfnDestroy = keep_later,
+                                                         .pfnStartRead = start_later};
+    struct runner r;
+    struct runner_image image;
+    float rgba[4];
+    for (uint32_t failures = 0; failures < 2; failures++) {
+        struct later later = {.base = {&interface}, .failures = failures};
+        runner_init(&r, &h, NULL);
+        runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 512, 512, 3);
+        later.inner = image.inner;
+        pthread_mutex_init(&later.mutex, NULL);
+        pthread_cond_init(&later.changed, NULL);
+        assert_int_equal(pthread_create(&later.thread, NULL, complete_later, &later), 0);
+        const SluiceDemandTextureCreateInfo info = {
+            .structSize = sizeof info, .image.source = &later.base, .pSampler = &runner_nearest};
+        SluiceDemandTextureId id;
+        CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
+        runner_add_texel(&r, id, 512, 512, 9, 0, 0); /* the color that the opening read */
+        runner_add_texel(&r, id, 512, 512, 0, 300, 200);
+        assert_in_range(runner_load(&r, 9), 2, 8);
+        runner_check_texel(&r, 0, &image, 9, 0, 0);
+        runner_check_texel(&r, 1, &image, 0, 300, 200);
+        runner_image_texel(&image, 9, 0, 0, rgba);
+        assert_true(rgba[0] > 0);
+        CHECK_OK(sluiceInvalidateDemandTexture(r.loader, id)); /* the color is read anew */
+        runner_load(&r, 9);
+        runner_check_texel(&r, 1, &image, 0, 300, 200);
+        assert_int_equal(later.read_at_once, 0);
+        assert_true(later.started >= 4 + failures);
+        CHECK_OK(sluiceRemoveDemandTexture(r.loader, id));
+        runner_finish(&r);
+        pthread_mutex_lock(&later.mutex);
+        later.ends = true;
+        pthread_cond_signal(&later.changed);
+        pthread_mutex_unlock(&later.mutex);
+        pthread_join(later.thread, NULL);
+        pthread_cond_destroy(&later.changed);
+        pthread_mutex_destroy(&later.mutex);
+        runner_image_finish(&image);
+    }
+}
+
 /* Threads that wait read themselves. Jobs are compared with threads: requests and texels. */
 static void waits_end_whatever_a_job_system_does(void **state)
 {
@@ -433,6 +560,7 @@ int main(void)
         cmocka_unit_test(a_preloaded_region_is_ready_and_no_other_tile_is_read),
         cmocka_unit_test(waits_say_who_has_the_next_step),
         cmocka_unit_test(a_region_beyond_its_level_loads_nothing),
+        cmocka_unit_test(sources_that_start_reads_are_never_read_at_once),
         cmocka_unit_test(waits_end_whatever_a_job_system_does),
     };
     CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 3}));

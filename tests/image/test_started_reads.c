@@ -446,7 +446,7 @@ static void completed_chains_start_the_levels_that_they_do_not_build(void **stat
     CHECK_OK(collect(loader).result);
     assert_true(source.read_count > 0); /* of built levels */
     assert_true(texels[0] == 0 && texels[1] == 1000);
-    assert_true(texels[2] == 1000.5f);                /* the mean of texels 0 and 1 */
+    assert_true(texels[2] == 1000.5f); /* the mean of texels 0 and 1 */
     uint64_t ticket = submit(loader, chain, 1, 1, &built);
     await_pending(&source, 1);
     CHECK_OK(sluiceCancelTileRead(loader, ticket));
