@@ -8,6 +8,7 @@
 
 #include "cube_array_comp.h"
 #include "cube_comp.h"
+#include "cube_hlsl.h"
 #include "cube_number_comp.h"
 
 #include <math.h>
@@ -31,6 +32,8 @@ static void write_texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint
 
 static VkShaderModule create_module(struct harness *h, enum cube_form form)
 {
+    if (form == CUBE_FORM_HLSL)
+        return conform_module(h, cube_hlsl, sizeof cube_hlsl);
     if (form == CUBE_FORM_ARRAY)
         return conform_module(h, cube_array_comp, sizeof cube_array_comp);
     return form == CUBE_FORM_NUMBER ? conform_module(h, cube_number_comp, sizeof cube_number_comp)

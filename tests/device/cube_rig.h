@@ -11,8 +11,8 @@
 #define CUBE_RIG_LAYERS (CUBE_RIG_CUBES * CUBE_ORACLE_FACES)
 #define CUBE_RIG_CAPACITY (PROBE_CAPACITY / 2) ///< samples
 
-/** How the shader gets its texture. */
-enum cube_form { CUBE_FORM_CUBE, CUBE_FORM_ARRAY, CUBE_FORM_NUMBER };
+/** How the shader gets its texture. CUBE_FORM_HLSL: like CUBE_FORM_CUBE, in HLSL. */
+enum cube_form { CUBE_FORM_CUBE, CUBE_FORM_ARRAY, CUBE_FORM_NUMBER, CUBE_FORM_HLSL };
 
 struct cube_rig {
     struct scene scene; ///< without textures

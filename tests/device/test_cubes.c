@@ -325,6 +325,62 @@ static void pixels_of_a_quad_share_the_feedback_of_all_faces(void **state)
     check_feedback(*state, CUBE_FEEDBACK_QUAD);
 }
 
+/* Outputs of one run in a language. */
+static void run_in(struct cube_rig *rig, enum cube_form form, uint32_t flags,
+                   struct ProbeOutput outputs[PROBE_CAPACITY])
+{
+    scene_clear_outputs(&rig->scene);
+    cube_rig_use(rig, form);
+    if (flags & CUBE_SAMPLE) {
+        cube_rig_settle(rig, 1, 0, SAMPLES, flags);
+    } else {
+        struct marking marking = {rig, flags};
+        harness_run(rig->scene.h, record_marks, &marking);
+    }
+    memcpy(outputs, cube_rig_outputs(rig), PROBE_CAPACITY * sizeof *outputs);
+}
+
+static void compare_languages(struct cube_rig *rig, uint32_t flags, uint32_t count)
+{
+    static struct ProbeOutput glsl[PROBE_CAPACITY], hlsl[PROBE_CAPACITY];
+    run_in(rig, CUBE_FORM_CUBE, flags, glsl);
+    run_in(rig, CUBE_FORM_HLSL, flags, hlsl);
+    for (uint32_t i = 0; i < count; i++)
+        if (memcmp(&glsl[i], &hlsl[i], sizeof glsl[i]) != 0)
+            fail_msg("flags %u, output %u: HLSL %.9g %.9g, lod %.9g, level %u; GLSL %.9g %.9g, lod "
+                     "%.9g, level %u",
+                     flags, i, (double)hlsl[i].color[0], (double)hlsl[i].color[1],
+                     (double)hlsl[i].lod, hlsl[i].level, (double)glsl[i].color[0],
+                     (double)glsl[i].color[1], (double)glsl[i].lod, glsl[i].level);
+}
+
+static void hlsl_samples_and_marks_what_glsl_does(void **state)
+{
+    struct harness *h = *state;
+    struct cube_rig rig;
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .feedbackTimeoutTicks = 1000};
+    if (h->mode != SLUICE_RESIDENCY_MODE_PAGED)
+        return; /* a module for pages has the code of other modes, too */
+    roll_seed(34);
+    assert_true(cube_rig_init(&rig, h, info, 512, h->anisotropy ? 4 : 1));
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        uint32_t face;
+        double uv[2], texels = exp2(draw() * 7 - 1);
+        const double dx[2] = {texels, 0.2 * texels * draw()}, dy[2] = {0, texels * (0.2 + draw())};
+        draw_position(i, 64, &face, uv);
+        cube_rig_inputs(&rig)[i] = cube_rig_input_with(&rig, face, uv[0], uv[1], dx, dy);
+        cube_rig_inputs(&rig)[i].lod = (float)log2(texels);
+    }
+    /* Few samples, so most of the cube stays coarse. */
+    cube_rig_settle(&rig, 12, 0, 40, CUBE_FEEDBACK);
+    compare_languages(&rig, CUBE_SAMPLE, SAMPLES);
+    assert_in_range(count_missing(&rig), SAMPLES / 4, SAMPLES - 40);
+    compare_languages(&rig, CUBE_FEEDBACK, MARKED * REGIONS);
+    compare_languages(&rig, CUBE_FEEDBACK_QUAD, MARKED * REGIONS);
+    compare_languages(&rig, CUBE_FEEDBACK_LOD, MARKED * REGIONS);
+    cube_rig_finish(&rig);
+}
+
 static void directions_without_a_face_show_the_coarsest_level(void **state)
 {
     static const float bad[][3] = {{0, 0, 0}, {NAN, 0, 1}, {INFINITY, 1, 0}, {0, -INFINITY, 0}};
@@ -395,6 +451,7 @@ int main(void)
         cmocka_unit_test(edges_between_sharp_and_coarse_faces_do_not_show),
         cmocka_unit_test(feedback_marks_every_face_that_a_sample_touches_and_no_region_far_away),
         cmocka_unit_test(pixels_of_a_quad_share_the_feedback_of_all_faces),
+        cmocka_unit_test(hlsl_samples_and_marks_what_glsl_does),
         cmocka_unit_test(directions_without_a_face_show_the_coarsest_level),
         cmocka_unit_test(images_that_are_no_cubes_are_refused),
     };

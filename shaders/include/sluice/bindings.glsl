@@ -76,17 +76,25 @@ layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray 
 
 #ifdef SLUICE_TEXTURE_ARRAY
 #if defined(SLUICE_HLSL)
-#ifndef SLUICE_TEXTURE_COUNT /* some compilers need one, at most that of the set */
+#ifdef SLUICE_TEXTURE_COUNT /* some compilers need one, at most that of the set */
+#define SLUICE_CUBE_COUNT (SLUICE_TEXTURE_COUNT + 5) / 6
+#else
 #define SLUICE_TEXTURE_COUNT
+#define SLUICE_CUBE_COUNT
 #endif
 [[vk::binding(SLUICE_BINDING_TEXTURES, SLUICE_SET)]] Texture2D sluiceTextures[SLUICE_TEXTURE_COUNT];
+[[vk::binding(SLUICE_BINDING_CUBES, SLUICE_SET)]] TextureCube sluiceCubes[SLUICE_CUBE_COUNT];
 #define SLUICE_TEXTURE(i) sluiceTextures[SLUICE_NON_UNIFORM(i)]
+#define SLUICE_CUBE_TEXTURE(i) sluiceCubes[SLUICE_NON_UNIFORM((i) / 6u)]
 #if SLUICE_TEXTURE_ARRAY == SLUICE_TEXTURES_SEPARATE
 [[vk::binding(SLUICE_BINDING_SAMPLERS, SLUICE_SET)]] SamplerState sluiceSamplers[SLUICE_SAMPLER_COUNT];
 #define SLUICE_TEXTURE_SAMPLER(i) sluiceSamplers[SLUICE_NON_UNIFORM(SLUICE_TEXTURE_ENTRY(i).samplerIndex)]
+#define SLUICE_CUBE_TEXTURE_SAMPLER(i) SLUICE_TEXTURE_SAMPLER(i)
 #else
 [[vk::binding(SLUICE_BINDING_TEXTURES, SLUICE_SET)]] SamplerState sluiceSamplers[SLUICE_TEXTURE_COUNT];
+[[vk::binding(SLUICE_BINDING_CUBES, SLUICE_SET)]] SamplerState sluiceCubeSamplers[SLUICE_CUBE_COUNT];
 #define SLUICE_TEXTURE_SAMPLER(i) sluiceSamplers[SLUICE_NON_UNIFORM(i)]
+#define SLUICE_CUBE_TEXTURE_SAMPLER(i) sluiceCubeSamplers[SLUICE_NON_UNIFORM((i) / 6u)]
 #endif
 #elif SLUICE_TEXTURE_ARRAY == SLUICE_TEXTURES_SEPARATE
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_TEXTURES) uniform texture2D sluiceTextureImages[];

@@ -22,7 +22,7 @@ struct SluiceCubePart {
 /** Returns how far a sample of levels up to `coarsest` reaches, in uv. */
 vec2 sluiceCubeReach(SluiceGrid grid, vec2 halfBox, uint coarsest)
 {
-    vec2 levelSize = vec2(max(uvec2(grid.size) >> coarsest, 1u));
+    vec2 levelSize = vec2(max(uvec2(grid.size) >> coarsest, SLUICE_SPLAT(uvec2, 1u)));
     return halfBox / grid.size + SLUICE_APRON / levelSize;
 }
 
@@ -44,7 +44,7 @@ SluiceCubePart sluiceUnfoldEdge(SluiceGrid grid, uint face, vec2 uv, vec2 halfBo
 {
     uint axis = edge >> 1u, along = 1u - axis;
     float side = (edge & 1u) == 0u ? -1.0 : 1.0;
-    vec3 outward = vec3(0.0), at = vec3(2.0 * uv - 1.0, 1.0), extent = vec3(halfBox, 0.0);
+    vec3 outward = SLUICE_SPLAT(vec3, 0.0), at = vec3(2.0 * uv - 1.0, 1.0), extent = vec3(halfBox, 0.0);
     outward[axis] = side;
     if (halfBox.x > 0.0 || halfBox.y > 0.0) {
         float beyond = 2.0 * reach[axis] + side * at[axis] - 1.0;

@@ -6,6 +6,8 @@
 #ifndef SLUICE_CUBE_FACES_GLSL
 #define SLUICE_CUBE_FACES_GLSL
 
+#include "language.glsl"
+
 /** Sample of a face. Derivatives are those of uv per pixel. */
 struct SluiceCubePoint {
     uint face;
@@ -16,10 +18,10 @@ struct SluiceCubePoint {
 /** Returns the face that a direction hits. */
 uint sluiceCubeFace(vec3 direction)
 {
-    vec3 length = abs(direction);
-    if (length.z >= length.x && length.z >= length.y)
+    vec3 extent = abs(direction);
+    if (extent.z >= extent.x && extent.z >= extent.y)
         return direction.z < 0.0 ? 5u : 4u;
-    if (length.y >= length.x)
+    if (extent.y >= extent.x)
         return direction.y < 0.0 ? 3u : 2u;
     return direction.x < 0.0 ? 1u : 0u;
 }
@@ -58,7 +60,7 @@ vec3 sluiceCubeDirection(uint face, vec2 uv)
  */
 vec2 sluiceFoldOverEdge(inout uint face, vec2 uv)
 {
-    vec3 at = vec3(2.0 * uv - 1.0, 1.0), outward = vec3(0.0);
+    vec3 at = vec3(2.0 * uv - 1.0, 1.0), outward = SLUICE_SPLAT(vec3, 0.0);
     uint axis = abs(at.x) > 1.0 ? 0u : 1u;
     float side = at[axis] < 0.0 ? -1.0 : 1.0;
     outward[axis] = side;
@@ -81,7 +83,7 @@ SluiceCubePoint sluiceFindCubePoint(vec3 direction, vec3 dx, vec3 dy)
     at.xy /= at.z;
     /* false for NaN. On an edge the quotient may be rounded to more than 1. */
     p.finite = abs(at.x) <= 1.001 && abs(at.y) <= 1.001 && at.z <= 1.0e33;
-    p.uv = p.finite ? clamp(0.5 * at.xy + 0.5, 0.0, 1.0) : vec2(0.5);
+    p.uv = p.finite ? clamp(0.5 * at.xy + 0.5, 0.0, 1.0) : SLUICE_SPLAT(vec2, 0.5);
     p.dx = 0.5 * (tx.xy - at.xy * tx.z);
     p.dy = 0.5 * (ty.xy - at.xy * ty.z);
     p.face = p.finite ? p.face : 0u;

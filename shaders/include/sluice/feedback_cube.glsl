@@ -10,7 +10,10 @@
 #ifndef SLUICE_FEEDBACK_CUBE_GLSL
 #define SLUICE_FEEDBACK_CUBE_GLSL
 
+#include "language.glsl"
+#ifndef SLUICE_HLSL
 #extension GL_EXT_control_flow_attributes : require
+#endif
 
 #include "cube.glsl"
 #include "feedback.glsl"
@@ -32,7 +35,7 @@ void sluiceMarkBeyondEdge(uint tableIndex, SluiceGrid grid, SluiceCubePoint p, v
 void sluiceMarkBeyondEdges(uint tableIndex, SluiceGrid grid, SluiceCubePoint p, vec2 halfBox, uint level,
                            uint coarsest)
 {
-    [[dont_unroll]] for (uint edge = 0u; edge < 4u; edge++)
+    SLUICE_DONT_UNROLL for (uint edge = 0u; edge < 4u; edge++)
         sluiceMarkBeyondEdge(tableIndex, grid, p, halfBox, level, coarsest, edge);
 }
 
@@ -98,11 +101,11 @@ void sluiceWriteCubeQuadFeedback(uint tableIndex, vec3 direction, vec3 dx, vec3 
 void sluiceWriteCubeFeedbackLod(uint tableIndex, vec3 direction, float lod)
 {
     SluiceGrid grid = sluiceReadGrid(tableIndex);
-    SluiceCubePoint p = sluiceFindCubePoint(direction, vec3(0.0), vec3(0.0));
+    SluiceCubePoint p = sluiceFindCubePoint(direction, SLUICE_SPLAT(vec3, 0.0), SLUICE_SPLAT(vec3, 0.0));
     lod = p.finite ? sluiceClampLod(lod) : SLUICE_LOD_LIMIT;
     uint count = sluiceMipCount(grid);
     sluiceWriteFeedbackLod(tableIndex + p.face, p.uv, lod);
-    sluiceMarkBeyondEdges(tableIndex, grid, p, vec2(0.0), sluiceFinestLevel(lod, 0.0, count),
+    sluiceMarkBeyondEdges(tableIndex, grid, p, SLUICE_SPLAT(vec2, 0.0), sluiceFinestLevel(lod, 0.0, count),
                           sluiceCoarsestLevel(lod, count));
 }
 

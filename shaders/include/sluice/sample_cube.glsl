@@ -30,7 +30,10 @@
 #ifndef SLUICE_SAMPLE_CUBE_GLSL
 #define SLUICE_SAMPLE_CUBE_GLSL
 
+#include "language.glsl"
+#ifndef SLUICE_HLSL
 #extension GL_EXT_control_flow_attributes : require
+#endif
 
 #include "cube.glsl"
 #include "page_filter.glsl"
@@ -49,7 +52,7 @@ uint sluiceMaxCubeMinMip(uint tableIndex, SluiceGrid grid, SluiceCubePoint p, ve
     uint words = sluiceMaxMinMip(SLUICE_TEXTURE_ENTRY(tableIndex + p.face).minMipOffset, grid,
                                  sluiceComputeFootprint(grid, p.uv, halfBox, coarsest), finest);
     vec2 reach = sluiceCubeReach(grid, halfBox, coarsest);
-    [[dont_unroll]] for (uint edge = 0u; edge < 4u; edge++) {
+    SLUICE_DONT_UNROLL for (uint edge = 0u; edge < 4u; edge++) {
         if (!sluiceCrossesEdge(p.uv, reach, edge))
             continue;
         SluiceCubePart part = sluiceUnfoldEdge(grid, p.face, p.uv, halfBox, reach, edge);
@@ -68,7 +71,7 @@ bool sluiceIsCubeSurelyThere(uint tableIndex, SluiceCubePoint p, float lodBias, 
     vec2 tx = p.dx * size, ty = p.dy * size;
     float squares = (dot(tx, tx) + dot(ty, ty)) * sluiceBiasScale2(lodBias);
     vec2 reach = SLUICE_REACH * sqrt(max(squares, 1.0)) / size;
-    return p.finite && all(lessThanEqual(abs(p.uv - 0.5) + reach, vec2(0.5))) && /* false for NaN */
+    return p.finite && all(lessThanEqual(abs(p.uv - 0.5) + reach, SLUICE_SPLAT(vec2, 0.5))) && /* false for NaN */
            sluiceIsSurelyThere(tableIndex + p.face, p.uv, p.dx, p.dy, lodBias, maxAnisotropy);
 }
 
@@ -84,23 +87,24 @@ SluiceSampling sluiceResolveCube(uint tableIndex, SluiceCubePoint p, float lodBi
     uint count = sluiceMipCount(grid);
     float margin = sluiceLodMargin(maxAnisotropy);
     float biasScale = exp2(sluiceClampLodBias(lodBias));
-    vec2 largest = vec2(SLUICE_MAX_TEXELS) / (grid.size * max(biasScale, 1.0));
+    vec2 largest = SLUICE_SPLAT(vec2, SLUICE_MAX_TEXELS) / (grid.size * max(biasScale, 1.0));
     bool finite = p.finite && all(lessThanEqual(abs(p.dx), largest)) && all(lessThanEqual(abs(p.dy), largest));
-    vec2 tx = finite ? p.dx * grid.size : vec2(0.0), ty = finite ? p.dy * grid.size : vec2(0.0);
-    vec2 lods = finite ? sluiceComputeLods(tx, ty, lodBias, maxAnisotropy) : vec2(SLUICE_LOD_LIMIT);
+    vec2 zero = SLUICE_SPLAT(vec2, 0.0);
+    vec2 tx = finite ? p.dx * grid.size : zero, ty = finite ? p.dy * grid.size : zero;
+    vec2 lods = finite ? sluiceComputeLods(tx, ty, lodBias, maxAnisotropy) : SLUICE_SPLAT(vec2, SLUICE_LOD_LIMIT);
     vec2 halfBox = sluiceHalfBox(tx, ty, lodBias, maxAnisotropy);
     float packed = float(SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount) + margin;
 
     SluiceSampling s;
     s.uv = p.uv;
-    s.dx = finite ? p.dx * biasScale : vec2(0.0);
-    s.dy = finite ? p.dy * biasScale : vec2(0.0);
+    s.dx = finite ? p.dx * biasScale : zero;
+    s.dy = finite ? p.dy * biasScale : zero;
     s.lod = lods.x;
     s.wantedLevel = sluiceFinestLevel(s.lod, margin, count);
     s.minLod = 0.0;
     s.plain = false;
     uint coarsest = sluiceCoarsestLevel(lods.y, count);
-    [[dont_unroll]] for (uint reading = 0u;; reading++) {
+    SLUICE_DONT_UNROLL for (uint reading = 0u;; reading++) {
         uint finest = sluiceFinestLevel(s.lod, margin, count);
         uint shown = sluiceMaxCubeMinMip(tableIndex, grid, p, halfBox, finest, coarsest) & 0xFFFFu;
         if (shown >= SLUICE_SHOWN_NOTHING) {
@@ -112,7 +116,7 @@ SluiceSampling sluiceResolveCube(uint tableIndex, SluiceCubePoint p, float lodBi
             break;
         s.lod = max(reading < SLUICE_CUBE_READINGS ? min(limit, packed) : packed, s.lod);
         if (maxAnisotropy > 1.0)
-            halfBox = max(halfBox, vec2(exp2(s.lod - margin)));
+            halfBox = max(halfBox, SLUICE_SPLAT(vec2, exp2(s.lod - margin)));
         coarsest = max(coarsest, sluiceCoarsestLevel(s.lod + margin, count));
         if (reading > SLUICE_CUBE_READINGS) /* packed levels */
             break;
@@ -129,9 +133,9 @@ SluiceSampling sluiceResolveCube(uint tableIndex, SluiceCubePoint p, float lodBi
 /** Fetches a texel of a regular level. Texels beyond one edge are those of the face there. */
 vec4 sluiceFetchCubePaged(uint tableIndex, uint face, uint level, ivec2 texel, int size)
 {
-    if (texel != clamp(texel, ivec2(0), ivec2(size - 1))) {
+    if (any(notEqual(texel, clamp(texel, SLUICE_SPLAT(ivec2, 0), SLUICE_SPLAT(ivec2, size - 1))))) {
         vec2 uv = sluiceFoldOverEdge(face, (vec2(texel) + 0.5) / float(size));
-        texel = clamp(ivec2(uv * float(size)), ivec2(0), ivec2(size - 1));
+        texel = clamp(ivec2(uv * float(size)), SLUICE_SPLAT(ivec2, 0), SLUICE_SPLAT(ivec2, size - 1));
     }
     return sluiceFetchPaged(SLUICE_TEXTURE_ENTRY(tableIndex + face), level, texel);
 }
@@ -148,21 +152,21 @@ vec4 sluiceSampleCubePages(uint tableIndex, uint face, uint level, vec2 uv)
               SLUICE_FILTER_STEPS;
     ivec2 low = ivec2(floor(at)), shift = sluiceTileShift(entry), tile = low >> shift;
     vec2 weight = at - floor(at);
-    vec4 sum = vec4(0.0), known = vec4(0.0);
-    if (min(low.x, low.y) >= 0 && max(low.x, low.y) < size - 1 && low + 1 >> shift == tile) {
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0), known = SLUICE_SPLAT(vec4, 0.0);
+    if (min(low.x, low.y) >= 0 && max(low.x, low.y) < size - 1 && all(equal(low + 1 >> shift, tile))) {
         uint page = sluiceReadPage(entry, level, tile);
-        vec3 local = vec3((vec2(low - (tile << shift)) + weight + 0.5) / vec2(ivec2(1) << shift),
+        vec3 local = vec3((vec2(low - (tile << shift)) + weight + 0.5) / vec2(SLUICE_SPLAT(ivec2, 1) << shift),
                           float(page & 0xFFFFu));
         if (page != SLUICE_PAGE_NONE)
-            SLUICE_WITH_PAGE(page, sum = textureLod(SLUICE_PAGE_TEXTURE(chunk), local, 0.0))
+            SLUICE_WITH_PAGE(page, sum = SLUICE_ARRAY_SAMPLE(SLUICE_PAGE_TEXTURE(chunk), SLUICE_PAGE_SAMPLER(chunk), local))
         return sum;
     }
     float corner = 0.0;
-    [[dont_unroll]] for (int i = 0; i < 4; i++) {
+    SLUICE_DONT_UNROLL for (int i = 0; i < 4; i++) {
         ivec2 side = ivec2(i & 1, i >> 1), texel = low + side;
         vec2 shares = mix(1.0 - weight, weight, vec2(side));
         float share = shares.x * shares.y;
-        bvec2 outside = notEqual(texel, clamp(texel, ivec2(0), ivec2(size - 1)));
+        bvec2 outside = notEqual(texel, clamp(texel, SLUICE_SPLAT(ivec2, 0), SLUICE_SPLAT(ivec2, size - 1)));
         if (all(outside))
             corner = share;
         if (all(outside) || !(share > 0.0)) /* texels of weight 0 may be infinite */
@@ -175,21 +179,32 @@ vec4 sluiceSampleCubePages(uint tableIndex, uint face, uint level, vec2 uv)
 }
 #endif
 
+#ifdef SLUICE_HLSL
+#define SLUICE_SAMPLER_CUBE(tex) TextureCube tex, SamplerState tex##Sampler
+#define SLUICE_SAMPLER_CUBE_ARRAY(tex) TextureCubeArray tex, SamplerState tex##Sampler
+#else
+#define SLUICE_SAMPLER_CUBE(tex) samplerCube tex
+#define SLUICE_SAMPLER_CUBE_ARRAY(tex) samplerCubeArray tex
+#endif
+
 /* The functions that take a texture, in all forms. */
-#define SLUICE_CUBE_PARAMETERS samplerCube tex
-#define SLUICE_CUBE_ARGUMENTS tex
+#define SLUICE_CUBE_PARAMETERS SLUICE_SAMPLER_CUBE(tex)
+#define SLUICE_CUBE_ARGUMENTS SLUICE_PASS_SAMPLER(tex)
 #define SLUICE_CUBE_SAMPLER tex
+#define SLUICE_CUBE_STATE SLUICE_SAMPLER_OF(tex)
 #define SLUICE_CUBE_COORDINATE(direction) direction
 #include "sample_cube_textures.glsl"
-#define SLUICE_CUBE_PARAMETERS samplerCubeArray tex, uint cube
-#define SLUICE_CUBE_ARGUMENTS tex, cube
+#define SLUICE_CUBE_PARAMETERS SLUICE_SAMPLER_CUBE_ARRAY(tex), uint cube
+#define SLUICE_CUBE_ARGUMENTS SLUICE_PASS_SAMPLER(tex), cube
 #define SLUICE_CUBE_SAMPLER tex
+#define SLUICE_CUBE_STATE SLUICE_SAMPLER_OF(tex)
 #define SLUICE_CUBE_COORDINATE(direction) vec4(direction, float(cube))
 #include "sample_cube_textures.glsl"
 #ifdef SLUICE_CUBE_TEXTURE
 #define SLUICE_CUBE_PARAMETERS uint number
 #define SLUICE_CUBE_ARGUMENTS number
 #define SLUICE_CUBE_SAMPLER SLUICE_CUBE_TEXTURE(number)
+#define SLUICE_CUBE_STATE SLUICE_CUBE_TEXTURE_SAMPLER(number)
 #define SLUICE_CUBE_COORDINATE(direction) direction
 #include "sample_cube_textures.glsl"
 #endif

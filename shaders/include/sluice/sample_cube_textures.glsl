@@ -3,8 +3,8 @@
  * for each form of the texture.
  *
  * SLUICE_CUBE_PARAMETERS and SLUICE_CUBE_ARGUMENTS pass a texture on, SLUICE_CUBE_SAMPLER turns it into
- * a sampler, and SLUICE_CUBE_COORDINATE a direction into the sampler's coordinate. All are undefined at
- * the end.
+ * a sampler, SLUICE_CUBE_STATE into the SamplerState of HLSL, and SLUICE_CUBE_COORDINATE a direction into
+ * the sampler's coordinate. All are undefined at the end.
  */
 #ifdef SLUICE_PAGED
 /** Returns a bilinear sample of any level. The texture has the packed levels. */
@@ -12,8 +12,8 @@ vec4 sluiceSampleCubeLevel(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, u
 {
     uint regular = SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount;
     if (level >= regular)
-        return textureLod(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, uv)),
-                          float(level - regular));
+        return SLUICE_TEXTURE_LOD(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_STATE,
+                                  SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, uv)), float(level - regular));
     return sluiceSampleCubePages(tableIndex, face, level, uv);
 }
 
@@ -21,12 +21,13 @@ vec4 sluiceSampleCubeLevel(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, u
 vec4 sluiceSampleCubePaged(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, vec2 uv, SluicePagedTaps taps)
 {
     if (any(notEqual(uv, clamp(uv, 0.0, 1.0)))) {
-        SluiceCubePoint at = sluiceFindCubePoint(sluiceCubeDirection(face, uv), vec3(0.0), vec3(0.0));
+        vec3 zero = SLUICE_SPLAT(vec3, 0.0);
+        SluiceCubePoint at = sluiceFindCubePoint(sluiceCubeDirection(face, uv), zero, zero);
         face = at.face;
         uv = at.uv;
     }
-    vec4 sum = vec4(0.0);
-    [[dont_unroll]] for (uint i = 0u; i < 2u; i++) {
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0);
+    SLUICE_DONT_UNROLL for (uint i = 0u; i < 2u; i++) {
         float share = i > 0u ? taps.fraction : 1.0 - taps.fraction;
         if (share > 0.0) /* else the level may be infinite */
             sum += share * sluiceSampleCubeLevel(SLUICE_CUBE_ARGUMENTS, tableIndex, face,
@@ -52,8 +53,8 @@ vec4 sluiceTextureCube(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, vec2 
     lod = clamp(lod, 0.0, float(count - 1u));
     SluicePagedTaps taps =
         sluicePlaceTaps(grid.size, count, dx, dy, lod, sluiceClampAnisotropy(maxAnisotropy));
-    vec4 sum = vec4(0.0);
-    [[dont_unroll]] for (uint i = 0u; i < taps.count; i++) {
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0);
+    SLUICE_DONT_UNROLL for (uint i = 0u; i < taps.count; i++) {
         vec2 at = uv + taps.axis * ((float(i) + 0.5) / float(taps.count) - 0.5);
 #ifdef SLUICE_PAGED
         if (lod < float(regular)) {
@@ -61,8 +62,8 @@ vec4 sluiceTextureCube(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, vec2 
             continue;
         }
 #endif
-        sum += textureLod(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, at)),
-                          lod - float(regular));
+        sum += SLUICE_TEXTURE_LOD(SLUICE_CUBE_SAMPLER, SLUICE_CUBE_STATE,
+                                  SLUICE_CUBE_COORDINATE(sluiceCubeDirection(face, at)), lod - float(regular));
     }
     return sum / float(taps.count);
 }
@@ -96,7 +97,7 @@ vec4 sluiceSampleCubeGrad(SLUICE_CUBE_PARAMETERS, uint tableIndex, vec3 directio
                              maxAnisotropy);
 }
 
-#ifdef GL_FRAGMENT_SHADER
+#ifdef SLUICE_FRAGMENT_SHADER
 /**
  * Samples like sluiceSampleCubeGrad with the fragment's own derivatives. Call in control flow that is
  * uniform over the quad.
@@ -112,4 +113,5 @@ vec4 sluiceSampleCube(SLUICE_CUBE_PARAMETERS, uint tableIndex, vec3 direction, f
 #undef SLUICE_CUBE_PARAMETERS
 #undef SLUICE_CUBE_ARGUMENTS
 #undef SLUICE_CUBE_SAMPLER
+#undef SLUICE_CUBE_STATE
 #undef SLUICE_CUBE_COORDINATE

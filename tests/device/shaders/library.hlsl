@@ -21,10 +21,12 @@
 #include "sluice/demand_bytes.glsl"
 #include "sluice/demand_jitter.glsl"
 #include "sluice/feedback.glsl"
+#include "sluice/feedback_cube.glsl"
 #include "sluice/feedback_jitter.glsl"
 #include "sluice/proxy.glsl"
 #include "sluice/sample.glsl"
 #include "sluice/sample_array.glsl"
+#include "sluice/sample_cube.glsl"
 #include "sluice/sample_integer.glsl"
 #include "sluice/sample_stochastic.glsl"
 #include "sluice/stochastic.glsl"
@@ -38,6 +40,10 @@
 [[vk::binding(2, 2)]] SamplerState numbersSampler;
 [[vk::binding(3, 2)]] Texture2D<int4> signedNumbers;
 [[vk::binding(3, 2)]] SamplerState signedNumbersSampler;
+[[vk::binding(4, 2)]] TextureCube cube;
+[[vk::binding(4, 2)]] SamplerState cubeSampler;
+[[vk::binding(5, 2)]] TextureCubeArray cubes;
+[[vk::binding(5, 2)]] SamplerState cubesSampler;
 struct Constants {
     uint tableIndex;
     uint seed;
@@ -62,6 +68,13 @@ float4 main(float4 position : SV_Position, float2 uv : TEXCOORD0) : SV_Target0
     color += part.weight * sluiceSampleArray(layers, layersSampler, index, part.cell, part.uv, 0.0, 1.0, missing);
     color += float4(sluiceSampleUint(numbers, numbersSampler, index, uv, missing));
     color += float4(sluiceSampleInt(signedNumbers, signedNumbersSampler, index, uv, missing));
+    float3 direction = float3(uv, 1.0), directionX = float3(dx, 0.0), directionY = float3(dy, 0.0);
+    color += sluiceSampleCube(cube, cubeSampler, index, direction, 0.0, 4.0, missing);
+    color += sluiceSampleCube(cubes, cubesSampler, 1u, index, direction, 0.0, 4.0, missing);
+    color += sluiceSampleCube(index, index, direction, 0.0, 4.0, missing);
+    sluiceWriteCubeFeedback(index, direction, directionX, directionY, 0.0, 4.0);
+    sluiceWriteCubeQuadFeedback(index, direction, directionX, directionY, 0.0, 4.0, uint2(position.xy), constants.seed);
+    sluiceWriteCubeFeedbackLod(index, direction, 2.0);
     SluiceDemandBytes bytes;
     if (sluiceMapBytesOrRequest(index, bytes))
         color.x += sluiceDemandFloat(bytes, 3u) + float(sluiceDemandByte(bytes, 5u));
