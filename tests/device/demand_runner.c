@@ -11,7 +11,9 @@
 #include "demand_runner_bytes_comp.h"
 #include "demand_runner_comp.h"
 #include "demand_runner_cubes_comp.h"
+#include "demand_runner_cubes_hlsl.h"
 #include "demand_runner_grids_comp.h"
+#include "demand_runner_grids_hlsl.h"
 
 #define BUFFERS 9u
 #define BINDINGS (BUFFERS + 2)
@@ -156,6 +158,17 @@ void runner_sample_cubes(struct runner *r)
     h->DestroyPipeline(h->device, r->pipeline, NULL);
     r->pipeline = conform_compute_pipeline(
         h, r->layout, conform_module(h, demand_runner_cubes_comp, sizeof demand_runner_cubes_comp),
+        NULL);
+}
+
+void runner_sample_in_hlsl(struct runner *r, bool cubes)
+{
+    struct harness *h = r->h;
+    h->DestroyPipeline(h->device, r->pipeline, NULL);
+    r->pipeline = conform_compute_pipeline(
+        h, r->layout,
+        cubes ? conform_module(h, demand_runner_cubes_hlsl, sizeof demand_runner_cubes_hlsl)
+              : conform_module(h, demand_runner_grids_hlsl, sizeof demand_runner_grids_hlsl),
         NULL);
 }
 

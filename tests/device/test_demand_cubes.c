@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { FACES = CUBE_ORACLE_FACES, CUBES = 12 };
 
@@ -52,16 +53,12 @@ static int end(void **state)
     return 0;
 }
 
-static struct cubes *add_cubes(uint32_t size, uint32_t count, float anisotropy)
+/* New textures of the images, and their grid. No samples. */
+static void add_textures(struct cubes *c, float anisotropy)
 {
     const SluiceDemandSampler sampler = {.structSize = sizeof sampler, .maxAnisotropy = anisotropy};
-    struct cubes *c = &sets[set_count++];
-    c->size = size;
-    c->count = count;
     runner_clear(&r);
-    for (uint32_t i = 0; i < count * FACES; i++) {
-        runner_image_init(&c->images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, size, size,
-                          100 * set_count + i);
+    for (uint32_t i = 0; i < c->count * FACES; i++) {
         const SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
                                                     .image = runner_image_desc(&c->images[i]),
                                                     .pSampler = &sampler,
@@ -69,11 +66,22 @@ static struct cubes *add_cubes(uint32_t size, uint32_t count, float anisotropy)
         CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &c->ids[i]));
     }
     const SluiceDemandGridCreateInfo grid = {.structSize = sizeof grid,
-                                             .columnCount = count * FACES,
+                                             .columnCount = c->count * FACES,
                                              .rowCount = 1,
                                              .pTextureIds = c->ids,
                                              .missingColor = {0.25f, 0.5f, 0.75f, 1}};
     CHECK_OK(sluiceAddDemandGrid(r.loader, &grid, &c->grid));
+}
+
+static struct cubes *add_cubes(uint32_t size, uint32_t count, float anisotropy)
+{
+    struct cubes *c = &sets[set_count++];
+    c->size = size;
+    c->count = count;
+    for (uint32_t i = 0; i < count * FACES; i++)
+        runner_image_init(&c->images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, size, size,
+                          100 * set_count + i);
+    add_textures(c, anisotropy);
     return c;
 }
 
@@ -291,12 +299,59 @@ static void faces_that_fail_and_empty_cells_show_their_colors(void **state)
     check_color(c, 5, 0);
 }
 
+enum { COMPARED = 400, COMPARED_LAUNCHES = 8 };
+
+/* Outputs and misses of launches that load new textures of the images. The last face has none. */
+static void run_launches(struct cubes *c, struct RunnerOutput outputs[][COMPARED],
+                         uint32_t missing[COMPARED_LAUNCHES])
+{
+    add_textures(c, 4);
+    roll_seed(54);
+    for (uint32_t i = 0; i < COMPARED; i++) {
+        uint32_t face;
+        double uv[2], texels = exp2(10 * draw() - 1);
+        draw_position(i, slc_mip_size(c->size, (uint32_t)fmax(log2(texels), 0)), &face, uv);
+        add_sample(c, (uint32_t)roll() % 2, face, uv[0], uv[1], texels, texels * (0.2 + draw()));
+    }
+    for (uint32_t k = 0; k < COMPARED_LAUNCHES; k++) {
+        runner_launch(&r);
+        missing[k] = r.requests.missingCount;
+        memcpy(outputs[k], r.outputs.mapped, sizeof outputs[k]);
+        CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
+    }
+}
+
+static void hlsl_samples_and_requests_what_glsl_does(void **state)
+{
+    static struct RunnerOutput glsl[COMPARED_LAUNCHES][COMPARED], hlsl[COMPARED_LAUNCHES][COMPARED];
+    uint32_t misses[2][COMPARED_LAUNCHES];
+    struct cubes *c = add_cubes(300, 2, 4);
+    (void)state;
+    c->images[2 * FACES - 1].open_result = SLUICE_ERROR_CORRUPT_DATA;
+    run_launches(c, glsl, misses[0]);
+    runner_sample_in_hlsl(&r, true);
+    run_launches(c, hlsl, misses[1]);
+    runner_sample_cubes(&r);
+    for (uint32_t k = 0; k < COMPARED_LAUNCHES; k++) {
+        assert_int_equal(misses[1][k], misses[0][k]);
+        for (uint32_t i = 0; i < COMPARED; i++)
+            if (memcmp(&glsl[k][i], &hlsl[k][i], sizeof glsl[k][i]) != 0)
+                fail_msg("launch %u, sample %u: HLSL %.9g, resident %u; GLSL %.9g, resident %u", k,
+                         i, (double)hlsl[k][i].color[1], hlsl[k][i].resident,
+                         (double)glsl[k][i].color[1], glsl[k][i].resident);
+    }
+    assert_true(misses[0][0] > 0 && misses[0][1] > 0);
+    assert_int_equal(misses[0][COMPARED_LAUNCHES - 1], 0);
+}
+
 int main(void)
 {
     int status = harness_init(&h);
     if (status)
         return status;
     const struct CMUnitTest tests[] = {
+        /* Comes first: HLSL finds pages by a loop over the first two images. */
+        cmocka_unit_test(hlsl_samples_and_requests_what_glsl_does),
         cmocka_unit_test(samples_are_filtered_across_edges_and_corners),
         cmocka_unit_test(faces_and_tiles_that_a_sample_touches_are_requested_and_no_others),
         cmocka_unit_test(rows_of_anisotropic_samples_cross_edges),

@@ -4,6 +4,7 @@
  */
 #include "device/demand_runner.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -433,6 +434,60 @@ static void a_base_that_cannot_be_opened_is_as_none(void **state)
     h.quiet = false;
 }
 
+enum { COMPARED = 600, COMPARED_LAUNCHES = 8 };
+
+/* Outputs and misses of launches in one language. Cells have two sizes, one is empty, one fails. */
+static void run_launches(bool hlsl, struct RunnerOutput outputs[][COMPARED],
+                         uint32_t missing[COMPARED_LAUNCHES])
+{
+    struct runner r;
+    static struct set set;
+    const uint32_t sizes[CELLS] = {256, 64, 256, 256, 0, 64};
+    set_init(&set, &r, sizes, 48);
+    set.images[3].open_result = SLUICE_ERROR_CORRUPT_DATA;
+    if (hlsl)
+        runner_sample_in_hlsl(&r, false);
+    roll_seed(81);
+    for (uint32_t i = 0; i < COMPARED; i++) {
+        static const uint32_t kinds[] = {RUNNER_UDIM_GRAD, RUNNER_UDIM_GRAD, RUNNER_LAYER_GRAD,
+                                         RUNNER_LAYER_LOD};
+        struct RunnerInput in = {.kind = kinds[i % 4], .index = (uint32_t)set.grid};
+        double width = exp2(11.0 * roll() / ROLL_MAX - 9);
+        in.cell = (uint32_t)roll() % (CELLS + 2);
+        in.uv[0] = (float)(roll() % 385 / 128.0 + (roll() % 5 - 2.0) / 1024);
+        in.uv[1] = (float)(roll() % 257 / 128.0 + (roll() % 5 - 2.0) / 1024);
+        in.dx[0] = in.kind == RUNNER_LAYER_LOD ? (float)(roll() % 80) / 8 : (float)width;
+        in.dy[1] = (float)(width * (1 + roll() % 4));
+        runner_add(&r, in);
+    }
+    for (uint32_t k = 0; k < COMPARED_LAUNCHES; k++) {
+        runner_launch(&r);
+        missing[k] = r.requests.missingCount;
+        memcpy(outputs[k], r.outputs.mapped, sizeof outputs[k]);
+        CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
+    }
+    set_finish(&set, &r);
+}
+
+static void hlsl_samples_and_requests_what_glsl_does(void **state)
+{
+    static struct RunnerOutput glsl[COMPARED_LAUNCHES][COMPARED], hlsl[COMPARED_LAUNCHES][COMPARED];
+    uint32_t misses[2][COMPARED_LAUNCHES];
+    (void)state;
+    run_launches(false, glsl, misses[0]);
+    run_launches(true, hlsl, misses[1]);
+    for (uint32_t k = 0; k < COMPARED_LAUNCHES; k++) {
+        assert_int_equal(misses[1][k], misses[0][k]);
+        for (uint32_t i = 0; i < COMPARED; i++)
+            if (memcmp(&glsl[k][i], &hlsl[k][i], sizeof glsl[k][i]) != 0)
+                fail_msg("launch %u, sample %u: HLSL %.9g, resident %u; GLSL %.9g, resident %u", k,
+                         i, (double)hlsl[k][i].color[1], hlsl[k][i].resident,
+                         (double)glsl[k][i].color[1], glsl[k][i].resident);
+    }
+    assert_true(misses[0][0] > 0 && misses[0][1] > 0);
+    assert_int_equal(misses[0][COMPARED_LAUNCHES - 1], 0);
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -446,6 +501,7 @@ int main(void)
         cmocka_unit_test(the_base_shows_where_it_is_sharp_enough_and_in_empty_cells),
         cmocka_unit_test(a_damaged_file_spoils_its_cell_alone),
         cmocka_unit_test(a_base_that_cannot_be_opened_is_as_none),
+        cmocka_unit_test(hlsl_samples_and_requests_what_glsl_does),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }

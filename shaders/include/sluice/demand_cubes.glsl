@@ -47,17 +47,17 @@ uint sluiceDemandCubeFace(SluiceDemandCube c, uint face)
 vec4 sluiceFetchDemandCube(inout SluiceDemandCube c, uint home, uint face, uint level, ivec2 texel,
                            int size, bool ask, out uint worst)
 {
-    ivec2 inside = clamp(texel, ivec2(0), ivec2(size - 1));
+    ivec2 inside = clamp(texel, SLUICE_SPLAT(ivec2, 0), SLUICE_SPLAT(ivec2, size - 1));
     uint index = home;
     worst = 0u;
-    if (texel != inside) {
+    if (any(notEqual(texel, inside))) {
         vec2 uv = sluiceFoldOverEdge(face, (vec2(texel) + 0.5) / float(size));
         uint other = sluiceDemandCubeFace(c, face);
         if (sluiceIsDemandCellOpen(other, c.resident)) {
             index = other;
             level = min(level, sluiceDemandLastLevel(SLUICE_DEMAND_TEXTURE(index).shape));
-            ivec2 extent = max(ivec2(sluiceDemandSize(index)) >> int(level), ivec2(1));
-            inside = clamp(ivec2(uv * vec2(extent)), ivec2(0), extent - 1);
+            ivec2 extent = max(ivec2(sluiceDemandSize(index)) >> int(level), SLUICE_SPLAT(ivec2, 1));
+            inside = clamp(ivec2(uv * vec2(extent)), SLUICE_SPLAT(ivec2, 0), extent - 1);
         } else if (c.resident) {
             return sluiceDemandBaseColor(other == SLUICE_DEMAND_NO_TEXTURE ? c.grid : other);
         }
@@ -66,9 +66,11 @@ vec4 sluiceFetchDemandCube(inout SluiceDemandCube c, uint home, uint face, uint 
     bool last = level == sluiceDemandLastLevel(s.shape);
     if (last) /* it has no page */
         sluiceMarkDemandPage(s.tailPage);
-    return sluiceGatherDemand(s, sluiceReadDemandLevel(s, level), last,
-                              SluicePageAxis(inside.x, inside.x, 0.0),
-                              SluicePageAxis(inside.y, inside.y, 0.0), ask, worst);
+    SluicePageAxis x, y;
+    x.low = x.high = inside.x;
+    y.low = y.high = inside.y;
+    x.weight = y.weight = 0.0;
+    return sluiceGatherDemand(s, sluiceReadDemandLevel(s, level), last, x, y, ask, worst);
 }
 
 /** Returns a bilinear sample of a level, like sluiceDemandBilinear. `s` is of the texture of `face`. */
@@ -82,14 +84,14 @@ vec4 sluiceDemandCubeBilinear(inout SluiceDemandCube c, inout SluiceDemandState 
     if ((s.shape & SLUICE_DEMAND_NEAREST) != 0u || (min(low.x, low.y) >= 0 && max(low.x, low.y) < size - 1))
         return sluiceDemandBilinear(s, level, uv, ask, worst);
     vec2 weight = at - floor(at);
-    vec4 sum = vec4(0.0), known = vec4(0.0);
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0), known = SLUICE_SPLAT(vec4, 0.0);
     float corner = 0.0;
     worst = 0u;
-    [[dont_unroll]] for (int i = 0; i < 4; i++) {
+    SLUICE_DONT_UNROLL for (int i = 0; i < 4; i++) {
         ivec2 side = ivec2(i & 1, i >> 1), texel = low + side;
         vec2 shares = mix(1.0 - weight, weight, vec2(side));
         float share = shares.x * shares.y;
-        bvec2 outside = notEqual(texel, clamp(texel, ivec2(0), ivec2(size - 1)));
+        bvec2 outside = notEqual(texel, clamp(texel, SLUICE_SPLAT(ivec2, 0), SLUICE_SPLAT(ivec2, size - 1)));
         if (all(outside))
             corner = share;
         if (all(outside) || !(share > 0.0)) /* texels of weight 0 may be infinite */
@@ -117,7 +119,7 @@ vec4 sluiceDemandCubeTexels(inout SluiceDemandCube c, inout SluiceDemandState s,
         if (worst == SLUICE_PAGE_NONE) {
             c.resident = false;
             if (!SLUICE_DEMAND_PREVIEW)
-                return vec4(0.0);
+                return SLUICE_SPLAT(vec4, 0.0);
             ask = false;
         }
         level = level < regular ? level + 1u : sluiceDemandLastLevel(s.shape);
@@ -127,9 +129,10 @@ vec4 sluiceDemandCubeTexels(inout SluiceDemandCube c, inout SluiceDemandState s,
 /** Returns one sample of a row. Beyond an edge it is on the face there. */
 vec4 sluiceSumDemandCube(inout SluiceDemandCube c, uint face, vec2 uv, SluicePagedTaps taps)
 {
-    vec4 sum = vec4(0.0);
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0);
     if (any(notEqual(uv, clamp(uv, 0.0, 1.0)))) {
-        SluiceCubePoint at = sluiceFindCubePoint(sluiceCubeDirection(face, uv), vec3(0.0), vec3(0.0));
+        vec3 zero = SLUICE_SPLAT(vec3, 0.0);
+        SluiceCubePoint at = sluiceFindCubePoint(sluiceCubeDirection(face, uv), zero, zero);
         face = at.face;
         uv = at.uv;
     }
@@ -138,7 +141,7 @@ vec4 sluiceSumDemandCube(inout SluiceDemandCube c, uint face, vec2 uv, SluicePag
         return c.resident ? sluiceDemandBaseColor(index == SLUICE_DEMAND_NO_TEXTURE ? c.grid : index) : sum;
     SluiceDemandState s = sluiceOpenDemandCell(index);
     uint last = sluiceDemandLastLevel(s.shape);
-    [[dont_unroll]] for (uint i = 0u; i < 2u; i++) {
+    SLUICE_DONT_UNROLL for (uint i = 0u; i < 2u; i++) {
         float share = i > 0u ? taps.fraction : 1.0 - taps.fraction;
         if (!(share > 0.0))
             continue;
@@ -167,7 +170,7 @@ vec4 sluiceDemandCubeGrad(uint index, uint cube, vec3 direction, vec3 dx, vec3 d
     SluiceCubePoint p = sluiceFindCubePoint(direction, dx, dy);
     uint home = sluiceDemandCubeFace(c, p.face);
     if (!sluiceIsDemandCellOpen(home, resident))
-        return !resident ? vec4(0.0)
+        return !resident ? SLUICE_SPLAT(vec4, 0.0)
                          : sluiceDemandBaseColor(home == SLUICE_DEMAND_NO_TEXTURE ? index : home);
     vec2 size = sluiceDemandSize(home);
     uint shape = SLUICE_DEMAND_TEXTURE(home).shape, last = sluiceDemandLastLevel(shape);
@@ -181,12 +184,12 @@ vec4 sluiceDemandCubeGrad(uint index, uint cube, vec3 direction, vec3 dx, vec3 d
         taps.fine = uint(max(ceil(lod - 0.5), 0.0));
         taps.fraction = 0.0;
     }
-    vec4 sum = vec4(0.0);
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0);
     float step = 1.0 / float(taps.count);
-    [[dont_unroll]] for (uint i = 0u; i < taps.count; i++)
+    SLUICE_DONT_UNROLL for (uint i = 0u; i < taps.count; i++)
         sum += sluiceSumDemandCube(c, p.face, p.uv + taps.axis * ((float(i) + 0.5) * step - 0.5), taps);
     resident = c.resident;
-    return resident || SLUICE_DEMAND_PREVIEW ? sum * step : vec4(0.0);
+    return resident || SLUICE_DEMAND_PREVIEW ? sum * step : SLUICE_SPLAT(vec4, 0.0);
 }
 
 #endif

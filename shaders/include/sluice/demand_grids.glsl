@@ -36,6 +36,15 @@
 
 #include "demand.glsl"
 
+/* Per component `b` if the condition is true, else `a`. */
+#ifndef SLUICE_HLSL
+#define SLUICE_SELECT(a, b, condition) mix(a, b, condition)
+#elif defined(__HLSL_VERSION) && __HLSL_VERSION >= 2021
+#define SLUICE_SELECT(a, b, condition) select(condition, b, a)
+#else
+#define SLUICE_SELECT(a, b, condition) ((condition) ? (b) : (a))
+#endif
+
 /** Replaces the index of a grid by that of a layer's texture. False if there is none. */
 bool sluiceFindDemandLayer(inout uint index, uint layer)
 {
@@ -72,7 +81,7 @@ vec4 sluiceDemandLayerLod(uint index, uint layer, vec2 uv, float lod, out bool r
 uint sluiceDemandCell(uint grid, vec2 cell)
 {
     uvec2 size = uvec2(SLUICE_DEMAND_TEXTURE(grid).width, SLUICE_DEMAND_TEXTURE(grid).height);
-    if (any(lessThan(cell, vec2(0.0))) || any(greaterThanEqual(cell, vec2(size))))
+    if (any(lessThan(cell, SLUICE_SPLAT(vec2, 0.0))) || any(greaterThanEqual(cell, vec2(size))))
         return SLUICE_DEMAND_NO_TEXTURE;
     return SLUICE_DEMAND_LEVEL_WORD(SLUICE_DEMAND_TEXTURE(grid).levels + uint(cell.y) * size.x +
                                     uint(cell.x));
@@ -102,11 +111,11 @@ vec2 sluiceDemandSize(uint index)
 /** Returns the levels of a texture that would be at `lod` if it had one texel. */
 SluicePagedTaps sluiceDemandLevels(uint index, float lod)
 {
-    vec2 size = sluiceDemandSize(index);
+    vec2 size = sluiceDemandSize(index), zero = SLUICE_SPLAT(vec2, 0.0);
     uint shape = SLUICE_DEMAND_TEXTURE(index).shape, last = sluiceDemandLastLevel(shape);
     lod += log2(max(size.x, size.y));
     lod = lod < float(last) ? max(lod, 0.0) : float(last); /* NaN: last */
-    SluicePagedTaps taps = sluicePlaceTaps(size, last + 1u, vec2(0.0), vec2(0.0), lod, 1.0);
+    SluicePagedTaps taps = sluicePlaceTaps(size, last + 1u, zero, zero, lod, 1.0);
     if ((shape & SLUICE_DEMAND_NEAREST_LEVEL) != 0u) {
         taps.fine = uint(max(ceil(lod - 0.5), 0.0));
         taps.fraction = 0.0;
@@ -136,7 +145,7 @@ SluiceDemandState sluiceOpenDemandCell(uint index)
 vec2 sluiceDemandExtent(uint index, SluicePagedTaps taps, uint axis)
 {
     uint size = axis == 0u ? SLUICE_DEMAND_TEXTURE(index).width : SLUICE_DEMAND_TEXTURE(index).height;
-    return vec2(max(uvec2(size >> taps.fine, size >> taps.coarse), uvec2(1u)));
+    return vec2(max(uvec2(size >> taps.fine, size >> taps.coarse), SLUICE_SPLAT(uvec2, 1u)));
 }
 
 /** Weights of the next cells in x and y. */
@@ -159,10 +168,11 @@ struct SluiceDemandUdim {
 SluiceDemandBeyond sluiceFindDemandNeighbors(SluiceDemandUdim u, uint home, vec2 cell, vec2 at,
                                              vec2 side, SluicePagedTaps taps, inout bool resident)
 {
-    SluiceDemandBeyond beyond = SluiceDemandBeyond(vec2(0.0), vec2(0.0));
+    SluiceDemandBeyond beyond;
+    beyond.fine = beyond.coarse = SLUICE_SPLAT(vec2, 0.0);
     if (u.base || (SLUICE_DEMAND_TEXTURE(home).shape & SLUICE_DEMAND_NEAREST) != 0u)
         return beyond;
-    [[dont_unroll]] for (uint axis = 0u; axis < 2u; axis++) {
+    SLUICE_DONT_UNROLL for (uint axis = 0u; axis < 2u; axis++) {
         vec2 step = axis == 0u ? vec2(side.x, 0.0) : vec2(0.0, side.y);
         float distance = axis == 0u ? min(at.x, 1.0 - at.x) : min(at.y, 1.0 - at.y);
         vec2 extent = sluiceDemandExtent(home, taps, axis);
@@ -185,7 +195,7 @@ SluiceDemandBeyond sluiceFindDemandNeighbors(SluiceDemandUdim u, uint home, vec2
  */
 vec4 sluiceSumDemandCells(SluiceDemandUdim u, vec2 uv, inout bool resident)
 {
-    vec2 cell = u.base ? vec2(0.0) : floor(uv);
+    vec2 cell = u.base ? SLUICE_SPLAT(vec2, 0.0) : floor(uv);
     uint home = u.index;
     if (u.base) {
         uv /= sluiceDemandSize(u.grid);
@@ -197,19 +207,19 @@ vec4 sluiceSumDemandCells(SluiceDemandUdim u, vec2 uv, inout bool resident)
         }
     }
     vec2 at = clamp(uv - cell, 0.0, 1.0);
-    vec2 side = mix(vec2(1.0), vec2(-1.0), lessThan(at, vec2(0.5)));
+    vec2 side = SLUICE_SELECT(SLUICE_SPLAT(vec2, 1.0), SLUICE_SPLAT(vec2, -1.0), lessThan(at, SLUICE_SPLAT(vec2, 0.5)));
     SluicePagedTaps taps = sluiceDemandLevels(home, u.lod);
     SluiceDemandBeyond beyond = sluiceFindDemandNeighbors(u, home, cell, at, side, taps, resident);
     vec2 reach = max(beyond.fine, beyond.coarse);
-    vec4 sum = vec4(0.0);
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0);
     float total = 0.0;
-    [[dont_unroll]] for (uint corner = 0u; corner < 4u; corner++) {
-        bvec2 next = notEqual(uvec2(corner) & uvec2(1u, 2u), uvec2(0u));
+    SLUICE_DONT_UNROLL for (uint corner = 0u; corner < 4u; corner++) {
+        bvec2 next = bvec2((corner & 1u) != 0u, (corner & 2u) != 0u);
         uint index = home;
         if ((next.x && reach.x == 0.0) || (next.y && reach.y == 0.0))
             continue;
         if (corner != 0u) {
-            index = sluiceDemandCell(u.grid, cell + mix(vec2(0.0), side, next));
+            index = sluiceDemandCell(u.grid, cell + SLUICE_SELECT(SLUICE_SPLAT(vec2, 0.0), side, next));
             if (!sluiceIsDemandCellOpen(index, resident))
                 continue;
             taps = sluiceDemandLevels(index, u.lod);
@@ -217,14 +227,14 @@ vec4 sluiceSumDemandCells(SluiceDemandUdim u, vec2 uv, inout bool resident)
         SluiceDemandState s = sluiceOpenDemandCell(index);
         if (taps.fine == sluiceDemandLastLevel(s.shape)) /* it has no page */
             sluiceMarkDemandPage(s.tailPage);
-        [[dont_unroll]] for (uint pass = 0u; pass < 2u; pass++) {
-            vec2 weights = pass == 0u ? beyond.fine : beyond.coarse;
-            weights = mix(1.0 - weights, weights, next);
-            float weight = (pass == 0u ? 1.0 - taps.fraction : taps.fraction) * weights.x * weights.y;
+        SLUICE_DONT_UNROLL for (uint turn = 0u; turn < 2u; turn++) {
+            vec2 weights = turn == 0u ? beyond.fine : beyond.coarse;
+            weights = SLUICE_SELECT(1.0 - weights, weights, next);
+            float weight = (turn == 0u ? 1.0 - taps.fraction : taps.fraction) * weights.x * weights.y;
             if (!(weight > 0.0))
                 continue;
-            sum += weight * sluiceDemandTexels(s, pass == 0u ? taps.fine : taps.coarse,
-                                               mix(at, 0.5 - 0.5 * side, next));
+            sum += weight * sluiceDemandTexels(s, turn == 0u ? taps.fine : taps.coarse,
+                                               SLUICE_SELECT(at, 0.5 - 0.5 * side, next));
             total += weight;
         }
         resident = resident && s.resident;
@@ -262,16 +272,21 @@ bool sluiceChooseDemandCell(inout SluiceDemandUdim u, vec2 uv, vec2 dx, vec2 dy,
     u.index = sluiceDemandCell(u.grid, u.cell);
     u.base = false;
     color = sluiceDemandBaseColor(u.grid);
-    if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, extent)))
+    if (any(lessThan(uv, SLUICE_SPLAT(vec2, 0.0))) || any(greaterThanEqual(uv, extent)))
         return false;
-    bool based = base != 0u && sluiceIsDemandCellOpen(base, resident);
+    bool based = base != 0u;
+    if (based)
+        based = sluiceIsDemandCellOpen(base, resident);
     if (!resident) /* the base may be sharp enough */
         return false;
     if (based) {
         float lod = sluiceDemandUdimLod(base, extent, dx, dy, sluiceDemandAnisotropy(base));
         u.base = u.index == SLUICE_DEMAND_NO_TEXTURE || !(lod < 0.0);
     }
-    if (!u.base && u.index != SLUICE_DEMAND_NO_TEXTURE && !sluiceIsDemandCellOpen(u.index, resident)) {
+    bool closed = !u.base && u.index != SLUICE_DEMAND_NO_TEXTURE;
+    if (closed)
+        closed = !sluiceIsDemandCellOpen(u.index, resident);
+    if (closed) {
         color = sluiceDemandBaseColor(u.index);
         u.base = based && SLUICE_DEMAND_PREVIEW &&
                  SLUICE_DEMAND_TEXTURE(u.index).state == SLUICE_DEMAND_TEXTURE_UNKNOWN;
@@ -289,12 +304,12 @@ vec4 sluiceDemandUdimGrad(uint index, vec2 uv, vec2 dx, vec2 dy, out bool reside
     vec4 color;
     resident = true;
     u.grid = index;
-    uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
+    uv = sluiceIsFinite(uv) ? uv : SLUICE_SPLAT(vec2, 0.0);
     if (SLUICE_DEMAND_TEXTURE(index).state != SLUICE_DEMAND_TEXTURE_GRID)
         return sluiceDemandBaseColor(index); /* removed */
     if (!sluiceChooseDemandCell(u, uv, dx, dy, resident, color))
-        return resident || SLUICE_DEMAND_PREVIEW ? color : vec4(0.0);
-    vec2 extent = u.base ? sluiceDemandSize(index) : vec2(1.0), size = sluiceDemandSize(u.index);
+        return resident || SLUICE_DEMAND_PREVIEW ? color : SLUICE_SPLAT(vec4, 0.0);
+    vec2 extent = u.base ? sluiceDemandSize(index) : SLUICE_SPLAT(vec2, 1.0), size = sluiceDemandSize(u.index);
     float n = sluiceDemandAnisotropy(u.index);
     float lod = sluiceDemandUdimLod(u.index, extent, dx, dy, n);
     float last = float(sluiceDemandLastLevel(SLUICE_DEMAND_TEXTURE(u.index).shape));
@@ -303,11 +318,11 @@ vec4 sluiceDemandUdimGrad(uint index, vec2 uv, vec2 dx, vec2 dy, out bool reside
     u.lod = lod - log2(max(size.x, size.y));
     SluicePagedTaps taps = sluicePlaceTaps(size / extent, uint(last) + 1u, dx * scale, dy * scale,
                                            beyond ? last : max(lod, 0.0), beyond ? 1.0 : n);
-    vec4 sum = vec4(0.0);
+    vec4 sum = SLUICE_SPLAT(vec4, 0.0);
     float step = 1.0 / float(taps.count);
-    [[dont_unroll]] for (uint i = 0u; i < taps.count; i++)
+    SLUICE_DONT_UNROLL for (uint i = 0u; i < taps.count; i++)
         sum += sluiceSumDemandCells(u, uv + taps.axis * ((float(i) + 0.5) * step - 0.5), resident);
-    return resident || SLUICE_DEMAND_PREVIEW ? sum * step : vec4(0.0);
+    return resident || SLUICE_DEMAND_PREVIEW ? sum * step : SLUICE_SPLAT(vec4, 0.0);
 }
 
 #endif

@@ -16,6 +16,8 @@
 #include "sluice/bindings.glsl"
 #include "sluice/demand_bindings.glsl"
 #include "sluice/demand.glsl"
+#include "sluice/demand_cubes.glsl"
+#include "sluice/demand_grids.glsl"
 #undef SLUICE_DEMAND_BYTE_WORD
 #define SLUICE_DEMAND_BYTE_WORD(chunk, i) sluiceDemandLevelWords[i]
 #include "sluice/demand_bytes.glsl"
@@ -75,6 +77,10 @@ float4 main(float4 position : SV_Position, float2 uv : TEXCOORD0) : SV_Target0
     sluiceWriteCubeFeedback(index, direction, directionX, directionY, 0.0, 4.0);
     sluiceWriteCubeQuadFeedback(index, direction, directionX, directionY, 0.0, 4.0, uint2(position.xy), constants.seed);
     sluiceWriteCubeFeedbackLod(index, direction, 2.0);
+    color += sluiceDemandCubeGrad(index, 1u, direction, directionX, directionY, resident);
+    color += sluiceDemandUdimGrad(index, uv, dx, dy, resident);
+    color += sluiceDemandLayerGrad(index, 1u, uv, dx, dy, resident);
+    color += sluiceDemandLayerLod(index, 1u, uv, 2.0, resident);
     SluiceDemandBytes bytes;
     if (sluiceMapBytesOrRequest(index, bytes))
         color.x += sluiceDemandFloat(bytes, 3u) + float(sluiceDemandByte(bytes, 5u));
