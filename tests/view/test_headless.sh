@@ -127,6 +127,12 @@ printf '1 key 8\n3 set gain 1\n4 screenshot little.png\n5 set gain 16\n6 screens
 run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --script truth \
     --frames 12 --screenshot last.png wall.gltf && cmp little.png much.png && ! cmp -s much.png wall.png
 fact view_8_is_black_where_nothing_is_missing_and_all_views_are_valid
+printf '12 set freeze-wants on\n13 hold s 20\n' >frozen
+run 0 --room --still --headless --deterministic --fresh --size 160x160 --residency paged --timeout 0.1 --standby 0 \
+    --panels off --script frozen --frames 48 --csv frozen.csv &&
+    [ "$(sed -n 14p frozen.csv | cut -d , -f 2,3)" = "$(tail -n 1 frozen.csv | cut -d , -f 2,3)" ] &&
+    awk -F , 'NR == 2 { first = $2 } END { exit !($2 > first) }' frozen.csv
+fact tiles_that_are_wanted_when_wants_are_frozen_stay
 # shellcheck disable=SC2086
 run 0 --headless $validation --size 160x160 --cache . --frames 1 && grep -q '^hall.gltf: 1 frames' out
 fact the_hall_is_opened_without_arguments

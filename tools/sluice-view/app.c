@@ -265,8 +265,18 @@ static void demonstrate(struct view_app *app, double seconds)
     app->demonstrating = false;
 }
 
+/* The setting may come from a key, a control, a script or a file. */
+static void note_freeze(struct view_app *app)
+{
+    const bool frozen = app->settings.freeze_wants != 0;
+    if (frozen && !app->is_frozen)
+        app->frozen = app->camera;
+    app->is_frozen = frozen;
+}
+
 void app_move(struct view_app *app, double seconds)
 {
+    note_freeze(app);
     app->seconds += seconds;
     app->click_age += seconds;
     app->said_seconds -= seconds;

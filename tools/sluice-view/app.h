@@ -33,7 +33,9 @@ struct view_app {
     struct stage *stage;   ///< borrowed; NULL while none is open
     struct view_facts facts;
     struct view_camera camera;
-    struct vec3 center; ///< of VIEW_ORBIT
+    struct vec3 center;        ///< of VIEW_ORBIT
+    struct view_camera frozen; ///< for which tiles are loaded while wants are frozen
+    bool is_frozen;
     enum app_follow follow;
     double follow_seconds;
     struct camera_path path; ///< owned

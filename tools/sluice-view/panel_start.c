@@ -159,7 +159,7 @@ void panel_now(struct view_app *app)
         if (app->settings.pause)
             ui_text(UI_ORANGE, "streaming is paused (P)");
         if (app->settings.freeze_wants)
-            ui_text(UI_ORANGE, "wants are frozen (L)");
+            ui_text(UI_ORANGE, "wants are frozen: orange lines (L)");
     }
     ui_end_panel();
 }

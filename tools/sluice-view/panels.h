@@ -11,6 +11,8 @@ void panels_draw_picture(const struct view_app *app);
 
 /* Each is drawn if it is open. */
 void panel_start(struct view_app *app);
+/** Lines of the frustum of the camera that tiles are loaded for, while wants are frozen. */
+void panel_ghost(const struct view_app *app);
 void panel_now(struct view_app *app);
 void panel_legend(const struct view_app *app);
 void panel_controls(struct view_app *app);

@@ -16,6 +16,7 @@
 
 #define TICKS_PER_SECOND 1000000u
 #define LEAST_BUDGET (4ull << 20)
+#define FROZEN_SECONDS 1e9 /* frozen wants: feedback that is not written takes nothing back */
 
 struct stage {
     const struct gpu *gpu;
@@ -286,7 +287,9 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
         settings->textures_per_frame < most ? settings->textures_per_frame : most;
     now.tilesPerFrame = settings->tiles_per_frame;
     now.numExtraStandbyTiles = settings->standby;
-    now.feedbackTimeoutTicks = (uint64_t)(settings->timeout * TICKS_PER_SECOND);
+    now.feedbackTimeoutTicks =
+        (uint64_t)((settings->freeze_wants ? FROZEN_SECONDS : settings->timeout) *
+                   TICKS_PER_SECOND);
     now.residencyFadeTicks = (uint64_t)(settings->fade * TICKS_PER_SECOND);
     check(sluiceSetVulkanStreamerSettings(s->streamer, &now), "sluiceSetVulkanStreamerSettings");
     s->settings = *settings;

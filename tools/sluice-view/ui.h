@@ -136,6 +136,7 @@ void ui_fill(float x, float y, float width, float height, uint32_t color);
 /** Behind all panels; a text on a dark rectangle that is larger by `pad`. */
 void ui_label_behind(float x, float y, float pad, const char *text);
 void ui_fill_behind(float x, float y, float width, float height, uint32_t color);
+void ui_stroke_behind(float x0, float y0, float x1, float y1, uint32_t color, float thickness);
 void ui_frame(float x, float y, float width, float height, uint32_t color);
 void ui_stroke(float x0, float y0, float x1, float y1, uint32_t color, float thickness);
 void ui_polyline(const float *xy, uint32_t count, uint32_t color, float thickness);

@@ -60,6 +60,11 @@ void ui_fill_behind(float x, float y, float width, float height, uint32_t color)
                                                   color);
 }
 
+void ui_stroke_behind(float x0, float y0, float x1, float y1, uint32_t color, float thickness)
+{
+    ImGui::GetBackgroundDrawList()->AddLine(ImVec2(x0, y0), ImVec2(x1, y1), color, thickness);
+}
+
 void ui_label_behind(float x, float y, float pad, const char *text)
 {
     const ImVec2 size = ImGui::CalcTextSize(text);
