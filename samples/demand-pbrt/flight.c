@@ -30,10 +30,10 @@ static void turn(float v[2], double c, double s)
 }
 
 /** The axis that is up is the one of y and z that is more upright in the picture. */
-static void orbit(const struct launches *l, const struct PbrtLaunch *last, double share,
+static void orbit(const struct scene *scene, const struct PbrtLaunch *last, double share,
                   struct PbrtLaunch *constants)
 {
-    const SluicePbrtBounds *box = &l->scene->box;
+    const SluicePbrtBounds *box = &scene->box;
     const double c = cos(share * 6.283185307179586), s = sin(share * 6.283185307179586);
     float *const vectors[] = {constants->eye, constants->corner, constants->right, constants->down,
                               constants->forward};
@@ -54,24 +54,21 @@ static void orbit(const struct launches *l, const struct PbrtLaunch *last, doubl
         constants->eye[i] += middle[i];
 }
 
-/** At the end `constants` are those of the picture. */
-static void place_camera(const struct launches *l, const struct PbrtLaunch *last, double share,
-                         struct PbrtLaunch *constants)
+void flight_place_camera(const struct scene *scene, const struct pbrt_options *o,
+                         const uint32_t size[2], double share, struct PbrtLaunch *constants)
 {
-    const struct pbrt_options *o = l->options;
-    const uint32_t size[2] = {l->film->width, l->film->height};
+    const struct PbrtLaunch last = *constants;
     float from[12], to[12], between[12];
-    *constants = *last;
     if (share >= 1.0)
         return;
     if (!o->fly_from.given) {
-        orbit(l, last, share, constants);
+        orbit(scene, &last, share, constants);
         return;
     }
-    camera_matrix(l->scene, &o->fly_from, from);
-    camera_matrix(l->scene, &o->camera, to);
+    camera_matrix(scene, &o->fly_from, from);
+    camera_matrix(scene, &o->camera, to);
     camera_between(from, to, (float)share, between);
-    camera_constants(l->scene, between, size, constants);
+    camera_constants(scene, between, size, constants);
 }
 
 /** Pictures are opened by other threads. Those that are open tell what their formats mean. */
@@ -191,9 +188,11 @@ static bool fly_frame(struct launches *l, struct flight *f, uint32_t frame)
 static bool fly(struct launches *l, struct flight *f)
 {
     const struct PbrtLaunch last = l->constants;
+    const uint32_t size[2] = {l->film->width, l->film->height};
     film_begin_sample(l->film);
     for (uint32_t i = 0; i < f->frame_count; i++) {
-        place_camera(l, &last, (i + 1.0) / f->frame_count, &l->constants);
+        l->constants = last;
+        flight_place_camera(l->scene, l->options, size, (i + 1.0) / f->frame_count, &l->constants);
         if (!fly_frame(l, f, i))
             return false;
         if (l->options->sequence || l->options->contact_sheet)

@@ -20,6 +20,10 @@ struct flight {
     struct flight_phase work, top_level, launch;
 };
 
+/** Moves the camera of the picture, which is in `constants`, to a share of the way; 1 leaves it. */
+void flight_place_camera(const struct scene *scene, const struct pbrt_options *options,
+                         const uint32_t size[2], double share, struct PbrtLaunch *constants);
+
 /**
  * Flies once around the vertical axis through the middle of the scene, or from --fly-from, and ends
  * at the camera of the picture. Each frame resolves what the last one asked for, the nearest first,

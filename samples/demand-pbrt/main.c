@@ -174,6 +174,7 @@ static bool open_all(struct renderer *r)
     float camera[12];
     camera_matrix(&r->scene, &o->camera, camera);
     camera_constants(&r->scene, camera, size, c);
+    flight_place_camera(&r->scene, o, size, o->fly_at, c);
     memcpy(c->background, o->background, sizeof c->background);
     c->mode = (uint32_t)o->mode;
     c->bounces = o->bounces;

@@ -90,8 +90,10 @@ static bool check(const struct option_table *table, const struct pbrt_options *o
         return options_refuse(table, "--preload and --preload-shapes: give one of them");
     if (o->frame_budget > 0 && o->fly == 0)
         return options_refuse(table, "--frame-budget: is for --fly");
-    if (o->fly_from.given && o->fly == 0)
-        return options_refuse(table, "--fly-from: is for --fly");
+    if (o->fly > 0 && o->fly_at < 1.0)
+        return options_refuse(table, "--fly and --fly-at: give one of them");
+    if (o->fly_from.given && o->fly == 0 && !(o->fly_at < 1.0))
+        return options_refuse(table, "--fly-from: is for --fly and --fly-at");
     return true;
 }
 
@@ -132,6 +134,10 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          "fly once around the scene first, and tell how long frames took", 0, 1000000},
         {OPTION_CUSTOM, "fly-from", "EYE/POINT[/UP]", "(around the scene)", &o->fly_from,
          "fly from this camera to that of the picture instead", .parse = parse_view},
+        {OPTION_REAL, "fly-at", "SHARE", "1", &o->fly_at,
+         "the picture is what the camera sees after this share of the way of --fly; 7/96: frame 7 "
+         "of 96",
+         0, 1},
         {OPTION_REAL, "frame-budget", "MS", "0", &o->frame_budget,
          "time of a frame of --fly: when it is spent, boxes and materials that are asked for wait; "
          "0: no limit",

@@ -27,6 +27,7 @@ struct pbrt_options {
     uint32_t repeat;
     struct camera_view camera, fly_from;
     uint32_t fly;        ///< frames; 0: none
+    double fly_at;       ///< share of the way where the picture is; 1: its end
     double frame_budget; ///< ms; 0: no limit
     uint32_t cluster_size;
     uint32_t anisotropy;

@@ -98,11 +98,11 @@ def rays(parallel):
                 yield x, y, [0, 0, 0], [reach * at[0], reach * at[1], 1]
 
 
-def render(shapes, camera):
+def render(shapes, camera, options):
     scene, picture = os.path.join(folder, "scene.pbrt"), os.path.join(folder, "picture.pfm")
     with open(scene, "w") as file:
         file.write(f"Camera {camera}\nWorldBegin\n" + "".join(shape.text for shape in shapes) + "WorldEnd\n")
-    done = subprocess.run([program, scene, "--dim", f"{WIDTH}x{HEIGHT}", "--path", "compute", "--file", picture],
+    done = subprocess.run([program, scene, "--dim", f"{WIDTH}x{HEIGHT}", "--path", "compute", "--file", picture, *options],
                           capture_output=True, text=True)
     if done.returncode == 77:
         print("1..0 # SKIP no device traces rays")
@@ -121,9 +121,9 @@ def is_shown(pixel, shape):
     return pixel[2] > 0 and all(abs(pixel[i] / pixel[2] - shape.color[i] / shape.color[2]) < 1e-3 for i in (0, 1))
 
 
-def compare(name, shapes, camera, parallel):
+def compare(name, shapes, camera, parallel, *options):
     global number, failed
-    pixels, unclear, wrong, hit = render(shapes, camera), 0, [], 0
+    pixels, unclear, wrong, hit = render(shapes, camera, options), 0, [], 0
     for x, y, origin, direction in rays(parallel):
         shape, close = cast(shapes, origin, direction)
         unclear += close
@@ -140,7 +140,9 @@ def compare(name, shapes, camera, parallel):
 shutil.rmtree(folder, ignore_errors=True)
 os.makedirs(folder)
 all_shapes = make_shapes()
-compare("rays in all directions hit what they hit without trees", all_shapes, f"\"perspective\" \"float fov\" {FIELD}", False)
+# Halfway between the two cameras lies the scene's own.
+compare("rays in all directions hit what they hit without trees", all_shapes, f"\"perspective\" \"float fov\" {FIELD}", False,
+        "--fly-from", "-2/1/0/-2/1/5", "--look-from", "2/-1/0/2/-1/5", "--fly-at", "1/2")
 compare("rays along an axis hit what they hit without trees", all_shapes, "\"orthographic\"", True)
 print(f"1..{number}")
 sys.exit(failed)
