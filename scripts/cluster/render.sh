@@ -1,0 +1,88 @@
+#!/usr/bin/env bash
+# Renders frames in N tasks, runs tasks that failed again, and makes a contact sheet. docs/cluster.md says more.
+#
+#   render.sh FIRST-LAST N FOLDER [--local JOBS] [--rounds N] [--sbatch OPTION]... -- COMMAND...
+#
+#   --local JOBS     no cluster: JOBS tasks at a time on this machine
+#   --rounds N       run failed tasks again so many times (default: 3)
+#   --sbatch OPTION  an option for sbatch, as --sbatch --mem=4G; may be given again
+#   --help
+#
+# COMMAND renders one frame: %f in it is the frame's number, %o the picture to write (PNG). Pictures are
+# FOLDER/frame-NNNNN.png, and those that are there are not rendered again. FOLDER/contact-sheet.png shows all.
+# The exit status is 0 if all frames and the sheet were written.
+#
+# Environment: SLUICE_CONTACT_SHEET   the program that makes the sheet (default: contact-sheet of PATH)
+
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+sheet=${SLUICE_CONTACT_SHEET:-contact-sheet}
+
+usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+die() {
+    echo "render.sh: $*" >&2
+    exit 2
+}
+
+words=() options=() local_jobs=0 rounds=3
+while [ $# -gt 0 ]; do
+    case $1 in
+    --help) usage; exit 0 ;;
+    --local) local_jobs=${2:?--local needs a number}; shift ;;
+    --rounds) rounds=${2:?--rounds needs a number}; shift ;;
+    --sbatch) options+=("${2:?--sbatch needs an option}"); shift ;;
+    --) shift; break ;;
+    -*) die "unknown option $1 (see --help)" ;;
+    *) words+=("$1") ;;
+    esac
+    shift
+done
+[ ${#words[@]} -eq 3 ] || die "FIRST-LAST, N and FOLDER are needed (see --help)"
+[[ ${words[0]} =~ ^([0-9]{1,6})-([0-9]{1,6})$ ]] || die "frames are FIRST-LAST, as in 0-95"
+first=$((10#${BASH_REMATCH[1]})) last=$((10#${BASH_REMATCH[2]})) count=${words[1]} folder=${words[2]}
+case $count$local_jobs$rounds in *[!0-9]*) die "N, JOBS and rounds are numbers" ;; esac
+if [ "$first" -gt "$last" ] || [ "$count" -eq 0 ]; then die "there is no frame, or no task"; fi
+case "$*" in *%o*) ;; *) die "COMMAND has no %o, so it writes no picture" ;; esac
+[ "$local_jobs" -gt 0 ] || command -v sbatch >/dev/null || die "there is no sbatch; --local JOBS needs no cluster"
+command -v "$sheet" >/dev/null || die "there is no $sheet; SLUICE_CONTACT_SHEET names one"
+[ "$count" -le $((last - first + 1)) ] || count=$((last - first + 1))
+mkdir -p "$folder"
+find "$folder" -maxdepth 1 -name '.frame-*.png' -mmin +1440 -delete # left by tasks that were killed
+
+picture() { printf '%s/frame-%05d.png' "$folder" "$1"; }
+
+# The tasks that lack a picture, as 1,5,7.
+tasks_to_run() {
+    local task frame frames=$((last - first + 1))
+    for ((task = 1; task <= count; task++)); do
+        for ((frame = first + (task - 1) * frames / count; frame < first + task * frames / count; frame++)); do
+            [ -e "$(picture "$frame")" ] || { echo "$task"; break; }
+        done
+    done | paste -sd ,
+}
+
+run_tasks() { # LIST COMMAND...
+    local list=$1
+    shift
+    if [ "$local_jobs" -gt 0 ]; then
+        tr , '\n' <<<"$list" | xargs -P "$local_jobs" -I @TASK@ env SLURM_ARRAY_TASK_ID=@TASK@ \
+            bash "$here/render.sbatch" "$first" "$last" "$count" "$folder" "$@" || true
+    else
+        sbatch --wait --array="$list" "${options[@]}" "$here/render.sbatch" "$first" "$last" "$count" "$folder" "$@" || true
+    fi
+}
+
+for ((round = 0; ; round++)); do
+    list=$(tasks_to_run)
+    [ -n "$list" ] || break
+    if [ "$round" -gt "$rounds" ]; then
+        echo "render.sh: tasks $list of $count lack pictures" >&2
+        exit 1
+    fi
+    [ "$round" -eq 0 ] || echo "render.sh: round $round of $rounds: tasks $list of $count run again"
+    run_tasks "$list" "$@"
+done
+pictures=()
+for ((frame = first; frame <= last; frame++)); do pictures+=("$(picture "$frame")"); done
+"$sheet" -o "$folder/contact-sheet.png" "${pictures[@]}"
+echo "$folder/contact-sheet.png: ${#pictures[@]} frames"
