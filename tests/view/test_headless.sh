@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE: the viewer without a window, in TAP.
+# test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE SLUICE-REPLAY: the viewer without a window, in TAP.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
-facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3")
+facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3") replay=$(realpath "$4")
 "$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
 # shellcheck source=/dev/null
 . "$facts"
@@ -12,11 +12,13 @@ cat >script <<'END'
 6 click 200 120 right
 8 key t
 10 key g
+11 record run.trace
 16 screenshot with-panels.png
 18 key H
 20 screenshot picture.png
 21 key F1
 22 set budget 16
+23 key Ctrl+R
 24 quit
 END
 # The stage of the sanitizers switches layers off.
@@ -35,6 +37,9 @@ fact panels_are_in_pictures_and_h_hides_them
 [ "$(wc -l <second.csv)" -eq 26 ] && head -n 1 second.csv | grep -q '^frame,resident_mb,' &&
     cmp <(cut -d , -f 1-5,8-13 first.csv) <(cut -d , -f 1-5,8-13 second.csv)
 fact figures_are_written_for_each_frame_and_are_the_same
+"$replay" run.trace >out && grep -q '^as_recorded *yes' out && echo '1 record none/run.trace' >unwritable &&
+    run 1 --room --headless --size 160x160 --frames 2 --script unwritable && grep -q 'none/run.trace' err
+fact decisions_are_recorded_from_any_frame_and_a_file_that_cannot_be_written_is_named
 echo '1 kye 3' >wrong
 run 1 --headless --script wrong && grep -q 'wrong:1: there is no event kye' err
 fact a_wrong_script_is_named_with_its_line

@@ -45,6 +45,12 @@ static void record(struct view_app *app, int argument)
         app_say(app, "Recorded %.1f s; space plays them", (double)camera_path_length(&app->path));
 }
 
+static void trace(struct view_app *app, int argument)
+{
+    (void)argument;
+    app->trace = true;
+}
+
 static void pause(struct view_app *app, int argument)
 {
     (void)argument;
@@ -226,6 +232,7 @@ static const struct action table[] = {
     {"Streaming", "N", NULL, "one step", step, 0},
     {"Streaming", "Shift+R", NULL, "evict everything, watch it fill", restart, 0},
     {"Streaming", "L", NULL, "freeze what is wanted", freeze, 0},
+    {"Streaming", "Ctrl+R", NULL, "record for sluice-replay, or end it", trace, 0},
     {"Streaming", "B", NULL, "budget demonstration", demonstrate, 0},
     {"Streaming", "[", NULL, "half the budget", scale_budget, 0},
     {"Streaming", "]", NULL, "twice the budget", scale_budget, 1},

@@ -39,7 +39,8 @@ struct view_app {
     enum app_follow follow;
     double follow_seconds;
     struct camera_path path; ///< owned
-    bool recording;
+    bool recording;          ///< the path
+    bool tracing;            ///< what the streamer decides, for sluice-replay
     struct view_camera bookmarks[APP_BOOKMARKS];
     bool bookmark_set[APP_BOOKMARKS];
     bool open[PANEL_COUNT];
@@ -67,7 +68,7 @@ struct view_app {
     bool headless;       ///< time is that of the frame's number
     const char *program; ///< words of the command line before the options
     /* Requests to the loop, which resets them. */
-    bool quit, reload, step, restart, screenshot, screenshot_plain;
+    bool quit, reload, step, restart, screenshot, screenshot_plain, trace;
 };
 
 void app_init(struct view_app *app);

@@ -12,7 +12,7 @@ struct view_options {
     bool room, headless, deterministic, fresh, json, validation, list_devices, still;
     uint32_t frames; ///< 0: until the script ends, or the window is closed
     uint32_t threads;
-    const char *script, *screenshot, *csv, *play, *cache, *device;
+    const char *script, *screenshot, *csv, *play, *cache, *device, *record;
 };
 
 /** Settings that stand before the options: defaults, or those of a file, which options change. */

@@ -156,6 +156,8 @@ void panel_now(struct view_app *app)
             ui_text(UI_RED, "%u tiles failed to load (K)",
                     f->now.failedTileCount + f->now.givenUpTileCount);
         draw_messages(app);
+        if (app->tracing)
+            ui_text(UI_RED, "recording for sluice-replay (Ctrl+R)");
         if (app->settings.pause)
             ui_text(UI_ORANGE, "streaming is paused (P)");
         if (app->settings.freeze_wants)

@@ -187,6 +187,11 @@ static bool take_screenshot(struct line *line)
     return line->count > 0 && add_text(line, SCRIPT_SCREENSHOT, line->rest, NULL);
 }
 
+static bool take_record(struct line *line)
+{
+    return line->count > 0 && add_text(line, SCRIPT_RECORD, line->rest, NULL);
+}
+
 static bool take_quit(struct line *line)
 {
     return line->count == 0 && add(line, (struct script_step){.kind = SCRIPT_QUIT});
@@ -207,6 +212,7 @@ static const struct {
     {"drop", "a path", take_drop},
     {"set", "the name of an option and a value", take_set},
     {"do", "evict, pin, hide or retry", take_do},
+    {"record", "a file", take_record},
     {"screenshot", "a file", take_screenshot},
     {"quit", "nothing else", take_quit},
 };

@@ -27,6 +27,7 @@ enum script_kind {
     SCRIPT_DROP,   ///< text
     SCRIPT_SET,    ///< text, value
     SCRIPT_DO,     ///< text: texture_actions.h
+    SCRIPT_RECORD, ///< text: a file
     SCRIPT_SCREENSHOT,
     SCRIPT_QUIT
 };

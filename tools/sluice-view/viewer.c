@@ -72,6 +72,7 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
     case SCRIPT_DROP: drop(v, step->text); break;
     case SCRIPT_SET: controls_set(&v->app.settings, step->text, step->value, "sluice-view"); break;
     case SCRIPT_DO: texture_actions_do(&v->app, step->text); break;
+    case SCRIPT_RECORD: viewer_begin_recording(v, step->text); break;
     case SCRIPT_SCREENSHOT: snprintf(v->screenshot, sizeof v->screenshot, "%s", step->text); break;
     case SCRIPT_QUIT: v->app.quit = true; break;
     }
@@ -138,13 +139,17 @@ static void answer_requests(struct viewer *v)
         viewer_reopen(v, NULL);
     if (app->screenshot)
         name_screenshot(v);
+    if (app->trace && v->recorder)
+        viewer_end_recording(v);
+    else if (app->trace)
+        viewer_begin_recording(v, NULL);
     if (v->stage && memcmp(&v->applied, &app->settings, sizeof v->applied) != 0) {
         stage_apply(v->stage, &app->settings);
         v->applied = app->settings;
     }
     if (v->window)
         window_set_full_screen(v->window, app->settings.full_screen != 0);
-    app->restart = app->reload = false;
+    app->restart = app->reload = app->trace = false;
 }
 
 static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer commands)
@@ -444,6 +449,8 @@ int viewer_run(const struct view_options *options)
     v->app.headless = options->headless;
     if (prepare(v, &unsupported) && begin(v))
         good = run_frames(v);
+    viewer_end_recording(v);
+    good = good && !v->recording_failed;
     if (good)
         print_summary(v);
     if (v->stage && v->settings_path[0]) /* after a lost device, too */

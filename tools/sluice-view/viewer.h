@@ -11,6 +11,8 @@
 
 #include "../common/files.h"
 
+#include <sluice/replay.h>
+
 struct viewer {
     const struct view_options *options;
     struct gpu gpu;
@@ -29,6 +31,9 @@ struct viewer {
     char command[4200];           ///< of "copy command line", without options
     char settings_path[4096];     ///< "": none are kept
     char screenshot[4096];        ///< to write after this frame; "": none
+    SluiceRecorder *recorder;     ///< of the manager of `stage`; NULL: none
+    char recording[4096];         ///< its file
+    bool recording_failed;
     struct output_file *csv;
     uint32_t frame;
     double last_time, host_seconds;
@@ -55,6 +60,11 @@ void viewer_end_load(struct viewer *viewer);
 /** Creates or destroys the second streamer, as the settings of the comparison want it. False if the
  *  device failed. */
 bool viewer_fit_other(struct viewer *viewer);
+/** Records what the streamer decides into a file for sluice-replay, between two frames. Ends the
+ *  recording before. `path` NULL: a new name in the working folder. */
+void viewer_begin_recording(struct viewer *viewer, const char *path);
+/** Does nothing if nothing is recorded. */
+void viewer_end_recording(struct viewer *viewer);
 /** Returns the exit status: 0, 1, or 77 without a device. */
 int viewer_run(const struct view_options *options);
 

@@ -67,6 +67,7 @@ void viewer_close_scene(struct viewer *v)
 {
     if (v->stage)
         frames_wait(&v->frames);
+    viewer_end_recording(v);
     app_close(&v->app);
     stage_destroy(v->other);
     stage_destroy(v->stage);
@@ -103,6 +104,8 @@ static bool show(struct viewer *v, struct scene_data *scene, struct file_list *p
     name_command(v);
     if (!app_open(&v->app, stage, first && !v->options->still))
         return false;
+    if (first && v->options->record)
+        viewer_begin_recording(v, v->options->record);
     if (first)
         begin_walk(v);
     else if (paths)
