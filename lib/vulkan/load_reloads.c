@@ -8,19 +8,12 @@
 
 SluiceResult slc_reloads_reserve(SluiceVulkanStreamer *s, uint32_t tile_count)
 {
-    return slc_remakes_reserve(&s->reloads, tile_count);
-}
-
-/* The packed levels have the index of the first packed tile. */
-static uint64_t tail_key(const SluiceVulkanStreamer *s, uint32_t texture)
-{
-    return slc_pair_key(texture, s->textures[texture].layout.regularTileCount);
+    return slc_reload_lists_reserve(&s->reloads, tile_count);
 }
 
 bool slc_reload_is_due(const SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile)
 {
-    return s->reloads.count &&
-           slc_map_get(&s->reloads.keys, slc_pair_key(texture, tile)) != SLC_MAP_NONE;
+    return slc_reload_lists_has(&s->reloads, texture, tile);
 }
 
 /* Changes ------------------------------------------------------------------------------------ */
@@ -44,7 +37,7 @@ void slc_reload_tile(SluiceVulkanStreamer *s, uint32_t texture, uint32_t index)
         if (s->units[unit].state == SLC_UNIT_READING)
             sluiceCancelTileRead(s->loader, s->units[unit].ticket);
     } else if (unit != SLC_MAP_NONE || is_resident(s, texture, index, &tile)) {
-        slc_remakes_add(&s->reloads, key);
+        slc_reload_lists_add(&s->reloads, texture, index);
     } else if (residency->interface->spoil && s->textures[texture].presence == SLC_PRESENT) {
         is_resident(s, texture, index, &tile);
         residency->interface->spoil(residency, texture, &tile);
@@ -59,16 +52,15 @@ void slc_reload_tail(SluiceVulkanStreamer *s, uint32_t index)
         return;
     slc_reloads_drop_tail(s, index); /* older reads must not end after the new ones */
     texture->reload_next = 0;
-    slc_remakes_add(&s->reloads, tail_key(s, index));
+    slc_reload_lists_add(&s->reloads, index, texture->layout.regularTileCount);
 }
 
 uint32_t slc_reload_count(const SluiceVulkanStreamer *s, uint32_t texture)
 {
-    const struct slc_remakes *r = &s->reloads;
-    uint32_t tail = s->textures[texture].layout.regularTileCount, count = 0;
+    /* The packed levels have the index of the first packed tile. */
+    uint32_t tail = s->textures[texture].layout.regularTileCount;
+    uint32_t count = slc_reload_lists_count(&s->reloads, texture);
     bool has_tail = slc_reload_is_due(s, texture, tail);
-    for (uint32_t i = 0; i < r->count; i++)
-        count += r->queue[(r->first + i) % r->capacity] >> 32 == texture;
     for (uint32_t i = 0; s->reload_unit_count && i < s->info.maxLoadsInFlight; i++) {
         const struct slc_unit *unit = &s->units[i];
         if (unit->state == SLC_UNIT_FREE || unit->state == SLC_UNIT_UPLOADED || !unit->reload ||
@@ -138,34 +130,34 @@ static bool start_tile(SluiceVulkanStreamer *s, uint32_t texture, uint32_t index
     return true;
 }
 
-/* After a read that failed. Time stamps may wrap. */
-static bool waits(const SluiceVulkanStreamer *s, struct slc_texture *texture)
+/* Each tile once. A read that fails at once asks for its tile again, and lets the texture wait. */
+static void start_texture(SluiceVulkanStreamer *s, uint32_t index, uint32_t *started)
 {
-    if (texture->reload_waits && s->time_stamp - texture->reload_time <= UINT64_MAX / 2)
-        texture->reload_waits = false;
-    return texture->reload_waits;
+    struct slc_reload_lists *r = &s->reloads;
+    const struct slc_texture *texture = &s->textures[index];
+    for (uint32_t left = slc_reload_lists_count(r, index);
+         left > 0 && may_start(s, *started) && !r->lists[index].waits; left--) {
+        uint32_t tile = slc_reload_lists_take(r, index);
+        bool done = true;
+        if (texture->presence != SLC_PRESENT)
+            continue;
+        if (tile == texture->layout.regularTileCount)
+            done = start_tail(s, index, started);
+        else
+            done = start_tile(s, index, tile, started);
+        if (!done)
+            slc_reload_lists_add(r, index, tile);
+    }
 }
 
 SluiceResult slc_reloads_start(SluiceVulkanStreamer *s)
 {
     uint32_t started = 0;
-    for (uint32_t left = s->reloads.count; left > 0 && may_start(s, started); left--) {
-        uint64_t key = slc_remakes_take(&s->reloads);
-        uint32_t index = (uint32_t)(key >> 32), tile = (uint32_t)key;
-        struct slc_texture *texture = &s->textures[index];
-        /* A read that fails at once asks for its tile again. */
-        slc_remakes_end(&s->reloads, key);
-        bool done = false;
-        if (texture->presence != SLC_PRESENT)
-            done = true;
-        else if (waits(s, texture))
-            done = false;
-        else if (tile == texture->layout.regularTileCount)
-            done = start_tail(s, index, &started);
-        else
-            done = start_tile(s, index, tile, &started);
-        if (!done)
-            slc_remakes_add(&s->reloads, key);
+    slc_reload_lists_wake(&s->reloads, s->time_stamp);
+    for (uint32_t left = s->reloads.ready.count; left > 0 && may_start(s, started); left--) {
+        uint32_t texture = slc_reload_lists_begin(&s->reloads);
+        start_texture(s, texture, &started);
+        slc_reload_lists_end(&s->reloads, texture);
     }
     return SLUICE_SUCCESS;
 }
@@ -186,11 +178,10 @@ static void fail(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
     struct slc_unit *unit = &s->units[index];
     struct slc_texture *texture = &s->textures[unit->texture];
     slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, 1, answer);
-    texture->reload_waits = true;
-    texture->reload_time = s->time_stamp + s->info.retryDelayTicks;
     if (unit->packed_unit != SLC_NONE)
         texture->reload_next = 0;
-    slc_remakes_add(&s->reloads, slc_pair_key(unit->texture, unit->tile.tileIndex));
+    slc_reload_lists_add(&s->reloads, unit->texture, unit->tile.tileIndex);
+    slc_reload_lists_wait(&s->reloads, unit->texture, s->time_stamp + s->info.retryDelayTicks);
     slc_unit_forget_tile(s, unit);
     slc_unit_free(s, index);
 }
@@ -232,13 +223,7 @@ void slc_reloads_drop_tail(SluiceVulkanStreamer *s, uint32_t texture)
     }
 }
 
-static bool is_of_texture(void *user, uint64_t key)
-{
-    return key >> 32 == *(const uint32_t *)user;
-}
-
 void slc_reloads_drop(SluiceVulkanStreamer *s, uint32_t texture)
 {
-    if (s->reloads.count)
-        slc_remakes_drop(&s->reloads, is_of_texture, &texture);
+    slc_reload_lists_drop(&s->reloads, texture);
 }

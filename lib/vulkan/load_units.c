@@ -118,7 +118,7 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
     s->free_unit_count = count;
     SluiceResult result = slc_map_init(&s->tile_units, &s->cb, count);
     if (result == SLUICE_SUCCESS)
-        result = slc_remakes_init(&s->reloads, &s->cb, count);
+        result = slc_reload_lists_init(&s->reloads, &s->cb, s->info.maxTextureCount, count);
     if (result != SLUICE_SUCCESS)
         return result;
     result =
@@ -137,7 +137,7 @@ void slc_loads_finish(SluiceVulkanStreamer *s)
                               s->loader); /* first: its threads write into the staging slots */
     slc_staging_finish(&s->staging);
     slc_map_finish(&s->tile_units, &s->cb);
-    slc_remakes_finish(&s->reloads);
+    slc_reload_lists_finish(&s->reloads);
     slc_deferred_tiles_finish(&s->deferred, &s->cb);
     slc_deferred_tiles_finish(&s->awaited, &s->cb);
     slc_free(&s->cb, s->units, s->info.maxLoadsInFlight, sizeof *s->units);

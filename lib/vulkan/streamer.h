@@ -17,7 +17,7 @@
 #include "vulkan/read_health.h"
 #include "vulkan/readback_ring.h"
 #include "vulkan/region_arena.h"
-#include "vulkan/remakes.h"
+#include "vulkan/reload_lists.h"
 #include "vulkan/residency.h"
 #include "vulkan/resolve.h"
 #include "vulkan/sparse_layout.h"
@@ -99,8 +99,6 @@ struct slc_texture {
     uint32_t used_before, used_after; ///< in that order; SLC_NONE
     uint32_t unit_count;              ///< staging slots that name it
     uint32_t reload_next;             ///< first unit of its mip tail that is not read again yet
-    bool reload_waits;                ///< a read again failed: the next one is not before ...
-    uint64_t reload_time;             ///< ... this time stamp
 
     struct slc_packed_units packed;
     SluiceTile *packed_tiles;  ///< owned; desc.packedTileCount, of which packed_collected
@@ -269,8 +267,8 @@ struct SluiceVulkanStreamer {
     struct slc_unit_list unproduced; ///< bound, not recorded
     struct slc_unit_list produced;   ///< recorded, not complete
     uint32_t free_unit_count;
-    struct slc_map tile_units;  ///< (texture, tile) -> unit, until the unit is free
-    struct slc_remakes reloads; ///< (texture, tile); see load_reloads.h
+    struct slc_map tile_units;       ///< (texture, tile) -> unit, until the unit is free
+    struct slc_reload_lists reloads; ///< see load_reloads.h
     uint32_t reload_unit_count;
     struct slc_deferred_tiles deferred;
     struct slc_deferred_tiles awaited; ///< that another front end is about to have
