@@ -1,6 +1,7 @@
 #include "http/http_attempt.h"
 
 #include "http/http_header.h"
+#include "platform/pipe_signal.h"
 #include "platform/time_now.h"
 
 #include <stdarg.h>
@@ -427,6 +428,7 @@ static void take_answer(struct attempt *attempt, CURL *easy)
 void slc_http_attempt(const struct slc_http_request *request, struct slc_http_answer *answer)
 {
     char error[CURL_ERROR_SIZE] = "";
+    struct slc_pipe_signal pipes;
     struct attempt attempt = {.request = request, .answer = answer};
     *answer = (struct slc_http_answer){.outcome = SLC_HTTP_OK};
     slc_http_header_begin(&attempt.header);
@@ -437,7 +439,10 @@ void slc_http_attempt(const struct slc_http_request *request, struct slc_http_an
     }
     CURLcode code = set_options(&attempt, headers, error);
     if (code == CURLE_OK) {
+        /* libcurl leaves the signal alone with CURLOPT_NOSIGNAL, and OpenSSL raises it. */
+        slc_pipe_signal_block(&pipes);
         code = curl_easy_perform(request->easy);
+        slc_pipe_signal_restore(&pipes);
         count(request->client, request->easy);
     }
     if (code == CURLE_OK)

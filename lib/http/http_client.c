@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/log.h"
 #include "base/struct_size.h"
+#include "platform/pipe_signal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -209,6 +210,8 @@ SluiceResult sluiceCreateHttpClient(const SluiceHttpClientCreateInfo *pInfo,
 
 static void free_hosts(SluiceHttpClient *client)
 {
+    struct slc_pipe_signal pipes;
+    slc_pipe_signal_block(&pipes); /* OpenSSL says goodbye on connections that may be gone */
     while (client->hosts) {
         struct slc_http_host *host = client->hosts;
         client->hosts = host->next;
@@ -221,6 +224,7 @@ static void free_hosts(SluiceHttpClient *client)
         free_string(client, host->origin);
         slc_free(&client->allocator, host, 1, sizeof *host);
     }
+    slc_pipe_signal_restore(&pipes);
 }
 
 void sluiceDestroyHttpClient(SluiceHttpClient *client)
