@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# test_scripts.sh FACTS SLUICE-VIEW: the scripts of docs/viewer, in TAP. One after the other in one run, at half the size
+# that they are written for, in front of three small pictures.
+set -u
+root=$(cd "$(dirname "$0")/../.." && pwd)
+facts=$(realpath "$1") tool=$(realpath "$2")
+"$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
+# shellcheck source=/dev/null
+. "$facts"
+
+offset=0
+for script in "$root"/docs/viewer/*.txt; do
+    sed '/^#/d; s/ *#.*//' "$script" | awk -v offset="$offset" '{ $1 += offset }
+        $2 == "click" { $3 /= 2; $4 /= 2 } { print }' >>events
+    offset=$(($(awk '$1 > last { last = $1 } END { print last }' events) + 3))
+done
+grep ' screenshot ' events >screenshots
+mkdir plain pictures
+for shade in '\377' '\144' '\036'; do
+    { printf 'P6 300 300 255\n' && head -c 270000 /dev/zero | tr '\0' "$shade"; } >"pictures/${shade#?}.ppm"
+done
+show() { run 0 pictures --headless --deterministic --fresh --cache . --size 500x281 --ui-scale 0.5 --render-scale 0.2 "$@"; }
+
+show --script screenshots && mv ./*.png plain && show --script events &&
+    [ "$(cat err)" = 'sluice-view: missing.gltf: cannot be opened' ]
+fact scripts_run_and_name_nothing_but_the_file_that_is_missing
+same=
+while read -r _ _ picture; do
+    [ -s "$picture" ] && ! cmp -s "$picture" "plain/$picture" || same="$same $picture"
+done <screenshots
+[ -z "$same" ] || { echo "not changed:$same" >err && false; }
+fact each_picture_is_changed_by_the_events_before_it
+unnamed=
+for script in "$root"/docs/viewer/*.txt; do
+    name=$(basename "$script")
+    [ "$name" = hall.txt ] || grep -q "(viewer/$name)" "$root/docs/viewer.md" || unnamed="$unnamed $name"
+done
+[ -z "$unnamed" ] || { echo "not named:$unnamed" >err && false; }
+fact the_page_names_each_script
+end_facts
