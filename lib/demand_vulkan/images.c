@@ -136,6 +136,7 @@ static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image 
     memcpy(words, image->first_pages, sizeof image->first_pages);
     memcpy(image->base_color, image->read_color, sizeof image->base_color);
     image->state = SLC_IMAGE_OPEN;
+    image->generation = slc_page_share_generation(loader->pages, image->source);
     slc_page_pool_prepare(loader->pages, loader->page_user,
                           slc_page_format(image->info.format, image->made));
     slc_image_enter_order(loader, image);
@@ -374,7 +375,7 @@ void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *i
         return; /* what is read now is as good as what is read next */
     drop_jobs(loader, image);
     if (image->source)
-        slc_page_share_drop(loader->pages, image->source);
+        image->generation = slc_page_share_drop(loader->pages, image->source);
     slc_retries_all(loader, &image->retry_group);
     slc_image_forget(loader, image);
     if (image->refresh || image->made)

@@ -105,6 +105,7 @@ struct slc_demand_image {
     uint32_t regular_count, tail_page;
     uint32_t first_pages[SLC_MAX_REGULAR_LEVELS];
     float base_color[4];
+    uint32_t generation;  ///< of the texels that its tiles are named for
     uint32_t retry_group; ///< tiles that could not be read; 0: none
     bool told;            ///< that tiles cannot be read; until one comes that could not
     bool told_remake;     ///< that a tile could not be made again; until one is

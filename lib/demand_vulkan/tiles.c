@@ -221,7 +221,7 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     if (image->made)
         return request_page(loader, image, &request, NULL, ticket, result);
     const SluiceImageRegion region = tile_region(image, level, index);
-    const struct slc_tile_key key = slc_tile_key(image->source, &region);
+    const struct slc_tile_key key = slc_tile_key(image->source, &region, image->generation);
     return request_page(loader, image, &request, &key, ticket, result);
 }
 

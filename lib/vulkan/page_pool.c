@@ -32,6 +32,7 @@ void slc_page_pool_finish(struct slc_page_pool *pool)
         return;
     slc_page_chunks_finish(&pool->chunks);
     slc_shared_tiles_finish(&pool->shared, pool->cb);
+    slc_map_finish(&pool->generations, pool->cb);
     slc_page_views_finish(&pool->views, &pool->vk, pool->cb);
     slc_memory_client_finish(&pool->client);
     slc_mutex_finish(&pool->mutex);

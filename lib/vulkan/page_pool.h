@@ -46,6 +46,10 @@ struct slc_page_pool {
     struct slc_page_timelines timelines;
     struct slc_page_user users[SLC_MAX_PAGE_USERS];
     struct slc_shared_tiles shared; ///< see page_sharing.h
+    struct slc_map generations;     ///< source -> of its texels, if they ever changed
+    uint32_t generation;            ///< the newest of all sources
+    uint32_t least_generation;      ///< of sources that are not in `generations`
+    bool generation_is_named;       ///< a tile was named since the newest one began
     uint32_t held_count;            ///< pages, each once
     bool empty_is_ready;            ///< the image of empty places is in its layout
     bool hurry;                     ///< chunks that are empty are retired with the next record

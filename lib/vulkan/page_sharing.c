@@ -4,6 +4,7 @@
 
 #include <assert.h>
 
+#define FIRST_GENERATIONS 16u
 #define STALLED_FRAMES 8u /* of the one that waits, without any of the other: it is not coming */
 
 /* SLC_NONE: read it. Else the entry, and whether its texels are there. */
@@ -66,6 +67,7 @@ static uint32_t announce(struct slc_page_pool *pool, uint32_t user, const struct
     uint32_t index = slc_shared_tiles_add(&pool->shared, pool->cb, key);
     if (index != SLC_NONE)
         pool->shared.entries[index].writer = (uint8_t)user;
+    pool->generation_is_named = true;
     return index;
 }
 
@@ -183,11 +185,43 @@ void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,
     slc_mutex_unlock(&pool->mutex);
 }
 
-void slc_page_share_drop(struct slc_page_pool *pool, const SluiceImageSource *source)
+/* Without host memory all sources have new texels: they share no pages with what is there. */
+static void set_generation(struct slc_page_pool *pool, const SluiceImageSource *source)
+{
+    struct slc_map *map = &pool->generations;
+    uint64_t key = (uint64_t)(uintptr_t)source;
+    SluiceResult result = map->place_count ? slc_map_reserve(map, pool->cb, map->count + 1)
+                                           : slc_map_init(map, pool->cb, FIRST_GENERATIONS);
+    if (result != SLUICE_SUCCESS) {
+        pool->least_generation = pool->generation;
+        return;
+    }
+    slc_map_remove(map, key);
+    slc_map_add(map, key, pool->generation);
+}
+
+uint32_t slc_page_share_drop(struct slc_page_pool *pool, const SluiceImageSource *source)
 {
     slc_mutex_lock(&pool->mutex);
     uint32_t first;
     while ((first = slc_shared_tiles_first_of(&pool->shared, source)) != SLC_NONE)
         unlist(pool, first);
+    pool->generation += pool->generation == 0 || pool->generation_is_named;
+    pool->generation_is_named = false;
+    set_generation(pool, source);
+    uint32_t generation = pool->generation;
     slc_mutex_unlock(&pool->mutex);
+    return generation;
+}
+
+uint32_t slc_page_share_generation(struct slc_page_pool *pool, const SluiceImageSource *source)
+{
+    slc_mutex_lock(&pool->mutex);
+    uint32_t generation = SLC_MAP_NONE;
+    if (pool->generations.count)
+        generation = slc_map_get(&pool->generations, (uint64_t)(uintptr_t)source);
+    if (generation == SLC_MAP_NONE || generation < pool->least_generation)
+        generation = pool->least_generation;
+    slc_mutex_unlock(&pool->mutex);
+    return generation;
 }

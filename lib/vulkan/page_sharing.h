@@ -49,7 +49,16 @@ bool slc_page_is_shared(struct slc_page_pool *pool, uint32_t user, uint32_t page
  *  for whom the source must live on. */
 void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,
                           const SluiceImageSource *source);
-/** The texels of the source have changed: none of its tiles are found any more. */
-void slc_page_share_drop(struct slc_page_pool *pool, const SluiceImageSource *source);
+/**
+ * The texels of the source have changed: none of its tiles are found any more. Returns the
+ * generation of the new texels, for the keys of the texture that was told.
+ *
+ * Textures of the source that were not told keep theirs: they may hold, restore or be reading old
+ * texels, whose names must not be those of new ones. Calls without a name between them return the
+ * same generation, so that all textures that are told of one change share pages.
+ */
+uint32_t slc_page_share_drop(struct slc_page_pool *pool, const SluiceImageSource *source);
+/** The generation of texels that a texture reads that begins to use the source. */
+uint32_t slc_page_share_generation(struct slc_page_pool *pool, const SluiceImageSource *source);
 
 #endif /* SLC_VULKAN_PAGE_SHARING_H */

@@ -30,6 +30,7 @@ struct paged_image {
     uint32_t layer_count;      ///< of layer 0; 0 in all others
     SluiceImageSource *source; ///< borrowed
     uint32_t source_layer;
+    uint32_t generation;                ///< of the texels that its tiles are named for
     SluiceFormat page_format;           ///< may have SLC_PAGE_PRODUCED
     uint32_t block_width, block_height; ///< texels
 };
@@ -257,7 +258,7 @@ static struct slc_tile_key key_of(const struct paged_residency *p, uint32_t inde
         slc_min_u32(desc->tileWidth, slc_mip_size(desc->width, tile->mipLevel) - region.x);
     region.height =
         slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, tile->mipLevel) - region.y);
-    return slc_tile_key(image->source, &region);
+    return slc_tile_key(image->source, &region, image->generation);
 }
 
 static void set_source(struct slc_residency *residency, uint32_t index, SluiceImageSource *source,
@@ -265,6 +266,7 @@ static void set_source(struct slc_residency *residency, uint32_t index, SluiceIm
 {
     struct paged_image *image = &paged(residency)->images[index];
     image->source = source;
+    image->generation = slc_page_share_generation(paged(residency)->pool, source);
     image->source_layer = layer;
 }
 
@@ -291,7 +293,7 @@ static void leave_source(struct slc_residency *residency, uint32_t index)
 static void drop_source(struct slc_residency *residency, uint32_t index)
 {
     struct paged_residency *p = paged(residency);
-    slc_page_share_drop(p->pool, p->images[index].source);
+    p->images[index].generation = slc_page_share_drop(p->pool, p->images[index].source);
 }
 
 static void spoil(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)

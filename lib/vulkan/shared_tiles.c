@@ -16,23 +16,28 @@ void slc_shared_tiles_finish(struct slc_shared_tiles *tiles, const SluiceAllocat
 
 #define KEY_IDENTITY UINT32_MAX /* a layer that no source has */
 
-struct slc_tile_key slc_tile_key(SluiceImageSource *source, const SluiceImageRegion *region)
+struct slc_tile_key slc_tile_key(SluiceImageSource *source, const SluiceImageRegion *region,
+                                 uint32_t generation)
 {
     uint64_t identity = 0;
     if (!source || !slc_identify_region(source, region, &identity))
-        return (struct slc_tile_key){source, region->arrayLayer, region->mipLevel, region->x,
-                                     region->y};
-    return (struct slc_tile_key){source, KEY_IDENTITY, region->width << 16 | region->height,
-                                 (uint32_t)(identity >> 32), (uint32_t)identity};
+        return (struct slc_tile_key){source,    region->arrayLayer, region->mipLevel,
+                                     region->x, region->y,          generation};
+    return (struct slc_tile_key){source,
+                                 KEY_IDENTITY,
+                                 region->width << 16 | region->height,
+                                 (uint32_t)(identity >> 32),
+                                 (uint32_t)identity,
+                                 generation};
 }
 
 static uint64_t hash_of(const struct slc_tile_key *key)
 {
     const uint64_t parts[] = {(uint64_t)(uintptr_t)key->source,
                               (uint64_t)key->layer << 32 | key->level,
-                              (uint64_t)key->x << 32 | key->y};
+                              (uint64_t)key->x << 32 | key->y, key->generation};
     uint64_t hash = 0x243F6A8885A308D3u;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         hash = (hash ^ parts[i]) * 0x9E3779B97F4A7C15u;
         hash ^= hash >> 32;
     }
@@ -42,7 +47,7 @@ static uint64_t hash_of(const struct slc_tile_key *key)
 static bool is_equal(const struct slc_tile_key *a, const struct slc_tile_key *b)
 {
     return a->source == b->source && a->layer == b->layer && a->level == b->level && a->x == b->x &&
-           a->y == b->y;
+           a->y == b->y && a->generation == b->generation;
 }
 
 uint32_t slc_shared_tiles_find(const struct slc_shared_tiles *tiles, const struct slc_tile_key *key)

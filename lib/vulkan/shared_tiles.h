@@ -15,12 +15,14 @@
 struct slc_tile_key {
     const SluiceImageSource *source;
     uint32_t layer, level, x, y; ///< see slc_tile_key
+    uint32_t generation;         ///< of the texels; see slc_page_share_drop
 };
 
-/** The key of the tile that is this region. Its parts are layer, level, x, y in texels; or the
- *  number that the source gives to the texels, with width and height of the region. A `source` of
- *  NULL is allowed. */
-struct slc_tile_key slc_tile_key(SluiceImageSource *source, const SluiceImageRegion *region);
+/** The key of the tile that is this region, of `generation`. Its parts are layer, level, x, y in
+ * texels; or the number that the source gives to the texels, with width and height of the region. A
+ * `source` of NULL is allowed. */
+struct slc_tile_key slc_tile_key(SluiceImageSource *source, const SluiceImageRegion *region,
+                                 uint32_t generation);
 
 struct slc_shared_tile {
     struct slc_tile_key key;

@@ -281,6 +281,51 @@ static void tiles_that_were_evicted_and_not_overwritten_need_no_read(void **stat
     runner_image_finish(&other);
 }
 
+/* Texture 0 was not told of the change, and keeps old texels. Tiles of it that are restored must
+ * not be found by texture 1. */
+static void restored_tiles_are_not_shared_with_a_texture_that_changed(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image, other;
+    SluiceDemandTextureId ids[2];
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    runner_image_init(&other, SLUICE_FORMAT_R32G32B32A32_SFLOAT, SIZE, SIZE, 2);
+    const SluiceDemandTextureCreateInfo create = {.structSize = sizeof create,
+                                                  .image.source = &image.source.base,
+                                                  .pSampler = &runner_nearest};
+    for (uint32_t i = 0; i < 2; i++) {
+        CHECK_OK(sluiceAddDemandTexture(r.loader, &create, &ids[i]));
+        add_tiles(&r, ids[i], 0, 1);
+        runner_load(&r, 30); /* both are open */
+    }
+    SluiceDemandTextureId other_id = runner_add_texture(&r, &other);
+    runner_clear(&r);
+    add_tiles(&r, ids[0], 0, 7);
+    runner_load(&r, 30);
+    runner_clear(&r);
+    add_tiles(&r, other_id, 0, 1);
+    runner_load(&r, 2); /* evicts, and copies nothing yet */
+    image.seed += 12345;
+    CHECK_OK(sluiceInvalidateDemandTexture(r.loader, ids[1]));
+    runner_clear(&r);
+    add_tiles(&r, ids[0], 0, 7);
+    uint64_t restored = runner_statistics(&r).restoredCount;
+    runner_load(&r, 30);
+    assert_true(runner_statistics(&r).restoredCount > restored);
+    runner_clear(&r);
+    add_tiles(&r, ids[1], 0, 7);
+    runner_load(&r, 30);
+    for (uint32_t s = 0; s < r.count; s++)
+        runner_check_texel(&r, s, &image, 0, s % TILES * TILE + 7, s / TILES * TILE + 9);
+    runner_finish(&r);
+    runner_image_finish(&image);
+    runner_image_finish(&other);
+}
+
 static void without_eviction_what_is_there_stays(void **state)
 {
     (void)state;
@@ -842,6 +887,7 @@ int main(void)
         cmocka_unit_test(tiles_that_nobody_uses_make_room_and_come_back_unread),
         cmocka_unit_test(views_that_walk_to_and_fro_never_show_other_texels),
         cmocka_unit_test(tiles_that_were_evicted_and_not_overwritten_need_no_read),
+        cmocka_unit_test(restored_tiles_are_not_shared_with_a_texture_that_changed),
         cmocka_unit_test(without_eviction_what_is_there_stays),
         cmocka_unit_test(formats_share_a_budget),
         cmocka_unit_test(formats_share_few_images_of_pages),

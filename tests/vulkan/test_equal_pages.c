@@ -107,7 +107,7 @@ static SluiceImageSource source = {&interface};
 static struct slc_tile_key key_of(uint32_t tile)
 {
     const SluiceImageRegion region = {.x = tile * 128, .width = 128, .height = 128};
-    return slc_tile_key(&source, &region);
+    return slc_tile_key(&source, &region, 0);
 }
 
 static void init(struct model *m)
@@ -472,10 +472,10 @@ static void tiles_of_another_shape_are_other_tiles(void **state)
 {
     (void)state;
     SluiceImageRegion region = {.width = 128, .height = 64};
-    const struct slc_tile_key wide = slc_tile_key(&source, &region);
+    const struct slc_tile_key wide = slc_tile_key(&source, &region, 0);
     region.width = 64;
     region.height = 128;
-    const struct slc_tile_key high = slc_tile_key(&source, &region);
+    const struct slc_tile_key high = slc_tile_key(&source, &region, 0);
     assert_true(wide.x == high.x && wide.y == high.y);
     assert_int_not_equal(wide.level, high.level);
 }

@@ -418,6 +418,38 @@ static void a_texture_that_goes_takes_no_read_of_others_away(void **state)
     finish(&r);
 }
 
+/* A read that began before the change, and a page that comes back with old texels. */
+static void texels_from_before_a_change_get_no_name_of_new_ones(void **state)
+{
+    (void)state;
+    struct rig r;
+    struct slc_tile_key old = key_of(1), changed = old;
+    init(&r, 0);
+    uint32_t given = copy_tile(&r, &old);
+    slc_page_pool_give(&r.pool, r.users[0], given, 7);
+    slc_page_share_announce(&r.pool, r.users[0], &old); /* for another texture of the user */
+    assert_int_equal(slc_page_share_generation(&r.pool, old.source), 0);
+    changed.generation = slc_page_share_drop(&r.pool, old.source);
+    assert_int_equal(slc_page_share_drop(&r.pool, old.source), changed.generation);
+    assert_int_equal(slc_page_share_generation(&r.pool, old.source), changed.generation);
+    assert_int_equal(slc_page_share_generation(&r.pool, NULL), 0); /* another source */
+    slc_page_share_announce(&r.pool, r.users[0], &changed);
+    uint32_t page = slc_page_pool_take(&r.pool, r.users[0], FORMAT);
+    slc_page_share_place(&r.pool, r.users[0], &old, page);
+    record(&r, 0, 2);
+    slc_page_share_written(&r.pool, r.users[0], page, 2);
+    timelines[0] = 2;
+    record(&r, 1, 2);
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[1], &changed), SLC_SHARE_WAIT);
+    slc_page_share_withdraw(&r.pool, r.users[0], &changed);
+    assert_true(slc_page_pool_retake(&r.pool, r.users[0], given, 7));
+    slc_page_share_adopt(&r.pool, r.users[0], &old, given);
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[1], &old), SLC_SHARE_READY);
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[1], &changed), SLC_SHARE_NONE);
+    assert_true(slc_page_share_drop(&r.pool, old.source) != changed.generation);
+    finish(&r);
+}
+
 /* The texels were there before the abandoned frames, unless one of these copied them anew. */
 static void an_abandoned_frame_leaves_the_texels_that_came_back(void **state)
 {
@@ -595,6 +627,7 @@ int main(void)
         cmocka_unit_test(a_page_is_held_once_for_all_tiles_on_it),
         cmocka_unit_test(a_texture_that_goes_takes_no_read_of_others_away),
         cmocka_unit_test(an_abandoned_frame_leaves_the_texels_that_came_back),
+        cmocka_unit_test(texels_from_before_a_change_get_no_name_of_new_ones),
         cmocka_unit_test(a_page_that_was_left_waits_for_frames_of_all_readers),
         cmocka_unit_test(users_may_be_on_threads_of_their_own),
         cmocka_unit_test(textures_that_are_added_do_not_make_a_full_device_try_again),
