@@ -45,6 +45,14 @@ select_lavapipe
 [ "$clean" = no ] || rm -rf "$SLUICE_BUILD/test"
 begin_stages
 
+suite_of_other_systems=''
+if [ "$cross" = yes ]; then
+    suite_of_other_systems=cross
+elif [ "$quick" = no ]; then
+    suite_of_other_systems='cross-quick'
+fi
+[ -z "$suite_of_other_systems" ] || beside cross_tools get_cross_tools "$install"
+
 # As users get it, and everything that is not about the build: headers, packages, examples, device.
 # shellcheck disable=SC2034 # read by meson_stage
 test_options=(--no-suite short --no-suite rare)
@@ -54,11 +62,15 @@ if [ "$quick" = yes ]; then
     done
 fi
 meson_stage gcc CC=gcc CXX=g++ -- -Dbuildtype=debugoptimized -Ddefault_library=both
-tap_stage style scripts/dev/check-style.sh
-if [ "$quick" = no ]; then
-    tap_stage consumer tests/consumer/run.sh
+if [ "$quick" = yes ]; then
+    tap_stage style scripts/dev/check-style.sh
+else
+    # Of these two nearly all runs on one processor, like the beginning of the next stage.
+    style_and_consumer() { tap_stage style scripts/dev/check-style.sh && tap_stage consumer tests/consumer/run.sh; }
+    beside style_and_consumer style_and_consumer
     # The library, its tools and its tests; CONTRIBUTING.md says how samples are looked at.
     sanitizer_stage clang-sanitizers sanitize address,undefined -Dbuildtype=debugoptimized -Ddefault_library=static -Dsamples=disabled -Dviewer=disabled
+    await_stages style_and_consumer
     sanitizer_stage clang-threads tsan thread -Dbuildtype=debugoptimized -Ddefault_library=static -Dsamples=disabled -Dviewer=disabled -Dpbrt=disabled -Dneural=disabled
 
     # Every feature off, as a static library; replays must decide the same as with -O2 of gcc and of
@@ -70,10 +82,9 @@ if [ "$quick" = no ]; then
     meson_stage gcc-O3-static CC=gcc -- $off -Doptimization=3 -Ddefault_library=static
 fi
 
-if [ "$cross" = yes ]; then
-    cross_stages "$install" cross
-elif [ "$quick" = no ]; then
-    cross_stages "$install" cross-quick
+if [ -n "$suite_of_other_systems" ]; then
+    await_stages cross_tools
+    cross_stages "$suite_of_other_systems"
 fi
 print_extremes gcc
 end_stages

@@ -35,7 +35,8 @@ def parse_tap(text):
                 status, name, reason = "skipped", name.strip() or rest, rest if name.strip() else note
             else:
                 status, name, reason = ("failed" if refused else "passed"), name.strip(), ""
-            reason = reason or "no reason given"
+            if status == "skipped":
+                reason = reason or "no reason given"
             facts.append((status, name or "test %s" % number, reason))
             note = ""
         elif line.strip():
@@ -59,7 +60,7 @@ def facts_of(text, returncode, ended_well):
 
 def emit(build, test, facts):
     for status, name, reason in facts:
-        row = [status, build, test, name, reason if status == "skipped" else ""]
+        row = [status, build, test, name, "" if status == "passed" else reason]
         print("\t".join(" ".join(str(field).split()) for field in row))
 
 
@@ -74,6 +75,9 @@ def collect_meson(build, folder):
     for run in runs_of(folder):
         good = run["result"] in ("OK", "SKIP", "EXPECTEDFAIL")
         facts = facts_of(run.get("stdout", ""), run["returncode"], good)
+        said = [line for line in run.get("stderr", "").splitlines() if line.strip()]
+        facts = [(status, name, reason or (said[-1].strip()[:200] if said and status == "failed" else ""))
+                 for status, name, reason in facts]
         emit(build, run["name"], facts)
         if any(fact[0] == "failed" for fact in facts):
             print("---- %s: %s (%s)" % (build, run["name"], run["result"]), file=sys.stderr)
@@ -111,7 +115,7 @@ def summary(path):
         print("  skipped: %s: %s (%s) [%s]" % (test, name, reason, ", ".join(builds)))
     for status, build, test, name, reason in rows:
         if status == "failed":
-            print("  FAILED: %s: %s: %s" % (build, test, name))
+            print("  FAILED: %s: %s: %s%s" % (build, test, name, " (%s)" % reason if reason else ""))
     print("%(passed)d passed, %(failed)d failed, %(skipped)d skipped" % count)
     return 1 if count["failed"] or not count["passed"] else 0
 

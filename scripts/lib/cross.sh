@@ -85,14 +85,26 @@ make_wine_prefix() {
     say "$prefix"
 }
 
+# start_wine ROOT: starts a server that stays, and boots it. Otherwise the server ends whenever no program runs,
+# and programs that start at that moment wait for each other's boot.
+start_wine() {
+    local libraries
+    libraries=$(with_root usr/x86_64-w64-mingw32/lib/zlib1.dll || true)/usr/x86_64-w64-mingw32/lib
+    "$1/usr/lib/wine/wineserver64" -p || true
+    WINEPATH="Z:$libraries" timeout 120 "$1/usr/lib/wine/wine64" wineboot --init \
+        >"$tests_folder/wine.log" 2>&1 </dev/null || true
+}
+
 windows_stage() {
     local gcc wine name=x86_64-w64-mingw32
     gcc=$(with_root "usr/bin/$name-gcc-win32") && wine=$(with_root usr/lib/wine/wine64) || return 1
     local -x WINEPREFIX WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml,winemenubuilder.exe='
     WINEPREFIX=$(make_wine_prefix "$wine")
+    start_wine "$wine"
     cross_stage $name "gcc = '$gcc/usr/bin/$name-gcc-win32'
 ar = '$(with_root usr/bin/$name-ar)/usr/bin/$name-ar'
 wine = '$wine/usr/lib/wine/wine64'"
+    "$wine/usr/lib/wine/wineserver64" -k || true
 }
 
 # processor_stage PROCESSOR
@@ -114,13 +126,17 @@ macos_stage() {
     grep -v '^ok ' "$log" || true
 }
 
-# cross_stages INSTALL SUITE: INSTALL is yes or no, SUITE is cross or cross-quick.
-cross_stages() {
-    local system cross_suite=$2
+# get_cross_tools INSTALL: INSTALL is yes or no
+get_cross_tools() {
     if [ ! -f "$cross_root/complete" ] && { [ "$1" = no ] || ! command -v apt-get >/dev/null ||
         ! logged "$SLUICE_BUILD/logs/cross-tools.log" unpack_cross_tools; }; then
         warn "not every package for other systems can be had: ${packages_to_cross[*]}"
     fi
+}
+
+# cross_stages SUITE: cross or cross-quick. Needs get_cross_tools.
+cross_stages() {
+    local system cross_suite=$1
     # Of the unpacked programs: Wine and qemu find their libraries here.
     local -x LD_LIBRARY_PATH=$cross_root/usr/lib/x86_64-linux-gnu${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
     # The gcc stage compiles lib/platform for macOS; this does so with all of lib.

@@ -1,5 +1,5 @@
 # The stages of scripts/test.sh: each builds or checks something and adds its facts to one list.
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2030,SC2031 # stages that run beside others have facts of their own
 
 tests_folder=$SLUICE_BUILD/test
 facts=$tests_folder/facts.tsv
@@ -35,6 +35,9 @@ run_meson_tests() {
     before=$(wc -l <"$facts")
     # Huge pages: lavapipe's device memory is fresh memory, and page faults take a third of some tests.
     local -x GLIBC_TUNABLES=${GLIBC_TUNABLES:-glibc.malloc.hugetlb=1}
+    # Most device tests compile shaders for longer than they run them. Four lanes without LLVM's
+    # optimizations halve that: decision 151.
+    local -x LP_NATIVE_VECTOR_WIDTH=${LP_NATIVE_VECTOR_WIDTH:-128} GALLIVM_PERF=${GALLIVM_PERF:-nopt}
     # It builds what Meson from 1.7 on leaves to it: what only tests need. Its exit status says nothing
     # that the facts do not say.
     ${disable_aslr:-} meson test -C "$folder" --num-processes "$(nproc)" "$@" \
@@ -117,6 +120,23 @@ sanitizer_stage() {
     if build_stage "$stage" CC=clang CXX=clang++ -- "-Db_sanitize=$sanitizers" -Db_lundef=false "$@"; then
         run_meson_tests "$stage" --no-rebuild "${test_options[@]}"
     fi
+}
+
+# beside NAME COMMAND...: runs stages of one processor beside the next stage, until await_stages NAME prints
+# their output and adds their facts.
+beside() {
+    local name=$1
+    shift
+    : >"$facts.$name"
+    (facts=$facts.$name && "$@") >"$tests_folder/$name.out" 2>&1 </dev/null &
+    declare -g "job_$name=$!"
+}
+
+await_stages() {
+    local job=job_$1
+    wait "${!job}" || fact failed "$1" "$1" "ended with an error"
+    cat "$tests_folder/$1.out"
+    cat "$facts.$1" >>"$facts"
 }
 
 # tap_stage STAGE PROGRAM: the program prints TAP, and finds the gcc build in $SLUICE_BUILD/test/gcc.
