@@ -9,6 +9,7 @@
 #include "core/lookup.h"
 #include "core/minmip.h"
 #include "core/observer.h"
+#include "core/priority.h"
 #include "core/refusal.h"
 #include "core/reports.h"
 #include "core/sets.h"
@@ -213,8 +214,11 @@ static SluiceResult remove_texture(slc_manager *m, SluiceTextureId id, uint64_t 
         m->last_retire = retire_value;
     m->events.reason = SLUICE_TILE_EVENT_REMOVED;
     slc_unfollow(m, t);
-    while (t->first_follower != SLC_NONE)
-        slc_unfollow(m, slc_texture_at(m, t->first_follower));
+    while (t->first_follower != SLC_NONE) {
+        struct slc_managed_texture *follower = slc_texture_at(m, t->first_follower);
+        slc_unfollow(m, follower);
+        slc_priority_changed(m, follower, t->priority);
+    }
     for (uint32_t tile = t->nodes ? 0 : t->shape->regular_tile_count; tile < t->shape->tile_count;
          tile++)
         if (slc_find_node(t, tile))

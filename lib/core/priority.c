@@ -15,9 +15,10 @@ void slc_use_priorities(slc_manager *m)
     m->residency.user.weight = weight;
 }
 
-/* Its requests get their new places, behind those that are there. */
-static void sort_requests(slc_manager *m, const struct slc_managed_texture *t, int32_t change)
+void slc_priority_changed(slc_manager *m, const struct slc_managed_texture *t, int32_t before)
 {
+    if (slc_priority_of(m, t) == before)
+        return;
     uint32_t count = t->shape->tile_count, left = t->requested_count;
     for (uint32_t tile = 0; tile < count && left > 0; tile++) {
         uint32_t node = slc_find_node(t, tile);
@@ -25,7 +26,7 @@ static void sort_requests(slc_manager *m, const struct slc_managed_texture *t, i
             continue;
         struct slc_node *n = slc_node_at(&m->residency, node);
         slc_request_remove(&m->residency, node);
-        n->need = (uint8_t)(n->need > change ? n->need - change : 0); /* append adds the new one */
+        n->need = (uint8_t)(n->need > before ? n->need - before : 0); /* append adds the new one */
         n->need = n->need < SLC_REQUEST_NEEDS ? n->need : SLC_REQUEST_NEEDS - 1;
         slc_request_append(&m->residency, node);
         left--;
@@ -47,9 +48,9 @@ static SluiceResult set_priority(slc_manager *m, SluiceTextureId id, int32_t pri
     slc_use_priorities(m);
     t->priority = (int8_t)priority;
     if (t->primary == SLC_NONE)
-        sort_requests(m, t, before);
+        slc_priority_changed(m, t, before);
     for (uint32_t i = t->first_follower; i != SLC_NONE; i = slc_texture_at(m, i)->next_follower)
-        sort_requests(m, slc_texture_at(m, i), before);
+        slc_priority_changed(m, slc_texture_at(m, i), before);
     return SLUICE_SUCCESS;
 }
 

@@ -16,6 +16,10 @@ static inline bool slc_has_priorities(const slc_manager *m)
     return m->residency.user.weight;
 }
 
+/** The priority of a texture was `before`: its requests that wait get their new places, behind
+ * those that are there. */
+void slc_priority_changed(slc_manager *m, const struct slc_managed_texture *t, int32_t before);
+
 /** From now on requests are weighted by the priority of their texture. */
 void slc_use_priorities(slc_manager *m);
 

@@ -4,6 +4,7 @@
 #include "core/history.h"
 #include "core/lookup.h"
 #include "core/observer.h"
+#include "core/priority.h"
 #include "core/refusal.h"
 #include "core/uv_transform.h"
 
@@ -50,9 +51,11 @@ static SluiceResult set_primary(slc_manager *m, SluiceTextureId follower_id,
                                                    : "followerId has followers of its own");
     if (p && t->primary == p->index)
         return SLUICE_SUCCESS;
+    int32_t before = slc_priority_of(m, t);
     slc_unfollow(m, t);
     if (p)
         slc_follow(m, t, p);
+    slc_priority_changed(m, t, before);
     return SLUICE_SUCCESS;
 }
 

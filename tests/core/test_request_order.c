@@ -85,6 +85,50 @@ static void priorities_order_tiles_of_one_level(void **state)
     fixture_close(&f);
 }
 
+/* Of textures 0 to 2: their places among requests of one level. */
+static void check_places(struct fixture *f, const SluiceTextureId ids[3], const uint32_t places[3])
+{
+    CHECK_OK(fixture_to_map(f, SLUICE_ALL_TEXTURES));
+    assert_true(f->count > 0);
+    for (uint32_t i = 0, place = 0; i < f->count; i++) {
+        uint32_t before = place;
+        for (uint32_t k = 0; k < 3; k++)
+            if (f->tiles[i].textureId == ids[k])
+                place = places[k];
+        if (i > 0 && f->tiles[i].mipLevel == f->tiles[i - 1].mipLevel)
+            assert_true(place >= before);
+    }
+}
+
+/* Requests that wait get the priority of the primary that comes, and lose that of the one that
+ * goes. A later change of the priority starts from what they have. */
+static void waiting_requests_follow_the_priority_of_their_primary(void **state)
+{
+    (void)state;
+    static const uint32_t places[4][3] = {{1, 0, 0}, {1, 0, 2}, {1, 0, 2}, {0, 1, 1}};
+    for (uint32_t step = 0; step < 4; step++) {
+        struct fixture f;
+        fixture_open(&f, 64, false);
+        SluiceTextureId ids[3] = {add_wide(&f), add_wide(&f), add_wide(&f)};
+        CHECK_OK(sluiceSetTexturePriority(f.manager, ids[1], 4));
+        if (step == 1 || step == 2)
+            CHECK_OK(sluiceSetPrimaryTexture(f.manager, ids[2], ids[1]));
+        for (uint32_t i = 0; i < 3; i++)
+            if (i < 2 || step == 0 || step == 3)
+                fixture_feed(&f, ids[i], 0, 0, 100);
+        if (step == 0 || step == 3)
+            CHECK_OK(sluiceSetPrimaryTexture(f.manager, ids[2], ids[1]));
+        if (step == 1)
+            CHECK_OK(sluiceSetPrimaryTexture(f.manager, ids[2], SLUICE_NO_TEXTURE));
+        if (step == 2)
+            CHECK_OK(sluiceRemoveStreamedTexture(f.manager, ids[1], 0));
+        if (step == 3)
+            CHECK_OK(sluiceSetTexturePriority(f.manager, ids[1], 0)); /* now behind texture 0 */
+        check_places(&f, ids, places[step]);
+        fixture_close(&f);
+    }
+}
+
 static uint32_t resident_in(const struct fixture *f, SluiceTextureId id, uint32_t level)
 {
     SluiceTextureLevelStatistics s = {.structSize = sizeof s};
@@ -280,6 +324,7 @@ int main(void)
         cmocka_unit_test(within_a_level_what_more_regions_want_comes_first),
         cmocka_unit_test(equal_requests_are_served_in_the_order_in_which_they_came),
         cmocka_unit_test(priorities_order_tiles_of_one_level),
+        cmocka_unit_test(waiting_requests_follow_the_priority_of_their_primary),
         cmocka_unit_test(the_level_that_does_not_fit_goes_to_priority),
         cmocka_unit_test(within_one_map_regions_are_served_row_by_row),
         cmocka_unit_test(one_texture_can_be_asked_for_alone),
