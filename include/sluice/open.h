@@ -141,9 +141,16 @@ SLUICE_API SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const c
  * Opens a texture of a neural set (neural.h) by its name. Otherwise as sluiceOpenImageSource. Each
  * texture has its own source, which keeps the description and the weights of the set.
  *
+ * Also opens a store that a catalogue names, which sluice-bake --merge writes (docs/cluster.md).
+ * `texture` is then the path of the picture or of its store, as it is in the catalogue, or the end
+ * of one behind a slash, if one row alone has it. sluiceOpenImageSource opens the first store.
+ * Stores are relative to the catalogue's folder. The source is that of the store's own path, so
+ * SluiceOpenedImageInfo::kind is STORE. Returns SLUICE_ERROR_CORRUPT_DATA if the store has another
+ * hash than the catalogue says, SLUICE_ERROR_LIMIT_EXCEEDED for catalogues above 256 MiB.
+ *
  * Errors: as sluiceOpenImageSource; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the set
- *         has no texture `texture` (the message names those that it has), or the file is no neural
- *         set.
+ *         has no texture `texture` (the message names those that it has), the catalogue has no such
+ *         row or several, or the file is neither.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceOpenNamedImageSource(SluiceImageOpener *opener, const char *path,

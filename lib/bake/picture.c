@@ -118,7 +118,8 @@ SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening
                 "%s: is a neural set, which is not baked; open it with sluice-open", path);
         return SLUICE_ERROR_UNSUPPORTED;
     }
-    if (kind == SLC_SIGNATURE_OTHER || kind == SLC_SIGNATURE_STORE) /* libvips refuses stores */
+    if (kind == SLC_SIGNATURE_OTHER || kind == SLC_SIGNATURE_STORE ||
+        kind == SLC_SIGNATURE_CATALOGUE) /* libvips refuses the last two */
         return slc_picture_open_vips(path, opening, cb, log, picture);
     if (opening->first_level > 0) {
         slc_log(log, SLUICE_LOG_ERROR,

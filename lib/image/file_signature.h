@@ -12,7 +12,8 @@ enum slc_file_signature {
     SLC_SIGNATURE_EXR,
     SLC_SIGNATURE_DDS,
     SLC_SIGNATURE_KTX2,
-    SLC_SIGNATURE_NEURAL
+    SLC_SIGNATURE_NEURAL,
+    SLC_SIGNATURE_CATALOGUE ///< names stores
 };
 
 /** `bytes` are the first of the file, followed by zeros if it is shorter. */
@@ -26,6 +27,8 @@ static inline enum slc_file_signature slc_file_signature(const char bytes[SLC_SI
         return SLC_SIGNATURE_DDS;
     if (memcmp(bytes, "NTEX", 4) == 0)
         return SLC_SIGNATURE_NEURAL;
+    if (memcmp(bytes, "sluice catal", 12) == 0)
+        return SLC_SIGNATURE_CATALOGUE;
     return memcmp(bytes, "\xABKTX 20\xBB\r\n\x1A\n", 12) == 0 ? SLC_SIGNATURE_KTX2
                                                               : SLC_SIGNATURE_OTHER;
 }

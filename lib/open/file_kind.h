@@ -8,6 +8,9 @@
 
 #include "image/file_pool.h"
 
+/** A file that names stores. No opened image is of this kind: one of the stores is opened. */
+#define SLC_IMAGE_FILE_KIND_CATALOGUE ((SluiceImageFileKind)1000)
+
 /** Pools and budgets that all files of an opener share. NULL where the build lacks the kind. */
 struct slc_shared_files {
     SluiceFilePool *pool;

@@ -119,6 +119,7 @@ static void free_image(struct slc_opened_image *image)
         slc_free(&cb, image->shown, strlen(image->shown) + 1, 1);
     if (image->texture)
         slc_free(&cb, image->texture, strlen(image->texture) + 1, 1);
+    slc_catalogue_entry_finish(&image->entry, &cb);
     slc_free(&cb, image, 1, sizeof *image);
 }
 
@@ -223,6 +224,7 @@ struct request {
     uint64_t settings_hash;             ///< 0: default, or of no picture
     SluiceImageFileKind kind;
     struct slc_file_identity identity;
+    bool is_entry; ///< a catalogue names it
 };
 
 /* With the mutex held. */
@@ -310,12 +312,26 @@ static SluiceResult open_path(struct slc_opened_image *image)
 static SluiceResult check_texture(const SluiceImageOpener *opener, const char *path,
                                   const char *texture, SluiceImageFileKind kind)
 {
-    if (!texture || kind == SLUICE_IMAGE_FILE_KIND_NEURAL)
+    if (!texture || kind == SLUICE_IMAGE_FILE_KIND_NEURAL || kind == SLC_IMAGE_FILE_KIND_CATALOGUE)
         return SLUICE_SUCCESS;
     return slc_log_refusal(&opener->log,
                            "%s: is no neural set, so it has no texture of a name; open it with "
                            "sluiceOpenImageSource",
                            path);
+}
+
+static SluiceResult find_entry(SluiceImageOpener *opener, const char *path, const char *shown,
+                               const char *name, const SluiceInput *input,
+                               struct slc_catalogue_entry *entry)
+{
+    const struct slc_catalogue_query query = {.path = path,
+                                              .shown = shown,
+                                              .name = name,
+                                              .input = input,
+                                              .pool = opener->files.pool,
+                                              .allocator = &opener->allocator,
+                                              .log = &opener->log};
+    return slc_catalogue_find(&query, entry);
 }
 
 static SluiceResult open_image(struct slc_opened_image *image, const SluiceBakeSettings *settings)
@@ -331,6 +347,11 @@ static SluiceResult open_image(struct slc_opened_image *image, const SluiceBakeS
     }
     if (result != SLUICE_SUCCESS)
         return result;
+    if (image->kind == SLC_IMAGE_FILE_KIND_CATALOGUE) {
+        result =
+            find_entry(opener, image->path, image->shown, image->texture, input, &image->entry);
+        return result == SLUICE_SUCCESS ? SLUICE_ERROR_UNSUPPORTED : result; /* as itself */
+    }
     if (image->kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
         return slc_picture_stream_create(opener, image->path, &image->identity, settings,
                                          &image->stream);
@@ -380,8 +401,48 @@ static SluiceResult find_settings(struct request *r)
 }
 
 static SluiceResult open_request(SluiceImageOpener *opener, struct request *r,
+                                 SluiceImageSource **source);
+
+static bool is_named_store(const struct slc_opened_image *image, uint64_t hash)
+{
+#ifdef SLC_HAVE_STORE
+    uint64_t found;
+    return image->kind == SLUICE_IMAGE_FILE_KIND_STORE &&
+           sluiceHashStore(image->source, &found) == SLUICE_SUCCESS && found == hash;
+#else
+    (void)image, (void)hash;
+    return false;
+#endif
+}
+
+/* Opens the store that a catalogue names, and ends the entry. `by`: the request for the catalogue.
+ * Errors: CORRUPT_DATA if another file is there. */
+static SluiceResult open_entry(SluiceImageOpener *opener, const struct request *by,
+                               struct slc_catalogue_entry *entry, SluiceImageSource **source)
+{
+    struct request request = {.path = entry->store, .is_entry = true};
+    SluiceImageSource *store = NULL;
+    SluiceResult result = by->is_entry ? SLUICE_ERROR_CORRUPT_DATA : SLUICE_SUCCESS;
+    if (result == SLUICE_SUCCESS)
+        result = open_request(opener, &request, &store);
+    if (result == SLUICE_SUCCESS &&
+        !is_named_store((const struct slc_opened_image *)store, entry->hash)) {
+        const char *shown = ((const struct slc_opened_image *)store)->shown;
+        slc_log(&opener->log, SLUICE_LOG_ERROR, "%s: is not the store that the catalogue names",
+                shown ? shown : entry->store);
+        sluiceDestroyImageSource(store);
+        result = SLUICE_ERROR_CORRUPT_DATA;
+    }
+    if (result == SLUICE_SUCCESS)
+        *source = store;
+    slc_catalogue_entry_finish(entry, &opener->allocator);
+    return result;
+}
+
+static SluiceResult open_request(SluiceImageOpener *opener, struct request *r,
                                  SluiceImageSource **source)
 {
+    struct slc_catalogue_entry entry = {0};
     SluiceResult result = SLUICE_SUCCESS;
     r->kind = SLUICE_IMAGE_FILE_KIND_PICTURE;
     if (!is_own_path(opener, r->path)) {
@@ -391,6 +452,10 @@ static SluiceResult open_request(SluiceImageOpener *opener, struct request *r,
             result = check_texture(opener, r->path, r->texture, r->kind);
         if (result == SLUICE_SUCCESS)
             result = find_settings(r);
+        if (result == SLUICE_SUCCESS && r->kind == SLC_IMAGE_FILE_KIND_CATALOGUE) {
+            result = find_entry(opener, r->path, r->path, r->texture, NULL, &entry);
+            return result == SLUICE_SUCCESS ? open_entry(opener, r, &entry, source) : result;
+        }
     }
     if (result != SLUICE_SUCCESS)
         return result;
@@ -401,10 +466,17 @@ static SluiceResult open_request(SluiceImageOpener *opener, struct request *r,
     else if ((image = create_image(opener, r)))
         open_for_all(image, r->settings);
     result = image ? image->result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (image && image->entry.store) {
+        entry = image->entry;
+        entry.store = slc_strdup(&opener->allocator, image->entry.store);
+        result = entry.store ? result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
     bool is_unused = image && result != SLUICE_SUCCESS && drop_reference(image);
     slc_mutex_unlock(&opener->mutex);
     if (is_unused)
         free_image(image);
+    if (entry.store)
+        return open_entry(opener, r, &entry, source);
     if (result == SLUICE_SUCCESS)
         *source = &image->base;
     return result;

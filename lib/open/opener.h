@@ -5,6 +5,7 @@
 #include <sluice/open.h>
 
 #include "image/file_pool.h"
+#include "open/catalogue.h"
 #include "open/file_kind.h"
 #include "platform/thread.h"
 
@@ -23,11 +24,12 @@ struct slc_opened_image {
     struct slc_opened_image *next; ///< in the same bucket
     uint32_t reference_count;      ///< threads that wait until it is open included
     bool is_opening;
-    SluiceResult result;    ///< of opening it
-    char *path;             ///< owned
-    char *shown;            ///< owned; a URL without password and query, for messages; NULL: a file
-    char *texture;          ///< owned; name that was asked for; NULL: none
-    uint64_t settings_hash; ///< of a picture's bake; 0: default settings
+    SluiceResult result; ///< of opening it
+    char *path;          ///< owned
+    char *shown;         ///< owned; a URL without password and query, for messages; NULL: a file
+    char *texture;       ///< owned; name that was asked for; NULL: none
+    struct slc_catalogue_entry entry; ///< owned; set if the path is a catalogue's: opening failed
+    uint64_t settings_hash;           ///< of a picture's bake; 0: default settings
     struct slc_file_identity identity;
     SluiceImageFileKind kind;
     SluiceImageSource *source;         ///< owned; NULL for pictures

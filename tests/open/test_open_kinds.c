@@ -388,6 +388,95 @@ static void a_path_opener_opens_what_contains_a_scheme_once_and_closes_it(void *
     teardown(&f);
 }
 
+static uint64_t hash_of(const char *path)
+{
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
+    SluiceImageSource *store;
+    uint64_t hash = 0;
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &store));
+    CHECK_OK(sluiceHashStore(store, &hash));
+    sluiceDestroyImageSource(store);
+    return hash;
+}
+
+#define CATALOGUE_HEAD                                                                             \
+    "sluice catalogue 1\nhash\tformat\twidth\theight\tlayers\tbytes\tpicture\tstore\n"
+
+/* A hash stands before each row; NULL: one row. */
+static void write_rows(const char *path, uint64_t first, const char *row, uint64_t second,
+                       const char *other)
+{
+    FILE *file = fopen(path, "wb");
+    fputs(CATALOGUE_HEAD, file);
+    fprintf(file, "%016llx%s", (unsigned long long)first, row);
+    if (other)
+        fprintf(file, "%016llx%s", (unsigned long long)second, other);
+    fclose(file);
+}
+
+static uint32_t width_by_name(struct fixture *f, const char *path, const char *name,
+                              SluiceResult expected)
+{
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceImageSource *source;
+    f->last[0] = '\0';
+    SluiceResult result = name ? sluiceOpenNamedImageSource(f->opener, path, name, &source)
+                               : sluiceOpenImageSource(f->opener, path, &source);
+    CHECK_RESULT(result, expected);
+    if (result != SLUICE_SUCCESS)
+        return 0;
+    assert_int_equal(state_of(source).kind, SLUICE_IMAGE_FILE_KIND_STORE);
+    CHECK_OK(sluiceGetImageInfo(source, &info));
+    sluiceDestroyImageSource(source);
+    return info.width;
+}
+
+/* The stores lie in the catalogue's folder, and names with a tab are escaped. */
+static void stores_of_a_catalogue_are_opened_by_name(void **state)
+{
+    (void)state;
+    static const char row[] = "\tR8_UNORM\t64\t100\t1\t9\tin/a.png\ta.store\n";
+    static const char other[] = "\tR8_UNORM\t80\t100\t1\t9\tin/x\\ty.png\tb c.store\n";
+    struct fixture f;
+    char path[256], store[256];
+    setup(&f);
+    sluiceDestroyImageOpener(f.opener);
+    struct shelf shelf = {.folder = f.folder.path};
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                        .log = {&f, on_log},
+                                        .pathOpener = {&shelf, open_from_shelf, put_back}};
+    CHECK_OK(sluiceCreateImageOpener(&info, &f.opener));
+    bake_folder_file(&f.folder, "list.tsv", path);
+    write_store(bake_folder_file(&f.folder, "a.store", store), 64);
+    uint64_t first = hash_of(store);
+    write_store(bake_folder_file(&f.folder, "b c.store", store), 80);
+    uint64_t second = hash_of(store);
+    write_rows(path, first, row, second, other);
+    assert_int_equal(width_by_name(&f, path, NULL, SLUICE_SUCCESS), 64);
+    assert_int_equal(width_by_name(&f, path, "in/a.png", SLUICE_SUCCESS), 64);
+    assert_int_equal(width_by_name(&f, path, "x\ty.png", SLUICE_SUCCESS), 80);
+    assert_int_equal(width_by_name(&f, path, "b c.store", SLUICE_SUCCESS), 80);
+    width_by_name(&f, path, "y.png", SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(f.last, "no picture and no store 'y.png'"));
+    assert_int_equal(width_by_name(&f, "shelf://list.tsv", "a.png", SLUICE_SUCCESS), 64);
+    assert_int_equal(width_by_name(&f, "shelf://list.tsv", "b c.store", SLUICE_SUCCESS), 80);
+    assert_int_equal(symlink(".", bake_folder_file(&f.folder, "h", store)), 0);
+    width_by_name(&f, "https://h/list.tsv", "b c.store", SLUICE_ERROR_FILE_NOT_FOUND);
+    write_store(bake_folder_file(&f.folder, "b%20c.store", store), 80);
+    assert_int_equal(width_by_name(&f, "https://h/list.tsv", "b c.store", SLUICE_SUCCESS), 80);
+    assert_int_equal(shelf.opened, shelf.closed);
+
+    write_rows(path, first, row, first, other); /* another store than the second one */
+    width_by_name(&f, path, "x\ty.png", SLUICE_ERROR_CORRUPT_DATA);
+    assert_non_null(strstr(f.last, "is not the store"));
+    write_rows(path, 0, "\tR8_UNORM\t64\t100\t1\t9\tc\tlist.tsv\n", 0, NULL);
+    width_by_name(&f, path, NULL, SLUICE_ERROR_CORRUPT_DATA);
+    write_rows(path, 0, "\tR8_UNORM\t64\t100\t1\n", 0, NULL);
+    width_by_name(&f, path, NULL, SLUICE_ERROR_CORRUPT_DATA);
+    assert_non_null(strstr(f.last, "list.tsv:3: is no row"));
+    teardown(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -396,6 +485,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_opened_is_refused_by_name),
         cmocka_unit_test(three_hundred_files_are_open_with_sixty_descriptors),
         cmocka_unit_test(a_path_opener_opens_what_contains_a_scheme_once_and_closes_it),
+        cmocka_unit_test(stores_of_a_catalogue_are_opened_by_name),
         cmocka_unit_test(threads_share_a_source),
         cmocka_unit_test(every_refused_allocation_is_survived),
     };
