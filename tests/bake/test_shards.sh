@@ -53,6 +53,10 @@ run 0 --merge the.plan -o the.tsv && grep -q '^8 of 8 stores are there' out && [
     grep -q $'BC7_SRGB_BLOCK\t420\t130\t1\t[0-9]*\tin/p7.png\tmany.d/p7.store$' the.tsv && cp the.tsv before &&
     run 0 --merge the.plan -o the.tsv && cmp the.tsv before
 fact the_catalogue_names_all_stores
+mkdir -p other && run 0 --merge the.plan -o many.d/list.tsv && grep -q $'in/p7.png\tp7.store$' many.d/list.tsv &&
+    run 0 --merge the.plan -o other/list.tsv && grep -q $'in/p7.png\t'"$(realpath many.d/p7.store)"'$' other/list.tsv &&
+    rm many.d/list.tsv
+fact stores_are_named_from_the_folder_of_the_catalogue
 
 run 0 --shard 2/$shards the.plan && grep -q ' 0 failed' out && grep -q '^0 baked' out
 fact a_shard_that_runs_again_leaves_stores_alone

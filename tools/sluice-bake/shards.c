@@ -1,4 +1,4 @@
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700 /* realpath */
 
 #include "shards.h"
 
@@ -160,13 +160,28 @@ static const char *defect_of(const struct plan *plan, const struct plan_picture 
     return defect;
 }
 
-static void write_entry(FILE *out, const struct plan_picture *p, uint64_t hash, uint64_t size)
+/* Relative to the catalogue's folder, so that both can be moved or put on a server together. */
+static void write_store_name(FILE *out, const char *catalogue, const char *store)
+{
+    const char *slash = strrchr(catalogue, '/');
+    const size_t folder = slash ? (size_t)(slash - catalogue) + 1 : 0;
+    char *real = NULL;
+    if (strncmp(store, catalogue, folder) == 0)
+        store += folder;
+    else if ((real = realpath(store, NULL)))
+        store = real;
+    line_write_name(out, store);
+    free(real);
+}
+
+static void write_entry(FILE *out, const char *catalogue, const struct plan_picture *p,
+                        uint64_t hash, uint64_t size)
 {
     fprintf(out, "%016" PRIx64 "\t%s\t%u\t%u\t%u\t%" PRIu64 "\t", hash,
             sluiceGetFormatName(p->format), p->width, p->height, p->layers, size);
     line_write_name(out, p->input);
     putc('\t', out);
-    line_write_name(out, p->output);
+    write_store_name(out, catalogue, p->output);
     putc('\n', out);
 }
 
@@ -217,7 +232,7 @@ static size_t check_all(const struct options *options, const struct plan *plan, 
         if (defect)
             print_defect(&plan->pictures[i], defect, options->json);
         else
-            write_entry(out, &plan->pictures[i], hash, size);
+            write_entry(out, options->output, &plan->pictures[i], hash, size);
     }
     return count;
 }
