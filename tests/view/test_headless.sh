@@ -80,6 +80,14 @@ else
         run 1 --headless --frames 2 --cache . "$(from_web none.store none)" && grep -q 'none.store: cannot be' err
     fact pictures_and_stores_on_servers_hang_as_files_do_and_queries_are_not_said
 fi
+# A row with the hash of another store, and a damaged one.
+{ printf 'sluice catalogue 1\nhash\tformat\twidth\theight\tlayers\tbytes\tpicture\tstore\n' &&
+    printf '0123456789abcdef\tR8_UNORM\t2\t2\t1\t9\tin/black.ppm\t%s\n' "$store"; } >stores.tsv
+printf 'sluice catalogue 1\nhash\n1\t2\n' >damaged.tsv
+run 1 --headless --frames 2 --cache . stores.tsv && grep -q "$(basename "$store"): is not the store" err &&
+    [ "$(grep -c 'cannot be shown' err)" = 1 ] && run 1 --headless --frames 2 --cache . damaged.tsv &&
+    grep -q 'damaged.tsv: cannot be read as a catalogue' err
+fact stores_of_a_catalogue_are_opened_and_must_be_those_it_names
 exec {COPROC[1]}>&-
 printf '3 click 80 80 right\n7 set source-fails 0\n' >faults && { cat faults && echo '8 do retry'; } >mended
 # shellcheck disable=SC2086

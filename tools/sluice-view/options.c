@@ -10,11 +10,11 @@
 static const char usage[] =
     "usage: sluice-view [OPTION ...] [SCENE | PICTURE ... | FOLDER ... | URL ...]\n\n"
     "Shows a scene whose textures are streamed, and why they look as they do. SCENE is a glTF\n"
-    "or OBJ file; without one, a hall that comes with this program. Pictures, and those of "
-    "folders,\n"
-    "hang in a room, and so do those at http://, https:// and s3:// (give 32 --threads then). "
-    "Drop\n"
-    "files onto the window to open them.\n";
+    "or OBJ file; without one, a hall that comes with this program. Pictures, those of folders, "
+    "of\n"
+    "URLs (http, https, s3: give 32 --threads then) and of catalogues (sluice-bake --merge) hang "
+    "in\n"
+    "a room. Drop files onto the window to open them.\n";
 
 static const char notes[] =
     "Without a display, use --headless: it draws the same frames, with the panels, into pictures.\n"

@@ -4,6 +4,7 @@
 #include "scene_images.h"
 
 #include "linear_source.h"
+#include "scene_catalogue.h"
 
 #include "../../samples/streaming/cache.h"
 #include "../common/clock.h"
@@ -52,15 +53,17 @@ static uint32_t find(const struct scene_data *scene, const struct scene_image_re
     return SCENE_NO_IMAGE;
 }
 
-/* "set.ntc#name" is a texture of a neural set, unless a file has this name. */
+/* "set.ntc#name" is a texture of a neural set, and "list.tsv#name" a store of a catalogue, unless a
+ * file has this name. */
 static SluiceResult open_path(SluiceImageOpener *opener, const char *path,
                               const SluiceBakeSettings *settings, SluiceImageSource **source)
 {
     char set[4096];
     const char *name = strstr(path, ".ntc#");
+    name = name ? name : strstr(path, CATALOGUE "#");
     if (!name || access(path, F_OK) == 0)
         return sluiceOpenBakedImageSource(opener, path, settings, source);
-    name += strlen(".ntc");
+    name += strlen(CATALOGUE);
     if (snprintf(set, sizeof set, "%.*s", (int)(name - path), path) >= (int)sizeof set)
         return SLUICE_ERROR_FILE_NOT_FOUND;
     return sluiceOpenNamedImageSource(opener, set, name + 1, source);

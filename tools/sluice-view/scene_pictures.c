@@ -3,6 +3,7 @@
 
 #include "scene_pictures.h"
 
+#include "scene_catalogue.h"
 #include "scene_images.h"
 #include "scene_room.h"
 
@@ -34,20 +35,28 @@ static bool is_folder(const char *path)
 bool scene_pictures_takes(const char *path)
 {
     return remote_is_url(path) || is_folder(path) || files_has_suffix(path, SUFFIXES) ||
-           strstr(path, NEURAL "#");
+           strstr(path, NEURAL "#") || scene_catalogue_takes(path);
 }
 
-static bool collect(const char *const *paths, uint32_t count, struct file_list *files)
+static bool collect(const char *const *paths, uint32_t count, struct remote_session *session,
+                    struct file_list *files)
 {
     bool collected = true;
-    for (uint32_t i = 0; collected && i < count; i++)
-        collected = is_folder(paths[i]) ? files_collect(paths[i], SUFFIXES, files)
-                                        : files_add(paths[i], files);
+    for (uint32_t i = 0; collected && i < count; i++) {
+        if (is_folder(paths[i]))
+            collected = files_collect(paths[i], SUFFIXES, files);
+        else if (scene_catalogue_takes(paths[i]))
+            collected = scene_catalogue_collect(paths[i], session, files);
+        else
+            collected = files_add(paths[i], files);
+    }
     return collected;
 }
 
 static void write_name(const char *path, char *name, size_t size)
 {
+    const char *store = strstr(path, CATALOGUE "#");
+    path = store ? store + strlen(CATALOGUE "#") : path;
     const char *slash = strrchr(path, '/');
     if (remote_is_url(path))
         remote_name(path, name, size);
@@ -132,7 +141,7 @@ bool scene_pictures(const char *const *paths, uint32_t count, const char *cache,
                     struct scene_data *scene)
 {
     struct file_list files = {.speaker = "sluice-view: "};
-    bool hung = collect(paths, count, &files);
+    bool hung = collect(paths, count, &scene->remote, &files);
     if (hung && files.count > MAX_PICTURES) {
         text_say("sluice-view: %zu pictures are more than %u", files.count, MAX_PICTURES);
         hung = false;
