@@ -91,12 +91,12 @@ fact tiles_keep_to_the_budget
 coproc python3 "$root/tests/http/faulty_server.py"
 read -r port _ <&"${COPROC[0]}"
 from_web() { printf 'http://127.0.0.1:%s/file/%s?path=%s' "$port" "$1" "$PWD/$2"; }
-walk 0 --images "$(from_web own.store made/own.store)" "$(from_web a.png in/a.png)" "$(from_web b.dds made/blocks.dds)" \
+{ walk 0 --images "$(from_web own.store made/own.store)" "$(from_web a.png in/a.png)" "$(from_web b.dds made/blocks.dds)" \
     "$(from_web none.png none)" --cache web && [ "$(figure pictures)" = 3 ] && [ "$(figure tiles_failed)" = 0 ] &&
-    [ "$(figure pictures_left_out)" = 1 ] && grep -q '^1 pictures baked' err && cmp web/fetched/*-a.png in/a.png ||
+    [ "$(figure pictures_left_out)" = 1 ] && grep -q '^1 pictures baked' err && cmp web/fetched/*-a.png in/a.png; } ||
     grep -q 'without sluice-http' err
 fact pictures_on_servers_are_copied_and_stores_read_in_place
-exec {COPROC[1]}>&-
+kill "${COPROC_PID:?}" && wait "$COPROC_PID" 2>/dev/null
 
 head -c 3000 in/a.png >cut.png && ! "$streaming" --images cut.png --generate-only --cache cut >out 2>err &&
     grep -q '^cut.png: left out: SLUICE_ERROR_CORRUPT_DATA' err && ! grep -q WARNING err

@@ -88,7 +88,7 @@ run 1 --headless --frames 2 --cache . stores.tsv && grep -q "$(basename "$store"
     [ "$(grep -c 'cannot be shown' err)" = 1 ] && run 1 --headless --frames 2 --cache . damaged.tsv &&
     grep -q 'damaged.tsv: cannot be read as a catalogue' err
 fact stores_of_a_catalogue_are_opened_and_must_be_those_it_names
-exec {COPROC[1]}>&-
+kill "${COPROC_PID:?}" && wait "$COPROC_PID" 2>/dev/null
 printf '3 click 80 80 right\n7 set source-fails 0\n' >faults && { cat faults && echo '8 do retry'; } >mended
 # shellcheck disable=SC2086
 fails() { run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --still \
