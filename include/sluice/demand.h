@@ -422,8 +422,8 @@ SLUICE_API SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader,
  * Opens a texture and loads the tiles that a rectangle of a level covers, of that level and of all
  * coarser ones, coarse levels first. The region's array layer is ignored.
  *
- * Enlarge the rectangle if your filter is wider. A rectangle that leaves its level is refused if the
- * texture is open; otherwise it is logged and loads nothing. All else is as
+ * Enlarge the rectangle if your filter is wider. A rectangle that leaves its level is refused if
+ * the texture is open; otherwise it is logged and loads nothing. All else is as
  * sluicePreloadDemandTexture does it: nothing is evicted, and what could not be read is not tried
  * again. sluiceWaitDemandRegion (demand_query.h) waits for the rectangle.
  *

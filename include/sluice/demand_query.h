@@ -50,7 +50,7 @@ typedef struct SluiceDemandRegionProgress {
     bool isOpen;         ///< The texture is open. If not, all tile counts are 0.
     bool failed;         ///< The texture cannot be opened for now.
     bool ready;          ///< Launches from the next one on find all tiles.
-    uint32_t tileCount;  ///< Tiles of the level and of all coarser ones; the mip tail counts as one.
+    uint32_t tileCount; ///< Tiles of the level and of all coarser ones; the mip tail counts as one.
     uint32_t residentTileCount;
     uint32_t pendingTileCount; ///< They are being read or made.
     uint32_t refusedTileCount; ///< They cannot be read, or there is no memory, for now.
@@ -90,8 +90,8 @@ typedef enum SluiceDemandWaitStatus {
  * Launches take what was read, copy and show it, and start what did not fit into maxTilesInFlight.
  * So this function returns SLUICE_DEMAND_WAIT_LAUNCH at once when a launch has something to do, and
  * sleeps only while nothing but reads is under way. It requests nothing: call
- * sluicePreloadDemandRegion first. Threads of the context read meanwhile. If reads run on threads of
- * the application, these must not be the one that waits: pass 0 there.
+ * sluicePreloadDemandRegion first. Threads of the context read meanwhile. If reads run on threads
+ * of the application, these must not be the one that waits: pass 0 there.
  *
  * Errors: as sluiceGetDemandRegionProgress; SLUICE_ERROR_CANCELED after sluiceAbortDemandLoader.
  */

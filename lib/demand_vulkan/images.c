@@ -4,7 +4,7 @@
 #include "base/log.h"
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/pages.h"
-#include "demand_vulkan/strict_mode.h"
+#include "demand_vulkan/demand_strict.h"
 
 #include <sluice/shared/demand.h>
 

@@ -9,7 +9,7 @@
 #include "demand_vulkan/pages.h"
 #include "demand_vulkan/productions.h"
 #include "demand_vulkan/refused_arguments.h"
-#include "demand_vulkan/strict_mode.h"
+#include "demand_vulkan/demand_strict.h"
 #include "image/half.h"
 #include "vulkan/compute.h"
 #include "vulkan/page_leaving.h"

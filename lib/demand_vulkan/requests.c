@@ -2,7 +2,7 @@
 #include "base/log.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
-#include "demand_vulkan/strict_mode.h"
+#include "demand_vulkan/demand_strict.h"
 
 #include <sluice/shared/demand.h>
 
@@ -119,8 +119,7 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     if (scan.postponedCount == 0)
         loader->listed_launch = launch;
     add_counts(&loader->counts, &now);
-    slc_demand_strict_processed(loader, marked,
-                                slc_residency_turned_away_count(loader->residency));
+    slc_demand_strict_processed(loader, marked, slc_residency_turned_away_count(loader->residency));
     requests->missingCount += now.missingCount;
     requests->servedCount += now.servedCount;
     requests->pendingCount += now.pendingCount;

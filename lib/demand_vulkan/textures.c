@@ -6,7 +6,7 @@
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/pages.h"
 #include "demand_vulkan/refused_arguments.h"
-#include "demand_vulkan/strict_mode.h"
+#include "demand_vulkan/demand_strict.h"
 #include "image/info.h"
 #include "vulkan/address_mode.h"
 

@@ -1,4 +1,4 @@
-#include "demand_vulkan/strict_mode.h"
+#include "demand_vulkan/demand_strict.h"
 
 #include "base/log.h"
 #include "base/struct_size.h"

@@ -1,6 +1,6 @@
 /** Reports of misuse. Each function does nothing unless strict mode is on. */
-#ifndef SLC_DEMAND_VULKAN_STRICT_MODE_H
-#define SLC_DEMAND_VULKAN_STRICT_MODE_H
+#ifndef SLC_DEMAND_VULKAN_DEMAND_STRICT_H
+#define SLC_DEMAND_VULKAN_DEMAND_STRICT_H
 
 #include "demand_vulkan/loader.h"
 
@@ -21,4 +21,4 @@ void slc_demand_strict_no_texture(SluiceDemandLoader *loader);
 /** `name`: of an image that finds no virtual pages. */
 void slc_demand_strict_no_ids(SluiceDemandLoader *loader, const char *name);
 
-#endif /* SLC_DEMAND_VULKAN_STRICT_MODE_H */
+#endif /* SLC_DEMAND_VULKAN_DEMAND_STRICT_H */
