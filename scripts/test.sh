@@ -74,9 +74,9 @@ else
     sanitizer_stage clang-threads tsan thread -Dbuildtype=debugoptimized -Ddefault_library=static -Dsamples=disabled -Dviewer=disabled -Dpbrt=disabled -Dneural=disabled
 
     # Every feature off, as a static library; replays must decide the same as with -O2 of gcc and of
-    # clang. What is slow has run twice by now and depends on none of this.
+    # clang. What is slow has run twice by now and depends on none of this, nor do scripts and reports.
     # shellcheck disable=SC2034 # read by meson_stage
-    test_options=(--no-suite slow --no-suite short --no-suite rare)
+    test_options=(--no-suite slow --no-suite short --no-suite rare --no-suite samples --no-suite scripts --no-suite tradeoff)
     off='-Dexr=disabled -Dcontainer=disabled -Dzstd=disabled -Dstore=disabled -Dbake=disabled -Dvulkan=disabled -Dsamples=disabled -Dviewer=disabled -Dhttp=disabled -Dneural=disabled -Dpbrt=disabled'
     # shellcheck disable=SC2086 # a list of words
     meson_stage gcc-O3-static CC=gcc -- $off -Doptimization=3 -Ddefault_library=static

@@ -16,6 +16,7 @@ for name in $("$here/run.sh" --list-figures); do
     case $mode.$name in
     # not with --quick; not without bindings
     *.sampling.*.close_up.* | *.sampling.*.noise.* | *.sharp.blocks_16.*) continue ;;
+    *.feedback.*.quads_64.* | *.feedback.*.blocks_16.* | *.feedback.*.lattice_64.*) continue ;;
     paged.fill.floor.bind* | dense.fill.floor.bind*) continue ;;
     esac
     if ! grep -q -E "^\{\"name\": \"$mode\.$name\", \"value\": -?[0-9][0-9.e+-]*, \"unit\": \"[^\"]+\"\}$" <<<"$lines"; then

@@ -38,6 +38,8 @@ run_meson_tests() {
     # Most device tests compile shaders for longer than they run them. Four lanes without LLVM's
     # optimizations halve that: decision 151.
     local -x LP_NATIVE_VECTOR_WIDTH=${LP_NATIVE_VECTOR_WIDTH:-128} GALLIVM_PERF=${GALLIVM_PERF:-nopt}
+    # Lavapipe's cache does not tell widths apart, and code for eight lanes crashes beside code for four.
+    local -x MESA_SHADER_CACHE_DIR=${MESA_SHADER_CACHE_DIR:-$SLUICE_BUILD/shaders-$LP_NATIVE_VECTOR_WIDTH}
     # It builds what Meson from 1.7 on leaves to it: what only tests need. Its exit status says nothing
     # that the facts do not say.
     ${disable_aslr:-} meson test -C "$folder" --num-processes "$(nproc)" "$@" \
