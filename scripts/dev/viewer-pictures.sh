@@ -10,6 +10,6 @@ for script in "$root"/docs/viewer/*.txt; do
     basename "$script" .txt
     "$viewer" --headless --deterministic --size 1000x562 --render-scale 1 --script "$script"
 done
-for picture in hall blurry memory budget truth; do
-    cp "$picture.png" "$root/docs/images/viewer-$picture.png"
+for picture in hall blurry memory budget truth thrash unseen cut feedback; do
+    "$root/scripts/dev/palette_png.py" "$picture.png" "$root/docs/images/viewer-$picture.png"
 done

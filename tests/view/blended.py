@@ -1,36 +1,10 @@
 """blended.py BACK FRONT BOTH: whether BOTH is the mean of the other two PNG files in linear light, within 2 of 255."""
-import struct
+import os
 import sys
-import zlib
 
-
-def unfiltered(kind, line, above, size):
-    for i in range(len(line)):
-        left = line[i - size] if i >= size else 0
-        corner = above[i - size] if i >= size else 0
-        guess = left + above[i] - corner
-        paeth = min((left, above[i], corner), key=lambda value: abs(guess - value))
-        line[i] = (line[i] + (0, left, above[i], (left + above[i]) // 2, paeth)[kind]) & 255
-    return line
-
-
-def read(path):
-    """Lines of RGB or RGBA bytes, and bytes per pixel."""
-    data = open(path, "rb").read()
-    width, height, depth, color = struct.unpack(">IIBB", data[16:26])
-    assert depth == 8 and color in (2, 6), "only RGB and RGBA of 8 bits"
-    packed, at = b"", 8
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        packed += data[at + 8:at + 8 + length] if kind == b"IDAT" else b""
-        at += 12 + length
-    size = 3 if color == 2 else 4
-    raw, lines, above = zlib.decompress(packed), [], bytes(width * size)
-    for y in range(height):
-        line = raw[y * (width * size + 1):(y + 1) * (width * size + 1)]
-        above = unfiltered(line[0], bytearray(line[1:]), above, size)
-        lines.append(above)
-    return lines, size
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts/dev"))
+from palette_png import read  # noqa: E402
 
 
 def linear(value):

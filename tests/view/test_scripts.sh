@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# test_scripts.sh FACTS SLUICE-VIEW: the scripts of docs/viewer, in TAP. One after the other in one run, at half the size
-# that they are written for, in front of three small pictures.
+# test_scripts.sh FACTS SLUICE-VIEW: the scripts of docs/viewer, in TAP. One after the other in one run, at two fifths of
+# the size that they are written for, in front of three small pictures.
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd)
 facts=$(realpath "$1") tool=$(realpath "$2")
@@ -11,7 +11,7 @@ facts=$(realpath "$1") tool=$(realpath "$2")
 offset=0
 for script in "$root"/docs/viewer/*.txt; do
     sed '/^#/d; s/ *#.*//' "$script" | awk -v offset="$offset" '{ $1 += offset }
-        $2 == "click" { $3 /= 2; $4 /= 2 } { print }' >>events
+        $2 == "click" { $3 *= 0.4; $4 *= 0.4 } { print }' >>events
     offset=$(($(awk '$1 > last { last = $1 } END { print last }' events) + 3))
 done
 grep ' screenshot ' events >screenshots
@@ -19,7 +19,7 @@ mkdir plain pictures
 for shade in '\377' '\144' '\036'; do
     { printf 'P6 300 300 255\n' && head -c 270000 /dev/zero | tr '\0' "$shade"; } >"pictures/${shade#?}.ppm"
 done
-show() { run 0 pictures --headless --deterministic --fresh --cache . --size 500x281 --ui-scale 0.5 --render-scale 0.2 "$@"; }
+show() { run 0 pictures --headless --deterministic --fresh --cache . --size 400x225 --ui-scale 0.4 --render-scale 0.2 "$@"; }
 
 show --script screenshots && mv ./*.png plain && show --script events &&
     [ "$(cat err)" = 'sluice-view: missing.gltf: cannot be opened' ]
