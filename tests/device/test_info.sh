@@ -76,11 +76,11 @@ status 0 "$info" --formats --device 0 && grep -q '^  format  *linear  *sparse  *
     [ "$rows" -eq $(($(cat "$folder/count") + 1)) ]
 report formats_has_a_row_for_each_format $?
 
-status 2 "$info" --group fades && status 2 "$info" x --self-test
+status 2 "$info" --group fades && status 2 "$info" --report x && status 2 "$info" x --self-test
 report wrong_usage_of_the_self_test_is_refused $?
 
 # A build without it says so.
-status 0 "$info" --self-test --group sampler --json --device 0
+status 0 "$info" --self-test --group sampler --json --device 0 --report "$folder/report.txt"
 ran=$?
 if grep -q 'has no self-test' "$folder/err"; then
     n=$((n + 1))
@@ -88,6 +88,11 @@ if grep -q 'has no self-test' "$folder/err"; then
 else
     [ $ran = 0 ] && python3 "$(dirname "$check")/check_self_test.py" <"$folder/out" 2>"$folder/err"
     report self_test_reports_each_check $?
+
+    lines=$(grep -c '^{"check"' "$folder/out") && [ "$(grep -c '^  [a-z]*  sampler ' "$folder/report.txt")" = "$lines" ] &&
+        grep -q "^  groups  *sampler\$" "$folder/report.txt" && grep -q '^device 0: ' "$folder/report.txt" &&
+        tail -n 1 "$folder/report.txt" | grep -q "^$lines passed, 0 failed, 0 skipped in .*; processor time [0-9]* s; validation o[nf]*\$"
+    report the_file_of_a_report_has_the_device_each_check_and_their_sum $?
 fi
 
 echo "1..$n"

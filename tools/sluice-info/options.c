@@ -13,7 +13,7 @@ static const char usage[] =
     "       sluice-info FILE.ntc --decode MIP [--weights int8|fp8] -o OUT\n"
     "       sluice-info [--device INDEX|NAME] [--image WxH] [--json]\n"
     "       sluice-info --formats [--device INDEX|NAME] [--json]\n"
-    "       sluice-info --self-test [--group NAME] [--device INDEX|NAME] [--json]\n"
+    "       sluice-info --self-test [--report FILE] [--group NAME] [--device INDEX|NAME] [--json]\n"
     "       sluice-info --list-devices\n"
     "\n"
     "Says what is in tile stores, OpenEXR, DDS, KTX2 and .ntc files (neural textures), or,\n"
@@ -30,9 +30,9 @@ static const char notes[] =
     "where the device has no linear filter for the format; or why the format is refused.\n"
     "\n"
     "--self-test checks Sluice on a device, for about two minutes: what shaders request, that\n"
-    "no sample reads what is not resident, fades, formats, extreme arguments. Send the output in:\n"
-    "docs/drivers.md collects such reports. Groups: conformance, sampler, residency, fades,\n"
-    "formats, extremes.\n"
+    "no sample reads what is not resident, fades, formats, extreme arguments. Send in the file of\n"
+    "--report: docs/drivers.md is a table of such reports. Groups: conformance, sampler,\n"
+    "residency, fades, formats, extremes.\n"
     "\n"
     "FILE may be a URL of http, https or s3, but for .ntc files. Keys for s3 come from the usual\n"
     "variables: AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, AWS_SESSION_TOKEN, AWS_REGION and\n"
@@ -64,6 +64,8 @@ static bool is_consistent(const struct option_table *table, const struct options
         return options_refuse(table, "--decode takes one file, and no --png or --json");
     if (o->group && !o->self_test)
         return options_refuse(table, "--group goes with --self-test; --help says more");
+    if (o->report && !o->self_test)
+        return options_refuse(table, "--report goes with --self-test; --help says more");
     if (o->files.count && (o->device || o->list_devices || o->formats || o->self_test))
         return options_refuse(table, "files or devices, not both; --help says more");
     return true;
@@ -96,6 +98,8 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_FLAG, "self-test", .value = &o->self_test,
          .help = "check Sluice on one device: the first that streams, or that of --device"},
         {OPTION_TEXT, "group", "NAME", "(all)", &o->group, "only these checks of --self-test"},
+        {OPTION_TEXT, "report", "FILE", "(none)", &o->report,
+         "write the device and each check of --self-test to a text file"},
         {OPTION_EXTENT, "image", "WxH", "4096x4096", o->image,
          "size of the image whose layout is shown", 1, MOST},
         {OPTION_SECTION, .help = "Output"},

@@ -24,7 +24,8 @@ struct options {
     bool list_devices, json;
     bool formats; ///< only the formats, by residency mode
     bool self_test;
-    const char *group; ///< of checks; NULL: all
+    const char *group;  ///< of checks; NULL: all
+    const char *report; ///< text file with what the self-test finds; NULL: none
 };
 
 /** Prints the help text if it was asked for. On failure says on standard error what is wrong. */

@@ -26,14 +26,14 @@ static const char *type_name(VkPhysicalDeviceType type)
     }
 }
 
-static void print_version(uint32_t version)
+static void print_version(FILE *out, uint32_t version)
 {
-    printf("%u.%u.%u", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
-           VK_API_VERSION_PATCH(version));
+    fprintf(out, "%u.%u.%u", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+            VK_API_VERSION_PATCH(version));
 }
 
 /* Of a few exact units, so that round sizes look round. */
-static void print_bytes(uint64_t size)
+static void print_bytes(FILE *out, uint64_t size)
 {
     static const char *const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
     int unit = 0;
@@ -41,55 +41,56 @@ static void print_bytes(uint64_t size)
         size /= 1024;
         unit++;
     }
-    printf("%" PRIu64 " %s\n", size, units[unit]);
+    fprintf(out, "%" PRIu64 " %s\n", size, units[unit]);
 }
 
-static void print_queue(const SluiceVulkanDeviceCapabilities *c)
+static void print_queue(FILE *out, const SluiceVulkanDeviceCapabilities *c)
 {
-    printf("  sparse binding queue    family %u, %u %s, %s\n", c->sparseQueueFamilyIndex,
-           c->sparseQueueCount, c->sparseQueueCount == 1 ? "queue" : "queues",
-           c->dedicatedSparseQueue ? "neither draws nor computes" : "shared with other work");
+    fprintf(out, "  sparse binding queue    family %u, %u %s, %s\n", c->sparseQueueFamilyIndex,
+            c->sparseQueueCount, c->sparseQueueCount == 1 ? "queue" : "queues",
+            c->dedicatedSparseQueue ? "neither draws nor computes" : "shared with other work");
 }
 
-void print_limits(const struct device_report *r)
+void print_limits(FILE *out, const struct device_report *r)
 {
     const SluiceVulkanDeviceCapabilities *c = &r->capabilities;
-    printf("device %u: %s\n", r->index, c->deviceName);
-    printf("  type                    %s\n", type_name(c->deviceType));
-    printf("  driver                  %s %s\n", c->driverName, c->driverInfo);
-    printf("  Vulkan                  ");
-    print_version(c->apiVersion);
-    printf("\n  streams                 %s%s\n", r->missing[0] ? "no: " : "yes", r->missing);
-    printf("  sparse residency        %s\n", yes_no(c->sparse));
+    fprintf(out, "device %u: %s\n", r->index, c->deviceName);
+    fprintf(out, "  type                    %s\n", type_name(c->deviceType));
+    fprintf(out, "  driver                  %s %s\n", c->driverName, c->driverInfo);
+    fprintf(out, "  Vulkan                  ");
+    print_version(out, c->apiVersion);
+    fprintf(out, "\n  streams                 %s%s\n", r->missing[0] ? "no: " : "yes", r->missing);
+    fprintf(out, "  sparse residency        %s\n", yes_no(c->sparse));
     if (c->sparse)
-        print_queue(c);
-    printf("  sparse address space    ");
-    print_bytes(c->sparseAddressSpaceSize);
-    printf("  device-local memory     ");
-    print_bytes(c->deviceLocalMemorySize);
-    printf("  standard tile shapes    %s\n", yes_no(c->standardTiles));
-    printf("  sparse cube maps        %s\n", yes_no(c->sparse && c->sparseCubes));
-    printf("  unbound texels read 0   %s\n", yes_no(c->residencyNonResidentStrict));
-    printf("  residency codes         %s\n", !c->shaderResourceResidency ? "no"
-                                             : c->residencyCodesExact    ? "yes"
-                                                                      : "yes, not to be trusted");
-    printf("  LOD clamp operand       %s\n", yes_no(c->shaderResourceMinLod));
-    printf("  aliased pages           %s\n", yes_no(c->sparseResidencyAliased));
-    printf("  BC formats              %s\n", yes_no(c->textureCompressionBC));
-    printf("  anisotropy              %g\n",
-           c->samplerAnisotropy ? (double)c->maxSamplerAnisotropy : 1.0);
-    printf("  largest 2D image        %ux%u, %u layers\n", c->maxImageExtent, c->maxImageExtent,
-           c->maxImageArrayLayers);
-    printf("  tiles a process binds   ");
+        print_queue(out, c);
+    fprintf(out, "  sparse address space    ");
+    print_bytes(out, c->sparseAddressSpaceSize);
+    fprintf(out, "  device-local memory     ");
+    print_bytes(out, c->deviceLocalMemorySize);
+    fprintf(out, "  standard tile shapes    %s\n", yes_no(c->standardTiles));
+    fprintf(out, "  sparse cube maps        %s\n", yes_no(c->sparse && c->sparseCubes));
+    fprintf(out, "  unbound texels read 0   %s\n", yes_no(c->residencyNonResidentStrict));
+    fprintf(out, "  residency codes         %s\n",
+            !c->shaderResourceResidency ? "no"
+            : c->residencyCodesExact    ? "yes"
+                                        : "yes, not to be trusted");
+    fprintf(out, "  LOD clamp operand       %s\n", yes_no(c->shaderResourceMinLod));
+    fprintf(out, "  aliased pages           %s\n", yes_no(c->sparseResidencyAliased));
+    fprintf(out, "  BC formats              %s\n", yes_no(c->textureCompressionBC));
+    fprintf(out, "  anisotropy              %g\n",
+            c->samplerAnisotropy ? (double)c->maxSamplerAnisotropy : 1.0);
+    fprintf(out, "  largest 2D image        %ux%u, %u layers\n", c->maxImageExtent,
+            c->maxImageExtent, c->maxImageArrayLayers);
+    fprintf(out, "  tiles a process binds   ");
     if (c->maxTouchedTiles)
-        printf("at most %u\n", c->maxTouchedTiles);
+        fprintf(out, "at most %u\n", c->maxTouchedTiles);
     else
-        printf("any number\n");
-    printf("  time stamps             ");
+        fprintf(out, "any number\n");
+    fprintf(out, "  time stamps             ");
     if (c->timestampPeriod > 0.0f)
-        printf("%g ns\n", (double)c->timestampPeriod);
+        fprintf(out, "%g ns\n", (double)c->timestampPeriod);
     else
-        printf("no\n");
+        fprintf(out, "no\n");
 }
 
 static void print_format(SluiceFormat format, const struct format_report *f)
@@ -113,7 +114,7 @@ void print_table(const struct device_report *r, bool follows)
 {
     if (follows)
         printf("\n");
-    print_limits(r);
+    print_limits(stdout, r);
     printf("\n  %-26s %-6s %-6s %-7s %-9s %-9s levels apart of %ux%u\n", "format", "sparse",
            "sample", "filter", "says", "tile", r->width, r->height);
     for (uint32_t f = 1; f < SLUICE_FORMAT_COUNT; f++)
@@ -146,7 +147,7 @@ static void print_json_device(const struct device_report *r)
     print_string("driverName", c->driverName);
     print_string("driverInfo", c->driverInfo);
     printf("\"apiVersion\":\"");
-    print_version(c->apiVersion);
+    print_version(stdout, c->apiVersion);
     printf("\",");
     print_flag("streams", !r->missing[0]);
     print_string("missing", r->missing);

@@ -4,11 +4,13 @@
 
 #include "devices.h"
 
+#include <stdio.h>
+
 /** `follows`: another one came before. */
 void print_table(const struct device_report *report, bool follows);
 
 /** The device without its formats. */
-void print_limits(const struct device_report *report);
+void print_limits(FILE *out, const struct device_report *report);
 
 /** One line. */
 void print_json(const struct device_report *report);

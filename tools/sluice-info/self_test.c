@@ -3,7 +3,7 @@
  * process of its own, so that a driver that crashes or hangs fails one group. This process never
  * loads a driver: a forked child of it would not be safe.
  */
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700
 
 #include "show.h"
 
@@ -11,6 +11,7 @@
 #include "report.h"
 #include "self_test_checks.h"
 #include "../common/clock.h"
+#include "../common/output_file.h"
 #include "../common/text.h"
 
 #include <sluice/version.h>
@@ -18,7 +19,10 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/utsname.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #define GROUP_SECONDS 240u ///< a group that takes longer has failed
@@ -55,10 +59,24 @@ struct run {
     const struct options *options;
     const struct group *group;
     const char *mode, *device;
-    FILE *log; ///< what the group printed
+    FILE *file; ///< of --report, or NULL
+    FILE *log;  ///< what the group printed
     char current[256];
+    char validation[8]; ///< "on" or "off", as the groups say it; empty before the first one
     uint32_t passed, failed, skipped;
 };
+
+static void print_check(FILE *out, const struct run *run, const char *name, const char *result,
+                        double seconds, const char *reason)
+{
+    fprintf(out, "  %s  %-11s %-6s  %s  (%.1f s)\n", result, run->group->name, run->mode, name,
+            seconds);
+    if (*reason) {
+        fprintf(out, "        ");
+        text_write(out, reason);
+        fprintf(out, "\n");
+    }
+}
 
 static void report(struct run *run, const char *name, const char *result, double seconds,
                    const char *reason)
@@ -75,13 +93,11 @@ static void report(struct run *run, const char *name, const char *result, double
         text_write_json(stdout, reason);
         printf("}\n");
     } else {
-        printf("  %s  %-11s %-6s  %s  (%.1f s)\n", result, run->group->name, run->mode, name,
-               seconds);
-        if (*reason) {
-            printf("        ");
-            text_write(stdout, reason);
-            printf("\n");
-        }
+        print_check(stdout, run, name, result, seconds, reason);
+    }
+    if (run->file) {
+        print_check(run->file, run, name, result, seconds, reason);
+        fflush(run->file); /* a child would write it again */
     }
     fflush(stdout);
 }
@@ -176,12 +192,14 @@ static bool run_group(struct run *run)
     bool ran = child > 0 && waitpid(child, &status, 0) == child;
     if (ran)
         take_end(run, status, failed_before);
+    if (!run->validation[0])
+        find_line(run->log, ", validation ", run->validation, sizeof run->validation);
     fclose(run->log);
     return ran;
 }
 
-/* In a process of its own. Prints the device, and returns its number. */
-static int show_device(const struct options *options)
+/* In a process of its own. Prints the device, and returns its number. `file`: see struct run. */
+static int show_device(const struct options *options, FILE *file)
 {
     static struct device_report report;
     struct devices devices;
@@ -200,20 +218,26 @@ static int show_device(const struct options *options)
         if (options->json)
             print_json(&report);
         else
-            print_limits(&report);
+            print_limits(stdout, &report);
+        if (file)
+            print_limits(file, &report);
+        if (file && fflush(file) != 0)
+            return NO_DEVICE;
         return text_flush("sluice-info: ") ? (int)i : NO_DEVICE;
     }
     text_say("sluice-info: no device to test; --list-devices names those there are");
     return NO_DEVICE;
 }
 
-static int choose_device(const struct options *options)
+static int choose_device(const struct options *options, FILE *file)
 {
     int status = 0;
     fflush(stdout);
+    if (file)
+        fflush(file);
     pid_t child = fork();
     if (child == 0) {
-        int index = show_device(options);
+        int index = show_device(options, file);
         fflush(stdout);
         _exit(index);
     }
@@ -221,7 +245,43 @@ static int choose_device(const struct options *options)
         text_say("sluice-info: the driver does not start");
         return NO_DEVICE;
     }
+    if (file) /* the child has written */
+        fseek(file, 0, SEEK_END);
     return WEXITSTATUS(status);
+}
+
+/* What tells one report from another, before the device. */
+static void print_head(FILE *out, const struct options *options)
+{
+    struct utsname system = {0};
+    char date[16] = "";
+    time_t now = time(NULL);
+    const struct tm *utc = gmtime(&now);
+    if (utc)
+        strftime(date, sizeof date, "%Y-%m-%d", utc);
+    uname(&system);
+    fprintf(out, "Self-test of Sluice " VERSION_TEXT "\n");
+    fprintf(out, "  date                    %s\n", date);
+    fprintf(out, "  system                  %s %s, %s\n", system.sysname, system.release,
+            system.machine);
+    fprintf(out, "  groups                  %s\n", options->group ? options->group : "all");
+}
+
+static void print_sum(FILE *out, const struct run *run, double seconds, double processor)
+{
+    fprintf(out,
+            "%u passed, %u failed, %u skipped in %.0f s; processor time %.0f s; validation %s\n",
+            run->passed, run->failed, run->skipped, seconds, processor,
+            run->validation[0] ? run->validation : "unknown");
+}
+
+/* Seconds of the processes of all groups. */
+static double processor_seconds(void)
+{
+    struct rusage usage = {0};
+    getrusage(RUSAGE_CHILDREN, &usage);
+    return (double)usage.ru_utime.tv_sec + (double)usage.ru_stime.tv_sec +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 static bool is_chosen(const struct options *options, const struct group *group)
@@ -247,25 +307,43 @@ static bool run_all(struct run *run)
     return true;
 }
 
-int self_test(const struct options *options)
+/* False if a process could not start, or no device is there to test. */
+static bool run_on_device(struct run *run)
 {
     char device[16];
-    struct run run = {.options = options, .device = device};
     double start = clock_seconds();
+    int index = choose_device(run->options, run->file);
+    if (index >= NO_DEVICE)
+        return false;
+    snprintf(device, sizeof device, "%d", index);
+    run->device = device;
+    bool ran = run_all(run);
+    double seconds = clock_seconds() - start, processor = processor_seconds();
+    if (run->options->json)
+        printf("{\"version\":\"" VERSION_TEXT "\",\"passed\":%u,\"failed\":%u,\"skipped\":%u,"
+               "\"seconds\":%.1f,\"processorSeconds\":%.1f}\n",
+               run->passed, run->failed, run->skipped, seconds, processor);
+    else
+        print_sum(stdout, run, seconds, processor);
+    if (run->file)
+        print_sum(run->file, run, seconds, processor);
+    return ran;
+}
+
+int self_test(const struct options *options)
+{
+    struct run run = {.options = options};
+    struct output_file *file = NULL;
+    output_set_speaker("sluice-info: ");
+    if (options->report && !(file = output_file_begin(options->report)))
+        return NOT_SHOWN;
+    run.file = file ? output_file_stream(file) : NULL;
     if (!options->json)
         printf("Self-test of Sluice " VERSION_TEXT "\n");
-    int index = choose_device(options);
-    if (index >= NO_DEVICE)
+    if (run.file)
+        print_head(run.file, options);
+    bool ran = run_on_device(&run);
+    if (file && !output_file_end(file, ran))
         return NOT_SHOWN;
-    snprintf(device, sizeof device, "%d", index);
-    bool ran = run_all(&run);
-    double seconds = clock_seconds() - start;
-    if (options->json)
-        printf("{\"version\":\"" VERSION_TEXT "\",\"passed\":%u,\"failed\":%u,\"skipped\":%u,"
-               "\"seconds\":%.1f}\n",
-               run.passed, run.failed, run.skipped, seconds);
-    else
-        printf("%u passed, %u failed, %u skipped in %.0f s\n", run.passed, run.failed, run.skipped,
-               seconds);
     return ran && run.failed == 0 && run.passed > 0 ? ALL_SHOWN : NOT_SHOWN;
 }
