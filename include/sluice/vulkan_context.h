@@ -283,8 +283,10 @@ SLUICE_API void sluiceDestroyVulkanContext(SluiceVulkanContext *context);
  * freed when the GPU has finished with it. No memory for tiles is allocated meanwhile.
  *
  * These stay, whatever the budget: images of dense mode, packed levels, heaps with packed tiles,
- * one heap of each streamer in sparse mode, pages that two front ends share, page images with the
- * tail of a texture of a demand loader. Front ends that begin no frames or launches free nothing.
+ * one heap of each streamer in sparse mode and up to as many pages in paged mode, pages that two
+ * front ends share, page images with the tail of a texture of a demand loader. Front ends that
+ * begin no frames or launches free nothing. A streamer logs one warning when more is in use than
+ * the budget and nothing was freed for many frames: how many bytes are too many, and what has them.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, below
  *         4 MiB.

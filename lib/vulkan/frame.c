@@ -16,6 +16,7 @@
 #include "vulkan/strict_mode.h"
 #include "vulkan/texture_forgetting.h"
 #include "vulkan/tile_upload.h"
+#include "vulkan/unmet_budget.h"
 
 #define MAX_BARRIERS 64u
 #define GRACE 5000000ull /* nanoseconds */
@@ -105,6 +106,7 @@ static SluiceResult decide(SluiceVulkanStreamer *s)
 {
     SluiceResult result = retire(s);
     s->memory_pressure = slc_memory_client_begin(&s->memory); /* after memory was freed above */
+    slc_unmet_budget_step(s);
     if (result >= 0)
         result = slc_productions_publish(s);
     if (result >= 0)

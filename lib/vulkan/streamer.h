@@ -156,6 +156,13 @@ struct slc_shrink {
     uint64_t lacking_until; ///< before this frame tiles count as waiting for pages
 };
 
+/** See unmet_budget.h. */
+struct slc_unmet_budget {
+    uint64_t size;   ///< bytes in use for tiles, as of the last frame
+    uint32_t frames; ///< in which it was the same, beyond the budget
+    bool told;       ///< logged since the budget was last kept
+};
+
 /** See texture_forgetting.h. */
 struct slc_forgetting {
     uint32_t first, last, count; ///< textures in the order of use, the one used last at the end
@@ -204,6 +211,7 @@ struct SluiceVulkanStreamer {
     struct slc_vk vk;                           ///< the context's, but for memory_client
     struct slc_memory_client memory;            ///< of vk
     struct slc_memory_pressure memory_pressure; ///< as of the last begin
+    struct slc_unmet_budget unmet_budget;
     struct slc_shrink shrink;
     struct slc_forgetting forgetting;
     struct slc_caps caps;        ///< the context's

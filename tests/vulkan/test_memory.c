@@ -6,6 +6,7 @@
 
 #include "support/test.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { MODES = 3, TEXTURES = 3, SIZE = 2048 };
@@ -21,12 +22,24 @@ struct stage {
     SluiceVulkanTexture textures[TEXTURES];
     uint64_t time;
     bool looks;
+    uint32_t unmet; ///< messages that the budget cannot be reached
+    char message[512];
 };
 
 static uint8_t want(void *user, uint32_t region)
 {
     (void)region;
     return ((struct stage *)user)->looks ? 0 : SLUICE_MIP_UNTOUCHED;
+}
+
+static void keep_unmet(void *user, SluiceLogSeverity severity, const char *message)
+{
+    struct stage *s = user;
+    if (!strstr(message, "cannot be reached"))
+        return;
+    assert_int_equal(severity, SLUICE_LOG_WARNING);
+    s->unmet++;
+    snprintf(s->message, sizeof s->message, "%s", message);
 }
 
 static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
@@ -56,6 +69,7 @@ static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_stag
     static struct stage s; /* large */
     s = (struct stage){
         .fake = {.tail_page_count = 1, .layer_size = layer_size, .want = want, .user = &s}};
+    s.fake.log = (SluiceLogCallback){&s, keep_unmet};
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = SIZE,
@@ -267,6 +281,44 @@ static void a_budget_that_falls_frees_memory_without_tiles_first(void **state)
     tile_memory_ahead = 0;
 }
 
+/* A message if and only if more stays in use. */
+static void lower_budget(struct stage *s, uint64_t budget)
+{
+    char words[64];
+    uint32_t before = s->unmet;
+    CHECK_OK(sluiceSetVulkanMemoryBudget(s->streamer->context, budget));
+    for (int f = 0; f < 200; f++)
+        frame(s);
+    assert_int_equal(s->unmet - before, budget > 0 && tile_memory(s) > budget);
+    if (s->unmet == before)
+        return;
+    snprintf(words, sizeof words, " %llu bytes too many stay in use",
+             (unsigned long long)(tile_memory(s) - budget));
+    assert_non_null(strstr(s->message, words));
+}
+
+/* One heap of 16 MiB stays in sparse mode. */
+static void a_budget_that_cannot_be_reached_is_told_once_with_what_is_too_much(void **state)
+{
+    (void)state;
+    layer_size = 65536;
+    for (int i = 0; i < MODES; i++) {
+        struct stage *s = stage_init(modes[i]);
+        bool sparse = modes[i] == SLUICE_RESIDENCY_MODE_SPARSE;
+        add_textures(s);
+        fill(s);
+        lower_budget(s, 32 * MIB); /* enough for coarser tiles */
+        assert_int_equal(s->unmet, 0);
+        lower_budget(s, 4 * MIB);
+        assert_true(s->unmet == 1 || !sparse);
+        lower_budget(s, 0);
+        lower_budget(s, 4 * MIB);
+        assert_true(s->unmet == 2 || !sparse);
+        stage_finish(s);
+    }
+    layer_size = MIB;
+}
+
 static void a_device_with_less_memory_makes_less_ahead(void **state)
 {
     (void)state;
@@ -348,6 +400,7 @@ int main(void)
         cmocka_unit_test(without_memory_for_more_staging_loads_are_slower_and_all_arrive),
         cmocka_unit_test(memory_for_tiles_is_there_before_they_need_it_and_stays),
         cmocka_unit_test(a_budget_that_falls_frees_memory_without_tiles_first),
+        cmocka_unit_test(a_budget_that_cannot_be_reached_is_told_once_with_what_is_too_much),
         cmocka_unit_test(a_device_with_less_memory_makes_less_ahead),
         cmocka_unit_test(tiles_are_told_in_the_order_of_their_arrival_whatever_their_slots),
     };
