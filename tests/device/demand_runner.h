@@ -39,7 +39,8 @@ void runner_init_with(struct runner *r, struct harness *h, SluiceDemandLoader *l
 void runner_sample_grids(struct runner *r);
 /** From now on RUNNER_CUBE_GRAD is allowed; grids by themselves and byte pages are not. */
 void runner_sample_cubes(struct runner *r);
-/** Like runner_sample_cubes or runner_sample_grids, with a shader in HLSL that knows nothing else. */
+/** Like runner_sample_cubes or runner_sample_grids, with a shader in HLSL that knows nothing else.
+ */
 void runner_sample_in_hlsl(struct runner *r, bool cubes);
 void runner_finish(struct runner *r);
 void runner_fill(struct harness *h, SluiceDemandLoaderCreateInfo *info);
