@@ -5,7 +5,6 @@
 #include "../common/png_file.h"
 #include "../../tools/common/text.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -53,18 +52,26 @@ float eye_in_frame(const struct settings *settings, uint32_t frame)
     return 1.0f - 4.0f * (float)step / (float)settings->walk_frames;
 }
 
-/* Waves of ever finer scale, as far as the level can show them; any thread calls this. */
+/* 0 to 1, another one for each stone. */
+static float shade_of(uint32_t column, uint32_t row)
+{
+    uint32_t hash = column * 2654435761u ^ row * 2246822519u;
+    hash = (hash ^ hash >> 15) * 3266489917u;
+    return (float)(hash >> 8) / 16777216.0f;
+}
+
+/* Stones made of ever smaller stones, as far as the level can show them: edges are sharp at any
+ * distance. Any thread calls this. */
 static void paint(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
 {
     const float *color = pUserData;
-    const float u = ((float)x + 0.5f) / (float)width, v = ((float)y + 0.5f) / (float)height;
-    const float least = (float)(width < height ? width : height);
-    float value = 0.5f, strength = 0.25f;
+    const uint32_t least = width < height ? width : height;
+    float value = 0.6f, strength = 0.4f;
     (void)mipLevel;
-    for (float waves = 4.0f; 4.0f * waves <= least; waves *= 4.0f) {
-        value += strength * sinf(6.2831853f * waves * u) * sinf(6.2831853f * waves * v);
-        strength *= 0.8f;
+    for (uint32_t stones = 4; 4 * stones <= least; stones *= 4) {
+        value += strength * (shade_of(x * stones / width, stones + y * stones / height) - 0.5f);
+        strength *= 0.7f;
     }
     for (int c = 0; c < 4; c++)
         rgba[c] = c < 3 ? color[c] * value : 1.0f;
@@ -78,7 +85,7 @@ SluiceResult create_source(uint32_t texture, SluiceImageSource **source)
                                   .width = 4096u >> texture, /* a different size for each */
                                   .height = 2048,
                                   .format = SLUICE_FORMAT_R8G8B8A8_SRGB,
-                                  .pName = "waves"};
+                                  .pName = "stones"};
     return sluiceCreateProceduralImageSource(&image, &info, NULL, source);
 }
 

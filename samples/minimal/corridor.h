@@ -27,7 +27,7 @@ uint32_t texture_of_surface(uint32_t surface);
 /** Where the eye is in a frame, on the z axis: it walks from 1 to -3. */
 float eye_in_frame(const struct settings *settings, uint32_t frame);
 
-/** A source of texels for a texture: waves, painted where and when a tile of them is loaded. */
+/** A source of texels for a texture: stones, painted where and when a tile of them is loaded. */
 SluiceResult create_source(uint32_t texture, SluiceImageSource **source);
 
 /** A line: residency mode, frames so far, tiles there are, are resident and were loaded, bytes. */
