@@ -63,8 +63,9 @@ typedef struct SluiceDemandLoaderCreateInfo {
     uint32_t maxRequestsPerLaunch;
     /**
      * Bytes of device memory for tiles and byte pages. Hard limit. At most the tiles that the
-     * context's maxPageChunkCount images hold are used: 7.4 GiB for 64 images of one format.
-     * Default: half of the device's memory.
+     * context's maxPageChunkCount images hold are used: 7.4 GiB for 64 images of one format. At
+     * least 4 MiB; with less, creation fails with SLUICE_ERROR_INVALID_ARGUMENT. Default: half of
+     * the device's memory.
      */
     uint64_t memoryBudget;
     /**
@@ -74,9 +75,11 @@ typedef struct SluiceDemandLoaderCreateInfo {
      */
     uint32_t maxTilesInFlight;
     /**
-     * Bytes of memoryBudget for byte pages, used in units of 2 MiB. While there are byte pages,
-     * tiles get the rest, of which they need at least 4 MiB. Hard limit. At least 2 MiB, at most
+     * Bytes of memoryBudget for byte pages, used in units of 2 MiB. Hard limit. 2 MiB to
      * memoryBudget. Default: a quarter of memoryBudget.
+     *
+     * While there are byte pages, tiles get the rest. Leave them 4 MiB or more. Creation does not
+     * check this: with less, tiles may find no memory, and samples of them stay not resident.
      *
      * Tiles may fill memoryBudget when the first such resource is added. The next launches then
      * evict tiles and free their images (with noEviction: only images that run empty). Until then

@@ -81,7 +81,9 @@ static bool check(const struct option_table *table, const struct pbrt_options *o
     if (!o->scene && !o->list_devices)
         return options_refuse(table, "a scene is missing");
     if (o->texture_budget > 0 && o->texture_budget < 4u << 20)
-        return options_refuse(table, "--texture-budget: wants 4M at least, or 0");
+        return options_refuse(
+            table,
+            "--texture-budget: the least is 4M (4194304 bytes); 0 is half of the device's memory");
     if (o->preload && o->material_budget > 0)
         return options_refuse(table, "--preload and --material-budget: give one of them");
     if ((o->preload || o->preload_shapes) && o->budget > 0)

@@ -41,7 +41,8 @@ static bool parse_camera(const char *text, void *value)
 static bool check(const struct option_table *table, struct tracer_options *o)
 {
     if (o->budget > 0 && o->budget < LEAST_BUDGET)
-        return options_refuse(table, "--budget: wants 4M at least, or 0");
+        return options_refuse(
+            table, "--budget: the least is 4M (4194304 bytes); 0 is half of the device's memory");
     if (o->preview && o->preload)
         return options_refuse(
             table, "--preview and --preload: nothing would be missing; give one of them");
