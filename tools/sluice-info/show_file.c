@@ -64,7 +64,7 @@ static void print_levels(const SluiceStoreLayout *layout)
         printf("  level %-2u                %u x %u, %u x %u tiles\n", l,
                level_size(layout->width, l), level_size(layout->height, l),
                layout->levelWidthInTiles[l], layout->levelHeightInTiles[l]);
-    printf("  tail                    levels %u to %u, %u bytes\n", layout->tailFirstLevel,
+    printf("  mip tail                levels %u to %u, %u bytes\n", layout->tailFirstLevel,
            layout->mipLevelCount - 1, layout->tailSize);
 }
 
@@ -73,14 +73,14 @@ static void print_store(const SluiceStoreInfo *s)
     printf("  version                 %u.%u\n", s->versionMajor, s->versionMinor);
     printf("  meaning                 %s\n", name_of(meanings, 5, s->meaning));
     printf("  color space             %s\n", name_of(spaces, 5, s->colorSpace));
-    printf("  beyond the edges        %s, %s\n", name_of(modes, 4, s->addressModeU),
+    printf("  address modes           u %s, v %s\n", name_of(modes, 4, s->addressModeU),
            name_of(modes, 4, s->addressModeV));
-    printf("  made from               ");
+    printf("  source                  ");
     text_write(stdout, s->pSourceName);
     printf(", %" PRIu64 " bytes", s->sourceSize);
     print_time(s->sourceModifiedTimeNs);
-    printf("  settings                %016" PRIx64 "\n", s->settingsHash);
-    printf("  compression             %u\n", s->compressionLevel);
+    printf("  hash of the settings    %016" PRIx64 "\n", s->settingsHash);
+    printf("  Zstandard level         %u\n", s->compressionLevel);
     printf("  tiles                   %u x %u texels, %" PRIu64 " per layer\n", s->layout.tileWidth,
            s->layout.tileHeight, s->layout.tileCount);
     print_levels(&s->layout);
@@ -129,7 +129,7 @@ static uint64_t mib(uint64_t size)
 
 static void print_exr(const SluiceExrInfo *e)
 {
-    printf("  held as                 %s, %u x %u texels each, %s\n",
+    printf("  storage                 %s, %u x %u texels each, %s\n",
            name_of(storages, 4, e->storage), e->chunkWidth, e->chunkHeight, e->pCompression);
     printf("  channels                %s\n", e->pChannels);
     if (e->hasChromaticities) {
@@ -139,9 +139,9 @@ static void print_exr(const SluiceExrInfo *e)
                (double)c[7], e->convertsPrimaries ? "; read as those of Rec. 709" : "");
     }
     if (e->chainSize)
-        printf("  levels                  are built by whoever reads them: %" PRIu64
+        printf("  levels                  only level 0; readers build the others in %" PRIu64
                " MiB of memory;\n"
-               "                          sluice-bake FILE -o DIR makes a file that has them\n",
+               "                          sluice-bake FILE -o DIR writes a store with all levels\n",
                mib(e->chainSize));
 }
 
