@@ -238,12 +238,10 @@ void ui_drawing_destroy(struct ui_drawing *d)
     *d = (struct ui_drawing){0};
 }
 
+/* In every frame: a new view may have the handle of one that was destroyed. */
 static void show(struct ui_drawing *d, struct ui_draw_slot *slot, uint32_t texture,
                  VkImageView view)
 {
-    if (slot->views[texture] == view)
-        return;
-    slot->views[texture] = view;
     const VkDescriptorImageInfo image = {.imageView = view,
                                          .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,

@@ -12,7 +12,6 @@
 struct ui_draw_slot {
     struct gpu_buffer vertices, indices;
     VkDescriptorSet sets[UI_TEXTURE_COUNT];
-    VkImageView views[UI_TEXTURE_COUNT]; ///< what the sets show
 };
 
 struct ui_drawing {
