@@ -9,6 +9,7 @@
 #include "neural_train/train_schedule.h"
 #include "vulkan/context.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -132,8 +133,8 @@ static SluiceResult write_references(const struct slc_train_plan *plan, const fl
             for (uint32_t c = 0; c < channels; c++) {
                 float value = mips[m][i * channels + c];
                 if (!isfinite(value))
-                    return slc_log_refusal(log, "ppMips[%u][%zu] is not finite", m,
-                                           i * channels + c);
+                    return slc_log_refusal(log, "ppMips[%u][%" PRIu64 "] is not finite", m,
+                                           (uint64_t)(i * channels + c));
                 words[c / 2] |= (uint32_t)slc_half_from_float(value) << (c % 2 * 16);
             }
         }

@@ -55,15 +55,16 @@ with_root() {
     return 1
 }
 
-# cross_stage SYSTEM CONSTANTS: builds and runs the programs of the suite $cross_suite of tests/cross
+# cross_stage SYSTEM CONSTANTS OPTIONS...: builds and runs the programs of the suite $cross_suite of tests/cross
 cross_stage() {
     local system=$1 folder=$tests_folder/$1
+    local -a options=("${@:3}")
     stage_title "$system"
     printf '[constants]\n%s\n' "$2" >"$folder.ini"
-    local off='-Dexr=disabled -Dzstd=disabled -Dstore=disabled -Dbake=disabled -Dvulkan=disabled -Dsamples=disabled -Dneural=disabled -Dpbrt=disabled'
+    local off='-Dexr=disabled -Dzstd=disabled -Dstore=disabled -Dbake=disabled -Dsamples=disabled -Dneural=disabled -Dpbrt=disabled'
     # shellcheck disable=SC2086 # a list of words
     if configure "$folder" --cross-file "$SLUICE_ROOT/scripts/cross/$system.ini" --cross-file "$folder.ini" \
-        --wrap-mode=nofallback --werror -Dbuildtype=plain -Ddefault_library=static $off &&
+        --wrap-mode=nofallback --werror -Dbuildtype=plain -Ddefault_library=static $off "${options[@]}" &&
         compile "$folder" "$cross_suite-tests"; then
         fact passed "$system" build "compiles without a warning" ""
         run_meson_tests "$system" --no-rebuild --suite "$cross_suite"
@@ -85,6 +86,33 @@ make_wine_prefix() {
     say "$prefix"
 }
 
+# Vulkan's headers are the same for all systems, but Meson looks only for those of the system it builds for.
+# Prints the lines of a cross file that name them.
+vulkan_headers_for_windows() {
+    local folder=$SLUICE_BUILD/vulkan-for-windows name
+    mkdir -p "$folder/include" || return 1
+    for name in vulkan vk_video; do
+        ln -sfn "/usr/include/$name" "$folder/include/$name"
+    done
+    # shellcheck disable=SC2016 # pkg-config expands it
+    printf '%s\n' "includedir=$folder/include" 'Name: vulkan' 'Description: headers' 'Version: 1.2' 'Cflags: -I${includedir}' >"$folder/vulkan.pc"
+    printf '%s\n' '[binaries]' "pkgconfig = '$(command -v pkg-config)'" '[properties]' "pkg_config_libdir = '$folder'"
+}
+
+# start_display: an X server for Wine's Vulkan, if Xvfb is installed. Without one the device tests are skipped.
+start_display() {
+    local number=$tests_folder/display
+    command -v Xvfb >/dev/null || return 0
+    : >"$number"
+    Xvfb -displayfd 3 -nolisten tcp -screen 0 640x480x24 3>"$number" >/dev/null 2>&1 &
+    display_server=$!
+    for _ in $(seq 100); do
+        [ ! -s "$number" ] || break
+        sleep 0.1
+    done
+    DISPLAY=:$(cat "$number")
+}
+
 # start_wine ROOT: starts a server that stays, and boots it. Otherwise the server ends whenever no program runs,
 # and programs that start at that moment wait for each other's boot.
 start_wine() {
@@ -96,15 +124,23 @@ start_wine() {
 }
 
 windows_stage() {
-    local gcc wine name=x86_64-w64-mingw32
+    local gcc wine constants name=x86_64-w64-mingw32 vulkan=disabled display_server=''
     gcc=$(with_root "usr/bin/$name-gcc-win32") && wine=$(with_root usr/lib/wine/wine64) || return 1
-    local -x WINEPREFIX WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml,winemenubuilder.exe='
+    local -x WINEPREFIX DISPLAY='' WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml,winemenubuilder.exe='
     WINEPREFIX=$(make_wine_prefix "$wine")
-    start_wine "$wine"
-    cross_stage $name "gcc = '$gcc/usr/bin/$name-gcc-win32'
+    constants="gcc = '$gcc/usr/bin/$name-gcc-win32'
 ar = '$(with_root usr/bin/$name-ar)/usr/bin/$name-ar'
 wine = '$wine/usr/lib/wine/wine64'"
+    if [ "$cross_suite" = cross ] && [ -f /usr/include/vulkan/vulkan.h ] && command -v glslangValidator >/dev/null; then
+        vulkan=enabled
+        constants="$constants
+$(vulkan_headers_for_windows)"
+        start_display
+    fi
+    start_wine "$wine"
+    cross_stage $name "$constants" -Dvulkan=$vulkan
     "$wine/usr/lib/wine/wineserver64" -k || true
+    [ -z "$display_server" ] || kill "$display_server" || true
 }
 
 # processor_stage PROCESSOR
@@ -113,7 +149,7 @@ processor_stage() {
     root=$(with_root "usr/$1-linux-gnu/include/stdio.h") && qemu=$(with_root "usr/bin/qemu-$1") || return 1
     cross_stage "$1-linux-gnu" "root = '${root:-/}'
 qemu = '$qemu/usr/bin/qemu-$1'
-tools = '$(with_root usr/s390x-linux-gnu/bin/ld)/usr/s390x-linux-gnu/bin'"
+tools = '$(with_root usr/s390x-linux-gnu/bin/ld)/usr/s390x-linux-gnu/bin'" -Dvulkan=disabled
 }
 
 # Compiles and runs nothing: there is no macOS to run it.

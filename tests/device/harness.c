@@ -7,6 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef _WIN32
+#define LIBRARY "vulkan-1.dll"
+#else
+#define LIBRARY "libvulkan.so.1"
+#endif
 #define MAX_DEVICES 16u
 #define MAX_FAMILIES 32u
 #define LAYER "VK_LAYER_KHRONOS_validation"
@@ -301,9 +306,9 @@ int harness_init(struct harness *h)
 static int init(struct harness *h, const struct extras *extras)
 {
     *h = (struct harness){0};
-    h->library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+    h->library = dlopen(LIBRARY, RTLD_NOW | RTLD_LOCAL);
     if (!h->library)
-        return no_device(h, "there is no Vulkan loader (libvulkan.so.1)");
+        return no_device(h, "there is no Vulkan loader (" LIBRARY ")");
     *(void **)&h->get = dlsym(h->library, "vkGetInstanceProcAddr"); /* as dlopen(3) writes it */
     if (!h->get || !create_instance(h, extras->newer ? extras->newer->layer_version : 0))
         return no_device(h, "no Vulkan 1.2 instance can be created");

@@ -7,7 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#ifdef _WIN32
+#define LIBRARY "vulkan-1.dll"
+#else
 #define LIBRARY "libvulkan.so.1"
+#endif
 
 static PFN_vkVoidFunction find(const struct devices *d, const char *name)
 {

@@ -21,7 +21,7 @@ void small_skip(void)
 
 static int run(const struct CMUnitTest *test)
 {
-    void *state = NULL;
+    void *state = test->initial_state;
     if (test->setup_func && test->setup_func(&state) != 0)
         return FAILED;
     int result = setjmp(out);

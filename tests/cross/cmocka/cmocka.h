@@ -14,15 +14,16 @@ struct CMUnitTest {
     void (*test_func)(void **state);
     int (*setup_func)(void **state);
     int (*teardown_func)(void **state);
+    void *initial_state;
 };
 
 #define cmocka_unit_test(f)                                                                        \
     {                                                                                              \
-#f, f, NULL, NULL                                                                          \
+#f, f, NULL, NULL, NULL                                                                    \
     }
 #define cmocka_unit_test_setup_teardown(f, setup, teardown)                                        \
     {                                                                                              \
-#f, f, setup, teardown                                                                     \
+#f, f, setup, teardown, NULL                                                               \
     }
 #define cmocka_run_group_tests(tests, setup, teardown)                                             \
     small_run_tests(tests, sizeof(tests) / sizeof *(tests))
