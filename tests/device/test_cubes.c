@@ -340,13 +340,28 @@ static void run_in(struct cube_rig *rig, enum cube_form form, uint32_t flags,
     memcpy(outputs, cube_rig_outputs(rig), PROBE_CAPACITY * sizeof *outputs);
 }
 
+/* Compilers of GPUs contract the two languages' equal expressions in different ways: on an NVIDIA
+ * H200 a LOD of 2.1 differs by its last bit. The lavapipe of CI rounds both alike. */
+static bool same_output(struct harness *h, const struct ProbeOutput *a, const struct ProbeOutput *b)
+{
+    struct ProbeOutput near = *b;
+    if (!harness_is_software(h)) {
+        for (uint32_t c = 0; c < 4; c++)
+            if (fabs((double)a->color[c] - (double)b->color[c]) <= 0x1p-16)
+                near.color[c] = a->color[c];
+        if (fabs((double)a->lod - (double)b->lod) <= 0x1p-20 * fmax(1, fabs((double)a->lod)))
+            near.lod = a->lod;
+    }
+    return memcmp(a, &near, sizeof near) == 0;
+}
+
 static void compare_languages(struct cube_rig *rig, uint32_t flags, uint32_t count)
 {
     static struct ProbeOutput glsl[PROBE_CAPACITY], hlsl[PROBE_CAPACITY];
     run_in(rig, CUBE_FORM_CUBE, flags, glsl);
     run_in(rig, CUBE_FORM_HLSL, flags, hlsl);
     for (uint32_t i = 0; i < count; i++)
-        if (memcmp(&glsl[i], &hlsl[i], sizeof glsl[i]) != 0)
+        if (!same_output(rig->scene.h, &glsl[i], &hlsl[i]))
             fail_msg("flags %u, output %u: HLSL %.9g %.9g, lod %.9g, level %u; GLSL %.9g %.9g, lod "
                      "%.9g, level %u",
                      flags, i, (double)hlsl[i].color[0], (double)hlsl[i].color[1],
