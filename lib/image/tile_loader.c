@@ -251,13 +251,11 @@ bool slc_loader_wait_for_read(SluiceTileLoader *loader, uint64_t until)
     bool in_time = true;
     slc_mutex_lock(&loader->pool->mutex);
     loader->awaited = true;
-    while (in_time && loader->queue.finished_count == 0 &&
-           !slc_read_queue_is_idle(&loader->queue)) {
+    /* The time comes first: with a job system, waiting may read here. */
+    while (loader->queue.finished_count == 0 && !slc_read_queue_is_idle(&loader->queue) &&
+           (in_time = slc_monotonic_time() < until))
         slc_read_pool_wait(loader->pool, until);
-        in_time = slc_monotonic_time() < until;
-    }
     loader->awaited = false;
-    in_time |= loader->queue.finished_count > 0;
     slc_mutex_unlock(&loader->pool->mutex);
     return in_time;
 }

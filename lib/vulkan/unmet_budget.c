@@ -1,12 +1,13 @@
 #include "vulkan/unmet_budget.h"
 
+#include "base/checked.h"
 #include "base/log.h"
 #include "vulkan/memory_budget.h"
 
-/* Frames in which no memory is freed. A heap is emptied in one per MOVES_PER_FRAME tiles, and freed
- * after the frames in flight. */
+/* Frames after the last memory was freed. Emptying a heap takes its tiles divided by those that
+ * leave per frame, and its memory goes after the frames in flight. */
 #define PATIENCE 64u
-#define TILES_PER_FRAME 16u
+#define TILES_PER_FRAME 16u /* at most tilesPerFrame */
 
 static uint32_t count_packed_tiles(const SluiceVulkanStreamer *s)
 {
@@ -45,7 +46,8 @@ void slc_unmet_budget_step(SluiceVulkanStreamer *s)
     if (size != unmet->size)
         unmet->frames = 0;
     unmet->size = size;
-    if (unmet->told || ++unmet->frames < PATIENCE + s->info.heapTileCapacity / TILES_PER_FRAME)
+    uint32_t leaving = slc_min_u32(TILES_PER_FRAME, s->info.tilesPerFrame);
+    if (unmet->told || ++unmet->frames < PATIENCE + s->info.heapTileCapacity / leaving)
         return;
     unmet->told = true;
     tell(s);

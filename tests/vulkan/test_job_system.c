@@ -87,11 +87,35 @@ static void waits_for_requests_end_though_jobs_are_refused(void **state)
     assert_int_equal(system.submitted_count, 0);
 }
 
+static void waits_of_no_time_read_nothing(void **state)
+{
+    (void)state;
+    struct job_system system;
+    SluiceTextureRequestId request;
+    SluiceVulkanWaitStatus status;
+    const SluiceVulkanTextureRequest all = {.structSize = sizeof all, .until = UINT64_MAX};
+    uint32_t timeouts = 0;
+    job_system_init(&system, (struct job_system_habits){.refuse_count = UINT32_MAX});
+    stage_job_system = &system.callbacks;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
+    stage_job_system = NULL;
+    CHECK_OK(sluiceRequestVulkanTexture(s->streamer, s->textures[0].textureId, &all, &request));
+    for (uint32_t i = 0; i < 6; i++) {
+        frames(s, 1);
+        CHECK_OK(sluiceWaitVulkanRequest(s->streamer, request, 0, &status));
+        timeouts += status == SLUICE_VULKAN_WAIT_TIMEOUT;
+    }
+    assert_true(timeouts > 0);
+    stage_finish(s);
+    job_system_finish(&system);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jobs_and_threads_lead_to_one_residency),
         cmocka_unit_test(waits_for_requests_end_though_jobs_are_refused),
+        cmocka_unit_test(waits_of_no_time_read_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
