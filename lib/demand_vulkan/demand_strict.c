@@ -54,25 +54,24 @@ void slc_demand_strict_not_begun(SluiceDemandLoader *loader)
                (number)loader->launch);
 }
 
-/* The oldest launch that calls wait for; its time begins with the first call that does. */
-static void note_wait(SluiceDemandLoader *loader, uint64_t now)
+/* The time of a launch begins with the first call that waits for it. */
+static void note_wait(SluiceDemandLoader *loader, uint64_t launch, uint64_t now)
 {
     struct slc_demand_strict *strict = &loader->strict;
-    uint64_t oldest = loader->processed + 1;
-    if (strict->awaited == oldest)
+    if (strict->awaited == launch)
         return;
-    strict->awaited = oldest;
+    strict->awaited = launch;
     strict->awaited_since = now;
     strict->awaited_told = false;
 }
 
-uint64_t slc_demand_strict_patience(SluiceDemandLoader *loader, uint64_t timeout)
+uint64_t slc_demand_strict_patience(SluiceDemandLoader *loader, uint64_t launch, uint64_t timeout)
 {
     const struct slc_demand_strict *strict = &loader->strict;
     if (!is_on(loader) || timeout == 0)
         return timeout;
     uint64_t now = slc_monotonic_time();
-    note_wait(loader, now);
+    note_wait(loader, launch, now);
     if (strict->awaited_told)
         return timeout;
     uint64_t waited = now - strict->awaited_since, most = strict->mode.unsignaledNs;
@@ -80,14 +79,14 @@ uint64_t slc_demand_strict_patience(SluiceDemandLoader *loader, uint64_t timeout
     return rest < timeout ? rest : timeout;
 }
 
-void slc_demand_strict_not_ready(SluiceDemandLoader *loader)
+void slc_demand_strict_not_ready(SluiceDemandLoader *loader, uint64_t launch)
 {
     struct slc_demand_strict *strict = &loader->strict;
     uint64_t now, value = 0;
     if (!is_on(loader))
         return;
     now = slc_monotonic_time();
-    note_wait(loader, now);
+    note_wait(loader, launch, now);
     if (strict->awaited_told || now - strict->awaited_since < strict->mode.unsignaledNs)
         return;
     if (loader->vk.GetSemaphoreCounterValue(loader->vk.device, loader->semaphore, &value) !=

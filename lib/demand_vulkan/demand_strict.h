@@ -8,9 +8,9 @@ void slc_demand_strict_not_ended(SluiceDemandLoader *loader);
 void slc_demand_strict_not_begun(SluiceDemandLoader *loader);
 /** Nanoseconds of `timeout` that a call may wait before slc_demand_strict_not_ready has something
  *  to report. */
-uint64_t slc_demand_strict_patience(SluiceDemandLoader *loader, uint64_t timeout);
+uint64_t slc_demand_strict_patience(SluiceDemandLoader *loader, uint64_t launch, uint64_t timeout);
 /** A call is not ready, or has waited as long as slc_demand_strict_patience said. */
-void slc_demand_strict_not_ready(SluiceDemandLoader *loader);
+void slc_demand_strict_not_ready(SluiceDemandLoader *loader, uint64_t launch);
 /** True if shaders are to report what `launch` uses, for strict mode alone. */
 bool slc_demand_strict_probes(const SluiceDemandLoader *loader, uint64_t launch);
 /** A launch was processed. `marked`: shaders requested or used pages. `turned_away`: pages of

@@ -234,7 +234,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     if (is_aborted(loader))
         return SLUICE_ERROR_CANCELED;
     if (loader->launch - loader->processed >= loader->info.launchesInFlight) {
-        slc_demand_strict_not_ready(loader);
+        slc_demand_strict_not_ready(loader, loader->processed + 1);
         return SLUICE_NOT_READY;
     }
     uint64_t launch = loader->launch + 1;
@@ -371,10 +371,10 @@ static SluiceResult wait_for(SluiceDemandLoader *loader, uint64_t launch, uint64
                                       .semaphoreCount = 1,
                                       .pSemaphores = &loader->semaphore,
                                       .pValues = &launch};
-    uint64_t patience = slc_demand_strict_patience(loader, timeout);
+    uint64_t patience = slc_demand_strict_patience(loader, launch, timeout);
     VkResult result = loader->vk.WaitSemaphores(loader->vk.device, &info, patience);
     if (result == VK_TIMEOUT)
-        slc_demand_strict_not_ready(loader);
+        slc_demand_strict_not_ready(loader, launch);
     if (result == VK_TIMEOUT && patience < timeout)
         result = loader->vk.WaitSemaphores(loader->vk.device, &info,
                                            timeout == UINT64_MAX ? timeout : timeout - patience);
