@@ -452,6 +452,12 @@ static SluiceResult open_request(SluiceImageOpener *opener, struct request *r,
             result = check_texture(opener, r->path, r->texture, r->kind);
         if (result == SLUICE_SUCCESS)
             result = find_settings(r);
+        if (result == SLUICE_SUCCESS && r->is_entry && r->kind != SLUICE_IMAGE_FILE_KIND_STORE &&
+            r->kind != SLC_IMAGE_FILE_KIND_CATALOGUE) { /* is never parsed or baked */
+            slc_log(&opener->log, SLUICE_LOG_ERROR, "%s: is not the store that the catalogue names",
+                    r->path);
+            result = SLUICE_ERROR_CORRUPT_DATA;
+        }
         if (result == SLUICE_SUCCESS && r->kind == SLC_IMAGE_FILE_KIND_CATALOGUE) {
             result = find_entry(opener, r->path, r->path, r->texture, NULL, &entry);
             return result == SLUICE_SUCCESS ? open_entry(opener, r, &entry, source) : result;

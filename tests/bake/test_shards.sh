@@ -54,6 +54,8 @@ run 0 --merge the.plan -o the.tsv && grep -q '^8 of 8 stores are there' out && [
     run 0 --merge the.plan -o the.tsv && cmp the.tsv before
 fact the_catalogue_names_all_stores
 mkdir -p other && run 0 --merge the.plan -o many.d/list.tsv && grep -q $'in/p7.png\tp7.store$' many.d/list.tsv &&
+    run 0 --merge the.plan -o ./many.d/list.tsv && grep -q $'in/p7.png\tp7.store$' many.d/list.tsv &&
+    run 0 --merge the.plan -o "$PWD/many.d/list.tsv" && grep -q $'in/p7.png\tp7.store$' many.d/list.tsv &&
     run 0 --merge the.plan -o other/list.tsv && grep -q $'in/p7.png\t'"$(realpath many.d/p7.store)"'$' other/list.tsv &&
     rm many.d/list.tsv
 fact stores_are_named_from_the_folder_of_the_catalogue

@@ -165,12 +165,20 @@ static void write_store_name(FILE *out, const char *catalogue, const char *store
 {
     const char *slash = strrchr(catalogue, '/');
     const size_t folder = slash ? (size_t)(slash - catalogue) + 1 : 0;
-    char *real = NULL;
-    if (strncmp(store, catalogue, folder) == 0)
+    char *real = NULL, *real_folder = NULL;
+    if (strncmp(store, catalogue, folder) == 0 && store[folder] != '/') {
         store += folder;
-    else if ((real = realpath(store, NULL)))
-        store = real;
+    } else if ((real = realpath(store, NULL))) {
+        char *name = slash ? strndup(catalogue, folder) : strdup(".");
+        real_folder = name ? realpath(name, NULL) : NULL;
+        const size_t length = real_folder ? strlen(real_folder) : 0;
+        const bool below =
+            length > 1 && strncmp(real, real_folder, length) == 0 && real[length] == '/';
+        store = below ? real + length + 1 : real;
+        free(name);
+    }
     line_write_name(out, store);
+    free(real_folder);
     free(real);
 }
 

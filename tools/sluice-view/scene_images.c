@@ -53,17 +53,25 @@ static uint32_t find(const struct scene_data *scene, const struct scene_image_re
     return SCENE_NO_IMAGE;
 }
 
+/* The '#' behind the name of a file that has several pictures; NULL if there is none. */
+static const char *find_name(const char *path)
+{
+    const char *set = strstr(path, ".ntc#"), *list = strstr(path, CATALOGUE "#");
+    const char *query = remote_is_url(path) ? strstr(path, CATALOGUE "?") : NULL;
+    if (set || list)
+        return (set ? set : list) + strlen(CATALOGUE);
+    return query ? strchr(query, '#') : NULL;
+}
+
 /* "set.ntc#name" is a texture of a neural set, and "list.tsv#name" a store of a catalogue, unless a
  * file has this name. */
 static SluiceResult open_path(SluiceImageOpener *opener, const char *path,
                               const SluiceBakeSettings *settings, SluiceImageSource **source)
 {
     char set[4096];
-    const char *name = strstr(path, ".ntc#");
-    name = name ? name : strstr(path, CATALOGUE "#");
+    const char *name = find_name(path);
     if (!name || access(path, F_OK) == 0)
         return sluiceOpenBakedImageSource(opener, path, settings, source);
-    name += strlen(CATALOGUE);
     if (snprintf(set, sizeof set, "%.*s", (int)(name - path), path) >= (int)sizeof set)
         return SLUICE_ERROR_FILE_NOT_FOUND;
     return sluiceOpenNamedImageSource(opener, set, name + 1, source);
