@@ -40,7 +40,9 @@ done
 [ ${#words[@]} -eq 3 ] || die "FIRST-LAST, N and FOLDER are needed (see --help)"
 [[ ${words[0]} =~ ^([0-9]{1,6})-([0-9]{1,6})$ ]] || die "frames are FIRST-LAST, as in 0-95"
 first=$((10#${BASH_REMATCH[1]})) last=$((10#${BASH_REMATCH[2]})) count=${words[1]} folder=${words[2]}
-case $count$local_jobs$rounds in *[!0-9]*) die "N, JOBS and rounds are numbers" ;; esac
+[[ $count =~ ^[0-9]{1,6}$ ]] || die "N is the number of tasks"
+case $local_jobs$rounds in *[!0-9]*) die "JOBS and rounds are numbers" ;; esac
+count=$((10#$count))
 if [ "$first" -gt "$last" ] || [ "$count" -eq 0 ]; then die "there is no frame, or no task"; fi
 case "$*" in *%o*) ;; *) die "COMMAND has no %o, so it writes no picture" ;; esac
 [ "$local_jobs" -gt 0 ] || command -v sbatch >/dev/null || die "there is no sbatch; --local JOBS needs no cluster"

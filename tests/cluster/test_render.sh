@@ -48,7 +48,7 @@ print(width, height, *(rows[2 + 4 + r * (8 + 11)][n * (2 + 8 + c * 18)] for r in
 END
 
 render() { run "$@" -- sh renderer %f %o; }
-render 0 0-8 4 frames --local 2 && [ "$(find frames -name 'frame-0000[0-8].png' | wc -l)" = 9 ] &&
+render 0 0-8 04 frames --local 2 && [ "$(find frames -name 'frame-0000[0-8].png' | wc -l)" = 9 ] &&
     [ "$(sort -n rendered | tr '\n' ' ')" = "0 1 2 3 3 4 5 6 7 8 " ] && [ -z "$(find frames -name '.*png')" ]
 fact each_frame_is_rendered_once_and_again_if_it_failed
 grep -q 'round 1 of 3: tasks 2 of 4 run again' out
@@ -65,8 +65,8 @@ fact without_all_frames_there_is_no_sheet
 # What sbatch does with an array: one task after the other, with its number. One word has blanks.
 mkdir bin && printf '#!/bin/sh\nwhile [ "${1#--}" != "$1" ]; do echo "$1" >>sbatch.log; shift; done\n' >bin/sbatch &&
     printf 'for task in 1 2 3; do SLURM_ARRAY_TASK_ID=$task bash "$@"; done\n' >>bin/sbatch && chmod +x bin/sbatch &&
-    PATH=$PWD/bin:$PATH run 0 10-12 3 "by slurm" --sbatch --mem=1G -- sh -c 'cp frames/frame-00001.png "$1"' 'a word' %o &&
-    [ "$(tr '\n' ' ' <sbatch.log)" = "--wait --array=1,2,3 --mem=1G " ] && cmp "by slurm/frame-00012.png" frames/frame-00001.png
+    PATH=$PWD/bin:$PATH run 0 10-12 3 "by slurm & co" --sbatch --mem=1G -- sh -c 'cp frames/frame-00001.png "$1"' 'a word' %o &&
+    [ "$(tr '\n' ' ' <sbatch.log)" = "--wait --array=1,2,3 --mem=1G " ] && cmp "by slurm & co/frame-00012.png" frames/frame-00001.png
 fact tasks_of_slurm_get_the_same_command
 run 2 5-3 2 frames --local 1 -- x %o && run 2 0-3 2 frames --local 1 -- x && run 2 0-3 frames --local 1 -- x %o
 fact wrong_words_are_refused

@@ -36,6 +36,7 @@ bool app_open(struct view_app *app, struct stage *stage, bool walks)
         return false;
     app->stage = stage;
     app->camera = stage_camera(stage);
+    app->is_frozen = false; /* wants of the scene before were frozen elsewhere */
     stage_bounds(stage, bounds);
     app->center = vec3_mix(bounds[0], bounds[1], 0.5f);
     app->selected = STAGE_NO_TEXTURE;
