@@ -124,13 +124,16 @@ static void append(char *out, const char *text, bool escapes)
 static SluiceResult make_path(const struct slc_catalogue_query *q, const char *store, char **path)
 {
     const bool is_web = strncmp(q->path, "http", 4) == 0 && strstr(q->path, "://");
+    const bool is_local = !strstr(q->path, "://");
     /* A server must not choose among this machine's files. */
-    if (strstr(q->path, "://") && is_absolute(store) && !strstr(store, "://")) {
+    if (!is_local && is_absolute(store) && !strstr(store, "://")) {
         slc_log(q->log, SLUICE_LOG_ERROR, "%s: names the local file %s", q->shown, store);
         return SLUICE_ERROR_CORRUPT_DATA;
     }
-    size_t folder = is_web ? strcspn(q->path, "?#") : strlen(q->path);
-    while (folder > 0 && q->path[folder - 1] != '/')
+    size_t folder = is_local ? (size_t)(slc_path_name(q->path) - q->path)
+                    : is_web ? strcspn(q->path, "?#")
+                             : strlen(q->path);
+    while (!is_local && folder > 0 && q->path[folder - 1] != '/')
         folder--;
     if (is_absolute(store))
         folder = 0;
