@@ -20,7 +20,8 @@ static SluiceResult reserve(SluiceDemandLoader *loader)
     return SLUICE_SUCCESS;
 }
 
-/* Of an image that need not be open. The level of a region without width may be above the last. */
+/* Reads the area of `region`. The image need not be open. The level may be above the last if the
+ * region has no width. */
 static SluiceResult read_area(const SluiceDemandLoader *loader, const SluiceImageInfo *info,
                               const SluiceImageRegion *region, const char *function,
                               struct slc_remake_area *area)

@@ -19,7 +19,7 @@ enum slc_reload_place {
     SLC_RELOAD_TURN, ///< between slc_reload_lists_begin and _end
 };
 
-/** Of a texture. */
+/** Tiles of one texture that are to be read again. */
 struct slc_reload_list {
     uint32_t first, last, count; ///< nodes; index + 1
     enum slc_reload_place place;

@@ -85,7 +85,7 @@ static void priorities_order_tiles_of_one_level(void **state)
     fixture_close(&f);
 }
 
-/* Of textures 0 to 2: their places among requests of one level. */
+/* Checks the places of textures 0 to 2 among requests of one level. */
 static void check_places(struct fixture *f, const SluiceTextureId ids[3], const uint32_t places[3])
 {
     CHECK_OK(fixture_to_map(f, SLUICE_ALL_TEXTURES));

@@ -250,7 +250,7 @@ static int choose_device(const struct options *options, FILE *file)
     return WEXITSTATUS(status);
 }
 
-/* What tells one report from another, before the device. */
+/* Prints the version, the date, the system and the groups. The device follows. */
 static void print_head(FILE *out, const struct options *options)
 {
     struct utsname system = {0};
