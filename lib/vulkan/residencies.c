@@ -7,7 +7,9 @@ static SluiceResult check_sparse_queue(const SluiceVulkanStreamer *s)
 {
     if (s->info.residencyMode != SLUICE_RESIDENCY_MODE_SPARSE || s->context->sparse_queue)
         return SLUICE_SUCCESS;
-    slc_log(&s->vk.log, SLUICE_LOG_ERROR, "sparseQueue of the context is NULL, in sparse mode");
+    slc_log(&s->vk.log, SLUICE_LOG_ERROR,
+            "sparseQueue of the context is NULL, in sparse mode: give a queue, or set "
+            "residencyMode to SLUICE_RESIDENCY_MODE_PAGED");
     return SLUICE_ERROR_NULL_POINTER;
 }
 
