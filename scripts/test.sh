@@ -65,7 +65,7 @@ meson_stage gcc CC=gcc CXX=g++ -- -Dbuildtype=debugoptimized -Ddefault_library=b
 if [ "$quick" = yes ]; then
     tap_stage style scripts/dev/check-style.sh
 else
-    # Of these two nearly all runs on one processor, like the beginning of the next stage.
+    # Both run on one processor for most of their time, so the next stage has the other one.
     style_and_consumer() { tap_stage style scripts/dev/check-style.sh && tap_stage consumer tests/consumer/run.sh; }
     beside style_and_consumer style_and_consumer
     # The library, its tools and its tests; CONTRIBUTING.md says how samples are looked at.

@@ -46,7 +46,7 @@ struct slc_reload_lists {
 /** `spare`: most tiles that are taken at a time. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_reload_lists_init(struct slc_reload_lists *r, const SluiceAllocationCallbacks *cb,
                                    uint32_t texture_count, uint32_t spare);
-/** It may be zeroed. */
+/** Frees the lists. They may be zeroed. */
 void slc_reload_lists_finish(struct slc_reload_lists *r);
 /** Makes room for `count` calls of slc_reload_lists_add. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_reload_lists_reserve(struct slc_reload_lists *r, uint32_t count);

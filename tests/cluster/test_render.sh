@@ -62,7 +62,7 @@ fact a_second_run_renders_what_is_missing
 render 1 8-9 2 broken --local 1 --rounds 1 && grep -q 'tasks 2 of 2 lack pictures' err && [ ! -e broken/contact-sheet.png ]
 fact without_all_frames_there_is_no_sheet
 
-# What sbatch does with an array: one task after the other, with its number. One word has blanks.
+# This sbatch runs the tasks of an array one after the other, with their numbers. One word has blanks.
 mkdir bin && printf '#!/bin/sh\nwhile [ "${1#--}" != "$1" ]; do echo "$1" >>sbatch.log; shift; done\n' >bin/sbatch &&
     printf 'for task in 1 2 3; do SLURM_ARRAY_TASK_ID=$task bash "$@"; done\n' >>bin/sbatch && chmod +x bin/sbatch &&
     PATH=$PWD/bin:$PATH run 0 10-12 3 "by slurm & co" --sbatch --mem=1G -- sh -c 'cp frames/frame-00001.png "$1"' 'a word' %o &&

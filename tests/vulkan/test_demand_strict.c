@@ -175,6 +175,23 @@ static void launches_that_nobody_processes_are_reported(void **state)
     finish(loader);
 }
 
+static void the_launch_that_a_call_waits_for_is_reported_not_an_older_one(void **state)
+{
+    (void)state;
+    SluiceDemandLoader *loader = begin(1);
+    SluiceDemandLaunch launches[2];
+    for (uint32_t i = 0; i < 2; i++) {
+        CHECK_OK(begin_launch(loader, &launches[i]));
+        CHECK_OK(end_launch(loader));
+    }
+    fake.frame_value = 1;
+    for (uint32_t i = 0; i < 3; i++)
+        CHECK_RESULT(process(loader, &launches[1], 1000), SLUICE_NOT_READY);
+    check_heard(SLUICE_DEMAND_MISUSE_LAUNCH_NOT_SIGNALED, 1, 2, "signalValue 2");
+    assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_LAUNCH_NOT_PROCESSED], 0);
+    finish(loader);
+}
+
 static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
 {
@@ -263,6 +280,7 @@ int main(void)
         cmocka_unit_test(launches_that_are_never_signaled_are_reported_once),
         cmocka_unit_test(a_wait_without_end_is_reported_while_it_lasts),
         cmocka_unit_test(launches_that_nobody_processes_are_reported),
+        cmocka_unit_test(the_launch_that_a_call_waits_for_is_reported_not_an_older_one),
         cmocka_unit_test(launches_without_requests_are_reported_if_there_are_textures),
         cmocka_unit_test(textures_beyond_their_count_are_reported),
         cmocka_unit_test(sources_in_use_are_reported_and_kept),
