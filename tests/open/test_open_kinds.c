@@ -466,6 +466,20 @@ static void stores_of_a_catalogue_are_opened_by_name(void **state)
     assert_int_equal(width_by_name(&f, "https://h/list.tsv", "b c.store", SLUICE_SUCCESS), 80);
     assert_int_equal(shelf.opened, shelf.closed);
 
+    char local[512]; /* for a catalogue on this machine alone */
+    snprintf(local, sizeof local, "\tR8_UNORM\t64\t100\t1\t9\ta\t%s\n",
+             bake_folder_file(&f.folder, "a.store", store));
+    write_rows(path, first, local, 0, NULL);
+    assert_int_equal(width_by_name(&f, path, NULL, SLUICE_SUCCESS), 64);
+    width_by_name(&f, "shelf://list.tsv", "a", SLUICE_ERROR_CORRUPT_DATA);
+    assert_non_null(strstr(f.last, "names the local file /"));
+    FILE *picture = fopen(bake_folder_file(&f.folder, "a.ppm", store), "wb");
+    fputs("P6 2 2 255\nabcdefghijkl", picture);
+    fclose(picture);
+    write_rows(path, 0, "\tR8_UNORM\t2\t2\t1\t9\ta\ta.ppm\n", 0, NULL);
+    width_by_name(&f, path, NULL, SLUICE_ERROR_CORRUPT_DATA); /* and is not baked */
+    assert_non_null(strstr(f.last, "is not the store"));
+
     write_rows(path, first, row, first, other); /* another store than the second one */
     width_by_name(&f, path, "x\ty.png", SLUICE_ERROR_CORRUPT_DATA);
     assert_non_null(strstr(f.last, "is not the store"));
