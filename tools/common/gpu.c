@@ -341,14 +341,15 @@ static bool create_device(struct gpu *gpu)
                                .pNext = &features,
                                .queueCreateInfoCount = queues.count,
                                .pQueueCreateInfos = queues.infos};
-    static const char *const swapchain[] = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
-    if (gpu->presents) {
-        info.enabledExtensionCount = 1;
-        info.ppEnabledExtensionNames = swapchain;
-    }
+    const char *extensions[GPU_RAY_EXTENSIONS + 1];
     struct gpu_ray_features rays;
+    info.ppEnabledExtensionNames = extensions;
+    if (gpu->presents)
+        extensions[info.enabledExtensionCount++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     if (gpu->ray_tracing)
-        gpu_require_rays(&rays, &vulkan12, &info);
+        gpu_require_rays(&rays, &vulkan12);
+    for (int i = 0; gpu->ray_tracing && i < GPU_RAY_EXTENSIONS; i++)
+        extensions[info.enabledExtensionCount++] = gpu_ray_extensions[i];
     if (gpu->buffer_addresses)
         vulkan12.bufferDeviceAddress = VK_TRUE;
     SluiceNeuralPathFeatures paths;
@@ -390,7 +391,9 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
                                                      has_addresses(gpu->physical_device));
         gpu->has_build_queue = request->build_queue;
         gpu->byte_pages =
-            !*unsupported && request->byte_pages && has_addresses(gpu->physical_device);
+            !*unsupported && request->byte_pages && has_addresses(gpu->physical_device) &&
+            can_stream(gpu->instance, gpu->physical_device, SLUICE_RESIDENCY_MODE_PAGED,
+                       &(SluiceVulkanDeviceCapabilities){.structSize = sizeof gpu->capabilities});
         if (!*unsupported && request->neural && !gpu->ray_tracing) {
             gpu->neural.structSize = sizeof gpu->neural;
             *unsupported =

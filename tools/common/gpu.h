@@ -21,7 +21,7 @@ struct gpu_request {
     bool byte_pages; ///< byte pages of demand loaders, with addresses, where the device has them
     bool neural;     ///< all decode paths that the device has are enabled; without rays
     /** Extensions for a window's surface; with them the device can present (VK_KHR_swapchain).
-     * Without rays and neural. At most 8. */
+     * Without neural. At most 8. */
     const char *const *instance_extensions;
     uint32_t instance_extension_count;
 };

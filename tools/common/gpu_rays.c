@@ -3,10 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const ray_extensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
-                                             VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
-                                             VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
-#define RAY_EXTENSION_COUNT (sizeof ray_extensions / sizeof *ray_extensions)
+const char *const gpu_ray_extensions[GPU_RAY_EXTENSIONS] = {
+    VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
+    VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
 static bool has_extension(VkPhysicalDevice device, const char *name)
 {
@@ -24,8 +23,8 @@ static bool has_extension(VkPhysicalDevice device, const char *name)
 
 bool gpu_traces_rays(VkPhysicalDevice device)
 {
-    for (size_t i = 0; i < RAY_EXTENSION_COUNT; i++)
-        if (!has_extension(device, ray_extensions[i]))
+    for (size_t i = 0; i < GPU_RAY_EXTENSIONS; i++)
+        if (!has_extension(device, gpu_ray_extensions[i]))
             return false;
     struct gpu_ray_features rays = {
         {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR},
@@ -40,8 +39,7 @@ bool gpu_traces_rays(VkPhysicalDevice device)
            vulkan12.bufferDeviceAddress;
 }
 
-void gpu_require_rays(struct gpu_ray_features *rays, VkPhysicalDeviceVulkan12Features *vulkan12,
-                      VkDeviceCreateInfo *info)
+void gpu_require_rays(struct gpu_ray_features *rays, VkPhysicalDeviceVulkan12Features *vulkan12)
 {
     *rays = (struct gpu_ray_features){
         {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR,
@@ -51,6 +49,4 @@ void gpu_require_rays(struct gpu_ray_features *rays, VkPhysicalDeviceVulkan12Fea
          .rayTracingPipeline = VK_TRUE}};
     vulkan12->pNext = &rays->structures;
     vulkan12->bufferDeviceAddress = VK_TRUE;
-    info->enabledExtensionCount = RAY_EXTENSION_COUNT;
-    info->ppEnabledExtensionNames = ray_extensions;
 }
