@@ -187,6 +187,7 @@ SLUICE_SHARED_SIZE(struct PbrtDebug, 40)
 #define PBRT_LAUNCH_LIST_ONE 8u   /* list 1 is read, 0 is written */
 #define PBRT_LAUNCH_HEADLIGHT 16u /* all lights are shapes */
 #define PBRT_LAUNCH_DARK_SKY 32u  /* no light comes from infinity: ambient light is white */
+#define PBRT_LAUNCH_GRAY 64u      /* boxes and surfaces that are not made are gray */
 
 /* Push constants of one launch. */
 struct PbrtLaunch {

@@ -34,7 +34,7 @@ void meetBox(inout Payload payload, uint box, float distance, uint face)
     payload.distance = distance;
     payload.missing = true;
     payload.normal = payload.face = sluiceProxyFaceNormal(face);
-    payload.diffuse = colors[face];
+    payload.diffuse = (launch.flags & PBRT_LAUNCH_GRAY) != 0u ? vec3(0.5) : colors[face];
     payload.specular = payload.transmission = payload.emission = vec3(0.0);
     payload.density = 0.0;
     payload.kind = 0u;

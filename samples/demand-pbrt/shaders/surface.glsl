@@ -54,7 +54,8 @@ void describeHit(Meeting m, PbrtPlace place, Hit hit)
     payload.emission = emissionOf(place, hit, m.direction);
     payload.density =
         (place.flags & PBRT_PLACE_LISTED) != 0u ? lights[place.light].density : 0.0;
-    payload.diffuse = PROXY_MATERIAL_COLOR;
+    payload.diffuse =
+        (launch.flags & PBRT_LAUNCH_GRAY) != 0u ? vec3(0.5) : PROXY_MATERIAL_COLOR;
     payload.specular = payload.transmission = vec3(0.0);
 }
 
