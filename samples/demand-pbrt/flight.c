@@ -145,7 +145,7 @@ static bool serve_nodes(struct launches *l, struct flight *f)
     return world_build_meshes(l->world, l->count + 1) && world_begin_builds(l->world);
 }
 
-static bool serve(struct launches *l, struct flight *f)
+bool flight_serve(struct launches *l, struct flight *f)
 {
     return !l->proxies ||
            (look_at_pictures(l, 0) && world_continue_builds(l->world, l->count + 1, false) &&
@@ -171,7 +171,7 @@ static bool fly_frame(struct launches *l, struct flight *f, uint32_t frame)
     SluiceDemandTicket ticket;
     bool progress;
     frame_budget_begin(&f->budget);
-    if (!serve(l, f))
+    if (!flight_serve(l, f))
         return false;
     count(&f->work, frame_budget_end_work(&f->budget));
     const double top_before = l->world->top_seconds;

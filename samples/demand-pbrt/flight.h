@@ -31,6 +31,9 @@ void flight_place_camera(const struct scene *scene, const struct pbrt_options *o
  * launches_run. Says on stderr why it failed.
  */
 bool flight_run(struct launches *launches, struct flight *flight);
+/** Makes what launches asked for, the nearest first, within the time of the frame, which
+ *  frame_budget_begin began: work of threads is not waited for. Says on stderr why it failed. */
+bool flight_serve(struct launches *launches, struct flight *flight);
 void flight_finish(struct flight *flight);
 
 /** Prints figures, as summary_print does. */

@@ -129,7 +129,7 @@ static bool launch_once(struct launches *l, bool traces, uint32_t sample,
                  "requests cannot be served");
 }
 
-static bool idle_launch(struct launches *l)
+bool launches_idle(struct launches *l)
 {
     SluiceDemandRequests requests = {.structSize = sizeof requests};
     l->idle_count++;
@@ -193,7 +193,7 @@ static bool wait_for_pictures(struct launches *l)
  *  not wait for them. */
 static bool open_pictures(struct launches *l)
 {
-    if (!begin_pictures(l, false) || !wait_for_pictures(l) || !idle_launch(l) ||
+    if (!begin_pictures(l, false) || !wait_for_pictures(l) || !launches_idle(l) ||
         !wait_for_pictures(l) || !begin_pictures(l, true) || !wait_for_pictures(l))
         return false;
     surfaces_finish_pictures(l->surfaces);
@@ -214,11 +214,11 @@ static bool realize(struct launches *l, const uint32_t *which, uint32_t count)
     return l->surfaces->picture_count == 0 || open_pictures(l);
 }
 
-/** Makes what the last launch asked for. `*made` tells whether there was anything. */
-static bool serve(struct launches *l, bool *made)
+bool launches_serve(struct launches *l, bool *made)
 {
     const struct pbrt_options *o = l->options;
     const struct proxy_order order = {o->sort_proxies, o->oneshot_geometry, o->oneshot_material};
+    *made = false;
     if (!l->proxies)
         return true;
     if (!proxies_take(l->proxies, &order, &l->requests))
@@ -291,7 +291,8 @@ static bool trace_sample(struct launches *l, uint32_t sample, uint32_t most)
         bool progress, made = false;
         if (!launches_trace(l, sample, &ticket, &progress))
             return false;
-        if (l->film->missing_count > 0 && (!wait_for(l, ticket, &status) || !serve(l, &made)))
+        if (l->film->missing_count > 0 &&
+            (!wait_for(l, ticket, &status) || !launches_serve(l, &made)))
             return false;
         vain = progress || made ? 0 : vain + 1;
         stuck = l->film->missing_count < least ? 0 : stuck + 1;
@@ -339,7 +340,7 @@ static bool finish_ticket(struct launches *l, SluiceDemandTicket ticket)
 {
     SluiceDemandTicketStatus status;
     do {
-        if (!wait_for(l, ticket, &status) || !idle_launch(l))
+        if (!wait_for(l, ticket, &status) || !launches_idle(l))
             return false;
     } while (status.remainingCount > 0);
     return true;

@@ -49,6 +49,12 @@ bool launches_run(struct launches *launches);
  * or tiles were asked for. */
 bool launches_trace(struct launches *launches, uint32_t sample, SluiceDemandTicket *ticket,
                     bool *progress);
+/** Makes all that launches asked for, and waits for it. `*made`: there was something. Says on
+ * stderr why it failed. */
+bool launches_serve(struct launches *launches, bool *made);
+/** A launch without rays: opened pictures go on to their tiles, and memory above the budget is
+ *  freed. */
+bool launches_idle(struct launches *launches);
 /** Traces all pixels again some times. The film is of no use afterwards. */
 bool launches_repeat(struct launches *launches, uint32_t times);
 

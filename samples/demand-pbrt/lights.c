@@ -1,6 +1,7 @@
 #include "lights.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "transform.h"
 
@@ -56,4 +57,28 @@ bool lights_create(const struct gpu *gpu, const struct scene *scene, struct text
         *only_areas = *only_areas && light.kind == SLUICE_PBRT_LIGHT_AREA;
     }
     return true;
+}
+
+static bool is_sky_dark(const struct scene *scene, const float background[3])
+{
+    if (background[0] + background[1] + background[2] > 0.0f)
+        return false;
+    for (uint32_t i = 0; i < scene->info.lightCount; i++)
+        if (scene_light(scene, i).kind == SLUICE_PBRT_LIGHT_INFINITE)
+            return false;
+    return true;
+}
+
+void lights_constants(const struct scene *scene, const struct pbrt_options *o, bool only_areas,
+                      uint32_t emitter_count, struct PbrtLaunch *c)
+{
+    memcpy(c->background, o->background, sizeof c->background);
+    c->mode = (uint32_t)o->mode;
+    c->bounces = o->bounces;
+    c->lightCount = scene->info.lightCount;
+    c->emitterCount = emitter_count;
+    c->flags |= (o->face_forward ? PBRT_LAUNCH_FACE_FORWARD : 0) |
+                (scene->info.version == 4 ? PBRT_LAUNCH_VERSION_4 : 0) |
+                (only_areas ? PBRT_LAUNCH_HEADLIGHT : 0) |
+                (is_sky_dark(scene, o->background) ? PBRT_LAUNCH_DARK_SKY : 0);
 }

@@ -2,6 +2,7 @@
 #ifndef DEMAND_PBRT_LIGHTS_H
 #define DEMAND_PBRT_LIGHTS_H
 
+#include "options.h"
 #include "pbrt_shared.h"
 #include "scene.h"
 #include "table.h"
@@ -11,5 +12,8 @@
  *  not opened. `*only_areas`: there are no lights but those that shapes are. */
 bool lights_create(const struct gpu *gpu, const struct scene *scene, struct textures *textures,
                    struct table *table, bool *only_areas);
+/** Sets the members that say how light is found, and what there is. */
+void lights_constants(const struct scene *scene, const struct pbrt_options *options,
+                      bool only_areas, uint32_t emitter_count, struct PbrtLaunch *constants);
 
 #endif /* DEMAND_PBRT_LIGHTS_H */

@@ -139,17 +139,6 @@ static bool create_world(struct renderer *r)
     return world_begin(&r->world);
 }
 
-static bool is_sky_dark(const struct renderer *r)
-{
-    const float *background = r->options.background;
-    if (background[0] + background[1] + background[2] > 0.0f)
-        return false;
-    for (uint32_t i = 0; i < r->scene.info.lightCount; i++)
-        if (scene_light(&r->scene, i).kind == SLUICE_PBRT_LIGHT_INFINITE)
-            return false;
-    return true;
-}
-
 static bool open_all(struct renderer *r)
 {
     const struct pbrt_options *o = &r->options;
@@ -175,15 +164,7 @@ static bool open_all(struct renderer *r)
     camera_matrix(&r->scene, &o->camera, camera);
     camera_constants(&r->scene, camera, size, c);
     flight_place_camera(&r->scene, o, size, o->fly_at, c);
-    memcpy(c->background, o->background, sizeof c->background);
-    c->mode = (uint32_t)o->mode;
-    c->bounces = o->bounces;
-    c->lightCount = r->scene.info.lightCount;
-    c->emitterCount = r->emitters.count;
-    c->flags |= (o->face_forward ? PBRT_LAUNCH_FACE_FORWARD : 0) |
-                (r->scene.info.version == 4 ? PBRT_LAUNCH_VERSION_4 : 0) |
-                (only_areas ? PBRT_LAUNCH_HEADLIGHT : 0) |
-                (is_sky_dark(r) ? PBRT_LAUNCH_DARK_SKY : 0);
+    lights_constants(&r->scene, o, only_areas, r->emitters.count, c);
     return true;
 }
 

@@ -25,7 +25,7 @@ static void *open_scene(void *user)
                                           .cache = load->cache,
                                           .wait = load->wait,
                                           .progress = &load->progress};
-    load->opened = scene_open(&request, &load->scene);
+    load->opened = scene_open_paths(&request, &load->scene);
     atomic_store(&load->done, true);
     return NULL;
 }

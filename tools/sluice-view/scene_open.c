@@ -31,7 +31,7 @@ static bool open_any(const struct scene_request *r, struct scene_data *scene)
     return scene_import(r->paths[0], r->cache, r->wait, scene);
 }
 
-bool scene_open(const struct scene_request *request, struct scene_data *scene)
+bool scene_open_paths(const struct scene_request *request, struct scene_data *scene)
 {
     *scene = (struct scene_data){.progress = request->progress};
     const bool opened = open_any(request, scene) && !scene_data_canceled(scene);

@@ -14,7 +14,7 @@ struct scene_request {
 
 /** Says on stderr what is wrong, and which images cannot be shown. False, with nothing left in
  *  `scene`, if there is nothing to show or it was canceled. */
-bool scene_open(const struct scene_request *request, struct scene_data *scene);
+bool scene_open_paths(const struct scene_request *request, struct scene_data *scene);
 /** False, with a line on stderr, for paths that are no scene together. */
 bool scene_open_takes(const char *const *paths, uint32_t count);
 

@@ -18,7 +18,7 @@ static bool open_now(const struct viewer *v, const struct file_list *paths,
                                           .path_count = (uint32_t)paths->count,
                                           .cache = v->options->cache,
                                           .wait = v->options->deterministic};
-    return scene_open(&request, scene);
+    return scene_open_paths(&request, scene);
 }
 
 /* The second streamer of a comparison lives as long as the comparison is shown. */
