@@ -38,6 +38,7 @@ struct stage_draw {
     uint32_t width, height; ///< of the picture
     uint64_t number;        ///< of the frame
     uint64_t time_stamp;    ///< microseconds
+    VkBuffer copy;          ///< gets the picture, too; VK_NULL_HANDLE: none
 };
 
 /** Options that are fixed while a scene is open. */

@@ -274,6 +274,8 @@ VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_dat
     vkCmdBindIndexBuffer(commands, d->indices.buffer, 0, VK_INDEX_TYPE_UINT32);
     draw_parts(d, scene, draw, commands);
     target_end(target, commands);
+    if (draw->copy)
+        target_copy_out(target, commands, draw->copy);
     record_layout(target, commands);
     return target->color.view;
 }
