@@ -97,6 +97,17 @@ void app_copy_command(struct view_app *app)
     app_say(app, "Copied: %s", line);
 }
 
+bool app_shows_difference(const struct view_app *app)
+{
+    return app->settings.view == VIEW_TRUTH || app->settings.compare == VIEW_DIFFERENCE;
+}
+
+bool app_has_divider(const struct view_app *app)
+{
+    return app_shows_difference(app) ? app->settings.difference == VIEW_BOTH_DIFFERENCES
+                                     : app->settings.compare == VIEW_DIVIDER;
+}
+
 /* The first touch gives the camera to the visitor. */
 static void touch(struct view_app *app)
 {
@@ -131,7 +142,7 @@ static void read_keys(struct view_app *app, const struct ui_input *input)
 
 static bool over_divider(const struct view_app *app, float x)
 {
-    return app->settings.compare == VIEW_DIVIDER &&
+    return app_has_divider(app) &&
            fabsf(x - (float)app->settings.divider * app->width) < DIVIDER_PIXELS;
 }
 

@@ -4,6 +4,7 @@
 
 #include "camera.h"
 #include "facts.h"
+#include "flip_map.h"
 #include "keys.h"
 #include "settings.h"
 #include "stage.h"
@@ -53,12 +54,13 @@ struct view_app {
     bool held[VIEW_KEY_COUNT];
     double click_age; ///< seconds since the last click on the picture
     uint32_t last_view;
-    struct stage_pick pick;    ///< under the mouse
-    struct stage_pick inspect; ///< what was inspected
-    uint32_t selected;         ///< texture; STAGE_NO_TEXTURE: none
-    double truth_part;         ///< of the tiles of view 8's second picture that are loaded
-    bool demonstrating;        ///< the budget moves by itself
-    double demonstration;      ///< seconds
+    struct stage_pick pick;      ///< under the mouse
+    struct stage_pick inspect;   ///< what was inspected
+    uint32_t selected;           ///< texture; STAGE_NO_TEXTURE: none
+    double truth_part;           ///< of the tiles of view 8's second picture that are loaded
+    const struct flip_map *flip; ///< borrowed; between the pictures of a comparison
+    bool demonstrating;          ///< the budget moves by itself
+    double demonstration;        ///< seconds
     uint64_t budget_before;
     char said[256];
     double said_seconds; ///< how long it is still shown
@@ -87,5 +89,9 @@ void app_set_view(struct view_app *app, uint32_t view);
 void app_set_panel(struct view_app *app, enum app_panel panel, bool open);
 void app_inspect(struct view_app *app, const struct stage_pick *pick);
 void app_copy_command(struct view_app *app);
+/** Whether the picture is a difference of two. */
+bool app_shows_difference(const struct view_app *app);
+/** Whether a divider can be dragged. */
+bool app_has_divider(const struct view_app *app);
 
 #endif /* SLUICE_VIEW_APP_H */

@@ -2,6 +2,8 @@
 
 #include "tile_marks.h"
 
+#include <sluice/metrics.h>
+
 #include <math.h>
 #include <stdio.h>
 
@@ -108,11 +110,43 @@ static void draw_checks(void)
     draw_color(UI_COLOR(255, 0, 255, 255), "nothing is resident");
 }
 
-static void draw_truth(const struct view_app *app)
+/* Its colors with a scale, its mean, and its value under the mouse. */
+static void draw_flip(const struct view_app *app)
 {
-    ui_text(UI_GRAY, "black: as if everything were resident");
-    ui_text(UI_GRAY, "differences times %.0f (--gain)", app->settings.gain);
-    if (app->truth_part < 1.0)
+    enum { STEPS = 64 };
+    float values[STEPS], r[4];
+    uint8_t colors[STEPS][4];
+    const struct flip_map *flip = app->flip;
+    for (int i = 0; i < STEPS; i++)
+        values[i] = (float)i / (STEPS - 1);
+    sluiceColorMagma(values, STEPS, colors[0]);
+    ui_canvas(STEPS * 3 * ui_scale(), 12 * ui_scale(), r);
+    for (int i = 0; i < STEPS; i++)
+        ui_fill(r[0] + (float)i * r[2] / STEPS, r[1], r[2] / STEPS + 1, r[3],
+                UI_COLOR(colors[i][0], colors[i][1], colors[i][2], 255));
+    ui_canvas(r[2], ui_line_height(), r);
+    ui_label(r[0], r[1], UI_GRAY, "0");
+    ui_label(r[0] + (r[2] - ui_text_width("FLIP")) / 2, r[1], UI_GRAY, "FLIP");
+    ui_label(r[0] + r[2] - ui_text_width("1"), r[1], UI_GRAY, "1");
+    if (!flip || !flip->known) {
+        ui_text(UI_GRAY, "FLIP is being computed");
+        return;
+    }
+    const float here = flip_map_at(flip, app->mouse_x / app->width, app->mouse_y / app->height);
+    ui_text(UI_WHITE, "FLIP: mean %.4f", flip->shown_mean);
+    if (here >= 0)
+        ui_text(UI_WHITE, "under the mouse: %.3f", (double)here);
+}
+
+static void draw_differences(const struct view_app *app)
+{
+    if (app->settings.view == VIEW_TRUTH)
+        ui_text(UI_GRAY, "black: as if everything were resident");
+    if (app->settings.difference != VIEW_FLIP)
+        ui_text(UI_GRAY, "pixels: differences times %.0f (--gain)", app->settings.gain);
+    if (app->settings.difference != VIEW_PIXELS)
+        draw_flip(app);
+    if (app->settings.view == VIEW_TRUTH && app->truth_part < 1.0)
         ui_text(UI_ORANGE, "%.0f %% of the truth is loaded", floor(100.0 * app->truth_part));
 }
 
@@ -129,6 +163,10 @@ static const char *const view_names[] = {"",
 
 static void draw_legend(const struct view_app *app)
 {
+    if (app_shows_difference(app)) {
+        draw_differences(app);
+        return;
+    }
     switch (app->settings.view) {
     case VIEW_RESIDENT:
     case VIEW_WANTED: draw_levels(); break;
@@ -136,7 +174,6 @@ static void draw_legend(const struct view_app *app)
     case VIEW_AGE: draw_ages(); break;
     case VIEW_IDENTITY: ui_text(UI_GRAY, "a color per texture"); break;
     case VIEW_WRITTEN: ui_text(UI_GRAY, "dots: pixels that wrote"); break;
-    case VIEW_TRUTH: draw_truth(app); break;
     case VIEW_CHECKS: draw_checks(); break;
     default: break;
     }
@@ -160,10 +197,15 @@ void panel_legend(const struct view_app *app)
     const float placement[4] = {left && !right ? app->width - margin : margin, app->height - bottom,
                                 0, 0};
     const uint32_t view = app->settings.view;
-    if (view <= VIEW_PICTURE || view > VIEW_CHECKS)
+    const bool differs = app_shows_difference(app);
+    if (!differs && (view <= VIEW_PICTURE || view > VIEW_CHECKS))
         return;
     if (ui_begin_panel("legend", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
-        ui_text(UI_BLUE, "%u  %s", view, view_names[view]);
+        if (differs && view != VIEW_TRUTH)
+            ui_text(UI_BLUE, "V  Difference to %s",
+                    app->settings.compared == VIEW_WITH_BUDGET ? "16 MB" : "everything");
+        else
+            ui_text(UI_BLUE, "%u  %s", view, view_names[view]);
         if (!(left && right) && app->height >= 480 * scale)
             draw_legend(app);
     }

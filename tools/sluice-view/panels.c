@@ -53,6 +53,45 @@ bool panel_begin(struct view_app *app, enum app_panel panel, const char *title, 
     return ui_begin_panel(title, &app->open[panel], placement, pivot, 0);
 }
 
+static void draw_right_of_divider(const struct view_app *app, uint32_t texture)
+{
+    const float part = (float)app->settings.divider, x = part * app->width;
+    const float half[4] = {x, 0, app->width - x, app->height}, uv[4] = {part, 0, 1, 1};
+    ui_picture(texture, UI_MODE_PLAIN, half, uv, UI_COLOR(255, 255, 255, 255));
+}
+
+static void draw_divider(const struct view_app *app, const char *left, const char *right)
+{
+    const float x = (float)app->settings.divider * app->width;
+    const float y = app->height * 0.8f, pad = 6 * ui_scale();
+    ui_fill_behind(x - ui_scale(), 0, 2 * ui_scale(), app->height, UI_COLOR(255, 255, 255, 255));
+    ui_label_behind(x - ui_text_width(left) - 2 * pad, y, pad, left);
+    ui_label_behind(x + 2 * pad, y, pad, right);
+}
+
+/* FLIP is black until the first map is there. */
+static void draw_difference(const struct view_app *app)
+{
+    const struct view_settings *s = &app->settings;
+    const bool known = app->flip && app->flip->known;
+    const float all[4] = {0, 0, app->width, app->height}, uv[4] = {0, 0, 1, 1};
+    const uint32_t gain = (uint32_t)(s->gain / 16.0 * 255.0);
+    if (s->difference == VIEW_FLIP && known)
+        ui_picture(UI_TEXTURE_FLIP, UI_MODE_PLAIN, all, uv, UI_COLOR(255, 255, 255, 255));
+    else if (s->difference == VIEW_FLIP)
+        ui_fill_behind(0, 0, app->width, app->height, UI_COLOR(0, 0, 0, 255));
+    else
+        ui_picture(UI_TEXTURE_PICTURE, UI_MODE_DIFFERENCE, all, uv, UI_COLOR(255, 255, 255, gain));
+    if (s->difference != VIEW_BOTH_DIFFERENCES)
+        return;
+    const float x = (float)s->divider * app->width;
+    if (known)
+        draw_right_of_divider(app, UI_TEXTURE_FLIP);
+    else
+        ui_fill_behind(x, 0, app->width - x, app->height, UI_COLOR(0, 0, 0, 255));
+    draw_divider(app, "pixels", "FLIP");
+}
+
 void panels_draw_picture(const struct view_app *app)
 {
     const struct view_settings *s = &app->settings;
@@ -63,23 +102,16 @@ void panels_draw_picture(const struct view_app *app)
     }
     const bool flicker_other = s->compare == VIEW_FLICKER && s->view != VIEW_TRUTH &&
                                (uint64_t)(app->seconds * 4) % 2 == 1;
-    if (s->compare == VIEW_DIFFERENCE || s->view == VIEW_TRUTH) {
-        const uint32_t gain = (uint32_t)(s->gain / 16.0 * 255.0);
-        ui_picture(UI_TEXTURE_PICTURE, UI_MODE_DIFFERENCE, all, uv, UI_COLOR(255, 255, 255, gain));
+    if (app_shows_difference(app)) {
+        draw_difference(app);
         return;
     }
     ui_picture(flicker_other ? UI_TEXTURE_OTHER : UI_TEXTURE_PICTURE, UI_MODE_PLAIN, all, uv,
                UI_COLOR(255, 255, 255, 255));
     if (s->compare != VIEW_DIVIDER)
         return;
-    const float part = (float)s->divider, x = part * app->width;
-    const float half[4] = {x, 0, app->width - x, app->height}, half_uv[4] = {part, 0, 1, 1};
-    ui_picture(UI_TEXTURE_OTHER, UI_MODE_PLAIN, half, half_uv, UI_COLOR(255, 255, 255, 255));
-    ui_fill_behind(x - ui_scale(), 0, 2 * ui_scale(), app->height, UI_COLOR(255, 255, 255, 255));
-    const char *b = s->compared == VIEW_WITH_BUDGET ? "B: 16 MB" : "B: everything";
-    const float y = app->height * 0.8f, pad = 6 * ui_scale();
-    ui_label_behind(x - ui_text_width("A: now") - 2 * pad, y, pad, "A: now");
-    ui_label_behind(x + 2 * pad, y, pad, b);
+    draw_right_of_divider(app, UI_TEXTURE_OTHER);
+    draw_divider(app, "A: now", s->compared == VIEW_WITH_BUDGET ? "B: 16 MB" : "B: everything");
 }
 
 void panels_draw(struct view_app *app)

@@ -10,6 +10,7 @@ enum view_feedback { VIEW_FEEDBACK_ON, VIEW_FEEDBACK_OFF };
 enum view_motion { VIEW_WALK, VIEW_FLY, VIEW_ORBIT };
 enum view_compare { VIEW_COMPARE_OFF, VIEW_DIVIDER, VIEW_DIFFERENCE, VIEW_FLICKER };
 enum view_compared { VIEW_WITH_EVERYTHING, VIEW_WITH_BUDGET };
+enum view_difference { VIEW_BOTH_DIFFERENCES, VIEW_PIXELS, VIEW_FLIP };
 
 /** Views of the picture, by the number of their key. */
 enum view_number {
@@ -45,6 +46,7 @@ struct view_settings {
     double tint;
     int borders;
     int compare, compared; ///< enum view_compare, enum view_compared
+    int difference;        ///< enum view_difference
     double divider;        ///< 0 to 1
     double gain;           ///< of the difference
 

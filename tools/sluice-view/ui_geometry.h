@@ -11,7 +11,13 @@ struct ui_vertex {
 };
 
 /** Textures by number. */
-enum ui_texture { UI_TEXTURE_FONT, UI_TEXTURE_PICTURE, UI_TEXTURE_OTHER, UI_TEXTURE_COUNT };
+enum ui_texture {
+    UI_TEXTURE_FONT,
+    UI_TEXTURE_PICTURE,
+    UI_TEXTURE_OTHER,
+    UI_TEXTURE_FLIP,
+    UI_TEXTURE_COUNT
+};
 
 /** How a picture is shown; added to a texture's number, shifted by UI_MODE_SHIFT. */
 enum ui_mode {

@@ -152,6 +152,20 @@ static void answer_requests(struct viewer *v)
     app->restart = app->reload = app->trace = false;
 }
 
+/* Returns whether FLIP needs copies of this frame's pictures. */
+static bool follow_flip(struct viewer *v, const struct stage_draw *draw, struct frames_end *end,
+                        VkCommandBuffer commands)
+{
+    const bool wanted =
+        v->other && app_shows_difference(&v->app) && v->app.settings.difference != VIEW_PIXELS;
+    const bool copies = flip_map_begin_frame(&v->flip, &v->gpu, v->frames.number, wanted,
+                                             draw->width, draw->height);
+    ui_texels_record(&v->flip.texels, commands);
+    if (v->flip.texels.filled)
+        end->views[UI_TEXTURE_FLIP] = v->flip.texels.image.view;
+    return copies;
+}
+
 static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer commands)
 {
     const double scale = render_scale(v);
@@ -171,12 +185,15 @@ static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer com
     draw.height = draw.height < 16 ? 16 : draw.height;
     if (!v->stage)
         return true;
+    const bool copies = follow_flip(v, &draw, end, commands);
     if (v->other) {
+        draw.copy = copies ? v->flip.pictures[1].buffer : VK_NULL_HANDLE;
         if (!stage_record(v->other, &draw, commands, end))
             return false;
         v->app.truth_part = stage_resident_part(v->other);
         end->views[UI_TEXTURE_OTHER] = end->views[UI_TEXTURE_PICTURE];
     }
+    draw.copy = copies ? v->flip.pictures[0].buffer : VK_NULL_HANDLE;
     return stage_record(v->stage, &draw, commands, end);
 }
 
@@ -274,6 +291,8 @@ static bool finish_frame(struct viewer *v)
     if (v->options->deterministic && v->stage)
         good = frames_wait(&v->frames) && stage_settle(v->stage) &&
                (!v->other || stage_settle(v->other)) && good;
+    if (v->options->deterministic)
+        flip_map_settle(&v->flip);
     return good;
 }
 
@@ -344,6 +363,8 @@ static void print_summary(struct viewer *v)
                v->frame > v->first_frame + 1 ? (processor_seconds() - v->first_processor) * 1e3 /
                                                    (v->frame - v->first_frame - 1)
                                              : 0.0);
+        if (v->flip.known)
+            printf("{\"name\": \"FLIP\", \"value\": %.6f, \"unit\": \"\"}\n", v->flip.shown_mean);
         return;
     }
     char all[32], resident[32];
@@ -371,6 +392,7 @@ static bool prepare(struct viewer *v, bool *unsupported)
         v->swapchain.outdated = true;
     }
     v->app.gpu = &v->gpu;
+    v->app.flip = &v->flip;
     return frames_create(&v->gpu, width, height, &v->frames);
 }
 
@@ -409,6 +431,8 @@ static void finish(struct viewer *v)
 {
     viewer_end_load(v);
     viewer_close_scene(v);
+    frames_wait(&v->frames);
+    flip_map_destroy(&v->flip);
     frames_destroy(&v->frames);
     app_finish(&v->app);
     swapchain_destroy(&v->swapchain);
@@ -437,6 +461,7 @@ int viewer_run(const struct view_options *options)
         return EXIT_FAILURE;
     v->options = options;
     v->begin = clock_seconds();
+    v->input.mouse_x = v->input.mouse_y = -1; /* over nothing */
     app_init(&v->app);
     for (size_t i = 0; i < options->words.count; i++)
         if (!files_add(options->words.items[i], &v->paths))

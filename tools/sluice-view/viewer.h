@@ -3,6 +3,7 @@
 #define SLUICE_VIEW_VIEWER_H
 
 #include "app.h"
+#include "flip_map.h"
 #include "frames.h"
 #include "options.h"
 #include "scene_load.h"
@@ -23,6 +24,7 @@ struct viewer {
     int other_kind;        ///< enum view_compared of `other`
     struct window *window; ///< NULL: headless
     struct swapchain swapchain;
+    struct flip_map flip;
     struct script script;
     struct ui_input input;
     struct view_settings applied; ///< what the streamer has

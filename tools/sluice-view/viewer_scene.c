@@ -44,6 +44,7 @@ bool viewer_fit_other(struct viewer *v)
         v->other = create_stage(v, &settings, kind == VIEW_WITH_EVERYTHING, &scene);
     if (v->other)
         return true;
+    app_say(&v->app, "The second picture cannot be drawn; the terminal says why");
     v->app.settings.compare = VIEW_COMPARE_OFF;
     if (truth)
         v->app.settings.view = VIEW_PICTURE;
