@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE SLUICE-REPLAY: the viewer without a window, in TAP.
+# test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE SLUICE-REPLAY FLIP-OF-PICTURES: the viewer without a window, in TAP.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
-facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3") replay=$(realpath "$4")
+facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3") replay=$(realpath "$4") flip=$(realpath "$5")
 "$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
 # shellcheck source=/dev/null
 . "$facts"
@@ -140,6 +140,15 @@ printf '1 key 8\n3 set gain 1\n4 screenshot little.png\n5 set gain 16\n6 screens
 run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --script truth \
     --frames 12 --screenshot last.png wall.gltf && cmp little.png much.png && ! cmp -s much.png wall.png
 fact view_8_is_black_where_nothing_is_missing_and_all_views_are_valid
+# Without feedback the picture has its mip tail alone; flicker shows the other one from frame 15 on.
+{ printf 'P6 600 600 255\n' && seq 200000 | head -c 1080000 | tr 0-9 '\0\040\100\140\200\240\300\340\360\377'; } >fine.ppm
+printf '8 screenshot a.png\n13 screenshot again.png\n18 screenshot b.png\n19 set compare-as difference\n22 quit\n' >flips
+# shellcheck disable=SC2086
+run 0 --headless --deterministic --fresh --still $validation --size 160x160 --render-scale 1 --panels off --cache . \
+    --feedback off --compare-as flicker --difference-as flip --json --script flips --screenshot flip.png fine.ppm &&
+    cmp a.png again.png && value=$("$flip" a.png b.png) && [[ $value == 0.0[1-9]* ]] &&
+    grep -q "\"FLIP\", \"value\": $value," out
+fact flip_of_a_comparison_is_that_of_its_two_pictures
 printf '12 set freeze-wants on\n13 hold s 20\n' >frozen
 run 0 --room --still --headless --deterministic --fresh --size 160x160 --residency paged --timeout 0.1 --standby 0 \
     --panels off --script frozen --frames 48 --csv frozen.csv &&
