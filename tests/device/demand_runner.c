@@ -213,6 +213,14 @@ void runner_add_texel(struct runner *r, SluiceDemandTextureId id, uint32_t width
                                        .dx = {(float)level}});
 }
 
+void runner_add_tiles(struct runner *r, SluiceDemandTextureId id, uint32_t size, uint32_t first,
+                      uint32_t row_count)
+{
+    for (uint32_t y = first; y < first + row_count; y++)
+        for (uint32_t x = 0; x < size / 128; x++)
+            runner_add_texel(r, id, size, size, 0, x * 128 + 7, y * 128 + 9);
+}
+
 void runner_add_page(struct runner *r, uint32_t page)
 {
     runner_add(r, (struct RunnerInput){.kind = RUNNER_MAP, .index = page});

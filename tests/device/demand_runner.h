@@ -51,6 +51,10 @@ void runner_add(struct runner *r, struct RunnerInput input);
 /** The middle of a texel of a level: with a sampler that takes the nearest, that texel alone. */
 void runner_add_texel(struct runner *r, SluiceDemandTextureId id, uint32_t width, uint32_t height,
                       uint32_t level, uint32_t x, uint32_t y);
+/** Adds texel (7, 9) of each tile of 128 x 128 texels in `row_count` rows of tiles of level 0. Row
+ *  `first` comes first. */
+void runner_add_tiles(struct runner *r, SluiceDemandTextureId id, uint32_t size, uint32_t first,
+                      uint32_t row_count);
 void runner_add_page(struct runner *r, uint32_t page);
 
 /** Records and submits a launch, of which at most two may be under way; the answer of

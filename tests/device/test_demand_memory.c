@@ -13,14 +13,6 @@ static struct harness h;
 
 enum { SIZE = 4096, TILE = 128, TILES = SIZE / TILE };
 
-/* A texel of each tile of level 0, in rows from `first` on. */
-static void add_tiles(struct runner *r, SluiceDemandTextureId id, uint32_t first, uint32_t rows)
-{
-    for (uint32_t y = first; y < first + rows; y++)
-        for (uint32_t x = 0; x < TILES; x++)
-            runner_add_texel(r, id, SIZE, SIZE, 0, x * TILE + 7, y * TILE + 9);
-}
-
 /* Of the finest level that is at least `bias` coarse: nearest level, and texel of it. */
 static void check_blurred(struct runner *r, struct runner_image *image, uint32_t sample,
                           uint32_t level, uint32_t x, uint32_t y)
@@ -62,7 +54,7 @@ static void a_new_loader_takes_little_staging_memory_and_more_when_it_reads(void
     uint64_t little = runner_statistics(&r).hostVisibleMemorySize;
     assert_true(little < 12u << 20); /* 1024 tiles in flight would take 64 MiB */
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 0);
-    add_tiles(&r, runner_add_texture(&r, &image), 0, TILES);
+    runner_add_tiles(&r, runner_add_texture(&r, &image), SIZE, 0, TILES);
     runner_load(&r, 60);
     SluiceDemandStatistics loaded = runner_statistics(&r);
     assert_true(loaded.hostVisibleMemorySize >= little + (4u << 20));
@@ -107,7 +99,7 @@ static void images_of_pages_are_made_when_the_first_texture_opens(void **state)
                                                .memoryBudget = 40u << 20};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
-    add_tiles(&r, runner_add_texture(&r, &image), 0, 2);
+    runner_add_tiles(&r, runner_add_texture(&r, &image), SIZE, 0, 2);
     runner_load(&r, 60);
     SluiceDemandStatistics statistics = runner_statistics(&r);
     assert_int_equal(statistics.pageChunkCount, 1);
@@ -134,7 +126,7 @@ static void a_working_set_beyond_the_budget_ends_complete_and_blurrier(void **st
     for (uint32_t i = 0; i < COUNT; i++) {
         runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, i);
         ids[i] = runner_add_texture(&r, &images[i]);
-        add_tiles(&r, ids[i], 0, TILES);
+        runner_add_tiles(&r, ids[i], SIZE, 0, TILES);
     }
     listen_to(r.loader);
     uint32_t launches = runner_load(&r, 60);
@@ -175,7 +167,7 @@ static void without_a_bias_some_tiles_stay_away_and_coarser_ones_are_shown_there
                                                .noLodBias = true};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
-    add_tiles(&r, runner_add_texture(&r, &image), 0, TILES);
+    runner_add_tiles(&r, runner_add_texture(&r, &image), SIZE, 0, TILES);
     listen_to(r.loader);
     runner_load(&r, 60);
     assert_int_equal(heard.counts[SLUICE_DEMAND_MISUSE_TILES_EXHAUSTED], 1);
@@ -209,11 +201,11 @@ static void tiles_that_nobody_uses_make_room_and_come_back_unread(void **state)
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
     listen_to(r.loader);
     /* Six rows, then two others and the sixth: all that fits. */
-    add_tiles(&r, id, 0, 6);
+    runner_add_tiles(&r, id, SIZE, 0, 6);
     runner_load(&r, 30);
     assert_true(runner_all_resident(&r));
     runner_clear(&r);
-    add_tiles(&r, id, 6, 4); /* of the first six rows two and more have to go */
+    runner_add_tiles(&r, id, SIZE, 6, 4); /* of the first six rows two and more have to go */
     assert_in_range(runner_load(&r, 30), 2, 29);
     assert_true(runner_all_resident(&r));
     SluiceDemandStatistics statistics = runner_statistics(&r);
@@ -237,7 +229,7 @@ static void views_that_walk_to_and_fro_never_show_other_texels(void **state)
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
     for (uint32_t i = 0; i < 12; i++) {
         runner_clear(&r);
-        add_tiles(&r, id, i % 3 * 3, 5);
+        runner_add_tiles(&r, id, SIZE, i % 3 * 3, 5);
         runner_load(&r, 30);
         assert_true(runner_all_resident(&r));
         for (uint32_t s = 0; s < r.count; s++)
@@ -261,16 +253,16 @@ static void tiles_that_were_evicted_and_not_overwritten_need_no_read(void **stat
     runner_image_init(&other, SLUICE_FORMAT_R32G32B32A32_SFLOAT, SIZE, SIZE, 2);
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
     SluiceDemandTextureId other_id = runner_add_texture(&r, &other);
-    add_tiles(&r, id, 0, 7);
+    runner_add_tiles(&r, id, SIZE, 0, 7);
     runner_load(&r, 30);
     uint64_t reads = image.source.read_count;
     /* Tiles of another format make them go, and cannot have their places: not yet. */
     runner_clear(&r);
-    add_tiles(&r, other_id, 0, 1);
+    runner_add_tiles(&r, other_id, SIZE, 0, 1);
     runner_load(&r, 2); /* the first one opens it */
     assert_true(runner_statistics(&r).evictedCount > 0);
     runner_clear(&r);
-    add_tiles(&r, id, 0, 7);
+    runner_add_tiles(&r, id, SIZE, 0, 7);
     runner_load(&r, 30);
     for (uint32_t s = 0; s < r.count; s++)
         runner_check_texel(&r, s, &image, 0, s % TILES * TILE + 7, s / TILES * TILE + 9);
@@ -299,25 +291,25 @@ static void restored_tiles_are_not_shared_with_a_texture_that_changed(void **sta
                                                   .pSampler = &runner_nearest};
     for (uint32_t i = 0; i < 2; i++) {
         CHECK_OK(sluiceAddDemandTexture(r.loader, &create, &ids[i]));
-        add_tiles(&r, ids[i], 0, 1);
+        runner_add_tiles(&r, ids[i], SIZE, 0, 1);
         runner_load(&r, 30); /* both are open */
     }
     SluiceDemandTextureId other_id = runner_add_texture(&r, &other);
     runner_clear(&r);
-    add_tiles(&r, ids[0], 0, 7);
+    runner_add_tiles(&r, ids[0], SIZE, 0, 7);
     runner_load(&r, 30);
     runner_clear(&r);
-    add_tiles(&r, other_id, 0, 1);
+    runner_add_tiles(&r, other_id, SIZE, 0, 1);
     runner_load(&r, 2); /* evicts, and copies nothing yet */
     image.seed += 12345;
     CHECK_OK(sluiceInvalidateDemandTexture(r.loader, ids[1]));
     runner_clear(&r);
-    add_tiles(&r, ids[0], 0, 7);
+    runner_add_tiles(&r, ids[0], SIZE, 0, 7);
     uint64_t restored = runner_statistics(&r).restoredCount;
     runner_load(&r, 30);
     assert_true(runner_statistics(&r).restoredCount > restored);
     runner_clear(&r);
-    add_tiles(&r, ids[1], 0, 7);
+    runner_add_tiles(&r, ids[1], SIZE, 0, 7);
     runner_load(&r, 30);
     for (uint32_t s = 0; s < r.count; s++)
         runner_check_texel(&r, s, &image, 0, s % TILES * TILE + 7, s / TILES * TILE + 9);
@@ -338,15 +330,15 @@ static void without_eviction_what_is_there_stays(void **state)
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
-    add_tiles(&r, id, 0, 3);
+    runner_add_tiles(&r, id, SIZE, 0, 3);
     runner_load(&r, 30);
     runner_clear(&r);
-    add_tiles(&r, id, 10, 6); /* more than is left */
+    runner_add_tiles(&r, id, SIZE, 10, 6); /* more than is left */
     runner_load(&r, 30);
     assert_int_equal(runner_statistics(&r).evictedCount, 0);
     uint64_t reads = image.source.read_count;
     runner_clear(&r);
-    add_tiles(&r, id, 0, 3);
+    runner_add_tiles(&r, id, SIZE, 0, 3);
     runner_load(&r, 30);
     assert_int_equal(image.source.read_count, reads);
     assert_true(runner_statistics(&r).tileMemorySize <= info.memoryBudget);
@@ -371,7 +363,7 @@ static void formats_share_a_budget(void **state)
     }
     for (uint32_t round = 0; round < 4; round++) {
         runner_clear(&r);
-        add_tiles(&r, ids[round % 2], 0, 6);
+        runner_add_tiles(&r, ids[round % 2], SIZE, 0, 6);
         /* Chunks of the other format have to run empty and go. */
         assert_in_range(runner_load(&r, 100), 1, 99);
         SluiceDemandStatistics statistics = runner_statistics(&r);
@@ -401,7 +393,7 @@ static void formats_share_few_images_of_pages(void **state)
         runner_image_init(&images[i],
                           i ? SLUICE_FORMAT_R32G32B32A32_SFLOAT : SLUICE_FORMAT_R8G8B8A8_UNORM,
                           SIZE, SIZE, i);
-        add_tiles(&r, runner_add_texture(&r, &images[i]), 0, TILES);
+        runner_add_tiles(&r, runner_add_texture(&r, &images[i]), SIZE, 0, TILES);
     }
     listen_to(r.loader);
     for (uint32_t i = 0; i < 60; i++) {
@@ -555,182 +547,6 @@ static void what_finds_no_memory_is_left_out_of_a_preload(void **state)
     runner_image_finish(&image);
 }
 
-/* A device with less memory than it says: what the functions below share, and no test changes while
- * a loader uses them. */
-static struct {
-    PFN_vkGetDeviceProcAddr get;
-    PFN_vkAllocateMemory allocate;
-    uint64_t left; ///< bytes; only large allocations count
-    bool refuses;  ///< everything
-} poor;
-
-static VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device,
-                                                      const VkMemoryAllocateInfo *info,
-                                                      const VkAllocationCallbacks *callbacks,
-                                                      VkDeviceMemory *memory)
-{
-    bool large = info->allocationSize >= 2u << 20;
-    if (poor.refuses || (large && info->allocationSize > poor.left))
-        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    poor.left -= large ? info->allocationSize : 0;
-    return poor.allocate(device, info, callbacks, memory);
-}
-
-static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_of_device(VkDevice device, const char *name)
-{
-    PFN_vkVoidFunction function = poor.get(device, name);
-    if (strcmp(name, "vkAllocateMemory") != 0)
-        return function;
-    poor.allocate = (PFN_vkAllocateMemory)function;
-    return (PFN_vkVoidFunction)allocate_memory;
-}
-
-static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_of_instance(VkInstance instance,
-                                                                const char *name)
-{
-    PFN_vkVoidFunction function = h.get(instance, name);
-    if (strcmp(name, "vkGetDeviceProcAddr") != 0)
-        return function;
-    poor.get = (PFN_vkGetDeviceProcAddr)function;
-    return (PFN_vkVoidFunction)get_of_device;
-}
-
-static const SluiceVulkanContextCreateInfo poor_context = {.pfnGetInstanceProcAddr =
-                                                               get_of_instance};
-
-static void a_device_without_memory_is_a_smaller_budget(void **state)
-{
-    (void)state;
-    struct runner r;
-    struct runner_image image;
-    SluiceDemandLoader *loader;
-    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
-                                         .memoryBudget = 128u << 20,
-                                         .maxTilesInFlight = 32,
-                                         .maxTextureCount = 64,
-                                         .pageCapacity = 1u << 16};
-    poor.left = 64u << 20;
-    CHECK_OK(harness_set_context(&h, &poor_context));
-    runner_fill(&h, &info);
-    CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
-    poor.left = 20u << 20;
-    runner_init_with(&r, &h, loader);
-    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
-    add_tiles(&r, runner_add_texture(&r, &image), 0, TILES);
-    h.quiet = true;
-    uint32_t launches = runner_load(&r, 100);
-    h.quiet = false;
-    print_message("# launches.poor %u launches\n", launches);
-    assert_in_range(launches, 3, 60);
-    assert_true(runner_all_resident(&r));
-    SluiceDemandStatistics statistics = runner_statistics(&r);
-    assert_true(statistics.lodBias > 0);
-    assert_true(statistics.tileMemorySize <= 20u << 20);
-    assert_true(statistics.residentTileCount >= 64);
-    runner_finish(&r);
-    CHECK_OK(harness_set_context(&h, NULL));
-    runner_image_finish(&image);
-}
-
-static void a_launch_that_cannot_be_prepared_takes_nothing_with_it(void **state)
-{
-    (void)state;
-    struct runner r;
-    struct runner_image image;
-    SluiceDemandLoader *loader;
-    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
-                                         .memoryBudget = 16u << 20,
-                                         .maxTextureCount = 64,
-                                         .pageCapacity = 1u << 16};
-    poor.left = UINT64_MAX;
-    CHECK_OK(harness_set_context(&h, &poor_context));
-    runner_fill(&h, &info);
-    CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
-    runner_init_with(&r, &h, loader);
-    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
-    SluiceDemandTextureId id = runner_add_texture(&r, &image);
-    uint32_t failures = 0;
-    h.quiet = true;
-    for (uint32_t rows = 1; rows < 7; rows++) {
-        runner_clear(&r);
-        add_tiles(&r, id, 0, rows);
-        for (uint32_t i = 0; i < 5; i++) {
-            poor.refuses = true;
-            SluiceResult result = runner_submit(&r);
-            poor.refuses = false;
-            failures += result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
-            if (result != SLUICE_SUCCESS)
-                continue;
-            CHECK_OK(
-                sluiceProcessDemandRequests(loader, &r.launch, UINT64_MAX, &r.requests, &r.ticket));
-            CHECK_OK(sluiceWaitDemandTicket(loader, r.ticket, UINT64_MAX, NULL));
-        }
-        runner_load(&r, 30);
-        for (uint32_t i = 0; i < r.count; i++)
-            runner_check_texel(&r, i, &image, 0, i % TILES * TILE + 7, i / TILES * TILE + 9);
-    }
-    h.quiet = false;
-    assert_true(failures > 0);
-    runner_finish(&r);
-    CHECK_OK(harness_set_context(&h, NULL));
-    runner_image_finish(&image);
-}
-
-static uint32_t hash_of(const uint8_t *bytes, uint32_t count)
-{
-    uint32_t sum = 2166136261u;
-    for (uint32_t i = 0; i < count; i++)
-        sum = (sum ^ bytes[i]) * 16777619u;
-    return sum;
-}
-
-static void bytes_that_were_set_survive_a_launch_that_cannot_be_prepared(void **state)
-{
-    (void)state;
-    enum { PAGES = 8, BYTES = 256 };
-    if (!h.reads_bytes)
-        skip();
-    struct runner r;
-    SluiceDemandLoader *loader;
-    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
-                                         .memoryBudget = 16u << 20,
-                                         .maxTextureCount = 64,
-                                         .pageCapacity = 1u << 16};
-    poor.left = UINT64_MAX;
-    CHECK_OK(harness_set_context(&h, &poor_context));
-    runner_fill(&h, &info);
-    CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
-    h.runs_bytes = true;
-    runner_init_with(&r, &h, loader);
-    const SluiceDemandResourceCreateInfo create = {
-        .structSize = sizeof create, .pageCount = PAGES, .rank = 1, .pageSize = BYTES};
-    SluiceDemandResourceId id;
-    uint32_t first;
-    CHECK_OK(sluiceAddDemandResource(loader, &create, &id, &first));
-    uint8_t bytes[PAGES][BYTES];
-    h.quiet = true;
-    for (uint32_t i = 0; i < PAGES; i++) {
-        memset(bytes[i], (int)(7 * i + 1), BYTES);
-        CHECK_OK(sluiceSetDemandPageBytes(loader, id, i, bytes[i], false));
-        runner_add(&r, (struct RunnerInput){
-                           .kind = RUNNER_BYTES, .index = first + i, .dx = {(float)BYTES}});
-        poor.refuses = true;
-        CHECK_RESULT(runner_submit(&r), SLUICE_ERROR_OUT_OF_DEVICE_MEMORY);
-        poor.refuses = false;
-    }
-    memset(bytes[1], 200, BYTES); /* before the first bytes were copied */
-    CHECK_OK(sluiceSetDemandPageBytes(loader, id, 1, bytes[1], false));
-    h.quiet = false;
-    runner_load(&r, 3);
-    for (uint32_t i = 0; i < PAGES; i++) {
-        assert_true(runner_output(&r, i).resident);
-        assert_int_equal(runner_output(&r, i).value[0], hash_of(bytes[i], BYTES));
-    }
-    runner_finish(&r);
-    h.runs_bytes = false;
-    CHECK_OK(harness_set_context(&h, NULL));
-}
-
 static SluiceResult read_byte_page(void *user, uint32_t page, uint32_t size, void *bytes)
 {
     (void)user;
@@ -754,7 +570,7 @@ static void tiles_give_the_share_of_byte_pages_up_while_they_are_sampled(void **
     h.runs_bytes = true;
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
-    add_tiles(&r, runner_add_texture(&r, &image), 0, 15);
+    runner_add_tiles(&r, runner_add_texture(&r, &image), SIZE, 0, 15);
     runner_load(&r, 60);
     assert_true(runner_statistics(&r).tileMemorySize > budget - share);
     const SluiceDemandResourceCreateInfo create = {.structSize = sizeof create,
@@ -800,79 +616,6 @@ static void page_tables_of_64_mi_pages_cost_at_most_64_megabytes(void **state)
     runner_finish(&r);
 }
 
-/* A loader's life, on one thread but for the workers: OUT_OF_HOST_MEMORY, or how it should be. */
-static bool live(struct failing_allocator *allocator, struct runner_image *image)
-{
-    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
-                                         .memoryBudget = 8u << 20,
-                                         .maxTextureCount = 64,
-                                         .pageCapacity = 1u << 16,
-                                         .maxTilesInFlight = 16};
-    const SluiceVulkanContextCreateInfo context = {.pAllocator = &allocator->callbacks,
-                                                   .loaderThreadCount = 2};
-    SluiceDemandLoader *loader = NULL;
-    SluiceDemandTextureId id;
-    struct runner r;
-    SluiceResult result = harness_set_context(&h, &context);
-    runner_fill(&h, &info);
-    if (result == SLUICE_SUCCESS)
-        result = sluiceCreateDemandLoader(&info, &loader);
-    if (result != SLUICE_SUCCESS) {
-        CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
-        assert_null(loader);
-        return false;
-    }
-    const SluiceDemandTextureCreateInfo create = {.structSize = sizeof create,
-                                                  .image = runner_image_desc(image),
-                                                  .pSampler = &runner_nearest};
-    result = sluiceAddDemandTexture(loader, &create, &id);
-    if (result != SLUICE_SUCCESS) {
-        CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
-        sluiceDestroyDemandLoader(loader);
-        return false;
-    }
-    runner_init_with(&r, &h, loader);
-    runner_add_texel(&r, id, 300, 300, 0, 299, 299);
-    bool complete = false;
-    for (uint32_t i = 0; i < 5 && !complete; i++) {
-        result = runner_submit(&r);
-        if (result == SLUICE_SUCCESS)
-            result =
-                sluiceProcessDemandRequests(loader, &r.launch, UINT64_MAX, &r.requests, &r.ticket);
-        if (result != SLUICE_SUCCESS) {
-            CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
-            break;
-        }
-        complete = r.requests.missingCount == 0;
-        CHECK_OK(sluiceWaitDemandTicket(loader, r.ticket, UINT64_MAX, NULL));
-    }
-    if (complete)
-        runner_check_texel(&r, 0, image, 0, 299, 299);
-    runner_finish(&r);
-    return complete;
-}
-
-static void a_loader_survives_every_refused_allocation(void **state)
-{
-    (void)state;
-    struct failing_allocator allocator;
-    struct runner_image image;
-    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
-    h.quiet = true;
-    bool complete = false;
-    for (uint64_t n = 0; !complete; n++) {
-        assert_true(n < 500);
-        failing_allocator_init(&allocator, n);
-        complete = live(&allocator, &image);
-        CHECK_OK(harness_set_context(&h, NULL));
-        assert_int_equal(allocator.live_count, 0);
-        assert_int_equal(allocator.live_bytes, 0);
-    }
-    h.quiet = false;
-    assert_int_equal(image.opened, image.closed);
-    runner_image_finish(&image);
-}
-
 int main(void)
 {
     int status = harness_init(&h);
@@ -895,12 +638,8 @@ int main(void)
         cmocka_unit_test(pages_and_ids_that_run_out_are_reported),
         cmocka_unit_test(preloaded_levels_are_there_before_they_are_sampled),
         cmocka_unit_test(what_finds_no_memory_is_left_out_of_a_preload),
-        cmocka_unit_test(a_device_without_memory_is_a_smaller_budget),
-        cmocka_unit_test(a_launch_that_cannot_be_prepared_takes_nothing_with_it),
-        cmocka_unit_test(bytes_that_were_set_survive_a_launch_that_cannot_be_prepared),
         cmocka_unit_test(tiles_give_the_share_of_byte_pages_up_while_they_are_sampled),
         cmocka_unit_test(page_tables_of_64_mi_pages_cost_at_most_64_megabytes),
-        cmocka_unit_test(a_loader_survives_every_refused_allocation),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }
