@@ -274,6 +274,13 @@ typedef struct SluiceVulkanStreamerSettings {
     bool noEviction; ///< Requests wait for free memory instead of evicting resident tiles.
     bool noMipBias;  ///< Never request coarser levels because more is wanted than memory holds.
     uint32_t framesPerRound; ///< 0: texturesPerFrame alone says how many maps are read back.
+    /**
+     * Requested tiles wait, mip tails of new textures too: frames start no load until the setting
+     * is false again, except those that sluiceStepVulkanLoads asks for. Tiles whose loads have
+     * started still become resident. Restoring a tile from standby counts as a load. For debugging
+     * tools: waits for requests ask for frames without end meanwhile.
+     */
+    bool holdLoads;
 } SluiceVulkanStreamerSettings;
 
 /**
@@ -295,6 +302,16 @@ SLUICE_API SluiceResult sluiceGetVulkanStreamerSettings(const SluiceVulkanStream
  */
 SLUICE_API SluiceResult sluiceSetVulkanStreamerSettings(
     SluiceVulkanStreamer *streamer, const SluiceVulkanStreamerSettings *pSettings);
+
+/**
+ * Lets `tileCount` requested tiles start to load although loads are held (holdLoads), in the usual
+ * order, at most tilesPerFrame per frame. Calls add up, at most to UINT32_MAX, and count for tiles
+ * that are requested later, too. Setting holdLoads to false forgets the rest. Does nothing while
+ * loads are not held.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceStepVulkanLoads(SluiceVulkanStreamer *streamer, uint32_t tileCount);
 
 /**
  * Moves at most `maxTileCount` tiles together, so that memory can be freed. Writes the number of

@@ -75,6 +75,9 @@ static void say_queued(const SluiceVulkanStreamer *s, const struct slc_coarse_pl
 {
     if (p->missing == SLUICE_MIP_UNTOUCHED)
         say(p, out, "level %u is requested from the next frame on.", p->marked);
+    else if (s->hold_loads)
+        say(p, out, "level %u waits: loads are held (holdLoads), %u tiles are requested.",
+            p->missing, counts_of(s).requestedTileCount);
     else
         say(p, out, "level %u waits its turn: %u tiles are requested, a frame loads %u.",
             p->missing, counts_of(s).requestedTileCount, s->info.tilesPerFrame);

@@ -216,6 +216,8 @@ static SluiceResult start_loads(SluiceVulkanStreamer *s, struct slc_read_batch *
     if (result >= 0 && !waits)
         result = start_awaited(s, batch);
     uint32_t count = slc_min_u32(s->info.tilesPerFrame, s->free_unit_count);
+    if (s->hold_loads)
+        count = slc_min_u32(count, s->load_steps);
     if (result < 0 || waits || count == 0)
         return result;
     result = sluiceGetTilesToMap(s->manager, SLUICE_ALL_TEXTURES, &count, s->tiles);
@@ -224,6 +226,7 @@ static SluiceResult start_loads(SluiceVulkanStreamer *s, struct slc_read_batch *
     if (result < 0)
         return slc_streamer_check(s, result, "sluiceGetTilesToMap");
     s->strict.budget_reached = result == SLUICE_BUDGET_REACHED;
+    s->load_steps -= s->hold_loads ? count : 0;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t index = s->by_manager_index[(uint32_t)s->tiles[i].textureId];
         result = SLUICE_SUCCESS;

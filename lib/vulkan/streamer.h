@@ -236,9 +236,11 @@ struct SluiceVulkanStreamer {
     uint32_t most_textures_per_frame; ///< that the buffers have room for
     uint32_t next_textures_per_frame; ///< from the next frame on
     uint32_t next_frames_per_round;   ///< as well
-    uint32_t share;    ///< maps of the frame that began; the buffers have room for them
-    uint32_t all_left; ///< turns until all textures that are asked for had one
-    bool share_of_all; ///< some of them because all textures are asked for
+    bool hold_loads;
+    uint32_t load_steps; ///< loads that start although they are held
+    uint32_t share;      ///< maps of the frame that began; the buffers have room for them
+    uint32_t all_left;   ///< turns until all textures that are asked for had one
+    bool share_of_all;   ///< some of them because all textures are asked for
     uint64_t in_flight[SLC_MAX_FRAMES]; ///< by slot; framesInFlight of them; 0: none
     bool submittable[SLC_MAX_FRAMES];   ///< by slot; its frame was ended without an error
     uint64_t slot_turn;                 ///< frames begun and not abandoned

@@ -2,6 +2,7 @@
 #include "vulkan/streamer.h"
 
 #include "base/alloc.h"
+#include "base/checked.h"
 #include "base/struct_size.h"
 #include "core/observer.h"
 #include "vulkan/create_checks.h"
@@ -90,7 +91,8 @@ SluiceResult sluiceGetVulkanStreamerSettings(const SluiceVulkanStreamer *streame
         .givenUpRetryDelayTicks = config->givenUpRetryDelayTicks,
         .noEviction = config->noEviction,
         .noMipBias = config->noMipBias,
-        .framesPerRound = streamer->next_frames_per_round};
+        .framesPerRound = streamer->next_frames_per_round,
+        .holdLoads = streamer->hold_loads};
     slc_struct_write(type, pSettings, &settings);
     return SLUICE_SUCCESS;
 }
@@ -138,10 +140,22 @@ SluiceResult sluiceSetVulkanStreamerSettings(SluiceVulkanStreamer *streamer,
         return result;
     s->next_textures_per_frame = settings.texturesPerFrame;
     s->next_frames_per_round = settings.framesPerRound;
+    s->hold_loads = settings.holdLoads;
+    s->load_steps = settings.holdLoads ? s->load_steps : 0;
     s->info.feedbackTimeoutTicks = settings.feedbackTimeoutTicks;
     s->info.residencyFadeTicks = settings.residencyFadeTicks;
     s->fade_clock.time_per_level = settings.residencyFadeTicks;
     s->info.retryDelayTicks = settings.retryDelayTicks;
     s->info.givenUpRetryDelayTicks = settings.givenUpRetryDelayTicks;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceStepVulkanLoads(SluiceVulkanStreamer *streamer, uint32_t tileCount)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (s->hold_loads)
+        s->load_steps += slc_min_u32(tileCount, UINT32_MAX - s->load_steps);
     return SLUICE_SUCCESS;
 }

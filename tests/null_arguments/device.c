@@ -31,6 +31,7 @@ sluiceCreateVulkanStreamer(&f->streamer_info, &f->out.streamer) => sluiceDestroy
 sluiceCompactVulkanStreamer(f->streamer, ?1, &f->out.page)
 sluiceWaitVulkanStreamerIdle(f->streamer)
 sluiceResolveAllVulkanTextures(f->streamer)
+sluiceStepVulkanLoads(f->streamer, ?1)
 sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->out.texture)
 sluiceAddVulkanTextureArray(f->streamer, &f->texture_info, 1, &f->out.texture)
 sluiceRemoveVulkanTexture(f->streamer, f->texture.textureId)

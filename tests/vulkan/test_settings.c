@@ -6,6 +6,7 @@
 #include "support/test.h"
 
 #include <sluice/demand.h>
+#include <sluice/vulkan_explain.h>
 
 #include <string.h>
 
@@ -18,6 +19,7 @@ struct stage {
     SluiceVulkanStreamer *streamer;
     SluiceDemandLoader *loader;
     SluiceImageSource *source;
+    SluiceTextureId last_texture;
     uint64_t time;
     bool looks;
     char last[256]; ///< message
@@ -65,6 +67,7 @@ static struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
     SluiceVulkanTexture texture;
     for (int i = 0; i < TEXTURES; i++)
         CHECK_OK(sluiceAddVulkanTexture(s.streamer, &create, &texture));
+    s.last_texture = texture.textureId;
     return &s;
 }
 
@@ -114,7 +117,7 @@ static bool are_same(const SluiceVulkanStreamerSettings *a, const SluiceVulkanSt
            a->retryDelayTicks == b->retryDelayTicks &&
            a->givenUpRetryDelayTicks == b->givenUpRetryDelayTicks &&
            a->noEviction == b->noEviction && a->noMipBias == b->noMipBias &&
-           a->framesPerRound == b->framesPerRound;
+           a->framesPerRound == b->framesPerRound && a->holdLoads == b->holdLoads;
 }
 
 static void settings_begin_as_the_create_info_says(void **state)
@@ -151,7 +154,8 @@ static void settings_begin_as_the_create_info_says(void **state)
                                               .givenUpRetryDelayTicks = 150,
                                               .noEviction = true,
                                               .noMipBias = true,
-                                              .framesPerRound = 170};
+                                              .framesPerRound = 170,
+                                              .holdLoads = true};
     CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
     SluiceVulkanStreamerSettings set = get(s);
     assert_true(are_same(&set, &settings));
@@ -208,6 +212,59 @@ static void tiles_per_frame_limit_the_next_frame(void **state)
         assert_true(mapped > 0 && mapped <= 4 * (uint64_t)counts[i]);
         assert_true(counts[i] < 64 || mapped > 16);
     }
+    stage_finish(s);
+}
+
+/* Some frames, in which all that has started becomes resident. */
+static uint64_t mapped_after_frames(struct stage *s)
+{
+    for (int i = 0; i < 6; i++)
+        frame(s);
+    return statistics(s).tilesMapped;
+}
+
+static void hold(struct stage *s, bool held)
+{
+    SluiceVulkanStreamerSettings settings = get(s);
+    settings.holdLoads = held;
+    CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+}
+
+static void held_loads_start_as_many_tiles_as_they_are_stepped(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                          .tilesPerFrame = 4,
+                                          .feedbackTimeoutTicks = 1000});
+    for (int i = 0; i < 10; i++)
+        frame(s);
+    CHECK_OK(sluiceStepVulkanLoads(s->streamer, 7)); /* nothing is held: nothing is kept of it */
+    hold(s, true);
+    uint64_t before = mapped_after_frames(s);
+    assert_int_equal(mapped_after_frames(s), before);
+    assert_true(statistics(s).requestedTileCount > 20);
+    SluiceVulkanExplanation why = {.structSize = sizeof why};
+    CHECK_OK(sluiceExplainVulkanTexture(s->streamer, s->last_texture, NULL, &why));
+    assert_int_equal(why.reason, SLUICE_COARSE_QUEUED);
+    assert_non_null(strstr(why.sentence, "loads are held"));
+    const uint32_t steps[] = {1, 1, 3, 0, 11};
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        s->memory.refuse_from = 0;
+        CHECK_OK(sluiceStepVulkanLoads(s->streamer, steps[i]));
+        s->memory.refuse_from = UINT64_MAX;
+        assert_int_equal(mapped_after_frames(s) - before, steps[i]);
+        before += steps[i];
+    }
+    CHECK_OK(sluiceStepVulkanLoads(s->streamer, UINT32_MAX)); /* calls add up without a wrap */
+    CHECK_OK(sluiceStepVulkanLoads(s->streamer, 2));
+    frame(s);
+    hold(s, false);
+    hold(s, true);
+    before = mapped_after_frames(s);
+    assert_int_equal(mapped_after_frames(s), before);
+    hold(s, false);
+    assert_true(mapped_after_frames(s) > before + 4);
     stage_finish(s);
 }
 
@@ -474,6 +531,7 @@ int main(void)
         cmocka_unit_test(settings_begin_as_the_create_info_says),
         cmocka_unit_test(wrong_settings_change_nothing_and_are_named),
         cmocka_unit_test(tiles_per_frame_limit_the_next_frame),
+        cmocka_unit_test(held_loads_start_as_many_tiles_as_they_are_stepped),
         cmocka_unit_test(textures_per_frame_are_those_of_the_frame_that_began),
         cmocka_unit_test(all_textures_have_their_turn_after_a_cut),
         cmocka_unit_test(turns_of_all_come_again_if_their_frame_is_abandoned),
