@@ -149,6 +149,14 @@ run 0 --headless --deterministic --fresh --still $validation --size 160x160 --re
     cmp a.png again.png && value=$("$flip" a.png b.png) && [[ $value == 0.0[1-9]* ]] &&
     grep -q "\"FLIP\", \"value\": $value," out
 fact flip_of_a_comparison_is_that_of_its_two_pictures
+printf '4 key N\n12 key Shift+N\n20 key Shift+N\n28 quit\n' >steps
+run 0 --headless --deterministic --fresh --still --size 160x160 --render-scale 1 --panels off --cache . --pause on \
+    --probability 1 --script steps --csv steps.csv fine.ppm
+# Counted by eight frames: the mip tail, nothing, and a tile for each step.
+column=$(head -n 1 steps.csv | tr , '\n' | grep -n '^mapped' | cut -d : -f 1) &&
+    sums=$(awk -F , -v c="$column" 'NR > 1 { sum[int(($1 + 4) / 8)] += $c }
+        END { print (sum[0] + sum[1] > 0), sum[2] + 0, sum[3] + 0 }' steps.csv) && [ "$sums" = '1 1 1' ]
+fact a_step_loads_one_tile_while_streaming_is_paused
 printf '12 set freeze-wants on\n13 hold s 20\n' >frozen
 run 0 --room --still --headless --deterministic --fresh --size 160x160 --residency paged --timeout 0.1 --standby 0 \
     --panels off --script frozen --frames 48 --csv frozen.csv &&

@@ -56,7 +56,9 @@ static void pause(struct view_app *app, int argument)
     (void)argument;
     app->settings.pause = !app->settings.pause;
     app_say(app, "%s",
-            app->settings.pause ? "Streaming stands still; N makes one step" : "Streaming goes on");
+            app->settings.pause
+                ? "Streaming stands still; N steps one frame, Shift+N loads one tile"
+                : "Streaming goes on");
 }
 
 static void step(struct view_app *app, int argument)
@@ -64,6 +66,15 @@ static void step(struct view_app *app, int argument)
     (void)argument;
     app->settings.pause = 1;
     app->step = true;
+}
+
+static void step_tile(struct view_app *app, int argument)
+{
+    (void)argument;
+    if (app->settings.pause && app->facts.now.requestedTileCount == 0)
+        app_say(app, "No tile waits; N looks at what is seen");
+    app->settings.pause = 1;
+    app->step_tile = true;
 }
 
 static void restart(struct view_app *app, int argument)
@@ -229,7 +240,8 @@ static const struct action table[] = {
     {"Views", "V", NULL, "compare: divider, difference, flicker, off", compare, 0},
 
     {"Streaming", "P", NULL, "pause", pause, 0},
-    {"Streaming", "N", NULL, "one step", step, 0},
+    {"Streaming", "N", NULL, "step one frame", step, 0},
+    {"Streaming", "Shift+N", NULL, "load one tile, while paused", step_tile, 0},
     {"Streaming", "Shift+R", NULL, "evict everything, watch it fill", restart, 0},
     {"Streaming", "L", NULL, "freeze what is wanted", freeze, 0},
     {"Streaming", "Ctrl+R", NULL, "record for sluice-replay, or end it", trace, 0},

@@ -70,7 +70,7 @@ struct view_app {
     bool headless;       ///< time is that of the frame's number
     const char *program; ///< words of the command line before the options
     /* Requests to the loop, which resets them. */
-    bool quit, reload, step, restart, screenshot, screenshot_plain, trace;
+    bool quit, reload, step, step_tile, restart, screenshot, screenshot_plain, trace;
 };
 
 void app_init(struct view_app *app);

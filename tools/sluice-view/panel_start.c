@@ -159,7 +159,7 @@ void panel_now(struct view_app *app)
         if (app->tracing)
             ui_text(UI_RED, "recording for sluice-replay (Ctrl+R)");
         if (app->settings.pause)
-            ui_text(UI_ORANGE, "streaming is paused (P)");
+            ui_text(UI_ORANGE, "streaming is paused (P): %u tiles wait", f->now.requestedTileCount);
         if (app->settings.freeze_wants)
             ui_text(UI_ORANGE, "wants are frozen: orange lines (L)");
     }

@@ -291,6 +291,7 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
         (uint64_t)((settings->freeze_wants ? FROZEN_SECONDS : settings->timeout) *
                    TICKS_PER_SECOND);
     now.residencyFadeTicks = (uint64_t)(settings->fade * TICKS_PER_SECOND);
+    now.holdLoads = settings->pause != 0;
     check(sluiceSetVulkanStreamerSettings(s->streamer, &now), "sluiceSetVulkanStreamerSettings");
     s->settings = *settings;
     atomic_store(&s->source_fails, settings->source_fails);

@@ -143,13 +143,17 @@ static void answer_requests(struct viewer *v)
         viewer_end_recording(v);
     else if (app->trace)
         viewer_begin_recording(v, NULL);
-    if (v->stage && memcmp(&v->applied, &app->settings, sizeof v->applied) != 0) {
-        stage_apply(v->stage, &app->settings);
-        v->applied = app->settings;
+    struct view_settings now = app->settings;
+    now.pause = now.pause && !app->step;
+    if (v->stage && memcmp(&v->applied, &now, sizeof v->applied) != 0) {
+        stage_apply(v->stage, &now);
+        v->applied = now;
     }
+    if (v->stage && app->step_tile)
+        sluiceStepVulkanLoads(stage_streamer(v->stage), 1);
     if (v->window)
         window_set_full_screen(v->window, app->settings.full_screen != 0);
-    app->restart = app->reload = app->trace = false;
+    app->restart = app->reload = app->trace = app->step_tile = false;
 }
 
 /* Returns whether FLIP needs copies of this frame's pictures. */
