@@ -100,9 +100,14 @@ static void source_return(struct slc_read_queue *queue, struct slc_read_source *
         slc_pairing_heap_add(&queue->startable, &source->node);
 }
 
-static struct slc_read_queue *queue_of(struct slc_read_source *source)
+static struct slc_read_queue *queue_of(const struct slc_read_source *source)
 {
     return SLC_CONTAINER_OF(source->sources, struct slc_read_queue, sources);
+}
+
+struct slc_read_queue *slc_read_queue_of(const struct slc_read *read)
+{
+    return queue_of(read->source);
 }
 
 /* After a change of how many reads of the source run: other queues may start one now, or not. */
@@ -163,6 +168,8 @@ bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *g
     read->priority = given->priority;
     read->source = source;
     read->attempts = (struct slc_attempts){0};
+    read->next_waiting = NULL;
+    read->awaited = read->held = NULL;
     read->region_count = given->regionCount;
     read->done = 0;
     read->done_size = 0;
@@ -261,12 +268,32 @@ void slc_read_queue_delay(struct slc_read_queue *queue, struct slc_read *read, u
     queue->statistics.counts.retriedCount++;
 }
 
+void slc_read_queue_wait(struct slc_read_queue *queue, struct slc_read *read)
+{
+    stop_running(queue, read);
+    read->state = SLC_READ_WAITING;
+    queue->waiting_count++;
+}
+
+void slc_read_queue_resume(struct slc_read_queue *queue, struct slc_read *read)
+{
+    if (read->state == SLC_READ_WAITING) {
+        queue->waiting_count--;
+        read->priority = UINT32_MAX;
+    } else {
+        stop_running(queue, read);
+    }
+    enqueue(queue, read);
+}
+
 void slc_read_queue_end(struct slc_read_queue *queue, struct slc_read *read, SluiceResult result)
 {
     if (read->state == SLC_READ_QUEUED)
         dequeue(queue, read);
     else if (read->state == SLC_READ_DELAYED)
         undelay(queue, read);
+    else if (read->state == SLC_READ_WAITING)
+        queue->waiting_count--;
     else
         stop_running(queue, read);
     read->state = SLC_READ_FINISHED;
@@ -305,7 +332,8 @@ bool slc_read_queue_collect(struct slc_read_queue *queue, SluiceTileReadResult *
 
 bool slc_read_queue_is_idle(const struct slc_read_queue *queue)
 {
-    return queue->queued_count == 0 && queue->running_count == 0 && !queue->delayed.root;
+    return queue->queued_count == 0 && queue->running_count == 0 && queue->waiting_count == 0 &&
+           !queue->delayed.root;
 }
 
 SluiceResult slc_read_queue_forget(struct slc_read_queue *queue, const SluiceImageSource *source)

@@ -1,7 +1,7 @@
 /**
  * The bookkeeping of a loader without its threads and without a clock: a fixed number of reads,
- * each free, queued by priority, delayed until another attempt, running or finished. Not
- * synchronized; the loader holds a lock around every call.
+ * each free, queued by priority, delayed until another attempt, running, waiting for another read
+ * or finished. Not synchronized; the loader holds a lock around every call.
  */
 #ifndef SLC_IMAGE_READ_QUEUE_H
 #define SLC_IMAGE_READ_QUEUE_H
@@ -16,6 +16,7 @@ enum slc_read_state {
     SLC_READ_QUEUED,
     SLC_READ_DELAYED,
     SLC_READ_RUNNING,
+    SLC_READ_WAITING, ///< for a region that another read of the pool is reading
     SLC_READ_FINISHED
 };
 
@@ -30,6 +31,8 @@ struct slc_started {
     SluiceFormat format;
     SluiceImageFault fault; ///< of the failed region
     uint64_t start_time;    ///< ns
+    /** Texels of a read pool that the source writes. NULL: it writes those of the read. */
+    struct slc_shared_region *shared[SLUICE_MAX_READ_REGIONS];
 };
 
 struct slc_read {
@@ -53,6 +56,11 @@ struct slc_read {
     atomic_bool dropped; ///< nobody wants it any more
     bool holds_thread;   ///< while it runs
     struct slc_started started;
+
+    /* With the lock held. */
+    struct slc_read *next_waiting;     ///< for the same region
+    struct slc_shared_region *awaited; ///< while it waits
+    struct slc_shared_region *held;    ///< it has waited for these texels, and is to copy them
 };
 
 /** Limits, and what runs of them. Several queues may share it. */
@@ -76,7 +84,7 @@ struct slc_read_queue {
     struct slc_read_sources sources;
     struct slc_pairing_heap startable; ///< sources that have room for another of their queued reads
     struct slc_pairing_heap delayed;   ///< reads, the first one due in front
-    uint32_t queued_count, running_count;
+    uint32_t queued_count, running_count, waiting_count;
     struct slc_read_statistics statistics; ///< of all sources; knows how many are delayed
 };
 
@@ -101,6 +109,9 @@ void slc_read_queue_finish(struct slc_read_queue *queue, const SluiceAllocationC
 bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *read,
                            uint64_t *ticket);
 
+/** The queue that a read is in. */
+struct slc_read_queue *slc_read_queue_of(const struct slc_read *read);
+
 /** The most urgent read that may run, running from now on; NULL if there is none at this time. */
 struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now);
 
@@ -118,7 +129,12 @@ void slc_read_queue_add_attempt(struct slc_read_queue *queue, struct slc_read *r
 /** Puts a running read aside until `due`. */
 void slc_read_queue_delay(struct slc_read_queue *queue, struct slc_read *read, uint64_t due);
 
-/** Ends a running read, or a queued or delayed one that is dropped. */
+/** Puts a running read aside until slc_read_queue_resume. */
+void slc_read_queue_wait(struct slc_read_queue *queue, struct slc_read *read);
+/** Queues a read that waits, before all others; a running one at its place. */
+void slc_read_queue_resume(struct slc_read_queue *queue, struct slc_read *read);
+
+/** Ends a running read, or a queued, delayed or waiting one that is dropped. */
 void slc_read_queue_end(struct slc_read_queue *queue, struct slc_read *read, SluiceResult result);
 
 /** The read of a ticket that is not collected yet, or NULL. */
@@ -127,7 +143,7 @@ struct slc_read *slc_read_queue_find(struct slc_read_queue *queue, uint64_t tick
 /** The longest finished read's result, its slot being free again; false if none is finished. */
 bool slc_read_queue_collect(struct slc_read_queue *queue, SluiceTileReadResult *result);
 
-/** Whether nothing is queued, delayed or running. */
+/** Whether nothing is queued, delayed, running or waiting. */
 bool slc_read_queue_is_idle(const struct slc_read_queue *queue);
 
 /** Drops what is known of a source. NOT_READY, and nothing has changed, while it has reads that are
