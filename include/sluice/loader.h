@@ -102,6 +102,25 @@ typedef struct SluiceTileLoaderCreateInfo {
 } SluiceTileLoaderCreateInfo;
 
 /**
+ * Statistics of a read pool. Counts begin with its creation. A tile is one region; a mip tail has a
+ * region for each level. Openings of images and fills of resources are not counted.
+ */
+typedef struct SluiceReadPoolStatistics {
+    uint32_t structSize;       ///< sizeof(SluiceReadPoolStatistics).
+    uint32_t memberCount;      ///< Contexts and tile loaders that use the pool now.
+    uint64_t readCount;        ///< Regions that sources have delivered.
+    uint64_t readSize;         ///< Their bytes.
+    uint64_t joinedCount;      ///< Regions that waited for the read of another member, and copied.
+    uint64_t cachedCount;      ///< Regions that were copied from texels kept earlier.
+    uint64_t evictedCount;     ///< Regions dropped because of cacheSize.
+    uint64_t invalidatedCount; ///< Regions dropped because texels changed or a user has gone.
+    uint64_t refusedCount;     ///< Regions read without sharing, because memory was refused.
+    uint64_t keptSize;         ///< Bytes of texels kept now.
+    uint64_t keptPeakSize;     ///< Largest keptSize.
+    uint64_t keptCount;        ///< Regions kept now.
+} SluiceReadPoolStatistics;
+
+/**
  * One or more regions that are read together: one tile, or the mip tail of a texture. Never
  * grows.
  */

@@ -1,0 +1,354 @@
+#include "image/shared_reads.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "image/read_queue.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* The texels follow the struct, where sources may use wide instructions. */
+#define ALIGNMENT 64u
+#define HEADER_SIZE ((sizeof(struct slc_shared_region) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT)
+#define LEAST_BUCKETS 256u
+#define MOST_BUCKETS (1u << 24)
+
+void slc_shared_reads_init(struct slc_shared_reads *shares, const SluiceAllocationCallbacks *cb,
+                           uint64_t limit)
+{
+    *shares = (struct slc_shared_reads){.cb = *cb, .limit = limit};
+}
+
+static void free_region(struct slc_shared_reads *shares, struct slc_shared_region *region)
+{
+    shares->size -= region->size;
+    shares->count--;
+    slc_free(&shares->cb, region, 1, HEADER_SIZE + region->size);
+}
+
+static void free_tables(struct slc_shared_reads *shares)
+{
+    slc_free(&shares->cb, shares->by_region, shares->bucket_count, sizeof *shares->by_region);
+    slc_free(&shares->cb, shares->by_source, shares->bucket_count, sizeof *shares->by_source);
+}
+
+void slc_shared_reads_finish(struct slc_shared_reads *shares)
+{
+    slc_shared_reads_drop_all(shares);
+    assert(shares->count == 0 && shares->size == 0);
+    free_tables(shares);
+    *shares = (struct slc_shared_reads){0};
+}
+
+bool slc_shared_reads_are_on(const struct slc_shared_reads *shares)
+{
+    return shares->member_count > 1;
+}
+
+void slc_shared_reads_add_member(struct slc_shared_reads *shares)
+{
+    shares->member_count++;
+}
+
+void slc_shared_reads_remove_member(struct slc_shared_reads *shares)
+{
+    assert(shares->member_count > 0);
+    shares->member_count--;
+    if (!slc_shared_reads_are_on(shares))
+        slc_shared_reads_drop_all(shares);
+}
+
+/* Tables ------------------------------------------------------------------------------------- */
+
+static uint64_t mix(uint64_t hash, uint64_t value)
+{
+    hash = (hash ^ value) * 0x9E3779B97F4A7C15u;
+    return hash ^ hash >> 32;
+}
+
+static struct slc_shared_region **source_bucket(const struct slc_shared_reads *shares,
+                                                const SluiceImageSource *source)
+{
+    return &shares->by_source[mix(0, (uintptr_t)source) & (shares->bucket_count - 1)];
+}
+
+static struct slc_shared_region **region_bucket(const struct slc_shared_reads *shares,
+                                                const SluiceImageSource *source,
+                                                const SluiceImageRegion *at)
+{
+    uint64_t hash = mix(0, (uintptr_t)source);
+    hash = mix(hash, (uint64_t)at->mipLevel << 32 | at->arrayLayer);
+    hash = mix(hash, (uint64_t)at->x << 32 | at->y);
+    hash = mix(hash, (uint64_t)at->width << 32 | at->height);
+    return &shares->by_region[hash & (shares->bucket_count - 1)];
+}
+
+bool slc_shared_region_is_at(const struct slc_shared_region *region, const SluiceImageRegion *b)
+{
+    const SluiceImageRegion *a = &region->region;
+    return a->mipLevel == b->mipLevel && a->arrayLayer == b->arrayLayer && a->x == b->x &&
+           a->y == b->y && a->width == b->width && a->height == b->height;
+}
+
+static struct slc_shared_region *find(const struct slc_shared_reads *shares,
+                                      const SluiceImageSource *source, const SluiceImageRegion *at)
+{
+    if (shares->bucket_count == 0)
+        return NULL;
+    struct slc_shared_region *region = *region_bucket(shares, source, at);
+    while (region && (region->source != source || !slc_shared_region_is_at(region, at)))
+        region = region->next_by_region;
+    return region;
+}
+
+static void put(struct slc_shared_reads *shares, struct slc_shared_region *region)
+{
+    struct slc_shared_region **bucket = region_bucket(shares, region->source, &region->region);
+    region->next_by_region = *bucket;
+    *bucket = region;
+    bucket = source_bucket(shares, region->source);
+    region->next_by_source = *bucket;
+    region->link_by_source = bucket;
+    if (*bucket)
+        (*bucket)->link_by_source = &region->next_by_source;
+    *bucket = region;
+}
+
+/* Tables that cannot grow stay as they are: chains become longer. False: there are none. */
+static bool ensure_tables(struct slc_shared_reads *shares)
+{
+    uint32_t old_count = shares->bucket_count;
+    uint32_t count = old_count ? 2 * old_count : LEAST_BUCKETS;
+    if (shares->listed_count < old_count || old_count >= MOST_BUCKETS)
+        return true;
+    struct slc_shared_reads grown = *shares;
+    grown.bucket_count = count;
+    grown.by_region = slc_calloc(&shares->cb, count, sizeof *grown.by_region);
+    grown.by_source = slc_calloc(&shares->cb, count, sizeof *grown.by_source);
+    if (!grown.by_region || !grown.by_source) {
+        free_tables(&grown);
+        return old_count > 0;
+    }
+    for (uint32_t i = 0; i < old_count; i++) {
+        struct slc_shared_region *next;
+        for (struct slc_shared_region *region = shares->by_region[i]; region; region = next) {
+            next = region->next_by_region;
+            put(&grown, region);
+        }
+    }
+    free_tables(shares);
+    *shares = grown;
+    return true;
+}
+
+/* Kept regions ------------------------------------------------------------------------------- */
+
+static void keep(struct slc_shared_reads *shares, struct slc_shared_region *region)
+{
+    region->older = shares->newest;
+    region->newer = NULL;
+    if (shares->newest)
+        shares->newest->newer = region;
+    else
+        shares->oldest = region;
+    shares->newest = region;
+}
+
+static void unkeep(struct slc_shared_reads *shares, struct slc_shared_region *region)
+{
+    if (region->older)
+        region->older->newer = region->newer;
+    else
+        shares->oldest = region->newer;
+    if (region->newer)
+        region->newer->older = region->older;
+    else
+        shares->newest = region->older;
+    region->older = region->newer = NULL;
+}
+
+static bool is_kept(const struct slc_shared_region *region)
+{
+    return region->is_listed && region->holder_count == 0;
+}
+
+void slc_shared_reads_hide(struct slc_shared_reads *shares, struct slc_shared_region *region)
+{
+    if (!region->is_listed)
+        return;
+    struct slc_shared_region **link = region_bucket(shares, region->source, &region->region);
+    while (*link != region)
+        link = &(*link)->next_by_region;
+    *link = region->next_by_region;
+    *region->link_by_source = region->next_by_source;
+    if (region->next_by_source)
+        region->next_by_source->link_by_source = region->link_by_source;
+    bool was_kept = is_kept(region);
+    region->is_listed = false;
+    shares->listed_count--;
+    if (!was_kept)
+        return;
+    unkeep(shares, region);
+    free_region(shares, region);
+}
+
+/* Makes room for texels of `size` bytes. Returns memory of a region that has left, if its size is
+ * right, or NULL. */
+static struct slc_shared_region *evict(struct slc_shared_reads *shares, uint64_t size)
+{
+    while (size <= shares->limit && shares->size > shares->limit - size && shares->oldest) {
+        struct slc_shared_region *region = shares->oldest;
+        bool fits = region->size == size && shares->size <= shares->limit;
+        shares->statistics.evictedCount++;
+        if (fits) {
+            unkeep(shares, region);
+            region->holder_count = 1; /* its memory stays */
+        }
+        slc_shared_reads_hide(shares, region);
+        if (fits)
+            return region;
+    }
+    return NULL;
+}
+
+static struct slc_shared_region *create(struct slc_shared_reads *shares, SluiceImageSource *source,
+                                        const SluiceImageRegion *at, size_t size)
+{
+    struct slc_shared_region *region = evict(shares, size);
+    if (!region) {
+        if (size > SIZE_MAX - HEADER_SIZE)
+            return NULL;
+        region = slc_alloc_aligned(&shares->cb, 1, HEADER_SIZE + size, ALIGNMENT);
+        if (!region)
+            return NULL;
+        shares->size += size;
+        shares->count++;
+    }
+    *region = (struct slc_shared_region){.texels = (unsigned char *)region + HEADER_SIZE,
+                                         .source = source,
+                                         .region = *at,
+                                         .size = size,
+                                         .holder_count = 1,
+                                         .is_reading = true,
+                                         .is_listed = true};
+    shares->listed_count++;
+    put(shares, region);
+    if (shares->size > shares->statistics.keptPeakSize)
+        shares->statistics.keptPeakSize = shares->size;
+    return region;
+}
+
+enum slc_delivery slc_shared_reads_claim(struct slc_shared_reads *shares, SluiceImageSource *source,
+                                         const SluiceImageRegion *at, size_t size,
+                                         struct slc_shared_region **out)
+{
+    struct slc_shared_region *region = find(shares, source, at);
+    *out = region;
+    if (region && region->size == size) {
+        if (region->is_reading)
+            return SLC_DELIVER_WAIT;
+        if (is_kept(region))
+            unkeep(shares, region);
+        region->holder_count++;
+        shares->statistics.cachedCount++;
+        return SLC_DELIVER_COPY;
+    }
+    if (region) /* of another format: the source has changed */
+        slc_shared_reads_hide(shares, region);
+    *out = ensure_tables(shares) ? create(shares, source, at, size) : NULL;
+    shares->statistics.refusedCount += !*out;
+    return *out ? SLC_DELIVER_READ : SLC_DELIVER_ALONE;
+}
+
+struct slc_read *slc_shared_reads_end(struct slc_shared_reads *shares,
+                                      struct slc_shared_region *region, bool read)
+{
+    struct slc_read *waiting = region->waiting;
+    region->waiting = NULL;
+    region->is_reading = false;
+    if (!read)
+        slc_shared_reads_hide(shares, region);
+    for (const struct slc_read *each = waiting; read && each; each = each->next_waiting)
+        region->holder_count++;
+    return waiting;
+}
+
+void slc_shared_reads_release(struct slc_shared_reads *shares, struct slc_shared_region *region)
+{
+    assert(region->holder_count > 0);
+    if (--region->holder_count > 0)
+        return;
+    if (region->is_listed && region->size > shares->limit) {
+        shares->statistics.evictedCount++;
+        region->holder_count = 1; /* not among the kept ones yet */
+        slc_shared_reads_hide(shares, region);
+        region->holder_count = 0;
+    }
+    if (!region->is_listed) {
+        free_region(shares, region);
+        return;
+    }
+    keep(shares, region);
+    evict(shares, 0);
+}
+
+struct slc_shared_region *slc_shared_reads_find_reading(const struct slc_shared_reads *shares,
+                                                        const SluiceImageSource *source,
+                                                        const SluiceImageRegion *at)
+{
+    struct slc_shared_region *region = find(shares, source, at);
+    return region && region->is_reading ? region : NULL;
+}
+
+void slc_shared_region_await(struct slc_shared_region *region, struct slc_read *read)
+{
+    assert(region->is_reading);
+    read->next_waiting = region->waiting;
+    region->waiting = read;
+}
+
+void slc_shared_region_leave(struct slc_shared_region *region, struct slc_read *read)
+{
+    struct slc_read **link = &region->waiting;
+    while (*link != read)
+        link = &(*link)->next_waiting;
+    *link = read->next_waiting;
+    read->next_waiting = NULL;
+}
+
+/* Dropping ----------------------------------------------------------------------------------- */
+
+static void drop_bucket(struct slc_shared_reads *shares, struct slc_shared_region *region,
+                        const SluiceImageSource *source)
+{
+    struct slc_shared_region *next;
+    for (; region; region = next) {
+        next = region->next_by_source;
+        if (source && region->source != source)
+            continue;
+        shares->statistics.invalidatedCount++;
+        slc_shared_reads_hide(shares, region);
+    }
+}
+
+void slc_shared_reads_drop(struct slc_shared_reads *shares, const SluiceImageSource *source)
+{
+    if (shares->listed_count > 0)
+        drop_bucket(shares, *source_bucket(shares, source), source);
+}
+
+void slc_shared_reads_drop_all(struct slc_shared_reads *shares)
+{
+    for (uint32_t i = 0; i < shares->bucket_count && shares->listed_count > 0; i++)
+        drop_bucket(shares, shares->by_source[i], NULL);
+}
+
+void slc_shared_reads_write_statistics(const struct slc_shared_reads *shares,
+                                       SluiceReadPoolStatistics *statistics)
+{
+    *statistics = shares->statistics;
+    statistics->structSize = sizeof *statistics;
+    statistics->memberCount = shares->member_count;
+    statistics->keptSize = shares->size;
+    statistics->keptCount = shares->count;
+}
