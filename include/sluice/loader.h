@@ -16,6 +16,25 @@ extern "C" {
 typedef struct SluiceTileLoader SluiceTileLoader;
 
 /**
+ * Threads that read for several contexts or tile loaders, and each region once.
+ *
+ * Contexts of several devices (SluiceVulkanContextCreateInfo.readPool) and tile loaders
+ * (SluiceTileLoaderCreateInfo.readPool) are the members of a pool. While a pool has two members or
+ * more, a region of a source that one member is reading is not read again for another one: the
+ * other read waits, without a thread, and copies the texels. Texels stay in host memory for members
+ * that ask later. A pool with one member keeps nothing.
+ *
+ * Regions are equal if the address of the source, the array layer, the level and the rectangle are.
+ * So give all devices the same SluiceImageSource. Sources that pfnOpen opens for each device are
+ * read for each device.
+ *
+ * Texels of a source must not change while the pool keeps them. Streamers and demand loaders tell
+ * the pool when you invalidate, replace or remove a texture. Tile loaders of the application tell
+ * it by sluiceDropTileLoaderStatistics.
+ */
+typedef struct SluiceReadPool SluiceReadPool;
+
+/**
  * How often and when a failed read is tried again.
  *
  * SLUICE_ERROR_IO, SLUICE_ERROR_OUT_OF_HOST_MEMORY and SLUICE_NOT_READY are temporary: up to
@@ -99,7 +118,59 @@ typedef struct SluiceTileLoaderCreateInfo {
      * sluiceDestroyTileLoader waits for all submitted jobs: run them on another thread.
      */
     const SluiceJobSystem *pJobSystem;
+    /** Reads on the threads, or in the jobs, of a pool, with its limits: threadCount,
+     *  maxReadsPerSource, maxBytesInFlight and pJobSystem must be 0. Must outlive the loader.
+     *  Default: the loader has threads of its own. */
+    SluiceReadPool *readPool;
 } SluiceTileLoaderCreateInfo;
+
+/** Default of SluiceReadPoolCreateInfo.cacheSize: 256 MiB. */
+#define SLUICE_READ_POOL_DEFAULT_CACHE_SIZE ((uint64_t)1 << 28)
+
+/** Settings of a read pool. A field of zero selects its default. */
+typedef struct SluiceReadPoolCreateInfo {
+    uint32_t structSize;  ///< sizeof(SluiceReadPoolCreateInfo).
+    uint32_t threadCount; ///< At most 2^10. Default: processors - 1, at least 2.
+    /** Most concurrent reads of one source, of all members together. Default: threadCount - 1, at
+     *  least 1. */
+    uint32_t maxReadsPerSource;
+    /** Most bytes of texels being read at the same time, of all members together. A single larger
+     *  read waits until no other is running. Default: 2^28. */
+    uint64_t maxBytesInFlight;
+    /** Reads in jobs of the application: the pool starts no threads. Copied. Default: none.
+     *  SluiceTileLoaderCreateInfo.pJobSystem has the rules; sluiceDestroyReadPool waits for all
+     *  submitted jobs. */
+    const SluiceJobSystem *pJobSystem;
+    const SluiceAllocationCallbacks *pAllocator; ///< Copied. Default: malloc and free.
+    SluiceLogCallback log;                       ///< Refused calls.
+    /**
+     * Most bytes of texels that are kept after their read. The least recently used are dropped
+     * first. Texels that are being read or copied are kept beyond this limit, at most
+     * maxBytesInFlight and one tile for each waiting read. 1 keeps none longer. Memory is allocated
+     * as texels are read. Default: SLUICE_READ_POOL_DEFAULT_CACHE_SIZE.
+     */
+    uint64_t cacheSize;
+} SluiceReadPoolCreateInfo;
+
+/**
+ * Creates a pool and starts its threads, unless it has a job system.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, also for a job system or an allocator without function;
+ * SLUICE_ERROR_INVALID_ARGUMENT if threadCount is above its limit;
+ * SLUICE_ERROR_OUT_OF_HOST_MEMORY, also if a thread cannot be started. Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceCreateReadPool(const SluiceReadPoolCreateInfo *pCreateInfo,
+                                             SluiceReadPool **pPool);
+
+/**
+ * Destroys a pool. NULL is allowed.
+ *
+ * Destroy its contexts and tile loaders first. While one of them exists, this function logs an
+ * error and does nothing; the pool stays valid, and can be destroyed later.
+ *
+ * Thread safety: external on `pool`.
+ */
+SLUICE_API void sluiceDestroyReadPool(SluiceReadPool *pool);
 
 /**
  * Statistics of a read pool. Counts begin with its creation. A tile is one region; a mip tail has a
@@ -119,6 +190,15 @@ typedef struct SluiceReadPoolStatistics {
     uint64_t keptPeakSize;     ///< Largest keptSize.
     uint64_t keptCount;        ///< Regions kept now.
 } SluiceReadPoolStatistics;
+
+/**
+ * Gets the statistics of a pool.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceGetReadPoolStatistics(SluiceReadPool *pool,
+                                                    SluiceReadPoolStatistics *pStatistics);
 
 /**
  * One or more regions that are read together: one tile, or the mip tail of a texture. Never
@@ -147,11 +227,12 @@ typedef struct SluiceTileReadResult {
 } SluiceTileReadResult;
 
 /**
- * Creates a loader and starts its threads, unless it has a job system.
+ * Creates a loader and starts its threads, unless it has a job system or a read pool.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, also for a job system without function;
- * SLUICE_ERROR_INVALID_ARGUMENT if a count is above its limit; SLUICE_ERROR_OUT_OF_HOST_MEMORY,
- * also if a thread cannot be started. Thread safety: any thread.
+ * SLUICE_ERROR_INVALID_ARGUMENT if a count is above its limit, or if a setting of the read pool is
+ * given with one; SLUICE_ERROR_OUT_OF_HOST_MEMORY, also if a thread cannot be started. Thread
+ * safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInfo,
                                                SluiceTileLoader **pLoader);
@@ -254,10 +335,13 @@ SLUICE_API SluiceResult sluiceGetTileLoaderStatistics(SluiceTileLoader *loader,
                                                       SluiceTileLoaderStatistics *pStatistics);
 
 /**
- * Drops the statistics of a source. Call it when the source is destroyed; otherwise a new source at
- * the same address continues them. Statistics of all reads are kept.
+ * Drops the statistics of a source, and the texels that a read pool keeps of it. Call it when the
+ * source is destroyed; otherwise a new source at the same address continues the statistics, and
+ * reads of it may get old texels. Call it, too, when texels of the source have changed. Statistics
+ * of all reads are kept.
  *
- * Returns SLUICE_NOT_READY, with nothing changed, while reads of the source are uncollected.
+ * Returns SLUICE_NOT_READY, with no statistics dropped, while reads of the source are uncollected.
+ * Texels are dropped nevertheless: reads that begin after this call read the source.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER.
  * Thread safety: any thread.

@@ -43,6 +43,7 @@
     X(NeuralSet, SluiceNeuralSet)                                                                  \
     X(PbrtScene, SluicePbrtScene)                                                                  \
     X(ProxySet, SluiceProxySet)                                                                    \
+    X(ReadPool, SluiceReadPool)                                                                    \
     X(StoreReadPool, SluiceStoreReadPool)                                                          \
     X(StoreWriter, SluiceStoreWriter)                                                              \
     X(StreamedTextureManager, SluiceStreamedTextureManager)                                        \

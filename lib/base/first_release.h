@@ -22,6 +22,7 @@
     SLC_UP_TO(SluiceCompleteChainSourceCreateInfo, log)
 #define SLC_FIRST_SluiceTileReadFailure SLC_UP_TO(SluiceTileReadFailure, offset)
 #define SLC_FIRST_SluiceTileLoaderCreateInfo SLC_UP_TO(SluiceTileLoaderCreateInfo, end)
+#define SLC_FIRST_SluiceReadPoolCreateInfo SLC_UP_TO(SluiceReadPoolCreateInfo, cacheSize)
 #define SLC_FIRST_SluiceReadPoolStatistics SLC_UP_TO(SluiceReadPoolStatistics, keptCount)
 #define SLC_FIRST_SluiceTileLoaderStatistics                                                       \
     SLC_UP_TO(SluiceTileLoaderStatistics, lastFailureOffset)

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "image/pooled_reads.h"
 #include "image/start_read.h"
 #include "image/started_reads.h"
 #include "platform/time_now.h"
@@ -10,7 +11,7 @@
 
 #define TILE_SIZE 65536u
 
-static bool is_dropped(const struct slc_read *read)
+bool slc_read_is_dropped(const struct slc_read *read)
 {
     return atomic_load_explicit(&read->dropped, memory_order_relaxed);
 }
@@ -48,21 +49,26 @@ SluiceResult slc_loader_read_region(const SluiceTileLoader *loader, const struct
                : sluiceReadImageRegionLocated(source, at, texels, row_pitch, fault);
 }
 
+void slc_read_region_done(struct slc_read *read, SluiceFormat format, uint32_t region)
+{
+    const SluiceImageRegion *at = &read->regions[region];
+    read->done |= 1u << region;
+    read->done_size += sluiceGetFormatRegionSize(format, at->width, at->height);
+}
+
 static void read_regions(const SluiceTileLoader *loader, struct slc_read *read,
                          const SluiceImageInfo *info, struct slc_read_outcome *outcome)
 {
     for (uint32_t i = 0; i < read->region_count; i++) {
-        const SluiceImageRegion *region = &read->regions[i];
         if (read->done >> i & 1)
             continue;
         outcome->region = i;
-        outcome->result = is_dropped(read)
+        outcome->result = slc_read_is_dropped(read)
                               ? SLUICE_ERROR_CANCELED
                               : slc_loader_read_region(loader, read, info, i, &outcome->fault);
         if (outcome->result != SLUICE_SUCCESS)
             return;
-        read->done |= 1u << i;
-        read->done_size += sluiceGetFormatRegionSize(info->format, region->width, region->height);
+        slc_read_region_done(read, info->format, i);
     }
 }
 
@@ -99,6 +105,7 @@ void slc_loader_signal_if_idle(SluiceTileLoader *loader)
 
 void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, SluiceResult result)
 {
+    slc_pooled_read_ends(loader, read);
     slc_read_queue_end(&loader->queue, read, result);
     if (loader->end.pfnEnded)
         loader->end.pfnEnded(loader->end.pUserData, read->result.userValue, result);
@@ -119,7 +126,7 @@ void slc_loader_settle_read(SluiceTileLoader *loader, struct slc_read *read,
                                outcome->latency);
     if (!will_retry) {
         slc_loader_end_read(loader, read, outcome->result);
-    } else if (is_dropped(read)) {
+    } else if (slc_read_is_dropped(read)) {
         slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELED);
     } else {
         uint64_t now = slc_monotonic_time();
@@ -145,13 +152,16 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
         slc_start_regions(loader, read, &info, start);
         return;
     }
-    if (is_known)
+    if (is_known && slc_reads_are_pooled(loader, source))
+        slc_read_pooled_regions(loader, read, &info, &outcome);
+    else if (is_known)
         read_regions(loader, read, &info, &outcome);
     outcome.latency = slc_monotonic_time() - start;
     slc_mutex_lock(mutex);
     if (is_known && info.format != SLUICE_FORMAT_UNDEFINED)
         read->source->format = info.format;
-    slc_loader_settle_read(loader, read, &outcome);
+    if (!slc_pooled_read_waits(loader, read, &outcome))
+        slc_loader_settle_read(loader, read, &outcome);
 }
 
 uint64_t slc_read_pool_next_due(const struct slc_read_pool *pool)

@@ -27,7 +27,8 @@ struct slc_read_pool {
     uint32_t signaled_count; ///< of these, threads that were signaled and have not woken yet
     uint32_t thread_count;
     struct slc_thread *threads;
-    struct slc_read_jobs jobs; ///< in place of threads
+    struct slc_read_jobs jobs;       ///< in place of threads
+    struct slc_shared_reads *shares; ///< of a SluiceReadPool; NULL: nothing is shared
 };
 
 struct SluiceTileLoader {
@@ -37,7 +38,8 @@ struct SluiceTileLoader {
     SluiceTileReadEndCallback end;
     struct slc_read_pool *pool;
     bool owns_pool;
-    bool awaited;  ///< its owner waits for a read to end
+    SluiceReadPool *member_of; ///< a loader of the application
+    bool awaited;              ///< its owner waits for a read to end
     bool uncached; ///< texels are read to the cache first: the host reads their memory slowly
     /** Interfaces of sources that are no images: their reads go straight to the memory that was
      *  given, which may have more bytes than the region. */
@@ -104,10 +106,14 @@ struct slc_read_outcome {
     uint64_t latency; ///< ns
 };
 
-/** Reads one region at once. */
+/** Reads one region at once, into the read's memory. */
 SluiceResult slc_loader_read_region(const SluiceTileLoader *loader, const struct slc_read *read,
                                     const SluiceImageInfo *info, uint32_t region,
                                     SluiceImageFault *fault);
+/** Nobody wants the read any more. */
+bool slc_read_is_dropped(const struct slc_read *read);
+/** A region of the read is delivered. With the mutex held, or on the thread that has the read. */
+void slc_read_region_done(struct slc_read *read, SluiceFormat format, uint32_t region);
 /** With the mutex held, which is given up meanwhile: reports an attempt at a running read, and ends
  *  or delays the read. */
 void slc_loader_settle_read(SluiceTileLoader *loader, struct slc_read *read,

@@ -1,5 +1,6 @@
 #include "image/started_reads.h"
 
+#include "image/pooled_reads.h"
 #include "image/start_read.h"
 #include "platform/time_now.h"
 
@@ -14,18 +15,26 @@ static bool is_pending(const struct slc_read *read, uint32_t region)
     return read->started.pending >> region & 1;
 }
 
-/* `fault` NULL: the source's name, and no offset. */
-static void complete_region(struct slc_read *read, uint32_t region, SluiceResult result,
-                            const SluiceImageFault *fault)
+/* With the mutex held, which is given up while texels of the pool are copied. `fault` NULL: the
+ * source's name, and no offset. */
+static void complete_region(SluiceTileLoader *loader, struct slc_read *read, uint32_t region,
+                            SluiceResult result, const SluiceImageFault *fault)
 {
     struct slc_started *started = &read->started;
-    const SluiceImageRegion *at = &read->regions[region];
+    struct slc_shared_region *shared = started->shared[region];
     if (!is_pending(read, region))
         return;
     started->pending &= ~(1u << region);
+    started->shared[region] = NULL;
+    if (shared) {
+        started->calls++;
+        slc_pooled_region_end(loader, read, region, shared, SLC_DELIVER_READ, result);
+        started->calls--;
+    } else if (result == SLUICE_SUCCESS) {
+        slc_pooled_region_count(loader, read, started->format, region);
+    }
     if (result == SLUICE_SUCCESS) {
-        read->done |= 1u << region;
-        read->done_size += sluiceGetFormatRegionSize(started->format, at->width, at->height);
+        slc_read_region_done(read, started->format, region);
     } else if (started->result == SLUICE_SUCCESS) {
         started->result = result;
         started->failed_region = region;
@@ -40,11 +49,12 @@ static void settle_if_over(SluiceTileLoader *loader, struct slc_read *read)
     const struct slc_started *started = &read->started;
     if (started->pending || started->calls)
         return;
-    const struct slc_read_outcome outcome = {.result = started->result,
-                                             .fault = started->fault,
-                                             .region = started->failed_region,
-                                             .latency = slc_monotonic_time() - started->start_time};
-    slc_loader_settle_read(loader, read, &outcome);
+    struct slc_read_outcome outcome = {.result = started->result,
+                                       .fault = started->fault,
+                                       .region = started->failed_region,
+                                       .latency = slc_monotonic_time() - started->start_time};
+    if (!slc_pooled_read_waits(loader, read, &outcome))
+        slc_loader_settle_read(loader, read, &outcome);
     if (slc_read_pool_has_work(loader->pool))
         slc_read_pool_signal(loader->pool);
 }
@@ -57,18 +67,29 @@ static void start_region(SluiceTileLoader *loader, struct slc_read *read,
     const SluiceImageReadToken token = token_of(loader, read, region);
     const SluiceImageRegion *at = &read->regions[region];
     SluiceImageFault fault = {"", SLUICE_UNKNOWN_OFFSET};
+    struct slc_shared_region *shared;
+    enum slc_delivery share = slc_pooled_region_claim(loader, read, info, region, &shared);
+    if (share == SLC_DELIVER_WAIT)
+        return;
+    if (share == SLC_DELIVER_COPY) {
+        slc_pooled_region_end(loader, read, region, shared, share, SLUICE_SUCCESS);
+        slc_read_region_done(read, info->format, region);
+        return;
+    }
+    read->started.shared[region] = shared;
     read->started.pending |= 1u << region;
     slc_mutex_unlock(mutex);
-    SluiceResult result =
-        slc_start_read(read->source->source, info, at, read->texels[region],
-                       sluiceGetFormatRegionSize(info->format, at->width, 1), &token);
+    SluiceResult result = slc_start_read(
+        read->source->source, info, at, shared ? shared->texels : read->texels[region],
+        sluiceGetFormatRegionSize(info->format, at->width, 1), &token);
     bool is_started = result == SLUICE_SUCCESS;
     bool is_read = result == SLUICE_ERROR_UNSUPPORTED;
     if (is_read)
-        result = slc_loader_read_region(loader, read, info, region, &fault);
+        result = shared ? slc_read_shared_region(shared, info, &fault)
+                        : slc_loader_read_region(loader, read, info, region, &fault);
     slc_mutex_lock(mutex);
     if (!is_started)
-        complete_region(read, region, result, is_read ? &fault : NULL);
+        complete_region(loader, read, region, result, is_read ? &fault : NULL);
 }
 
 void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const SluiceImageInfo *info,
@@ -111,8 +132,11 @@ void slc_cancel_regions(SluiceTileLoader *loader, struct slc_read *read)
     started->was_canceled = true;
     started->calls++;
     for (uint32_t i = 0; i < read->region_count; i++) {
-        if (!(pending >> i & 1))
-            continue;
+        struct slc_shared_region *shared = started->shared[i];
+        if (!(pending >> i & 1) || (shared && shared->waiting))
+            continue; /* others want it */
+        if (shared)
+            slc_shared_reads_hide(loader->pool->shares, shared);
         const SluiceImageReadToken token = token_of(loader, read, i);
         slc_mutex_unlock(&loader->pool->mutex);
         slc_cancel_read(read->source->source, &read->regions[i], &token);
@@ -139,7 +163,7 @@ SluiceResult sluiceCompleteImageRead(const SluiceImageReadToken *pToken, SluiceR
     struct slc_read *read = slc_read_queue_find(&loader->queue, token.ticket);
     bool awaited = is_awaited(read, &token);
     if (awaited) {
-        complete_region(read, token.region, result, NULL);
+        complete_region(loader, read, token.region, result, NULL);
         settle_if_over(loader, read);
     }
     slc_read_pool_unlock(pool); /* loader and pool may be destroyed from here on */

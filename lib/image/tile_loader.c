@@ -3,7 +3,10 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/log.h"
 #include "base/struct_size.h"
+#include "image/pooled_reads.h"
+#include "image/shared_pool.h"
 #include "image/started_reads.h"
 #include "platform/time_now.h"
 
@@ -61,6 +64,22 @@ SluiceResult slc_create_pool_loader(struct slc_read_pool *pool,
     return SLUICE_SUCCESS;
 }
 
+static SluiceResult create_member(const SluiceTileLoaderCreateInfo *info, SluiceTileLoader **out)
+{
+    SluiceReadPool *pool = info->readPool;
+    if (info->threadCount || info->maxReadsPerSource || info->maxBytesInFlight || info->pJobSystem)
+        return slc_log_refusal(&pool->log, "threadCount, maxReadsPerSource, maxBytesInFlight and "
+                                           "pJobSystem are those of readPool: set them to 0");
+    SluiceTileLoader *loader;
+    SluiceResult result = slc_create_pool_loader(pool->threads, info, &loader);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    loader->member_of = pool;
+    slc_read_pool_add_member(pool);
+    *out = loader;
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInfo,
                                     SluiceTileLoader **pLoader)
 {
@@ -75,6 +94,8 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
         return SLUICE_ERROR_NULL_POINTER;
     if (info.requestCapacity > MAX_COUNT || info.maxSourceCount > MAX_COUNT)
         return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (info.readPool)
+        return create_member(&info, pLoader);
     struct slc_read_pool *pool;
     SluiceTileLoader *loader;
     result = slc_read_pool_create(&info, &pool);
@@ -93,7 +114,8 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
 /* With the mutex held, which is given up while a source is told. */
 static void drop_read(SluiceTileLoader *loader, struct slc_read *read)
 {
-    if (read->state == SLC_READ_QUEUED || read->state == SLC_READ_DELAYED)
+    if (read->state == SLC_READ_QUEUED || read->state == SLC_READ_DELAYED ||
+        read->state == SLC_READ_WAITING)
         slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELED);
     if (read->state != SLC_READ_RUNNING)
         return;
@@ -112,6 +134,8 @@ static void leave(SluiceTileLoader *loader)
     if (pool->turn == loader)
         pool->turn = loader->next;
     slc_read_queue_finish(&loader->queue, &loader->allocator);
+    if (pool->shares) /* its sources may be destroyed from here on */
+        slc_shared_reads_drop_all(pool->shares);
     slc_read_pool_signal(pool);
 }
 
@@ -129,6 +153,8 @@ void sluiceDestroyTileLoader(SluiceTileLoader *loader)
     slc_read_pool_unlock(pool);
     if (loader->owns_pool)
         slc_read_pool_destroy(pool);
+    if (loader->member_of)
+        slc_read_pool_remove_member(loader->member_of);
     SluiceAllocationCallbacks cb = loader->allocator;
     slc_free(&cb, loader, 1, sizeof *loader);
 }
@@ -240,6 +266,7 @@ SluiceResult sluiceDropTileLoaderStatistics(SluiceTileLoader *loader,
 {
     if (!loader || !source)
         return SLUICE_ERROR_NULL_POINTER;
+    slc_loader_drop_texels(loader, source);
     slc_mutex_lock(&loader->pool->mutex);
     SluiceResult result = slc_read_queue_forget(&loader->queue, source);
     slc_mutex_unlock(&loader->pool->mutex);

@@ -115,7 +115,7 @@ static void a_loader_takes_no_memory_once_it_is_there(void **state)
     sluiceDestroyImageSource(source);
 }
 
-static void questions_about_a_file_pool_take_no_memory(void **state)
+static void questions_about_pools_take_no_memory(void **state)
 {
     (void)state;
     struct failing_allocator memory;
@@ -131,6 +131,19 @@ static void questions_about_a_file_pool_take_no_memory(void **state)
     assert_int_equal(memory.calls, memory.refuse_from);
     sluiceDestroyFilePool(pool);
     assert_int_equal(memory.live_count, 0);
+
+    SluiceReadPool *reads;
+    SluiceReadPoolStatistics counts = {.structSize = sizeof counts};
+    failing_allocator_init(&memory, UINT64_MAX);
+    const SluiceReadPoolCreateInfo read_info = {
+        .structSize = sizeof read_info, .threadCount = 1, .pAllocator = &memory.callbacks};
+    CHECK_OK(sluiceCreateReadPool(&read_info, &reads));
+    memory.refuse_from = memory.calls;
+    CHECK_OK(sluiceGetReadPoolStatistics(reads, &counts));
+    assert_int_equal(counts.memberCount, 0);
+    assert_int_equal(memory.calls, memory.refuse_from);
+    sluiceDestroyReadPool(reads);
+    assert_int_equal(memory.live_count, 0);
 }
 
 int main(void)
@@ -139,7 +152,7 @@ int main(void)
         cmocka_unit_test(questions_about_a_manager_take_no_memory),
         cmocka_unit_test(reads_of_what_is_in_memory_take_none),
         cmocka_unit_test(a_loader_takes_no_memory_once_it_is_there),
-        cmocka_unit_test(questions_about_a_file_pool_take_no_memory),
+        cmocka_unit_test(questions_about_pools_take_no_memory),
     };
     return RUN_TESTS(tests);
 }

@@ -45,6 +45,10 @@ sluiceGetFilePoolStatistics(f->pool, &f->out.pool_statistics)
 sluiceFindUdimFiles(f->pattern, ?NULL, &f->out.room, ?NULL)
 sluiceWriteUdimPath(f->pattern, 1001, ?NULL, sizeof f->out.path, f->out.path)
 
+sluiceCreateReadPool(&f->read_pool_info, &f->out.read_pool) => sluiceDestroyReadPool(f->out.read_pool)
+!sluiceDestroyReadPool(f->read_pool)
+sluiceGetReadPoolStatistics(f->read_pool, &f->out.read_pool_statistics)
+
 sluiceCreateTileLoader(&f->loader_info, &f->out.loader) => sluiceDestroyTileLoader(f->out.loader)
 !sluiceDestroyTileLoader(f->loader)
 sluiceSubmitTileRead(f->loader, &f->read, &f->out.ticket) => sluiceWaitTileLoaderIdle(f->loader)
@@ -123,6 +127,8 @@ struct fixture {
     uint8_t texels[4 * 256 * 256];
     SluiceFilePoolCreateInfo pool_info;
     SluiceFilePool *pool;
+    SluiceReadPoolCreateInfo read_pool_info;
+    SluiceReadPool *read_pool;
     SluiceTileLoaderCreateInfo loader_info;
     SluiceTileLoader *loader;
     void *read_texels;
@@ -157,6 +163,8 @@ struct fixture {
         SluiceImageSource *source;
         SluiceFilePool *pool;
         SluiceFilePoolStatistics pool_statistics;
+        SluiceReadPool *read_pool;
+        SluiceReadPoolStatistics read_pool_statistics;
         SluiceTileLoader *loader;
         uint64_t ticket;
         SluiceTileReadResult read;
@@ -265,6 +273,9 @@ static void fixture_init(struct fixture *f, void **state)
                                                   .threadCount = 1};
     f->pool_info.structSize = sizeof f->pool_info;
     CHECK_OK(sluiceCreateFilePool(&f->pool_info, &f->pool));
+    f->read_pool_info =
+        (SluiceReadPoolCreateInfo){.structSize = sizeof f->read_pool_info, .threadCount = 1};
+    CHECK_OK(sluiceCreateReadPool(&f->read_pool_info, &f->read_pool));
     CHECK_OK(sluiceCreateTileLoader(&f->loader_info, &f->loader));
     f->read_texels = f->read_room;
     f->read = (SluiceTileRead){
@@ -293,6 +304,7 @@ static void fixture_finish(struct fixture *f)
 {
     sluiceDestroyTileLoader(f->loader);
     sluiceDestroyFilePool(f->pool);
+    sluiceDestroyReadPool(f->read_pool);
     sluiceDestroyStreamedTextureManager(f->manager);
     sluiceDestroyStreamedTextureManager(f->fresh);
     sluiceDestroyImageSource(f->source);
