@@ -245,6 +245,13 @@ typedef struct SluiceVulkanContextCreateInfo {
      */
     const uint32_t *pSamplingQueueFamilies;
     uint32_t samplingQueueFamilyCount;
+    /**
+     * Reads on the threads, or in the jobs, of a pool that contexts of several devices share, and
+     * reads each tile once for all of them (loader.h). loaderThreadCount, maxReadsPerSource and
+     * pJobSystem must be 0: the pool has these settings. Must outlive the context. Default: the
+     * context has threads of its own.
+     */
+    SluiceReadPool *readPool;
 } SluiceVulkanContextCreateInfo;
 
 /**
@@ -254,9 +261,9 @@ typedef struct SluiceVulkanContextCreateInfo {
  * "sluice: ".
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a memoryBudget below 4 MiB,
- *         a loaderThreadCount or maxPageChunkCount above its limit, or a queue family that does not
- *         exist or lacks a capability; SLUICE_ERROR_UNSUPPORTED if instance or device were created
- *         for less than Vulkan 1.2;
+ *         a loaderThreadCount or maxPageChunkCount above its limit, a setting of the read pool
+ *         given with one, or a queue family that does not exist or lacks a capability;
+ *         SLUICE_ERROR_UNSUPPORTED if instance or device were created for less than Vulkan 1.2;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
  * Thread safety: any thread.
  */

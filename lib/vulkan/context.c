@@ -28,6 +28,15 @@ static SluiceResult check_shared_limits(const SluiceVulkanContextCreateInfo *inf
     return slc_check_limits(&info->log, limits, sizeof limits / sizeof limits[0]);
 }
 
+static SluiceResult check_read_pool(const SluiceVulkanContextCreateInfo *info)
+{
+    if (!info->readPool ||
+        (!info->loaderThreadCount && !info->maxReadsPerSource && !info->pJobSystem))
+        return SLUICE_SUCCESS;
+    return slc_log_refusal(&info->log, "loaderThreadCount, maxReadsPerSource and pJobSystem are "
+                                       "those of readPool: set them to 0");
+}
+
 static SluiceResult check_fields(const SluiceVulkanContextCreateInfo *info)
 {
     const SluiceDeviceMemoryCallbacks *memory = info->pDeviceMemory;
@@ -46,6 +55,8 @@ static SluiceResult check_fields(const SluiceVulkanContextCreateInfo *info)
     SluiceResult result = slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
     if (result == SLUICE_SUCCESS)
         result = check_shared_limits(info);
+    if (result == SLUICE_SUCCESS)
+        result = check_read_pool(info);
     return result == SLUICE_SUCCESS ? check_budget(&info->log, info->memoryBudget) : result;
 }
 
@@ -195,6 +206,7 @@ SluiceResult sluiceCreateVulkanContext(const SluiceVulkanContextCreateInfo *pCre
         slc_free(&cb, context, 1, sizeof *context);
         return result;
     }
+    slc_shared_parts_join(&context->shared);
     *pContext = context;
     return SLUICE_SUCCESS;
 }
@@ -211,6 +223,7 @@ void sluiceDestroyVulkanContext(SluiceVulkanContext *context)
         return;
     }
     SluiceAllocationCallbacks cb = context->cb;
+    slc_shared_parts_leave(&context->shared);
     slc_memory_client_finish(&context->memory);
     slc_device_budget_finish(&context->device_budget);
     slc_memory_budget_finish(&context->budget);

@@ -1,7 +1,7 @@
 #include "vulkan/shared_parts.h"
 
 #include "base/alloc.h"
-#include "image/read_pool.h"
+#include "image/shared_pool.h"
 
 #include <assert.h>
 
@@ -18,12 +18,27 @@ void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk 
     shared->max_reads_per_source = info->maxReadsPerSource;
     if (info->pJobSystem)
         shared->job_system = *info->pJobSystem;
+    shared->read_pool = info->readPool;
+    if (info->readPool)
+        shared->job_system = info->readPool->threads->jobs.system;
     shared->max_page_chunks =
         info->maxPageChunkCount ? info->maxPageChunkCount : DEFAULT_PAGE_CHUNKS;
     shared->min_tile_memory = info->minTileMemorySize;
     shared->retry = info->readRetry;
     slc_mutex_init(&shared->mutex);
     slc_staging_group_init(&shared->staging, info->minStagingSize);
+}
+
+void slc_shared_parts_join(struct slc_shared_parts *shared)
+{
+    if (shared->read_pool)
+        slc_read_pool_add_member(shared->read_pool);
+}
+
+void slc_shared_parts_leave(struct slc_shared_parts *shared)
+{
+    if (shared->read_pool)
+        slc_read_pool_remove_member(shared->read_pool);
 }
 
 void slc_shared_parts_finish(struct slc_shared_parts *shared)
@@ -84,10 +99,25 @@ void slc_drop_pages(struct slc_shared_parts *shared, struct slc_page_pool *pool)
 }
 
 /* With the lock held. */
+static SluiceResult use_threads(struct slc_shared_parts *shared,
+                                const SluiceTileLoaderCreateInfo *create)
+{
+    if (shared->threads)
+        return SLUICE_SUCCESS;
+    if (!shared->read_pool)
+        return slc_read_pool_create(create, &shared->threads);
+    shared->threads = shared->read_pool->threads;
+    return SLUICE_SUCCESS;
+}
+
 static void drop_threads(struct slc_shared_parts *shared)
 {
     if (shared->loader_count > 0)
         return;
+    if (shared->read_pool) {
+        shared->threads = NULL;
+        return;
+    }
     slc_read_pool_destroy(shared->threads);
     shared->threads = NULL;
 }
@@ -96,7 +126,6 @@ SluiceResult slc_create_shared_loader(struct slc_shared_parts *shared,
                                       const SluiceTileLoaderCreateInfo *info,
                                       SluiceTileLoader **loader)
 {
-    SluiceResult result = SLUICE_SUCCESS;
     SluiceTileLoaderCreateInfo create = *info;
     create.pAllocator = shared->cb;
     create.threadCount = shared->thread_count;
@@ -105,8 +134,7 @@ SluiceResult slc_create_shared_loader(struct slc_shared_parts *shared,
     if (slc_shares_jobs(shared))
         create.pJobSystem = &shared->job_system;
     slc_mutex_lock(&shared->mutex);
-    if (!shared->threads)
-        result = slc_read_pool_create(&create, &shared->threads);
+    SluiceResult result = use_threads(shared, &create);
     if (result == SLUICE_SUCCESS)
         result = slc_create_pool_loader(shared->threads, &create, loader);
     if (result == SLUICE_SUCCESS) {

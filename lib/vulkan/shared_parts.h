@@ -20,6 +20,7 @@ struct slc_shared_parts {
     const SluiceAllocationCallbacks *cb;
     uint32_t thread_count;         ///< 0: the default of tile loaders
     SluiceJobSystem job_system;    ///< without function: threads
+    SluiceReadPool *read_pool;     ///< has the threads; NULL: they are the context's
     uint32_t max_reads_per_source; ///< 0: the default of tile loaders
     uint32_t max_page_chunks;      ///< images of pages
     uint64_t min_tile_memory;      ///< bytes that are made ahead
@@ -35,6 +36,9 @@ struct slc_shared_parts {
 void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk *vk,
                            const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                            const SluiceVulkanContextCreateInfo *info);
+/** The context exists, or is destroyed: it is a member of its read pool meanwhile. */
+void slc_shared_parts_join(struct slc_shared_parts *shared);
+void slc_shared_parts_leave(struct slc_shared_parts *shared);
 /** True if reads are jobs of the application. */
 bool slc_shares_jobs(const struct slc_shared_parts *shared);
 /** There are no front ends. */
