@@ -2,6 +2,7 @@
 
 #include "base/log.h"
 #include "base/struct_size.h"
+#include "image/pooled_reads.h"
 #include "platform/time_now.h"
 #include "vulkan/page_pool.h"
 
@@ -262,6 +263,7 @@ SluiceResult sluiceReleaseDemandSource(SluiceDemandLoader *loader, SluiceImageSo
     if (result != SLUICE_SUCCESS)
         return result;
     if (!in_use) {
+        slc_loader_drop_texels(loader->reader, source);
         sluiceDestroyImageSource(source);
         return SLUICE_SUCCESS;
     }

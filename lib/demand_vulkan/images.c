@@ -5,6 +5,7 @@
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/pages.h"
 #include "demand_vulkan/demand_strict.h"
+#include "image/pooled_reads.h"
 
 #include <sluice/shared/demand.h>
 
@@ -328,6 +329,7 @@ void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image
         slc_jobs_wait(loader, SLC_JOB_TILE, image->slot);
         slc_jobs_wait(loader, SLC_JOB_OPEN, image->slot);
     }
+    slc_loader_drop_texels(loader->reader, image->origin.source);
     slc_image_forget_requests(loader, image);
     end_use(loader, image);
     image->state = SLC_IMAGE_DETACHED;
@@ -374,6 +376,7 @@ void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *i
     if (image->state != SLC_IMAGE_OPEN)
         return; /* what is read now is as good as what is read next */
     drop_jobs(loader, image);
+    slc_loader_drop_texels(loader->reader, image->source);
     if (image->source)
         image->generation = slc_page_share_drop(loader->pages, image->source);
     slc_retries_all(loader, &image->retry_group);

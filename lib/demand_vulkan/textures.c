@@ -7,6 +7,7 @@
 #include "demand_vulkan/pages.h"
 #include "demand_vulkan/refused_arguments.h"
 #include "demand_vulkan/demand_strict.h"
+#include "image/pooled_reads.h"
 #include "image/info.h"
 #include "vulkan/address_mode.h"
 
@@ -443,6 +444,7 @@ SluiceResult sluiceReplaceDemandImage(SluiceDemandLoader *loader, SluiceDemandTe
     free_made(loader, texture);
     texture->source = *pImage;
     texture->failed = texture->told = texture->told_tail = false;
+    slc_loader_drop_texels(loader->reader, pImage->source);
     slc_texture_show_unknown(loader, index);
     return SLUICE_SUCCESS;
 }
@@ -461,6 +463,7 @@ SluiceResult sluiceInvalidateDemandTexture(SluiceDemandLoader *loader,
     struct slc_demand_texture *texture = &loader->textures[index];
     if (texture->kind == SLC_TEXTURE_GRID)
         return slc_demand_refuse_grid(loader, __func__, textureId);
+    slc_loader_drop_texels(loader->reader, texture->source.source);
     if (!slc_texture_retry(loader, index) && texture->image != SLC_NONE)
         slc_image_invalidate(loader, loader->images[texture->image]);
     return SLUICE_SUCCESS;

@@ -1,6 +1,7 @@
 #include "vulkan/load_arrivals.h"
 
 #include "base/checked.h"
+#include "image/pooled_reads.h"
 #include "vulkan/load_reads.h"
 #include "vulkan/load_reloads.h"
 #include "vulkan/load_stages.h"
@@ -101,6 +102,8 @@ static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResul
     struct slc_unit *unit = &s->units[index];
     assert(unit->state == SLC_UNIT_READING);
     s->counts.bytesRead += read->size;
+    if (unit->source != s->textures[unit->texture].source) /* and may be destroyed next */
+        slc_loader_drop_texels(s->loader, unit->source);
     if (s->textures[unit->texture].state == SLC_TEXTURE_REMOVED) {
         slc_unit_free(s, index);
         return SLUICE_SUCCESS;

@@ -3,6 +3,7 @@
 #include "base/bytes.h"
 #include "base/log.h"
 #include "base/struct_size.h"
+#include "image/pooled_reads.h"
 
 #include <sluice/vulkan_control.h>
 
@@ -178,6 +179,7 @@ SluiceResult sluiceReleaseVulkanSource(SluiceVulkanStreamer *streamer, SluiceIma
     if (result != SLUICE_SUCCESS)
         return result;
     if (!in_use) {
+        slc_loader_drop_texels(s->loader, source);
         sluiceDestroyImageSource(source);
         return SLUICE_SUCCESS;
     }

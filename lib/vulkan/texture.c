@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "image/format_size.h"
 #include "image/info.h"
+#include "image/pooled_reads.h"
 #include "vulkan/address_mode.h"
 #include "vulkan/format.h"
 #include "vulkan/format_caps.h"
@@ -433,10 +434,12 @@ SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer, SluiceTex
     const struct slc_texture *texture = &s->textures[s->by_manager_index[(uint32_t)textureId]];
     assert(texture->id == textureId && texture->state == SLC_TEXTURE_LIVE);
     uint32_t first = texture->first, count = texture->layer_count;
+    const SluiceImageSource *source = texture->source;
     s->manager_locked = false;
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = remove_layer(s, first + i);
     s->manager_locked = true;
+    slc_loader_drop_texels(s->loader, source); /* it may be destroyed before the texture retires */
     return result;
 }
 

@@ -2,6 +2,7 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "image/info.h"
+#include "image/pooled_reads.h"
 #include "vulkan/load_reloads.h"
 #include "vulkan/remakes.h"
 #include "vulkan/source_uses.h"
@@ -93,6 +94,7 @@ SluiceResult sluiceInvalidateVulkanTexture(SluiceVulkanStreamer *streamer,
     if (interface->drop_source)
         interface->drop_source(texture->residency, index);
     change(s, index, &area);
+    slc_loader_drop_texels(s->loader, texture->source);
     return SLUICE_SUCCESS;
 }
 
@@ -165,6 +167,8 @@ SluiceResult sluiceReplaceVulkanSource(SluiceVulkanStreamer *streamer, SluiceTex
         set_source(s, i, source, &info);
         change(s, i, &area);
     }
+    slc_loader_drop_texels(s->loader, before);
+    slc_loader_drop_texels(s->loader, source);
     slc_source_left(s, before);
     return SLUICE_SUCCESS;
 }
