@@ -71,6 +71,19 @@ struct option option_device(const char **device)
         device,       "Vulkan device: an index of --list-devices, or part of its name or type"};
 }
 
+struct option option_devices(struct device_list *devices)
+{
+    return (struct option){
+        OPTION_CUSTOM,
+        "devices",
+        "all|COUNT|I,...",
+        "(one)",
+        devices,
+        "Vulkan devices that work side by side: all of the best one's type, so many of them, or "
+        "indices of --list-devices with commas; one may stand there several times",
+        .parse = device_list_parse};
+}
+
 struct option option_list_devices(bool *list)
 {
     return (struct option){OPTION_FLAG, "list-devices", .value = list,

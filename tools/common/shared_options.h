@@ -5,6 +5,7 @@
 #ifndef TOOLS_COMMON_SHARED_OPTIONS_H
 #define TOOLS_COMMON_SHARED_OPTIONS_H
 
+#include "device_list.h"
 #include "option_table.h"
 
 /* Memory. Sizes are in bytes. */
@@ -23,6 +24,8 @@ struct option option_threads(uint32_t *count);
 
 /* The device. */
 struct option option_device(const char **device);
+/** For programs that use several at a time. */
+struct option option_devices(struct device_list *devices);
 struct option option_list_devices(bool *list);
 struct option option_validation(bool *validation);
 
