@@ -77,6 +77,11 @@ static bool create_instance(const struct gpu_request *request, struct gpu *gpu, 
     const bool validation = request->validation;
     const uint32_t first = validation ? 0 : 2;
     uint32_t end = 2;
+    gpu->borrows_instance = request->first != NULL;
+    if (request->first) {
+        gpu->instance = request->first->instance;
+        return true;
+    }
     for (; end < 2 + request->instance_extension_count && end < 2 + MAX_WINDOW_EXTENSIONS; end++)
         extensions[end] = request->instance_extensions[end - 2];
 
@@ -265,6 +270,32 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
     return best_rank >= 0;
 }
 
+uint32_t gpu_list_alike(const struct gpu *gpu, const struct device_list *list,
+                        uint32_t indices[DEVICE_LIST_MOST])
+{
+    VkPhysicalDevice devices[MAX_DEVICES];
+    uint32_t found = 0;
+    const uint32_t count = enumerate_devices(gpu->instance, devices);
+    if (list->wanted == 0) {
+        memcpy(indices, list->indices, list->count * sizeof *indices);
+        return list->count;
+    }
+    for (uint32_t i = 0; i < count && found < list->wanted; i++) {
+        VkPhysicalDeviceProperties properties;
+        SluiceVulkanDeviceCapabilities capabilities = {.structSize = sizeof capabilities};
+        vkGetPhysicalDeviceProperties(devices[i], &properties);
+        if (properties.deviceType == gpu->properties.deviceType &&
+            can_stream(gpu->instance, devices[i], gpu->modes[0], &capabilities) &&
+            can_stream(gpu->instance, devices[i], gpu->modes[1], &capabilities))
+            indices[found++] = i;
+    }
+    if (list->wanted == DEVICE_LIST_ALL || found == list->wanted)
+        return found;
+    text_say("%u devices of a type are wanted, and %u are there: %s", list->wanted, found,
+             device_type_string(gpu->properties.deviceType));
+    return 0;
+}
+
 static bool choose_queue_family(struct gpu *gpu)
 {
     VkQueueFamilyProperties families[MAX_FAMILIES];
@@ -426,7 +457,7 @@ void gpu_destroy(struct gpu *gpu)
                 gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
         destroy(gpu->instance, gpu->messenger, NULL);
     }
-    if (gpu->instance)
+    if (gpu->instance && !gpu->borrows_instance)
         vkDestroyInstance(gpu->instance, NULL);
     gpu->device = VK_NULL_HANDLE;
     gpu->messenger = VK_NULL_HANDLE;

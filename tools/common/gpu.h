@@ -10,6 +10,8 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
+#include "device_list.h"
+
 struct gpu_request {
     const char *device; ///< an index of --list-devices, part of a name or type; NULL: the best
     bool validation;    ///< with synchronization validation
@@ -24,10 +26,14 @@ struct gpu_request {
      * Without neural. At most 8. */
     const char *const *instance_extensions;
     uint32_t instance_extension_count;
+    /** Its instance is used, and its validation_messages count those of both. It must be destroyed
+     *  after the new one. NULL: a new instance. */
+    const struct gpu *first;
 };
 
 struct gpu {
     VkInstance instance;
+    bool borrows_instance;
     VkPhysicalDevice physical_device;
     VkDevice device;
     VkQueue queue, sparse_queue; ///< may be the same; the latter VK_NULL_HANDLE without sparse
@@ -77,6 +83,13 @@ void gpu_print_json(const struct gpu *gpu);
  * other failures.
  */
 bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupported);
+/**
+ * Lists the devices that `list` names, as indices of --list-devices. "all" and counts are devices
+ * of the type of `gpu`, which was created without a name, and stream in its modes: it is the first.
+ * Returns how many there are. 0: fewer than the list wants, which stderr says.
+ */
+uint32_t gpu_list_alike(const struct gpu *gpu, const struct device_list *list,
+                        uint32_t indices[DEVICE_LIST_MOST]);
 /** Where modes[0] was AUTO: what it is for a streamer of so many textures. Before it is used. */
 void gpu_choose_mode(struct gpu *gpu, uint32_t texture_count);
 /** A zeroed struct is fine. */
