@@ -5,17 +5,35 @@
 #include "one_time.h"
 
 #define BLOCK 8u ///< pixels side by side in the list are near each other
+#define TILE 32u ///< of a share
 
 static VkDeviceSize pixel_count(const struct film *film)
 {
     return (VkDeviceSize)film->width * film->height;
 }
 
-bool film_create(const struct gpu *gpu, uint32_t width, uint32_t height, struct film *film)
+static bool has_pixel(const struct film *film, uint32_t x, uint32_t y)
+{
+    const struct film_share *share = &film->share;
+    return share->count < 2 || (x / TILE + y / TILE) % share->count == share->index;
+}
+
+static uint32_t count_pixels(const struct film *film)
+{
+    uint32_t count = 0;
+    for (uint32_t y = 0; y < film->height; y++)
+        for (uint32_t x = 0; x < film->width; x++)
+            count += has_pixel(film, x, y);
+    return count;
+}
+
+bool film_create(const struct gpu *gpu, uint32_t width, uint32_t height, struct film_share share,
+                 struct film *film)
 {
     const VkBufferUsageFlags usage =
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-    *film = (struct film){.width = width, .height = height};
+    *film = (struct film){.width = width, .height = height, .share = share};
+    film->pixel_count = count_pixels(film);
     const VkDeviceSize count = pixel_count(film), size = count * 4 * sizeof(float);
     if (!gpu_create_buffer(gpu, size, usage, &film->sums) ||
         !gpu_create_buffer(gpu, size, usage, &film->latest) ||
@@ -23,9 +41,14 @@ bool film_create(const struct gpu *gpu, uint32_t width, uint32_t height, struct 
         !gpu_create_buffer(gpu, 2 * sizeof(uint32_t), usage, &film->counters) ||
         !gpu_create_buffer(gpu, 2 * size, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &film->readback))
         return false;
-    memset(film->sums.mapped, 0, size);
+    film_clear(film);
     memset(film->latest.mapped, 0, size);
     return true;
+}
+
+void film_clear(struct film *film)
+{
+    memset(film->sums.mapped, 0, film->sums.size);
 }
 
 void film_destroy(const struct gpu *gpu, struct film *film)
@@ -37,22 +60,38 @@ void film_destroy(const struct gpu *gpu, struct film *film)
     gpu_destroy_buffer(gpu, &film->readback);
 }
 
-void film_begin_sample(struct film *film)
+static void list_block(const struct film *film, uint32_t left, uint32_t top, uint32_t *count)
 {
-    uint32_t *list = film->lists.mapped, count = 0;
+    uint32_t *list = film->lists.mapped;
+    for (uint32_t y = top; y < top + BLOCK && y < film->height; y++)
+        for (uint32_t x = left; x < left + BLOCK && x < film->width; x++)
+            list[(*count)++] = y * film->width + x;
+}
+
+static void write_list(const struct film *film)
+{
+    uint32_t count = 0;
     for (uint32_t top = 0; top < film->height; top += BLOCK)
         for (uint32_t left = 0; left < film->width; left += BLOCK)
-            for (uint32_t y = top; y < top + BLOCK && y < film->height; y++)
-                for (uint32_t x = left; x < left + BLOCK && x < film->width; x++)
-                    list[count++] = y * film->width + x;
+            if (has_pixel(film, left, top))
+                list_block(film, left, top, &count);
+}
+
+/* Launches write the first list only after they have written the second. */
+void film_begin_sample(struct film *film)
+{
+    if (!film->has_list)
+        write_list(film);
+    film->has_list = true;
     film->list_index = 0;
-    film->missing_count = count;
+    film->missing_count = film->pixel_count;
 }
 
 void film_begin_launch(struct film *film)
 {
     uint32_t *counters = film->counters.mapped;
     counters[1 - film->list_index] = 0;
+    film->has_list = film->has_list && film->list_index == 0;
 }
 
 void film_end_launch(struct film *film)
@@ -97,6 +136,8 @@ bool film_read(const struct gpu *gpu, const struct film *film, struct picture *p
     const float(*sums)[4] = film->readback.mapped;
     const float(*latest)[4] = sums + count;
     for (VkDeviceSize i = 0; i < count; i++) {
+        if (!has_pixel(film, (uint32_t)(i % film->width), (uint32_t)(i / film->width)))
+            continue;
         bool none = sums[i][3] == 0.0f; /* what the last sample could see is all there is */
         for (int c = 0; c < 3; c++)
             picture->rgba[i][c] = none ? latest[i][c] : sums[i][c] / sums[i][3];

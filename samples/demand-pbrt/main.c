@@ -156,7 +156,8 @@ static bool open_all(struct renderer *r)
         !surfaces_create(&r->gpu, &r->scene, &r->surfaces) ||
         !lights_create(&r->gpu, &r->scene, &r->textures, &r->lights, &only_areas) ||
         !emitters_create(&r->gpu, &r->scene, o->mode == PBRT_MODE_PATH, &r->lights, &r->emitters) ||
-        !create_world(r) || !film_create(&r->gpu, size[0], size[1], &r->film) ||
+        !create_world(r) ||
+        !film_create(&r->gpu, size[0], size[1], (struct film_share){0}, &r->film) ||
         !picture_create(size[0], size[1], &r->picture) ||
         !tracing_create(&r->gpu, r->loader, &r->tracing))
         return false;

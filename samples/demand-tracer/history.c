@@ -33,14 +33,14 @@ void history_finish(struct history *h)
 static void write_row(FILE *file, const struct history_row *row)
 {
     const struct launch_record *l = &row->launch;
-    fprintf(file, "%u,%u,%u,%u,%u,%u,%llu,%llu,%llu,%llu,%.3f,%.6f\n", l->index, l->sample,
+    fprintf(file, "%u,%u,%u,%u,%u,%u,%llu,%llu,%llu,%llu,%.3f,%.6f,%u\n", l->index, l->sample,
             l->traced_count, l->missing_count, l->requests.missingCount, l->requests.servedCount,
             (unsigned long long)row->loaded_tiles, (unsigned long long)row->resident_tiles,
             (unsigned long long)row->bytes_read, (unsigned long long)row->bytes_uploaded,
-            (double)l->requests.lodBias, row->seconds);
+            (double)l->requests.lodBias, row->seconds, row->device);
 }
 
-bool history_write(const struct history *h, const char *folder)
+bool history_write(const struct history *const *histories, uint32_t count, const char *folder)
 {
     char path[4096];
     snprintf(path, sizeof path, "%s/frames.csv", folder);
@@ -48,9 +48,10 @@ bool history_write(const struct history *h, const char *folder)
     FILE *file = output ? output_file_stream(output) : NULL;
     if (file)
         fputs("frame,sample,traced_pixels,missing_pixels,missing_pages,served_pages,loaded_tiles,"
-              "resident_tiles,bytes_read,bytes_uploaded,lod_bias,seconds\n",
+              "resident_tiles,bytes_read,bytes_uploaded,lod_bias,seconds,device\n",
               file);
-    for (size_t i = 0; file && i < h->count; i++)
-        write_row(file, &h->rows[i]);
+    for (uint32_t i = 0; file && i < count; i++)
+        for (size_t row = 0; row < histories[i]->count; row++)
+            write_row(file, &histories[i]->rows[row]);
     return output_file_end(output, true);
 }

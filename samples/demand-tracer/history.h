@@ -6,6 +6,7 @@
 
 struct history_row {
     struct launch_record launch;
+    uint32_t device;
     uint64_t resident_tiles, loaded_tiles, bytes_read, bytes_uploaded; ///< so far
     double seconds; ///< since the first launch began
 };
@@ -21,7 +22,7 @@ struct history {
 bool history_add(struct history *history, const struct history_row *row);
 void history_finish(struct history *history);
 
-/** FOLDER/frames.csv. Says on stderr why it failed. */
-bool history_write(const struct history *history, const char *folder);
+/** FOLDER/frames.csv, one history after the other. Says on stderr why it failed. */
+bool history_write(const struct history *const *histories, uint32_t count, const char *folder);
 
 #endif /* TRACER_HISTORY_H */

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 
+#include "../../tools/common/clock.h"
 #include "../../tools/common/progress.h"
 #include "../../tools/common/text.h"
 
@@ -66,7 +67,7 @@ static bool trace_sample(struct launches *l, uint32_t sample)
 {
     const uint64_t patience = l->options->preview ? PATIENCE : UINT64_MAX;
     film_begin_sample(l->film);
-    while (l->film->missing_count > 0 && l->count < l->options->max_launches) {
+    while (l->film->missing_count > 0 && l->count - l->first < l->options->max_launches) {
         struct launch_record record = {
             .index = l->count + 1, .sample = sample, .traced_count = l->film->missing_count};
         SluiceDemandTicket ticket;
@@ -94,16 +95,29 @@ static bool allocate_commands(struct launches *l)
                                     "vkAllocateCommandBuffers");
 }
 
+static void note_fill(struct launches *l)
+{
+    if (l->fill_end > 0.0)
+        return;
+    l->fill_end = clock_seconds();
+    l->fill_count = l->tile_count;
+    l->fill_paths = l->path_count;
+}
+
 bool launches_run(struct launches *l)
 {
     if (!allocate_commands(l))
         return false;
+    l->first = l->count;
+    l->complete_count = 0;
     for (uint32_t sample = 0; sample < l->options->samples; sample++) {
         if (!trace_sample(l, sample))
             return false;
+        l->path_count += l->film->pixel_count - l->film->missing_count;
         if (l->film->missing_count > 0)
             break;
         l->complete_count++;
+        note_fill(l);
     }
     return true;
 }
@@ -129,15 +143,17 @@ bool launches_preload(struct launches *l)
     struct progress progress;
     if (!allocate_commands(l))
         return false;
-    progress_begin(&progress, "loading everything", "textures", l->textures->count);
-    for (uint32_t i = 0; i < l->textures->count; i++) {
+    if (!l->quiet)
+        progress_begin(&progress, "loading everything", "textures", l->texture_count);
+    for (uint32_t i = 0; i < l->texture_count; i++) {
         SluiceDemandTicket ticket;
-        SluiceResult result =
-            sluicePreloadDemandTexture(l->loader, l->textures->items[i].id, 0, &ticket);
+        SluiceResult result = sluicePreloadDemandTexture(l->loader, l->texture_ids[i], 0, &ticket);
         if (!check(result, "a texture cannot be loaded") || !finish_ticket(l, ticket))
             return false;
-        progress_update(&progress, i + 1);
+        if (!l->quiet)
+            progress_update(&progress, i + 1);
     }
-    progress_end(&progress);
+    if (!l->quiet)
+        progress_end(&progress);
     return true;
 }

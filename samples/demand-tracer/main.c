@@ -1,10 +1,13 @@
 /**
  * Traces paths through a garden whose textures are loaded when rays hit them; see --help.
  *
- * How an application launches, learns what is missing and launches again stands in launches.c, what
- * a shader has to do in shaders/textures.glsl and shaders/scene.glsl.
+ * device.c has what each GPU has for itself; scene and images are there once. How an application
+ * launches, learns what is missing and launches again stands in launches.c, what a shader has to do
+ * in shaders/textures.glsl and shaders/scene.glsl.
  */
 #include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -14,73 +17,56 @@
 #include "../../tools/common/log.h"
 #include "../../tools/common/output_file.h"
 #include "../../tools/common/progress.h"
-#include "../common/contact_sheet.h"
-#include "history.h"
-#include "summary.h"
 #include "../../tools/common/text.h"
+#include "../common/contact_sheet.h"
+#include "../common/crew.h"
+#include "device.h"
+#include "summary.h"
 
 #define EXIT_USAGE 2
 #define EXIT_NO_DEVICE 77
 
 struct tracer {
     struct tracer_options options;
-    struct gpu gpu;
-    bool unsupported;
     struct scene scene;
-    SluiceVulkanContext *context;
-    SluiceDemandLoader *loader;
     struct textures textures;
-    struct film film;
-    struct renderer renderer;
+    struct device *devices; ///< owned
+    uint32_t device_count;
+    bool unsupported;
+    uint32_t validation_messages; ///< of all devices, once they are destroyed
     struct picture picture;
     struct contact_sheet sheet;
-    struct launches launches;
-    struct history history;
-    double start; ///< of the first launch, s
+    struct scene_camera camera; ///< of the picture that all devices trace
+    atomic_uint next_picture;   ///< of an animation whose pictures devices take in turn
+    atomic_bool ends;           ///< a device failed
+    double start;               ///< of the first launch, s
+    pthread_mutex_t mutex;      ///< of all below
     struct progress progress;
     char progress_text[96];
 };
 
-static bool create_loader(struct tracer *t)
+static uint32_t picture_count(const struct tracer_options *o)
 {
-    const struct tracer_options *o = &t->options;
-    const SluiceVulkanContextCreateInfo context = {
-        .structSize = sizeof context,
-        .queueFamilyIndex = t->gpu.family,
-        .instance = t->gpu.instance,
-        .physicalDevice = t->gpu.physical_device,
-        .device = t->gpu.device,
-        .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-        .log = {.pfnLog = log_say},
-        .loaderThreadCount = o->threads,
-    };
-    SluiceDemandLoaderCreateInfo info = {
-        .structSize = sizeof info,
-        .pageCapacity = TRACER_PAGE_CAPACITY,
-        .maxRequestsPerLaunch = o->requests,
-        .memoryBudget = o->budget,
-    };
-    SluiceResult result = sluiceCreateVulkanContext(&context, &t->context);
-    info.context = t->context;
-    if (result == SLUICE_SUCCESS)
-        result = sluiceCreateDemandLoader(&info, &t->loader);
-    if (result == SLUICE_SUCCESS)
-        return true;
-    text_say("textures cannot be loaded on demand: %s", sluiceGetResultName(result));
-    t->unsupported = result == SLUICE_ERROR_UNSUPPORTED;
-    return false;
+    return o->animation > 0 ? o->animation : 1;
+}
+
+static void name_picture(const struct tracer_options *o, uint32_t picture, char name[32])
+{
+    snprintf(name, 32, o->animation > 0 ? "picture-%04u" : "picture", picture + 1);
 }
 
 static bool check_outputs(const struct tracer_options *o, bool (*check)(const char *path))
 {
-    static const char *const names[] = {"picture.png", "picture.exr", "frames.csv"};
-    char path[4096];
+    static const char *const endings[] = {"png", "exr"};
+    char path[4096], name[32];
     bool good = !o->contact_sheet || check(o->contact_sheet);
-    for (size_t i = 0; i < sizeof names / sizeof *names && good; i++) {
-        snprintf(path, sizeof path, "%s/%s", o->output, names[i]);
+    for (uint32_t i = 0; i < 2 * picture_count(o) && good; i++) {
+        name_picture(o, i / 2, name);
+        snprintf(path, sizeof path, "%s/%s.%s", o->output, name, endings[i % 2]);
         good = check(path);
     }
-    return good;
+    snprintf(path, sizeof path, "%s/frames.csv", o->output);
+    return good && check(path);
 }
 
 /* Before anything takes its time. */
@@ -91,136 +77,247 @@ static bool can_write_outputs(const struct tracer_options *o)
            check_outputs(o, output_can_write);
 }
 
+static bool create_device(struct tracer *t, uint32_t index, const char *name)
+{
+    struct device *d = &t->devices[index];
+    d->tracer = t;
+    d->index = index;
+    const bool done = device_create(&t->options, index > 0 ? t->devices : NULL, name, d);
+    t->unsupported = t->unsupported || d->unsupported;
+    t->device_count += done;
+    return done;
+}
+
+/** The first one has the instance. */
+static bool create_devices(struct tracer *t)
+{
+    const struct device_list *list = &t->options.devices;
+    uint32_t indices[DEVICE_LIST_MOST], count = 1;
+    char name[16];
+    snprintf(name, sizeof name, "%u", list->indices[0]);
+    t->devices = calloc(DEVICE_LIST_MOST, sizeof *t->devices);
+    if (!t->devices || !create_device(t, 0, list->count > 0 ? name : t->options.device))
+        return false;
+    if (list->wanted > 0 || list->count > 0)
+        count = gpu_list_alike(&t->devices[0].gpu, list, indices);
+    t->unsupported = t->unsupported || count == 0;
+    for (uint32_t i = 1; i < count; i++) {
+        snprintf(name, sizeof name, "%u", indices[i]);
+        if (!create_device(t, i, name))
+            return false;
+    }
+    return count > 0;
+}
+
+static bool open_device(void *user_data, uint32_t index)
+{
+    struct tracer *t = user_data;
+    const bool splits = t->options.split == SPLIT_FRAME && t->device_count > 1;
+    const struct film_share share = {index, t->device_count};
+    return device_open(&t->devices[index], &t->scene, &t->textures,
+                       splits ? share : (struct film_share){0});
+}
+
 static bool open_all(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
-    const struct gpu_request request = {
-        .device = o->device,
-        .validation = o->validation,
-        .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED},
-        .ray_tracing = o->path != PATH_COMPUTE};
     if (!can_write_outputs(o) || !scene_build(o->seed, o->texture_count, &t->scene) ||
-        !gpu_create(&request, &t->gpu, &t->unsupported))
+        !textures_create(o, &t->textures) || !check_outputs(o, output_spares_inputs) ||
+        !create_devices(t))
         return false;
-    if (o->path == PATH_PIPELINE && !t->gpu.ray_tracing)
-        t->unsupported = true;
-    return create_loader(t) && textures_create(o, t->loader, &t->textures) &&
-           check_outputs(o, output_spares_inputs) &&
-           film_create(&t->gpu, o->size[0], o->size[1], &t->film) &&
-           picture_create(o->size[0], o->size[1], &t->picture) &&
-           renderer_create(&t->gpu, o, &t->scene, &t->textures, t->loader, &t->film, &t->renderer);
+    const bool done = crew_run(t->device_count, open_device, t);
+    for (uint32_t i = 0; i < t->device_count; i++)
+        t->unsupported = t->unsupported || t->devices[i].unsupported;
+    return done && picture_create(o->size[0], o->size[1], &t->picture);
 }
 
 static void close_all(struct tracer *t)
 {
-    if (t->gpu.device) {
-        vkDeviceWaitIdle(t->gpu.device);
-        renderer_destroy(&t->gpu, &t->renderer);
-        film_destroy(&t->gpu, &t->film);
-    }
-    sluiceDestroyDemandLoader(t->loader);
-    sluiceDestroyVulkanContext(t->context);
+    for (uint32_t i = t->device_count; i-- > 0;)
+        device_destroy(&t->devices[i]);
     textures_finish(&t->textures);
-    gpu_destroy(&t->gpu);
     picture_destroy(&t->picture);
     contact_sheet_finish(&t->sheet);
-    history_finish(&t->history);
     scene_finish(&t->scene);
+    if (t->devices)
+        t->validation_messages = atomic_load(&t->devices[0].gpu.validation_messages);
+    free(t->devices);
 }
 
-static void show_progress(struct tracer *t, const struct launch_record *record,
+static void show_progress(struct device *d, const struct launch_record *record,
                           const SluiceDemandStatistics *statistics)
 {
-    const uint64_t pixels = (uint64_t)t->film.width * t->film.height;
+    struct tracer *t = d->tracer;
+    uint64_t paths = 0;
+    pthread_mutex_lock(&t->mutex);
     snprintf(t->progress_text, sizeof t->progress_text,
              "launch %u, %u pages missing, %llu tiles, %llu MB read", record->index,
              record->requests.missingCount, (unsigned long long)statistics->residentTileCount,
              (unsigned long long)(statistics->bytesRead / 1000000u));
-    progress_update(&t->progress, record->sample * pixels + pixels - record->missing_count);
+    d->path_count = d->done_count + (uint64_t)record->sample * d->film.pixel_count +
+                    d->film.pixel_count - record->missing_count;
+    for (uint32_t i = 0; i < t->device_count; i++)
+        paths += t->devices[i].path_count;
+    progress_update(&t->progress, paths);
+    pthread_mutex_unlock(&t->mutex);
 }
 
 static bool add_to_sheet(struct tracer *t, const struct launch_record *record, uint64_t tiles)
 {
     char caption[96];
-    double share = 100.0 * record->missing_count / ((double)t->film.width * t->film.height);
+    double share = 100.0 * record->missing_count / ((double)t->picture.width * t->picture.height);
     bool some = record->missing_count > 0;
     snprintf(caption, sizeof caption, "launch %u: %llu tiles, %.*f%% missing", record->index,
              (unsigned long long)tiles, some && share < 10.0 ? 1 : 0, share);
     return contact_sheet_add(&t->sheet, &t->picture, t->options.exposure, caption);
 }
 
-static bool remember(struct tracer *t, const struct launch_record *record,
+static bool remember(struct device *d, const struct launch_record *record,
                      const SluiceDemandStatistics *statistics)
 {
     const struct history_row row = {.launch = *record,
+                                    .device = d->index,
                                     .resident_tiles = statistics->residentTileCount,
-                                    .loaded_tiles = t->launches.tile_count,
+                                    .loaded_tiles = d->launches.tile_count,
                                     .bytes_read = statistics->bytesRead,
                                     .bytes_uploaded = statistics->bytesUploaded,
-                                    .seconds = clock_seconds() - t->start};
-    return history_add(&t->history, &row);
+                                    .seconds = clock_seconds() - d->tracer->start};
+    return history_add(&d->history, &row);
+}
+
+/** Pictures after launches are those of one device. */
+static bool keep_picture(struct device *d, const struct launch_record *record, uint64_t tiles)
+{
+    struct tracer *t = d->tracer;
+    const struct tracer_options *o = &t->options;
+    const bool sheet =
+        o->contact_sheet && (contact_sheet_has_room(&t->sheet) || record->missing_count == 0);
+    if (!sheet && !o->launch_pictures)
+        return true;
+    char name[32];
+    snprintf(name, sizeof name, "launch-%05u", record->index);
+    return film_read(&d->gpu, &d->film, &t->picture) &&
+           (!sheet || add_to_sheet(t, record, tiles)) &&
+           (!o->launch_pictures ||
+            picture_write(&t->picture, o->exposure, o->launch_pictures, name));
 }
 
 static bool after_launch(void *user_data, const struct launch_record *record)
 {
-    struct tracer *t = user_data;
+    struct device *d = user_data;
     SluiceDemandStatistics statistics = {.structSize = sizeof statistics};
-    if (sluiceGetDemandStatistics(t->loader, &statistics) != SLUICE_SUCCESS)
+    if (atomic_load(&d->tracer->ends) ||
+        sluiceGetDemandStatistics(d->loader, &statistics) != SLUICE_SUCCESS)
         return false;
-    show_progress(t, record, &statistics);
-    if (!remember(t, record, &statistics))
-        return false;
-    bool sheet = t->options.contact_sheet &&
-                 (contact_sheet_has_room(&t->sheet) || record->missing_count == 0);
-    if (!sheet && !t->options.launch_pictures)
-        return true;
+    show_progress(d, record, &statistics);
+    return remember(d, record, &statistics) &&
+           keep_picture(d, record, statistics.residentTileCount);
+}
+
+static bool write_picture(const struct tracer_options *o, const struct picture *picture,
+                          uint32_t index)
+{
     char name[32];
-    snprintf(name, sizeof name, "launch-%05u", record->index);
-    return film_read(&t->gpu, &t->film, &t->picture) &&
-           (!sheet || add_to_sheet(t, record, statistics.residentTileCount)) &&
-           (!t->options.launch_pictures ||
-            picture_write(&t->picture, t->options.exposure, t->options.launch_pictures, name));
+    name_picture(o, index, name);
+    return picture_write(picture, o->exposure, o->output, name);
 }
 
-static bool write_files(struct tracer *t)
+static struct scene_camera camera_of(const struct tracer_options *o, uint32_t picture)
 {
-    const struct tracer_options *o = &t->options;
-    return film_read(&t->gpu, &t->film, &t->picture) &&
-           picture_write(&t->picture, o->exposure, o->output, "picture") &&
-           history_write(&t->history, o->output) &&
-           (!o->contact_sheet || contact_sheet_write(&t->sheet, o->contact_sheet));
+    return scene_turn_camera(&o->view, (picture + 1.0) / picture_count(o));
 }
 
-static bool count_needs(struct tracer *t, double *tiles)
+static bool end_if_failed(struct tracer *t, bool done)
 {
-    uint64_t count = 0;
-    if (!t->options.needs)
-        return true;
-    bool done = needs_count(&t->gpu, &t->renderer.needs, &count);
-    *tiles = (double)count;
+    if (!done)
+        atomic_store(&t->ends, true);
     return done;
 }
 
-static bool print_summary(struct tracer *t, double seconds)
+static bool preload(void *user_data, uint32_t index)
+{
+    struct tracer *t = user_data;
+    return launches_preload(&t->devices[index].launches);
+}
+
+/** Its tiles of the picture that all devices trace. */
+static bool trace_share(void *user_data, uint32_t index)
+{
+    struct tracer *t = user_data;
+    return end_if_failed(t, device_trace(&t->devices[index], &t->camera, &t->picture));
+}
+
+/** Whole pictures, the next one that no device has begun. */
+static bool trace_pictures(void *user_data, uint32_t index)
+{
+    struct tracer *t = user_data;
+    const struct tracer_options *o = &t->options;
+    struct picture picture = {0};
+    bool done = picture_create(o->size[0], o->size[1], &picture);
+    for (uint32_t i; done && (i = atomic_fetch_add(&t->next_picture, 1)) < picture_count(o);) {
+        const struct scene_camera camera = camera_of(o, i);
+        done = device_trace(&t->devices[index], &camera, &picture) && write_picture(o, &picture, i);
+    }
+    picture_destroy(&picture);
+    return end_if_failed(t, done);
+}
+
+static bool trace_all(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
-    struct summary summary = {.statistics = {.structSize = sizeof summary.statistics},
-                              .launches = &t->launches,
-                              .seconds = seconds,
+    bool done = true;
+    if (o->split == SPLIT_ALTERNATE)
+        return crew_run(t->device_count, trace_pictures, t);
+    for (uint32_t i = 0; i < picture_count(o) && done; i++) {
+        t->camera = camera_of(o, i);
+        done = crew_run(t->device_count, trace_share, t) && write_picture(o, &t->picture, i);
+    }
+    return done;
+}
+
+static bool write_histories(const struct tracer *t)
+{
+    const struct history *histories[DEVICE_LIST_MOST];
+    for (uint32_t i = 0; i < t->device_count; i++)
+        histories[i] = &t->devices[i].history;
+    return history_write(histories, t->device_count, t->options.output);
+}
+
+static bool count_needs(const struct tracer *t, double *tiles)
+{
+    uint64_t sum = 0;
+    bool done = true;
+    for (uint32_t i = 0; i < t->device_count && t->options.needs && done; i++) {
+        uint64_t count = 0;
+        done = needs_count(&t->devices[i].gpu, &t->devices[i].renderer.needs, &count);
+        sum += count;
+    }
+    if (t->options.needs)
+        *tiles = (double)sum;
+    return done;
+}
+
+static bool print_summary(struct tracer *t)
+{
+    const struct tracer_options *o = &t->options;
+    struct summary summary = {.devices = t->devices,
+                              .device_count = t->device_count,
+                              .textures = &t->textures,
+                              .start = t->start,
                               .difference = {NAN, NAN, NAN},
-                              .needed_tiles = NAN,
-                              .resident_peak = t->history.resident_peak};
-    const struct picture_place place = {o->output, t->launches.count};
+                              .needed_tiles = NAN};
+    const struct picture_place place = {o->output, t->devices[0].launches.count};
     if ((o->reference &&
          !picture_compare(&t->picture, o->exposure, o->reference, &place, &summary.difference)) ||
-        !count_needs(t, &summary.needed_tiles) ||
-        sluiceGetDemandStatistics(t->loader, &summary.statistics) != SLUICE_SUCCESS)
+        !count_needs(t, &summary.needed_tiles))
         return false;
     if (o->json)
-        gpu_print_json(&t->gpu);
-    summary_print(&summary, o->json);
+        gpu_print_json(&t->devices[0].gpu);
+    if (!summary_print(&summary, o->json))
+        return false;
     if (!o->json) {
-        fputs("picture.png and picture.exr are in ", stdout);
+        fputs(o->animation > 0 ? "the pictures are in " : "picture.png and picture.exr are in ",
+              stdout);
         text_write(stdout, o->output);
         putchar('\n');
     }
@@ -230,32 +327,30 @@ static bool print_summary(struct tracer *t, double seconds)
 static bool trace(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
-    t->launches = (struct launches){.gpu = &t->gpu,
-                                    .options = o,
-                                    .loader = t->loader,
-                                    .renderer = &t->renderer,
-                                    .film = &t->film,
-                                    .textures = &t->textures,
-                                    .user_data = t,
-                                    .after_launch = after_launch};
-    if (o->preload && !launches_preload(&t->launches))
+    uint64_t missing = 0;
+    for (uint32_t i = 0; i < t->device_count; i++)
+        t->devices[i].launches.after_launch = after_launch;
+    if (o->preload && !crew_run(t->device_count, preload, t))
         return false;
     t->start = clock_seconds();
     progress_begin(&t->progress, t->progress_text, "paths",
-                   (uint64_t)o->samples * o->size[0] * o->size[1]);
-    if (!launches_run(&t->launches))
+                   (uint64_t)picture_count(o) * o->samples * o->size[0] * o->size[1]);
+    if (!trace_all(t))
         return false;
-    double seconds = clock_seconds() - t->start;
     progress_end(&t->progress);
-    if (t->film.missing_count > 0)
-        fprintf(stderr, "%u pixels are still missing after %u launches\n", t->film.missing_count,
-                t->launches.count);
-    return write_files(t) && print_summary(t, seconds) && t->film.missing_count == 0;
+    for (uint32_t i = 0; i < t->device_count; i++)
+        missing += t->devices[i].missing_count;
+    if (missing > 0)
+        fprintf(stderr, "%llu pixels are still missing after %u launches\n",
+                (unsigned long long)missing, t->devices[0].launches.count);
+    return write_histories(t) &&
+           (!o->contact_sheet || contact_sheet_write(&t->sheet, o->contact_sheet)) &&
+           print_summary(t) && missing == 0;
 }
 
 int main(int argc, char **argv)
 {
-    struct tracer tracer = {0};
+    struct tracer tracer = {.mutex = PTHREAD_MUTEX_INITIALIZER};
     switch (tracer_options_parse(argc, argv, &tracer.options)) {
     case OPTIONS_HELP: return text_exit_status(EXIT_SUCCESS);
     case OPTIONS_ERROR: return EXIT_USAGE;
@@ -269,7 +364,7 @@ int main(int argc, char **argv)
     bool done = opened && trace(&tracer);
     close_all(&tracer);
     log_finish();
-    uint32_t messages = atomic_load(&tracer.gpu.validation_messages);
+    const uint32_t messages = tracer.validation_messages;
     if (messages > 0)
         fprintf(stderr, "the validation layers had %u messages\n", messages);
     if (!opened && tracer.unsupported)

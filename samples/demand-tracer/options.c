@@ -46,6 +46,16 @@ static bool check(const struct option_table *table, struct tracer_options *o)
     if (o->preview && o->preload)
         return options_refuse(
             table, "--preview and --preload: nothing would be missing; give one of them");
+    const bool several = o->devices.wanted > 1 || o->devices.count > 1;
+    if (o->device && (o->devices.wanted > 0 || o->devices.count > 0))
+        return options_refuse(table, "--device and --devices: give one of them");
+    if (o->split == SPLIT_ALTERNATE && o->animation == 0)
+        return options_refuse(table, "--split alternate: is for --animation");
+    if ((several || o->animation > 0) && (o->launch_pictures || o->contact_sheet))
+        return options_refuse(
+            table, "--launch-pictures and --contact-sheet: are for one picture of one device");
+    if (o->animation > 0 && o->reference)
+        return options_refuse(table, "--reference and --animation: give one of them");
     o->needs = o->count_needs != NEEDS_OFF;
     return true;
 }
@@ -75,6 +85,10 @@ enum option_outcome tracer_options_parse(int argc, char **argv, struct tracer_op
          "where it is and what it looks at, in meters; not straight up or down",
          .parse = parse_camera},
         {OPTION_REAL, "exposure", "STOPS", "0", &o->exposure, "of the PNG picture", -16, 16},
+        {OPTION_UINT, "animation", "N", "0", &o->animation,
+         "trace N pictures, picture-0001 and so on, while the camera turns once around what it "
+         "looks at; 0: one picture",
+         0, 9999},
 
         {OPTION_SECTION, .help = "Launches"},
         {OPTION_CHOICE, "path", "auto|pipeline|compute", "auto", &o->path,
@@ -94,6 +108,8 @@ enum option_outcome tracer_options_parse(int argc, char **argv, struct tracer_op
                                   "DIR)"),
         option_threads(&o->threads),
         option_device(&o->device),
+        option_devices(&o->devices),
+        {OPTION_CHOICE, "split", SPLIT_WORDS, "frame", &o->split, SPLIT_HELP},
         option_list_devices(&o->list_devices),
         option_validation(&o->validation),
 

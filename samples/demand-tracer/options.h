@@ -2,7 +2,9 @@
 #ifndef TRACER_OPTIONS_H
 #define TRACER_OPTIONS_H
 
+#include "../../tools/common/device_list.h"
 #include "../../tools/common/option_table.h"
+#include "../common/split.h"
 #include "scene.h"
 
 enum needs_choice { NEEDS_AUTO, NEEDS_ON, NEEDS_OFF };
@@ -25,6 +27,9 @@ struct tracer_options {
     const char *output, *launch_pictures, *contact_sheet, *reference;
     bool json, list_devices, validation;
     const char *device;
+    struct device_list devices;
+    int split;          ///< enum split
+    uint32_t animation; ///< pictures; 0: one, which is no animation
 };
 
 /** Says on stderr what is wrong. */

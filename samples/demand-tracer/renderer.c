@@ -17,9 +17,10 @@ static bool upload(const struct gpu *gpu, const void *data, size_t size, bool fo
     return true;
 }
 
-static bool upload_scene(const struct gpu *gpu, const struct scene *scene,
-                         const struct textures *textures, struct renderer *r)
+static bool upload_scene(const struct gpu *gpu, const struct renderer_request *request,
+                         struct renderer *r)
 {
+    const struct scene *scene = request->scene;
     const struct mesh *mesh = &scene->mesh;
     if (!upload(gpu, mesh->vertices, mesh->vertex_count * sizeof *mesh->vertices, r->uses_pipeline,
                 &r->vertices) ||
@@ -32,7 +33,8 @@ static bool upload_scene(const struct gpu *gpu, const struct scene *scene,
         return false;
     struct TracerInstance *instances = r->instances.mapped;
     for (uint32_t i = 0; i < scene->instance_count; i++)
-        instances[i].texture = textures_index(textures, scene->instances[i].texture);
+        instances[i].texture =
+            textures_index(request->textures, request->texture_ids, scene->instances[i].texture);
     return true;
 }
 
@@ -41,23 +43,23 @@ static void write_vector(struct vec3 v, float out[3])
     out[0] = v.x, out[1] = v.y, out[2] = v.z;
 }
 
-static struct TracerLaunch camera_constants(const struct tracer_options *options)
+void renderer_set_camera(struct renderer *r, const struct tracer_options *options,
+                         const struct scene_camera *camera)
 {
-    const struct scene_camera *camera = &options->view;
     const float width = (float)options->size[0], height = (float)options->size[1];
     const float half = tanf(0.5f * camera->field_of_view);
-    struct TracerLaunch constants = {.width = options->size[0],
-                                     .height = options->size[1],
-                                     .spread = atanf(2.0f * half / height),
-                                     .seed = options->seed,
-                                     .bounces = options->bounces};
+    struct TracerLaunch *constants = &r->constants;
+    *constants = (struct TracerLaunch){.width = options->size[0],
+                                       .height = options->size[1],
+                                       .spread = atanf(2.0f * half / height),
+                                       .seed = options->seed,
+                                       .bounces = options->bounces};
     struct vec3 forward = vec3_normalize(vec3_sub(camera->target, camera->eye));
     struct vec3 right = vec3_normalize(vec3_cross(forward, (struct vec3){0, 1, 0}));
-    write_vector(camera->eye, constants.eye);
-    write_vector(forward, constants.forward);
-    write_vector(vec3_scale(right, half * width / height), constants.right);
-    write_vector(vec3_scale(vec3_cross(right, forward), half), constants.up);
-    return constants;
+    write_vector(camera->eye, constants->eye);
+    write_vector(forward, constants->forward);
+    write_vector(vec3_scale(right, half * width / height), constants->right);
+    write_vector(vec3_scale(vec3_cross(right, forward), half), constants->up);
 }
 
 /** Which path it is; false if the device lacks the one that was asked for. */
@@ -81,18 +83,20 @@ static bool create_pipeline(const struct gpu *gpu, const struct tracer_options *
                                    scene->bvh.scene_root, &r->compute);
 }
 
-bool renderer_create(const struct gpu *gpu, const struct tracer_options *options,
-                     const struct scene *scene, const struct textures *textures,
-                     const SluiceDemandLoader *loader, const struct film *film, struct renderer *r)
+bool renderer_create(const struct gpu *gpu, const struct renderer_request *given,
+                     struct renderer *r)
 {
-    *r = (struct renderer){.constants = camera_constants(options)};
-    if (!choose_path(gpu, options->path, r) || !upload_scene(gpu, scene, textures, r) ||
+    const struct tracer_options *options = given->options;
+    const struct film *film = given->film;
+    *r = (struct renderer){0};
+    renderer_set_camera(r, options, &options->view);
+    if (!choose_path(gpu, options->path, r) || !upload_scene(gpu, given, r) ||
         !needs_create(gpu, options->needs, &r->needs) ||
         (r->uses_pipeline &&
-         !accel_build(gpu, scene, r->vertices.buffer, r->indices.buffer, &r->accel)))
+         !accel_build(gpu, given->scene, r->vertices.buffer, r->indices.buffer, &r->accel)))
         return false;
     const struct bindings_request request = {
-        .loader = loader,
+        .loader = given->loader,
         .own_buffers = {[TRACER_BINDING_VERTICES] = r->vertices.buffer,
                         [TRACER_BINDING_INDICES] = r->indices.buffer,
                         [TRACER_BINDING_INSTANCES] = r->instances.buffer,
@@ -104,7 +108,8 @@ bool renderer_create(const struct gpu *gpu, const struct tracer_options *options
                         [TRACER_BINDING_NEEDS] = r->needs.pages.buffer},
         .scene = r->accel.scene.handle,
     };
-    return bindings_create(gpu, &request, &r->bindings) && create_pipeline(gpu, options, scene, r);
+    return bindings_create(gpu, &request, &r->bindings) &&
+           create_pipeline(gpu, options, given->scene, r);
 }
 
 void renderer_destroy(const struct gpu *gpu, struct renderer *r)

@@ -22,12 +22,24 @@ struct renderer {
     struct TracerLaunch constants; ///< of the camera
 };
 
+/** What a renderer is made for. */
+struct renderer_request {
+    const struct tracer_options *options;
+    const struct scene *scene;
+    const struct textures *textures;
+    const SluiceDemandTextureId *texture_ids; ///< of the loader
+    const SluiceDemandLoader *loader;
+    const struct film *film;
+};
+
 /** Says on stderr why it failed, and which path it is if that is not the faster one. */
-bool renderer_create(const struct gpu *gpu, const struct tracer_options *options,
-                     const struct scene *scene, const struct textures *textures,
-                     const SluiceDemandLoader *loader, const struct film *film,
+bool renderer_create(const struct gpu *gpu, const struct renderer_request *request,
                      struct renderer *renderer);
 void renderer_destroy(const struct gpu *gpu, struct renderer *renderer);
+
+/** For the launches that are recorded from now on. */
+void renderer_set_camera(struct renderer *renderer, const struct tracer_options *options,
+                         const struct scene_camera *camera);
 
 /** Between sluiceBeginDemandLaunch and sluiceEndDemandLaunch: traces what the film still misses.
  */

@@ -189,3 +189,15 @@ struct scene_camera scene_default_camera(void)
 {
     return (struct scene_camera){{0.4f, 1.7f, 6.6f}, {0.0f, 0.42f, 0.6f}, 0.70f};
 }
+
+struct scene_camera scene_turn_camera(const struct scene_camera *camera, double share)
+{
+    struct scene_camera turned = *camera;
+    if (share >= 1.0)
+        return turned;
+    const double c = cos(share * 6.283185307179586), s = sin(share * 6.283185307179586);
+    const double x = camera->eye.x - camera->target.x, z = camera->eye.z - camera->target.z;
+    turned.eye.x = (float)(camera->target.x + c * x - s * z);
+    turned.eye.z = (float)(camera->target.z + s * x + c * z);
+    return turned;
+}

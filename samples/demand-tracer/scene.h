@@ -39,5 +39,7 @@ void scene_finish(struct scene *scene);
 
 enum texture_use scene_texture_use(uint32_t texture, uint32_t texture_count);
 struct scene_camera scene_default_camera(void);
+/** The camera after a share of a turn around the vertical axis through its target. 1: as it is. */
+struct scene_camera scene_turn_camera(const struct scene_camera *camera, double share);
 
 #endif /* TRACER_SCENE_H */

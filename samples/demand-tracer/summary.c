@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "../../tools/common/text.h"
+
 #define TILE 65536.0 ///< bytes
 
 struct figure {
@@ -10,12 +12,23 @@ struct figure {
     double value; ///< NAN: not there
 };
 
+/** Sums of all devices, but for what says otherwise. */
+struct totals {
+    SluiceDemandStatistics statistics; ///< `lodBias`: the greatest
+    double launches, complete, missing, rays, paths, tiles, resident_peak;
+    double end;       ///< of the last device
+    double fill_end;  ///< of the last device; infinite: a sample is incomplete
+    double first_end; ///< of the first device whose first sample was complete
+    double fill_tiles, fill_paths;
+};
+
 /** Of files it is known once they are open. */
-static double virtual_size(const struct summary *s)
+static double virtual_size(const struct summary *s, const struct totals *t)
 {
-    const struct textures *textures = s->launches->textures;
-    return textures->files.count > 0 ? (double)s->statistics.virtualPageCount * TILE
-                                     : (double)textures->virtual_size;
+    const struct textures *textures = s->textures;
+    return textures->files.count > 0
+               ? (double)t->statistics.virtualPageCount / s->device_count * TILE
+               : (double)textures->virtual_size;
 }
 
 static void print_figure(const struct figure *figure, bool json)
@@ -33,16 +46,105 @@ static void print_figure(const struct figure *figure, bool json)
         printf("%-22s %16s %s\n", figure->name, value, figure->unit);
 }
 
-void summary_print(const struct summary *s, bool json)
+static void add_statistics(SluiceDemandStatistics *sum, const SluiceDemandStatistics *d)
 {
-    const struct launches *l = s->launches;
-    const SluiceDemandStatistics *d = &s->statistics;
+    sum->requestCount += d->requestCount;
+    sum->servedCount += d->servedCount;
+    sum->restoredCount += d->restoredCount;
+    sum->evictedCount += d->evictedCount;
+    sum->refusedCount += d->refusedCount;
+    sum->failedCount += d->failedCount;
+    sum->texturesCreated += d->texturesCreated;
+    sum->texturesOpened += d->texturesOpened;
+    sum->texturesFailed += d->texturesFailed;
+    sum->virtualPageCount += d->virtualPageCount;
+    sum->residentTileCount += d->residentTileCount;
+    sum->tileMemorySize += d->tileMemorySize;
+    sum->deviceMemorySize += d->deviceMemorySize;
+    sum->bytesRead += d->bytesRead;
+    sum->bytesUploaded += d->bytesUploaded;
+    sum->lodBias = d->lodBias > sum->lodBias ? d->lodBias : sum->lodBias;
+}
+
+static bool get_statistics(const struct device *d, SluiceDemandStatistics *statistics)
+{
+    *statistics = (SluiceDemandStatistics){.structSize = sizeof *statistics};
+    SluiceResult result = sluiceGetDemandStatistics(d->loader, statistics);
+    if (result != SLUICE_SUCCESS)
+        text_say("there are no statistics: %s", sluiceGetResultName(result));
+    return result == SLUICE_SUCCESS;
+}
+
+static bool add_device(const struct device *d, struct totals *t)
+{
+    const struct launches *l = &d->launches;
+    SluiceDemandStatistics statistics;
+    if (!get_statistics(d, &statistics))
+        return false;
+    add_statistics(&t->statistics, &statistics);
+    t->launches += l->count;
+    t->missing += (double)d->missing_count;
+    t->rays += (double)l->ray_count;
+    t->paths += (double)l->path_count;
+    t->tiles += (double)l->tile_count;
+    t->resident_peak += (double)d->history.resident_peak;
+    t->end = fmax(t->end, d->end);
+    if (d->picture_count == 0)
+        return true;
+    t->complete = fmin(t->complete, l->complete_count);
+    t->fill_end = l->fill_end > 0.0 ? fmax(t->fill_end, l->fill_end) : INFINITY;
+    t->first_end = fmin(t->first_end, l->fill_end);
+    t->fill_tiles += (double)l->fill_count;
+    t->fill_paths += (double)l->fill_paths;
+    return true;
+}
+
+static bool print_device(const struct device *d, bool json)
+{
+    const struct launches *l = &d->launches;
+    SluiceDemandStatistics statistics;
+    if (!get_statistics(d, &statistics))
+        return false;
+    if (json) {
+        printf("{\"name\": \"device_%u\", \"value\": ", d->index);
+        text_write_json(stdout, d->gpu.properties.deviceName);
+        printf(", \"unit\": \"\"}\n");
+    }
     const struct figure figures[] = {
-        {"ray_tracing_pipeline", "0 or 1", l->renderer->uses_pipeline},
         {"launches", "", l->count},
-        {"samples_complete", "per pixel", l->complete_count},
-        {"pixels_missing", "", l->film->missing_count},
+        {"pictures", "", d->picture_count},
         {"paths_traced", "", (double)l->ray_count},
+        {"path_rate", "Mpaths/s", 1e-6 * (double)l->path_count / d->busy_seconds},
+        {"tiles_loaded", "", (double)l->tile_count},
+        {"device_memory", "B", (double)statistics.deviceMemorySize},
+        {"time", "s", d->busy_seconds},
+    };
+    for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "device_%u_%s", d->index, figures[i].name);
+        print_figure(&(struct figure){name, figures[i].unit, figures[i].value}, json);
+    }
+    return true;
+}
+
+/** NAN if no time passed. */
+static double rate(double count, double seconds)
+{
+    return seconds > 0.0 && count > 0.0 ? count / seconds : NAN;
+}
+
+static void print_totals(const struct summary *s, const struct totals *t, bool json)
+{
+    const SluiceDemandStatistics *d = &t->statistics;
+    const double seconds = t->end - s->start;
+    const double fill = isfinite(t->fill_end) ? t->fill_end - s->start : NAN;
+    const struct figure figures[] = {
+        {"devices", "", s->device_count},
+        {"ray_tracing_pipeline", "0 or 1", s->devices[0].renderer.uses_pipeline},
+        {"launches", "", t->launches},
+        {"samples_complete", "per pixel", t->complete},
+        {"pixels_missing", "", t->missing},
+        {"paths_traced", "", t->rays},
         {"requests", "pages", (double)d->requestCount},
         {"pages_served", "", (double)d->servedCount},
         {"tiles_restored", "", (double)d->restoredCount},
@@ -54,24 +156,41 @@ void summary_print(const struct summary *s, bool json)
         {"textures_failed", "", (double)d->texturesFailed},
         {"textures_never_opened", "",
          (double)(d->texturesCreated - d->texturesOpened - d->texturesFailed)},
-        {"virtual_bytes", "B", virtual_size(s)},
+        {"virtual_bytes", "B", virtual_size(s, t)},
         {"needed_bytes", "B", s->needed_tiles * TILE},
-        {"loaded_bytes", "B", (double)l->tile_count * TILE},
-        {"loaded_per_needed", "",
-         s->needed_tiles > 0 ? (double)l->tile_count / s->needed_tiles : NAN},
+        {"loaded_bytes", "B", t->tiles * TILE},
+        {"loaded_per_needed", "", s->needed_tiles > 0 ? t->tiles / s->needed_tiles : NAN},
         {"tiles_resident", "", (double)d->residentTileCount},
         {"resident_bytes", "B", (double)d->residentTileCount * TILE},
-        {"resident_bytes_peak", "B", (double)s->resident_peak * TILE},
+        {"resident_bytes_peak", "B", t->resident_peak * TILE},
         {"tile_memory", "B", (double)d->tileMemorySize},
         {"device_memory", "B", (double)d->deviceMemorySize},
         {"bytes_read", "B", (double)d->bytesRead},
         {"bytes_uploaded", "B", (double)d->bytesUploaded},
         {"lod_bias", "levels", d->lodBias},
-        {"time", "s", s->seconds},
+        {"time", "s", seconds},
+        {"path_rate", "Mpaths/s", 1e-6 * rate(t->paths, seconds)},
+        {"path_rate_later", "Mpaths/s",
+         1e-6 * rate(t->paths - t->fill_paths, t->end - t->first_end)},
+        {"fill_time", "s", fill},
+        {"fill_rate", "tiles/s", rate(t->fill_tiles, fill)},
         {"psnr", "dB", s->difference.psnr},
         {"ssim_mean", "", s->difference.ssim},
         {"flip_mean", "", s->difference.flip},
     };
     for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
         print_figure(&figures[i], json);
+}
+
+bool summary_print(const struct summary *s, bool json)
+{
+    struct totals totals = {.complete = INFINITY, .first_end = INFINITY};
+    bool done = true;
+    for (uint32_t i = 0; i < s->device_count && done; i++)
+        done = add_device(&s->devices[i], &totals);
+    if (done)
+        print_totals(s, &totals, json);
+    for (uint32_t i = 0; i < s->device_count && s->device_count > 1 && done; i++)
+        done = print_device(&s->devices[i], json);
+    return done;
 }

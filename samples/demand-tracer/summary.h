@@ -2,18 +2,18 @@
 #ifndef TRACER_SUMMARY_H
 #define TRACER_SUMMARY_H
 
-#include "launches.h"
+#include "device.h"
 
 struct summary {
-    const struct launches *launches;
-    SluiceDemandStatistics statistics;
-    double seconds;                       ///< of all launches
+    const struct device *devices;
+    uint32_t device_count;
+    const struct textures *textures;
+    double start;                         ///< of the first launch, s
     struct picture_difference difference; ///< NANs: nothing was compared
-    double needed_tiles;                  ///< NAN: not counted
-    uint64_t resident_peak;               ///< tiles after a launch
+    double needed_tiles;                  ///< of all devices; NAN: not counted
 };
 
-/** A line for each figure on stdout, or a line of JSON. */
-void summary_print(const struct summary *summary, bool json);
+/** A line for each figure on stdout, or a line of JSON. Says on stderr why it failed. */
+bool summary_print(const struct summary *summary, bool json);
 
 #endif /* TRACER_SUMMARY_H */

@@ -29,6 +29,14 @@ refuse --camera 0,5,0,0,1,0
 refuse --camera nan,0,0,1,1,1
 refuse --preview --preload
 refuse --needs perhaps
+refuse --devices 0
+refuse --devices two
+refuse --devices 0,x
+refuse --devices 0,0 --device 0
+refuse --split alternate
+refuse --split rows
+refuse --devices 0,0 --contact-sheet "$folder/refused/sheet.png"
+refuse --animation 2 --reference "$folder/refused.png"
 [ ! -e "$folder/refused" ] || { echo "something was written" >&2; failed=1; }
 "$tracer" --help | grep -q -- '--contact-sheet FILE' || { echo "no help" >&2; failed=1; }
 
@@ -145,6 +153,58 @@ is_complete slow
 check slow launches "v + 0 > $(value first launches)"
 check slow needed_bytes "v + 0 == $(value first needed_bytes)"
 is_like_first slow 60
+
+# The picture of several devices is that of one, byte for byte. One device may be listed several times.
+same() { # name, picture, another picture
+    cmp "$folder/$1/$2.exr" "$folder/$3.exr" && cmp "$folder/$1/$2.png" "$folder/$3.png" || {
+        echo "$1: $2 is not $3" >&2
+        failed=1
+    }
+}
+trace two $validation --devices 0,0
+succeeds
+is_complete two
+same two picture first/picture
+trace three $validation --devices 0,0,0 --seed 1
+succeeds
+is_complete three
+same three picture first/picture
+check three devices 'v + 0 == 3'
+check three needed_bytes "v + 0 >= $(value first needed_bytes)" # sums: each device needs its own
+check three loaded_per_needed 'v + 0 >= 1 && v + 0 <= 1.15'
+for i in 0 1 2; do
+    check three "device_${i}_launches" 'v + 0 >= 3'
+    check three "device_${i}_tiles_loaded" "v + 0 > 0 && v + 0 < $(value three loaded_bytes) / 65536"
+    check three "device_${i}_device_memory" 'v + 0 > 0'
+done
+trace counted --devices 1 # a count
+succeeds
+same counted picture first/picture
+trace absent --devices 63
+[ "$status" -eq 77 ] || { echo "63 devices are there: status $status" >&2; failed=1; }
+trace missing --devices 0,4000
+[ "$status" -eq 77 ] || { echo "device 4000 is there: status $status" >&2; failed=1; }
+
+# So are the pictures of an animation, whether devices share each picture or take pictures in turn. The last
+# one is the picture without an animation, and no other is.
+trace turned --animation 4
+succeeds
+trace shared $validation --animation 4 --devices 0,0,0
+succeeds
+trace taken $validation --animation 4 --devices 0,0,0 --split alternate
+succeeds
+trace idle --animation 1 --devices 0,0 --split alternate # one of them has nothing to do
+succeeds
+same idle picture-0001 first/picture
+for picture in picture-0001 picture-0002 picture-0003 picture-0004; do
+    same shared "$picture" "turned/$picture"
+    same taken "$picture" "turned/$picture"
+done
+same turned picture-0004 first/picture
+cmp -s "$folder/turned/picture-0003.png" "$folder/first/picture.png" && { echo "the camera does not turn" >&2; failed=1; }
+check taken pixels_missing 'v + 0 == 0'
+[ "$(for i in 0 1 2; do value taken "device_${i}_pictures"; done | awk '{ sum += $1 } END { print sum }')" -eq 4 ] ||
+    { echo "a picture was traced twice, or by none" >&2; failed=1; }
 
 # Less memory than the picture needs: complete all the same.
 trace pressed --budget 4 --texture-size 4096 --texture-count 60 --anisotropy 1

@@ -26,8 +26,8 @@ static SluiceResult open_file(const struct texture *texture, SluiceImageSource *
     return picture_file_open(path, kind, &opening, source, &info);
 }
 
-/* On a thread of the loader, when a ray has hit the texture; again from time to time if it failed.
- * What no other attempt changes is not said again. */
+/* On a thread of a loader, one at a time, when a ray has hit the texture; again from time to time
+ * if it failed. What no other attempt changes is not said again. */
 static SluiceResult open_texture(void *user_data, SluiceImageSource **source)
 {
     struct texture *texture = user_data;
@@ -65,7 +65,7 @@ static uint64_t chain_size(uint32_t size)
 }
 
 /** Files go round; leaves need holes, so they are always computed. */
-static void choose_images(const struct tracer_options *options, struct textures *t)
+static bool choose_images(const struct tracer_options *options, struct textures *t)
 {
     for (uint32_t i = 0; i < t->scene_count; i++) {
         enum texture_use use = scene_texture_use(i, t->scene_count);
@@ -75,6 +75,8 @@ static void choose_images(const struct tracer_options *options, struct textures 
             continue;
         }
         struct texture *texture = &t->items[t->count];
+        if (!shared_source_init(&texture->shared, open_texture, texture))
+            return false;
         t->of_scene[i] = t->count++;
         texture->memory = t->memory;
         if (is_file) {
@@ -85,17 +87,21 @@ static void choose_images(const struct tracer_options *options, struct textures 
             t->virtual_size += chain_size(texture->size);
         }
     }
+    return true;
 }
 
-static bool create_texture(const struct tracer_options *options, SluiceDemandLoader *loader,
-                           struct texture *texture)
+static bool add_texture(const struct tracer_options *options, SluiceDemandLoader *loader,
+                        struct texture *texture, SluiceDemandTextureId *id)
 {
     bool leaf = !texture->path && texture->pattern.use == TEXTURE_OF_LEAVES;
     VkSamplerAddressMode mode =
         leaf ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE : VK_SAMPLER_ADDRESS_MODE_REPEAT;
     SluiceDemandTextureCreateInfo info = {
         .structSize = sizeof info,
-        .image = {.pUserData = texture, .pfnOpen = open_texture, .pName = texture->path},
+        .image = {.pUserData = &texture->shared,
+                  .pfnOpen = shared_source_open,
+                  .pfnClose = shared_source_close,
+                  .pName = texture->path},
         .pSampler = &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler),
                                            .addressModeU = mode,
                                            .addressModeV = mode,
@@ -103,14 +109,13 @@ static bool create_texture(const struct tracer_options *options, SluiceDemandLoa
                                            .explicitAddressModes = !texture->path},
         .failureColor = {1.0f, 0.0f, 1.0f, 1.0f},
     };
-    SluiceResult result = sluiceAddDemandTexture(loader, &info, &texture->id);
+    SluiceResult result = sluiceAddDemandTexture(loader, &info, id);
     if (result != SLUICE_SUCCESS)
         text_say("a texture cannot be created: %s", sluiceGetResultName(result));
     return result == SLUICE_SUCCESS;
 }
 
-bool textures_create(const struct tracer_options *options, SluiceDemandLoader *loader,
-                     struct textures *t)
+bool textures_create(const struct tracer_options *options, struct textures *t)
 {
     *t = (struct textures){.scene_count = options->texture_count};
     if (!collect_files(&options->textures, &t->files))
@@ -121,19 +126,27 @@ bool textures_create(const struct tracer_options *options, SluiceDemandLoader *l
     t->items = calloc(t->scene_count, sizeof *t->items);
     t->of_scene = calloc(t->scene_count, sizeof *t->of_scene);
     if (!t->items || !t->of_scene ||
-        sluiceCreateExrMemoryBudget(options->memory, NULL, &t->memory) != SLUICE_SUCCESS) {
+        sluiceCreateExrMemoryBudget(options->memory, NULL, &t->memory) != SLUICE_SUCCESS ||
+        !choose_images(options, t)) {
         fprintf(stderr, "out of memory\n");
         return false;
     }
-    choose_images(options, t);
+    return true;
+}
+
+bool textures_add(const struct tracer_options *options, struct textures *t,
+                  SluiceDemandLoader *loader, SluiceDemandTextureId *ids)
+{
     for (uint32_t i = 0; i < t->count; i++)
-        if (!create_texture(options, loader, &t->items[i]))
+        if (!add_texture(options, loader, &t->items[i], &ids[i]))
             return false;
     return true;
 }
 
 void textures_finish(struct textures *t)
 {
+    for (uint32_t i = 0; i < t->count; i++)
+        shared_source_finish(&t->items[i].shared);
     sluiceDestroyExrMemoryBudget(t->memory);
     free(t->items);
     free(t->of_scene);
@@ -141,7 +154,7 @@ void textures_finish(struct textures *t)
     memset(t, 0, sizeof *t);
 }
 
-uint32_t textures_index(const struct textures *t, uint32_t index)
+uint32_t textures_index(const struct textures *t, const SluiceDemandTextureId *ids, uint32_t index)
 {
-    return (uint32_t)t->items[t->of_scene[index]].id;
+    return (uint32_t)ids[t->of_scene[index]];
 }
