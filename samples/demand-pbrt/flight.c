@@ -196,7 +196,7 @@ static bool fly(struct launches *l, struct flight *f)
         if (!fly_frame(l, f, i))
             return false;
         if (l->options->sequence || l->options->contact_sheet)
-            memset(l->film->sums.mapped, 0, l->film->sums.size);
+            film_clear(l->film);
     }
     return look_at_pictures(l, UINT64_MAX) && world_continue_builds(l->world, l->count + 1, true);
 }
@@ -217,8 +217,7 @@ bool flight_run(struct launches *l, struct flight *f)
     if (!fly(l, f))
         return false;
     qsort(f->seconds, f->frame_count, sizeof *f->seconds, compare);
-    memset(l->film->sums.mapped, 0, l->film->sums.size);
-    l->first = l->count;
+    film_clear(l->film);
     return true;
 }
 

@@ -305,16 +305,29 @@ static bool trace_sample(struct launches *l, uint32_t sample, uint32_t most)
     return true;
 }
 
+static void note_fill(struct launches *l)
+{
+    if (l->fill_end > 0.0)
+        return;
+    l->fill_end = clock_seconds();
+    l->fill_count = l->tile_count;
+    l->fill_paths = l->path_count;
+}
+
 bool launches_run(struct launches *l)
 {
     const struct pbrt_options *o = l->options;
     const uint32_t most = o->warmup < o->launches ? o->warmup + 1 : o->launches;
+    l->first = l->count;
+    l->sample_count = 0;
     for (uint32_t sample = 0; sample < o->samples; sample++) {
         if (!trace_sample(l, sample, most))
             return false;
+        l->path_count += l->film->pixel_count - l->film->missing_count;
         if (l->film->missing_count > 0)
             break;
         l->sample_count++;
+        note_fill(l);
     }
     return true;
 }

@@ -26,7 +26,11 @@ struct launches {
     uint32_t count;        ///< launches so far
     uint32_t first;        ///< launches before those that --launches counts
     uint32_t idle_count;   ///< launches that trace nothing: opened pictures go on to their tiles
-    uint32_t sample_count; ///< complete samples per pixel
+    uint32_t sample_count; ///< complete samples per pixel of this picture
+    uint64_t path_count;   ///< complete paths
+    double fill_end;       ///< clock_seconds() when the first sample was complete; 0: never
+    uint64_t fill_count;   ///< tiles loaded until then
+    uint64_t fill_paths;   ///< complete paths until then
     uint64_t ray_count;    ///< pixels traced, again and again ones among them
     uint64_t tile_count;   ///< tiles loaded
     uint64_t peak_device;  ///< bytes
@@ -43,7 +47,8 @@ void launches_finish(struct launches *launches);
 
 /** Makes all surfaces and loads all tiles. */
 bool launches_preload(struct launches *launches);
-/** Traces all samples, each until nothing is missing, or until there were enough launches. */
+/** Traces all samples of a picture, each until nothing is missing, or until there were enough
+ * launches. */
 bool launches_run(struct launches *launches);
 /** Builds what has changed, and traces the film's list once. `*progress`: pixels became complete,
  * or tiles were asked for. */

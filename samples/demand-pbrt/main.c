@@ -1,9 +1,11 @@
 /**
  * Renders scenes of pbrt with geometry, materials and textures on demand; see --help.
  *
- * launches.c has the loop, world.c what is built when a ray enters a box, surfaces.c what is made
- * when a ray hits a material, and shaders/mesh.rchit in which order a hit asks for them.
+ * device.c has what each GPU has for itself, launches.c the loop, world.c what is built when a ray
+ * enters a box, surfaces.c what is made when a ray hits a material, and shaders/mesh.rchit in which
+ * order a hit asks for them.
  */
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,10 +17,9 @@
 #include "../../tools/common/output_file.h"
 #include "../../tools/common/text.h"
 #include "../common/contact_sheet.h"
+#include "../common/crew.h"
 #include "camera.h"
-#include "emitters.h"
 #include "flight.h"
-#include "lights.h"
 #include "picture_output.h"
 #include "statistics.h"
 #include "summary.h"
@@ -28,190 +29,166 @@
 
 struct renderer {
     struct pbrt_options options;
-    struct gpu gpu;
+    struct shared shared;
+    struct device *devices; ///< owned
+    uint32_t device_count;
     bool unsupported;
-    struct scene scene;
-    SluiceVulkanContext *context;
-    SluiceDemandLoader *loader;
-    struct textures textures;
-    struct surfaces surfaces;
-    struct table lights, emitters;
-    struct proxies proxies;
-    struct world world;
-    struct film film;
-    struct tracing tracing;
+    uint32_t validation_messages; ///< of all devices, once they are destroyed
     struct picture picture;
     struct contact_sheet sheet;
-    struct launches launches;
-    struct flight flight;
-    double start; ///< of the program
+    struct flight flight;     ///< of the only device
+    double way;               ///< share of the picture that all devices render
+    atomic_uint next_picture; ///< of an animation whose pictures devices take in turn
+    atomic_bool ends;         ///< a device failed
+    double start;             ///< of the program
+    double trace_start;       ///< of the first launch
 };
 
-static bool create_loader(struct renderer *r)
+static uint32_t picture_count(const struct pbrt_options *o)
 {
-    const struct pbrt_options *o = &r->options;
-    const SluiceVulkanContextCreateInfo context = {
-        .structSize = sizeof context,
-        .queueFamilyIndex = r->gpu.family,
-        .instance = r->gpu.instance,
-        .physicalDevice = r->gpu.physical_device,
-        .device = r->gpu.device,
-        .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-        .log = {.pfnLog = log_say},
-        .loaderThreadCount = o->threads,
-    };
-    SluiceDemandLoaderCreateInfo info = {
-        .structSize = sizeof info,
-        .pageCapacity = PBRT_PAGE_CAPACITY,
-        .memoryBudget = o->texture_budget,
-        .maxRequestsPerLaunch = PBRT_MOST_REQUESTS,
-    };
-    SluiceResult result = sluiceCreateVulkanContext(&context, &r->context);
-    info.context = r->context;
-    if (result == SLUICE_SUCCESS)
-        result = sluiceCreateDemandLoader(&info, &r->loader);
-    if (result == SLUICE_SUCCESS)
-        return true;
-    text_say("nothing can be loaded on demand: %s", sluiceGetResultName(result));
-    r->unsupported = result == SLUICE_ERROR_UNSUPPORTED;
-    return false;
+    return o->animation > 0 ? o->animation : 1;
 }
 
-static bool create_gpu(struct renderer *r)
+/** FILE, or FILE with the picture's number before its ending. */
+static void name_picture(const struct pbrt_options *o, uint32_t picture, char path[4096])
 {
-    const struct gpu_request request = {
-        .device = r->options.device,
-        .validation = r->options.validation,
-        .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED},
-        .ray_tracing = r->options.path != PATH_COMPUTE,
-        .build_queue = r->options.path != PATH_COMPUTE,
-        .buffer_addresses = true};
-    if (!gpu_create(&request, &r->gpu, &r->unsupported))
-        return false;
-    r->unsupported =
-        !r->gpu.buffer_addresses || (r->options.path == PATH_PIPELINE && !r->gpu.ray_tracing);
-    if (!r->gpu.buffer_addresses)
-        text_say("%s has no addresses of buffers", r->gpu.properties.deviceName);
-    else if (request.ray_tracing && !r->gpu.ray_tracing)
-        text_say("%s has no ray-tracing pipeline%s", r->gpu.properties.deviceName,
-                 r->unsupported ? "" : ": rays are traced in a compute shader, which is slower");
-    return !r->unsupported && create_loader(r);
+    const char *ending = strrchr(o->file, '.');
+    if (o->animation > 0 && ending)
+        snprintf(path, 4096, "%.*s-%04u%s", (int)(ending - o->file), o->file, picture + 1, ending);
+    else
+        snprintf(path, 4096, "%s", o->file);
 }
 
 /* Before anything takes its time. */
 static bool can_write_outputs(const struct pbrt_options *o)
 {
-    const char *const paths[] = {o->file, o->dump, o->statistics, o->contact_sheet, o->bounds};
+    const char *const paths[] = {o->dump, o->statistics, o->contact_sheet, o->bounds};
+    char path[4096];
     bool good = output_add_input(o->scene) && picture_output_is_known(o->file);
+    for (uint32_t i = 0; i < picture_count(o) && good; i++) {
+        name_picture(o, i, path);
+        good = output_can_write(path);
+    }
     for (size_t i = 0; i < sizeof paths / sizeof *paths && good; i++)
         good = !paths[i] || output_can_write(paths[i]);
     return good && (!o->sequence || files_make_folders(o->sequence));
 }
 
 /** FILE.cache beside the picture, unless --cache names a folder. */
-static bool create_textures(struct renderer *r)
+static bool create_pictures(struct renderer *r)
 {
     char cache[4096];
     const struct pbrt_options *o = &r->options;
     snprintf(cache, sizeof cache, "%s", o->cache ? o->cache : o->file);
     if (!o->cache)
         strncat(cache, ".cache", sizeof cache - strlen(cache) - 1);
-    if (!textures_create(r->loader, cache, o->threads, &r->textures))
+    if (!picture_files_create(cache, o->threads, &r->shared.pictures))
         return false;
-    r->textures.max_anisotropy = (float)o->anisotropy;
-    r->textures.says_what_it_reads = o->verbose_loading;
+    r->shared.pictures.says_what_it_reads = o->verbose_loading;
     return true;
 }
 
-static bool create_world(struct renderer *r)
+static bool open_scene(struct renderer *r)
 {
     const struct pbrt_options *o = &r->options;
-    struct proxies *proxies = o->preload ? NULL : &r->proxies;
-    if ((proxies && !proxies_create(r->loader, &r->scene, proxies)) ||
-        !world_create(&r->gpu, &r->scene, &r->surfaces, o->preload_shapes ? NULL : proxies,
-                      o->granularity == 1, o->threads, &r->world))
+    struct scene *scene = &r->shared.scene;
+    r->shared.options = o;
+    if (!can_write_outputs(o) || !scene_open(o->scene, o->bounds, scene) ||
+        (!o->preload && !o->preload_shapes && !scene_cluster(scene, o->cluster_size)) ||
+        (o->dump && !scene_dump(scene, o->dump)))
         return false;
-    r->world.budget = o->budget;
-    r->surfaces.budget = o->material_budget;
-    r->world.meshes.uncompacted = o->uncompacted;
-    r->world.meshes.says_what_it_reads = o->verbose_loading;
-    r->surfaces.says_what_it_makes = o->verbose_loading;
-    return world_begin(&r->world);
+    camera_size(scene, o, r->shared.size);
+    return true;
+}
+
+static bool create_device(struct renderer *r, uint32_t index, const char *name)
+{
+    struct device *d = &r->devices[index];
+    d->index = index;
+    const bool done = device_create(&r->shared, index > 0 ? r->devices : NULL, name, d);
+    r->unsupported = r->unsupported || d->unsupported;
+    r->device_count += done;
+    return done && !d->unsupported;
+}
+
+/** The first one has the instance. */
+static bool create_devices(struct renderer *r)
+{
+    const struct device_list *list = &r->options.devices;
+    uint32_t indices[DEVICE_LIST_MOST], count = 1;
+    char name[16];
+    snprintf(name, sizeof name, "%u", list->indices[0]);
+    r->devices = calloc(DEVICE_LIST_MOST, sizeof *r->devices);
+    if (!r->devices || !create_device(r, 0, list->count > 0 ? name : r->options.device))
+        return false;
+    if (list->wanted > 0 || list->count > 0)
+        count = gpu_list_alike(&r->devices[0].gpu, list, indices);
+    r->unsupported = r->unsupported || count == 0;
+    for (uint32_t i = 1; i < count; i++) {
+        snprintf(name, sizeof name, "%u", indices[i]);
+        if (!create_device(r, i, name))
+            return false;
+    }
+    return count > 0;
+}
+
+static bool open_device(void *user_data, uint32_t index)
+{
+    struct renderer *r = user_data;
+    const bool splits = r->options.split == SPLIT_FRAME && r->device_count > 1;
+    const struct film_share share = {index, r->device_count};
+    return device_open(&r->devices[index], splits ? share : (struct film_share){0});
 }
 
 static bool open_all(struct renderer *r)
 {
-    const struct pbrt_options *o = &r->options;
-    uint32_t size[2];
-    bool only_areas = false;
-    if (!can_write_outputs(o) || !scene_open(o->scene, o->bounds, &r->scene))
+    const uint32_t *size = r->shared.size;
+    if (!open_scene(r) || !create_devices(r) || !create_pictures(r))
         return false;
-    if (!o->preload && !o->preload_shapes && !scene_cluster(&r->scene, o->cluster_size))
-        return false;
-    if (o->dump && !scene_dump(&r->scene, o->dump))
-        return false;
-    camera_size(&r->scene, o, size);
-    struct PbrtLaunch *c = &r->launches.constants;
-    if (!create_gpu(r) || !create_textures(r) ||
-        !surfaces_create(&r->gpu, &r->scene, &r->surfaces) ||
-        !lights_create(&r->gpu, &r->scene, &r->textures, &r->lights, &only_areas) ||
-        !emitters_create(&r->gpu, &r->scene, o->mode == PBRT_MODE_PATH, &r->lights, &r->emitters) ||
-        !create_world(r) ||
-        !film_create(&r->gpu, size[0], size[1], (struct film_share){0}, &r->film) ||
-        !picture_create(size[0], size[1], &r->picture) ||
-        !tracing_create(&r->gpu, r->loader, &r->tracing))
-        return false;
-    float camera[12];
-    camera_matrix(&r->scene, &o->camera, camera);
-    camera_constants(&r->scene, camera, size, c);
-    flight_place_camera(&r->scene, o, size, o->fly_at, c);
-    lights_constants(&r->scene, o, only_areas, r->emitters.count, c);
-    return true;
+    r->shared.meshes = mesh_cache_create(&r->shared.scene, r->device_count);
+    const bool done = r->shared.meshes && crew_run(r->device_count, open_device, r);
+    for (uint32_t i = 0; i < r->device_count; i++)
+        r->unsupported = r->unsupported || r->devices[i].unsupported;
+    return done && picture_create(size[0], size[1], &r->picture);
 }
 
 static void close_all(struct renderer *r)
 {
-    if (r->gpu.device) {
-        vkDeviceWaitIdle(r->gpu.device);
-        launches_finish(&r->launches);
-        flight_finish(&r->flight);
-        tracing_destroy(&r->gpu, &r->tracing);
-        film_destroy(&r->gpu, &r->film);
-        proxies_finish(&r->gpu, &r->world.structures, &r->proxies);
-        world_finish(&r->world);
-        surfaces_finish(&r->gpu, &r->surfaces);
-        table_finish(&r->gpu, &r->lights);
-        table_finish(&r->gpu, &r->emitters);
-    }
-    sluiceDestroyDemandLoader(r->loader);
-    sluiceDestroyVulkanContext(r->context);
-    textures_finish(&r->textures);
-    gpu_destroy(&r->gpu);
+    flight_finish(&r->flight);
+    for (uint32_t i = r->device_count; i-- > 0;)
+        device_destroy(&r->devices[i]);
+    mesh_cache_destroy(r->shared.meshes);
+    picture_files_finish(&r->shared.pictures);
     picture_destroy(&r->picture);
     contact_sheet_finish(&r->sheet);
-    scene_finish(&r->scene);
+    scene_finish(&r->shared.scene);
+    if (r->devices)
+        r->validation_messages = atomic_load(&r->devices[0].gpu.validation_messages);
+    free(r->devices);
 }
 
-static bool add_to_sheet(struct renderer *r)
+static bool add_to_sheet(struct renderer *r, const struct device *d)
 {
     char caption[96];
-    const double share = 100.0 * r->film.missing_count / ((double)r->film.width * r->film.height);
+    const double pixels = (double)d->film.width * d->film.height;
+    const double share = 100.0 * d->film.missing_count / pixels;
     const bool is_small = share > 0.0 && share < 10.0;
-    snprintf(caption, sizeof caption, "launch %u: %llu shapes, %.*f%% missing", r->launches.count,
-             (unsigned long long)r->world.entered_count, is_small ? 1 : 0, share);
+    snprintf(caption, sizeof caption, "launch %u: %llu shapes, %.*f%% missing", d->launches.count,
+             (unsigned long long)d->world.entered_count, is_small ? 1 : 0, share);
     return contact_sheet_add(&r->sheet, &r->picture, r->options.exposure, caption);
 }
 
-static void tell_debug(const struct renderer *r)
+static void tell_debug(const struct renderer *r, const struct device *device)
 {
     static const char *const kinds[] = {"is not traced", "hits nothing", "hits box", "hits shape"};
-    struct PbrtDebug *d = r->launches.debug.mapped;
+    struct PbrtDebug *d = device->launches.debug.mapped;
     if (d->pixel == PBRT_NONE || d->kind > 3)
         return;
-    fprintf(stderr, "launch %u: pixel %u/%u %s", r->launches.count, r->options.debug[0],
+    fprintf(stderr, "launch %u: pixel %u/%u %s", device->launches.count, r->options.debug[0],
             r->options.debug[1], kinds[d->kind]);
     if (d->kind == 3) {
-        const SluicePbrtShape shape = scene_shape(&r->scene, r->world.places[d->place].node.shape);
+        const SluicePbrtShape shape =
+            scene_shape(&r->shared.scene, device->world.places[d->place].node.shape);
         fprintf(stderr, " of %s:%u, triangle %u, material %u, diffuse %g %g %g", shape.pFile,
                 shape.line, d->triangle, shape.material, d->diffuse[0], d->diffuse[1],
                 d->diffuse[2]);
@@ -225,34 +202,101 @@ static void tell_debug(const struct renderer *r)
 static bool after_launch(void *user_data)
 {
     struct renderer *r = user_data;
+    const struct device *d = &r->devices[0]; /* launches are shown of an only device */
     const struct pbrt_options *o = &r->options;
     char path[4096];
-    tell_debug(r);
+    if (atomic_load(&r->ends))
+        return false;
+    tell_debug(r, d);
     if (!o->sequence && !o->contact_sheet)
         return true;
-    if (!film_read(&r->gpu, &r->film, &r->picture))
+    if (!film_read(&d->gpu, &d->film, &r->picture))
         return false;
     snprintf(path, sizeof path, "%s/launch-%05u.png", o->sequence ? o->sequence : "",
-             r->launches.count);
+             d->launches.count);
     return (!o->sequence || picture_output_write(&r->picture, o->exposure, path)) &&
-           (!o->contact_sheet || add_to_sheet(r));
+           (!o->contact_sheet || add_to_sheet(r, d));
 }
 
-static bool write_files(struct renderer *r)
+static bool write_picture(const struct pbrt_options *o, const struct picture *picture,
+                          uint32_t index)
+{
+    char path[4096];
+    name_picture(o, index, path);
+    return picture_output_write(picture, o->exposure, path);
+}
+
+/** Share of the way. */
+static double way_of(const struct pbrt_options *o, uint32_t picture)
+{
+    return o->animation > 0 ? (picture + 1.0) / o->animation : o->fly_at;
+}
+
+static bool end_if_failed(struct renderer *r, bool done)
+{
+    if (!done)
+        atomic_store(&r->ends, true);
+    return done;
+}
+
+/** Its tiles of the picture that all devices render. */
+static bool render_share(void *user_data, uint32_t index)
+{
+    struct renderer *r = user_data;
+    return end_if_failed(r, device_render(&r->devices[index], r->way, &r->picture));
+}
+
+/** Whole pictures, the next one that no device has begun. */
+static bool render_pictures(void *user_data, uint32_t index)
+{
+    struct renderer *r = user_data;
+    const struct pbrt_options *o = &r->options;
+    struct picture picture = {0};
+    bool done = picture_create(r->shared.size[0], r->shared.size[1], &picture);
+    picture.plain = true;
+    for (uint32_t i; done && (i = atomic_fetch_add(&r->next_picture, 1)) < picture_count(o);)
+        done = device_render(&r->devices[index], way_of(o, i), &picture) &&
+               write_picture(o, &picture, i);
+    picture_destroy(&picture);
+    return end_if_failed(r, done);
+}
+
+static bool render_all(struct renderer *r)
 {
     const struct pbrt_options *o = &r->options;
-    const struct summary summary = {&r->launches, clock_seconds() - r->start};
-    if (!film_read(&r->gpu, &r->film, &r->picture) ||
-        !picture_output_write(&r->picture, o->exposure, o->file) ||
-        (o->contact_sheet && !contact_sheet_write(&r->sheet, o->contact_sheet)))
+    bool done = true;
+    if (o->split == SPLIT_ALTERNATE)
+        return crew_run(r->device_count, render_pictures, r);
+    for (uint32_t i = 0; i < picture_count(o) && done; i++) {
+        r->way = way_of(o, i);
+        done = crew_run(r->device_count, render_share, r) && write_picture(o, &r->picture, i);
+    }
+    return done;
+}
+
+static bool repeat_share(void *user_data, uint32_t index)
+{
+    struct renderer *r = user_data;
+    struct launches *l = &r->devices[index].launches;
+    l->after_launch = NULL;
+    return launches_repeat(l, r->options.repeat);
+}
+
+static bool tell(struct renderer *r, uint64_t missing)
+{
+    const struct pbrt_options *o = &r->options;
+    const struct summary summary = {.devices = r->devices,
+                                    .device_count = r->device_count,
+                                    .start = r->start,
+                                    .trace_start = r->trace_start};
+    if (o->contact_sheet && !contact_sheet_write(&r->sheet, o->contact_sheet))
         return false;
-    r->launches.after_launch = NULL;
-    if (o->repeat > 0 && r->film.missing_count == 0 && !launches_repeat(&r->launches, o->repeat))
+    if (o->repeat > 0 && missing == 0 && !crew_run(r->device_count, repeat_share, r))
         return false;
-    if (o->statistics && !statistics_write(&r->launches, o->scene, o->statistics))
+    if (o->statistics && !statistics_write(&r->devices[0].launches, o->scene, o->statistics))
         return false;
     if (o->json)
-        gpu_print_json(&r->gpu);
+        gpu_print_json(&r->devices[0].gpu);
     if (o->fly > 0)
         flight_print(&r->flight, o->json);
     return summary_print(&summary, o->json);
@@ -269,36 +313,26 @@ static bool fly(struct renderer *r)
     r->flight =
         (struct flight){.frame_count = r->options.fly,
                         .budget = {.seconds = 1e-3 * r->options.frame_budget, .now = read_clock}};
-    return r->options.fly == 0 || flight_run(&r->launches, &r->flight);
+    return r->options.fly == 0 || flight_run(&r->devices[0].launches, &r->flight);
 }
 
 static bool render(struct renderer *r)
 {
-    const struct PbrtLaunch constants = r->launches.constants;
+    uint64_t missing = 0;
     r->picture.plain = true;
-    r->launches = (struct launches){.gpu = &r->gpu,
-                                    .options = &r->options,
-                                    .scene = &r->scene,
-                                    .loader = r->loader,
-                                    .tracing = &r->tracing,
-                                    .world = &r->world,
-                                    .surfaces = &r->surfaces,
-                                    .textures = &r->textures,
-                                    .proxies = r->options.preload ? NULL : &r->proxies,
-                                    .film = &r->film,
-                                    .lights = &r->lights,
-                                    .emitters = &r->emitters,
-                                    .constants = constants,
-                                    .user_data = r,
-                                    .after_launch = after_launch};
-    if (!launches_create(&r->launches) || (r->options.preload && !launches_preload(&r->launches)) ||
-        !fly(r) || !launches_run(&r->launches))
+    r->trace_start = clock_seconds();
+    for (uint32_t i = 0; i < r->device_count; i++) {
+        r->devices[i].launches.user_data = r;
+        r->devices[i].launches.after_launch = after_launch;
+    }
+    if (!fly(r) || !render_all(r))
         return false;
-    const uint32_t missing = r->film.missing_count;
+    for (uint32_t i = 0; i < r->device_count; i++)
+        missing += r->devices[i].missing_count;
     if (missing > 0)
-        fprintf(stderr, "%u pixels are still missing after %u launches\n", missing,
-                r->launches.count);
-    return write_files(r) && missing == 0;
+        fprintf(stderr, "%llu pixels are still missing after %u launches\n",
+                (unsigned long long)missing, r->devices[0].launches.count);
+    return tell(r, missing) && missing == 0;
 }
 
 int main(int argc, char **argv)
@@ -316,7 +350,7 @@ int main(int argc, char **argv)
     bool done = opened && render(&renderer);
     close_all(&renderer);
     log_finish();
-    uint32_t messages = atomic_load(&renderer.gpu.validation_messages);
+    const uint32_t messages = renderer.validation_messages;
     if (messages > 0)
         fprintf(stderr, "the validation layers had %u messages\n", messages);
     if (!opened && renderer.unsupported)

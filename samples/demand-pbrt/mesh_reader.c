@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "../../tools/common/clock.h"
-
 #define MOST_THREADS 8u
 
 enum job_state { JOB_FREE, JOB_WAITS, JOB_RUNS, JOB_DONE };
@@ -19,7 +17,8 @@ struct job {
 };
 
 struct mesh_reader {
-    const struct scene *scene;
+    struct mesh_cache *cache;
+    uint32_t device;
     pthread_mutex_t mutex; ///< of all below
     pthread_cond_t asked, done;
     bool ends;
@@ -28,14 +27,6 @@ struct mesh_reader {
     uint32_t thread_count;
     pthread_t threads[MOST_THREADS];
 };
-
-static void read_shape(const struct scene *scene, uint32_t shape, struct mesh_read *read)
-{
-    double start = clock_seconds();
-    *read = (struct mesh_read){.mesh.structSize = sizeof read->mesh};
-    read->result = sluiceReadPbrtShape(scene->pbrt, shape, &read->mesh);
-    read->seconds = clock_seconds() - start;
-}
 
 static struct job *next_job(struct mesh_reader *r)
 {
@@ -58,7 +49,7 @@ static void *work(void *user_data)
         }
         job->state = JOB_RUNS;
         pthread_mutex_unlock(&r->mutex);
-        read_shape(r->scene, job->shape, &job->read);
+        mesh_cache_read(r->cache, job->shape, &job->read);
         pthread_mutex_lock(&r->mutex);
         job->state = JOB_DONE;
         pthread_cond_broadcast(&r->done);
@@ -75,14 +66,16 @@ static uint32_t choose_count(uint32_t count)
     return count < MOST_THREADS ? count : MOST_THREADS;
 }
 
-struct mesh_reader *mesh_reader_create(const struct scene *scene, uint32_t thread_count)
+struct mesh_reader *mesh_reader_create(struct mesh_cache *cache, uint32_t device,
+                                       uint32_t thread_count)
 {
     struct mesh_reader *r = calloc(1, sizeof *r);
     if (!r) {
         fprintf(stderr, "out of memory\n");
         return NULL;
     }
-    r->scene = scene;
+    r->cache = cache;
+    r->device = device;
     pthread_mutex_init(&r->mutex, NULL);
     pthread_cond_init(&r->asked, NULL);
     pthread_cond_init(&r->done, NULL);
@@ -105,7 +98,7 @@ void mesh_reader_destroy(struct mesh_reader *r)
         pthread_join(r->threads[i], NULL);
     for (uint32_t i = 0; i < MESH_READER_ROOM; i++)
         if (r->jobs[i].state == JOB_DONE)
-            (void)sluiceFreePbrtMesh(r->scene->pbrt, &r->jobs[i].read.mesh);
+            mesh_reader_give(r, &r->jobs[i].read);
     pthread_cond_destroy(&r->done);
     pthread_cond_destroy(&r->asked);
     pthread_mutex_destroy(&r->mutex);
@@ -131,7 +124,7 @@ static struct job *find_free(struct mesh_reader *r)
             oldest = job;
     }
     if (oldest)
-        (void)sluiceFreePbrtMesh(r->scene->pbrt, &oldest->read.mesh);
+        mesh_reader_give(r, &oldest->read);
     return oldest;
 }
 
@@ -169,5 +162,10 @@ void mesh_reader_take(struct mesh_reader *r, uint32_t shape, struct mesh_read *r
         job->state = JOB_FREE;
     pthread_mutex_unlock(&r->mutex);
     if (!is_read)
-        read_shape(r->scene, shape, read);
+        mesh_cache_read(r->cache, shape, read);
+}
+
+void mesh_reader_give(struct mesh_reader *r, struct mesh_read *read)
+{
+    mesh_cache_give(r->cache, r->device, read);
 }

@@ -2,23 +2,17 @@
 #ifndef DEMAND_PBRT_MESH_READER_H
 #define DEMAND_PBRT_MESH_READER_H
 
-#include "scene.h"
+#include "mesh_cache.h"
 
 struct mesh_reader;
-
-/** What was read. `mesh` is freed by the caller with sluiceFreePbrtMesh, also after an error. */
-struct mesh_read {
-    SluiceResult result;
-    SluicePbrtMesh mesh;
-    double seconds; ///< of the thread
-};
 
 /** Meshes that may be asked for and not taken yet: they are in memory. */
 #define MESH_READER_ROOM 64u
 
-/** `thread_count` 0: all processors but one, 1 to 8. The scene outlives it. Says on stderr why it
- *  failed; NULL then. */
-struct mesh_reader *mesh_reader_create(const struct scene *scene, uint32_t thread_count);
+/** For a device. `thread_count` 0: all processors but one, 1 to 8. The cache outlives it. Says on
+ *  stderr why it failed; NULL then. */
+struct mesh_reader *mesh_reader_create(struct mesh_cache *cache, uint32_t device,
+                                       uint32_t thread_count);
 /** NULL is fine. What was asked for and not taken is freed. */
 void mesh_reader_destroy(struct mesh_reader *reader);
 
@@ -27,7 +21,9 @@ void mesh_reader_destroy(struct mesh_reader *reader);
 bool mesh_reader_ask(struct mesh_reader *reader, uint32_t shape);
 /** Whether mesh_reader_take would not wait. */
 bool mesh_reader_is_ready(struct mesh_reader *reader, uint32_t shape);
-/** Waits for a mesh that was asked for, or reads it. */
+/** Waits for a mesh that was asked for, or reads it. The caller gives it back, also after an error.
+ */
 void mesh_reader_take(struct mesh_reader *reader, uint32_t shape, struct mesh_read *read);
+void mesh_reader_give(struct mesh_reader *reader, struct mesh_read *read);
 
 #endif /* DEMAND_PBRT_MESH_READER_H */

@@ -46,8 +46,8 @@ static void assign(const struct scene *scene, struct known_file *files, uint32_t
     }
 }
 
-bool meshes_create(const struct gpu *gpu, const struct scene *scene, uint32_t thread_count,
-                   struct meshes *m)
+bool meshes_create(const struct gpu *gpu, const struct scene *scene,
+                   const struct mesh_reading *reading, struct meshes *m)
 {
     const uint32_t count = scene->info.shapeCount;
     uint32_t size = 2;
@@ -65,7 +65,7 @@ bool meshes_create(const struct gpu *gpu, const struct scene *scene, uint32_t th
         fprintf(stderr, "out of memory\n");
     free(files);
     if (done)
-        m->reader = mesh_reader_create(scene, thread_count);
+        m->reader = mesh_reader_create(reading->cache, reading->device, reading->thread_count);
     return done && m->reader && table_grow(gpu, &m->table, m->count + 1u);
 }
 
@@ -189,7 +189,7 @@ static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct m
     struct PbrtMesh *entry = table_at(&m->table, index);
     struct mesh_read taken;
     mesh_reader_take(m->reader, mesh->shape, &taken);
-    SluicePbrtMesh read = taken.mesh;
+    const SluicePbrtMesh read = taken.mesh;
     m->read_seconds += taken.seconds;
     if (m->says_what_it_reads) {
         const SluicePbrtShape shape = scene_shape(scene, mesh->shape);
@@ -210,7 +210,7 @@ static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct m
     } else {
         fail(m, mesh); /* the library has said why, or the arena */
     }
-    (void)sluiceFreePbrtMesh(scene->pbrt, &read);
+    mesh_reader_give(m->reader, &taken);
     return done;
 }
 

@@ -32,6 +32,12 @@ struct mesh_list {
     uint32_t count, room, build_count;
 };
 
+/** Who reads the meshes of a device. */
+struct mesh_reading {
+    struct mesh_cache *cache; ///< of all devices
+    uint32_t device, thread_count;
+};
+
 /** Zeroed is empty. */
 struct meshes {
     struct mesh *items; ///< owned
@@ -53,8 +59,8 @@ struct meshes {
 };
 
 /** Says on stderr why it failed. */
-bool meshes_create(const struct gpu *gpu, const struct scene *scene, uint32_t thread_count,
-                   struct meshes *meshes);
+bool meshes_create(const struct gpu *gpu, const struct scene *scene,
+                   const struct mesh_reading *reading, struct meshes *meshes);
 void meshes_finish(const struct gpu *gpu, struct structures *structures, struct meshes *meshes);
 
 /**

@@ -76,6 +76,24 @@ static bool parse_view(const char *text, void *value)
            !(view->has_up && is_straight(way, view->up));
 }
 
+static bool check_devices(const struct option_table *table, const struct pbrt_options *o)
+{
+    const bool several = o->devices.wanted > 1 || o->devices.count > 1;
+    const bool has_launch_pictures = o->sequence || o->contact_sheet;
+    if (o->device && (o->devices.wanted > 0 || o->devices.count > 0))
+        return options_refuse(table, "--device and --devices: give one of them");
+    if (o->split == SPLIT_ALTERNATE && o->animation == 0)
+        return options_refuse(table, "--split alternate: is for --animation");
+    if ((several || o->animation > 0) && has_launch_pictures)
+        return options_refuse(table,
+                              "--sequence and --contact-sheet: are for one picture of one device");
+    if (several && (o->fly > 0 || o->statistics || o->debug[0] != UINT32_MAX))
+        return options_refuse(table, "--fly, --statistics and --debug: are for one device");
+    if (o->animation > 0 && (o->fly > 0 || o->fly_at < 1.0 || o->repeat > 0))
+        return options_refuse(table, "--animation: not with --fly, --fly-at and --repeat");
+    return true;
+}
+
 static bool check(const struct option_table *table, const struct pbrt_options *o)
 {
     if (!o->scene && !o->list_devices)
@@ -94,9 +112,9 @@ static bool check(const struct option_table *table, const struct pbrt_options *o
         return options_refuse(table, "--frame-budget: is for --fly");
     if (o->fly > 0 && o->fly_at < 1.0)
         return options_refuse(table, "--fly and --fly-at: give one of them");
-    if (o->fly_from.given && o->fly == 0 && !(o->fly_at < 1.0))
-        return options_refuse(table, "--fly-from: is for --fly and --fly-at");
-    return true;
+    if (o->fly_from.given && o->fly == 0 && !(o->fly_at < 1.0) && o->animation == 0)
+        return options_refuse(table, "--fly-from: is for --fly, --fly-at and --animation");
+    return check_devices(table, o);
 }
 
 enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_options *o)
@@ -124,6 +142,10 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
         {OPTION_FLAG, "face-forward", .value = &o->face_forward,
          .help = "turn normals to the viewer in mode primary"},
         {OPTION_REAL, "exposure", "STOPS", "0", &o->exposure, "of PNG pictures", -16, 16},
+        {OPTION_UINT, "animation", "N", "0", &o->animation,
+         "render N pictures along the way of --fly, FILE with -0001 and so on before its ending; "
+         "0: one picture",
+         0, 9999},
 
         {OPTION_SECTION, .help = "Loading"},
         {OPTION_FLAG, "preload", .value = &o->preload,
@@ -177,6 +199,8 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          "folder for pictures that are baked to tiles"},
         option_threads(&o->threads),
         option_device(&o->device),
+        option_devices(&o->devices),
+        {OPTION_CHOICE, "split", SPLIT_WORDS, "frame", &o->split, SPLIT_HELP},
         option_list_devices(&o->list_devices),
         option_validation(&o->validation),
 

@@ -2,7 +2,9 @@
 #ifndef DEMAND_PBRT_OPTIONS_H
 #define DEMAND_PBRT_OPTIONS_H
 
+#include "../../tools/common/device_list.h"
 #include "../../tools/common/option_table.h"
+#include "../common/split.h"
 #include "camera_path.h"
 
 enum path_choice { PATH_AUTO, PATH_PIPELINE, PATH_COMPUTE };
@@ -17,7 +19,10 @@ struct pbrt_options {
     const char *sequence;
     const char *contact_sheet;
     const char *device;
-    uint32_t dim[2]; ///< 0: as the film
+    struct device_list devices;
+    int split;          ///< enum split
+    uint32_t animation; ///< pictures; 0: one, which is no animation
+    uint32_t dim[2];    ///< 0: as the film
     float background[3];
     uint32_t debug[2]; ///< pixel; UINT32_MAX: none
     uint32_t samples;

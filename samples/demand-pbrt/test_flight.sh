@@ -75,11 +75,55 @@ render path --fly 8 --fly-from 0/-300/60/0/0/0/0/0/1
 check frames 'v == 8'
 check frame_work_longest 'v > 0'
 check frame_launch_mean 'v > 0'
+
+# The picture of several devices is that of one. One device may be listed several times.
+meshes_of_one=$(name=fresh && value meshes_read)
+render two --devices 0,0 $validation
+render three --devices 0,0,0 --cluster-size 64 $validation
+check devices 'v == 3'
+check meshes_read "v <= 41 && v >= $meshes_of_one" # each file once, however many devices build it
+check meshes_shared 'v > 0'
+for i in 0 1 2; do
+    check "device_${i}_launches" 'v > 3'
+    check "device_${i}_tiles_loaded" 'v > 0'
+    check "device_${i}_peak_device_bytes" 'v > 0'
+done
+render walls --devices 0,0,0 --budget 64K # evicted meshes are read again
+check geometries_evicted 'v > 0'
+
+# So are the pictures of an animation, whether devices share each picture or take pictures in turn. They are
+# those of --fly-at.
+animate() { # name, options
+    name=$1
+    shift
+    "$program" "$folder/set/scene.pbrt" --dim 96x54 --json --animation 4 --file "$folder/$name.pfm" "$@" \
+        >"$folder/$name.json" 2>"$folder/$name.log" || { complain "$name: status $?"; cat "$folder/$name.log" >&2; }
+}
+animate one
+check pixels_missing 'v == 0'
+animate shared --devices 0,0,0 $validation
+animate taken --devices 0,0,0 --split alternate $validation
+check pixels_missing 'v == 0'
+pictures=0
+for i in 0 1 2; do
+    pictures=$((pictures + $(value "device_${i}_pictures")))
+done
+[ "$pictures" -eq 4 ] || complain "taken: $pictures pictures were traced"
+for i in 1 2 3 4; do
+    cmp "$folder/shared-000$i.pfm" "$folder/one-000$i.pfm" || complain "shared: picture $i"
+    cmp "$folder/taken-000$i.pfm" "$folder/one-000$i.pfm" || complain "taken: picture $i"
+done
+cmp "$folder/one-0004.pfm" "$folder/fresh.pfm" || complain "the last picture is not that without an animation"
+cmp -s "$folder/one-0002.pfm" "$folder/fresh.pfm" && complain "the camera does not move"
+"$program" "$folder/set/scene.pbrt" --dim 96x54 --file "$folder/half.pfm" --fly-at 0.5 >/dev/null 2>&1 || complain "half"
+cmp "$folder/half.pfm" "$folder/one-0002.pfm" || complain "half of the way is not picture 2 of 4"
+
 # Less time than a launch takes: one box in a frame.
 render bounded --fly 20 --frame-budget 0.01
 check frames 'v == 20'
 check frame_boxes_resolved_most 'v == 1'
 for options in "--frame-budget 16" "--preload --preload-shapes" "--preload-shapes --budget 1M" "--fly-from 0/0/0/1/0/0" \
+    "--devices 0,0 --fly 4" "--devices 0,0 --device 0" "--split alternate" "--animation 2 --fly-at 1/2" \
     "--look-from 0/0/0" "--look-from 1/2/3/1/2/3" "--look-from 0/0/0/0/0/2/0/0/1" "--look-from 0/0/0/1/0/nan" "--cluster-size 1"; do
     status=0
     # shellcheck disable=SC2086

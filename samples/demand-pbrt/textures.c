@@ -4,77 +4,38 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../tools/common/clock.h"
 #include "../../tools/common/files.h"
-#include "../../tools/common/log.h"
-#include "../../tools/common/output_file.h"
 #include "../../tools/common/text.h"
 
-#define POLL_SECONDS 0.002
-
-/* A preview differs from the store in a few texels, so pictures would depend on time: wait for the
- * store. */
-static SluiceResult wait_for_bake(SluiceImageSource *source, SluiceImageFileKind *kind)
-{
-    for (;;) {
-        SluiceOpenedImageInfo info = {.structSize = sizeof info};
-        SluiceResult result = sluiceGetOpenedImageInfo(source, &info);
-        *kind = info.kind;
-        if (result != SLUICE_SUCCESS || info.ready)
-            return result;
-        if (info.failure != SLUICE_SUCCESS)
-            return info.failure;
-        clock_sleep_until(clock_seconds() + POLL_SECONDS);
-    }
-}
-
-static SluiceResult open_source(struct picture_image *image, SluiceImageSource **source,
-                                SluiceImageInfo *info)
-{
-    SluiceResult result = sluiceOpenImageSource(image->opener, image->path, source);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    result = wait_for_bake(*source, &image->kind);
-    if (result == SLUICE_SUCCESS)
-        result = sluiceGetImageInfo(*source, info);
-    if (result == SLUICE_SUCCESS)
-        return result;
-    sluiceDestroyImageSource(*source);
-    *source = NULL;
-    return result;
-}
-
-/* On a thread of the loader, and never twice at a time. */
+/* On a thread of the loader, and never twice at a time for one image. */
 static SluiceResult open_image(void *user_data, SluiceImageSource **source)
 {
     struct picture_image *image = user_data;
     SluiceImageInfo info = {.structSize = sizeof info};
-    SluiceResult result = open_source(image, source, &info);
+    SluiceOpenedImageInfo opened = {.structSize = sizeof opened};
+    SluiceResult result = shared_source_open(&image->file->shared, source);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if ((result = sluiceGetImageInfo(*source, &info)) == SLUICE_SUCCESS)
+        result = sluiceGetOpenedImageInfo(*source, &opened);
     if (result != SLUICE_SUCCESS) {
-        if (result != SLUICE_NOT_READY && !image->has_failed)
-            text_say("%s:%u: %s: cannot be read: %s; the texture becomes gray", image->file,
-                     image->line, image->path, sluiceGetResultName(result));
-        image->has_failed = image->has_failed || result != SLUICE_NOT_READY;
+        shared_source_close(&image->file->shared, *source);
         return result;
     }
-    if (image->says_what_it_reads)
-        text_say("picture %s: %u x %u", image->path, info.width, info.height);
+    image->kind = opened.kind;
     image->info = info;
     return SLUICE_SUCCESS;
 }
 
-bool textures_create(SluiceDemandLoader *loader, const char *cache, uint32_t thread_count,
-                     struct textures *t)
+static void close_image(void *user_data, SluiceImageSource *source)
 {
-    const SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
-                                              .pCacheFolder = cache,
-                                              .bakeThreadCount = thread_count,
-                                              .log = {.pfnLog = log_say}};
-    *t = (struct textures){.loader = loader, .max_anisotropy = 1.0f};
-    SluiceResult result = sluiceCreateImageOpener(&info, &t->opener);
-    if (result != SLUICE_SUCCESS)
-        text_say("pictures cannot be opened: %s", sluiceGetResultName(result));
-    return result == SLUICE_SUCCESS;
+    struct picture_image *image = user_data;
+    shared_source_close(&image->file->shared, source);
+}
+
+void textures_create(SluiceDemandLoader *loader, struct picture_files *files, struct textures *t)
+{
+    *t = (struct textures){.loader = loader, .files = files, .max_anisotropy = 1.0f};
 }
 
 void textures_finish(struct textures *t)
@@ -85,7 +46,6 @@ void textures_finish(struct textures *t)
         free(t->uses[i]);
     free(t->images);
     free(t->uses);
-    sluiceDestroyImageOpener(t->opener);
     *t = (struct textures){0};
 }
 
@@ -129,24 +89,20 @@ static SluiceDemandSampler make_sampler(const struct picture_use *use)
 
 static struct picture_image *find_image(struct textures *t, const SluicePbrtTexture *texture)
 {
-    const char *path = texture->pImagePath;
+    struct picture_file *file = picture_files_find(t->files, texture);
     for (uint32_t i = 0; i < t->image_count; i++)
-        if (strcmp(t->images[i]->path, path) == 0)
+        if (t->images[i]->file == file)
             return t->images[i];
-    if (!grow((void **)&t->images, t->image_count, &t->image_room, sizeof(struct picture_image *)))
+    if (!file ||
+        !grow((void **)&t->images, t->image_count, &t->image_room, sizeof(struct picture_image *)))
         return NULL;
     struct picture_image *image = calloc(1, sizeof *image);
-    if (!image || !output_add_input(path)) {
-        free(image);
+    if (!image) {
+        fprintf(stderr, "out of memory\n");
         return NULL;
     }
-    *image = (struct picture_image){.path = path,
-                                    .file = texture->pFile,
-                                    .line = texture->line,
-                                    .opener = t->opener,
-                                    .says_what_it_reads = t->says_what_it_reads};
-    t->images[t->image_count++] = image;
-    return image;
+    image->file = file;
+    return t->images[t->image_count++] = image;
 }
 
 static SluiceResult add_texture(struct textures *t, struct picture_use *use)
@@ -155,11 +111,13 @@ static SluiceResult add_texture(struct textures *t, struct picture_use *use)
     struct picture_image *image = use->image;
     if (image->id != SLUICE_NO_DEMAND_TEXTURE)
         return sluiceAddDemandTextureVariant(t->loader, image->id, &sampler, &use->id);
-    const SluiceDemandTextureCreateInfo info = {
-        .structSize = sizeof info,
-        .image = {.pUserData = image, .pfnOpen = open_image, .pName = image->path},
-        .pSampler = &sampler,
-        .failureColor = {0.5f, 0.5f, 0.5f, 1.0f}};
+    const SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                                .image = {.pUserData = image,
+                                                          .pfnOpen = open_image,
+                                                          .pfnClose = close_image,
+                                                          .pName = image->file->path},
+                                                .pSampler = &sampler,
+                                                .failureColor = {0.5f, 0.5f, 0.5f, 1.0f}};
     SluiceResult result = sluiceAddDemandTexture(t->loader, &info, &use->id);
     image->id = use->id;
     return result;
@@ -167,8 +125,8 @@ static SluiceResult add_texture(struct textures *t, struct picture_use *use)
 
 static bool is_same_use(const struct picture_use *a, const struct picture_use *b)
 {
-    return strcmp(a->image->path, b->image->path) == 0 && a->wrap == b->wrap &&
-           a->nearest == b->nearest && a->anisotropy == b->anisotropy;
+    return a->image == b->image && a->wrap == b->wrap && a->nearest == b->nearest &&
+           a->anisotropy == b->anisotropy;
 }
 
 /* Callers keep the pointer. */

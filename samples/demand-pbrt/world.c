@@ -43,8 +43,9 @@ static bool create_tree(struct world *w)
     return top_tree_create(w->gpu, clusters, &w->tree);
 }
 
-bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfaces *surfaces,
-                  struct proxies *proxies, bool coarse, uint32_t thread_count, struct world *w)
+bool world_create(const struct gpu *gpu, const struct scene *scene, const struct surfaces *surfaces,
+                  struct proxies *proxies, bool coarse, const struct mesh_reading *reading,
+                  struct world *w)
 {
     *w = (struct world){.gpu = gpu,
                         .scene = scene,
@@ -55,8 +56,8 @@ bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfa
                         .used.element = sizeof(uint32_t),
                         .changed = true};
     return structures_create(gpu, &w->structures) && (gpu->ray_tracing || create_tree(w)) &&
-           meshes_create(gpu, scene, thread_count, &w->meshes) &&
-           table_grow(gpu, &w->place_table, 1) && table_grow(gpu, &w->used, 1);
+           meshes_create(gpu, scene, reading, &w->meshes) && table_grow(gpu, &w->place_table, 1) &&
+           table_grow(gpu, &w->used, 1);
 }
 
 void world_finish(struct world *w)

@@ -29,7 +29,7 @@ struct place {
 /** Zeroed is empty. */
 struct world {
     const struct gpu *gpu;
-    struct scene *scene;
+    const struct scene *scene;
     const struct surfaces *surfaces;
     struct structures structures;
     struct meshes meshes;
@@ -64,8 +64,9 @@ struct world {
 };
 
 /** Says on stderr why it failed. */
-bool world_create(const struct gpu *gpu, struct scene *scene, const struct surfaces *surfaces,
-                  struct proxies *proxies, bool coarse, uint32_t thread_count, struct world *world);
+bool world_create(const struct gpu *gpu, const struct scene *scene, const struct surfaces *surfaces,
+                  struct proxies *proxies, bool coarse, const struct mesh_reading *reading,
+                  struct world *world);
 void world_finish(struct world *world);
 
 /** Adds one box around everything; without proxies, everything. */

@@ -156,10 +156,10 @@ is_like_first slow 60
 
 # The picture of several devices is that of one, byte for byte. One device may be listed several times.
 same() { # name, picture, another picture
-    cmp "$folder/$1/$2.exr" "$folder/$3.exr" && cmp "$folder/$1/$2.png" "$folder/$3.png" || {
+    if ! cmp "$folder/$1/$2.exr" "$folder/$3.exr" || ! cmp "$folder/$1/$2.png" "$folder/$3.png"; then
         echo "$1: $2 is not $3" >&2
         failed=1
-    }
+    fi
 }
 trace two $validation --devices 0,0
 succeeds
