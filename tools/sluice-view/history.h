@@ -1,0 +1,46 @@
+/** Values of series over three spans of time, for graphs. */
+#ifndef SLUICE_VIEW_HISTORY_H
+#define SLUICE_VIEW_HISTORY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define HISTORY_POINTS 600u
+#define HISTORY_FRAMES 3600u
+
+enum history_span { HISTORY_10_SECONDS, HISTORY_MINUTE, HISTORY_ALL, HISTORY_SPANS };
+
+/** The points of one span. A point has the largest value of the frames in its step. */
+struct history_ring {
+    double step;   ///< seconds per point
+    float *values; ///< owned; [HISTORY_POINTS][series]
+    uint64_t last; ///< number of the newest point: its time divided by the step
+    uint32_t count;
+};
+
+struct history {
+    struct history_ring rings[HISTORY_SPANS];
+    uint32_t series_count;
+    double seconds;       ///< since the first frame
+    float *frames;        ///< owned; seconds of the last HISTORY_FRAMES frames, a ring
+    float *sorted;        ///< owned; scratch
+    uint64_t frame_count; ///< so far
+};
+
+/** False without memory; the struct is zeroed then. */
+bool history_create(uint32_t series_count, struct history *history);
+/** A zeroed struct is fine. */
+void history_destroy(struct history *history);
+/** Adds the values of a frame that took so many seconds. */
+void history_add(struct history *history, double seconds, const float *values);
+/** Points of a span that are known. */
+uint32_t history_count(const struct history *history, enum history_span span);
+/** A value `age` points ago. */
+float history_value(const struct history *history, enum history_span span, uint32_t series,
+                    uint32_t age);
+/** Writes quantiles of the seconds per frame within a span, of the last HISTORY_FRAMES frames at
+ *  most. `parts`: 0.5 for the median. */
+void history_frame_times(struct history *history, enum history_span span, const double *parts,
+                         uint32_t count, double *seconds);
+
+#endif /* SLUICE_VIEW_HISTORY_H */
