@@ -37,6 +37,15 @@ fact panels_are_in_pictures_and_h_hides_them
 [ "$(wc -l <second.csv)" -eq 26 ] && head -n 1 second.csv | grep -q '^frame,resident_mb,' &&
     cmp <(cut -d , -f 1-5,8-13 first.csv) <(cut -d , -f 1-5,8-13 second.csv)
 fact figures_are_written_for_each_frame_and_are_the_same
+sums() { awk -F , -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i; next } { sum += $column }
+    END { printf "%d", sum }' "$2"; }
+printf '20 key g\n21 hover 380 120\n22 screenshot short.png\n23 set graph-span all\n24 screenshot long.png\n' >graphs
+run 0 --room --headless --deterministic --fresh --size 400x225 --render-scale 0.2 --residency sparse --timeout 0.05 \
+    --standby 0 --script graphs --frames 40 --csv graphs.csv --json && ! cmp -s short.png long.png &&
+    grep -q "\"tiles loaded\", \"value\": $(sums mapped graphs.csv)," out &&
+    [ "$(sums bind_runs graphs.csv)" -gt 0 ] && [ "$(sums feedback_words graphs.csv)" -gt 0 ] &&
+    awk -F , 'NR > 1 && ($12 + $22 - 100) ^ 2 > 1e-6 { wrong = 1 } END { exit wrong }' graphs.csv
+fact graphs_have_spans_and_the_table_of_figures_has_their_series
 "$replay" run.trace >out && grep -q '^as_recorded *yes' out && echo '1 record none/run.trace' >unwritable &&
     run 1 --room --headless --size 160x160 --frames 2 --script unwritable && grep -q 'none/run.trace' err
 fact decisions_are_recorded_from_any_frame_and_a_file_that_cannot_be_written_is_named

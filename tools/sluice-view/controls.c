@@ -249,6 +249,12 @@ static const struct control table[] = {
      FIELD(panels),
      NULL,
      CONTROL_PASSING},
+    {"Panels",
+     "Graphs",
+     {OPTION_CHOICE, "graph-span", "10s|1min|all", "10s", NULL, "time that graphs show"},
+     FIELD(graph_span),
+     NULL,
+     0},
 };
 
 #define COUNT (sizeof table / sizeof *table)

@@ -8,11 +8,14 @@
 #define TILE_SIZE 65536u
 /* Maps of all textures are looked at in turns, so that a frame takes little time. */
 #define TEXELS_PER_FRAME 16384u
+#define READS_PER_FRAME 16u
 
 static const char *const names[SERIES_COUNT] = {
-    "resident_mb",   "wanted_mb", "standby_mb", "budget_mb", "read_mb_s",
-    "uploaded_mb_s", "mapped",    "unmapped",   "canceled",  "failed",
-    "sharp_percent", "bias",      "frame_ms",   "host_ms",   "gpu_ms"};
+    "resident_mb",    "wanted_mb", "standby_mb", "budget_mb", "read_mb_s",
+    "uploaded_mb_s",  "mapped",    "unmapped",   "canceled",  "failed",
+    "sharp_percent",  "bias",      "frame_ms",   "host_ms",   "gpu_ms",
+    "stale",          "restored",  "bind_calls", "bind_runs", "feedback_words",
+    "missing_percent"};
 
 const char *facts_series_name(enum facts_series series)
 {
@@ -35,14 +38,27 @@ static size_t map_size_of(const SluiceStreamedTextureManager *manager, SluiceTex
     return (size_t)layout->minMipWidth * layout->minMipHeight;
 }
 
+static bool create_log(struct view_facts *f, const struct stage *stage)
+{
+    SluiceTextureId *ids = malloc((f->texture_count + 1u) * sizeof *ids);
+    uint32_t *tiles = calloc(f->texture_count + 1u, sizeof *tiles);
+    for (uint32_t i = 0; ids && tiles && i < f->texture_count; i++) {
+        SluiceStreamedTextureLayout layout;
+        ids[i] = stage_texture(stage, i)->id;
+        if (map_size_of(manager_of(stage), ids[i], &layout) > 0)
+            tiles[i] = layout.tileCount;
+    }
+    const bool created = ids && tiles && tile_log_create(ids, tiles, f->texture_count, &f->log);
+    free(ids);
+    free(tiles);
+    return created;
+}
+
 bool facts_create(struct view_facts *f, const struct stage *stage)
 {
     *f = (struct view_facts){.texture_count = stage_texture_count(stage)};
-    bool created = true;
     f->textures = calloc(f->texture_count + 1, sizeof *f->textures);
     f->events = calloc(FACTS_EVENTS, sizeof *f->events);
-    for (int i = 0; i < SERIES_COUNT; i++)
-        created = (f->history[i] = calloc(FACTS_HISTORY, sizeof **f->history)) && created;
     for (uint32_t i = 0; i < f->texture_count; i++) {
         SluiceStreamedTextureLayout layout;
         size_t size = map_size_of(manager_of(stage), stage_texture(stage, i)->id, &layout);
@@ -51,7 +67,8 @@ bool facts_create(struct view_facts *f, const struct stage *stage)
         f->all_size += stage_texture(stage, i)->size;
     }
     f->maps = malloc(2 * f->map_size + 1);
-    if (created && f->textures && f->events && f->maps)
+    if (history_create(SERIES_COUNT, &f->history) && create_log(f, stage) && f->textures &&
+        f->events && f->maps)
         return true;
     fprintf(stderr, "sluice-view: out of memory\n");
     facts_destroy(f);
@@ -60,22 +77,26 @@ bool facts_create(struct view_facts *f, const struct stage *stage)
 
 void facts_destroy(struct view_facts *f)
 {
-    for (int i = 0; i < SERIES_COUNT; i++)
-        free(f->history[i]);
+    history_destroy(&f->history);
+    tile_log_destroy(&f->log);
     free(f->textures);
     free(f->events);
     free(f->maps);
     *f = (struct view_facts){0};
 }
 
-static void read_events(struct view_facts *f, const SluiceStreamedTextureManager *manager)
+static void read_events(struct view_facts *f, const SluiceStreamedTextureManager *manager,
+                        uint64_t timeout)
 {
     SluiceResult result;
+    f->stale_before = f->log.stale;
     do {
         uint32_t count = FACTS_EVENTS - f->event_next;
         uint64_t lost = 0;
         result = sluiceReadTileEvents(manager, &f->event_cursor, &count, f->events + f->event_next,
                                       &lost);
+        for (uint32_t i = 0; i < count; i++)
+            tile_log_take(&f->log, &f->events[f->event_next + i], timeout);
         f->event_next = (f->event_next + count) % FACTS_EVENTS;
         f->event_count =
             f->event_count + count > FACTS_EVENTS ? FACTS_EVENTS : f->event_count + count;
@@ -137,29 +158,49 @@ static void sum_textures(struct view_facts *f, const struct stage *stage)
     }
 }
 
+/* In turns: each takes a lock of the loader. */
+static void look_at_reads(struct view_facts *f, const struct stage *stage)
+{
+    f->reads = (SluiceTileLoaderStatistics){.structSize = sizeof f->reads};
+    sluiceGetVulkanReadStatistics(stage_streamer(stage), NULL, &f->reads);
+    for (uint32_t i = 0; i < f->texture_count && i < READS_PER_FRAME; i++) {
+        SluiceTileLoaderStatistics *reads = &f->textures[f->reads_texture].reads;
+        *reads = (SluiceTileLoaderStatistics){.structSize = sizeof *reads};
+        sluiceGetVulkanReadStatistics(stage_streamer(stage), stage_source(stage, f->reads_texture),
+                                      reads);
+        f->reads_texture = (f->reads_texture + 1) % f->texture_count;
+    }
+}
+
 static void remember(struct view_facts *f, double seconds)
 {
     const SluiceVulkanStreamerStatistics *now = &f->now, *before = &f->before;
+    const double took = f->real_seconds > 0 ? f->real_seconds : seconds;
     const double values[SERIES_COUNT] = {
         [SERIES_RESIDENT] = (double)f->resident_size / MB,
         [SERIES_WANTED] = (double)f->wanted_size / MB,
         [SERIES_STANDBY] = (double)f->standby_size / MB,
         [SERIES_BUDGET] = (double)f->budget / MB,
-        [SERIES_READ] = (double)(now->bytesRead - before->bytesRead) / MB / seconds,
-        [SERIES_UPLOADED] = (double)(now->bytesUploaded - before->bytesUploaded) / MB / seconds,
+        [SERIES_READ] = (double)(now->bytesRead - before->bytesRead) / MB / took,
+        [SERIES_UPLOADED] = (double)(now->bytesUploaded - before->bytesUploaded) / MB / took,
         [SERIES_MAPPED] = (double)(now->tilesMapped - before->tilesMapped),
         [SERIES_UNMAPPED] = (double)(now->tilesUnmapped - before->tilesUnmapped),
         [SERIES_CANCELED] = (double)(now->tilesCanceled - before->tilesCanceled),
         [SERIES_FAILED] = (double)(now->tilesFailed - before->tilesFailed),
         [SERIES_SHARP] = 100.0 * f->sharp,
         [SERIES_BIAS] = now->globalMipBias / 16.0,
-        [SERIES_FRAME] = 1e3 * seconds,
+        [SERIES_FRAME] = 1e3 * took,
         [SERIES_HOST] = 1e3 * f->host_seconds,
-        [SERIES_GPU] = 1e3 * f->gpu_seconds};
+        [SERIES_GPU] = 1e3 * f->gpu_seconds,
+        [SERIES_STALE] = (double)(f->log.stale - f->stale_before),
+        [SERIES_RESTORED] = (double)(now->tilesRestored - before->tilesRestored),
+        [SERIES_BIND_CALLS] = (double)(now->bindCalls - before->bindCalls),
+        [SERIES_BIND_RUNS] = (double)(now->bindRuns - before->bindRuns),
+        [SERIES_FEEDBACK_WORDS] = (double)(now->feedbackWords - before->feedbackWords),
+        [SERIES_MISSING] = 100.0 - 100.0 * f->sharp};
     for (int i = 0; i < SERIES_COUNT; i++)
-        f->history[i][f->history_next] = (float)values[i];
-    f->history_next = (f->history_next + 1) % FACTS_HISTORY;
-    f->history_count += f->history_count < FACTS_HISTORY;
+        f->latest[i] = (float)values[i];
+    history_add(&f->history, took, f->latest);
 }
 
 void facts_update(struct view_facts *f, const struct stage *stage,
@@ -179,15 +220,10 @@ void facts_update(struct view_facts *f, const struct stage *stage,
     f->memory_size = f->now.tileMemorySize;
     sum_textures(f, stage);
     look_at_maps(f, stage);
-    read_events(f, manager_of(stage));
+    look_at_reads(f, stage);
+    read_events(f, manager_of(stage), (uint64_t)(settings->timeout * STAGE_TICKS_PER_SECOND));
     f->seconds += seconds;
     f->frame_seconds = f->frame == 0 ? seconds : f->frame_seconds * 0.9 + seconds * 0.1;
     remember(f, seconds);
     f->frame++;
-}
-
-float facts_value(const struct view_facts *f, enum facts_series series, uint32_t age)
-{
-    return f->history[series]
-                     [(f->history_next + FACTS_HISTORY - 1 - age % FACTS_HISTORY) % FACTS_HISTORY];
 }

@@ -2,12 +2,13 @@
 #ifndef SLUICE_VIEW_FACTS_H
 #define SLUICE_VIEW_FACTS_H
 
+#include "history.h"
 #include "settings.h"
 #include "stage.h"
+#include "tile_log.h"
 
 #include <sluice/vulkan_explain.h>
 
-#define FACTS_HISTORY 3600
 #define FACTS_EVENTS 2048
 
 enum facts_series {
@@ -26,19 +27,27 @@ enum facts_series {
     SERIES_FRAME, ///< ms
     SERIES_HOST,
     SERIES_GPU,
+    SERIES_STALE, ///< tiles per frame that were loaded and not seen after that
+    SERIES_RESTORED,
+    SERIES_BIND_CALLS, ///< per frame
+    SERIES_BIND_RUNS,
+    SERIES_FEEDBACK_WORDS,
+    SERIES_MISSING, ///< percent
     SERIES_COUNT
 };
 
 struct facts_texture {
     SluiceTextureStatistics statistics;
-    uint32_t finest_level;      ///< resident somewhere; SLUICE_MIP_UNTOUCHED: none
-    double thrash;              ///< loads per resident tile
-    SluiceTextureRequestId pin; ///< of all its tiles; 0: none
+    uint32_t finest_level;            ///< resident somewhere; SLUICE_MIP_UNTOUCHED: none
+    double thrash;                    ///< loads per resident tile
+    SluiceTextureRequestId pin;       ///< of all its tiles; 0: none
+    SluiceTileLoaderStatistics reads; ///< of its source, of a frame not long ago
 };
 
 struct view_facts {
     double seconds;       ///< since the first frame
     double frame_seconds; ///< smoothed
+    double real_seconds;  ///< that the last frame took; 0: as given to facts_update
     double host_seconds, gpu_seconds, present_seconds, ui_seconds;
     uint64_t frame;
     uint64_t all_size, resident_size, standby_size, wanted_size, memory_size;
@@ -48,10 +57,14 @@ struct view_facts {
     SluiceVulkanStreamerStatistics now, before;
     SluiceVulkanContextStatistics context;
     SluiceVulkanLoadStages stages;
-    struct facts_texture *textures; ///< owned
+    SluiceTileLoaderStatistics reads; ///< of all sources
+    uint32_t reads_texture;           ///< the next texture whose reads are looked at
+    struct facts_texture *textures;   ///< owned
     uint32_t texture_count;
-    float *history[SERIES_COUNT]; ///< owned; rings of FACTS_HISTORY
-    uint32_t history_count, history_next;
+    float latest[SERIES_COUNT];
+    struct history history;
+    struct tile_log log;
+    uint64_t stale_before;
     SluiceTileEvent *events; ///< owned; the last FACTS_EVENTS, a ring
     uint32_t event_count, event_next;
     uint64_t event_cursor;
@@ -67,8 +80,6 @@ void facts_destroy(struct view_facts *facts);
 /** Once per frame, after it was recorded. */
 void facts_update(struct view_facts *facts, const struct stage *stage,
                   const struct view_settings *settings, double seconds);
-/** A value of a series, `age` frames ago. */
-float facts_value(const struct view_facts *facts, enum facts_series series, uint32_t age);
 const char *facts_series_name(enum facts_series series);
 
 #endif /* SLUICE_VIEW_FACTS_H */

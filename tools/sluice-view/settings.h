@@ -58,6 +58,7 @@ struct view_settings {
     uint32_t frame_cap;
     double ui_scale; ///< 0: the monitor's
     int panels;      ///< 0: shown
+    int graph_span;  ///< enum history_span
 };
 
 #endif /* SLUICE_VIEW_SETTINGS_H */

@@ -14,7 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TICKS_PER_SECOND 1000000u
 #define LEAST_BUDGET (4ull << 20)
 #define FROZEN_SECONDS 1e9 /* frozen wants: feedback that is not written takes nothing back */
 
@@ -111,7 +110,7 @@ static bool create_streamer(struct stage *s, const struct stage_request *request
         .maxLoadsInFlight = s->settings.loads_in_flight,
         .heapTileCapacity = STAGE_HEAP_TILES,
         .textureArray = SLUICE_TEXTURE_ARRAY_COMBINED,
-        .ticksPerSecond = TICKS_PER_SECOND,
+        .ticksPerSecond = STAGE_TICKS_PER_SECOND,
         .pDebug = &debug};
     if (!check(sluiceCreateVulkanContext(&context, &s->context), "sluiceCreateVulkanContext"))
         return false;
@@ -289,8 +288,8 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
     now.numExtraStandbyTiles = settings->standby;
     now.feedbackTimeoutTicks =
         (uint64_t)((settings->freeze_wants ? FROZEN_SECONDS : settings->timeout) *
-                   TICKS_PER_SECOND);
-    now.residencyFadeTicks = (uint64_t)(settings->fade * TICKS_PER_SECOND);
+                   STAGE_TICKS_PER_SECOND);
+    now.residencyFadeTicks = (uint64_t)(settings->fade * STAGE_TICKS_PER_SECOND);
     now.holdLoads = settings->pause != 0;
     check(sluiceSetVulkanStreamerSettings(s->streamer, &now), "sluiceSetVulkanStreamerSettings");
     s->settings = *settings;

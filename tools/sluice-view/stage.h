@@ -10,7 +10,8 @@
 #include <sluice/vulkan_explain.h>
 
 #define STAGE_NO_TEXTURE UINT32_MAX
-#define STAGE_HEAP_TILES 64u ///< 4 MiB, so that small budgets are kept to
+#define STAGE_TICKS_PER_SECOND 1000000u ///< of time stamps
+#define STAGE_HEAP_TILES 64u            ///< 4 MiB, so that small budgets are kept to
 
 struct stage;
 struct scene_data;

@@ -119,6 +119,7 @@ static double next_step(struct viewer *v)
     const double now = clock_seconds();
     double step = now - v->last_time;
     v->last_time = now;
+    v->app.facts.real_seconds = step;
     return step > MAX_STEP ? MAX_STEP : step > 1e-4 ? step : 1e-4;
 }
 
@@ -214,7 +215,7 @@ static bool write_figures(struct viewer *v)
     }
     fprintf(file, "%u", v->frame);
     for (int i = 0; i < SERIES_COUNT; i++)
-        fprintf(file, ",%.6g", (double)facts_value(&v->app.facts, (enum facts_series)i, 0));
+        fprintf(file, ",%.6g", (double)v->app.facts.latest[i]);
     return fprintf(file, "\n") > 0;
 }
 
