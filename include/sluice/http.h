@@ -177,6 +177,19 @@ SLUICE_API SluiceResult sluiceOpenHttpPath(void *pClient, const char *path, Slui
 /** Closes what sluiceOpenHttpPath opened. NULL is allowed. Thread safety: external on `pOpened`. */
 SLUICE_API void sluiceCloseHttpPath(void *pClient, void *pOpened);
 
+/**
+ * Asks the server for one byte of what sluiceOpenHttpPath opened, past memory and cache folder. For
+ * SluiceImageOpenerCreateInfo::pfnCheckPath.
+ *
+ * Returns SLUICE_SUCCESS if ETag, date and size are those of the opening. Servers that send neither
+ * ETag nor date tell the size alone.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_IO if the file was changed, which is not logged,
+ *         or cannot be read; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceCheckHttpPath(void *pClient, void *pOpened);
+
 /** Counts of a client since its creation. */
 typedef struct SluiceHttpStatistics {
     uint32_t structSize;      ///< sizeof(SluiceHttpStatistics).

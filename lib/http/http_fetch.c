@@ -112,7 +112,7 @@ static SluiceResult log_failure(const struct slc_http_fetch *fetch, uint32_t att
 {
     char message[512];
     const struct slc_http_part *last = &fetch->parts[fetch->part_count - 1];
-    if (answer->outcome == SLC_HTTP_CANCELLED)
+    if (answer->outcome == SLC_HTTP_CANCELLED || (fetch->is_check && answer->is_changed))
         return SLUICE_ERROR_IO;
     snprintf(message, sizeof message, "cannot read bytes %llu to %llu in %u attempt%s: %s",
              (unsigned long long)fetch->parts[0].offset,
@@ -149,7 +149,7 @@ SluiceResult slc_http_fetch(const struct slc_http_fetch *fetch,
     }
     if (answer->outcome == SLC_HTTP_OK)
         return SLUICE_SUCCESS;
-    if (answer->outcome != SLC_HTTP_CANCELLED)
+    if (answer->outcome != SLC_HTTP_CANCELLED && !(fetch->is_check && answer->is_changed))
         atomic_fetch_add(&client->counts.failures, 1);
     return log_failure(fetch, done, answer);
 }

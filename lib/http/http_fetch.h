@@ -13,6 +13,7 @@ struct slc_http_fetch {
     const struct slc_http_part *parts; ///< sorted by offset, side by side
     uint32_t part_count;
     struct slc_said *said;
+    bool is_check; ///< it is no failure that the file was changed
 };
 
 /**

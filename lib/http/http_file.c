@@ -119,7 +119,7 @@ void sluiceDestroyHttpFile(SluiceHttpFile *file)
 /* Makes the request, and those of waiting reads beside it. */
 static SluiceResult read_on(SluiceHttpFile *file, const struct slc_http_target *target,
                             const struct slc_http_part *part,
-                            struct slc_http_connection *connection, bool is_probe)
+                            struct slc_http_connection *connection, bool is_probe, bool is_check)
 {
     SluiceHttpClient *client = file->client;
     struct slc_http_part parts[SLC_HTTP_MAX_PARTS] = {*part};
@@ -134,7 +134,8 @@ static SluiceResult read_on(SluiceHttpFile *file, const struct slc_http_target *
                                    .target = target->url.full ? &target->url : NULL,
                                    .parts = parts,
                                    .part_count = count,
-                                   .said = &file->said};
+                                   .said = &file->said,
+                                   .is_check = is_check};
     SluiceResult result =
         slc_http_fetch(&fetch, connection, is_probe ? 1 : client->settings.max_attempts, &landed,
                        &is_moved, &answer);
@@ -152,7 +153,7 @@ static SluiceResult read_on(SluiceHttpFile *file, const struct slc_http_target *
     return result;
 }
 
-static SluiceResult read_far(SluiceHttpFile *file, const struct slc_http_part *part)
+static SluiceResult read_far(SluiceHttpFile *file, const struct slc_http_part *part, bool is_check)
 {
     struct slc_http_wait wait = {.file = file, .part = *part};
     struct slc_http_connection *connection = NULL;
@@ -160,7 +161,7 @@ static SluiceResult read_far(SluiceHttpFile *file, const struct slc_http_part *p
     bool is_probe = false;
     SluiceResult result = SLUICE_ERROR_IO;
     switch (slc_http_acquire(file->client, target->host, &wait, &connection, &is_probe)) {
-    case SLC_HTTP_GO: result = read_on(file, target, part, connection, is_probe); break;
+    case SLC_HTTP_GO: result = read_on(file, target, part, connection, is_probe, is_check); break;
     case SLC_HTTP_DONE: result = wait.result; break;
     case SLC_HTTP_NO_MEMORY: result = SLUICE_ERROR_OUT_OF_HOST_MEMORY; break;
     case SLC_HTTP_REFUSED: break;
@@ -174,12 +175,12 @@ static SluiceResult read_through(SluiceHttpFile *file, const struct slc_http_par
 {
     struct slc_http_cache *cache = &file->client->cache;
     if (!cache->folder || !file->version[0])
-        return read_far(file, part);
+        return read_far(file, part, false);
     struct slc_http_key key = slc_http_cache_key(file->url.full, file->url.shown, file->version,
                                                  part->offset, part->size);
     if (slc_http_cache_read(cache, key, part->bytes, (size_t)part->size))
         return SLUICE_SUCCESS;
-    SluiceResult result = read_far(file, part);
+    SluiceResult result = read_far(file, part, false);
     if (result == SLUICE_SUCCESS)
         slc_http_cache_write(cache, key, part->bytes, (size_t)part->size);
     return result;
@@ -243,4 +244,14 @@ void sluiceCloseHttpPath(void *pClient, void *pOpened)
 {
     (void)pClient;
     sluiceDestroyHttpFile(pOpened);
+}
+
+SluiceResult sluiceCheckHttpPath(void *pClient, void *pOpened)
+{
+    SluiceHttpFile *file = pOpened;
+    unsigned char byte;
+    const struct slc_http_part part = {0, 1, &byte};
+    if (!pClient || !file)
+        return SLUICE_ERROR_NULL_POINTER;
+    return atomic_load(&file->is_stale) ? SLUICE_ERROR_IO : read_far(file, &part, true);
 }

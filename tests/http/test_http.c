@@ -261,6 +261,31 @@ static void a_changed_file_is_never_mixed_with_its_old_version(void **state)
     }
 }
 
+/* Asks each time, though the byte is in memory; a change is no message. */
+static void a_check_says_whether_the_file_was_changed(void **state)
+{
+    static const char *const paths[] = {"etag/checked?from=3", "size/checked?from=3",
+                                        "dated/checked?late=3"};
+    (void)state;
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        SluiceHttpClientCreateInfo info = quick();
+        SluiceHttpClient *client = create(&info);
+        SluiceInput input = {.structSize = sizeof input};
+        void *opened;
+        CHECK_OK(sluiceOpenHttpPath(client, path_url(paths[i]), &input, &opened));
+        CHECK_OK(sluiceCheckHttpPath(client, opened));
+        CHECK_OK(sluiceCheckHttpPath(client, opened));
+        CHECK_RESULT(sluiceCheckHttpPath(client, opened), SLUICE_ERROR_IO);
+        assert_int_equal(statistics_of(client).requestTotal, 4);
+        assert_int_equal(statistics_of(client).failureTotal, 0);
+        CHECK_RESULT(sluiceCheckHttpPath(client, opened), SLUICE_ERROR_IO);
+        assert_int_equal(statistics_of(client).requestTotal, 4);
+        assert_string_equal(logged, "");
+        sluiceCloseHttpPath(client, opened);
+        sluiceDestroyHttpClient(client);
+    }
+}
+
 static void headers_of_the_application_stay_with_its_host(void **state)
 {
     const char *lines[] = {"X-Key: secret"};
@@ -759,6 +784,8 @@ static void out_of_memory_is_an_ordinary_result(void **state)
             result = read_at(file, READ_AT, READ_SIZE);
         if (result == SLUICE_SUCCESS)
             result = sluiceOpenHttpPath(client, path_url("plain/x"), &input, &opened);
+        if (result == SLUICE_SUCCESS)
+            result = sluiceCheckHttpPath(client, opened);
         if (result != SLUICE_SUCCESS)
             CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
         sluiceCloseHttpPath(client, opened);
@@ -779,6 +806,7 @@ int main(void)
         cmocka_unit_test(opening_tells_what_is_wrong_with_the_server),
         cmocka_unit_test(a_small_file_may_come_whole_or_shorter_than_asked),
         cmocka_unit_test(a_changed_file_is_never_mixed_with_its_old_version),
+        cmocka_unit_test(a_check_says_whether_the_file_was_changed),
         cmocka_unit_test(headers_of_the_application_stay_with_its_host),
         cmocka_unit_test(a_redirect_may_have_a_body_of_unknown_length),
         cmocka_unit_test(names_in_messages_have_no_password_and_no_query),

@@ -16,6 +16,7 @@ sluiceOpenHttpFile(f->client, f->url, &f->out.file) => sluiceDestroyHttpFile(f->
 !sluiceDestroyHttpFile(f->file)
 sluiceGetHttpInput(f->file, &f->out.input)
 sluiceOpenHttpPath(f->client, f->url, &f->out.input, &f->out.opened) => sluiceCloseHttpPath(f->client, f->out.opened)
+sluiceCheckHttpPath(f->client, f->opened)
 ~sluiceCloseHttpPath(f->client, f->nothing)
 sluiceGetHttpStatistics(f->client, &f->out.statistics)
 */
@@ -26,7 +27,7 @@ struct fixture {
     SluiceHttpClient *client, *other;
     SluiceHttpFile *file;
     char url[64];
-    void *nothing;
+    void *nothing, *opened;
     struct {
         SluiceHttpClient *client;
         SluiceHttpFile *file;
@@ -47,6 +48,7 @@ static void fixture_init(struct fixture *f, void **state)
     CHECK_OK(sluiceCreateHttpClient(&f->create, &f->client));
     CHECK_OK(sluiceCreateHttpClient(&f->create, &f->other));
     CHECK_OK(sluiceOpenHttpFile(f->client, f->url, &f->file));
+    f->opened = f->file;
 }
 
 static void fixture_finish(struct fixture *f)
