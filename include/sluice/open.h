@@ -75,13 +75,24 @@ typedef struct SluiceImageOpenerCreateInfo {
      * SLUICE_ERROR_UNSUPPORTED. Default: none, such paths are files.
      */
     SluicePathOpener pathOpener;
+    /**
+     * Returns SLUICE_SUCCESS if a path that pathOpener opened still has the contents it had then;
+     * any other result: it may have others. Gets SluicePathOpener::pUserData. Set
+     * sluiceCheckHttpPath (http.h) for URLs.
+     *
+     * Catalogues of pathOpener stay in memory and are checked with it: at most once a second, and
+     * before a name or store is reported missing or wrong. A catalogue that was changed is read
+     * again. Default: NULL, a catalogue is read again when a name or store is missing or wrong.
+     */
+    SluiceResult (*pfnCheckPath)(void *pUserData, void *pOpened);
 } SluiceImageOpenerCreateInfo;
 
 /**
  * Creates an opener. Starts threads and libvips with the first picture without tiles.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if maxOpenFileCount is above
- *         2^20; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Errors: SLUICE_ERROR_NULL_POINTER, also for pfnCheckPath without pathOpener;
+ *         SLUICE_ERROR_INVALID_ARGUMENT if maxOpenFileCount is above 2^20;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
@@ -147,6 +158,10 @@ SLUICE_API SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const c
  * Stores are relative to the catalogue's folder. The source is that of the store's own path, so
  * SluiceOpenedImageInfo::kind is STORE. Returns SLUICE_ERROR_CORRUPT_DATA if the store has another
  * hash than the catalogue says, SLUICE_ERROR_LIMIT_EXCEEDED for catalogues above 256 MiB.
+ *
+ * The opener reads a catalogue once and keeps the names of the last eight catalogues in memory,
+ * with 32 bytes per name. A file whose size, time or inode changed is read again; pfnCheckPath
+ * notices changes elsewhere.
  *
  * Errors: as sluiceOpenImageSource; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the set
  *         has no texture `texture` (the message names those that it has), the catalogue has no such

@@ -16,6 +16,25 @@
 static const char head[] =
     "sluice catalogue 1\nhash\tformat\twidth\theight\tlayers\tbytes\tpicture\tstore\n";
 
+struct row {
+    uint64_t hash;
+    const char *picture, *store;
+};
+
+/** A name by its last zero. A zero stands before each name, too. */
+struct name_end {
+    const char *end;
+    uint32_t row;
+};
+
+struct slc_catalogue {
+    char *names; ///< owned
+    size_t names_size;
+    struct row *rows;      ///< owned; in the file's order
+    struct name_end *ends; ///< owned; two of each row, sorted from the last byte to the first
+    uint32_t row_count;
+};
+
 static SluiceResult read_file(void *user, uint64_t offset, void *bytes, size_t size)
 {
     const int descriptor = *(const int *)user;
@@ -32,16 +51,16 @@ static SluiceResult read_file(void *user, uint64_t offset, void *bytes, size_t s
 
 /* Ends with a zero. `*text` has `input->size` + 1 bytes, and is the caller's also after an error.
  */
-static SluiceResult read_text(const struct slc_catalogue_query *q, const SluiceInput *input,
+static SluiceResult read_text(const struct slc_catalogue_place *p, const SluiceInput *input,
                               char **text)
 {
     SluiceResult result = SLUICE_SUCCESS;
     if (input->size > MAX_SIZE) {
-        slc_log(q->log, SLUICE_LOG_ERROR, "%s: is larger than 256 MiB", q->shown);
+        slc_log(p->log, SLUICE_LOG_ERROR, "%s: is larger than 256 MiB", p->shown);
         return SLUICE_ERROR_LIMIT_EXCEEDED;
     }
     const size_t size = (size_t)input->size;
-    *text = slc_alloc(q->allocator, size + 1, 1);
+    *text = slc_alloc(p->allocator, size + 1, 1);
     if (!*text)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (input->pBytes)
@@ -51,7 +70,7 @@ static SluiceResult read_text(const struct slc_catalogue_query *q, const SluiceI
             input->pfnRead(input->pUserData, at, *text + at, size - at < PIECE ? size - at : PIECE);
     (*text)[size] = '\0';
     if (result != SLUICE_SUCCESS)
-        slc_log(q->log, SLUICE_LOG_ERROR, "%s: cannot be read", q->shown);
+        slc_log(p->log, SLUICE_LOG_ERROR, "%s: cannot be read", p->shown);
     return result;
 }
 
@@ -89,16 +108,6 @@ static bool split(char *line, char *columns[COLUMNS])
            columns[STORE][0];
 }
 
-/* 2: it is the name; 1: it ends with the name, behind a slash. */
-static int match(const char *text, const char *name)
-{
-    size_t length = strlen(text), wanted = strlen(name);
-    if (strcmp(text, name) == 0)
-        return 2;
-    return length > wanted && text[length - wanted - 1] == '/' &&
-           strcmp(text + length - wanted, name) == 0;
-}
-
 static bool is_absolute(const char *store)
 {
     return store[0] == '/' || store[0] == '\\' || strstr(store, "://") ||
@@ -121,93 +130,153 @@ static void append(char *out, const char *text, bool escapes)
 }
 
 /* Relative names begin in the catalogue's folder. */
-static SluiceResult make_path(const struct slc_catalogue_query *q, const char *store, char **path)
+static SluiceResult make_path(const struct slc_catalogue_place *p, const char *store, char **path)
 {
-    const bool is_web = strncmp(q->path, "http", 4) == 0 && strstr(q->path, "://");
-    const bool is_local = !strstr(q->path, "://");
+    const bool is_web = strncmp(p->path, "http", 4) == 0 && strstr(p->path, "://");
+    const bool is_local = !strstr(p->path, "://");
     /* A server must not choose among this machine's files. */
     if (!is_local && is_absolute(store) && !strstr(store, "://")) {
-        slc_log(q->log, SLUICE_LOG_ERROR, "%s: names the local file %s", q->shown, store);
+        slc_log(p->log, SLUICE_LOG_ERROR, "%s: names the local file %s", p->shown, store);
         return SLUICE_ERROR_CORRUPT_DATA;
     }
-    size_t folder = is_local ? (size_t)(slc_path_name(q->path) - q->path)
-                    : is_web ? strcspn(q->path, "?#")
-                             : strlen(q->path);
-    while (!is_local && folder > 0 && q->path[folder - 1] != '/')
+    size_t folder = is_local ? (size_t)(slc_path_name(p->path) - p->path)
+                    : is_web ? strcspn(p->path, "?#")
+                             : strlen(p->path);
+    while (!is_local && folder > 0 && p->path[folder - 1] != '/')
         folder--;
     if (is_absolute(store))
         folder = 0;
     const size_t size = folder + 3 * strlen(store) + 1;
-    char *made = slc_alloc(q->allocator, size, 1);
+    char *made = slc_alloc(p->allocator, size, 1);
     if (!made)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    memcpy(made, q->path, folder);
+    memcpy(made, p->path, folder);
     made[folder] = '\0';
     append(made, store, is_web && folder > 0);
-    *path = slc_strdup(q->allocator, made);
-    slc_free(q->allocator, made, size, 1);
+    *path = slc_strdup(p->allocator, made);
+    slc_free(p->allocator, made, size, 1);
     return *path ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-/* Looks at all rows, whatever is found: a damaged catalogue is refused for each name. */
-static SluiceResult find_row(const struct slc_catalogue_query *q, char *text, char *found[COLUMNS])
+/* Orders names by their last byte, then by the one before. */
+static int compare_ends(const void *a, const void *b)
 {
-    char *columns[COLUMNS];
-    uint32_t count = 0, line_number = 3;
-    int best = 0;
-    if (strncmp(text, head, sizeof head - 1) != 0) {
-        slc_log(q->log, SLUICE_LOG_ERROR, "%s: its columns are not those of a catalogue", q->shown);
-        return SLUICE_ERROR_CORRUPT_DATA;
+    const char *x = ((const struct name_end *)a)->end, *y = ((const struct name_end *)b)->end;
+    do {
+        x--;
+        y--;
+    } while (*x == *y && *x);
+    return (int)(unsigned char)*x - (int)(unsigned char)*y;
+}
+
+static bool has_end(const struct name_end *name, const char *begin, const char *end)
+{
+    const char *at = name->end;
+    while (end > begin && at[-1] == end[-1]) {
+        at--;
+        end--;
     }
-    for (char *line = text + sizeof head - 1; *line; line_number++) {
+    return end == begin;
+}
+
+static SluiceResult refuse_row(const struct slc_catalogue_place *p, uint32_t row)
+{
+    slc_log(p->log, SLUICE_LOG_ERROR, "%s:%u: is no row of a catalogue", p->shown,
+            (unsigned)row + 3);
+    return SLUICE_ERROR_CORRUPT_DATA;
+}
+
+static char *keep_name(char *out, const char *name)
+{
+    const size_t size = strlen(name) + 1;
+    memmove(out, name, size);
+    return out + size;
+}
+
+/* Moves the names of all rows to the front of `text`, each with its zero, behind a first zero, and
+ * puts the hashes into the rows. */
+static SluiceResult take_rows(const struct slc_catalogue_place *p, char *text,
+                              struct slc_catalogue *c)
+{
+    char *columns[COLUMNS], *out = text + 1;
+    uint32_t row = 0;
+    for (char *line = text + sizeof head - 1; *line; row++) {
         char *end = strchr(line, '\n');
         if (end)
             *end = '\0';
-        if (!end || !split(line, columns)) {
-            slc_log(q->log, SLUICE_LOG_ERROR, "%s:%u: is no row of a catalogue", q->shown,
-                    (unsigned)line_number);
-            return SLUICE_ERROR_CORRUPT_DATA;
-        }
-        int a = q->name ? match(columns[PICTURE], q->name) : line_number == 3;
-        int b = q->name ? match(columns[STORE], q->name) : 0;
-        int how = a > b ? a : b;
-        count = how > best ? 1 : count + (how > 0 && how == best);
-        if (how > best)
-            memcpy(found, columns, sizeof columns);
-        best = how > best ? how : best;
+        if (!end || !split(line, columns))
+            return refuse_row(p, row);
+        c->rows[row].hash = strtoull(columns[0], NULL, 16);
+        out = keep_name(keep_name(out, columns[PICTURE]), columns[STORE]);
         line = end + 1;
     }
-    if (count == 1)
-        return SLUICE_SUCCESS;
-    return slc_log_refusal(q->log, "%s: %s '%s'", q->shown,
-                           count ? "has several pictures or stores" : "has no picture and no store",
-                           q->name ? q->name : "");
+    text[0] = '\0';
+    c->names_size = (size_t)(out - text);
+    return SLUICE_SUCCESS;
 }
 
-static SluiceResult find_in(const struct slc_catalogue_query *q, const SluiceInput *input,
-                            struct slc_catalogue_entry *entry)
+static void sort_names(struct slc_catalogue *c)
 {
-    char *text = NULL, *columns[COLUMNS] = {0};
-    SluiceResult result = read_text(q, input, &text);
-    if (result == SLUICE_SUCCESS)
-        result = find_row(q, text, columns);
-    if (result == SLUICE_SUCCESS) {
-        entry->hash = strtoull(columns[0], NULL, 16);
-        result = make_path(q, columns[STORE], &entry->store);
+    const char *at = c->names + 1;
+    for (uint32_t i = 0; i < c->row_count; i++) {
+        c->rows[i].picture = at;
+        c->ends[2 * i] = (struct name_end){at + strlen(at), i};
+        c->rows[i].store = c->ends[2 * i].end + 1;
+        at = c->rows[i].store + strlen(c->rows[i].store);
+        c->ends[2 * i + 1] = (struct name_end){at++, i};
     }
-    if (text)
-        slc_free(q->allocator, text, (size_t)input->size + 1, 1);
-    return result;
+    qsort(c->ends, 2 * (size_t)c->row_count, sizeof *c->ends, compare_ends);
 }
 
-SluiceResult slc_catalogue_find(const struct slc_catalogue_query *q,
-                                struct slc_catalogue_entry *entry)
+static SluiceResult parse(const struct slc_catalogue_place *p, char *text, struct slc_catalogue *c)
+{
+    if (strncmp(text, head, sizeof head - 1) != 0) {
+        slc_log(p->log, SLUICE_LOG_ERROR, "%s: its columns are not those of a catalogue", p->shown);
+        return SLUICE_ERROR_CORRUPT_DATA;
+    }
+    for (const char *at = text + sizeof head - 1; (at = strchr(at, '\n')); at++)
+        c->row_count++;
+    c->rows = slc_alloc(p->allocator, c->row_count, sizeof *c->rows);
+    c->ends = slc_alloc(p->allocator, c->row_count, 2 * sizeof *c->ends);
+    if (c->row_count && (!c->rows || !c->ends))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    SluiceResult result = take_rows(p, text, c);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    c->names = slc_alloc(p->allocator, c->names_size, 1);
+    if (!c->names)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    memcpy(c->names, text, c->names_size);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_from(const struct slc_catalogue_place *p, const SluiceInput *input,
+                              struct slc_catalogue **catalogue)
+{
+    char *text = NULL;
+    struct slc_catalogue *c = slc_calloc(p->allocator, 1, sizeof *c);
+    SluiceResult result = c ? read_text(p, input, &text) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (result == SLUICE_SUCCESS)
+        result = parse(p, text, c);
+    if (text)
+        slc_free(p->allocator, text, (size_t)input->size + 1, 1);
+    if (result != SLUICE_SUCCESS) {
+        slc_catalogue_destroy(c, p->allocator);
+        return result;
+    }
+    sort_names(c);
+    *catalogue = c;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_catalogue_read(const struct slc_catalogue_place *p,
+                                struct slc_catalogue **catalogue)
 {
     struct slc_pooled_file file = SLC_POOLED_FILE_CLOSED;
     struct slc_file_status status;
-    if (q->input)
-        return find_in(q, q->input, entry);
-    int descriptor = slc_file_pool_acquire(q->pool, &file, q->path);
+    if (p->input)
+        return read_from(p, p->input, catalogue);
+    int descriptor = slc_file_pool_acquire(p->pool, &file, p->path);
     if (descriptor < 0)
         return slc_system_result(errno);
     SluiceResult result = SLUICE_ERROR_IO;
@@ -216,11 +285,78 @@ SluiceResult slc_catalogue_find(const struct slc_catalogue_query *q,
                              .size = status.size,
                              .pUserData = &descriptor,
                              .pfnRead = read_file};
-        result = find_in(q, &input, entry);
+        result = read_from(p, &input, catalogue);
     }
-    slc_file_pool_release(q->pool, &file);
-    slc_file_pool_remove(q->pool, &file);
+    slc_file_pool_release(p->pool, &file);
+    slc_file_pool_remove(p->pool, &file);
     return result;
+}
+
+void slc_catalogue_destroy(struct slc_catalogue *c, const SluiceAllocationCallbacks *cb)
+{
+    if (!c)
+        return;
+    slc_free(cb, c->names, c->names_size, 1);
+    slc_free(cb, c->rows, c->row_count, sizeof *c->rows);
+    slc_free(cb, c->ends, c->row_count, 2 * sizeof *c->ends);
+    slc_free(cb, c, 1, sizeof *c);
+}
+
+/* Counts rows with a name that ends with the bytes from `begin` to `end`: 0, 1, or 2 for more. A
+ * zero at `begin` stands for the begin of the name. */
+static uint32_t count_rows(const struct slc_catalogue *c, const char *begin, const char *end,
+                           uint32_t *row)
+{
+    const struct name_end key = {end, 0};
+    size_t low = 0, high = 2 * (size_t)c->row_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (compare_ends(&c->ends[middle], &key) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    uint32_t count = 0;
+    for (; low < 2 * (size_t)c->row_count && has_end(&c->ends[low], begin, end) && count < 2; low++)
+        if (count == 0 || c->ends[low].row != *row) {
+            *row = c->ends[low].row;
+            count++;
+        }
+    return count;
+}
+
+/* A whole name first, then one that ends with the name behind a slash. */
+static SluiceResult count_named(const struct slc_catalogue *c, const char *name,
+                                const SluiceAllocationCallbacks *cb, uint32_t *count, uint32_t *row)
+{
+    const size_t size = strlen(name) + 3;
+    char *key = slc_alloc(cb, size, 1);
+    if (!key)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    memcpy(key + 2, name, size - 2);
+    key[0] = key[1] = '\0';
+    *count = count_rows(c, key + 1, key + size - 1, row);
+    key[1] = '/';
+    if (*count == 0)
+        *count = count_rows(c, key + 1, key + size - 1, row);
+    slc_free(cb, key, size, 1);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_catalogue_find(const struct slc_catalogue *c, const struct slc_catalogue_place *p,
+                                const char *name, struct slc_catalogue_entry *entry)
+{
+    uint32_t count = c->row_count > 0, row = 0;
+    SluiceResult result = name ? count_named(c, name, p->allocator, &count, &row) : SLUICE_SUCCESS;
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (count != 1)
+        return slc_log_refusal(p->log, "%s: %s '%s'", p->shown,
+                               count ? "has several pictures or stores"
+                                     : "has no picture and no store",
+                               name ? name : "");
+    entry->hash = c->rows[row].hash;
+    return make_path(p, c->rows[row].store, &entry->store);
 }
 
 void slc_catalogue_entry_finish(struct slc_catalogue_entry *entry,

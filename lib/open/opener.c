@@ -2,8 +2,6 @@
 
 #include "open/opener.h"
 
-#include <sluice/bake.h>
-
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
@@ -12,6 +10,7 @@
 #include "base/struct_size.h"
 #include "image/identity.h"
 #include "open/neural_file.h"
+#include "platform/time_now.h"
 #ifdef SLC_HAVE_BAKE
 #include "open/background.h"
 #endif
@@ -37,7 +36,8 @@ SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
     if (result != SLUICE_SUCCESS)
         return result;
     if (!slc_allocator_is_valid(info.pAllocator) ||
-        !info.pathOpener.pfnOpenPath != !info.pathOpener.pfnClosePath)
+        !info.pathOpener.pfnOpenPath != !info.pathOpener.pfnClosePath ||
+        (info.pfnCheckPath && !info.pathOpener.pfnOpenPath))
         return SLUICE_ERROR_NULL_POINTER;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     SluiceImageOpener *opener = slc_calloc(&cb, 1, sizeof *opener);
@@ -46,6 +46,7 @@ SluiceResult sluiceCreateImageOpener(const SluiceImageOpenerCreateInfo *pInfo,
     opener->allocator = cb;
     opener->log = info.log;
     opener->path_opener = info.pathOpener;
+    opener->check_path = info.pfnCheckPath;
     opener->cache_log = (SluiceLogCallback){opener, log_cached_store};
     opener->max_cache_size = info.maxCacheSize ? info.maxCacheSize : SLUICE_OPEN_DEFAULT_CACHE_SIZE;
     opener->max_bake_memory = info.maxBakeMemory;
@@ -74,6 +75,8 @@ void sluiceDestroyImageOpener(SluiceImageOpener *opener)
 #ifdef SLC_HAVE_BAKE
     slc_background_destroy(opener->background);
 #endif
+    for (uint32_t i = 0; i < SLC_OPENER_CATALOGUES && opener->kept[i]; i++)
+        slc_opener_release(opener->kept[i]);
     slc_shared_files_finish(&opener->files);
     if (opener->cache_folder)
         slc_free(&cb, opener->cache_folder, strlen(opener->cache_folder) + 1, 1);
@@ -119,7 +122,7 @@ static void free_image(struct slc_opened_image *image)
         slc_free(&cb, image->shown, strlen(image->shown) + 1, 1);
     if (image->texture)
         slc_free(&cb, image->texture, strlen(image->texture) + 1, 1);
-    slc_catalogue_entry_finish(&image->entry, &cb);
+    slc_catalogue_destroy(image->catalogue, &cb);
     slc_free(&cb, image, 1, sizeof *image);
 }
 
@@ -195,15 +198,24 @@ static bool drop_reference(struct slc_opened_image *image)
     return is_last;
 }
 
-static void destroy(SluiceImageSource *base)
+void slc_opener_forget(struct slc_opened_image *image)
 {
-    struct slc_opened_image *image = (struct slc_opened_image *)base;
+    take_from_bucket(image);
+}
+
+void slc_opener_release(struct slc_opened_image *image)
+{
     SluiceImageOpener *opener = image->opener;
     slc_mutex_lock(&opener->mutex);
     bool is_last = drop_reference(image);
     slc_mutex_unlock(&opener->mutex);
     if (is_last)
         free_image(image);
+}
+
+static void destroy(SluiceImageSource *base)
+{
+    slc_opener_release((struct slc_opened_image *)base);
 }
 
 static const SluiceImageSourceInterface opened_interface = {.structSize = sizeof opened_interface,
@@ -217,25 +229,22 @@ static bool is_same_name(const char *a, const char *b)
     return a && b ? strcmp(a, b) == 0 : !a && !b;
 }
 
-/** One call. */
-struct request {
-    const char *path, *texture;         ///< texture NULL: none
-    const SluiceBakeSettings *settings; ///< NULL: default
-    uint64_t settings_hash;             ///< 0: default, or of no picture
-    SluiceImageFileKind kind;
-    struct slc_file_identity identity;
-    bool is_entry; ///< a catalogue names it
-};
+/* With the mutex held, and the kind known. A catalogue is one whatever is asked of it. */
+static bool is_opened_as(const struct slc_opened_image *image, const struct slc_open_request *r)
+{
+    return image->kind == SLC_IMAGE_FILE_KIND_CATALOGUE ||
+           (is_same_name(image->texture, r->texture) && image->settings_hash == r->settings_hash);
+}
 
-/* With the mutex held. */
-static struct slc_opened_image *find_image(SluiceImageOpener *opener, const struct request *r)
+/* With the mutex held. Also an image that may turn out to be a catalogue. */
+static struct slc_opened_image *find_image(SluiceImageOpener *opener,
+                                           const struct slc_open_request *r)
 {
     const struct slc_file_identity *identity = &r->identity;
     struct slc_opened_image *image = *find_bucket(opener, r->path);
-    while (image &&
-           (strcmp(image->path, r->path) != 0 || !is_same_name(image->texture, r->texture) ||
-            image->settings_hash != r->settings_hash ||
-            memcmp(&image->identity, identity, sizeof *identity) != 0))
+    while (image && (strcmp(image->path, r->path) != 0 ||
+                     (image->is_kind_known && !is_opened_as(image, r)) ||
+                     memcmp(&image->identity, identity, sizeof *identity) != 0))
         image = image->next;
     return image;
 }
@@ -257,13 +266,14 @@ static SluiceResult complete_chain(struct slc_opened_image *image)
     return result == SLUICE_SUCCESS ? sluiceGetImageInfo(image->complete, &info) : result;
 }
 
-static bool is_own_path(const SluiceImageOpener *opener, const char *path)
+bool slc_opener_owns_path(const SluiceImageOpener *opener, const char *path)
 {
     return opener->path_opener.pfnOpenPath && strstr(path, "://");
 }
 
 /* NULL: no memory. */
-static struct slc_opened_image *create_image(SluiceImageOpener *opener, const struct request *r)
+static struct slc_opened_image *create_image(SluiceImageOpener *opener,
+                                             const struct slc_open_request *r)
 {
     const char *path = r->path, *texture = r->texture;
     struct slc_opened_image *image = slc_calloc(&opener->allocator, 1, sizeof *image);
@@ -273,15 +283,18 @@ static struct slc_opened_image *create_image(SluiceImageOpener *opener, const st
     image->opener = opener;
     image->reference_count = 1;
     image->is_opening = true;
+    image->is_kind_known = !slc_opener_owns_path(opener, path);
     image->kind = r->kind;
+    image->checked = slc_monotonic_time();
     image->identity = r->identity;
     image->settings_hash = r->settings_hash;
     image->path = slc_strdup(&opener->allocator, path);
-    if (is_own_path(opener, path))
+    if (slc_opener_owns_path(opener, path))
         image->shown = slc_shown_url(&opener->allocator, path);
     if (texture)
         image->texture = slc_strdup(&opener->allocator, texture);
-    if (image->path && (image->shown || !is_own_path(opener, path)) && (image->texture || !texture))
+    if (image->path && (image->shown || !slc_opener_owns_path(opener, path)) &&
+        (image->texture || !texture))
         return image;
     free_image(image);
     return NULL;
@@ -290,7 +303,7 @@ static struct slc_opened_image *create_image(SluiceImageOpener *opener, const st
 /* Errors: of a path opener, of what it opened; UNSUPPORTED, logged. */
 static SluiceResult open_path(struct slc_opened_image *image)
 {
-    const SluiceImageOpener *opener = image->opener;
+    SluiceImageOpener *opener = image->opener;
     const SluicePathOpener *by = &opener->path_opener;
     image->input.structSize = sizeof image->input;
     SluiceResult result =
@@ -299,8 +312,16 @@ static SluiceResult open_path(struct slc_opened_image *image)
         image->opened = NULL;
         return result;
     }
-    result = slc_input_kind_find(&image->input, image->shown, &opener->log, &image->kind);
-    if (result != SLUICE_SUCCESS || image->kind != SLUICE_IMAGE_FILE_KIND_PICTURE)
+    SluiceImageFileKind kind;
+    result = slc_input_kind_find(&image->input, image->shown, &opener->log, &kind);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    slc_mutex_lock(&opener->mutex);
+    image->kind = kind;
+    image->is_kind_known = true;
+    slc_condition_broadcast(&opener->opened); /* who wants another texture of it goes on */
+    slc_mutex_unlock(&opener->mutex);
+    if (image->kind != SLUICE_IMAGE_FILE_KIND_PICTURE)
         return result;
     slc_log(&opener->log, SLUICE_LOG_ERROR,
             "%s: is no tile store, OpenEXR, DDS, KTX2 file or neural set; make a tile store of it "
@@ -320,26 +341,12 @@ static SluiceResult check_texture(const SluiceImageOpener *opener, const char *p
                            path);
 }
 
-static SluiceResult find_entry(SluiceImageOpener *opener, const char *path, const char *shown,
-                               const char *name, const SluiceInput *input,
-                               struct slc_catalogue_entry *entry)
-{
-    const struct slc_catalogue_query query = {.path = path,
-                                              .shown = shown,
-                                              .name = name,
-                                              .input = input,
-                                              .pool = opener->files.pool,
-                                              .allocator = &opener->allocator,
-                                              .log = &opener->log};
-    return slc_catalogue_find(&query, entry);
-}
-
 static SluiceResult open_image(struct slc_opened_image *image, const SluiceBakeSettings *settings)
 {
     SluiceImageOpener *opener = image->opener;
     const SluiceInput *input = NULL;
     SluiceResult result = SLUICE_SUCCESS;
-    if (is_own_path(opener, image->path)) {
+    if (slc_opener_owns_path(opener, image->path)) {
         result = open_path(image);
         input = &image->input;
         if (result == SLUICE_SUCCESS)
@@ -347,11 +354,8 @@ static SluiceResult open_image(struct slc_opened_image *image, const SluiceBakeS
     }
     if (result != SLUICE_SUCCESS)
         return result;
-    if (image->kind == SLC_IMAGE_FILE_KIND_CATALOGUE) {
-        result =
-            find_entry(opener, image->path, image->shown, image->texture, input, &image->entry);
-        return result == SLUICE_SUCCESS ? SLUICE_ERROR_UNSUPPORTED : result; /* as itself */
-    }
+    if (image->kind == SLC_IMAGE_FILE_KIND_CATALOGUE)
+        return slc_opener_read_catalogue(image);
     if (image->kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
         return slc_picture_stream_create(opener, image->path, &image->identity, settings,
                                          &image->stream);
@@ -366,10 +370,13 @@ static SluiceResult open_image(struct slc_opened_image *image, const SluiceBakeS
     return result == SLUICE_SUCCESS ? complete_chain(image) : result;
 }
 
-/* With the mutex held, but not while the file is opened. Other threads that open it wait. */
-static void open_for_all(struct slc_opened_image *image, const SluiceBakeSettings *settings)
+/* With the mutex held, but not while the file is opened. Other threads that open it wait. Returns a
+ * catalogue to release without the mutex, or NULL. */
+static struct slc_opened_image *open_for_all(struct slc_opened_image *image,
+                                             const SluiceBakeSettings *settings)
 {
     SluiceImageOpener *opener = image->opener;
+    struct slc_opened_image *dropped = NULL;
     add_to_bucket(image);
     slc_mutex_unlock(&opener->mutex);
     SluiceResult result = open_image(image, settings);
@@ -378,19 +385,48 @@ static void open_for_all(struct slc_opened_image *image, const SluiceBakeSetting
     image->is_opening = false;
     if (result != SLUICE_SUCCESS)
         take_from_bucket(image); /* who opens it next tries again */
+    else if (image->catalogue)
+        dropped = slc_opener_keep(image);
     slc_condition_broadcast(&opener->opened);
+    return dropped;
 }
 
-/* With the mutex held, but not while it waits. Counts the image. */
-static void wait_until_open(struct slc_opened_image *image)
+/* With the mutex held, but not while it waits. Counts the image. False: it is another texture. */
+static bool wait_until_open(struct slc_opened_image *image, const struct slc_open_request *r)
 {
     image->reference_count++;
-    while (image->is_opening)
+    while (image->is_opening && (!image->is_kind_known || is_opened_as(image, r)))
         slc_condition_wait(&image->opener->opened, &image->opener->mutex);
+    return is_opened_as(image, r);
+}
+
+/* An open image, counted. */
+static SluiceResult get_image(SluiceImageOpener *opener, const struct slc_open_request *r,
+                              struct slc_opened_image **opened)
+{
+    struct slc_opened_image *image, *dropped = NULL, *other = NULL;
+    slc_mutex_lock(&opener->mutex);
+    while ((image = find_image(opener, r)) && !wait_until_open(image, r)) {
+        slc_mutex_unlock(&opener->mutex);
+        slc_opener_release(image);
+        slc_mutex_lock(&opener->mutex);
+    }
+    if (!image && (image = create_image(opener, r)))
+        dropped = open_for_all(image, r->settings);
+    SluiceResult result = image ? image->result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (image && result != SLUICE_SUCCESS && drop_reference(image))
+        other = image;
+    slc_mutex_unlock(&opener->mutex);
+    if (other)
+        free_image(other);
+    if (dropped)
+        slc_opener_release(dropped);
+    *opened = image;
+    return result;
 }
 
 /* Settings that are no picture's make no other source. */
-static SluiceResult find_settings(struct request *r)
+static SluiceResult find_settings(struct slc_open_request *r)
 {
 #ifdef SLC_HAVE_BAKE
     if (r->settings && r->kind == SLUICE_IMAGE_FILE_KIND_PICTURE)
@@ -400,108 +436,65 @@ static SluiceResult find_settings(struct request *r)
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult open_request(SluiceImageOpener *opener, struct request *r,
-                                 SluiceImageSource **source);
-
-static bool is_named_store(const struct slc_opened_image *image, uint64_t hash)
+/* Kind and identity of a file. What a row names is never parsed or baked if it is no store. */
+static SluiceResult look_at_file(SluiceImageOpener *opener, struct slc_open_request *r)
 {
-#ifdef SLC_HAVE_STORE
-    uint64_t found;
-    return image->kind == SLUICE_IMAGE_FILE_KIND_STORE &&
-           sluiceHashStore(image->source, &found) == SLUICE_SUCCESS && found == hash;
-#else
-    (void)image, (void)hash;
-    return false;
-#endif
-}
-
-/* Opens the store that a catalogue names, and ends the entry. `by`: the request for the catalogue.
- * Errors: CORRUPT_DATA if another file is there. */
-static SluiceResult open_entry(SluiceImageOpener *opener, const struct request *by,
-                               struct slc_catalogue_entry *entry, SluiceImageSource **source)
-{
-    struct request request = {.path = entry->store, .is_entry = true};
-    SluiceImageSource *store = NULL;
-    SluiceResult result = by->is_entry ? SLUICE_ERROR_CORRUPT_DATA : SLUICE_SUCCESS;
+    SluiceResult result =
+        slc_file_kind_find(opener->files.pool, r->path, &opener->log, &r->kind, &r->identity);
     if (result == SLUICE_SUCCESS)
-        result = open_request(opener, &request, &store);
-    if (result == SLUICE_SUCCESS &&
-        !is_named_store((const struct slc_opened_image *)store, entry->hash)) {
-        const char *shown = ((const struct slc_opened_image *)store)->shown;
-        slc_log(&opener->log, SLUICE_LOG_ERROR, "%s: is not the store that the catalogue names",
-                shown ? shown : entry->store);
-        sluiceDestroyImageSource(store);
-        result = SLUICE_ERROR_CORRUPT_DATA;
-    }
+        result = check_texture(opener, r->path, r->texture, r->kind);
     if (result == SLUICE_SUCCESS)
-        *source = store;
-    slc_catalogue_entry_finish(entry, &opener->allocator);
-    return result;
-}
-
-static SluiceResult open_request(SluiceImageOpener *opener, struct request *r,
-                                 SluiceImageSource **source)
-{
-    struct slc_catalogue_entry entry = {0};
-    SluiceResult result = SLUICE_SUCCESS;
-    r->kind = SLUICE_IMAGE_FILE_KIND_PICTURE;
-    if (!is_own_path(opener, r->path)) {
-        result =
-            slc_file_kind_find(opener->files.pool, r->path, &opener->log, &r->kind, &r->identity);
-        if (result == SLUICE_SUCCESS)
-            result = check_texture(opener, r->path, r->texture, r->kind);
-        if (result == SLUICE_SUCCESS)
-            result = find_settings(r);
-        if (result == SLUICE_SUCCESS && r->is_entry && r->kind != SLUICE_IMAGE_FILE_KIND_STORE &&
-            r->kind != SLC_IMAGE_FILE_KIND_CATALOGUE) { /* is never parsed or baked */
-            slc_log(&opener->log, SLUICE_LOG_ERROR, "%s: is not the store that the catalogue names",
-                    r->path);
-            result = SLUICE_ERROR_CORRUPT_DATA;
-        }
-        if (result == SLUICE_SUCCESS && r->kind == SLC_IMAGE_FILE_KIND_CATALOGUE) {
-            result = find_entry(opener, r->path, r->path, r->texture, NULL, &entry);
-            return result == SLUICE_SUCCESS ? open_entry(opener, r, &entry, source) : result;
-        }
-    }
-    if (result != SLUICE_SUCCESS)
+        result = find_settings(r);
+    if (result != SLUICE_SUCCESS || !r->is_entry || r->kind == SLUICE_IMAGE_FILE_KIND_STORE)
         return result;
-    slc_mutex_lock(&opener->mutex);
-    struct slc_opened_image *image = find_image(opener, r);
-    if (image)
-        wait_until_open(image);
-    else if ((image = create_image(opener, r)))
-        open_for_all(image, r->settings);
-    result = image ? image->result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    if (image && image->entry.store) {
-        entry = image->entry;
-        entry.store = slc_strdup(&opener->allocator, image->entry.store);
-        result = entry.store ? result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    slc_log(&opener->log, SLUICE_LOG_ERROR, "%s: is not the store that the catalogue names",
+            r->path);
+    return SLUICE_ERROR_CORRUPT_DATA;
+}
+
+/* A catalogue on a server may have been looked at a moment ago. If it says something that is wrong
+ * now, it is asked for again before the error is believed. */
+SluiceResult slc_opener_open(SluiceImageOpener *opener, struct slc_open_request *r,
+                             SluiceImageSource **source)
+{
+    const uint64_t began = slc_monotonic_time();
+    const bool is_file = !slc_opener_owns_path(opener, r->path);
+    bool is_sure = is_file;
+    r->kind = SLUICE_IMAGE_FILE_KIND_PICTURE;
+    SluiceResult result = is_file ? look_at_file(opener, r) : SLUICE_SUCCESS;
+    while (result == SLUICE_SUCCESS) {
+        struct slc_opened_image *image;
+        result = get_image(opener, r, &image);
+        if (result == SLUICE_SUCCESS && !image->catalogue)
+            *source = &image->base;
+        if (result != SLUICE_SUCCESS || !image->catalogue)
+            return result;
+        bool is_current = slc_opener_is_current(image, began, &is_sure);
+        if (is_current)
+            result = slc_opener_open_row(image, r, is_sure, source);
+        slc_opener_release(image);
+        if (is_current && (is_sure || result == SLUICE_SUCCESS))
+            return result;
+        result = SLUICE_SUCCESS;
+        is_sure = true;
     }
-    bool is_unused = image && result != SLUICE_SUCCESS && drop_reference(image);
-    slc_mutex_unlock(&opener->mutex);
-    if (is_unused)
-        free_image(image);
-    if (entry.store)
-        return open_entry(opener, r, &entry, source);
-    if (result == SLUICE_SUCCESS)
-        *source = &image->base;
     return result;
 }
 
 SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const char *path,
                                    SluiceImageSource **pSource)
 {
-    struct request request = {.path = path};
+    struct slc_open_request request = {.path = path};
     return !opener || !path || !pSource ? SLUICE_ERROR_NULL_POINTER
-                                        : open_request(opener, &request, pSource);
+                                        : slc_opener_open(opener, &request, pSource);
 }
 
 SluiceResult sluiceOpenNamedImageSource(SluiceImageOpener *opener, const char *path,
                                         const char *texture, SluiceImageSource **pSource)
 {
-    struct request request = {.path = path, .texture = texture};
+    struct slc_open_request request = {.path = path, .texture = texture};
     return !opener || !path || !texture || !pSource ? SLUICE_ERROR_NULL_POINTER
-                                                    : open_request(opener, &request, pSource);
+                                                    : slc_opener_open(opener, &request, pSource);
 }
 
 SluiceResult sluiceOpenBakedImageSource(SluiceImageOpener *opener, const char *path,
@@ -509,12 +502,12 @@ SluiceResult sluiceOpenBakedImageSource(SluiceImageOpener *opener, const char *p
                                         SluiceImageSource **pSource)
 {
     SluiceBakeSettings settings = {.structSize = sizeof settings};
-    struct request request = {.path = path, .settings = &settings};
+    struct slc_open_request request = {.path = path, .settings = &settings};
     if (!opener || !path || !pSettings || !pSource)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceResult result =
         slc_struct_read(SLC_STRUCT(SluiceBakeSettings), &settings, pSettings, NULL);
-    return result == SLUICE_SUCCESS ? open_request(opener, &request, pSource) : result;
+    return result == SLUICE_SUCCESS ? slc_opener_open(opener, &request, pSource) : result;
 }
 
 SluiceResult sluiceGetOpenedImageInfo(SluiceImageSource *source, SluiceOpenedImageInfo *pInfo)

@@ -464,7 +464,7 @@ static void stores_of_a_catalogue_are_opened_by_name(void **state)
     width_by_name(&f, "https://h/list.tsv", "b c.store", SLUICE_ERROR_FILE_NOT_FOUND);
     write_store(bake_folder_file(&f.folder, "b%20c.store", store), 80);
     assert_int_equal(width_by_name(&f, "https://h/list.tsv", "b c.store", SLUICE_SUCCESS), 80);
-    assert_int_equal(shelf.opened, shelf.closed);
+    assert_int_equal(shelf.opened, shelf.closed + 2); /* the catalogues stay open */
 
     char local[512]; /* for a catalogue on this machine alone */
     snprintf(local, sizeof local, "\tR8_UNORM\t64\t100\t1\t9\ta\t%s\n",
