@@ -2,11 +2,12 @@
  * How many tile stores can be in use under a limit of file descriptors, and how fast they are read,
  * with a pool of open files and without.
  *
- *     file_figures [--json] [--quick] [--stores N] [--limit N] [--picture FILE] FOLDER
+ *     file_figures [--json] [--quick] [--stores N] [--limit N] [--rows N] [--picture FILE] FOLDER
  *
  * FOLDER takes copies of a store of 64 x 64 texels, one per store, which are removed at the end.
  * The files are in the page cache. One thread. With --picture also how long a picture that is no
- * tile store takes from opening to its preview and to its store.
+ * tile store takes from opening to its preview and to its store. A catalogue with --rows rows names
+ * the first store again and again.
  */
 #define _XOPEN_SOURCE 700
 
@@ -28,6 +29,7 @@ enum { SIZE = 64 };
 static struct {
     bool json, quick;
     uint32_t store_count, limit;
+    uint32_t rows;
     const char *folder, *picture;
     SluiceStoreReadPool *read_pool;
     SluiceImageSource **sources;
@@ -187,6 +189,92 @@ static void measure_without_pool(void)
     close_stores(count);
 }
 
+/* Bytes that are allocated. One thread. */
+static void *count_allocation(void *user, size_t size, size_t alignment)
+{
+    (void)alignment;
+    *(uint64_t *)user += size;
+    return malloc(size);
+}
+
+static void count_free(void *user, void *memory, size_t size)
+{
+    *(uint64_t *)user -= size;
+    free(memory);
+}
+
+static uint64_t hash_of_first(void)
+{
+    char path[512];
+    uint64_t hash;
+    SluiceImageSource *source;
+    path_of(0, path);
+    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info, .pPath = path};
+    if (sluiceCreateStoreImageSource(&info, &source) || sluiceHashStore(source, &hash))
+        fail("opening a store");
+    sluiceDestroyImageSource(source);
+    return hash;
+}
+
+/* As in docs/cluster.md. */
+static void write_catalogue(const char *path)
+{
+    FILE *file = fopen(path, "wb");
+    unsigned long long hash = hash_of_first();
+    if (!file)
+        fail("writing a catalogue");
+    fputs("sluice catalogue 1\nhash\tformat\twidth\theight\tlayers\tbytes\tpicture\tstore\n", file);
+    for (uint32_t i = 0; i < run.rows; i++)
+        fprintf(
+            file,
+            "%016llx\tR8G8B8A8_UNORM\t64\t64\t1\t20000\t/shared/pictures/scene-%03u/wall-%06u.jpg"
+            "\t0" SLUICE_STORE_EXTENSION "\n",
+            hash, i % 300, i);
+    if (fclose(file) != 0)
+        fail("writing a catalogue");
+}
+
+static void open_row(SluiceImageOpener *opener, const char *catalogue, uint32_t row)
+{
+    char name[64];
+    SluiceImageSource *source;
+    snprintf(name, sizeof name, "wall-%06u.jpg", row);
+    if (sluiceOpenNamedImageSource(opener, catalogue, name, &source))
+        fail("opening a row");
+    sluiceDestroyImageSource(source);
+}
+
+/* The store is opened before, so that a name costs the catalogue's part and a look at both files.
+ */
+static void measure_catalogue(void)
+{
+    char path[512], store[512];
+    uint64_t bytes = 0, before;
+    const uint32_t count = run.quick ? 100 : 10000;
+    SluiceAllocationCallbacks callbacks = {&bytes, count_allocation, count_free};
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info, .pAllocator = &callbacks};
+    SluiceImageOpener *opener;
+    SluiceImageSource *source;
+    snprintf(path, sizeof path, "%s/catalogue.tsv", run.folder);
+    write_catalogue(path);
+    path_of(0, store);
+    if (sluiceCreateImageOpener(&info, &opener) || sluiceOpenImageSource(opener, store, &source))
+        fail("opening a store");
+    before = bytes;
+    double start = clock_seconds();
+    open_row(opener, path, 0);
+    figure("catalogue.rows", run.rows, "rows");
+    figure("catalogue.first", 1e3 * (clock_seconds() - start), "ms");
+    figure("catalogue.memory", (double)(bytes - before), "bytes");
+    start = clock_seconds();
+    for (uint32_t i = 0; i < count; i++)
+        open_row(opener, path, (uint32_t)((uint64_t)i * 7919 % run.rows));
+    figure("catalogue.name", 1e6 * (clock_seconds() - start) / count, "us");
+    sluiceDestroyImageSource(source);
+    sluiceDestroyImageOpener(opener);
+    unlink(path);
+}
+
 static void wait_for(SluiceImageSource *source, bool preview)
 {
     const struct timespec step = {0, 1000000};
@@ -235,6 +323,7 @@ int main(int argc, char **argv)
         option_json(&run.json),
         {OPTION_FLAG, "quick", .value = &run.quick, .help = "300 stores, few reads"},
         {OPTION_UINT, "stores", "N", "10000", &run.store_count, "stores in use", 1, 1 << 20},
+        {OPTION_UINT, "rows", "N", "100000", &run.rows, "rows of a catalogue", 1, 1 << 20},
         {OPTION_TEXT, "picture", "FILE", "(none)", &run.picture, "a picture that libvips reads"},
         {OPTION_UINT, "limit", "N", "256", &run.limit, "file descriptors of the process", 64,
          1 << 20},
@@ -248,6 +337,8 @@ int main(int argc, char **argv)
     }
     if (run.quick && run.store_count > 300)
         run.store_count = 300;
+    if (run.quick && run.rows > 1000)
+        run.rows = 1000;
     run.sources = calloc(run.store_count, sizeof(SluiceImageSource *));
     if (!run.sources || sluiceCreateStoreReadPool(NULL, &run.read_pool))
         fail("finding memory");
@@ -255,6 +346,7 @@ int main(int argc, char **argv)
     copy_stores();
     measure_with_pool();
     measure_without_pool();
+    measure_catalogue();
     remove_stores();
     if (run.picture)
         measure_picture();

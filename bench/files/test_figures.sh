@@ -8,7 +8,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 lines=$("$1" --quick --json "$folder") || exit 1
 for name in pool.{stores,opening,reads.all,reads.open,open_files} no_pool.stores \
-    no_pool.unlimited.stores no_pool.reads.{all,open}; do
+    no_pool.unlimited.stores no_pool.reads.{all,open} catalogue.{rows,first,memory,name}; do
     grep -q -E "^\{\"name\": \"$name\", \"value\": [0-9][0-9.e+-]*, \"unit\": \"[^\"]+\"\}$" <<<"$lines" || {
         echo "there is no figure $name" >&2
         exit 1

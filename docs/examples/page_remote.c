@@ -25,7 +25,9 @@ SluiceResult create_url_opener(SluiceHttpClient *client, SluiceImageOpener **ope
 SluiceResult create_url_opener(SluiceHttpClient *client, SluiceImageOpener **opener)
 {
     SluiceImageOpenerCreateInfo info = {
-        .structSize = sizeof info, .pathOpener = {client, sluiceOpenHttpPath, sluiceCloseHttpPath}};
+        .structSize = sizeof info,
+        .pathOpener = {client, sluiceOpenHttpPath, sluiceCloseHttpPath},
+        .pfnCheckPath = sluiceCheckHttpPath};
     SluiceResult result = sluiceCreateImageOpener(&info, opener);
     return result;
 }

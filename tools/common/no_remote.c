@@ -10,10 +10,9 @@ bool remote_begin(struct remote_session *session, const SluiceLogCallback *log)
     return false;
 }
 
-SluicePathOpener remote_path_opener(const struct remote_session *session)
+void remote_serve_opener(const struct remote_session *session, SluiceImageOpenerCreateInfo *info)
 {
-    (void)session;
-    return (SluicePathOpener){0};
+    (void)session, (void)info;
 }
 
 void remote_end(struct remote_session *session)

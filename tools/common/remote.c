@@ -42,11 +42,12 @@ bool remote_begin(struct remote_session *session, const SluiceLogCallback *log)
     return result == SLUICE_SUCCESS;
 }
 
-SluicePathOpener remote_path_opener(const struct remote_session *session)
+void remote_serve_opener(const struct remote_session *session, SluiceImageOpenerCreateInfo *info)
 {
-    return session->client
-               ? (SluicePathOpener){session->client, sluiceOpenHttpPath, sluiceCloseHttpPath}
-               : (SluicePathOpener){0};
+    if (!session->client)
+        return;
+    info->pathOpener = (SluicePathOpener){session->client, sluiceOpenHttpPath, sluiceCloseHttpPath};
+    info->pfnCheckPath = sluiceCheckHttpPath;
 }
 
 void remote_end(struct remote_session *session)

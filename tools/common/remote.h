@@ -48,8 +48,8 @@ static inline const SluiceInput *remote_input(const struct remote_file *remote)
  * use, too.
  */
 bool remote_begin(struct remote_session *session, const SluiceLogCallback *log);
-/** For an opener, which the session must outlive. All zero without a client. */
-SluicePathOpener remote_path_opener(const struct remote_session *session);
+/** Lets an opener open URLs. The session must outlive it. Sets nothing without a client. */
+void remote_serve_opener(const struct remote_session *session, SluiceImageOpenerCreateInfo *info);
 /** Close all files first. A zeroed struct is allowed. */
 void remote_end(struct remote_session *session);
 

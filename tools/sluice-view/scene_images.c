@@ -30,12 +30,12 @@ bool scene_images_create_opener(const char *cache, struct scene_data *scene)
         return false;
     /* Frames need a processor, too. */
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    const SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
-                                              .pCacheFolder = folder,
-                                              .bakeThreadCount =
-                                                  processors > 2 ? (uint32_t)processors - 1 : 1,
-                                              .log = {NULL, log_say},
-                                              .pathOpener = remote_path_opener(&scene->remote)};
+    SluiceImageOpenerCreateInfo info = {.structSize = sizeof info,
+                                        .pCacheFolder = folder,
+                                        .bakeThreadCount =
+                                            processors > 2 ? (uint32_t)processors - 1 : 1,
+                                        .log = {NULL, log_say}};
+    remote_serve_opener(&scene->remote, &info);
     const SluiceResult result = sluiceCreateImageOpener(&info, &scene->opener);
     if (result != SLUICE_SUCCESS)
         text_say("sluice-view: %s", sluiceGetResultName(result));
