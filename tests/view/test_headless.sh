@@ -166,6 +166,16 @@ column=$(head -n 1 steps.csv | tr , '\n' | grep -n '^mapped' | cut -d : -f 1) &&
     sums=$(awk -F , -v c="$column" 'NR > 1 { sum[int(($1 + 4) / 8)] += $c }
         END { print (sum[0] + sum[1] > 0), sum[2] + 0, sum[3] + 0 }' steps.csv) && [ "$sums" = '1 1 1' ]
 fact a_step_loads_one_tile_while_streaming_is_paused
+# The camera turns in frames 18 to 54. Prints how many tiles are loaded then, and their frame on average.
+printf '0 0 1.6 4 0 0 1\n0.3 0 1.6 4 0 0 1\n0.9 0 1.6 0 2.5 0 1\n' >turn.path
+turn() {
+    run 0 --room --headless --deterministic --fresh --size 160x160 --render-scale 1 --panels off --probability 1/4 \
+        --residency paged --textures-per-frame 100 --play turn.path --frames 54 --csv turn.csv --predict "$1" &&
+        awk -F , -v c="$column" 'NR > 18 { frames += $1 * $c; tiles += $c } END { print tiles, int(frames / tiles) }' turn.csv
+}
+read -r tiles late < <(turn 0) && read -r ahead early < <(turn 0.25) && [ "$tiles" -gt 10 ] && [ "$ahead" -ge "$tiles" ] &&
+    [ "$early" -lt $((late - 5)) ]
+fact feedback_from_where_the_camera_will_be_loads_its_tiles_earlier
 printf '12 set freeze-wants on\n13 hold s 20\n' >frozen
 run 0 --room --still --headless --deterministic --fresh --size 160x160 --residency paged --timeout 0.1 --standby 0 \
     --panels off --script frozen --frames 48 --csv frozen.csv &&

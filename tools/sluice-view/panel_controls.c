@@ -17,6 +17,7 @@ static double slider_most(const struct control *control)
                   {"timeout", 60},
                   {"textures-per-frame", 1024},
                   {"fade", 2},
+                  {"predict", 2},
                   {"source-latency", 1000},
                   {"source-bandwidth", 1000},
                   {"loads-in-flight", 4096},

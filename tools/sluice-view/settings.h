@@ -31,6 +31,7 @@ struct view_settings {
     double lod_bias;
     int feedback; ///< enum view_feedback
     double probability;
+    double predict; ///< seconds
     uint32_t textures_per_frame, tiles_per_frame, loads_in_flight;
     double timeout; ///< seconds
     uint32_t standby;

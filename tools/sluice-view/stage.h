@@ -33,9 +33,18 @@ struct stage_pick {
     struct vec3 position;
 };
 
+/** Where the camera will be: feedback is written from there, too. */
+struct stage_ahead {
+    bool draw;
+    struct view_camera camera;
+    uint32_t width, height; ///< pixels, fewer than those of the picture
+    float lod_bias;         ///< added to that of the settings
+};
+
 struct stage_draw {
     const struct view_settings *settings;
     struct view_camera camera;
+    struct stage_ahead ahead;
     uint32_t width, height; ///< of the picture
     uint64_t number;        ///< of the frame
     uint64_t time_stamp;    ///< microseconds

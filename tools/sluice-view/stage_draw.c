@@ -133,8 +133,10 @@ void stage_drawing_destroy(struct stage_drawing *d)
 {
     if (!d->gpu)
         return;
-    for (int i = 0; i < FRAMES_SLOTS; i++)
+    for (int i = 0; i < FRAMES_SLOTS; i++) {
         target_destroy(d->gpu, &d->targets[i]);
+        target_destroy(d->gpu, &d->ahead[i]);
+    }
     for (int i = 0; i < STAGE_PIPELINES; i++)
         vkDestroyPipeline(d->gpu->device, d->pipelines[i], NULL);
     vkDestroyPipelineLayout(d->gpu->device, d->layout, NULL);
@@ -168,16 +170,20 @@ static struct mat4 matrix_of(const struct scene_data *scene, const struct view_c
     return mat4_multiply(&projection, &view);
 }
 
+static bool writes_feedback(const struct view_settings *s)
+{
+    return s->feedback == VIEW_FEEDBACK_ON && !s->pause && !s->freeze_wants;
+}
+
 static struct push push_of(const struct scene_data *scene, const struct stage_draw *draw)
 {
     const struct view_settings *s = draw->settings;
-    const bool writes = s->feedback == VIEW_FEEDBACK_ON && !s->pause && !s->freeze_wants;
     return (struct push){.view_projection = matrix_of(scene, &draw->camera,
                                                       (float)draw->width / (float)draw->height),
                          .eye = draw->camera.position,
                          .view = s->view == VIEW_TRUTH ? VIEW_PICTURE : s->view,
                          .seed = (uint32_t)draw->number,
-                         .probability = writes ? (float)s->probability : 0.0f,
+                         .probability = writes_feedback(s) ? (float)s->probability : 0.0f,
                          .lod_bias = (float)s->lod_bias,
                          .anisotropy = (float)s->anisotropy,
                          .tint = (float)s->tint,
@@ -256,6 +262,30 @@ static void record_layout(const struct target *target, VkCommandBuffer commands)
         VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
+/* Draws the scene where the camera will be, for its feedback alone. Sets and buffers are bound. */
+static bool record_ahead(struct stage_drawing *d, const struct scene_data *scene,
+                         const struct stage_draw *draw, uint32_t slot, VkCommandBuffer commands)
+{
+    static const float black[4] = {0, 0, 0, 1};
+    struct view_settings settings = *draw->settings;
+    struct stage_draw ahead = {.settings = &settings,
+                               .camera = draw->ahead.camera,
+                               .width = draw->ahead.width,
+                               .height = draw->ahead.height,
+                               .number = draw->number};
+    if (!draw->ahead.draw || !writes_feedback(draw->settings))
+        return true;
+    settings.lod_bias += (double)draw->ahead.lod_bias;
+    settings.view = VIEW_PICTURE;
+    settings.borders = 0;
+    if (!fit_target(d, &d->ahead[slot], ahead.width, ahead.height))
+        return false;
+    target_begin(&d->ahead[slot], commands, black);
+    draw_parts(d, scene, &ahead, commands);
+    target_end(&d->ahead[slot], commands);
+    return true;
+}
+
 VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_data *scene,
                                  const struct stage_draw *draw, VkDescriptorSet set, uint32_t slot,
                                  VkCommandBuffer commands)
@@ -274,6 +304,8 @@ VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_dat
     vkCmdBindIndexBuffer(commands, d->indices.buffer, 0, VK_INDEX_TYPE_UINT32);
     draw_parts(d, scene, draw, commands);
     target_end(target, commands);
+    if (!record_ahead(d, scene, draw, slot, commands))
+        return VK_NULL_HANDLE;
     if (draw->copy)
         target_copy_out(target, commands, draw->copy);
     record_layout(target, commands);

@@ -19,6 +19,7 @@ struct stage_drawing {
     VkPipeline pipelines[STAGE_PIPELINES]; ///< those that materials need
     struct stage_order *order;             ///< owned; of the parts that blend
     struct target targets[FRAMES_SLOTS];   ///< one for each frame in flight
+    struct target ahead[FRAMES_SLOTS];     ///< of the camera ahead; empty before it is drawn
 };
 
 struct stage_drawing_info {

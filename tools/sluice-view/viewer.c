@@ -171,6 +171,35 @@ static bool follow_flip(struct viewer *v, const struct stage_draw *draw, struct 
     return copies;
 }
 
+static struct view_camera camera_of(const float m[16], float fov)
+{
+    const struct vec3 back = {m[2], m[6], m[10]};
+    const struct vec3 eye = {-(m[0] * m[12] + m[1] * m[13] + m[2] * m[14]),
+                             -(m[4] * m[12] + m[5] * m[13] + m[6] * m[14]),
+                             -(m[8] * m[12] + m[9] * m[13] + m[10] * m[14])};
+    return view_camera_at(eye, vec3_sub(eye, back), fov);
+}
+
+/* Settings may change in any frame, so the motion is known in all. */
+static struct stage_ahead look_ahead(struct viewer *v, const struct stage_draw *draw)
+{
+    const struct view_camera *camera = &draw->camera;
+    const struct mat4 look =
+        mat4_look_at(camera->position, vec3_add(camera->position, view_camera_forward(camera)));
+    const SluiceLookAheadInfo info = {.structSize = sizeof info,
+                                      .seconds = v->app.settings.predict,
+                                      .frameIndex = draw->number,
+                                      .pictureWidth = draw->width,
+                                      .pictureHeight = draw->height};
+    SluiceLookAhead ahead = {.structSize = sizeof ahead};
+    (void)sluiceAddCameraFrame(&v->motion, &look.m[0][0],
+                               v->app.seconds); /* a bad one: no motion */
+    if (sluicePredictCamera(&v->motion, &info, &ahead) != SLUICE_SUCCESS || !ahead.draw)
+        return (struct stage_ahead){.draw = false};
+    return (struct stage_ahead){true, camera_of(ahead.viewMatrix, camera->fov), ahead.width,
+                                ahead.height, ahead.lodBias};
+}
+
 static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer commands)
 {
     const double scale = render_scale(v);
@@ -199,6 +228,7 @@ static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer com
         end->views[UI_TEXTURE_OTHER] = end->views[UI_TEXTURE_PICTURE];
     }
     draw.copy = copies ? v->flip.pictures[0].buffer : VK_NULL_HANDLE;
+    draw.ahead = look_ahead(v, &draw);
     return stage_record(v->stage, &draw, commands, end);
 }
 

@@ -12,6 +12,7 @@
 
 #include "../common/files.h"
 
+#include <sluice/camera_motion.h>
 #include <sluice/replay.h>
 
 struct viewer {
@@ -25,6 +26,7 @@ struct viewer {
     struct window *window; ///< NULL: headless
     struct swapchain swapchain;
     struct flip_map flip;
+    SluiceCameraMotion motion; ///< of the last frames
     struct script script;
     struct ui_input input;
     struct view_settings applied; ///< what the streamer has
