@@ -22,6 +22,7 @@ static const char usage[] =
     "  gallery          a walk past pictures whose textures are streamed\n"
     "  demand-tracer    a garden whose textures are loaded when rays hit them\n"
     "  neural           a neural set that hangs in the gallery: -- --neural-set FILE.ntc\n"
+    "  view             any scene of sluice-view: -- SCENE.gltf --play CAMERA-PATH\n"
     "  trace FILE       recorded feedback, played without a device\n"
     "Runs that are complete are kept, so that the same command goes on after an interruption;\n"
     "`page` makes the results again of what is there. `play --help` lists its options.\n";
@@ -45,15 +46,15 @@ static void print_settings(const struct scene *scene)
 
 static bool refuse_scene(const struct option_table *table, const char *word)
 {
-    static const char *const names[] = {"gallery", "demand-tracer", "neural", "trace",
-                                        "sweep",   "page",          "play"};
+    static const char *const names[] = {"gallery", "demand-tracer", "neural", "view",
+                                        "trace",   "sweep",         "page",   "play"};
     char question[64];
     struct nearest nearest = {.word = word, .word_length = strlen(word)};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         nearest_try(&nearest, names[i], strlen(names[i]));
-    return options_refuse(table,
-                          "there is no scene '%s': gallery, demand-tracer, neural or trace FILE%s",
-                          word, nearest_question(&nearest, "", question, sizeof question));
+    return options_refuse(
+        table, "there is no scene '%s': gallery, demand-tracer, neural, view or trace FILE%s", word,
+        nearest_question(&nearest, "", question, sizeof question));
 }
 
 /* Better said once, before anything is run. */
@@ -107,7 +108,7 @@ enum option_outcome options_parse_sweep(int argc, char **argv, struct options *o
     *o = (struct options){0};
     const struct option options[] = {
         {OPTION_WORD, .operand = "SCENE", .value = &scene, .minimum = 1,
-         .help = "a scene (gallery, demand-tracer, neural or trace FILE)"},
+         .help = "a scene (gallery, demand-tracer, neural, view or trace FILE)"},
         {OPTION_WORD, .operand = "FILE", .value = &o->trace},
         {OPTION_REST, .value = &rest},
         {OPTION_SECTION, .help = "Plan"},
@@ -143,6 +144,7 @@ enum option_outcome options_parse_sweep(int argc, char **argv, struct options *o
         print_settings(&scene_gallery);
         print_settings(&scene_demand_tracer);
         print_settings(&scene_neural);
+        print_settings(&scene_view);
         print_settings(&scene_trace);
     }
     if (outcome != OPTIONS_RUN)

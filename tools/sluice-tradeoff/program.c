@@ -46,9 +46,13 @@ char *program_find(const char *own_path, const char *relative, const char *name)
     char *installed = SAMPLES_FROM_BIN[0] == '/'
                           ? memory_text("%s/%s", SAMPLES_FROM_BIN, name)
                           : memory_text("%.*s/%s/%s", length, folder, SAMPLES_FROM_BIN, name);
+    char *beside = memory_text("%.*s/%s", length, folder, name);
     char *found = access(in_build_tree, X_OK) == 0 ? in_build_tree
                   : access(installed, X_OK) == 0   ? installed
+                  : access(beside, X_OK) == 0      ? beside
                                                    : NULL;
+    if (found != beside)
+        free(beside);
     if (found != in_build_tree)
         free(in_build_tree);
     if (found != installed)

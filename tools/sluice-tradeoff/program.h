@@ -22,8 +22,8 @@ uint64_t program_hash(uint64_t hash, const void *bytes, size_t size);
 char *program_own_path(const char *argv0);
 /**
  * Finds `relative` in the build tree that the tool is in, or `name` in the installed folder of the
- * samples, SAMPLES_FROM_BIN: relative to the tool's folder, or absolute. NULL if neither is there;
- * to be freed.
+ * samples, SAMPLES_FROM_BIN: relative to the tool's folder, or absolute; or `name` in the tool's
+ * own folder. NULL if none is there; to be freed.
  */
 char *program_find(const char *own_path, const char *relative, const char *name);
 

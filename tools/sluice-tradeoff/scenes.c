@@ -6,7 +6,7 @@
 const struct scene *scene_find(const char *name)
 {
     const struct scene *const scenes[] = {&scene_gallery, &scene_demand_tracer, &scene_neural,
-                                          &scene_trace};
+                                          &scene_view, &scene_trace};
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)
         if (strcmp(scenes[i]->name, name) == 0)
             return scenes[i];

@@ -54,6 +54,6 @@ void scene_add_seed(const struct program *program, uint32_t repeat, struct text_
 /** NULL: there is none of that name. */
 const struct scene *scene_find(const char *name);
 
-extern const struct scene scene_gallery, scene_demand_tracer, scene_neural, scene_trace;
+extern const struct scene scene_gallery, scene_demand_tracer, scene_neural, scene_view, scene_trace;
 
 #endif /* SLUICE_TRADEOFF_SCENES_H */

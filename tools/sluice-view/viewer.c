@@ -310,8 +310,10 @@ static bool draw_frame(struct viewer *v, double step)
     v->app.facts.gpu_seconds = v->frames.gpu_seconds;
     if (v->window && swapchain_present(&v->swapchain, end.image) == SWAPCHAIN_FAILED)
         return false;
-    if (v->stage)
+    if (v->stage) {
         facts_update(&v->app.facts, v->stage, &v->app.settings, step);
+        summary_add(&v->summary, &v->app.facts);
+    }
     return true;
 }
 
@@ -398,6 +400,7 @@ static void print_summary(struct viewer *v)
                v->frame > v->first_frame + 1 ? (processor_seconds() - v->first_processor) * 1e3 /
                                                    (v->frame - v->first_frame - 1)
                                              : 0.0);
+        summary_print(&v->summary, f);
         if (v->flip.known)
             printf("{\"name\": \"FLIP\", \"value\": %.6f, \"unit\": \"\"}\n", v->flip.shown_mean);
         return;

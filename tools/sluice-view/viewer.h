@@ -8,6 +8,7 @@
 #include "options.h"
 #include "scene_load.h"
 #include "script.h"
+#include "summary.h"
 #include "window.h"
 
 #include "../common/files.h"
@@ -35,8 +36,9 @@ struct viewer {
     char command[4200];           ///< of "copy command line", without options
     char settings_path[4096];     ///< "": none are kept
     char screenshot[4096];        ///< to write after this frame; "": none
-    SluiceRecorder *recorder;     ///< of the manager of `stage`; NULL: none
-    char recording[4096];         ///< its file
+    struct summary summary;
+    SluiceRecorder *recorder; ///< of the manager of `stage`; NULL: none
+    char recording[4096];     ///< its file
     bool recording_failed;
     struct output_file *csv;
     uint32_t frame;
