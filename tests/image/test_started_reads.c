@@ -481,6 +481,223 @@ static void bytes_of_started_reads_are_in_flight(void **state)
     sluiceDestroyTileLoader(loader);
 }
 
+/* Pools -------------------------------------------------------------------------------------- */
+
+/* One thread for both loaders. */
+static SluiceReadPool *begin_pool(struct source *source, SluiceTileLoader *loaders[2])
+{
+    *source = (struct source){.base = {&interface}};
+    pthread_mutex_init(&source->mutex, NULL);
+    const SluiceReadPoolCreateInfo info = {
+        .structSize = sizeof info, .threadCount = 1, .maxReadsPerSource = 1};
+    SluiceReadPool *pool;
+    CHECK_OK(sluiceCreateReadPool(&info, &pool));
+    for (int i = 0; i < 2; i++) {
+        const SluiceTileLoaderCreateInfo loader = {
+            .structSize = sizeof loader, .readPool = pool, .retry = {3, 1, 1}};
+        CHECK_OK(sluiceCreateTileLoader(&loader, &loaders[i]));
+    }
+    return pool;
+}
+
+static void end_pool(SluiceReadPool *pool, SluiceTileLoader *loaders[2])
+{
+    for (int i = 0; i < 2; i++)
+        sluiceDestroyTileLoader(loaders[i]);
+    sluiceDestroyReadPool(pool);
+}
+
+/* Loader 0 has started level 1, loader 1 waits for it and has started level 2. Returns the tickets
+ * of level 1. */
+static void join(struct source *source, SluiceTileLoader *loaders[2], float texels[3],
+                 uint64_t tickets[2])
+{
+    tickets[0] = submit(loaders[0], &source->base, 1, 1, &texels[0]);
+    await_pending(source, 1);
+    tickets[1] = submit(loaders[1], &source->base, 1, 1, &texels[1]);
+    submit(loaders[1], &source->base, 1, 2, &texels[2]);
+    await_pending(source, 2);
+    assert_int_equal(count_starts(source), 2);
+}
+
+static void complete_level(struct source *source, uint32_t level)
+{
+    struct pending read = {0};
+    for (uint32_t i = 0; i < source->count; i++)
+        if (source->pending[i].region.mipLevel == level)
+            read = source->pending[i];
+    assert_true(take(source, &read.token, &read));
+    CHECK_OK(complete(source, &read));
+}
+
+static void started_reads_are_joined(void **state)
+{
+    (void)state;
+    struct source source;
+    SluiceTileLoader *loaders[2];
+    uint64_t tickets[2];
+    float texels[3] = {0}, later = 0;
+    SluiceReadPool *pool = begin_pool(&source, loaders);
+    join(&source, loaders, texels, tickets);
+    complete_level(&source, 1);
+    CHECK_OK(collect(loaders[0]).result);
+    SluiceTileReadResult joined = collect(loaders[1]);
+    CHECK_OK(joined.result);
+    assert_int_equal(joined.ticket, tickets[1]);
+    assert_int_equal(joined.size, sizeof(float));
+    complete_level(&source, 2);
+    CHECK_OK(collect(loaders[1]).result);
+    assert_true(texels[0] == 1000 && texels[1] == 1000 && texels[2] == 2000);
+    submit(loaders[0], &source.base, 1, 2, &later);
+    CHECK_OK(collect(loaders[0]).result);
+    assert_true(later == 2000);
+    assert_int_equal(count_starts(&source), 2);
+    SluiceReadPoolStatistics now = {.structSize = sizeof now};
+    CHECK_OK(sluiceGetReadPoolStatistics(pool, &now));
+    assert_int_equal(now.readCount, 2);
+    assert_int_equal(now.joinedCount, 1);
+    assert_int_equal(now.cachedCount, 1);
+    end_pool(pool, loaders);
+}
+
+static void sources_are_not_told_of_a_cancel_while_others_wait(void **state)
+{
+    (void)state;
+    struct source source;
+    SluiceTileLoader *loaders[2];
+    uint64_t tickets[2];
+    float texels[3] = {0};
+    SluiceReadPool *pool = begin_pool(&source, loaders);
+    source.obeys = true;
+    join(&source, loaders, texels, tickets);
+    CHECK_OK(sluiceCancelTileRead(loaders[0], tickets[0]));
+    assert_int_equal(source.cancel_count, 0);
+    complete_level(&source, 1);
+    assert_int_equal(collect(loaders[1]).ticket, tickets[1]);
+    assert_true(texels[1] == 1000);
+    complete_level(&source, 2);
+    CHECK_OK(collect(loaders[1]).result);
+    assert_int_equal(count_starts(&source), 2);
+    end_pool(pool, loaders);
+}
+
+/* The source has not completed the canceled read: nobody joins it any more. */
+static void reads_that_were_canceled_are_not_joined(void **state)
+{
+    (void)state;
+    struct source source;
+    SluiceTileLoader *loaders[2];
+    float texels[2] = {0};
+    SluiceReadPool *pool = begin_pool(&source, loaders);
+    uint64_t ticket = submit(loaders[0], &source.base, 1, 1, &texels[0]);
+    await_pending(&source, 1);
+    for (uint32_t told = 0; told < 1; pause_briefly()) { /* once its start is over */
+        CHECK_OK(sluiceCancelTileRead(loaders[0], ticket));
+        pthread_mutex_lock(&source.mutex);
+        told = source.cancel_count;
+        pthread_mutex_unlock(&source.mutex);
+    }
+    submit(loaders[1], &source.base, 1, 1, &texels[1]);
+    await_pending(&source, 2);
+    complete_level(&source, 1);
+    complete_level(&source, 1);
+    CHECK_OK(collect(loaders[1]).result);
+    assert_true(texels[1] == 1000);
+    end_pool(pool, loaders);
+}
+
+static void a_read_that_joined_a_started_failure_starts_itself(void **state)
+{
+    (void)state;
+    struct source source;
+    SluiceTileLoader *loaders[2];
+    uint64_t tickets[2];
+    float texels[3] = {0};
+    SluiceReadPool *pool = begin_pool(&source, loaders);
+    source.failures = SLUICE_ERROR_UNSUPPORTED; /* final */
+    source.failure_count = 1;
+    join(&source, loaders, texels, tickets);
+    complete_level(&source, 1);
+    CHECK_RESULT(collect(loaders[0]).result, SLUICE_ERROR_UNSUPPORTED);
+    await_pending(&source, 2); /* levels 2 and 1 */
+    complete_level(&source, 1);
+    SluiceTileReadResult joined = collect(loaders[1]);
+    CHECK_OK(joined.result);
+    assert_int_equal(joined.ticket, tickets[1]);
+    assert_true(texels[1] == 1000);
+    complete_level(&source, 2);
+    end_pool(pool, loaders);
+}
+
+static void regions_that_are_read_at_once_are_shared_too(void **state)
+{
+    (void)state;
+    for (int at_once = 0; at_once < 2; at_once++) {
+        struct source source;
+        SluiceTileLoader *loaders[2];
+        SluiceReadPool *pool = begin_pool(&source, loaders);
+        source.at_once = at_once;
+        source.refusal = at_once ? SLUICE_SUCCESS : SLUICE_ERROR_UNSUPPORTED;
+        for (int i = 0; i < 2; i++) {
+            float texels[3] = {0};
+            submit(loaders[i], &source.base, 3, 1, texels);
+            CHECK_OK(collect(loaders[i]).result);
+            assert_true(texels[0] == 1000 && texels[1] == 2000 && texels[2] == 3000);
+        }
+        assert_int_equal(source.read_count + source.start_count, 3);
+        end_pool(pool, loaders);
+    }
+}
+
+/* As completions_cancels_and_destruction_may_meet, with two loaders of a pool that ask for the same
+ * regions. Every read that succeeds has its texels. */
+static void joins_completions_and_cancels_may_meet(void **state)
+{
+    (void)state;
+    enum { COUNT = 200 };
+    static float texels[2][COUNT][2];
+    for (int round = 0; round < 3; round++) {
+        struct source source;
+        SluiceTileLoader *loaders[2];
+        pthread_t threads[2];
+        SluiceReadPool *pool = begin_pool(&source, loaders);
+        source.obeys = true;
+        source.failures = SLUICE_ERROR_IO;
+        source.failure_count = 40;
+        for (int i = 0; i < 2; i++)
+            assert_int_equal(pthread_create(&threads[i], NULL, complete_all, &source), 0);
+        for (uint32_t i = 0; i < COUNT; i++)
+            for (uint32_t k = 0; k < 2; k++) {
+                uint32_t level = i * (k + 1) % (LEVELS - 1);
+                texels[k][i][0] = texels[k][i][1] = -1;
+                uint64_t ticket = submit(loaders[k], &source.base, 2, level, texels[k][i]);
+                if (i % 3 == k)
+                    CHECK_OK(sluiceCancelTileRead(loaders[k], ticket));
+                if (i % 32 == 31)
+                    sluiceDropTileLoaderStatistics(loaders[k], &source.base);
+            }
+        for (uint32_t k = 0; round > 0 && k < 2; k++)
+            for (uint32_t i = 0; i < COUNT; i++) {
+                SluiceTileReadResult result = collect(loaders[k]);
+                if (result.result == SLUICE_SUCCESS)
+                    assert_int_equal(result.size, 2 * sizeof(float));
+                else
+                    assert_true(result.result == SLUICE_ERROR_CANCELED ||
+                                result.result == SLUICE_ERROR_IO);
+            }
+        for (uint32_t k = 0; round > 0 && k < 2; k++)
+            for (uint32_t i = 0; i < COUNT; i++)
+                for (uint32_t r = 0; r < 2; r++)
+                    assert_true(texels[k][i][r] == -1 ||
+                                texels[k][i][r] ==
+                                    (float)(1000 * (i * (k + 1) % (LEVELS - 1) + r)));
+        end_pool(pool, loaders);
+        for (int i = 0; i < 2; i++)
+            finish(&source, threads[i]);
+        assert_int_equal(source.count, 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -494,6 +711,12 @@ int main(void)
         cmocka_unit_test(layers_of_arrays_start_their_own_reads),
         cmocka_unit_test(completed_chains_start_the_levels_that_they_do_not_build),
         cmocka_unit_test(bytes_of_started_reads_are_in_flight),
+        cmocka_unit_test(started_reads_are_joined),
+        cmocka_unit_test(sources_are_not_told_of_a_cancel_while_others_wait),
+        cmocka_unit_test(reads_that_were_canceled_are_not_joined),
+        cmocka_unit_test(a_read_that_joined_a_started_failure_starts_itself),
+        cmocka_unit_test(regions_that_are_read_at_once_are_shared_too),
+        cmocka_unit_test(joins_completions_and_cancels_may_meet),
     };
     return RUN_TESTS(tests);
 }
