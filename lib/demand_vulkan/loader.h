@@ -92,12 +92,14 @@ struct slc_demand_image {
     SluiceDemandTicket ticket;
 
     /* Of the worker that opens it, until that job is collected. */
-    const struct SluiceDemandLoader *loader;
+    struct SluiceDemandLoader *loader;
     SluiceImageSource *source;
     SluiceImageInfo info;
     const char *trouble; ///< why it cannot be used; NULL: it can, or result says why
     bool is_refused;     ///< opening it said UNSUPPORTED
     uint8_t *last_level; ///< owned; texels that the source was asked to start; or NULL
+    uint64_t started_as; ///< with last_level: ticket of its read
+    struct slc_demand_image *next_started; ///< guarded by the mutex of `tickets`
     float read_color[4];
 
     uint32_t tile_width, tile_height; ///< texels
@@ -327,7 +329,9 @@ struct SluiceDemandLoader {
     bool knows_use;                   ///< the launch that is being processed did
     uint32_t *tail_blocks; ///< owned; by slot / SLUICE_DEMAND_BLOCK_PAGES: the first tail page
     uint32_t tail_block_count, tail_block_capacity;
-    SluiceImageSource opener; ///< an image whose texels are base colors
+    SluiceImageSource opener;               ///< an image whose texels are base colors
+    struct slc_demand_image *first_started; ///< reads of `opener` that sources were asked to start;
+                                            ///< guarded by the mutex of `tickets`
 
     struct slc_demand_resource **resources; ///< owned, by index
     uint32_t resource_high, resource_capacity, free_resource;

@@ -123,10 +123,34 @@ static SluiceResult read_base_color(struct slc_demand_image *image)
     return result;
 }
 
+/* A cancel, on any thread, names a read by its ticket alone. */
+static void note_started(struct slc_demand_image *image, uint64_t ticket)
+{
+    SluiceDemandLoader *loader = image->loader;
+    slc_mutex_lock(&loader->tickets.mutex);
+    image->started_as = ticket;
+    image->next_started = loader->first_started;
+    loader->first_started = image;
+    slc_mutex_unlock(&loader->tickets.mutex);
+}
+
+static void forget_started(struct slc_demand_image *image)
+{
+    SluiceDemandLoader *loader = image->loader;
+    slc_mutex_lock(&loader->tickets.mutex);
+    struct slc_demand_image **link = &loader->first_started;
+    while (*link != image)
+        link = &(*link)->next_started;
+    *link = image->next_started;
+    slc_mutex_unlock(&loader->tickets.mutex);
+}
+
 static void drop_last_level(struct slc_demand_image *image)
 {
-    if (image->last_level)
-        slc_free(&image->loader->cb, image->last_level, last_level_of(image).size, 1);
+    if (!image->last_level)
+        return;
+    forget_started(image);
+    slc_free(&image->loader->cb, image->last_level, last_level_of(image).size, 1);
     image->last_level = NULL;
 }
 
@@ -135,10 +159,12 @@ static SluiceResult start_base_color(struct slc_demand_image *image,
                                      const SluiceImageReadToken *token)
 {
     const struct last_level last = last_level_of(image);
-    if (!image->last_level) /* else of an attempt before */
+    if (!image->last_level) { /* else of an attempt before, with the same ticket */
         image->last_level = slc_alloc(&image->loader->cb, last.size, 1);
-    if (!image->last_level)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        if (!image->last_level)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        note_started(image, token->ticket);
+    }
     SluiceResult result = slc_start_read(image->source, &image->info, &last.region,
                                          image->last_level, last.pitch, token);
     if (result != SLUICE_SUCCESS)
@@ -184,6 +210,24 @@ static SluiceResult start_read(SluiceImageSource *source, const SluiceImageRegio
                                            : SLUICE_ERROR_UNSUPPORTED;
 }
 
+/* The image stays until the read is collected, which is not before this returns. */
+static void cancel_read(SluiceImageSource *source, const SluiceImageRegion *region,
+                        const SluiceImageReadToken *token)
+{
+    (void)region;
+    SluiceDemandLoader *loader =
+        (void *)((char *)source - offsetof(struct SluiceDemandLoader, opener));
+    slc_mutex_lock(&loader->tickets.mutex);
+    struct slc_demand_image *image = loader->first_started;
+    while (image && image->started_as != token->ticket)
+        image = image->next_started;
+    slc_mutex_unlock(&loader->tickets.mutex);
+    if (!image)
+        return;
+    const struct last_level last = last_level_of(image);
+    slc_cancel_read(image->source, &last.region, token);
+}
+
 static void destroy(SluiceImageSource *source)
 {
     (void)source;
@@ -193,7 +237,8 @@ static const SluiceImageSourceInterface interface = {.structSize = sizeof interf
                                                      .pfnGetInfo = get_info,
                                                      .pfnReadRegion = read_region,
                                                      .pfnDestroy = destroy,
-                                                     .pfnStartRead = start_read};
+                                                     .pfnStartRead = start_read,
+                                                     .pfnCancelRead = cancel_read};
 
 void slc_image_opener_init(SluiceImageSource *opener)
 {

@@ -7,6 +7,7 @@
 #include <sluice/demand_query.h>
 
 #include <pthread.h>
+#include <string.h>
 
 static struct harness h;
 
@@ -399,7 +400,7 @@ struct later {
         void *texels;
         size_t pitch;
     } reads[64];
-    uint32_t count, started, read_at_once;
+    uint32_t count, started, read_at_once, canceled;
     uint32_t failures; ///< so many are completed with NOT_READY first
     bool ends;
     pthread_t thread;
@@ -460,6 +461,25 @@ static void *complete_later(void *user)
     return NULL;
 }
 
+/* Completes the read at once, before this returns. */
+static void cancel_later(SluiceImageSource *base, const SluiceImageRegion *region,
+                         const SluiceImageReadToken *token)
+{
+    struct later *later = (struct later *)base;
+    bool is_known = false;
+    pthread_mutex_lock(&later->mutex);
+    for (uint32_t i = 0; i < later->count && !is_known; i++) {
+        is_known = later->reads[i].token.ticket == token->ticket &&
+                   memcmp(&later->reads[i].region, region, sizeof *region) == 0;
+        if (is_known)
+            later->reads[i] = later->reads[--later->count];
+    }
+    later->canceled += is_known;
+    pthread_mutex_unlock(&later->mutex);
+    if (is_known)
+        CHECK_OK(sluiceCompleteImageRead(token, SLUICE_ERROR_CANCELED));
+}
+
 static void keep_later(SluiceImageSource *base)
 {
     (void)base;
@@ -514,6 +534,80 @@ static void sources_that_start_reads_are_never_read_at_once(void **state)
     }
 }
 
+struct cancel_call {
+    SluiceDemandLoader *loader;
+    SluiceDemandTicket ticket;
+};
+
+static void *cancel_ticket(void *user)
+{
+    struct cancel_call *call = user;
+    CHECK_OK(sluiceCancelDemandTicket(call->loader, call->ticket));
+    return NULL;
+}
+
+/* Nobody completes the reads of these sources, so only the cancel ends their openings: by removal
+ * of one texture, by its ticket on another thread, and of the rest with the loader. */
+static void openings_end_when_they_are_canceled(void **state)
+{
+    (void)state;
+    enum { COUNT = 6 };
+    static const SluiceImageSourceInterface interface = {.structSize = sizeof interface,
+                                                         .pfnGetInfo = get_later_info,
+                                                         .pfnReadRegion = read_later_now,
+                                                         .pfnDestroy = keep_later,
+                                                         .pfnStartRead = start_later,
+                                                         .pfnCancelRead = cancel_later};
+    struct runner r;
+    struct runner_image image;
+    struct later later[COUNT] = {0};
+    SluiceDemandTextureId ids[COUNT];
+    runner_init(&r, &h, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 512, 512, 3);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        later[i].base.pInterface = &interface;
+        later[i].inner = image.inner;
+        pthread_mutex_init(&later[i].mutex, NULL);
+        pthread_cond_init(&later[i].changed, NULL);
+        const SluiceDemandTextureCreateInfo info = {
+            .structSize = sizeof info, .image.source = &later[i].base, .pSampler = &runner_nearest};
+        CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &ids[i]));
+        runner_add_texel(&r, ids[i], 512, 512, 0, 1, 1);
+    }
+    runner_launch(&r);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        pthread_mutex_lock(&later[i].mutex);
+        while (later[i].started == 0)
+            pthread_cond_wait(&later[i].changed, &later[i].mutex);
+        pthread_mutex_unlock(&later[i].mutex);
+    }
+    CHECK_OK(sluiceRemoveDemandTexture(r.loader, ids[2]));
+    for (uint32_t i = 0; i < COUNT; i++)
+        assert_int_equal(later[i].canceled, i == 2);
+    struct cancel_call call = {r.loader, r.ticket};
+    pthread_t thread;
+    assert_int_equal(pthread_create(&thread, NULL, cancel_ticket, &call), 0);
+    CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
+    pthread_join(thread, NULL);
+    for (uint32_t i = 0; i < COUNT; i++)
+        assert_int_equal(later[i].canceled, 1);
+    runner_launch(&r); /* asks for them again, but for the removed one */
+    for (uint32_t i = 0; i < COUNT; i++) {
+        pthread_mutex_lock(&later[i].mutex);
+        while (i != 2 && later[i].started == 1)
+            pthread_cond_wait(&later[i].changed, &later[i].mutex);
+        pthread_mutex_unlock(&later[i].mutex);
+    }
+    runner_finish(&r);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        assert_int_equal(later[i].canceled, i == 2 ? 1 : 2);
+        assert_int_equal(later[i].read_at_once, 0);
+        pthread_cond_destroy(&later[i].changed);
+        pthread_mutex_destroy(&later[i].mutex);
+    }
+    runner_image_finish(&image);
+}
+
 /* Threads that wait read themselves. Jobs are compared with threads: requests and texels. */
 static void waits_end_whatever_a_job_system_does(void **state)
 {
@@ -561,6 +655,7 @@ int main(void)
         cmocka_unit_test(waits_say_who_has_the_next_step),
         cmocka_unit_test(a_region_beyond_its_level_loads_nothing),
         cmocka_unit_test(sources_that_start_reads_are_never_read_at_once),
+        cmocka_unit_test(openings_end_when_they_are_canceled),
         cmocka_unit_test(waits_end_whatever_a_job_system_does),
     };
     CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 3}));
