@@ -3,6 +3,8 @@
 
 #include "support/test.h"
 
+#include <string.h>
+
 /* Enough for the global bias, which a refused heap raises by a level, to fall again. */
 enum { FRAMES = 32 };
 
@@ -23,24 +25,18 @@ static uint8_t want_all(void *user, uint32_t region)
     return 0;
 }
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
+static SluiceImageSource *gray; /* in memory: to make texels would take most of a frame */
 
-static SluiceImageSource *gray_source(void)
+static void create_gray(void)
 {
-    SluiceProceduralImage image = {NULL, texel};
+    static uint8_t texels[512 * 512 * 4];
     SluiceImageInfo info = {.structSize = sizeof info,
                             .width = 512,
                             .height = 512,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                             .pName = "gray"};
-    SluiceImageSource *source;
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
-    return source;
+    memset(texels, 128, sizeof texels);
+    CHECK_OK(sluiceCreateMemoryImageSource(texels, &info, NULL, &gray));
 }
 
 static SluiceResidencyMode mode; /* that is tested */
@@ -95,7 +91,7 @@ static void adding_survives(uint64_t objects_per_texture)
     SluiceVulkanStreamer *streamer;
     CHECK_OK(create(&fake, &streamer));
     SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
-                                          .source = gray_source(),
+                                          .source = gray,
                                           .residencyMode =
                                               mixes ? SLUICE_RESIDENCY_MODE_PAGED : mode};
     SluiceVulkanTexture texture;
@@ -116,16 +112,15 @@ static void adding_survives(uint64_t objects_per_texture)
     fake.failing_call = 0;
     fake_vulkan_destroy(streamer);
     check_nothing_left(&fake);
-    sluiceDestroyImageSource(info.source);
 }
 
 /* `objects_per_array`: what is there more once it was added. */
 static void adding_arrays_survives(uint64_t objects_per_array, bool metadata)
 {
     static struct fake_vulkan fake; /* large */
-    SluiceImageSource *layer = gray_source(), *array;
-    CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
-                                          &array));
+    SluiceImageSource *array;
+    CHECK_OK(
+        sluiceCreateArrayImageSource((SluiceImageSource *[]){gray, gray, gray}, 3, NULL, &array));
     SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = array};
     for (size_t f = 0; f < FAILURES; f++) {
         fake = (struct fake_vulkan){.tail_page_count = 1, .metadata_size = metadata ? 65536 : 0};
@@ -157,7 +152,6 @@ static void adding_arrays_survives(uint64_t objects_per_array, bool metadata)
         check_nothing_left(&fake);
     }
     sluiceDestroyImageSource(array);
-    sluiceDestroyImageSource(layer);
 }
 
 /* An image, its memory, a view of each layer and one of all. */
@@ -206,8 +200,7 @@ static void frames_survive(uint32_t packed_count, uint32_t binds_per_call, uint3
                 .tail_page_count = 1, .want = want_all, .maxBindsPerCall = binds_per_call};
             SluiceVulkanStreamer *streamer;
             CHECK_OK(create(&fake, &streamer));
-            SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
-                                                  .source = gray_source()};
+            SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = gray};
             SluiceVulkanTexture texture;
             CHECK_OK(sluiceAddVulkanTexture(streamer, &info, &texture));
             fake.calls = 0;
@@ -227,7 +220,6 @@ static void frames_survive(uint32_t packed_count, uint32_t binds_per_call, uint3
             }
             fake_vulkan_destroy(streamer);
             check_nothing_left(&fake);
-            sluiceDestroyImageSource(info.source);
             if (!failed)
                 break;
         }
@@ -289,5 +281,8 @@ int main(void)
         cmocka_unit_test(adding_an_array_survives_every_failing_call),
         cmocka_unit_test(frames_survive_every_failing_call),
     };
-    return RUN_TESTS(tests);
+    create_gray();
+    int failed = RUN_TESTS(tests);
+    sluiceDestroyImageSource(gray);
+    return failed;
 }
