@@ -4,6 +4,7 @@
 #include "scene_data.h"
 #include "scene_images.h"
 #include "stage_draw.h"
+#include "stage_pick.h"
 
 #include "../../samples/common/slow_source.h"
 #include "../common/log.h"
@@ -408,77 +409,29 @@ const struct camera_path *stage_tour(const struct stage *s)
     return &s->scene.tour;
 }
 
-static struct vec3 position_of(const struct scene_vertex *vertex)
-{
-    return (struct vec3){vertex->position[0], vertex->position[1], vertex->position[2]};
-}
-
-/* Moeller and Trumbore: "Fast, Minimum Storage Ray/Triangle Intersection", 1997. */
-static bool meets(struct vec3 eye, struct vec3 ray, const struct scene_vertex *const corners[3],
-                  float *t, float *b, float *c)
-{
-    const struct vec3 first = position_of(corners[0]);
-    const struct vec3 e1 = vec3_sub(position_of(corners[1]), first);
-    const struct vec3 e2 = vec3_sub(position_of(corners[2]), first);
-    const struct vec3 p = vec3_cross(ray, e2), to = vec3_sub(eye, first), q = vec3_cross(to, e1);
-    const float determinant = vec3_dot(e1, p);
-    if (fabsf(determinant) < 1e-12f)
-        return false;
-    *b = vec3_dot(to, p) / determinant;
-    *c = vec3_dot(ray, q) / determinant;
-    *t = vec3_dot(e2, q) / determinant;
-    return *b >= 0 && *c >= 0 && *b + *c <= 1 && *t > 0;
-}
-
-static float wrap(float x)
-{
-    return x - floorf(x);
-}
-
-static struct stage_pick pick_of(const struct scene_data *scene, const struct scene_part *part,
-                                 const struct scene_vertex *const corners[3], float b, float c)
-{
-    const struct scene_slot *slot = &scene->materials[part->material].slots[SLOT_COLOR];
-    const float *m = slot->m;
-    float uv[2];
-    for (int k = 0; k < 2; k++)
-        uv[k] = corners[0]->uv[slot->uv_set][k] * (1 - b - c) +
-                corners[1]->uv[slot->uv_set][k] * b + corners[2]->uv[slot->uv_set][k] * c;
-    return (struct stage_pick){.hit = true,
-                               .texture =
-                                   slot->image == SCENE_NO_IMAGE ? STAGE_NO_TEXTURE : slot->image,
-                               .u = wrap(m[0] * uv[0] + m[1] * uv[1] + m[4]),
-                               .v = wrap(m[2] * uv[0] + m[3] * uv[1] + m[5])};
-}
-
-static void try_part(const struct scene_data *scene, const struct scene_part *part, struct vec3 eye,
-                     struct vec3 ray, float *nearest, struct stage_pick *pick)
-{
-    for (uint32_t i = 0; i + 2 < part->index_count; i += 3) {
-        const uint32_t *index = scene->indices + part->first_index + i;
-        const struct scene_vertex *const corners[3] = {
-            &scene->vertices[index[0]], &scene->vertices[index[1]], &scene->vertices[index[2]]};
-        float t, b, c;
-        if (!meets(eye, ray, corners, &t, &b, &c) || t >= *nearest)
-            continue;
-        *nearest = t;
-        *pick = pick_of(scene, part, corners, b, c);
-        pick->position = vec3_add(eye, vec3_scale(ray, t));
-    }
-}
-
 struct stage_pick stage_pick(const struct stage *s, const struct view_camera *camera, float aspect,
                              float x, float y)
 {
-    struct stage_pick pick = {.texture = STAGE_NO_TEXTURE};
-    const float tangent = tanf(camera->fov / 2);
-    const struct vec3 forward = view_camera_forward(camera), right = view_camera_right(camera);
-    const struct vec3 up = vec3_cross(right, forward);
-    const struct vec3 ray =
-        vec3_add(forward, vec3_add(vec3_scale(right, (2 * x - 1) * tangent * aspect),
-                                   vec3_scale(up, (1 - 2 * y) * tangent)));
-    float nearest = INFINITY;
-    for (uint32_t i = 0; i < s->scene.part_count; i++)
-        try_part(&s->scene, &s->scene.parts[i], camera->position, ray, &nearest, &pick);
-    return pick;
+    return scene_pick(&s->scene, camera, aspect, x, y);
+}
+
+bool stage_pick_pixel(const struct stage *s, const struct stage_pick *pick,
+                      const struct stage_pixel *pixel, float texels[4])
+{
+    if (!scene_pick_pixel(&s->scene, pick, pixel, texels))
+        return false;
+    for (int i = 0; i < 4; i++)
+        texels[i] *= (float)(i % 2 == 0 ? s->textures[pick->texture].width
+                                        : s->textures[pick->texture].height);
+    return true;
+}
+
+uint32_t stage_triangle_count(const struct stage *s)
+{
+    return s->scene.index_count / 3;
+}
+
+uint64_t stage_now(const struct stage *s)
+{
+    return atomic_load(&s->now);
 }

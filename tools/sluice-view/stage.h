@@ -31,6 +31,14 @@ struct stage_pick {
     uint32_t texture; ///< STAGE_NO_TEXTURE: none
     float u, v;       ///< 0 to 1, within the texture
     struct vec3 position;
+    uint32_t material, first_index; ///< of the triangle
+};
+
+/** A pixel of a picture. */
+struct stage_pixel {
+    struct view_camera camera;
+    uint32_t width, height; ///< of the picture
+    float x, y;             ///< 0 to 1 from the left and the top
 };
 
 /** Where the camera will be: feedback is written from there, too. */
@@ -87,6 +95,13 @@ const struct stage_texture *stage_texture(const struct stage *stage, uint32_t in
 /** What a camera sees at x, y, 0 to 1 from the left and the top. */
 struct stage_pick stage_pick(const struct stage *stage, const struct view_camera *camera,
                              float aspect, float x, float y);
+/** Writes how many texels of level 0 lie between a pixel and the one to its right, and the one
+ * below: along u and v each. `pick` is of this pixel. False if it has no texture. */
+bool stage_pick_pixel(const struct stage *stage, const struct stage_pick *pick,
+                      const struct stage_pixel *pixel, float texels[4]);
+uint32_t stage_triangle_count(const struct stage *stage);
+/** Time stamp of the last frame that was recorded. */
+uint64_t stage_now(const struct stage *stage);
 /** The source that the streamer reads. */
 const SluiceImageSource *stage_source(const struct stage *stage, uint32_t index);
 /** A place to begin, and the box around everything. */

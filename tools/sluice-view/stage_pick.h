@@ -1,0 +1,15 @@
+/** Finds what is under a pixel, and how many texels a pixel has. */
+#ifndef SLUICE_VIEW_STAGE_PICK_H
+#define SLUICE_VIEW_STAGE_PICK_H
+
+#include "scene_data.h"
+#include "stage.h"
+
+/** As stage_pick. */
+struct stage_pick scene_pick(const struct scene_data *scene, const struct view_camera *camera,
+                             float aspect, float x, float y);
+/** As stage_pick_pixel, in parts of the texture. */
+bool scene_pick_pixel(const struct scene_data *scene, const struct stage_pick *pick,
+                      const struct stage_pixel *pixel, float parts[4]);
+
+#endif /* SLUICE_VIEW_STAGE_PICK_H */
