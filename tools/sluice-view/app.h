@@ -6,6 +6,7 @@
 #include "facts.h"
 #include "flip_map.h"
 #include "keys.h"
+#include "probe.h"
 #include "settings.h"
 #include "stage.h"
 #include "ui.h"
@@ -54,7 +55,10 @@ struct view_app {
     bool held[VIEW_KEY_COUNT];
     double click_age; ///< seconds since the last click on the picture
     uint32_t last_view;
-    struct stage_pick pick;      ///< under the mouse
+    struct stage_pick pick;  ///< under the mouse
+    struct view_probe probe; ///< under the mouse, if the legend shows values
+    struct view_camera probed_camera;
+    float picture_scale;         ///< pixels of the scene per pixel of the window
     struct stage_pick inspect;   ///< what was inspected
     uint32_t selected;           ///< texture; STAGE_NO_TEXTURE: none
     double truth_part;           ///< of the tiles of view 8's second picture that are loaded

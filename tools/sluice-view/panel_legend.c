@@ -208,6 +208,7 @@ void panel_legend(const struct view_app *app)
             ui_text(UI_BLUE, "%u  %s", view, view_names[view]);
         if (!(left && right) && app->height >= 480 * scale)
             draw_legend(app);
+        panel_probe(app);
     }
     ui_end_panel();
 }

@@ -128,6 +128,7 @@ void panels_draw(struct view_app *app)
     if (!app->stage)
         return;
     panel_now(app);
+    panel_probe_find(app);
     panel_legend(app);
     panel_controls(app);
     panel_graphs(app);

@@ -15,6 +15,10 @@ void panel_start(struct view_app *app);
 void panel_ghost(const struct view_app *app);
 void panel_now(struct view_app *app);
 void panel_legend(const struct view_app *app);
+/** Finds what is under the mouse, for the legend. */
+void panel_probe_find(struct view_app *app);
+/** Values under the mouse, in the legend of the view. */
+void panel_probe(const struct view_app *app);
 void panel_controls(struct view_app *app);
 void panel_graphs(struct view_app *app);
 void panel_latency(struct view_app *app);

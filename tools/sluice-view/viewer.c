@@ -202,7 +202,7 @@ static struct stage_ahead look_ahead(struct viewer *v, const struct stage_draw *
 
 static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer commands)
 {
-    const double scale = render_scale(v);
+    const double scale = v->app.picture_scale;
     struct stage_draw draw = {.settings = &v->app.settings,
                               .camera = v->app.camera,
                               .width = (uint32_t)(v->input.width * scale + 0.5),
@@ -290,6 +290,7 @@ static bool draw_frame(struct viewer *v, double step)
     v->input.height = (float)v->frames.target.height;
     v->input.seconds = (float)step;
     const int panels = v->app.settings.panels;
+    v->app.picture_scale = (float)render_scale(v);
     ui_begin_frame(&v->input);
     app_input(&v->app, &v->input);
     app_move(&v->app, step);

@@ -1,0 +1,187 @@
+/* Values that panels show against the picture that shaders draw, and against counts of all tiles.
+ */
+#include "support/test.h"
+
+#include "app.h"
+#include "controls.h"
+#include "panels.h"
+#include "scene_data.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDTH 160u
+#define HEIGHT 120u
+#define FRAME_MICROSECONDS 20000u
+
+struct show {
+    struct gpu gpu;
+    struct frames frames;
+    struct view_app app;
+    struct stage *stage;
+    uint64_t clock;
+};
+
+static struct show *show;
+
+static int begin(void **state)
+{
+    (void)state;
+    struct scene_data scene = {0};
+    bool unsupported = false;
+    show = calloc(1, sizeof *show);
+    app_init(&show->app);
+    struct view_settings *settings = &show->app.settings;
+    settings->residency = VIEW_PAGED;
+    settings->anisotropy = 4;
+    settings->probability = 1;
+    settings->textures_per_frame = 64;
+    settings->tint = 1;
+    settings->fade = 0;
+    const struct gpu_request request = {
+        .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_AUTO}};
+    if (!ui_create(1) || !gpu_create(&request, &show->gpu, &unsupported)) {
+        if (unsupported)
+            return 0;
+        return -1;
+    }
+    show->app.gpu = &show->gpu;
+    show->app.deterministic = true;
+    show->app.picture_scale = 1;
+    const struct stage_request stage = {.gpu = &show->gpu, .threads = 1};
+    if (!frames_create(&show->gpu, WIDTH, HEIGHT, &show->frames) || !scene_data_make_room(&scene))
+        return -1;
+    show->stage = stage_create(&stage, settings, &scene);
+    return show->stage && app_open(&show->app, show->stage, false) ? 0 : -1;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    frames_wait(&show->frames);
+    app_finish(&show->app);
+    stage_destroy(show->stage);
+    frames_destroy(&show->frames);
+    gpu_destroy(&show->gpu);
+    ui_destroy();
+    free(show);
+    return 0;
+}
+
+/* Draws a frame with the mouse at a place; returns its pixels. */
+static const uint8_t *draw(float x, float y)
+{
+    struct view_app *app = &show->app;
+    struct ui_geometry geometry;
+    struct frames_end end = {.geometry = &geometry, .read = true};
+    const struct ui_input input = {.width = WIDTH,
+                                   .height = HEIGHT,
+                                   .seconds = FRAME_MICROSECONDS / 1e6f,
+                                   .mouse_x = x,
+                                   .mouse_y = y};
+    VkCommandBuffer commands = frames_begin(&show->frames);
+    assert_true(commands != VK_NULL_HANDLE);
+    ui_begin_frame(&input);
+    app_input(app, &input);
+    panels_draw(app);
+    ui_end_frame(&geometry);
+    show->clock += FRAME_MICROSECONDS;
+    const struct stage_draw draw = {.settings = &app->settings,
+                                    .camera = app->camera,
+                                    .width = WIDTH,
+                                    .height = HEIGHT,
+                                    .number = show->frames.number,
+                                    .time_stamp = show->clock};
+    stage_apply(show->stage, &app->settings);
+    assert_true(stage_record(show->stage, &draw, commands, &end));
+    assert_true(frames_end(&show->frames, &end));
+    const uint8_t *pixels = frames_pixels(&show->frames);
+    assert_true(frames_wait(&show->frames) && stage_settle(show->stage));
+    facts_update(&app->facts, show->stage, &app->settings, FRAME_MICROSECONDS / 1e6);
+    return pixels;
+}
+
+static void settle(void)
+{
+    if (!show->stage)
+        SKIP_TEST("no Vulkan device");
+    while (show->app.facts.frame < 30)
+        draw(-1, -1);
+}
+
+/* Colors over a picture keep the ratios of their channels. Returns the level, 7: or coarser. */
+static uint32_t level_of_color(const uint8_t *pixel)
+{
+    uint32_t best = 0;
+    double most = -1;
+    for (uint32_t level = 0; level < 8; level++) {
+        double product = 0, size = 0;
+        for (int k = 0; k < 3; k++) {
+            const double color = panel_level_color(level) >> 8 * k & 255;
+            product += color * pixel[k];
+            size += color * color;
+        }
+        if (product / sqrt(size) > most) {
+            most = product / sqrt(size);
+            best = level;
+        }
+    }
+    return best;
+}
+
+static uint32_t at_most_7(double level)
+{
+    return level < 0 ? 0 : level > 7 ? 7 : (uint32_t)level;
+}
+
+/* Whether the level that the legend would show at each of many places is that of the color there.
+ * Places on the border of two levels may differ. */
+static void check_levels(uint32_t view, uint32_t places[8])
+{
+    struct view_app *app = &show->app;
+    uint32_t known = 0, equal = 0;
+    app->settings.view = view;
+    app->settings.panels = 1;
+    draw(-1, -1);
+    const uint8_t *pixels = draw(-1, -1);
+    for (uint32_t y = 4; y < HEIGHT; y += 8)
+        for (uint32_t x = 4; x < WIDTH; x += 8) {
+            app->mouse_x = (float)x + 0.5f;
+            app->mouse_y = (float)y + 0.5f;
+            panel_probe_find(app);
+            if (!app->probe.known)
+                continue;
+            const uint32_t is = level_of_color(pixels + 4 * (y * WIDTH + x));
+            const uint32_t shown =
+                at_most_7(view == VIEW_WANTED ? app->probe.camera_level : app->probe.resident);
+            places[shown]++;
+            known++;
+            equal += is == shown;
+        }
+    app->settings.panels = 0;
+    assert_true(known > 100);
+    if (equal * 20 < known * 19)
+        fail_msg("view %u: %u of %u places have the level that is shown", view, equal, known);
+}
+
+static void levels_under_the_mouse_are_those_of_the_colors(void **state)
+{
+    (void)state;
+    uint32_t resident[8] = {0}, wanted[8] = {0};
+    settle();
+    check_levels(VIEW_RESIDENT, resident);
+    check_levels(VIEW_WANTED, wanted);
+    uint32_t kinds = 0;
+    for (int level = 0; level < 8; level++)
+        kinds += wanted[level] > 0;
+    assert_true(kinds >= 3); /* the room has near and far pictures */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(levels_under_the_mouse_are_those_of_the_colors),
+    };
+    return tap_filter_stdout(), cmocka_run_group_tests(tests, begin, end);
+}

@@ -1,0 +1,155 @@
+#include "panels.h"
+
+#include <stdio.h>
+
+/* A ray meets all triangles. While the camera moves, large scenes have no time for that. */
+#define MOST_TRIANGLES 300000u
+
+static bool camera_moves(struct view_app *app)
+{
+    const struct view_camera *now = &app->camera, *then = &app->probed_camera;
+    const bool moves = now->position.x != then->position.x || now->position.y != then->position.y ||
+                       now->position.z != then->position.z || now->yaw != then->yaw ||
+                       now->pitch != then->pitch;
+    app->probed_camera = *now;
+    return moves;
+}
+
+static bool shows_values(const struct view_app *app)
+{
+    const uint32_t view = app->settings.view;
+    return view > VIEW_PICTURE && view <= VIEW_CHECKS && view != VIEW_TRUTH &&
+           !app_shows_difference(app);
+}
+
+void panel_probe_find(struct view_app *app)
+{
+    const bool moves = camera_moves(app);
+    app->probe.known = false;
+    if (!shows_values(app) || ui_owns_mouse() || app->mouse_x < 0 || app->mouse_y < 0 ||
+        app->mouse_x >= app->width || app->mouse_y >= app->height ||
+        (moves && stage_triangle_count(app->stage) > MOST_TRIANGLES))
+        return;
+    const struct stage_pixel pixel = {.camera = app->camera,
+                                      .width = (uint32_t)(app->width * app->picture_scale) + 1,
+                                      .height = (uint32_t)(app->height * app->picture_scale) + 1,
+                                      .x = app->mouse_x / app->width,
+                                      .y = app->mouse_y / app->height};
+    const struct stage_pick pick =
+        stage_pick(app->stage, &app->camera, app->width / app->height, pixel.x, pixel.y);
+    float texels[4];
+    probe_point(app->stage, &app->facts, &pick, &app->probe);
+    if (app->probe.known && stage_pick_pixel(app->stage, &pick, &pixel, texels))
+        probe_pixel(texels, &app->settings, &app->probe);
+}
+
+static const char *reason_words(SluiceCoarseReason reason)
+{
+    switch (reason) {
+    case SLUICE_COARSE_FINEST: return "the file has no finer level";
+    case SLUICE_COARSE_ENOUGH: return "feedback asks for no finer level";
+    case SLUICE_COARSE_NOT_SEEN: return "feedback has not asked so far";
+    case SLUICE_COARSE_HIDDEN: return "the texture is hidden";
+    case SLUICE_COARSE_LIMIT: return "a limit of the texture";
+    case SLUICE_COARSE_MIP_BIAS: return "a mip bias of the texture";
+    case SLUICE_COARSE_QUEUED: return "waits in the queue";
+    case SLUICE_COARSE_BANDWIDTH: return "all loads in flight are taken";
+    case SLUICE_COARSE_READING: return "is being read";
+    case SLUICE_COARSE_UPLOADING: return "is being uploaded";
+    case SLUICE_COARSE_FADING: return "is resident and fades in";
+    case SLUICE_COARSE_BUDGET: return "memory is short";
+    case SLUICE_COARSE_FAILED: return "reading failed";
+    default: return "";
+    }
+}
+
+/* "none" where nothing is. */
+static const char *level_words(uint32_t level, char *text, size_t size)
+{
+    if (level == SLUICE_MIP_UNTOUCHED)
+        snprintf(text, size, "none");
+    else
+        snprintf(text, size, "level %u", level);
+    return text;
+}
+
+static void draw_missing(const struct view_probe *p)
+{
+    char resident[24], requested[24];
+    ui_text(UI_WHITE, "resident %s, requested %s",
+            level_words(p->resident, resident, sizeof resident),
+            level_words(p->requested, requested, sizeof requested));
+    if (p->density > 0 && p->camera_level < p->resident && p->resident > 0 &&
+        p->resident != SLUICE_MIP_UNTOUCHED)
+        ui_text(UI_WHITE, "%.0f missing: %s",
+                p->resident - (p->camera_level > 0 ? p->camera_level : 0.0),
+                reason_words(p->why.reason));
+    else
+        ui_text(UI_WHITE, "%s",
+                p->resident == 0 ? "level 0 is resident: nothing is missing"
+                                 : "as sharp as wanted");
+}
+
+static void draw_wanted(const struct view_probe *p)
+{
+    char requested[24];
+    if (p->density > 0)
+        ui_text(UI_WHITE, "level of detail %.1f: level %.0f", p->lod,
+                p->camera_level > 0 ? p->camera_level : 0.0);
+    ui_text(UI_WHITE, "feedback requests %s",
+            level_words(p->requested, requested, sizeof requested));
+}
+
+static void draw_age(const struct view_probe *p)
+{
+    if (p->age < 0)
+        ui_text(UI_WHITE, "level %u is there since the scene was opened", p->resident);
+    else
+        ui_text(UI_WHITE, "level %u: loaded %.1f s ago, %u load%s", p->resident, p->age, p->loads,
+                p->loads == 1 ? "" : "s");
+}
+
+static void draw_identity(const struct view_app *app, const struct stage_texture *texture)
+{
+    ui_text(UI_WHITE, "%u x %u, %u levels, %s", texture->width, texture->height,
+            texture->level_count, texture->format);
+    const uint32_t set = texture->primary;
+    if (set != STAGE_NO_TEXTURE)
+        ui_text(UI_GRAY, "follows %s", stage_texture(app->stage, set)->name);
+}
+
+static void draw_written(const struct view_app *app, const struct view_probe *p)
+{
+    const SluiceTextureStatistics *s = &app->facts.textures[p->texture].statistics;
+    if (s->seenTime == 0)
+        ui_text(UI_WHITE, "no feedback of it so far");
+    else
+        ui_text(UI_WHITE, "feedback read back %.2f s ago",
+                (double)(stage_now(app->stage) - s->seenTime) / STAGE_TICKS_PER_SECOND);
+}
+
+void panel_probe(const struct view_app *app)
+{
+    const struct view_probe *p = &app->probe;
+    char level[24];
+    if (!p->known || !shows_values(app))
+        return;
+    ui_line();
+    ui_text(UI_BLUE, "%.40s", stage_texture(app->stage, p->texture)->name);
+    switch (app->settings.view) {
+    case VIEW_RESIDENT:
+        ui_text(UI_WHITE, "%s is resident", level_words(p->resident, level, sizeof level));
+        break;
+    case VIEW_MISSING: draw_missing(p); break;
+    case VIEW_WANTED: draw_wanted(p); break;
+    case VIEW_AGE: draw_age(p); break;
+    case VIEW_IDENTITY: draw_identity(app, stage_texture(app->stage, p->texture)); break;
+    case VIEW_WRITTEN: draw_written(app, p); break;
+    case VIEW_CHECKS:
+        if (p->density > 0)
+            ui_text(UI_WHITE, "%.2f texels of level 0 per pixel", p->density);
+        ui_text(UI_WHITE, "%s is resident", level_words(p->resident, level, sizeof level));
+        break;
+    default: break;
+    }
+}
