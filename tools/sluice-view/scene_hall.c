@@ -1,25 +1,12 @@
-/* readlink */
-#define _XOPEN_SOURCE 700
-
 #include "scene_hall.h"
+
+#include "own_path.h"
 
 #include "../common/files.h"
 #include "../common/text.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
-
-/* Folder of this program. False if the system does not say where it is. */
-static bool find_folder(char *folder, size_t size)
-{
-    const ssize_t length = readlink("/proc/self/exe", folder, size - 1);
-    if (length <= 0)
-        return false;
-    folder[length] = '\0';
-    *strrchr(folder, '/') = '\0';
-    return true;
-}
 
 /* Meson writes the path of the sources into a file beside the program. */
 static bool read_path(const char *folder, char *path, size_t size)
@@ -38,7 +25,7 @@ static bool read_path(const char *folder, char *path, size_t size)
 bool scene_hall_find(char *path, size_t size)
 {
     char folder[4096];
-    if (find_folder(folder, sizeof folder)) {
+    if (own_folder(folder, sizeof folder)) {
         const char *separator = HALL_FROM_BIN[0] == '/' ? "" : "/";
         const int length = snprintf(path, size, "%s%s%s/hall.gltf", *separator ? folder : "",
                                     separator, HALL_FROM_BIN);
