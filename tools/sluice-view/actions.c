@@ -178,6 +178,13 @@ static void reload(struct view_app *app, int argument)
     app->reload = true;
 }
 
+static void sweep(struct view_app *app, int argument)
+{
+    (void)argument;
+    app->trade_toggle = true;
+    app_set_panel(app, PANEL_TRADE, true);
+}
+
 static void full_screen(struct view_app *app, int argument)
 {
     (void)argument;
@@ -260,6 +267,8 @@ static const struct action table[] = {
     {"Panels", "I", NULL, "inspector", toggle_panel, PANEL_INSPECTOR},
     {"Panels", "K", NULL, "events", toggle_panel, PANEL_EVENTS},
     {"Panels", "J", NULL, "device", toggle_panel, PANEL_DEVICE},
+    {"Panels", "Shift+T", NULL, "trade-offs: what settings cost here", toggle_panel, PANEL_TRADE},
+    {"Panels", "Ctrl+T", NULL, "sweep settings over this scene, or cancel", sweep, 0},
     {"Panels", "H", "H or Esc", "hide all, and back", hide_panels, 0},
 
     {"Program", "F1", NULL, "all keys", toggle_panel, PANEL_KEYS},

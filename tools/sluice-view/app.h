@@ -11,6 +11,8 @@
 #include "stage.h"
 #include "ui.h"
 
+struct trade;
+
 #define APP_BOOKMARKS 9
 
 enum app_panel {
@@ -22,6 +24,7 @@ enum app_panel {
     PANEL_INSPECTOR,
     PANEL_EVENTS,
     PANEL_DEVICE,
+    PANEL_TRADE,
     PANEL_KEYS,
     PANEL_MENU,
     PANEL_COUNT
@@ -67,14 +70,16 @@ struct view_app {
     double demonstration;        ///< seconds
     uint64_t budget_before;
     char said[256];
-    double said_seconds; ///< how long it is still shown
-    float width, height; ///< of the picture
-    double seconds;      ///< of the viewer's life
-    bool deterministic;  ///< figures that differ between runs are not shown
-    bool headless;       ///< time is that of the frame's number
-    const char *program; ///< words of the command line before the options
+    double said_seconds;       ///< how long it is still shown
+    float width, height;       ///< of the picture
+    double seconds;            ///< of the viewer's life
+    bool deterministic;        ///< figures that differ between runs are not shown
+    bool headless;             ///< time is that of the frame's number
+    const char *program;       ///< words of the command line before the options
+    const struct trade *trade; ///< borrowed
     /* Requests to the loop, which resets them. */
     bool quit, reload, step, step_tile, restart, screenshot, screenshot_plain, trace;
+    bool trade_toggle, trade_page;
 };
 
 void app_init(struct view_app *app);

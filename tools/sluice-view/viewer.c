@@ -23,6 +23,7 @@
 #define EXIT_NO_DEVICE 77
 #define USUAL_FRAMES 120u
 #define MAX_STEP 0.1
+#define SWEEPING_FRAMES 10u /* per second, while a sweep measures times */
 
 static bool is_cpu(const struct viewer *v)
 {
@@ -111,9 +112,11 @@ static void gather_input(struct viewer *v)
 
 static double next_step(struct viewer *v)
 {
-    const uint32_t cap = v->app.settings.frame_cap;
+    uint32_t cap = v->app.settings.frame_cap;
     if (!v->window)
         return 1.0 / (cap ? cap : 60);
+    if (v->trade.state == TRADE_RUNS && (cap == 0 || cap > SWEEPING_FRAMES))
+        cap = SWEEPING_FRAMES;
     if (cap > 0)
         clock_sleep_until(v->last_time + 1.0 / cap);
     const double now = clock_seconds();
@@ -154,6 +157,7 @@ static void answer_requests(struct viewer *v)
         sluiceStepVulkanLoads(stage_streamer(v->stage), 1);
     if (v->window)
         window_set_full_screen(v->window, app->settings.full_screen != 0);
+    viewer_follow_trade(v);
     app->restart = app->reload = app->trace = app->step_tile = false;
 }
 
@@ -331,6 +335,8 @@ static bool finish_frame(struct viewer *v)
                (!v->other || stage_settle(v->other)) && good;
     if (v->options->deterministic)
         flip_map_settle(&v->flip);
+    if (v->options->deterministic)
+        trade_wait(&v->trade);
     return good;
 }
 
@@ -432,6 +438,7 @@ static bool prepare(struct viewer *v, bool *unsupported)
     }
     v->app.gpu = &v->gpu;
     v->app.flip = &v->flip;
+    v->app.trade = &v->trade;
     return frames_create(&v->gpu, width, height, &v->frames);
 }
 
@@ -469,6 +476,7 @@ static bool begin(struct viewer *v)
 static void finish(struct viewer *v)
 {
     viewer_end_load(v);
+    trade_finish(&v->trade);
     viewer_close_scene(v);
     frames_wait(&v->frames);
     flip_map_destroy(&v->flip);

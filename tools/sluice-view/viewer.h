@@ -9,6 +9,7 @@
 #include "scene_load.h"
 #include "script.h"
 #include "summary.h"
+#include "trade.h"
 #include "window.h"
 
 #include "../common/files.h"
@@ -37,6 +38,7 @@ struct viewer {
     char settings_path[4096];     ///< "": none are kept
     char screenshot[4096];        ///< to write after this frame; "": none
     struct summary summary;
+    struct trade trade;
     SluiceRecorder *recorder; ///< of the manager of `stage`; NULL: none
     char recording[4096];     ///< its file
     bool recording_failed;
@@ -71,6 +73,8 @@ bool viewer_fit_other(struct viewer *viewer);
 void viewer_begin_recording(struct viewer *viewer, const char *path);
 /** Does nothing if nothing is recorded. */
 void viewer_end_recording(struct viewer *viewer);
+/** Begins and ends sweeps of settings, as the panel asks for them, and watches them. */
+void viewer_follow_trade(struct viewer *viewer);
 /** Returns the exit status: 0, 1, or 77 without a device. */
 int viewer_run(const struct view_options *options);
 

@@ -1,0 +1,21 @@
+#include "viewer.h"
+
+void viewer_follow_trade(struct viewer *v)
+{
+    struct view_app *app = &v->app;
+    const struct trade_request request = {.settings = &app->settings,
+                                          .path = app->path.count > 0 ? &app->path
+                                                  : v->stage          ? stage_tour(v->stage)
+                                                                      : NULL,
+                                          .camera = &app->camera,
+                                          .paths = &v->paths,
+                                          .cache = v->options->cache};
+    if (app->trade_toggle && v->trade.state == TRADE_RUNS)
+        trade_cancel(&v->trade);
+    else if (app->trade_toggle && v->stage)
+        trade_begin(&v->trade, &request);
+    if (app->trade_page)
+        trade_open_page(&v->trade);
+    app->trade_toggle = app->trade_page = false;
+    trade_watch(&v->trade);
+}
