@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE SLUICE-REPLAY FLIP-OF-PICTURES: the viewer without a window, in TAP.
+# test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE SLUICE-REPLAY FLIP-OF-PICTURES SLUICE-TRADEOFF: the viewer without a
+# window, in TAP.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
-facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3") replay=$(realpath "$4") flip=$(realpath "$5")
+facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3") replay=$(realpath "$4") flip=$(realpath "$5") tradeoff=$(realpath "$6")
 "$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
 # shellcheck source=/dev/null
 . "$facts"
@@ -176,6 +177,17 @@ turn() {
 read -r tiles late < <(turn 0) && read -r ahead early < <(turn 0.25) && [ "$tiles" -gt 10 ] && [ "$ahead" -ge "$tiles" ] &&
     [ "$early" -lt $((late - 5)) ]
 fact feedback_from_where_the_camera_will_be_loads_its_tiles_earlier
+# A copy of the viewer finds what is beside it: the tool with one value instead of its plan, and what does not end.
+mkdir bin && cp "$tool" bin && printf '1 key Ctrl+T\n3 quit\n' >sweeps
+export LD_LIBRARY_PATH="${tool%/*/*/*}/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+sweeps() { tool=bin/sluice-view run 0 --headless --fresh --still --size 160x160 --cache . --timeout 0.5 --script sweeps "$@" fine.ppm; }
+printf '#!/bin/sh\nshift\nexec "%s" view --sweep budget=16 "$@"\n' "$tradeoff" >bin/sluice-tradeoff && chmod +x bin/sluice-tradeoff
+sweeps --deterministic && cut -d , -f 2,3 sluice-view-trade/points.csv >out && grep -q '^base,done$' out &&
+    grep -q '^budget 16,done$' out && grep -q -- '--timeout 0.5' sluice-view-trade/page.html && [ ! -s err ]
+fact a_sweep_of_the_scene_and_its_camera_starts_from_the_settings_of_now
+printf '#!/bin/sh\necho $$ >pid\nexec sleep 300\n' >bin/sluice-tradeoff && printf '1 key Ctrl+T\n90 quit\n' >sweeps
+sweeps && { [ ! -s pid ] || ! kill -0 "$(cat pid)" 2>err; }
+fact a_sweep_ends_with_the_viewer
 printf '12 set freeze-wants on\n13 hold s 20\n' >frozen
 run 0 --room --still --headless --deterministic --fresh --size 160x160 --residency paged --timeout 0.1 --standby 0 \
     --panels off --script frozen --frames 48 --csv frozen.csv &&
