@@ -6,8 +6,10 @@
 #include "controls.h"
 #include "panels.h"
 #include "scene_data.h"
+#include "texture_rows.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -178,10 +180,94 @@ static void levels_under_the_mouse_are_those_of_the_colors(void **state)
     assert_true(kinds >= 3); /* the room has near and far pictures */
 }
 
+static SluiceStreamedTextureManager *manager(void)
+{
+    SluiceStreamedTextureManager *it = NULL;
+    sluiceGetVulkanStreamerManager(stage_streamer(show->stage), &it);
+    return it;
+}
+
+/* Walks over all tiles of a texture. */
+static void count_tiles(uint32_t texture, uint64_t *resident, uint64_t *all)
+{
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    const SluiceTextureId id = stage_texture(show->stage, texture)->id;
+    CHECK_OK(sluiceGetTextureLayout(manager(), id, &layout));
+    for (uint32_t tile = 0; tile < layout.tileCount; tile++) {
+        SluiceTileState state;
+        CHECK_OK(sluiceGetTileState(manager(), id, tile, &state, NULL));
+        *resident += state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
+        *all += 1;
+    }
+}
+
+static void rows_of_textures_and_their_sum_count_all_tiles(void **state)
+{
+    (void)state;
+    settle();
+    const uint32_t count = stage_texture_count(show->stage);
+    struct texture_row *rows = calloc(count, sizeof *rows);
+    uint64_t resident = 0, all = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint64_t here = 0, here_all = 0;
+        count_tiles(i, &here, &here_all);
+        rows[i] = texture_row_of(show->stage, &show->app.facts, i);
+        assert_int_equal(rows[i].resident, here);
+        assert_int_equal(rows[i].all, here_all);
+        assert_true(rows[i].loads >= here && rows[i].failures == 0);
+        resident += here;
+        all += here_all;
+    }
+    const struct texture_row sum = texture_rows_sum(rows, count);
+    assert_true(resident > 0 && sum.resident == resident && sum.all == all);
+    assert_int_equal(sum.size, resident * SLUICE_DEFAULT_TILE_SIZE);
+    texture_rows_sort(rows, count, COLUMN_RESIDENT, true);
+    for (uint32_t i = 1; i < count; i++)
+        assert_true(rows[i - 1].resident >= rows[i].resident);
+    free(rows);
+}
+
+/* Fields of a line of a CSV file, outside of quotes. */
+static uint32_t count_fields(const char *line)
+{
+    uint32_t fields = 1;
+    bool quoted = false;
+    for (; *line; line++) {
+        quoted ^= *line == '"';
+        fields += *line == ',' && !quoted;
+    }
+    return fields;
+}
+
+static void filters_and_files_take_names_with_blanks_quotes_and_commas(void **state)
+{
+    (void)state;
+    const struct texture_row row = {.name = "Big \"Wall\", left",
+                                    .format = "BC7",
+                                    .set = "Floor",
+                                    .source = "/a/b.png",
+                                    .seen_seconds = -1};
+    assert_true(texture_row_matches(&row, ""));
+    assert_true(texture_row_matches(&row, "  wall BC7 floor B.PNG "));
+    assert_false(texture_row_matches(&row, "wall door"));
+    char text[1024] = "";
+    FILE *file = tmpfile();
+    assert_true(texture_rows_write(file, &row, 1));
+    rewind(file);
+    assert_non_null(fgets(text, sizeof text, file));
+    const uint32_t titles = count_fields(text);
+    assert_non_null(fgets(text, sizeof text, file));
+    assert_int_equal(count_fields(text), titles);
+    assert_non_null(strstr(text, "\"Big \"\"Wall\"\", left\","));
+    fclose(file);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(levels_under_the_mouse_are_those_of_the_colors),
+        cmocka_unit_test(rows_of_textures_and_their_sum_count_all_tiles),
+        cmocka_unit_test(filters_and_files_take_names_with_blanks_quotes_and_commas),
     };
     return tap_filter_stdout(), cmocka_run_group_tests(tests, begin, end);
 }

@@ -49,8 +49,9 @@ struct view_app {
     struct view_camera bookmarks[APP_BOOKMARKS];
     bool bookmark_set[APP_BOOKMARKS];
     bool open[PANEL_COUNT];
-    bool touched;  ///< the visitor has the camera
-    bool dragging; ///< the mouse turns the camera
+    char texture_filter[64]; ///< words of the table of textures
+    bool touched;            ///< the visitor has the camera
+    bool dragging;           ///< the mouse turns the camera
     bool dragging_divider;
     float mouse_x, mouse_y; ///< of the frame before
     float press_x, press_y;

@@ -1,131 +1,111 @@
 #include "panels.h"
 
+#include "texture_rows.h"
+
 #include "../common/output_file.h"
-#include "../common/text.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-enum column {
-    COLUMN_NAME,
-    COLUMN_SIZE,
-    COLUMN_FORMAT,
-    COLUMN_RESIDENT,
-    COLUMN_WANTED,
-    COLUMN_MEMORY,
-    COLUMN_FINEST,
-    COLUMN_LOADS,
-    COLUMN_THRASH,
-    COLUMN_EVICTED,
-    COLUMN_FAILED
-};
+#define CSV_FILE "sluice-view-textures.csv"
 
-struct row {
-    double key;
-    const char *name;
-    uint32_t texture;
-};
-
-static int compare_up(const void *left, const void *right)
+static void draw_level(uint32_t color, uint32_t level)
 {
-    const struct row *a = left, *b = right;
-    if (a->key != b->key)
-        return a->key < b->key ? -1 : 1;
-    int order = strcmp(a->name, b->name);
-    return order ? order : (int)a->texture - (int)b->texture;
+    if (level == SLUICE_MIP_UNTOUCHED)
+        ui_table_cell(color, "tail");
+    else
+        ui_table_cell(color, "%u", level);
 }
 
-static int compare_down(const void *left, const void *right)
+static void draw_seen(uint32_t color, double seconds)
 {
-    return compare_up(right, left);
+    if (seconds < 0)
+        ui_table_cell(color, "never");
+    else if (seconds < 60)
+        ui_table_cell(color, "%.1f s ago", seconds);
+    else
+        ui_table_cell(color, "%.0f min ago", seconds / 60);
 }
 
-static double key_of(const struct facts_texture *f, const struct stage_texture *t, uint32_t column)
+/* Columns from the tiles to the failures: rows and sums have them. */
+static void draw_figures(const struct texture_row *r, uint32_t color)
 {
-    switch ((enum column)column) {
-    case COLUMN_SIZE: return (double)t->width * t->height;
-    case COLUMN_RESIDENT: return f->statistics.residentTileCount;
-    case COLUMN_WANTED: return f->statistics.wantedTileCount;
-    case COLUMN_MEMORY: return (double)f->statistics.residentSize;
-    case COLUMN_FINEST: return f->finest_level;
-    case COLUMN_LOADS: return f->statistics.mappedTotal;
-    case COLUMN_THRASH: return f->thrash;
-    case COLUMN_EVICTED: return f->statistics.unmappedTotal;
-    case COLUMN_FAILED: return f->statistics.failedTotal;
-    default: return 0;
-    }
-}
-
-static void draw_row(struct view_app *app, uint32_t index)
-{
-    const struct stage_texture *t = stage_texture(app->stage, index);
-    const struct facts_texture *f = &app->facts.textures[index];
-    const SluiceTextureStatistics *s = &f->statistics;
-    const uint32_t color = s->wanted ? UI_WHITE : UI_GRAY;
     char size[32];
-    if (ui_table_row((int)index, app->selected == index)) {
-        app->selected = index;
-        app->inspect = (struct stage_pick){.texture = index, .hit = false};
+    ui_table_cell(color, "%llu", (unsigned long long)r->resident);
+    ui_table_cell(color, "%llu", (unsigned long long)r->wanted);
+    ui_table_cell(color, "%llu", (unsigned long long)r->all);
+    ui_table_cell(color, "%s", panel_size(r->size, size, sizeof size));
+    draw_level(color, r->finest_level);
+    draw_seen(color, r->seen_seconds);
+    ui_table_cell(color, "%llu", (unsigned long long)r->loads);
+    ui_table_cell(r->thrash > 3 ? UI_ORANGE : color, "%.1f", r->thrash);
+    ui_table_cell(color, "%llu", (unsigned long long)r->evictions);
+    ui_table_cell(r->failures ? UI_RED : color, "%llu", (unsigned long long)r->failures);
+}
+
+static void draw_row(struct view_app *app, const struct texture_row *r)
+{
+    const bool wanted = app->facts.textures[r->texture].statistics.wanted;
+    const uint32_t color = wanted ? UI_WHITE : UI_GRAY;
+    if (ui_table_row((int)r->texture, app->selected == r->texture)) {
+        app->selected = r->texture;
+        app->inspect = (struct stage_pick){.texture = r->texture, .hit = false};
         app_set_panel(app, PANEL_INSPECTOR, true);
     }
-    ui_table_cell(color, "%s", t->name);
-    ui_table_cell(color, "%u x %u", t->width, t->height);
-    ui_table_cell(color, "%s", t->format);
-    ui_table_cell(color, "%u", s->residentTileCount);
-    ui_table_cell(color, "%u", s->wantedTileCount);
-    ui_table_cell(color, "%s", panel_size(s->residentSize, size, sizeof size));
-    if (f->finest_level < t->level_count)
-        ui_table_cell(color, "%u", f->finest_level);
-    else
-        ui_table_cell(color, "tail");
-    ui_table_cell(color, "%u", s->mappedTotal);
-    ui_table_cell(f->thrash > 3 ? UI_ORANGE : color, "%.1f", f->thrash);
-    ui_table_cell(color, "%u", s->unmappedTotal);
-    ui_table_cell(s->failedTotal ? UI_RED : color, "%u", s->failedTotal);
+    ui_table_cell(color, "%s", r->name);
+    ui_table_cell(color, "%u x %u", r->width, r->height);
+    ui_table_cell(color, "%s", r->format);
+    ui_table_cell(color, "%u", r->level_count);
+    draw_figures(r, color);
+    ui_table_cell(color, "%s", r->set);
+    ui_table_cell(color, "%s", r->source);
 }
 
-static void write_csv(struct view_app *app)
+static void draw_sum(const struct texture_row *sum, uint32_t count)
 {
-    static const char path[] = "sluice-view-textures.csv";
-    struct output_file *output = output_file_begin(path);
+    ui_table_row(-1, false);
+    ui_table_cell(UI_BLUE, "sum of %u", count);
+    ui_table_cell(UI_BLUE, "%s", "");
+    ui_table_cell(UI_BLUE, "%s", "");
+    ui_table_cell(UI_BLUE, "%s", "");
+    draw_figures(sum, UI_BLUE);
+}
+
+/* Returns how many rows the filter leaves. */
+static uint32_t gather(const struct view_app *app, struct texture_row *rows)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < app->facts.texture_count; i++) {
+        rows[count] = texture_row_of(app->stage, &app->facts, i);
+        count += texture_row_matches(&rows[count], app->texture_filter);
+    }
+    return count;
+}
+
+static void write_csv(struct view_app *app, const struct texture_row *rows, uint32_t count)
+{
+    struct output_file *output = output_file_begin(CSV_FILE);
     if (!output)
         return;
-    FILE *file = output_file_stream(output);
-    fprintf(file,
-            "name,width,height,format,resident_tiles,wanted_tiles,resident_bytes,finest_level,"
-            "loads,loads_per_tile,evictions,failures\n");
-    for (uint32_t i = 0; i < app->facts.texture_count; i++) {
-        const struct stage_texture *t = stage_texture(app->stage, i);
-        const struct facts_texture *f = &app->facts.textures[i];
-        text_write_json(file, t->name);
-        fprintf(file, ",%u,%u,%s,%u,%u,%llu,%u,%u,%.3f,%u,%u\n", t->width, t->height, t->format,
-                f->statistics.residentTileCount, f->statistics.wantedTileCount,
-                (unsigned long long)f->statistics.residentSize, f->finest_level,
-                f->statistics.mappedTotal, f->thrash, f->statistics.unmappedTotal,
-                f->statistics.failedTotal);
-    }
-    if (output_file_end(output, true))
-        app_say(app, "Wrote %s", path);
+    const bool good = texture_rows_write(output_file_stream(output), rows, count);
+    if (output_file_end(output, good))
+        app_say(app, "Wrote %s", CSV_FILE);
 }
 
-static void draw_table(struct view_app *app, struct row *rows)
+static void draw_table(struct view_app *app, struct texture_row *rows, uint32_t count)
 {
     uint32_t column = COLUMN_NAME;
     bool descending = false;
     if (!ui_begin_table("textures",
-                        "Name|Size|Format|Resident|Wanted|Memory|Finest|Loads|Loads/tile|Evicted|"
-                        "Failed",
+                        "Name|Size|Format|Levels|Resident|Wanted|All|Memory|Finest|Seen|Loads|"
+                        "Loads/tile|Evicted|Failed|Set|Source",
                         0, true))
         return;
     ui_table_sort(&column, &descending);
-    for (uint32_t i = 0; i < app->facts.texture_count; i++)
-        rows[i] =
-            (struct row){key_of(&app->facts.textures[i], stage_texture(app->stage, i), column),
-                         stage_texture(app->stage, i)->name, i};
-    qsort(rows, app->facts.texture_count, sizeof *rows, descending ? compare_down : compare_up);
-    for (uint32_t i = 0; i < app->facts.texture_count; i++)
-        draw_row(app, rows[i].texture);
+    texture_rows_sort(rows, count, (enum texture_column)column, descending);
+    const struct texture_row sum = texture_rows_sum(rows, count);
+    draw_sum(&sum, count);
+    for (uint32_t i = 0; i < count; i++)
+        draw_row(app, &rows[i]);
     ui_end_table();
 }
 
@@ -133,17 +113,23 @@ void panel_textures(struct view_app *app)
 {
     if (!app->open[PANEL_TEXTURES])
         return;
-    struct row *rows = calloc(app->facts.texture_count + 1, sizeof *rows);
-    if (panel_begin(app, PANEL_TEXTURES, "Textures (T)", 620, 360) && rows) {
+    struct texture_row *rows = calloc(app->facts.texture_count + 1, sizeof *rows);
+    if (panel_begin(app, PANEL_TEXTURES, "Textures (T)", 660, 360) && rows) {
         char resident[32], all[32];
         ui_text(UI_WHITE, "%u textures, %s of %s resident", app->facts.texture_count,
                 panel_size(app->facts.resident_size, resident, sizeof resident),
                 panel_size(app->facts.all_size, all, sizeof all));
         ui_same_line(0);
-        if (ui_button("CSV", 0, 0, false))
-            write_csv(app);
-        ui_hint("Writes the table to sluice-view-textures.csv in the current folder.");
-        draw_table(app, rows);
+        const bool writes = ui_button("CSV", 0, 0, false);
+        ui_hint("Writes the rows that are shown to " CSV_FILE " in the current folder.");
+        ui_same_line(0);
+        ui_item_width(150 * ui_scale());
+        ui_type_text("##filter", "filter", app->texture_filter, sizeof app->texture_filter);
+        ui_hint("Words that must be in the name, format, set or source of a texture.");
+        const uint32_t count = gather(app, rows);
+        if (writes)
+            write_csv(app, rows, count);
+        draw_table(app, rows, count);
     }
     ui_end_panel();
     free(rows);
