@@ -1,5 +1,7 @@
 #include "vulkan/control_stage.h"
 
+#include "support/gray_source.h"
+
 #include <string.h>
 
 const SluiceJobSystem *stage_job_system;
@@ -7,13 +9,6 @@ const SluiceJobSystem *stage_job_system;
 static uint8_t want(void *user, uint32_t region)
 {
     return ((struct stage *)user)->seen[region / (TILES * TILES)][region % (TILES * TILES)];
-}
-
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
 }
 
 static void keep_message(void *user, SluiceLogSeverity severity, const char *message)
@@ -31,13 +26,7 @@ struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
     s.fake.log = (SluiceLogCallback){&s, keep_message};
     s.fake.pAllocator = &s.memory.callbacks;
     s.fake.pJobSystem = stage_job_system;
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = SIZE,
-                            .height = SIZE,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
+    s.source = gray_source(SIZE, SIZE);
     fault_source_init(&s.faults, s.source);
     SluiceVulkanStreamerCreateInfo info = *settings;
     info.structSize = sizeof info;

@@ -1,6 +1,7 @@
 /* Misuse, each kind made once, and what strict mode says of it. */
 #include "vulkan/control_strict.h"
 
+#include "support/gray_source.h"
 #include "vulkan/control_stage.h"
 
 #include <sluice/vulkan_strict.h>
@@ -153,13 +154,6 @@ void exhausted_heaps_are_reported(void **state)
     stage_finish(s);
 }
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 void sources_in_use_are_reported_and_kept(void **state)
 {
     (void)state;
@@ -169,9 +163,7 @@ void sources_in_use_are_reported_and_kept(void **state)
                 "gray: the source is destroyed");
     const SluiceImageInfo info = {
         .structSize = sizeof info, .width = 8, .height = 8, .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageSource *unused;
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &unused));
+    SluiceImageSource *unused = gray_source_with(&info);
     CHECK_OK(sluiceReleaseVulkanSource(s->streamer, unused)); /* leak checkers see the rest */
     assert_int_equal(heard.counts[SLUICE_MISUSE_SOURCE_IN_USE], 1);
     stage_finish(s);

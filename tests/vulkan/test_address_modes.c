@@ -1,6 +1,7 @@
 /* Which address modes a texture has: what its source records, unless the caller says otherwise. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <string.h>
@@ -9,13 +10,6 @@ static void count_warnings(void *user, SluiceLogSeverity severity, const char *m
 {
     if (severity == SLUICE_LOG_WARNING && strstr(message, "address modes"))
         ++*(uint32_t *)user;
-}
-
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
 }
 
 static const struct mode_case {
@@ -62,14 +56,13 @@ static void the_source_decides_unless_the_caller_does_and_a_mismatch_is_logged_o
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct mode_case *c = &cases[i];
-        SluiceProceduralImage image = {NULL, texel};
         SluiceImageInfo gray = {.structSize = sizeof gray,
                                 .width = 64,
                                 .height = 64,
                                 .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                 .addressModeU = c->recorded[0],
                                 .addressModeV = c->recorded[1]};
-        CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &sources[i]));
+        sources[i] = gray_source_with(&gray);
         SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
                                                 .source = sources[i],
                                                 .addressModeU = c->given[0],

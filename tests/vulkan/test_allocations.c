@@ -1,6 +1,7 @@
 /* A camera on its rounds: once it has seen all of them, the streamer asks for no more memory. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <stdatomic.h>
@@ -39,13 +40,6 @@ struct walk {
     uint32_t step;
 };
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 /* Textures stand in a circle, and a window goes round: the nearer the middle, the finer. */
 static uint8_t want(void *user, uint32_t region)
 {
@@ -78,14 +72,8 @@ static void walk_init(struct walk *w, SluiceResidencyMode mode, bool mixes, uint
 {
     *w = (struct walk){.fake = {.want = want, .user = w},
                        .allocations = {.callbacks = {&w->allocations, allocate, release}}};
-    SluiceProceduralImage image = {NULL, texel};
     for (uint32_t i = 0; i < SHAPES; i++) {
-        SluiceImageInfo gray = {.structSize = sizeof gray,
-                                .width = sizes[i][0],
-                                .height = sizes[i][1],
-                                .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                .pName = "gray"};
-        CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &w->sources[i]));
+        w->sources[i] = gray_source(sizes[i][0], sizes[i][1]);
     }
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .maxTextureCount = TEXTURES,

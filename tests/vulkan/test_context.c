@@ -4,6 +4,7 @@
 #include "vulkan/streamer.h"
 
 #include "support/failing_allocator.h"
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <sluice/demand.h>
@@ -318,13 +319,6 @@ static uint8_t want_all(void *user, uint32_t region)
     return 0;
 }
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 static void run_frames(SluiceVulkanStreamer *streamer, uint64_t *time, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -399,14 +393,7 @@ static void two_streamers_stay_within_one_budget(void **state)
     static const SluiceResidencyMode modes[] = {SLUICE_RESIDENCY_MODE_SPARSE,
                                                 SLUICE_RESIDENCY_MODE_PAGED};
     const uint64_t mib = 1 << 20, budget = 40 * mib;
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = 4096,
-                            .height = 4096,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    SluiceImageSource *source;
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &source));
+    SluiceImageSource *source = gray_source(4096, 4096);
     for (int m = 1; m < 4; m++) { /* one sparse streamer at most: the fake has one such queue */
         SluiceVulkanContext *context;
         SluiceVulkanStreamer *streamers[2];

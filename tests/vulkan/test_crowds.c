@@ -2,6 +2,7 @@
 #include "vulkan/fake_vulkan.h"
 
 #include "support/streamer_manager.h"
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <sluice/vulkan_strict.h>
@@ -13,13 +14,6 @@ static void note_error(void *user, SluiceLogSeverity severity, const char *messa
 {
     if (severity == SLUICE_LOG_ERROR && strstr(message, "paged mode"))
         ++*(uint32_t *)user;
-}
-
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
 }
 
 static uint8_t want_nothing(void *user, uint32_t region)
@@ -56,14 +50,8 @@ static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on
     fake_vulkan_fill(&info);
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = 64,
-                            .height = 64,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &create.source));
+    create.source = gray_source(64, 64);
     SluiceVulkanTexture texture;
     for (uint32_t i = 0; i < BEARABLE; i++)
         CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
@@ -114,14 +102,8 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     info.residencyMode = SLUICE_RESIDENCY_MODE_PAGED;
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = 2048,
-                            .height = 2048,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &create.source));
+    create.source = gray_source(2048, 2048);
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
     uint32_t misuse_count = 0;
@@ -165,19 +147,12 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
     info.residencyMode = SLUICE_RESIDENCY_MODE_PAGED;
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = 2048,
-                            .height = 2048,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
     SluiceImageSource *sources[2];
     SluiceVulkanTexture texture;
     for (uint32_t i = 0; i < 2; i++) {
-        CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &sources[i]));
+        sources[i] = gray_source(2048 >> i, 2048 >> i);
         SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = sources[i]};
         CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
-        gray.width = gray.height = 1024;
     }
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     for (uint64_t time = 1; time < 60; time++)

@@ -4,6 +4,7 @@
 #include "vulkan/page_sharing.h"
 #include "vulkan/streamer.h"
 
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <sluice/shared/texture_table.h>
@@ -26,13 +27,6 @@ static uint8_t want(void *user, uint32_t region)
 {
     (void)user, (void)region;
     return 0;
-}
-
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
 }
 
 static struct slc_page_pool *pool_of(struct stage *s)
@@ -59,13 +53,7 @@ static void take_all(struct stage *s)
 static void init(struct stage *s)
 {
     *s = (struct stage){.fake = {.want = want, .user = s, .layer_size = 65536}};
-    const SluiceProceduralImage image = {NULL, texel};
-    const SluiceImageInfo gray = {.structSize = sizeof gray,
-                                  .width = SIZE,
-                                  .height = SIZE,
-                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                  .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s->source));
+    s->source = gray_source(SIZE, SIZE);
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
                                            .maxTextureCount = 1,

@@ -1,4 +1,5 @@
 /* Misuse of demand loading, each kind made once that needs no shader, and what strict mode says. */
+#include "support/gray_source.h"
 #include "support/test.h"
 #include "vulkan/fake_vulkan.h"
 
@@ -192,13 +193,6 @@ static void the_launch_that_a_call_waits_for_is_reported_not_an_older_one(void *
     finish(loader);
 }
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 static SluiceImageSource *create_source(const char *name)
 {
     const SluiceImageInfo info = {.structSize = sizeof info,
@@ -206,10 +200,7 @@ static SluiceImageSource *create_source(const char *name)
                                   .height = 8,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                   .pName = name};
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageSource *source;
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
-    return source;
+    return gray_source_with(&info);
 }
 
 static void launches_without_requests_are_reported_if_there_are_textures(void **state)

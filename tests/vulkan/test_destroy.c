@@ -1,6 +1,7 @@
 /* What destruction waits for: work of the streamer or the loader that was submitted, no other. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <sluice/demand.h>
@@ -27,13 +28,6 @@ static uint8_t want_all(void *user, uint32_t region)
     return 0;
 }
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 static void count_warnings(void *user, SluiceLogSeverity severity, const char *message)
 {
     (void)message;
@@ -44,13 +38,7 @@ static struct stage *stage_of_streamer(SluiceResidencyMode mode)
 {
     static struct stage s; /* large */
     s = (struct stage){.fake = {.tail_page_count = 1, .want = want_all, .user = &s}};
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = 1024,
-                            .height = 1024,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
+    s.source = gray_source(1024, 1024);
     SluiceVulkanStreamerCreateInfo info = {
         .structSize = sizeof info, .maxRegionCount = 1 << 10, .maxTextureCount = 4};
     s.fake.log = (SluiceLogCallback){&s, count_warnings};

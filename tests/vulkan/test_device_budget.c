@@ -4,6 +4,7 @@
 
 #include "core/observer.h"
 #include "support/streamer_manager.h"
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #define MIB (UINT64_C(1) << 20)
@@ -22,13 +23,6 @@ static uint8_t want_all(void *user, uint32_t region)
 {
     (void)user, (void)region;
     return 0;
-}
-
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
 }
 
 static SluiceVulkanContextStatistics statistics(void)
@@ -76,13 +70,7 @@ static void open_streamer(bool has_extension, bool ignored, uint64_t used_by_oth
                                            .heapTileCapacity = 64};
     fake_vulkan_fill(&info);
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
-    const SluiceProceduralImage image = {NULL, texel};
-    const SluiceImageInfo gray = {.structSize = sizeof gray,
-                                  .width = 4096,
-                                  .height = 4096,
-                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                  .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &source));
+    source = gray_source(4096, 4096);
     const SluiceVulkanTextureCreateInfo add = {.structSize = sizeof add, .source = source};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &add, &texture));

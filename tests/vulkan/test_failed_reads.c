@@ -2,6 +2,7 @@
 #include "vulkan/fake_vulkan.h"
 
 #include "support/streamer_manager.h"
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <stdatomic.h>
@@ -51,13 +52,6 @@ static void destroy(SluiceImageSource *base)
 static const SluiceImageSourceInterface broken_interface = {sizeof broken_interface, get_info,
                                                             read_region, destroy};
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 static uint8_t want_all(void *user, uint32_t region)
 {
     (void)user, (void)region;
@@ -89,7 +83,6 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 
 static void setup_with_rest(struct fixture *f, SluiceResidencyMode mode, uint64_t rest)
 {
-    SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo image_info = {.structSize = sizeof image_info,
                                   .width = SIZE,
                                   .height = SIZE,
@@ -98,7 +91,7 @@ static void setup_with_rest(struct fixture *f, SluiceResidencyMode mode, uint64_
     *f = (struct fixture){.loads_in_flight = f->loads_in_flight,
                           .fake = {.tail_page_count = 1, .want = want_all}};
     f->source.base.pInterface = &broken_interface;
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &image_info, NULL, &f->source.inner));
+    f->source.inner = gray_source_with(&image_info);
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .maxTextureCount = 2,
                                            .maxRegionCount = 256,

@@ -1,9 +1,8 @@
 /* Every Vulkan call that may fail does so once, with each of the results that it may have. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/gray_source.h"
 #include "support/test.h"
-
-#include <string.h>
 
 /* Enough for the global bias, which a refused heap raises by a level, to fall again. */
 enum { FRAMES = 32 };
@@ -25,19 +24,7 @@ static uint8_t want_all(void *user, uint32_t region)
     return 0;
 }
 
-static SluiceImageSource *gray; /* in memory: to make texels would take most of a frame */
-
-static void create_gray(void)
-{
-    static uint8_t texels[512 * 512 * 4];
-    SluiceImageInfo info = {.structSize = sizeof info,
-                            .width = 512,
-                            .height = 512,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    memset(texels, 128, sizeof texels);
-    CHECK_OK(sluiceCreateMemoryImageSource(texels, &info, NULL, &gray));
-}
+static SluiceImageSource *gray;
 
 static SluiceResidencyMode mode; /* that is tested */
 static bool mixes;               /* paged textures are beside those of the streamer */
@@ -281,7 +268,7 @@ int main(void)
         cmocka_unit_test(adding_an_array_survives_every_failing_call),
         cmocka_unit_test(frames_survive_every_failing_call),
     };
-    create_gray();
+    gray = gray_source(512, 512);
     int failed = RUN_TESTS(tests);
     sluiceDestroyImageSource(gray);
     return failed;

@@ -1,32 +1,13 @@
 /* Feedback from a device that damages it, and settings that no device can fulfill. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/gray_source.h"
 #include "support/test.h"
 
 static uint8_t want_all(void *user, uint32_t region)
 {
     (void)user, (void)region;
     return 0;
-}
-
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
-static SluiceImageSource *gray_source(void)
-{
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo info = {.structSize = sizeof info,
-                            .width = 512,
-                            .height = 512,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    SluiceImageSource *source;
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
-    return source;
 }
 
 static void count_warnings(void *user, SluiceLogSeverity severity, const char *message)
@@ -70,7 +51,7 @@ static void damaged_feedback_is_dropped_and_asked_for_as_a_whole(void **state)
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceVulkanTextureCreateInfo texture_info = {.structSize = sizeof texture_info,
-                                                  .source = gray_source()};
+                                                  .source = gray_source(512, 512)};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &texture_info, &texture));
     for (uint64_t time = 1; time <= 5; time++) /* the first map comes with frame 2 */

@@ -1,34 +1,15 @@
 /* Formats that a device does not filter linearly: which sampler they get, and who refuses them. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <stdio.h>
-
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
 
 static void keep_error(void *user, SluiceLogSeverity severity, const char *message)
 {
     if (severity == SLUICE_LOG_ERROR)
         snprintf(user, 256, "%s", message);
-}
-
-static SluiceImageSource *gray_source(void)
-{
-    SluiceImageSource *source;
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = 64,
-                            .height = 64,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &source));
-    return source;
 }
 
 static SluiceVulkanStreamer *create(struct fake_vulkan *fake, SluiceResidencyMode mode)
@@ -47,7 +28,7 @@ static void check_sampler(SluiceResidencyMode mode, bool linear)
     fake = (struct fake_vulkan){.tail_page_count = 1, .no_linear_filter = !linear};
     SluiceVulkanStreamer *streamer = create(&fake, mode);
     SluiceVulkanTextureCreateInfo info = {
-        .structSize = sizeof info, .source = gray_source(), .maxAnisotropy = 8};
+        .structSize = sizeof info, .source = gray_source(64, 64), .maxAnisotropy = 8};
     SluiceVulkanTexture texture;
     VkSampler sampler, again;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &info, &texture));
@@ -91,7 +72,7 @@ static void paged_mode_refuses_formats_without_linear_filters(void **state)
     char message[256] = "";
     fake = (struct fake_vulkan){.no_linear_filter = true, .log = {message, keep_error}};
     SluiceVulkanStreamer *streamer = create(&fake, SLUICE_RESIDENCY_MODE_PAGED);
-    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = gray_source()};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = gray_source(64, 64)};
     SluiceVulkanTexture texture;
     uint64_t objects = fake.live_objects;
     CHECK_RESULT(sluiceAddVulkanTexture(streamer, &info, &texture), SLUICE_ERROR_UNSUPPORTED);

@@ -12,6 +12,7 @@
 
 #include "support/roll.h"
 #include "support/streamer_manager.h"
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <string.h>
@@ -59,13 +60,6 @@ struct model {
     uint32_t frames_in_parts; ///< that made several calls
 };
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 /* A few wanted regions that change with the window. */
 static uint8_t want(void *user, uint32_t region)
 {
@@ -87,13 +81,7 @@ static void model_add(struct model *m)
     struct texture *t = &m->textures[i];
     m->added++;
     *t = (struct texture){.used = true};
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo info = {.structSize = sizeof info,
-                            .width = size[0],
-                            .height = size[1],
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &t->source));
+    t->source = gray_source(size[0], size[1]);
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = t->source};
     CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
     t->layout.structSize = sizeof t->layout;
@@ -602,10 +590,9 @@ static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state
     fake = (struct fake_vulkan){.tail_page_count = 2, .metadata_size = 131072, .want = want};
     struct model window = {.window = 1};
     fake.user = &window;
-    SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo gray = {sizeof gray, 300, 200, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, "gray"};
     SluiceImageSource *layer, *array;
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &layer));
+    layer = gray_source_with(&gray);
     CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
                                           &array));
     SluiceVulkanStreamerCreateInfo info = {

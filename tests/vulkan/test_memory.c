@@ -4,6 +4,7 @@
 #include "vulkan/streamer.h"
 #include "vulkan/load_units.h"
 
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <stdio.h>
@@ -42,13 +43,6 @@ static void keep_unmet(void *user, SluiceLogSeverity severity, const char *messa
     snprintf(s->message, sizeof s->message, "%s", message);
 }
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
 {
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
@@ -70,13 +64,7 @@ static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_stag
     s = (struct stage){
         .fake = {.tail_page_count = 1, .layer_size = layer_size, .want = want, .user = &s}};
     s.fake.log = (SluiceLogCallback){&s, keep_unmet};
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = SIZE,
-                            .height = SIZE,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
+    s.source = gray_source(SIZE, SIZE);
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .feedbackTimeoutTicks = 2};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;

@@ -1,6 +1,7 @@
 /* Packed levels that come when their texture is first seen, and go when nothing of it is wanted. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/gray_source.h"
 #include "support/test.h"
 
 enum { MODES = 3, TEXTURES = 3, SIZE = 512, SETTLE = 24 };
@@ -30,26 +31,13 @@ static uint8_t want(void *user, uint32_t region)
     return seen ? (uint8_t)(s->random ? draw(s) % 4 : 0) : SLUICE_MIP_UNTOUCHED;
 }
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 static struct stage *stage_init(SluiceResidencyMode mode, SluiceVulkanStreamerCreateInfo info)
 {
     static struct stage s; /* large */
     s = (struct stage){.fake = {.tail_page_count = 3, .want = want, .user = &s},
                        .seed = 1,
                        .regions = SIZE / FAKE_TILE * (SIZE / FAKE_TILE)};
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = SIZE,
-                            .height = SIZE,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
+    s.source = gray_source(SIZE, SIZE);
     info.packedLevelsOnDemand = true;
     info.feedbackTimeoutTicks = 2;
     info.maxTextureCount = 4;

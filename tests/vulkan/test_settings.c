@@ -3,6 +3,7 @@
 
 #include "support/failing_allocator.h"
 #include "support/streamer_manager.h"
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <sluice/demand.h>
@@ -31,13 +32,6 @@ static uint8_t want(void *user, uint32_t region)
     return ((struct stage *)user)->looks ? 0 : SLUICE_MIP_UNTOUCHED;
 }
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 static void keep_message(void *user, SluiceLogSeverity severity, const char *message)
 {
     (void)severity;
@@ -51,13 +45,7 @@ static struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
     failing_allocator_init(&s.memory, UINT64_MAX);
     s.fake.log = (SluiceLogCallback){&s, keep_message};
     s.fake.pAllocator = &s.memory.callbacks;
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = 1024,
-                            .height = 1024,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
+    s.source = gray_source(1024, 1024);
     SluiceVulkanStreamerCreateInfo info = *settings;
     info.maxTextureCount = TEXTURES;
     info.maxRegionCount = 1 << 10;

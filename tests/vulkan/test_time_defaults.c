@@ -4,6 +4,7 @@
 #include "vulkan/time_defaults.h"
 
 #include "support/streamer_manager.h"
+#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <string.h>
@@ -26,13 +27,6 @@ static uint8_t want(void *user, uint32_t region)
     return s->looks ? 0 : SLUICE_MIP_UNTOUCHED;
 }
 
-static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                  uint32_t height, float rgba[4])
-{
-    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
-}
-
 static void count_warnings(void *user, SluiceLogSeverity severity, const char *message)
 {
     struct stage *s = user;
@@ -47,13 +41,7 @@ static struct stage *stage_init(SluiceVulkanStreamerCreateInfo info, uint64_t st
 {
     static struct stage s; /* large */
     s = (struct stage){.fake = {.tail_page_count = 1, .want = want, .user = &s}, .step = step};
-    SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo gray = {.structSize = sizeof gray,
-                            .width = 512,
-                            .height = 512,
-                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "gray"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
+    s.source = gray_source(512, 512);
     const SluiceVulkanStreamerCreateInfo asked = info;
     fake_vulkan_fill(&info);
     info.ticksPerSecond = asked.ticksPerSecond;
