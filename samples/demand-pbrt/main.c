@@ -44,9 +44,15 @@ struct renderer {
     double trace_start;       ///< of the first launch
 };
 
-static uint32_t picture_count(const struct pbrt_options *o)
+static uint32_t first_picture(const struct pbrt_options *o)
 {
-    return o->animation > 0 ? o->animation : 1;
+    return o->pictures.given ? o->pictures.first - 1 : 0;
+}
+
+/** Behind the last one. */
+static uint32_t end_of_pictures(const struct pbrt_options *o)
+{
+    return o->pictures.given ? o->pictures.last : o->animation > 0 ? o->animation : 1;
 }
 
 /** FILE, or FILE with the picture's number before its ending. */
@@ -65,7 +71,7 @@ static bool can_write_outputs(const struct pbrt_options *o)
     const char *const paths[] = {o->dump, o->statistics, o->contact_sheet, o->bounds};
     char path[4096];
     bool good = output_add_input(o->scene) && picture_output_is_known(o->file);
-    for (uint32_t i = 0; i < picture_count(o) && good; i++) {
+    for (uint32_t i = first_picture(o); i < end_of_pictures(o) && good; i++) {
         name_picture(o, i, path);
         good = output_can_write(path);
     }
@@ -254,7 +260,7 @@ static bool render_pictures(void *user_data, uint32_t index)
     struct picture picture = {0};
     bool done = picture_create(r->shared.size[0], r->shared.size[1], &picture);
     picture.plain = true;
-    for (uint32_t i; done && (i = atomic_fetch_add(&r->next_picture, 1)) < picture_count(o);)
+    for (uint32_t i; done && (i = atomic_fetch_add(&r->next_picture, 1)) < end_of_pictures(o);)
         done = device_render(&r->devices[index], way_of(o, i), &picture) &&
                write_picture(o, &picture, i);
     picture_destroy(&picture);
@@ -265,9 +271,10 @@ static bool render_all(struct renderer *r)
 {
     const struct pbrt_options *o = &r->options;
     bool done = true;
+    atomic_store(&r->next_picture, first_picture(o));
     if (o->split == SPLIT_ALTERNATE)
         return crew_run(r->device_count, render_pictures, r);
-    for (uint32_t i = 0; i < picture_count(o) && done; i++) {
+    for (uint32_t i = first_picture(o); i < end_of_pictures(o) && done; i++) {
         r->way = way_of(o, i);
         done = crew_run(r->device_count, render_share, r) && write_picture(o, &r->picture, i);
     }

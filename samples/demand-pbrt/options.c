@@ -91,6 +91,8 @@ static bool check_devices(const struct option_table *table, const struct pbrt_op
         return options_refuse(table, "--fly, --statistics and --debug: are for one device");
     if (o->animation > 0 && (o->fly > 0 || o->fly_at < 1.0 || o->repeat > 0))
         return options_refuse(table, "--animation: not with --fly, --fly-at and --repeat");
+    if (o->pictures.given && (o->pictures.first == 0 || o->pictures.last > o->animation))
+        return options_refuse(table, "--pictures: those of --animation are 1-%u", o->animation);
     return true;
 }
 
@@ -146,6 +148,9 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
          "render N pictures along the way of --fly, FILE with -0001 and so on before its ending; "
          "0: one picture",
          0, 9999},
+        {OPTION_CUSTOM, "pictures", "FIRST-LAST", "(all)", &o->pictures,
+         "of --animation only those pictures, the first one is 1: for tasks that share the work",
+         .parse = frame_range_parse},
 
         {OPTION_SECTION, .help = "Loading"},
         {OPTION_FLAG, "preload", .value = &o->preload,

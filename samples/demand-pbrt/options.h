@@ -4,6 +4,7 @@
 
 #include "../../tools/common/device_list.h"
 #include "../../tools/common/option_table.h"
+#include "../common/frame_range.h"
 #include "../common/split.h"
 #include "camera_path.h"
 
@@ -20,9 +21,10 @@ struct pbrt_options {
     const char *contact_sheet;
     const char *device;
     struct device_list devices;
-    int split;          ///< enum split
-    uint32_t animation; ///< pictures; 0: one, which is no animation
-    uint32_t dim[2];    ///< 0: as the film
+    int split;                   ///< enum split
+    struct frame_range pictures; ///< of the animation, from 1 on; not given: all
+    uint32_t animation;          ///< pictures; 0: one, which is no animation
+    uint32_t dim[2];             ///< 0: as the film
     float background[3];
     uint32_t debug[2]; ///< pixel; UINT32_MAX: none
     uint32_t samples;

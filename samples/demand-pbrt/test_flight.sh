@@ -113,6 +113,11 @@ for i in 1 2 3 4; do
     cmp "$folder/shared-000$i.pfm" "$folder/one-000$i.pfm" || complain "shared: picture $i"
     cmp "$folder/taken-000$i.pfm" "$folder/one-000$i.pfm" || complain "taken: picture $i"
 done
+animate part --pictures 2-3 --devices 0,0 --split alternate
+for i in 2 3; do
+    cmp "$folder/part-000$i.pfm" "$folder/one-000$i.pfm" || complain "part: picture $i"
+done
+[ "$(find "$folder" -name 'part-*.pfm' | wc -l)" -eq 2 ] || complain "part: other pictures were rendered"
 cmp "$folder/one-0004.pfm" "$folder/fresh.pfm" || complain "the last picture is not that without an animation"
 cmp -s "$folder/one-0002.pfm" "$folder/fresh.pfm" && complain "the camera does not move"
 "$program" "$folder/set/scene.pbrt" --dim 96x54 --file "$folder/half.pfm" --fly-at 0.5 >/dev/null 2>&1 || complain "half"
@@ -124,6 +129,7 @@ check frames 'v == 20'
 check frame_boxes_resolved_most 'v == 1'
 for options in "--frame-budget 16" "--preload --preload-shapes" "--preload-shapes --budget 1M" "--fly-from 0/0/0/1/0/0" \
     "--devices 0,0 --fly 4" "--devices 0,0 --device 0" "--split alternate" "--animation 2 --fly-at 1/2" \
+    "--pictures 1-1" "--animation 2 --pictures 0-1" "--animation 2 --pictures 2-3" "--animation 2 --pictures 2-1" \
     "--look-from 0/0/0" "--look-from 1/2/3/1/2/3" "--look-from 0/0/0/0/0/2/0/0/1" "--look-from 0/0/0/1/0/nan" "--cluster-size 1"; do
     status=0
     # shellcheck disable=SC2086
