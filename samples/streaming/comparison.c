@@ -197,7 +197,7 @@ static uint32_t find_worst(const struct measure *measure)
 {
     uint32_t worst = measure->frame_count;
     double lowest = (double)INFINITY;
-    for (uint32_t i = 0; i < measure->frame_count; i++)
+    for (uint32_t i = measure->first_frame; i < measure->frame_count; i++)
         if (measure->frames[i].psnr < lowest) {
             lowest = measure->frames[i].psnr;
             worst = i;
@@ -217,7 +217,7 @@ static void choose(struct pass *pass, uint32_t *frames, bool *is_written,
     if (settings->write_frames == WRITE_FRAMES_SOME && worst < measure->frame_count)
         is_written[worst] = true;
     written->count = 0;
-    for (uint32_t i = 0; i < measure->frame_count; i++) {
+    for (uint32_t i = measure->first_frame; i < measure->frame_count; i++) {
         if (is_written[i])
             written->frames[written->count++] = i;
         if (is_written[i] || is_nth(settings, i) || (i == worst && settings->metrics_every > 0))

@@ -152,8 +152,8 @@ static bool outputs_spare_inputs(const struct gallery *gallery)
     good = good && (!settings->neural || output_add_input(settings->neural));
     for (uint32_t i = 0; i < gallery->pictures.count && good; i++)
         good = output_add_input(gallery->pictures.pictures[i].path);
-    snprintf(csv, sizeof csv, "%s/frames.csv", settings->output);
-    snprintf(report, sizeof report, "%s/report.html", settings->output);
+    settings_report_path(settings, "frames", ".csv", csv, sizeof csv);
+    settings_report_path(settings, "report", ".html", report, sizeof report);
     return good && output_spares_inputs(csv) && output_spares_inputs(report) &&
            (!settings->record || output_spares_inputs(settings->record)) &&
            (!settings->needs_trace || output_spares_inputs(settings->needs_trace));

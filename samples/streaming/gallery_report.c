@@ -90,24 +90,29 @@ static void add_plot(struct report *report, const struct measure *measure, const
                      size_t line_count)
 {
     const struct frame_record start = {.statistics = measure->start};
+    const uint32_t first = measure->first_frame, count = measure->frame_count - first;
+    const uint32_t rest = measure->rest_frame > first ? measure->rest_frame - first : 0;
     struct report_series series[2];
-    double *values = calloc(2 * (size_t)measure->frame_count, sizeof *values);
+    double *values = calloc(2 * (size_t)count, sizeof *values);
     if (!values)
         return;
     for (size_t s = 0; s < line_count; s++) {
-        double *line = values + s * measure->frame_count;
+        double *line = values + s * count;
         series[s] = (struct report_series){lines[s].name, line};
-        for (uint32_t i = 0; i < measure->frame_count; i++)
-            line[i] = lines[s].value(&measure->frames[i], i > 0 ? &measure->frames[i - 1] : &start);
+        for (uint32_t i = first; i < measure->frame_count; i++)
+            line[i - first] = lines[s].value(
+                &measure->frames[i], i > measure->begin_frame ? &measure->frames[i - 1] : &start);
     }
-    report_plot(report, &(struct report_plot){.title = title,
-                                              .unit = unit,
-                                              .value_count = measure->frame_count,
-                                              .series_count = line_count,
-                                              .series = series,
-                                              .maximum = maximum,
-                                              .mark = measure->rest_frame,
-                                              .mark_name = "camera at rest"});
+    report_plot(report,
+                &(struct report_plot){
+                    .title = title,
+                    .unit = unit,
+                    .value_count = count,
+                    .series_count = line_count,
+                    .series = series,
+                    .maximum = maximum,
+                    .mark = rest < count || !measure->settings->range.given ? (double)rest : -1.0,
+                    .mark_name = "camera at rest"});
     free(values);
 }
 
@@ -280,7 +285,7 @@ bool gallery_report_write(const struct gallery_report_info *info, const struct m
 {
     char path[4096];
     struct report report;
-    snprintf(path, sizeof path, "%s/report.html", info->folder);
+    settings_report_path(measure->settings, "report", ".html", path, sizeof path);
     if (!report_begin(&report, path, "A walk through the gallery"))
         return false;
     report_code(&report, info->command_line);

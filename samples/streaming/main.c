@@ -145,18 +145,51 @@ static bool draw_frame(struct walk *walk, uint32_t frame, uint64_t time_stamp)
     walk->measure->frames[frame].host_seconds = drawn.host_seconds;
     walk->measure->frames[frame].statistics = drawn.statistics;
     walk->measure->frames[frame].neural_bytes = drawn.neural_bytes;
-    return !gallery->settings.compare || view_draw(&gallery->truth, &camera, time_stamp, &truth);
+    return frame < gallery->settings.range.first || !gallery->settings.compare ||
+           view_draw(&gallery->truth, &camera, time_stamp, &truth);
+}
+
+static bool settle(struct walk *walk, uint32_t frame)
+{
+    struct view *view = &walk->gallery->streamed;
+    return view_wait(view, frame % VIEW_FRAMES_IN_FLIGHT) && view_settle(view);
+}
+
+/** Frames before the range, for what they load. The slots of frames are those of a whole walk. */
+static bool play_in(struct walk *walk)
+{
+    const struct settings *settings = &walk->gallery->settings;
+    const uint32_t first = settings->range.first;
+    uint32_t begin = first - settings->play_in;
+    struct progress progress;
+    begin -= begin % VIEW_FRAMES_IN_FLIGHT;
+    walk->measure->begin_frame = begin;
+    walk->gallery->streamed.frame_index = begin;
+    if (begin == first)
+        return true;
+    progress_begin(&progress, "playing", "frames", first - begin);
+    for (uint32_t frame = begin; frame < first; frame++) {
+        if (!draw_frame(walk, frame, time_stamp_of(settings, frame)) || !settle(walk, frame))
+            return false;
+        progress_update(&progress, frame + 1 - begin);
+    }
+    progress_end(&progress);
+    return true;
 }
 
 static bool walk_through(struct walk *walk)
 {
     const struct settings *settings = &walk->gallery->settings;
+    const uint32_t first = settings->range.first, end = settings->range.last + 1;
     const double step = 1.0 / settings->frames_per_second;
     struct progress progress;
-    progress_begin(&progress, "walking", "frames", settings->frames);
+    if (!play_in(walk))
+        return false;
+    progress_begin(&progress, "walking", "frames", end - first);
     double due = clock_seconds(), submitted = due;
-    for (uint32_t frame = 0; frame < settings->frames; frame++) {
-        if (frame >= VIEW_FRAMES_IN_FLIGHT && !collect_frame(walk, frame - VIEW_FRAMES_IN_FLIGHT))
+    for (uint32_t frame = first; frame < end; frame++) {
+        if (frame - first >= VIEW_FRAMES_IN_FLIGHT &&
+            !collect_frame(walk, frame - VIEW_FRAMES_IN_FLIGHT))
             return false;
         if (!settings->deterministic)
             clock_sleep_until(due);
@@ -167,15 +200,12 @@ static bool walk_through(struct walk *walk)
         double now = clock_seconds();
         walk->measure->frames[frame].frame_seconds = now - submitted;
         submitted = now;
-        if (settings->deterministic &&
-            (!view_wait(&walk->gallery->streamed, frame % VIEW_FRAMES_IN_FLIGHT) ||
-             !view_settle(&walk->gallery->streamed)))
+        if (settings->deterministic && !settle(walk, frame))
             return false;
-        progress_update(&progress, frame + 1);
+        progress_update(&progress, frame + 1 - first);
     }
-    uint32_t left =
-        settings->frames < VIEW_FRAMES_IN_FLIGHT ? settings->frames : VIEW_FRAMES_IN_FLIGHT;
-    for (uint32_t frame = settings->frames - left; frame < settings->frames; frame++)
+    uint32_t left = end - first < VIEW_FRAMES_IN_FLIGHT ? end - first : VIEW_FRAMES_IN_FLIGHT;
+    for (uint32_t frame = end - left; frame < end; frame++)
         if (!collect_frame(walk, frame))
             return false;
     progress_end(&progress);
@@ -209,7 +239,7 @@ static bool write_results(const struct walk *walk, int argc, char *const *argv)
     struct figure figures[MEASURE_MAX_FIGURES];
     uint32_t figure_count = measure_figures(walk->measure, figures);
     char csv_path[4096];
-    snprintf(csv_path, sizeof csv_path, "%s/frames.csv", settings->output);
+    settings_report_path(settings, "frames", ".csv", csv_path, sizeof csv_path);
     char *command_line = join_arguments(argc, argv);
     struct gallery_report_info report = {
         .folder = settings->output,
@@ -290,8 +320,8 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
 static bool can_write_outputs(const struct settings *settings)
 {
     char report[4096], csv[4096];
-    snprintf(report, sizeof report, "%s/report.html", settings->output);
-    snprintf(csv, sizeof csv, "%s/frames.csv", settings->output);
+    settings_report_path(settings, "report", ".html", report, sizeof report);
+    settings_report_path(settings, "frames", ".csv", csv, sizeof csv);
     return files_make_folders(settings->output) && output_can_write(report) &&
            output_can_write(csv) &&
            (!settings->needs_trace || output_can_write(settings->needs_trace)) &&

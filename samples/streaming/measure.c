@@ -11,7 +11,8 @@ bool measure_begin(struct measure *measure, const struct settings *settings)
 {
     *measure = (struct measure){.settings = settings, .file_bytes = NAN};
     measure->frames = calloc(settings->frames, sizeof *measure->frames);
-    measure->frame_count = settings->frames;
+    measure->first_frame = settings->range.first;
+    measure->frame_count = settings->range.last + 1;
     measure->rest_frame = settings->frames - settings->rest_frames;
     for (uint32_t i = 0; measure->frames && i < settings->frames; i++)
         measure->frames[i].ssim = measure->frames[i].flip = NAN;
@@ -29,11 +30,22 @@ uint32_t measure_resident_tiles(const struct frame_record *record)
     return record->statistics.mappedTileCount + record->statistics.standbyTileCount;
 }
 
+static uint32_t count_frames(const struct measure *measure)
+{
+    return measure->frame_count - measure->first_frame;
+}
+
+/** Of the measured ones, the first in which the camera stands still. */
+static uint32_t first_at_rest(const struct measure *measure)
+{
+    return measure->rest_frame > measure->first_frame ? measure->rest_frame : measure->first_frame;
+}
+
 /** Frames after the camera stopped until the picture is sharp for good; NaN if it never is. */
 static double frames_to_sharp(const struct measure *measure)
 {
     uint32_t sharp_from = measure->frame_count;
-    while (sharp_from > measure->rest_frame &&
+    while (sharp_from > first_at_rest(measure) &&
            measure->frames[sharp_from - 1].psnr >= MEASURE_SHARP_DB)
         sharp_from--;
     return sharp_from < measure->frame_count ? sharp_from - measure->rest_frame : NAN;
@@ -48,13 +60,15 @@ static int compare_doubles(const void *a, const void *b)
 /** The value that `share` of the frames do not exceed. */
 static double quantile(const struct measure *measure, size_t offset, double share)
 {
-    double *values = calloc(measure->frame_count, sizeof *values);
+    const uint32_t count = count_frames(measure);
+    double *values = calloc(count, sizeof *values);
     if (!values)
         return NAN;
-    for (uint32_t i = 0; i < measure->frame_count; i++)
-        memcpy(&values[i], (const char *)&measure->frames[i] + offset, sizeof *values);
-    qsort(values, measure->frame_count, sizeof *values, compare_doubles);
-    double value = values[(uint32_t)(share * (measure->frame_count - 1))];
+    for (uint32_t i = 0; i < count; i++)
+        memcpy(&values[i], (const char *)&measure->frames[measure->first_frame + i] + offset,
+               sizeof *values);
+    qsort(values, count, sizeof *values, compare_doubles);
+    double value = values[(uint32_t)(share * (count - 1))];
     free(values);
     return value;
 }
@@ -70,7 +84,7 @@ static double finite_psnr(double psnr)
 static double lowest_psnr(const struct measure *measure)
 {
     double lowest = NAN;
-    for (uint32_t i = 0; i < measure->frame_count; i++)
+    for (uint32_t i = measure->first_frame; i < measure->frame_count; i++)
         lowest = fmin(lowest, measure->frames[i].psnr);
     return finite_psnr(lowest);
 }
@@ -79,9 +93,9 @@ static double lowest_psnr(const struct measure *measure)
 static double mean_psnr(const struct measure *measure)
 {
     double sum = 0;
-    for (uint32_t i = 0; i < measure->frame_count; i++)
+    for (uint32_t i = measure->first_frame; i < measure->frame_count; i++)
         sum += pow(10, -0.1 * measure->frames[i].psnr);
-    return finite_psnr(-10 * log10(sum / measure->frame_count));
+    return finite_psnr(-10 * log10(sum / count_frames(measure)));
 }
 
 /** What SSIM and FLIP are over the frames that were looked at. */
@@ -94,7 +108,7 @@ static struct metric_summary summarize(const struct measure *measure, size_t off
 {
     struct metric_summary summary = {0, NAN, NAN};
     uint32_t count = 0, every = measure->settings->metrics_every;
-    for (uint32_t i = 0; i < measure->frame_count; i++) {
+    for (uint32_t i = measure->first_frame; i < measure->frame_count; i++) {
         double value;
         memcpy(&value, (const char *)&measure->frames[i] + offset, sizeof value);
         summary.lowest = fmin(summary.lowest, value);
@@ -111,9 +125,9 @@ static struct metric_summary summarize(const struct measure *measure, size_t off
 static double mean_missing(const struct measure *measure)
 {
     double sum = 0;
-    for (uint32_t i = 0; i < measure->frame_count; i++)
+    for (uint32_t i = measure->first_frame; i < measure->frame_count; i++)
         sum += measure->frames[i].missing_percent;
-    return sum / measure->frame_count;
+    return sum / count_frames(measure);
 }
 
 static double loaded_bytes(const struct measure *measure)
@@ -126,7 +140,7 @@ static double loaded_bytes(const struct measure *measure)
 static double needed_bytes_peak(const struct measure *measure)
 {
     uint32_t most = 0;
-    for (uint32_t i = 0; i < measure->frame_count; i++)
+    for (uint32_t i = measure->first_frame; i < measure->frame_count; i++)
         if (measure->frames[i].needs.needed_tiles > most)
             most = measure->frames[i].needs.needed_tiles;
     return MEASURE_TILE_BYTES * most;
@@ -145,7 +159,7 @@ static double frames_to_final(const struct measure *measure)
 {
     double last = measure->frames[measure->frame_count - 1].psnr;
     uint32_t from = measure->frame_count;
-    while (from > measure->rest_frame &&
+    while (from > first_at_rest(measure) &&
            finite_psnr(measure->frames[from - 1].psnr) >= finite_psnr(last) - FINAL_DB)
         from--;
     return from < measure->frame_count ? from - measure->rest_frame : NAN;
@@ -164,7 +178,7 @@ static double frames_to_first_sharp(const struct measure *measure)
         best = fmax(best, finite_psnr(measure->frames[i].psnr));
     while (frame < count && finite_psnr(measure->frames[frame].psnr) < best - FIRST_DB)
         frame++;
-    return isnan(best) ? NAN : frame;
+    return isnan(best) || measure->first_frame > 0 ? NAN : frame;
 }
 
 static double last_frames_flip(const struct measure *measure)
@@ -177,7 +191,7 @@ static uint32_t neural_figures(const struct measure *measure, struct figure *fig
 {
     bool hangs = !isnan(measure->file_bytes);
     double most = 0, beside = 0;
-    for (uint32_t i = 0; i < measure->frame_count; i++) {
+    for (uint32_t i = measure->first_frame; i < measure->frame_count; i++) {
         const struct frame_record *record = &measure->frames[i];
         double tiles = MEASURE_TILE_BYTES * measure_resident_tiles(record);
         most = fmax(most, tiles + (double)record->neural_bytes);
@@ -260,7 +274,7 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
     const SluiceVulkanStreamerStatistics *statistics = &last->statistics;
     uint64_t non_resident = 0, sampled = 0, peak_memory = 0;
     uint32_t peak_tiles = 0;
-    for (uint32_t i = 0; i < measure->frame_count; i++) {
+    for (uint32_t i = measure->first_frame; i < measure->frame_count; i++) {
         const struct frame_record *record = &measure->frames[i];
         non_resident += record->counts.nonResident;
         sampled += record->counts.sampled;
@@ -313,7 +327,7 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
          "bytes", "for everything resident"},
         {"bind_calls", (double)statistics->bindCalls, "calls", "of vkQueueBindSparse"},
         {"feedback_maps", (double)statistics->feedbackMaps, "maps", "read back"},
-        {"frames", measure->frame_count, "frames", "in all"},
+        {"frames", count_frames(measure), "frames", "in all"},
         {"frame_ms_median", 1e3 * FRAME_QUANTILE(measure, frame_seconds, 0.5), "ms",
          "from submission to submission, with all that is drawn to compare and to count"},
         {"frame_ms_p95", 1e3 * FRAME_QUANTILE(measure, frame_seconds, 0.95), "ms",
@@ -337,7 +351,7 @@ static void write_csv_line(FILE *file, const struct measure *measure, uint32_t i
     const struct frame_record *record = &measure->frames[index];
     const SluiceVulkanStreamerStatistics *now = &record->statistics;
     const SluiceVulkanStreamerStatistics *then =
-        index > 0 ? &measure->frames[index - 1].statistics : &measure->start;
+        index > measure->begin_frame ? &measure->frames[index - 1].statistics : &measure->start;
     fprintf(file, "%u,%d,%.3f,%.3f,%.3f,", index, index >= measure->rest_frame,
             1e3 * record->frame_seconds, 1e3 * record->host_seconds, 1e3 * record->gpu_seconds);
     if (!isnan(record->psnr))
@@ -377,7 +391,7 @@ bool measure_write_csv(const struct measure *measure, const char *path)
               "bytes_read,bytes_uploaded,device_memory,nonresident_reads,sampled_pixels,"
               "missing_pixels,missing_levels,needed_tiles,missing_regions,ssim,flip\n",
               file);
-        for (uint32_t i = 0; i < measure->frame_count; i++)
+        for (uint32_t i = measure->first_frame; i < measure->frame_count; i++)
             write_csv_line(file, measure, i);
     }
     return output_file_end(output, true);

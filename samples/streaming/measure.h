@@ -22,9 +22,10 @@ struct frame_record {
 };
 
 struct measure {
-    const struct settings *settings; ///< borrowed
-    struct frame_record *frames;     ///< owned
-    uint32_t frame_count;
+    const struct settings *settings;      ///< borrowed
+    struct frame_record *frames;          ///< owned
+    uint32_t begin_frame;                 ///< the first that was drawn
+    uint32_t first_frame, frame_count;    ///< the first that is measured; behind the last one
     uint32_t rest_frame;                  ///< the first in which the camera stands still
     SluiceVulkanStreamerStatistics start; ///< before the first frame: of warming up
     bool counting;                        ///< counts are valid

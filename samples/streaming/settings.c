@@ -3,6 +3,7 @@
 #include "../../tools/common/shared_options.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const char usage[] =
@@ -86,6 +87,10 @@ static bool check(const struct option_table *table, struct settings *s)
                                      "coarsest levels are loaded at once");
     if (s->budget > 0 && s->budget < TILE_SIZE)
         return options_refuse(table, "--budget: wants 64K at least, for one tile, or 0");
+    if (s->range.given && s->range.last >= s->frames)
+        return options_refuse(table, "--range: frames are 0-%u", s->frames - 1);
+    if (s->range.given && (s->needs_trace || s->reference))
+        return options_refuse(table, "--range: not with --needs-trace and --reference");
     return read_neural_modes(table, s) && complete_reference(table, s);
 }
 
@@ -140,6 +145,14 @@ enum option_outcome settings_parse(int argc, char **argv, struct settings *s)
          8},
         {OPTION_TEXT, "output", "DIR", "gallery-out", &s->output,
          "folder where everything is written"},
+        {OPTION_CUSTOM, "range", "FIRST-LAST", "(all)", &s->range,
+         "measure and write these frames alone, in frames-FIRST-LAST.csv and "
+         "report-FIRST-LAST.html: for tasks that share the work. Frames before them are played, "
+         "as fast as they come. With --deterministic and --threads 1 they are those of one run",
+         .parse = frame_range_parse},
+        {OPTION_UINT, "play-in", "N", "100000", &s->play_in,
+         "play only N frames before --range: sooner there, but no longer the pictures of one run",
+         0, 100000},
         {OPTION_CHOICE, "write-frames", "some|all|none", "some", &s->write_frames,
          "pictures to write"},
         {OPTION_FLAG, "deterministic", .value = &s->deterministic,
@@ -251,7 +264,22 @@ enum option_outcome settings_parse(int argc, char **argv, struct settings *s)
     keep_to_budget(s);
     if (s->rest_frames > s->frames)
         s->rest_frames = s->frames;
+    if (!s->range.given)
+        s->range.last = s->frames - 1;
+    if (s->play_in > s->range.first)
+        s->play_in = s->range.first;
     return OPTIONS_RUN;
+}
+
+void settings_report_path(const struct settings *settings, const char *name, const char *ending,
+                          char *path, size_t size)
+{
+    const struct frame_range *range = &settings->range;
+    if (range->given)
+        snprintf(path, size, "%s/%s-%u-%u%s", settings->output, name, range->first, range->last,
+                 ending);
+    else
+        snprintf(path, size, "%s/%s%s", settings->output, name, ending);
 }
 
 SluiceResidencyMode settings_residency_mode(int residency)

@@ -5,6 +5,7 @@
 #include <sluice/vulkan.h>
 
 #include "../../tools/common/option_table.h"
+#include "../common/frame_range.h"
 
 enum write_frames { WRITE_FRAMES_SOME, WRITE_FRAMES_ALL, WRITE_FRAMES_NONE };
 enum pixel_format { PIXEL_FORMAT_AUTO, PIXEL_FORMAT_RGBA16F, PIXEL_FORMAT_RGBA8 };
@@ -47,6 +48,8 @@ struct settings {
     /* frames */
     uint32_t size[2];
     uint32_t frames, rest_frames;
+    struct frame_range range; ///< after parsing all frames if none was given
+    uint32_t play_in; ///< frames before the range, rounded up; after parsing at most `first`
     uint32_t frames_per_second;
     uint32_t samples;
     const char *output;
@@ -90,6 +93,10 @@ struct settings {
 };
 
 enum option_outcome settings_parse(int argc, char **argv, struct settings *settings);
+
+/** "OUTPUT/frames.csv", or "OUTPUT/frames-24-47.csv" of a range. */
+void settings_report_path(const struct settings *settings, const char *name, const char *ending,
+                          char *path, size_t size);
 
 SluiceResidencyMode settings_residency_mode(int residency);
 /** Whether it is to be found out what frames need. */
