@@ -8,8 +8,9 @@
 #   --sbatch OPTION  an option for sbatch, as --sbatch --mem=4G; may be given again
 #   --help
 #
-# COMMAND renders one frame: %f in it is the frame's number, %o the picture to write (PNG). Pictures are
-# FOLDER/frame-NNNNN.png, and those that are there are not rendered again. FOLDER/contact-sheet.png shows all.
+# COMMAND renders one frame: %f in it is the frame's number, %o the picture to write (PNG). Or it renders the frames
+# from %a to %b and writes them into the folder %d as frame-NUMBER.png, each complete when it has its name. Pictures
+# are FOLDER/frame-NNNNN.png, and those that are there are not rendered again. FOLDER/contact-sheet.png shows all.
 # The exit status is 0 if all frames and the sheet were written.
 #
 # Environment: SLUICE_CONTACT_SHEET   the program that makes the sheet (default: contact-sheet of PATH)
@@ -44,12 +45,16 @@ first=$((10#${BASH_REMATCH[1]})) last=$((10#${BASH_REMATCH[2]})) count=${words[1
 case $local_jobs$rounds in *[!0-9]*) die "JOBS and rounds are numbers" ;; esac
 count=$((10#$count))
 if [ "$first" -gt "$last" ] || [ "$count" -eq 0 ]; then die "there is no frame, or no task"; fi
-case "$*" in *%o*) ;; *) die "COMMAND has no %o, so it writes no picture" ;; esac
+case "$*" in
+*%o* | *%a*%b*%d* | *%a*%d*%b* | *%d*%a*%b*) ;;
+*) die "COMMAND has no %o, and not %a, %b and %d, so it writes no picture" ;;
+esac
 [ "$local_jobs" -gt 0 ] || command -v sbatch >/dev/null || die "there is no sbatch; --local JOBS needs no cluster"
 command -v "$sheet" >/dev/null || die "there is no $sheet; SLUICE_CONTACT_SHEET names one"
 [ "$count" -le $((last - first + 1)) ] || count=$((last - first + 1))
 mkdir -p "$folder"
-find "$folder" -maxdepth 1 -name '.frame-*.png' -mmin +1440 -delete # left by tasks that were killed
+# Left by tasks that were killed.
+find "$folder" -maxdepth 1 \( -name '.frame-*.png' -o -name '.frames-*' \) -mmin +1440 -exec rm -r {} +
 
 picture() { printf '%s/frame-%05d.png' "$folder" "$1"; }
 
