@@ -140,7 +140,8 @@ void panel_now(struct view_app *app)
                 f->now.loadsInFlight);
         const uint32_t baking = stage_baking_count(app->stage);
         if (baking > 0) {
-            ui_text(UI_ORANGE, "%u pictures are being prepared", baking);
+            ui_text(UI_ORANGE, "%u %s being prepared", baking,
+                    baking == 1 ? "picture is" : "pictures are");
             ui_hint("Tiles of these pictures are made once, and kept in the cache (--cache). Until "
                     "then coarse levels are shown.");
         }
