@@ -98,6 +98,8 @@ void app_set_view(struct view_app *app, uint32_t view);
 /** Opens or closes a panel. One that opens takes the place of the others on its side. */
 void app_set_panel(struct view_app *app, enum app_panel panel, bool open);
 void app_inspect(struct view_app *app, const struct stage_pick *pick);
+/** Moves the camera before a surface that has a tile of a texture. */
+void app_look_at_tile(struct view_app *app, uint32_t texture, const SluiceTile *tile);
 void app_copy_command(struct view_app *app);
 /** Whether the picture is a difference of two. */
 bool app_shows_difference(const struct view_app *app);

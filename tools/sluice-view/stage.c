@@ -426,6 +426,12 @@ bool stage_pick_pixel(const struct stage *s, const struct stage_pick *pick,
     return true;
 }
 
+bool stage_find_texel(const struct stage *s, uint32_t texture, float u, float v,
+                      struct vec3 *position, struct vec3 *normal)
+{
+    return scene_find_texel(&s->scene, texture, u, v, position, normal);
+}
+
 uint32_t stage_triangle_count(const struct stage *s)
 {
     return s->scene.index_count / 3;

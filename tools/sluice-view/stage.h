@@ -99,6 +99,10 @@ struct stage_pick stage_pick(const struct stage *stage, const struct view_camera
  * below: along u and v each. `pick` is of this pixel. False if it has no texture. */
 bool stage_pick_pixel(const struct stage *stage, const struct stage_pick *pick,
                       const struct stage_pixel *pixel, float texels[4]);
+/** Finds a point of a surface that has a texel of a texture, u and v from 0 to 1, and the normal of
+ *  its triangle. False if no surface has it. */
+bool stage_find_texel(const struct stage *stage, uint32_t texture, float u, float v,
+                      struct vec3 *position, struct vec3 *normal);
 uint32_t stage_triangle_count(const struct stage *stage);
 /** Time stamp of the last frame that was recorded. */
 uint64_t stage_now(const struct stage *stage);

@@ -127,3 +127,69 @@ bool scene_pick_pixel(const struct scene_data *scene, const struct stage_pick *p
         parts[i] = uv[1 + i / 2][i % 2] - uv[0][i % 2];
     return true;
 }
+
+/* Wrapped copies of a texture that a triangle is looked for in, along each side. */
+#define MOST_WRAPS 8
+
+static bool inside(float uv[3][2], float u, float v, float *b, float *c)
+{
+    const float e1[2] = {uv[1][0] - uv[0][0], uv[1][1] - uv[0][1]};
+    const float e2[2] = {uv[2][0] - uv[0][0], uv[2][1] - uv[0][1]};
+    const float to[2] = {u - uv[0][0], v - uv[0][1]};
+    const float determinant = e1[0] * e2[1] - e1[1] * e2[0];
+    if (fabsf(determinant) < 1e-20f)
+        return false;
+    *b = (to[0] * e2[1] - to[1] * e2[0]) / determinant;
+    *c = (e1[0] * to[1] - e1[1] * to[0]) / determinant;
+    return *b >= 0 && *c >= 0 && *b + *c <= 1;
+}
+
+/* A triangle has the texel several times if the texture is repeated. */
+static bool find_in_triangle(const struct scene_slot *slot,
+                             const struct scene_vertex *const corners[3], float u, float v,
+                             float *b, float *c)
+{
+    float uv[3][2], first[2];
+    for (int i = 0; i < 3; i++)
+        uv_at(slot, corners, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f, uv[i]);
+    for (int k = 0; k < 2; k++)
+        first[k] = floorf(fminf(uv[0][k], fminf(uv[1][k], uv[2][k])));
+    for (int y = 0; y < MOST_WRAPS; y++)
+        for (int x = 0; x < MOST_WRAPS; x++)
+            if (inside(uv, first[0] + (float)x + u, first[1] + (float)y + v, b, c))
+                return true;
+    return false;
+}
+
+static bool find_in_part(const struct scene_data *scene, const struct scene_part *part,
+                         const struct scene_slot *slot, float u, float v, struct vec3 *position,
+                         struct vec3 *normal)
+{
+    for (uint32_t i = 0; i + 2 < part->index_count; i += 3) {
+        const struct scene_vertex *corners[3];
+        float b, c;
+        corners_of(scene, part->first_index + i, corners);
+        if (!find_in_triangle(slot, corners, u, v, &b, &c))
+            continue;
+        const struct vec3 first = position_of(corners[0]);
+        const struct vec3 e1 = vec3_sub(position_of(corners[1]), first);
+        const struct vec3 e2 = vec3_sub(position_of(corners[2]), first);
+        *position = vec3_add(first, vec3_add(vec3_scale(e1, b), vec3_scale(e2, c)));
+        *normal = vec3_normalize(vec3_cross(e1, e2));
+        return true;
+    }
+    return false;
+}
+
+bool scene_find_texel(const struct scene_data *scene, uint32_t image, float u, float v,
+                      struct vec3 *position, struct vec3 *normal)
+{
+    for (uint32_t i = 0; i < scene->part_count; i++)
+        for (int k = 0; k < SLOT_COUNT; k++) {
+            const struct scene_slot *slot = &scene->materials[scene->parts[i].material].slots[k];
+            if (slot->image == image &&
+                find_in_part(scene, &scene->parts[i], slot, u, v, position, normal))
+                return true;
+        }
+    return false;
+}

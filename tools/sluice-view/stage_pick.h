@@ -11,5 +11,8 @@ struct stage_pick scene_pick(const struct scene_data *scene, const struct view_c
 /** As stage_pick_pixel, in parts of the texture. */
 bool scene_pick_pixel(const struct scene_data *scene, const struct stage_pick *pick,
                       const struct stage_pixel *pixel, float parts[4]);
+/** As stage_find_texel. */
+bool scene_find_texel(const struct scene_data *scene, uint32_t image, float u, float v,
+                      struct vec3 *position, struct vec3 *normal);
 
 #endif /* SLUICE_VIEW_STAGE_PICK_H */
