@@ -4,6 +4,7 @@
 
 #include "app.h"
 #include "controls.h"
+#include "memory_map.h"
 #include "panels.h"
 #include "scene_data.h"
 #include "texture_rows.h"
@@ -262,11 +263,86 @@ static void filters_and_files_take_names_with_blanks_quotes_and_commas(void **st
     fclose(file);
 }
 
+static void sums_of_memory_count_all_slots(void **state)
+{
+    (void)state;
+    settle();
+    const struct memory_sums sums = memory_sums_of(show->stage);
+    struct memory_slot slot;
+    uint32_t heaps = 0, used = 0;
+    for (uint32_t heap = 0; heap < 64; heap++) {
+        SluiceTile tile;
+        if (sluiceGetSlotTile(manager(), heap, 0, &tile) != SLUICE_SUCCESS)
+            continue;
+        heaps++;
+        for (uint32_t i = 0; i < STAGE_HEAP_TILES; i++) {
+            if (!memory_slot_get(show->stage, &show->app.facts, heap, i, &slot))
+                continue;
+            used++;
+            assert_true(slot.loads > 0 && slot.age >= 0);
+            assert_int_equal(stage_texture(show->stage, slot.texture)->id, slot.tile.textureId);
+        }
+    }
+    assert_int_equal(sums.heaps, heaps);
+    assert_int_equal(sums.used, used);
+    uint32_t needed = 0;
+    while (needed * STAGE_HEAP_TILES < used)
+        needed++;
+    assert_int_equal(sums.spare_heaps, heaps - needed);
+    assert_true(used > 0);
+}
+
+/* Colors over a picture keep the ratios of their channels. */
+static bool is_color(const uint8_t *pixel, uint32_t color)
+{
+    double product = 0, a = 0, b = 0;
+    for (int k = 0; k < 3; k++) {
+        const double channel = color >> 8 * k & 255;
+        product += channel * pixel[k];
+        a += channel * channel;
+        b += (double)pixel[k] * pixel[k];
+    }
+    return product > 0.9995 * sqrt(a * b);
+}
+
+static void a_camera_that_looks_at_a_tile_sees_it_in_the_color_of_its_texture(void **state)
+{
+    (void)state;
+    settle();
+    struct view_app *app = &show->app;
+    const struct view_camera before = app->camera;
+    app->settings.view = VIEW_IDENTITY;
+    app->settings.panels = 1;
+    app->settings.feedback = VIEW_FEEDBACK_OFF; /* nothing more is painted */
+    for (uint32_t texture = 0; texture < stage_texture_count(show->stage); texture += 5) {
+        SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+        SluiceTile tile;
+        const SluiceTextureId id = stage_texture(show->stage, texture)->id;
+        CHECK_OK(sluiceGetTextureLayout(manager(), id, &layout));
+        CHECK_OK(sluiceGetTileState(manager(), id, layout.levelWidthInTiles[0] / 2, NULL, &tile));
+        app_look_at_tile(app, texture, &tile);
+        const struct stage_pick pick =
+            stage_pick(show->stage, &app->camera, (float)WIDTH / HEIGHT, 0.5f, 0.5f);
+        assert_int_equal(pick.texture, texture);
+        const uint32_t width = stage_texture(show->stage, texture)->width;
+        assert_int_equal((uint32_t)(pick.u * (float)width) / layout.desc.tileWidth, tile.x);
+        draw(-1, -1);
+        const uint8_t *pixels = draw(-1, -1);
+        assert_true(is_color(pixels + 4 * (HEIGHT / 2 * WIDTH + WIDTH / 2),
+                             memory_texture_color(show->stage, texture)));
+    }
+    app->settings.panels = 0;
+    app->settings.feedback = VIEW_FEEDBACK_ON;
+    app->camera = before;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(levels_under_the_mouse_are_those_of_the_colors),
         cmocka_unit_test(rows_of_textures_and_their_sum_count_all_tiles),
+        cmocka_unit_test(sums_of_memory_count_all_slots),
+        cmocka_unit_test(a_camera_that_looks_at_a_tile_sees_it_in_the_color_of_its_texture),
         cmocka_unit_test(filters_and_files_take_names_with_blanks_quotes_and_commas),
     };
     return tap_filter_stdout(), cmocka_run_group_tests(tests, begin, end);

@@ -264,6 +264,13 @@ static const struct control table[] = {
      FIELD(graph_span),
      NULL,
      0},
+    {"Panels",
+     "Memory colors",
+     {OPTION_CHOICE, "memory-colors", "state|texture|level|age", "state", NULL,
+      "colors of the slots of memory"},
+     FIELD(memory_colors),
+     NULL,
+     0},
 };
 
 #define COUNT (sizeof table / sizeof *table)

@@ -172,7 +172,10 @@ static void draw_legend(const struct view_app *app)
     case VIEW_WANTED: draw_levels(); break;
     case VIEW_MISSING: draw_missing(); break;
     case VIEW_AGE: draw_ages(); break;
-    case VIEW_IDENTITY: ui_text(UI_GRAY, "a color per texture"); break;
+    case VIEW_IDENTITY:
+        ui_text(UI_GRAY, "a color per texture; white edges:");
+        ui_text(UI_GRAY, "a side that is no power of two");
+        break;
     case VIEW_WRITTEN: ui_text(UI_GRAY, "dots: pixels that wrote"); break;
     case VIEW_CHECKS: draw_checks(); break;
     default: break;

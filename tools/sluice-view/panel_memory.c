@@ -1,17 +1,10 @@
 #include "panels.h"
 
+#include "memory_map.h"
+
 #include <stdio.h>
 
-static const struct {
-    SluiceTileState state;
-    uint32_t color;
-    const char *name;
-} states[] = {{SLUICE_TILE_STATE_MAPPED, UI_COLOR(86, 180, 233, 255), "resident"},
-              {SLUICE_TILE_STATE_STANDBY, UI_COLOR(0, 120, 90, 255), "standby"},
-              {SLUICE_TILE_STATE_ALLOCATED, UI_COLOR(240, 228, 66, 255), "loading"},
-              {SLUICE_TILE_STATE_CANCELED, UI_COLOR(204, 121, 167, 255), "canceled"}};
-
-#define STATE_COUNT (sizeof states / sizeof *states)
+#define COLUMNS 32u
 
 static SluiceStreamedTextureManager *manager_of(const struct view_app *app)
 {
@@ -20,64 +13,61 @@ static SluiceStreamedTextureManager *manager_of(const struct view_app *app)
     return manager;
 }
 
-static uint32_t index_of(const struct view_app *app, SluiceTextureId id)
+static const char *state_name(SluiceTileState state)
 {
-    for (uint32_t i = 0; i < app->facts.texture_count; i++)
-        if (stage_texture(app->stage, i)->id == id)
-            return i;
-    return STAGE_NO_TEXTURE;
+    switch (state) {
+    case SLUICE_TILE_STATE_MAPPED: return "resident";
+    case SLUICE_TILE_STATE_STANDBY: return "standby";
+    case SLUICE_TILE_STATE_ALLOCATED: return "loading";
+    case SLUICE_TILE_STATE_CANCELED: return "canceled";
+    default: return "retiring";
+    }
 }
 
-static void draw_hover(struct view_app *app, const SluiceTile *tile, SluiceTileState state,
-                       uint32_t slot)
+static void draw_hover(struct view_app *app, const struct memory_slot *slot)
 {
-    char text[256];
-    const uint32_t index = index_of(app, tile->textureId);
-    if (index == STAGE_NO_TEXTURE)
-        return;
-    snprintf(text, sizeof text, "%s: level %u, tile %u, %u\nslot %u, %s",
-             stage_texture(app->stage, index)->name, tile->mipLevel, tile->x, tile->y, slot,
-             state == SLUICE_TILE_STATE_STANDBY ? "standby" : "resident");
+    const SluiceTile *tile = &slot->tile;
+    char text[320], age[48] = "";
+    if (slot->age >= 0)
+        snprintf(age, sizeof age, "\nloaded %.1f s ago, %u load%s", slot->age, slot->loads,
+                 slot->loads == 1 ? "" : "s");
+    snprintf(text, sizeof text,
+             "%.120s: level %u, tile %u, %u\nheap %u, slot %u: %s%s\nClick: inspect; double click: "
+             "look at it",
+             stage_texture(app->stage, slot->texture)->name, tile->mipLevel, tile->x, tile->y,
+             tile->heapId, tile->slot, state_name(slot->state), age);
     ui_show_hint(text);
-    if (ui_mouse_clicked(0))
-        app->selected = index;
-}
-
-static uint32_t color_of(SluiceTileState state)
-{
-    for (size_t i = 0; i < STATE_COUNT; i++)
-        if (states[i].state == state)
-            return states[i].color;
-    return UI_GRAY;
+    if (ui_double_clicked())
+        app_look_at_tile(app, slot->texture, tile);
+    else if (ui_mouse_clicked(0))
+        app->selected = slot->texture;
 }
 
 /* Returns whether the heap exists. */
-static bool draw_heap(struct view_app *app, uint32_t heap, uint32_t columns, float cell)
+static bool draw_heap(struct view_app *app, uint32_t heap, float cell)
 {
     float r[4], x, y;
     SluiceTile tile;
-    const SluiceStreamedTextureManager *manager = manager_of(app);
-    if (sluiceGetSlotTile(manager, heap, 0, &tile) != SLUICE_SUCCESS)
+    struct memory_slot slot;
+    if (sluiceGetSlotTile(manager_of(app), heap, 0, &tile) != SLUICE_SUCCESS)
         return false;
-    const uint32_t slots = STAGE_HEAP_TILES, rows = (slots + columns - 1) / columns;
-    ui_canvas((float)columns * cell, (float)rows * cell + 6 * ui_scale(), r);
+    const uint32_t rows = (STAGE_HEAP_TILES + COLUMNS - 1) / COLUMNS;
+    ui_canvas((float)COLUMNS * cell, (float)rows * cell + 6 * ui_scale(), r);
     const bool hovered = ui_hovered();
     ui_mouse(&x, &y);
-    ui_fill(r[0], r[1], (float)columns * cell, (float)rows * cell, UI_COLOR(30, 34, 40, 255));
-    for (uint32_t slot = 0; slot < slots; slot++) {
-        SluiceTileState state = SLUICE_TILE_STATE_FREE;
-        const float left = r[0] + (float)(slot % columns) * cell;
-        const float top = r[1] + (float)(slot / columns) * cell;
-        if (sluiceGetSlotTile(manager, heap, slot, &tile) != SLUICE_SUCCESS ||
-            tile.textureId == SLUICE_NO_TEXTURE ||
-            sluiceGetTileState(manager, tile.textureId, tile.tileIndex, &state, NULL) !=
-                SLUICE_SUCCESS)
+    ui_fill(r[0], r[1], (float)COLUMNS * cell, (float)rows * cell, UI_COLOR(30, 34, 40, 255));
+    for (uint32_t i = 0; i < STAGE_HEAP_TILES; i++) {
+        const float left = r[0] + (float)(i % COLUMNS) * cell;
+        const float top = r[1] + (float)(i / COLUMNS) * cell;
+        if (!memory_slot_get(app->stage, &app->facts, heap, i, &slot))
             continue;
-        ui_fill(left, top, cell - 1, cell - 1, color_of(state));
-        if (app->selected != STAGE_NO_TEXTURE && index_of(app, tile.textureId) == app->selected)
+        ui_fill(
+            left, top, cell - 1, cell - 1,
+            memory_slot_color(app->stage, &slot, (enum memory_colors)app->settings.memory_colors));
+        if (slot.texture == app->selected)
             ui_frame(left, top, cell - 1, cell - 1, UI_WHITE);
         if (hovered && x >= left && x < left + cell && y >= top && y < top + cell)
-            draw_hover(app, &tile, state, slot);
+            draw_hover(app, &slot);
     }
     return true;
 }
@@ -85,26 +75,90 @@ static bool draw_heap(struct view_app *app, uint32_t heap, uint32_t columns, flo
 static void draw_sums(struct view_app *app)
 {
     const struct view_facts *f = &app->facts;
+    const struct memory_sums sums = memory_sums_of(app->stage);
     char resident[32], standby[32], device[32], tails[32];
     ui_text(UI_WHITE, "%s resident, of it %s standby: %.1f %% of all",
             panel_size(f->resident_size, resident, sizeof resident),
             panel_size(f->standby_size, standby, sizeof standby),
             f->all_size ? 100.0 * (double)f->resident_size / (double)f->all_size : 0.0);
-    ui_text(UI_GRAY, "%s of device memory for tiles, in %u heaps",
-            panel_size(f->memory_size, device, sizeof device), f->now.heapCount);
+    ui_text(UI_GRAY, "%s of device memory for tiles",
+            panel_size(f->memory_size, device, sizeof device));
+    if (sums.heaps > 0) {
+        ui_text(sums.fragmentation > 0.25 ? UI_ORANGE : UI_GRAY,
+                "%u heaps, %u of %u slots used: fragmentation %.0f %%", sums.heaps, sums.used,
+                sums.heaps * STAGE_HEAP_TILES, 100.0 * sums.fragmentation);
+        ui_hint("Part of the heaps that would be empty if tiles moved together: %u of %u. Compact "
+                "moves them.",
+                sums.spare_heaps, sums.heaps);
+    }
     ui_text(f->budget && f->tails_size > f->budget ? UI_ORANGE : UI_GRAY,
             "%s of mip tails, which no budget evicts",
             panel_size(f->tails_size, tails, sizeof tails));
     ui_hint("Each texture keeps the tiles of its coarsest levels (its mip tail), so that there is "
             "always something to show. Heaps with such tiles stay, too.");
-    for (size_t i = 0; i < STATE_COUNT; i++) {
-        float r[4];
-        ui_canvas(14 * ui_scale(), 14 * ui_scale(), r);
-        ui_fill(r[0], r[1] + 2 * ui_scale(), r[2], r[3], states[i].color);
-        ui_same_line(0);
-        ui_text(UI_GRAY, "%s", states[i].name);
-        if (i + 1 < STATE_COUNT)
+}
+
+static void draw_swatch(uint32_t color, const char *words)
+{
+    float r[4];
+    ui_canvas(14 * ui_scale(), 14 * ui_scale(), r);
+    ui_fill(r[0], r[1] + 2 * ui_scale(), r[2], r[3], color);
+    ui_same_line(0);
+    ui_text(UI_GRAY, "%s", words);
+}
+
+static void draw_states(void)
+{
+    static const SluiceTileState states[] = {SLUICE_TILE_STATE_MAPPED, SLUICE_TILE_STATE_STANDBY,
+                                             SLUICE_TILE_STATE_ALLOCATED,
+                                             SLUICE_TILE_STATE_CANCELED};
+    for (int i = 0; i < 4; i++) {
+        if (i > 0)
             ui_same_line(0);
+        draw_swatch(memory_state_color(states[i]), state_name(states[i]));
+    }
+}
+
+static void draw_levels(void)
+{
+    static const char *const words[] = {"0", "1", "2", "3", "4", "5", "6", "7 or coarser"};
+    for (uint32_t level = 0; level < 8; level++) {
+        if (level > 0)
+            ui_same_line(0);
+        draw_swatch(panel_level_color(level), words[level]);
+    }
+}
+
+static void draw_ages(void)
+{
+    static const struct {
+        double seconds;
+        const char *words;
+    } ages[] = {{0, "0.5 s"}, {1, "2 s"}, {5, "10 s"}, {30, "1 min"}, {100, "longer"}};
+    for (int i = 0; i < 5; i++) {
+        if (i > 0)
+            ui_same_line(0);
+        draw_swatch(memory_age_color(ages[i].seconds), ages[i].words);
+    }
+}
+
+static void draw_colors(struct view_app *app)
+{
+    static const char *const names[] = {"State", "Texture", "Level", "Age"};
+    for (int i = 0; i < 4; i++) {
+        if (i > 0)
+            ui_same_line(0);
+        if (ui_button(names[i], 0, 0, app->settings.memory_colors == i))
+            app->settings.memory_colors = i;
+        ui_hint("Colors of the slots. --memory-colors");
+    }
+    switch (app->settings.memory_colors) {
+    case MEMORY_BY_TEXTURE:
+        ui_text(UI_GRAY, "as view 6: a color per texture, a hue per set");
+        break;
+    case MEMORY_BY_LEVEL: draw_levels(); break;
+    case MEMORY_BY_AGE: draw_ages(); break;
+    default: draw_states(); break;
     }
 }
 
@@ -126,12 +180,13 @@ void panel_memory(struct view_app *app)
 {
     if (!app->open[PANEL_MEMORY])
         return;
-    if (panel_begin(app, PANEL_MEMORY, "Memory (M)", 440, 420)) {
+    if (panel_begin(app, PANEL_MEMORY, "Memory (M)", 440, 460)) {
         const float cell = 12 * ui_scale();
         draw_sums(app);
         draw_buttons(app);
+        draw_colors(app);
         for (uint32_t heap = 0, drawn = 0; heap < 4096 && drawn < app->facts.now.heapCount; heap++)
-            drawn += draw_heap(app, heap, 32, cell);
+            drawn += draw_heap(app, heap, cell);
     }
     ui_end_panel();
 }

@@ -57,9 +57,10 @@ struct view_settings {
     uint32_t size[2];
     int full_screen;
     uint32_t frame_cap;
-    double ui_scale; ///< 0: the monitor's
-    int panels;      ///< 0: shown
-    int graph_span;  ///< enum history_span
+    double ui_scale;   ///< 0: the monitor's
+    int panels;        ///< 0: shown
+    int graph_span;    ///< enum history_span
+    int memory_colors; ///< enum memory_colors
 };
 
 #endif /* SLUICE_VIEW_SETTINGS_H */

@@ -4,7 +4,7 @@
 
 struct tile_log_texture {
     SluiceTextureId id;
-    uint32_t tile_count;
+    uint32_t tile_count, index;
     size_t first_tile;
 };
 
@@ -21,7 +21,7 @@ bool tile_log_create(const SluiceTextureId *ids, const uint32_t *tile_counts, ui
     *log = (struct tile_log){.texture_count = count};
     log->textures = calloc(count + 1u, sizeof *log->textures);
     for (uint32_t i = 0; log->textures && i < count; i++) {
-        log->textures[i] = (struct tile_log_texture){ids[i], tile_counts[i], tiles};
+        log->textures[i] = (struct tile_log_texture){ids[i], tile_counts[i], i, tiles};
         tiles += tile_counts[i];
     }
     log->tiles = calloc(tiles + 1, sizeof *log->tiles);
@@ -40,13 +40,25 @@ void tile_log_destroy(struct tile_log *log)
     *log = (struct tile_log){0};
 }
 
-static struct tile_log_tile *find(const struct tile_log *log, SluiceTextureId id, uint32_t tile)
+static const struct tile_log_texture *find_texture(const struct tile_log *log, SluiceTextureId id)
 {
     const struct tile_log_texture key = {.id = id};
-    if (log->texture_count == 0)
-        return NULL;
-    const struct tile_log_texture *found =
-        bsearch(&key, log->textures, log->texture_count, sizeof *log->textures, compare);
+    return log->texture_count == 0
+               ? NULL
+               : bsearch(&key, log->textures, log->texture_count, sizeof *log->textures, compare);
+}
+
+bool tile_log_index(const struct tile_log *log, SluiceTextureId id, uint32_t *index)
+{
+    const struct tile_log_texture *found = find_texture(log, id);
+    if (found)
+        *index = found->index;
+    return found;
+}
+
+static struct tile_log_tile *find(const struct tile_log *log, SluiceTextureId id, uint32_t tile)
+{
+    const struct tile_log_texture *found = find_texture(log, id);
     return found && tile < found->tile_count ? &log->tiles[found->first_tile + tile] : NULL;
 }
 

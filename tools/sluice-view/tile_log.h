@@ -39,6 +39,8 @@ void tile_log_take(struct tile_log *log, const SluiceTileEvent *event, uint64_t 
 /** NULL: unknown. */
 const struct tile_log_tile *tile_log_get(const struct tile_log *log, SluiceTextureId id,
                                          uint32_t tile);
+/** Writes which of the textures it is, as they were given. False: none. */
+bool tile_log_index(const struct tile_log *log, SluiceTextureId id, uint32_t *index);
 /** Frames that this part of all waits does not exceed. 0 with no wait. */
 uint32_t tile_log_wait(const struct tile_log *log, double part);
 

@@ -53,6 +53,7 @@ vec3 missingColor(uint missing)
     return missing == 1u ? vec3(240, 228, 66) / 255.0 : missing == 2u ? vec3(230, 159, 0) / 255.0 : vec3(213, 94, 0) / 255.0;
 }
 
+/* By the number of the image. memory_map.c has the same colors. */
 vec3 identityColor(uint index)
 {
     float hue = fract(float(index) * 0.61803399);
@@ -176,6 +177,14 @@ vec3 bordered(vec3 picture, vec3 color, Slot slot, Place at, float level)
     return onBorder(at.uv * at.size, (abs(at.dx) + abs(at.dy)) * at.size, tileSize) ? color : picture;
 }
 
+/* Edges of images with a side that is no power of two. */
+bool onOddEdge(Place at)
+{
+    uvec2 size = uvec2(at.size + 0.5);
+    vec2 away = abs(fract(at.uv + 0.5) - 0.5), perPixel = abs(at.dx) + abs(at.dy);
+    return any(notEqual(size & (size - 1u), uvec2(0u))) && any(lessThan(away, perPixel * 1.5));
+}
+
 /* Texels of level 0 per pixel, along the shorter side of the pixel's footprint. */
 float densityOf(Place at)
 {
@@ -219,7 +228,8 @@ vec3 show(vec3 picture, Slot slot, bool wrote)
     if (slot.tableIndex == NO_TEXTURE)
         return picture;
     if (push.view == VIEW_IDENTITY)
-        return cover(picture, identityColor(slot.tableIndex));
+        return onOddEdge(placeOf(slot)) ? vec3(1.0)
+                                        : cover(picture, identityColor(slot.flags >> SLOT_IMAGE_SHIFT));
     Place at = placeOf(slot);
     if (push.view == VIEW_AGE)
         return showAge(picture, slot, at);

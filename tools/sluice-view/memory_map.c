@@ -1,0 +1,92 @@
+#include "memory_map.h"
+
+#include "panels.h"
+
+#include <math.h>
+
+static SluiceStreamedTextureManager *manager_of(const struct stage *stage)
+{
+    SluiceStreamedTextureManager *manager = NULL;
+    sluiceGetVulkanStreamerManager(stage_streamer(stage), &manager);
+    return manager;
+}
+
+bool memory_slot_get(const struct stage *stage, const struct view_facts *facts, uint32_t heap,
+                     uint32_t slot, struct memory_slot *to)
+{
+    *to = (struct memory_slot){.age = -1};
+    if (sluiceGetSlotTile(manager_of(stage), heap, slot, &to->tile) != SLUICE_SUCCESS ||
+        to->tile.textureId == SLUICE_NO_TEXTURE ||
+        sluiceGetTileState(manager_of(stage), to->tile.textureId, to->tile.tileIndex, &to->state,
+                           NULL) != SLUICE_SUCCESS)
+        return false;
+    const struct tile_log_tile *log =
+        tile_log_get(&facts->log, to->tile.textureId, to->tile.tileIndex);
+    if (!log || !tile_log_index(&facts->log, to->tile.textureId, &to->texture))
+        return false;
+    to->loads = log->loads;
+    if (log->loads > 0)
+        to->age = (double)(stage_now(stage) - log->loaded_time) / STAGE_TICKS_PER_SECOND;
+    return true;
+}
+
+uint32_t memory_state_color(SluiceTileState state)
+{
+    switch (state) {
+    case SLUICE_TILE_STATE_MAPPED: return UI_COLOR(86, 180, 233, 255);
+    case SLUICE_TILE_STATE_STANDBY: return UI_COLOR(0, 120, 90, 255);
+    case SLUICE_TILE_STATE_ALLOCATED: return UI_COLOR(240, 228, 66, 255);
+    case SLUICE_TILE_STATE_CANCELED: return UI_COLOR(204, 121, 167, 255);
+    default: return UI_GRAY;
+    }
+}
+
+/* As ageColor of shaders/scene_marks.glsl. */
+uint32_t memory_age_color(double seconds)
+{
+    return seconds < 0      ? UI_GRAY
+           : seconds < 0.5  ? UI_COLOR(253, 231, 37, 255)
+           : seconds < 2.0  ? UI_COLOR(122, 209, 81, 255)
+           : seconds < 10.0 ? UI_COLOR(34, 168, 132, 255)
+           : seconds < 60.0 ? UI_COLOR(42, 120, 142, 255)
+                            : UI_COLOR(65, 68, 135, 255);
+}
+
+/* As identityColor of shaders/scene.frag. */
+uint32_t memory_texture_color(const struct stage *stage, uint32_t texture)
+{
+    static const double offsets[3] = {0.0, 0.33, 0.67};
+    const uint32_t primary = stage_texture(stage, texture)->primary;
+    const bool follows = primary != STAGE_NO_TEXTURE;
+    const double hue = (follows ? primary : texture) * 0.61803399;
+    const double bright = follows ? 0.6 : 1.0;
+    uint32_t channels[3];
+    for (int i = 0; i < 3; i++)
+        channels[i] =
+            (uint32_t)(255.0 * bright * (0.55 + 0.4 * cos(6.2831853 * (hue + offsets[i]))));
+    return UI_COLOR(channels[0], channels[1], channels[2], 255);
+}
+
+uint32_t memory_slot_color(const struct stage *stage, const struct memory_slot *slot,
+                           enum memory_colors colors)
+{
+    switch (colors) {
+    case MEMORY_BY_TEXTURE: return memory_texture_color(stage, slot->texture);
+    case MEMORY_BY_LEVEL: return panel_level_color(slot->tile.mipLevel);
+    case MEMORY_BY_AGE: return memory_age_color(slot->age);
+    default: return memory_state_color(slot->state);
+    }
+}
+
+struct memory_sums memory_sums_of(const struct stage *stage)
+{
+    SluiceStreamedTextureStatistics now = {.structSize = sizeof now};
+    struct memory_sums sums = {0};
+    if (sluiceGetStatistics(manager_of(stage), &now) != SLUICE_SUCCESS || now.heapCount == 0)
+        return sums;
+    sums.heaps = now.heapCount;
+    sums.used = now.heapCount * STAGE_HEAP_TILES - now.freeSlotCount - now.retiringSlotCount;
+    sums.spare_heaps = sums.heaps - (sums.used + STAGE_HEAP_TILES - 1) / STAGE_HEAP_TILES;
+    sums.fragmentation = (double)sums.spare_heaps / sums.heaps;
+    return sums;
+}
