@@ -43,7 +43,8 @@ static bool create_loader(struct device *d)
         .device = d->gpu.device,
         .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
         .log = {.pfnLog = log_say},
-        .loaderThreadCount = o->threads,
+        .loaderThreadCount = d->shared->pool ? 0 : o->threads,
+        .readPool = d->shared->pool,
     };
     SluiceDemandLoaderCreateInfo info = {
         .structSize = sizeof info,

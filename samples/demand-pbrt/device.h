@@ -10,7 +10,8 @@ struct shared {
     struct scene scene; ///< constant once it is open
     struct mesh_cache *meshes;
     struct picture_files pictures;
-    uint32_t size[2]; ///< of the picture, pixels
+    SluiceReadPool *pool; ///< NULL: each device reads for itself
+    uint32_t size[2];     ///< of the picture, pixels
 };
 
 /** Zeroed is empty. */

@@ -149,7 +149,9 @@ static bool open_device(void *user_data, uint32_t index)
 static bool open_all(struct renderer *r)
 {
     const uint32_t *size = r->shared.size;
-    if (!open_scene(r) || !create_devices(r) || !create_pictures(r))
+    const struct pbrt_options *o = &r->options;
+    if (!open_scene(r) || !create_devices(r) || !create_pictures(r) ||
+        !read_sharing_create(o->read_sharing, r->device_count, o->threads, &r->shared.pool))
         return false;
     r->shared.meshes = mesh_cache_create(&r->shared.scene, r->device_count);
     const bool done = r->shared.meshes && crew_run(r->device_count, open_device, r);
@@ -163,6 +165,7 @@ static void close_all(struct renderer *r)
     flight_finish(&r->flight);
     for (uint32_t i = r->device_count; i-- > 0;)
         device_destroy(&r->devices[i]);
+    sluiceDestroyReadPool(r->shared.pool);
     mesh_cache_destroy(r->shared.meshes);
     picture_files_finish(&r->shared.pictures);
     picture_destroy(&r->picture);

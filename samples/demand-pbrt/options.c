@@ -206,6 +206,8 @@ enum option_outcome pbrt_options_parse(int argc, char **argv, struct pbrt_option
         option_device(&o->device),
         option_devices(&o->devices),
         {OPTION_CHOICE, "split", SPLIT_WORDS, "frame", &o->split, SPLIT_HELP},
+        {OPTION_CHOICE, "read-pool", READ_SHARING_WORDS, "auto", &o->read_sharing,
+         READ_SHARING_HELP},
         option_list_devices(&o->list_devices),
         option_validation(&o->validation),
 

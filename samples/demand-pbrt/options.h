@@ -5,6 +5,7 @@
 #include "../../tools/common/device_list.h"
 #include "../../tools/common/option_table.h"
 #include "../common/frame_range.h"
+#include "../common/read_sharing.h"
 #include "../common/split.h"
 #include "camera_path.h"
 
@@ -22,6 +23,7 @@ struct pbrt_options {
     const char *device;
     struct device_list devices;
     int split;                   ///< enum split
+    int read_sharing;            ///< enum read_sharing
     struct frame_range pictures; ///< of the animation, from 1 on; not given: all
     uint32_t animation;          ///< pictures; 0: one, which is no animation
     uint32_t dim[2];             ///< 0: as the film

@@ -198,6 +198,11 @@ static void print_device(const struct device *d, const struct device_figure *lis
     summary_print_figure(&(struct figure){name, "s", d->busy_seconds}, json);
 }
 
+static void print_pool_figure(const char *name, const char *unit, double value, bool json)
+{
+    summary_print_figure(&(struct figure){name, unit, value}, json);
+}
+
 bool summary_print(const struct summary *s, bool json)
 {
     struct device_figure sum[MOST_FIGURES], list[MOST_FIGURES];
@@ -213,6 +218,7 @@ bool summary_print(const struct summary *s, bool json)
     if (count == 0)
         return false;
     print_rates(s, json);
+    read_sharing_print(s->devices[0].shared->pool, print_pool_figure, json);
     for (uint32_t i = 0; i < s->device_count && s->device_count > 1; i++) {
         if (list_figures(&s->devices[i], list) == 0)
             return false;

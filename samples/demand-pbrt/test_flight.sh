@@ -88,6 +88,12 @@ for i in 0 1 2; do
     check "device_${i}_tiles_loaded" 'v > 0'
     check "device_${i}_peak_device_bytes" 'v > 0'
 done
+reads=$(value pool_reads)
+others=$(($(value pool_joined) + $(value pool_from_cache)))
+render reader --devices 0, --read-pool on
+check pool_reads "v == $reads"
+[ "$others" -gt 0 ] || complain "three: no device took a tile that another had read"
+render each --devices 0,0,0 --read-pool off
 render walls --devices 0,0,0 --budget 64K # evicted meshes are read again
 check geometries_evicted 'v > 0'
 

@@ -34,7 +34,8 @@ static bool create_loader(struct device *d)
         .device = d->gpu.device,
         .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
         .log = {.pfnLog = log_say},
-        .loaderThreadCount = o->threads,
+        .loaderThreadCount = d->pool ? 0 : o->threads,
+        .readPool = d->pool,
     };
     SluiceDemandLoaderCreateInfo info = {
         .structSize = sizeof info,

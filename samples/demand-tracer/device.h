@@ -13,6 +13,7 @@ struct device {
     uint32_t index;
     struct gpu gpu;
     bool unsupported;
+    SluiceReadPool *pool; ///< of all devices; NULL: it reads for itself
     SluiceVulkanContext *context;
     SluiceDemandLoader *loader;
     SluiceDemandTextureId *ids; ///< owned; of the textures

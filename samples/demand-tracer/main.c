@@ -30,6 +30,7 @@ struct tracer {
     struct tracer_options options;
     struct scene scene;
     struct textures textures;
+    SluiceReadPool *pool;   ///< NULL: each device reads for itself
     struct device *devices; ///< owned
     uint32_t device_count;
     bool unsupported;
@@ -114,6 +115,7 @@ static bool open_device(void *user_data, uint32_t index)
     struct tracer *t = user_data;
     const bool splits = t->options.split == SPLIT_FRAME && t->device_count > 1;
     const struct film_share share = {index, t->device_count};
+    t->devices[index].pool = t->pool;
     return device_open(&t->devices[index], &t->scene, &t->textures,
                        splits ? share : (struct film_share){0});
 }
@@ -123,7 +125,8 @@ static bool open_all(struct tracer *t)
     const struct tracer_options *o = &t->options;
     if (!can_write_outputs(o) || !scene_build(o->seed, o->texture_count, &t->scene) ||
         !textures_create(o, &t->textures) || !check_outputs(o, output_spares_inputs) ||
-        !create_devices(t))
+        !create_devices(t) ||
+        !read_sharing_create(o->read_sharing, t->device_count, o->threads, &t->pool))
         return false;
     const bool done = crew_run(t->device_count, open_device, t);
     for (uint32_t i = 0; i < t->device_count; i++)
@@ -135,6 +138,7 @@ static void close_all(struct tracer *t)
 {
     for (uint32_t i = t->device_count; i-- > 0;)
         device_destroy(&t->devices[i]);
+    sluiceDestroyReadPool(t->pool);
     textures_finish(&t->textures);
     picture_destroy(&t->picture);
     contact_sheet_finish(&t->sheet);
@@ -303,6 +307,7 @@ static bool print_summary(struct tracer *t)
     struct summary summary = {.devices = t->devices,
                               .device_count = t->device_count,
                               .textures = &t->textures,
+                              .pool = t->pool,
                               .start = t->start,
                               .difference = {NAN, NAN, NAN},
                               .needed_tiles = NAN};

@@ -110,6 +110,8 @@ enum option_outcome tracer_options_parse(int argc, char **argv, struct tracer_op
         option_device(&o->device),
         option_devices(&o->devices),
         {OPTION_CHOICE, "split", SPLIT_WORDS, "frame", &o->split, SPLIT_HELP},
+        {OPTION_CHOICE, "read-pool", READ_SHARING_WORDS, "auto", &o->read_sharing,
+         READ_SHARING_HELP},
         option_list_devices(&o->list_devices),
         option_validation(&o->validation),
 

@@ -4,6 +4,7 @@
 
 #include "../../tools/common/device_list.h"
 #include "../../tools/common/option_table.h"
+#include "../common/read_sharing.h"
 #include "../common/split.h"
 #include "scene.h"
 
@@ -29,6 +30,7 @@ struct tracer_options {
     const char *device;
     struct device_list devices;
     int split;          ///< enum split
+    int read_sharing;   ///< enum read_sharing
     uint32_t animation; ///< pictures; 0: one, which is no animation
 };
 

@@ -182,6 +182,11 @@ static void print_totals(const struct summary *s, const struct totals *t, bool j
         print_figure(&figures[i], json);
 }
 
+static void print_pool_figure(const char *name, const char *unit, double value, bool json)
+{
+    print_figure(&(struct figure){name, unit, value}, json);
+}
+
 bool summary_print(const struct summary *s, bool json)
 {
     struct totals totals = {.complete = INFINITY, .first_end = INFINITY};
@@ -190,6 +195,8 @@ bool summary_print(const struct summary *s, bool json)
         done = add_device(&s->devices[i], &totals);
     if (done)
         print_totals(s, &totals, json);
+    if (done)
+        read_sharing_print(s->pool, print_pool_figure, json);
     for (uint32_t i = 0; i < s->device_count && s->device_count > 1 && done; i++)
         done = print_device(&s->devices[i], json);
     return done;

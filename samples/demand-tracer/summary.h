@@ -8,6 +8,7 @@ struct summary {
     const struct device *devices;
     uint32_t device_count;
     const struct textures *textures;
+    SluiceReadPool *pool;                 ///< NULL: there is none
     double start;                         ///< of the first launch, s
     struct picture_difference difference; ///< NANs: nothing was compared
     double needed_tiles;                  ///< of all devices; NAN: not counted

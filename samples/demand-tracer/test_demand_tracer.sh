@@ -35,6 +35,7 @@ refuse --devices 0,x
 refuse --devices 0,0 --device 0
 refuse --split alternate
 refuse --split rows
+refuse --read-pool perhaps
 refuse --devices 0,0 --contact-sheet "$folder/refused/sheet.png"
 refuse --animation 2 --reference "$folder/refused.png"
 [ ! -e "$folder/refused" ] || { echo "something was written" >&2; failed=1; }
@@ -177,6 +178,24 @@ for i in 0 1 2; do
     check three "device_${i}_tiles_loaded" "v + 0 > 0 && v + 0 < $(value three loaded_bytes) / 65536"
     check three "device_${i}_device_memory" 'v + 0 > 0'
 done
+
+# Whoever asks for a tile first reads it for all. One device reads as much as three.
+trace reader --devices 0, --read-pool on
+succeeds
+same reader picture first/picture
+check three pool_reads "v + 0 == $(value reader pool_reads)"
+check three pool_bytes_read "v + 0 == $(value reader pool_bytes_read) && v + 0 == $(value first bytes_read)"
+trace all $validation --preload --devices 0,0,0
+succeeds
+check all pool_bytes_read "v + 0 == $(value all bytes_read) / 3 && v > 3 * $(value three pool_bytes_read)"
+awk -v read="$(value all pool_reads)" -v joined="$(value all pool_joined)" -v kept="$(value all pool_from_cache)" \
+    'BEGIN { exit !(joined + kept == 2 * read) }' || { echo "three devices read a tile twice" >&2; failed=1; }
+trace each --devices 0,0,0 --read-pool off
+succeeds
+same each picture first/picture
+check each bytes_read "v + 0 > 1.5 * $(value first bytes_read)"
+[ -z "$(value each pool_reads)" ] || { echo "there is a pool although off" >&2; failed=1; }
+
 trace counted --devices 1 # a count
 succeeds
 same counted picture first/picture
