@@ -72,6 +72,13 @@ static int end(void **state)
     return 0;
 }
 
+static SluiceStreamedTextureManager *manager(void)
+{
+    SluiceStreamedTextureManager *it = NULL;
+    sluiceGetVulkanStreamerManager(stage_streamer(show->stage), &it);
+    return it;
+}
+
 /* Draws a frame with the mouse at a place; returns its pixels. */
 static const uint8_t *draw(float x, float y)
 {
@@ -138,6 +145,22 @@ static uint32_t at_most_7(double level)
     return level < 0 ? 0 : level > 7 ? 7 : (uint32_t)level;
 }
 
+/* The tile of the level that is resident covers the texel, is resident and was loaded. */
+static void check_tile(const struct view_probe *probe)
+{
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    CHECK_OK(
+        sluiceGetTextureLayout(manager(), stage_texture(show->stage, probe->texture)->id, &layout));
+    assert_true(probe->state == SLUICE_TILE_STATE_MAPPED ||
+                probe->state == SLUICE_TILE_STATE_STANDBY);
+    assert_true(probe->loads > 0 && probe->age >= 0 && probe->failures == 0);
+    if (probe->resident >= layout.desc.regularMipCount)
+        return;
+    assert_int_equal(probe->tile.mipLevel, probe->resident);
+    assert_int_equal(probe->tile.x, (probe->texel[0] >> probe->resident) / layout.desc.tileWidth);
+    assert_int_equal(probe->tile.y, (probe->texel[1] >> probe->resident) / layout.desc.tileHeight);
+}
+
 /* Whether the level that the legend would show at each of many places is that of the color there.
  * Places on the border of two levels may differ. */
 static void check_levels(uint32_t view, uint32_t places[8])
@@ -158,6 +181,7 @@ static void check_levels(uint32_t view, uint32_t places[8])
             const uint32_t is = level_of_color(pixels + 4 * (y * WIDTH + x));
             const uint32_t shown =
                 at_most_7(view == VIEW_WANTED ? app->probe.camera_level : app->probe.resident);
+            check_tile(&app->probe);
             places[shown]++;
             known++;
             equal += is == shown;
@@ -179,13 +203,6 @@ static void levels_under_the_mouse_are_those_of_the_colors(void **state)
     for (int level = 0; level < 8; level++)
         kinds += wanted[level] > 0;
     assert_true(kinds >= 3); /* the room has near and far pictures */
-}
-
-static SluiceStreamedTextureManager *manager(void)
-{
-    SluiceStreamedTextureManager *it = NULL;
-    sluiceGetVulkanStreamerManager(stage_streamer(show->stage), &it);
-    return it;
 }
 
 /* Walks over all tiles of a texture. */

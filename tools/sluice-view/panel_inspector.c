@@ -1,17 +1,11 @@
 #include "panels.h"
 
+#include "inspector_parts.h"
 #include "texture_actions.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static SluiceStreamedTextureManager *manager_of(const struct view_app *app)
-{
-    SluiceStreamedTextureManager *manager = NULL;
-    sluiceGetVulkanStreamerManager(stage_streamer(app->stage), &manager);
-    return manager;
-}
 
 /* The texel that was inspected, as a rectangle of level 0. */
 static SluiceTextureRect rect_of(const struct view_app *app, const struct stage_texture *texture)
@@ -50,47 +44,19 @@ static void draw_reason(const struct view_app *app, const struct stage_texture *
                  without_path(why.sentence, texture));
 }
 
-/* A map of a texture, a square per tile of level 0 or several of them. */
-static void draw_map(const char *title, const uint8_t *map,
-                     const SluiceStreamedTextureLayout *layout, float width)
+/* Of the file, if reads of it failed. */
+static void draw_failure(const struct view_app *app, const struct stage_texture *texture)
 {
-    float r[4];
-    const uint32_t columns = layout->minMipWidth, rows = layout->minMipHeight;
-    const uint32_t step = 1 + (columns > rows ? columns : rows) / 64;
-    const float cell = width / (float)(columns > rows ? columns : rows);
-    ui_canvas(width, (float)rows * cell + ui_line_height(), r);
-    ui_label(r[0], r[1], UI_GRAY, title);
-    r[1] += ui_line_height();
-    ui_fill(r[0], r[1], (float)columns * cell, (float)rows * cell, UI_COLOR(30, 34, 40, 255));
-    for (uint32_t y = 0; y < rows; y += step)
-        for (uint32_t x = 0; x < columns; x += step) {
-            const uint8_t level = map[(size_t)y * columns + x];
-            if (level != SLUICE_MIP_UNTOUCHED)
-                ui_fill(r[0] + (float)x * cell, r[1] + (float)y * cell, cell * (float)step,
-                        cell * (float)step, panel_level_color(level));
-        }
-}
-
-static void draw_maps(const struct view_app *app, const struct stage_texture *texture)
-{
-    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    if (sluiceGetTextureLayout(manager_of(app), texture->id, &layout) != SLUICE_SUCCESS)
+    const SluiceTileLoaderStatistics *reads = &app->facts.textures[app->selected].reads;
+    char where[48] = "";
+    if (reads->failedCount == 0)
         return;
-    const size_t size = (size_t)layout.minMipWidth * layout.minMipHeight;
-    uint8_t *maps = malloc(2 * size);
-    const float width = 130 * ui_scale();
-    if (maps &&
-        sluiceWriteMinMipData(manager_of(app), texture->id, layout.minMipWidth, size, maps) ==
-            SLUICE_SUCCESS &&
-        sluiceWriteRequestedLevels(manager_of(app), texture->id, layout.minMipWidth, size,
-                                   maps + size) == SLUICE_SUCCESS) {
-        draw_map("resident", maps, &layout, width);
-        ui_hint("A square per tile of level 0: the finest level that is resident. Red: level 0.");
-        ui_same_line(0);
-        draw_map("wanted", maps + size, &layout, width);
-        ui_hint("A square per tile of level 0: the finest level that is requested. Dark: none.");
-    }
-    free(maps);
+    if (reads->lastFailureOffset != SLUICE_UNKNOWN_OFFSET)
+        snprintf(where, sizeof where, " at offset 0x%llx",
+                 (unsigned long long)reads->lastFailureOffset);
+    ui_text(UI_RED, "%llu reads failed: %s%s", (unsigned long long)reads->failedCount,
+            sluiceGetResultName(reads->lastFailure), where);
+    ui_hint("The last failure. %s", texture->path[0] ? texture->path : texture->name);
 }
 
 static void draw_buttons(struct view_app *app)
@@ -130,8 +96,11 @@ void panel_inspector(struct view_app *app)
                     panel_size(texture->size, all, sizeof all), s->wantedTileCount);
             ui_text(UI_GRAY, "%u loads, %u evictions, %u failures", s->mappedTotal,
                     s->unmappedTotal, s->failedTotal);
-            draw_maps(app, texture);
+            draw_failure(app, texture);
+            inspector_draw_tile(app, app->selected);
             draw_buttons(app);
+            inspector_draw_levels(app, app->selected);
+            inspector_draw_maps(app, app->selected);
             if (texture->path[0])
                 ui_paragraph(UI_GRAY, texture->path);
         }

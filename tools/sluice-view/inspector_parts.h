@@ -1,0 +1,15 @@
+/** Parts of the inspector: the levels of a texture, and one of its tiles. */
+#ifndef SLUICE_VIEW_INSPECTOR_PARTS_H
+#define SLUICE_VIEW_INSPECTOR_PARTS_H
+
+#include "panels.h"
+
+/** All levels side by side, a square per tile, with holes where nothing is resident. */
+void inspector_draw_levels(struct view_app *app, uint32_t texture);
+/** Resident and wanted levels, missing ones, and how often tiles were loaded: maps of squares per
+ *  tile of level 0. */
+void inspector_draw_maps(const struct view_app *app, uint32_t texture);
+/** The tile at the point that was inspected, if it is of this texture. */
+void inspector_draw_tile(const struct view_app *app, uint32_t texture);
+
+#endif /* SLUICE_VIEW_INSPECTOR_PARTS_H */
