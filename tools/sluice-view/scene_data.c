@@ -1,5 +1,7 @@
 #include "scene_data.h"
 
+#include "scene_pbrt.h"
+
 #include "../common/text.h"
 
 #include <float.h>
@@ -35,6 +37,7 @@ void scene_data_finish(struct scene_data *scene)
         free(scene->images[i].path);
     }
     sluiceDestroyImageOpener(scene->opener);
+    scene_pbrt_close(scene->pbrt);
     remote_end(&scene->remote);
     free(scene->name);
     free(scene->vertices);

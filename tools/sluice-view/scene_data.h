@@ -16,6 +16,8 @@
 
 #define SCENE_MAX_MESSAGES 64u
 
+struct scene_pbrt;
+
 struct scene_vertex {
     float position[3], normal[3], uv[2][2];
 };
@@ -64,6 +66,7 @@ struct scene_data {
     void *paints;                    ///< of computed images
     SluiceImageOpener *opener;       ///< owned; of images from files
     struct remote_session remote;    ///< owned; of images from servers
+    struct scene_pbrt *pbrt;         ///< owned; the scene is traced, and has no triangles here
     struct scene_progress *progress; ///< borrowed while the scene is opened; NULL: none
 };
 

@@ -1,0 +1,122 @@
+#include "scene_pbrt.h"
+
+#include "../../samples/streaming/cache.h"
+#include "../common/files.h"
+#include "../common/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CLUSTER_SIZE 1024u /* as demand-pbrt has it */
+#define MAX_DEPTH 64u
+
+bool scene_pbrt_takes(const char *path)
+{
+    return files_has_suffix(path, ".pbrt|.pbrt.gz");
+}
+
+static const char *end_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash && slash[1] ? slash + 1 : path;
+}
+
+static void add_picture(struct scene_pbrt *p, const char *path)
+{
+    for (uint32_t i = 0; path && i < p->picture_count; i++)
+        if (strcmp(p->pictures[i].path, path) == 0)
+            return;
+    if (path)
+        p->pictures[p->picture_count++] = (struct scene_pbrt_picture){path, end_of(path)};
+}
+
+static bool list_pictures(struct scene_pbrt *p)
+{
+    const SluicePbrtSceneInfo *info = &p->scene.info;
+    p->pictures = calloc(info->textureCount + info->lightCount + 1u, sizeof *p->pictures);
+    for (uint32_t i = 0; p->pictures && i < info->textureCount; i++)
+        add_picture(p, scene_texture(&p->scene, i).pImagePath);
+    for (uint32_t i = 0; p->pictures && i < info->lightCount; i++)
+        add_picture(p, scene_light(&p->scene, i).pImagePath);
+    if (!p->pictures)
+        text_say("sluice-view: out of memory");
+    return p->pictures;
+}
+
+/* Of the shorter side is the scene's; the viewer's is vertical, and only draws lines with it. */
+static float vertical_fov(const SluicePbrtSceneInfo *info)
+{
+    const float fov = info->fieldOfView * 3.14159265f / 180.0f;
+    return info->cameraKind == SLUICE_PBRT_CAMERA_PERSPECTIVE && fov > 0.02f && fov < 3.0f ? fov
+                                                                                           : 0.9f;
+}
+
+static void describe(struct scene_data *scene, const struct scene_pbrt *p)
+{
+    const SluicePbrtBounds *box = &p->scene.box;
+    if (scene_box_is_empty(box)) {
+        scene->camera = p->frame.camera;
+        return;
+    }
+    const struct vec3 a = pbrt_frame_position(&p->frame, box->least);
+    const struct vec3 b = pbrt_frame_position(&p->frame, box->most);
+    scene->bounds[0] = (struct vec3){fminf(a.x, b.x), fminf(a.y, b.y), fminf(a.z, b.z)};
+    scene->bounds[1] = (struct vec3){fmaxf(a.x, b.x), fmaxf(a.y, b.y), fmaxf(a.z, b.z)};
+    scene->camera = p->frame.camera;
+}
+
+bool scene_pbrt_open(const char *path, const char *cache, struct scene_data *scene)
+{
+    struct scene_pbrt *p = calloc(1, sizeof *p);
+    const char *name = end_of(path);
+    scene->pbrt = p;
+    scene->name = malloc(strlen(name) + 1);
+    if (!p || !scene->name) {
+        text_say("sluice-view: out of memory");
+        return false;
+    }
+    strcpy(scene->name, name);
+    if (!cache_path(cache, "pictures", p->cache, sizeof p->cache) ||
+        !files_make_folders(p->cache) || !scene_open(path, NULL, &p->scene) ||
+        !scene_cluster(&p->scene, CLUSTER_SIZE) || !list_pictures(p))
+        return false;
+    pbrt_frame_init(p->scene.info.cameraToWorld, &p->scene.box, vertical_fov(&p->scene.info),
+                    &p->frame);
+    describe(scene, p);
+    return true;
+}
+
+void scene_pbrt_close(struct scene_pbrt *p)
+{
+    if (!p)
+        return;
+    free(p->pictures);
+    scene_finish(&p->scene);
+    free(p);
+}
+
+static uint32_t find_picture(const struct scene_pbrt *p, const char *path)
+{
+    for (uint32_t i = 0; path && i < p->picture_count; i++)
+        if (strcmp(p->pictures[i].path, path) == 0)
+            return i;
+    return UINT32_MAX;
+}
+
+static uint32_t picture_of(const struct scene_pbrt *p, const SluicePbrtValue *value, uint32_t depth)
+{
+    if (value->texture == SLUICE_PBRT_NONE || depth > MAX_DEPTH)
+        return UINT32_MAX;
+    const SluicePbrtTexture texture = scene_texture(&p->scene, value->texture);
+    uint32_t found = find_picture(p, texture.pImagePath);
+    for (int i = 0; i < 2 && found == UINT32_MAX; i++)
+        found = picture_of(p, &texture.inputs[i], depth + 1);
+    return found;
+}
+
+uint32_t scene_pbrt_picture_of(const struct scene_pbrt *p, const SluicePbrtValue *value)
+{
+    return picture_of(p, value, 0);
+}

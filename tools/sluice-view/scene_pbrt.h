@@ -1,0 +1,33 @@
+/** Scenes of pbrt: the part of a scene that needs no device. */
+#ifndef SLUICE_VIEW_SCENE_PBRT_H
+#define SLUICE_VIEW_SCENE_PBRT_H
+
+#include "pbrt_frame.h"
+#include "scene_data.h"
+
+#include "../../samples/demand-pbrt/scene.h"
+
+/** A picture file that textures and skies name. */
+struct scene_pbrt_picture {
+    const char *path; ///< of the scene
+    const char *name; ///< its end
+};
+
+struct scene_pbrt {
+    struct scene scene;
+    struct pbrt_frame frame;
+    char cache[4096];                    ///< folder for baked pictures
+    struct scene_pbrt_picture *pictures; ///< owned
+    uint32_t picture_count;
+};
+
+bool scene_pbrt_takes(const char *path);
+/** Reads the text, and the boxes of all shapes; no picture. Sets name, camera and bounds of the
+ *  scene. Says on stderr why it failed: file, line and cause. */
+bool scene_pbrt_open(const char *path, const char *cache, struct scene_data *scene);
+/** NULL is allowed. */
+void scene_pbrt_close(struct scene_pbrt *pbrt);
+/** The first picture in a value, or UINT32_MAX. */
+uint32_t scene_pbrt_picture_of(const struct scene_pbrt *pbrt, const SluicePbrtValue *value);
+
+#endif /* SLUICE_VIEW_SCENE_PBRT_H */
