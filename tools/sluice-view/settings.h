@@ -9,6 +9,7 @@ enum view_residency { VIEW_AUTO, VIEW_SPARSE, VIEW_PAGED, VIEW_DENSE };
 enum view_feedback { VIEW_FEEDBACK_ON, VIEW_FEEDBACK_OFF };
 enum view_motion { VIEW_WALK, VIEW_FLY, VIEW_ORBIT };
 enum view_compare { VIEW_COMPARE_OFF, VIEW_DIVIDER, VIEW_DIFFERENCE, VIEW_FLICKER };
+enum view_render_mode { VIEW_PRIMARY, VIEW_NEAR, VIEW_DISTANT, VIEW_PATHS }; ///< PBRT_MODE_...
 enum view_compared { VIEW_WITH_EVERYTHING, VIEW_WITH_BUDGET };
 enum view_difference { VIEW_BOTH_DIFFERENCES, VIEW_PIXELS, VIEW_FLIP };
 
@@ -41,6 +42,11 @@ struct view_settings {
     double source_latency, source_bandwidth; ///< milliseconds, MB/s
     uint32_t source_fails;                   ///< reads of one region in so many fail; 0: none
     int pause, freeze_wants;
+
+    /* Of scenes of pbrt. */
+    int render_mode; ///< enum view_render_mode
+    uint32_t most_samples, depth;
+    double exposure; ///< stops
 
     uint32_t view; ///< enum view_number
     double render_scale;
