@@ -15,6 +15,7 @@
 
 struct stage;
 struct scene_data;
+struct traced;
 
 struct stage_texture {
     SluiceTextureId id;
@@ -64,6 +65,7 @@ struct stage_request {
     const struct gpu *gpu;
     uint32_t threads;
     bool everything; ///< all tiles are resident, whatever is seen
+    bool waits;      ///< frames wait for all that they asked for, so that each run is the same
 };
 
 /** Takes the scene, which is empty afterwards. Says on stderr what failed. */
@@ -85,7 +87,10 @@ uint32_t stage_baking_count(const struct stage *stage);
 /** Part of all tiles that is resident. */
 double stage_resident_part(const struct stage *stage);
 const char *stage_name(const struct stage *stage);
+/** NULL for scenes that are traced. */
 SluiceVulkanStreamer *stage_streamer(const struct stage *stage);
+/** The scene of pbrt, whose rays ask a demand loader; NULL for others. */
+struct traced *stage_traced(const struct stage *stage);
 SluiceVulkanContext *stage_context(const struct stage *stage);
 /** What the scene lacks: images that are missing, extensions that are not supported. */
 uint32_t stage_message_count(const struct stage *stage);
