@@ -1,5 +1,7 @@
 #include "facts.h"
 
+#include "traced.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,7 +61,7 @@ bool facts_create(struct view_facts *f, const struct stage *stage)
     *f = (struct view_facts){.texture_count = stage_texture_count(stage)};
     f->textures = calloc(f->texture_count + 1, sizeof *f->textures);
     f->events = calloc(FACTS_EVENTS, sizeof *f->events);
-    for (uint32_t i = 0; i < f->texture_count; i++) {
+    for (uint32_t i = 0; !stage_traced(stage) && i < f->texture_count; i++) {
         SluiceStreamedTextureLayout layout;
         size_t size = map_size_of(manager_of(stage), stage_texture(stage, i)->id, &layout);
         f->tails_size += (uint64_t)layout.desc.packedTileCount * TILE_SIZE;
@@ -203,25 +205,34 @@ static void remember(struct view_facts *f, double seconds)
     history_add(&f->history, took, f->latest);
 }
 
-void facts_update(struct view_facts *f, const struct stage *stage,
-                  const struct view_settings *settings, double seconds)
+static void look_at_streamer(struct view_facts *f, const struct stage *stage,
+                             const struct view_settings *settings)
 {
     f->before = f->now;
     f->now = (SluiceVulkanStreamerStatistics){.structSize = sizeof f->now};
-    f->context = (SluiceVulkanContextStatistics){.structSize = sizeof f->context};
     f->stages = (SluiceVulkanLoadStages){.structSize = sizeof f->stages};
     sluiceGetVulkanStreamerStatistics(stage_streamer(stage), &f->now);
-    sluiceGetVulkanContextStatistics(stage_context(stage), &f->context);
     sluiceGetVulkanLoadStages(stage_streamer(stage), &f->stages);
     if (f->frame == 0)
         f->before = f->now;
-    f->budget = settings->budget;
     f->standby_size = (uint64_t)f->now.standbyTileCount * TILE_SIZE;
     f->memory_size = f->now.tileMemorySize;
     sum_textures(f, stage);
     look_at_maps(f, stage);
     look_at_reads(f, stage);
     read_events(f, manager_of(stage), (uint64_t)(settings->timeout * STAGE_TICKS_PER_SECOND));
+}
+
+void facts_update(struct view_facts *f, const struct stage *stage,
+                  const struct view_settings *settings, double seconds)
+{
+    f->budget = settings->budget;
+    f->context = (SluiceVulkanContextStatistics){.structSize = sizeof f->context};
+    sluiceGetVulkanContextStatistics(stage_context(stage), &f->context);
+    if (stage_traced(stage))
+        traced_facts_update(stage_traced(stage), f);
+    else
+        look_at_streamer(f, stage, settings);
     f->seconds += seconds;
     f->frame_seconds = f->frame == 0 ? seconds : f->frame_seconds * 0.9 + seconds * 0.1;
     remember(f, seconds);

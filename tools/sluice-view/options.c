@@ -9,8 +9,9 @@
 
 static const char usage[] =
     "usage: sluice-view [OPTION ...] [SCENE | PICTURE ... | FOLDER ... | URL ...]\n\n"
-    "Shows a scene whose textures are streamed, and why they look as they do. SCENE is a glTF\n"
-    "or OBJ file; without one, a hall that comes with this program. Pictures, those of folders, "
+    "Shows a scene whose textures are streamed, and why they look as they do. SCENE is a glTF,\n"
+    "OBJ or pbrt file; without one, a hall that comes with this program. Pictures, those of "
+    "folders, "
     "of\n"
     "URLs (http, https, s3: give 32 --threads then) and of catalogues (sluice-bake --merge) hang "
     "in\n"

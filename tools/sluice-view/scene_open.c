@@ -1,9 +1,9 @@
 #include "scene_open.h"
 
 #include "scene_import.h"
+#include "scene_pbrt.h"
 #include "scene_pictures.h"
 
-#include "../common/files.h"
 #include "../common/text.h"
 
 bool scene_open_takes(const char *const *paths, uint32_t count)
@@ -22,10 +22,8 @@ static bool open_any(const struct scene_request *r, struct scene_data *scene)
         return scene_data_make_room(scene);
     if (!scene_open_takes(r->paths, r->path_count))
         return false;
-    if (files_has_suffix(r->paths[0], ".pbrt|.pbrt.gz")) {
-        text_say("sluice-view: %s: scenes of pbrt are shown by demand-pbrt", r->paths[0]);
-        return false;
-    }
+    if (scene_pbrt_takes(r->paths[0]))
+        return scene_pbrt_open(r->paths[0], r->cache, scene);
     if (scene_pictures_takes(r->paths[0]))
         return scene_pictures(r->paths, r->path_count, r->cache, r->wait, scene);
     return scene_import(r->paths[0], r->cache, r->wait, scene);

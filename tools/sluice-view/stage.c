@@ -5,6 +5,7 @@
 #include "scene_images.h"
 #include "stage_draw.h"
 #include "stage_pick.h"
+#include "traced.h"
 
 #include "../../samples/common/slow_source.h"
 #include "../common/log.h"
@@ -22,6 +23,7 @@ struct stage {
     const struct gpu *gpu;
     struct scene_data scene;
     struct view_settings settings; ///< applied last
+    struct traced *traced; ///< scenes of pbrt: most of the rest is unused then; NULL: others
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     struct stage_drawing drawing;
@@ -238,6 +240,14 @@ struct stage *stage_create(const struct stage_request *request,
     *scene = (struct scene_data){0};
     s->gpu = request->gpu;
     s->settings = *settings;
+    if (s->scene.pbrt) {
+        s->traced = traced_create(request, settings, s->scene.pbrt);
+        s->scene.pbrt = NULL;
+        if (s->traced)
+            return s;
+        stage_destroy(s);
+        return NULL;
+    }
     s->textures = calloc(s->scene.image_count + 1, sizeof *s->textures);
     s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
     if (s->textures && s->table_indices && begin_slowness(s) && begin_faults(s) &&
@@ -254,6 +264,7 @@ void stage_destroy(struct stage *s)
 {
     if (!s)
         return;
+    traced_destroy(s->traced);
     sluiceDestroyVulkanStreamer(s->streamer);
     sluiceDestroyVulkanContext(s->context);
     stage_drawing_destroy(&s->drawing);
@@ -275,6 +286,10 @@ void stage_destroy(struct stage *s)
 void stage_apply(struct stage *s, const struct view_settings *settings)
 {
     SluiceVulkanStreamerSettings now = {.structSize = sizeof now};
+    if (s->traced) {
+        traced_apply(s->traced, settings);
+        return;
+    }
     const uint64_t budget =
         settings->budget && settings->budget < LEAST_BUDGET ? LEAST_BUDGET : settings->budget;
     check(sluiceSetVulkanMemoryBudget(s->context, budget), "sluiceSetVulkanMemoryBudget");
@@ -312,6 +327,8 @@ bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffe
                   struct frames_end *end)
 {
     SluiceStreamingFrame frame = {.structSize = sizeof frame};
+    if (s->traced)
+        return traced_record(s->traced, draw, end);
     atomic_store(&s->now, draw->time_stamp);
     look_at_bakes(s);
     if (!check(sluiceBeginStreamingFrame(s->streamer, commands, draw->time_stamp, &frame),
@@ -329,7 +346,8 @@ bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffe
 
 bool stage_settle(struct stage *s)
 {
-    return check(sluiceWaitVulkanStreamerIdle(s->streamer), "sluiceWaitVulkanStreamerIdle");
+    return s->traced ||
+           check(sluiceWaitVulkanStreamerIdle(s->streamer), "sluiceWaitVulkanStreamerIdle");
 }
 
 void stage_restart(struct stage *s)
@@ -347,6 +365,8 @@ double stage_resident_part(const struct stage *s)
 {
     SluiceStreamedTextureManager *manager = NULL;
     SluiceStreamedTextureStatistics now = {.structSize = sizeof now};
+    if (s->traced)
+        return traced_complete(s->traced);
     sluiceGetVulkanStreamerManager(s->streamer, &manager);
     if (sluiceGetStatistics(manager, &now) != SLUICE_SUCCESS || now.tileCount == 0)
         return 1.0;
@@ -363,9 +383,14 @@ SluiceVulkanStreamer *stage_streamer(const struct stage *s)
     return s->streamer;
 }
 
+struct traced *stage_traced(const struct stage *s)
+{
+    return s->traced;
+}
+
 SluiceVulkanContext *stage_context(const struct stage *s)
 {
-    return s->context;
+    return s->traced ? s->traced->context : s->context;
 }
 
 uint32_t stage_message_count(const struct stage *s)
@@ -380,17 +405,17 @@ const char *stage_message(const struct stage *s, uint32_t index)
 
 uint32_t stage_texture_count(const struct stage *s)
 {
-    return s->scene.image_count;
+    return s->traced ? s->traced->picture_count : s->scene.image_count;
 }
 
 const SluiceImageSource *stage_source(const struct stage *s, uint32_t index)
 {
-    return s->faulty[index];
+    return s->traced ? NULL : s->faulty[index];
 }
 
 const struct stage_texture *stage_texture(const struct stage *s, uint32_t index)
 {
-    return &s->textures[index];
+    return s->traced ? &s->traced->pictures[index].texture : &s->textures[index];
 }
 
 struct view_camera stage_camera(const struct stage *s)
@@ -412,7 +437,8 @@ const struct camera_path *stage_tour(const struct stage *s)
 struct stage_pick stage_pick(const struct stage *s, const struct view_camera *camera, float aspect,
                              float x, float y)
 {
-    return scene_pick(&s->scene, camera, aspect, x, y);
+    return s->traced ? traced_pick(s->traced, camera, x, y)
+                     : scene_pick(&s->scene, camera, aspect, x, y);
 }
 
 bool stage_pick_pixel(const struct stage *s, const struct stage_pick *pick,

@@ -28,7 +28,7 @@ static double quantile(const struct summary *s, float *values, double part)
     return count > 0 ? (double)values[(size_t)(part * (double)(count - 1) + 0.5)] : 0.0;
 }
 
-void summary_print(struct summary *s, const struct view_facts *f)
+void view_summary_print(struct summary *s, const struct view_facts *f)
 {
     const double frames = s->frame_count > 0 ? (double)s->frame_count : 1.0;
     printf("{\"name\": \"missing_percent_mean\", \"value\": %.4f, \"unit\": \"%%\"}\n"

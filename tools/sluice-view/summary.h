@@ -16,6 +16,6 @@ struct summary {
 /** Adds the latest frame of the facts. */
 void summary_add(struct summary *summary, const struct view_facts *facts);
 /** Prints a figure per line, by the names that sluice-tradeoff has. Sorts the rings. */
-void summary_print(struct summary *summary, const struct view_facts *facts);
+void view_summary_print(struct summary *summary, const struct view_facts *facts);
 
 #endif /* SLUICE_VIEW_SUMMARY_H */

@@ -43,7 +43,11 @@ static bool create_gpu(struct viewer *v, bool *unsupported)
         SLUICE_RESIDENCY_MODE_DENSE};
     struct gpu_request request = {.device = v->options->device,
                                   .validation = v->options->validation,
-                                  .modes = {modes[v->app.settings.residency], modes[0]}};
+                                  .modes = {modes[v->app.settings.residency], modes[0]},
+                                  .ray_tracing = true,
+                                  .build_queue = true,
+                                  .buffer_addresses = true,
+                                  .byte_pages = true};
     if (v->window)
         request.instance_extensions =
             window_extensions(v->window, &request.instance_extension_count);
@@ -137,8 +141,10 @@ static void name_screenshot(struct viewer *v)
 static void answer_requests(struct viewer *v)
 {
     struct view_app *app = &v->app;
-    if (app->restart && v->stage)
+    if (app->restart && v->stage && !stage_traced(v->stage))
         stage_restart(v->stage);
+    else if (app->restart) /* what is made of a scene of pbrt goes with its loader */
+        app->reload = true;
     if (app->reload)
         viewer_reopen(v, NULL);
     if (app->screenshot)
@@ -407,7 +413,7 @@ static void print_summary(struct viewer *v)
                v->frame > v->first_frame + 1 ? (processor_seconds() - v->first_processor) * 1e3 /
                                                    (v->frame - v->first_frame - 1)
                                              : 0.0);
-        summary_print(&v->summary, f);
+        view_summary_print(&v->summary, f);
         if (v->flip.known)
             printf("{\"name\": \"FLIP\", \"value\": %.6f, \"unit\": \"\"}\n", v->flip.shown_mean);
         return;

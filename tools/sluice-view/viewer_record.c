@@ -1,5 +1,7 @@
 #include "viewer.h"
 
+#include "traced.h"
+
 #include "../common/log.h"
 #include "../common/text.h"
 
@@ -36,8 +38,11 @@ void viewer_begin_recording(struct viewer *v, const char *path)
         name_recording(v);
     const SluiceFileRecordingInfo info = {
         .structSize = sizeof info, .pPath = v->recording, .log = {.pfnLog = log_say}};
-    SluiceResult result = sluiceGetVulkanStreamerManager(stage_streamer(v->stage), &manager);
-    if (result == SLUICE_SUCCESS)
+    const struct traced *traced = stage_traced(v->stage);
+    SluiceResult result = traced
+                              ? sluiceBeginDemandRecording(traced->loader, &info, &v->recorder)
+                              : sluiceGetVulkanStreamerManager(stage_streamer(v->stage), &manager);
+    if (result == SLUICE_SUCCESS && !traced)
         result = sluiceBeginFileRecording(manager, &info, &v->recorder);
     if (result == SLUICE_SUCCESS)
         app_say(&v->app, "Recording %s for sluice-replay; Ctrl+R ends it", v->recording);

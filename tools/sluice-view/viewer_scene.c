@@ -6,8 +6,10 @@
 static struct stage *create_stage(struct viewer *v, const struct view_settings *settings,
                                   bool everything, struct scene_data *scene)
 {
-    const struct stage_request request = {
-        .gpu = &v->gpu, .threads = v->options->threads, .everything = everything};
+    const struct stage_request request = {.gpu = &v->gpu,
+                                          .threads = v->options->threads,
+                                          .everything = everything,
+                                          .waits = v->options->deterministic};
     return stage_create(&request, settings, scene);
 }
 
@@ -26,6 +28,8 @@ bool viewer_fit_other(struct viewer *v)
 {
     const struct view_settings *s = &v->app.settings;
     const bool truth = s->view == VIEW_TRUTH;
+    if (v->stage && stage_traced(v->stage))
+        return true;
     const bool wanted = v->stage && (truth || s->compare != VIEW_COMPARE_OFF);
     const int kind = truth ? VIEW_WITH_EVERYTHING : s->compared;
     if (v->other && (!wanted || v->other_kind != kind)) {
