@@ -1,5 +1,7 @@
 #include "actions.h"
 
+#include "panel_traced.h"
+
 #include <math.h>
 
 static void show_view(struct view_app *app, int view)
@@ -302,7 +304,13 @@ bool actions_press(struct view_app *app, int key, unsigned modifiers)
         struct view_chord chord;
         if (table[i].chord && view_chord_read(table[i].chord, &chord) && chord.key == key &&
             chord.modifiers == modifiers) {
-            table[i].act(app, table[i].argument);
+            const char *why = app->stage && stage_traced(app->stage)
+                                  ? panel_traced_refuses(table[i].chord)
+                                  : NULL;
+            if (why)
+                app_say(app, "%s", why);
+            else
+                table[i].act(app, table[i].argument);
             return true;
         }
     }

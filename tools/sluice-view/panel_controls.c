@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "controls.h"
+#include "panel_traced.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -104,6 +105,8 @@ void panel_controls(struct view_app *app)
         const char *group = "";
         bool open = false;
         for (uint32_t i = 0; i < count; i++) {
+            if (stage_traced(app->stage) && !panel_traced_takes(controls[i].option.name))
+                continue;
             if (strcmp(group, controls[i].group) != 0)
                 open = ui_begin_group(controls[i].group, i == 0);
             group = controls[i].group;
@@ -111,6 +114,9 @@ void panel_controls(struct view_app *app)
                 draw_control(app, &controls[i]);
         }
         ui_space(4);
+        if (stage_traced(app->stage))
+            ui_paragraph(UI_GRAY, "Controls of feedback, of sources and of comparisons are left "
+                                  "out: scenes of pbrt load on demand.");
         if (ui_button("Copy command line (C)", 0, 0, false))
             app_copy_command(app);
         ui_hint("Copies a command that opens the viewer with these settings.");

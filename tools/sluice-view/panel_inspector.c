@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "inspector_parts.h"
+#include "panel_traced.h"
 #include "texture_actions.h"
 
 #include <stdio.h>
@@ -75,34 +76,50 @@ static void draw_buttons(struct view_app *app)
     }
 }
 
+static void draw_streamer(struct view_app *app, const struct stage_texture *texture)
+{
+    const SluiceTextureStatistics *s = &app->facts.textures[app->selected].statistics;
+    char resident[32], all[32];
+    draw_reason(app, texture);
+    ui_line();
+    ui_text(UI_WHITE, "%s of %s resident, %u tiles wanted",
+            panel_size(s->residentSize, resident, sizeof resident),
+            panel_size(texture->size, all, sizeof all), s->wantedTileCount);
+    ui_text(UI_GRAY, "%u loads, %u evictions, %u failures", s->mappedTotal, s->unmappedTotal,
+            s->failedTotal);
+    draw_failure(app, texture);
+    inspector_draw_tile(app, app->selected);
+    draw_buttons(app);
+    inspector_draw_levels(app, app->selected);
+    inspector_draw_maps(app, app->selected);
+    if (texture->path[0])
+        ui_paragraph(UI_GRAY, texture->path);
+}
+
+static void draw_texture(struct view_app *app)
+{
+    const struct stage_texture *texture = stage_texture(app->stage, app->selected);
+    ui_text(UI_BLUE, "%s", texture->name);
+    ui_text(UI_GRAY, "%u x %u, %u levels, %s", texture->width, texture->height,
+            texture->level_count, texture->format);
+    if (stage_traced(app->stage))
+        panel_traced_inspector(app);
+    else
+        draw_streamer(app, texture);
+}
+
 void panel_inspector(struct view_app *app)
 {
     if (!app->open[PANEL_INSPECTOR])
         return;
     if (panel_begin(app, PANEL_INSPECTOR, "Inspector (I)", 380, 430)) {
-        if (app->selected >= app->facts.texture_count) {
-            ui_paragraph(UI_GRAY, "Right click a surface, or click a row of the textures (T).");
+        if (app->selected < app->facts.texture_count) {
+            draw_texture(app);
+        } else if (stage_traced(app->stage) && app->inspect.hit) {
+            ui_text(UI_BLUE, "A surface without a texture");
+            panel_traced_inspector(app);
         } else {
-            const struct stage_texture *texture = stage_texture(app->stage, app->selected);
-            const SluiceTextureStatistics *s = &app->facts.textures[app->selected].statistics;
-            char resident[32], all[32];
-            ui_text(UI_BLUE, "%s", texture->name);
-            ui_text(UI_GRAY, "%u x %u, %u levels, %s", texture->width, texture->height,
-                    texture->level_count, texture->format);
-            draw_reason(app, texture);
-            ui_line();
-            ui_text(UI_WHITE, "%s of %s resident, %u tiles wanted",
-                    panel_size(s->residentSize, resident, sizeof resident),
-                    panel_size(texture->size, all, sizeof all), s->wantedTileCount);
-            ui_text(UI_GRAY, "%u loads, %u evictions, %u failures", s->mappedTotal,
-                    s->unmappedTotal, s->failedTotal);
-            draw_failure(app, texture);
-            inspector_draw_tile(app, app->selected);
-            draw_buttons(app);
-            inspector_draw_levels(app, app->selected);
-            inspector_draw_maps(app, app->selected);
-            if (texture->path[0])
-                ui_paragraph(UI_GRAY, texture->path);
+            ui_paragraph(UI_GRAY, "Right click a surface, or click a row of the textures (T).");
         }
     }
     ui_end_panel();

@@ -1,5 +1,7 @@
 #include "panels.h"
 
+#include "panel_traced.h"
+
 #include <stdio.h>
 
 static const char *const stage_names[] = {"feedback", "queue", "read", "bind", "copy"};
@@ -114,18 +116,26 @@ static void draw_sources(const struct view_app *app)
     ui_end_table();
 }
 
+static void draw_streamer(const struct view_app *app)
+{
+    ui_paragraph(UI_GRAY, "From a mark of a shader to the picture. Bars: 0, 1, 2-3, 4-7, ... "
+                          "frames.");
+    draw_whole(&app->facts.log);
+    for (int i = 0; i < SLUICE_LOAD_STAGE_COUNT; i++)
+        draw_stage(&app->facts.stages.stages[i], stage_names[i]);
+    if (!app->deterministic)
+        draw_sources(app);
+}
+
 void panel_latency(struct view_app *app)
 {
     if (!app->open[PANEL_LATENCY])
         return;
     if (panel_begin(app, PANEL_LATENCY, "Latency (Y)", 440, 520)) {
-        ui_paragraph(UI_GRAY, "From a mark of a shader to the picture. Bars: 0, 1, 2-3, 4-7, ... "
-                              "frames.");
-        draw_whole(&app->facts.log);
-        for (int i = 0; i < SLUICE_LOAD_STAGE_COUNT; i++)
-            draw_stage(&app->facts.stages.stages[i], stage_names[i]);
-        if (!app->deterministic)
-            draw_sources(app);
+        if (stage_traced(app->stage))
+            panel_traced_latency(app);
+        else
+            draw_streamer(app);
     }
     ui_end_panel();
 }

@@ -1,5 +1,6 @@
 #include "panels.h"
 
+#include "panel_traced.h"
 #include "tile_marks.h"
 
 #include <sluice/metrics.h>
@@ -161,8 +162,23 @@ static const char *const view_names[] = {"",
                                          "Difference to the truth",
                                          "Checks"};
 
+static void draw_traced(const struct view_app *app)
+{
+    const char *why = panel_traced_refuses_view(app->settings.view);
+    if (why) {
+        ui_text(UI_ORANGE, "%s", why);
+        return;
+    }
+    draw_color(UI_COLOR(128, 128, 128, 255), "complete");
+    draw_color(UI_COLOR(240, 228, 66, 255), "a shape, a material or a tile is missing");
+}
+
 static void draw_legend(const struct view_app *app)
 {
+    if (stage_traced(app->stage)) {
+        draw_traced(app);
+        return;
+    }
     if (app_shows_difference(app)) {
         draw_differences(app);
         return;

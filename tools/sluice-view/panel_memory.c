@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "memory_map.h"
+#include "panel_traced.h"
 
 #include <stdio.h>
 
@@ -176,17 +177,25 @@ static void draw_buttons(struct view_app *app)
     ui_hint("Evicts all tiles that nothing requests.");
 }
 
+static void draw_streamer(struct view_app *app)
+{
+    const float cell = 12 * ui_scale();
+    draw_sums(app);
+    draw_buttons(app);
+    draw_colors(app);
+    for (uint32_t heap = 0, drawn = 0; heap < 4096 && drawn < app->facts.now.heapCount; heap++)
+        drawn += draw_heap(app, heap, cell);
+}
+
 void panel_memory(struct view_app *app)
 {
     if (!app->open[PANEL_MEMORY])
         return;
     if (panel_begin(app, PANEL_MEMORY, "Memory (M)", 440, 460)) {
-        const float cell = 12 * ui_scale();
-        draw_sums(app);
-        draw_buttons(app);
-        draw_colors(app);
-        for (uint32_t heap = 0, drawn = 0; heap < 4096 && drawn < app->facts.now.heapCount; heap++)
-            drawn += draw_heap(app, heap, cell);
+        if (stage_traced(app->stage))
+            panel_traced_memory(app);
+        else
+            draw_streamer(app);
     }
     ui_end_panel();
 }

@@ -19,7 +19,7 @@ static bool shows_values(const struct view_app *app)
 {
     const uint32_t view = app->settings.view;
     return view > VIEW_PICTURE && view <= VIEW_CHECKS && view != VIEW_TRUTH &&
-           !app_shows_difference(app);
+           !stage_traced(app->stage) && !app_shows_difference(app);
 }
 
 void panel_probe_find(struct view_app *app)

@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "actions.h"
+#include "panel_traced.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -52,10 +53,14 @@ static void draw_buttons(struct view_app *app)
         return;
     if (ui_begin_panel("buttons", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
         const uint32_t view = app->settings.view;
-        if (ui_button("What is in memory? (2)", width, height, view == VIEW_RESIDENT))
+        const bool traced = stage_traced(app->stage);
+        if (traced && ui_button("What is in memory? (M)", width, height, app->open[PANEL_MEMORY]))
+            app_set_panel(app, PANEL_MEMORY, !app->open[PANEL_MEMORY]);
+        if (!traced && ui_button("What is in memory? (2)", width, height, view == VIEW_RESIDENT))
             app_set_view(app, view == VIEW_RESIDENT ? VIEW_PICTURE : VIEW_RESIDENT);
-        ui_hint(
-            "Colors the picture by the level of detail that is in memory. Key 2; 1 comes back.");
+        if (!traced)
+            ui_hint("Colors the picture by the level of detail that is in memory. Key 2; 1 comes "
+                    "back.");
         ui_same_line(0);
         if (ui_button("Why is this blurry? (3)", width, height, view == VIEW_MISSING))
             app_set_view(app, view == VIEW_MISSING ? VIEW_PICTURE : VIEW_MISSING);
@@ -140,8 +145,7 @@ void panel_now(struct view_app *app)
                 f->now.loadsInFlight);
         const uint32_t baking = stage_baking_count(app->stage);
         if (baking > 0) {
-            ui_text(UI_ORANGE, "%u %s being prepared", baking,
-                    baking == 1 ? "picture is" : "pictures are");
+            ui_text(UI_ORANGE, "%u pictures are being prepared", baking);
             ui_hint("Tiles of these pictures are made once, and kept in the cache (--cache). Until "
                     "then coarse levels are shown.");
         }

@@ -100,6 +100,10 @@ void panels_draw_picture(const struct view_app *app)
         ui_fill_behind(0, 0, app->width, app->height, UI_COLOR(38, 44, 52, 255));
         return;
     }
+    if (stage_traced(app->stage)) { /* there is no second picture */
+        ui_picture(UI_TEXTURE_PICTURE, UI_MODE_PLAIN, all, uv, UI_COLOR(255, 255, 255, 255));
+        return;
+    }
     const bool flicker_other = s->compare == VIEW_FLICKER && s->view != VIEW_TRUTH &&
                                (uint64_t)(app->seconds * 4) % 2 == 1;
     if (app_shows_difference(app)) {

@@ -87,6 +87,10 @@ bool texture_actions_do(struct view_app *app, const char *name)
         text_say("sluice-view: %s: no texture is selected", name);
         return false;
     }
+    if (stage_traced(app->stage)) {
+        text_say("sluice-view: %s: not for textures of pbrt scenes, which rays ask for", name);
+        return false;
+    }
     const struct stage_texture *texture = stage_texture(app->stage, app->selected);
     const uint32_t primary =
         texture->primary == STAGE_NO_TEXTURE ? app->selected : texture->primary;
