@@ -186,9 +186,9 @@ typedef struct SluiceReadPoolStatistics {
     uint64_t evictedCount;     ///< Regions dropped because of cacheSize.
     uint64_t invalidatedCount; ///< Regions dropped because texels changed or a user has gone.
     uint64_t refusedCount;     ///< Regions read without sharing, because memory was refused.
-    uint64_t keptSize;         ///< Bytes of texels kept now.
+    uint64_t keptSize;         ///< Bytes of texels kept or being read now.
     uint64_t keptPeakSize;     ///< Largest keptSize.
-    uint64_t keptCount;        ///< Regions kept now.
+    uint64_t keptCount;        ///< Regions kept or being read now.
 } SluiceReadPoolStatistics;
 
 /**

@@ -87,14 +87,17 @@ SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake)
         .uploadQueueFamilyIndex = FAKE_TRANSFER_FAMILY,
         .pAllocator = fake->pAllocator,
         .log = fake->log,
-        .loaderThreadCount = fake->loaderThreadCount ? fake->loaderThreadCount : 1,
+        .loaderThreadCount = fake->readPool            ? 0
+                             : fake->loaderThreadCount ? fake->loaderThreadCount
+                                                       : 1,
         .readRetry = fake->readRetry,
         .maxPageChunkCount = fake->maxPageChunkCount,
         .minStagingSize = fake->minStagingSize,
         .minTileMemorySize = fake->minTileMemorySize,
         .pQueueLock = fake->no_queue_lock ? NULL : &fake->queue_lock,
         .maxBindsPerCall = fake->maxBindsPerCall,
-        .pJobSystem = fake->pJobSystem};
+        .pJobSystem = fake->pJobSystem,
+        .readPool = fake->readPool};
 }
 
 SluiceResult fake_vulkan_create(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info,

@@ -128,7 +128,8 @@ struct fake_vulkan {
     uint64_t minStagingSize, minTileMemorySize;
     uint32_t maxBindsPerCall;
     const SluiceJobSystem *pJobSystem;
-    bool no_queue_lock; ///< else calls outside the queue lock are failures
+    SluiceReadPool *readPool; ///< Has the threads, then.
+    bool no_queue_lock;       ///< else calls outside the queue lock are failures
 
     SluiceVulkanQueueLockCallbacks queue_lock;
     VkQueue locked_queue; ///< VK_NULL_HANDLE: all
