@@ -3,6 +3,9 @@
 # second beside a loop around libcurl that reads the same ranges.
 #
 #   bench/remote/run.sh [options]
+#   bench/remote/run.sh [--bin DIR] --serve MILLISECONDS FILE -- COMMAND...
+#
+# The second form serves a file over such a line while COMMAND runs: %u in it is the URL.
 #
 #   --round-trips LIST  milliseconds (default: 0,10,50,200); 0 is the loopback device
 #   --requests LIST     requests in flight (default: 1,8,32,128)
@@ -27,8 +30,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
 export LC_ALL=C PATH=$PATH:/usr/sbin:/sbin
 
-round_trips=0,10,50,200 requests=1,8,32,128 edge=4096 json=no bin='' work='' scratch='' quick=()
-given=("$@")
+file=tiles.sluice round_trips=0,10,50,200 requests=1,8,32,128 edge=4096 json=no bin='' work='' scratch='' quick=()
+given=("$@") served='' command=()
 server=''
 
 say() { printf '%s\n' "$*" >&2; }
@@ -45,6 +48,13 @@ while [ $# -gt 0 ]; do
     case $1 in
     --quick) quick=(--quick) round_trips=10 requests=4 edge=1024 ;;
     --json) json=yes ;;
+    --serve)
+        [ $# -ge 3 ] || die "--serve needs milliseconds and a file"
+        round_trips=$2 served=$(realpath "$3")
+        [ -r "$served" ] || die "$3 cannot be read"
+        shift 2
+        ;;
+    --) shift; command=("$@"); break ;;
     --round-trips | --requests | --bin | --work)
         [ $# -ge 2 ] || die "$1 needs a value (see --help)"
         name=${1#--}
@@ -134,7 +144,7 @@ start_server() {
     local nginx=(nginx -p "$work/nginx" -c "$work/nginx/nginx.conf" -e "$work/nginx/error.log")
     local host=127.0.0.1
     [ "$1" = 0 ] || host=10.97.0.2
-    printf -v url '%s://%s:8080/tiles.sluice' http "$host"
+    printf -v url '%s://%s:8080/%s' http "$host" "$file"
     rm -f "$work/nginx/pid"
     if [ "$1" = 0 ]; then
         "${nginx[@]}" &
@@ -176,6 +186,17 @@ measure_requests() { # of the tiles that were just read: all but the opening
 
 : >"$work/figures"
 write_configuration
+if [ -n "$served" ]; then
+    file=served.${served##*.}
+    ln -sf "$served" "$work/files/$file"
+    chmod a+rx "$work" "$work/files" # nginx' worker is of the same user, but not with its rights
+    ip link set lo up
+    start_server "$round_trips"
+    status=0
+    "${command[@]//%u/"$url"}" || status=$?
+    stop_server
+    exit "$status"
+fi
 "$bin/remote_figures" --make --edge "$edge" "$work/files/tiles.sluice"
 ip link set lo up
 for round_trip in ${round_trips//,/ }; do
