@@ -3,6 +3,7 @@
 
 #include "support/test.h"
 
+#include "budget_need.h"
 #include "camera.h"
 #include "controls.h"
 #include "keys.h"
@@ -316,6 +317,52 @@ static void each_reason_has_its_pattern(void **state)
         assert_int_equal(mark_reason_of((SluiceCoarseReason)i), patterns[i]);
 }
 
+/* Tiles one by one: each region wants a tile of each level from its own on. */
+static uint64_t count_tiles(const uint8_t *map, uint32_t levels, uint32_t added)
+{
+    uint64_t count = 0;
+    for (uint32_t level = 0; level < levels; level++) {
+        bool wanted[7][5] = {{false}};
+        for (uint32_t y = 0; y < 7; y++)
+            for (uint32_t x = 0; x < 5; x++)
+                if (map[y * 5 + x] != SLUICE_MIP_UNTOUCHED && map[y * 5 + x] + added <= level)
+                    wanted[y >> level][x >> level] = true;
+        for (uint32_t i = 0; i < 35; i++)
+            count += wanted[i / 5][i % 5];
+    }
+    return count;
+}
+
+static void the_need_of_coarser_requests_is_that_of_their_tiles(void **state)
+{
+    (void)state;
+    uint8_t map[35], scratch[35];
+    uint32_t seed = 1;
+    for (int round = 0; round < 50; round++) {
+        struct budget_need need = {0};
+        for (int i = 0; i < 35; i++) {
+            seed = seed * 1664525u + 1013904223u;
+            map[i] = seed >> 30 == 0 ? SLUICE_MIP_UNTOUCHED : (uint8_t)((seed >> 20) % 5);
+        }
+        memcpy(scratch, map, sizeof map);
+        budget_need_add(&need, scratch, 5, 7, 4, 2);
+        for (uint32_t added = 0; added < 6; added++)
+            assert_int_equal(budget_need_bytes(&need, added),
+                             65536 * (2 + count_tiles(map, 4, added)));
+    }
+}
+
+static void levels_to_add_lie_between_those_whose_needs_surround_the_budget(void **state)
+{
+    (void)state;
+    const struct budget_need need = {.tails = 10, .tiles = {90, 30, 10}};
+    assert_float_equal(budget_need_levels(&need, 100 * 65536), 0, 0);
+    assert_float_equal(budget_need_levels(&need, 70 * 65536), 0.5, 1e-9);
+    assert_float_equal(budget_need_levels(&need, 40 * 65536), 1, 1e-9);
+    assert_float_equal(budget_need_levels(&need, 15 * 65536), 2.5, 1e-9);
+    assert_float_equal(budget_need_levels(&need, 9 * 65536), BUDGET_NEED_LEVELS - 1, 0);
+}
+
 static int make_folder(void **state)
 {
     (void)state;
@@ -354,6 +401,8 @@ int main(void)
         cmocka_unit_test(a_damaged_file_of_settings_is_set_aside),
         cmocka_unit_test(words_of_tiles_hold_reason_thrash_and_age),
         cmocka_unit_test(each_reason_has_its_pattern),
+        cmocka_unit_test(the_need_of_coarser_requests_is_that_of_their_tiles),
+        cmocka_unit_test(levels_to_add_lie_between_those_whose_needs_surround_the_budget),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

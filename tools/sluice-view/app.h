@@ -67,6 +67,7 @@ struct view_app {
     uint32_t selected;           ///< texture; STAGE_NO_TEXTURE: none
     double truth_part;           ///< of the tiles of view 8's second picture that are loaded
     const struct flip_map *flip; ///< borrowed; between the pictures of a comparison
+    uint64_t dragged_budget;     ///< bytes; while its slider is held: not in effect yet. 0: none
     bool demonstrating;          ///< the budget moves by itself
     double demonstration;        ///< seconds
     uint64_t budget_before;

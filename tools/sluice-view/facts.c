@@ -160,6 +160,23 @@ static void sum_textures(struct view_facts *f, const struct stage *stage)
     }
 }
 
+struct budget_need facts_budget_need(const struct view_facts *f, const struct stage *stage)
+{
+    struct budget_need need = {0};
+    const SluiceStreamedTextureManager *manager = manager_of(stage);
+    for (uint32_t i = 0; i < f->texture_count; i++) {
+        SluiceStreamedTextureLayout layout;
+        const SluiceTextureId id = stage_texture(stage, i)->id;
+        const size_t size = map_size_of(manager, id, &layout);
+        if (size == 0 || sluiceWriteRequestedLevels(manager, id, layout.minMipWidth, size,
+                                                    f->maps) != SLUICE_SUCCESS)
+            continue;
+        budget_need_add(&need, f->maps, layout.minMipWidth, layout.minMipHeight,
+                        layout.desc.regularMipCount, layout.desc.packedTileCount);
+    }
+    return need;
+}
+
 /* In turns: each takes a lock of the loader. */
 static void look_at_reads(struct view_facts *f, const struct stage *stage)
 {

@@ -2,6 +2,7 @@
 #ifndef SLUICE_VIEW_FACTS_H
 #define SLUICE_VIEW_FACTS_H
 
+#include "budget_need.h"
 #include "history.h"
 #include "settings.h"
 #include "stage.h"
@@ -80,6 +81,8 @@ void facts_destroy(struct view_facts *facts);
 /** Once per frame, after it was recorded. */
 void facts_update(struct view_facts *facts, const struct stage *stage,
                   const struct view_settings *settings, double seconds);
+/** What all requests need. Takes time in proportion to tiles of level 0. */
+struct budget_need facts_budget_need(const struct view_facts *facts, const struct stage *stage);
 const char *facts_series_name(enum facts_series series);
 
 #endif /* SLUICE_VIEW_FACTS_H */

@@ -3,10 +3,13 @@
 #include "controls.h"
 #include "panel_traced.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #define MIB 1048576.0
+#define LEAST_MIB 8.0
+#define SLIDER_WIDTH 190.0f
 
 /* Sliders have no room for all that the command line takes. */
 static double slider_most(const struct control *control)
@@ -31,20 +34,79 @@ static double slider_most(const struct control *control)
     return control->option.maximum;
 }
 
+/* Where a size is on the slider, 0 to 1. */
+static float place_of(double mib, double most)
+{
+    const double place = mib > LEAST_MIB ? log(mib / LEAST_MIB) / log(most / LEAST_MIB) : 0.0;
+    return (float)(place < 1.0 ? place : 1.0);
+}
+
+/* Under the slider: what is wanted now, and everything. */
+static void draw_budget_ticks(const struct view_app *app, double most)
+{
+    float r[4];
+    const float scale = ui_scale(), width = 2 * scale;
+    ui_canvas(SLIDER_WIDTH * scale, 8 * scale, r);
+    const float wanted = place_of((double)app->facts.wanted_size / MIB, most);
+    const float all = place_of((double)app->facts.all_size / MIB, most);
+    ui_fill(r[0], r[1], r[2] * wanted, 3 * scale, UI_COLOR(70, 150, 220, 255));
+    ui_fill(r[0] + r[2] * wanted - width / 2, r[1], width, 8 * scale, UI_WHITE);
+    ui_fill(r[0] + r[2] * all - width / 2, r[1], width, 8 * scale, UI_GRAY);
+    ui_hint("White mark: wanted now. Gray mark: everything.");
+}
+
+/* Before the slider is let go. */
+static void draw_budget_ghost(struct view_app *app)
+{
+    char size[32];
+    const struct budget_need need = facts_budget_need(&app->facts, app->stage);
+    const double levels = budget_need_levels(&need, app->dragged_budget);
+    const double now = app->facts.now.globalMipBias / 16.0;
+    panel_size(budget_need_bytes(&need, 0), size, sizeof size);
+    if (levels > 0 && app->dragged_budget < need.tails * SLUICE_DEFAULT_TILE_SIZE)
+        ui_text(UI_RED, "mip tails alone need %s",
+                panel_size(need.tails * SLUICE_DEFAULT_TILE_SIZE, size, sizeof size));
+    else if (levels > 0)
+        ui_text(UI_ORANGE, "needs %s: about %.1f level%s coarser", size, levels,
+                levels < 1.05 ? "" : "s");
+    else if (now > 0)
+        ui_text(UI_WHITE, "finer than now, which is %.1f level%s coarser", now,
+                now < 1.05 ? "" : "s");
+    else
+        ui_text(UI_WHITE, "needs %s: as sharp as wanted", size);
+}
+
+static void draw_budget_slider(struct view_app *app, const char *label, double most)
+{
+    const uint64_t budget = app->dragged_budget ? app->dragged_budget : app->settings.budget;
+    double mib = (double)budget / MIB;
+    if (mib == 0 || mib > most)
+        mib = most;
+    ui_slider_real(label, &mib, LEAST_MIB, most, true, mib >= most ? "all there is" : "%.0f MiB");
+    const uint64_t chosen = (uint64_t)mib * 1048576u;
+    const bool active = ui_active();
+    if (ui_released())
+        app->settings.budget = mib >= most ? 0 : chosen;
+    app->dragged_budget = active ? chosen : 0;
+}
+
 static void draw_budget(struct view_app *app, const char *label)
 {
     char wanted[32];
-    double mib = (double)app->settings.budget / MIB;
-    const double most = app->facts.all_size > 0 ? (double)app->facts.all_size / MIB * 1.2 : 4096.0;
-    if (mib == 0)
-        mib = most;
-    if (ui_slider_real(label, &mib, 8.0, most, true, mib >= most ? "all there is" : "%.0f MiB"))
-        app->settings.budget = mib >= most ? 0 : (uint64_t)mib * 1048576u;
-    ui_hint("Most memory for tiles: the picture becomes coarser when it is short. Wanted now: %s. "
-            "Double click: no limit. --budget",
-            panel_size(app->facts.wanted_size, wanted, sizeof wanted));
+    const double all = (double)app->facts.all_size / MIB * 1.2;
+    const double most = all > 2 * LEAST_MIB ? all : all > 0 ? 2 * LEAST_MIB : 4096.0;
+    draw_budget_slider(app, label, most);
+    if (!app->dragged_budget)
+        ui_hint("Most memory for tiles: the picture becomes coarser when it is short. Takes effect "
+                "when it is let go.\nDouble click: no limit. --budget");
     if (ui_double_clicked())
         app->settings.budget = 0;
+    panel_size(app->facts.wanted_size, wanted, sizeof wanted);
+    draw_budget_ticks(app, most);
+    if (app->dragged_budget)
+        draw_budget_ghost(app);
+    else
+        ui_text(UI_GRAY, "wanted now: %s", wanted);
     static const unsigned presets[] = {16, 64, 256};
     for (int i = 0; i < 3; i++) {
         char text[16];
@@ -81,7 +143,7 @@ static void draw_widget(struct view_app *app, const struct control *control, con
 
 static void draw_control(struct view_app *app, const struct control *control)
 {
-    ui_item_width(190 * ui_scale());
+    ui_item_width(SLIDER_WIDTH * ui_scale());
     if (control->option.kind == OPTION_BYTES) {
         draw_budget(app, control->label);
         return;

@@ -137,6 +137,16 @@ bool ui_hovered(void)
     return ImGui::IsItemHovered();
 }
 
+bool ui_active(void)
+{
+    return ImGui::IsItemActive();
+}
+
+bool ui_released(void)
+{
+    return ImGui::IsItemDeactivatedAfterEdit();
+}
+
 bool ui_double_clicked(void)
 {
     return ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0);
