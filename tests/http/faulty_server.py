@@ -86,6 +86,9 @@ class Handler(BaseHTTPRequestHandler):
             number = counts.get(self.path, 0)
             counts[self.path] = number + 1
         fault = parts.path.split('/')[1]
+        if fault == 'disk':  # /disk/PATH: as `file`, for names that are found beside each other
+            query['path'] = urllib.parse.unquote(parts.path)[len('/disk'):]
+            fault = 'file'
         size = os.path.getsize(query['path']) if fault == 'file' else int(query.get('size', 1 << 20))
         begin = int(query.get('from', 0))
         hit = begin <= number < begin + int(query.get('count', 1 << 30))

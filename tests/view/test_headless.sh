@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE SLUICE-REPLAY FLIP-OF-PICTURES SLUICE-TRADEOFF: the viewer without a
-# window, in TAP.
+# test_headless.sh FACTS SLUICE-VIEW LOSE-DEVICE SLUICE-REPLAY FLIP-OF-PICTURES SLUICE-TRADEOFF
+# [SLUICE-BAKE]: the viewer without a window, in TAP.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
-facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3") replay=$(realpath "$4") flip=$(realpath "$5") tradeoff=$(realpath "$6")
+facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3") replay=$(realpath "$4") flip=$(realpath "$5") tradeoff=$(realpath "$6") bake=${7:+$(realpath "$7")}
 "$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
 # shellcheck source=/dev/null
 . "$facts"
@@ -98,6 +98,22 @@ run 1 --headless --frames 2 --cache . stores.tsv && grep -q "$(basename "$store"
     [ "$(grep -c 'cannot be shown' err)" = 1 ] && run 1 --headless --frames 2 --cache . damaged.tsv &&
     grep -q 'damaged.tsv: cannot be read as a catalogue' err
 fact stores_of_a_catalogue_are_opened_and_must_be_those_it_names
+if [ -n "$bake" ]; then
+    mkdir two && printf 'P6 2 2 255\n%012d' 0 >two/black.ppm && printf 'P6 2 2 255\n%s' zzzzzzzzzzzz >two/light.ppm &&
+        "$bake" two -o stores --plan the.plan >out && "$bake" two -o stores >out &&
+        "$bake" --merge the.plan -o stores/list.tsv >out &&
+        hang --screenshot files.png two && hang --screenshot stores.png stores/list.tsv && cmp files.png stores.png &&
+        grep -q '^2 pictures: ' out
+    fact both_stores_of_a_catalogue_hang_as_their_pictures_do
+    url="http://127.0.0.1:$port/disk$PWD/stores/list.tsv?token=secret"
+    hang --screenshot served.png "$url"
+    if grep -q 'without sluice-http' err; then
+        echo "ok $((++number)) - URLs # SKIP made without sluice-http"
+    else
+        cmp stores.png served.png && grep -q '^2 pictures: ' out && ! grep -q secret out err
+        fact a_catalogue_on_a_server_names_stores_beside_it_and_its_query_is_not_said
+    fi
+fi
 kill "${COPROC_PID:?}" && wait "$COPROC_PID" 2>/dev/null
 printf '3 click 80 80 right\n7 set source-fails 0\n' >faults && { cat faults && echo '8 do retry'; } >mended
 # shellcheck disable=SC2086
