@@ -80,11 +80,19 @@ if [ -n "$drop_files" ]; then
         "$drop_files" "$window" "$folder/black.ppm" "$folder/none.png" && until_true 10 grep -q none.png err &&
         xdotool mousemove --window "$window" 240 200 && until_true 20 copies "^sluice-view $folder/black.ppm $folder/none.png"
     fact dropped_files_are_opened_and_one_that_cannot_be_read_leaves_the_scene
+    budget_of() { sed -n 's/^budget //p' "$1"; }
+    room=$(ls config/sluice/view-*.settings) && xdotool key bracketleft && until_true 20 copies '--budget'
 fi
 xdotool mousemove --window "$window" 240 200 key ctrl+q && ended_well
 fact ctrl_q_ends_it_with_silent_validation
-grep -q '^budget ' config/sluice/view-*.settings
+cat config/sluice/view-*.settings | grep -q '^budget '
 fact settings_are_kept
+if [ -n "$drop_files" ]; then
+    [ "$(find config/sluice -name 'view-*.settings' | wc -l)" = 2 ] && budgets=() &&
+        for file in "$room" config/sluice/view-*.settings; do budgets+=("$(budget_of "$file")"); done &&
+        [ "$(printf '%s\n' "${budgets[@]}" | sort -u | wc -l)" = 2 ]
+    fact a_dropped_scene_has_settings_of_its_own_and_those_of_the_one_before_stay
+fi
 mkdir many
 for i in {1..5000}; do printf 'P6 2 2 255\n%012d' 0 >"many/$i.ppm"; done
 open_viewer many && xdotool key ctrl+q && ended_well

@@ -1,5 +1,8 @@
 #include "viewer.h"
 
+#include "controls.h"
+#include "settings_file.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -89,15 +92,72 @@ static void begin_walk(struct viewer *v)
                          "(--render-scale)");
 }
 
+/** What files of settings hold, while another scene is tried. */
+struct kept_settings {
+    struct view_settings settings;
+    struct view_camera bookmarks[APP_BOOKMARKS];
+    bool bookmark_set[APP_BOOKMARKS];
+    char path[4096];
+};
+
+/* The window is not the scene's, and neither is what passes. */
+static void keep_window(const struct view_settings *before, struct view_settings *settings)
+{
+    char value[64];
+    uint32_t count;
+    const struct control *controls = controls_get(&count);
+    for (uint32_t i = 0; i < count; i++)
+        if (controls[i].flags & CONTROL_PASSING || strcmp(controls[i].group, "Window") == 0)
+            controls_set(settings, controls[i].option.name,
+                         control_write(&controls[i], before, value, sizeof value), "sluice-view");
+}
+
+/* Keeps the settings of the scene that is shown, and takes those of the next one. Without a file of
+ * its own, it begins with the present settings. */
+static void change_settings(struct viewer *v, const struct file_list *paths,
+                            struct kept_settings *before)
+{
+    struct view_app *app = &v->app;
+    before->settings = app->settings;
+    memcpy(before->bookmarks, app->bookmarks, sizeof app->bookmarks);
+    memcpy(before->bookmark_set, app->bookmark_set, sizeof app->bookmark_set);
+    memcpy(before->path, v->settings_path, sizeof before->path);
+    if (!v->settings_path[0])
+        return;
+    settings_file_write(v->settings_path, app);
+    settings_file_path(paths->count > 0 ? paths->paths[0] : "", v->settings_path,
+                       sizeof v->settings_path);
+    memset(app->bookmark_set, 0, sizeof app->bookmark_set);
+    if (v->options->fresh || files_size(v->settings_path) == 0)
+        return;
+    controls_set_defaults(&app->settings);
+    settings_file_read(v->settings_path, app);
+    keep_window(&before->settings, &app->settings);
+}
+
+static void restore_settings(struct viewer *v, const struct kept_settings *before)
+{
+    v->app.settings = before->settings;
+    memcpy(v->app.bookmarks, before->bookmarks, sizeof before->bookmarks);
+    memcpy(v->app.bookmark_set, before->bookmark_set, sizeof before->bookmark_set);
+    memcpy(v->settings_path, before->path, sizeof before->path);
+}
+
 /* Shows a scene instead of the one that is shown, which stays if this fails. `paths`, if there are
  * any, are exchanged with those of the scene before. */
 static bool show(struct viewer *v, struct scene_data *scene, struct file_list *paths)
 {
     const bool first = !v->stage;
     const struct view_camera camera = v->app.camera;
+    struct kept_settings kept;
+    if (!first && paths)
+        change_settings(v, paths, &kept);
     struct stage *stage = create_stage(v, &v->app.settings, false, scene);
-    if (!stage)
+    if (!stage) {
+        if (!first && paths)
+            restore_settings(v, &kept);
         return false;
+    }
     viewer_close_scene(v);
     v->stage = stage;
     v->applied = v->app.settings;
