@@ -162,10 +162,13 @@ for scene in wall front half; do
 done && python3 "$here/blended.py" full-wall.png full-front.png full-half.png >err
 fact quads_blend_in_linear_light
 printf '1 key 8\n3 set gain 1\n4 screenshot little.png\n5 set gain 16\n6 screenshot much.png\n7 key 5\n9 key 9\n' >truth
+printf '11 hold w 2\n14 set lod-bias 2\n16 reset\n17 screenshot reset.png\n' >>truth
 # shellcheck disable=SC2086
 run 0 --headless --deterministic --fresh $validation --size 160x160 --panels off --cache . --script truth \
-    --frames 12 --screenshot last.png wall.gltf && cmp little.png much.png && ! cmp -s much.png wall.png
+    --frames 19 --screenshot last.png wall.gltf && cmp little.png much.png && ! cmp -s much.png wall.png
 fact view_8_is_black_where_nothing_is_missing_and_all_views_are_valid
+cmp reset.png wall.png
+fact after_a_reset_a_scene_looks_as_at_first
 # Without feedback the picture has its mip tail alone; flicker shows the other one from frame 15 on.
 { printf 'P6 600 600 255\n' && seq 200000 | head -c 1080000 | tr 0-9 '\0\040\100\140\200\240\300\340\360\377'; } >fine.ppm
 printf '8 screenshot a.png\n13 screenshot again.png\n18 screenshot b.png\n19 set compare-as difference\n22 quit\n' >flips

@@ -93,9 +93,9 @@ static void wrong_scripts_are_refused(void **state)
 {
     (void)state;
     static const char *const wrong[] = {
-        "x key 3",     "1 kei 3",      "1 key",         "1 key 33",        "1 click 3",
-        "1 click a b", "1 drag 1 2 3", "1 wheel",       "1 set budget",    "1 quit now",
-        "-1 key 3",    "1 hold a 0",   "1 click 1e9 3", "99999999999 quit"};
+        "x key 3",     "1 kei 3",      "1 key",      "1 key 33",      "1 click 3",
+        "1 click a b", "1 drag 1 2 3", "1 wheel",    "1 set budget",  "1 quit now",
+        "1 reset all", "-1 key 3",     "1 hold a 0", "1 click 1e9 3", "99999999999 quit"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         struct script script;
         assert_false(script_parse("wrong", wrong[i], &script));

@@ -29,22 +29,39 @@ void app_finish(struct view_app *app)
     camera_path_finish(&app->path);
 }
 
-bool app_open(struct view_app *app, struct stage *stage, bool walks)
+static void begin_scene(struct view_app *app, bool walks)
 {
     struct vec3 bounds[2];
-    if (!facts_create(&app->facts, stage))
-        return false;
-    app->stage = stage;
-    app->camera = stage_camera(stage);
+    app->camera = stage_camera(app->stage);
     app->is_frozen = false; /* wants of the scene before were frozen elsewhere */
-    stage_bounds(stage, bounds);
+    stage_bounds(app->stage, bounds);
     app->center = vec3_mix(bounds[0], bounds[1], 0.5f);
     app->selected = STAGE_NO_TEXTURE;
     app->inspect = app->pick = (struct stage_pick){.texture = STAGE_NO_TEXTURE};
     app->follow = walks ? FOLLOW_TOUR : FOLLOW_NOTHING;
     app->touched = !walks;
     app->follow_seconds = 0;
+}
+
+bool app_open(struct view_app *app, struct stage *stage, bool walks)
+{
+    if (!facts_create(&app->facts, stage))
+        return false;
+    app->stage = stage;
+    begin_scene(app, walks);
     return true;
+}
+
+void app_reset(struct view_app *app, const struct view_settings *settings, bool walks)
+{
+    app->settings = *settings;
+    memset(app->open, 0, sizeof app->open);
+    app->last_view = VIEW_PICTURE;
+    app->demonstrating = app->recording = false;
+    app->dragged_budget = 0;
+    app->said_seconds = 0;
+    if (app->stage)
+        begin_scene(app, walks);
 }
 
 void app_close(struct view_app *app)

@@ -89,6 +89,8 @@ void app_finish(struct view_app *app);
 /** A scene was opened: the camera begins its tour. False without memory. */
 bool app_open(struct view_app *app, struct stage *stage, bool walks);
 void app_close(struct view_app *app);
+/** Settings, panels, camera and selection as they were when the program began. */
+void app_reset(struct view_app *app, const struct view_settings *settings, bool walks);
 /** Input of a frame, behind ui_begin_frame. */
 void app_input(struct view_app *app, const struct ui_input *input);
 /** Moves what moves by itself. */

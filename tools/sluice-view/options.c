@@ -34,8 +34,8 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
          .help = "open no window: draw into pictures, with time by the number of the frame"},
         {OPTION_TEXT, "script", "FILE", "(none)", &o->script,
          "events: \"40 key 3\", \"60 click 312 200\", \"80 set budget 16\", \"90 screenshot "
-         "out.png\", \"120 quit\"; also hold, type, hover, double-click, drag, wheel, drop, do and "
-         "record"},
+         "out.png\", \"120 quit\"; also hold, type, hover, double-click, drag, wheel, drop, do, "
+         "record and reset"},
         {OPTION_UINT, "frames", "N", "0", &o->frames,
          "frames in all; 0: until the script or the visitor ends it, without either 120", 0,
          10000000},

@@ -192,6 +192,11 @@ static bool take_record(struct line *line)
     return line->count > 0 && add_text(line, SCRIPT_RECORD, line->rest, NULL);
 }
 
+static bool take_reset(struct line *line)
+{
+    return line->count == 0 && add(line, (struct script_step){.kind = SCRIPT_RESET});
+}
+
 static bool take_quit(struct line *line)
 {
     return line->count == 0 && add(line, (struct script_step){.kind = SCRIPT_QUIT});
@@ -214,6 +219,7 @@ static const struct {
     {"do", "evict, pin, hide or retry", take_do},
     {"record", "a file", take_record},
     {"screenshot", "a file", take_screenshot},
+    {"reset", "nothing else", take_reset},
     {"quit", "nothing else", take_quit},
 };
 

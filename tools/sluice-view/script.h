@@ -9,7 +9,7 @@
  *
  * Events are key CHORD, hold CHORD FRAMES, type TEXT, hover X Y, click X Y [left|right|middle],
  * double-click X Y, drag X Y X Y [FRAMES], wheel N, drop PATH, set NAME VALUE, do ACTION,
- * screenshot FILE and quit. Empty lines and what follows '#' are passed over.
+ * record FILE, screenshot FILE, reset and quit. Empty lines and what follows '#' are passed over.
  */
 #ifndef SLUICE_VIEW_SCRIPT_H
 #define SLUICE_VIEW_SCRIPT_H
@@ -28,6 +28,7 @@ enum script_kind {
     SCRIPT_SET,    ///< text, value
     SCRIPT_DO,     ///< text: texture_actions.h
     SCRIPT_RECORD, ///< text: a file
+    SCRIPT_RESET,  ///< settings, panels and camera as at first
     SCRIPT_SCREENSHOT,
     SCRIPT_QUIT
 };

@@ -79,6 +79,9 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
     case SCRIPT_DO: texture_actions_do(&v->app, step->text); break;
     case SCRIPT_RECORD: viewer_begin_recording(v, step->text); break;
     case SCRIPT_SCREENSHOT: snprintf(v->screenshot, sizeof v->screenshot, "%s", step->text); break;
+    case SCRIPT_RESET:
+        app_reset(&v->app, &v->options->settings, v->stage && !v->options->still);
+        break;
     case SCRIPT_QUIT: v->app.quit = true; break;
     }
 }
