@@ -115,7 +115,6 @@ static SluiceResult deliver(SluiceTileLoader *loader, struct slc_read *read,
 void slc_read_pooled_regions(SluiceTileLoader *loader, struct slc_read *read,
                              const SluiceImageInfo *info, struct slc_read_outcome *outcome)
 {
-    slc_mutex_lock(&loader->pool->mutex);
     for (uint32_t i = 0; i < read->region_count && outcome->result == SLUICE_SUCCESS; i++) {
         if (read->done >> i & 1)
             continue;
@@ -124,7 +123,6 @@ void slc_read_pooled_regions(SluiceTileLoader *loader, struct slc_read *read,
                               ? SLUICE_ERROR_CANCELED
                               : deliver(loader, read, info, i, &outcome->fault);
     }
-    slc_read_pool_unlock(loader->pool);
 }
 
 bool slc_pooled_read_waits(SluiceTileLoader *loader, struct slc_read *read,

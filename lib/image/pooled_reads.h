@@ -8,16 +8,16 @@
 /** Reads of the source go through the pool's regions: it is an image, and the pool has them. */
 bool slc_reads_are_pooled(const SluiceTileLoader *loader, const SluiceImageSource *source);
 
-/** Reads or copies the regions that are left. Without the mutex. Success may leave regions that
- *  other reads are reading. */
-void slc_read_pooled_regions(SluiceTileLoader *loader, struct slc_read *read,
-                             const SluiceImageInfo *info, struct slc_read_outcome *outcome);
-
 /** Reads the texels of a region that the caller has claimed. Without the mutex. */
 SluiceResult slc_read_shared_region(const struct slc_shared_region *shared,
                                     const SluiceImageInfo *info, SluiceImageFault *fault);
 
 /* All with the mutex held. */
+
+/** Reads or copies the regions of a running read that are left. The mutex is given up meanwhile.
+ *  Success may leave regions that other reads are reading. */
+void slc_read_pooled_regions(SluiceTileLoader *loader, struct slc_read *read,
+                             const SluiceImageInfo *info, struct slc_read_outcome *outcome);
 
 /** Returns how a region of a running read is delivered. */
 enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_read *read,

@@ -72,10 +72,12 @@ static void read_regions(const SluiceTileLoader *loader, struct slc_read *read,
     }
 }
 
-/* Before the read is over, because the source need not live longer. */
+/* With the mutex held, which is given up meanwhile. Before the read is over, because the source
+ * need not live longer. */
 static void report_failure(const SluiceTileLoader *loader, const struct slc_read *read,
                            const struct slc_read_outcome *outcome, bool will_retry, uint64_t delay)
 {
+    struct slc_mutex *mutex = &loader->pool->mutex;
     bool is_failure = outcome->result != SLUICE_SUCCESS &&
                       outcome->result != SLUICE_ERROR_CANCELED &&
                       (outcome->result != SLUICE_NOT_READY || !will_retry);
@@ -93,7 +95,9 @@ static void report_failure(const SluiceTileLoader *loader, const struct slc_read
         .userValue = read->result.userValue,
         .offset = outcome->fault.offset,
     };
+    slc_mutex_unlock(mutex);
     loader->failure.pfnFailed(loader->failure.pUserData, &failure);
+    slc_mutex_lock(mutex);
 }
 
 void slc_loader_signal_if_idle(SluiceTileLoader *loader)
@@ -114,14 +118,11 @@ void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, Sluice
 void slc_loader_settle_read(SluiceTileLoader *loader, struct slc_read *read,
                             const struct slc_read_outcome *outcome)
 {
-    struct slc_mutex *mutex = &loader->pool->mutex;
     uint64_t delay = 0;
     read->attempts.count++;
     read->attempts.corrupt_count += outcome->result == SLUICE_ERROR_CORRUPT_DATA;
     bool will_retry = slc_retry_is_due(&loader->retry, &read->attempts, outcome->result, &delay);
-    slc_mutex_unlock(mutex);
     report_failure(loader, read, outcome, will_retry, delay);
-    slc_mutex_lock(mutex);
     slc_read_queue_add_attempt(&loader->queue, read, outcome->result, outcome->fault.offset,
                                outcome->latency);
     if (!will_retry) {
@@ -152,12 +153,15 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
         slc_start_regions(loader, read, &info, start);
         return;
     }
-    if (is_known && slc_reads_are_pooled(loader, source))
-        slc_read_pooled_regions(loader, read, &info, &outcome);
-    else if (is_known)
+    bool is_pooled = slc_reads_are_pooled(loader, source);
+    if (is_known && !is_pooled)
         read_regions(loader, read, &info, &outcome);
     outcome.latency = slc_monotonic_time() - start;
     slc_mutex_lock(mutex);
+    if (is_known && is_pooled) {
+        slc_read_pooled_regions(loader, read, &info, &outcome);
+        outcome.latency = slc_monotonic_time() - start;
+    }
     if (is_known && info.format != SLUICE_FORMAT_UNDEFINED)
         read->source->format = info.format;
     if (!slc_pooled_read_waits(loader, read, &outcome))
