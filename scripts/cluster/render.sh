@@ -56,14 +56,15 @@ mkdir -p "$folder"
 # Left by tasks that were killed.
 find "$folder" -maxdepth 1 \( -name '.frame-*.png' -o -name '.frames-*' \) -mmin +1440 -exec rm -r {} +
 
-picture() { printf '%s/frame-%05d.png' "$folder" "$1"; }
+picture() { printf -v path '%s/frame-%05d.png' "$folder" "$1"; }
 
 # The tasks that lack a picture, as 1,5,7.
 tasks_to_run() {
     local task frame frames=$((last - first + 1))
     for ((task = 1; task <= count; task++)); do
         for ((frame = first + (task - 1) * frames / count; frame < first + task * frames / count; frame++)); do
-            [ -e "$(picture "$frame")" ] || { echo "$task"; break; }
+            picture "$frame"
+            [ -e "$path" ] || { echo "$task"; break; }
         done
     done | paste -sd ,
 }
@@ -90,6 +91,9 @@ for ((round = 0; ; round++)); do
     run_tasks "$list" "$@"
 done
 pictures=()
-for ((frame = first; frame <= last; frame++)); do pictures+=("$(picture "$frame")"); done
+for ((frame = first; frame <= last; frame++)); do
+    picture "$frame"
+    pictures+=("$path")
+done
 "$sheet" -o "$folder/contact-sheet.png" "${pictures[@]}"
 echo "$folder/contact-sheet.png: ${#pictures[@]} frames"
