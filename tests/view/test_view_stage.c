@@ -4,6 +4,8 @@
 
 #include "app.h"
 #include "controls.h"
+#include "device_words.h"
+#include "event_rows.h"
 #include "memory_map.h"
 #include "panels.h"
 #include "scene_data.h"
@@ -353,13 +355,81 @@ static void a_camera_that_looks_at_a_tile_sees_it_in_the_color_of_its_texture(vo
     app->camera = before;
 }
 
+static void listed_events_are_those_of_their_reason_and_texture(void **state)
+{
+    enum { MOST = 1 << 15 };
+    static SluiceTileEvent every[MOST];
+    static const SluiceTileEvent *rows[FACTS_EVENTS];
+    (void)state;
+    settle();
+    uint64_t cursor = 0, lost;
+    uint32_t count = MOST, kinds = 0;
+    CHECK_OK(sluiceReadTileEvents(manager(), &cursor, &count, every, &lost));
+    assert_int_equal(lost, 0);
+    assert_true(count > 20);
+    const SluiceTileEvent *all = count > FACTS_EVENTS ? every + count - FACTS_EVENTS : every;
+    count = count > FACTS_EVENTS ? FACTS_EVENTS : count; /* the facts keep the last */
+    for (uint32_t reason = 0; reason <= SLUICE_TILE_EVENT_REMOVED; reason++) {
+        uint32_t here = 0, first = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            here += (uint32_t)all[i].reason == reason;
+            first += (uint32_t)all[i].reason == reason &&
+                     all[i].textureId == stage_texture(show->stage, 0)->id;
+        }
+        assert_int_equal(
+            event_rows_find(&show->app.facts, reason + 1, STAGE_NO_TEXTURE, rows, FACTS_EVENTS),
+            here);
+        assert_int_equal(event_rows_find(&show->app.facts, reason + 1, 0, rows, FACTS_EVENTS),
+                         first);
+        kinds += here > 0;
+    }
+    assert_true(kinds >= 3);
+    assert_int_equal(event_rows_find(&show->app.facts, EVENT_ANY_REASON, STAGE_NO_TEXTURE, rows, 5),
+                     5);
+    assert_int_equal(rows[0]->mark, all[count - 1].mark); /* the newest is the first */
+}
+
+static void reasons_of_a_mode_are_those_that_the_library_chooses_by(void **state)
+{
+    (void)state;
+    char words[DEVICE_WORDS], quirks[DEVICE_QUIRKS][DEVICE_WORDS];
+    for (uint32_t kind = 0; kind < 8; kind++) {
+        const SluiceVulkanDeviceCapabilities c = {
+            .structSize = sizeof c,
+            .sparse = kind & 1,
+            .timelineSemaphore = true,
+            .shaderResourceMinLod = true,
+            .maxTouchedTiles = kind & 2 ? 16000 : 0,
+        };
+        const uint32_t textures = kind & 4 ? 5000 : 10;
+        SluiceResidencyMode mode;
+        CHECK_OK(sluiceChooseVulkanResidencyMode(&c, SLUICE_RESIDENCY_MODE_AUTO, textures, &mode));
+        device_mode_reason(&c, SLUICE_RESIDENCY_MODE_AUTO, mode, textures, words);
+        const bool too_many = strstr(words, "too many"), none = strstr(words, "no sparse");
+        assert_int_equal(none, !c.sparse);
+        assert_int_equal(too_many, c.sparse && mode == SLUICE_RESIDENCY_MODE_PAGED);
+        assert_int_equal(strstr(words, "has sparse") != NULL, mode == SLUICE_RESIDENCY_MODE_SPARSE);
+        const uint32_t count = device_quirks(&c, mode, quirks);
+        bool touched = false;
+        for (uint32_t i = 0; i < count; i++)
+            touched |= strstr(quirks[i], "maxTouchedTiles") != NULL;
+        assert_int_equal(touched, mode == SLUICE_RESIDENCY_MODE_SPARSE && c.maxTouchedTiles > 0);
+    }
+    const SluiceVulkanDeviceCapabilities none = {.structSize = sizeof none};
+    assert_non_null(strstr(device_mode_reason(&none, SLUICE_RESIDENCY_MODE_PAGED,
+                                              SLUICE_RESIDENCY_MODE_PAGED, 1, words),
+                           "--residency"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(listed_events_are_those_of_their_reason_and_texture),
         cmocka_unit_test(levels_under_the_mouse_are_those_of_the_colors),
         cmocka_unit_test(rows_of_textures_and_their_sum_count_all_tiles),
         cmocka_unit_test(sums_of_memory_count_all_slots),
         cmocka_unit_test(a_camera_that_looks_at_a_tile_sees_it_in_the_color_of_its_texture),
+        cmocka_unit_test(reasons_of_a_mode_are_those_that_the_library_chooses_by),
         cmocka_unit_test(filters_and_files_take_names_with_blanks_quotes_and_commas),
     };
     return tap_filter_stdout(), cmocka_run_group_tests(tests, begin, end);

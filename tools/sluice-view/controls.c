@@ -300,6 +300,21 @@ static const struct control table[] = {
      FIELD(memory_colors),
      NULL,
      0},
+    {"Panels",
+     "Events",
+     {OPTION_CHOICE, "event-reason",
+      "all|feedback|added|taken-up|prefetched|answered|retried|evicted|unmapped|called|removed",
+      "all", NULL, "events that are listed"},
+     FIELD(event_reason),
+     NULL,
+     0},
+    {"Panels",
+     "Events of",
+     {OPTION_CHOICE, "events-of", "selected|all", "selected", NULL,
+      "textures whose events are listed; selected: of all until one is selected"},
+     FIELD(events_of),
+     NULL,
+     0},
 };
 
 #define COUNT (sizeof table / sizeof *table)

@@ -1,45 +1,107 @@
 #include "panels.h"
 
+#include "event_rows.h"
 #include "panel_traced.h"
 
-#include <sluice/version.h>
+#include <stdio.h>
+#include <string.h>
+
+#define MOST_ROWS 200u
+#define MOST_FAILURES 6u
+#define MOST_PATH 36u /* bytes */
 
 static const char *const state_names[] = {"free",    "requested", "loading", "resident",
                                           "standby", "canceled",  "failed",  "given up"};
 static const char *const reason_names[] = {"feedback", "added",   "taken up", "prefetched",
                                            "answered", "retried", "evicted",  "unmapped",
                                            "called",   "removed"};
+#define REASON_WORDS                                                                               \
+    "all reasons|feedback|added|taken up|prefetched|answered|retried|evicted|unmapped|called|"     \
+    "removed"
 
-static const struct stage_texture *texture_of(const struct view_app *app, SluiceTextureId id,
-                                              uint32_t *index)
+static SluiceStreamedTextureManager *manager_of(const struct view_app *app)
 {
-    for (*index = 0; *index < app->facts.texture_count; ++*index)
-        if (stage_texture(app->stage, *index)->id == id)
-            return stage_texture(app->stage, *index);
-    return NULL;
+    SluiceStreamedTextureManager *manager = NULL;
+    sluiceGetVulkanStreamerManager(stage_streamer(app->stage), &manager);
+    return manager;
+}
+
+/* The end of a path, which names the file. */
+static const char *end_of(const char *path, const char **before)
+{
+    const size_t length = strlen(path);
+    *before = length > MOST_PATH ? "..." : "";
+    return length > MOST_PATH ? path + length - MOST_PATH : path;
+}
+
+/* Source, offset, result and a button. */
+static void draw_failure(struct view_app *app, uint32_t texture)
+{
+    const struct stage_texture *t = stage_texture(app->stage, texture);
+    const SluiceTileLoaderStatistics *reads = &app->facts.textures[texture].reads;
+    char label[32], where[48] = "";
+    const char *before, *path = end_of(t->path[0] ? t->path : t->name, &before);
+    snprintf(label, sizeof label, "Retry##%u", texture);
+    if (ui_button(label, 0, 0, false))
+        sluiceRetryVulkanSource(stage_streamer(app->stage), stage_source(app->stage, texture));
+    ui_hint("Reads its failed tiles again at once.");
+    ui_same_line(0);
+    if (reads->lastFailureOffset != SLUICE_UNKNOWN_OFFSET && reads->failedCount > 0)
+        snprintf(where, sizeof where, " at offset 0x%llx",
+                 (unsigned long long)reads->lastFailureOffset);
+    ui_text(UI_RED, "%s%s: %u failed: %s%s", before, path,
+            app->facts.textures[texture].statistics.failedTotal,
+            reads->failedCount > 0 ? sluiceGetResultName(reads->lastFailure) : "not read yet",
+            where);
+    ui_hint("%s", t->path[0] ? t->path : "It is not in a file.");
 }
 
 static void draw_failures(struct view_app *app)
 {
     const struct view_facts *f = &app->facts;
+    uint32_t failing = 0;
     for (uint32_t i = 0; i < f->texture_count; i++)
-        if (f->textures[i].statistics.failedTotal > 0)
-            ui_text(UI_RED, "%s: %u loads failed", stage_texture(app->stage, i)->name,
-                    f->textures[i].statistics.failedTotal);
-    if (f->now.failedTileCount + f->now.givenUpTileCount > 0 && ui_button("Retry", 0, 0, false))
+        if (f->textures[i].statistics.failedTotal > 0 && failing++ < MOST_FAILURES)
+            draw_failure(app, i);
+    if (failing > MOST_FAILURES)
+        ui_text(UI_RED, "and %u textures more", failing - MOST_FAILURES);
+    if (f->now.failedTileCount + f->now.givenUpTileCount == 0)
+        return;
+    if (ui_button("Retry all", 0, 0, false))
         sluiceRetryVulkanSource(stage_streamer(app->stage), NULL);
+    ui_hint("Reads all failed tiles of all textures again at once.");
+    ui_same_line(0);
+    ui_text(UI_RED, "%u tiles have failed, %u of them were given up for now",
+            f->now.failedTileCount + f->now.givenUpTileCount, f->now.givenUpTileCount);
 }
 
-static void draw_event(struct view_app *app, const SluiceTileEvent *event, const char *name,
-                       int row)
+static void draw_filters(struct view_app *app)
+{
+    bool selected = app->settings.events_of == VIEW_EVENTS_OF_SELECTED;
+    ui_item_width(130 * ui_scale());
+    ui_choice("##reason", REASON_WORDS, &app->settings.event_reason);
+    ui_hint("Reasons that are listed. --event-reason");
+    ui_same_line(0);
+    if (ui_check("selected texture alone", &selected))
+        app->settings.events_of = selected ? VIEW_EVENTS_OF_SELECTED : VIEW_EVENTS_OF_ALL;
+    ui_hint("Click a surface to select its texture; click nothing to list those of all. "
+            "--events-of");
+    ui_same_line(0);
+    if (selected && app->selected < app->facts.texture_count)
+        ui_text(UI_BLUE, "%s", stage_texture(app->stage, app->selected)->name);
+    else
+        ui_text(UI_GRAY, "newest first");
+}
+
+static void draw_row(const struct view_app *app, const SluiceTileEvent *event, uint32_t row)
 {
     SluiceTile tile = {0};
-    SluiceStreamedTextureManager *manager = NULL;
-    sluiceGetVulkanStreamerManager(stage_streamer(app->stage), &manager);
-    sluiceGetTileState(manager, event->textureId, event->tileIndex, NULL, &tile);
-    ui_table_row(row, false);
+    uint32_t texture = 0;
+    tile_log_index(&app->facts.log, event->textureId, &texture);
+    sluiceGetTileState(manager_of(app), event->textureId, event->tileIndex, NULL, &tile);
+    ui_table_row((int)row, false);
     ui_table_cell(UI_WHITE, "%llu", (unsigned long long)event->mark);
-    ui_table_cell(UI_WHITE, "%s", name);
+    ui_table_cell(UI_WHITE, "%s", stage_texture(app->stage, texture)->name);
     ui_table_cell(UI_WHITE, "%u", tile.mipLevel);
     ui_table_cell(UI_WHITE, "%u, %u", tile.x, tile.y);
     ui_table_cell(UI_GRAY, "%s", state_names[event->from]);
@@ -50,22 +112,17 @@ static void draw_event(struct view_app *app, const SluiceTileEvent *event, const
 
 static void draw_streamer(struct view_app *app)
 {
-    const struct view_facts *f = &app->facts;
-    int shown = 0;
+    const SluiceTileEvent *rows[MOST_ROWS];
+    const bool one = app->settings.events_of == VIEW_EVENTS_OF_SELECTED &&
+                     app->selected < app->facts.texture_count;
     draw_failures(app);
-    ui_text(UI_GRAY, app->selected < f->texture_count
-                         ? "The selected texture; newest first."
-                         : "All textures; newest first. Click a surface for its own.");
+    draw_filters(app);
+    const uint32_t count = event_rows_find(&app->facts, (uint32_t)app->settings.event_reason,
+                                           one ? app->selected : STAGE_NO_TEXTURE, rows, MOST_ROWS);
     if (!ui_begin_table("events", "Frame|Texture|Level|Tile|From|To|Reason", 0, false))
         return;
-    for (uint32_t age = 0; age < f->event_count && shown < 200; age++) {
-        const SluiceTileEvent *event =
-            &f->events[(f->event_next + FACTS_EVENTS - 1 - age) % FACTS_EVENTS];
-        uint32_t index;
-        const struct stage_texture *texture = texture_of(app, event->textureId, &index);
-        if (texture && (app->selected >= f->texture_count || app->selected == index))
-            draw_event(app, event, texture->name, shown++);
-    }
+    for (uint32_t i = 0; i < count; i++)
+        draw_row(app, rows[i], i);
     ui_end_table();
 }
 
@@ -73,62 +130,11 @@ void panel_events(struct view_app *app)
 {
     if (!app->open[PANEL_EVENTS])
         return;
-    if (panel_begin(app, PANEL_EVENTS, "Events (K)", 520, 400)) {
+    if (panel_begin(app, PANEL_EVENTS, "Events (K)", 560, 420)) {
         if (stage_traced(app->stage))
             panel_traced_events(app);
         else
             draw_streamer(app);
-    }
-    ui_end_panel();
-}
-
-static const char *mode_name(SluiceResidencyMode mode)
-{
-    switch (mode) {
-    case SLUICE_RESIDENCY_MODE_SPARSE: return "sparse: images whose tiles are bound to memory";
-    case SLUICE_RESIDENCY_MODE_PAGED: return "paged: a page table in shaders";
-    case SLUICE_RESIDENCY_MODE_DENSE: return "dense: memory for everything";
-    default: return "auto";
-    }
-}
-
-static void draw_mode(const struct view_app *app, SluiceResidencyMode mode)
-{
-    ui_paragraph(UI_WHITE, mode_name(mode));
-    ui_text(UI_GRAY, "asked for: %s",
-            app->settings.residency == VIEW_AUTO ? "auto, the best that it has"
-                                                 : "this mode (--residency)");
-}
-
-void panel_device(struct view_app *app)
-{
-    if (!app->open[PANEL_DEVICE])
-        return;
-    if (panel_begin(app, PANEL_DEVICE, "Device (J)", 420, 300)) {
-        const VkPhysicalDeviceProperties *p = &app->gpu->properties;
-        SluiceResidencyMode mode = SLUICE_RESIDENCY_MODE_AUTO;
-        char size[32];
-        sluiceGetVulkanResidencyMode(stage_streamer(app->stage), &mode);
-        ui_paragraph(UI_BLUE, p->deviceName);
-        ui_text(UI_GRAY, "Vulkan %u.%u.%u, driver %u.%u.%u", VK_API_VERSION_MAJOR(p->apiVersion),
-                VK_API_VERSION_MINOR(p->apiVersion), VK_API_VERSION_PATCH(p->apiVersion),
-                VK_API_VERSION_MAJOR(p->driverVersion), VK_API_VERSION_MINOR(p->driverVersion),
-                VK_API_VERSION_PATCH(p->driverVersion));
-        if (stage_traced(app->stage))
-            panel_traced_device(app);
-        else
-            draw_mode(app, mode);
-        ui_text(UI_GRAY, "sparse residency: %s", app->gpu->capabilities.sparse ? "yes" : "no");
-        for (uint32_t i = 0; i < app->gpu->memory.memoryHeapCount; i++)
-            ui_text(UI_GRAY, "memory heap %u: %s%s", i,
-                    panel_size(app->gpu->memory.memoryHeaps[i].size, size, sizeof size),
-                    app->gpu->memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT
-                        ? ", of the device"
-                        : "");
-        ui_text(UI_GRAY, "validation messages: %u",
-                (unsigned)atomic_load(&app->gpu->validation_messages));
-        ui_text(UI_GRAY, "Sluice %u.%u.%u", SLUICE_VERSION_MAJOR, SLUICE_VERSION_MINOR,
-                SLUICE_VERSION_PATCH);
     }
     ui_end_panel();
 }

@@ -11,6 +11,7 @@ enum view_motion { VIEW_WALK, VIEW_FLY, VIEW_ORBIT };
 enum view_compare { VIEW_COMPARE_OFF, VIEW_DIVIDER, VIEW_DIFFERENCE, VIEW_FLICKER };
 enum view_render_mode { VIEW_PRIMARY, VIEW_NEAR, VIEW_DISTANT, VIEW_PATHS }; ///< PBRT_MODE_...
 enum view_compared { VIEW_WITH_EVERYTHING, VIEW_WITH_BUDGET };
+enum view_events_of { VIEW_EVENTS_OF_SELECTED, VIEW_EVENTS_OF_ALL };
 enum view_difference { VIEW_BOTH_DIFFERENCES, VIEW_PIXELS, VIEW_FLIP };
 
 /** Views of the picture, by the number of their key. */
@@ -67,6 +68,8 @@ struct view_settings {
     int panels;        ///< 0: shown
     int graph_span;    ///< enum history_span
     int memory_colors; ///< enum memory_colors
+    int event_reason;  ///< EVENT_ANY_REASON, or 1 + SluiceTileEventReason
+    int events_of;     ///< enum view_events_of
 };
 
 #endif /* SLUICE_VIEW_SETTINGS_H */
