@@ -1,5 +1,7 @@
 #include "film.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "one_time.h"
@@ -12,19 +14,32 @@ static VkDeviceSize pixel_count(const struct film *film)
     return (VkDeviceSize)film->width * film->height;
 }
 
+/** Whether the tile of a pixel is of the share. */
 static bool has_pixel(const struct film *film, uint32_t x, uint32_t y)
 {
     const struct film_share *share = &film->share;
     return share->count < 2 || (x / TILE + y / TILE) % share->count == share->index;
 }
 
-static uint32_t count_pixels(const struct film *film)
+static void list_block(struct film *film, uint32_t left, uint32_t top)
 {
-    uint32_t count = 0;
-    for (uint32_t y = 0; y < film->height; y++)
-        for (uint32_t x = 0; x < film->width; x++)
-            count += has_pixel(film, x, y);
-    return count;
+    for (uint32_t y = top; y < top + BLOCK && y < film->height; y++)
+        for (uint32_t x = left; x < left + BLOCK && x < film->width; x++)
+            film->all[film->pixel_count++] = y * film->width + x;
+}
+
+static bool list_all(struct film *film)
+{
+    film->all = malloc(pixel_count(film) * sizeof *film->all);
+    if (!film->all) {
+        fprintf(stderr, "out of memory\n");
+        return false;
+    }
+    for (uint32_t top = 0; top < film->height; top += BLOCK)
+        for (uint32_t left = 0; left < film->width; left += BLOCK)
+            if (has_pixel(film, left, top))
+                list_block(film, left, top);
+    return true;
 }
 
 bool film_create(const struct gpu *gpu, uint32_t width, uint32_t height, struct film_share share,
@@ -33,7 +48,8 @@ bool film_create(const struct gpu *gpu, uint32_t width, uint32_t height, struct 
     const VkBufferUsageFlags usage =
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     *film = (struct film){.width = width, .height = height, .share = share};
-    film->pixel_count = count_pixels(film);
+    if (!list_all(film))
+        return false;
     const VkDeviceSize count = pixel_count(film), size = count * 4 * sizeof(float);
     if (!gpu_create_buffer(gpu, size, usage, &film->sums) ||
         !gpu_create_buffer(gpu, size, usage, &film->latest) ||
@@ -58,30 +74,15 @@ void film_destroy(const struct gpu *gpu, struct film *film)
     gpu_destroy_buffer(gpu, &film->lists);
     gpu_destroy_buffer(gpu, &film->counters);
     gpu_destroy_buffer(gpu, &film->readback);
-}
-
-static void list_block(const struct film *film, uint32_t left, uint32_t top, uint32_t *count)
-{
-    uint32_t *list = film->lists.mapped;
-    for (uint32_t y = top; y < top + BLOCK && y < film->height; y++)
-        for (uint32_t x = left; x < left + BLOCK && x < film->width; x++)
-            list[(*count)++] = y * film->width + x;
-}
-
-static void write_list(const struct film *film)
-{
-    uint32_t count = 0;
-    for (uint32_t top = 0; top < film->height; top += BLOCK)
-        for (uint32_t left = 0; left < film->width; left += BLOCK)
-            if (has_pixel(film, left, top))
-                list_block(film, left, top, &count);
+    free(film->all);
+    film->all = NULL;
 }
 
 /* Launches write the first list only after they have written the second. */
 void film_begin_sample(struct film *film)
 {
     if (!film->has_list)
-        write_list(film);
+        memcpy(film->lists.mapped, film->all, film->pixel_count * sizeof *film->all);
     film->has_list = true;
     film->list_index = 0;
     film->missing_count = film->pixel_count;
@@ -128,21 +129,29 @@ static void record_readback(void *user_data, VkCommandBuffer commands)
                          &barrier, 0, NULL, 0, NULL);
 }
 
-bool film_read(const struct gpu *gpu, const struct film *film, struct picture *picture)
+/** `count` pixels from `first` on. */
+static void read_pixels(const struct film *film, struct picture *picture, size_t first,
+                        size_t count)
 {
-    if (!one_time_run(gpu, record_readback, (void *)film))
-        return false;
-    const VkDeviceSize count = pixel_count(film);
     const float(*sums)[4] = film->readback.mapped;
-    const float(*latest)[4] = sums + count;
-    for (VkDeviceSize i = 0; i < count; i++) {
-        if (!has_pixel(film, (uint32_t)(i % film->width), (uint32_t)(i / film->width)))
-            continue;
+    const float(*latest)[4] = sums + pixel_count(film);
+    for (size_t i = first; i < first + count; i++) {
         bool none = sums[i][3] == 0.0f; /* what the last sample could see is all there is */
         for (int c = 0; c < 3; c++)
             picture->rgba[i][c] = none ? latest[i][c] : sums[i][c] / sums[i][3];
         picture->rgba[i][3] = 1.0f;
         picture->missing[i] = latest[i][3] != 0.0f;
     }
+}
+
+bool film_read(const struct gpu *gpu, const struct film *film, struct picture *picture)
+{
+    if (!one_time_run(gpu, record_readback, (void *)film))
+        return false;
+    for (uint32_t y = 0; y < film->height; y++)
+        for (uint32_t x = 0; x < film->width; x += TILE)
+            if (has_pixel(film, x, y))
+                read_pixels(film, picture, (size_t)y * film->width + x,
+                            film->width - x < TILE ? film->width - x : TILE);
     return true;
 }

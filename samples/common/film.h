@@ -21,6 +21,7 @@ struct film {
     uint32_t list_index;                             ///< the list that the next launch reads
     uint32_t missing_count;                          ///< pixels in it
     bool has_list;                                   ///< the first list has all pixels of the share
+    uint32_t *all;                                   ///< owned; that list
 };
 
 /** Says on stderr why it failed. */

@@ -18,6 +18,8 @@ bool picture_create(uint32_t width, uint32_t height, struct picture *picture)
     *picture = (struct picture){.width = width, .height = height};
     picture->rgba = calloc(count, sizeof *picture->rgba);
     picture->missing = calloc(count, sizeof *picture->missing);
+    for (size_t i = 0; i < count && picture->rgba && picture->missing; i++)
+        picture->rgba[i][3] = 1.0f; /* and the memory is there when pictures are timed */
     if (picture->rgba && picture->missing)
         return true;
     fprintf(stderr, "out of memory\n");
