@@ -18,6 +18,7 @@
 #include "../../tools/common/text.h"
 #include "../common/contact_sheet.h"
 #include "../common/crew.h"
+#include "../common/picture_ring.h"
 #include "camera.h"
 #include "flight.h"
 #include "picture_output.h"
@@ -34,7 +35,8 @@ struct renderer {
     uint32_t device_count;
     bool unsupported;
     uint32_t validation_messages; ///< of all devices, once they are destroyed
-    struct picture picture;
+    struct picture_ring ring;     ///< of pictures that all devices render
+    struct picture *picture;      ///< ... the one that they render, or rendered last
     struct contact_sheet sheet;
     struct flight flight;     ///< of the only device
     double way;               ///< share of the picture that all devices render
@@ -146,9 +148,29 @@ static bool open_device(void *user_data, uint32_t index)
     return device_open(&r->devices[index], splits ? share : (struct film_share){0});
 }
 
+static bool write_picture(void *user_data, const struct picture *picture, uint32_t index)
+{
+    const struct pbrt_options *o = user_data;
+    char path[4096];
+    name_picture(o, index, path);
+    return picture_output_write(picture, o->exposure, path);
+}
+
+static bool create_ring(struct renderer *r, uint32_t count, struct picture_ring *ring)
+{
+    return picture_ring_create(count, r->shared.size, true, write_picture, &r->options, ring);
+}
+
+/** As many pictures of an animation are written at a time as devices render. */
+static uint32_t picture_slots(const struct renderer *r)
+{
+    const uint32_t most = r->device_count + 1;
+    const uint32_t count = end_of_pictures(&r->options) - first_picture(&r->options);
+    return count < most ? count : most;
+}
+
 static bool open_all(struct renderer *r)
 {
-    const uint32_t *size = r->shared.size;
     const struct pbrt_options *o = &r->options;
     if (!open_scene(r) || !create_devices(r) || !create_pictures(r) ||
         !read_sharing_create(o->read_sharing, r->device_count, o->threads, &r->shared.pool))
@@ -157,7 +179,7 @@ static bool open_all(struct renderer *r)
     const bool done = r->shared.meshes && crew_run(r->device_count, open_device, r);
     for (uint32_t i = 0; i < r->device_count; i++)
         r->unsupported = r->unsupported || r->devices[i].unsupported;
-    return done && picture_create(size[0], size[1], &r->picture);
+    return done && (o->split == SPLIT_ALTERNATE || create_ring(r, picture_slots(r), &r->ring));
 }
 
 static void close_all(struct renderer *r)
@@ -168,7 +190,7 @@ static void close_all(struct renderer *r)
     sluiceDestroyReadPool(r->shared.pool);
     mesh_cache_destroy(r->shared.meshes);
     picture_files_finish(&r->shared.pictures);
-    picture_destroy(&r->picture);
+    picture_ring_destroy(&r->ring);
     contact_sheet_finish(&r->sheet);
     scene_finish(&r->shared.scene);
     if (r->devices)
@@ -184,7 +206,7 @@ static bool add_to_sheet(struct renderer *r, const struct device *d)
     const bool is_small = share > 0.0 && share < 10.0;
     snprintf(caption, sizeof caption, "launch %u: %llu shapes, %.*f%% missing", d->launches.count,
              (unsigned long long)d->world.entered_count, is_small ? 1 : 0, share);
-    return contact_sheet_add(&r->sheet, &r->picture, r->options.exposure, caption);
+    return contact_sheet_add(&r->sheet, r->picture, r->options.exposure, caption);
 }
 
 static void tell_debug(const struct renderer *r, const struct device *device)
@@ -219,20 +241,12 @@ static bool after_launch(void *user_data)
     tell_debug(r, d);
     if (!o->sequence && !o->contact_sheet)
         return true;
-    if (!film_read(&d->gpu, &d->film, &r->picture))
+    if (!film_read(&d->gpu, &d->film, r->picture))
         return false;
     snprintf(path, sizeof path, "%s/launch-%05u.png", o->sequence ? o->sequence : "",
              d->launches.count);
-    return (!o->sequence || picture_output_write(&r->picture, o->exposure, path)) &&
+    return (!o->sequence || picture_output_write(r->picture, o->exposure, path)) &&
            (!o->contact_sheet || add_to_sheet(r, d));
-}
-
-static bool write_picture(const struct pbrt_options *o, const struct picture *picture,
-                          uint32_t index)
-{
-    char path[4096];
-    name_picture(o, index, path);
-    return picture_output_write(picture, o->exposure, path);
 }
 
 /** Share of the way. */
@@ -252,7 +266,7 @@ static bool end_if_failed(struct renderer *r, bool done)
 static bool render_share(void *user_data, uint32_t index)
 {
     struct renderer *r = user_data;
-    return end_if_failed(r, device_render(&r->devices[index], r->way, &r->picture));
+    return end_if_failed(r, device_render(&r->devices[index], r->way, r->picture));
 }
 
 /** Whole pictures, the next one that no device has begun. */
@@ -260,13 +274,13 @@ static bool render_pictures(void *user_data, uint32_t index)
 {
     struct renderer *r = user_data;
     const struct pbrt_options *o = &r->options;
-    struct picture picture = {0};
-    bool done = picture_create(r->shared.size[0], r->shared.size[1], &picture);
-    picture.plain = true;
+    struct picture_ring ring = {0};
+    bool done = create_ring(r, 2, &ring);
     for (uint32_t i; done && (i = atomic_fetch_add(&r->next_picture, 1)) < end_of_pictures(o);)
-        done = device_render(&r->devices[index], way_of(o, i), &picture) &&
-               write_picture(o, &picture, i);
-    picture_destroy(&picture);
+        done = device_render(&r->devices[index], way_of(o, i), picture_ring_next(&ring)) &&
+               picture_ring_write(&ring, i);
+    done = picture_ring_wait(&ring) && done;
+    picture_ring_destroy(&ring);
     return end_if_failed(r, done);
 }
 
@@ -279,9 +293,10 @@ static bool render_all(struct renderer *r)
         return crew_run(r->device_count, render_pictures, r);
     for (uint32_t i = first_picture(o); i < end_of_pictures(o) && done; i++) {
         r->way = way_of(o, i);
-        done = crew_run(r->device_count, render_share, r) && write_picture(o, &r->picture, i);
+        r->picture = picture_ring_next(&r->ring);
+        done = crew_run(r->device_count, render_share, r) && picture_ring_write(&r->ring, i);
     }
-    return done;
+    return picture_ring_wait(&r->ring) && done;
 }
 
 static bool repeat_share(void *user_data, uint32_t index)
@@ -329,7 +344,8 @@ static bool fly(struct renderer *r)
 static bool render(struct renderer *r)
 {
     uint64_t missing = 0;
-    r->picture.plain = true;
+    if (r->ring.count > 0)
+        r->picture = picture_ring_next(&r->ring); /* launches of a flight are shown in it */
     r->trace_start = clock_seconds();
     for (uint32_t i = 0; i < r->device_count; i++) {
         r->devices[i].launches.user_data = r;

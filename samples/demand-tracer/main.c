@@ -20,6 +20,7 @@
 #include "../../tools/common/text.h"
 #include "../common/contact_sheet.h"
 #include "../common/crew.h"
+#include "../common/picture_ring.h"
 #include "device.h"
 #include "summary.h"
 
@@ -35,7 +36,8 @@ struct tracer {
     uint32_t device_count;
     bool unsupported;
     uint32_t validation_messages; ///< of all devices, once they are destroyed
-    struct picture picture;
+    struct picture_ring ring;     ///< of pictures that all devices trace
+    struct picture *picture;      ///< ... the one that they trace, or traced last
     struct contact_sheet sheet;
     struct scene_camera camera; ///< of the picture that all devices trace
     atomic_uint next_picture;   ///< of an animation whose pictures devices take in turn
@@ -120,6 +122,26 @@ static bool open_device(void *user_data, uint32_t index)
                        splits ? share : (struct film_share){0});
 }
 
+static bool write_picture(void *user_data, const struct picture *picture, uint32_t index)
+{
+    const struct tracer_options *o = user_data;
+    char name[32];
+    name_picture(o, index, name);
+    return picture_write(picture, o->exposure, o->output, name);
+}
+
+static bool create_ring(struct tracer *t, uint32_t count, struct picture_ring *ring)
+{
+    return picture_ring_create(count, t->options.size, false, write_picture, &t->options, ring);
+}
+
+/** As many pictures of an animation are written at a time as devices trace. */
+static uint32_t picture_slots(const struct tracer *t)
+{
+    const uint32_t most = t->device_count + 1, count = picture_count(&t->options);
+    return count < most ? count : most;
+}
+
 static bool open_all(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
@@ -131,7 +153,7 @@ static bool open_all(struct tracer *t)
     const bool done = crew_run(t->device_count, open_device, t);
     for (uint32_t i = 0; i < t->device_count; i++)
         t->unsupported = t->unsupported || t->devices[i].unsupported;
-    return done && picture_create(o->size[0], o->size[1], &t->picture);
+    return done && (o->split == SPLIT_ALTERNATE || create_ring(t, picture_slots(t), &t->ring));
 }
 
 static void close_all(struct tracer *t)
@@ -140,7 +162,7 @@ static void close_all(struct tracer *t)
         device_destroy(&t->devices[i]);
     sluiceDestroyReadPool(t->pool);
     textures_finish(&t->textures);
-    picture_destroy(&t->picture);
+    picture_ring_destroy(&t->ring);
     contact_sheet_finish(&t->sheet);
     scene_finish(&t->scene);
     if (t->devices)
@@ -169,11 +191,12 @@ static void show_progress(struct device *d, const struct launch_record *record,
 static bool add_to_sheet(struct tracer *t, const struct launch_record *record, uint64_t tiles)
 {
     char caption[96];
-    double share = 100.0 * record->missing_count / ((double)t->picture.width * t->picture.height);
+    const double pixels = (double)t->picture->width * t->picture->height;
+    const double share = 100.0 * record->missing_count / pixels;
     bool some = record->missing_count > 0;
     snprintf(caption, sizeof caption, "launch %u: %llu tiles, %.*f%% missing", record->index,
              (unsigned long long)tiles, some && share < 10.0 ? 1 : 0, share);
-    return contact_sheet_add(&t->sheet, &t->picture, t->options.exposure, caption);
+    return contact_sheet_add(&t->sheet, t->picture, t->options.exposure, caption);
 }
 
 static bool remember(struct device *d, const struct launch_record *record,
@@ -200,10 +223,9 @@ static bool keep_picture(struct device *d, const struct launch_record *record, u
         return true;
     char name[32];
     snprintf(name, sizeof name, "launch-%05u", record->index);
-    return film_read(&d->gpu, &d->film, &t->picture) &&
-           (!sheet || add_to_sheet(t, record, tiles)) &&
+    return film_read(&d->gpu, &d->film, t->picture) && (!sheet || add_to_sheet(t, record, tiles)) &&
            (!o->launch_pictures ||
-            picture_write(&t->picture, o->exposure, o->launch_pictures, name));
+            picture_write(t->picture, o->exposure, o->launch_pictures, name));
 }
 
 static bool after_launch(void *user_data, const struct launch_record *record)
@@ -216,14 +238,6 @@ static bool after_launch(void *user_data, const struct launch_record *record)
     show_progress(d, record, &statistics);
     return remember(d, record, &statistics) &&
            keep_picture(d, record, statistics.residentTileCount);
-}
-
-static bool write_picture(const struct tracer_options *o, const struct picture *picture,
-                          uint32_t index)
-{
-    char name[32];
-    name_picture(o, index, name);
-    return picture_write(picture, o->exposure, o->output, name);
 }
 
 static struct scene_camera camera_of(const struct tracer_options *o, uint32_t picture)
@@ -248,7 +262,7 @@ static bool preload(void *user_data, uint32_t index)
 static bool trace_share(void *user_data, uint32_t index)
 {
     struct tracer *t = user_data;
-    return end_if_failed(t, device_trace(&t->devices[index], &t->camera, &t->picture));
+    return end_if_failed(t, device_trace(&t->devices[index], &t->camera, t->picture));
 }
 
 /** Whole pictures, the next one that no device has begun. */
@@ -256,13 +270,15 @@ static bool trace_pictures(void *user_data, uint32_t index)
 {
     struct tracer *t = user_data;
     const struct tracer_options *o = &t->options;
-    struct picture picture = {0};
-    bool done = picture_create(o->size[0], o->size[1], &picture);
+    struct picture_ring ring = {0};
+    bool done = create_ring(t, 2, &ring);
     for (uint32_t i; done && (i = atomic_fetch_add(&t->next_picture, 1)) < picture_count(o);) {
         const struct scene_camera camera = camera_of(o, i);
-        done = device_trace(&t->devices[index], &camera, &picture) && write_picture(o, &picture, i);
+        done = device_trace(&t->devices[index], &camera, picture_ring_next(&ring)) &&
+               picture_ring_write(&ring, i);
     }
-    picture_destroy(&picture);
+    done = picture_ring_wait(&ring) && done;
+    picture_ring_destroy(&ring);
     return end_if_failed(t, done);
 }
 
@@ -274,9 +290,10 @@ static bool trace_all(struct tracer *t)
         return crew_run(t->device_count, trace_pictures, t);
     for (uint32_t i = 0; i < picture_count(o) && done; i++) {
         t->camera = camera_of(o, i);
-        done = crew_run(t->device_count, trace_share, t) && write_picture(o, &t->picture, i);
+        t->picture = picture_ring_next(&t->ring);
+        done = crew_run(t->device_count, trace_share, t) && picture_ring_write(&t->ring, i);
     }
-    return done;
+    return picture_ring_wait(&t->ring) && done;
 }
 
 static bool write_histories(const struct tracer *t)
@@ -313,7 +330,7 @@ static bool print_summary(struct tracer *t)
                               .needed_tiles = NAN};
     const struct picture_place place = {o->output, t->devices[0].launches.count};
     if ((o->reference &&
-         !picture_compare(&t->picture, o->exposure, o->reference, &place, &summary.difference)) ||
+         !picture_compare(t->picture, o->exposure, o->reference, &place, &summary.difference)) ||
         !count_needs(t, &summary.needed_tiles))
         return false;
     if (o->json)
