@@ -187,6 +187,12 @@ static void sweep(struct view_app *app, int argument)
     app_set_panel(app, PANEL_TRADE, true);
 }
 
+static void reload_shaders(struct view_app *app, int argument)
+{
+    (void)argument;
+    app->reload_shaders = true;
+}
+
 static void full_screen(struct view_app *app, int argument)
 {
     (void)argument;
@@ -277,6 +283,7 @@ static const struct action table[] = {
     {"Program", "F10", NULL, "menu", toggle_panel, PANEL_MENU},
     {"Program", "C", NULL, "copy command line", copy_command, 0},
     {"Program", "F5", NULL, "open the scene again", reload, 0},
+    {"Program", "Ctrl+F5", NULL, "compile the shaders again", reload_shaders, 0},
     {"Program", "F11", NULL, "full screen", full_screen, 0},
     {"Program", "F12", NULL, "screenshot of the picture", take_screenshot, 0},
     {"Program", "Shift+F12", NULL, "screenshot with panels", take_screenshot, 1},

@@ -81,7 +81,7 @@ struct view_app {
     const struct trade *trade; ///< borrowed
     /* Requests to the loop, which resets them. */
     bool quit, reload, step, step_tile, restart, screenshot, screenshot_plain, trace;
-    bool trade_toggle, trade_page;
+    bool trade_toggle, trade_page, reload_shaders;
 };
 
 void app_init(struct view_app *app);

@@ -103,7 +103,7 @@ static void draw_budget(struct view_app *app, const char *label)
         app->settings.budget = 0;
     panel_size(app->facts.wanted_size, wanted, sizeof wanted);
     draw_budget_ticks(app, most);
-    if (app->dragged_budget)
+    if (app->dragged_budget && !stage_traced(app->stage))
         draw_budget_ghost(app);
     else
         ui_text(UI_GRAY, "wanted now: %s", wanted);

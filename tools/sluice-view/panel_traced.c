@@ -16,6 +16,8 @@ static const struct {
     {"8", "View 8 is not for scenes of pbrt: demand-pbrt --preload renders the truth"},
     {"9", "View 9 is not for scenes of pbrt: view 3 marks what is missing"},
     {"V", "There is nothing to compare with: scenes of pbrt have one loader"},
+    {"Shift+N", "Tiles are not stepped one by one: a launch loads all that its rays lack"},
+    {"Ctrl+T", "Scenes of pbrt are not swept: demand-pbrt --json has their figures"},
     {"L", "Wants cannot be frozen: rays ask anew in each launch"},
     {",", "Scenes of pbrt have no mip bias: the budget makes them coarser"},
     {".", "Scenes of pbrt have no mip bias: the budget makes them coarser"},
@@ -43,7 +45,8 @@ bool panel_traced_takes(const char *control)
         "standby",         "timeout",          "residency",    "feedback", "probability",
         "tiles-per-frame", "loads-in-flight",  "fade",         "borders",  "textures-per-frame",
         "source-latency",  "source-bandwidth", "source-fails", "lod-bias", "freeze-wants",
-        "compare-as",      "compare-to",       "divider",      "gain"};
+        "compare-as",      "compare-to",       "divider",      "gain",     "predict",
+        "difference-as"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(names[i], control) == 0)
             return false;

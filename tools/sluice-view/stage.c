@@ -350,6 +350,11 @@ bool stage_settle(struct stage *s)
            check(sluiceWaitVulkanStreamerIdle(s->streamer), "sluiceWaitVulkanStreamerIdle");
 }
 
+bool stage_use_shaders(struct stage *s, const struct shader_code *code)
+{
+    return !s->traced && stage_drawing_use(&s->drawing, &s->scene, code);
+}
+
 void stage_restart(struct stage *s)
 {
     for (uint32_t i = 0; i < s->scene.image_count; i++)

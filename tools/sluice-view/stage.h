@@ -13,6 +13,7 @@
 #define STAGE_TICKS_PER_SECOND 1000000u ///< of time stamps
 #define STAGE_HEAP_TILES 64u            ///< 4 MiB, so that small budgets are kept to
 
+struct shader_code;
 struct stage;
 struct scene_data;
 struct traced;
@@ -77,6 +78,9 @@ bool stage_record(struct stage *stage, const struct stage_draw *draw, VkCommandB
                   struct frames_end *end);
 /** Settings that change while the scene is open. */
 void stage_apply(struct stage *stage, const struct view_settings *settings);
+/** Takes other shaders. No frame may be in flight. False, and nothing has changed, if that failed.
+ */
+bool stage_use_shaders(struct stage *stage, const struct shader_code *code);
 /** Evicts everything that can be evicted. */
 void stage_restart(struct stage *stage);
 /** Waits until all reads are done, for pictures that are the same in every run. */

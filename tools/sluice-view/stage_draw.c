@@ -60,14 +60,24 @@ static uint32_t pipeline_of(const struct scene_material *material)
     return (uint32_t)material->alpha + (material->double_sided ? BOTH_SIDES : 0u);
 }
 
-static VkShaderModule create_fragment(const struct gpu *gpu, uint32_t pipeline)
+/* Those of the build. */
+static void list_shaders(struct shader_code code[SCENE_SHADER_COUNT])
 {
-    return pipeline % BOTH_SIDES == ALPHA_MASK
-               ? gpu_create_shader(gpu, scene_masked_frag, sizeof scene_masked_frag)
-               : gpu_create_shader(gpu, scene_frag, sizeof scene_frag);
+    code[SCENE_VERTEX] = (struct shader_code){(uint32_t *)scene_vert, sizeof scene_vert};
+    code[SCENE_FRAGMENT] = (struct shader_code){(uint32_t *)scene_frag, sizeof scene_frag};
+    code[SCENE_MASKED_FRAGMENT] =
+        (struct shader_code){(uint32_t *)scene_masked_frag, sizeof scene_masked_frag};
 }
 
-static bool create_pipeline(struct stage_drawing *d, uint32_t pipeline, bool paged)
+static VkShaderModule create_fragment(const struct gpu *gpu, const struct shader_code *code,
+                                      uint32_t pipeline)
+{
+    code += pipeline % BOTH_SIDES == ALPHA_MASK ? SCENE_MASKED_FRAGMENT : SCENE_FRAGMENT;
+    return gpu_create_shader(gpu, code->words, code->size);
+}
+
+static bool create_pipeline(struct stage_drawing *d, const struct shader_code *code,
+                            uint32_t pipeline, VkPipeline *created)
 {
     const VkVertexInputBindingDescription binding = {0, sizeof(struct scene_vertex),
                                                      VK_VERTEX_INPUT_RATE_VERTEX};
@@ -82,39 +92,54 @@ static bool create_pipeline(struct stage_drawing *d, uint32_t pipeline, bool pag
         .pVertexBindingDescriptions = &binding,
         .vertexAttributeDescriptionCount = 4,
         .pVertexAttributeDescriptions = attributes};
-    const VkBool32 constant = paged;
+    const VkBool32 constant = d->paged;
     const VkSpecializationMapEntry entry = {0, 0, sizeof constant};
     const VkSpecializationInfo constants = {1, &entry, sizeof constant, &constant};
     struct draw_pipeline_info info = {
         .target = &d->targets[0],
         .layout = d->layout,
-        .vertex = gpu_create_shader(d->gpu, scene_vert, sizeof scene_vert),
-        .fragment = create_fragment(d->gpu, pipeline),
+        .vertex = gpu_create_shader(d->gpu, code[SCENE_VERTEX].words, code[SCENE_VERTEX].size),
+        .fragment = create_fragment(d->gpu, code, pipeline),
         .constants = &constants,
         .input = &input,
         .culled = pipeline >= BOTH_SIDES ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT,
         .blended = pipeline % BOTH_SIDES == ALPHA_BLEND};
-    bool created = info.vertex && info.fragment &&
-                   draw_pipeline_create(d->gpu, &info, &d->pipelines[pipeline]);
+    const bool done = info.vertex && info.fragment && draw_pipeline_create(d->gpu, &info, created);
     vkDestroyShaderModule(d->gpu->device, info.vertex, NULL);
     vkDestroyShaderModule(d->gpu->device, info.fragment, NULL);
-    return created;
+    return done;
 }
 
-static bool create_pipelines(struct stage_drawing *d, const struct scene_data *scene, bool paged)
+static void destroy_pipelines(const struct gpu *gpu, VkPipeline pipelines[STAGE_PIPELINES])
 {
+    for (int i = 0; i < STAGE_PIPELINES; i++) {
+        vkDestroyPipeline(gpu->device, pipelines[i], NULL);
+        pipelines[i] = VK_NULL_HANDLE;
+    }
+}
+
+bool stage_drawing_use(struct stage_drawing *d, const struct scene_data *scene,
+                       const struct shader_code code[SCENE_SHADER_COUNT])
+{
+    VkPipeline pipelines[STAGE_PIPELINES] = {VK_NULL_HANDLE};
     for (uint32_t i = 0; i < scene->part_count; i++) {
         const uint32_t pipeline = pipeline_of(&scene->materials[scene->parts[i].material]);
-        if (!d->pipelines[pipeline] && !create_pipeline(d, pipeline, paged))
-            return false;
+        if (pipelines[pipeline] || create_pipeline(d, code, pipeline, &pipelines[pipeline]))
+            continue;
+        destroy_pipelines(d->gpu, pipelines);
+        return false;
     }
+    destroy_pipelines(d->gpu, d->pipelines);
+    memcpy(d->pipelines, pipelines, sizeof pipelines);
     return true;
 }
 
 bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
                           const struct stage_drawing_info *info, struct stage_drawing *d)
 {
-    *d = (struct stage_drawing){.gpu = gpu, .marks = info->marks};
+    struct shader_code code[SCENE_SHADER_COUNT];
+    *d = (struct stage_drawing){.gpu = gpu, .marks = info->marks, .paged = info->paged};
+    list_shaders(code);
     d->order = calloc(scene->part_count + 1u, sizeof *d->order);
     if (d->order &&
         fill(gpu, scene->vertices, scene->vertex_count * sizeof *scene->vertices,
@@ -123,7 +148,7 @@ bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
              VK_BUFFER_USAGE_INDEX_BUFFER_BIT, &d->indices) &&
         stage_sets_create(gpu, scene, info->table_indices, tile_marks_size(d->marks), &d->sets) &&
         target_create_encoding(gpu, 16, 16, &d->targets[0]) && create_layout(d, info->set_layout) &&
-        create_pipelines(d, scene, info->paged))
+        stage_drawing_use(d, scene, code))
         return true;
     stage_drawing_destroy(d);
     return false;
@@ -137,8 +162,7 @@ void stage_drawing_destroy(struct stage_drawing *d)
         target_destroy(d->gpu, &d->targets[i]);
         target_destroy(d->gpu, &d->ahead[i]);
     }
-    for (int i = 0; i < STAGE_PIPELINES; i++)
-        vkDestroyPipeline(d->gpu->device, d->pipelines[i], NULL);
+    destroy_pipelines(d->gpu, d->pipelines);
     vkDestroyPipelineLayout(d->gpu->device, d->layout, NULL);
     stage_sets_destroy(&d->sets);
     free(d->order);

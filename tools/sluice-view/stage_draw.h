@@ -3,6 +3,7 @@
 #define SLUICE_VIEW_STAGE_DRAW_H
 
 #include "scene_data.h"
+#include "shader_files.h"
 #include "stage.h"
 #include "stage_sets.h"
 #include "tile_marks.h"
@@ -17,9 +18,10 @@ struct stage_drawing {
     struct stage_sets sets;
     VkPipelineLayout layout;
     VkPipeline pipelines[STAGE_PIPELINES]; ///< those that materials need
-    struct stage_order *order;             ///< owned; of the parts that blend
-    struct target targets[FRAMES_SLOTS];   ///< one for each frame in flight
-    struct target ahead[FRAMES_SLOTS];     ///< of the camera ahead; empty before it is drawn
+    bool paged;
+    struct stage_order *order;           ///< owned; of the parts that blend
+    struct target targets[FRAMES_SLOTS]; ///< one for each frame in flight
+    struct target ahead[FRAMES_SLOTS];   ///< of the camera ahead; empty before it is drawn
 };
 
 struct stage_drawing_info {
@@ -34,6 +36,10 @@ bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
                           const struct stage_drawing_info *info, struct stage_drawing *drawing);
 /** No frame may be in flight. A zeroed struct is fine. */
 void stage_drawing_destroy(struct stage_drawing *drawing);
+/** Takes other shaders, with the same interface. No frame may be in flight. False, and nothing has
+ *  changed, if that failed. */
+bool stage_drawing_use(struct stage_drawing *drawing, const struct scene_data *scene,
+                       const struct shader_code code[SCENE_SHADER_COUNT]);
 /** Records the picture into the slot's target, whose view it returns in SHADER_READ_ONLY_OPTIMAL.
  *  VK_NULL_HANDLE if that failed. */
 VkImageView stage_drawing_record(struct stage_drawing *drawing, const struct scene_data *scene,

@@ -166,6 +166,8 @@ static void answer_requests(struct viewer *v)
         sluiceStepVulkanLoads(stage_streamer(v->stage), 1);
     if (v->window)
         window_set_full_screen(v->window, app->settings.full_screen != 0);
+    if (app->reload_shaders)
+        viewer_reload_shaders(v);
     viewer_follow_trade(v);
     app->restart = app->reload = app->trace = app->step_tile = false;
 }

@@ -73,6 +73,8 @@ bool viewer_fit_other(struct viewer *viewer);
 void viewer_begin_recording(struct viewer *viewer, const char *path);
 /** Does nothing if nothing is recorded. */
 void viewer_end_recording(struct viewer *viewer);
+/** Compiles the shaders of the scene again, and says what came of it. */
+void viewer_reload_shaders(struct viewer *viewer);
 /** Begins and ends sweeps of settings, as the panel asks for them, and watches them. */
 void viewer_follow_trade(struct viewer *viewer);
 /** Returns the exit status: 0, 1, or 77 without a device. */

@@ -2,6 +2,7 @@
 
 #include "controls.h"
 #include "settings_file.h"
+#include "shader_files.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -273,4 +274,24 @@ void viewer_end_load(struct viewer *v)
         scene_data_finish(&scene);
     files_finish(&paths);
     v->load = NULL;
+}
+
+void viewer_reload_shaders(struct viewer *v)
+{
+    char text[4200];
+    struct shader_code code[SCENE_SHADER_COUNT];
+    const char *missing = shader_files_missing(text, sizeof text);
+    v->app.reload_shaders = false;
+    if (missing || !v->stage || stage_traced(v->stage)) {
+        app_say(&v->app, "%s", missing ? missing : "This scene has no shaders to compile again");
+        return;
+    }
+    if (!shader_files_compile(code)) {
+        app_say(&v->app, "The shaders stay as they were; the terminal says why");
+        return;
+    }
+    const bool used = frames_wait(&v->frames) && stage_use_shaders(v->stage, code) &&
+                      (!v->other || stage_use_shaders(v->other, code));
+    app_say(&v->app, "%s", used ? "The shaders were compiled again" : "The shaders do not fit");
+    shader_files_finish(code);
 }
