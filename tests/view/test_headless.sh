@@ -207,6 +207,23 @@ fact a_sweep_of_the_scene_and_its_camera_starts_from_the_settings_of_now
 printf '#!/bin/sh\necho $$ >pid\nexec sleep 300\n' >bin/sluice-tradeoff && printf '1 key Ctrl+T\n90 quit\n' >sweeps
 sweeps && { [ ! -s pid ] || ! kill -0 "$(cat pid)" 2>err; }
 fact a_sweep_ends_with_the_viewer
+printf '12 screenshot old.png\n13 key Ctrl+F5\n15 screenshot new.png\n16 quit\n' >reloads
+reloads() {
+    tool=bin/sluice-view run 0 --headless --deterministic --fresh --still --size 160x160 --panels off --cache . \
+        --fade 0 --probability 1 --script reloads fine.ppm
+}
+reloads && cmp old.png new.png && [ ! -s err ]
+fact without_sources_shaders_stay_as_they_are
+if glslang=$(command -v glslangValidator); then
+    cp -r "$here/../../tools/sluice-view/shaders" shaders &&
+        printf '%s\n%s\n%s\n' "$glslang" "$PWD/shaders" "$(realpath "$here/../../shaders/include")" >bin/shaders.path &&
+        reloads && cmp old.png new.png && sed -i 's/^    outColor = .*/    outColor = vec4(0.0, 1.0, 0.0, 1.0);/' shaders/scene.frag &&
+        reloads && ! cmp -s old.png new.png && [ ! -s err ]
+    fact shaders_are_compiled_again
+    sed -i 's/^    outColor = /    outColour = /' shaders/scene.frag && reloads && cmp old.png new.png &&
+        grep -q "scene.frag:[0-9]*: .*outColour" err
+    fact a_shader_that_cannot_be_compiled_is_named_and_the_one_before_stays
+fi
 printf '12 set freeze-wants on\n13 hold s 20\n' >frozen
 run 0 --room --still --headless --deterministic --fresh --size 160x160 --residency paged --timeout 0.1 --standby 0 \
     --panels off --script frozen --frames 48 --csv frozen.csv &&
