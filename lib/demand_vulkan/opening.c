@@ -10,6 +10,7 @@
 #include "image/convert.h"
 #include "image/format_size.h"
 #include "image/info.h"
+#include "image/pooled_reads.h"
 #include "image/start_read.h"
 #include "vulkan/sparse_layout.h"
 
@@ -117,7 +118,8 @@ static SluiceResult read_base_color(struct slc_demand_image *image)
     _Alignas(16) uint8_t texels[SLC_TILE_SIZE / 4];
     const struct last_level last = last_level_of(image);
     assert(last.size <= sizeof texels);
-    SluiceResult result = sluiceReadImageRegion(image->source, &last.region, texels, last.pitch);
+    SluiceResult result = slc_loader_read_now(image->loader->reader, image->source, &image->info,
+                                              &last.region, texels);
     if (result == SLUICE_SUCCESS)
         find_base_color(&image->info, texels, last.block_count, image->read_color);
     return result;
