@@ -421,6 +421,130 @@ static void reasons_of_a_mode_are_those_that_the_library_chooses_by(void **state
                            "--residency"));
 }
 
+/* The digits 0 to 9 beside each other, each 3 points wide. */
+static const char *const digit_points[5] = {"###"
+                                            " # "
+                                            "###"
+                                            "###"
+                                            "# #"
+                                            "###"
+                                            "###"
+                                            "###"
+                                            "###"
+                                            "###",
+                                            "# #"
+                                            "## "
+                                            "  #"
+                                            "  #"
+                                            "# #"
+                                            "#  "
+                                            "#  "
+                                            "  #"
+                                            "# #"
+                                            "# #",
+                                            "# #"
+                                            " # "
+                                            "###"
+                                            "###"
+                                            "###"
+                                            "###"
+                                            "###"
+                                            "  #"
+                                            "###"
+                                            "###",
+                                            "# #"
+                                            " # "
+                                            "#  "
+                                            "  #"
+                                            "  #"
+                                            "  #"
+                                            "# #"
+                                            "  #"
+                                            "# #"
+                                            "  #",
+                                            "###"
+                                            "###"
+                                            "###"
+                                            "###"
+                                            "  #"
+                                            "###"
+                                            "###"
+                                            "  #"
+                                            "###"
+                                            "###"};
+
+/* Stands before the middle of a tile so that a point of its number is about 4 pixels wide. */
+static void stand_before(uint32_t texture, const SluiceTile *tile, uint32_t tile_width,
+                         float texels[4])
+{
+    struct view_app *app = &show->app;
+    app_look_at_tile(app, texture, tile);
+    for (int i = 0; i < 2; i++) {
+        const struct stage_pixel pixel = {app->camera, WIDTH, HEIGHT, 0.5f, 0.5f};
+        const struct stage_pick pick =
+            stage_pick(show->stage, &app->camera, (float)WIDTH / HEIGHT, 0.5f, 0.5f);
+        assert_true(pick.hit && stage_pick_pixel(show->stage, &pick, &pixel, texels));
+        const float wanted = (float)tile_width / 112, is = fabsf(texels[0]);
+        const struct vec3 to = vec3_sub(app->camera.position, pick.position);
+        if (i == 0)
+            app->camera.position = vec3_add(pick.position, vec3_scale(to, wanted / is));
+    }
+}
+
+/* Counts points of a digit that the picture has; `corner`: pixel of its upper left corner. */
+static uint32_t count_points(const uint8_t *with, const uint8_t *without, uint32_t digit,
+                             const float corner[2], const float step[2])
+{
+    uint32_t equal = 0;
+    for (uint32_t row = 0; row < 5; row++)
+        for (uint32_t column = 0; column < 3; column++) {
+            const uint32_t x = (uint32_t)(corner[0] + ((float)column + 0.5f) * step[0]);
+            const uint32_t y = (uint32_t)(corner[1] + ((float)row + 0.5f) * step[1]);
+            assert_true(x < WIDTH && y < HEIGHT);
+            const size_t at = 4 * ((size_t)y * WIDTH + x);
+            const bool dark = memcmp(with + at, without + at, 3) != 0;
+            equal += dark == (digit_points[row][3 * digit + column] == '#');
+        }
+    return equal;
+}
+
+static void tiles_show_their_column_and_row(void **state)
+{
+    (void)state;
+    static uint8_t without[4 * WIDTH * HEIGHT];
+    settle();
+    struct view_app *app = &show->app;
+    const struct view_camera before = app->camera;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    const SluiceTextureId id = stage_texture(show->stage, 0)->id;
+    CHECK_OK(sluiceGetTextureLayout(manager(), id, &layout));
+    app->settings.view = VIEW_PICTURE;
+    app->settings.panels = 1;
+    app->settings.feedback = VIEW_FEEDBACK_OFF;
+    for (uint32_t i = 0; i < 3; i++) {
+        const uint32_t x = 1 + 3 * i, y = 9 - 2 * i;
+        SluiceTile tile;
+        float texels[4];
+        CHECK_OK(
+            sluiceGetTileState(manager(), id, y * layout.levelWidthInTiles[0] + x, NULL, &tile));
+        stand_before(0, &tile, layout.desc.tileWidth, texels);
+        app->settings.borders = VIEW_BORDERS;
+        memcpy(without, draw(-1, -1), sizeof without);
+        app->settings.borders = VIEW_NUMBERED_BORDERS;
+        const uint8_t *with = draw(-1, -1);
+        const float step[2] = {(float)layout.desc.tileWidth / 28 / texels[0],
+                               (float)layout.desc.tileHeight / 28 / texels[3]};
+        const float corner[2] = {WIDTH / 2.0f - 12.5f * step[0], HEIGHT / 2.0f - 12.5f * step[1]};
+        const float below[2] = {corner[0], corner[1] + 7 * step[1]};
+        assert_int_equal(count_points(with, without, x, corner, step), 15);
+        assert_int_equal(count_points(with, without, y, below, step), 15);
+    }
+    app->settings.borders = VIEW_NO_BORDERS;
+    app->settings.panels = 0;
+    app->settings.feedback = VIEW_FEEDBACK_ON;
+    app->camera = before;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -429,6 +553,7 @@ int main(void)
         cmocka_unit_test(rows_of_textures_and_their_sum_count_all_tiles),
         cmocka_unit_test(sums_of_memory_count_all_slots),
         cmocka_unit_test(a_camera_that_looks_at_a_tile_sees_it_in_the_color_of_its_texture),
+        cmocka_unit_test(tiles_show_their_column_and_row),
         cmocka_unit_test(reasons_of_a_mode_are_those_that_the_library_chooses_by),
         cmocka_unit_test(filters_and_files_take_names_with_blanks_quotes_and_commas),
     };

@@ -122,6 +122,7 @@ void panels_draw(struct view_app *app)
 {
     panels_draw_picture(app);
     panel_ghost(app);
+    panel_path(app);
     if (app->settings.panels != 0)
         return;
     if (app->open[PANEL_KEYS] && app->stage) {

@@ -13,6 +13,8 @@ void panels_draw_picture(const struct view_app *app);
 void panel_start(struct view_app *app);
 /** Lines of the frustum of the camera that tiles are loaded for, while wants are frozen. */
 void panel_ghost(const struct view_app *app);
+/** The path that the camera follows, and the bookmarks. */
+void panel_path(const struct view_app *app);
 void panel_now(struct view_app *app);
 void panel_legend(const struct view_app *app);
 /** Finds what is under the mouse, for the legend. */

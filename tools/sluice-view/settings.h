@@ -11,6 +11,7 @@ enum view_motion { VIEW_WALK, VIEW_FLY, VIEW_ORBIT };
 enum view_compare { VIEW_COMPARE_OFF, VIEW_DIVIDER, VIEW_DIFFERENCE, VIEW_FLICKER };
 enum view_render_mode { VIEW_PRIMARY, VIEW_NEAR, VIEW_DISTANT, VIEW_PATHS }; ///< PBRT_MODE_...
 enum view_compared { VIEW_WITH_EVERYTHING, VIEW_WITH_BUDGET };
+enum view_borders { VIEW_NO_BORDERS, VIEW_BORDERS, VIEW_NUMBERED_BORDERS };
 enum view_events_of { VIEW_EVENTS_OF_SELECTED, VIEW_EVENTS_OF_ALL };
 enum view_difference { VIEW_BOTH_DIFFERENCES, VIEW_PIXELS, VIEW_FLIP };
 
@@ -52,7 +53,8 @@ struct view_settings {
     uint32_t view; ///< enum view_number
     double render_scale;
     double tint;
-    int borders;
+    int borders;           ///< enum view_borders
+    int show_path;         ///< the camera's, and bookmarks
     int compare, compared; ///< enum view_compare, enum view_compared
     int difference;        ///< enum view_difference
     double divider;        ///< 0 to 1

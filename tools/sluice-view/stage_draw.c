@@ -211,7 +211,9 @@ static struct push push_of(const struct scene_data *scene, const struct stage_dr
                          .lod_bias = (float)s->lod_bias,
                          .anisotropy = (float)s->anisotropy,
                          .tint = (float)s->tint,
-                         .flags = s->borders ? 1u : 0u};
+                         .flags = s->borders == VIEW_NUMBERED_BORDERS ? 3u
+                                  : s->borders == VIEW_BORDERS        ? 1u
+                                                                      : 0u};
 }
 
 static void draw_part(const struct stage_drawing *d, const struct scene_part *part,

@@ -17,6 +17,7 @@ layout(constant_id = 0) const bool paged = false;
 #include "scene_push.glsl"
 
 #include "scene_material.glsl"
+#include "scene_digits.glsl"
 #include "scene_marks.glsl"
 #include "scene_light.glsl"
 
@@ -169,12 +170,29 @@ uint markOf(Slot slot, Place at)
     return markAt(slot.flags >> SLOT_IMAGE_SHIFT, uvec2(fract(at.uv) * at.size));
 }
 
+/* Column and, below it, row of the tile, in its upper left corner: 28 points of the font are as wide as a tile. */
+bool onNumber(vec2 texels, vec2 tileSize)
+{
+    vec2 tile = floor(texels / tileSize), at = fract(texels / tileSize) * 28.0 - 1.5;
+    if (any(lessThan(at, vec2(0.0))) || at.y >= 13.0)
+        return false;
+    bool below = at.y >= 7.0;
+    return numberAt(uint(below ? tile.y : tile.x), uvec2(at.x, below ? at.y - 7.0 : at.y));
+}
+
 vec3 bordered(vec3 picture, vec3 color, Slot slot, Place at, float level)
 {
     if ((push.flags & 1u) == 0u)
         return picture;
     vec2 tileSize = vec2(markTileSize(slot.flags >> SLOT_IMAGE_SHIFT)) * exp2(level);
-    return onBorder(at.uv * at.size, (abs(at.dx) + abs(at.dy)) * at.size, tileSize) ? color : picture;
+    vec2 perPixel = (abs(at.dx) + abs(at.dy)) * at.size, pixels = tileSize / perPixel;
+    if (min(pixels.x, pixels.y) < 4.0) /* nothing else would be seen */
+        return picture;
+    bool numbered = (push.flags & 2u) != 0u && min(pixels.x, pixels.y) >= 28.0;
+    return onBorder(at.uv * at.size, perPixel, tileSize) ||
+                   (numbered && onNumber(fract(at.uv) * at.size, tileSize))
+               ? color
+               : picture;
 }
 
 /* Edges of images with a side that is no power of two. */

@@ -8,5 +8,5 @@ layout(push_constant) uniform Push
     uint seed;
     float probability; // 0: no feedback
     float lodBias, anisotropy, tint;
-    uint flags; // 1: borders of tiles
+    uint flags; // 1: borders of tiles; 2: with numbers
 } push;
