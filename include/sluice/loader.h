@@ -174,7 +174,7 @@ SLUICE_API void sluiceDestroyReadPool(SluiceReadPool *pool);
 
 /**
  * Statistics of a read pool. Counts begin with its creation. A tile is one region; a mip tail has a
- * region for each level. Values of resources are not counted.
+ * region for each level. Openings of images and fills of resources are not counted.
  */
 typedef struct SluiceReadPoolStatistics {
     uint32_t structSize;       ///< sizeof(SluiceReadPoolStatistics).

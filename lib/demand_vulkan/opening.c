@@ -10,7 +10,6 @@
 #include "image/convert.h"
 #include "image/format_size.h"
 #include "image/info.h"
-#include "image/pooled_reads.h"
 #include "image/start_read.h"
 #include "vulkan/sparse_layout.h"
 
@@ -118,8 +117,7 @@ static SluiceResult read_base_color(struct slc_demand_image *image)
     _Alignas(16) uint8_t texels[SLC_TILE_SIZE / 4];
     const struct last_level last = last_level_of(image);
     assert(last.size <= sizeof texels);
-    SluiceResult result = slc_loader_read_now(image->loader->reader, image->source, &image->info,
-                                              &last.region, texels);
+    SluiceResult result = sluiceReadImageRegion(image->source, &last.region, texels, last.pitch);
     if (result == SLUICE_SUCCESS)
         find_base_color(&image->info, texels, last.block_count, image->read_color);
     return result;

@@ -49,17 +49,18 @@ static void resume_waiting(SluiceTileLoader *loader, struct slc_read *waiting,
         slc_read_pool_signal(loader->pool);
 }
 
-void slc_pooled_region_count(SluiceTileLoader *loader, const SluiceImageSource *source,
-                             SluiceFormat format, const SluiceImageRegion *at)
+void slc_pooled_region_count(SluiceTileLoader *loader, const struct slc_read *read,
+                             SluiceFormat format, uint32_t region)
 {
-    if (!slc_reads_are_pooled(loader, source))
+    if (!slc_reads_are_pooled(loader, read->source->source))
         return;
     loader->pool->shares->statistics.readCount++;
-    loader->pool->shares->statistics.readSize += region_size(format, at);
+    loader->pool->shares->statistics.readSize += region_size(format, &read->regions[region]);
 }
 
-void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_shared_region *shared,
-                           enum slc_delivery share, SluiceResult result, void *texels)
+void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_read *read, uint32_t region,
+                           struct slc_shared_region *shared, enum slc_delivery share,
+                           SluiceResult result)
 {
     struct slc_read_pool *pool = loader->pool;
     bool is_read = result == SLUICE_SUCCESS;
@@ -71,7 +72,7 @@ void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_shared_region *s
     }
     if (is_read) {
         slc_read_pool_unlock(pool);
-        memcpy(texels, shared->texels, shared->size);
+        memcpy(read->texels[region], shared->texels, shared->size);
         slc_mutex_lock(&pool->mutex);
     }
     slc_shared_reads_release(pool->shares, shared);
@@ -103,9 +104,9 @@ static SluiceResult deliver(SluiceTileLoader *loader, struct slc_read *read,
         slc_mutex_lock(&pool->mutex);
     }
     if (shared)
-        slc_pooled_region_end(loader, shared, share, result, read->texels[region]);
+        slc_pooled_region_end(loader, read, region, shared, share, result);
     else if (result == SLUICE_SUCCESS)
-        slc_pooled_region_count(loader, read->source->source, info->format, &read->regions[region]);
+        slc_pooled_region_count(loader, read, info->format, region);
     if (result == SLUICE_SUCCESS)
         slc_read_region_done(read, info->format, region);
     return result;
@@ -122,37 +123,6 @@ void slc_read_pooled_regions(SluiceTileLoader *loader, struct slc_read *read,
                               ? SLUICE_ERROR_CANCELED
                               : deliver(loader, read, info, i, &outcome->fault);
     }
-}
-
-SluiceResult slc_loader_read_now(SluiceTileLoader *loader, SluiceImageSource *source,
-                                 const SluiceImageInfo *info, const SluiceImageRegion *at,
-                                 void *texels)
-{
-    struct slc_read_pool *pool = loader->pool;
-    struct slc_shared_region *shared = NULL;
-    enum slc_delivery share = SLC_DELIVER_ALONE;
-    const size_t pitch = sluiceGetFormatRegionSize(info->format, at->width, 1);
-    SluiceImageFault fault = {"", SLUICE_UNKNOWN_OFFSET};
-    SluiceResult result = SLUICE_SUCCESS;
-    if (!pool->shares)
-        return sluiceReadImageRegion(source, at, texels, pitch);
-    slc_mutex_lock(&pool->mutex);
-    if (slc_shared_reads_are_on(pool->shares))
-        share = slc_shared_reads_claim(pool->shares, source, at, region_size(info->format, at),
-                                       &shared);
-    bool is_own = share == SLC_DELIVER_ALONE || share == SLC_DELIVER_WAIT;
-    if (share != SLC_DELIVER_COPY) {
-        slc_mutex_unlock(&pool->mutex);
-        result = is_own ? sluiceReadImageRegion(source, at, texels, pitch)
-                        : slc_read_shared_region(shared, info, &fault);
-        slc_mutex_lock(&pool->mutex);
-    }
-    if (!is_own)
-        slc_pooled_region_end(loader, shared, share, result, texels);
-    else if (result == SLUICE_SUCCESS)
-        slc_pooled_region_count(loader, source, info->format, at);
-    slc_read_pool_unlock(pool);
-    return result;
 }
 
 bool slc_pooled_read_waits(SluiceTileLoader *loader, struct slc_read *read,

@@ -23,24 +23,20 @@ void slc_read_pooled_regions(SluiceTileLoader *loader, struct slc_read *read,
 enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_read *read,
                                           const SluiceImageInfo *info, uint32_t region,
                                           struct slc_shared_region **shared);
-/** Ends SLC_DELIVER_READ and SLC_DELIVER_COPY: copies the texels, if there are any, to `texels`.
+/** Ends SLC_DELIVER_READ and SLC_DELIVER_COPY: copies the texels, if there are any, to the read.
  * The mutex is given up meanwhile. */
-void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_shared_region *shared,
-                           enum slc_delivery share, SluiceResult result, void *texels);
-/** Counts a region that a source has delivered without the pool's regions. */
-void slc_pooled_region_count(SluiceTileLoader *loader, const SluiceImageSource *source,
-                             SluiceFormat format, const SluiceImageRegion *at);
+void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_read *read, uint32_t region,
+                           struct slc_shared_region *shared, enum slc_delivery share,
+                           SluiceResult result);
+/** Counts a region that a source has delivered to a read alone. */
+void slc_pooled_region_count(SluiceTileLoader *loader, const struct slc_read *read,
+                             SluiceFormat format, uint32_t region);
 /** True if a running read has regions that others read: it is put aside, and goes on by itself. */
 bool slc_pooled_read_waits(SluiceTileLoader *loader, struct slc_read *read,
                            struct slc_read_outcome *outcome);
 /** A read ends: it waits for no region and holds none. */
 void slc_pooled_read_ends(SluiceTileLoader *loader, struct slc_read *read);
 
-/** Without the mutex: reads a region of an image at once, on this thread. Copies texels that the
- *  pool keeps. Does not wait for another read: if there is one, the region is read twice. */
-SluiceResult slc_loader_read_now(SluiceTileLoader *loader, SluiceImageSource *source,
-                                 const SluiceImageInfo *info, const SluiceImageRegion *at,
-                                 void *texels);
 /** Without the mutex: texels of the source have changed, or it may be destroyed. Reads that begin
  *  later get none of the texels that are known now. */
 void slc_loader_drop_texels(SluiceTileLoader *loader, const SluiceImageSource *source);

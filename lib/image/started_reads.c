@@ -22,17 +22,16 @@ static void complete_region(SluiceTileLoader *loader, struct slc_read *read, uin
 {
     struct slc_started *started = &read->started;
     struct slc_shared_region *shared = started->shared[region];
-    const SluiceImageRegion *at = &read->regions[region];
     if (!is_pending(read, region))
         return;
     started->pending &= ~(1u << region);
     started->shared[region] = NULL;
     if (shared) {
         started->calls++;
-        slc_pooled_region_end(loader, shared, SLC_DELIVER_READ, result, read->texels[region]);
+        slc_pooled_region_end(loader, read, region, shared, SLC_DELIVER_READ, result);
         started->calls--;
     } else if (result == SLUICE_SUCCESS) {
-        slc_pooled_region_count(loader, read->source->source, started->format, at);
+        slc_pooled_region_count(loader, read, started->format, region);
     }
     if (result == SLUICE_SUCCESS) {
         slc_read_region_done(read, started->format, region);
@@ -73,7 +72,7 @@ static void start_region(SluiceTileLoader *loader, struct slc_read *read,
     if (share == SLC_DELIVER_WAIT)
         return;
     if (share == SLC_DELIVER_COPY) {
-        slc_pooled_region_end(loader, shared, share, SLUICE_SUCCESS, read->texels[region]);
+        slc_pooled_region_end(loader, read, region, shared, share, SLUICE_SUCCESS);
         slc_read_region_done(read, info->format, region);
         return;
     }
