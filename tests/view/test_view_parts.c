@@ -8,6 +8,7 @@
 #include "controls.h"
 #include "keys.h"
 #include "mark_words.h"
+#include "pbrt_frame.h"
 #include "script.h"
 #include "settings_file.h"
 
@@ -292,6 +293,91 @@ static void a_damaged_file_of_settings_is_set_aside(void **state)
 }
 
 /* Bits as shaders/scene_marks.glsl reads them. */
+/* pbrt's LookAt: x to the right of the picture, y up, z ahead, as columns. */
+static void look_at(const float eye[3], const float point[3], const float up[3], bool mirrored,
+                    float m[12])
+{
+    const struct vec3 ahead =
+        vec3_normalize((struct vec3){point[0] - eye[0], point[1] - eye[1], point[2] - eye[2]});
+    const struct vec3 right = vec3_normalize(vec3_cross((struct vec3){up[0], up[1], up[2]}, ahead));
+    const struct vec3 over = vec3_cross(ahead, right);
+    const float sign = mirrored ? -1.0f : 1.0f;
+    const float columns[12] = {sign * right.x, over.x, ahead.x, eye[0],
+                               sign * right.y, over.y, ahead.y, eye[1],
+                               sign * right.z, over.z, ahead.z, eye[2]};
+    memcpy(m, columns, sizeof columns);
+}
+
+static const struct {
+    float eye[3], point[3], up[3];
+    bool mirrored;
+} pbrt_cameras[] = {
+    {{0, -5, 0}, {0, 0, 0}, {0, 0, 1}, false},  {{0, -5, 0}, {0, 0, 0}, {0, 0, 1}, true},
+    {{3, 2, 9}, {1, 1, 0}, {0, 1, 0}, false},   {{3, 2, 9}, {1, 1, 0}, {0, 1, 0}, true},
+    {{3, 2, 9}, {1, 1, 0}, {0, -1, 0}, false},  {{2, 3, 9}, {1, 1, 0}, {0.3f, 1, 0.2f}, true},
+    {{9, 3, 2}, {1, 1, 0}, {0.4f, 0, 1}, false}};
+
+#define PBRT_CAMERAS (sizeof pbrt_cameras / sizeof *pbrt_cameras)
+
+static void make_frame(size_t i, float m[12], struct pbrt_frame *frame)
+{
+    const SluicePbrtBounds box = {{-1, -2, -3}, {5, 6, 7}};
+    look_at(pbrt_cameras[i].eye, pbrt_cameras[i].point, pbrt_cameras[i].up,
+            pbrt_cameras[i].mirrored, m);
+    pbrt_frame_init(m, &box, 1.0f, frame);
+}
+
+static float column_dot(const float a[12], int i, const float b[12], int k)
+{
+    return a[i] * b[k] + a[4 + i] * b[4 + k] + a[8 + i] * b[8 + k];
+}
+
+static void a_scenes_camera_comes_back_as_it_was(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < PBRT_CAMERAS; i++) {
+        struct pbrt_frame frame;
+        float m[12], back[12], near[12];
+        make_frame(i, m, &frame);
+        pbrt_frame_matrix(&frame, &frame.camera, back);
+        assert_memory_equal(back, m, sizeof m);
+        struct view_camera camera = frame.camera;
+        camera.yaw += 1e-6f; /* the formula of moved cameras agrees */
+        pbrt_frame_matrix(&frame, &camera, near);
+        for (int k = 0; k < 12; k++)
+            assert_float_equal(near[k], m[k], 1e-4f);
+    }
+}
+
+/* Whatever is up, and mirrored or not: the picture's right, and what it shows ahead. */
+static void steps_and_turns_go_where_the_picture_shows_them(void **state)
+{
+    (void)state;
+    const float turn = 0.3f;
+    for (size_t i = 0; i < PBRT_CAMERAS; i++) {
+        struct pbrt_frame frame;
+        float m[12], moved[12], turned[12];
+        make_frame(i, m, &frame);
+        struct view_camera camera = frame.camera;
+        const struct vec3 step =
+            vec3_add(vec3_scale(view_camera_right(&camera), 2), view_camera_forward(&camera));
+        camera.position = vec3_add(camera.position, step);
+        pbrt_frame_matrix(&frame, &camera, moved);
+        const bool rolls = pbrt_cameras[i].up[0] != 0;
+        for (int r = 0; r < 3 && !rolls; r++)
+            assert_float_equal(moved[4 * r + 3] - m[4 * r + 3],
+                               frame.unit * (2 * m[4 * r] + m[4 * r + 2]), 1e-4f);
+        camera = frame.camera;
+        camera.yaw += turn;
+        pbrt_frame_matrix(&frame, &camera, turned);
+        assert_true(column_dot(turned, 2, m, 0) > 0.2f); /* now it looks to the right */
+        for (int k = 0; k < 3; k++) { /* and is still a camera of the same kind */
+            assert_float_equal(column_dot(turned, k, turned, k), 1, 1e-4f);
+            assert_float_equal(column_dot(turned, k, turned, (k + 1) % 3), 0, 1e-4f);
+        }
+    }
+}
+
 static void words_of_tiles_hold_reason_thrash_and_age(void **state)
 {
     (void)state;
@@ -399,6 +485,8 @@ int main(void)
         cmocka_unit_test(paths_are_read_as_they_were_written),
         cmocka_unit_test(settings_come_back_from_their_file),
         cmocka_unit_test(a_damaged_file_of_settings_is_set_aside),
+        cmocka_unit_test(a_scenes_camera_comes_back_as_it_was),
+        cmocka_unit_test(steps_and_turns_go_where_the_picture_shows_them),
         cmocka_unit_test(words_of_tiles_hold_reason_thrash_and_age),
         cmocka_unit_test(each_reason_has_its_pattern),
         cmocka_unit_test(the_need_of_coarser_requests_is_that_of_their_tiles),
