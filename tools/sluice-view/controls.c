@@ -206,7 +206,9 @@ static const struct control table[] = {
     {"Picture",
      "Render scale",
      {OPTION_REAL, "render-scale", "S", "0", NULL,
-      "pixels of the picture per pixel of the window, in each direction; 0: 1, on CPUs 1/2", 0, 2},
+      "pixels of the picture per pixel of the window, in each direction; 0: 1, on CPUs 1/2, for "
+      "pbrt scenes 1/4",
+      0, 2},
      FIELD(render_scale),
      "%.2f",
      0},

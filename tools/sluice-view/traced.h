@@ -62,6 +62,7 @@ struct traced {
     uint32_t vain;               ///< launches in a row without progress
     float lod_bias;              ///< of the picture that is gathered
     bool restarts;
+    double trace_seconds; ///< of the launches of the last frame
     SluiceDemandTicket ticket;
     struct traced_picture *pictures; ///< owned
     uint32_t picture_count;

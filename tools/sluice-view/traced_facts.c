@@ -2,6 +2,7 @@
 
 #include "facts.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -158,7 +159,6 @@ static void write_picture(const struct traced_picture *p, struct facts_texture *
                                   .unmappedTotal = p->left,
                                   .failedTotal = p->refused_count,
                                   .wanted = wanted > 0,
-                                  .seen = p->id != 0,
                                   .wantedTileCount = wanted,
                                   .residentSize = (uint64_t)p->resident_count * TILE_SIZE,
                                   .wantedSize = (uint64_t)wanted * TILE_SIZE};
@@ -205,6 +205,9 @@ void traced_facts_update(struct traced *t, struct view_facts *f)
         f->resident_size = t->now.tileMemorySize;
     f->memory_size = t->now.tileMemorySize;
     f->sharp = traced_complete(t);
+    /* The host waits for launches, which are submissions of their own. */
+    f->gpu_seconds += t->trace_seconds;
+    f->host_seconds = fmax(0.0, f->host_seconds - t->trace_seconds);
 }
 
 static const char *say(char *text, size_t size, bool *good, bool is_good, const char *words)

@@ -86,6 +86,7 @@ static bool trace(struct traced *t)
         return launches_idle(&t->launches);
     if (!launches_trace(&t->launches, t->sample, &t->ticket, &progress))
         return false;
+    t->trace_seconds += t->launches.last_seconds;
     traced_note_misses(t);
     end_launch(t, progress);
     return true;
@@ -132,6 +133,7 @@ static bool launch(struct traced *t)
 static bool launch_some(struct traced *t)
 {
     const double start = clock_seconds();
+    t->trace_seconds = 0;
     do
         if (!launch(t))
             return false;

@@ -33,7 +33,9 @@ static bool is_cpu(const struct viewer *v)
 static double render_scale(const struct viewer *v)
 {
     const double scale = v->app.settings.render_scale;
-    return scale > 0 ? scale : is_cpu(v) ? 0.5 : 1.0;
+    if (scale > 0 || !is_cpu(v))
+        return scale > 0 ? scale : 1.0;
+    return v->stage && stage_traced(v->stage) ? 0.25 : 0.5;
 }
 
 static bool create_gpu(struct viewer *v, bool *unsupported)
@@ -162,7 +164,9 @@ static void answer_requests(struct viewer *v)
         stage_apply(v->stage, &now);
         v->applied = now;
     }
-    if (v->stage && app->step_tile)
+    if (v->stage && app->step_tile && stage_traced(v->stage))
+        app_say(app, "Scenes of pbrt load what a launch asked for; N makes one launch");
+    else if (v->stage && app->step_tile)
         sluiceStepVulkanLoads(stage_streamer(v->stage), 1);
     if (v->window)
         window_set_full_screen(v->window, app->settings.full_screen != 0);

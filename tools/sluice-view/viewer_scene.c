@@ -89,8 +89,9 @@ static void begin_walk(struct viewer *v)
         v->app.follow = FOLLOW_PATH;
     if (v->gpu.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU &&
         v->app.settings.render_scale <= 0 && !v->options->deterministic)
-        app_say(&v->app, "Drawn by the CPU: the picture has half the window's resolution "
-                         "(--render-scale)");
+        app_say(&v->app,
+                "Drawn by the CPU: the picture has %s the window's resolution (--render-scale)",
+                stage_traced(v->stage) ? "a quarter of" : "half");
 }
 
 /** What files of settings hold, while another scene is tried. */
