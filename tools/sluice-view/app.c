@@ -14,6 +14,7 @@
 #define DOUBLE_CLICK_SECONDS 0.35
 #define DEMONSTRATION_SECONDS 6.0
 #define DIVIDER_PIXELS 8.0f
+#define COMMAND_SIZE 16384
 
 void app_init(struct view_app *app)
 {
@@ -105,11 +106,19 @@ void app_inspect(struct view_app *app, const struct stage_pick *pick)
     app_set_panel(app, PANEL_INSPECTOR, true);
 }
 
+void app_write_command(const struct view_app *app, char *text, size_t size)
+{
+    char options[4096], camera[160];
+    const bool stands = app->stage && app->follow == FOLLOW_NOTHING;
+    controls_write_command(&app->settings, options, sizeof options);
+    snprintf(text, size, "%s%s%s%s", app->program, options, stands ? " --camera " : "",
+             stands ? view_camera_write(&app->camera, camera, sizeof camera) : "");
+}
+
 void app_copy_command(struct view_app *app)
 {
-    char options[1024], line[2048];
-    controls_write_command(&app->settings, options, sizeof options);
-    snprintf(line, sizeof line, "%s%s", app->program, options);
+    char line[COMMAND_SIZE];
+    app_write_command(app, line, sizeof line);
     ui_copy_text(line);
     app_say(app, "Copied: %s", line);
 }

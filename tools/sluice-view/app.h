@@ -103,6 +103,8 @@ void app_set_panel(struct view_app *app, enum app_panel panel, bool open);
 void app_inspect(struct view_app *app, const struct stage_pick *pick);
 /** Moves the camera before a surface that has a tile of a texture. */
 void app_look_at_tile(struct view_app *app, uint32_t texture, const SluiceTile *tile);
+/** The command that shows this: scene, settings, and the camera unless it moves by itself. */
+void app_write_command(const struct view_app *app, char *text, size_t size);
 void app_copy_command(struct view_app *app);
 /** Whether the picture is a difference of two. */
 bool app_shows_difference(const struct view_app *app);

@@ -46,6 +46,27 @@ static float mix_angle(float a, float b, float part)
     return a + turn * part;
 }
 
+bool view_camera_read(const char *text, struct view_camera *camera)
+{
+    float n[6];
+    char *end = NULL;
+    for (int i = 0; i < 6; i++, text = end + (*end == ',')) {
+        n[i] = strtof(text, &end);
+        if (end == text || !isfinite(n[i]) || (i < 5 && *end != ',' && *end != ' '))
+            return false;
+    }
+    *camera = (struct view_camera){{n[0], n[1], n[2]}, n[3], n[4], n[5]};
+    return *end == '\0' && n[5] > 0.01f && n[5] < 3.0f;
+}
+
+const char *view_camera_write(const struct view_camera *c, char *text, size_t size)
+{
+    snprintf(text, size, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", (double)c->position.x,
+             (double)c->position.y, (double)c->position.z, (double)c->yaw, (double)c->pitch,
+             (double)c->fov);
+    return text;
+}
+
 struct view_camera view_camera_mix(const struct view_camera *a, const struct view_camera *b,
                                    float part)
 {

@@ -19,6 +19,10 @@ struct vec3 view_camera_forward(const struct view_camera *camera);
 struct vec3 view_camera_right(const struct view_camera *camera);
 /** A camera at `eye` that looks at `target`. */
 struct view_camera view_camera_at(struct vec3 eye, struct vec3 target, float fov);
+/** "x,y,z,yaw,pitch,fov", also with blanks between. False for anything else. */
+bool view_camera_read(const char *text, struct view_camera *camera);
+/** As view_camera_read takes it, with commas. Returns `text`. */
+const char *view_camera_write(const struct view_camera *camera, char *text, size_t size);
 /** Angles take the shorter way. */
 struct view_camera view_camera_mix(const struct view_camera *a, const struct view_camera *b,
                                    float part);

@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include "camera.h"
 #include "controls.h"
 #include "scene_open.h"
 
@@ -49,6 +50,8 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
         option_json(&o->json),
         {OPTION_TEXT, "play", "FILE", "(none)", &o->play,
          "a camera path that the camera follows: lines of seconds, x, y, z, yaw, pitch, fov"},
+        {OPTION_TEXT, "camera", "X,Y,Z,YAW,PITCH,FOV", "(the scene's)", &o->camera,
+         "where the camera stands still at first: meters and radians, as C copies it"},
         {OPTION_FLAG, "still", .value = &o->still,
          .help = "the camera stands still until somebody moves it"},
         {OPTION_FLAG, "fresh", .value = &o->fresh,
@@ -68,6 +71,11 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
     count += sizeof own / sizeof *own;
     const struct option_table table = {"sluice-view", usage, notes, all, count};
     const enum option_outcome outcome = options_parse(&table, argc, argv);
+    struct view_camera camera;
+    if (outcome == OPTIONS_RUN && o->camera && !view_camera_read(o->camera, &camera)) {
+        options_refuse(&table, "--camera %s: wants six numbers: x,y,z,yaw,pitch,fov", o->camera);
+        return OPTIONS_ERROR;
+    }
     if (outcome == OPTIONS_RUN &&
         !scene_open_takes((const char *const *)o->words.items, (uint32_t)o->words.count))
         return OPTIONS_ERROR;

@@ -13,6 +13,7 @@ struct view_options {
     uint32_t frames; ///< 0: until the script ends, or the window is closed
     uint32_t threads;
     const char *script, *screenshot, *csv, *play, *cache, *device, *record;
+    const char *camera; ///< as view_camera_read takes it; NULL: the scene's
 };
 
 /** Settings that stand before the options: defaults, or those of a file, which options change. */

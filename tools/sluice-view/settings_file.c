@@ -11,7 +11,6 @@
 #include "../common/text.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,19 +43,6 @@ bool settings_file_path(const char *scene, char *path, size_t size)
     return length > 0 && (size_t)length < size;
 }
 
-static bool read_camera(const char *text, struct view_camera *camera)
-{
-    float n[6];
-    char *end = NULL;
-    for (int i = 0; i < 6; i++, text = end) {
-        n[i] = strtof(text, &end);
-        if (end == text || !isfinite(n[i]))
-            return false;
-    }
-    *camera = (struct view_camera){{n[0], n[1], n[2]}, n[3], n[4], n[5]};
-    return *end == '\0' && n[5] > 0.01f && n[5] < 3.0f;
-}
-
 static bool read_line(char *line, struct view_app *app)
 {
     char *value = line + strcspn(line, " ");
@@ -64,7 +50,7 @@ static bool read_line(char *line, struct view_app *app)
         *value++ = '\0';
     if (strncmp(line, "bookmark-", 9) == 0 && line[9] >= '1' && line[9] <= '9' && !line[10]) {
         app->bookmark_set[line[9] - '1'] = true;
-        return read_camera(value, &app->bookmarks[line[9] - '1']);
+        return view_camera_read(value, &app->bookmarks[line[9] - '1']);
     }
     return controls_set(&app->settings, line, value, "sluice-view");
 }
@@ -117,7 +103,7 @@ void settings_file_read(const char *path, struct view_app *app)
 
 bool settings_file_write(const char *path, const struct view_app *app)
 {
-    char value[64];
+    char value[64], camera[160];
     uint32_t count;
     const struct control *controls = controls_get(&count);
     if (!files_make_folders_of(path)) {
@@ -137,9 +123,7 @@ bool settings_file_write(const char *path, const struct view_app *app)
     for (int i = 0; i < APP_BOOKMARKS; i++) {
         const struct view_camera *c = &app->bookmarks[i];
         if (app->bookmark_set[i])
-            fprintf(file, "bookmark-%d %.9g %.9g %.9g %.9g %.9g %.9g\n", i + 1,
-                    (double)c->position.x, (double)c->position.y, (double)c->position.z,
-                    (double)c->yaw, (double)c->pitch, (double)c->fov);
+            fprintf(file, "bookmark-%d %s\n", i + 1, view_camera_write(c, camera, sizeof camera));
     }
     return output_file_end(output, true);
 }

@@ -5,6 +5,7 @@
 #include "shader_files.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static struct stage *create_stage(struct viewer *v, const struct view_settings *settings,
@@ -62,14 +63,21 @@ bool viewer_fit_other(struct viewer *v)
 /* "sluice-view PATH ..."; paths that do not fit are left out. */
 static void name_command(struct viewer *v)
 {
-    size_t length = (size_t)snprintf(v->command, sizeof v->command, "sluice-view%s",
-                                     v->paths.count > 0 ? "" : " --room");
+    struct text_list words = {0};
+    size_t length = strlen("sluice-view --room");
+    text_list_add(&words, "sluice-view");
+    if (v->paths.count == 0)
+        text_list_add(&words, "--room");
     for (size_t i = 0; i < v->paths.count; i++) {
-        const char *path = v->paths.paths[i];
-        if (length + strlen(path) + 2 > sizeof v->command)
-            return;
-        length += (size_t)snprintf(v->command + length, sizeof v->command - length, " %s", path);
+        length += 4 * strlen(v->paths.paths[i]) + 3; /* at most, in quotes */
+        if (length >= sizeof v->command)
+            break;
+        text_list_add(&words, v->paths.paths[i]);
     }
+    char *line = text_list_join(&words);
+    snprintf(v->command, sizeof v->command, "%s", line);
+    free(line);
+    text_list_finish(&words);
 }
 
 void viewer_close_scene(struct viewer *v)
@@ -85,6 +93,10 @@ void viewer_close_scene(struct viewer *v)
 
 static void begin_walk(struct viewer *v)
 {
+    if (v->options->camera && view_camera_read(v->options->camera, &v->app.camera)) {
+        v->app.follow = FOLLOW_NOTHING;
+        v->app.touched = true;
+    }
     if (v->options->play)
         v->app.follow = FOLLOW_PATH;
     if (v->gpu.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU &&
