@@ -63,6 +63,14 @@ xdotool key 2 && picture levels.png && ! cmp -s dragged.png levels.png
 fact keys_choose_views
 copies() { xdotool key c && clipboard_has "$1"; }
 clipboard_has() { xclip -o -selection clipboard | grep -q "$1"; }
+# View 4 shows what the camera wants, over what is loaded after a second.
+words=()
+xdotool key 4 period period && sleep 1 && picture wanted.png && until_true 10 copies ' --camera ' &&
+    eval "words=($(xclip -o -selection clipboard))" &&
+    "$tool" "${words[@]:1}" --headless --deterministic --fresh --panels off --frames 30 --screenshot again.png >out2 2>err2 &&
+    cmp wanted.png again.png
+fact the_copied_command_line_draws_the_picture_again
+xdotool key comma comma 2
 xdotool key bracketleft c && until_true 10 clipboard_has '^sluice-view.* --budget '
 fact the_command_line_is_in_the_clipboard
 sizes=()
