@@ -14,11 +14,10 @@
 #include <time.h>
 #include <unistd.h>
 
-#define MOST_DEVICES 16u
 #define RUNS 3
 
 struct arguments {
-    uint32_t devices; ///< 0: all
+    struct device_list devices;
     int residency;
     uint32_t textures, texture_size, threads;
     uint64_t cache;
@@ -28,7 +27,7 @@ struct arguments {
 
 struct bench {
     const struct arguments *arguments;
-    struct gpu gpus[MOST_DEVICES];
+    struct gpu gpus[DEVICE_LIST_MOST];
     uint32_t gpu_count;
     SluiceImageSource **sources;
     uint32_t source_count;
@@ -49,70 +48,33 @@ static bool check(SluiceResult result, const char *what)
     return false;
 }
 
-static int rank_of(VkPhysicalDeviceType type)
-{
-    return type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU     ? 3
-           : type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ? 2
-           : type == VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU    ? 1
-                                                            : 0;
-}
-
-/* Indices of the physical devices of the best type that is there. */
-static uint32_t find_devices(uint32_t indices[MOST_DEVICES])
-{
-    const VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                           .apiVersion = VK_API_VERSION_1_2};
-    const VkInstanceCreateInfo create = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                         .pApplicationInfo = &application};
-    VkPhysicalDevice devices[MOST_DEVICES];
-    VkInstance instance;
-    uint32_t count = MOST_DEVICES, found = 0;
-    int best = -1;
-    if (vkCreateInstance(&create, NULL, &instance) != VK_SUCCESS)
-        return 0;
-    if (vkEnumeratePhysicalDevices(instance, &count, devices) < 0)
-        count = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        VkPhysicalDeviceProperties properties;
-        vkGetPhysicalDeviceProperties(devices[i], &properties);
-        int rank = rank_of(properties.deviceType);
-        if (rank > best)
-            found = 0;
-        best = rank > best ? rank : best;
-        if (rank == best)
-            indices[found++] = i;
-    }
-    vkDestroyInstance(instance, NULL);
-    return found;
-}
-
-/* 0, 1 or 77. More devices than there are: several of one physical device. */
+/* 0, 1 or 77. The first device is replaced if the list names others. */
 static int create_devices(struct bench *bench)
 {
     const struct arguments *a = bench->arguments;
     static const SluiceResidencyMode modes[] = {
         SLUICE_RESIDENCY_MODE_AUTO, SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED,
         SLUICE_RESIDENCY_MODE_DENSE};
-    uint32_t indices[MOST_DEVICES], found = find_devices(indices);
-    uint32_t wanted = a->devices ? a->devices : found;
-    for (; found && bench->gpu_count < wanted; bench->gpu_count++) {
+    struct gpu_request request = {.validation = a->validation,
+                                  .modes = {modes[a->residency], SLUICE_RESIDENCY_MODE_DENSE}};
+    uint32_t indices[DEVICE_LIST_MOST];
+    bool unsupported = false;
+    if (!gpu_create(&request, &bench->gpus[0], &unsupported))
+        return unsupported ? 77 : 1;
+    uint32_t wanted = gpu_list_alike(&bench->gpus[0], &a->devices, indices);
+    gpu_destroy(&bench->gpus[0]);
+    for (; bench->gpu_count < wanted; bench->gpu_count++) {
         struct gpu *gpu = &bench->gpus[bench->gpu_count];
         char name[16];
-        bool unsupported = false;
-        snprintf(name, sizeof name, "%u", indices[bench->gpu_count % found]);
-        const struct gpu_request request = {
-            .device = name,
-            .validation = a->validation,
-            .modes = {modes[a->residency], SLUICE_RESIDENCY_MODE_DENSE}};
+        snprintf(name, sizeof name, "%u", indices[bench->gpu_count]);
+        request.device = name;
         if (!gpu_create(&request, gpu, &unsupported))
             return unsupported ? 77 : 1;
         gpu_choose_mode(gpu, bench->source_count);
-        fprintf(stderr, "device %u: %s, %s\n", bench->gpu_count, gpu->capabilities.deviceName,
+        fprintf(stderr, "device %s: %s, %s\n", name, gpu->capabilities.deviceName,
                 gpu->capabilities.driverInfo);
     }
-    if (!found)
-        fprintf(stderr, "there is no Vulkan device\n");
-    return found ? 0 : 77;
+    return wanted > 0 ? 0 : 1;
 }
 
 static double process_seconds(void)
@@ -125,7 +87,7 @@ static double process_seconds(void)
 static bool fill(const struct bench *bench, uint32_t count, SluiceReadPool *pool,
                  struct outcome *outcome)
 {
-    struct filler fillers[MOST_DEVICES] = {0};
+    struct filler fillers[DEVICE_LIST_MOST] = {0};
     bool done = true;
     *outcome = (struct outcome){.pool.structSize = sizeof outcome->pool};
     for (uint32_t i = 0; i < count && done; i++) {
@@ -234,28 +196,13 @@ static int run(const struct arguments *a, const char *store)
     return status;
 }
 
-static bool parse_devices(const char *text, void *value)
-{
-    char *end;
-    unsigned long count = strtoul(text, &end, 10);
-    if (strcmp(text, "all") == 0) {
-        *(uint32_t *)value = 0;
-        return true;
-    }
-    if (*end || text[0] < '0' || text[0] > '9' || count < 1 || count > MOST_DEVICES)
-        return false;
-    *(uint32_t *)value = (uint32_t)count;
-    return true;
-}
-
 int main(int argc, char **argv)
 {
     struct arguments a = {0};
+    struct option devices = option_devices(&a.devices);
+    devices.initial = "all";
     const struct option rows[] = {
-        {OPTION_CUSTOM, "devices", "all|N", "all", &a.devices,
-         "devices to fill; all: those of the best type, discrete GPUs first; more than there are: "
-         "several of one GPU; at most 16",
-         .parse = parse_devices},
+        devices,
         {OPTION_CHOICE, "residency", "auto|sparse|paged|dense", "auto", &a.residency,
          "mode of the streamers"},
         {OPTION_UINT, "textures", "N", "4", &a.textures, "textures, each of all devices", 1, 4096},
@@ -263,7 +210,7 @@ int main(int argc, char **argv)
          "width and height of the textures in texels", 256, 16384},
         {OPTION_TEXT, "store", "FILE", "(a new one)", &a.store,
          "tile store that all textures are read from, instead of a new one"},
-        {OPTION_BYTES, "cache", "SIZE", "256M", &a.cache,
+        {OPTION_BYTES, "pool-cache", "SIZE", "256M", &a.cache,
          "texels that the pool keeps for devices that come later", 1, 1099511627776.0},
         option_threads(&a.threads),
         {OPTION_FLAG, "quick", .value = &a.quick,
