@@ -19,9 +19,10 @@ bool draw_pipeline_create(const struct gpu *gpu, const struct draw_pipeline_info
         stage(VK_SHADER_STAGE_FRAGMENT_BIT, info->fragment, info->constants)};
     const VkPipelineVertexInputStateCreateInfo no_input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-    const VkPipelineInputAssemblyStateCreateInfo triangles = {
+    const VkPipelineInputAssemblyStateCreateInfo assembly = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+        .topology =
+            info->lines ? VK_PRIMITIVE_TOPOLOGY_LINE_LIST : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
     const VkPipelineViewportStateCreateInfo viewport = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
         .viewportCount = 1,
@@ -60,7 +61,7 @@ bool draw_pipeline_create(const struct gpu *gpu, const struct draw_pipeline_info
         .stageCount = info->fragment ? 2 : 1,
         .pStages = stages,
         .pVertexInputState = info->input ? info->input : &no_input,
-        .pInputAssemblyState = &triangles,
+        .pInputAssemblyState = &assembly,
         .pViewportState = &viewport,
         .pRasterizationState = &raster,
         .pMultisampleState = &multisample,

@@ -13,6 +13,7 @@ struct draw_pipeline_info {
     const VkPipelineVertexInputStateCreateInfo *input; ///< NULL: the vertex shader reads none
     VkCullModeFlags culled;
     bool blended;  ///< by the color's alpha, and writes no depth
+    bool lines;    ///< lists of lines instead of triangles
     bool no_color; ///< writes depth, and buffers of the shader, but no color
 };
 

@@ -545,6 +545,33 @@ static void tiles_show_their_column_and_row(void **state)
     app->camera = before;
 }
 
+static void a_wireframe_draws_thin_lines_and_nothing_else(void **state)
+{
+    (void)state;
+    static uint8_t without[4 * WIDTH * HEIGHT];
+    static const uint8_t blue[3] = {89, 225, 243}; /* sRGB of the color of scene_lines.frag */
+    settle();
+    struct view_app *app = &show->app;
+    app->settings.view = VIEW_PICTURE;
+    app->settings.panels = 1;
+    draw(-1, -1);
+    memcpy(without, draw(-1, -1), sizeof without);
+    app->settings.wireframe = 1;
+    const uint8_t *with = draw(-1, -1);
+    uint32_t lines = 0;
+    for (size_t i = 0; i < sizeof without; i += 4) {
+        if (memcmp(with + i, without + i, 3) == 0)
+            continue;
+        lines++;
+        for (int k = 0; k < 3; k++)
+            assert_in_range(with[i + (size_t)k], blue[k] - 2, blue[k] + 2);
+    }
+    assert_in_range(lines, WIDTH / 2, WIDTH * HEIGHT / 8);
+    app->settings.wireframe = 0;
+    assert_memory_equal(draw(-1, -1), without, sizeof without);
+    app->settings.panels = 0;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -554,6 +581,7 @@ int main(void)
         cmocka_unit_test(sums_of_memory_count_all_slots),
         cmocka_unit_test(a_camera_that_looks_at_a_tile_sees_it_in_the_color_of_its_texture),
         cmocka_unit_test(tiles_show_their_column_and_row),
+        cmocka_unit_test(a_wireframe_draws_thin_lines_and_nothing_else),
         cmocka_unit_test(reasons_of_a_mode_are_those_that_the_library_chooses_by),
         cmocka_unit_test(filters_and_files_take_names_with_blanks_quotes_and_commas),
     };

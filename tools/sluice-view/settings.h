@@ -53,7 +53,8 @@ struct view_settings {
     uint32_t view; ///< enum view_number
     double render_scale;
     double tint;
-    int borders;           ///< enum view_borders
+    int borders; ///< enum view_borders
+    int wireframe;
     int show_path;         ///< the camera's, and bookmarks
     int compare, compared; ///< enum view_compare, enum view_compared
     int difference;        ///< enum view_difference

@@ -76,22 +76,28 @@ static VkShaderModule create_fragment(const struct gpu *gpu, const struct shader
     return gpu_create_shader(gpu, code->words, code->size);
 }
 
+static const VkVertexInputBindingDescription vertex_binding = {0, sizeof(struct scene_vertex),
+                                                               VK_VERTEX_INPUT_RATE_VERTEX};
+static const VkVertexInputAttributeDescription vertex_attributes[] = {
+    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct scene_vertex, position)},
+    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct scene_vertex, normal)},
+    {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct scene_vertex, uv)},
+    {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct scene_vertex, uv[1])}};
+
+static VkPipelineVertexInputStateCreateInfo vertex_input(uint32_t attributes)
+{
+    return (VkPipelineVertexInputStateCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+        .vertexBindingDescriptionCount = 1,
+        .pVertexBindingDescriptions = &vertex_binding,
+        .vertexAttributeDescriptionCount = attributes,
+        .pVertexAttributeDescriptions = vertex_attributes};
+}
+
 static bool create_pipeline(struct stage_drawing *d, const struct shader_code *code,
                             uint32_t pipeline, VkPipeline *created)
 {
-    const VkVertexInputBindingDescription binding = {0, sizeof(struct scene_vertex),
-                                                     VK_VERTEX_INPUT_RATE_VERTEX};
-    const VkVertexInputAttributeDescription attributes[] = {
-        {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct scene_vertex, position)},
-        {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct scene_vertex, normal)},
-        {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct scene_vertex, uv)},
-        {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct scene_vertex, uv[1])}};
-    const VkPipelineVertexInputStateCreateInfo input = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
-        .vertexBindingDescriptionCount = 1,
-        .pVertexBindingDescriptions = &binding,
-        .vertexAttributeDescriptionCount = 4,
-        .pVertexAttributeDescriptions = attributes};
+    const VkPipelineVertexInputStateCreateInfo input = vertex_input(4);
     const VkBool32 constant = d->paged;
     const VkSpecializationMapEntry entry = {0, 0, sizeof constant};
     const VkSpecializationInfo constants = {1, &entry, sizeof constant, &constant};
@@ -164,6 +170,7 @@ void stage_drawing_destroy(struct stage_drawing *d)
     }
     destroy_pipelines(d->gpu, d->pipelines);
     vkDestroyPipelineLayout(d->gpu->device, d->layout, NULL);
+    stage_lines_destroy(d->gpu, &d->lines);
     stage_sets_destroy(&d->sets);
     free(d->order);
     gpu_destroy_buffer(d->gpu, &d->vertices);
@@ -270,6 +277,25 @@ static void draw_parts(struct stage_drawing *d, const struct scene_data *scene,
     }
 }
 
+static bool draw_lines(struct stage_drawing *d, const struct scene_data *scene,
+                       const struct stage_draw *draw, VkCommandBuffer commands)
+{
+    const VkPipelineVertexInputStateCreateInfo input = vertex_input(1); /* the position */
+    const struct draw_pipeline_info info = {
+        .target = &d->targets[0], .layout = d->layout, .input = &input};
+    const struct push push = push_of(scene, draw);
+    if (!draw->settings->wireframe || scene->index_count < 3)
+        return true;
+    if (!d->lines.pipeline && !stage_lines_create(d->gpu, scene, &info, &d->lines))
+        return false;
+    vkCmdPushConstants(commands, d->layout,
+                       VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
+                       &push);
+    stage_lines_record(&d->lines, commands);
+    vkCmdBindIndexBuffer(commands, d->indices.buffer, 0, VK_INDEX_TYPE_UINT32);
+    return true;
+}
+
 /* The render pass leaves it for a copy; the user interface samples it. */
 static void record_layout(const struct target *target, VkCommandBuffer commands)
 {
@@ -329,8 +355,9 @@ VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_dat
     vkCmdBindVertexBuffers(commands, 0, 1, &d->vertices.buffer, &offset);
     vkCmdBindIndexBuffer(commands, d->indices.buffer, 0, VK_INDEX_TYPE_UINT32);
     draw_parts(d, scene, draw, commands);
+    const bool drawn = draw_lines(d, scene, draw, commands);
     target_end(target, commands);
-    if (!record_ahead(d, scene, draw, slot, commands))
+    if (!drawn || !record_ahead(d, scene, draw, slot, commands))
         return VK_NULL_HANDLE;
     if (draw->copy)
         target_copy_out(target, commands, draw->copy);

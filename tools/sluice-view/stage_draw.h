@@ -5,6 +5,7 @@
 #include "scene_data.h"
 #include "shader_files.h"
 #include "stage.h"
+#include "stage_lines.h"
 #include "stage_sets.h"
 #include "tile_marks.h"
 
@@ -19,6 +20,7 @@ struct stage_drawing {
     VkPipelineLayout layout;
     VkPipeline pipelines[STAGE_PIPELINES]; ///< those that materials need
     bool paged;
+    struct stage_lines lines;            ///< from the first frame on that shows them
     struct stage_order *order;           ///< owned; of the parts that blend
     struct target targets[FRAMES_SLOTS]; ///< one for each frame in flight
     struct target ahead[FRAMES_SLOTS];   ///< of the camera ahead; empty before it is drawn
