@@ -8,8 +8,12 @@ mkdir -p "$folder"
 cd "$folder"
 for script in "$root"/docs/viewer/*.txt; do
     basename "$script" .txt
+    [ "$script" != "$root/docs/viewer/pbrt.txt" ] || continue
     "$viewer" --headless --deterministic --size 1000x562 --render-scale 1 --script "$script"
 done
-for picture in hall blurry memory budget truth thrash unseen cut feedback; do
+ln -sfn "$(realpath "${SLUICE_TEST_DATA:-$root/../shared/data}")/pbrt/bitterli/staircase2" staircase
+"$viewer" --headless --deterministic --size 1000x562 --render-scale 1 --most-samples 4 \
+    --script "$root/docs/viewer/pbrt.txt" staircase/scene-v4.pbrt
+for picture in hall blurry memory budget truth thrash unseen cut feedback pbrt; do
     "$root/scripts/dev/palette_png.py" "$picture.png" "$root/docs/images/viewer-$picture.png"
 done
