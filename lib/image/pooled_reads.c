@@ -59,12 +59,12 @@ void slc_pooled_region_count(SluiceTileLoader *loader, const struct slc_read *re
 }
 
 void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_read *read, uint32_t region,
-                           struct slc_shared_region *shared, enum slc_delivery share,
+                           struct slc_shared_region *shared, enum slc_delivery delivery,
                            SluiceResult result)
 {
     struct slc_read_pool *pool = loader->pool;
     bool is_read = result == SLUICE_SUCCESS;
-    if (share == SLC_DELIVER_READ) {
+    if (delivery == SLC_DELIVER_READ) {
         pool->shares->statistics.readCount += is_read;
         pool->shares->statistics.readSize += is_read ? shared->size : 0;
         resume_waiting(loader, slc_shared_reads_end(pool->shares, shared, is_read),
@@ -94,17 +94,17 @@ static SluiceResult deliver(SluiceTileLoader *loader, struct slc_read *read,
     struct slc_read_pool *pool = loader->pool;
     struct slc_shared_region *shared;
     SluiceResult result = SLUICE_SUCCESS;
-    enum slc_delivery share = slc_pooled_region_claim(loader, read, info, region, &shared);
-    if (share == SLC_DELIVER_WAIT)
+    enum slc_delivery delivery = slc_pooled_region_claim(loader, read, info, region, &shared);
+    if (delivery == SLC_DELIVER_WAIT)
         return SLUICE_SUCCESS;
-    if (share != SLC_DELIVER_COPY) {
+    if (delivery != SLC_DELIVER_COPY) {
         slc_mutex_unlock(&pool->mutex);
         result = shared ? slc_read_shared_region(shared, info, fault)
                         : slc_loader_read_region(loader, read, info, region, fault);
         slc_mutex_lock(&pool->mutex);
     }
     if (shared)
-        slc_pooled_region_end(loader, read, region, shared, share, result);
+        slc_pooled_region_end(loader, read, region, shared, delivery, result);
     else if (result == SLUICE_SUCCESS)
         slc_pooled_region_count(loader, read, info->format, region);
     if (result == SLUICE_SUCCESS)

@@ -26,7 +26,7 @@ enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_r
 /** Ends SLC_DELIVER_READ and SLC_DELIVER_COPY: copies the texels, if there are any, to the read.
  * The mutex is given up meanwhile. */
 void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_read *read, uint32_t region,
-                           struct slc_shared_region *shared, enum slc_delivery share,
+                           struct slc_shared_region *shared, enum slc_delivery delivery,
                            SluiceResult result);
 /** Counts a region that a source has delivered to a read alone. */
 void slc_pooled_region_count(SluiceTileLoader *loader, const struct slc_read *read,

@@ -68,11 +68,11 @@ static void start_region(SluiceTileLoader *loader, struct slc_read *read,
     const SluiceImageRegion *at = &read->regions[region];
     SluiceImageFault fault = {"", SLUICE_UNKNOWN_OFFSET};
     struct slc_shared_region *shared;
-    enum slc_delivery share = slc_pooled_region_claim(loader, read, info, region, &shared);
-    if (share == SLC_DELIVER_WAIT)
+    enum slc_delivery delivery = slc_pooled_region_claim(loader, read, info, region, &shared);
+    if (delivery == SLC_DELIVER_WAIT)
         return;
-    if (share == SLC_DELIVER_COPY) {
-        slc_pooled_region_end(loader, read, region, shared, share, SLUICE_SUCCESS);
+    if (delivery == SLC_DELIVER_COPY) {
+        slc_pooled_region_end(loader, read, region, shared, delivery, SLUICE_SUCCESS);
         slc_read_region_done(read, info->format, region);
         return;
     }
