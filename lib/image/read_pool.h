@@ -39,6 +39,7 @@ struct SluiceTileLoader {
     struct slc_read_pool *pool;
     bool owns_pool;
     SluiceReadPool *member_of; ///< a loader of the application
+    bool ending;               ///< it is being destroyed
     bool awaited;              ///< its owner waits for a read to end
     bool uncached; ///< texels are read to the cache first: the host reads their memory slowly
     /** Interfaces of sources that are no images: their reads go straight to the memory that was

@@ -22,10 +22,10 @@ enum slc_read_state {
 
 /** Regions of a running read that its source has started. With the lock held. */
 struct slc_started {
-    uint32_t pending; ///< a bit for each region that is not completed
-    uint32_t calls;   ///< of the source that are in progress: the read cannot end
-    bool starting;    ///< one of them starts regions
-    bool was_canceled;
+    uint32_t pending;    ///< a bit for each region that is not completed
+    uint32_t calls;      ///< of the source that are in progress: the read cannot end
+    bool starting;       ///< one of them starts regions
+    uint32_t told;       ///< a bit for each region whose source was told of a cancel
     SluiceResult result; ///< the first one that is not SLUICE_SUCCESS
     uint32_t failed_region;
     SluiceFormat format;

@@ -126,15 +126,16 @@ void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const Sl
 void slc_cancel_regions(SluiceTileLoader *loader, struct slc_read *read)
 {
     struct slc_started *started = &read->started;
-    uint32_t pending = started->pending;
-    if (!pending || started->starting || started->was_canceled)
+    uint32_t pending = started->pending & ~started->told;
+    if (!pending || started->starting)
         return;
-    started->was_canceled = true;
     started->calls++;
     for (uint32_t i = 0; i < read->region_count; i++) {
         struct slc_shared_region *shared = started->shared[i];
-        if (!(pending >> i & 1) || (shared && shared->waiting))
-            continue; /* others want it */
+        if (!((pending & ~started->told) >> i & 1) ||
+            (shared && shared->waiting && !loader->ending))
+            continue;
+        started->told |= 1u << i;
         if (shared)
             slc_shared_reads_hide(loader->pool->shares, shared);
         const SluiceImageReadToken token = token_of(loader, read, i);

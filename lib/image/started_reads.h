@@ -10,7 +10,8 @@ void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const Sl
                        uint64_t start_time);
 
 /** With the mutex held, which is given up meanwhile: tells the source of a running read that was
- *  dropped. */
+ *  dropped. Regions that reads of other loaders wait for go on, unless this loader is destroyed:
+ *  it waits for its source, and the others then read themselves. */
 void slc_cancel_regions(SluiceTileLoader *loader, struct slc_read *read);
 
 #endif /* SLC_IMAGE_STARTED_READS_H */

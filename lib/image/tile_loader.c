@@ -145,6 +145,7 @@ void sluiceDestroyTileLoader(SluiceTileLoader *loader)
         return;
     struct slc_read_pool *pool = loader->pool;
     slc_mutex_lock(&pool->mutex);
+    loader->ending = true;
     for (uint32_t i = 0; i < loader->queue.capacity; i++)
         drop_read(loader, &loader->queue.reads[i]);
     while (!slc_read_queue_is_idle(&loader->queue))

@@ -581,6 +581,34 @@ static void sources_are_not_told_of_a_cancel_while_others_wait(void **state)
     end_pool(pool, loaders);
 }
 
+/* It would wait for as long as the source takes, and for ever if the source waits for a cancel. The
+ * read that joined starts itself. Also if the read was canceled before. */
+static void a_loader_that_ends_tells_its_sources_at_once(void **state)
+{
+    (void)state;
+    for (int canceled = 0; canceled < 2; canceled++) {
+        struct source source;
+        SluiceTileLoader *loaders[2];
+        uint64_t tickets[2];
+        float texels[3] = {0};
+        SluiceReadPool *pool = begin_pool(&source, loaders);
+        source.obeys = true;
+        join(&source, loaders, texels, tickets);
+        if (canceled)
+            CHECK_OK(sluiceCancelTileRead(loaders[0], tickets[0]));
+        assert_int_equal(source.cancel_count, 0);
+        sluiceDestroyTileLoader(loaders[0]);
+        loaders[0] = NULL;
+        assert_int_equal(source.cancel_count, 1);
+        await_pending(&source, 2); /* levels 2 and 1 */
+        complete_level(&source, 1);
+        assert_int_equal(collect(loaders[1]).ticket, tickets[1]);
+        assert_true(texels[1] == 1000);
+        complete_level(&source, 2);
+        end_pool(pool, loaders);
+    }
+}
+
 /* The source has not completed the canceled read: nobody joins it any more. */
 static void reads_that_were_canceled_are_not_joined(void **state)
 {
@@ -713,6 +741,7 @@ int main(void)
         cmocka_unit_test(bytes_of_started_reads_are_in_flight),
         cmocka_unit_test(started_reads_are_joined),
         cmocka_unit_test(sources_are_not_told_of_a_cancel_while_others_wait),
+        cmocka_unit_test(a_loader_that_ends_tells_its_sources_at_once),
         cmocka_unit_test(reads_that_were_canceled_are_not_joined),
         cmocka_unit_test(a_read_that_joined_a_started_failure_starts_itself),
         cmocka_unit_test(regions_that_are_read_at_once_are_shared_too),
