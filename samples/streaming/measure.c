@@ -35,7 +35,7 @@ static uint32_t count_frames(const struct measure *measure)
     return measure->frame_count - measure->first_frame;
 }
 
-/** Of the measured ones, the first in which the camera stands still. */
+/** The first measured frame in which the camera stands still. */
 static uint32_t first_at_rest(const struct measure *measure)
 {
     return measure->rest_frame > measure->first_frame ? measure->rest_frame : measure->first_frame;
