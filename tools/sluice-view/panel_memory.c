@@ -55,6 +55,8 @@ static bool draw_heap(struct view_app *app, uint32_t heap, float cell)
     const uint32_t rows = (STAGE_HEAP_TILES + COLUMNS - 1) / COLUMNS;
     ui_canvas((float)COLUMNS * cell, (float)rows * cell + 6 * ui_scale(), r);
     const bool hovered = ui_hovered();
+    if (r[1] > app->height || r[1] + r[3] < 0) /* scrolled away */
+        return true;
     ui_mouse(&x, &y);
     ui_fill(r[0], r[1], (float)COLUMNS * cell, (float)rows * cell, UI_COLOR(30, 34, 40, 255));
     for (uint32_t i = 0; i < STAGE_HEAP_TILES; i++) {

@@ -62,18 +62,23 @@ static struct tile_log_tile *find(const struct tile_log *log, SluiceTextureId id
     return found && tile < found->tile_count ? &log->tiles[found->first_tile + tile] : NULL;
 }
 
+static void count(uint16_t *counter)
+{
+    *counter += *counter < UINT16_MAX;
+}
+
 static void note_load(struct tile_log *log, struct tile_log_tile *tile,
                       const SluiceTileEvent *event)
 {
-    tile->loads++;
+    count(&tile->loads);
     tile->loaded_time = event->timeStamp;
     log->loads++;
-    if (tile->requested) {
-        const uint64_t wait = event->mark - tile->requested_mark;
+    if (tile->requested > 0) {
+        const uint32_t wait = (uint32_t)event->mark + 1 - tile->requested;
         log->waits[wait < TILE_LOG_MOST_WAIT ? wait : TILE_LOG_MOST_WAIT]++;
         log->wait_count++;
     }
-    tile->requested = false;
+    tile->requested = 0;
 }
 
 void tile_log_take(struct tile_log *log, const SluiceTileEvent *event, uint64_t timeout)
@@ -84,17 +89,15 @@ void tile_log_take(struct tile_log *log, const SluiceTileEvent *event, uint64_t 
     const bool arrives = event->reason == SLUICE_TILE_EVENT_ANSWERED;
     /* Requests from before the log began are known when a frame takes them up. */
     if ((event->to == SLUICE_TILE_STATE_REQUESTED && event->from == SLUICE_TILE_STATE_FREE) ||
-        (event->to == SLUICE_TILE_STATE_ALLOCATED && !tile->requested)) {
-        tile->requested = true;
-        tile->requested_mark = event->mark;
-    }
+        (event->to == SLUICE_TILE_STATE_ALLOCATED && tile->requested == 0))
+        tile->requested = (uint32_t)event->mark + 1;
     if (arrives &&
         (event->to == SLUICE_TILE_STATE_MAPPED || event->to == SLUICE_TILE_STATE_STANDBY))
         note_load(log, tile, event);
     if (arrives && event->to == SLUICE_TILE_STATE_FAILED)
-        tile->failures++;
+        count(&tile->failures);
     if (event->to == SLUICE_TILE_STATE_FREE)
-        tile->requested = false;
+        tile->requested = 0;
     const bool expires = event->from == SLUICE_TILE_STATE_MAPPED &&
                          event->to == SLUICE_TILE_STATE_STANDBY &&
                          event->reason == SLUICE_TILE_EVENT_FEEDBACK;

@@ -10,11 +10,11 @@
 /** Waits of more frames than that count as so many. */
 #define TILE_LOG_MOST_WAIT 4095u
 
+/** 16 bytes, since a scene can have millions. Counts stay at their largest value. */
 struct tile_log_tile {
-    uint64_t requested_mark; ///< frame in which it was last requested
-    uint64_t loaded_time;    ///< time stamp of its last load; 0 with no load
-    uint32_t loads, failures;
-    bool requested; ///< waits for a load
+    uint64_t loaded_time; ///< time stamp of its last load; 0 with no load
+    uint32_t requested; ///< 1 + frame in which it was requested, modulo 2^32; 0: waits for no load
+    uint16_t loads, failures;
 };
 
 struct tile_log {
