@@ -118,8 +118,7 @@ static void draw_sources(const struct view_app *app)
 
 static void draw_streamer(const struct view_app *app)
 {
-    ui_paragraph(UI_GRAY, "From a mark of a shader to the picture. Bars: 0, 1, 2-3, 4-7, ... "
-                          "frames.");
+    ui_text(UI_GRAY, "Bars: 0, 1, 2-3, 4-7, ... frames from a mark to the picture");
     draw_whole(&app->facts.log);
     for (int i = 0; i < SLUICE_LOAD_STAGE_COUNT; i++)
         draw_stage(&app->facts.stages.stages[i], stage_names[i]);

@@ -26,18 +26,18 @@ static void draw_seen(uint32_t color, double seconds)
         ui_table_cell(color, "%.0f min ago", seconds / 60);
 }
 
-/* Columns from the tiles to the failures: rows and sums have them. */
+/* Rows and sums have these columns. */
 static void draw_figures(const struct texture_row *r, uint32_t color)
 {
     char size[32];
+    ui_table_cell(r->thrash > 3 ? UI_ORANGE : color, "%.1f", r->thrash);
+    ui_table_cell(color, "%llu", (unsigned long long)r->loads);
     ui_table_cell(color, "%llu", (unsigned long long)r->resident);
     ui_table_cell(color, "%llu", (unsigned long long)r->wanted);
     ui_table_cell(color, "%llu", (unsigned long long)r->all);
     ui_table_cell(color, "%s", panel_size(r->size, size, sizeof size));
     draw_level(color, r->finest_level);
     draw_seen(color, r->seen_seconds);
-    ui_table_cell(color, "%llu", (unsigned long long)r->loads);
-    ui_table_cell(r->thrash > 3 ? UI_ORANGE : color, "%.1f", r->thrash);
     ui_table_cell(color, "%llu", (unsigned long long)r->evictions);
     ui_table_cell(r->failures ? UI_RED : color, "%llu", (unsigned long long)r->failures);
 }
@@ -52,10 +52,10 @@ static void draw_row(struct view_app *app, const struct texture_row *r)
         app_set_panel(app, PANEL_INSPECTOR, true);
     }
     ui_table_cell(color, "%s", r->name);
+    draw_figures(r, color);
     ui_table_cell(color, "%u x %u", r->width, r->height);
     ui_table_cell(color, "%s", r->format);
     ui_table_cell(color, "%u", r->level_count);
-    draw_figures(r, color);
     ui_table_cell(color, "%s", r->set);
     ui_table_cell(color, "%s", r->source);
 }
@@ -64,9 +64,6 @@ static void draw_sum(const struct texture_row *sum, uint32_t count)
 {
     ui_table_row(-1, false);
     ui_table_cell(UI_BLUE, "sum of %u", count);
-    ui_table_cell(UI_BLUE, "%s", "");
-    ui_table_cell(UI_BLUE, "%s", "");
-    ui_table_cell(UI_BLUE, "%s", "");
     draw_figures(sum, UI_BLUE);
 }
 
@@ -96,8 +93,9 @@ static void draw_table(struct view_app *app, struct texture_row *rows, uint32_t 
     uint32_t column = COLUMN_NAME;
     bool descending = false;
     if (!ui_begin_table("textures",
-                        "Name|Size|Format|Levels|Resident|Wanted|All|Memory|Finest|Seen|Loads|"
-                        "Loads/tile|Evicted|Failed|Set|Source",
+                        "Name|Loads/"
+                        "tile|Loads|Resident|Wanted|All|Memory|Finest|Seen|Evicted|Failed|Size|"
+                        "Format|Levels|Set|Source",
                         0, true))
         return;
     ui_table_sort(&column, &descending);
