@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -687,6 +688,31 @@ static void damaged_and_cut_ranges_are_asked_for_again(void **state)
     remove_folder(folder);
 }
 
+/* Processes that fill the folder, and evict from it, are killed at any moment. */
+static void a_folder_survives_processes_that_are_killed(void **state)
+{
+    char folder[] = "/tmp/sluice-http-cache-XXXXXX";
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    for (int i = 0; i < 12; i++) {
+        pid_t child = fork();
+        assert_true(child >= 0);
+        if (child == 0)
+            for (;;) {
+                read_cached(folder, 5 * KEPT_SIZE, "plain/killed", 8);
+                read_cached(folder, 5 * KEPT_SIZE, "plain/killed?again=1", 8);
+            }
+        nanosleep(&(struct timespec){0, 10000000 + 7000000 * i}, NULL);
+        assert_int_equal(kill(child, SIGKILL), 0);
+        int status;
+        assert_int_equal(waitpid(child, &status, 0), child);
+        assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+        read_cached(folder, 0, "plain/killed", 8); /* compares all bytes */
+    }
+    assert_int_equal(read_cached(folder, 0, "plain/killed", 8).cacheHitTotal, 8);
+    remove_folder(folder);
+}
+
 static void the_folder_stays_within_its_limit_and_keeps_what_was_read_last(void **state)
 {
     char folder[] = "/tmp/sluice-http-cache-XXXXXX";
@@ -824,6 +850,7 @@ int main(void)
         cmocka_unit_test(urls_of_other_kinds_and_bad_settings_are_refused),
         cmocka_unit_test(a_second_start_reads_no_range_twice),
         cmocka_unit_test(damaged_and_cut_ranges_are_asked_for_again),
+        cmocka_unit_test(a_folder_survives_processes_that_are_killed),
         cmocka_unit_test(the_folder_stays_within_its_limit_and_keeps_what_was_read_last),
         cmocka_unit_test(a_folder_that_cannot_be_written_is_said_once_and_reads_go_on),
         cmocka_unit_test(a_folder_that_everybody_may_write_is_refused),
