@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # test_window.sh FACTS SLUICE-VIEW LOSE-DEVICE [DROP-FILES]: a real window with real input, in an X server of its own, in TAP.
 set -u
+here=$(cd "$(dirname "$0")" && pwd)
 facts=$(realpath "$1") tool=$(realpath "$2") lose_device=$(realpath "$3") drop_files=${4:+$(realpath "$4")}
 for program in Xvfb xdotool xclip; do
     command -v $program >/dev/null || { echo "1..0 # SKIP no $program"; exit 0; }
@@ -110,6 +111,16 @@ open_viewer many && picture early.png shift+F12 && until_true 3 has_moved &&
     xdotool key Escape && until_true 10 copies '^sluice-view --room --size' &&
     xdotool key ctrl+q && ended_well
 fact loading_says_how_far_it_is_and_escape_opens_the_room_instead
+# Rays are traced; the size of the window and of the film change meanwhile.
+export GALLIVM_PERF=nopt
+# shellcheck disable=SC2086
+python3 "$here/pbrt_scene.py" make . && open_viewer $validation --cache cache --panels off wall.pbrt &&
+    until_true 60 copies '^sluice-view wall.pbrt' && sleep 1 && picture traced.png && xdotool keydown w sleep 0.5 keyup w &&
+    picture walked.png && ! cmp -s traced.png walked.png && xdotool windowsize "$window" 360 300 &&
+    until_true 10 size_is 360x300 && picture small.png && [ "$(png_size small.png)" = 360x300 ] && xdotool key Home sleep 1 &&
+    picture home.png && python3 "$here/pbrt_scene.py" holes walked.png small.png home.png &&
+    xdotool key ctrl+q && ended_well
+fact a_scene_of_pbrt_is_traced_in_a_window_with_silent_validation
 export LOSE_AFTER=20
 LD_PRELOAD=$lose_device open_viewer
 tries=100
