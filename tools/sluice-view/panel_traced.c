@@ -21,6 +21,8 @@ static const struct {
     {"L", "Wants cannot be frozen: rays ask anew in each launch"},
     {",", "Scenes of pbrt have no mip bias: the budget makes them coarser"},
     {".", "Scenes of pbrt have no mip bias: the budget makes them coarser"},
+    {"Shift+N", "Scenes of pbrt load what a launch asked for: N makes one launch"},
+    {"Ctrl+T", "Sweeps are for streamed scenes: what they change does nothing here"},
 };
 
 #define REFUSED_COUNT (sizeof refused / sizeof *refused)
@@ -41,12 +43,31 @@ const char *panel_traced_refuses_view(uint32_t view)
 
 bool panel_traced_takes(const char *control)
 {
-    static const char *const names[] = {
-        "standby",         "timeout",          "residency",    "feedback", "probability",
-        "tiles-per-frame", "loads-in-flight",  "fade",         "borders",  "textures-per-frame",
-        "source-latency",  "source-bandwidth", "source-fails", "lod-bias", "freeze-wants",
-        "compare-as",      "compare-to",       "divider",      "gain",     "predict",
-        "difference-as"};
+    static const char *const names[] = {"standby",
+                                        "timeout",
+                                        "residency",
+                                        "feedback",
+                                        "probability",
+                                        "tiles-per-frame",
+                                        "loads-in-flight",
+                                        "fade",
+                                        "borders",
+                                        "textures-per-frame",
+                                        "source-latency",
+                                        "source-bandwidth",
+                                        "source-fails",
+                                        "lod-bias",
+                                        "freeze-wants",
+                                        "compare-as",
+                                        "compare-to",
+                                        "divider",
+                                        "gain",
+                                        "predict",
+                                        "difference-as",
+                                        "wireframe",
+                                        "memory-colors",
+                                        "event-reason",
+                                        "events-of"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(names[i], control) == 0)
             return false;

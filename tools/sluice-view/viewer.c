@@ -164,9 +164,7 @@ static void answer_requests(struct viewer *v)
         stage_apply(v->stage, &now);
         v->applied = now;
     }
-    if (v->stage && app->step_tile && stage_traced(v->stage))
-        app_say(app, "Scenes of pbrt load what a launch asked for; N makes one launch");
-    else if (v->stage && app->step_tile)
+    if (v->stage && app->step_tile)
         sluiceStepVulkanLoads(stage_streamer(v->stage), 1);
     if (v->window)
         window_set_full_screen(v->window, app->settings.full_screen != 0);
