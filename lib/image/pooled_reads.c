@@ -30,7 +30,7 @@ enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_r
     }
     if (!slc_reads_are_pooled(loader, source) || !slc_shared_reads_are_on(shares) || size == 0)
         return SLC_DELIVER_ALONE;
-    return slc_shared_reads_claim(shares, source, at, size, shared);
+    return slc_shared_reads_claim(shares, read, at, size, shared);
 }
 
 static void resume_waiting(SluiceTileLoader *loader, struct slc_read *waiting,

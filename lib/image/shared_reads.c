@@ -211,7 +211,7 @@ static struct slc_shared_region *evict(struct slc_shared_reads *shares, uint64_t
     return NULL;
 }
 
-static struct slc_shared_region *create(struct slc_shared_reads *shares, SluiceImageSource *source,
+static struct slc_shared_region *create(struct slc_shared_reads *shares, struct slc_read *read,
                                         const SluiceImageRegion *at, size_t size)
 {
     struct slc_shared_region *region = evict(shares, size);
@@ -225,9 +225,10 @@ static struct slc_shared_region *create(struct slc_shared_reads *shares, SluiceI
         shares->count++;
     }
     *region = (struct slc_shared_region){.texels = (unsigned char *)region + HEADER_SIZE,
-                                         .source = source,
+                                         .source = read->source->source,
                                          .region = *at,
                                          .size = size,
+                                         .reader = read,
                                          .holder_count = 1,
                                          .is_reading = true,
                                          .is_listed = true};
@@ -238,11 +239,11 @@ static struct slc_shared_region *create(struct slc_shared_reads *shares, SluiceI
     return region;
 }
 
-enum slc_delivery slc_shared_reads_claim(struct slc_shared_reads *shares, SluiceImageSource *source,
+enum slc_delivery slc_shared_reads_claim(struct slc_shared_reads *shares, struct slc_read *read,
                                          const SluiceImageRegion *at, size_t size,
                                          struct slc_shared_region **out)
 {
-    struct slc_shared_region *region = find(shares, source, at);
+    struct slc_shared_region *region = find(shares, read->source->source, at);
     *out = region;
     if (region && region->size == size) {
         if (region->is_reading)
@@ -255,7 +256,7 @@ enum slc_delivery slc_shared_reads_claim(struct slc_shared_reads *shares, Sluice
     }
     if (region) /* of another format: the source has changed */
         slc_shared_reads_hide(shares, region);
-    *out = ensure_tables(shares) ? create(shares, source, at, size) : NULL;
+    *out = ensure_tables(shares) ? create(shares, read, at, size) : NULL;
     shares->statistics.refusedCount += !*out;
     return *out ? SLC_DELIVER_READ : SLC_DELIVER_ALONE;
 }
@@ -265,6 +266,7 @@ struct slc_read *slc_shared_reads_end(struct slc_shared_reads *shares,
 {
     struct slc_read *waiting = region->waiting;
     region->waiting = NULL;
+    region->reader = NULL;
     region->is_reading = false;
     if (!read)
         slc_shared_reads_hide(shares, region);

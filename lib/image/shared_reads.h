@@ -22,6 +22,7 @@ struct slc_shared_region {
     struct slc_shared_region *next_by_region, *next_by_source;
     struct slc_shared_region **link_by_source; ///< which points to it
     struct slc_shared_region *older, *newer;   ///< while kept and not held
+    struct slc_read *reader;                   ///< whose source reads it; NULL: kept
     struct slc_read *waiting;                  ///< reads that wait for it, linked by next_waiting
     uint32_t holder_count;                     ///< its reader, and readers that copy or will copy
     bool is_reading;
@@ -59,9 +60,9 @@ void slc_shared_reads_remove_member(struct slc_shared_reads *shares);
 /** There is somebody to share with. */
 bool slc_shared_reads_are_on(const struct slc_shared_reads *shares);
 
-/** Returns how the caller gets the texels, which have `size` bytes. `*region` is theirs, but for
- *  SLC_DELIVER_ALONE. SLC_DELIVER_READ and SLC_DELIVER_COPY hold the region for the caller. */
-enum slc_delivery slc_shared_reads_claim(struct slc_shared_reads *shares, SluiceImageSource *source,
+/** Returns how `read` gets the texels of `at`, which have `size` bytes. `*region` is theirs, but
+ * for SLC_DELIVER_ALONE. SLC_DELIVER_READ and SLC_DELIVER_COPY hold the region for the read. */
+enum slc_delivery slc_shared_reads_claim(struct slc_shared_reads *shares, struct slc_read *read,
                                          const SluiceImageRegion *at, size_t size,
                                          struct slc_shared_region **region);
 /** Ends a SLC_DELIVER_READ; the caller still holds the region. Returns the reads that waited. They

@@ -123,21 +123,28 @@ void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const Sl
         settle_if_over(loader, read);
 }
 
+/* The source shall be told of the cancel. */
+static bool is_unwanted(const SluiceTileLoader *loader, const struct slc_read *read,
+                        uint32_t region)
+{
+    const struct slc_started *started = &read->started;
+    const struct slc_shared_region *shared = started->shared[region];
+    return is_pending(read, region) && !(started->told >> region & 1) &&
+           (!shared || !shared->waiting || loader->ending);
+}
+
 void slc_cancel_regions(SluiceTileLoader *loader, struct slc_read *read)
 {
     struct slc_started *started = &read->started;
-    uint32_t pending = started->pending & ~started->told;
-    if (!pending || started->starting)
+    if (!started->pending || started->starting)
         return;
     started->calls++;
     for (uint32_t i = 0; i < read->region_count; i++) {
-        struct slc_shared_region *shared = started->shared[i];
-        if (!((pending & ~started->told) >> i & 1) ||
-            (shared && shared->waiting && !loader->ending))
+        if (!is_unwanted(loader, read, i))
             continue;
         started->told |= 1u << i;
-        if (shared)
-            slc_shared_reads_hide(loader->pool->shares, shared);
+        if (started->shared[i])
+            slc_shared_reads_hide(loader->pool->shares, started->shared[i]);
         const SluiceImageReadToken token = token_of(loader, read, i);
         slc_mutex_unlock(&loader->pool->mutex);
         slc_cancel_read(read->source->source, &read->regions[i], &token);
@@ -145,6 +152,15 @@ void slc_cancel_regions(SluiceTileLoader *loader, struct slc_read *read)
     }
     started->calls--;
     settle_if_over(loader, read);
+}
+
+void slc_cancel_unwanted_region(const struct slc_shared_region *region)
+{
+    struct slc_read *reader = region->reader;
+    if (!reader || region->waiting || !slc_read_is_dropped(reader))
+        return;
+    struct slc_read_queue *queue = slc_read_queue_of(reader);
+    slc_cancel_regions(SLC_CONTAINER_OF(queue, SluiceTileLoader, queue), reader);
 }
 
 static bool is_awaited(const struct slc_read *read, const SluiceImageReadToken *token)

@@ -3,6 +3,7 @@
 #define SLC_IMAGE_STARTED_READS_H
 
 #include "image/read_pool.h"
+#include "image/shared_reads.h"
 
 /** With the mutex held, which is given up meanwhile: starts the regions of a running read that are
  *  left. The read ends when its source has completed them. */
@@ -13,5 +14,8 @@ void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const Sl
  *  dropped. Regions that reads of other loaders wait for go on, unless this loader is destroyed:
  *  it waits for its source, and the others then read themselves. */
 void slc_cancel_regions(SluiceTileLoader *loader, struct slc_read *read);
+/** With the mutex held, which is given up meanwhile: a read that waited for the region has left. If
+ *  it was the last one, and the reader of the region was dropped, tells the source. */
+void slc_cancel_unwanted_region(const struct slc_shared_region *region);
 
 #endif /* SLC_IMAGE_STARTED_READS_H */

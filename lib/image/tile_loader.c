@@ -114,13 +114,16 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
 /* With the mutex held, which is given up while a source is told. */
 static void drop_read(SluiceTileLoader *loader, struct slc_read *read)
 {
+    const struct slc_shared_region *awaited = read->awaited;
     if (read->state == SLC_READ_QUEUED || read->state == SLC_READ_DELAYED ||
-        read->state == SLC_READ_WAITING)
+        read->state == SLC_READ_WAITING) {
         slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELED);
-    if (read->state != SLC_READ_RUNNING)
-        return;
-    atomic_store_explicit(&read->dropped, true, memory_order_relaxed);
-    slc_cancel_regions(loader, read);
+        if (awaited)
+            slc_cancel_unwanted_region(awaited);
+    } else if (read->state == SLC_READ_RUNNING) {
+        atomic_store_explicit(&read->dropped, true, memory_order_relaxed);
+        slc_cancel_regions(loader, read);
+    }
 }
 
 /* With the mutex held. What waited behind its reads may start now. */

@@ -609,6 +609,65 @@ static void a_loader_that_ends_tells_its_sources_at_once(void **state)
     }
 }
 
+/* The reader of level 1 is canceled before or after the read that waits for it, or both loaders
+ * are destroyed. The source completes reads only when it is told. */
+static void sources_are_told_of_a_cancel_when_nobody_waits_any_more(void **state)
+{
+    (void)state;
+    enum { FIRST, LAST, DESTROYED, CASES };
+    for (int reader = 0; reader < CASES; reader++) {
+        struct source source;
+        SluiceTileLoader *loaders[2];
+        uint64_t tickets[2];
+        float texels[3] = {0};
+        SluiceReadPool *pool = begin_pool(&source, loaders);
+        source.obeys = true;
+        join(&source, loaders, texels, tickets);
+        CHECK_OK(sluiceCancelTileRead(loaders[reader == LAST], tickets[reader == LAST]));
+        assert_int_equal(source.cancel_count, 0);
+        if (reader == DESTROYED) {
+            sluiceDestroyTileLoader(loaders[1]);
+            loaders[1] = NULL;
+        } else {
+            CHECK_OK(sluiceCancelTileRead(loaders[reader != LAST], tickets[reader != LAST]));
+            assert_int_equal(source.cancel_count, 1);
+            CHECK_RESULT(collect(loaders[1]).result, SLUICE_ERROR_CANCELED);
+        }
+        CHECK_RESULT(collect(loaders[0]).result, SLUICE_ERROR_CANCELED);
+        end_pool(pool, loaders);
+        assert_int_equal(source.cancel_count, 2); /* once each */
+        assert_int_equal(source.count, 0);
+    }
+}
+
+/* Of two levels the second one is wanted: the source is told of the first one, and later of both.
+ */
+static void each_region_is_canceled_once(void **state)
+{
+    (void)state;
+    struct source source;
+    SluiceTileLoader *loaders[2];
+    float texels[4] = {0};
+    SluiceReadPool *pool = begin_pool(&source, loaders);
+    uint64_t both = submit(loaders[0], &source.base, 2, 1, &texels[0]);
+    await_pending(&source, 2);
+    uint64_t second = submit(loaders[1], &source.base, 1, 2, &texels[2]);
+    submit(loaders[1], &source.base, 1, 3, &texels[3]);
+    await_pending(&source, 3);
+    source.obeys = true;
+    for (int again = 0; again < 2; again++) {
+        CHECK_OK(sluiceCancelTileRead(loaders[0], both));
+        assert_int_equal(source.cancel_count, 1);
+    }
+    assert_int_equal(count_finished(loaders[0]), 0);
+    CHECK_OK(sluiceCancelTileRead(loaders[1], second));
+    assert_int_equal(source.cancel_count, 2);
+    CHECK_RESULT(collect(loaders[0]).result, SLUICE_ERROR_CANCELED);
+    CHECK_RESULT(collect(loaders[1]).result, SLUICE_ERROR_CANCELED);
+    end_pool(pool, loaders);
+    assert_int_equal(source.cancel_count, 3);
+}
+
 /* The source has not completed the canceled read: nobody joins it any more. */
 static void reads_that_were_canceled_are_not_joined(void **state)
 {
@@ -741,6 +800,8 @@ int main(void)
         cmocka_unit_test(bytes_of_started_reads_are_in_flight),
         cmocka_unit_test(started_reads_are_joined),
         cmocka_unit_test(sources_are_not_told_of_a_cancel_while_others_wait),
+        cmocka_unit_test(sources_are_told_of_a_cancel_when_nobody_waits_any_more),
+        cmocka_unit_test(each_region_is_canceled_once),
         cmocka_unit_test(a_loader_that_ends_tells_its_sources_at_once),
         cmocka_unit_test(reads_that_were_canceled_are_not_joined),
         cmocka_unit_test(a_read_that_joined_a_started_failure_starts_itself),
