@@ -19,8 +19,9 @@ OWN_DEFAULT = {
 }
 # A trace holds what all pixels of all textures asked for; playing it leaves nothing out by itself.
 OWN_IN = {("sluice-tradeoff play", "probability"), ("sluice-tradeoff play", "textures-per-frame"),
-          ("devices_figures", "devices"), ("devices_figures", "textures"), ("sluice-info", "device"), ("demand-pbrt", "cache"),
-          ("sluice-view", "fade"), ("sluice-view", "frames")}  # people watch
+          ("devices_figures", "devices"), ("devices_figures", "textures"), ("devices_figures", "store"),
+          ("sluice-info", "device"), ("demand-pbrt", "cache"),
+          ("sluice-view", "fade"), ("sluice-view", "camera"), ("sluice-view", "frames")}  # people watch
 # Shapes of a scene fill a file; decisions of a replay are printed.
 OWN_KIND = {"dump"}
 
