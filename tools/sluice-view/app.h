@@ -60,7 +60,7 @@ struct view_app {
     double click_age; ///< seconds since the last click on the picture
     uint32_t last_view;
     struct stage_pick pick;  ///< under the mouse
-    struct view_probe probe; ///< under the mouse, if the legend shows values
+    struct view_probe probe; ///< under the mouse, for legend and inspector
     struct view_camera probed_camera;
     float picture_scale;         ///< pixels of the scene per pixel of the window
     struct stage_pick inspect;   ///< what was inspected

@@ -230,14 +230,15 @@ void inspector_draw_maps(const struct view_app *app, uint32_t texture)
 
 void inspector_draw_tile(const struct view_app *app, uint32_t texture)
 {
-    struct view_probe probe;
+    struct view_probe probe = app->probe;
     char text[256];
-    if (!app->inspect.hit || app->inspect.texture != texture)
-        return;
-    probe_point(app->stage, &app->facts, &app->inspect, &probe);
-    if (!probe.known)
+    const bool under_mouse = probe.known && probe.texture == texture;
+    if (!under_mouse && app->inspect.hit && app->inspect.texture == texture)
+        probe_point(app->stage, &app->facts, &app->inspect, &probe);
+    if (!probe.known || probe.texture != texture)
         return;
     describe_tile(app, &probe.tile, probe.state, text, sizeof text);
-    ui_text(UI_WHITE, "Here: texel %u, %u", probe.texel[0], probe.texel[1]);
+    ui_text(UI_WHITE, "%s: texel %u, %u", under_mouse ? "Under the mouse" : "Here", probe.texel[0],
+            probe.texel[1]);
     ui_paragraph(UI_GRAY, text);
 }

@@ -26,8 +26,9 @@ void panel_probe_find(struct view_app *app)
 {
     const bool moves = camera_moves(app);
     app->probe.known = false;
-    if (!shows_values(app) || ui_owns_mouse() || app->mouse_x < 0 || app->mouse_y < 0 ||
-        app->mouse_x >= app->width || app->mouse_y >= app->height ||
+    const bool inspects = app->open[PANEL_INSPECTOR] && !stage_traced(app->stage);
+    if (!(shows_values(app) || inspects) || ui_owns_mouse() || app->mouse_x < 0 ||
+        app->mouse_y < 0 || app->mouse_x >= app->width || app->mouse_y >= app->height ||
         (moves && stage_triangle_count(app->stage) > MOST_TRIANGLES))
         return;
     const struct stage_pixel pixel = {.camera = app->camera,

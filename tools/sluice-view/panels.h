@@ -17,7 +17,7 @@ void panel_ghost(const struct view_app *app);
 void panel_path(const struct view_app *app);
 void panel_now(struct view_app *app);
 void panel_legend(const struct view_app *app);
-/** Finds what is under the mouse, for the legend. */
+/** Finds what is under the mouse, for the legend and the inspector. */
 void panel_probe_find(struct view_app *app);
 /** Values under the mouse, in the legend of the view. */
 void panel_probe(const struct view_app *app);
