@@ -1,5 +1,6 @@
 #include "image/pooled_reads.h"
 
+#include <assert.h>
 #include <string.h>
 
 bool slc_reads_are_pooled(const SluiceTileLoader *loader, const SluiceImageSource *source)
@@ -22,11 +23,15 @@ enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_r
     const SluiceImageRegion *at = &read->regions[region];
     size_t size = region_size(info->format, at);
     *shared = NULL;
-    if (read->held && read->held->size == size && slc_shared_region_is_at(read->held, at)) {
-        *shared = read->held;
+    if (read->held) {
+        struct slc_shared_region *held = read->held;
         read->held = NULL;
-        shares->statistics.joinedCount++;
-        return SLC_DELIVER_COPY;
+        if (held->size == size && slc_shared_region_is_at(held, at)) {
+            *shared = held;
+            shares->statistics.joinedCount++;
+            return SLC_DELIVER_COPY;
+        }
+        slc_shared_reads_release(shares, held); /* of another format: the source has changed */
     }
     if (!slc_reads_are_pooled(loader, source) || !slc_shared_reads_are_on(shares) || size == 0)
         return SLC_DELIVER_ALONE;
@@ -42,6 +47,7 @@ static void resume_waiting(SluiceTileLoader *loader, struct slc_read *waiting,
         next = waiting->next_waiting;
         waiting->next_waiting = NULL;
         waiting->awaited = NULL;
+        assert(!waiting->held);
         waiting->held = held;
         slc_read_queue_resume(slc_read_queue_of(waiting), waiting);
     }

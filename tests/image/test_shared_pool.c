@@ -32,25 +32,35 @@ struct rig {
     uint64_t tickets[LOADERS][MOST];
 };
 
-static SluiceImageSource *create_image(float *added)
+static SluiceImageSource *create_image_of(SluiceFormat format, float *added)
 {
-    const SluiceImageInfo info = {.structSize = sizeof info,
-                                  .width = SIZE,
-                                  .height = SIZE,
-                                  .format = SLUICE_FORMAT_R32_SFLOAT};
+    const SluiceImageInfo info = {
+        .structSize = sizeof info, .width = SIZE, .height = SIZE, .format = format};
     const SluiceProceduralImage procedural = {added, texel};
     SluiceImageSource *image;
     CHECK_OK(sluiceCreateProceduralImageSource(&procedural, &info, NULL, &image));
     return image;
 }
 
+static SluiceImageSource *create_image(float *added)
+{
+    return create_image_of(SLUICE_FORMAT_R32_SFLOAT, added);
+}
+
+/* Zeros: the defaults, but for one attempt. */
+static void add_loader_of(struct rig *r, uint32_t i, SluiceTileLoaderCreateInfo create)
+{
+    create.structSize = sizeof create;
+    create.requestCapacity = create.requestCapacity ? create.requestCapacity : MOST;
+    create.retry.maxAttempts = create.retry.maxAttempts ? create.retry.maxAttempts : 1;
+    create.retry.firstDelayNs = create.retry.maxDelayNs = 1;
+    create.readPool = r->pool;
+    CHECK_OK(sluiceCreateTileLoader(&create, &r->loaders[i]));
+}
+
 static void add_loader(struct rig *r, uint32_t i)
 {
-    const SluiceTileLoaderCreateInfo create = {.structSize = sizeof create,
-                                               .requestCapacity = MOST,
-                                               .retry = {1, 1, 1},
-                                               .readPool = r->pool};
-    CHECK_OK(sluiceCreateTileLoader(&create, &r->loaders[i]));
+    add_loader_of(r, i, (SluiceTileLoaderCreateInfo){0});
 }
 
 static void init(struct rig *r, uint32_t loaders, SluiceReadPoolCreateInfo create)
@@ -129,6 +139,15 @@ static void expect_texel(const struct rig *r, uint32_t loader, uint32_t x)
     assert_true(r->texels[loader][x] == (float)x + r->added);
 }
 
+/* With two threads and a read that is held: everything more urgent of the loader is put aside. */
+static void settle(struct rig *r, uint32_t loader)
+{
+    uint64_t count = r->other.read_count;
+    submit(r, loader, &r->other, MOST - 1 - (uint32_t)count); /* none twice: it would be kept */
+    while (r->other.read_count == count)
+        nanosleep(&(struct timespec){0, 50000}, NULL);
+}
+
 /* Loader 0 reads x and is held. Loader 1 has joined it: with both threads, a later read of another
  * source has ended. */
 static void join(struct rig *r, uint32_t x)
@@ -137,9 +156,7 @@ static void join(struct rig *r, uint32_t x)
     submit(r, 0, &r->source, x);
     fault_source_await(&r->source, 1);
     submit_regions(r, 1, &r->source.base, x, 1, 1);
-    submit(r, 1, &r->other, MOST - 1);
-    while (r->other.read_count == 0)
-        nanosleep(&(struct timespec){0, 50000}, NULL);
+    settle(r, 1);
 }
 
 static const SluiceReadPoolCreateInfo two_threads = {.threadCount = 2, .maxReadsPerSource = 2};
@@ -317,6 +334,50 @@ static void a_read_that_joined_a_failure_reads_itself(void **state)
     CHECK_OK(sluiceGetTileLoaderStatistics(r.loaders[1], &r.source.base, &own));
     assert_int_equal(own.attemptCount, 1); /* waiting is no attempt */
     assert_int_equal(own.failedCount, 0);
+    finish(&r);
+}
+
+/* Loader 1 has failed: loader 2 reads x and is held when loader 1 tries again. */
+static void read_at_loader_2(void *user, const SluiceTileReadFailure *failure)
+{
+    struct rig *r = user;
+    assert_true(failure->willRetry);
+    r->source.holds = true;
+    submit(r, 2, &r->source, 7);
+    fault_source_await(&r->source, 1);
+}
+
+/* The texels that loader 1 waited for are of the old format. It reads itself, fails, and waits for
+ * the region again. */
+static void texels_of_an_old_format_are_let_go(void **state)
+{
+    (void)state;
+    struct rig r;
+    SluiceTileLoaderStatistics own = {.structSize = sizeof own};
+    init(&r, 1, two_threads);
+    add_loader_of(&r, 1,
+                  (SluiceTileLoaderCreateInfo){.retry = {3}, .failure = {&r, read_at_loader_2}});
+    add_loader(&r, 2);
+    r.source.fail_at = 2;
+    r.source.failure = SLUICE_ERROR_IO;
+    join(&r, 7);
+    r.source.inner = create_image_of(SLUICE_FORMAT_R8_UNORM, &r.added);
+    fault_source_release(&r.source);
+    while (own.retriedCount == 0)
+        CHECK_OK(sluiceGetTileLoaderStatistics(r.loaders[1], &r.source.base, &own));
+    settle(&r, 1);
+    fault_source_release(&r.source);
+    expect(&r, 0, 1, SLUICE_SUCCESS);
+    expect(&r, 1, 3, SLUICE_SUCCESS);
+    expect(&r, 2, 1, SLUICE_SUCCESS);
+    assert_int_equal(r.source.read_count, 3);
+    assert_int_equal(statistics_of(&r).joinedCount, 1);
+    for (uint32_t i = 0; i < LOADERS; i++) {
+        sluiceDestroyTileLoader(r.loaders[i]);
+        r.loaders[i] = NULL;
+    }
+    assert_int_equal(statistics_of(&r).keptCount, 0);
+    sluiceDestroyImageSource(r.source.inner);
     finish(&r);
 }
 
@@ -612,6 +673,7 @@ int main(void)
         cmocka_unit_test(canceling_a_read_that_joined_ends_it_at_once),
         cmocka_unit_test(loaders_may_be_destroyed_before_their_reads_end),
         cmocka_unit_test(a_read_that_joined_a_failure_reads_itself),
+        cmocka_unit_test(texels_of_an_old_format_are_let_go),
         cmocka_unit_test(texels_that_changed_are_read_again),
         cmocka_unit_test(reads_that_began_before_a_change_are_not_shared),
         cmocka_unit_test(a_loader_that_leaves_takes_the_texels_of_its_sources),
