@@ -109,8 +109,8 @@ void slc_loader_signal_if_idle(SluiceTileLoader *loader)
 
 void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, SluiceResult result)
 {
-    slc_pooled_read_ends(loader, read);
     slc_read_queue_end(&loader->queue, read, result);
+    slc_pooled_read_ends(loader, read);
     if (loader->end.pfnEnded)
         loader->end.pfnEnded(loader->end.pUserData, read->result.userValue, result);
 }

@@ -12,9 +12,12 @@ static const struct slc_read *read_of(const struct slc_heap_node *node)
     return SLC_CONTAINER_OF(node, const struct slc_read, node);
 }
 
+/* Texels that are held are copied first: a copy is quick, and ends the hold. */
 static bool read_is_more_urgent(const struct slc_heap_node *a, const struct slc_heap_node *b)
 {
     const struct slc_read *x = read_of(a), *y = read_of(b);
+    if (!x->held != !y->held)
+        return x->held;
     return x->priority != y->priority ? x->priority > y->priority : x->order < y->order;
 }
 
@@ -277,12 +280,10 @@ void slc_read_queue_wait(struct slc_read_queue *queue, struct slc_read *read)
 
 void slc_read_queue_resume(struct slc_read_queue *queue, struct slc_read *read)
 {
-    if (read->state == SLC_READ_WAITING) {
+    if (read->state == SLC_READ_WAITING)
         queue->waiting_count--;
-        read->priority = UINT32_MAX;
-    } else {
+    else
         stop_running(queue, read);
-    }
     enqueue(queue, read);
 }
 

@@ -60,7 +60,7 @@ struct slc_read {
     /* With the lock held. */
     struct slc_read *next_waiting;     ///< for the same region
     struct slc_shared_region *awaited; ///< while it waits
-    struct slc_shared_region *held;    ///< it has waited for these texels, and is to copy them
+    struct slc_shared_region *held;    ///< texels to copy; changes while it is not queued
 };
 
 /** Limits, and what runs of them. Several queues may share it. */
@@ -131,7 +131,7 @@ void slc_read_queue_delay(struct slc_read_queue *queue, struct slc_read *read, u
 
 /** Puts a running read aside until slc_read_queue_resume. */
 void slc_read_queue_wait(struct slc_read_queue *queue, struct slc_read *read);
-/** Queues a read that waits, before all others; a running one at its place. */
+/** Queues a read that waits, or a running one. A read that holds texels goes before all others. */
 void slc_read_queue_resume(struct slc_read_queue *queue, struct slc_read *read);
 
 /** Ends a running read, or a queued, delayed or waiting one that is dropped. */

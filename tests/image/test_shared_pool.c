@@ -337,6 +337,33 @@ static void a_read_that_joined_a_failure_reads_itself(void **state)
     finish(&r);
 }
 
+/* Loader 1 waits for x, with priority 1, and has a more urgent read. The other thread is held. */
+static void reads_keep_their_priority_when_what_they_joined_fails(void **state)
+{
+    (void)state;
+    struct rig r;
+    SluiceTileReadResult results[3];
+    uint32_t count = 3;
+    init(&r, 1, two_threads);
+    add_loader_of(&r, 1, (SluiceTileLoaderCreateInfo){.retry = {2}});
+    r.source.fail_at = 1;
+    r.source.failure = SLUICE_ERROR_IO;
+    join(&r, 7);
+    r.other.holds = true;
+    submit(&r, 0, &r.other, 8);
+    fault_source_await(&r.other, 1);
+    submit_regions(&r, 1, &r.source.base, 9, 1, 2);
+    fault_source_release(&r.source);
+    CHECK_OK(sluiceWaitTileLoaderIdle(r.loaders[1]));
+    CHECK_OK(sluiceCollectTileReads(r.loaders[1], &count, results));
+    assert_int_equal(count, 3);
+    assert_int_equal(results[1].userValue, 9); /* the first one is of the other source */
+    assert_int_equal(results[2].userValue, 7);
+    CHECK_OK(results[2].result);
+    fault_source_release(&r.other);
+    finish(&r);
+}
+
 /* Loader 1 has failed: loader 2 reads x and is held when loader 1 tries again. */
 static void read_at_loader_2(void *user, const SluiceTileReadFailure *failure)
 {
@@ -673,6 +700,7 @@ int main(void)
         cmocka_unit_test(canceling_a_read_that_joined_ends_it_at_once),
         cmocka_unit_test(loaders_may_be_destroyed_before_their_reads_end),
         cmocka_unit_test(a_read_that_joined_a_failure_reads_itself),
+        cmocka_unit_test(reads_keep_their_priority_when_what_they_joined_fails),
         cmocka_unit_test(texels_of_an_old_format_are_let_go),
         cmocka_unit_test(texels_that_changed_are_read_again),
         cmocka_unit_test(reads_that_began_before_a_change_are_not_shared),
