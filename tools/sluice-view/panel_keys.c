@@ -4,44 +4,56 @@
 
 #include <string.h>
 
-static void draw_group(const struct action *actions, uint32_t count, const char *group, float x)
+#define KEY_COLUMNS 3
+
+/* Lines of a group: its title and its keys. */
+static uint32_t draw_row(const struct action *actions, uint32_t i, float x)
 {
-    for (uint32_t i = 0; i < count; i++) {
-        if (strcmp(actions[i].group, group) != 0)
-            continue;
-        ui_text(UI_ORANGE, "%s", actions[i].shown ? actions[i].shown : actions[i].chord);
-        ui_same_line(x);
-        ui_text(UI_WHITE, "%s", actions[i].words);
+    uint32_t lines = 1;
+    if (i == 0 || strcmp(actions[i].group, actions[i - 1].group) != 0) {
+        ui_text(UI_BLUE, "%s", actions[i].group);
+        lines++;
     }
+    ui_text(UI_ORANGE, "%s", actions[i].shown ? actions[i].shown : actions[i].chord);
+    ui_same_line(x);
+    ui_text(UI_WHITE, "%s", actions[i].words);
+    return lines;
 }
 
-/* The one page that may be larger: it was asked for. */
+static uint32_t count_lines(const struct action *actions, uint32_t count)
+{
+    uint32_t lines = count;
+    for (uint32_t i = 0; i < count; i++)
+        lines += i == 0 || strcmp(actions[i].group, actions[i - 1].group) != 0;
+    return lines;
+}
+
+/* The one page that may be larger: it was asked for. All of the table, from column to column. */
 void panel_keys(struct view_app *app)
 {
-    static const char *const columns[2][3] = {{"Camera", "Views", NULL},
-                                              {"Streaming", "Panels", "Program"}};
-    uint32_t count;
+    uint32_t count, next = 0;
     const struct action *actions = actions_get(&count);
     const float scale = ui_scale(), pivot[2] = {0.5f, 0.5f};
     const float placement[4] = {app->width / 2, app->height / 2, 0, 0};
     if (!app->open[PANEL_KEYS])
         return;
-    float height = 34 * ui_line_height();
+    const uint32_t lines = (count_lines(actions, count) + KEY_COLUMNS - 1) / KEY_COLUMNS + 1;
+    float height = (float)lines * ui_line_height();
+    float width = (app->width - 60 * scale) / KEY_COLUMNS;
     if (height > app->height - 60 * scale)
         height = app->height - 60 * scale;
-    if (ui_begin_panel("All keys (F1)", &app->open[PANEL_KEYS], placement, pivot, UI_PANEL_FIT)) {
-        for (int column = 0; column < 2; column++) {
-            ui_begin_part(column ? "right" : "left", 390 * scale, height);
-            for (int i = 0; i < 3 && columns[column][i]; i++) {
-                ui_text(UI_BLUE, "%s", columns[column][i]);
-                draw_group(actions, count, columns[column][i], 125 * scale);
-                ui_space(4 * scale);
-            }
-            ui_end_part();
-            if (column == 0)
+    if (width > 330 * scale)
+        width = 330 * scale;
+    if (ui_begin_panel("All keys (F1)", &app->open[PANEL_KEYS], placement, pivot, UI_PANEL_FIT))
+        for (int column = 0; column < KEY_COLUMNS; column++) {
+            static const char *const ids[KEY_COLUMNS] = {"left", "middle", "right"};
+            if (column > 0)
                 ui_same_line(0);
+            ui_begin_part(ids[column], width, height);
+            for (uint32_t drawn = 0; next < count && drawn < lines; next++)
+                drawn += draw_row(actions, next, 100 * scale);
+            ui_end_part();
         }
-    }
     ui_end_panel();
 }
 

@@ -9,12 +9,28 @@
 
 #define BUTTON_SECONDS 30.0
 
-/* The line that counts, and the line of hints below it. */
+/* A text that fits into a width: what is too long ends in dots. */
+static const char *fit_text(const char *text, float width, char *fitted, size_t size)
+{
+    size_t length = strlen(text);
+    if (ui_text_width(text) <= width)
+        return text;
+    length = length < size - 4 ? length : size - 4;
+    do {
+        while (length > 0 && ((unsigned char)text[--length] & 0xC0) == 0x80) /* within a character */
+            continue;
+        snprintf(fitted, size, "%.*s ...", (int)length, text);
+    } while (length > 0 && ui_text_width(fitted) > width);
+    return fitted;
+}
+
+/* The line that counts, and the line of hints below it. The panel's size is that of its texts now;
+ * one that fits itself to them is late by a frame. */
 static void draw_line(struct view_app *app)
 {
     char all[32], now[32], line[160] = "Opening the scene ...";
-    const float scale = ui_scale(), pivot[2] = {0.5f, 1.0f};
-    const float placement[4] = {app->width / 2, app->height - 12 * scale, 0, 0};
+    char fitted[256];
+    const float scale = ui_scale(), pivot[2] = {0.5f, 1.0f}, pad = 12 * scale;
     const char *hints =
         "drag look  ·  WASD walk  ·  right click a surface  ·  1–9 views  ·  F1 all keys";
     if (app->stage)
@@ -26,18 +42,20 @@ static void draw_line(struct view_app *app)
         hints = app->said;
     if (app->stage && app->width < 620 * scale) /* the figures are in the corner, too */
         return;
-    if (ui_begin_panel("line", NULL, placement, pivot,
-                       UI_PANEL_PLAIN | UI_PANEL_FIT | UI_PANEL_NO_INPUT)) {
+    hints = fit_text(hints, app->width - 6 * pad, fitted, sizeof fitted);
+    ui_begin_large();
+    const float large = ui_text_width(line), tall = ui_line_height();
+    ui_end_large();
+    const float small = ui_text_width(hints), wide = large > small ? large : small;
+    const float placement[4] = {app->width / 2, app->height - pad, wide + 2 * pad,
+                                tall + ui_line_height() + 15 * scale};
+    if (ui_begin_panel("line", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_NO_INPUT)) {
         ui_begin_large();
-        const float large = ui_text_width(line);
-        ui_end_large();
-        const float small = ui_text_width(hints), wide = large > small ? large : small;
-        ui_begin_large();
-        ui_same_line(12 * scale + (wide - large) / 2);
+        ui_same_line(pad + (wide - large) / 2);
         ui_text(UI_WHITE, "%s", line);
         ui_end_large();
         ui_space(0);
-        ui_same_line(12 * scale + (wide - small) / 2);
+        ui_same_line(pad + (wide - small) / 2);
         ui_text(app->said_seconds > 0 ? UI_ORANGE : UI_GRAY, "%s", hints);
     }
     ui_end_panel();
