@@ -6,14 +6,15 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 viewer=$(realpath "${1:?sluice-view}") folder=${2:?a folder}
 mkdir -p "$folder"
 cd "$folder"
+ln -sfn "$root/tools/sluice-view/hall" hall # a short path, which the copied command line shows
 for script in "$root"/docs/viewer/*.txt; do
     basename "$script" .txt
     [ "$script" != "$root/docs/viewer/pbrt.txt" ] || continue
-    "$viewer" --headless --deterministic --size 1000x562 --render-scale 1 --script "$script"
+    "$viewer" hall/hall.gltf --headless --deterministic --size 1000x562 --render-scale 1 --script "$script"
 done
 ln -sfn "$(realpath "${SLUICE_TEST_DATA:-$root/../shared/data}")/pbrt/bitterli/staircase2" staircase
 "$viewer" --headless --deterministic --size 1000x562 --render-scale 1 --most-samples 4 \
     --script "$root/docs/viewer/pbrt.txt" staircase/scene-v4.pbrt
-for picture in hall blurry memory budget truth thrash unseen cut feedback pbrt; do
+for picture in hall blurry memory ghost budget truth thrash unseen cut feedback file reproduce driver keys pbrt; do
     "$root/scripts/dev/palette_png.py" "$picture.png" "$root/docs/images/viewer-$picture.png"
 done

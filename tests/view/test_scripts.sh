@@ -12,7 +12,7 @@ offset=0
 for script in "$root"/docs/viewer/*.txt; do
     echo "$offset reset" >>events
     sed '/^#/d; s/ *#.*//' "$script" | awk -v offset="$offset" '{ $1 += offset }
-        $2 == "click" { $3 *= 0.4; $4 *= 0.4 } { print }' >>events
+        $2 == "click" || $2 == "drag" { $3 *= 0.4; $4 *= 0.4 } $2 == "drag" { $5 *= 0.4; $6 *= 0.4 } { print }' >>events
     offset=$(($(awk '$1 > last { last = $1 } END { print last }' events) + 3))
 done
 grep -E ' (screenshot|reset)' events >screenshots
