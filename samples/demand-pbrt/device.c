@@ -125,7 +125,7 @@ bool device_open(struct device *d, struct film_share share)
         !lights_create(&d->gpu, scene, &d->textures, &d->lights, &only_areas) ||
         !emitters_create(&d->gpu, scene, paths, &d->lights, &d->emitters) || !create_world(d) ||
         !film_create(&d->gpu, s->size[0], s->size[1], share, &d->film) ||
-        !tracing_create(&d->gpu, d->loader, &d->tracing))
+        !tracing_create(&d->gpu, d->loader, false, &d->tracing))
         return false;
     set_constants(d, only_areas);
     return open_launches(d);

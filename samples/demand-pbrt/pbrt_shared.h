@@ -189,6 +189,9 @@ SLUICE_SHARED_SIZE(struct PbrtDebug, 40)
 #define PBRT_LAUNCH_DARK_SKY 32u  /* no light comes from infinity: ambient light is white */
 #define PBRT_LAUNCH_GRAY 64u      /* boxes and surfaces that are not made are gray */
 
+/* Constants of the pipeline */
+#define PBRT_CONSTANT_PREVIEW 0 /* coarser texels are seen where finer ones are missing */
+
 /* Push constants of one launch. */
 struct PbrtLaunch {
     uint width, height; /* pixels */

@@ -24,7 +24,7 @@ static const struct {
     [BOX_HIT] = {box_rint, sizeof box_rint, VK_SHADER_STAGE_INTERSECTION_BIT_KHR},
 };
 
-static bool create_stages(const struct gpu *gpu,
+static bool create_stages(const struct gpu *gpu, const VkSpecializationInfo *constants,
                           VkPipelineShaderStageCreateInfo stages[STAGE_COUNT])
 {
     bool done = true;
@@ -33,13 +33,15 @@ static bool create_stages(const struct gpu *gpu,
             .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
             .stage = shaders[i].stage,
             .module = gpu_create_shader(gpu, shaders[i].code, shaders[i].size),
-            .pName = "main"};
+            .pName = "main",
+            .pSpecializationInfo = constants};
         done = done && stages[i].module != VK_NULL_HANDLE;
     }
     return done;
 }
 
-static bool create_pipeline(const struct gpu *gpu, VkPipelineLayout layout, VkPipeline *pipeline)
+static bool create_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
+                            const VkSpecializationInfo *constants, VkPipeline *pipeline)
 {
     PFN_vkCreateRayTracingPipelinesKHR create =
         (PFN_vkCreateRayTracingPipelinesKHR)vkGetDeviceProcAddr(gpu->device,
@@ -64,7 +66,7 @@ static bool create_pipeline(const struct gpu *gpu, VkPipelineLayout layout, VkPi
         .maxPipelineRayRecursionDepth = 1,
         .layout = layout};
     bool done =
-        create_stages(gpu, stages) &&
+        create_stages(gpu, constants, stages) &&
         gpu_check(create(gpu->device, VK_NULL_HANDLE, VK_NULL_HANDLE, 1, &info, NULL, pipeline),
                   "vkCreateRayTracingPipelinesKHR");
     for (int i = 0; i < STAGE_COUNT; i++)
@@ -73,10 +75,10 @@ static bool create_pipeline(const struct gpu *gpu, VkPipelineLayout layout, VkPi
 }
 
 bool pipeline_rays_create(const struct gpu *gpu, VkPipelineLayout layout,
-                          struct pipeline_rays *rays)
+                          const VkSpecializationInfo *constants, struct pipeline_rays *rays)
 {
     *rays = (struct pipeline_rays){0};
-    return create_pipeline(gpu, layout, &rays->pipeline) &&
+    return create_pipeline(gpu, layout, constants, &rays->pipeline) &&
            ray_table_create(gpu, rays->pipeline, GROUP_COUNT, &rays->table);
 }
 

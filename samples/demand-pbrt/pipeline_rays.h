@@ -10,9 +10,9 @@ struct pipeline_rays {
     struct ray_table table;
 };
 
-/** Says on stderr why it failed. */
+/** `constants`: of all shaders. Says on stderr why it failed. */
 bool pipeline_rays_create(const struct gpu *gpu, VkPipelineLayout layout,
-                          struct pipeline_rays *rays);
+                          const VkSpecializationInfo *constants, struct pipeline_rays *rays);
 void pipeline_rays_destroy(const struct gpu *gpu, struct pipeline_rays *rays);
 
 #endif /* DEMAND_PBRT_PIPELINE_RAYS_H */

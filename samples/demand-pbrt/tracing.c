@@ -67,14 +67,18 @@ static bool allocate_set(const struct gpu *gpu, struct tracing *t)
                      "vkAllocateDescriptorSets");
 }
 
-bool tracing_create(const struct gpu *gpu, const SluiceDemandLoader *loader, struct tracing *t)
+bool tracing_create(const struct gpu *gpu, const SluiceDemandLoader *loader, bool preview,
+                    struct tracing *t)
 {
+    const VkBool32 constant = preview;
+    const VkSpecializationMapEntry entry = {PBRT_CONSTANT_PREVIEW, 0, sizeof constant};
+    const VkSpecializationInfo constants = {1, &entry, sizeof constant, &constant};
     *t = (struct tracing){.stages = gpu->ray_tracing ? RAY_STAGES : VK_SHADER_STAGE_COMPUTE_BIT};
     if (!create_layouts(gpu, loader, t) || !allocate_set(gpu, t))
         return false;
     if (gpu->ray_tracing)
-        return pipeline_rays_create(gpu, t->layout, &t->rays);
-    return gpu_create_compute_pipeline(gpu, t->layout, trace_comp, sizeof trace_comp, NULL,
+        return pipeline_rays_create(gpu, t->layout, &constants, &t->rays);
+    return gpu_create_compute_pipeline(gpu, t->layout, trace_comp, sizeof trace_comp, &constants,
                                        &t->compute);
 }
 

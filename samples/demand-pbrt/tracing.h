@@ -20,8 +20,9 @@ struct tracing {
     VkShaderStageFlags stages;
 };
 
-/** Says on stderr why it failed. */
-bool tracing_create(const struct gpu *gpu, const SluiceDemandLoader *loader,
+/** `preview`: pixels that lack texels show coarser ones, for programs that show them. Says on
+ * stderr why it failed. */
+bool tracing_create(const struct gpu *gpu, const SluiceDemandLoader *loader, bool preview,
                     struct tracing *tracing);
 void tracing_destroy(const struct gpu *gpu, struct tracing *tracing);
 

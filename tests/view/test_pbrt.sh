@@ -35,8 +35,9 @@ cat >script <<'END'
 81 hold d 30
 120 screenshot right.png
 END
-view wall.pbrt --most-samples 1 --script script --csv figures.csv && check holes 0.png 1.png 2.png 3.png && check gray 0.png
-fact the_first_pictures_are_gray_boxes_and_then_coarse_texels_without_holes
+view wall.pbrt --most-samples 1 --script script --csv figures.csv && check holes 0.png 1.png 2.png 3.png && check gray 0.png &&
+    ! check gray 3.png && ! check near 3.png sharp.png 4 && check near 3.png sharp.png 40 && ! check near 2.png sharp.png 40
+fact pictures_are_gray_boxes_first_and_then_coarse_texels_without_holes
 check near sharp.png truth.png 1 && ! check near 1.png truth.png 1
 fact the_sharp_picture_is_that_of_everything_loaded
 # 30 frames of 1/60 s at 2.5 units of the viewer per second, of which the scene's diagonal, 20.09, is 20. +x is left.

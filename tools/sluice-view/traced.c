@@ -87,7 +87,7 @@ static bool create_scene(struct traced *t)
            emitters_create(t->gpu, scene, true, &t->lights, &t->emitters) &&
            proxies_create(t->loader, scene, &t->proxies) &&
            world_create(t->gpu, scene, &t->surfaces, &t->proxies, false, &reading, &t->world) &&
-           world_begin(&t->world) && tracing_create(t->gpu, t->loader, &t->tracing);
+           world_begin(&t->world) && tracing_create(t->gpu, t->loader, true, &t->tracing);
 }
 
 static bool begin_launches(struct traced *t)

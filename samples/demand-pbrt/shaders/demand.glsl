@@ -4,6 +4,10 @@
 
 #include "sluice/demand_bindings.glsl"
 #include "../pbrt_shared.h"
+
+layout(constant_id = PBRT_CONSTANT_PREVIEW) const bool preview = false;
+#define SLUICE_DEMAND_PREVIEW preview
+
 #include "sluice/demand.glsl"
 
 #endif

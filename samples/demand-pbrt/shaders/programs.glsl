@@ -115,6 +115,8 @@ vec3 runProgram(uint at, Hit hit, inout bool resident)
             vec4 color = sluiceDemandGrad(ops[at].texture, st, vec2(dx.x, -dx.y),
                                           vec2(dy.x, -dy.y), here);
             resident = resident && here;
+            if (preview && !here && color == vec4(0.0))
+                color = vec4(vec3(0.5), 1.0); /* it is not open */
             stack[height++] = readTexel(at, color).rgb;
         } else if (op == PBRT_OP_SCALE) {
             height--;

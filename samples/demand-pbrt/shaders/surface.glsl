@@ -84,8 +84,8 @@ bool meetTriangle(Meeting m, bool isCandidate)
     if (!isCandidate)
         describeHit(m, place, hit);
     /* Alpha first: 0. Then diffuse, specular, transmission. */
-    vec3 values[4];
-    bool resident = true;
+    vec3 values[4] = vec3[4](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    bool resident = true, known = false;
     values[0] = vec3(place.alphaValue);
     for (uint i = place.alpha == PBRT_NONE ? 1u : 0u; i < (isCandidate ? 1u : 4u) && resident; i++) {
         uint surface = i == 0u ? place.alpha : place.surface;
@@ -102,12 +102,13 @@ bool meetTriangle(Meeting m, bool isCandidate)
         uint program = i <= 1u ? surfaces[surface].diffuse
                                : i == 2u ? surfaces[surface].specular : surfaces[surface].transmission;
         values[i] = runProgram(program, seen, resident);
+        known = i > 0u;
     }
     if (isCandidate)
         return resident && cutsOut(values[0].x, m.origin, m.direction);
-    if (resident)
+    if (resident || (preview && known))
         describeSurface(place.surface, values);
-    else
+    if (!resident)
         payload.missing = true;
     return false;
 }
