@@ -159,8 +159,8 @@ SLUICE_API SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const c
  * SluiceOpenedImageInfo::kind is STORE. Returns SLUICE_ERROR_CORRUPT_DATA if the store has another
  * hash than the catalogue says, SLUICE_ERROR_LIMIT_EXCEEDED for catalogues above 256 MiB.
  *
- * The opener reads a catalogue once and keeps the names of the last eight catalogues in memory,
- * with 32 bytes per name. A file whose size, time or inode changed is read again; pfnCheckPath
+ * The opener reads a catalogue once and keeps the last eight in memory: 56 bytes per row and the
+ * names. A file whose size, time or inode changed is read again; pfnCheckPath
  * notices changes elsewhere.
  *
  * Errors: as sluiceOpenImageSource; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the set

@@ -20,7 +20,7 @@
 
 #define HEAD "sluice catalogue 1\nhash\tformat\twidth\theight\tlayers\tbytes\tpicture\tstore\n"
 #define THREADS 8
-#define NAMES 200
+#define NAMES 64
 
 /** Stands for a server with the files of a folder, and counts. */
 struct server {
@@ -361,7 +361,7 @@ static void eight_catalogues_stay_in_memory(void **state)
 static void *change_catalogue(void *argument)
 {
     struct server *server = argument;
-    for (int i = 0; i < 20; i++)
+    for (int i = 0; i < 10; i++)
         write_catalogue(server, "list.tsv", i % 2 ? "a.store" : "b.store", 0, NAMES);
     return NULL;
 }
@@ -377,7 +377,7 @@ static void threads_open_names_while_the_catalogue_changes(void **state)
         write_catalogue(&server, "list.tsv", "a.store", 0, NAMES);
         assert_int_equal(pthread_create(&thread, NULL, change_catalogue, &server), 0);
         bake_folder_file(&server.folder, "list.tsv", path);
-        for (int i = 0; i < 5; i++)
+        for (int i = 0; i < 3; i++)
             open_on_threads(server.opener, is_remote ? "net://list.tsv" : path);
         pthread_join(thread, NULL);
         teardown(&server);
