@@ -1,5 +1,7 @@
 #include "image/pooled_reads.h"
 
+#include "image/region.h"
+
 #include <assert.h>
 #include <string.h>
 
@@ -33,7 +35,8 @@ enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_r
         }
         slc_shared_reads_release(shares, held); /* of another format: the source has changed */
     }
-    if (!slc_reads_are_pooled(loader, source) || !slc_shared_reads_are_on(shares) || size == 0)
+    if (!slc_reads_are_pooled(loader, source) || !slc_shared_reads_are_on(shares) ||
+        !slc_region_is_valid(at, info) || size > loader->pool->load.max_running_size)
         return SLC_DELIVER_ALONE;
     return slc_shared_reads_claim(shares, read, at, size, shared);
 }

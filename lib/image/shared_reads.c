@@ -192,38 +192,52 @@ void slc_shared_reads_hide(struct slc_shared_reads *shares, struct slc_shared_re
     free_region(shares, region);
 }
 
-/* Makes room for texels of `size` bytes. Returns memory of a region that has left, if its size is
- * right, or NULL. */
-static struct slc_shared_region *evict(struct slc_shared_reads *shares, uint64_t size)
+static void evict(struct slc_shared_reads *shares)
 {
-    while (size <= shares->limit && shares->size > shares->limit - size && shares->oldest) {
-        struct slc_shared_region *region = shares->oldest;
-        bool fits = region->size == size && shares->size <= shares->limit;
+    while (shares->size > shares->limit && shares->oldest) {
         shares->statistics.evictedCount++;
-        if (fits) {
-            unkeep(shares, region);
-            region->holder_count = 1; /* its memory stays */
-        }
-        slc_shared_reads_hide(shares, region);
-        if (fits)
-            return region;
+        slc_shared_reads_hide(shares, shares->oldest);
     }
-    return NULL;
+}
+
+/* Memory of the oldest region, which leaves to make room, if it has the size. */
+static struct slc_shared_region *reuse(struct slc_shared_reads *shares, size_t size)
+{
+    struct slc_shared_region *region = shares->oldest;
+    if (!region || region->size != size || shares->size > shares->limit ||
+        size <= shares->limit - shares->size)
+        return NULL;
+    unkeep(shares, region);
+    region->holder_count = 1; /* its memory stays */
+    slc_shared_reads_hide(shares, region);
+    shares->statistics.evictedCount++;
+    return region;
+}
+
+/* Nothing is evicted before there is memory, or for a region that does not fit. */
+static struct slc_shared_region *allocate(struct slc_shared_reads *shares, size_t size)
+{
+    if (size > SIZE_MAX - HEADER_SIZE)
+        return NULL;
+    struct slc_shared_region *region =
+        slc_alloc_aligned(&shares->cb, 1, HEADER_SIZE + size, ALIGNMENT);
+    if (!region)
+        return NULL;
+    shares->size += size;
+    shares->count++;
+    if (size <= shares->limit)
+        evict(shares);
+    return region;
 }
 
 static struct slc_shared_region *create(struct slc_shared_reads *shares, struct slc_read *read,
                                         const SluiceImageRegion *at, size_t size)
 {
-    struct slc_shared_region *region = evict(shares, size);
-    if (!region) {
-        if (size > SIZE_MAX - HEADER_SIZE)
-            return NULL;
-        region = slc_alloc_aligned(&shares->cb, 1, HEADER_SIZE + size, ALIGNMENT);
-        if (!region)
-            return NULL;
-        shares->size += size;
-        shares->count++;
-    }
+    struct slc_shared_region *region = reuse(shares, size);
+    if (!region)
+        region = allocate(shares, size);
+    if (!region)
+        return NULL;
     *region = (struct slc_shared_region){.texels = (unsigned char *)region + HEADER_SIZE,
                                          .source = read->source->source,
                                          .region = *at,
@@ -291,7 +305,7 @@ void slc_shared_reads_release(struct slc_shared_reads *shares, struct slc_shared
         return;
     }
     keep(shares, region);
-    evict(shares, 0);
+    evict(shares);
 }
 
 struct slc_shared_region *slc_shared_reads_find_reading(const struct slc_shared_reads *shares,

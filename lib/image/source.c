@@ -2,6 +2,7 @@
 
 #include "base/struct_size.h"
 #include "image/format_size.h"
+#include "image/region.h"
 #include "image/start_read.h"
 
 #include <stddef.h>
@@ -45,6 +46,13 @@ static bool region_is_inside(const SluiceImageRegion *region, const SluiceImageI
            region->height <= height - region->y;
 }
 
+bool slc_region_is_valid(const SluiceImageRegion *region, const SluiceImageInfo *info)
+{
+    SluiceFormatInfo format = {.structSize = sizeof format};
+    return sluiceGetFormatInfo(info->format, &format) == SLUICE_SUCCESS &&
+           region_is_inside(region, info) && region_is_aligned(region, info, &format);
+}
+
 SluiceResult sluiceReadImageRegion(SluiceImageSource *source, const SluiceImageRegion *pRegion,
                                    void *pTexels, size_t rowPitch)
 {
@@ -64,10 +72,8 @@ SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
     if (result != SLUICE_SUCCESS)
         return result;
     pFault->pName = info.pName ? info.pName : "";
-    SluiceFormatInfo format = {.structSize = sizeof format};
-    if (sluiceGetFormatInfo(info.format, &format) != SLUICE_SUCCESS ||
-        !region_is_inside(pRegion, &info) || !region_is_aligned(pRegion, &info, &format) ||
-        rowPitch < slc_format_row_size(&format, pRegion->width))
+    if (!slc_region_is_valid(pRegion, &info) ||
+        rowPitch < sluiceGetFormatRegionSize(info.format, pRegion->width, 1))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     const SluiceImageSourceInterface *source_interface = source->pInterface;
     if (!source_interface->pfnReadRegionLocated && !source_interface->pfnReadRegion)
@@ -93,11 +99,9 @@ SluiceResult slc_start_read(SluiceImageSource *source, const SluiceImageInfo *in
                             const SluiceImageRegion *region, void *texels, size_t row_pitch,
                             const SluiceImageReadToken *token)
 {
-    SluiceFormatInfo format = {.structSize = sizeof format};
     if (!can_start(source->pInterface))
         return SLUICE_ERROR_UNSUPPORTED;
-    if (sluiceGetFormatInfo(info->format, &format) != SLUICE_SUCCESS ||
-        !region_is_inside(region, info) || !region_is_aligned(region, info, &format))
+    if (!slc_region_is_valid(region, info))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     return source->pInterface->pfnStartRead(source, region, texels, row_pitch, token);
 }

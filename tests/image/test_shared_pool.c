@@ -258,6 +258,77 @@ static void regions_above_the_limit_are_joined_and_not_kept(void **state)
     finish(&r);
 }
 
+static void expect_kept(const struct rig *r, uint64_t count)
+{
+    const SluiceReadPoolStatistics now = statistics_of(r);
+    assert_int_equal(now.keptCount, count);
+    assert_int_equal(now.keptPeakSize, count * sizeof(float));
+    assert_int_equal(now.evictedCount, 0);
+}
+
+static void submit_rectangle(struct rig *r, uint32_t loader, uint32_t width, uint32_t height)
+{
+    const SluiceImageRegion region = {.width = width, .height = height};
+    void *texels = r->texels[loader];
+    const SluiceTileRead read = {
+        .source = &r->source.base, .regionCount = 1, .pRegions = &region, .ppTexels = &texels};
+    uint64_t ticket;
+    CHECK_OK(sluiceSubmitTileRead(r->loaders[loader], &read, &ticket));
+}
+
+static void regions_outside_of_the_image_evict_nothing(void **state)
+{
+    (void)state;
+    struct rig r;
+    init(&r, 2, (SluiceReadPoolCreateInfo){.threadCount = 1, .cacheSize = 2 * sizeof(float)});
+    for (uint32_t x = 0; x < 2; x++)
+        submit(&r, 0, &r.source, x);
+    expect(&r, 0, 2, SLUICE_SUCCESS);
+    submit_rectangle(&r, 0, 1, SIZE + 1);
+    expect(&r, 0, 1, SLUICE_ERROR_INVALID_ARGUMENT);
+    submit_rectangle(&r, 0, 1u << 20, 1);
+    expect(&r, 0, 1, SLUICE_ERROR_INVALID_ARGUMENT);
+    expect_kept(&r, 2);
+    finish(&r);
+}
+
+static void regions_without_memory_evict_nothing(void **state)
+{
+    (void)state;
+    struct failing_allocator a;
+    struct rig r;
+    failing_allocator_init(&a, UINT64_MAX);
+    init(&r, 2,
+         (SluiceReadPoolCreateInfo){
+             .threadCount = 1, .pAllocator = &a.callbacks, .cacheSize = 2 * sizeof(float)});
+    for (uint32_t x = 0; x < 2; x++)
+        submit(&r, 0, &r.source, x);
+    expect(&r, 0, 2, SLUICE_SUCCESS);
+    a.refuse_from = a.calls;
+    submit_rectangle(&r, 0, 2, 1);
+    expect(&r, 0, 1, SLUICE_SUCCESS);
+    expect_texel(&r, 0, 1);
+    expect_kept(&r, 2);
+    assert_int_equal(statistics_of(&r).refusedCount, 1);
+    finish(&r);
+}
+
+/* A pool has at most maxBytesInFlight beyond its cache. */
+static void regions_above_the_bytes_in_flight_are_read_alone(void **state)
+{
+    (void)state;
+    struct rig r;
+    init(&r, 2, (SluiceReadPoolCreateInfo){.threadCount = 1, .maxBytesInFlight = sizeof(float)});
+    for (uint32_t i = 0; i < 2; i++) {
+        submit_rectangle(&r, i, 2, 1);
+        expect(&r, i, 1, SLUICE_SUCCESS);
+        expect_texel(&r, i, 1);
+    }
+    assert_int_equal(r.source.read_count, 2);
+    expect_kept(&r, 0);
+    finish(&r);
+}
+
 static void canceling_the_reader_does_not_cancel_those_who_joined(void **state)
 {
     (void)state;
@@ -696,6 +767,9 @@ int main(void)
         cmocka_unit_test(one_member_keeps_nothing),
         cmocka_unit_test(the_least_recently_used_texels_are_evicted),
         cmocka_unit_test(regions_above_the_limit_are_joined_and_not_kept),
+        cmocka_unit_test(regions_outside_of_the_image_evict_nothing),
+        cmocka_unit_test(regions_without_memory_evict_nothing),
+        cmocka_unit_test(regions_above_the_bytes_in_flight_are_read_alone),
         cmocka_unit_test(canceling_the_reader_does_not_cancel_those_who_joined),
         cmocka_unit_test(canceling_a_read_that_joined_ends_it_at_once),
         cmocka_unit_test(loaders_may_be_destroyed_before_their_reads_end),

@@ -1,0 +1,10 @@
+/** Regions of images. */
+#ifndef SLC_IMAGE_REGION_H
+#define SLC_IMAGE_REGION_H
+
+#include <sluice/image.h>
+
+/** The image has the region, whose edges are those of blocks or of the level. */
+bool slc_region_is_valid(const SluiceImageRegion *region, const SluiceImageInfo *info);
+
+#endif /* SLC_IMAGE_REGION_H */
