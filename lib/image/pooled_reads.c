@@ -1,6 +1,7 @@
 #include "image/pooled_reads.h"
 
 #include "image/region.h"
+#include "platform/time_now.h"
 
 #include <assert.h>
 #include <string.h>
@@ -41,8 +42,9 @@ enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_r
     return slc_shared_reads_claim(shares, read, at, size, shared);
 }
 
+/* Reads that wait go on: they hold texels, or `held` is NULL and they learn of a failure. */
 static void resume_waiting(SluiceTileLoader *loader, struct slc_read *waiting,
-                           struct slc_shared_region *held)
+                           struct slc_shared_region *held, const struct slc_joined_failure *failed)
 {
     struct slc_read *next;
     bool any = waiting;
@@ -52,6 +54,7 @@ static void resume_waiting(SluiceTileLoader *loader, struct slc_read *waiting,
         waiting->awaited = NULL;
         assert(!waiting->held);
         waiting->held = held;
+        waiting->failed = *failed;
         slc_read_queue_resume(slc_read_queue_of(waiting), waiting);
     }
     if (any)
@@ -69,15 +72,18 @@ void slc_pooled_region_count(SluiceTileLoader *loader, const struct slc_read *re
 
 void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_read *read, uint32_t region,
                            struct slc_shared_region *shared, enum slc_delivery delivery,
-                           SluiceResult result)
+                           SluiceResult result, const SluiceImageFault *fault)
 {
     struct slc_read_pool *pool = loader->pool;
     bool is_read = result == SLUICE_SUCCESS;
     if (delivery == SLC_DELIVER_READ) {
         pool->shares->statistics.readCount += is_read;
         pool->shares->statistics.readSize += is_read ? shared->size : 0;
+        struct slc_joined_failure failed = {SLUICE_SUCCESS, {"", SLUICE_UNKNOWN_OFFSET}};
+        if (!is_read && result != SLUICE_ERROR_CANCELED) /* which is of the reader only */
+            failed = (struct slc_joined_failure){result, *fault};
         resume_waiting(loader, slc_shared_reads_end(pool->shares, shared, is_read),
-                       is_read ? shared : NULL);
+                       is_read ? shared : NULL, &failed);
     }
     if (is_read) {
         slc_read_pool_unlock(pool);
@@ -113,7 +119,7 @@ static SluiceResult deliver(SluiceTileLoader *loader, struct slc_read *read,
         slc_mutex_lock(&pool->mutex);
     }
     if (shared)
-        slc_pooled_region_end(loader, read, region, shared, delivery, result);
+        slc_pooled_region_end(loader, read, region, shared, delivery, result, fault);
     else if (result == SLUICE_SUCCESS)
         slc_pooled_region_count(loader, read, info->format, region);
     if (result == SLUICE_SUCCESS)
@@ -151,11 +157,26 @@ bool slc_pooled_read_waits(SluiceTileLoader *loader, struct slc_read *read,
         loader->pool->shares, read->source->source, &read->regions[first]);
     if (region) {
         read->awaited = region;
+        read->awaited_region = first;
+        read->wait_time = slc_monotonic_time();
         slc_shared_region_await(region, read);
         slc_read_queue_wait(&loader->queue, read);
     } else { /* its reader has ended meanwhile */
         slc_read_queue_resume(&loader->queue, read);
     }
+    return true;
+}
+
+bool slc_pooled_read_has_failed(struct slc_read *read, struct slc_read_outcome *outcome)
+{
+    const struct slc_joined_failure failed = read->failed;
+    if (failed.result == SLUICE_SUCCESS)
+        return false;
+    read->failed.result = SLUICE_SUCCESS;
+    *outcome = (struct slc_read_outcome){.result = failed.result,
+                                         .fault = failed.fault,
+                                         .region = read->awaited_region,
+                                         .latency = slc_monotonic_time() - read->wait_time};
     return true;
 }
 

@@ -24,16 +24,18 @@ enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_r
                                           const SluiceImageInfo *info, uint32_t region,
                                           struct slc_shared_region **shared);
 /** Ends SLC_DELIVER_READ and SLC_DELIVER_COPY: copies the texels, if there are any, to the read.
- * The mutex is given up meanwhile. */
+ * The mutex is given up meanwhile. `fault`: of a read that failed. */
 void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_read *read, uint32_t region,
                            struct slc_shared_region *shared, enum slc_delivery delivery,
-                           SluiceResult result);
+                           SluiceResult result, const SluiceImageFault *fault);
 /** Counts a region that a source has delivered to a read alone. */
 void slc_pooled_region_count(SluiceTileLoader *loader, const struct slc_read *read,
                              SluiceFormat format, uint32_t region);
 /** True if a running read has regions that others read: it is put aside, and goes on by itself. */
 bool slc_pooled_read_waits(SluiceTileLoader *loader, struct slc_read *read,
                            struct slc_read_outcome *outcome);
+/** True if the read that a running read has waited for has failed: an attempt of both. */
+bool slc_pooled_read_has_failed(struct slc_read *read, struct slc_read_outcome *outcome);
 /** A read ends: it waits for no region and holds none. */
 void slc_pooled_read_ends(SluiceTileLoader *loader, struct slc_read *read);
 

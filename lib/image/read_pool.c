@@ -144,6 +144,10 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
     SluiceImageSource *source = read->source->source;
     SluiceImageInfo info = {.structSize = sizeof info};
     struct slc_read_outcome outcome = {.fault = {"", SLUICE_UNKNOWN_OFFSET}};
+    if (slc_pooled_read_has_failed(read, &outcome)) {
+        slc_loader_settle_read(loader, read, &outcome);
+        return;
+    }
     slc_read_pool_unlock(loader->pool); /* submits the job that reads meanwhile */
     uint64_t start = slc_monotonic_time();
     outcome.result = sluiceGetImageInfo(source, &info);

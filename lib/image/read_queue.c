@@ -12,12 +12,17 @@ static const struct slc_read *read_of(const struct slc_heap_node *node)
     return SLC_CONTAINER_OF(node, const struct slc_read, node);
 }
 
-/* Texels that are held are copied first: a copy is quick, and ends the hold. */
+/* It copies texels that it holds, which is quick and ends the hold, or tells that it has failed. */
+static bool is_served(const struct slc_read *read)
+{
+    return read->held || read->failed.result != SLUICE_SUCCESS;
+}
+
 static bool read_is_more_urgent(const struct slc_heap_node *a, const struct slc_heap_node *b)
 {
     const struct slc_read *x = read_of(a), *y = read_of(b);
-    if (!x->held != !y->held)
-        return x->held;
+    if (is_served(x) != is_served(y))
+        return is_served(x);
     return x->priority != y->priority ? x->priority > y->priority : x->order < y->order;
 }
 
@@ -173,6 +178,7 @@ bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *g
     read->attempts = (struct slc_attempts){0};
     read->next_waiting = NULL;
     read->awaited = read->held = NULL;
+    read->failed.result = SLUICE_SUCCESS;
     read->region_count = given->regionCount;
     read->done = 0;
     read->done_size = 0;

@@ -35,6 +35,12 @@ struct slc_started {
     struct slc_shared_region *shared[SLUICE_MAX_READ_REGIONS];
 };
 
+/** A read that a read waited for has failed. */
+struct slc_joined_failure {
+    SluiceResult result; ///< SLUICE_SUCCESS: there is none
+    SluiceImageFault fault;
+};
+
 struct slc_read {
     enum slc_read_state state;
     uint64_t generation;       ///< of the slot, so that old tickets are recognized
@@ -60,6 +66,9 @@ struct slc_read {
     /* With the lock held. */
     struct slc_read *next_waiting;     ///< for the same region
     struct slc_shared_region *awaited; ///< while it waits
+    uint32_t awaited_region;           ///< of its own
+    uint64_t wait_time;                ///< ns; begin of the wait
+    struct slc_joined_failure failed;  ///< not told yet; changes while it is not queued
     struct slc_shared_region *held;    ///< texels to copy; changes while it is not queued
 };
 
@@ -131,7 +140,8 @@ void slc_read_queue_delay(struct slc_read_queue *queue, struct slc_read *read, u
 
 /** Puts a running read aside until slc_read_queue_resume. */
 void slc_read_queue_wait(struct slc_read_queue *queue, struct slc_read *read);
-/** Queues a read that waits, or a running one. A read that holds texels goes before all others. */
+/** Queues a read that waits, or a running one. Reads that hold texels, or have joined a failure, go
+ *  first. */
 void slc_read_queue_resume(struct slc_read_queue *queue, struct slc_read *read);
 
 /** Ends a running read, or a queued, delayed or waiting one that is dropped. */

@@ -26,9 +26,12 @@ static void complete_region(SluiceTileLoader *loader, struct slc_read *read, uin
         return;
     started->pending &= ~(1u << region);
     started->shared[region] = NULL;
+    const SluiceImageFault unknown = {started->fault.pName, SLUICE_UNKNOWN_OFFSET};
+    if (!fault)
+        fault = &unknown;
     if (shared) {
         started->calls++;
-        slc_pooled_region_end(loader, read, region, shared, SLC_DELIVER_READ, result);
+        slc_pooled_region_end(loader, read, region, shared, SLC_DELIVER_READ, result, fault);
         started->calls--;
     } else if (result == SLUICE_SUCCESS) {
         slc_pooled_region_count(loader, read, started->format, region);
@@ -38,8 +41,7 @@ static void complete_region(SluiceTileLoader *loader, struct slc_read *read, uin
     } else if (started->result == SLUICE_SUCCESS) {
         started->result = result;
         started->failed_region = region;
-        if (fault)
-            started->fault = *fault;
+        started->fault = *fault;
     }
 }
 
@@ -72,7 +74,7 @@ static void start_region(SluiceTileLoader *loader, struct slc_read *read,
     if (delivery == SLC_DELIVER_WAIT)
         return;
     if (delivery == SLC_DELIVER_COPY) {
-        slc_pooled_region_end(loader, read, region, shared, delivery, SLUICE_SUCCESS);
+        slc_pooled_region_end(loader, read, region, shared, delivery, SLUICE_SUCCESS, NULL);
         slc_read_region_done(read, info->format, region);
         return;
     }

@@ -388,11 +388,27 @@ static void loaders_may_be_destroyed_before_their_reads_end(void **state)
     }
 }
 
-static void a_read_that_joined_a_failure_reads_itself(void **state)
+struct failures {
+    uint32_t count;
+    SluiceTileReadFailure last;
+};
+
+static void note_failure(void *user, const SluiceTileReadFailure *failure)
+{
+    struct failures *failures = user;
+    failures->count++;
+    failures->last = *failure;
+}
+
+/* Loader 1 tries again. */
+static void a_failure_that_was_joined_is_an_attempt_of_each_reader(void **state)
 {
     (void)state;
     struct rig r;
-    init(&r, 2, two_threads);
+    struct failures failures = {0};
+    init(&r, 1, two_threads);
+    add_loader_of(&r, 1,
+                  (SluiceTileLoaderCreateInfo){.retry = {2}, .failure = {&failures, note_failure}});
     r.source.fail_at = 1;
     r.source.failure = SLUICE_ERROR_IO;
     join(&r, 7);
@@ -403,8 +419,42 @@ static void a_read_that_joined_a_failure_reads_itself(void **state)
     assert_int_equal(r.source.read_count, 2);
     SluiceTileLoaderStatistics own = {.structSize = sizeof own};
     CHECK_OK(sluiceGetTileLoaderStatistics(r.loaders[1], &r.source.base, &own));
-    assert_int_equal(own.attemptCount, 1); /* waiting is no attempt */
-    assert_int_equal(own.failedCount, 0);
+    assert_int_equal(own.attemptCount, 2);
+    assert_int_equal(own.failedCount, 1);
+    assert_int_equal(own.lastFailure, SLUICE_ERROR_IO);
+    assert_true(own.maxLatencyNs > 0);
+    assert_int_equal(failures.count, 1);
+    assert_ptr_equal(failures.last.source, &r.source.base);
+    assert_int_equal(failures.last.region.x, 7);
+    assert_int_equal(failures.last.userValue, 7);
+    assert_int_equal(failures.last.attempt, 1);
+    assert_true(failures.last.willRetry);
+    finish(&r);
+}
+
+static void a_failure_takes_no_longer_with_more_members(void **state)
+{
+    (void)state;
+    struct rig r;
+    init(&r, LOADERS, two_threads);
+    r.source.fail_at = 1;
+    r.source.fails_on = true;
+    r.source.failure = SLUICE_ERROR_IO;
+    join(&r, 7);
+    submit_regions(&r, 2, &r.source.base, 7, 1, 1);
+    settle(&r, 2);
+    fault_source_release(&r.source);
+    expect(&r, 0, 1, SLUICE_ERROR_IO);
+    for (uint32_t i = 1; i < LOADERS; i++) {
+        SluiceTileReadResult results[2];
+        uint32_t count = 2;
+        CHECK_OK(sluiceWaitTileLoaderIdle(r.loaders[i]));
+        CHECK_OK(sluiceCollectTileReads(r.loaders[i], &count, results));
+        assert_int_equal(count, 2);
+        CHECK_OK(results[0].result); /* of the other source */
+        CHECK_RESULT(results[1].result, SLUICE_ERROR_IO);
+    }
+    assert_int_equal(r.source.read_count, 1);
     finish(&r);
 }
 
@@ -773,7 +823,8 @@ int main(void)
         cmocka_unit_test(canceling_the_reader_does_not_cancel_those_who_joined),
         cmocka_unit_test(canceling_a_read_that_joined_ends_it_at_once),
         cmocka_unit_test(loaders_may_be_destroyed_before_their_reads_end),
-        cmocka_unit_test(a_read_that_joined_a_failure_reads_itself),
+        cmocka_unit_test(a_failure_that_was_joined_is_an_attempt_of_each_reader),
+        cmocka_unit_test(a_failure_takes_no_longer_with_more_members),
         cmocka_unit_test(reads_keep_their_priority_when_what_they_joined_fails),
         cmocka_unit_test(texels_of_an_old_format_are_let_go),
         cmocka_unit_test(texels_that_changed_are_read_again),
