@@ -93,6 +93,9 @@ typedef struct SluiceLoadStageCounts {
 typedef struct SluiceVulkanLoadStages {
     uint32_t structSize;                                   ///< sizeof(SluiceVulkanLoadStages).
     SluiceLoadStageCounts stages[SLUICE_LOAD_STAGE_COUNT]; ///< By SluiceLoadStage.
+    /** From a tile's request until the frame that copies it is complete: the stages behind
+     * feedback, and waits between them, for memory or pages. Prefetched tiles are not counted. */
+    SluiceLoadStageCounts whole;
 } SluiceVulkanLoadStages;
 
 /**

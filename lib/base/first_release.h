@@ -112,7 +112,7 @@
 #define SLC_FIRST_SluiceVulkanRequestProgress                                                      \
     SLC_UP_TO(SluiceVulkanRequestProgress, givenUpTileCount)
 #define SLC_FIRST_SluiceVulkanStrictMode SLC_UP_TO(SluiceVulkanStrictMode, pfnReport)
-#define SLC_FIRST_SluiceVulkanLoadStages SLC_UP_TO(SluiceVulkanLoadStages, stages)
+#define SLC_FIRST_SluiceVulkanLoadStages SLC_UP_TO(SluiceVulkanLoadStages, whole)
 #define SLC_FIRST_SluiceDemandStrictMode SLC_UP_TO(SluiceDemandStrictMode, pfnReport)
 #define SLC_FIRST_SluiceDemandRegionProgress SLC_UP_TO(SluiceDemandRegionProgress, refusedTileCount)
 #define SLC_FIRST_SluiceDemandTileInfo SLC_UP_TO(SluiceDemandTileInfo, state)

@@ -17,14 +17,17 @@ static uint32_t bucket_of(uint64_t frames)
     return bucket;
 }
 
-void slc_load_stage_left(SluiceVulkanStreamer *s, SluiceLoadStage stage, uint64_t since)
+static void add(SluiceLoadStageCounts *counts, uint64_t frames)
 {
-    SluiceLoadStageCounts *counts = &s->stages.counts.stages[stage];
-    uint64_t frames = s->frame - since;
     counts->count++;
     counts->frameSum += frames;
     counts->frameMax = frames > counts->frameMax ? frames : counts->frameMax;
     counts->buckets[bucket_of(frames)]++;
+}
+
+void slc_load_stage_left(SluiceVulkanStreamer *s, SluiceLoadStage stage, uint64_t since)
+{
+    add(&s->stages.counts.stages[stage], s->frame - since);
 }
 
 /* The frame that made a request: the last one that began with no later number. */
@@ -48,10 +51,20 @@ void slc_load_stage_handed_out(SluiceVulkanStreamer *s, const SluiceTile *tile)
         slc_load_stage_left(s, SLUICE_LOAD_STAGE_QUEUE, frame_of(s, request));
 }
 
+void slc_load_stage_taken(SluiceVulkanStreamer *s, struct slc_unit *unit, const SluiceTile *tile)
+{
+    uint64_t request = slc_manager_request_of(s->manager, tile);
+    if (request != UINT64_MAX)
+        unit->requested_frame = frame_of(s, request);
+}
+
 void slc_load_stage_unit(SluiceVulkanStreamer *s, struct slc_unit *unit, SluiceLoadStage stage)
 {
-    if (!unit->produced && !unit->published)
+    bool counts = !unit->produced && !unit->published;
+    if (counts)
         slc_load_stage_left(s, stage, unit->stage_frame);
+    if (counts && stage == SLUICE_LOAD_STAGE_COPY && unit->requested_frame != UINT64_MAX)
+        add(&s->stages.counts.whole, s->frame - unit->requested_frame);
     unit->stage_frame = s->frame;
 }
 

@@ -78,6 +78,7 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, struct slc_read_batch *b
     }
     uint32_t unit = slc_unit_take(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
+    slc_load_stage_taken(s, &s->units[unit], tile);
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
     if (interface->announce)
         interface->announce(residency, texture, tile);
@@ -174,6 +175,8 @@ static SluiceResult start_packed(SluiceVulkanStreamer *s, uint32_t index)
     texture->packed_done = 0;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t unit = slc_unit_take(s, index, i);
+        if (texture->packed_collected > 0)
+            slc_load_stage_taken(s, &s->units[unit], &texture->packed_tiles[0]);
         SluiceResult result = slc_unit_submit(s, unit);
         if (result != SLUICE_SUCCESS)
             result = slc_packed_unit_back(s, unit, result);

@@ -66,8 +66,11 @@ uint32_t slc_unit_take_empty(SluiceVulkanStreamer *s, uint32_t texture, uint32_t
     uint32_t unit = slc_unit_list_pop(s, &s->free_units);
     assert(unit != SLC_NONE && s->units[unit].state == SLC_UNIT_FREE);
     s->free_unit_count--;
-    s->units[unit] = (struct slc_unit){
-        .texture = texture, .packed_unit = packed_unit, .stage_frame = s->frame, .produced = true};
+    s->units[unit] = (struct slc_unit){.texture = texture,
+                                       .packed_unit = packed_unit,
+                                       .stage_frame = s->frame,
+                                       .requested_frame = UINT64_MAX,
+                                       .produced = true};
     s->textures[texture].unit_count++;
     return unit;
 }

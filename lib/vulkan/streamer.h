@@ -138,7 +138,8 @@ struct slc_unit {
     uint64_t ticket;
     uint64_t value;       ///< BINDING: of the bind, in `copying` of the upload; UPLOADED: the frame
     uint64_t stage_frame; ///< in which it entered its stage (load_stages.h)
-    uint32_t next;        ///< in its list
+    uint64_t requested_frame; ///< in which its tile was requested; UINT64_MAX: not
+    uint32_t next;            ///< in its list
 };
 
 struct slc_unit_list {

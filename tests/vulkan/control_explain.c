@@ -207,10 +207,11 @@ void stages_of_loads_are_counted_in_frames(void **state)
     assert_true(bind->count == loads && bind->frameSum == regular + 16 && bind->frameMax == 3);
     assert_true(bind->buckets[1] == regular + 2 && bind->buckets[2] == 6);
     /* Four mip tails are requested before the first frame, then two tiles per frame. */
-    uint64_t sum = 0, buckets[SLUICE_STAGE_BUCKET_COUNT] = {0};
+    uint64_t sum = 0, tail_sum = 0, buckets[SLUICE_STAGE_BUCKET_COUNT] = {0};
     for (uint32_t i = 0; i < regular + TEXTURES; i++) {
         uint32_t waits = (i < TEXTURES ? i : i - TEXTURES) / 2;
         sum += waits;
+        tail_sum += i < TEXTURES ? waits : 0;
         buckets[waits == 0   ? 0
                 : waits < 2  ? 1
                 : waits < 4  ? 2
@@ -225,6 +226,10 @@ void stages_of_loads_are_counted_in_frames(void **state)
     assert_memory_equal(queue->buckets, buckets, sizeof buckets);
     const SluiceLoadStageCounts *feedback = &out.stages[SLUICE_LOAD_STAGE_FEEDBACK];
     check_stage(feedback, statistics(s).feedbackMaps, 1);
+    /* All stages behind feedback. A mip tail is two loads with one wait in the queue each. */
+    assert_int_equal(out.whole.count, loads);
+    assert_int_equal(out.whole.frameSum, sum + tail_sum + loads + bind->frameSum + loads);
+    assert_int_equal(out.whole.frameMax, queue->frameMax + 3);
     stage_finish(s);
 }
 
