@@ -363,7 +363,7 @@ void stage_restart(struct stage *s)
 
 uint32_t stage_baking_count(const struct stage *s)
 {
-    return s->baking_count;
+    return s->traced ? traced_opening_count(s->traced) : s->baking_count;
 }
 
 double stage_resident_part(const struct stage *s)

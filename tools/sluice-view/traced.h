@@ -90,6 +90,8 @@ struct stage_pick traced_pick(struct traced *traced, const struct view_camera *c
                               float y);
 /** Part of the pixels of the last launches that lack nothing. */
 double traced_complete(const struct traced *traced);
+/** Pictures that rays asked for and that are not open, as of the last looks at them. */
+uint32_t traced_opening_count(const struct traced *traced);
 /** Bytes of device memory beside the loader's: meshes, their structures, materials. */
 uint64_t traced_geometry_size(const struct traced *traced);
 

@@ -148,6 +148,16 @@ static void look_at_pictures(struct traced *t)
     }
 }
 
+uint32_t traced_opening_count(const struct traced *t)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < t->picture_count; i++) {
+        const struct traced_picture *p = &t->pictures[i];
+        count += p->id != 0 && p->tile_count == 0 && p->refused_count == 0;
+    }
+    return count;
+}
+
 static void write_picture(const struct traced_picture *p, struct facts_texture *f)
 {
     const uint32_t wanted = p->resident_count + p->pending_count + p->refused_count;
