@@ -206,7 +206,7 @@ static void count_free(void *user, void *memory, size_t size)
 static uint64_t hash_of_first(void)
 {
     char path[512];
-    uint64_t hash;
+    uint64_t hash = 0;
     SluiceImageSource *source;
     path_of(0, path);
     SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info, .pPath = path};
