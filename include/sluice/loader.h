@@ -80,8 +80,9 @@ typedef struct SluiceTileReadFailureCallback {
  * rather than poll. Off if `pfnEnded` is NULL.
  *
  * Called on the thread that ends the read; this includes callers of sluiceCancelTileRead and
- * sluiceDestroyTileLoader. The loader is locked: the callback must not call the loader, and other
- * reads wait until the callback returns. Never grows.
+ * sluiceDestroyTileLoader. The loader is locked, and so is its read pool: the callback must not
+ * call the loader, nor its pool, nor any other loader or context of the pool. Other reads wait
+ * until the callback returns. Never grows.
  */
 typedef struct SluiceTileReadEndCallback {
     void *pUserData;

@@ -192,9 +192,11 @@ void slc_pooled_read_ends(SluiceTileLoader *loader, struct slc_read *read)
 void slc_loader_drop_texels(SluiceTileLoader *loader, const SluiceImageSource *source)
 {
     struct slc_read_pool *pool = loader->pool;
+    struct slc_shared_region *dropped = NULL;
     if (!pool->shares || !source)
         return;
     slc_mutex_lock(&pool->mutex);
-    slc_shared_reads_drop(pool->shares, source);
+    slc_shared_reads_drop(pool->shares, source, &dropped);
     slc_mutex_unlock(&pool->mutex);
+    slc_shared_regions_free(&pool->shares->cb, dropped);
 }

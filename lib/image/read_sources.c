@@ -128,6 +128,7 @@ static struct slc_read_source *recycle(struct slc_read_sources *sources, SluiceI
     struct slc_read_source *record = sources->idle.next;
     assert(record != &sources->idle);
     unlink_idle(record);
+    sources->has_recycled |= record->source != NULL;
     if (record->source)
         forget(sources, record);
     *record = (struct slc_read_source){.source = source, .sources = sources};

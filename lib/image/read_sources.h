@@ -24,6 +24,7 @@ struct slc_read_source {
 
 struct slc_read_sources {
     uint32_t count;
+    bool has_recycled;             ///< some source was forgotten to make room
     struct slc_read_sources *peer; ///< ring of tables that are shared
     struct slc_read_source *records;
     struct slc_read_source idle; ///< head of a ring of those without reads, the oldest next to it

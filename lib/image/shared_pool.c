@@ -105,7 +105,10 @@ void slc_read_pool_add_member(SluiceReadPool *pool)
 
 void slc_read_pool_remove_member(SluiceReadPool *pool)
 {
+    const SluiceAllocationCallbacks cb = pool->allocator;
+    struct slc_shared_region *dropped = NULL;
     slc_mutex_lock(&pool->threads->mutex);
-    slc_shared_reads_remove_member(&pool->shares);
-    slc_mutex_unlock(&pool->threads->mutex);
+    slc_shared_reads_remove_member(&pool->shares, &dropped);
+    slc_mutex_unlock(&pool->threads->mutex); /* the pool may be destroyed from here on */
+    slc_shared_regions_free(&cb, dropped);
 }

@@ -19,11 +19,25 @@ void slc_shared_reads_init(struct slc_shared_reads *shares, const SluiceAllocati
     *shares = (struct slc_shared_reads){.cb = *cb, .limit = limit};
 }
 
-static void free_region(struct slc_shared_reads *shares, struct slc_shared_region *region)
+static void uncount(struct slc_shared_reads *shares, const struct slc_shared_region *region)
 {
     shares->size -= region->size;
     shares->count--;
+}
+
+static void free_region(struct slc_shared_reads *shares, struct slc_shared_region *region)
+{
+    uncount(shares, region);
     slc_free(&shares->cb, region, 1, HEADER_SIZE + region->size);
+}
+
+void slc_shared_regions_free(const SluiceAllocationCallbacks *cb, struct slc_shared_region *region)
+{
+    struct slc_shared_region *next;
+    for (; region; region = next) {
+        next = region->next_by_source;
+        slc_free(cb, region, 1, HEADER_SIZE + region->size);
+    }
 }
 
 static void free_tables(struct slc_shared_reads *shares)
@@ -34,7 +48,9 @@ static void free_tables(struct slc_shared_reads *shares)
 
 void slc_shared_reads_finish(struct slc_shared_reads *shares)
 {
-    slc_shared_reads_drop_all(shares);
+    struct slc_shared_region *dropped = NULL;
+    slc_shared_reads_drop_all(shares, &dropped);
+    slc_shared_regions_free(&shares->cb, dropped);
     assert(shares->count == 0 && shares->size == 0);
     free_tables(shares);
     *shares = (struct slc_shared_reads){0};
@@ -50,12 +66,13 @@ void slc_shared_reads_add_member(struct slc_shared_reads *shares)
     shares->member_count++;
 }
 
-void slc_shared_reads_remove_member(struct slc_shared_reads *shares)
+void slc_shared_reads_remove_member(struct slc_shared_reads *shares,
+                                    struct slc_shared_region **dropped)
 {
     assert(shares->member_count > 0);
     shares->member_count--;
     if (!slc_shared_reads_are_on(shares))
-        slc_shared_reads_drop_all(shares);
+        slc_shared_reads_drop_all(shares, dropped);
 }
 
 /* Tables ------------------------------------------------------------------------------------- */
@@ -172,10 +189,9 @@ static bool is_kept(const struct slc_shared_region *region)
     return region->is_listed && region->holder_count == 0;
 }
 
-void slc_shared_reads_hide(struct slc_shared_reads *shares, struct slc_shared_region *region)
+/* True if the region was kept: its memory is not needed any more. */
+static bool unlist(struct slc_shared_reads *shares, struct slc_shared_region *region)
 {
-    if (!region->is_listed)
-        return;
     struct slc_shared_region **link = region_bucket(shares, region->source, &region->region);
     while (*link != region)
         link = &(*link)->next_by_region;
@@ -186,10 +202,15 @@ void slc_shared_reads_hide(struct slc_shared_reads *shares, struct slc_shared_re
     bool was_kept = is_kept(region);
     region->is_listed = false;
     shares->listed_count--;
-    if (!was_kept)
-        return;
-    unkeep(shares, region);
-    free_region(shares, region);
+    if (was_kept)
+        unkeep(shares, region);
+    return was_kept;
+}
+
+void slc_shared_reads_hide(struct slc_shared_reads *shares, struct slc_shared_region *region)
+{
+    if (region->is_listed && unlist(shares, region))
+        free_region(shares, region);
 }
 
 static void evict(struct slc_shared_reads *shares)
@@ -335,7 +356,7 @@ void slc_shared_region_leave(struct slc_shared_region *region, struct slc_read *
 /* Dropping ----------------------------------------------------------------------------------- */
 
 static void drop_bucket(struct slc_shared_reads *shares, struct slc_shared_region *region,
-                        const SluiceImageSource *source)
+                        const SluiceImageSource *source, struct slc_shared_region **dropped)
 {
     struct slc_shared_region *next;
     for (; region; region = next) {
@@ -343,20 +364,25 @@ static void drop_bucket(struct slc_shared_reads *shares, struct slc_shared_regio
         if (source && region->source != source)
             continue;
         shares->statistics.invalidatedCount++;
-        slc_shared_reads_hide(shares, region);
+        if (!unlist(shares, region))
+            continue;
+        uncount(shares, region);
+        region->next_by_source = *dropped;
+        *dropped = region;
     }
 }
 
-void slc_shared_reads_drop(struct slc_shared_reads *shares, const SluiceImageSource *source)
+void slc_shared_reads_drop(struct slc_shared_reads *shares, const SluiceImageSource *source,
+                           struct slc_shared_region **dropped)
 {
     if (shares->listed_count > 0)
-        drop_bucket(shares, *source_bucket(shares, source), source);
+        drop_bucket(shares, *source_bucket(shares, source), source, dropped);
 }
 
-void slc_shared_reads_drop_all(struct slc_shared_reads *shares)
+void slc_shared_reads_drop_all(struct slc_shared_reads *shares, struct slc_shared_region **dropped)
 {
     for (uint32_t i = 0; i < shares->bucket_count && shares->listed_count > 0; i++)
-        drop_bucket(shares, shares->by_source[i], NULL);
+        drop_bucket(shares, shares->by_source[i], NULL, dropped);
 }
 
 void slc_shared_reads_write_statistics(const struct slc_shared_reads *shares,

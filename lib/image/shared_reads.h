@@ -54,9 +54,11 @@ void slc_shared_reads_init(struct slc_shared_reads *shares, const SluiceAllocati
 /** Nothing is held. */
 void slc_shared_reads_finish(struct slc_shared_reads *shares);
 
-/** Changes the number of members. The texels of a pool with less than two are dropped. */
+/** Changes the number of members. The texels of a pool with less than two are dropped: see
+ *  slc_shared_reads_drop. */
 void slc_shared_reads_add_member(struct slc_shared_reads *shares);
-void slc_shared_reads_remove_member(struct slc_shared_reads *shares);
+void slc_shared_reads_remove_member(struct slc_shared_reads *shares,
+                                    struct slc_shared_region **dropped);
 /** There is somebody to share with. */
 bool slc_shared_reads_are_on(const struct slc_shared_reads *shares);
 
@@ -84,9 +86,14 @@ void slc_shared_region_leave(struct slc_shared_region *region, struct slc_read *
 
 /** Later readers do not find the region. */
 void slc_shared_reads_hide(struct slc_shared_reads *shares, struct slc_shared_region *region);
-/** Later readers find no region of the source; of any source. */
-void slc_shared_reads_drop(struct slc_shared_reads *shares, const SluiceImageSource *source);
-void slc_shared_reads_drop_all(struct slc_shared_reads *shares);
+/** Later readers find no region of the source; of any source. Adds to `*dropped` what
+ *  slc_shared_regions_free is to free. */
+void slc_shared_reads_drop(struct slc_shared_reads *shares, const SluiceImageSource *source,
+                           struct slc_shared_region **dropped);
+void slc_shared_reads_drop_all(struct slc_shared_reads *shares, struct slc_shared_region **dropped);
+/** Frees texels that were dropped. Takes long, so without the mutex. */
+void slc_shared_regions_free(const SluiceAllocationCallbacks *cb,
+                             struct slc_shared_region *dropped);
 
 void slc_shared_reads_write_statistics(const struct slc_shared_reads *shares,
                                        SluiceReadPoolStatistics *statistics);

@@ -126,8 +126,20 @@ static void drop_read(SluiceTileLoader *loader, struct slc_read *read)
     }
 }
 
+/* With the mutex held. The sources that the loader had may be destroyed from here on. */
+static void drop_its_texels(SluiceTileLoader *loader, struct slc_shared_region **dropped)
+{
+    const struct slc_read_sources *sources = &loader->queue.sources;
+    struct slc_shared_reads *shares = loader->pool->shares;
+    if (shares && sources->has_recycled)
+        slc_shared_reads_drop_all(shares, dropped);
+    for (uint32_t i = 0; shares && i < sources->count; i++)
+        if (sources->records[i].source)
+            slc_shared_reads_drop(shares, sources->records[i].source, dropped);
+}
+
 /* With the mutex held. What waited behind its reads may start now. */
-static void leave(SluiceTileLoader *loader)
+static void leave(SluiceTileLoader *loader, struct slc_shared_region **dropped)
 {
     struct slc_read_pool *pool = loader->pool;
     SluiceTileLoader **link = &pool->loaders;
@@ -136,9 +148,8 @@ static void leave(SluiceTileLoader *loader)
     *link = loader->next;
     if (pool->turn == loader)
         pool->turn = loader->next;
+    drop_its_texels(loader, dropped);
     slc_read_queue_finish(&loader->queue, &loader->allocator);
-    if (pool->shares) /* its sources may be destroyed from here on */
-        slc_shared_reads_drop_all(pool->shares);
     slc_read_pool_signal(pool);
 }
 
@@ -153,8 +164,11 @@ void sluiceDestroyTileLoader(SluiceTileLoader *loader)
         drop_read(loader, &loader->queue.reads[i]);
     while (!slc_read_queue_is_idle(&loader->queue))
         slc_condition_wait(&pool->idle, &pool->mutex);
-    leave(loader);
+    struct slc_shared_region *dropped = NULL;
+    leave(loader, &dropped);
     slc_read_pool_unlock(pool);
+    if (dropped)
+        slc_shared_regions_free(&pool->shares->cb, dropped);
     if (loader->owns_pool)
         slc_read_pool_destroy(pool);
     if (loader->member_of)
@@ -270,10 +284,15 @@ SluiceResult sluiceDropTileLoaderStatistics(SluiceTileLoader *loader,
 {
     if (!loader || !source)
         return SLUICE_ERROR_NULL_POINTER;
-    slc_loader_drop_texels(loader, source);
-    slc_mutex_lock(&loader->pool->mutex);
+    struct slc_read_pool *pool = loader->pool;
+    struct slc_shared_region *dropped = NULL;
+    slc_mutex_lock(&pool->mutex);
+    if (pool->shares)
+        slc_shared_reads_drop(pool->shares, source, &dropped);
     SluiceResult result = slc_read_queue_forget(&loader->queue, source);
-    slc_mutex_unlock(&loader->pool->mutex);
+    slc_mutex_unlock(&pool->mutex);
+    if (dropped)
+        slc_shared_regions_free(&pool->shares->cb, dropped);
     return result;
 }
 

@@ -9,6 +9,7 @@
 #include "support/test.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <time.h>
 
 enum { SIZE = 64, LOADERS = 3, MOST = 256 };
@@ -589,6 +590,116 @@ static void a_loader_that_leaves_takes_the_texels_of_its_sources(void **state)
     finish(&r);
 }
 
+/* Loader 0 reads the source, and loader 1 the other one. */
+static void read_both(struct rig *r)
+{
+    submit(r, 0, &r->source, 3);
+    expect(r, 0, 1, SLUICE_SUCCESS);
+    submit(r, 1, &r->other, 3);
+    expect(r, 1, 1, SLUICE_SUCCESS);
+    assert_int_equal(statistics_of(r).keptCount, 2);
+}
+
+static void destroy_loader(struct rig *r, uint32_t loader)
+{
+    sluiceDestroyTileLoader(r->loaders[loader]);
+    r->loaders[loader] = NULL;
+}
+
+static void a_loader_that_leaves_takes_no_texels_of_other_sources(void **state)
+{
+    (void)state;
+    struct rig r;
+    init(&r, 3, two_threads);
+    read_both(&r);
+    destroy_loader(&r, 1);
+    submit(&r, 2, &r.source, 3);
+    expect(&r, 2, 1, SLUICE_SUCCESS);
+    assert_int_equal(r.source.read_count, 1);
+    assert_int_equal(statistics_of(&r).keptCount, 1);
+    finish(&r);
+}
+
+/* Loader 2 remembers one source. */
+static void a_loader_that_has_forgotten_sources_takes_all_texels(void **state)
+{
+    (void)state;
+    struct rig r;
+    init(&r, 2, two_threads);
+    add_loader_of(&r, 2, (SluiceTileLoaderCreateInfo){.requestCapacity = 1});
+    read_both(&r);
+    submit(&r, 2, &r.source, 4);
+    expect(&r, 2, 1, SLUICE_SUCCESS);
+    submit(&r, 2, &r.other, 4);
+    expect(&r, 2, 1, SLUICE_SUCCESS);
+    assert_int_equal(statistics_of(&r).keptCount, 4);
+    destroy_loader(&r, 2);
+    assert_int_equal(statistics_of(&r).keptCount, 0);
+    finish(&r);
+}
+
+/* While texels are freed, another thread uses the pool. */
+struct watched_free {
+    SluiceAllocationCallbacks callbacks;
+    SluiceReadPool *pool;
+    bool watches;
+    uint32_t count;
+    atomic_bool is_done;
+    pthread_t thread;
+};
+
+static void *allocate(void *user, size_t size, size_t alignment)
+{
+    (void)user;
+    return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+}
+
+static void *use_pool(void *user)
+{
+    struct watched_free *w = user;
+    SluiceReadPoolStatistics statistics = {.structSize = sizeof statistics};
+    CHECK_OK(sluiceGetReadPoolStatistics(w->pool, &statistics));
+    w->is_done = true;
+    return NULL;
+}
+
+static void watch_free(void *user, void *memory, size_t size)
+{
+    struct watched_free *w = user;
+    (void)size;
+    if (w->watches && w->count++ == 0) {
+        assert_int_equal(pthread_create(&w->thread, NULL, use_pool, w), 0);
+        for (uint32_t ms = 0; ms < 2000 && !w->is_done; ms++)
+            nanosleep(&(struct timespec){0, 1000000}, NULL);
+        w->watches = false;
+        assert_true(w->is_done);
+    }
+    free(memory);
+}
+
+static void texels_are_freed_without_the_lock(void **state)
+{
+    (void)state;
+    enum { DROPPED, DESTROYED, LAST_BUT_ONE, CASES };
+    for (uint32_t i = 0; i < CASES; i++) {
+        struct watched_free w = {.callbacks = {&w, allocate, watch_free}};
+        struct rig r;
+        init(&r, i == LAST_BUT_ONE ? 2 : 3,
+             (SluiceReadPoolCreateInfo){.threadCount = 1, .pAllocator = &w.callbacks});
+        submit(&r, 0, &r.source, 3);
+        expect(&r, 0, 1, SLUICE_SUCCESS);
+        w.pool = r.pool;
+        w.watches = true;
+        if (i == DROPPED)
+            CHECK_OK(sluiceDropTileLoaderStatistics(r.loaders[0], &r.source.base));
+        else
+            destroy_loader(&r, i == DESTROYED ? 0 : 1);
+        assert_int_equal(w.count, 1);
+        pthread_join(w.thread, NULL);
+        finish(&r);
+    }
+}
+
 /* Of a tail of four levels one is kept, one is being read, two are new. */
 static void parts_of_a_read_may_be_kept_or_joined(void **state)
 {
@@ -830,6 +941,9 @@ int main(void)
         cmocka_unit_test(texels_that_changed_are_read_again),
         cmocka_unit_test(reads_that_began_before_a_change_are_not_shared),
         cmocka_unit_test(a_loader_that_leaves_takes_the_texels_of_its_sources),
+        cmocka_unit_test(a_loader_that_leaves_takes_no_texels_of_other_sources),
+        cmocka_unit_test(a_loader_that_has_forgotten_sources_takes_all_texels),
+        cmocka_unit_test(texels_are_freed_without_the_lock),
         cmocka_unit_test(parts_of_a_read_may_be_kept_or_joined),
         cmocka_unit_test(without_memory_reads_are_as_without_a_pool),
         cmocka_unit_test(creation_survives_every_refused_allocation),
