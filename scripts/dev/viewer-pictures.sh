@@ -15,6 +15,6 @@ done
 ln -sfn "$(realpath "${SLUICE_TEST_DATA:-$root/../shared/data}")/pbrt/bitterli/staircase2" staircase
 "$viewer" --headless --deterministic --size 1000x562 --render-scale 1 --most-samples 4 \
     --script "$root/docs/viewer/pbrt.txt" staircase/scene-v4.pbrt
-for picture in hall blurry memory ghost budget truth thrash unseen cut feedback file reproduce driver keys pbrt; do
+for picture in hall blurry memory slider budget truth thrash unseen cut feedback file reproduce driver keys pbrt; do
     "$root/scripts/dev/palette_png.py" "$picture.png" "$root/docs/images/viewer-$picture.png"
 done

@@ -17,7 +17,8 @@ static const char *fit_text(const char *text, float width, char *fitted, size_t 
         return text;
     length = length < size - 4 ? length : size - 4;
     do {
-        while (length > 0 && ((unsigned char)text[--length] & 0xC0) == 0x80) /* within a character */
+        while (length > 0 &&
+               ((unsigned char)text[--length] & 0xC0) == 0x80) /* within a character */
             continue;
         snprintf(fitted, size, "%.*s ...", (int)length, text);
     } while (length > 0 && ui_text_width(fitted) > width);
