@@ -11,6 +11,7 @@
 #include "stage.h"
 #include "ui.h"
 
+struct thumbs;
 struct trade;
 
 #define APP_BOOKMARKS 9
@@ -79,6 +80,7 @@ struct view_app {
     bool headless;             ///< time is that of the frame's number
     const char *program;       ///< words of the command line before the options
     const struct trade *trade; ///< borrowed
+    struct thumbs *thumbs;     ///< borrowed
     /* Requests to the loop, which resets them. */
     bool quit, reload, step, step_tile, restart, screenshot, screenshot_plain, trace;
     bool trade_toggle, trade_page, reload_shaders;

@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "texture_rows.h"
+#include "thumbs.h"
 
 #include "../common/output_file.h"
 
@@ -51,6 +52,9 @@ static void draw_row(struct view_app *app, const struct texture_row *r)
         app->inspect = (struct stage_pick){.texture = r->texture, .hit = false};
         app_set_panel(app, PANEL_INSPECTOR, true);
     }
+    float uv[4];
+    if (app->thumbs && thumbs_find(app->thumbs, r->texture, uv))
+        ui_table_image(UI_TEXTURE_THUMBS, ui_line_height() - 4 * ui_scale(), uv);
     ui_table_cell(color, "%s", r->name);
     draw_figures(r, color);
     ui_table_cell(color, "%u x %u", r->width, r->height);

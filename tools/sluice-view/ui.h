@@ -127,6 +127,8 @@ bool ui_begin_table(const char *id, const char *columns, float height, bool sort
 bool ui_table_sort(uint32_t *column, bool *descending);
 /** Begins a row; returns whether it was clicked. */
 bool ui_table_row(int id, bool selected);
+/** A square in the cell of the next ui_table_cell, before its text. */
+void ui_table_image(uint32_t texture, float size, const float uv[4]);
 void ui_table_cell(uint32_t color, const char *format, ...) UI_PRINTF(2, 3);
 void ui_end_table(void);
 

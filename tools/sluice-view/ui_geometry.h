@@ -16,6 +16,7 @@ enum ui_texture {
     UI_TEXTURE_PICTURE,
     UI_TEXTURE_OTHER,
     UI_TEXTURE_FLIP,
+    UI_TEXTURE_THUMBS,
     UI_TEXTURE_COUNT
 };
 

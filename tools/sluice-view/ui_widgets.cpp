@@ -220,6 +220,13 @@ bool ui_table_row(int id, bool selected)
     return clicked;
 }
 
+void ui_table_image(uint32_t texture, float size, const float uv[4])
+{
+    ImGui::Image((ImTextureID)(uintptr_t)texture, ImVec2(size, size), ImVec2(uv[0], uv[1]),
+                 ImVec2(uv[2], uv[3]));
+    ImGui::SameLine();
+}
+
 void ui_table_cell(uint32_t color, const char *format, ...)
 {
     va_list arguments;

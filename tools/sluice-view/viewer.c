@@ -237,6 +237,11 @@ static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer com
     if (!v->stage)
         return true;
     const bool copies = follow_flip(v, &draw, end, commands);
+    if (v->app.open[PANEL_TEXTURES] && !stage_traced(v->stage))
+        thumbs_begin(&v->thumbs, &v->gpu, v->stage, v->options->deterministic);
+    thumbs_record(&v->thumbs, v->frames.number, commands);
+    if (v->thumbs.texels.filled)
+        end->views[UI_TEXTURE_THUMBS] = v->thumbs.texels.image.view;
     if (v->other) {
         draw.copy = copies ? v->flip.pictures[1].buffer : VK_NULL_HANDLE;
         if (!stage_record(v->other, &draw, commands, end))
@@ -452,6 +457,7 @@ static bool prepare(struct viewer *v, bool *unsupported)
     v->app.gpu = &v->gpu;
     v->app.flip = &v->flip;
     v->app.trade = &v->trade;
+    v->app.thumbs = &v->thumbs;
     return frames_create(&v->gpu, width, height, &v->frames);
 }
 

@@ -9,6 +9,7 @@
 #include "scene_load.h"
 #include "script.h"
 #include "summary.h"
+#include "thumbs.h"
 #include "trade.h"
 #include "window.h"
 
@@ -39,6 +40,7 @@ struct viewer {
     char screenshot[4096];        ///< to write after this frame; "": none
     struct summary summary;
     struct trade trade;
+    struct thumbs thumbs;     ///< of `stage`, once the table of textures was open
     SluiceRecorder *recorder; ///< of the manager of `stage`; NULL: none
     char recording[4096];     ///< its file
     bool recording_failed;

@@ -86,6 +86,7 @@ void viewer_close_scene(struct viewer *v)
         frames_wait(&v->frames);
     viewer_end_recording(v);
     app_close(&v->app);
+    thumbs_end(&v->thumbs);
     stage_destroy(v->other);
     stage_destroy(v->stage);
     v->stage = v->other = NULL;
