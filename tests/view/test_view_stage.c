@@ -10,6 +10,7 @@
 #include "panels.h"
 #include "scene_data.h"
 #include "texture_rows.h"
+#include "thumbs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -572,6 +573,52 @@ static void a_wireframe_draws_thin_lines_and_nothing_else(void **state)
     app->settings.panels = 0;
 }
 
+/* A cell of a square texture is the level of 32 x 32 texels, which are read here one by one. */
+static void compare_cell(const struct thumbs *thumbs, uint32_t texture, SluiceImageSource *source,
+                         uint32_t level)
+{
+    const uint32_t row = THUMBS_COLUMNS * THUMBS_CELL;
+    const uint32_t left = texture % THUMBS_COLUMNS * THUMBS_CELL;
+    const uint32_t top = texture / THUMBS_COLUMNS * THUMBS_CELL;
+    for (uint32_t y = 0; y < THUMBS_CELL; y++)
+        for (uint32_t x = 0; x < THUMBS_CELL; x++) {
+            const uint8_t *pixel = thumbs->pixels + ((size_t)(top + y) * row + left + x) * 4;
+            const SluiceImageRegion region = {
+                .mipLevel = level, .x = x, .y = y, .width = 1, .height = 1};
+            uint8_t texel[4];
+            CHECK_OK(sluiceReadImageRegion(source, &region, texel, sizeof texel));
+            assert_memory_equal(pixel, texel, 3);
+            assert_int_equal(pixel[3], 255);
+        }
+}
+
+static void thumbs_are_levels_of_their_textures(void **state)
+{
+    (void)state;
+    struct thumbs thumbs = {0};
+    uint32_t compared = 0;
+    if (!show->stage)
+        SKIP_TEST("no device");
+    thumbs_begin(&thumbs, &show->gpu, show->stage, true);
+    for (uint32_t i = 0; i < stage_texture_count(show->stage) && compared < 4; i++) {
+        SluiceImageSource *source = (SluiceImageSource *)stage_source(show->stage, i);
+        SluiceImageInfo info = {.structSize = sizeof info};
+        uint32_t level = 0;
+        CHECK_OK(sluiceGetImageInfo(source, &info));
+        while (info.width >> level > THUMBS_CELL)
+            level++;
+        if (info.width != info.height || info.width >> level != THUMBS_CELL ||
+            (info.format != SLUICE_FORMAT_R8G8B8A8_SRGB &&
+             info.format != SLUICE_FORMAT_R8G8B8A8_UNORM))
+            continue;
+        assert_true(thumbs.known[i]);
+        compare_cell(&thumbs, i, source, level);
+        compared++;
+    }
+    assert_true(compared > 1);
+    thumbs_end(&thumbs);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -581,6 +628,7 @@ int main(void)
         cmocka_unit_test(sums_of_memory_count_all_slots),
         cmocka_unit_test(a_camera_that_looks_at_a_tile_sees_it_in_the_color_of_its_texture),
         cmocka_unit_test(tiles_show_their_column_and_row),
+        cmocka_unit_test(thumbs_are_levels_of_their_textures),
         cmocka_unit_test(a_wireframe_draws_thin_lines_and_nothing_else),
         cmocka_unit_test(reasons_of_a_mode_are_those_that_the_library_chooses_by),
         cmocka_unit_test(filters_and_files_take_names_with_blanks_quotes_and_commas),
