@@ -38,7 +38,7 @@ enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_r
     }
     if (!slc_reads_are_pooled(loader, source) || !slc_shared_reads_are_on(shares) ||
         !slc_region_is_valid(at, info) || size > loader->pool->load.max_running_size)
-        return SLC_DELIVER_ALONE;
+        return read->is_copy ? SLC_DELIVER_WAIT : SLC_DELIVER_ALONE;
     return slc_shared_reads_claim(shares, read, at, size, shared);
 }
 
@@ -161,7 +161,7 @@ bool slc_pooled_read_waits(SluiceTileLoader *loader, struct slc_read *read,
         read->wait_time = slc_monotonic_time();
         slc_shared_region_await(region, read);
         slc_read_queue_wait(&loader->queue, read);
-    } else { /* its reader has ended meanwhile */
+    } else { /* its reader has ended meanwhile, or a copy cannot be made */
         slc_read_queue_resume(&loader->queue, read);
     }
     return true;

@@ -230,7 +230,7 @@ void slc_read_pool_unlock(struct slc_read_pool *pool)
 bool slc_read_pool_has_startable(const struct slc_read_pool *pool)
 {
     for (const SluiceTileLoader *loader = pool->loaders; loader; loader = loader->next)
-        if (loader->queue.startable.root)
+        if (loader->queue.copies.root || loader->queue.startable.root)
             return true;
     return false;
 }
@@ -238,9 +238,21 @@ bool slc_read_pool_has_startable(const struct slc_read_pool *pool)
 bool slc_read_pool_has_work(const struct slc_read_pool *pool)
 {
     for (const SluiceTileLoader *loader = pool->loaders; loader; loader = loader->next)
-        if (loader->queue.startable.root || loader->queue.delayed.root)
+        if (loader->queue.copies.root || loader->queue.startable.root || loader->queue.delayed.root)
             return true;
     return false;
+}
+
+/* Copies of any loader, which are short, and wait for nothing. */
+static struct slc_read *start_copy(struct slc_read_pool *pool, uint64_t now,
+                                   SluiceTileLoader **loader)
+{
+    struct slc_read *read = NULL;
+    for (SluiceTileLoader *at = pool->loaders; at && !read; at = at->next) {
+        read = slc_read_queue_start_copy(&at->queue, now);
+        *loader = at;
+    }
+    return read;
 }
 
 /* The loaders take turns. A read that waits until fewer bytes are being read keeps its turn: the
@@ -249,6 +261,9 @@ static struct slc_read *start(struct slc_read_pool *pool, SluiceTileLoader **loa
 {
     SluiceTileLoader *first = pool->turn ? pool->turn : pool->loaders, *at = first;
     uint64_t now = first ? slc_monotonic_time() : 0;
+    struct slc_read *copy = start_copy(pool, now, loader);
+    if (copy)
+        return copy;
     while (at) {
         SluiceTileLoader *next = at->next ? at->next : pool->loaders;
         struct slc_read *read = slc_read_queue_start(&at->queue, now);

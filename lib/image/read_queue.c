@@ -1,6 +1,7 @@
 #include "image/read_queue.h"
 
 #include "base/alloc.h"
+#include "image/shared_reads.h"
 
 #include <string.h>
 
@@ -12,17 +13,9 @@ static const struct slc_read *read_of(const struct slc_heap_node *node)
     return SLC_CONTAINER_OF(node, const struct slc_read, node);
 }
 
-/* It copies texels that it holds, which is quick and ends the hold, or tells that it has failed. */
-static bool is_served(const struct slc_read *read)
-{
-    return read->held || read->failed.result != SLUICE_SUCCESS;
-}
-
 static bool read_is_more_urgent(const struct slc_heap_node *a, const struct slc_heap_node *b)
 {
     const struct slc_read *x = read_of(a), *y = read_of(b);
-    if (is_served(x) != is_served(y))
-        return is_served(x);
     return x->priority != y->priority ? x->priority > y->priority : x->order < y->order;
 }
 
@@ -48,6 +41,7 @@ SluiceResult slc_read_queue_init(struct slc_read_queue *queue, const SluiceAlloc
         .own_load = {.max_running_per_source = limits->max_running_per_source,
                      .max_running_size = limits->max_running_size},
         .startable.is_before = source_is_more_urgent,
+        .copies.is_before = read_is_more_urgent,
         .delayed.is_before = read_is_due_before};
     queue->load = &queue->own_load;
     queue->reads = slc_calloc(cb, capacity, sizeof *queue->reads);
@@ -127,20 +121,42 @@ static void update_twins(struct slc_read_source *source)
     }
 }
 
-static void enqueue(struct slc_read_queue *queue, struct slc_read *read)
+/* The pool has texels that are left of it, or all of them, or knows that it has failed. */
+static bool is_copy(const struct slc_read_queue *queue, const struct slc_read *read)
 {
-    source_leave(queue, read->source);
+    bool copies = true;
+    if (read->held || read->failed.result != SLUICE_SUCCESS)
+        return true;
+    for (uint32_t i = 0; copies && i < read->region_count; i++)
+        copies = read->done >> i & 1 ||
+                 (queue->shares &&
+                  slc_shared_reads_keep(queue->shares, read->source->source, &read->regions[i]));
+    return copies;
+}
+
+static void enqueue(struct slc_read_queue *queue, struct slc_read *read, bool copies)
+{
     read->state = SLC_READ_QUEUED;
-    slc_pairing_heap_add(&read->source->queued, &read->node);
+    read->is_copy = copies;
     queue->queued_count++;
+    if (copies) {
+        slc_pairing_heap_add(&queue->copies, &read->node);
+        return;
+    }
+    source_leave(queue, read->source);
+    slc_pairing_heap_add(&read->source->queued, &read->node);
     source_return(queue, read->source);
 }
 
 static void dequeue(struct slc_read_queue *queue, struct slc_read *read)
 {
+    queue->queued_count--;
+    if (read->is_copy) {
+        slc_pairing_heap_remove(&queue->copies, &read->node);
+        return;
+    }
     source_leave(queue, read->source);
     slc_pairing_heap_remove(&read->source->queued, &read->node);
-    queue->queued_count--;
     source_return(queue, read->source);
 }
 
@@ -153,10 +169,12 @@ static void undelay(struct slc_read_queue *queue, struct slc_read *read)
 
 static void stop_running(struct slc_read_queue *queue, struct slc_read *read)
 {
+    queue->running_count--;
+    if (read->is_copy)
+        return;
     source_leave(queue, read->source);
     read->source->running_count -= read->holds_thread;
     read->holds_thread = false;
-    queue->running_count--;
     queue->load->running_count--;
     queue->load->running_size -= read->running_size;
     source_return(queue, read->source);
@@ -189,7 +207,7 @@ bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *g
     read->result = (SluiceTileReadResult){.ticket = *ticket, .userValue = given->userValue};
     source->statistics.counts.readCount++;
     queue->statistics.counts.readCount++;
-    enqueue(queue, read);
+    enqueue(queue, read, is_copy(queue, read));
     return true;
 }
 
@@ -212,13 +230,27 @@ static uint64_t size_of(const struct slc_read *read)
     return size;
 }
 
-struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now)
+struct slc_read *slc_read_queue_start_copy(struct slc_read_queue *queue, uint64_t now)
 {
     while (slc_read_queue_next_due(queue) <= now && queue->delayed.root) {
         struct slc_read *due = SLC_CONTAINER_OF(queue->delayed.root, struct slc_read, node);
         undelay(queue, due);
-        enqueue(queue, due);
+        enqueue(queue, due, is_copy(queue, due));
     }
+    if (!queue->copies.root)
+        return NULL;
+    struct slc_read *read = SLC_CONTAINER_OF(queue->copies.root, struct slc_read, node);
+    dequeue(queue, read);
+    read->state = SLC_READ_RUNNING;
+    queue->running_count++;
+    return read;
+}
+
+struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now)
+{
+    struct slc_read *copy = slc_read_queue_start_copy(queue, now);
+    if (copy)
+        return copy;
     if (!queue->startable.root)
         return NULL;
     struct slc_read_source *source =
@@ -286,11 +318,12 @@ void slc_read_queue_wait(struct slc_read_queue *queue, struct slc_read *read)
 
 void slc_read_queue_resume(struct slc_read_queue *queue, struct slc_read *read)
 {
+    bool has_failed = read->state == SLC_READ_RUNNING && read->is_copy; /* texels were evicted */
     if (read->state == SLC_READ_WAITING)
         queue->waiting_count--;
     else
         stop_running(queue, read);
-    enqueue(queue, read);
+    enqueue(queue, read, !has_failed && is_copy(queue, read));
 }
 
 void slc_read_queue_end(struct slc_read_queue *queue, struct slc_read *read, SluiceResult result)

@@ -61,6 +61,7 @@ struct slc_read {
 
     atomic_bool dropped; ///< nobody wants it any more
     bool holds_thread;   ///< while it runs
+    bool is_copy;        ///< while it is queued or runs: its source is not asked
     struct slc_started started;
 
     /* With the lock held. */
@@ -91,6 +92,8 @@ struct slc_read_queue {
     uint64_t submitted;
 
     struct slc_read_sources sources;
+    const struct slc_shared_reads *shares; ///< texels that are kept; NULL: none
+    struct slc_pairing_heap copies;        ///< queued reads of texels that are there; no limits
     struct slc_pairing_heap startable; ///< sources that have room for another of their queued reads
     struct slc_pairing_heap delayed;   ///< reads, the first one due in front
     uint32_t queued_count, running_count, waiting_count;
@@ -121,8 +124,12 @@ bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *r
 /** The queue that a read is in. */
 struct slc_read_queue *slc_read_queue_of(const struct slc_read *read);
 
-/** The most urgent read that may run, running from now on; NULL if there is none at this time. */
+/** The most urgent copy, or if there is none, the most urgent read that may run, running from now
+ *  on. NULL if there is none at this time. */
 struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now);
+
+/** The most urgent copy, running from now on, or NULL. */
+struct slc_read *slc_read_queue_start_copy(struct slc_read_queue *queue, uint64_t now);
 
 /** The thread of a running read is free for other reads: its source completes it. */
 void slc_read_queue_release_thread(struct slc_read_queue *queue, struct slc_read *read);
@@ -140,8 +147,8 @@ void slc_read_queue_delay(struct slc_read_queue *queue, struct slc_read *read, u
 
 /** Puts a running read aside until slc_read_queue_resume. */
 void slc_read_queue_wait(struct slc_read_queue *queue, struct slc_read *read);
-/** Queues a read that waits, or a running one. Reads that hold texels, or have joined a failure, go
- *  first. */
+/** Queues a read that waits, or a running one. A copy that could not be made is queued as a read.
+ */
 void slc_read_queue_resume(struct slc_read_queue *queue, struct slc_read *read);
 
 /** Ends a running read, or a queued, delayed or waiting one that is dropped. */

@@ -291,6 +291,9 @@ enum slc_delivery slc_shared_reads_claim(struct slc_shared_reads *shares, struct
     }
     if (region) /* of another format: the source has changed */
         slc_shared_reads_hide(shares, region);
+    *out = NULL;
+    if (read->is_copy)
+        return SLC_DELIVER_WAIT;
     *out = ensure_tables(shares) ? create(shares, read, at, size) : NULL;
     shares->statistics.refusedCount += !*out;
     return *out ? SLC_DELIVER_READ : SLC_DELIVER_ALONE;
@@ -335,6 +338,13 @@ struct slc_shared_region *slc_shared_reads_find_reading(const struct slc_shared_
 {
     struct slc_shared_region *region = find(shares, source, at);
     return region && region->is_reading ? region : NULL;
+}
+
+bool slc_shared_reads_keep(const struct slc_shared_reads *shares, const SluiceImageSource *source,
+                           const SluiceImageRegion *at)
+{
+    const struct slc_shared_region *region = find(shares, source, at);
+    return region && !region->is_reading;
 }
 
 void slc_shared_region_await(struct slc_shared_region *region, struct slc_read *read)

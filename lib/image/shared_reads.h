@@ -63,7 +63,8 @@ void slc_shared_reads_remove_member(struct slc_shared_reads *shares,
 bool slc_shared_reads_are_on(const struct slc_shared_reads *shares);
 
 /** Returns how `read` gets the texels of `at`, which have `size` bytes. `*region` is theirs, but
- * for SLC_DELIVER_ALONE. SLC_DELIVER_READ and SLC_DELIVER_COPY hold the region for the read. */
+ * for SLC_DELIVER_ALONE. SLC_DELIVER_READ and SLC_DELIVER_COPY hold the region for the read. A
+ *  copy is never told to read: it is to be queued again. */
 enum slc_delivery slc_shared_reads_claim(struct slc_shared_reads *shares, struct slc_read *read,
                                          const SluiceImageRegion *at, size_t size,
                                          struct slc_shared_region **region);
@@ -80,6 +81,9 @@ bool slc_shared_region_is_at(const struct slc_shared_region *region, const Sluic
 struct slc_shared_region *slc_shared_reads_find_reading(const struct slc_shared_reads *shares,
                                                         const SluiceImageSource *source,
                                                         const SluiceImageRegion *at);
+/** The texels of the region can be copied. */
+bool slc_shared_reads_keep(const struct slc_shared_reads *shares, const SluiceImageSource *source,
+                           const SluiceImageRegion *at);
 /** Puts a read on the list of a region that is being read; takes it off. */
 void slc_shared_region_await(struct slc_shared_region *region, struct slc_read *read);
 void slc_shared_region_leave(struct slc_shared_region *region, struct slc_read *read);

@@ -45,6 +45,7 @@ static void join(SluiceTileLoader *loader, struct slc_read_pool *pool)
     loader->pool = pool;
     slc_mutex_lock(&pool->mutex);
     slc_read_queue_share(&loader->queue, &pool->load, pool->loaders ? &pool->loaders->queue : NULL);
+    loader->queue.shares = pool->shares;
     while (*last)
         last = &(*last)->next;
     *last = loader;
