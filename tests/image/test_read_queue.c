@@ -177,6 +177,43 @@ static void a_delayed_read_is_started_when_it_is_due(void **state)
     slc_read_queue_finish(&queue, &cb);
 }
 
+/* Both limits are reached when the read that waited is resumed. */
+static void copies_start_without_limits(void **state)
+{
+    (void)state;
+    SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    struct slc_read_queue queue;
+    struct slc_shared_region *texels = (struct slc_shared_region *)&cb; /* never looked at */
+    for (int fails = 0; fails < 2; fails++) {
+        queue_init(&queue, &cb, CAPACITY);
+        submit(&queue, 0, 1, MAX_TEXELS);
+        struct slc_read *read = slc_read_queue_start(&queue, 0);
+        slc_read_queue_wait(&queue, read);
+        submit(&queue, 0, 0, MAX_TEXELS);
+        struct slc_read *other = slc_read_queue_start(&queue, 0);
+        submit(&queue, 0, 2, 1);
+        assert_null(slc_read_queue_start(&queue, 0));
+        read->held = fails ? NULL : texels;
+        read->failed.result = fails ? SLUICE_ERROR_IO : SLUICE_SUCCESS;
+        slc_read_queue_resume(&queue, read);
+        assert_ptr_equal(slc_read_queue_start(&queue, 0), read);
+        read->held = NULL;
+        read->failed.result = SLUICE_SUCCESS;
+        slc_read_queue_resume(&queue, read); /* another region is left */
+        assert_null(slc_read_queue_start(&queue, 0));
+        slc_read_queue_end(&queue, other, SLUICE_SUCCESS);
+        struct slc_read *urgent = slc_read_queue_start(&queue, 0);
+        assert_int_equal(urgent->priority, 2);
+        slc_read_queue_end(&queue, urgent, SLUICE_SUCCESS);
+        assert_ptr_equal(slc_read_queue_start(&queue, 0), read);
+        slc_read_queue_end(&queue, read, SLUICE_SUCCESS);
+        assert_true(slc_read_queue_is_idle(&queue));
+        assert_int_equal(queue.own_load.running_count, 0);
+        assert_int_equal(queue.own_load.running_size, 0);
+        slc_read_queue_finish(&queue, &cb);
+    }
+}
+
 static void a_source_is_forgotten_when_nothing_of_it_is_left(void **state)
 {
     (void)state;
@@ -277,6 +314,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_use_starts_reads_as_a_plain_search_would),
         cmocka_unit_test(a_delayed_read_is_started_when_it_is_due),
+        cmocka_unit_test(copies_start_without_limits),
         cmocka_unit_test(a_source_is_forgotten_when_nothing_of_it_is_left),
         cmocka_unit_test(sources_without_reads_give_way_to_new_ones),
         cmocka_unit_test(tickets_are_never_zero_and_never_come_back),

@@ -220,6 +220,62 @@ static void one_member_keeps_nothing(void **state)
     finish(&r);
 }
 
+/* Loader 0 has read texel 3, and reads texel 10 until the end. One thread is free. */
+static void kept_texels_do_not_wait_for_reads_that_stall(void **state)
+{
+    (void)state;
+    static const SluiceReadPoolCreateInfo limits[] = {
+        {.threadCount = 2, .maxReadsPerSource = 1},
+        {.threadCount = 2, .maxReadsPerSource = 2, .maxBytesInFlight = sizeof(float)}};
+    for (uint32_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
+        struct rig r;
+        SluiceTileReadResult result;
+        uint32_t count = 0;
+        init(&r, 2, limits[i]);
+        submit(&r, 0, &r.source, 3);
+        expect(&r, 0, 1, SLUICE_SUCCESS);
+        r.source.holds = true;
+        submit(&r, 0, &r.source, 10);
+        fault_source_await(&r.source, 1);
+        submit_regions(&r, 1, &r.source.base, 4, 1, 1); /* more urgent, but not kept */
+        submit(&r, 1, &r.source, 3);
+        for (uint32_t ms = 0; ms < 5000 && count == 0; ms++) {
+            nanosleep(&(struct timespec){0, 1000000}, NULL);
+            count = 1;
+            CHECK_OK(sluiceCollectTileReads(r.loaders[1], &count, &result));
+        }
+        assert_int_equal(count, 1);
+        assert_int_equal(result.userValue, 3);
+        CHECK_OK(result.result);
+        expect_texel(&r, 1, 3);
+        assert_int_equal(r.source.read_count, 2);
+        fault_source_release(&r.source);
+        expect(&r, 1, 1, SLUICE_SUCCESS);
+        finish(&r);
+    }
+}
+
+/* The texels were kept when loader 1 asked for them, while the one thread reads something else. */
+static void texels_that_are_dropped_before_their_copy_are_read(void **state)
+{
+    (void)state;
+    struct rig r;
+    init(&r, 2, (SluiceReadPoolCreateInfo){.threadCount = 1});
+    submit(&r, 0, &r.source, 3);
+    expect(&r, 0, 1, SLUICE_SUCCESS);
+    r.other.holds = true;
+    submit(&r, 0, &r.other, 8);
+    fault_source_await(&r.other, 1);
+    submit(&r, 1, &r.source, 3);
+    CHECK_OK(sluiceDropTileLoaderStatistics(r.loaders[0], &r.source.base));
+    r.added = 0.5f;
+    fault_source_release(&r.other);
+    expect(&r, 1, 1, SLUICE_SUCCESS);
+    expect_texel(&r, 1, 3);
+    assert_int_equal(r.source.read_count, 2);
+    finish(&r);
+}
+
 /* Room for two texels of four bytes. */
 static void the_least_recently_used_texels_are_evicted(void **state)
 {
@@ -926,6 +982,8 @@ int main(void)
         cmocka_unit_test(a_region_that_is_being_read_is_joined_without_a_thread),
         cmocka_unit_test(texels_are_kept_for_loaders_that_ask_later),
         cmocka_unit_test(one_member_keeps_nothing),
+        cmocka_unit_test(kept_texels_do_not_wait_for_reads_that_stall),
+        cmocka_unit_test(texels_that_are_dropped_before_their_copy_are_read),
         cmocka_unit_test(the_least_recently_used_texels_are_evicted),
         cmocka_unit_test(regions_above_the_limit_are_joined_and_not_kept),
         cmocka_unit_test(regions_outside_of_the_image_evict_nothing),
