@@ -182,7 +182,7 @@ static void draw_spans(struct view_app *app)
         ui_hint("Time that the graphs show. --graph-span");
         ui_same_line(0);
     }
-    ui_text(UI_GRAY, "peaks stay: a point is the largest of its frames");
+    ui_text(UI_GRAY, "a point: largest of its frames");
 }
 
 void panel_graphs(struct view_app *app)

@@ -33,7 +33,7 @@ static void draw_line(struct view_app *app)
     char fitted[256];
     const float scale = ui_scale(), pivot[2] = {0.5f, 1.0f}, pad = 12 * scale;
     const char *hints =
-        "drag look  ·  WASD walk  ·  right click a surface  ·  1–9 views  ·  F1 all keys";
+        "drag look  ·  WASD walk  ·  right click a surface  ·  1-9 views  ·  F1 all keys";
     if (app->stage)
         snprintf(line, sizeof line, "%s of textures  ·  %s in memory  ·  %.0f %% sharp",
                  panel_size(app->facts.all_size, all, sizeof all),
