@@ -3,7 +3,10 @@
 #include "controls.h"
 #include "panel_traced.h"
 
+#include <sluice/feedback_rate.h>
+
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -141,6 +144,34 @@ static void draw_widget(struct view_app *app, const struct control *control, con
     }
 }
 
+/* What a probability means for a region of 8 x 8 pixels. */
+static void draw_feedback_rate(const struct view_app *app)
+{
+    const struct view_settings *s = &app->settings;
+    const SluiceFeedbackRate rate = {.structSize = sizeof rate,
+                                     .selection = SLUICE_FEEDBACK_SELECTION_SHARED_QUADS,
+                                     .regionWidth = 8,
+                                     .regionHeight = 8,
+                                     .textureCount =
+                                         app->facts.texture_count ? app->facts.texture_count : 1,
+                                     .texturesPerFrame = s->textures_per_frame,
+                                     .frameRate = s->frame_cap ? s->frame_cap : 60,
+                                     .timeoutSeconds = s->timeout};
+    SluiceFeedbackDelay delay = {.structSize = sizeof delay};
+    double miss = 1;
+    if (s->feedback == VIEW_FEEDBACK_OFF ||
+        sluicePredictFeedbackDelay(&rate, s->probability, &delay) != SLUICE_SUCCESS ||
+        sluicePredictFeedbackMiss(&rate, s->probability, &miss) != SLUICE_SUCCESS)
+        return;
+    if (miss < 1e-4)
+        ui_text(UI_GRAY, "seen within %.0f frames, missed less than 0.01 %%", delay.percentile99);
+    else
+        ui_text(miss > 0.01 ? UI_ORANGE : UI_GRAY, "seen within %.0f frames, missed %.2g %%",
+                delay.percentile99, 100 * miss);
+    ui_hint("Predicted for 8 x 8 pixels: 99 of 100 are noticed within so many frames; so many that "
+            "stay in view are evicted, because no map shows them within --timeout.");
+}
+
 static void draw_control(struct view_app *app, const struct control *control)
 {
     ui_item_width(SLIDER_WIDTH * ui_scale());
@@ -155,6 +186,8 @@ static void draw_control(struct view_app *app, const struct control *control)
             control->option.initial, control->option.name);
     if (ui_double_clicked() && control->option.kind != OPTION_CHOICE)
         control_reset(control, &app->settings);
+    if (control->offset == offsetof(struct view_settings, probability))
+        draw_feedback_rate(app);
 }
 
 void panel_controls(struct view_app *app)
