@@ -2,12 +2,12 @@
 #include "vulkan/fake_vulkan.h"
 
 #include "support/fault_source.h"
-#include "support/gray_source.h"
 #include "support/test.h"
 
 #include <sluice/vulkan_control.h>
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <string.h>
 
 enum { DEVICES = 3, SIZE = 1024 };
@@ -20,11 +20,41 @@ struct device {
     uint64_t time;
     uint32_t rounds; ///< of `change`
     bool looks;      ///< shaders sample everything
+    uint32_t copies; ///< of tiles and levels
+    uint32_t oldest; ///< version among them
 };
 
+/* Every texel is the version. */
+struct versions {
+    SluiceImageSource base; ///< must be first
+    atomic_uint version;
+};
+
+static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    (void)base;
+    info->width = info->height = SIZE;
+    info->mipLevelCount = 11;
+    info->format = SLUICE_FORMAT_R8G8B8A8_UNORM;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
+                                void *texels, size_t row_pitch)
+{
+    const uint32_t version = ((struct versions *)base)->version;
+    for (uint32_t y = 0; y < region->height; y++)
+        for (uint32_t x = 0; x < region->width; x++)
+            memcpy((char *)texels + y * row_pitch + 4 * x, &version, 4);
+    return SLUICE_SUCCESS;
+}
+
+static const SluiceImageSourceInterface versions_interface = {
+    .structSize = sizeof versions_interface, .pfnGetInfo = get_info, .pfnReadRegion = read_region};
+
 static struct device devices[DEVICES]; /* large */
+static struct versions versions;
 static SluiceReadPool *pool;
-static SluiceImageSource *gray;
 static struct fault_source source; ///< of all textures
 
 static uint8_t want(void *user, uint32_t region)
@@ -59,8 +89,9 @@ static void init(uint32_t device_count, uint64_t cache_size)
     const SluiceReadPoolCreateInfo info = {
         .structSize = sizeof info, .threadCount = 3, .cacheSize = cache_size};
     CHECK_OK(sluiceCreateReadPool(&info, &pool));
-    gray = gray_source(SIZE, SIZE);
-    fault_source_init(&source, gray);
+    versions.base.pInterface = &versions_interface;
+    versions.version = 1;
+    fault_source_init(&source, &versions.base);
     for (uint32_t i = 0; i < device_count; i++)
         device_init(&devices[i]);
 }
@@ -73,7 +104,6 @@ static void finish(uint32_t device_count)
     }
     sluiceDestroyReadPool(pool);
     fault_source_finish(&source);
-    sluiceDestroyImageSource(gray);
 }
 
 static void frame(struct device *d)
@@ -86,6 +116,10 @@ static void frame(struct device *d)
     CHECK_OK(sluiceEndStreamingFrame(d->streamer, fake_vulkan_commands(fake)));
     fake->frame_semaphore = frame.semaphore;
     fake->frame_value = frame.signalValue;
+    for (uint32_t i = 0; i < fake->copy_count; i++)
+        if (fake->copies[i].texel < d->oldest)
+            d->oldest = fake->copies[i].texel;
+    d->copies += fake->copy_count;
 }
 
 static bool is_sharp(const struct device *d)
@@ -163,12 +197,32 @@ static void *change(void *argument)
     return NULL;
 }
 
+/* Everything is there. What is read again after a change has the version of the change, or a later
+ * one of another device. */
+static void *read_again(void *argument)
+{
+    struct device *d = argument;
+    change(d);
+    for (uint32_t round = 0; round < 8; round++) {
+        run_until_sharp(d);
+        d->copies = 0;
+        d->oldest = UINT32_MAX;
+        const uint32_t version = ++versions.version;
+        CHECK_OK(
+            sluiceInvalidateVulkanTexture(d->streamer, d->texture.textureId, NULL, UINT32_MAX));
+        run_until_sharp(d);
+        assert_true(d->copies >= 64 + 16 + 4);
+        assert_true(d->oldest >= version);
+    }
+    return NULL;
+}
+
 static void devices_on_threads_may_change_their_textures(void **state)
 {
     (void)state;
     init(DEVICES, 1 << 20); /* room for 16 tiles */
     source.delay_us = 10;
-    on_threads(DEVICES, change);
+    on_threads(DEVICES, read_again);
     finish(DEVICES);
 }
 
