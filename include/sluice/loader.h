@@ -120,7 +120,8 @@ typedef struct SluiceTileLoaderCreateInfo {
      */
     const SluiceJobSystem *pJobSystem;
     /** Reads on the threads, or in the jobs, of a pool, with its limits: threadCount,
-     *  maxReadsPerSource, maxBytesInFlight and pJobSystem must be 0. Must outlive the loader.
+     *  maxReadsPerSource, maxBytesInFlight and pJobSystem must be 0. Must outlive the loader. A
+     *  read that waits for an equal one of another loader fails with it: one attempt of both.
      *  Default: the loader has threads of its own. */
     SluiceReadPool *readPool;
 } SluiceTileLoaderCreateInfo;
