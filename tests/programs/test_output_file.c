@@ -4,6 +4,7 @@
 
 #include "output_file.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +29,8 @@ static int enter_folder(void **state)
 
 static int remove_folder(void **state)
 {
-    static const char *const names[] = {"a", "b", "c", "below/a", "below/d", "below/e", "link"};
+    static const char *const names[] = {"a",       "b",    "c",     "below/a", "below/d",
+                                        "below/e", "link", "input", "output"};
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         unlink(names[i]);
@@ -88,6 +90,32 @@ static void many_names_are_told_apart(void **state)
     assert_true(output_claim("frame-0499"));
 }
 
+#define ADDED 5000
+
+/* Adds `input` many times, so that the list of inputs moves in memory. */
+static void *add_inputs(void *user_data)
+{
+    bool *added = user_data;
+    for (int i = 0; i < ADDED && *added; i++)
+        *added = output_add_input("input");
+    return NULL;
+}
+
+/* The thread sanitizer sees the reads of a list without a lock. */
+static void inputs_are_added_while_outputs_are_checked(void **state)
+{
+    pthread_t thread;
+    bool added = true, spares = true;
+    (void)state;
+    assert_true(write_text("input") && write_text("output"));
+    assert_int_equal(pthread_create(&thread, NULL, add_inputs, &added), 0);
+    for (int i = 0; i < ADDED; i++)
+        spares = output_spares_inputs("output") && spares;
+    assert_int_equal(pthread_join(thread, NULL), 0);
+    assert_true(added && spares);
+    assert_false(output_spares_inputs("input"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -96,6 +124,7 @@ int main(void)
         cmocka_unit_test(a_claimed_name_is_not_written_by_the_program),
         cmocka_unit_test(several_outputs_may_go_to_one_device),
         cmocka_unit_test(many_names_are_told_apart),
+        cmocka_unit_test(inputs_are_added_while_outputs_are_checked),
     };
     return (tap_filter_stdout(),
             cmocka_run_group_tests_name(__FILE__, tests, enter_folder, remove_folder));

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,6 +23,7 @@ struct output_file {
 
 /* Of the program, which has one set of inputs. */
 static const char *speaker = "";
+static pthread_mutex_t input_lock = PTHREAD_MUTEX_INITIALIZER; ///< of the inputs
 static struct input {
     dev_t device;
     ino_t inode;
@@ -33,23 +35,33 @@ void output_set_speaker(const char *text)
     speaker = text;
 }
 
+/* Room for one more; the mutex is held. */
+static bool reserve_input(void)
+{
+    if (input_count < input_capacity)
+        return true;
+    size_t capacity = input_capacity ? 2 * input_capacity : 16;
+    struct input *more = realloc(inputs, capacity * sizeof *more);
+    if (!more)
+        return false;
+    inputs = more;
+    input_capacity = capacity;
+    return true;
+}
+
 bool output_add_input(const char *path)
 {
     struct stat status;
     if (stat(path, &status) != 0 || !S_ISREG(status.st_mode))
         return true;
-    if (input_count == input_capacity) {
-        size_t capacity = input_capacity ? 2 * input_capacity : 16;
-        struct input *more = realloc(inputs, capacity * sizeof *more);
-        if (!more) {
-            text_say("%sout of memory", speaker);
-            return false;
-        }
-        inputs = more;
-        input_capacity = capacity;
-    }
-    inputs[input_count++] = (struct input){status.st_dev, status.st_ino};
-    return true;
+    pthread_mutex_lock(&input_lock);
+    bool has_room = reserve_input();
+    if (has_room)
+        inputs[input_count++] = (struct input){status.st_dev, status.st_ino};
+    pthread_mutex_unlock(&input_lock);
+    if (!has_room)
+        text_say("%sout of memory", speaker);
+    return has_room;
 }
 
 static bool is_input(const char *path)
@@ -57,10 +69,12 @@ static bool is_input(const char *path)
     struct stat status;
     if (stat(path, &status) != 0 || !S_ISREG(status.st_mode))
         return false;
-    for (size_t i = 0; i < input_count; i++)
-        if (inputs[i].device == status.st_dev && inputs[i].inode == status.st_ino)
-            return true;
-    return false;
+    bool found = false;
+    pthread_mutex_lock(&input_lock);
+    for (size_t i = 0; i < input_count && !found; i++)
+        found = inputs[i].device == status.st_dev && inputs[i].inode == status.st_ino;
+    pthread_mutex_unlock(&input_lock);
+    return found;
 }
 
 bool output_spares_inputs(const char *path)

@@ -2,7 +2,7 @@
  * Files that programs write. A file appears under its name when it is complete; after a failure
  * what was there stays. See docs/decisions/0034-one-way-to-write-a-file.md for what is refused.
  *
- * A program names its inputs once, with output_add_input. From then on no output replaces an input.
+ * A program names each input with output_add_input. From then on no output replaces the input.
  * A name that was asked for with output_can_write or output_claim belongs to one output of the run.
  */
 #ifndef TOOLS_COMMON_OUTPUT_FILE_H
@@ -19,7 +19,7 @@ void output_set_speaker(const char *speaker);
 /**
  * Remembers a file that is read, by device and inode, so that no name of it is written. Files that
  * do not exist and what is no regular file are passed over. False when out of memory, which stderr
- * says. Call before threads write.
+ * says. Outputs that have begun are not checked again. Any thread.
  */
 bool output_add_input(const char *path);
 /** False, which stderr says, if writing `path` would replace an input. Any thread. */
