@@ -196,6 +196,14 @@ turn() {
 read -r tiles late < <(turn 0) && read -r ahead early < <(turn 0.25) && [ "$tiles" -gt 10 ] && [ "$ahead" -ge "$tiles" ] &&
     [ "$early" -lt $((late - 5)) ]
 fact feedback_from_where_the_camera_will_be_loads_its_tiles_earlier
+# A file of BC1 with 1024 x 1024 texels and one level has no mip tail; freed memory is overwritten.
+word() { printf "\\x$(printf %02x $(($1 & 255)))\\x$(printf %02x $(($1 >> 8 & 255)))\\x$(printf %02x $(($1 >> 16)))\\0"; }
+{ printf 'DDS ' && for value in 124 528391 1024 1024 524288 0 1 0 0 0 0 0 0 0 0 0 0 0 32 4; do word $value; done &&
+    printf DXT1 && for value in 0 0 0 0 0 4096 0 0 0 0; do word $value; done && head -c 524288 /dev/zero; } >one-level.dds
+printf '3 key t\n8 screenshot table.png\n10 quit\n' >thumbs
+MALLOC_PERTURB_=165 run 0 --headless --deterministic --fresh --size 320x240 --cache . --script thumbs one-level.dds &&
+    grep -q 'one-level.dds: cannot be shown: SLUICE_ERROR_INVALID_ARGUMENT' err
+fact the_table_has_a_picture_of_a_texture_that_cannot_be_shown
 # A copy of the viewer finds what is beside it: the tool with one value instead of its plan, and what does not end.
 mkdir bin && cp "$tool" bin && printf '1 key Ctrl+T\n3 quit\n' >sweeps
 export LD_LIBRARY_PATH="${tool%/*/*/*}/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"

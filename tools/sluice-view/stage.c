@@ -169,6 +169,14 @@ static bool can_be_replaced(SluiceResult result)
            result == SLUICE_ERROR_CORRUPT_DATA || result == SLUICE_ERROR_IO;
 }
 
+/* The wrapper of the image that was replaced holds a destroyed source. */
+static SluiceResult wrap_replaced(struct stage *s, uint32_t i)
+{
+    sluiceDestroyImageSource(s->faulty[i]);
+    s->faulty[i] = NULL;
+    return fault_source_create(&s->source_fails, s->scene.images[i].source, &s->faulty[i]);
+}
+
 static bool add_texture(struct stage *s, uint32_t i)
 {
     const struct scene_image *image = &s->scene.images[i];
@@ -185,8 +193,10 @@ static bool add_texture(struct stage *s, uint32_t i)
         .maxAnisotropy = (float)s->settings.anisotropy};
     SluiceResult result = sluiceAddVulkanTexture(s->streamer, &info, &texture);
     if (can_be_replaced(result) && !s->slow && scene_images_replace(&s->scene, i, result)) {
-        info.source = image->source;
-        result = sluiceAddVulkanTexture(s->streamer, &info, &texture);
+        result = wrap_replaced(s, i);
+        info.source = s->faulty[i];
+        if (result == SLUICE_SUCCESS)
+            result = sluiceAddVulkanTexture(s->streamer, &info, &texture);
     }
     return check(result, image->name) && describe_texture(s, i, &texture);
 }
