@@ -76,13 +76,14 @@ typedef struct SluiceImageOpenerCreateInfo {
      */
     SluicePathOpener pathOpener;
     /**
-     * Returns SLUICE_SUCCESS if a path that pathOpener opened still has the contents it had then;
-     * any other result: it may have others. Gets SluicePathOpener::pUserData. Set
-     * sluiceCheckHttpPath (http.h) for URLs.
+     * Returns SLUICE_SUCCESS if a path that pathOpener opened still has the contents it had then,
+     * SLUICE_ERROR_UNSUPPORTED if nobody can tell, any other result if it has others. Gets
+     * SluicePathOpener::pUserData. Set sluiceCheckHttpPath (http.h) for URLs.
      *
      * Catalogues of pathOpener stay in memory and are checked with it: at most once a second, and
      * before a name or store is reported missing or wrong. A catalogue that was changed is read
-     * again. Default: NULL, a catalogue is read again when a name or store is missing or wrong.
+     * again. If nobody can tell, a catalogue is read again when a name or store is missing or
+     * wrong. Default: NULL, nobody can tell.
      */
     SluiceResult (*pfnCheckPath)(void *pUserData, void *pOpened);
 } SluiceImageOpenerCreateInfo;

@@ -253,5 +253,9 @@ SluiceResult sluiceCheckHttpPath(void *pClient, void *pOpened)
     const struct slc_http_part part = {0, 1, &byte};
     if (!pClient || !file)
         return SLUICE_ERROR_NULL_POINTER;
-    return atomic_load(&file->is_stale) ? SLUICE_ERROR_IO : read_far(file, &part, true);
+    SluiceResult result =
+        atomic_load(&file->is_stale) ? SLUICE_ERROR_IO : read_far(file, &part, true);
+    if (result == SLUICE_SUCCESS && !file->version[0])
+        return SLUICE_ERROR_UNSUPPORTED; /* a file of this size may have other contents */
+    return result;
 }

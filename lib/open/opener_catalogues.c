@@ -38,6 +38,20 @@ struct slc_opened_image *slc_opener_keep(struct slc_opened_image *image)
     return dropped;
 }
 
+/* With the mutex held. The catalogue that was used last stays longest. */
+static void keep_longest(const struct slc_opened_image *image)
+{
+    struct slc_opened_image **kept = image->opener->kept, *moved;
+    uint32_t i = 0;
+    while (i < SLC_OPENER_CATALOGUES && kept[i] != image)
+        i++;
+    if (i == SLC_OPENER_CATALOGUES)
+        return;
+    moved = kept[i];
+    memmove(kept + 1, kept, i * sizeof(struct slc_opened_image *));
+    kept[0] = moved;
+}
+
 /* With the mutex held. Takes one out that is not current any more. */
 static bool let_go(struct slc_opened_image *image)
 {
@@ -64,23 +78,29 @@ static bool begin_check(struct slc_opened_image *image, uint64_t began, bool is_
     return true;
 }
 
-static bool is_unchanged(const struct slc_opened_image *image)
+/* A check that cannot tell is as good as none: in doubt the catalogue is read again. */
+static bool is_unchanged(const struct slc_opened_image *image, bool is_in_doubt)
 {
     const SluiceImageOpener *opener = image->opener;
-    return opener->check_path &&
-           opener->check_path(opener->path_opener.pUserData, image->opened) == SLUICE_SUCCESS;
+    SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
+    if (opener->check_path)
+        result = opener->check_path(opener->path_opener.pUserData, image->opened);
+    return result == SLUICE_SUCCESS || (result == SLUICE_ERROR_UNSUPPORTED && !is_in_doubt);
 }
 
 bool slc_opener_is_current(struct slc_opened_image *image, uint64_t began, bool *is_sure)
 {
     SluiceImageOpener *opener = image->opener;
-    if (!image->shown) /* files are known by their identity */
-        return true;
     slc_mutex_lock(&opener->mutex);
+    keep_longest(image);
+    if (!image->shown) { /* files are known by their identity */
+        slc_mutex_unlock(&opener->mutex);
+        return true;
+    }
     bool is_due = (opener->check_path || *is_sure) && begin_check(image, began, *is_sure);
     const uint64_t now = slc_monotonic_time();
     slc_mutex_unlock(&opener->mutex);
-    bool is_current = !is_due || is_unchanged(image), was_kept = false;
+    bool is_current = !is_due || is_unchanged(image, *is_sure), was_kept = false;
     slc_mutex_lock(&opener->mutex);
     if (is_due)
         image->is_checking = false;

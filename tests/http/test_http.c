@@ -287,6 +287,21 @@ static void a_check_says_whether_the_file_was_changed(void **state)
     }
 }
 
+/* Another version may have the size of the opened one. */
+static void a_check_cannot_tell_where_the_server_tells_no_version(void **state)
+{
+    (void)state;
+    SluiceHttpClientCreateInfo info = quick();
+    SluiceHttpClient *client = create(&info);
+    SluiceInput input = {.structSize = sizeof input};
+    void *opened;
+    CHECK_OK(sluiceOpenHttpPath(client, path_url("untagged/x"), &input, &opened));
+    CHECK_RESULT(sluiceCheckHttpPath(client, opened), SLUICE_ERROR_UNSUPPORTED);
+    assert_int_equal(statistics_of(client).requestTotal, 2);
+    sluiceCloseHttpPath(client, opened);
+    sluiceDestroyHttpClient(client);
+}
+
 static void headers_of_the_application_stay_with_its_host(void **state)
 {
     const char *lines[] = {"X-Key: secret"};
@@ -833,6 +848,7 @@ int main(void)
         cmocka_unit_test(a_small_file_may_come_whole_or_shorter_than_asked),
         cmocka_unit_test(a_changed_file_is_never_mixed_with_its_old_version),
         cmocka_unit_test(a_check_says_whether_the_file_was_changed),
+        cmocka_unit_test(a_check_cannot_tell_where_the_server_tells_no_version),
         cmocka_unit_test(headers_of_the_application_stay_with_its_host),
         cmocka_unit_test(a_redirect_may_have_a_body_of_unknown_length),
         cmocka_unit_test(names_in_messages_have_no_password_and_no_query),

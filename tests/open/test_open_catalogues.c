@@ -27,7 +27,7 @@ struct server {
     struct bake_folder folder;
     atomic_uint opened, closed, checked; ///< of catalogues
     atomic_ullong bytes;                 ///< of catalogues that were read
-    bool is_checking;
+    bool is_checking, tells_no_version;
     SluiceImageOpener *opener;
     atomic_int errors;
     char last[1024];
@@ -105,6 +105,8 @@ static SluiceResult check(void *user, void *opened)
     bool is_same = bytes && size == served->size && memcmp(bytes, served->bytes, size) == 0;
     atomic_fetch_add(&server->checked, 1);
     free(bytes);
+    if (server->tells_no_version)
+        return SLUICE_ERROR_UNSUPPORTED;
     return is_same ? SLUICE_SUCCESS : SLUICE_ERROR_IO;
 }
 
@@ -297,9 +299,10 @@ static void a_file_of_names_is_read_once_until_it_is_changed(void **state)
 static void changes_on_a_server_are_noticed_before_a_name_is_missing(void **state)
 {
     (void)state;
-    for (int is_checking = 0; is_checking < 2; is_checking++) {
+    for (int way = 0; way < 3; way++) {
         struct server server;
-        setup(&server, is_checking);
+        setup(&server, way > 0);
+        server.tells_no_version = way == 2;
         write_catalogue(&server, "list.tsv", "a.store", 0, 2);
         assert_int_equal(width_of(server.opener, "net://list.tsv", "p1.png", SLUICE_SUCCESS), 64);
         write_catalogue(&server, "list.tsv", "a.store", 2, 2);
@@ -314,7 +317,7 @@ static void changes_on_a_server_are_noticed_before_a_name_is_missing(void **stat
         assert_int_equal(atomic_load(&server.errors), 1);
         assert_non_null(strstr(server.last, "no picture and no store 'p9.png'"));
         /* It was unchanged: read again only where that cannot be asked. */
-        assert_int_equal(atomic_load(&server.opened), is_checking ? 3 : 4);
+        assert_int_equal(atomic_load(&server.opened), way == 1 ? 3 : 4);
         teardown(&server);
     }
 }
@@ -355,6 +358,14 @@ static void eight_catalogues_stay_in_memory(void **state)
     assert_int_equal(atomic_load(&server.opened), 12);
     assert_int_equal(width_of(server.opener, "net://3.tsv", "p0.png", SLUICE_SUCCESS), 64);
     assert_int_equal(atomic_load(&server.opened), 13);
+    for (int i = 20; i < 32; i++) { /* one that is used stays */
+        snprintf(name, sizeof name, "%d.tsv", i);
+        write_catalogue(&server, name, "a.store", 0, 1);
+        snprintf(path, sizeof path, "net://%s", name);
+        assert_int_equal(width_of(server.opener, path, "p0.png", SLUICE_SUCCESS), 64);
+        assert_int_equal(width_of(server.opener, "net://3.tsv", "p0.png", SLUICE_SUCCESS), 64);
+    }
+    assert_int_equal(atomic_load(&server.opened), 25);
     teardown(&server);
 }
 
