@@ -175,7 +175,7 @@ static bool open_all(struct renderer *r)
     if (!open_scene(r) || !create_devices(r) || !create_pictures(r) ||
         !read_sharing_create(o->read_sharing, r->device_count, o->threads, &r->shared.pool))
         return false;
-    r->shared.meshes = mesh_cache_create(&r->shared.scene, r->device_count);
+    r->shared.meshes = mesh_cache_create(&r->shared.scene, r->device_count, MESH_CACHE_BYTES);
     const bool done = r->shared.meshes && crew_run(r->device_count, open_device, r);
     for (uint32_t i = 0; i < r->device_count; i++)
         r->unsupported = r->unsupported || r->devices[i].unsupported;

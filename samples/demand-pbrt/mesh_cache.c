@@ -6,27 +6,29 @@
 
 #include "../../tools/common/clock.h"
 
-#define MOST_KEPT ((uint64_t)1 << 30) ///< bytes of meshes that some device has not had
-
 /** A mesh in memory, or being read. */
 struct kept {
     struct mesh_read read;
-    bool is_there;       ///< else a thread reads it
-    uint32_t user_count; ///< calls that have not given it back
-    uint64_t had;        ///< devices that have given it back: a bit each
+    bool is_there;              ///< else a thread reads it
+    uint32_t user_count;        ///< calls that have not given it back
+    uint64_t had;               ///< devices that have given it back: a bit each
+    struct kept *older, *newer; ///< in the list of those without users
 };
 
 struct mesh_cache {
     const struct scene *scene;
     uint64_t all;          ///< devices: a bit each
+    uint64_t most_kept;    ///< bytes
     pthread_mutex_t mutex; ///< of all below
     pthread_cond_t done;
-    struct kept **kept; ///< owned, and each of them; by shape
-    uint64_t size;      ///< bytes of those that are there
+    struct kept **kept;           ///< owned, and each of them; by shape
+    struct kept *oldest, *newest; ///< without users, by the time when the last one gave it back
+    uint64_t size;                ///< bytes of those that are there
     uint64_t read_count, shared_count;
 };
 
-struct mesh_cache *mesh_cache_create(const struct scene *scene, uint32_t device_count)
+struct mesh_cache *mesh_cache_create(const struct scene *scene, uint32_t device_count,
+                                     uint64_t most_kept)
 {
     struct mesh_cache *c = calloc(1, sizeof *c);
     if (c)
@@ -37,6 +39,7 @@ struct mesh_cache *mesh_cache_create(const struct scene *scene, uint32_t device_
         return NULL;
     }
     c->scene = scene;
+    c->most_kept = most_kept;
     c->all = device_count < 64 ? ((uint64_t)1 << device_count) - 1 : UINT64_MAX;
     pthread_mutex_init(&c->mutex, NULL);
     pthread_cond_init(&c->done, NULL);
@@ -56,6 +59,31 @@ static void drop(struct mesh_cache *c, uint32_t shape)
     (void)sluiceFreePbrtMesh(c->scene->pbrt, &kept->read.mesh);
     free(kept);
     c->kept[shape] = NULL;
+}
+
+static void add_unused(struct mesh_cache *c, struct kept *kept)
+{
+    kept->older = c->newest;
+    kept->newer = NULL;
+    *(c->newest ? &c->newest->newer : &c->oldest) = kept;
+    c->newest = kept;
+}
+
+static void remove_unused(struct mesh_cache *c, struct kept *kept)
+{
+    *(kept->older ? &kept->older->newer : &c->oldest) = kept->newer;
+    *(kept->newer ? &kept->newer->older : &c->newest) = kept->older;
+}
+
+/* Some devices never ask for a mesh that others have had, so it stays until newer ones need room.
+ */
+static void drop_oldest(struct mesh_cache *c)
+{
+    while (c->size > c->most_kept && c->oldest) {
+        struct kept *kept = c->oldest;
+        remove_unused(c, kept);
+        drop(c, kept->read.shape);
+    }
 }
 
 void mesh_cache_destroy(struct mesh_cache *c)
@@ -115,7 +143,8 @@ void mesh_cache_read(struct mesh_cache *c, uint32_t shape, struct mesh_read *rea
     } else if (!kept) {
         read_and_keep(c, shape, read);
     } else {
-        kept->user_count++;
+        if (kept->user_count++ == 0)
+            remove_unused(c, kept);
         while (!kept->is_there)
             pthread_cond_wait(&c->done, &c->mutex);
         *read = kept->read;
@@ -131,8 +160,11 @@ void mesh_cache_give(struct mesh_cache *c, uint32_t device, struct mesh_read *re
     struct kept *kept = c->kept[read->shape];
     if (read->is_kept) {
         kept->had |= (uint64_t)1 << device;
-        if (--kept->user_count == 0 && (kept->had == c->all || c->size > MOST_KEPT))
+        if (--kept->user_count == 0 && kept->had == c->all)
             drop(c, read->shape);
+        else if (kept->user_count == 0)
+            add_unused(c, kept);
+        drop_oldest(c);
     } else {
         (void)sluiceFreePbrtMesh(c->scene->pbrt, &read->mesh);
     }

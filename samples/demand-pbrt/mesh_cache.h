@@ -16,8 +16,13 @@ struct mesh_read {
 /** Opaque. With one device nothing is kept. */
 struct mesh_cache;
 
-/** `device_count`: at most 64. The scene outlives it. Says on stderr why it failed; NULL then. */
-struct mesh_cache *mesh_cache_create(const struct scene *scene, uint32_t device_count);
+/** Bytes of meshes in memory that programs allow. */
+#define MESH_CACHE_BYTES ((uint64_t)1 << 30)
+
+/** `device_count`: at most 64. `most_kept`: bytes of meshes in memory, unless more are in use. The
+ *  scene outlives the cache. Says on stderr why it failed; NULL then. */
+struct mesh_cache *mesh_cache_create(const struct scene *scene, uint32_t device_count,
+                                     uint64_t most_kept);
 /** NULL is fine. All meshes were given back. */
 void mesh_cache_destroy(struct mesh_cache *cache);
 
@@ -26,7 +31,8 @@ void mesh_cache_destroy(struct mesh_cache *cache);
 void mesh_cache_read(struct mesh_cache *cache, uint32_t shape, struct mesh_read *read);
 /**
  * Gives a mesh back, once for each call of mesh_cache_read, also after an error. It is freed when
- * all devices have given it back, or at once while 1 GiB is kept. Any thread.
+ * all devices have given it back. Beyond `most_kept` bytes the mesh that was given back first is
+ * freed first. Any thread.
  */
 void mesh_cache_give(struct mesh_cache *cache, uint32_t device, struct mesh_read *read);
 

@@ -76,7 +76,7 @@ static bool create_scene(struct traced *t)
 {
     struct scene *scene = &t->pbrt->scene;
     const struct pbrt_options *o = &t->options;
-    t->meshes = mesh_cache_create(scene, 1);
+    t->meshes = mesh_cache_create(scene, 1, MESH_CACHE_BYTES);
     if (!t->meshes || !picture_files_create(t->pbrt->cache, o->threads, &t->files))
         return false;
     textures_create(t->loader, &t->files, &t->textures);
