@@ -197,9 +197,9 @@ read -r tiles late < <(turn 0) && read -r ahead early < <(turn 0.25) && [ "$tile
     [ "$early" -lt $((late - 5)) ]
 fact feedback_from_where_the_camera_will_be_loads_its_tiles_earlier
 # A file of BC1 with 1024 x 1024 texels and one level has no mip tail; freed memory is overwritten.
-word() { printf "\\x$(printf %02x $(($1 & 255)))\\x$(printf %02x $(($1 >> 8 & 255)))\\x$(printf %02x $(($1 >> 16)))\\0"; }
-{ printf 'DDS ' && for value in 124 528391 1024 1024 524288 0 1 0 0 0 0 0 0 0 0 0 0 0 32 4; do word $value; done &&
-    printf DXT1 && for value in 0 0 0 0 0 4096 0 0 0 0; do word $value; done && head -c 524288 /dev/zero; } >one-level.dds
+word() { printf '%b' "$(printf '\\x%02x\\x%02x\\x%02x\\x00' $(($1 & 255)) $(($1 >> 8 & 255)) $(($1 >> 16)))"; }
+{ printf 'DDS ' && for value in 124 528391 1024 1024 524288 0 1 0 0 0 0 0 0 0 0 0 0 0 32 4; do word "$value"; done &&
+    printf DXT1 && for value in 0 0 0 0 0 4096 0 0 0 0; do word "$value"; done && head -c 524288 /dev/zero; } >one-level.dds
 printf '3 key t\n8 screenshot table.png\n10 quit\n' >thumbs
 MALLOC_PERTURB_=165 run 0 --headless --deterministic --fresh --size 320x240 --cache . --script thumbs one-level.dds &&
     grep -q 'one-level.dds: cannot be shown: SLUICE_ERROR_INVALID_ARGUMENT' err
@@ -215,6 +215,20 @@ fact a_sweep_of_the_scene_and_its_camera_starts_from_the_settings_of_now
 printf '#!/bin/sh\necho $$ >pid\nexec sleep 300\n' >bin/sluice-tradeoff && printf '1 key Ctrl+T\n90 quit\n' >sweeps
 sweeps && { [ ! -s pid ] || ! kill -0 "$(cat pid)" 2>err; }
 fact a_sweep_ends_with_the_viewer
+# xdg-open may end before the browser that it began, and may be the browser itself.
+alive() { grep -q '^State:[[:space:]]*[^Z[:space:]]' "/proc/$1/status"; }
+printf '#!/bin/sh\nexit 0\n' >bin/sluice-tradeoff && printf '1 key Ctrl+T\n4 click 470 305\n30 quit\n' >pages
+opens() {
+    rm -f browser
+    printf '#!/bin/sh\nsleep 30 &\necho $! >begun && mv begun browser\n%s\n' "$1" >bin/xdg-open && chmod +x bin/xdg-open &&
+        PATH="$PWD/bin:$PATH" tool=bin/sluice-view run 0 --room --headless --deterministic --fresh --still --size 800x600 \
+            --render-scale 0.2 --cache . --script pages || return
+    for _ in {1..50}; do [ ! -s browser ] || break; sleep 0.1; done
+    sleep 0.2
+    alive "$(cat browser)" && kill "$(cat browser)"
+}
+opens 'exit 0' && opens wait
+fact the_browser_of_the_page_stays_when_xdg_open_and_the_viewer_end
 printf '12 screenshot old.png\n13 key Ctrl+F5\n15 screenshot new.png\n16 quit\n' >reloads
 reloads() {
     tool=bin/sluice-view run 0 --headless --deterministic --fresh --still --size 160x160 --panels off --cache . \

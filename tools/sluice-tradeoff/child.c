@@ -46,12 +46,8 @@ bool child_is_interrupted(void)
 }
 
 /* In the new process. */
-static void become(const struct child_info *info, const int files[3])
+static void execute(const struct child_info *info, const int files[3])
 {
-    setpgid(0, 0);
-#ifdef __linux__
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
     for (int i = 0; i < 3; i++)
         dup2(files[i], i);
     if (info->environment)
@@ -61,24 +57,66 @@ static void become(const struct child_info *info, const int files[3])
     _exit(NOT_STARTED);
 }
 
-bool child_begin(const struct child_info *info, struct child *child)
+static void become(const struct child_info *info, const int files[3])
+{
+    setpgid(0, 0);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+    execute(info, files);
+}
+
+/* The process between the two ends at once, so that the program is no child of this process. */
+static void detach(const struct child_info *info, const int files[3])
+{
+    setsid();
+    const pid_t pid = fork();
+    if (pid == 0)
+        execute(info, files);
+    _exit(pid > 0 ? 0 : NOT_STARTED);
+}
+
+/* Returns -1 with errno if the files cannot be opened or there is no process. */
+static pid_t begin(const struct child_info *info,
+                   void (*run)(const struct child_info *info, const int files[3]))
 {
     const int write_flags = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC;
     int files[3] = {open("/dev/null", O_RDONLY | O_CLOEXEC), open(info->out, write_flags, 0666),
                     open(info->error, write_flags, 0666)};
-    *child = (struct child){.info = *info, .started = clock_seconds()};
-    if (files[0] >= 0 && files[1] >= 0 && files[2] >= 0)
-        child->pid = fork();
-    if (child->pid == 0 && files[0] >= 0 && files[1] >= 0 && files[2] >= 0)
-        become(info, files);
+    const bool opened = files[0] >= 0 && files[1] >= 0 && files[2] >= 0;
+    const pid_t pid = opened ? fork() : -1;
+    if (pid == 0)
+        run(info, files);
     int error = errno;
-    if (child->pid > 0)
-        setpgid(child->pid, child->pid); /* whoever is first */
     for (int i = 0; i < 3; i++)
         if (files[i] >= 0)
             close(files[i]);
     errno = error;
-    return child->pid > 0;
+    return pid;
+}
+
+bool child_begin(const struct child_info *info, struct child *child)
+{
+    *child = (struct child){.info = *info, .started = clock_seconds()};
+    const pid_t pid = begin(info, become);
+    if (pid <= 0)
+        return false;
+    setpgid(pid, pid); /* whoever is first */
+    child->pid = pid;
+    return true;
+}
+
+bool child_begin_detached(const struct child_info *info)
+{
+    int status = 0;
+    const pid_t pid = begin(info, detach);
+    if (pid <= 0)
+        return false;
+    while (waitpid(pid, &status, 0) < 0)
+        if (errno != EINTR)
+            return false;
+    errno = EAGAIN; /* the second fork failed */
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 static bool is_too_large(const char *path)

@@ -27,6 +27,9 @@ enum child_state { CHILD_RUNS, CHILD_DONE, CHILD_FAILED };
  * cannot be forked or the files cannot be written; a program that is not there is a failed child.
  */
 bool child_begin(const struct child_info *info, struct child *child);
+/** Starts it in a session of its own, where it outlives this process. Nothing watches or ends it:
+ *  `limit` is ignored. False with errno if it cannot be forked or the files cannot be written. */
+bool child_begin_detached(const struct child_info *info);
 /** Looks after it: time limit and the size of its output. */
 enum child_state child_poll(struct child *child, int *status);
 /** Ends it and what it started, and waits for that. */

@@ -42,8 +42,6 @@ static void stop(struct trade *t)
 void trade_finish(struct trade *t)
 {
     stop(t);
-    child_kill(&t->page);
-    text_list_finish(&t->page_arguments);
     *t = (struct trade){0};
 }
 
@@ -238,8 +236,6 @@ static void take_end(struct trade *t, enum child_state ended, int status)
 void trade_watch(struct trade *t)
 {
     int status = 0;
-    if (t->page.pid > 0)
-        child_poll(&t->page, &status);
     if (t->child.pid <= 0 || clock_seconds() - t->looked < LOOK_SECONDS)
         return;
     t->looked = clock_seconds();
@@ -257,16 +253,16 @@ void trade_wait(struct trade *t)
         take_end(t, child_wait(&t->child, &status), status);
 }
 
-void trade_open_page(struct trade *t)
+/* A browser may be a child of xdg-open, or xdg-open itself. */
+void trade_open_page(void)
 {
-    if (t->page.pid > 0)
-        return;
-    text_list_finish(&t->page_arguments);
-    add(&t->page_arguments, "/usr/bin/env", "xdg-open");
-    text_list_add(&t->page_arguments, PAGE);
-    const struct child_info info = {.arguments = t->page_arguments.items,
+    struct text_list arguments = {0};
+    add(&arguments, "/usr/bin/env", "xdg-open");
+    text_list_add(&arguments, PAGE);
+    const struct child_info info = {.arguments = arguments.items,
                                     .out = TRADE_FOLDER "/open.txt",
                                     .error = TRADE_FOLDER "/open-messages.txt"};
-    if (!child_begin(&info, &t->page))
+    if (!child_begin_detached(&info))
         text_say("sluice-view: xdg-open: %s", strerror(errno));
+    text_list_finish(&arguments);
 }

@@ -26,8 +26,8 @@ struct trade_request {
 
 struct trade {
     enum trade_state state;
-    struct child child, page; ///< `page`: what shows page.html
-    struct text_list arguments, page_arguments;
+    struct child child;
+    struct text_list arguments;
     char *out, *error;    ///< owned
     unsigned done, total; ///< runs
     double looked;        ///< when they were counted, clock_seconds()
@@ -45,8 +45,8 @@ void trade_cancel(struct trade *trade);
 void trade_watch(struct trade *trade);
 /** Until it has ended. */
 void trade_wait(struct trade *trade);
-/** Shows the page in the program that the desktop has for it. */
-void trade_open_page(struct trade *trade);
+/** Shows the page in the program that the desktop has for it, which stays when this one ends. */
+void trade_open_page(void);
 /** Of the results. */
 const char *trade_page(void);
 

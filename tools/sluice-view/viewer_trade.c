@@ -15,7 +15,7 @@ void viewer_follow_trade(struct viewer *v)
     else if (app->trade_toggle && v->stage)
         trade_begin(&v->trade, &request);
     if (app->trade_page)
-        trade_open_page(&v->trade);
+        trade_open_page();
     app->trade_toggle = app->trade_page = false;
     trade_watch(&v->trade);
 }
