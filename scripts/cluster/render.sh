@@ -11,7 +11,8 @@
 # COMMAND renders one frame: %f in it is the frame's number, %o the picture to write (PNG). Or it renders the frames
 # from %a to %b and writes them into the folder %d as frame-NUMBER.png, each complete when it has its name. Pictures
 # are FOLDER/frame-NNNNN.png, and those that are there are not rendered again. FOLDER/contact-sheet.png shows all.
-# The exit status is 0 if all frames and the sheet were written.
+# Other files of %d go to FOLDER; a name without frames of the range, as A-B, gets them in front.
+# The exit status is 0 if all frames and the sheet were written, and no range failed that has all its pictures.
 #
 # Environment: SLUICE_CONTACT_SHEET   the program that makes the sheet (default: contact-sheet of PATH)
 
@@ -97,3 +98,14 @@ for ((frame = first; frame <= last; frame++)); do
 done
 "$sheet" -o "$folder/contact-sheet.png" "${pictures[@]}"
 echo "$folder/contact-sheet.png: ${#pictures[@]} frames"
+
+# Ranges whose command failed although it wrote all pictures.
+status=0
+for mark in "$folder"/.failed-*; do
+    [[ $mark =~ \.failed-([0-9]+)-([0-9]+)$ && -e $mark ]] || continue
+    if [ "${BASH_REMATCH[1]}" -gt "$last" ] || [ "${BASH_REMATCH[2]}" -lt "$first" ]; then continue; fi
+    echo "render.sh: frames ${BASH_REMATCH[1]}-${BASH_REMATCH[2]}: all pictures are there, but $(cat "$mark")" >&2
+    echo "render.sh: remove $mark to accept them, or the pictures to render them again" >&2
+    status=1
+done
+exit $status

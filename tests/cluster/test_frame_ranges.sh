@@ -41,6 +41,8 @@ done
 fact pictures_of_two_ranges_are_those_of_one_run
 [ -s frames/contact-sheet.png ] && [ -z "$(find frames -name '.frame*')" ]
 fact a_contact_sheet_shows_them_and_nothing_is_left
+[ -s frames/frames-0-9.csv ] && [ -s frames/report-0-9.html ] && [ -s frames/frames-14-19.csv ]
+fact tables_and_reports_of_the_ranges_are_kept
 
 columns() { cut -d, -f1,2,7- "$1" | tail -n +2; } # without those of time
 "${walk[@]}" --range 0-9 --output parts >out 2>err && "${walk[@]}" --range 10-19 --output parts >>out 2>>err &&

@@ -68,6 +68,17 @@ mkdir bin && printf '#!/bin/sh\nwhile [ "${1#--}" != "$1" ]; do echo "$1" >>sbat
     PATH=$PWD/bin:$PATH run 0 10-12 3 "by slurm & co" --sbatch --mem=1G -- sh -c 'cp frames/frame-00001.png "$1"' 'a word' %o &&
     [ "$(tr '\n' ' ' <sbatch.log)" = "--wait --array=1,2,3 --mem=1G " ] && cmp "by slurm & co/frame-00012.png" frames/frame-00001.png
 fact tasks_of_slurm_get_the_same_command
+# This renderer writes the pictures of a range and two other files. It fails in frame 2 of the first run.
+printf '#!/bin/sh\nfor i in $(seq "$1" "$2"); do cp "painted-$i" "$3/frame-$i.png"; done\necho "$1" >"$3/frames-$1-$2.csv"\n' >ranges
+printf 'echo "$2" >"$3/log"\n[ "$1" != 2 ] || [ -e ended ] || { touch ended; exit 7; }\n' >>ranges
+ranges() { run "$1" 0-3 2 ranged --local 2 -- sh ranges %a %b %d; }
+ranges 1 && [ -e ranged/contact-sheet.png ] && [ -z "$(find ranged -name '.frames-*')" ] &&
+    grep -q 'render.sh: frames 2-3: all pictures are there, but the command failed with exit status 7' err
+fact a_range_that_fails_after_its_last_picture_is_reported
+[ "$(cat ranged/frames-0-1.csv ranged/frames-2-3.csv ranged/0-1-log ranged/2-3-log | tr '\n' ' ')" = "0 2 1 3 " ]
+fact other_files_of_a_range_are_kept
+ranges 1 && rm ranged/frame-00002.png ranged/frame-00003.png && ranges 0 && [ -z "$(find ranged -name '.failed*')" ]
+fact a_range_that_is_rendered_again_has_not_failed
 run 2 5-3 2 frames --local 1 -- x %o && run 2 0-3 2 frames --local 1 -- x && run 2 0-3 frames --local 1 -- x %o
 fact wrong_words_are_refused
 end_facts
