@@ -47,7 +47,7 @@ run_shards() {
     if [ "$local_jobs" -gt 0 ]; then
         case $list in *-*) list=$(seq -s , "${list%-*}" "${list#*-}") ;; esac
         # The merge names what failed.
-        tr , '\n' <<<"$list" | xargs -P "$local_jobs" -I I "$bake" --shard "I/$count" "$plan" || true
+        tr , '\n' <<<"$list" | xargs -P "$local_jobs" -I @TASK@ "$bake" --shard "@TASK@/$count" "$plan" || true
     else
         sbatch --wait --array="$list" "$@" "$here/bake.sbatch" "$plan" "$count" || true
     fi

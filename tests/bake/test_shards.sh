@@ -73,6 +73,9 @@ fact stores_that_do_not_fit_the_plan_are_named
 run 0 --merge the.plan -o again.tsv --shard 1/$shards || SLUICE_BAKE=$bake "$driver" the.plan $shards again.tsv --local 2 >out 2>err
 cmp again.tsv the.tsv && diff -r one.d many.d
 fact shards_that_lack_stores_run_again
+mkdir -p "I I" && cp the.plan "I I/I.plan" && ln -s "$bake" "I I/bake" && rm many.d/p1.store again.tsv &&
+    SLUICE_BAKE="$PWD/I I/bake" "$driver" "I I/I.plan" $shards again.tsv --local 1 --rounds 0 >out 2>err && cmp again.tsv the.tsv
+fact paths_may_have_blanks_and_capitals
 
 lines=$(wc -l <the.plan) wrong=0
 for ((i = 0; i < lines; i++)); do
