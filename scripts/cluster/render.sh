@@ -47,6 +47,7 @@ case $local_jobs$rounds in *[!0-9]*) die "JOBS and rounds are numbers" ;; esac
 count=$((10#$count))
 if [ "$first" -gt "$last" ] || [ "$count" -eq 0 ]; then die "there is no frame, or no task"; fi
 case "$*" in
+*%o*%[abd]* | *%[abd]*%o*) die "COMMAND has %o of one frame, and %a, %b or %d of a range; use one of both" ;;
 *%o* | *%a*%b*%d* | *%a*%d*%b* | *%d*%a*%b*) ;;
 *) die "COMMAND has no %o, and not %a, %b and %d, so it writes no picture" ;;
 esac

@@ -79,6 +79,11 @@ fact a_range_that_fails_after_its_last_picture_is_reported
 fact other_files_of_a_range_are_kept
 ranges 1 && rm ranged/frame-00002.png ranged/frame-00003.png && ranges 0 && [ -z "$(find ranged -name '.failed*')" ]
 fact a_range_that_is_rendered_again_has_not_failed
+run 2 0-1 1 mixed --local 1 -- sh renderer %f %o 'shot %d' && grep -q 'COMMAND has %o of one frame, and' err && [ ! -e mixed ] &&
+    run 2 0-1 1 mixed --local 1 -- sh renderer %a %o && mkdir mixed &&
+    SLURM_ARRAY_TASK_ID=1 bash "$(dirname "$driver")/render.sbatch" 4 5 1 mixed sh renderer %f %o 'shot %d' &&
+    cmp mixed/frame-00005.png painted-5
+fact a_command_renders_one_frame_or_a_range
 run 2 5-3 2 frames --local 1 -- x %o && run 2 0-3 2 frames --local 1 -- x && run 2 0-3 frames --local 1 -- x %o
 fact wrong_words_are_refused
 end_facts
