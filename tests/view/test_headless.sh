@@ -209,8 +209,9 @@ mkdir bin && cp "$tool" bin && printf '1 key Ctrl+T\n3 quit\n' >sweeps
 export LD_LIBRARY_PATH="${tool%/*/*/*}/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 sweeps() { tool=bin/sluice-view run 0 --headless --fresh --still --size 160x160 --cache . --timeout 0.5 --script sweeps "$@" fine.ppm; }
 printf '#!/bin/sh\nshift\nexec "%s" view --sweep budget=16 "$@"\n' "$tradeoff" >bin/sluice-tradeoff && chmod +x bin/sluice-tradeoff
-sweeps --deterministic && cut -d , -f 2,3 sluice-view-trade/points.csv >out && grep -q '^base,done$' out &&
-    grep -q '^budget 16,done$' out && grep -q -- '--timeout 0.5' sluice-view-trade/page.html && [ ! -s err ]
+sweeps --deterministic --device 0 --threads 3 && cut -d , -f 2,3 sluice-view-trade/points.csv >out && grep -q '^base,done$' out &&
+    grep -q '^budget 16,done$' out && grep -q -- '--timeout 0.5' sluice-view-trade/page.html && [ ! -s err ] &&
+    grep -q -- '--device 0 --threads 3' sluice-view-trade/page.html
 fact a_sweep_of_the_scene_and_its_camera_starts_from_the_settings_of_now
 printf '#!/bin/sh\necho $$ >pid\nexec sleep 300\n' >bin/sluice-tradeoff
 for frames in 90 900 9000; do # a busy machine begins the sweep later

@@ -119,8 +119,9 @@ static void add_arguments(struct trade *t, const struct trade_request *r, const 
                           unsigned frames)
 {
     struct text_list *list = &t->arguments;
-    char number[16];
+    char number[16], threads[16];
     snprintf(number, sizeof number, "%u", frames);
+    snprintf(threads, sizeof threads, "%u", r->threads);
     text_list_add(list, "view");
     text_list_add(list, "--fresh");
     add(list, "--repeats", "1");
@@ -134,6 +135,10 @@ static void add_arguments(struct trade *t, const struct trade_request *r, const 
         text_list_add(list, "--room");
     if (r->cache)
         add(list, "--cache", r->cache);
+    if (r->device)
+        add(list, "--device", r->device);
+    if (r->threads > 0)
+        add(list, "--threads", threads);
     add(list, "--play", PATH_FILE);
     add(list, "--frames", number);
     add(list, "--size", RUN_SIZE);

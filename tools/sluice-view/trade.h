@@ -21,7 +21,8 @@ struct trade_request {
     const struct camera_path *path;       ///< NULL or empty: the camera stands at `camera`
     const struct view_camera *camera;
     const struct file_list *paths; ///< of the scene; none: the room
-    const char *cache;             ///< NULL: the default
+    const char *cache, *device;    ///< NULL: the default
+    uint32_t threads;              ///< 0: the default
 };
 
 struct trade {

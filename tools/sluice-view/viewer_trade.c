@@ -9,7 +9,9 @@ void viewer_follow_trade(struct viewer *v)
                                                                       : NULL,
                                           .camera = &app->camera,
                                           .paths = &v->paths,
-                                          .cache = v->options->cache};
+                                          .cache = v->options->cache,
+                                          .device = v->options->device,
+                                          .threads = v->options->threads};
     if (app->trade_toggle && v->trade.state == TRADE_RUNS)
         trade_cancel(&v->trade);
     else if (app->trade_toggle && v->stage)
