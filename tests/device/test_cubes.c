@@ -340,16 +340,17 @@ static void run_in(struct cube_rig *rig, enum cube_form form, uint32_t flags,
     memcpy(outputs, cube_rig_outputs(rig), PROBE_CAPACITY * sizeof *outputs);
 }
 
-/* Compilers of GPUs contract the two languages' equal expressions in different ways: on an NVIDIA
- * H200 a LOD of 2.1 differs by its last bit. The lavapipe of CI rounds both alike. */
+/* Compilers of GPUs contract the two languages' equal expressions in different ways. On an NVIDIA
+ * H200 LODs differ by up to 1.2e-5, where gradients nearly cancel; samplers see steps of 2^-8. The
+ * lavapipe of CI rounds both alike. */
 static bool same_output(struct harness *h, const struct ProbeOutput *a, const struct ProbeOutput *b)
 {
     struct ProbeOutput near = *b;
     if (!harness_is_software(h)) {
         for (uint32_t c = 0; c < 4; c++)
-            if (fabs((double)a->color[c] - (double)b->color[c]) <= 0x1p-16)
+            if (fabs((double)a->color[c] - (double)b->color[c]) <= 0x1p-12)
                 near.color[c] = a->color[c];
-        if (fabs((double)a->lod - (double)b->lod) <= 0x1p-20 * fmax(1, fabs((double)a->lod)))
+        if (fabs((double)a->lod - (double)b->lod) <= 0x1p-14)
             near.lod = a->lod;
     }
     return memcmp(a, &near, sizeof near) == 0;
