@@ -208,6 +208,21 @@ static void levels_under_the_mouse_are_those_of_the_colors(void **state)
     assert_true(kinds >= 3); /* the room has near and far pictures */
 }
 
+static void a_surface_without_a_resident_level_is_not_called_sharp(void **state)
+{
+    (void)state;
+    char words[96];
+    struct view_probe probe = {.resident = SLUICE_MIP_UNTOUCHED, .density = 1, .camera_level = 2};
+    probe.why.reason = SLUICE_COARSE_BUDGET;
+    assert_string_equal(panel_missing_words(&probe, words, sizeof words),
+                        "nothing is resident: memory is short");
+    probe.resident = 5;
+    assert_string_equal(panel_missing_words(&probe, words, sizeof words),
+                        "3 missing: memory is short");
+    probe.resident = 2;
+    assert_string_equal(panel_missing_words(&probe, words, sizeof words), "as sharp as wanted");
+}
+
 /* Walks over all tiles of a texture. */
 static void count_tiles(uint32_t texture, uint64_t *resident, uint64_t *all)
 {
@@ -624,6 +639,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(listed_events_are_those_of_their_reason_and_texture),
         cmocka_unit_test(levels_under_the_mouse_are_those_of_the_colors),
+        cmocka_unit_test(a_surface_without_a_resident_level_is_not_called_sharp),
         cmocka_unit_test(rows_of_textures_and_their_sum_count_all_tiles),
         cmocka_unit_test(sums_of_memory_count_all_slots),
         cmocka_unit_test(a_camera_that_looks_at_a_tile_sees_it_in_the_color_of_its_texture),

@@ -135,7 +135,8 @@ static void look_at_maps(struct view_facts *f, const struct stage *stage)
                              &f->textures[f->map_texture]);
         if (++f->map_texture < f->texture_count)
             continue;
-        f->sharp = f->seen_count ? (double)f->sharp_count / (double)f->seen_count : 1.0;
+        f->sharp_known = f->seen_count > 0;
+        f->sharp = f->sharp_known ? (double)f->sharp_count / (double)f->seen_count : 0.0;
         f->map_texture = 0;
         f->seen_count = f->sharp_count = 0;
     }

@@ -55,6 +55,7 @@ struct view_facts {
     uint64_t tails_size; ///< of all textures; stays whatever the budget
     uint64_t budget;     ///< 0: none
     double sharp;        ///< part of the regions in view that have the level that they request
+    bool sharp_known;    ///< the last count found requests; false: `sharp` is 0
     SluiceVulkanStreamerStatistics now, before;
     SluiceVulkanContextStatistics context;
     SluiceVulkanLoadStages stages;

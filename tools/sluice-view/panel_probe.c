@@ -74,21 +74,28 @@ static const char *level_words(uint32_t level, char *text, size_t size)
     return text;
 }
 
+const char *panel_missing_words(const struct view_probe *p, char *text, size_t size)
+{
+    const char *reason = reason_words(p->why.reason);
+    if (p->resident == 0)
+        snprintf(text, size, "level 0 is resident: nothing is missing");
+    else if (p->resident == SLUICE_MIP_UNTOUCHED)
+        snprintf(text, size, "nothing is resident%s%s", *reason ? ": " : "", reason);
+    else if (p->density > 0 && p->camera_level < p->resident)
+        snprintf(text, size, "%.0f missing: %s",
+                 p->resident - (p->camera_level > 0 ? p->camera_level : 0.0), reason);
+    else
+        snprintf(text, size, "as sharp as wanted");
+    return text;
+}
+
 static void draw_missing(const struct view_probe *p)
 {
-    char resident[24], requested[24];
+    char resident[24], requested[24], words[96];
     ui_text(UI_WHITE, "resident %s, requested %s",
             level_words(p->resident, resident, sizeof resident),
             level_words(p->requested, requested, sizeof requested));
-    if (p->density > 0 && p->camera_level < p->resident && p->resident > 0 &&
-        p->resident != SLUICE_MIP_UNTOUCHED)
-        ui_text(UI_WHITE, "%.0f missing: %s",
-                p->resident - (p->camera_level > 0 ? p->camera_level : 0.0),
-                reason_words(p->why.reason));
-    else
-        ui_text(UI_WHITE, "%s",
-                p->resident == 0 ? "level 0 is resident: nothing is missing"
-                                 : "as sharp as wanted");
+    ui_text(UI_WHITE, "%s", panel_missing_words(p, words, sizeof words));
 }
 
 static void draw_wanted(const struct view_probe *p)

@@ -25,20 +25,29 @@ static const char *fit_text(const char *text, float width, char *fitted, size_t 
     return fitted;
 }
 
+static const char *sharp_words(const struct view_facts *f, char *text, size_t size)
+{
+    if (f->sharp_known)
+        snprintf(text, size, "%.0f %% sharp", floor(100.0 * f->sharp));
+    else
+        snprintf(text, size, "... sharp");
+    return text;
+}
+
 /* The line that counts, and the line of hints below it. The panel's size is that of its texts now;
  * one that fits itself to them is late by a frame. */
 static void draw_line(struct view_app *app)
 {
-    char all[32], now[32], line[160] = "Opening the scene ...";
+    char all[32], now[32], sharp[32], line[160] = "Opening the scene ...";
     char fitted[256];
     const float scale = ui_scale(), pivot[2] = {0.5f, 1.0f}, pad = 12 * scale;
     const char *hints =
         "drag look  ·  WASD walk  ·  right click a surface  ·  1-9 views  ·  F1 all keys";
     if (app->stage)
-        snprintf(line, sizeof line, "%s of textures  ·  %s in memory  ·  %.0f %% sharp",
+        snprintf(line, sizeof line, "%s of textures  ·  %s in memory  ·  %s",
                  panel_size(app->facts.all_size, all, sizeof all),
                  panel_size(app->facts.resident_size, now, sizeof now),
-                 floor(100.0 * app->facts.sharp));
+                 sharp_words(&app->facts, sharp, sizeof sharp));
     if (app->said_seconds > 0)
         hints = app->said;
     if (app->stage && app->width < 620 * scale) /* the figures are in the corner, too */
@@ -142,7 +151,7 @@ static void draw_messages(const struct view_app *app)
 void panel_now(struct view_app *app)
 {
     const struct view_facts *f = &app->facts;
-    char resident[32], whole[32];
+    char resident[32], whole[32], sharp[32];
     const float scale = ui_scale(), pivot[2] = {1, 0};
     const float placement[4] = {app->width - 12 * scale, 12 * scale, 0, 0};
     if (ui_begin_panel("now", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
@@ -160,8 +169,8 @@ void panel_now(struct view_app *app)
         ui_text(UI_WHITE, "%s of %s", panel_size(f->resident_size, resident, sizeof resident),
                 panel_size(f->budget ? f->budget : f->all_size, whole, sizeof whole));
         draw_bar(app, 230 * scale, 10 * scale);
-        ui_text(UI_GRAY, "%.0f %% sharp   %u loads in flight", floor(100.0 * f->sharp),
-                f->now.loadsInFlight);
+        ui_text(UI_GRAY, "%s   %u load%s in flight", sharp_words(f, sharp, sizeof sharp),
+                f->now.loadsInFlight, f->now.loadsInFlight == 1 ? "" : "s");
         const uint32_t baking = stage_baking_count(app->stage);
         if (baking > 0) {
             ui_text(UI_ORANGE, "%u pictures are being prepared", baking);

@@ -39,6 +39,8 @@ bool panel_is_right(enum app_panel panel);
  *  in any case. */
 bool panel_begin(struct view_app *app, enum app_panel panel, const char *title, float width,
                  float height);
+/** How many levels a point lacks, and why. Returns `text`. */
+const char *panel_missing_words(const struct view_probe *probe, char *text, size_t size);
 /** "1 264 MB" of bytes, with a blank between thousands. Returns `text`. */
 const char *panel_size(uint64_t bytes, char *text, size_t size);
 /** Colors of views by level, for people who see colors differently, too. */

@@ -215,6 +215,7 @@ void traced_facts_update(struct traced *t, struct view_facts *f)
         f->resident_size = t->now.tileMemorySize;
     f->memory_size = t->now.tileMemorySize;
     f->sharp = traced_complete(t);
+    f->sharp_known = true;
     /* The host waits for launches, which are submissions of their own. */
     f->gpu_seconds += t->trace_seconds;
     f->host_seconds = fmax(0.0, f->host_seconds - t->trace_seconds);
