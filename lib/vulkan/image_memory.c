@@ -1,6 +1,7 @@
 #include "vulkan/image_memory.h"
 
 #include "base/alloc.h"
+#include "base/log.h"
 #include "vulkan/memory.h"
 
 #include <string.h>
@@ -25,9 +26,14 @@ static SluiceResult allocate(const struct slc_image_memory *pool, const struct s
                                                .images = true,
                                                .name = "images"};
     VkResult result = slc_memory_allocate(vk, &request, memory);
-    if (pool->quiet && result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
-        return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
-    return slc_vk_result(vk, result, "vkAllocateMemory for an image");
+    if (result != VK_ERROR_OUT_OF_DEVICE_MEMORY)
+        return slc_vk_result(vk, result, "vkAllocateMemory for an image");
+    if (!pool->quiet && !memory->is_beyond_budget)
+        slc_log(&vk->log, SLUICE_LOG_ERROR, "the device has no memory for %llu KiB of %s",
+                (unsigned long long)size >> 10,
+                pool->purpose == SLUICE_DEVICE_MEMORY_PURPOSE_PAGES ? "pages: textures stay coarser"
+                                                                    : "images");
+    return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
 }
 
 static SluiceResult grow(struct slc_image_memory *pool, const SluiceAllocationCallbacks *cb)

@@ -23,7 +23,7 @@ struct slc_image_memory {
     uint32_t block_capacity;
     uint32_t last;       ///< block that had room last
     uint64_t total_size; ///< bytes allocated
-    bool quiet;          ///< logs no memory that is refused
+    bool quiet;          ///< logs no memory that the driver refuses
 };
 
 /** Where an image lies; zeroed: nowhere. */

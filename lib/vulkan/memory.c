@@ -82,8 +82,11 @@ VkResult slc_memory_allocate(const struct slc_vk *vk, const struct slc_memory_re
     struct slc_memory_client *client = vk->memory_client;
     struct slc_memory made = {.size = request->size, .purpose = request->purpose};
     *memory = (struct slc_memory){0};
-    if (client && !slc_memory_client_take(client, request->purpose, request->mapped, request->size))
+    if (client &&
+        !slc_memory_client_take(client, request->purpose, request->mapped, request->size)) {
+        memory->is_beyond_budget = true;
         return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    }
     VkResult result = vk->memory_callbacks ? allocate_by_callback(vk, request, &made)
                                            : allocate_by_vulkan(vk, request, &made);
     if (result == VK_SUCCESS)

@@ -21,12 +21,13 @@ struct slc_memory {
     void *mapped;          ///< the first byte at `offset`; NULL: not mapped
     void *allocation;      ///< what the callbacks call it
     SluiceDeviceMemoryPurpose purpose;
+    bool is_beyond_budget; ///< after a failure: the budget refused it, not the driver
 };
 
 /**
- * `*memory` is zeroed after a failure, and nothing is counted. VK_ERROR_OUT_OF_DEVICE_MEMORY for
- * tile memory beyond the budget, which is not logged. VK_ERROR_UNKNOWN, logged, if the callbacks
- * returned something else than was requested.
+ * `*memory` is zeroed after a failure, but for `is_beyond_budget`. Nothing is counted then.
+ * VK_ERROR_OUT_OF_DEVICE_MEMORY for tile memory beyond the budget, which is not logged.
+ * VK_ERROR_UNKNOWN, logged, if the callbacks returned something else than was requested.
  */
 VkResult slc_memory_allocate(const struct slc_vk *vk, const struct slc_memory_request *request,
                              struct slc_memory *memory);

@@ -23,7 +23,8 @@ struct stage {
     SluiceVulkanTexture textures[TEXTURES];
     uint64_t time;
     bool looks;
-    uint32_t unmet; ///< messages that the budget cannot be reached
+    uint32_t unmet;   ///< messages that the budget cannot be reached
+    uint32_t refused; ///< messages that memory of images is refused
     char message[512];
 };
 
@@ -36,6 +37,9 @@ static uint8_t want(void *user, uint32_t region)
 static void keep_unmet(void *user, SluiceLogSeverity severity, const char *message)
 {
     struct stage *s = user;
+    if (strstr(message, "no memory for ") && strstr(message, "KiB of pages: textures stay coarser"))
+        s->refused++;
+    assert_null(strstr(message, "vkAllocateMemory"));
     if (!strstr(message, "cannot be reached"))
         return;
     assert_int_equal(severity, SLUICE_LOG_WARNING);
@@ -333,6 +337,33 @@ static void a_device_with_less_memory_makes_less_ahead(void **state)
     tile_memory_ahead = 0;
 }
 
+static void only_memory_that_the_driver_refuses_is_told_with_its_size(void **state)
+{
+    (void)state;
+    layer_size = 65536;
+    struct stage *s = stage_init(SLUICE_RESIDENCY_MODE_PAGED);
+    add_textures(s);
+    uint64_t little = s->fake.live_memory;
+    CHECK_OK(sluiceSetVulkanMemoryBudget(s->streamer->context, tile_memory(s) + 4 * MIB));
+    s->looks = true;
+    for (int f = 0; f < 20; f++)
+        frame(s);
+    SluiceVulkanContextStatistics all = {.structSize = sizeof all};
+    CHECK_OK(sluiceGetVulkanContextStatistics(s->streamer->context, &all));
+    assert_true(all.refusedBlockCount > 0);
+    assert_int_equal(s->refused, 0);
+    stage_finish(s);
+
+    s = stage_init_limited(SLUICE_RESIDENCY_MODE_PAGED, little + 20 * MIB);
+    add_textures(s);
+    s->looks = true;
+    for (int f = 0; f < 20; f++)
+        frame(s);
+    assert_true(s->refused > 0);
+    stage_finish(s);
+    layer_size = MIB;
+}
+
 struct order {
     uint32_t tiles[1024], count;
 };
@@ -390,6 +421,7 @@ int main(void)
         cmocka_unit_test(a_budget_that_falls_frees_memory_without_tiles_first),
         cmocka_unit_test(a_budget_that_cannot_be_reached_is_told_once_with_what_is_too_much),
         cmocka_unit_test(a_device_with_less_memory_makes_less_ahead),
+        cmocka_unit_test(only_memory_that_the_driver_refuses_is_told_with_its_size),
         cmocka_unit_test(tiles_are_told_in_the_order_of_their_arrival_whatever_their_slots),
     };
     return RUN_TESTS(tests);
