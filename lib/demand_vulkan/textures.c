@@ -255,12 +255,7 @@ static uint32_t choose_modes(SluiceDemandLoader *loader, uint32_t index,
     bool differs = slc_address_mode_differs(u, info->addressModeU) ||
                    slc_address_mode_differs(v, info->addressModeV);
     if (differs && !loader->told_of_modes)
-        slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
-                "%s: is sampled with address modes %d, %d, but its coarser levels were made for "
-                "%d, %d (VkSamplerAddressMode)",
-                info->pName ? info->pName : "image", (int)u, (int)v,
-                (int)info->addressModeU - SLUICE_IMAGE_ADDRESS_MODE_REPEAT,
-                (int)info->addressModeV - SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
+        slc_warn_of_address_modes(&loader->vk.log, info, u, v);
     loader->told_of_modes |= differs;
     return mode_bits(u, v);
 }

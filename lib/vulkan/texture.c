@@ -193,12 +193,7 @@ static void choose_modes(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreat
     bool differs = slc_address_mode_differs(modes[0], image->addressModeU) ||
                    slc_address_mode_differs(modes[1], image->addressModeV);
     if (differs && !s->told_of_modes)
-        slc_log(&s->vk.log, SLUICE_LOG_WARNING,
-                "%s: is sampled with address modes %d, %d, but its coarser levels were made for "
-                "%d, %d (VkSamplerAddressMode)",
-                image->pName ? image->pName : "image", (int)modes[0], (int)modes[1],
-                (int)image->addressModeU - SLUICE_IMAGE_ADDRESS_MODE_REPEAT,
-                (int)image->addressModeV - SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
+        slc_warn_of_address_modes(&s->vk.log, image, modes[0], modes[1]);
     s->told_of_modes |= differs;
 }
 

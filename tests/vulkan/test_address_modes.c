@@ -8,8 +8,11 @@
 
 static void count_warnings(void *user, SluiceLogSeverity severity, const char *message)
 {
-    if (severity == SLUICE_LOG_WARNING && strstr(message, "address modes"))
-        ++*(uint32_t *)user;
+    if (severity != SLUICE_LOG_WARNING || !strstr(message, "address modes"))
+        return;
+    ++*(uint32_t *)user;
+    assert_non_null(strstr(message, "repeat (u), clamp to edge (v)"));
+    assert_non_null(strstr(message, "for clamp to edge, clamp to edge: seams"));
 }
 
 static const struct mode_case {
