@@ -112,13 +112,19 @@ static SluiceResult open_folder(struct slc_part_file *part)
 {
     char *name = part->target + (slc_path_name(part->target) - part->target), first = *name;
     *name = '\0';
-    part->folder = slc_folder_open(name > part->target ? part->target : ".");
-    int error = errno;
+    const char *path = name > part->target ? part->target : ".";
+    SluiceResult result = SLUICE_SUCCESS;
+    part->folder = slc_folder_open(path);
+    if (part->folder < 0) {
+        const int error = errno;
+        const size_t end = strlen(path) - (path == part->target && path[1] != '\0');
+        result = slc_system_result(error);
+        *name = first;
+        slc_log(&part->log, SLUICE_LOG_ERROR, "%s: cannot be written: %.*s: %s", part->target,
+                (int)end, path, error == ENOENT ? "no such folder" : strerror(error));
+    }
     *name = first;
-    if (part->folder >= 0)
-        return SLUICE_SUCCESS;
-    errno = error;
-    return fail_open(part, "open the folder");
+    return result;
 }
 
 /* Root may write to files that are read-only: the mode says what their owner wants. */

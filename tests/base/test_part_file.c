@@ -506,6 +506,8 @@ static void a_missing_folder_is_told_from_other_failures(void **state)
     snprintf(place.name, sizeof place.name, "%s/no/file", place.folder);
     CHECK_RESULT(open_part(&place, 0, &part), SLUICE_ERROR_FILE_NOT_FOUND);
     assert_non_null(strstr(place.told, place.name));
+    assert_non_null(strstr(place.told, "/no: no such folder"));
+    assert_null(strstr(place.told, ".sluice-part"));
     slc_part_file_close(&part);
     slc_part_file_close(&part); /* closed ones too */
     place_finish(&place);

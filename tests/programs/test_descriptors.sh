@@ -53,7 +53,7 @@ fact a_traced_picture_is_written_when_textures_take_all_descriptors
 
 mkdir taken.png
 tool=$streaming
-run 1 --images stores --output taken --needs-trace absent/needs && grep -q 'absent/needs.sluice-part: cannot open the folder' err &&
+run 1 --images stores --output taken --needs-trace absent/needs && grep -q 'absent/needs: cannot be written: absent: no such folder' err &&
     ! grep -q walking err
 fact what_cannot_be_written_is_said_before_the_walk
 
