@@ -196,9 +196,10 @@ static void print_file(const struct texture_file *file, const char *path)
     const SluiceImageInfo *image = &file->image;
     text_write(stdout, path);
     printf(": %s\n", file->kind);
-    printf("  size                    %u x %u texels, %u levels, %u layers\n", image->width,
-           image->height, image->mipLevelCount,
-           image->arrayLayerCount ? image->arrayLayerCount : 1);
+    const uint32_t layers = image->arrayLayerCount ? image->arrayLayerCount : 1;
+    printf("  size                    %u x %u texels, %u level%s, %u layer%s\n", image->width,
+           image->height, image->mipLevelCount, image->mipLevelCount == 1 ? "" : "s", layers,
+           layers == 1 ? "" : "s");
     if (image->cube)
         printf("  cube maps               %u of six faces each\n", image->arrayLayerCount / 6);
     printf("  format                  %s\n", sluiceGetFormatName(image->format));
