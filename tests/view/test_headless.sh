@@ -252,6 +252,9 @@ if glslang=$(command -v glslangValidator); then
         reloads && cmp old.png new.png && sed -i 's/^    outColor = .*/    outColor = vec4(0.0, 1.0, 0.0, 1.0);/' shaders/scene.frag &&
         reloads && ! cmp -s old.png new.png && [ ! -s err ]
     fact shaders_are_compiled_again
+    cp reloads built && printf '13 key Ctrl+F5\n14 key 8\n15 set gain 1\n18 screenshot little.png\n' >reloads &&
+        printf '19 set gain 16\n20 screenshot much.png\n21 quit\n' >>reloads && reloads && cmp little.png much.png && mv built reloads
+    fact the_second_streamer_has_the_shaders_that_were_compiled_before_it
     sed -i 's/^    outColor = /    outColour = /' shaders/scene.frag && reloads && cmp old.png new.png &&
         grep -q "scene.frag:[0-9]*: .*outColour" err
     fact a_shader_that_cannot_be_compiled_is_named_and_the_one_before_stays

@@ -224,7 +224,7 @@ static bool create_marks(struct stage *s)
     return created;
 }
 
-static bool create_drawing(struct stage *s)
+static bool create_drawing(struct stage *s, const struct shader_code *code)
 {
     SluiceResidencyMode mode;
     VkDescriptorSetLayout layout;
@@ -234,6 +234,7 @@ static bool create_drawing(struct stage *s)
                  "sluiceGetVulkanDescriptorSetLayout") &&
            stage_drawing_create(s->gpu, &s->scene,
                                 &(struct stage_drawing_info){s->table_indices, layout, &s->marks,
+                                                             code,
                                                              mode == SLUICE_RESIDENCY_MODE_PAGED},
                                 &s->drawing);
 }
@@ -261,7 +262,8 @@ struct stage *stage_create(const struct stage_request *request,
     s->textures = calloc(s->scene.image_count + 1, sizeof *s->textures);
     s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
     if (s->textures && s->table_indices && begin_slowness(s) && begin_faults(s) &&
-        create_streamer(s, request) && add_textures(s) && create_marks(s) && create_drawing(s)) {
+        create_streamer(s, request) && add_textures(s) && create_marks(s) &&
+        create_drawing(s, request->code)) {
         s->baking_count = scene_images_baking(&s->scene);
         stage_apply(s, settings);
         return s;
@@ -360,9 +362,19 @@ bool stage_settle(struct stage *s)
            check(sluiceWaitVulkanStreamerIdle(s->streamer), "sluiceWaitVulkanStreamerIdle");
 }
 
-bool stage_use_shaders(struct stage *s, const struct shader_code *code)
+bool stage_prepare_shaders(struct stage *s, const struct shader_code *code)
 {
-    return !s->traced && stage_drawing_use(&s->drawing, &s->scene, code);
+    return !s->traced && stage_drawing_prepare(&s->drawing, &s->scene, code);
+}
+
+void stage_take_shaders(struct stage *s)
+{
+    stage_drawing_take(&s->drawing);
+}
+
+void stage_drop_shaders(struct stage *s)
+{
+    stage_drawing_drop(&s->drawing);
 }
 
 void stage_restart(struct stage *s)

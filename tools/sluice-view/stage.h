@@ -67,6 +67,7 @@ struct stage_request {
     uint32_t threads;
     bool everything; ///< all tiles are resident, whatever is seen
     bool waits;      ///< frames wait for all that they asked for, so that each run is the same
+    const struct shader_code *code; ///< SCENE_SHADER_COUNT modules; NULL: those of the build
 };
 
 /** Takes the scene, which is empty afterwards. Says on stderr what failed. */
@@ -78,9 +79,12 @@ bool stage_record(struct stage *stage, const struct stage_draw *draw, VkCommandB
                   struct frames_end *end);
 /** Settings that change while the scene is open. */
 void stage_apply(struct stage *stage, const struct view_settings *settings);
-/** Takes other shaders. No frame may be in flight. False, and nothing has changed, if that failed.
- */
-bool stage_use_shaders(struct stage *stage, const struct shader_code *code);
+/** Prepares other shaders. False, and nothing has changed, if that failed. */
+bool stage_prepare_shaders(struct stage *stage, const struct shader_code *code);
+/** Draws with the shaders that are prepared. No frame may be in flight. */
+void stage_take_shaders(struct stage *stage);
+/** Destroys the shaders that are prepared. */
+void stage_drop_shaders(struct stage *stage);
 /** Evicts everything that can be evicted. */
 void stage_restart(struct stage *stage);
 /** Waits until all reads are done, for pictures that are the same in every run. */

@@ -124,28 +124,38 @@ static void destroy_pipelines(const struct gpu *gpu, VkPipeline pipelines[STAGE_
     }
 }
 
-bool stage_drawing_use(struct stage_drawing *d, const struct scene_data *scene,
-                       const struct shader_code code[SCENE_SHADER_COUNT])
+bool stage_drawing_prepare(struct stage_drawing *d, const struct scene_data *scene,
+                           const struct shader_code code[SCENE_SHADER_COUNT])
 {
-    VkPipeline pipelines[STAGE_PIPELINES] = {VK_NULL_HANDLE};
+    stage_drawing_drop(d);
     for (uint32_t i = 0; i < scene->part_count; i++) {
         const uint32_t pipeline = pipeline_of(&scene->materials[scene->parts[i].material]);
-        if (pipelines[pipeline] || create_pipeline(d, code, pipeline, &pipelines[pipeline]))
+        if (d->prepared[pipeline] || create_pipeline(d, code, pipeline, &d->prepared[pipeline]))
             continue;
-        destroy_pipelines(d->gpu, pipelines);
+        stage_drawing_drop(d);
         return false;
     }
-    destroy_pipelines(d->gpu, d->pipelines);
-    memcpy(d->pipelines, pipelines, sizeof pipelines);
     return true;
+}
+
+void stage_drawing_take(struct stage_drawing *d)
+{
+    destroy_pipelines(d->gpu, d->pipelines);
+    memcpy(d->pipelines, d->prepared, sizeof d->pipelines);
+    memset(d->prepared, 0, sizeof d->prepared);
+}
+
+void stage_drawing_drop(struct stage_drawing *d)
+{
+    destroy_pipelines(d->gpu, d->prepared);
 }
 
 bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
                           const struct stage_drawing_info *info, struct stage_drawing *d)
 {
-    struct shader_code code[SCENE_SHADER_COUNT];
+    struct shader_code built[SCENE_SHADER_COUNT];
     *d = (struct stage_drawing){.gpu = gpu, .marks = info->marks, .paged = info->paged};
-    list_shaders(code);
+    list_shaders(built);
     d->order = calloc(scene->part_count + 1u, sizeof *d->order);
     if (d->order &&
         fill(gpu, scene->vertices, scene->vertex_count * sizeof *scene->vertices,
@@ -154,8 +164,10 @@ bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
              VK_BUFFER_USAGE_INDEX_BUFFER_BIT, &d->indices) &&
         stage_sets_create(gpu, scene, info->table_indices, tile_marks_size(d->marks), &d->sets) &&
         target_create_encoding(gpu, 16, 16, &d->targets[0]) && create_layout(d, info->set_layout) &&
-        stage_drawing_use(d, scene, code))
+        stage_drawing_prepare(d, scene, info->code ? info->code : built)) {
+        stage_drawing_take(d);
         return true;
+    }
     stage_drawing_destroy(d);
     return false;
 }
@@ -169,6 +181,7 @@ void stage_drawing_destroy(struct stage_drawing *d)
         target_destroy(d->gpu, &d->ahead[i]);
     }
     destroy_pipelines(d->gpu, d->pipelines);
+    stage_drawing_drop(d);
     vkDestroyPipelineLayout(d->gpu->device, d->layout, NULL);
     stage_lines_destroy(d->gpu, &d->lines);
     stage_sets_destroy(&d->sets);

@@ -19,6 +19,7 @@ struct stage_drawing {
     struct stage_sets sets;
     VkPipelineLayout layout;
     VkPipeline pipelines[STAGE_PIPELINES]; ///< those that materials need
+    VkPipeline prepared[STAGE_PIPELINES];  ///< of other shaders, until they are taken or dropped
     bool paged;
     struct stage_lines lines;            ///< from the first frame on that shows them
     struct stage_order *order;           ///< owned; of the parts that blend
@@ -30,6 +31,7 @@ struct stage_drawing_info {
     const uint32_t *table_indices;    ///< of the images
     VkDescriptorSetLayout set_layout; ///< the streamer's
     const struct tile_marks *marks;   ///< outlive the drawing
+    const struct shader_code *code;   ///< SCENE_SHADER_COUNT modules; NULL: those of the build
     bool paged;
 };
 
@@ -38,10 +40,14 @@ bool stage_drawing_create(const struct gpu *gpu, const struct scene_data *scene,
                           const struct stage_drawing_info *info, struct stage_drawing *drawing);
 /** No frame may be in flight. A zeroed struct is fine. */
 void stage_drawing_destroy(struct stage_drawing *drawing);
-/** Takes other shaders, with the same interface. No frame may be in flight. False, and nothing has
- *  changed, if that failed. */
-bool stage_drawing_use(struct stage_drawing *drawing, const struct scene_data *scene,
-                       const struct shader_code code[SCENE_SHADER_COUNT]);
+/** Creates pipelines of other shaders, with the same interface. False, and none are prepared, if
+ *  that failed. */
+bool stage_drawing_prepare(struct stage_drawing *drawing, const struct scene_data *scene,
+                           const struct shader_code code[SCENE_SHADER_COUNT]);
+/** Draws with the pipelines that are prepared. No frame may be in flight. */
+void stage_drawing_take(struct stage_drawing *drawing);
+/** Destroys the pipelines that are prepared, if there are any. */
+void stage_drawing_drop(struct stage_drawing *drawing);
 /** Records the picture into the slot's target, whose view it returns in SHADER_READ_ONLY_OPTIMAL.
  *  VK_NULL_HANDLE if that failed. */
 VkImageView stage_drawing_record(struct stage_drawing *drawing, const struct scene_data *scene,

@@ -497,6 +497,7 @@ static void finish(struct viewer *v)
     viewer_end_load(v);
     trade_finish(&v->trade);
     viewer_close_scene(v);
+    shader_files_finish(v->code);
     frames_wait(&v->frames);
     flip_map_destroy(&v->flip);
     frames_destroy(&v->frames);

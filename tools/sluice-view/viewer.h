@@ -8,6 +8,7 @@
 #include "options.h"
 #include "scene_load.h"
 #include "script.h"
+#include "shader_files.h"
 #include "summary.h"
 #include "thumbs.h"
 #include "trade.h"
@@ -24,9 +25,10 @@ struct viewer {
     struct view_app app;
     struct frames frames;
     struct stage *stage;
-    struct stage *other;   ///< what is compared with; NULL: nothing
-    int other_kind;        ///< enum view_compared of `other`
-    struct window *window; ///< NULL: headless
+    struct stage *other;                         ///< what is compared with; NULL: nothing
+    int other_kind;                              ///< enum view_compared of `other`
+    struct shader_code code[SCENE_SHADER_COUNT]; ///< compiled last; empty: those of the build
+    struct window *window;                       ///< NULL: headless
     struct swapchain swapchain;
     struct flip_map flip;
     SluiceCameraMotion motion; ///< of the last frames

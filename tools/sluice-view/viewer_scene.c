@@ -14,7 +14,8 @@ static struct stage *create_stage(struct viewer *v, const struct view_settings *
     const struct stage_request request = {.gpu = &v->gpu,
                                           .threads = v->options->threads,
                                           .everything = everything,
-                                          .waits = v->options->deterministic};
+                                          .waits = v->options->deterministic,
+                                          .code = v->code[0].words ? v->code : NULL};
     return stage_create(&request, settings, scene);
 }
 
@@ -290,6 +291,23 @@ void viewer_end_load(struct viewer *v)
     v->load = NULL;
 }
 
+/* Either all streamers draw with the code, or none; scenes that are opened later, too. */
+static bool use_shaders(struct viewer *v, struct shader_code code[SCENE_SHADER_COUNT])
+{
+    if (!frames_wait(&v->frames) || !stage_prepare_shaders(v->stage, code))
+        return false;
+    if (v->other && !stage_prepare_shaders(v->other, code)) {
+        stage_drop_shaders(v->stage);
+        return false;
+    }
+    stage_take_shaders(v->stage);
+    if (v->other)
+        stage_take_shaders(v->other);
+    shader_files_finish(v->code);
+    memcpy(v->code, code, sizeof v->code);
+    return true;
+}
+
 void viewer_reload_shaders(struct viewer *v)
 {
     char text[4200];
@@ -304,8 +322,8 @@ void viewer_reload_shaders(struct viewer *v)
         app_say(&v->app, "The shaders stay as they were; the terminal says why");
         return;
     }
-    const bool used = frames_wait(&v->frames) && stage_use_shaders(v->stage, code) &&
-                      (!v->other || stage_use_shaders(v->other, code));
+    const bool used = use_shaders(v, code);
     app_say(&v->app, "%s", used ? "The shaders were compiled again" : "The shaders do not fit");
-    shader_files_finish(code);
+    if (!used)
+        shader_files_finish(code);
 }
