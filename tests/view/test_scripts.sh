@@ -23,7 +23,7 @@ done
 show() { run 0 pictures --headless --deterministic --fresh --cache . --size 400x225 --ui-scale 0.4 --render-scale 0.2 "$@"; }
 
 show --script screenshots && mv ./*.png plain && show --script events &&
-    [ "$(cat err)" = 'sluice-view: missing.gltf: cannot be opened' ]
+    [ "$(cat err)" = 'sluice-view: missing.gltf: cannot be opened: No such file or directory' ]
 fact scripts_run_and_name_nothing_but_the_file_that_is_missing
 same=
 while read -r _ _ picture; do

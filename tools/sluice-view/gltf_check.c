@@ -26,9 +26,9 @@ static const cJSON *member(const cJSON *object, const char *name)
 
 static bool check_buffer(struct gltf_file *file, uint32_t i)
 {
-    char where[WHERE_SIZE], path[4096];
+    char where[WHERE_SIZE], path[4096], cause[GLTF_CAUSE_SIZE] = "is no file";
     const cJSON *buffer = file->lists[GLTF_BUFFERS].items[i];
-    const char *uri = cJSON_GetStringValue(member(buffer, "uri")), *cause = "is no file";
+    const char *uri = cJSON_GetStringValue(member(buffer, "uri"));
     struct gltf_bytes *bytes = &file->buffers[i];
     uint64_t length = 0;
     place(GLTF_BUFFERS, i, where);
@@ -41,7 +41,7 @@ static bool check_buffer(struct gltf_file *file, uint32_t i)
         if (!bytes->bytes)
             return gltf_fail(file, "%s: its data is no base64", where);
     } else if (uri) {
-        if (!gltf_path(file, uri, path, sizeof path) || !gltf_read_file(path, bytes, &cause))
+        if (!gltf_path(file, uri, path, sizeof path) || !gltf_read_file(path, bytes, cause))
             return gltf_fail(file, "%s: %.200s %s", where, uri, cause);
     } else if (i == 0 && file->chunk.bytes) {
         *bytes = file->chunk;

@@ -2,6 +2,7 @@
 
 #include "gltf_file.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -175,28 +176,36 @@ uint8_t *gltf_decode_data_uri(const char *uri, size_t *size)
     return bytes;
 }
 
-bool gltf_read_file(const char *path, struct gltf_bytes *bytes, const char **cause)
+/* Writes `words`, and the system's reason if there is one. */
+static bool refuse(char cause[GLTF_CAUSE_SIZE], const char *words, int error)
+{
+    snprintf(cause, GLTF_CAUSE_SIZE, "%s%s%s", words, error ? ": " : "",
+             error ? strerror(error) : "");
+    return false;
+}
+
+bool gltf_read_file(const char *path, struct gltf_bytes *bytes, char cause[GLTF_CAUSE_SIZE])
 {
     struct stat about;
     *bytes = (struct gltf_bytes){0};
-    *cause = "cannot be opened";
     if (stat(path, &about) != 0)
-        return false;
-    *cause = "is no regular file";
+        return refuse(cause, "cannot be opened", errno);
     if (!S_ISREG(about.st_mode))
-        return false;
-    *cause = "is larger than 4 GiB";
+        return refuse(cause, "is no regular file", 0);
     if ((uint64_t)about.st_size > MAX_FILE)
-        return false;
-    *cause = "cannot be read";
+        return refuse(cause, "is larger than 4 GiB", 0);
     FILE *from = fopen(path, "rb");
-    bytes->owned = from ? malloc((size_t)about.st_size + 1) : NULL;
+    if (!from)
+        return refuse(cause, "cannot be opened", errno);
+    errno = 0;
+    bytes->owned = malloc((size_t)about.st_size + 1);
     if (bytes->owned)
         bytes->size = fread(bytes->owned, 1, (size_t)about.st_size, from);
-    if (from)
-        fclose(from);
+    const int error = errno;
+    fclose(from);
     bytes->bytes = bytes->owned;
-    return bytes->owned && bytes->size == (uint64_t)about.st_size;
+    return (bytes->owned && bytes->size == (uint64_t)about.st_size) ||
+           refuse(cause, "cannot be read", error);
 }
 
 static uint32_t word(const uint8_t *at)
@@ -268,10 +277,10 @@ static bool open_whole(struct gltf_file *file)
 
 bool gltf_open(const char *path, struct gltf_file *file)
 {
-    const char *cause;
+    char cause[GLTF_CAUSE_SIZE];
     *file = (struct gltf_file){.path = path};
-    return gltf_read_file(path, &file->whole, &cause) ? open_whole(file)
-                                                      : gltf_fail(file, "%s", cause);
+    return gltf_read_file(path, &file->whole, cause) ? open_whole(file)
+                                                     : gltf_fail(file, "%s", cause);
 }
 
 bool gltf_open_bytes(const char *path, const void *bytes, size_t size, struct gltf_file *file)

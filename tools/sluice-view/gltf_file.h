@@ -83,8 +83,9 @@ bool gltf_get_float(struct gltf_file *file, const cJSON *object, const char *whe
 bool gltf_path(const struct gltf_file *file, const char *uri, char *path, size_t size);
 /** Bytes of "data:...;base64,...". NULL: it is none, or damaged, or there is no memory. */
 uint8_t *gltf_decode_data_uri(const char *uri, size_t *size);
-/** Reads a regular file of at most 4 GiB. `*cause` says why not. */
-bool gltf_read_file(const char *path, struct gltf_bytes *bytes, const char **cause);
+#define GLTF_CAUSE_SIZE 160
+/** Reads a regular file of at most 4 GiB. `cause` says why not. */
+bool gltf_read_file(const char *path, struct gltf_bytes *bytes, char cause[GLTF_CAUSE_SIZE]);
 /** Part of gltf_open. */
 bool gltf_check(struct gltf_file *file);
 /** A buffer view, checked. */
