@@ -56,12 +56,15 @@ fact decisions_are_recorded_from_any_frame_and_a_file_that_cannot_be_written_is_
 echo '1 kye 3' >wrong
 run 1 --headless --script wrong && grep -q 'wrong:1: there is no event kye' err
 fact a_wrong_script_is_named_with_its_line
-run 2 --view 12 && run 2 one two
+run 2 --view 12 && run 2 one two && run 2 --budget 2 && grep -q 'wants 0, or from 4M to 1T' err &&
+    echo '1 set budget 4095K' >tight && run 0 --room --headless --size 160x160 --frames 2 --script tight &&
+    grep -q 'budget 4095K: wants 0' err
 fact wrong_words_are_refused
 printf '{"asset":{"version":"2.0"},"buffers":[{"byteLength":9999999999,"uri":"no.bin"}]}' >broken.gltf
 head -c 100 /dev/urandom >noise.glb
 run 1 --headless --frames 2 --cache . broken.gltf && run 1 --headless --frames 2 --cache . noise.glb &&
-    run 1 --headless --frames 2 --cache . none.gltf
+    run 1 --headless --frames 2 --cache . none.gltf &&
+    grep -q 'none.gltf: cannot be opened: No such file' err
 fact broken_scenes_are_refused
 printf '2 drop noise.glb\n4 set compare-to budget\n4 key v\n' >drops
 # shellcheck disable=SC2086

@@ -154,7 +154,7 @@ static void what_a_control_writes_it_reads(void **state)
     struct view_settings settings, other;
     char text[64], again[64];
     controls_set_defaults(&settings);
-    assert_true(controls_set(&settings, "budget", "100K", "t"));
+    assert_true(controls_set(&settings, "budget", "4100K", "t"));
     assert_true(controls_set(&settings, "fade", "250ms", "t"));
     assert_true(controls_set(&settings, "compare-as", "flicker", "t"));
     assert_true(controls_set(&settings, "size", "320x200", "t"));
@@ -164,7 +164,7 @@ static void what_a_control_writes_it_reads(void **state)
         assert_true(controls_set(&other, controls[i].option.name, text, "t"));
         assert_string_equal(control_write(&controls[i], &other, again, sizeof again), text);
     }
-    assert_int_equal(other.budget, 102400);
+    assert_int_equal(other.budget, 4198400);
     assert_int_equal(other.compare, VIEW_FLICKER);
 }
 
@@ -192,6 +192,7 @@ static void wrong_values_change_nothing(void **state)
     assert_false(controls_set(&settings, "pause", "maybe", "t"));
     assert_false(controls_set(&settings, "probability", "2", "t"));
     assert_false(controls_set(&settings, "nothing", "1", "t"));
+    assert_false(controls_set(&settings, "budget", "4095K", "t"));
     assert_memory_equal(&settings, &before, sizeof settings);
 }
 

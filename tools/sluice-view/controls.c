@@ -8,6 +8,7 @@
 
 #define FIELD(name) offsetof(struct view_settings, name)
 #define MIB 1048576.0
+#define LEAST_BUDGET (4u << 20)
 
 /* Options that other programs have keep their names, defaults and meanings (tests/programs). */
 static const struct control table[] = {
@@ -320,7 +321,7 @@ static const struct control table[] = {
      "Events",
      {OPTION_CHOICE, "event-reason",
       "all|feedback|added|taken-up|prefetched|answered|retried|evicted|unmapped|called|removed",
-      "all", NULL, "events that are listed"},
+      "all", NULL, "reason of the events that are listed"},
      FIELD(event_reason),
      NULL,
      0},
@@ -383,6 +384,11 @@ static const struct control *find(const char *name)
     return NULL;
 }
 
+bool controls_budget_fits(const struct view_settings *settings)
+{
+    return settings->budget == 0 || settings->budget >= LEAST_BUDGET;
+}
+
 bool controls_set(struct view_settings *settings, const char *name, const char *value,
                   const char *speaker)
 {
@@ -397,6 +403,10 @@ bool controls_set(struct view_settings *settings, const char *name, const char *
     if (!option_value_read(&option, value)) {
         text_say("%s: %s %s: wants %s", speaker, name, value,
                  option_value_wanted(&option, value, wanted, sizeof wanted));
+        return false;
+    }
+    if (!controls_budget_fits(&changed)) {
+        text_say("%s: %s %s: " CONTROLS_BUDGET_WANTED, speaker, name, value);
         return false;
     }
     *settings = changed;

@@ -37,6 +37,9 @@ void control_reset(const struct control *control, struct view_settings *settings
 /** False, with a line on stderr behind `speaker`, for an unknown name or a wrong value. */
 bool controls_set(struct view_settings *settings, const char *name, const char *value,
                   const char *speaker);
+/** False if the budget is neither 0 nor at least 4 MiB. */
+bool controls_budget_fits(const struct view_settings *settings);
+#define CONTROLS_BUDGET_WANTED "wants 0, or from 4M to 1T"
 /** The value as a user would write it. Returns `text`. */
 const char *control_write(const struct control *control, const struct view_settings *settings,
                           char *text, size_t size);

@@ -25,6 +25,7 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
 {
     const struct option own[] = {
         {OPTION_WORDS, .value = &o->words, .help = "a scene, or pictures", .minimum = 0},
+        {OPTION_SECTION, .help = "Scene"},
         {OPTION_FLAG, "room", .value = &o->room,
          .help = "without a scene: a room of computed pictures, which needs no file"},
         {OPTION_SECTION, .help = "Without a window"},
@@ -71,6 +72,10 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
     struct view_camera camera;
     if (outcome == OPTIONS_RUN && o->camera && !view_camera_read(o->camera, &camera)) {
         options_refuse(&table, "--camera %s: wants six numbers: x,y,z,yaw,pitch,fov", o->camera);
+        return OPTIONS_ERROR;
+    }
+    if (outcome == OPTIONS_RUN && !controls_budget_fits(&o->settings)) {
+        options_refuse(&table, "--budget: " CONTROLS_BUDGET_WANTED);
         return OPTIONS_ERROR;
     }
     if (outcome == OPTIONS_RUN &&
