@@ -72,7 +72,7 @@ static void more_files_than_there_is_room_for_are_counted(void **state)
     log_finish();
     text = captured_stderr_end();
     assert_int_equal(count_lines("tile 0 "), 255 + LOG_LINES_PER_FILE);
-    assert_int_equal(count_lines("0.store: 1 more messages"), 26);
+    assert_int_equal(count_lines("0.store: 1 more message\n"), 26);
     assert_int_equal(count_lines("other files: 1458 more messages"), 1);
 }
 

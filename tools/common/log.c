@@ -99,8 +99,9 @@ void log_finish(void)
     for (uint32_t i = 0; i < table.file_count; i++) {
         struct file *file = &table.files[i];
         if (file->counted > 0)
-            text_say("%s%s: %" PRIu64 " more messages, repeats among them", file->speaker,
-                     file->name ? file->name : "other files", file->counted);
+            text_say("%s%s: %" PRIu64 " more message%s", file->speaker,
+                     file->name ? file->name : "other files", file->counted,
+                     file->counted == 1 ? "" : "s, repeats among them");
         free(file->name);
     }
     table.file_count = table.message_count = 0;

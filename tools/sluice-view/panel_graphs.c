@@ -163,13 +163,13 @@ static void draw_graph(const struct view_facts *f, const struct graph *graph,
 }
 
 /* The last 3600 frames at most: what was before is in the curves. */
-static void draw_quantiles(struct view_facts *f, enum history_span span)
+static void draw_quantiles(struct view_facts *f, enum history_span span, bool by_number)
 {
     static const double parts[] = {0.5, 0.99};
     double seconds[2];
     history_frame_times(&f->history, span, parts, 2, seconds);
-    ui_text(UI_WHITE, "Frames: half within %.1f ms (p50), 99 %% within %.1f ms (p99)",
-            1e3 * seconds[0], 1e3 * seconds[1]);
+    ui_text(UI_WHITE, "Frames%s: half within %.1f ms (p50), 99 %% within %.1f ms (p99)",
+            by_number ? ", time by number" : "", 1e3 * seconds[0], 1e3 * seconds[1]);
     ui_hint("Of the span that is shown, at most the last %u frames.", HISTORY_FRAMES);
 }
 
@@ -193,7 +193,7 @@ void panel_graphs(struct view_app *app)
         const enum history_span span = (enum history_span)app->settings.graph_span;
         draw_spans(app);
         if (!app->deterministic)
-            draw_quantiles(&app->facts, span);
+            draw_quantiles(&app->facts, span, app->headless);
         for (size_t i = 0; i < sizeof graphs / sizeof *graphs; i++)
             if (!(app->deterministic && graphs[i].times))
                 draw_graph(&app->facts, &graphs[i], span);

@@ -86,8 +86,9 @@ void panel_traced_memory(const struct view_app *app)
 {
     const struct traced *t = stage_traced(app->stage);
     const SluiceDemandStatistics *d = &t->now;
-    ui_text(UI_WHITE, "%llu tiles and mip tails are resident, in %u images",
-            (unsigned long long)d->residentTileCount, d->pageChunkCount);
+    ui_text(UI_WHITE, "%llu tile%s and mip tails are resident, in %u image%s",
+            (unsigned long long)d->residentTileCount, d->residentTileCount == 1 ? "" : "s",
+            d->pageChunkCount, d->pageChunkCount == 1 ? "" : "s");
     if (d->lodBias > 0)
         ui_text(UI_RED, "memory is short: +%.1f level", (double)d->lodBias);
     draw_size("tiles, on the device", d->tileMemorySize);
