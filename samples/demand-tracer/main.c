@@ -20,7 +20,7 @@
 #include "../../tools/common/text.h"
 #include "../common/contact_sheet.h"
 #include "../common/crew.h"
-#include "../common/picture_ring.h"
+#include "../common/device_crew.h"
 #include "device.h"
 #include "summary.h"
 
@@ -31,19 +31,14 @@ struct tracer {
     struct tracer_options options;
     struct scene scene;
     struct textures textures;
-    SluiceReadPool *pool;   ///< NULL: each device reads for itself
-    struct device *devices; ///< owned
-    uint32_t device_count;
+    SluiceReadPool *pool;    ///< NULL: each device reads for itself
+    struct device *devices;  ///< owned
+    struct device_crew crew; ///< of the devices
     bool unsupported;
     uint32_t validation_messages; ///< of all devices, once they are destroyed
-    struct picture_ring ring;     ///< of pictures that all devices trace
-    struct picture *picture;      ///< ... the one that they trace, or traced last
     struct contact_sheet sheet;
-    struct scene_camera camera; ///< of the picture that all devices trace
-    atomic_uint next_picture;   ///< of an animation whose pictures devices take in turn
-    atomic_bool ends;           ///< a device failed
-    double start;               ///< of the first launch, s
-    pthread_mutex_t mutex;      ///< of all below
+    double start;          ///< of the first launch, s
+    pthread_mutex_t mutex; ///< of all below
     struct progress progress;
     char progress_text[96];
 };
@@ -80,89 +75,91 @@ static bool can_write_outputs(const struct tracer_options *o)
            check_outputs(o, output_can_write);
 }
 
-static bool create_device(struct tracer *t, uint32_t index, const char *name)
+static bool create_device(void *user_data, uint32_t index, const char *name, bool *exists)
 {
+    struct tracer *t = user_data;
     struct device *d = &t->devices[index];
     d->tracer = t;
     d->index = index;
-    const bool done = device_create(&t->options, index > 0 ? t->devices : NULL, name, d);
+    *exists = device_create(&t->options, index > 0 ? t->devices : NULL, name, d);
     t->unsupported = t->unsupported || d->unsupported;
-    t->device_count += done;
-    return done;
+    return *exists;
 }
 
 /** The first one has the instance. */
 static bool create_devices(struct tracer *t)
 {
-    const struct device_list *list = &t->options.devices;
-    uint32_t indices[DEVICE_LIST_MOST], count = 1;
-    char name[16];
-    snprintf(name, sizeof name, "%u", list->indices[0]);
+    const struct tracer_options *o = &t->options;
+    bool none = false;
     t->devices = calloc(DEVICE_LIST_MOST, sizeof *t->devices);
-    if (!t->devices || !create_device(t, 0, list->count > 0 ? name : t->options.device))
-        return false;
-    if (list->wanted > 0 || list->count > 0)
-        count = gpu_list_alike(&t->devices[0].gpu, list, indices);
-    t->unsupported = t->unsupported || count == 0;
-    for (uint32_t i = 1; i < count; i++) {
-        snprintf(name, sizeof name, "%u", indices[i]);
-        if (!create_device(t, i, name))
-            return false;
-    }
-    return count > 0;
+    const bool done = t->devices && device_crew_create(&t->crew, &o->devices, o->device,
+                                                       &t->devices[0].gpu, &none);
+    t->unsupported = t->unsupported || none;
+    return done;
 }
 
 static bool open_device(void *user_data, uint32_t index)
 {
     struct tracer *t = user_data;
-    const bool splits = t->options.split == SPLIT_FRAME && t->device_count > 1;
-    const struct film_share share = {index, t->device_count};
     t->devices[index].pool = t->pool;
     return device_open(&t->devices[index], &t->scene, &t->textures,
-                       splits ? share : (struct film_share){0});
+                       device_crew_share(&t->crew, index));
 }
 
 static bool write_picture(void *user_data, const struct picture *picture, uint32_t index)
 {
-    const struct tracer_options *o = user_data;
+    const struct tracer *t = user_data;
+    const struct tracer_options *o = &t->options;
     char name[32];
     name_picture(o, index, name);
     return picture_write(picture, o->exposure, o->output, name);
 }
 
-static bool create_ring(struct tracer *t, uint32_t count, struct picture_ring *ring)
+static struct scene_camera camera_of(const struct tracer_options *o, uint32_t picture)
 {
-    return picture_ring_create(count, t->options.size, false, write_picture, &t->options, ring);
+    return scene_turn_camera(&o->view, (picture + 1.0) / picture_count(o));
 }
 
-/** As many pictures of an animation are written at a time as devices trace. */
-static uint32_t picture_slots(const struct tracer *t)
+static bool trace_picture(void *user_data, uint32_t device, uint32_t index, struct picture *picture)
 {
-    const uint32_t most = t->device_count + 1, count = picture_count(&t->options);
-    return count < most ? count : most;
+    struct tracer *t = user_data;
+    const struct scene_camera camera = camera_of(&t->options, index);
+    return device_trace(&t->devices[device], &camera, picture);
+}
+
+static void set_up_crew(struct tracer *t)
+{
+    static const struct device_crew_calls calls = {create_device, trace_picture, write_picture};
+    const struct tracer_options *o = &t->options;
+    t->crew = (struct device_crew){.calls = &calls,
+                                   .user_data = t,
+                                   .split = o->split,
+                                   .end_of_pictures = picture_count(o),
+                                   .size = {o->size[0], o->size[1]}};
 }
 
 static bool open_all(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
+    set_up_crew(t);
     if (!can_write_outputs(o) || !scene_build(o->seed, o->texture_count, &t->scene) ||
         !textures_create(o, &t->textures) || !check_outputs(o, output_spares_inputs) ||
         !create_devices(t) ||
-        !read_sharing_create(o->read_sharing, t->device_count, o->threads, &t->pool))
+        !read_sharing_create(o->read_sharing, t->crew.device_count, o->threads, &t->pool))
         return false;
-    const bool done = crew_run(t->device_count, open_device, t);
-    for (uint32_t i = 0; i < t->device_count; i++)
+    const bool done = crew_run(t->crew.device_count, open_device, t);
+    for (uint32_t i = 0; i < t->crew.device_count; i++)
         t->unsupported = t->unsupported || t->devices[i].unsupported;
-    return done && (o->split == SPLIT_ALTERNATE || create_ring(t, picture_slots(t), &t->ring));
+    return done && device_crew_create_pictures(&t->crew);
 }
 
 static void close_all(struct tracer *t)
 {
-    for (uint32_t i = t->device_count; i-- > 0;)
+    for (uint32_t i = t->crew.device_count; i-- > 0;)
         device_destroy(&t->devices[i]);
     sluiceDestroyReadPool(t->pool);
     textures_finish(&t->textures);
-    picture_ring_destroy(&t->ring);
+    device_crew_finish(&t->crew);
     contact_sheet_finish(&t->sheet);
     scene_finish(&t->scene);
     if (t->devices)
@@ -182,7 +179,7 @@ static void show_progress(struct device *d, const struct launch_record *record,
              (unsigned long long)(statistics->bytesRead / 1000000u));
     d->path_count = d->done_count + (uint64_t)record->sample * d->film.pixel_count +
                     d->film.pixel_count - record->missing_count;
-    for (uint32_t i = 0; i < t->device_count; i++)
+    for (uint32_t i = 0; i < t->crew.device_count; i++)
         paths += t->devices[i].path_count;
     progress_update(&t->progress, paths);
     pthread_mutex_unlock(&t->mutex);
@@ -191,12 +188,12 @@ static void show_progress(struct device *d, const struct launch_record *record,
 static bool add_to_sheet(struct tracer *t, const struct launch_record *record, uint64_t tiles)
 {
     char caption[96];
-    const double pixels = (double)t->picture->width * t->picture->height;
+    const double pixels = (double)t->crew.picture->width * t->crew.picture->height;
     const double share = 100.0 * record->missing_count / pixels;
     bool some = record->missing_count > 0;
     snprintf(caption, sizeof caption, "launch %u: %llu tiles, %.*f%% missing", record->index,
              (unsigned long long)tiles, some && share < 10.0 ? 1 : 0, share);
-    return contact_sheet_add(&t->sheet, t->picture, t->options.exposure, caption);
+    return contact_sheet_add(&t->sheet, t->crew.picture, t->options.exposure, caption);
 }
 
 static bool remember(struct device *d, const struct launch_record *record,
@@ -223,33 +220,22 @@ static bool keep_picture(struct device *d, const struct launch_record *record, u
         return true;
     char name[32];
     snprintf(name, sizeof name, "launch-%05u", record->index);
-    return film_read(&d->gpu, &d->film, t->picture) && (!sheet || add_to_sheet(t, record, tiles)) &&
+    return film_read(&d->gpu, &d->film, t->crew.picture) &&
+           (!sheet || add_to_sheet(t, record, tiles)) &&
            (!o->launch_pictures ||
-            picture_write(t->picture, o->exposure, o->launch_pictures, name));
+            picture_write(t->crew.picture, o->exposure, o->launch_pictures, name));
 }
 
 static bool after_launch(void *user_data, const struct launch_record *record)
 {
     struct device *d = user_data;
     SluiceDemandStatistics statistics = {.structSize = sizeof statistics};
-    if (atomic_load(&d->tracer->ends) ||
+    if (atomic_load(&d->tracer->crew.ends) ||
         sluiceGetDemandStatistics(d->loader, &statistics) != SLUICE_SUCCESS)
         return false;
     show_progress(d, record, &statistics);
     return remember(d, record, &statistics) &&
            keep_picture(d, record, statistics.residentTileCount);
-}
-
-static struct scene_camera camera_of(const struct tracer_options *o, uint32_t picture)
-{
-    return scene_turn_camera(&o->view, (picture + 1.0) / picture_count(o));
-}
-
-static bool end_if_failed(struct tracer *t, bool done)
-{
-    if (!done)
-        atomic_store(&t->ends, true);
-    return done;
 }
 
 static bool preload(void *user_data, uint32_t index)
@@ -258,57 +244,19 @@ static bool preload(void *user_data, uint32_t index)
     return launches_preload(&t->devices[index].launches);
 }
 
-/** Its tiles of the picture that all devices trace. */
-static bool trace_share(void *user_data, uint32_t index)
-{
-    struct tracer *t = user_data;
-    return end_if_failed(t, device_trace(&t->devices[index], &t->camera, t->picture));
-}
-
-/** Whole pictures, the next one that no device has begun. */
-static bool trace_pictures(void *user_data, uint32_t index)
-{
-    struct tracer *t = user_data;
-    const struct tracer_options *o = &t->options;
-    struct picture_ring ring = {0};
-    bool done = create_ring(t, 2, &ring);
-    for (uint32_t i; done && (i = atomic_fetch_add(&t->next_picture, 1)) < picture_count(o);) {
-        const struct scene_camera camera = camera_of(o, i);
-        done = device_trace(&t->devices[index], &camera, picture_ring_next(&ring)) &&
-               picture_ring_write(&ring, i);
-    }
-    done = picture_ring_wait(&ring) && done;
-    picture_ring_destroy(&ring);
-    return end_if_failed(t, done);
-}
-
-static bool trace_all(struct tracer *t)
-{
-    const struct tracer_options *o = &t->options;
-    bool done = true;
-    if (o->split == SPLIT_ALTERNATE)
-        return crew_run(t->device_count, trace_pictures, t);
-    for (uint32_t i = 0; i < picture_count(o) && done; i++) {
-        t->camera = camera_of(o, i);
-        t->picture = picture_ring_next(&t->ring);
-        done = crew_run(t->device_count, trace_share, t) && picture_ring_write(&t->ring, i);
-    }
-    return picture_ring_wait(&t->ring) && done;
-}
-
 static bool write_histories(const struct tracer *t)
 {
     const struct history *histories[DEVICE_LIST_MOST];
-    for (uint32_t i = 0; i < t->device_count; i++)
+    for (uint32_t i = 0; i < t->crew.device_count; i++)
         histories[i] = &t->devices[i].history;
-    return history_write(histories, t->device_count, t->options.output);
+    return history_write(histories, t->crew.device_count, t->options.output);
 }
 
 static bool count_needs(const struct tracer *t, double *tiles)
 {
     uint64_t sum = 0;
     bool done = true;
-    for (uint32_t i = 0; i < t->device_count && t->options.needs && done; i++) {
+    for (uint32_t i = 0; i < t->crew.device_count && t->options.needs && done; i++) {
         uint64_t count = 0;
         done = needs_count(&t->devices[i].gpu, &t->devices[i].renderer.needs, &count);
         sum += count;
@@ -322,15 +270,15 @@ static bool print_summary(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
     struct summary summary = {.devices = t->devices,
-                              .device_count = t->device_count,
+                              .device_count = t->crew.device_count,
                               .textures = &t->textures,
                               .pool = t->pool,
                               .start = t->start,
                               .difference = {NAN, NAN, NAN},
                               .needed_tiles = NAN};
     const struct picture_place place = {o->output, t->devices[0].launches.count};
-    if ((o->reference &&
-         !picture_compare(t->picture, o->exposure, o->reference, &place, &summary.difference)) ||
+    if ((o->reference && !picture_compare(t->crew.picture, o->exposure, o->reference, &place,
+                                          &summary.difference)) ||
         !count_needs(t, &summary.needed_tiles))
         return false;
     if (o->json)
@@ -350,17 +298,17 @@ static bool trace(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
     uint64_t missing = 0;
-    for (uint32_t i = 0; i < t->device_count; i++)
+    for (uint32_t i = 0; i < t->crew.device_count; i++)
         t->devices[i].launches.after_launch = after_launch;
-    if (o->preload && !crew_run(t->device_count, preload, t))
+    if (o->preload && !crew_run(t->crew.device_count, preload, t))
         return false;
     t->start = clock_seconds();
     progress_begin(&t->progress, t->progress_text, "paths",
                    (uint64_t)picture_count(o) * o->samples * o->size[0] * o->size[1]);
-    if (!trace_all(t))
+    if (!device_crew_trace(&t->crew))
         return false;
     progress_end(&t->progress);
-    for (uint32_t i = 0; i < t->device_count; i++)
+    for (uint32_t i = 0; i < t->crew.device_count; i++)
         missing += t->devices[i].missing_count;
     if (missing > 0)
         fprintf(stderr, "%llu pixels are still missing after %u launches\n",
