@@ -18,7 +18,7 @@
 #include "../../tools/common/text.h"
 #include "../common/contact_sheet.h"
 #include "../common/crew.h"
-#include "../common/picture_ring.h"
+#include "../common/device_crew.h"
 #include "camera.h"
 #include "flight.h"
 #include "picture_output.h"
@@ -31,19 +31,14 @@
 struct renderer {
     struct pbrt_options options;
     struct shared shared;
-    struct device *devices; ///< owned
-    uint32_t device_count;
+    struct device *devices;  ///< owned
+    struct device_crew crew; ///< of the devices
     bool unsupported;
     uint32_t validation_messages; ///< of all devices, once they are destroyed
-    struct picture_ring ring;     ///< of pictures that all devices render
-    struct picture *picture;      ///< ... the one that they render, or rendered last
     struct contact_sheet sheet;
-    struct flight flight;     ///< of the only device
-    double way;               ///< share of the picture that all devices render
-    atomic_uint next_picture; ///< of an animation whose pictures devices take in turn
-    atomic_bool ends;         ///< a device failed
-    double start;             ///< of the program
-    double trace_start;       ///< of the first launch
+    struct flight flight; ///< of the only device
+    double start;         ///< of the program
+    double trace_start;   ///< of the first launch
 };
 
 static uint32_t first_picture(const struct pbrt_options *o)
@@ -109,88 +104,95 @@ static bool open_scene(struct renderer *r)
     return true;
 }
 
-static bool create_device(struct renderer *r, uint32_t index, const char *name)
+static bool create_device(void *user_data, uint32_t index, const char *name, bool *exists)
 {
+    struct renderer *r = user_data;
     struct device *d = &r->devices[index];
     d->index = index;
-    const bool done = device_create(&r->shared, index > 0 ? r->devices : NULL, name, d);
+    *exists = device_create(&r->shared, index > 0 ? r->devices : NULL, name, d);
     r->unsupported = r->unsupported || d->unsupported;
-    r->device_count += done;
-    return done && !d->unsupported;
+    return *exists && !d->unsupported;
 }
 
 /** The first one has the instance. */
 static bool create_devices(struct renderer *r)
 {
-    const struct device_list *list = &r->options.devices;
-    uint32_t indices[DEVICE_LIST_MOST], count = 1;
-    char name[16];
-    snprintf(name, sizeof name, "%u", list->indices[0]);
+    const struct pbrt_options *o = &r->options;
+    bool none = false;
     r->devices = calloc(DEVICE_LIST_MOST, sizeof *r->devices);
-    if (!r->devices || !create_device(r, 0, list->count > 0 ? name : r->options.device))
-        return false;
-    if (list->wanted > 0 || list->count > 0)
-        count = gpu_list_alike(&r->devices[0].gpu, list, indices);
-    r->unsupported = r->unsupported || count == 0;
-    for (uint32_t i = 1; i < count; i++) {
-        snprintf(name, sizeof name, "%u", indices[i]);
-        if (!create_device(r, i, name))
-            return false;
-    }
-    return count > 0;
+    const bool done = r->devices && device_crew_create(&r->crew, &o->devices, o->device,
+                                                       &r->devices[0].gpu, &none);
+    r->unsupported = r->unsupported || none;
+    return done;
 }
 
 static bool open_device(void *user_data, uint32_t index)
 {
     struct renderer *r = user_data;
-    const bool splits = r->options.split == SPLIT_FRAME && r->device_count > 1;
-    const struct film_share share = {index, r->device_count};
-    return device_open(&r->devices[index], splits ? share : (struct film_share){0});
+    return device_open(&r->devices[index], device_crew_share(&r->crew, index));
 }
 
 static bool write_picture(void *user_data, const struct picture *picture, uint32_t index)
 {
-    const struct pbrt_options *o = user_data;
+    const struct renderer *r = user_data;
+    const struct pbrt_options *o = &r->options;
     char path[4096];
     name_picture(o, index, path);
     return picture_output_write(picture, o->exposure, path);
 }
 
-static bool create_ring(struct renderer *r, uint32_t count, struct picture_ring *ring)
+/** Share of the way. */
+static double way_of(const struct pbrt_options *o, uint32_t picture)
 {
-    return picture_ring_create(count, r->shared.size, true, write_picture, &r->options, ring);
+    return o->animation > 0 ? (picture + 1.0) / o->animation : o->fly_at;
 }
 
-/** As many pictures of an animation are written at a time as devices render. */
-static uint32_t picture_slots(const struct renderer *r)
+static bool render_picture(void *user_data, uint32_t device, uint32_t index,
+                           struct picture *picture)
 {
-    const uint32_t most = r->device_count + 1;
-    const uint32_t count = end_of_pictures(&r->options) - first_picture(&r->options);
-    return count < most ? count : most;
+    struct renderer *r = user_data;
+    return device_render(&r->devices[device], way_of(&r->options, index), picture);
+}
+
+/** The scene is open. */
+static void set_up_crew(struct renderer *r)
+{
+    static const struct device_crew_calls calls = {create_device, render_picture, write_picture};
+    const struct pbrt_options *o = &r->options;
+    r->crew = (struct device_crew){.calls = &calls,
+                                   .user_data = r,
+                                   .split = o->split,
+                                   .first_picture = first_picture(o),
+                                   .end_of_pictures = end_of_pictures(o),
+                                   .size = {r->shared.size[0], r->shared.size[1]},
+                                   .plain = true};
 }
 
 static bool open_all(struct renderer *r)
 {
     const struct pbrt_options *o = &r->options;
-    if (!open_scene(r) || !create_devices(r) || !create_pictures(r) ||
-        !read_sharing_create(o->read_sharing, r->device_count, o->threads, &r->shared.pool))
+    if (!open_scene(r))
         return false;
-    r->shared.meshes = mesh_cache_create(&r->shared.scene, r->device_count, MESH_CACHE_BYTES);
-    const bool done = r->shared.meshes && crew_run(r->device_count, open_device, r);
-    for (uint32_t i = 0; i < r->device_count; i++)
+    set_up_crew(r);
+    if (!create_devices(r) || !create_pictures(r) ||
+        !read_sharing_create(o->read_sharing, r->crew.device_count, o->threads, &r->shared.pool))
+        return false;
+    r->shared.meshes = mesh_cache_create(&r->shared.scene, r->crew.device_count, MESH_CACHE_BYTES);
+    const bool done = r->shared.meshes && crew_run(r->crew.device_count, open_device, r);
+    for (uint32_t i = 0; i < r->crew.device_count; i++)
         r->unsupported = r->unsupported || r->devices[i].unsupported;
-    return done && (o->split == SPLIT_ALTERNATE || create_ring(r, picture_slots(r), &r->ring));
+    return done && device_crew_create_pictures(&r->crew);
 }
 
 static void close_all(struct renderer *r)
 {
     flight_finish(&r->flight);
-    for (uint32_t i = r->device_count; i-- > 0;)
+    for (uint32_t i = r->crew.device_count; i-- > 0;)
         device_destroy(&r->devices[i]);
     sluiceDestroyReadPool(r->shared.pool);
     mesh_cache_destroy(r->shared.meshes);
     picture_files_finish(&r->shared.pictures);
-    picture_ring_destroy(&r->ring);
+    device_crew_finish(&r->crew);
     contact_sheet_finish(&r->sheet);
     scene_finish(&r->shared.scene);
     if (r->devices)
@@ -206,7 +208,7 @@ static bool add_to_sheet(struct renderer *r, const struct device *d)
     const bool is_small = share > 0.0 && share < 10.0;
     snprintf(caption, sizeof caption, "launch %u: %llu shapes, %.*f%% missing", d->launches.count,
              (unsigned long long)d->world.entered_count, is_small ? 1 : 0, share);
-    return contact_sheet_add(&r->sheet, r->picture, r->options.exposure, caption);
+    return contact_sheet_add(&r->sheet, r->crew.picture, r->options.exposure, caption);
 }
 
 static void tell_debug(const struct renderer *r, const struct device *device)
@@ -236,67 +238,17 @@ static bool after_launch(void *user_data)
     const struct device *d = &r->devices[0]; /* launches are shown of an only device */
     const struct pbrt_options *o = &r->options;
     char path[4096];
-    if (atomic_load(&r->ends))
+    if (atomic_load(&r->crew.ends))
         return false;
     tell_debug(r, d);
     if (!o->sequence && !o->contact_sheet)
         return true;
-    if (!film_read(&d->gpu, &d->film, r->picture))
+    if (!film_read(&d->gpu, &d->film, r->crew.picture))
         return false;
     snprintf(path, sizeof path, "%s/launch-%05u.png", o->sequence ? o->sequence : "",
              d->launches.count);
-    return (!o->sequence || picture_output_write(r->picture, o->exposure, path)) &&
+    return (!o->sequence || picture_output_write(r->crew.picture, o->exposure, path)) &&
            (!o->contact_sheet || add_to_sheet(r, d));
-}
-
-/** Share of the way. */
-static double way_of(const struct pbrt_options *o, uint32_t picture)
-{
-    return o->animation > 0 ? (picture + 1.0) / o->animation : o->fly_at;
-}
-
-static bool end_if_failed(struct renderer *r, bool done)
-{
-    if (!done)
-        atomic_store(&r->ends, true);
-    return done;
-}
-
-/** Its tiles of the picture that all devices render. */
-static bool render_share(void *user_data, uint32_t index)
-{
-    struct renderer *r = user_data;
-    return end_if_failed(r, device_render(&r->devices[index], r->way, r->picture));
-}
-
-/** Whole pictures, the next one that no device has begun. */
-static bool render_pictures(void *user_data, uint32_t index)
-{
-    struct renderer *r = user_data;
-    const struct pbrt_options *o = &r->options;
-    struct picture_ring ring = {0};
-    bool done = create_ring(r, 2, &ring);
-    for (uint32_t i; done && (i = atomic_fetch_add(&r->next_picture, 1)) < end_of_pictures(o);)
-        done = device_render(&r->devices[index], way_of(o, i), picture_ring_next(&ring)) &&
-               picture_ring_write(&ring, i);
-    done = picture_ring_wait(&ring) && done;
-    picture_ring_destroy(&ring);
-    return end_if_failed(r, done);
-}
-
-static bool render_all(struct renderer *r)
-{
-    const struct pbrt_options *o = &r->options;
-    bool done = true;
-    atomic_store(&r->next_picture, first_picture(o));
-    if (o->split == SPLIT_ALTERNATE)
-        return crew_run(r->device_count, render_pictures, r);
-    for (uint32_t i = first_picture(o); i < end_of_pictures(o) && done; i++) {
-        r->way = way_of(o, i);
-        r->picture = picture_ring_next(&r->ring);
-        done = crew_run(r->device_count, render_share, r) && picture_ring_write(&r->ring, i);
-    }
-    return picture_ring_wait(&r->ring) && done;
 }
 
 static bool repeat_share(void *user_data, uint32_t index)
@@ -311,12 +263,12 @@ static bool tell(struct renderer *r, uint64_t missing)
 {
     const struct pbrt_options *o = &r->options;
     const struct summary summary = {.devices = r->devices,
-                                    .device_count = r->device_count,
+                                    .device_count = r->crew.device_count,
                                     .start = r->start,
                                     .trace_start = r->trace_start};
     if (o->contact_sheet && !contact_sheet_write(&r->sheet, o->contact_sheet))
         return false;
-    if (o->repeat > 0 && missing == 0 && !crew_run(r->device_count, repeat_share, r))
+    if (o->repeat > 0 && missing == 0 && !crew_run(r->crew.device_count, repeat_share, r))
         return false;
     if (o->statistics && !statistics_write(&r->devices[0].launches, o->scene, o->statistics))
         return false;
@@ -344,16 +296,17 @@ static bool fly(struct renderer *r)
 static bool render(struct renderer *r)
 {
     uint64_t missing = 0;
-    if (r->ring.count > 0)
-        r->picture = picture_ring_next(&r->ring); /* launches of a flight are shown in it */
+    if (r->crew.ring.count > 0)
+        r->crew.picture =
+            picture_ring_next(&r->crew.ring); /* launches of a flight are shown in it */
     r->trace_start = clock_seconds();
-    for (uint32_t i = 0; i < r->device_count; i++) {
+    for (uint32_t i = 0; i < r->crew.device_count; i++) {
         r->devices[i].launches.user_data = r;
         r->devices[i].launches.after_launch = after_launch;
     }
-    if (!fly(r) || !render_all(r))
+    if (!fly(r) || !device_crew_trace(&r->crew))
         return false;
-    for (uint32_t i = 0; i < r->device_count; i++)
+    for (uint32_t i = 0; i < r->crew.device_count; i++)
         missing += r->devices[i].missing_count;
     if (missing > 0)
         fprintf(stderr, "%llu pixels are still missing after %u launches\n",
