@@ -94,7 +94,7 @@ fact damaged_plans_are_refused_with_the_line
 sed 's/quality=1/quality=2/' the.plan >other.plan && run 1 --shard 1/2 other.plan && grep -q 'line 3: .*make the plan again' err
 fact settings_that_do_not_fit_their_hash_are_refused
 
-run 2 --shard 0/3 the.plan && run 2 --shard 4/3 the.plan && run 2 --shard 1 the.plan && run 2 --shard 1/2 the.plan -o x &&
+run 2 --shard 0/3 the.plan && run 2 --shard 4/3 the.plan && grep -q 'shard 4/3: wants I/N, with I from 1 to N' err && run 2 --shard 1 the.plan && run 2 --shard 1/2 the.plan -o x &&
     run 2 --merge the.plan && run 2 --merge the.plan in -o x.tsv && run 2 in -o x --plan p --merge &&
     run 2 --cube in/p{1,2,3,4,5,6}.png -o x.store --plan p && run 1 --shard 1/2 absent.plan && grep -q 'absent.plan: No such file' err
 fact wrong_usage_is_refused

@@ -264,9 +264,12 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
     if (gpu->modes[1] == SLUICE_RESIDENCY_MODE_AUTO)
         gpu->modes[1] = gpu->modes[0] == SLUICE_RESIDENCY_MODE_SPARSE ? SLUICE_RESIDENCY_MODE_SPARSE
                                                                       : SLUICE_RESIDENCY_MODE_DENSE;
-    if (best_rank < 0 && count > 0)
-        text_say("no Vulkan device%s%s " CANNOT_STREAM, wanted ? " like " : "",
-                 wanted ? wanted : "");
+    if (by_index && wanted_index >= count && count > 0)
+        text_say("there is no device %s; --list-devices lists %u", wanted, count);
+    else if (best_rank < 0 && count > 0)
+        text_say("no Vulkan device%s%s %s", wanted ? " like " : "", wanted ? wanted : "",
+                 !gpu->is_auto && gpu->modes[0] == SLUICE_RESIDENCY_MODE_SPARSE ? CANNOT_STREAM
+                                                                                : LACKS_FEATURES);
     return best_rank >= 0;
 }
 

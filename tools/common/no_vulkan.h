@@ -8,5 +8,7 @@
 
 /** Behind "no Vulkan device", or "no Vulkan device like NAME". */
 #define CANNOT_STREAM "can stream in this residency mode; sluice-info says what each device can do"
+/** Also behind these words, if no sparse residency is wanted. */
+#define LACKS_FEATURES "has what this program needs; sluice-info says what each device can do"
 
 #endif /* TOOLS_COMMON_NO_VULKAN_H */

@@ -61,6 +61,7 @@ struct option {
     double minimum, maximum; ///< WORD and WORDS: a minimum of 1 makes them required.
     char letter;             ///< 'o' for -o; 0: none.
     bool (*parse)(const char *text, void *value); ///< CUSTOM: false if the text is no such value.
+    const char *wanted; ///< CUSTOM: the values, behind "wants". NULL: `operand`.
 };
 
 struct option_table {

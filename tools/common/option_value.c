@@ -242,7 +242,10 @@ const char *option_value_wanted(const struct option *option, const char *text, c
         snprintf(words, size, "%s, at most %u times", option->operand, OPTION_MOST_REPEATS);
         return words;
     default:
-        snprintf(words, size, "%s", option->operand ? option->operand : "no value");
+        snprintf(words, size, "%s",
+                 option->wanted    ? option->wanted
+                 : option->operand ? option->operand
+                                   : "no value");
         return words;
     }
 }

@@ -80,8 +80,11 @@ struct option option_devices(struct device_list *devices)
         "(one)",
         devices,
         "Vulkan devices that work side by side: all of the best one's type, so many of them, or "
-        "indices of --list-devices with commas; one may stand there several times",
-        .parse = device_list_parse};
+        "indices of --list-devices with commas (\"1,\" is the device of index 1); one may stand "
+        "there several times",
+        .parse = device_list_parse,
+        .wanted = "all, a COUNT from 1 to 64, or at most 64 indices with commas"};
+    _Static_assert(DEVICE_LIST_MOST == 64, "the text says so");
 }
 
 struct option option_list_devices(bool *list)

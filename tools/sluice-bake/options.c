@@ -305,7 +305,7 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_CUSTOM, "shard", "I/N", "(off)", &o->shard,
          "bake the I-th of N shares of a plan, balanced by estimated work; with --merge: name the "
          "shards to run again",
-         .parse = parse_shard},
+         .parse = parse_shard, .wanted = "I/N, with I from 1 to N and N at most 100000"},
         {OPTION_FLAG, "merge", .value = &o->merge,
          .help = "check that all stores of a plan are there, and write a catalogue of them"},
     };
