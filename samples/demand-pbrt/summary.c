@@ -203,6 +203,19 @@ static void print_pool_figure(const char *name, const char *unit, double value, 
     summary_print_figure(&(struct figure){name, unit, value}, json);
 }
 
+static void print_place(const struct pbrt_options *o)
+{
+    const char *ending = strrchr(o->file, '.');
+    char name[4096];
+    if (o->animation > 0 && ending)
+        snprintf(name, sizeof name, "%.*s-NNNN%s", (int)(ending - o->file), o->file, ending);
+    else
+        snprintf(name, sizeof name, "%s", o->file);
+    fputs(o->animation > 0 ? "the pictures are " : "the picture is ", stdout);
+    text_write(stdout, name);
+    putchar('\n');
+}
+
 bool summary_print(const struct summary *s, bool json)
 {
     struct device_figure sum[MOST_FIGURES], list[MOST_FIGURES];
@@ -224,5 +237,7 @@ bool summary_print(const struct summary *s, bool json)
             return false;
         print_device(&s->devices[i], list, count, json);
     }
+    if (!json)
+        print_place(s->devices[0].shared->options);
     return text_flush("");
 }

@@ -12,7 +12,7 @@ struct figure {
     double value; ///< NAN: not there
 };
 
-/** Sums of all devices, but for what says otherwise. */
+/** Sums of all devices, but for those that say otherwise. */
 struct totals {
     SluiceDemandStatistics statistics; ///< `lodBias`: the greatest
     double launches, complete, missing, rays, paths, tiles, resident_peak;
@@ -140,7 +140,7 @@ static void print_totals(const struct summary *s, const struct totals *t, bool j
     const double fill = isfinite(t->fill_end) ? t->fill_end - s->start : NAN;
     const struct figure figures[] = {
         {"devices", "", s->device_count},
-        {"ray_tracing_pipeline", "0 or 1", s->devices[0].renderer.uses_pipeline},
+        {"ray_tracing_pipeline", "", s->devices[0].renderer.uses_pipeline},
         {"launches", "", t->launches},
         {"samples_complete", "per pixel", t->complete},
         {"pixels_missing", "", t->missing},
@@ -151,7 +151,7 @@ static void print_totals(const struct summary *s, const struct totals *t, bool j
         {"tiles_evicted", "", (double)d->evictedCount},
         {"requests_refused", "pages", (double)d->refusedCount},
         {"reads_failed", "", (double)d->failedCount},
-        {"textures", "", (double)d->texturesCreated},
+        {"textures", "", (double)d->texturesCreated / s->device_count},
         {"textures_opened", "", (double)d->texturesOpened},
         {"textures_failed", "", (double)d->texturesFailed},
         {"textures_never_opened", "",

@@ -32,6 +32,7 @@ refuse --needs perhaps
 refuse --devices 0
 refuse --devices two
 refuse --devices 0,x
+refuse --devices 99
 refuse --devices 0,0 --device 0
 refuse --split alternate
 refuse --split rows
@@ -171,6 +172,7 @@ succeeds
 is_complete three
 same three picture first/picture
 check three devices 'v + 0 == 3'
+check three textures "v + 0 == $(value first textures)"
 check three needed_bytes "v + 0 >= $(value first needed_bytes)" # sums: each device needs its own
 check three loaded_per_needed 'v + 0 >= 1 && v + 0 <= 1.15'
 for i in 0 1 2; do
@@ -203,6 +205,7 @@ trace absent --devices 63
 [ "$status" -eq 77 ] || { echo "63 devices are there: status $status" >&2; failed=1; }
 trace missing --devices 0,4000
 [ "$status" -eq 77 ] || { echo "device 4000 is there: status $status" >&2; failed=1; }
+grep -q '^there is no device 4000; --list-devices lists ' "$folder/missing.log" || { echo "device 4000 is not named" >&2; failed=1; }
 
 # So are the pictures of an animation, whether devices share each picture or take pictures in turn. The last
 # one is the picture without an animation, and no other is.
