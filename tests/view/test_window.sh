@@ -111,6 +111,15 @@ open_viewer many && picture early.png shift+F12 && until_true 3 has_moved &&
     xdotool key Escape && until_true 10 copies '^sluice-view --room --size' &&
     xdotool key ctrl+q && ended_well
 fact loading_says_how_far_it_is_and_escape_opens_the_room_instead
+# 200 million lines take longer to read than the room takes to open.
+yes 'Translate 0 0 0' | head -n 10000000 | gzip -1 >lines.pbrt.gz
+{ printf 'Camera "perspective"\nWorldBegin\n' && yes 'Include "lines.pbrt.gz"' | head -n 20 && echo 'Shape "sphere"'; } >long.pbrt
+open_viewer long.pbrt && picture early.png shift+F12 && xdotool key Escape &&
+    until_true 10 copies '^sluice-view --room --size' && ! grep . err
+result=$?
+kill -KILL "$viewer" && wait "$viewer" 2>/dev/null
+[ $result -eq 0 ]
+fact escape_does_not_wait_until_a_file_of_pbrt_is_read
 # Rays are traced; the size of the window and of the film change meanwhile.
 export GALLIVM_PERF=nopt
 # shellcheck disable=SC2086

@@ -15,6 +15,7 @@ struct scene_load {
     struct scene_data scene;
     struct scene_progress progress;
     atomic_bool done;
+    struct scene_load *next; ///< that is parked
 };
 
 static void *open_scene(void *user)
@@ -68,16 +69,6 @@ void scene_load_describe(const struct scene_load *load, char *text, size_t size)
         snprintf(text, size, "Opening %.*s; Esc cancels", length < 80 ? length : 80, name);
 }
 
-void scene_load_cancel(struct scene_load *load)
-{
-    atomic_store(&load->progress.canceled, true);
-}
-
-bool scene_load_canceled(const struct scene_load *load)
-{
-    return atomic_load(&load->progress.canceled);
-}
-
 bool scene_load_end(struct scene_load *load, struct scene_data *scene, struct file_list *paths)
 {
     pthread_join(load->thread, NULL);
@@ -86,4 +77,33 @@ bool scene_load_end(struct scene_load *load, struct scene_data *scene, struct fi
     *paths = load->paths;
     free(load);
     return opened;
+}
+
+void scene_load_park(struct scene_load *load, struct scene_load **parked)
+{
+    atomic_store(&load->progress.canceled, true);
+    load->next = *parked;
+    *parked = load;
+}
+
+static void drop(struct scene_load *load)
+{
+    struct scene_data scene;
+    struct file_list paths;
+    if (scene_load_end(load, &scene, &paths))
+        scene_data_finish(&scene);
+    files_finish(&paths);
+}
+
+void scene_load_drop_parked(struct scene_load **parked, bool wait)
+{
+    while (*parked) {
+        struct scene_load *load = *parked;
+        if (wait || scene_load_done(load)) {
+            *parked = load->next;
+            drop(load);
+        } else {
+            parked = &load->next;
+        }
+    }
 }

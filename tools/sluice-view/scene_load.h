@@ -14,11 +14,13 @@ struct scene_load *scene_load_begin(struct file_list *paths, const char *cache, 
 bool scene_load_done(const struct scene_load *load);
 /** Writes "Opening hall.gltf: 3 of 45 images". */
 void scene_load_describe(const struct scene_load *load, char *text, size_t size);
-/** Asks it to end soon, without a scene. A geometry file that is being read is read to its end. */
-void scene_load_cancel(struct scene_load *load);
-bool scene_load_canceled(const struct scene_load *load);
 /** Waits for the thread, and frees the load. Moves its paths out, and its scene if one was opened.
  */
 bool scene_load_end(struct scene_load *load, struct scene_data *scene, struct file_list *paths);
+/** Cancels a load without a wait, and moves it into a list, which begins as NULL. Its thread ends
+ *  without a scene. A file of geometry or of pbrt that is being read is read to its end. */
+void scene_load_park(struct scene_load *load, struct scene_load **parked);
+/** Frees the loads of the list whose threads have ended. `wait`: all loads. */
+void scene_load_drop_parked(struct scene_load **parked, bool wait);
 
 #endif /* SLUICE_VIEW_SCENE_LOAD_H */

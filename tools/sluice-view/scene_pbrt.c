@@ -80,7 +80,8 @@ bool scene_pbrt_open(const char *path, const char *cache, struct scene_data *sce
     strcpy(scene->name, name);
     if (!cache_path(cache, "pictures", p->cache, sizeof p->cache) ||
         !files_make_folders(p->cache) || !scene_open(path, NULL, &p->scene) ||
-        !scene_cluster(&p->scene, CLUSTER_SIZE) || !list_pictures(p))
+        scene_data_canceled(scene) || !scene_cluster(&p->scene, CLUSTER_SIZE) ||
+        scene_data_canceled(scene) || !list_pictures(p))
         return false;
     pbrt_frame_init(p->scene.info.cameraToWorld, &p->scene.box, vertical_fov(&p->scene.info),
                     &p->frame);

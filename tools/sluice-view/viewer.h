@@ -37,6 +37,7 @@ struct viewer {
     struct view_settings applied; ///< what the streamer has
     struct file_list paths;       ///< owned; of the scene; none: the room
     struct scene_load *load;      ///< of the next scene; NULL: none
+    struct scene_load *parked;    ///< canceled loads whose threads have not ended
     char command[4200];           ///< of "copy command line", without options
     char settings_path[4096];     ///< "": none are kept
     char screenshot[4096];        ///< to write after this frame; "": none
@@ -66,8 +67,9 @@ void viewer_reopen(struct viewer *viewer, struct file_list *paths);
 /** Shows a scene that a thread has opened, and says before how far it is. False if there is nothing
  *  to show. */
 bool viewer_watch_load(struct viewer *viewer);
+/** Does not wait. The scene that is shown stays; without one, the room is opened. */
 void viewer_cancel_load(struct viewer *viewer);
-/** Cancels what is being opened, and waits for its thread. */
+/** Cancels what is being opened, and waits for all threads that open scenes. */
 void viewer_end_load(struct viewer *viewer);
 /** Creates or destroys the second streamer, as the settings of the comparison want it. False if the
  *  device failed. */

@@ -202,10 +202,18 @@ static void say_failed(struct viewer *v, const struct file_list *paths)
             paths->count > 0 ? paths->paths[0] : "the room");
 }
 
+/* Its thread may read a large file for long; frames go on. */
+static void park_load(struct viewer *v)
+{
+    if (v->load)
+        scene_load_park(v->load, &v->parked);
+    v->load = NULL;
+}
+
 /* A second request takes the place of one that is not done. */
 static bool begin_load(struct viewer *v, struct file_list *paths)
 {
-    viewer_end_load(v);
+    park_load(v);
     v->load = scene_load_begin(paths, v->options->cache, v->options->deterministic);
     return v->load != NULL;
 }
@@ -232,28 +240,14 @@ void viewer_reopen(struct viewer *v, struct file_list *paths)
         say_failed(v, paths ? paths : &v->paths);
 }
 
-/* The scene that is shown stays. Without one, the room is opened. */
-static bool end_canceled(struct viewer *v, struct file_list *paths)
-{
-    files_finish(paths);
-    *paths = (struct file_list){0};
-    app_say(&v->app, "Canceled");
-    return v->stage || begin_load(v, paths);
-}
-
 static bool end_load(struct viewer *v)
 {
     struct scene_data scene;
     struct file_list paths;
     struct scene_load *load = v->load;
-    const bool canceled = scene_load_canceled(load);
     v->load = NULL;
     const bool opened = scene_load_end(load, &scene, &paths);
     v->app.said_seconds = 0;
-    if (canceled) {
-        scene_data_finish(&scene);
-        return end_canceled(v, &paths);
-    }
     if (!opened || !show(v, &scene, &paths))
         say_failed(v, &paths);
     files_finish(&paths);
@@ -263,8 +257,9 @@ static bool end_load(struct viewer *v)
 bool viewer_watch_load(struct viewer *v)
 {
     char text[160];
+    scene_load_drop_parked(&v->parked, false);
     if (!v->load)
-        return true;
+        return v->stage != NULL;
     if (scene_load_done(v->load))
         return end_load(v);
     scene_load_describe(v->load, text, sizeof text);
@@ -274,21 +269,20 @@ bool viewer_watch_load(struct viewer *v)
 
 void viewer_cancel_load(struct viewer *v)
 {
-    if (v->load)
-        scene_load_cancel(v->load);
+    struct file_list room = {0};
+    if (!v->load)
+        return;
+    park_load(v);
+    v->app.said_seconds = 0;
+    app_say(&v->app, "Canceled");
+    if (!v->stage)
+        begin_load(v, &room);
 }
 
 void viewer_end_load(struct viewer *v)
 {
-    struct scene_data scene;
-    struct file_list paths;
-    if (!v->load)
-        return;
-    scene_load_cancel(v->load);
-    if (scene_load_end(v->load, &scene, &paths))
-        scene_data_finish(&scene);
-    files_finish(&paths);
-    v->load = NULL;
+    park_load(v);
+    scene_load_drop_parked(&v->parked, true);
 }
 
 /* Either all streamers draw with the code, or none; scenes that are opened later, too. */
