@@ -262,6 +262,10 @@ if glslang=$(command -v glslangValidator); then
         grep -q "scene.frag:[0-9]*: .*outColour" err
     fact a_shader_that_cannot_be_compiled_is_named_and_the_one_before_stays
 fi
+# The streamer's buffers leave less than 4 MiB for heaps.
+run 0 --room --still --headless --deterministic --fresh --size 160x160 --residency sparse --budget 4 --frames 10 --csv tight.csv &&
+    awk -F , 'END { exit !($2 > 2 && $2 <= 4.2) }' tight.csv && [ ! -s err ]
+fact the_smallest_budget_has_room_for_tiles
 printf '12 set freeze-wants on\n13 hold s 20\n' >frozen
 run 0 --room --still --headless --deterministic --fresh --size 160x160 --residency paged --timeout 0.1 --standby 0 \
     --panels off --script frozen --frames 48 --csv frozen.csv &&

@@ -310,7 +310,7 @@ static void sums_of_memory_count_all_slots(void **state)
         if (sluiceGetSlotTile(manager(), heap, 0, &tile) != SLUICE_SUCCESS)
             continue;
         heaps++;
-        for (uint32_t i = 0; i < STAGE_HEAP_TILES; i++) {
+        for (uint32_t i = 0; i < stage_heap_tiles(show->stage); i++) {
             if (!memory_slot_get(show->stage, &show->app.facts, heap, i, &slot))
                 continue;
             used++;
@@ -321,7 +321,7 @@ static void sums_of_memory_count_all_slots(void **state)
     assert_int_equal(sums.heaps, heaps);
     assert_int_equal(sums.used, used);
     uint32_t needed = 0;
-    while (needed * STAGE_HEAP_TILES < used)
+    while (needed * stage_heap_tiles(show->stage) < used)
         needed++;
     assert_int_equal(sums.spare_heaps, heaps - needed);
     assert_true(used > 0);

@@ -85,8 +85,9 @@ struct memory_sums memory_sums_of(const struct stage *stage)
     if (sluiceGetStatistics(manager_of(stage), &now) != SLUICE_SUCCESS || now.heapCount == 0)
         return sums;
     sums.heaps = now.heapCount;
-    sums.used = now.heapCount * STAGE_HEAP_TILES - now.freeSlotCount - now.retiringSlotCount;
-    sums.spare_heaps = sums.heaps - (sums.used + STAGE_HEAP_TILES - 1) / STAGE_HEAP_TILES;
+    const uint32_t tiles = stage_heap_tiles(stage);
+    sums.used = now.heapCount * tiles - now.freeSlotCount - now.retiringSlotCount;
+    sums.spare_heaps = sums.heaps - (sums.used + tiles - 1) / tiles;
     sums.fragmentation = (double)sums.spare_heaps / sums.heaps;
     return sums;
 }

@@ -32,7 +32,7 @@ uint32_t memory_state_color(SluiceTileState state);
 uint32_t memory_age_color(double seconds);
 /** As view 6 has it: textures of a set share a hue, and those that follow are darker. */
 uint32_t memory_texture_color(const struct stage *stage, uint32_t texture);
-/** Of a manager with heaps of STAGE_HEAP_TILES slots. */
+/** Sums over all heaps of the stage's manager. */
 struct memory_sums memory_sums_of(const struct stage *stage);
 
 #endif /* SLUICE_VIEW_MEMORY_MAP_H */

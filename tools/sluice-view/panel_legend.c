@@ -207,16 +207,18 @@ static bool side_is_open(const struct view_app *app, bool right)
 }
 
 /* In the corner that no panel is above; between two panels there is room for its title alone. */
-void panel_legend(const struct view_app *app)
+void panel_legend(struct view_app *app)
 {
     const float scale = ui_scale(), margin = 12 * scale;
     const bool left = side_is_open(app, false), right = side_is_open(app, true);
     const float pivot[2] = {left && !right ? 1 : 0, 1};
-    const float bottom = app->width < 1160 * scale ? 86 * scale : margin; /* above the line */
+    const float beside = (app->width - app->line_width) / 2 - margin; /* of the line */
+    const float bottom = app->line_width > 0 && app->legend_width > beside ? 86 * scale : margin;
     const float placement[4] = {left && !right ? app->width - margin : margin, app->height - bottom,
                                 0, 0};
     const uint32_t view = app->settings.view;
     const bool differs = app_shows_difference(app);
+    app->legend_width = 0;
     if (!differs && (view <= VIEW_PICTURE || view > VIEW_CHECKS))
         return;
     if (ui_begin_panel("legend", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
@@ -228,6 +230,7 @@ void panel_legend(const struct view_app *app)
         if (!(left && right) && app->height >= 480 * scale)
             draw_legend(app);
         panel_probe(app);
+        app->legend_width = ui_panel_width();
     }
     ui_end_panel();
 }

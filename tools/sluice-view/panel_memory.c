@@ -52,14 +52,14 @@ static bool draw_heap(struct view_app *app, uint32_t heap, float cell)
     struct memory_slot slot;
     if (sluiceGetSlotTile(manager_of(app), heap, 0, &tile) != SLUICE_SUCCESS)
         return false;
-    const uint32_t rows = (STAGE_HEAP_TILES + COLUMNS - 1) / COLUMNS;
+    const uint32_t tiles = stage_heap_tiles(app->stage), rows = (tiles + COLUMNS - 1) / COLUMNS;
     ui_canvas((float)COLUMNS * cell, (float)rows * cell + 6 * ui_scale(), r);
     const bool hovered = ui_hovered();
     if (r[1] > app->height || r[1] + r[3] < 0) /* scrolled away */
         return true;
     ui_mouse(&x, &y);
     ui_fill(r[0], r[1], (float)COLUMNS * cell, (float)rows * cell, UI_COLOR(30, 34, 40, 255));
-    for (uint32_t i = 0; i < STAGE_HEAP_TILES; i++) {
+    for (uint32_t i = 0; i < tiles; i++) {
         const float left = r[0] + (float)(i % COLUMNS) * cell;
         const float top = r[1] + (float)(i / COLUMNS) * cell;
         if (!memory_slot_get(app->stage, &app->facts, heap, i, &slot))
@@ -89,7 +89,7 @@ static void draw_sums(struct view_app *app)
     if (sums.heaps > 0) {
         ui_text(sums.fragmentation > 0.25 ? UI_ORANGE : UI_GRAY,
                 "%u heaps, %u of %u slots used: fragmentation %.0f %%", sums.heaps, sums.used,
-                sums.heaps * STAGE_HEAP_TILES, 100.0 * sums.fragmentation);
+                sums.heaps * stage_heap_tiles(app->stage), 100.0 * sums.fragmentation);
         ui_hint("Part of the heaps that would be empty if tiles moved together: %u of %u. Compact "
                 "moves them.",
                 sums.spare_heaps, sums.heaps);
@@ -97,8 +97,8 @@ static void draw_sums(struct view_app *app)
     ui_text(f->budget && f->tails_size > f->budget ? UI_ORANGE : UI_GRAY,
             "%s of mip tails, which no budget evicts",
             panel_size(f->tails_size, tails, sizeof tails));
-    ui_hint("Each texture keeps the tiles of its coarsest levels (its mip tail), so that there is "
-            "always something to show. Heaps with such tiles stay, too.");
+    ui_hint("Each texture keeps the tiles of its coarsest levels (its mip tail) as "
+            "long as memory allows. Heaps with such tiles stay, too.");
 }
 
 static void draw_swatch(uint32_t color, const char *words)

@@ -50,6 +50,7 @@ static void draw_line(struct view_app *app)
                  sharp_words(&app->facts, sharp, sizeof sharp));
     if (app->said_seconds > 0)
         hints = app->said;
+    app->line_width = 0;
     if (app->stage && app->width < 620 * scale) /* the figures are in the corner, too */
         return;
     hints = fit_text(hints, app->width - 6 * pad, fitted, sizeof fitted);
@@ -57,7 +58,8 @@ static void draw_line(struct view_app *app)
     const float large = ui_text_width(line), tall = ui_line_height();
     ui_end_large();
     const float small = ui_text_width(hints), wide = large > small ? large : small;
-    const float placement[4] = {app->width / 2, app->height - pad, wide + 2 * pad,
+    app->line_width = wide + 2 * pad;
+    const float placement[4] = {app->width / 2, app->height - pad, app->line_width,
                                 tall + ui_line_height() + 15 * scale};
     if (ui_begin_panel("line", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_NO_INPUT)) {
         ui_begin_large();
@@ -182,6 +184,14 @@ void panel_now(struct view_app *app)
                     panel_size(f->tails_size, whole, sizeof whole));
             ui_hint("Each texture keeps the tiles of its coarsest levels, whatever the budget. "
                     "Panel M shows them.");
+        }
+        if (!stage_traced(app->stage) && f->budget && f->now.heapCount == 0 &&
+            f->now.requestedTileCount > 0) {
+            ui_text(UI_ORANGE, "no memory for tiles: heaps of %s do not fit",
+                    panel_size((uint64_t)stage_heap_tiles(app->stage) * SLUICE_DEFAULT_TILE_SIZE,
+                               whole, sizeof whole));
+            ui_hint("Heaps are made for the budget that the scene was opened with. Raise the "
+                    "budget (U), or open the scene again with this one.");
         }
         if (f->now.globalMipBias > 0)
             ui_text(UI_RED, "memory is short: +%.1f level", f->now.globalMipBias / 16.0);

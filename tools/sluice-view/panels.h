@@ -16,7 +16,7 @@ void panel_ghost(const struct view_app *app);
 /** The path that the camera follows, and the bookmarks. */
 void panel_path(const struct view_app *app);
 void panel_now(struct view_app *app);
-void panel_legend(const struct view_app *app);
+void panel_legend(struct view_app *app);
 /** Finds what is under the mouse, for the legend and the inspector. */
 void panel_probe_find(struct view_app *app);
 /** Values under the mouse, in the legend of the view. */

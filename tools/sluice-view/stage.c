@@ -30,7 +30,7 @@ struct stage {
     struct stage_texture *textures;
     uint32_t *table_indices;
     struct tile_marks marks;
-    uint32_t baking_count;
+    uint32_t baking_count, heap_tiles;
     SluiceImageSource **slow;   ///< around the scene's sources; NULL without a slow line
     SluiceImageSource **faulty; ///< around all these
     atomic_uint source_fails;
@@ -87,6 +87,21 @@ static SluiceResidencyMode mode_of(const struct view_settings *settings)
     return modes[settings->residency];
 }
 
+/* Buffers of the streamer count, too: one heap as large as the budget fits beside none. */
+static uint32_t choose_heap_tiles(uint64_t budget)
+{
+    const uint64_t most = budget / 8 / SLUICE_DEFAULT_TILE_SIZE;
+    uint32_t tiles = STAGE_HEAP_TILES;
+    while (budget > 0 && tiles > most && tiles > STAGE_LEAST_HEAP_TILES)
+        tiles /= 2;
+    return tiles;
+}
+
+uint32_t stage_heap_tiles(const struct stage *s)
+{
+    return s->heap_tiles;
+}
+
 static bool create_streamer(struct stage *s, const struct stage_request *request)
 {
     const SluiceVulkanStreamerDebugInfo debug = {.structSize = sizeof debug,
@@ -111,7 +126,7 @@ static bool create_streamer(struct stage *s, const struct stage_request *request
         .texturesPerFrame = s->settings.textures_per_frame,
         .tilesPerFrame = s->settings.tiles_per_frame,
         .maxLoadsInFlight = s->settings.loads_in_flight,
-        .heapTileCapacity = STAGE_HEAP_TILES,
+        .heapTileCapacity = s->heap_tiles,
         .textureArray = SLUICE_TEXTURE_ARRAY_COMBINED,
         .ticksPerSecond = STAGE_TICKS_PER_SECOND,
         .pDebug = &debug};
@@ -251,6 +266,7 @@ struct stage *stage_create(const struct stage_request *request,
     *scene = (struct scene_data){0};
     s->gpu = request->gpu;
     s->settings = *settings;
+    s->heap_tiles = choose_heap_tiles(settings->budget);
     if (s->scene.pbrt) {
         s->traced = traced_create(request, settings, s->scene.pbrt);
         s->scene.pbrt = NULL;

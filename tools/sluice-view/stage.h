@@ -11,7 +11,8 @@
 
 #define STAGE_NO_TEXTURE UINT32_MAX
 #define STAGE_TICKS_PER_SECOND 1000000u ///< of time stamps
-#define STAGE_HEAP_TILES 64u            ///< 4 MiB, so that small budgets are kept to
+#define STAGE_HEAP_TILES 64u            ///< per heap at most: 4 MiB
+#define STAGE_LEAST_HEAP_TILES 8u
 
 struct shader_code;
 struct stage;
@@ -100,6 +101,8 @@ SluiceVulkanStreamer *stage_streamer(const struct stage *stage);
 /** The scene of pbrt, whose rays ask a demand loader; NULL for others. */
 struct traced *stage_traced(const struct stage *stage);
 SluiceVulkanContext *stage_context(const struct stage *stage);
+/** Tiles per heap: an eighth of the budget that the scene was opened with. */
+uint32_t stage_heap_tiles(const struct stage *stage);
 /** What the scene lacks: images that are missing, extensions that are not supported. */
 uint32_t stage_message_count(const struct stage *stage);
 const char *stage_message(const struct stage *stage, uint32_t index);

@@ -86,6 +86,8 @@ enum ui_panel_flags {
 bool ui_begin_panel(const char *title, bool *open, const float placement[4], const float pivot[2],
                     unsigned flags);
 void ui_end_panel(void);
+/** Of the panel that was begun last. */
+float ui_panel_width(void);
 /** A part of a panel that scrolls. */
 void ui_begin_part(const char *id, float width, float height);
 void ui_end_part(void);

@@ -30,6 +30,11 @@ void ui_end_panel(void)
     ImGui::End();
 }
 
+float ui_panel_width(void)
+{
+    return ImGui::GetWindowWidth();
+}
+
 void ui_begin_part(const char *id, float width, float height)
 {
     ImGui::BeginChild(id, ImVec2(width, height), false);
