@@ -61,6 +61,15 @@ fact files_that_are_none_are_errors_and_the_others_are_shown
 run 1 a.png && [ "$(grep -c . err)" -eq 1 ] && grep -q 'a.png: is not a tile store, OpenEXR, DDS, KTX2 or .ntc file; sluice-bake' err
 fact a_picture_of_another_kind_is_named_so
 
+"$bake" a.png b.png -o listed --plan the.plan >out 2>err && "$bake" --shard 1/1 the.plan >out 2>err &&
+    "$bake" --merge the.plan -o the.tsv >out 2>err && run 0 the.tsv && grep -q '^the.tsv: catalogue of tile stores$' out &&
+    grep -q '^  stores  *2$' out && grep -q "^  their files  *$(cat listed/*.store | wc -c) bytes\$" out &&
+    run 0 the.tsv --json && grep -q '"kind": "catalogue", "stores": 2, ' out
+fact a_catalogue_is_counted
+head -c -9 the.tsv >cut.tsv && run 1 cut.tsv && grep -q 'cut.tsv: is a catalogue whose line 4 is damaged' err &&
+    sed '3s/\t/ /' the.tsv >joined.tsv && run 1 joined.tsv && grep -q 'line 3 is damaged' err
+fact a_damaged_catalogue_is_told_with_its_line
+
 if [ -n "$dds" ]; then
     run 0 "$dds" && grep -q '44 x 20 texels, 6 levels' out && grep -q 'BC1' out &&
         run 1 "$dds" --png no.png && [ ! -e no.png ]

@@ -14,7 +14,7 @@ static int show_any_file(const struct options *options, const char *path)
     if (is_neural_file(path))
         return show_neural_file(options, path);
 #endif
-    return show_file(options, path);
+    return is_catalogue(path) ? show_catalogue(options, path) : show_file(options, path);
 }
 
 static int show_files(const struct options *options)

@@ -16,9 +16,9 @@ static const char usage[] =
     "       sluice-info --self-test [--report FILE] [--group NAME] [--device INDEX|NAME] [--json]\n"
     "       sluice-info --list-devices\n"
     "\n"
-    "Says what is in tile stores, OpenEXR, DDS, KTX2 and .ntc files (neural textures), or,\n"
-    "without a file, what the Vulkan devices of this machine can do for Sluice. Options end\n"
-    "at --.\n";
+    "Says what is in tile stores, their catalogues, OpenEXR, DDS, KTX2 and .ntc files (neural\n"
+    "textures), or, without a file, what the Vulkan devices of this machine can do for Sluice.\n"
+    "Options end at --.\n";
 
 static const char notes[] =
     "Of each format of a device: whether it can be streamed, sampled and filtered; the tile as\n"
