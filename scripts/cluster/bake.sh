@@ -38,6 +38,8 @@ done
 [ ${#words[@]} -eq 3 ] || die "PLAN, N and CATALOGUE are needed (see --help)"
 plan=${words[0]} count=${words[1]} catalogue=${words[2]}
 case $count$local_jobs$rounds in *[!0-9]*) die "N, JOBS and rounds are numbers" ;; esac
+command -v "$bake" >/dev/null ||
+    die "there is no $bake; add the folder of sluice-bake to PATH, or name the program: SLUICE_BAKE=FOLDER/sluice-bake"
 [ "$local_jobs" -gt 0 ] || command -v sbatch >/dev/null || die "there is no sbatch; --local JOBS needs no cluster"
 
 # run_shards LIST SBATCH_OPTIONS...: shards as 1,5,7 or 1-8. Failed ones are found by the merge.

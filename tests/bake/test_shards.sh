@@ -77,6 +77,11 @@ mkdir -p "I I" && cp the.plan "I I/I.plan" && ln -s "$bake" "I I/bake" && rm man
     SLUICE_BAKE="$PWD/I I/bake" "$driver" "I I/I.plan" $shards again.tsv --local 1 --rounds 0 >out 2>err && cmp again.tsv the.tsv
 fact paths_may_have_blanks_and_capitals
 
+code=0
+SLUICE_BAKE=$PWD/absent/sluice-bake "$driver" the.plan 2 absent.tsv --local 1 >out 2>err || code=$?
+[ $code -eq 2 ] && [ "$(grep -c . err)" -eq 1 ] && grep -q "^bake.sh: there is no $PWD/absent/sluice-bake; " err && [ ! -s out ]
+fact a_driver_without_the_program_says_so_at_once
+
 lines=$(wc -l <the.plan) wrong=0
 for ((i = 0; i < lines; i++)); do
     head -n $i the.plan >cut.plan
