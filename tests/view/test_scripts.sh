@@ -38,4 +38,11 @@ for script in "$root"/docs/viewer/*.txt; do
 done
 [ -z "$unnamed" ] || { echo "not named:$unnamed" >err && false; }
 fact the_page_names_each_script
+wrong=
+for script in "$root"/docs/viewer/*.txt; do
+    head -n 1 "$script" | grep -q "^# sluice-view .*--size 1000x562 .*--script docs/viewer/$(basename "$script")" ||
+        wrong="$wrong $script"
+done
+[ -z "$wrong" ] || { echo "no command:$wrong" >err && false; }
+fact each_script_begins_with_its_command
 end_facts
