@@ -160,6 +160,10 @@ for scene in wall quads; do
         --screenshot "$scene.png" "$scene.gltf" && grep -q 'no such.png' err || break
 done && cmp wall.png quads.png
 fact masked_and_transparent_quads_are_not_seen_and_a_missing_image_is_named
+mkdir beside && cp wall.gltf pictures/black.ppm beside && hang beside && grep -q '^black.ppm: ' out &&
+    [ "$(cat err)" = 'sluice-view: wall.gltf is a scene: sluice-view beside/wall.gltf' ] &&
+    cp wall.gltf beside/other.gltf && hang beside && [ ! -s err ]
+fact the_only_scene_in_a_folder_of_pictures_is_named
 write_quads '[0,1,3]' half.gltf && sed -i 's/"baseColorFactor":\[1,0,0,0\]/"baseColorFactor":[1,0,0,0.5]/' half.gltf &&
     sed 's/"alphaMode":"BLEND",//' half.gltf >front.gltf
 for scene in wall front half; do

@@ -24,6 +24,7 @@
 
 #define NEURAL ".ntc" /* its first texture; "set.ntc#name": another one */
 #define SUFFIXES SLUICE_STORE_EXTENSION "|" NEURAL "|" PICTURE_SUFFIXES
+#define SCENES ".gltf|.glb|.obj|.pbrt"
 #define MAX_PICTURES 8192u
 
 static bool is_folder(const char *path)
@@ -38,13 +39,40 @@ bool scene_pictures_takes(const char *path)
            strstr(path, NEURAL "#") || scene_catalogue_takes(path);
 }
 
+static void say_scene(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    text_say("sluice-view: %s is a scene: sluice-view %s", slash ? slash + 1 : path, path);
+}
+
+/* Pictures alone hang. Somebody who names the folder of one scene may want to see the scene. */
+static bool collect_folder(const char *path, struct file_list *files)
+{
+    struct file_list found = {.speaker = files->speaker};
+    const char *scene = NULL;
+    size_t scenes = 0;
+    bool collected = files_collect(path, SUFFIXES "|" SCENES, &found);
+    for (size_t i = 0; collected && i < found.count; i++)
+        if (files_has_suffix(found.paths[i], SCENES)) {
+            scene = found.paths[i];
+            scenes++;
+        } else {
+            collected = files_add(found.paths[i], files);
+        }
+    if (scenes == 1)
+        say_scene(scene);
+    files->unreadable_count += found.unreadable_count;
+    files_finish(&found);
+    return collected;
+}
+
 static bool collect(const char *const *paths, uint32_t count, struct remote_session *session,
                     struct file_list *files)
 {
     bool collected = true;
     for (uint32_t i = 0; collected && i < count; i++) {
         if (is_folder(paths[i]))
-            collected = files_collect(paths[i], SUFFIXES, files);
+            collected = collect_folder(paths[i], files);
         else if (scene_catalogue_takes(paths[i]))
             collected = scene_catalogue_collect(paths[i], session, files);
         else
