@@ -223,6 +223,25 @@ static void a_surface_without_a_resident_level_is_not_called_sharp(void **state)
     assert_string_equal(panel_missing_words(&probe, words, sizeof words), "as sharp as wanted");
 }
 
+static void long_names_are_shortened_in_the_middle(void **state)
+{
+    (void)state;
+    const char *name = "FlightHelmet_Materials_MetalPartsMat_Normal.jpg";
+    char text[64], tiny[12];
+    const float width = ui_text_width(name) / 2;
+    const char *shortened = panel_shorten(name, width, text, sizeof text);
+    const char *dots = strstr(shortened, "...");
+    assert_non_null(dots);
+    assert_true(ui_text_width(shortened) <= width);
+    assert_memory_equal(shortened, name, (size_t)(dots - shortened));
+    assert_true(dots > shortened + 4 && strlen(dots + 3) > 4);
+    assert_string_equal(dots + 3, name + strlen(name) - strlen(dots + 3));
+    assert_ptr_equal(panel_shorten(name, ui_text_width(name), text, sizeof text), name);
+    assert_string_equal(panel_shorten(name, 1e9f, tiny, sizeof tiny), "Flig....jpg");
+    assert_string_equal(panel_shorten("ääääääää", ui_text_width("ää...ä"), text, sizeof text),
+                        "ä...ää");
+}
+
 /* Walks over all tiles of a texture. */
 static void count_tiles(uint32_t texture, uint64_t *resident, uint64_t *all)
 {
@@ -640,6 +659,7 @@ int main(void)
         cmocka_unit_test(listed_events_are_those_of_their_reason_and_texture),
         cmocka_unit_test(levels_under_the_mouse_are_those_of_the_colors),
         cmocka_unit_test(a_surface_without_a_resident_level_is_not_called_sharp),
+        cmocka_unit_test(long_names_are_shortened_in_the_middle),
         cmocka_unit_test(rows_of_textures_and_their_sum_count_all_tiles),
         cmocka_unit_test(sums_of_memory_count_all_slots),
         cmocka_unit_test(a_camera_that_looks_at_a_tile_sees_it_in_the_color_of_its_texture),

@@ -82,8 +82,10 @@ static void draw_filters(struct view_app *app)
     ui_choice("##reason", REASON_WORDS, &app->settings.event_reason);
     ui_hint("Reasons that are listed. --event-reason");
     ui_same_line(0);
+    ui_begin_disabled(app->selected >= app->facts.texture_count);
     if (ui_check("selected texture alone", &selected))
         app->settings.events_of = selected ? VIEW_EVENTS_OF_SELECTED : VIEW_EVENTS_OF_ALL;
+    ui_end_disabled();
     ui_hint("Click a surface to select its texture; click nothing to list those of all. "
             "--events-of");
     ui_same_line(0);
@@ -93,15 +95,19 @@ static void draw_filters(struct view_app *app)
         ui_text(UI_GRAY, "newest first");
 }
 
-static void draw_row(const struct view_app *app, const SluiceTileEvent *event, uint32_t row)
+static void draw_row(const struct view_app *app, const SluiceTileEvent *event, uint32_t row,
+                     float name_width)
 {
+    char name[256];
     SluiceTile tile = {0};
     uint32_t texture = 0;
     tile_log_index(&app->facts.log, event->textureId, &texture);
     sluiceGetTileState(manager_of(app), event->textureId, event->tileIndex, NULL, &tile);
     ui_table_row((int)row, false);
     ui_table_cell(UI_WHITE, "%llu", (unsigned long long)event->mark);
-    ui_table_cell(UI_WHITE, "%s", stage_texture(app->stage, texture)->name);
+    ui_table_cell(
+        UI_WHITE, "%s",
+        panel_shorten(stage_texture(app->stage, texture)->name, name_width, name, sizeof name));
     ui_table_cell(UI_WHITE, "%u", tile.mipLevel);
     ui_table_cell(UI_WHITE, "%u, %u", tile.x, tile.y);
     ui_table_cell(UI_GRAY, "%s", state_names[event->from]);
@@ -115,6 +121,7 @@ static void draw_streamer(struct view_app *app)
     const SluiceTileEvent *rows[MOST_ROWS];
     const bool one = app->settings.events_of == VIEW_EVENTS_OF_SELECTED &&
                      app->selected < app->facts.texture_count;
+    const float name_width = ui_panel_width() / 4;
     draw_failures(app);
     draw_filters(app);
     const uint32_t count = event_rows_find(&app->facts, (uint32_t)app->settings.event_reason,
@@ -122,7 +129,7 @@ static void draw_streamer(struct view_app *app)
     if (!ui_begin_table("events", "Frame|Texture|Level|Tile|From|To|Reason", 0, false))
         return;
     for (uint32_t i = 0; i < count; i++)
-        draw_row(app, rows[i], i);
+        draw_row(app, rows[i], i, name_width);
     ui_end_table();
 }
 
@@ -130,7 +137,7 @@ void panel_events(struct view_app *app)
 {
     if (!app->open[PANEL_EVENTS])
         return;
-    if (panel_begin(app, PANEL_EVENTS, "Events (K)", 560, 420)) {
+    if (panel_begin(app, PANEL_EVENTS, "Events (K)", 600, 420)) {
         if (stage_traced(app->stage))
             panel_traced_events(app);
         else

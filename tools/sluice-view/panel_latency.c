@@ -90,10 +90,13 @@ static void draw_whole(const struct tile_log *log)
     draw_bars(buckets, 26);
 }
 
-static void draw_reads(const SluiceTileLoaderStatistics *reads, const char *name, int row)
+static void draw_reads(const SluiceTileLoaderStatistics *reads, const char *name, int row,
+                       float name_width)
 {
+    char shortened[256];
     ui_table_row(row, false);
-    ui_table_cell(row == 0 ? UI_BLUE : UI_WHITE, "%s", name);
+    ui_table_cell(row == 0 ? UI_BLUE : UI_WHITE, "%s",
+                  panel_shorten(name, name_width, shortened, sizeof shortened));
     ui_table_cell(UI_WHITE, "%llu", (unsigned long long)reads->readCount);
     ui_table_cell(UI_WHITE, "%.2f", (double)reads->medianLatencyNs / 1e6);
     ui_table_cell(UI_WHITE, "%.2f", (double)reads->latency99Ns / 1e6);
@@ -105,14 +108,15 @@ static void draw_reads(const SluiceTileLoaderStatistics *reads, const char *name
 
 static void draw_sources(const struct view_app *app)
 {
+    const float name_width = ui_panel_width() / 4;
     ui_text(UI_GRAY, "Reads by source: milliseconds per read");
     if (!ui_begin_table("sources", "Source|Reads|p50|p99|Longest|MB|Failed", 0, false))
         return;
-    draw_reads(&app->facts.reads, "all", 0);
+    draw_reads(&app->facts.reads, "all", 0, name_width);
     for (uint32_t i = 0; i < app->facts.texture_count; i++)
         if (app->facts.textures[i].reads.readCount > 0)
             draw_reads(&app->facts.textures[i].reads, stage_texture(app->stage, i)->name,
-                       (int)i + 1);
+                       (int)i + 1, name_width);
     ui_end_table();
 }
 
@@ -130,7 +134,7 @@ void panel_latency(struct view_app *app)
 {
     if (!app->open[PANEL_LATENCY])
         return;
-    if (panel_begin(app, PANEL_LATENCY, "Latency (Y)", 440, 520)) {
+    if (panel_begin(app, PANEL_LATENCY, "Latency (Y)", 480, 520)) {
         if (stage_traced(app->stage))
             panel_traced_latency(app);
         else

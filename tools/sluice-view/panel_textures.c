@@ -43,8 +43,9 @@ static void draw_figures(const struct texture_row *r, uint32_t color)
     ui_table_cell(r->failures ? UI_RED : color, "%llu", (unsigned long long)r->failures);
 }
 
-static void draw_row(struct view_app *app, const struct texture_row *r)
+static void draw_row(struct view_app *app, const struct texture_row *r, float name_width)
 {
+    char name[256];
     const bool wanted = app->facts.textures[r->texture].statistics.wanted;
     const uint32_t color = wanted ? UI_WHITE : UI_GRAY;
     if (ui_table_row((int)r->texture, app->selected == r->texture)) {
@@ -55,7 +56,8 @@ static void draw_row(struct view_app *app, const struct texture_row *r)
     float uv[4];
     if (app->thumbs && thumbs_find(app->thumbs, r->texture, uv))
         ui_table_image(UI_TEXTURE_THUMBS, ui_line_height() - 4 * ui_scale(), uv);
-    ui_table_cell(color, "%s", r->name);
+    ui_table_cell(color, "%s", panel_shorten(r->name, name_width, name, sizeof name));
+    ui_hint("%s", r->name);
     draw_figures(r, color);
     ui_table_cell(color, "%u x %u", r->width, r->height);
     ui_table_cell(color, "%s", r->format);
@@ -96,6 +98,7 @@ static void draw_table(struct view_app *app, struct texture_row *rows, uint32_t 
 {
     uint32_t column = COLUMN_NAME;
     bool descending = false;
+    const float name_width = ui_panel_width() / 3;
     if (!ui_begin_table("textures",
                         "Name|Loads/"
                         "tile|Loads|Resident|Wanted|All|Memory|Finest|Seen|Evicted|Failed|Size|"
@@ -107,7 +110,7 @@ static void draw_table(struct view_app *app, struct texture_row *rows, uint32_t 
     const struct texture_row sum = texture_rows_sum(rows, count);
     draw_sum(&sum, count);
     for (uint32_t i = 0; i < count; i++)
-        draw_row(app, &rows[i]);
+        draw_row(app, &rows[i], name_width);
     ui_end_table();
 }
 

@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include <stdio.h>
+#include <string.h>
 
 const char *panel_size(uint64_t bytes, char *text, size_t size)
 {
@@ -12,6 +13,28 @@ const char *panel_size(uint64_t bytes, char *text, size_t size)
     else
         snprintf(text, size, "%u MB", mega);
     return text;
+}
+
+static bool within_character(char byte)
+{
+    return ((unsigned char)byte & 0xC0) == 0x80;
+}
+
+const char *panel_shorten(const char *text, float width, char *shortened, size_t size)
+{
+    const size_t length = strlen(text), most = size - sizeof "...";
+    size_t kept = length < most ? length : most;
+    if (ui_text_width(text) <= width && length < size)
+        return text;
+    do {
+        size_t head = kept / 2, tail = length - (kept - head);
+        while (head > 0 && within_character(text[head]))
+            head--;
+        while (within_character(text[tail]))
+            tail++;
+        snprintf(shortened, size, "%.*s...%s", (int)head, text, text + tail);
+    } while (kept-- > 2 && ui_text_width(shortened) > width);
+    return shortened;
 }
 
 /* From dark blue through green to yellow they differ in brightness, too; level 0 is red. */

@@ -39,6 +39,9 @@ bool panel_is_right(enum app_panel panel);
  *  in any case. */
 bool panel_begin(struct view_app *app, enum app_panel panel, const char *title, float width,
                  float height);
+/** A text that is no wider than `width` pixels: "FlightHel...Normal.jpg". Returns `text` if that
+ *  is, else `shortened`. */
+const char *panel_shorten(const char *text, float width, char *shortened, size_t size);
 /** How many levels a point lacks, and why. Returns `text`. */
 const char *panel_missing_words(const struct view_probe *probe, char *text, size_t size);
 /** "1 264 MB" of bytes, with a blank between thousands. Returns `text`. */

@@ -104,6 +104,9 @@ void ui_same_line(float x); ///< x: from the left of the panel; 0: behind the la
 void ui_space(float height);
 void ui_line(void);
 bool ui_button(const char *label, float width, float height, bool pressed);
+/** Widgets between are gray and cannot be used if `disabled`. */
+void ui_begin_disabled(bool disabled);
+void ui_end_disabled(void);
 bool ui_check(const char *label, bool *value);
 bool ui_slider_real(const char *label, double *value, double minimum, double maximum,
                     bool logarithmic, const char *format);
@@ -123,7 +126,7 @@ void ui_show_hint(const char *text);                   ///< shown at the mouse n
 
 /* Tables. */
 
-/** `columns`: titles separated by '|'. Width by contents. */
+/** `columns`: titles separated by '|'. Widths follow the contents of each frame. */
 bool ui_begin_table(const char *id, const char *columns, float height, bool sortable);
 /** The column to sort by. False if the order is that of the frame before. */
 bool ui_table_sort(uint32_t *column, bool *descending);

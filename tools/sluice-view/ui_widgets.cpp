@@ -94,6 +94,16 @@ bool ui_button(const char *label, float width, float height, bool pressed)
     return clicked;
 }
 
+void ui_begin_disabled(bool disabled)
+{
+    ImGui::BeginDisabled(disabled);
+}
+
+void ui_end_disabled(void)
+{
+    ImGui::EndDisabled();
+}
+
 bool ui_check(const char *label, bool *value)
 {
     return ImGui::Checkbox(label, value);
@@ -184,8 +194,7 @@ bool ui_begin_table(const char *id, const char *columns, float height, bool sort
     for (const char *c = columns; *c; c++)
         count += *c == '|';
     const ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
-                                  ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable |
-                                  ImGuiTableFlags_SizingFixedFit |
+                                  ImGuiTableFlags_ScrollX | ImGuiTableFlags_SizingFixedFit |
                                   (sortable ? ImGuiTableFlags_Sortable : 0);
     if (!ImGui::BeginTable(id, count, flags, ImVec2(0.0f, height)))
         return false;
