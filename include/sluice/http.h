@@ -184,9 +184,9 @@ SLUICE_API void sluiceCloseHttpPath(void *pClient, void *pOpened);
  * Returns SLUICE_SUCCESS if ETag, date and size are those of the opening.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_IO if the file was changed, which is not logged,
- *         or cannot be read; SLUICE_ERROR_UNSUPPORTED if the size is that of the opening and nothing
- *         else tells versions apart: the server sends neither ETag nor date, or the file was
- *         changed less than 2 s before it was opened; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ *         or cannot be read; SLUICE_ERROR_UNSUPPORTED if the size is that of the opening, and the
+ *         server tells nothing else (neither ETag nor date, or the file was changed less than 2 s
+ *         before it was opened); SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCheckHttpPath(void *pClient, void *pOpened);

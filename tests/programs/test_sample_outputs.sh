@@ -27,7 +27,7 @@ walk 0 --output first --record first/run.trace --needs-trace first/needs.trace &
 fact a_walk_leaves_whole_files_and_no_part_files
 
 walk 1 --output taken --record folder && grep -q 'folder: is there already and is a folder' err &&
-    walk 1 --output taken --record absent/run.trace && grep -q 'absent/run.trace.sluice-part: .*No such file' err &&
+    walk 1 --output taken --record absent/run.trace && grep -q 'absent/run.trace: .*absent: no such folder' err &&
     walk 1 --output taken --record locked && grep -q 'locked: is there already and is read-only' err && [ -d folder ] &&
     [ "$(cat locked)" = older ]
 fact a_recording_that_cannot_be_written_names_its_file
