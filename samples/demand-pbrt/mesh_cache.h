@@ -4,7 +4,7 @@
 
 #include "scene.h"
 
-/** What was read. */
+/** Counts of reads. */
 struct mesh_read {
     SluiceResult result;
     SluicePbrtMesh mesh;

@@ -132,7 +132,7 @@ static double rate(double count, double seconds)
     return seconds > 0.0 && count > 0.0 ? count / seconds : NAN;
 }
 
-/** Of the complete pictures, on the clock of all devices. */
+/** Times of the complete pictures, on the clock of all devices. */
 static void print_rates(const struct summary *s, bool json)
 {
     double paths = 0.0, fill_paths = 0.0, fill_tiles = 0.0, end = s->trace_start, repeat = 0.0;

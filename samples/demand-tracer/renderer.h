@@ -22,7 +22,7 @@ struct renderer {
     struct TracerLaunch constants; ///< of the camera
 };
 
-/** What a renderer is made for. */
+/** Settings of a renderer. */
 struct renderer_request {
     const struct tracer_options *options;
     const struct scene *scene;

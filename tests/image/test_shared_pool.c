@@ -188,7 +188,7 @@ static void reads_keep_their_priority_when_what_they_joined_fails(void **state)
     pool_rig_finish(&r);
 }
 
-/* Of a tail of four levels one is kept, one is being read, two are new. */
+/* A tail has four levels: one is kept, one is being read, two are new. */
 static void parts_of_a_read_may_be_kept_or_joined(void **state)
 {
     (void)state;

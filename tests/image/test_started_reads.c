@@ -641,7 +641,7 @@ static void sources_are_told_of_a_cancel_when_nobody_waits_any_more(void **state
     }
 }
 
-/* Of two levels the second one is wanted: the source is told of the first one, and later of both.
+/* Two levels are read and one is still wanted: the source is told of the other, and later of both.
  */
 static void each_region_is_canceled_once(void **state)
 {
