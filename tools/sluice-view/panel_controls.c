@@ -58,7 +58,7 @@ static void draw_budget_ticks(const struct view_app *app, double most)
     ui_hint("White mark: wanted now. Gray mark: everything.");
 }
 
-/* Before the slider is let go. */
+/* Before the slider is released. */
 static void draw_budget_ghost(struct view_app *app)
 {
     char size[32];
@@ -101,7 +101,7 @@ static void draw_budget(struct view_app *app, const char *label)
     draw_budget_slider(app, label, most);
     if (!app->dragged_budget)
         ui_hint("Most memory for tiles: the picture becomes coarser when it is short. Takes effect "
-                "when it is let go.\nDouble click: no limit. --budget");
+                "when it is released.\nDouble click: no limit. --budget");
     if (ui_double_clicked())
         app->settings.budget = 0;
     panel_size(app->facts.wanted_size, wanted, sizeof wanted);
