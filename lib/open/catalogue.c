@@ -225,7 +225,8 @@ static void sort_names(struct slc_catalogue *c)
         at = c->rows[i].store + strlen(c->rows[i].store);
         c->ends[2 * i + 1] = (struct name_end){at++, i};
     }
-    qsort(c->ends, 2 * (size_t)c->row_count, sizeof *c->ends, compare_ends);
+    if (c->row_count > 0) /* without rows there is no array */
+        qsort(c->ends, 2 * (size_t)c->row_count, sizeof *c->ends, compare_ends);
 }
 
 static SluiceResult parse(const struct slc_catalogue_place *p, char *text, struct slc_catalogue *c)
