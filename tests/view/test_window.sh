@@ -132,7 +132,7 @@ python3 "$here/pbrt_scene.py" make . && open_viewer $validation --cache cache --
 fact a_scene_of_pbrt_is_traced_in_a_window_with_silent_validation
 export LOSE_AFTER=20
 LD_PRELOAD=$lose_device open_viewer
-tries=100
+tries=600
 while kill -0 "$viewer" 2>/dev/null && [ $tries -gt 0 ]; do tries=$((tries - 1)); sleep 0.1; done
 ! kill -0 "$viewer" 2>/dev/null && { wait "$viewer"; [ $? -eq 1 ]; } && grep -q DEVICE_LOST err
 fact a_lost_device_is_named_and_ends_it
