@@ -82,7 +82,7 @@ void facts_destroy(struct view_facts *facts);
 /** Once per frame, after it was recorded. */
 void facts_update(struct view_facts *facts, const struct stage *stage,
                   const struct view_settings *settings, double seconds);
-/** What all requests need. Takes time in proportion to tiles of level 0. */
+/** Returns the memory that all requests need. Takes time in proportion to tiles of level 0. */
 struct budget_need facts_budget_need(const struct view_facts *facts, const struct stage *stage);
 const char *facts_series_name(enum facts_series series);
 

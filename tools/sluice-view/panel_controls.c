@@ -144,7 +144,7 @@ static void draw_widget(struct view_app *app, const struct control *control, con
     }
 }
 
-/* What a probability means for a region of 8 x 8 pixels. */
+/* Says what a probability of feedback means for a region of 8 x 8 pixels. */
 static void draw_feedback_rate(const struct view_app *app)
 {
     const struct view_settings *s = &app->settings;

@@ -45,7 +45,7 @@ static void draw_reason(const struct view_app *app, const struct stage_texture *
                  without_path(why.sentence, texture));
 }
 
-/* Of the file, if reads of it failed. */
+/* The last failed read of the file, if there is one. */
 static void draw_failure(const struct view_app *app, const struct stage_texture *texture)
 {
     const SluiceTileLoaderStatistics *reads = &app->facts.textures[app->selected].reads;

@@ -7,7 +7,7 @@
 /** Why an action does not apply to a traced scene; NULL: it does. `chord`: of the table of actions.
  */
 const char *panel_traced_refuses(const char *chord);
-/** The same for a view. */
+/** Why a view does not apply to a traced scene; NULL: it does. */
 const char *panel_traced_refuses_view(uint32_t view);
 /** Whether a control does something for traced scenes, by its name. */
 bool panel_traced_takes(const char *control);

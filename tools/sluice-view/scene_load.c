@@ -15,7 +15,7 @@ struct scene_load {
     struct scene_data scene;
     struct scene_progress progress;
     atomic_bool done;
-    struct scene_load *next; ///< that is parked
+    struct scene_load *next; ///< of the list of canceled loads
 };
 
 static void *open_scene(void *user)
@@ -79,11 +79,11 @@ bool scene_load_end(struct scene_load *load, struct scene_data *scene, struct fi
     return opened;
 }
 
-void scene_load_park(struct scene_load *load, struct scene_load **parked)
+void scene_load_keep_canceled(struct scene_load *load, struct scene_load **canceled)
 {
     atomic_store(&load->progress.canceled, true);
-    load->next = *parked;
-    *parked = load;
+    load->next = *canceled;
+    *canceled = load;
 }
 
 static void drop(struct scene_load *load)
@@ -95,15 +95,15 @@ static void drop(struct scene_load *load)
     files_finish(&paths);
 }
 
-void scene_load_drop_parked(struct scene_load **parked, bool wait)
+void scene_load_drop_canceled(struct scene_load **canceled, bool wait)
 {
-    while (*parked) {
-        struct scene_load *load = *parked;
+    while (*canceled) {
+        struct scene_load *load = *canceled;
         if (wait || scene_load_done(load)) {
-            *parked = load->next;
+            *canceled = load->next;
             drop(load);
         } else {
-            parked = &load->next;
+            canceled = &load->next;
         }
     }
 }

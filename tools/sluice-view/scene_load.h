@@ -19,8 +19,8 @@ void scene_load_describe(const struct scene_load *load, char *text, size_t size)
 bool scene_load_end(struct scene_load *load, struct scene_data *scene, struct file_list *paths);
 /** Cancels a load without a wait, and moves it into a list, which begins as NULL. Its thread ends
  *  without a scene. A file of geometry or of pbrt that is being read is read to its end. */
-void scene_load_park(struct scene_load *load, struct scene_load **parked);
+void scene_load_keep_canceled(struct scene_load *load, struct scene_load **canceled);
 /** Frees the loads of the list whose threads have ended. `wait`: all loads. */
-void scene_load_drop_parked(struct scene_load **parked, bool wait);
+void scene_load_drop_canceled(struct scene_load **canceled, bool wait);
 
 #endif /* SLUICE_VIEW_SCENE_LOAD_H */

@@ -45,7 +45,8 @@ static bool list_pictures(struct scene_pbrt *p)
     return p->pictures;
 }
 
-/* Of the shorter side is the scene's; the viewer's is vertical, and only draws lines with it. */
+/* Vertical field of view, in radians. The scene's is that of the shorter side; the viewer only
+ * draws lines with this one. */
 static float vertical_fov(const SluicePbrtSceneInfo *info)
 {
     const float fov = info->fieldOfView * 3.14159265f / 180.0f;

@@ -1,6 +1,7 @@
 #include "ui_draw.h"
 
 #include "../../samples/common/one_time.h"
+#include "ui_texels.h"
 
 #include "ui_frag.h"
 #include "ui_vert.h"
@@ -139,34 +140,15 @@ struct font_upload {
     uint32_t width, height;
 };
 
-static void record_layout(VkCommandBuffer commands, VkImage image, bool before)
-{
-    const VkImageMemoryBarrier barrier = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-        .srcAccessMask = before ? 0 : VK_ACCESS_TRANSFER_WRITE_BIT,
-        .dstAccessMask = before ? VK_ACCESS_TRANSFER_WRITE_BIT : VK_ACCESS_SHADER_READ_BIT,
-        .oldLayout = before ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-        .newLayout = before ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL
-                            : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = image,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    vkCmdPipelineBarrier(
-        commands, before ? VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT : VK_PIPELINE_STAGE_TRANSFER_BIT,
-        before ? VK_PIPELINE_STAGE_TRANSFER_BIT : VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, NULL,
-        0, NULL, 1, &barrier);
-}
-
 static void record_font(void *user_data, VkCommandBuffer commands)
 {
     const struct font_upload *upload = user_data;
     const VkBufferImageCopy copy = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                     .imageExtent = {upload->width, upload->height, 1}};
-    record_layout(commands, upload->image, true);
+    ui_texels_record_layout(commands, upload->image, true);
     vkCmdCopyBufferToImage(commands, upload->buffer, upload->image,
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    record_layout(commands, upload->image, false);
+    ui_texels_record_layout(commands, upload->image, false);
 }
 
 static bool create_font(struct ui_drawing *d, const uint8_t *texels, uint32_t width,

@@ -25,7 +25,7 @@ void ui_texels_destroy(struct ui_texels *t)
     *t = (struct ui_texels){0};
 }
 
-static void record_layout(VkCommandBuffer commands, VkImage image, bool before)
+void ui_texels_record_layout(VkCommandBuffer commands, VkImage image, bool before)
 {
     const VkImageMemoryBarrier barrier = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
@@ -50,10 +50,10 @@ void ui_texels_record(struct ui_texels *t, VkCommandBuffer commands)
         return;
     const VkBufferImageCopy copy = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                     .imageExtent = {t->width, t->height, 1}};
-    record_layout(commands, t->image.image, true);
+    ui_texels_record_layout(commands, t->image.image, true);
     vkCmdCopyBufferToImage(commands, t->staging.buffer, t->image.image,
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    record_layout(commands, t->image.image, false);
+    ui_texels_record_layout(commands, t->image.image, false);
     t->changed = false;
     t->filled = true;
 }

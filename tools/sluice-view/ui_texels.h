@@ -22,5 +22,8 @@ void ui_texels_destroy(struct ui_texels *texels);
 /** Records the copy to the image if the texels changed, outside a render pass. Do not write the
  *  staging buffer before that frame is complete. */
 void ui_texels_record(struct ui_texels *texels, VkCommandBuffer commands);
+/** Records the layout of an image `before` a copy of all of its texels, or after it, for shaders of
+ *  fragments. */
+void ui_texels_record_layout(VkCommandBuffer commands, VkImage image, bool before);
 
 #endif /* SLUICE_VIEW_UI_TEXELS_H */

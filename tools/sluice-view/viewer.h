@@ -37,7 +37,7 @@ struct viewer {
     struct view_settings applied; ///< what the streamer has
     struct file_list paths;       ///< owned; of the scene; none: the room
     struct scene_load *load;      ///< of the next scene; NULL: none
-    struct scene_load *parked;    ///< canceled loads whose threads have not ended
+    struct scene_load *canceled;  ///< canceled loads whose threads have not ended
     char command[4200];           ///< of "copy command line", without options
     char settings_path[4096];     ///< "": none are kept
     char screenshot[4096];        ///< to write after this frame; "": none

@@ -206,7 +206,7 @@ static void say_failed(struct viewer *v, const struct file_list *paths)
 static void park_load(struct viewer *v)
 {
     if (v->load)
-        scene_load_park(v->load, &v->parked);
+        scene_load_keep_canceled(v->load, &v->canceled);
     v->load = NULL;
 }
 
@@ -257,7 +257,7 @@ static bool end_load(struct viewer *v)
 bool viewer_watch_load(struct viewer *v)
 {
     char text[160];
-    scene_load_drop_parked(&v->parked, false);
+    scene_load_drop_canceled(&v->canceled, false);
     if (!v->load)
         return v->stage != NULL;
     if (scene_load_done(v->load))
@@ -282,7 +282,7 @@ void viewer_cancel_load(struct viewer *v)
 void viewer_end_load(struct viewer *v)
 {
     park_load(v);
-    scene_load_drop_parked(&v->parked, true);
+    scene_load_drop_canceled(&v->canceled, true);
 }
 
 /* Either all streamers draw with the code, or none; scenes that are opened later, too. */
