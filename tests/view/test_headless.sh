@@ -214,6 +214,9 @@ printf '3 key t\n8 screenshot table.png\n10 quit\n' >thumbs
 MALLOC_PERTURB_=165 run 0 --headless --deterministic --fresh --size 320x240 --cache . --script thumbs one-level.dds &&
     grep -q 'one-level.dds: cannot be shown: SLUICE_ERROR_INVALID_ARGUMENT' err
 fact the_table_has_a_picture_of_a_texture_that_cannot_be_shown
+MALLOC_PERTURB_=165 run 0 --headless --deterministic --fresh --size 160x160 --cache . --frames 4 --source-latency 1 \
+    one-level.dds && grep -q 'one-level.dds: cannot be shown: SLUICE_ERROR_INVALID_ARGUMENT' err
+fact a_texture_that_cannot_be_shown_stays_replaced_behind_a_slow_source
 # A copy of the viewer finds what is beside it: the tool with one value instead of its plan, and what does not end.
 mkdir bin && cp "$tool" bin && printf '1 key Ctrl+T\n3 quit\n' >sweeps
 export LD_LIBRARY_PATH="${tool%/*/*/*}/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"

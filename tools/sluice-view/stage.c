@@ -184,12 +184,22 @@ static bool can_be_replaced(SluiceResult result)
            result == SLUICE_ERROR_CORRUPT_DATA || result == SLUICE_ERROR_IO;
 }
 
-/* The wrapper of the image that was replaced holds a destroyed source. */
+/* The wrappers of the image that was replaced hold a destroyed source. */
 static SluiceResult wrap_replaced(struct stage *s, uint32_t i)
 {
+    SluiceImageSource *source = s->scene.images[i].source;
+    SluiceResult result = SLUICE_SUCCESS;
     sluiceDestroyImageSource(s->faulty[i]);
     s->faulty[i] = NULL;
-    return fault_source_create(&s->source_fails, s->scene.images[i].source, &s->faulty[i]);
+    if (s->slow) {
+        sluiceDestroyImageSource(s->slow[i]);
+        s->slow[i] = NULL;
+        result = slow_source_create(&s->line, source, &s->slow[i]);
+        source = s->slow[i];
+    }
+    return result == SLUICE_SUCCESS
+               ? fault_source_create(&s->source_fails, source, &s->faulty[i])
+               : result;
 }
 
 static bool add_texture(struct stage *s, uint32_t i)
@@ -207,7 +217,7 @@ static bool add_texture(struct stage *s, uint32_t i)
         .explicitAddressModes = true,
         .maxAnisotropy = (float)s->settings.anisotropy};
     SluiceResult result = sluiceAddVulkanTexture(s->streamer, &info, &texture);
-    if (can_be_replaced(result) && !s->slow && scene_images_replace(&s->scene, i, result)) {
+    if (can_be_replaced(result) && scene_images_replace(&s->scene, i, result)) {
         result = wrap_replaced(s, i);
         info.source = s->faulty[i];
         if (result == SLUICE_SUCCESS)
