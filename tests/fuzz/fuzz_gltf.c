@@ -34,7 +34,9 @@ static void read_all(struct gltf_file *file)
                     abort();
     for (uint32_t i = 0; i < file->lists[GLTF_TEXTURES].count; i++) {
         const struct gltf_texture texture = gltf_read_texture(file, i);
-        if (!texture.problem && texture.image >= file->lists[GLTF_IMAGES].count)
+        const uint32_t images = file->lists[GLTF_IMAGES].count;
+        if ((!texture.problem && texture.image >= images) ||
+            (texture.fallback != GLTF_NONE && texture.fallback >= images))
             abort();
     }
     for (uint32_t i = 0; i < file->lists[GLTF_IMAGES].count; i++) {

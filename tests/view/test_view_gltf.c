@@ -159,6 +159,8 @@ static void broken_files_are_refused_with_file_and_cause(void **state)
         {"\"scene\":0", "\"animations\":[{\"channels\":[{\"sampler\":0}],\"samplers\":[]}]",
          "animations[0] has a channel without sampler"},
         {"\"scene\":0", "\"textures\":[{\"source\":0}]", "textures[0].source is 0"},
+        {"\"scene\":0", "\"textures\":[{\"extensions\":{\"MSFT_texture_dds\":{\"source\":7}}}]",
+         "textures[0].source is 7"},
         {"\"min\":[0,0,0]",
          "\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,\"byteOffset\":62,"
          "\"componentType\":5121},\"values\":{\"bufferView\":0,\"byteOffset\":64}}",
@@ -333,6 +335,102 @@ static void images_inside_of_the_file_are_opened(void **state)
     scene_data_finish(&scene);
 }
 
+/* A texture shows what its extension names, or else its own source. */
+#define LOSSLESS "data:image/webp;base64,UklGRh4AAABXRUJQVlA4TBEAAAAvAUAAAAdQwP4XsP+BiOh/AAA="
+
+static const char *image_text(const char *uri)
+{
+    static char text[1024];
+    snprintf(text, sizeof text, "{\"uri\":\"%s\"},{\"uri\":\"%s\"}", pixel, uri);
+    return text;
+}
+
+static void textures_of_webp_are_shown_and_damaged_ones_fall_back(void **state)
+{
+    static const char with[] =
+        "{\"source\":0,\"extensions\":{\"EXT_texture_webp\":{\"source\":1}}}";
+    SluiceImageInfo info = {.structSize = sizeof info};
+    struct scene_data scene;
+    (void)state;
+    import_with_image("{\"uri\":\"" LOSSLESS "\"}", "{\"source\":0}", AS_COLORS, &scene);
+    const bool reads_webp = scene.image_count == 1;
+    scene_data_finish(&scene);
+    import_with_image(image_text("no such.webp"), with, AS_COLORS, &scene);
+    assert_int_equal(scene.image_count, 1);
+    assert_int_equal(scene.message_count, 1);
+    assert_non_null(strstr(scene.messages[0], "no such.webp"));
+    assert_false(scene.materials[0].missing);
+    assert_int_equal(sluiceGetImageInfo(scene.images[0].source, &info), SLUICE_SUCCESS);
+    assert_int_equal(info.width, 1);
+    scene_data_finish(&scene);
+    if (!reads_webp)
+        SKIP_TEST("libvips reads no WebP");
+    import_with_image(image_text(LOSSLESS), with, AS_COLORS, &scene);
+    assert_int_equal(scene.image_count, 1);
+    assert_int_equal(scene.message_count, 0);
+    assert_int_equal(sluiceGetImageInfo(scene.images[0].source, &info), SLUICE_SUCCESS);
+    assert_int_equal(info.width, 2);
+    const SluiceImageRegion region = {0, 1, 1, 1, 1, 0};
+    uint8_t texel[4];
+    assert_int_equal(sluiceReadImageRegion(scene.images[0].source, &region, texel, 4),
+                     SLUICE_SUCCESS);
+    assert_memory_equal(texel, "\xff\x80\x80\xff", 4);
+    scene_data_finish(&scene);
+}
+
+static void textures_of_basisu_show_their_own_source(void **state)
+{
+    struct scene_data scene;
+    (void)state;
+    import_with_image(image_text("none.ktx2"),
+                      "{\"source\":0,\"extensions\":{\"KHR_texture_basisu\":{\"source\":1}}}",
+                      AS_COLORS, &scene);
+    assert_int_equal(scene.image_count, 1);
+    assert_int_equal(scene.message_count, 0);
+    assert_false(scene.materials[0].missing);
+    scene_data_finish(&scene);
+}
+
+/* 4 x 4 texels of BC1 in three levels: the format says nothing about sRGB. */
+static void write_dds(const char *name)
+{
+    static const uint32_t header[32] = {0x20534444, 124, 0x21007,   4, 4,          8,
+                                        0,          3,   [19] = 32, 4, 0x31545844, [27] = 0x401008};
+    static const uint8_t blocks[24] = {0xE0, 7, 0, 0, 0,    0, 0, 0, 0xE0, 7, 0, 0,
+                                       0,    0, 0, 0, 0xE0, 7, 0, 0, 0,    0, 0, 0};
+    FILE *file = fopen(path_of(name), "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(header, 4, 32, file), 32);
+    assert_int_equal(fwrite(blocks, 1, sizeof blocks, file), sizeof blocks);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void textures_of_dds_are_shown_as_what_they_mean(void **state)
+{
+    static const char with[] =
+        "{\"source\":0,\"extensions\":{\"MSFT_texture_dds\":{\"source\":1}}}";
+    SluiceImageInfo info = {.structSize = sizeof info};
+    struct scene_data scene;
+    (void)state;
+    write_dds("a.dds");
+    import_with_image(image_text("a.dds"), with, AS_ALL, &scene);
+    assert_int_equal(scene.image_count, 3);
+    assert_int_equal(scene.message_count, 0);
+    const struct scene_slot *slots = scene.materials[0].slots;
+    SluiceImageSource *colors = scene.images[slots[SLOT_COLOR].image].source;
+    assert_int_equal(sluiceGetImageInfo(colors, &info), SLUICE_SUCCESS);
+    assert_int_equal(info.format, SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK);
+    assert_int_equal(info.mipLevelCount, 3);
+    const SluiceImageRegion region = {0, 0, 0, 4, 4, 0};
+    uint8_t block[8];
+    assert_int_equal(sluiceReadImageRegion(colors, &region, block, 8), SLUICE_SUCCESS);
+    assert_memory_equal(block, "\xe0\x07\0\0\0\0\0\0", 8);
+    assert_int_equal(sluiceGetImageInfo(scene.images[slots[SLOT_NORMAL].image].source, &info),
+                     SLUICE_SUCCESS);
+    assert_int_equal(info.format, SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK);
+    scene_data_finish(&scene);
+}
+
 /* Two texels: (255, 128, 128) and (128, 255, 128). */
 static const char two_texels[] =
     "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR42mP439DQ8L8BAA"
@@ -450,6 +548,9 @@ int main(void)
         cmocka_unit_test(meshes_keep_their_materials_and_mirrored_ones_turn),
         cmocka_unit_test(images_that_cannot_be_shown_are_named),
         cmocka_unit_test(images_inside_of_the_file_are_opened),
+        cmocka_unit_test(textures_of_webp_are_shown_and_damaged_ones_fall_back),
+        cmocka_unit_test(textures_of_basisu_show_their_own_source),
+        cmocka_unit_test(textures_of_dds_are_shown_as_what_they_mean),
         cmocka_unit_test(coarser_levels_are_made_for_what_texels_mean),
         cmocka_unit_test(images_follow_where_one_map_tells_what_they_need),
     };

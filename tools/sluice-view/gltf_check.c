@@ -442,7 +442,14 @@ static bool check_texture(struct gltf_file *file, uint32_t i)
     char where[WHERE_SIZE];
     const cJSON *texture = file->lists[GLTF_TEXTURES].items[i];
     uint32_t index;
+    static const char *const sources[] = {"KHR_texture_basisu", "EXT_texture_webp",
+                                          "MSFT_texture_dds"};
+    const cJSON *extensions = member(texture, "extensions");
     place(GLTF_TEXTURES, i, where);
+    for (size_t k = 0; k < sizeof sources / sizeof *sources; k++)
+        if (!gltf_get_index(file, member(extensions, sources[k]), where, "source", GLTF_IMAGES,
+                            &index))
+            return false;
     return gltf_get_index(file, texture, where, "source", GLTF_IMAGES, &index) &&
            gltf_get_index(file, texture, where, "sampler", GLTF_SAMPLERS, &index);
 }

@@ -114,9 +114,17 @@ struct gltf_texture gltf_read_texture(const struct gltf_file *file, uint32_t ind
     const uint32_t sampler_index = index_of(from, "sampler");
     if (sampler_index != GLTF_NONE)
         sampler = file->lists[GLTF_SAMPLERS].items[sampler_index];
-    struct gltf_texture texture = {.image = index_of(from, "source"),
+    const uint32_t dds = index_of(extension(from, "MSFT_texture_dds"), "source");
+    const uint32_t webp = index_of(extension(from, "EXT_texture_webp"), "source");
+    struct gltf_texture texture = {.image = dds != GLTF_NONE ? dds : webp,
+                                   .fallback = index_of(from, "source"),
+                                   .is_dds = dds != GLTF_NONE,
                                    .wrap_u = wrap_of(sampler, "wrapS"),
                                    .wrap_v = wrap_of(sampler, "wrapT")};
+    if (texture.image == GLTF_NONE) {
+        texture.image = texture.fallback;
+        texture.fallback = GLTF_NONE;
+    }
     if (texture.image == GLTF_NONE)
         texture.problem = extension(from, "KHR_texture_basisu")
                               ? "KHR_texture_basisu is not supported"
@@ -153,13 +161,23 @@ static bool is_among(const cJSON *list, const char *name)
     return false;
 }
 
+static bool is_supported(const char *name)
+{
+    static const char *const names[] = {"KHR_texture_transform", "EXT_texture_webp",
+                                        "MSFT_texture_dds"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(names[i], name) == 0)
+            return true;
+    return false;
+}
+
 void gltf_name_extensions(const struct gltf_file *file,
                           void (*say)(void *user, const char *extension, bool required), void *user)
 {
     const cJSON *used = member(file->json, "extensionsUsed");
     const cJSON *required = member(file->json, "extensionsRequired");
     for (const cJSON *item = used ? used->child : NULL; item; item = item->next)
-        if (cJSON_IsString(item) && strcmp(item->valuestring, "KHR_texture_transform") != 0 &&
+        if (cJSON_IsString(item) && !is_supported(item->valuestring) &&
             !is_among(item->next, item->valuestring))
             say(user, item->valuestring, is_among(required, item->valuestring));
 }

@@ -15,6 +15,8 @@ struct gltf_image {
 /** A texture: image and sampler. */
 struct gltf_texture {
     uint32_t image;     ///< GLTF_NONE: it names none that can be read
+    uint32_t fallback;  ///< image to show if `image` cannot be; GLTF_NONE: none
+    bool is_dds;        ///< `image` is that of MSFT_texture_dds
     int wrap_u, wrap_v; ///< VkSamplerAddressMode
     const char *problem;
 };

@@ -30,26 +30,28 @@ static void say_extension(void *user, const char *extension, bool required)
                     required ? "requires" : "uses", extension);
 }
 
-static uint32_t open_image(struct opening *o, const struct gltf_texture *texture,
+static uint32_t open_image(struct opening *o, const struct gltf_texture *texture, uint32_t number,
                            enum scene_content content)
 {
     char path[4096], name[64];
-    struct gltf_image image = gltf_read_image(o->file, texture->image);
+    struct gltf_image image = gltf_read_image(o->file, number);
     uint32_t index = SCENE_NO_IMAGE;
-    struct scene_image_request request = {
-        .path = path, .wrap_u = texture->wrap_u, .wrap_v = texture->wrap_v, .content = content};
-    snprintf(name, sizeof name, "image %u", texture->image);
+    struct scene_image_request request = {.path = path,
+                                          .wrap_u = texture->wrap_u,
+                                          .wrap_v = texture->wrap_v,
+                                          .content = content,
+                                          .is_srgb = texture->is_dds && number == texture->image};
+    snprintf(name, sizeof name, "image %u", number);
     request.name = name;
     if (image.problem) {
-        scene_data_note(o->scene, "%s: images[%u]: %s", o->file->path, texture->image,
-                        image.problem);
+        scene_data_note(o->scene, "%s: images[%u]: %s", o->file->path, number, image.problem);
     } else if (!image.uri) {
         if (cache_keep(o->cache, "embedded", "", image.bytes.bytes, (size_t)image.bytes.size, path,
                        sizeof path))
             index = scene_images_add(o->scene, &request);
     } else if (!gltf_path(o->file, image.uri, path, sizeof path)) {
-        scene_data_note(o->scene, "%s: images[%u]: %.200s is no file", o->file->path,
-                        texture->image, image.uri);
+        scene_data_note(o->scene, "%s: images[%u]: %.200s is no file", o->file->path, number,
+                        image.uri);
     } else {
         const char *slash = strrchr(path, '/');
         request.name = slash ? slash + 1 : path;
@@ -70,7 +72,9 @@ static uint32_t image_of(struct opening *o, uint32_t texture_index, enum scene_c
         scene_data_note(o->scene, "%s: textures[%u]: %s", o->file->path, texture_index,
                         texture.problem);
     else
-        *known = open_image(o, &texture, content);
+        *known = open_image(o, &texture, texture.image, content);
+    if (*known == SCENE_NO_IMAGE && texture.fallback != GLTF_NONE)
+        *known = open_image(o, &texture, texture.fallback, content);
     return *known;
 }
 

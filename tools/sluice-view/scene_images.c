@@ -88,7 +88,7 @@ static SluiceBakeWrap wrap_of(int mode)
 static SluiceResult open_source(struct scene_data *scene, const struct scene_image_request *r,
                                 SluiceImageSource **source)
 {
-    SluiceImageSource *linear = NULL;
+    SluiceImageSource *outer = NULL;
     const SluiceBakeSettings settings = {.structSize = sizeof settings,
                                          .transfer = r->content == CONTENT_NUMBERS
                                                          ? SLUICE_BAKE_TRANSFER_LINEAR
@@ -97,11 +97,12 @@ static SluiceResult open_source(struct scene_data *scene, const struct scene_ima
                                          .wrapY = wrap_of(r->wrap_v),
                                          .normalMap = r->content == CONTENT_NORMALS};
     SluiceResult result = open_path(scene->opener, r->path, &settings, source);
-    if (result != SLUICE_SUCCESS || r->content == CONTENT_COLORS)
+    if (result != SLUICE_SUCCESS || (r->content == CONTENT_COLORS && !r->is_srgb))
         return result;
-    result = linear_source_create(*source, &linear);
+    result = r->content == CONTENT_COLORS ? linear_source_create_srgb(*source, &outer)
+                                          : linear_source_create(*source, &outer);
     if (result == SLUICE_SUCCESS)
-        *source = linear;
+        *source = outer;
     else
         sluiceDestroyImageSource(*source);
     return result;

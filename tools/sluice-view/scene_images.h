@@ -9,6 +9,7 @@ struct scene_image_request {
     const char *path;
     int wrap_u, wrap_v;
     enum scene_content content;
+    bool is_srgb; ///< colors are sRGB, whatever the file says
 };
 
 /** `cache`: folder for baked pictures and for images that lie inside other files. */
