@@ -282,6 +282,10 @@ typedef struct SluiceVulkanStreamerSettings {
      * tools: waits for requests ask for frames without end meanwhile.
      */
     bool holdLoads;
+    /** Feedback maps that must miss a region before it expires (manager.h). Default: 0, learned. An
+     *  older struct without this field keeps both last fields. */
+    uint32_t missesToExpire;
+    uint32_t prefetchLevels; ///< Coarsest levels to load while nothing is requested (manager.h).
 } SluiceVulkanStreamerSettings;
 
 /**

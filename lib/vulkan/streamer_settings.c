@@ -8,6 +8,8 @@
 #include "vulkan/create_checks.h"
 #include "vulkan/shrink.h"
 
+#include <stddef.h>
+
 /* What is allocated for tilesPerFrame. */
 struct tile_arrays {
     uint32_t tile_count;
@@ -92,7 +94,9 @@ SluiceResult sluiceGetVulkanStreamerSettings(const SluiceVulkanStreamer *streame
         .noEviction = config->noEviction,
         .noMipBias = config->noMipBias,
         .framesPerRound = streamer->next_frames_per_round,
-        .holdLoads = streamer->hold_loads};
+        .holdLoads = streamer->hold_loads,
+        .missesToExpire = config->missesToExpire,
+        .prefetchLevels = config->prefetchLevels};
     slc_struct_write(type, pSettings, &settings);
     return SLUICE_SUCCESS;
 }
@@ -108,8 +112,14 @@ static SluiceResult check(const SluiceVulkanStreamer *s,
     return slc_check_limits(&s->vk.log, limits, sizeof limits / sizeof limits[0]);
 }
 
+/* sluiceSetConfig was the only way to set these before the struct had them. */
+static bool has_expiry(uint32_t size)
+{
+    return size >= offsetof(SluiceVulkanStreamerSettings, prefetchLevels) + sizeof(uint32_t);
+}
+
 static SluiceResult set_config(SluiceVulkanStreamer *s,
-                               const SluiceVulkanStreamerSettings *settings)
+                               const SluiceVulkanStreamerSettings *settings, bool with_expiry)
 {
     SluiceStreamedTextureManagerConfig config = *slc_manager_config(s->manager);
     config.numExtraStandbyTiles = settings->numExtraStandbyTiles;
@@ -118,6 +128,10 @@ static SluiceResult set_config(SluiceVulkanStreamer *s,
     config.givenUpRetryDelayTicks = settings->givenUpRetryDelayTicks;
     config.noEviction = settings->noEviction;
     config.noMipBias = settings->noMipBias;
+    if (with_expiry) {
+        config.missesToExpire = settings->missesToExpire;
+        config.prefetchLevels = settings->prefetchLevels;
+    }
     return slc_shrink_set_config(s, &config);
 }
 
@@ -135,7 +149,7 @@ SluiceResult sluiceSetVulkanStreamerSettings(SluiceVulkanStreamer *streamer,
     if (result == SLUICE_SUCCESS) /* the only step that can fail comes first */
         result = set_tiles_per_frame(s, settings.tilesPerFrame);
     if (result == SLUICE_SUCCESS)
-        result = set_config(s, &settings);
+        result = set_config(s, &settings, has_expiry(pSettings->structSize));
     if (result != SLUICE_SUCCESS)
         return result;
     s->next_textures_per_frame = settings.texturesPerFrame;

@@ -9,6 +9,7 @@
 #include <sluice/demand.h>
 #include <sluice/vulkan_explain.h>
 
+#include <stddef.h>
 #include <string.h>
 
 enum { TEXTURES = 4 };
@@ -22,14 +23,14 @@ struct stage {
     SluiceImageSource *source;
     SluiceTextureId last_texture;
     uint64_t time;
-    bool looks;
+    bool looks, looks_at_some;
     char last[256]; ///< message
 };
 
 static uint8_t want(void *user, uint32_t region)
 {
-    (void)region;
-    return ((struct stage *)user)->looks ? 0 : SLUICE_MIP_UNTOUCHED;
+    const struct stage *s = user;
+    return s->looks || (s->looks_at_some && region % 4 == 0) ? 0 : SLUICE_MIP_UNTOUCHED;
 }
 
 static void keep_message(void *user, SluiceLogSeverity severity, const char *message)
@@ -105,7 +106,8 @@ static bool are_same(const SluiceVulkanStreamerSettings *a, const SluiceVulkanSt
            a->retryDelayTicks == b->retryDelayTicks &&
            a->givenUpRetryDelayTicks == b->givenUpRetryDelayTicks &&
            a->noEviction == b->noEviction && a->noMipBias == b->noMipBias &&
-           a->framesPerRound == b->framesPerRound && a->holdLoads == b->holdLoads;
+           a->framesPerRound == b->framesPerRound && a->holdLoads == b->holdLoads &&
+           a->missesToExpire == b->missesToExpire && a->prefetchLevels == b->prefetchLevels;
 }
 
 static void settings_begin_as_the_create_info_says(void **state)
@@ -416,7 +418,63 @@ static void configuration_of_the_manager_and_settings_are_one(void **state)
     CHECK_OK(sluiceSetConfig(manager_of(s->streamer), &config));
     SluiceVulkanStreamerSettings settings = get(s);
     assert_int_equal(settings.numExtraStandbyTiles, 21);
+    assert_int_equal(settings.missesToExpire, 2);
+    assert_int_equal(settings.prefetchLevels, 1);
+    SluiceVulkanStreamerSettings old = settings; /* of a program that knows holdLoads alone */
+    old.structSize = offsetof(SluiceVulkanStreamerSettings, missesToExpire);
+    old.missesToExpire = old.prefetchLevels = 0;
+    CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &old));
+    SluiceVulkanStreamerSettings kept = get(s);
+    assert_true(are_same(&kept, &settings));
     stage_finish(s);
+}
+
+static void coarse_levels_are_prefetched_once_the_settings_say_so(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
+        .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .numExtraStandbyTiles = 1000});
+    s->looks = false;
+    for (int i = 0; i < 12; i++)
+        frame(s);
+    assert_int_equal(statistics(s).standbyTileCount, 0);
+    SluiceVulkanStreamerSettings settings = get(s);
+    settings.prefetchLevels = 2;
+    CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+    for (int i = 0; i < 30; i++)
+        frame(s);
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    CHECK_OK(sluiceGetTextureLayout(manager_of(s->streamer), s->last_texture, &layout));
+    const uint32_t last = layout.desc.regularMipCount - 1;
+    uint32_t tiles = 0;
+    for (uint32_t level = last - 1; level <= last; level++)
+        tiles += layout.levelWidthInTiles[level] * layout.levelHeightInTiles[level];
+    assert_int_equal(statistics(s).standbyTileCount, TEXTURES * tiles);
+    stage_finish(s);
+}
+
+static void regions_expire_once_as_many_maps_miss_them_as_the_settings_say(void **state)
+{
+    (void)state;
+    for (uint32_t misses = 1; misses <= 16; misses += 15) {
+        struct stage *s = stage_init(
+            &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                              .feedbackTimeoutTicks = 1,
+                                              .tilesPerFrame = 1000});
+        SluiceVulkanStreamerSettings settings = get(s);
+        settings.missesToExpire = misses;
+        CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+        for (int i = 0; i < 12; i++)
+            frame(s);
+        const uint32_t mapped = statistics(s).mappedTileCount;
+        assert_true(mapped > 4 * 64);
+        s->looks = false;
+        s->looks_at_some = true; /* an empty map would stand for many */
+        for (int i = 0; i < 10; i++)
+            frame(s);
+        assert_int_equal(statistics(s).mappedTileCount < mapped - 4 * 16, misses == 1);
+        stage_finish(s);
+    }
 }
 
 static void settings_survive_every_refused_allocation(void **state)
@@ -526,6 +584,8 @@ int main(void)
         cmocka_unit_test(rounds_take_at_most_so_many_frames),
         cmocka_unit_test(timeout_and_standby_follow_the_settings),
         cmocka_unit_test(configuration_of_the_manager_and_settings_are_one),
+        cmocka_unit_test(coarse_levels_are_prefetched_once_the_settings_say_so),
+        cmocka_unit_test(regions_expire_once_as_many_maps_miss_them_as_the_settings_say),
         cmocka_unit_test(settings_survive_every_refused_allocation),
         cmocka_unit_test(settings_of_a_loader_take_no_memory),
     };
