@@ -44,6 +44,11 @@ typedef struct SluicePbrtSceneCreateInfo {
     uint32_t maxInstanceCount; ///< At most 2^31 - 1. Default: 2^26.
     uint64_t maxTextSize;      ///< Bytes of text in all, decompressed. Default: 2^38.
     uint64_t maxMeshSize;      ///< Bytes in memory of one shape that is read. Default: 2^34.
+    void *pUserData;
+    /** Reports the bytes of text that were read, decompressed, on the thread of
+     *  sluiceOpenPbrtScene: before each 128 KiB of a file. Return false to stop with
+     *  SLUICE_ERROR_CANCELED: no file is read any more, and nothing is logged. May be NULL. */
+    bool (*pfnProgress)(void *pUserData, uint64_t readSize);
 } SluicePbrtSceneCreateInfo;
 
 /**
@@ -56,7 +61,7 @@ typedef struct SluicePbrtSceneCreateInfo {
  *         SLUICE_ERROR_IO; SLUICE_ERROR_CORRUPT_DATA if the text ends inside a string or list, if a
  *         matrix does not have 16 values, if the file is no text or has no WorldBegin;
  *         SLUICE_ERROR_UNSUPPORTED for compressed text if Sluice was built without zlib;
- *         SLUICE_ERROR_LIMIT_EXCEEDED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ *         SLUICE_ERROR_LIMIT_EXCEEDED; SLUICE_ERROR_CANCELED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Thread safety: any thread.
  * Source: "Input File Format" of pbrt-v3 and of pbrt-v4.
  */

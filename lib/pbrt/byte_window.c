@@ -145,6 +145,16 @@ void slc_pbrt_window_limit(struct slc_pbrt_window *window, uint64_t most)
     check_limit(window);
 }
 
+static bool goes_on(struct slc_pbrt_window *window)
+{
+    const struct slc_pbrt_watch *watch = window->watch;
+    if (!watch || !watch->goes_on || window->failure != SLUICE_SUCCESS ||
+        watch->goes_on(watch->user, watch->read_size))
+        return true;
+    window->failure = SLUICE_ERROR_CANCELED;
+    return false;
+}
+
 size_t slc_pbrt_window_refill(struct slc_pbrt_window *window, size_t keep)
 {
     size_t kept = window->end - keep;
@@ -154,11 +164,13 @@ size_t slc_pbrt_window_refill(struct slc_pbrt_window *window, size_t keep)
     window->end = kept;
     size_t room = SLC_PBRT_WINDOW_SIZE - kept;
     size_t got = 0;
-    if (room > 0 && !window->is_over)
+    if (room > 0 && !window->is_over && goes_on(window))
         got = window->inflater ? read_compressed(window, window->bytes + kept, room)
                                : read_file(window, window->bytes + kept, room);
     window->is_over |= room > 0 && got == 0;
     window->end += got;
+    if (window->watch)
+        window->watch->read_size += got;
     window->bytes[window->end] = 0;
     check_limit(window);
     return keep;
@@ -226,12 +238,20 @@ bool slc_pbrt_stamps_equal(const struct slc_pbrt_stamp *a, const struct slc_pbrt
 SluiceResult slc_pbrt_window_open(struct slc_pbrt_window *window, const char *path,
                                   const SluiceAllocationCallbacks *cb)
 {
+    return slc_pbrt_window_open_watched(window, path, NULL, cb);
+}
+
+SluiceResult slc_pbrt_window_open_watched(struct slc_pbrt_window *window, const char *path,
+                                          struct slc_pbrt_watch *watch,
+                                          const SluiceAllocationCallbacks *cb)
+{
     struct slc_file_status status;
     *window = (struct slc_pbrt_window){
         .allocator = *cb, .descriptor = slc_open_input(path), .most = UINT64_MAX};
     if (window->descriptor < 0)
         return slc_system_result(errno);
     window->is_open = true;
+    window->watch = watch;
     SluiceResult result = SLUICE_ERROR_IO;
     if (!slc_file_get_status(window->descriptor, &status) || status.kind != SLC_NODE_FILE)
         goto fail;

@@ -15,17 +15,25 @@ struct slc_pbrt_stamp {
     int64_t seconds, nanoseconds;
 };
 
+/** Asked before files of windows are read. */
+struct slc_pbrt_watch {
+    void *user;
+    bool (*goes_on)(void *user, uint64_t read_size); ///< NULL: nobody is asked
+    uint64_t read_size;                              ///< bytes of text that all windows have read
+};
+
 /** Zeroed: closed. `bytes[end]` is always 0, so that scans may stop there. */
 struct slc_pbrt_window {
     SluiceAllocationCallbacks allocator;
     int descriptor;
-    unsigned char *bytes;  ///< owned; SLC_PBRT_WINDOW_SIZE + 1
-    size_t cursor, end;    ///< not read yet
-    uint64_t base;         ///< offset of bytes[0] in the text, decompressed
-    uint64_t file_offset;  ///< of the next byte to read from the file
-    bool is_open, is_over; ///< is_over: nothing follows bytes[end]
-    SluiceResult failure;  ///< of reading; the text counts as over then
-    uint64_t most;         ///< bytes of text that may be read
+    unsigned char *bytes;         ///< owned; SLC_PBRT_WINDOW_SIZE + 1
+    size_t cursor, end;           ///< not read yet
+    uint64_t base;                ///< offset of bytes[0] in the text, decompressed
+    uint64_t file_offset;         ///< of the next byte to read from the file
+    bool is_open, is_over;        ///< is_over: nothing follows bytes[end]
+    SluiceResult failure;         ///< of reading; the text counts as over then
+    uint64_t most;                ///< bytes of text that may be read
+    struct slc_pbrt_watch *watch; ///< borrowed; NULL: none
     struct slc_pbrt_stamp stamp;
     struct slc_pbrt_inflater *inflater; ///< owned; NULL: plain
 };
@@ -34,6 +42,11 @@ struct slc_pbrt_window {
  *  UNSUPPORTED for gzip files without zlib. Nothing is logged. */
 SluiceResult slc_pbrt_window_open(struct slc_pbrt_window *window, const char *path,
                                   const SluiceAllocationCallbacks *cb);
+/** slc_pbrt_window_open with a watch, which may be NULL and outlives the window. If goes_on
+ *  returns false the text counts as over, with the failure CANCELED. */
+SluiceResult slc_pbrt_window_open_watched(struct slc_pbrt_window *window, const char *path,
+                                          struct slc_pbrt_watch *watch,
+                                          const SluiceAllocationCallbacks *cb);
 void slc_pbrt_window_finish(struct slc_pbrt_window *window);
 
 /**

@@ -44,8 +44,8 @@ static SluiceResult read_span(const SluicePbrtScene *scene, const struct slc_pbr
 {
     const struct slc_pbrt_file *file = &scene->files[span->file];
     struct slc_pbrt_lexer lexer;
-    SluiceResult result =
-        slc_pbrt_lexer_open(&lexer, slc_pbrt_name(&scene->names, file->path), &scene->allocator);
+    SluiceResult result = slc_pbrt_lexer_open(&lexer, slc_pbrt_name(&scene->names, file->path),
+                                              NULL, &scene->allocator);
     if (result != SLUICE_SUCCESS)
         return result;
     bool ok = slc_pbrt_stamps_equal(&lexer.window.stamp, &file->stamp) &&

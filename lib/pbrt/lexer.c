@@ -16,10 +16,10 @@ static const unsigned char CLASSES[256] = {
 };
 
 SluiceResult slc_pbrt_lexer_open(struct slc_pbrt_lexer *lexer, const char *path,
-                                 const SluiceAllocationCallbacks *cb)
+                                 struct slc_pbrt_watch *watch, const SluiceAllocationCallbacks *cb)
 {
     *lexer = (struct slc_pbrt_lexer){.line = 1};
-    SluiceResult result = slc_pbrt_window_open(&lexer->window, path, cb);
+    SluiceResult result = slc_pbrt_window_open_watched(&lexer->window, path, watch, cb);
     /* A byte order mark of UTF-8 says nothing. */
     struct slc_pbrt_window *window = &lexer->window;
     if (result == SLUICE_SUCCESS && window->end >= 3 &&

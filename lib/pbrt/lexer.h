@@ -34,9 +34,9 @@ struct slc_pbrt_lexer {
     uint64_t line_start; ///< offset of its first byte
 };
 
-/** Errors: those of slc_pbrt_window_open. */
+/** `watch` may be NULL. Errors: those of slc_pbrt_window_open_watched. */
 SluiceResult slc_pbrt_lexer_open(struct slc_pbrt_lexer *lexer, const char *path,
-                                 const SluiceAllocationCallbacks *cb);
+                                 struct slc_pbrt_watch *watch, const SluiceAllocationCallbacks *cb);
 void slc_pbrt_lexer_finish(struct slc_pbrt_lexer *lexer);
 
 void slc_pbrt_next_token(struct slc_pbrt_lexer *lexer, struct slc_pbrt_token *token);

@@ -25,6 +25,12 @@ bool slc_pbrt_out_of_memory(struct slc_pbrt_parser *parser)
     return false;
 }
 
+static bool cancel(struct slc_pbrt_parser *parser)
+{
+    parser->result = SLUICE_ERROR_CANCELED;
+    return false;
+}
+
 struct slc_pbrt_place slc_pbrt_token_place(const struct slc_pbrt_token *token)
 {
     return (struct slc_pbrt_place){token->file, token->line, token->column};
@@ -45,6 +51,8 @@ static bool check_end_of_file(struct slc_pbrt_parser *parser, struct slc_pbrt_fr
     info->textSize += slc_pbrt_window_offset(window);
     if (window->failure == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
         return slc_pbrt_out_of_memory(parser);
+    if (window->failure == SLUICE_ERROR_CANCELED)
+        return cancel(parser);
     if (window->failure != SLUICE_SUCCESS)
         return slc_pbrt_stop(parser, window->failure, &place, "%s",
                              slc_pbrt_failure_text(window->failure));
@@ -131,10 +139,12 @@ static bool push_frame(struct slc_pbrt_parser *parser, uint32_t path, bool is_im
                        parser->frame_count + 1, sizeof *parser->frames))
         return slc_pbrt_out_of_memory(parser);
     struct slc_pbrt_frame *frame = &parser->frames[parser->frame_count];
-    *opened =
-        slc_pbrt_lexer_open(&frame->lexer, slc_pbrt_name(&scene->names, path), &scene->allocator);
+    *opened = slc_pbrt_lexer_open(&frame->lexer, slc_pbrt_name(&scene->names, path), &parser->watch,
+                                  &scene->allocator);
     if (*opened == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
         return slc_pbrt_out_of_memory(parser);
+    if (*opened == SLUICE_ERROR_CANCELED)
+        return cancel(parser);
     if (*opened != SLUICE_SUCCESS)
         return true;
     slc_pbrt_window_limit(&frame->lexer.window, scene->limits.maxTextSize - scene->info.textSize);
@@ -267,7 +277,10 @@ static void finish_parser(struct slc_pbrt_parser *parser)
 
 SluiceResult slc_pbrt_parse(SluicePbrtScene *scene, const char *path)
 {
-    struct slc_pbrt_parser parser = {.scene = scene, .object = SLUICE_PBRT_NONE};
+    struct slc_pbrt_parser parser = {
+        .scene = scene,
+        .object = SLUICE_PBRT_NONE,
+        .watch = {.user = scene->limits.pUserData, .goes_on = scene->limits.pfnProgress}};
     parser.parameters.allocator = parser.camera.allocator = scene->allocator;
     parser.state.transform = parser.camera_to_world = slc_pbrt_identity();
     parser.state.area_light = SLUICE_PBRT_NONE;

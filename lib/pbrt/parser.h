@@ -86,6 +86,7 @@ struct slc_pbrt_forward {
 struct slc_pbrt_parser {
     SluicePbrtScene *scene;
     SluiceResult result; ///< why the parser stops
+    struct slc_pbrt_watch watch;
     bool in_world, after_world, has_world_end;
     bool has_token; ///< `token` is to be read again
     bool ignores_transforms;

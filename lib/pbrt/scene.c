@@ -64,6 +64,8 @@ SluiceResult sluiceOpenPbrtScene(const SluicePbrtSceneCreateInfo *pInfo, SluiceP
     result = slc_pbrt_parse(scene, info.pPath);
     if (result == SLUICE_SUCCESS && info.pBoundsPath)
         result = slc_pbrt_read_bounds_file(scene, info.pBoundsPath);
+    scene->limits.pUserData = NULL;
+    scene->limits.pfnProgress = NULL;
     if (result != SLUICE_SUCCESS) {
         sluiceDestroyPbrtScene(scene);
         return result;

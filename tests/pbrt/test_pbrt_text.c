@@ -572,6 +572,88 @@ static void compressed_files_are_read_like_plain_ones(void **state)
 #endif
 }
 
+static uint32_t messages;
+
+static void count_messages(void *user, SluiceLogSeverity severity, const char *message)
+{
+    (void)user, (void)severity, (void)message;
+    messages++;
+}
+
+struct watch {
+    uint64_t most, last; /* bytes after which the reader is stopped, and those reported last */
+    uint32_t calls, stops;
+};
+
+static bool watch_progress(void *user, uint64_t read_size)
+{
+    struct watch *watch = user;
+    assert_true(read_size >= watch->last && read_size <= watch->last + (1u << 17));
+    watch->last = read_size;
+    watch->calls++;
+    watch->stops += read_size >= watch->most;
+    return read_size < watch->most;
+}
+
+static SluiceResult open_watched(struct watch *watch)
+{
+    const SluicePbrtSceneCreateInfo info = {.structSize = sizeof info,
+                                            .pPath = pbrt_path(&files, "scene.pbrt"),
+                                            .pAllocator = files.allocator,
+                                            .log = {&files, count_messages},
+                                            .pUserData = watch,
+                                            .pfnProgress = watch_progress};
+    messages = 0;
+    return sluiceOpenPbrtScene(&info, &files.scene);
+}
+
+/* 3.3 MB in a list, a comment, and files that include one another. */
+static uint64_t write_long_text(void)
+{
+    const size_t size = 1u << 20;
+    char *part = malloc(size + 1), *text = malloc(2 * size + 256);
+    assert_true(part && text);
+    memset(part, ' ', size);
+    part[size] = 0;
+    for (size_t i = 0; i + 15 < size; i += 15)
+        memcpy(part + i, "Shape \"sphere\"\n", 15);
+    pbrt_write(&files, "part.pbrt", part, size);
+    memset(part, '1', size);
+    for (size_t i = 0; i < size; i += 2)
+        part[i] = ' ';
+    const int length = snprintf(text, 2 * size + 256,
+                                HEADER "Include \"part.pbrt\"\n# %s\nShape \"trianglemesh\" "
+                                       "\"point P\" [0 0 0 1 0 0 0 1 0] \"float x\" [ %s ]\n",
+                                part, part);
+    assert_true(length > 0);
+    pbrt_write(&files, "scene.pbrt", text, (size_t)length);
+    free(part);
+    free(text);
+    return size + (uint64_t)length;
+}
+
+/* The reader asks before each read, and reads nothing after it was stopped: however long the text
+ * is, the end takes no longer than a window of it. */
+static void a_reader_that_is_stopped_reads_no_further(void **state)
+{
+    (void)state;
+    const uint64_t size = write_long_text();
+    struct watch all = {.most = UINT64_MAX};
+    CHECK_OK(open_watched(&all));
+    assert_true(all.last == size);
+    sluiceDestroyPbrtScene(files.scene);
+    for (uint32_t i = 0; i < all.calls; i++) {
+        struct watch watch = {.most = (uint64_t)i << 17};
+        assert_int_equal(open_watched(&watch), SLUICE_ERROR_CANCELED);
+        assert_null(files.scene);
+        assert_int_equal(watch.stops, 1);
+        assert_true(watch.last <= watch.most + (1u << 17));
+        assert_int_equal(messages, 0);
+        if (watch.most + (1u << 17) > size)
+            break;
+    }
+}
+
 static void options_of_both_forms_are_skipped(void **state)
 {
     (void)state;
@@ -607,6 +689,7 @@ int main(void)
         TEST(bounds_are_remembered_in_a_file),
         TEST(compressed_files_are_read_like_plain_ones),
         TEST(options_of_both_forms_are_skipped),
+        TEST(a_reader_that_is_stopped_reads_no_further),
     };
     return RUN_TESTS(tests);
 }
