@@ -20,7 +20,13 @@ struct build {
     struct box_tree *tree;
     struct item *items;
     uint32_t leaf_size, depth;
+    const atomic_bool *canceled; ///< NULL: never
 };
+
+static bool is_canceled(const struct build *build)
+{
+    return build->canceled && atomic_load(build->canceled);
+}
 
 /** A plane across the axis along which the middles of items are spread most. */
 struct split {
@@ -187,20 +193,23 @@ static uint32_t divide(const struct build *build, const struct split *split,
         fill_bins(split, items, range->count, &bins);
         bin = choose_bin(&bins, range->count, most);
     }
+    if (is_canceled(build))
+        return range->count / 2;
     if (bin > 0)
         return partition(split, bin, items, range->count);
     qsort(items, range->count, sizeof *items, compare[split->axis]);
     return range->count / 2;
 }
 
-static void build_nodes(const struct build *build, uint32_t count)
+/* False when it was canceled. */
+static bool build_nodes(const struct build *build, uint32_t count)
 {
     struct box_tree *tree = build->tree;
     struct range stack[BOX_TREE_MOST_DEPTH + 2];
     uint32_t height = 1;
     stack[0] = (struct range){.count = count};
     tree->node_count = 1;
-    while (height > 0) {
+    while (height > 0 && !is_canceled(build)) {
         const struct range range = stack[--height];
         struct box_tree_node *node = &tree->nodes[range.node];
         struct box_tree_box box;
@@ -218,6 +227,7 @@ static void build_nodes(const struct build *build, uint32_t count)
             (struct range){next + 1, range.first + left, range.count - left, range.depth + 1};
         stack[height++] = (struct range){next, range.first, left, range.depth + 1};
     }
+    return height == 0;
 }
 
 bool box_tree_build(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
@@ -229,17 +239,22 @@ bool box_tree_build(const struct box_tree_box *boxes, uint32_t count, uint32_t l
 bool box_tree_build_within(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
                            uint32_t depth, struct box_tree *tree)
 {
+    return box_tree_build_until(boxes, count, leaf_size, depth, NULL, tree);
+}
+
+bool box_tree_build_until(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
+                          uint32_t depth, const atomic_bool *canceled, struct box_tree *tree)
+{
     *tree = (struct box_tree){0};
     if (count == 0)
         return true;
-    struct build build = {tree, malloc(count * sizeof *build.items), leaf_size, depth};
+    struct build build = {tree, malloc(count * sizeof *build.items), leaf_size, depth, canceled};
     tree->nodes = malloc((2 * (size_t)count - 1) * sizeof *tree->nodes);
     tree->order = malloc(count * sizeof *tree->order);
-    const bool done = build.items && tree->nodes && tree->order;
+    bool done = build.items && tree->nodes && tree->order;
     for (uint32_t i = 0; i < count && done; i++)
         build.items[i] = (struct item){boxes[i], i};
-    if (done)
-        build_nodes(&build, count);
+    done = done && build_nodes(&build, count);
     for (uint32_t i = 0; i < count && done; i++)
         tree->order[i] = build.items[i].index;
     free(build.items);

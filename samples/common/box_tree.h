@@ -5,6 +5,7 @@
 #ifndef SAMPLES_COMMON_BOX_TREE_H
 #define SAMPLES_COMMON_BOX_TREE_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -42,6 +43,10 @@ bool box_tree_build(const struct box_tree_box *boxes, uint32_t count, uint32_t l
  *  `leaf_size` << `depth`. */
 bool box_tree_build_within(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
                            uint32_t depth, struct box_tree *tree);
+/** box_tree_build_within until `*canceled` is true; NULL: to the end. False when it was canceled,
+ *  too: nothing is built. */
+bool box_tree_build_until(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
+                          uint32_t depth, const atomic_bool *canceled, struct box_tree *tree);
 void box_tree_finish(struct box_tree *tree);
 
 struct box_tree_box box_tree_empty_box(void);

@@ -6,12 +6,12 @@
 #define SPARE_DEPTH 2u
 
 bool clusters_create(const struct box_tree_box *boxes, const uint32_t *keys, uint32_t count,
-                     uint32_t size, struct clusters *c)
+                     uint32_t size, const atomic_bool *canceled, struct clusters *c)
 {
     *c = (struct clusters){.size = size, .depth = SPARE_DEPTH};
     while ((uint64_t)size << (c->depth - SPARE_DEPTH) < count)
         c->depth++;
-    if (!box_tree_build_within(boxes, count, size, c->depth, &c->tree))
+    if (!box_tree_build_until(boxes, count, size, c->depth, canceled, &c->tree))
         return false;
     if (count == 0)
         return true;

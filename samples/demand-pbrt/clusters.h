@@ -15,9 +15,10 @@ struct clusters {
     uint32_t depth;       ///< of the tree, at most
 };
 
-/** Where `keys` has a name for each box. `keys` is copied. False when out of memory. */
+/** Where `keys` has a name for each box. `keys` is copied. False when out of memory, and when
+ *  `*canceled`, which may be NULL, became true. */
 bool clusters_create(const struct box_tree_box *boxes, const uint32_t *keys, uint32_t count,
-                     uint32_t size, struct clusters *clusters);
+                     uint32_t size, const atomic_bool *canceled, struct clusters *clusters);
 void clusters_finish(struct clusters *clusters);
 
 /** For each key 1 + the node of its cluster, and 0 for those in none. `key_count` is beyond all

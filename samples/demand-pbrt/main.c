@@ -96,7 +96,7 @@ static bool open_scene(struct renderer *r)
     const struct pbrt_options *o = &r->options;
     struct scene *scene = &r->shared.scene;
     r->shared.options = o;
-    if (!can_write_outputs(o) || !scene_open(o->scene, o->bounds, scene) ||
+    if (!can_write_outputs(o) || !scene_open(o->scene, o->bounds, NULL, scene) ||
         (!o->preload && !o->preload_shapes && !scene_cluster(scene, o->cluster_size)) ||
         (o->dump && !scene_dump(scene, o->dump)))
         return false;

@@ -50,6 +50,11 @@ SluicePbrtObject scene_object_of(const struct scene *scene, uint32_t instance)
     return object;
 }
 
+static bool is_canceled(const struct scene *scene)
+{
+    return scene->watch && atomic_load(scene->watch->canceled);
+}
+
 /** Whether rays can see the shape at all. Says on stderr why not, if that is a mistake. */
 static bool is_visible(const struct scene *scene, const SluicePbrtShape *shape)
 {
@@ -103,7 +108,7 @@ static bool find_boxes(struct scene *scene)
         return false;
     for (uint32_t i = 0; i < info->objectCount; i++)
         scene->object_boxes[i] = bounds_none();
-    for (uint32_t i = 0; i < info->shapeCount; i++) {
+    for (uint32_t i = 0; i < info->shapeCount && !is_canceled(scene); i++) {
         find_box(scene, i);
         if (scene_box_is_empty(&scene->boxes[i]))
             continue;
@@ -140,12 +145,12 @@ void scene_node_transform(const struct scene *scene, struct scene_node node, flo
 bool scene_for_each(const struct scene *scene,
                     bool (*visit)(void *user_data, struct scene_node node), void *user_data)
 {
-    bool going = true;
+    bool going = !is_canceled(scene);
     for (uint32_t i = 0; i < scene->info.shapeCount && going; i++)
         if (!scene_box_is_empty(&scene->boxes[i]) &&
             scene_shape(scene, i).object == SLUICE_PBRT_NONE)
             going = visit(user_data, (struct scene_node){SLUICE_PBRT_NONE, i});
-    for (uint32_t i = 0; i < scene->info.instanceCount && going; i++) {
+    for (uint32_t i = 0; i < scene->info.instanceCount && going && !is_canceled(scene); i++) {
         const struct scene_node node = {i, SLUICE_PBRT_NONE};
         const SluicePbrtBounds box = scene_node_box(scene, node);
         if (!scene_box_is_empty(&box))
@@ -175,19 +180,31 @@ static bool add_to_scene(void *user_data, struct scene_node node)
     return true;
 }
 
-bool scene_open(const char *path, const char *bounds_path, struct scene *scene)
+static bool note_progress(void *user_data, uint64_t read_size)
+{
+    const struct scene_watch *watch = user_data;
+    atomic_store(watch->read_size, read_size);
+    return !atomic_load(watch->canceled);
+}
+
+bool scene_open(const char *path, const char *bounds_path, const struct scene_watch *watch,
+                struct scene *scene)
 {
     const SluicePbrtSceneCreateInfo info = {.structSize = sizeof info,
                                             .pPath = path,
                                             .log = {.pfnLog = log_say},
-                                            .pBoundsPath = bounds_path};
+                                            .pBoundsPath = bounds_path,
+                                            .pUserData = (void *)watch,
+                                            .pfnProgress = watch ? note_progress : NULL};
     double start = clock_seconds();
-    *scene = (struct scene){.info = {.structSize = sizeof scene->info}};
+    *scene = (struct scene){.info = {.structSize = sizeof scene->info}, .watch = watch};
     SluiceResult result = sluiceOpenPbrtScene(&info, &scene->pbrt);
     if (result == SLUICE_SUCCESS)
         result = sluiceGetPbrtSceneInfo(scene->pbrt, &scene->info);
     if (result == SLUICE_SUCCESS)
         result = sluiceGetPbrtInstances(scene->pbrt, &scene->instances);
+    if (result == SLUICE_ERROR_CANCELED)
+        return false;
     if (result != SLUICE_SUCCESS) {
         text_say("%s: cannot be opened: %s", path, sluiceGetResultName(result));
         return false;
@@ -200,6 +217,8 @@ bool scene_open(const char *path, const char *bounds_path, struct scene *scene)
     }
     scene_for_each(scene, add_to_scene, scene);
     scene->bounds_seconds = clock_seconds() - start;
+    if (is_canceled(scene))
+        return false;
     if (scene->place_count == 0)
         text_say("%s: no shape can be seen", path);
     return !bounds_path || sluiceWritePbrtBounds(scene->pbrt, bounds_path) == SLUICE_SUCCESS;
@@ -251,9 +270,10 @@ bool scene_cluster(struct scene *scene, uint32_t size)
     bool done = list.boxes && list.keys;
     if (done) {
         scene_for_each(scene, list_node, &list);
-        done = clusters_create(list.boxes, list.keys, list.count, size, &scene->clusters);
+        done = clusters_create(list.boxes, list.keys, list.count, size,
+                               scene->watch ? scene->watch->canceled : NULL, &scene->clusters);
     }
-    if (!done)
+    if (!done && !is_canceled(scene))
         fprintf(stderr, "out of memory\n");
     free(list.boxes);
     free(list.keys);

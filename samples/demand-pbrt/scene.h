@@ -8,20 +8,27 @@
 
 #include "clusters.h"
 
+/** Who waits for a scene that is opened on a thread. */
+struct scene_watch {
+    const atomic_bool *canceled;      ///< true: scene_open and scene_cluster fail soon
+    atomic_uint_least64_t *read_size; ///< bytes of text that were read
+};
+
 /** Zeroed is empty. */
 struct scene {
     SluicePbrtScene *pbrt;
     SluicePbrtSceneInfo info;
     const SluicePbrtInstance *instances;
-    SluicePbrtBounds *boxes;        ///< owned; of each shape. Empty: the shape is not placed.
-    SluicePbrtBounds *object_boxes; ///< owned; of each object
-    SluicePbrtBounds box;           ///< of everything
-    uint64_t node_count;            ///< free shapes, and instances with something in them
-    uint64_t place_count;           ///< shapes in the world; those of objects once per instance
-    struct clusters clusters;       ///< of the nodes; empty: there are few of them
-    double parse_seconds;           ///< of the text
-    double bounds_seconds;          ///< of the boxes: vertices of PLY files
-    double cluster_seconds;         ///< of the clusters
+    SluicePbrtBounds *boxes;         ///< owned; of each shape. Empty: the shape is not placed.
+    SluicePbrtBounds *object_boxes;  ///< owned; of each object
+    SluicePbrtBounds box;            ///< of everything
+    uint64_t node_count;             ///< free shapes, and instances with something in them
+    uint64_t place_count;            ///< shapes in the world; those of objects once per instance
+    struct clusters clusters;        ///< of the nodes; empty: there are few of them
+    const struct scene_watch *watch; ///< borrowed; NULL: nobody
+    double parse_seconds;            ///< of the text
+    double bounds_seconds;           ///< of the boxes: vertices of PLY files
+    double cluster_seconds;          ///< of the clusters
 };
 
 /** A shape in the world. `instance` is SLUICE_PBRT_NONE for shapes that are no part of an object.
@@ -30,9 +37,11 @@ struct scene_node {
     uint32_t instance, shape;
 };
 
-/** `bounds_path`: file with boxes of PLY files, which is used and written anew; may be NULL. Says
- *  on stderr why it failed. */
-bool scene_open(const char *path, const char *bounds_path, struct scene *scene);
+/** `bounds_path`: file with boxes of PLY files, which is used and written anew; may be NULL.
+ *  `watch` may be NULL, and outlives scene_cluster. Says on stderr why it failed, unless it was
+ *  canceled. */
+bool scene_open(const char *path, const char *bounds_path, const struct scene_watch *watch,
+                struct scene *scene);
 void scene_finish(struct scene *scene);
 
 bool scene_box_is_empty(const SluicePbrtBounds *box);

@@ -199,11 +199,28 @@ static void trees_cost_less_than_halves_of_the_list(void **state)
     box_tree_finish(&naive);
 }
 
+static void a_canceled_build_leaves_nothing(void **state)
+{
+    (void)state;
+    struct box_tree_box boxes[100];
+    struct box_tree tree;
+    atomic_bool canceled = true;
+    for (int i = 0; i < 100; i++)
+        boxes[i] = (struct box_tree_box){{(float)i, 0, 0}, {(float)i + 1, 1, 1}};
+    assert_false(box_tree_build_until(boxes, 100, 2, 20, &canceled, &tree));
+    assert_null(tree.nodes);
+    assert_int_equal(tree.node_count, 0);
+    canceled = false;
+    assert_true(box_tree_build_until(boxes, 100, 2, 20, &canceled, &tree));
+    box_tree_finish(&tree);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_box_is_in_one_leaf_and_in_all_nodes_above),
         cmocka_unit_test(no_boxes_give_no_nodes),
+        cmocka_unit_test(a_canceled_build_leaves_nothing),
         cmocka_unit_test(equal_boxes_at_one_place_are_halved),
         cmocka_unit_test(boxes_at_powers_of_two_stay_within_the_depth),
         cmocka_unit_test(numbers_that_are_not_finite_do_no_harm),

@@ -65,7 +65,7 @@ static void each_step_is_bounded_and_everything_comes_once(void **state)
             struct clusters clusters;
             static struct opening o;
             fill(boxes, keys, counts[c], 11);
-            assert_true(clusters_create(boxes, keys, counts[c], sizes[s], &clusters));
+            assert_true(clusters_create(boxes, keys, counts[c], sizes[s], NULL, &clusters));
             o = (struct opening){.clusters = &clusters};
             open_all(&o, 0, 1);
             assert_true(o.most <= CLUSTERS_FAN * sizes[s]);
@@ -84,7 +84,7 @@ static void the_way_to_a_cluster_is_short(void **state)
     static struct opening o;
     struct clusters clusters;
     fill(boxes, keys, MOST, 5);
-    assert_true(clusters_create(boxes, keys, MOST, 64, &clusters));
+    assert_true(clusters_create(boxes, keys, MOST, 64, NULL, &clusters));
     o = (struct opening){.clusters = &clusters};
     open_all(&o, 0, 1);
     assert_int_equal(o.deepest, 2);
@@ -165,7 +165,7 @@ static struct world *create_world(uint32_t cluster_size)
     for (uint32_t i = 0; i < MOST; i++)
         own[i] = i;
     if (cluster_size < MOST)
-        assert_true(clusters_create(w.boxes, own, MOST, cluster_size, &w.clusters));
+        assert_true(clusters_create(w.boxes, own, MOST, cluster_size, NULL, &w.clusters));
     w.parts = clusters_list_nodes(&w.clusters, MOST);
     assert_non_null(w.parts);
     assert_true(world_tree_create(&w.clusters, BOX_BIT, &w.tree));

@@ -46,8 +46,9 @@ struct scene_image {
 
 /** Shared with the thread that opens a scene. */
 struct scene_progress {
-    atomic_uint done, total; ///< images
-    atomic_bool canceled;    ///< nothing more is opened
+    atomic_uint done, total;         ///< images
+    atomic_bool canceled;            ///< nothing more is opened
+    atomic_uint_least64_t read_size; ///< bytes of the text of a scene of pbrt
 };
 
 struct scene_data {

@@ -18,7 +18,8 @@ void scene_load_describe(const struct scene_load *load, char *text, size_t size)
  */
 bool scene_load_end(struct scene_load *load, struct scene_data *scene, struct file_list *paths);
 /** Cancels a load without a wait, and moves it into a list, which begins as NULL. Its thread ends
- *  without a scene. A file of geometry or of pbrt that is being read is read to its end. */
+ *  without a scene. A file of geometry that is being read is read to its end; the text of a scene
+ *  of pbrt for 128 KiB at most, and vertices of one PLY file. */
 void scene_load_keep_canceled(struct scene_load *load, struct scene_load **canceled);
 /** Frees the loads of the list whose threads have ended. `wait`: all loads. */
 void scene_load_drop_canceled(struct scene_load **canceled, bool wait);

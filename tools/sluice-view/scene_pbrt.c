@@ -68,6 +68,17 @@ static void describe(struct scene_data *scene, const struct scene_pbrt *p)
     scene->camera = p->frame.camera;
 }
 
+static bool open_text(const char *path, struct scene_data *scene, struct scene_pbrt *p)
+{
+    struct scene_progress *progress = scene->progress;
+    const struct scene_watch watch = {progress ? &progress->canceled : NULL,
+                                      progress ? &progress->read_size : NULL};
+    const bool opened = scene_open(path, NULL, progress ? &watch : NULL, &p->scene) &&
+                        scene_cluster(&p->scene, CLUSTER_SIZE);
+    p->scene.watch = NULL;
+    return opened && !scene_data_canceled(scene);
+}
+
 bool scene_pbrt_open(const char *path, const char *cache, struct scene_data *scene)
 {
     struct scene_pbrt *p = calloc(1, sizeof *p);
@@ -80,9 +91,7 @@ bool scene_pbrt_open(const char *path, const char *cache, struct scene_data *sce
     }
     strcpy(scene->name, name);
     if (!cache_path(cache, "pictures", p->cache, sizeof p->cache) ||
-        !files_make_folders(p->cache) || !scene_open(path, NULL, &p->scene) ||
-        scene_data_canceled(scene) || !scene_cluster(&p->scene, CLUSTER_SIZE) ||
-        scene_data_canceled(scene) || !list_pictures(p))
+        !files_make_folders(p->cache) || !open_text(path, scene, p) || !list_pictures(p))
         return false;
     pbrt_frame_init(p->scene.info.cameraToWorld, &p->scene.box, vertical_fov(&p->scene.info),
                     &p->frame);
