@@ -1,6 +1,6 @@
 /**
- * Hierarchies of boxes for devices that trace no rays themselves. Equal boxes give equal trees.
- * box_tree.glsl tells which boxes a ray enters.
+ * Trees of boxes for devices without ray tracing. Equal boxes give equal trees. box_tree.glsl tests
+ * which boxes a ray enters.
  */
 #ifndef SAMPLES_COMMON_BOX_TREE_H
 #define SAMPLES_COMMON_BOX_TREE_H
@@ -9,38 +9,39 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** A walk that visits the nearer child first keeps so many nodes and one more. The root's depth is
- *  0. */
+/** Limit of a leaf's depth; the root has depth 0. A walk that visits the nearer child first keeps
+ * at most one node more than this. */
 #define BOX_TREE_MOST_DEPTH 30u
 
 struct box_tree_box {
     float low[3], high[3];
 };
 
-/** A box around two nodes, `first` and the one after it, or around `count` boxes. */
+/** A box around two nodes, `first` and `first` + 1, or around `count` boxes. */
 struct box_tree_node {
     float low[3];
     uint32_t first;
     float high[3];
-    uint32_t count; ///< 0: of nodes
+    uint32_t count; ///< 0: the box is around nodes
 };
 
 /** Zeroed is empty. */
 struct box_tree {
     struct box_tree_node *nodes; ///< owned; the first is the root
-    uint32_t node_count;         ///< 0: there are no boxes
-    uint32_t *order;             ///< owned; indices of boxes: leaves have runs of it
+    uint32_t node_count;         ///< 0: no boxes
+    uint32_t *order;             ///< owned; box indices; each leaf has a range
 };
 
 /**
- * Builds a tree of leaves with at most `leaf_size` boxes, by binned surface areas (Wald, "On fast
- * Construction of SAH-based Bounding Volume Hierarchies", 2007). `count` is at most 2^30. Boxes
- * whose numbers are not finite may lie in any leaf. False when out of memory: nothing is built.
+ * Builds a tree whose leaves have at most `leaf_size` boxes, by binned surface areas (Wald, "On
+ * fast Construction of SAH-based Bounding Volume Hierarchies", 2007). `count`: at most 2^30. Boxes
+ * with values that are not finite may lie in any leaf. Returns false when out of memory, with
+ * nothing built.
  */
 bool box_tree_build(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
                     struct box_tree *tree);
-/** The same with leaves at `depth` at most, 1 to BOX_TREE_MOST_DEPTH. `count` is at most
- *  `leaf_size` << `depth`. */
+/** Builds a tree like box_tree_build, with leaves at a depth of at most `depth`: 1 to
+ * BOX_TREE_MOST_DEPTH. `count`: at most `leaf_size` << `depth`. */
 bool box_tree_build_within(const struct box_tree_box *boxes, uint32_t count, uint32_t leaf_size,
                            uint32_t depth, struct box_tree *tree);
 /** box_tree_build_within until `*canceled` is true; NULL: to the end. False when it was canceled,

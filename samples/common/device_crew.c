@@ -43,7 +43,8 @@ static bool create_ring(const struct device_crew *c, uint32_t count, struct pict
     return picture_ring_create(count, c->size, c->plain, c->calls->write, c->user_data, ring);
 }
 
-/* As many pictures of an animation are written at a time as devices trace. */
+/* SPLIT_ALTERNATE: each device thread creates pictures of its own. Otherwise one picture is traced
+ * while up to device_count are written. */
 bool device_crew_create_pictures(struct device_crew *c)
 {
     const uint32_t most = c->device_count + 1, count = c->end_of_pictures - c->first_picture;
@@ -67,14 +68,14 @@ static bool end_if_failed(struct device_crew *c, bool done)
     return done;
 }
 
-/** Its tiles of the picture that all devices trace. */
+/** Traces the device's tiles of the picture that all devices share. */
 static bool trace_share(void *user_data, uint32_t device)
 {
     struct device_crew *c = user_data;
     return end_if_failed(c, trace(c, device, c->index, c->picture));
 }
 
-/** Whole pictures, the next one that no device has begun. */
+/** Traces whole pictures: always the next one that no device has begun. */
 static bool trace_pictures(void *user_data, uint32_t device)
 {
     struct device_crew *c = user_data;

@@ -6,15 +6,15 @@
 
 #include "one_time.h"
 
-#define BLOCK 8u ///< pixels side by side in the list are near each other
-#define TILE 32u ///< of a share
+#define BLOCK 8u ///< neighboring pixels are near each other in the list
+#define TILE 32u ///< width and height of a share's tiles in pixels
 
 static VkDeviceSize pixel_count(const struct film *film)
 {
     return (VkDeviceSize)film->width * film->height;
 }
 
-/** Whether the tile of a pixel is of the share. */
+/** Returns whether the share includes the pixel's tile. */
 static bool has_pixel(const struct film *film, uint32_t x, uint32_t y)
 {
     const struct film_share *share = &film->share;
@@ -78,7 +78,7 @@ void film_destroy(const struct gpu *gpu, struct film *film)
     film->all = NULL;
 }
 
-/* Launches write the first list only after they have written the second. */
+/* Launches overwrite list 0 only after they have written list 1. */
 void film_begin_sample(struct film *film)
 {
     if (!film->has_list)
@@ -129,14 +129,14 @@ static void record_readback(void *user_data, VkCommandBuffer commands)
                          &barrier, 0, NULL, 0, NULL);
 }
 
-/** `count` pixels from `first` on. */
+/** Reads `count` pixels from `first` on. */
 static void read_pixels(const struct film *film, struct picture *picture, size_t first,
                         size_t count)
 {
     const float(*sums)[4] = film->readback.mapped;
     const float(*latest)[4] = sums + pixel_count(film);
     for (size_t i = first; i < first + count; i++) {
-        bool none = sums[i][3] == 0.0f; /* what the last sample could see is all there is */
+        bool none = sums[i][3] == 0.0f; /* no complete sample yet: show the incomplete one */
         for (int c = 0; c < 3; c++)
             picture->rgba[i][c] = none ? latest[i][c] : sums[i][c] / sums[i][3];
         picture->rgba[i][3] = 1.0f;

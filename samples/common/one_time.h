@@ -1,13 +1,14 @@
-/** Commands that run once while the host waits. */
+/** Records commands, runs them once, and waits. */
 #ifndef SAMPLES_COMMON_ONE_TIME_H
 #define SAMPLES_COMMON_ONE_TIME_H
 
 #include "../../tools/common/gpu.h"
 
-/** Says on stderr why it failed. */
+/** Reports errors on stderr. */
 bool one_time_run(const struct gpu *gpu, void (*record)(void *user_data, VkCommandBuffer commands),
                   void *user_data);
-/** The same after another queue has signaled a timeline semaphore. VK_NULL_HANDLE: none. */
+/** Runs commands after another queue has signaled `value` on a timeline semaphore. VK_NULL_HANDLE:
+ * does not wait. */
 bool one_time_run_after(const struct gpu *gpu, VkSemaphore semaphore, uint64_t value,
                         void (*record)(void *user_data, VkCommandBuffer commands), void *user_data);
 

@@ -19,7 +19,7 @@ bool picture_create(uint32_t width, uint32_t height, struct picture *picture)
     picture->rgba = calloc(count, sizeof *picture->rgba);
     picture->missing = calloc(count, sizeof *picture->missing);
     for (size_t i = 0; i < count && picture->rgba && picture->missing; i++)
-        picture->rgba[i][3] = 1.0f; /* and the memory is there when pictures are timed */
+        picture->rgba[i][3] = 1.0f; /* also commits the memory before pictures are timed */
     if (picture->rgba && picture->missing)
         return true;
     fprintf(stderr, "out of memory\n");
@@ -34,14 +34,14 @@ void picture_destroy(struct picture *picture)
     memset(picture, 0, sizeof *picture);
 }
 
-/** Narkowicz, "ACES Filmic Tone Mapping Curve", 2016. */
+/** Tone curve of Narkowicz, "ACES Filmic Tone Mapping Curve", 2016. */
 static float film_curve(float x)
 {
     x = fmaxf(x, 0.0f);
     return fminf(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1.0f);
 }
 
-/* What is not a number is black. */
+/* NaN becomes 0. */
 static float clamp(float x)
 {
     return fminf(fmaxf(x, 0.0f), 1.0f);
@@ -122,7 +122,7 @@ static bool write_numbered(const struct picture_place *place, const char *kind, 
     return png_file_write(path, rgba, pair->width, pair->height);
 }
 
-/** FLIP, and its map in colors. */
+/** Computes FLIP, and writes its error map in colors. */
 static bool compare_flip(const SluicePicturePair *pair, const struct picture_place *place,
                          double *flip)
 {

@@ -1,7 +1,7 @@
 /**
- * Image sources behind a slow line, as if their files were on a disk or in a network: reads take a
- * latency and share a bandwidth. Nothing waits in them; what has not come yet answers
- * SLUICE_NOT_READY, so that any number of reads can be on their way.
+ * Image sources that simulate a slow disk or network. Reads take a latency, and all sources share a
+ * bandwidth. No call blocks: a read whose data has not arrived returns SLUICE_NOT_READY. Any number
+ * of reads may be pending.
  */
 #ifndef SAMPLES_COMMON_SLOW_SOURCE_H
 #define SAMPLES_COMMON_SLOW_SOURCE_H
@@ -11,35 +11,38 @@
 #include <pthread.h>
 #include <stdbool.h>
 
-/** Microseconds; never goes back. Any thread. */
+/** Returns microseconds. Never decreases. Thread-safe. */
 typedef uint64_t (*slow_clock)(void *user_data);
 
 struct slow_line_info {
-    double latency;   ///< microseconds, from 0 on
+    double latency;   ///< microseconds; 0 or more
     double bandwidth; ///< bytes per microsecond (MB/s), above 0; 0: no limit
     slow_clock clock;
-    void *user_data; ///< of the clock
+    void *user_data; ///< argument of the clock
 };
 
-/** What sources share. */
+/** State that all sources of a line share. */
 struct slow_line {
     struct slow_line_info info;
-    pthread_mutex_t mutex; ///< around all below, and the reads that its sources know
-    double free_at;        ///< when all that was asked for is through
+    pthread_mutex_t mutex; ///< guards all fields below and the sources' lists of reads
+    double free_at;        ///< time when all requested bytes have been transferred
 };
 
-/** False for want of a mutex. */
+/** Returns false if no mutex can be created. */
 bool slow_line_init(struct slow_line *line, const struct slow_line_info *info);
-/** After all its sources are destroyed. */
+/** Call after all sources of the line are destroyed. */
 void slow_line_finish(struct slow_line *line);
 
 /**
- * Wraps `inner`, which is borrowed, as is the line. A region is first put behind what other reads
- * asked for; it has gone through the line when its bytes have, and one latency later it is there.
- * Until then reads of it answer NOT_READY, then they get it from `inner`. It stays there until a
- * second has passed without a read of it: reads of several regions begin anew where one of them has
- * not come. A level that is asked for whole brings the coarser ones with it, which are read with
- * it. Any thread. Errors: OUT_OF_HOST_MEMORY, of reads also; what `inner` says.
+ * Creates a source that delays the reads of `inner`. `line` and `inner` must outlive it.
+ *
+ * The first read of a region queues its bytes behind all earlier reads. The region arrives one
+ * latency after its last byte. Until then reads of it return SLUICE_NOT_READY; afterwards they read
+ * from `inner`. A region is forgotten one second after its last read. A read of several regions
+ * starts again if one of them has not arrived. A read of a whole level also brings the coarser
+ * levels that are read with it.
+ *
+ * Thread-safe. Errors: SLUICE_ERROR_OUT_OF_HOST_MEMORY, also from reads; errors of `inner`.
  */
 SluiceResult slow_source_create(struct slow_line *line, SluiceImageSource *inner,
                                 SluiceImageSource **source);
