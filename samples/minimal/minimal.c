@@ -1,7 +1,7 @@
 /*
- * Streams textures onto the walls of a corridor: all that a renderer does for Sluice, in its order,
- * to copy from. room.frag is the shader's side of it. What any Vulkan program does is in
- * vulkan_setup.h and vulkan_drawing.h; what there is to be seen, and to be said, in corridor.h.
+ * Streams textures onto the walls of a corridor. Shows everything that a renderer does for Sluice,
+ * in order, to copy from. room.frag is the shader's side. vulkan_setup.h and vulkan_drawing.h hold
+ * plain Vulkan; corridor.h holds the scene, the command line and the output.
  */
 #include "corridor.h"
 #include "vulkan_drawing.h"
@@ -15,7 +15,7 @@
 
 struct frame {
     VkCommandBuffer commands;
-    SluiceStreamingFrame streaming; /* what the submission signals */
+    SluiceStreamingFrame streaming; /* semaphore and value that the submission signals */
 };
 
 struct renderer {
@@ -24,7 +24,7 @@ struct renderer {
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     SluiceImageSource *sources[TEXTURES];
-    uint32_t table_indices[TEXTURES]; /* of the textures, for room.frag */
+    uint32_t table_indices[TEXTURES]; /* shaders' indices of the textures, for room.frag */
     struct frame frames[FRAMES_IN_FLIGHT];
 };
 
@@ -68,7 +68,7 @@ static void create_streamer(struct renderer *r, const struct settings *settings)
                                                    .sparseQueueFamilyIndex = r->gpu.sparse_family,
                                                    .log = log_callback};
     SLUICE(sluiceCreateVulkanContext(&context, &r->context));
-    /* Only to compare with: --everything keeps all tiles in memory. */
+    /* For comparison only: --everything keeps all tiles in memory. */
     const SluiceVulkanStreamerDebugInfo debug = {.structSize = sizeof debug,
                                                  .mapEverything = settings->everything};
     const SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
@@ -76,7 +76,7 @@ static void create_streamer(struct renderer *r, const struct settings *settings)
                                                  .residencyMode = settings->mode,
                                                  .framesInFlight = FRAMES_IN_FLIGHT,
                                                  .textureArray = SLUICE_TEXTURE_ARRAY_COMBINED,
-                                                 .ticksPerSecond = 60, /* one a frame */
+                                                 .ticksPerSecond = 60, /* one tick per frame */
                                                  .feedbackTimeoutTicks = 128,
                                                  .pDebug = &debug};
     SLUICE(sluiceCreateVulkanStreamer(&info, &r->streamer));
@@ -97,7 +97,7 @@ static void draw_frame(struct renderer *r, uint32_t number, float eye_z)
 {
     struct frame *frame = &r->frames[number % FRAMES_IN_FLIGHT];
     SluiceStreamingFrame *streaming = &frame->streaming;
-    wait_for(&r->gpu, streaming->semaphore, streaming->signalValue); /* until it may be reused */
+    wait_for(&r->gpu, streaming->semaphore, streaming->signalValue); /* before reusing the frame */
     begin_commands(frame->commands);
     streaming->structSize = sizeof *streaming;
     SLUICE(sluiceBeginStreamingFrame(r->streamer, frame->commands, number, streaming));
@@ -114,9 +114,9 @@ int main(int argc, char **argv)
     struct renderer r = {0};
     open_device(&r.gpu, can_stream, &settings.mode);
     create_streamer(&r, &settings);
-    SluiceResidencyMode mode; /* of AUTO */
+    SluiceResidencyMode mode; /* the mode that AUTO resolves to */
     SLUICE(sluiceGetVulkanResidencyMode(r.streamer, &mode));
-    VkDescriptorSetLayout set_layout; /* 4. Frames come with a set of this layout. */
+    VkDescriptorSetLayout set_layout; /* 4. Each frame has a set of this layout. */
     SLUICE(sluiceGetVulkanDescriptorSetLayout(r.streamer, &set_layout));
     create_drawing(&r.gpu, settings.size, set_layout, mode == SLUICE_RESIDENCY_MODE_PAGED,
                    &r.drawing);
@@ -126,14 +126,14 @@ int main(int argc, char **argv)
         add_texture(&r, i);
 
     for (uint32_t number = 0; number < settings.frames; number++) {
-        if (number >= settings.walk_frames) /* only so that each run ends with the same picture */
+        if (number >= settings.walk_frames) /* only so that all runs end with equal pictures */
             SLUICE(sluiceWaitVulkanStreamerIdle(r.streamer));
         draw_frame(&r, number, eye_in_frame(&settings, number));
         if ((number + 1) % 40 == 0 || number + 1 == settings.frames)
             print_statistics(r.streamer, number + 1);
     }
 
-    sluiceDestroyVulkanStreamer(r.streamer); /* waits for its frames, and for reads of sources */
+    sluiceDestroyVulkanStreamer(r.streamer); /* waits for frames and reads */
     sluiceDestroyVulkanContext(r.context);
     for (uint32_t i = 0; i < TEXTURES; i++)
         sluiceDestroyImageSource(r.sources[i]);

@@ -1,4 +1,4 @@
-/** A device, and a picture to draw to: what any Vulkan program needs, kept out of minimal.c. */
+/** Creates a device and a picture to draw to. Plain Vulkan, kept out of minimal.c. */
 #ifndef SAMPLES_MINIMAL_VULKAN_SETUP_H
 #define SAMPLES_MINIMAL_VULKAN_SETUP_H
 
@@ -7,9 +7,9 @@
 #include <stdint.h>
 #include <vulkan/vulkan.h>
 
-/** Ends the program with "`what` failed: `why`" unless `good`. */
+/** Exits with "`what` failed: `why`" unless `good`. */
 void check(bool good, const char *what, const char *why);
-/** Ends the program with the number of the result unless that is VK_SUCCESS. */
+/** Exits with the number of the result unless it is VK_SUCCESS. */
 void check_vulkan(VkResult result, const char *call);
 #define VK(call) check_vulkan((call), #call)
 
@@ -17,22 +17,22 @@ struct gpu {
     VkInstance instance;
     VkPhysicalDevice physical_device;
     VkDevice device;
-    uint32_t family, sparse_family; ///< may be the same
-    VkQueue queue, sparse_queue;    ///< the first draws and computes
+    uint32_t family, sparse_family; ///< may be equal
+    VkQueue queue, sparse_queue;    ///< `queue` draws and computes
 };
 
-/** What a device is opened with. */
+/** Features and queue family that a device is opened with. */
 struct device_needs {
     VkPhysicalDeviceFeatures features;
     VkPhysicalDeviceVulkan12Features vulkan12;
-    uint32_t sparse_family; ///< VK_QUEUE_FAMILY_IGNORED: none, the drawing queue stands for it
+    uint32_t sparse_family; ///< VK_QUEUE_FAMILY_IGNORED: none; the drawing queue is used instead
 };
 
-/** Whether this device will do, and what else it needs then. */
+/** Returns whether a device is suitable, and writes what to open it with. */
 typedef bool device_test(VkInstance instance, VkPhysicalDevice device, const void *user,
                          struct device_needs *needs);
 
-/** The first device that passes the test. Ends the program with status 77 if there is none. */
+/** Opens the first device that passes the test. Exits with status 77 if none does. */
 void open_device(struct gpu *gpu, device_test *test, const void *user);
 void close_device(const struct gpu *gpu);
 

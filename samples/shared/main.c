@@ -1,7 +1,8 @@
 /*
- * A room that is rasterized, with a floor that reflects it by rays. Both use the same textures: a
- * streamer for the raster pass and a demand loader for the rays, of one context, which read each
- * tile once and keep it on one page. --apart gives each a context of its own, to compare.
+ * Rasterizes a room, and traces rays for the reflections in its floor. Both passes sample the same
+ * textures. The streamer of the raster pass and the demand loader of the rays share one context:
+ * each tile is read once and kept on one page. With --apart each has a context of its own, for
+ * comparison.
  */
 #include "../../tools/common/log.h"
 #include "../../tools/common/shared_options.h"
@@ -15,7 +16,7 @@
 
 #define TEXTURE_SIZE 2048
 #define BUDGET (UINT64_C(64) << 20) /* bytes of tiles */
-#define HEAP_TILES 64               /* the streamer's share of the budget comes in heaps of 4 MiB */
+#define HEAP_TILES 64 /* the streamer takes its share of the budget in heaps of 4 MiB */
 
 struct settings {
     struct paged_sample common;
@@ -26,11 +27,12 @@ struct settings {
 struct app {
     struct settings settings;
     struct gpu gpu;
-    SluiceVulkanContext *contexts[2]; ///< of streamer and demand loader; the same unless apart
+    SluiceVulkanContext
+        *contexts[2]; ///< contexts of streamer and demand loader; equal unless --apart
     SluiceVulkanStreamer *streamer;
     SluiceDemandLoader *loader;
     SluiceImageSource *sources[TEXTURES];
-    uint32_t tables[TEXTURES], ids[TEXTURES]; ///< what shaders know them by
+    uint32_t tables[TEXTURES], ids[TEXTURES]; ///< shaders' indices of the textures
     struct passes passes;
     SluiceStreamingFrame frame;
 };
@@ -42,7 +44,7 @@ static bool sluice(SluiceResult result, const char *what)
     return result == SLUICE_SUCCESS;
 }
 
-/* Tiles, bricks or panels, in [0, 1) of u and v; the same picture in every level. */
+/* Paints tiles, bricks or panels, for u and v in [0, 1). Every level shows the same picture. */
 static void paint(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
 {
@@ -102,7 +104,7 @@ static bool create_front_ends(struct app *app)
            sluice(sluiceCreateDemandLoader(&loader, &app->loader), "demand loader");
 }
 
-/* One source for both front ends. */
+/* Adds one source to both the streamer and the demand loader. */
 static bool add_texture(struct app *app, uint32_t i)
 {
     static const uint32_t kinds[TEXTURES] = {0, 1, 2};
@@ -207,7 +209,7 @@ static bool trace(struct app *app, uint32_t *missing)
     return sluice(sluiceWaitDemandTicket(app->loader, ticket, UINT64_MAX, NULL), "reads");
 }
 
-/* The reflections over the picture, by their weights. */
+/* Blends the reflections over the picture by their weights. */
 static bool write_picture(const struct app *app)
 {
     uint8_t *picture = app->passes.picture.mapped;

@@ -1,4 +1,4 @@
-/* What the floor reflects: a ray for each of its pixels, which samples the texture that it hits. */
+/* Traces the floor's reflections: one ray per floor pixel samples the texture that it hits. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
@@ -11,7 +11,8 @@
 layout(std430, set = 1, binding = 0) writeonly buffer Reflections { uint colors[]; } reflections;
 layout(local_size_x = 8, local_size_y = 8) in;
 
-/* Where the pixel's ray, reflected by the floor, meets the plane of a surface; the distance. */
+/* Intersects the pixel's reflected ray with the plane of a surface. Returns the point and the
+ * distance `t`. */
 vec3 meet(uint surface, vec2 pixel, out float t)
 {
     vec3 d = rayOf(pixel);
