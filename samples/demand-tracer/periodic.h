@@ -19,7 +19,7 @@ static inline float periodic_noise(float u, float v, int32_t period_x, int32_t p
     return 2.0f * (a + (b - a) * s + (c - a) * t + (a - b - c + d) * s * t) - 1.0f;
 }
 
-/** Octaves from a period on, down to the footprint. */
+/** Sums octaves of noise from a period on, down to the footprint. */
 static inline float periodic_octaves(float u, float v, int32_t period_x, int32_t period_y,
                                      int octaves, float gain, float footprint, uint32_t seed)
 {
@@ -35,10 +35,11 @@ static inline float periodic_octaves(float u, float v, int32_t period_x, int32_t
     return sum;
 }
 
-/** The two nearest of one center per cell of a grid of `period` x `period` cells. */
+/** Distances to the two nearest feature points. Each cell of a `period` x `period` grid has one
+ * point. */
 struct periodic_cell {
     float nearest, second; ///< distances, in cells
-    uint32_t id;           ///< of the nearest
+    uint32_t id;           ///< hash of the nearest point's cell
 };
 
 static inline struct periodic_cell periodic_cells(float u, float v, int32_t period, uint32_t seed)

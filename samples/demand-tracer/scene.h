@@ -1,4 +1,4 @@
-/** A garden of things on pedestals and leaves between them, each with a texture of its own. */
+/** A garden of things on pedestals with leaves between them. Each has a texture of its own. */
 #ifndef TRACER_SCENE_H
 #define TRACER_SCENE_H
 
@@ -6,7 +6,7 @@
 #include "bvh.h"
 #include "shapes.h"
 
-/** What a texture is put on: patterns follow it. */
+/** Use of a texture. Selects its pattern. */
 enum texture_use { TEXTURE_OF_GROUND, TEXTURE_OF_THING, TEXTURE_OF_LEAVES };
 
 struct shape {
@@ -19,10 +19,10 @@ struct scene {
     struct mesh mesh;
     struct shape shapes[SHAPE_COUNT];
     struct TracerInstance *instances; ///< owned; `texture` is 0 to texture_count - 1
-    enum shape_kind *kinds;           ///< owned; of each instance
+    enum shape_kind *kinds;           ///< owned; by instance
     uint32_t instance_count, instance_capacity;
     uint32_t texture_count;
-    struct bvh bvh; ///< of shapes, and of instances from `bvh.scene_root` on
+    struct bvh bvh; ///< trees of shapes; the tree over instances begins at `bvh.scene_root`
 };
 
 struct scene_camera {
@@ -31,15 +31,16 @@ struct scene_camera {
 };
 
 /**
- * Builds everything on the host. The same seed and number of textures, at least 3, give the same
- * scene: texture 0 is the ground's, a fifth are of leaves. Says on stderr why it failed.
+ * Builds the scene on the host. Equal seeds and texture counts, at least 3, give equal scenes.
+ * Texture 0 belongs to the ground; a fifth are leaves. Reports errors on stderr.
  */
 bool scene_build(uint32_t seed, uint32_t texture_count, struct scene *scene);
 void scene_finish(struct scene *scene);
 
 enum texture_use scene_texture_use(uint32_t texture, uint32_t texture_count);
 struct scene_camera scene_default_camera(void);
-/** The camera after a share of a turn around the vertical axis through its target. 1: as it is. */
+/** Turns the camera around the vertical axis through its target by a share of a full turn. 1:
+ * unchanged. */
 struct scene_camera scene_turn_camera(const struct scene_camera *camera, double share);
 
 #endif /* TRACER_SCENE_H */

@@ -1,4 +1,4 @@
-/** The shapes of the scene as triangles: a ground, things to stand on it, leaves. */
+/** Triangle meshes of the scene's shapes: ground, things, leaves. */
 #ifndef TRACER_SHAPES_H
 #define TRACER_SHAPES_H
 
@@ -16,23 +16,23 @@ struct mesh {
 };
 
 enum shape_kind {
-    SHAPE_GROUND,  ///< 1 wide for a unit of x and z; as high as ground_height says
-    SHAPE_BALL,    ///< of radius 1 around the origin, as those that follow
-    SHAPE_GOURD,   ///< with ribs
-    SHAPE_PEBBLE,  ///< dented
+    SHAPE_GROUND,  ///< 1 wide for a unit of x and z; height from ground_height
+    SHAPE_BALL,    ///< radius 1, centered at the origin
+    SHAPE_GOURD,   ///< ball with ribs
+    SHAPE_PEBBLE,  ///< dented ball
     SHAPE_BOX,     ///< 2 in each direction, with rounded edges
     SHAPE_VASE,    ///< stands on y = 0, about 2 high
     SHAPE_SHRUB,   ///< leaves that rise and droop from the origin, about 1 high
-    SHAPE_GRASSES, ///< narrow and upright ones
+    SHAPE_GRASSES, ///< narrow upright leaves
     SHAPE_COUNT
 };
 
 #define GROUND_EXTENT 70.0f ///< meters from the middle to an edge
 
-/** Meters above 0 at (x, z). */
+/** Height in meters at (x, z). */
 float ground_height(float x, float z);
 
-/** Appends a shape's triangles; false when out of memory, with the mesh as it was. */
+/** Appends a shape's triangles. Returns false when out of memory; the mesh is unchanged then. */
 bool shapes_append(enum shape_kind kind, struct mesh *mesh);
 void mesh_finish(struct mesh *mesh);
 

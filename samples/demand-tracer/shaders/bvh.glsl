@@ -1,14 +1,13 @@
 /*
- * A way down the trees of bvh.c, for devices that trace no rays themselves. It stops
- * at triangles that may have holes, so that textures are sampled in one place of the shader alone:
- * compilers put all functions in line.
+ * Walks the trees of bvh.c, for devices without ray tracing. The walk stops at triangles that may
+ * have holes. So the shader samples textures in one place only: compilers inline all functions.
  */
 #ifndef TRACER_BVH_GLSL
 #define TRACER_BVH_GLSL
 
 #include "../../common/box_tree.glsl"
 
-/* Two trees: the one over instances, and that of an instance. */
+/* Two trees: the one over instances, and the one of an instance. */
 #define STACK_SIZE (2 * (BOX_TREE_MOST_DEPTH + 1))
 
 layout(std430, set = 1, binding = TRACER_BINDING_NODES) readonly buffer Nodes
@@ -17,7 +16,7 @@ layout(std430, set = 1, binding = TRACER_BINDING_NODES) readonly buffer Nodes
 };
 
 struct Hit {
-    float distance; /* below 0: nothing */
+    float distance; /* below 0: no hit */
     uint instance, triangle;
     vec2 weights;
 };
@@ -25,10 +24,10 @@ struct Hit {
 struct Walk {
     vec3 worldOrigin, worldDirection;
     vec3 origin, direction, inverse; /* in the instance's space while inside one */
-    bool any;                        /* whatever is hit first will do */
+    bool any;                        /* true: any hit suffices */
     bool inside;
-    uint instance, firstIndex, flags; /* of the instance */
-    uint height, base; /* of the stack, and where it was outside the instance */
+    uint instance, firstIndex, flags; /* fields of the current instance */
+    uint height, base; /* stack height now, and at the entry into the instance */
     uint triangle, end;
     float far;
     Hit best;
@@ -61,7 +60,7 @@ Walk startWalk(vec3 origin, vec3 direction, float far, bool any, uint root)
     return walk;
 }
 
-/** How far the ray is when it enters a box; beyond 1e29 if that is not before `far`. */
+/** Returns the distance at which the ray enters a box, or more than 1e29 if not before `far`. */
 float enterBox(Walk walk, TracerNode node)
 {
     float enter;
@@ -71,7 +70,8 @@ float enterBox(Walk walk, TracerNode node)
     return enters ? enter : 1.0e30;
 }
 
-/** Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. */
+/** Intersects a triangle: Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection",
+ * 1997. */
 bool hitTriangle(Walk walk, uint triangle, out float distance, out vec2 weights)
 {
     uint first = walk.firstIndex + 3u * triangle;
@@ -101,7 +101,7 @@ void enterInstance(inout Walk walk, uint index)
 {
     TracerInstance instance = instances[index];
     setWalkRay(walk, toObject(instance, walk.worldOrigin, 1.0),
-               toObject(instance, walk.worldDirection, 0.0)); /* not of length 1: keeps distances */
+               toObject(instance, walk.worldDirection, 0.0)); /* not normalized */
     walk.inside = true;
     walk.base = walk.height;
     walk.instance = index;
@@ -110,7 +110,7 @@ void enterInstance(inout Walk walk, uint index)
     walkStack[walk.height++] = instance.rootNode;
 }
 
-/** The nearer child comes first. */
+/** Pushes both children if hit. The nearer one is visited first. */
 void pushChildren(inout Walk walk, uint first)
 {
     float left = enterBox(walk, nodes[first]), right = enterBox(walk, nodes[first + 1u]);
@@ -134,8 +134,8 @@ void visitNode(inout Walk walk, TracerNode node)
 }
 
 /**
- * Goes on: true with a hit that may be a hole, which is nearer than the best so far and counts once
- * takeHit() has been called; false when the way is over.
+ * Continues the walk. Returns true with a candidate that may be a hole and is nearer than the best
+ * hit; call takeHit() if it is solid. Returns false at the end, with the nearest hit.
  */
 bool walkOn(inout Walk walk, out Hit hit)
 {
@@ -158,7 +158,7 @@ bool walkOn(inout Walk walk, out Hit hit)
         if (walk.height == 0u)
             return false;
         TracerNode node = nodes[walkStack[--walk.height]];
-        if (enterBox(walk, node) < 1.0e29) /* since it was pushed something nearer may be hit */
+        if (enterBox(walk, node) < 1.0e29) /* something nearer may have been hit since the push */
             visitNode(walk, node);
     }
     return false;

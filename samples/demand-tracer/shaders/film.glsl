@@ -1,18 +1,18 @@
-/* Which pixel is traced, and where its light goes. */
+/* Pixels of the film: which one to trace, and where to add its light. */
 #ifndef TRACER_FILM_GLSL
 #define TRACER_FILM_GLSL
 
 layout(std430, set = 1, binding = TRACER_BINDING_FILM) buffer Film
 {
-    vec4 film[]; /* the sum of a pixel's complete samples, and how many they are */
+    vec4 film[]; /* sum of a pixel's complete samples; w: their count */
 };
 layout(std430, set = 1, binding = TRACER_BINDING_LATEST) buffer Latest
 {
-    vec4 latest[]; /* the last sample, complete or not; w: 1 if it is not */
+    vec4 latest[]; /* last sample; w: 1 if incomplete */
 };
 layout(std430, set = 1, binding = TRACER_BINDING_LISTS) buffer Lists
 {
-    uint lists[]; /* two of width * height pixels each: those to trace, those to trace again */
+    uint lists[]; /* two lists of width * height pixels: to trace, and to trace again */
 };
 layout(std430, set = 1, binding = TRACER_BINDING_COUNTERS) buffer Counters
 {
@@ -34,7 +34,7 @@ uint pixelAt(uint place)
     return lists[launch.listIndex * launch.width * launch.height + place];
 }
 
-/** From the camera through a pixel, elsewhere in it for each sample. */
+/** Starts a path at the camera, through a point of the pixel that differs per sample. */
 Path startPixel(uint pixel)
 {
     Random random = Random(pixel ^ launch.seed * 0x85ebca77u, launch.sampleIndex, 0u);
@@ -47,7 +47,7 @@ Path startPixel(uint pixel)
                      normalize(forward + at.x * right - at.y * up), launch.spread, random);
 }
 
-/** Keeps what is complete; what is not is traced again in the next launch. */
+/** Adds a complete sample to the film. An incomplete pixel is traced again in the next launch. */
 void endPixel(uint pixel, Path path)
 {
     latest[pixel] = vec4(path.light, path.complete ? 0.0 : 1.0);

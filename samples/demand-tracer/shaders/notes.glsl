@@ -1,9 +1,11 @@
 /*
- * Which pages the paths of the finished picture have sampled, for --needs: a bit for each page, set when
- * it is looked up, as long as the path has missed nothing. A path goes the same way until it misses
- * something, launch after launch, so all that is noted is sampled by the path that is complete in the
- * end; what lies behind a miss may be seen only because of it. Nothing that the library reads is
- * changed: its own accesses to the page table say what it looks up.
+ * Notes the pages that paths of the finished picture sample, for --needs. Each page has a bit, set
+ * when the page is looked up while the path has missed nothing.
+ *
+ * A path takes the same way in each launch until it misses something. So all noted pages are
+ * sampled by the final, complete path. Pages beyond a miss may be looked up only because of the
+ * miss, and are not noted. The library's buffers stay unchanged: the shader's own accesses to the
+ * page table tell what it looks up.
  */
 #ifndef TRACER_NOTES_GLSL
 #define TRACER_NOTES_GLSL
@@ -15,8 +17,8 @@ layout(std430, set = 1, binding = TRACER_BINDING_NEEDS) buffer NeededPages
     uint neededPages[]; /* a bit per page */
 };
 
-bool noting = false; /* the path has missed nothing */
-uint noteGroupNow;   /* of 32 pages: which is looked up */
+bool noting = false; /* true: the path has missed nothing */
+uint noteGroupNow;   /* group of 32 pages that is looked up now */
 
 uint noteGroup(uint group)
 {
@@ -24,7 +26,7 @@ uint noteGroup(uint group)
     return group;
 }
 
-/** `at` is a place in the blocks, where each group of 32 pages has one. */
+/** Notes the page at index `at` of the blocks. Each group of 32 pages has a block. */
 uint notePage(uint at)
 {
     uint bit = 1u << (at % SLUICE_DEMAND_BLOCK_WORDS);

@@ -1,23 +1,23 @@
 /*
- * Paths of light, one ray at a time, whoever finds out what the rays hit:
+ * Paths of light, one ray at a time. The caller finds the hits:
  *
  *     for (Path path = startPath(...); !path.done;)
  *         if (path.toSun)
- *             endSunRay(path, whether nothing is in its way);
+ *             endSunRay(path, true if nothing is in its way);
  *         else
- *             meetSurface(path, what it met first, bounces);
+ *             meetSurface(path, nearest hit, bounces);
  */
 #ifndef TRACER_PATH_GLSL
 #define TRACER_PATH_GLSL
 
 #define PI 3.14159265
 #define SUN_DIRECTION normalize(vec3(-0.62, 0.52, 0.46))
-#define SUN_LIGHT vec3(4.9, 3.9, 2.7) /* that a surface gets which faces it */
-#define SUN_SPREAD 0.02               /* radians: of shadow rays */
-#define DIFFUSE_SPREAD 0.35           /* after a diffuse bounce detail does not matter */
+#define SUN_LIGHT vec3(4.9, 3.9, 2.7) /* irradiance of a surface that faces the sun */
+#define SUN_SPREAD 0.02               /* radians; spread of shadow rays */
+#define DIFFUSE_SPREAD 0.35           /* after a diffuse bounce: detail does not matter */
 #define HAZE_DISTANCE 70.0
 
-/** Numbers of [0, 1) that depend on pixel, sample and how many were drawn before. */
+/** Random numbers in [0, 1) from the pixel, the sample and the count of numbers drawn before. */
 struct Random {
     uint pixel, index, drawn;
 };
@@ -29,7 +29,8 @@ uint hash(uint x)
     return x ^ (x >> 16);
 }
 
-/** Samples of a pixel are spread evenly: Roberts' R2 sequence, shifted for each pixel and use. */
+/** Draws two numbers. Samples of a pixel are spread evenly: Roberts' R2 sequence, shifted per pixel
+ * and use. */
 vec2 random2(inout Random r)
 {
     r.drawn++;
@@ -47,7 +48,7 @@ vec3 skyLight(vec3 direction)
     return direction.y < 0.0 ? mix(sky, vec3(0.22, 0.20, 0.15), min(-direction.y * 6.0, 1.0)) : sky;
 }
 
-/** What comes from all around where nothing stands in the way; some does. */
+/** Ambient light, reduced for average occlusion. */
 vec3 ambientLight(vec3 normal)
 {
     return mix(vec3(0.28, 0.25, 0.20), vec3(0.52, 0.60, 0.72), 0.5 + 0.5 * normal.y) * 0.6;
@@ -62,7 +63,7 @@ vec3 cosineDirection(vec3 normal, vec2 u)
                      sqrt(max(1.0 - u.y, 0.0)) * normal);
 }
 
-/** Of the sun: a lobe around the mirrored direction, as bright as its width lets it be. */
+/** Highlight of the sun: a lobe around the mirrored direction. */
 float highlight(Surface s, vec3 direction)
 {
     float along = max(dot(reflect(direction, s.normal), SUN_DIRECTION), 0.0);
@@ -70,15 +71,15 @@ float highlight(Surface s, vec3 direction)
 }
 
 struct Path {
-    vec3 origin, direction; /* of the ray that is to be traced */
+    vec3 origin, direction; /* next ray to trace */
     SluiceRayCone cone;
-    bool toSun; /* anything in its way ends it */
+    bool toSun; /* true: a shadow ray, ended by any hit */
     bool done;
     bool complete; /* all textures on the way were resident */
     vec3 light;    /* so far */
-    vec3 share;    /* of what is yet to come */
-    vec3 sunLight; /* to be added if the ray to the sun is free */
-    vec3 nextOrigin, nextDirection; /* after that */
+    vec3 share;    /* throughput: factor for light found later */
+    vec3 sunLight; /* light to add if the ray to the sun is free */
+    vec3 nextOrigin, nextDirection; /* ray after the one to the sun */
     SluiceRayCone nextCone;
     uint depth;
     Random random;
@@ -116,7 +117,7 @@ void endSunRay(inout Path path, bool isFree, uint bounces)
     continuePath(path, bounces);
 }
 
-/** Through thin things it shines, in another color. */
+/** Sunlight on a surface. Leaves let light through, in another color. */
 vec3 sunOn(Surface s, vec3 direction, float fresnel)
 {
     float facing = dot(s.normal, SUN_DIRECTION);
@@ -127,13 +128,13 @@ vec3 sunOn(Surface s, vec3 direction, float fresnel)
            (facing > 0.0 ? vec3(0.75 * facing) : -0.55 * facing * vec3(1.15, 1.1, 0.55));
 }
 
-/** On the side of the face to which a ray leaves it. */
+/** Offsets the origin from the face, to the side of `direction`. */
 vec3 leave(Surface s, vec3 at, vec3 direction)
 {
     return at + sign(dot(s.face, direction)) * (2e-4 + 1e-4 * s.distance) * s.face;
 }
 
-/** To where the path goes on: mirrored with a probability of `fresnel`, else anywhere. */
+/** Sets the next ray: mirrored with probability `fresnel`, else diffuse. */
 void scatter(inout Path path, Surface s, vec3 at, float fresnel, uint bounces)
 {
     vec2 u = random2(path.random), lobe = random2(path.random);

@@ -1,4 +1,4 @@
-/* What the stages of the ray-tracing pipeline tell each other. */
+/* Payload that the stages of the ray-tracing pipeline exchange. */
 #ifndef TRACER_RAYS_GLSL
 #define TRACER_RAYS_GLSL
 
@@ -6,8 +6,8 @@
 #include "scene.glsl"
 
 struct Payload {
-    Surface surface;    /* `complete` also says so of holes on the way */
-    SluiceRayCone cone; /* of the ray */
+    Surface surface;    /* `complete` also covers holes on the ray's way */
+    SluiceRayCone cone; /* cone of the ray */
     bool noting;        /* see notes.glsl */
 };
 

@@ -1,4 +1,4 @@
-/* The scene's buffers, and what a ray sees where it hits them: see tracer_shared.h. */
+/* The scene's buffers, and the surface at a hit: see tracer_shared.h. */
 #ifndef TRACER_SCENE_GLSL
 #define TRACER_SCENE_GLSL
 
@@ -18,21 +18,21 @@ layout(std430, set = 1, binding = TRACER_BINDING_INSTANCES) readonly buffer Inst
     TracerInstance instances[];
 };
 
-/** What a ray met first. */
+/** The nearest surface on a ray. */
 struct Surface {
-    float distance; /* below 0: nothing */
-    SluiceRayCone cone; /* there */
-    uint flags;         /* of the instance */
+    float distance; /* below 0: no hit */
+    SluiceRayCone cone; /* cone at the surface */
+    uint flags;         /* flags of the instance */
     bool complete;      /* the texture was resident */
     vec3 albedo;
     float alpha;
-    vec3 normal; /* both on the ray's side, of length 1 */
-    vec3 face;   /* of the triangle */
+    vec3 normal; /* shading normal; faces the ray, length 1 */
+    vec3 face;   /* normal of the triangle; faces the ray, length 1 */
 };
 
-/** A place on a triangle, and how uv lies over it. */
+/** A point on a triangle, and the triangle's uv mapping. */
 struct Patch {
-    vec3 normal; /* of length 1, interpolated */
+    vec3 normal; /* interpolated, length 1 */
     vec2 uv;
     SluiceRayTriangle triangle; /* in meters */
 };
@@ -51,7 +51,7 @@ vec3 toObject(TracerInstance i, vec3 p, float w)
                 dot(vec4(i.toObject[8], i.toObject[9], i.toObject[10], i.toObject[11]), vec4(p, w)));
 }
 
-/** By the transposed inverse. */
+/** Transforms by the transposed inverse. */
 vec3 normalToWorld(TracerInstance i, vec3 n)
 {
     return normalize(vec3(i.toObject[0] * n.x + i.toObject[4] * n.y + i.toObject[8] * n.z,
@@ -74,7 +74,7 @@ vec2 vertexUv(uint v)
     return vec2(vertices[v].uv[0], vertices[v].uv[1]);
 }
 
-/** At `weights`, of the triangle's second and third corner. */
+/** Evaluates a triangle at the weights of its second and third corner. */
 Patch patchAt(TracerInstance instance, uint triangle, vec2 weights)
 {
     uint first = instance.firstIndex + 3u * triangle;
@@ -93,7 +93,7 @@ Patch patchAt(TracerInstance instance, uint triangle, vec2 weights)
     return p;
 }
 
-/** `complete` becomes false where the texture is not resident. */
+/** Samples the texture. Sets `complete` to false if it is not resident. */
 vec4 patchColor(TracerInstance instance, Patch p, vec3 direction, SluiceRayCone cone,
                 inout bool complete)
 {
@@ -107,7 +107,8 @@ vec4 patchColor(TracerInstance instance, Patch p, vec3 direction, SluiceRayCone 
     return components == 1u ? vec4(color.rrr, color.a) : color;
 }
 
-/** Whether a ray goes on through a hole of the texture. What is not resident has no holes yet. */
+/** Returns whether the ray passes through a hole of the texture. A texture that is not resident has
+ * no holes. */
 bool isHole(uint instanceIndex, uint triangle, vec2 weights, vec3 direction, SluiceRayCone cone,
             inout bool complete)
 {
