@@ -6,10 +6,10 @@
 #include "../common/one_time.h"
 #include "../common/ray_table.h"
 
-/* Larger than any device asks for. */
+/* Larger than any device requires. */
 #define SCRATCH_ALIGNMENT 256u
 
-/** What is recorded for one structure. */
+/** The recorded build of one structure. */
 struct build {
     PFN_vkCmdBuildAccelerationStructuresKHR record;
     VkAccelerationStructureBuildGeometryInfoKHR info;

@@ -16,12 +16,12 @@ struct accel {
     struct gpu_buffer instances;
 };
 
-/** Of the buffers that builds read. */
+/** Usage of buffers that builds read. */
 #define ACCEL_INPUT_USAGE                                                                          \
     (VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |                        \
      VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT)
 
-/** Builds on the device, which traces rays, and waits. Says on stderr why it failed. */
+/** Builds on a device with ray tracing, and waits. Reports errors on stderr. */
 bool accel_build(const struct gpu *gpu, const struct scene *scene, VkBuffer vertices,
                  VkBuffer indices, struct accel *accel);
 void accel_finish(const struct gpu *gpu, struct accel *accel);

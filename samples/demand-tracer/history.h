@@ -1,4 +1,4 @@
-/** What was known after each launch: rows of frames.csv. */
+/** Records of all launches: the rows of frames.csv. */
 #ifndef TRACER_HISTORY_H
 #define TRACER_HISTORY_H
 
@@ -18,11 +18,11 @@ struct history {
     uint64_t resident_peak; ///< tiles
 };
 
-/** Says on stderr if memory is short. */
+/** Reports on stderr when out of memory. */
 bool history_add(struct history *history, const struct history_row *row);
 void history_finish(struct history *history);
 
-/** FOLDER/frames.csv, one history after the other. Says on stderr why it failed. */
+/** Writes FOLDER/frames.csv, one history after the other. Reports errors on stderr. */
 bool history_write(const struct history *const *histories, uint32_t count, const char *folder);
 
 #endif /* TRACER_HISTORY_H */

@@ -1,15 +1,16 @@
-/** Launch, learn what is missing, load it, launch again: what sluice/demand.h is for. */
+/** The launch loop: trace, find missing tiles, load them, trace again. Shows the use of
+ * sluice/demand.h. */
 #ifndef TRACER_LAUNCHES_H
 #define TRACER_LAUNCHES_H
 
 #include "renderer.h"
 
-/** What is known after a launch. */
+/** Counts of one launch. */
 struct launch_record {
-    uint32_t index;         ///< from 1 on
-    uint32_t sample;        ///< from 0 on
+    uint32_t index;         ///< from 1
+    uint32_t sample;        ///< from 0
     uint32_t traced_count;  ///< pixels
-    uint32_t missing_count; ///< pixels among them that are to be traced again
+    uint32_t missing_count; ///< pixels among them that must be traced again
     SluiceDemandRequests requests;
 };
 
@@ -19,31 +20,32 @@ struct launches {
     SluiceDemandLoader *loader;
     struct renderer *renderer;
     struct film *film;
-    const SluiceDemandTextureId *texture_ids; ///< of the loader
+    const SluiceDemandTextureId *texture_ids; ///< ids of the loader
     uint32_t texture_count;
-    bool quiet; ///< launches_preload shows no progress
+    bool quiet; ///< true: launches_preload shows no progress
     VkCommandBuffer commands;
     uint32_t count;          ///< launches so far
-    uint32_t first;          ///< launches before those of this picture
-    uint64_t ray_count;      ///< paths traced, again and again ones among them
-    uint32_t complete_count; ///< samples per pixel of this picture that are complete
+    uint32_t first;          ///< launches before this picture
+    uint64_t ray_count;      ///< traced paths, repeated ones included
+    uint32_t complete_count; ///< complete samples per pixel of this picture
     uint64_t path_count;     ///< complete paths
     double fill_end;         ///< clock_seconds() when the first sample was complete; 0: never
     uint64_t fill_count;     ///< tiles loaded until then
     uint64_t fill_paths;     ///< complete paths until then
     uint32_t preload_count;  ///< launches of --preload, which trace nothing
-    uint64_t tile_count;     ///< tiles loaded, as often as they were, those of --preload included
+    uint64_t tile_count;     ///< loaded tiles, counting repeated loads and --preload
     void *user_data;
-    /** After each launch that traced something; false ends it all. */
+    /** Called after each launch that traced something. Returns false to stop. */
     bool (*after_launch)(void *user_data, const struct launch_record *record);
 };
 
 /**
- * Traces all samples of a picture, each until no pixel of it is missing, or until there were enough
- * launches. Says on stderr why it failed, which missing pixels in the end are not.
+ * Traces all samples of a picture. Repeats each sample until no pixel is missing, or until the
+ * launch limit is reached. Pixels that are still missing then are no error. Reports errors on
+ * stderr.
  */
 bool launches_run(struct launches *launches);
-/** Loads everything first. */
+/** Loads all tiles of all textures. */
 bool launches_preload(struct launches *launches);
 
 #endif /* TRACER_LAUNCHES_H */

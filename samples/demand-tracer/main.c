@@ -1,9 +1,9 @@
 /**
- * Traces paths through a garden whose textures are loaded when rays hit them; see --help.
+ * Traces paths through a garden, and loads textures when rays hit them. See --help.
  *
- * device.c has what each GPU has for itself; scene and images are there once. How an application
- * launches, learns what is missing and launches again stands in launches.c, what a shader has to do
- * in shaders/textures.glsl and shaders/scene.glsl.
+ * device.c has the objects of each GPU; scene and images exist once. launches.c shows the
+ * application's loop: launch, find missing tiles, launch again. shaders/textures.glsl and
+ * shaders/scene.glsl show the shader's part.
  */
 #include <math.h>
 #include <pthread.h>
@@ -33,12 +33,12 @@ struct tracer {
     struct textures textures;
     SluiceReadPool *pool;    ///< NULL: each device reads for itself
     struct device *devices;  ///< owned
-    struct device_crew crew; ///< of the devices
+    struct device_crew crew; ///< devices as crew members
     bool unsupported;
-    uint32_t validation_messages; ///< of all devices, once they are destroyed
+    uint32_t validation_messages; ///< sum over all devices, read after their destruction
     struct contact_sheet sheet;
-    double start;          ///< of the first launch, s
-    pthread_mutex_t mutex; ///< of all below
+    double start;          ///< clock_seconds() at the first launch
+    pthread_mutex_t mutex; ///< guards all fields below
     struct progress progress;
     char progress_text[96];
 };
@@ -67,7 +67,7 @@ static bool check_outputs(const struct tracer_options *o, bool (*check)(const ch
     return good && check(path);
 }
 
-/* Before anything takes its time. */
+/* Checks all output paths before any long work. */
 static bool can_write_outputs(const struct tracer_options *o)
 {
     return (!o->reference || output_add_input(o->reference)) && files_make_folders(o->output) &&
@@ -86,7 +86,7 @@ static bool create_device(void *user_data, uint32_t index, const char *name, boo
     return *exists;
 }
 
-/** The first one has the instance. */
+/** Creates all devices. The first one owns the instance. */
 static bool create_devices(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
@@ -209,7 +209,7 @@ static bool remember(struct device *d, const struct launch_record *record,
     return history_add(&d->history, &row);
 }
 
-/** Pictures after launches are those of one device. */
+/** Writes the picture after a launch. Used with a single device only. */
 static bool keep_picture(struct device *d, const struct launch_record *record, uint64_t tiles)
 {
     struct tracer *t = d->tracer;

@@ -1,7 +1,7 @@
 /**
- * What the finished picture needed: the pages that its complete paths have sampled, see
- * shaders/notes.glsl. Those that were refused for want of memory are among them; and where memory
- * is so short that samples become blurrier meanwhile, those of the sharper samples before.
+ * Required tiles of the finished picture: the pages that its complete paths have sampled, see
+ * shaders/notes.glsl. Includes pages that were refused for lack of memory. If memory is so short
+ * that later samples are blurrier, includes the pages of the earlier, sharper samples.
  */
 #ifndef TRACER_NEEDS_H
 #define TRACER_NEEDS_H
@@ -11,14 +11,14 @@
 /** Zeroed is empty. */
 struct needs {
     bool on;
-    struct gpu_buffer pages; ///< on the device: a bit per page; small when off
+    struct gpu_buffer pages; ///< on the device: a bit per page; small if off
 };
 
-/** No page is needed yet. Says on stderr why it failed. */
+/** Clears all bits. Reports errors on stderr. */
 bool needs_create(const struct gpu *gpu, bool on, struct needs *needs);
 void needs_destroy(const struct gpu *gpu, struct needs *needs);
 
-/** When no launch is under way. Says on stderr why it failed. */
+/** Call only while no launch is running. Reports errors on stderr. */
 bool needs_count(const struct gpu *gpu, const struct needs *needs, uint64_t *page_count);
 
 #endif /* TRACER_NEEDS_H */

@@ -1,4 +1,4 @@
-/** What the tracer can be told; --help prints it. */
+/** Command-line options of the tracer; --help prints them. */
 #ifndef TRACER_OPTIONS_H
 #define TRACER_OPTIONS_H
 
@@ -19,7 +19,7 @@ struct tracer_options {
     struct scene_camera view;
     int path; ///< enum path_choice
     bool preview, preload;
-    bool needs;              ///< of `count_needs`
+    bool needs;              ///< outcome of `count_needs`
     int count_needs;         ///< enum needs_choice
     double exposure;         ///< stops
     uint64_t budget, memory; ///< bytes
@@ -31,10 +31,10 @@ struct tracer_options {
     struct device_list devices;
     int split;          ///< enum split
     int read_sharing;   ///< enum read_sharing
-    uint32_t animation; ///< pictures; 0: one, which is no animation
+    uint32_t animation; ///< number of pictures; 0: a single picture
 };
 
-/** Says on stderr what is wrong. */
+/** Reports errors on stderr. */
 enum option_outcome tracer_options_parse(int argc, char **argv, struct tracer_options *options);
 
 #endif /* TRACER_OPTIONS_H */

@@ -62,7 +62,7 @@ void renderer_set_camera(struct renderer *r, const struct tracer_options *option
     write_vector(vec3_scale(vec3_cross(right, forward), half), constants->up);
 }
 
-/** Which path it is; false if the device lacks the one that was asked for. */
+/** Chooses pipeline or compute shader. Returns false if the device lacks the requested one. */
 static bool choose_path(const struct gpu *gpu, int choice, struct renderer *r)
 {
     r->uses_pipeline = gpu->ray_tracing && choice != PATH_COMPUTE;

@@ -9,20 +9,20 @@
 
 struct figure {
     const char *name, *unit;
-    double value; ///< NAN: not there
+    double value; ///< NAN: absent
 };
 
-/** Sums of all devices, but for those that say otherwise. */
+/** Sums over all devices, except where noted. */
 struct totals {
-    SluiceDemandStatistics statistics; ///< `lodBias`: the greatest
+    SluiceDemandStatistics statistics; ///< `lodBias`: maximum
     double launches, complete, missing, rays, paths, tiles, resident_peak;
-    double end;       ///< of the last device
-    double fill_end;  ///< of the last device; infinite: a sample is incomplete
-    double first_end; ///< of the first device whose first sample was complete
+    double end;       ///< latest of all devices
+    double fill_end;  ///< latest of all devices; infinite: a sample is incomplete
+    double first_end; ///< earliest of all devices
     double fill_tiles, fill_paths;
 };
 
-/** Of files it is known once they are open. */
+/** Size of all textures. Files count once they are open. */
 static double virtual_size(const struct summary *s, const struct totals *t)
 {
     const struct textures *textures = s->textures;
@@ -127,7 +127,7 @@ static bool print_device(const struct device *d, bool json)
     return true;
 }
 
-/** NAN if no time passed. */
+/** Returns NAN without elapsed time. */
 static double rate(double count, double seconds)
 {
     return seconds > 0.0 && count > 0.0 ? count / seconds : NAN;

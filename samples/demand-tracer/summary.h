@@ -1,4 +1,4 @@
-/** What is said at the end. */
+/** Figures printed at the end. */
 #ifndef TRACER_SUMMARY_H
 #define TRACER_SUMMARY_H
 
@@ -8,13 +8,13 @@ struct summary {
     const struct device *devices;
     uint32_t device_count;
     const struct textures *textures;
-    SluiceReadPool *pool;                 ///< NULL: there is none
-    double start;                         ///< of the first launch, s
-    struct picture_difference difference; ///< NANs: nothing was compared
-    double needed_tiles;                  ///< of all devices; NAN: not counted
+    SluiceReadPool *pool;                 ///< NULL: no shared pool
+    double start;                         ///< clock_seconds() at the first launch
+    struct picture_difference difference; ///< NANs: no reference
+    double needed_tiles;                  ///< sum over all devices; NAN: not counted
 };
 
-/** A line for each figure on stdout, or a line of JSON. Says on stderr why it failed. */
+/** Prints a line per figure, or a line of JSON, on stdout. Reports errors on stderr. */
 bool summary_print(const struct summary *summary, bool json);
 
 #endif /* TRACER_SUMMARY_H */

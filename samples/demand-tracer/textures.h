@@ -1,5 +1,4 @@
-/** What is on the scene's surfaces: files, or pictures that are computed. Nothing is opened here.
- */
+/** Textures of the scene: picture files or procedural patterns. Opens no files itself. */
 #ifndef TRACER_TEXTURES_H
 #define TRACER_TEXTURES_H
 
@@ -11,36 +10,37 @@
 #include "options.h"
 #include "patterns.h"
 
-/** One image behind one texture of each loader. */
+/** An image. It has one texture in each loader. */
 struct texture {
     const char *path;              ///< NULL: a pattern; borrowed from the list of files
-    struct pattern pattern;        ///< else
-    uint32_t size;                 ///< of a pattern, texels
-    SluiceExrMemoryBudget *memory; ///< of all textures
-    SluiceResult refusal;          ///< of a file that will never be opened
-    struct shared_source shared;   ///< of all loaders
+    struct pattern pattern;        ///< used if `path` is NULL
+    uint32_t size;                 ///< size of a pattern in texels
+    SluiceExrMemoryBudget *memory; ///< shared by all textures
+    SluiceResult refusal;          ///< error of a file that can never be opened
+    struct shared_source shared;   ///< shared by all loaders
 };
 
 /** Zeroed is empty. */
 struct textures {
-    struct texture *items; ///< owned; its address is known to the loaders
+    struct texture *items; ///< owned; loaders keep the elements' addresses
     uint32_t count;
-    uint32_t *of_scene; ///< owned; index in `items` of each texture of the scene
+    uint32_t *of_scene; ///< owned; index in `items` by texture of the scene
     uint32_t scene_count;
     struct file_list files;
     SluiceExrMemoryBudget *memory;
     uint64_t virtual_size; ///< bytes of all levels of all patterns
 };
 
-/** Chooses an image for each of the scene's textures. Says on stderr why it failed. */
+/** Chooses an image for each of the scene's textures. Reports errors on stderr. */
 bool textures_create(const struct tracer_options *options, struct textures *textures);
-/** After all loaders. */
+/** Call after all loaders are destroyed. */
 void textures_finish(struct textures *textures);
 
-/** Adds a texture to a loader for each image; `ids` gets its id. Says on stderr why it failed. */
+/** Adds a texture per image to a loader, and writes their ids to `ids`. Reports errors on
+ * stderr. */
 bool textures_add(const struct tracer_options *options, struct textures *textures,
                   SluiceDemandLoader *loader, SluiceDemandTextureId *ids);
-/** The shader's index of texture `index` of the scene, with the ids of its loader. */
+/** Returns the shader's index of the scene's texture `index`, from the ids of its loader. */
 uint32_t textures_index(const struct textures *textures, const SluiceDemandTextureId *ids,
                         uint32_t index);
 
