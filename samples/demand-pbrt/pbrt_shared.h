@@ -5,7 +5,7 @@
 #include "sluice/shared/types.h"
 
 #define PBRT_PAGE_CAPACITY 0x04000000u /* pageCapacity */
-#define PBRT_MOST_REQUESTS 0x00020000u /* of a launch: boxes, materials, tiles */
+#define PBRT_MOST_REQUESTS 0x00020000u /* per launch: boxes, materials and tiles */
 
 /* Descriptor set 1; set 0 is the demand loader's. */
 #define PBRT_BINDING_MESHES 0
@@ -22,10 +22,10 @@
 #define PBRT_BINDING_BOXES 11
 #define PBRT_BINDING_DEBUG 12
 #define PBRT_BINDING_EMITTERS 13
-#define PBRT_BINDING_WORLD 14     /* of the compute path */
-#define PBRT_BINDING_INSTANCES 15 /* ... */
+#define PBRT_BINDING_WORLD 14     /* compute path only */
+#define PBRT_BINDING_INSTANCES 15 /* compute path only */
 #define PBRT_OWN_BUFFERS 16
-#define PBRT_BINDING_SCENE 16 /* the acceleration structure, of pipelines alone */
+#define PBRT_BINDING_SCENE 16 /* acceleration structure; ray-tracing pipelines only */
 
 #define PBRT_ROW_WIDTH 1024 /* rays of one row of a launch */
 #define PBRT_GROUP_SIZE 64  /* threads of the compute path */
@@ -38,22 +38,22 @@
 
 /* A mesh in memory: 32-bit words from `address` on. Offsets are in words. */
 struct PbrtMesh {
-    uint address[2]; /* of the positions, 3 words each */
+    uint address[2]; /* device address of the positions, 3 words each */
     uint normals;    /* 0: none */
     uint uvs;        /* 0: none */
     uint indices;
-    /* Of the compute path, whose indices are in the order of the tree's leaves: */
+    /* Compute path only. There, indices are in the order of the tree's leaves. */
     uint order; /* the file's number of each triangle */
     uint reserved[2];
 };
 SLUICE_SHARED_SIZE(struct PbrtMesh, 32)
 
-/* Items of the tree over the world: places, or boxes with this bit. */
+/* Items of the tree over the world are places, or boxes if this bit is set. */
 #define PBRT_ITEM_BOX 0x80000000u
 
 #define PBRT_INSTANCE_OPAQUE 1u /* PbrtInstance.flags */
 
-/* Where a place is, for the compute path. */
+/* Transform of a place, for the compute path. */
 struct PbrtInstance {
     float toWorld[12]; /* three rows of four */
     float toObject[9]; /* the inverse, for directions */
@@ -66,23 +66,23 @@ SLUICE_SHARED_SIZE(struct PbrtInstance, 96)
 #define PBRT_PLACE_REVERSED 1u  /* the geometric normal is opposite to the order of the corners */
 #define PBRT_PLACE_NEGATED 2u   /* the file's normals are negated */
 #define PBRT_PLACE_EMITS 4u     /* `light` is an area light */
-#define PBRT_PLACE_TWO_SIDED 8u /* ... that also emits on the back */
-#define PBRT_PLACE_LISTED 16u   /* ... whose triangles are PbrtEmitters */
+#define PBRT_PLACE_TWO_SIDED 8u /* the area light also emits on its back */
+#define PBRT_PLACE_LISTED 16u   /* the area light's triangles are PbrtEmitters */
 
-/* A shape in the world. */
+/* A place: a shape in the world. */
 struct PbrtPlace {
     uint mesh;
-    uint surface; /* of the material */
+    uint surface; /* surface index of the material */
     uint alpha;   /* surface of the alpha texture, or PBRT_NONE */
     float alphaValue;
     uint flags;
     uint light;
     uint shape;
-    uint instance; /* PBRT_NONE: a shape that is no part of an object */
+    uint instance; /* PBRT_NONE: the shape belongs to no object */
 };
 SLUICE_SHARED_SIZE(struct PbrtPlace, 32)
 
-/* PbrtSurface.kind: as SluicePbrtMaterialKind, and: */
+/* PbrtSurface.kind: values of SluicePbrtMaterialKind, and PBRT_SURFACE_ALPHA. */
 #define PBRT_SURFACE_GLOSSY 1u
 #define PBRT_SURFACE_MIRROR 2u
 #define PBRT_SURFACE_GLASS 3u
@@ -90,9 +90,9 @@ SLUICE_SHARED_SIZE(struct PbrtPlace, 32)
 
 /* A material, or an alpha texture. */
 struct PbrtSurface {
-    uint realized; /* 0: only asked for */
+    uint realized; /* 0: requested only */
     uint kind;
-    uint diffuse; /* programs: index of their first op, or PBRT_NONE for 0 */
+    uint diffuse; /* the next three are programs: index of the first op, or PBRT_NONE for black */
     uint specular;
     uint transmission;
     uint reserved0;
@@ -107,8 +107,8 @@ SLUICE_SHARED_SIZE(struct PbrtSurface, 32)
 #define PBRT_OP_IMAGE 2u    /* pushes a sample of the demand texture `texture` */
 #define PBRT_OP_SCALE 3u    /* pops two, pushes their product */
 #define PBRT_OP_MIX 4u      /* pops amount, b, a; pushes a * (1 - amount) + b * amount */
-#define PBRT_OP_CHECKER 5u  /* goes on with the next op, or in odd fields at `target` */
-#define PBRT_OP_JUMP 6u     /* goes on at `target` */
+#define PBRT_OP_CHECKER 5u  /* continues with the next op; in odd squares, at `target` */
+#define PBRT_OP_JUMP 6u     /* continues at `target` */
 #define PBRT_STACK 8
 
 /* PbrtOp.flags */
@@ -127,7 +127,7 @@ struct PbrtOp {
     float value[4];
     float scale[2], delta[2];
     float axes[6];
-    float factor; /* of texels */
+    float factor; /* multiplies texels */
     float gamma;  /* 0: none */
     float worldToTexture[12];
 };
@@ -135,37 +135,37 @@ SLUICE_SHARED_SIZE(struct PbrtOp, 128)
 
 struct PbrtLight {
     uint kind;      /* SluicePbrtLightKind */
-    uint texture;   /* of the sky, or PBRT_NONE */
+    uint texture;   /* demand texture of the sky, or PBRT_NONE */
     uint skyLayout; /* SluicePbrtSkyLayout */
     float cosInner;
     float color[3];
     float cosOuter;
     float position[3];
-    float density; /* of chosen points per area, where the light is a shape */
+    float density; /* sampled points per area, if the light is a shape */
     float direction[3];
     uint reserved;
     float worldToLight[12];
 };
 SLUICE_SHARED_SIZE(struct PbrtLight, 112)
 
-/* A triangle that emits, in the world. Paths choose one by its power. */
+/* An emitting triangle in world space. Paths choose one in proportion to its power. */
 struct PbrtEmitter {
     float corner[3];
-    float below; /* share of the power that the emitters before have */
+    float below; /* share of the total power in the emitters before this one */
     float side1[3];
     uint light;
     float side2[3];
     uint isTwoSided;
-    float outside[3]; /* of length 1 */
+    float outside[3]; /* front side, length 1 */
     uint reserved;
 };
 SLUICE_SHARED_SIZE(struct PbrtEmitter, 64)
 
-/* What --debug tells of a pixel's first ray. */
+/* Facts about a pixel's first ray, for --debug. */
 struct PbrtDebug {
-    uint pixel; /* written by the host: PBRT_NONE for none */
+    uint pixel; /* set by the host; PBRT_NONE: none */
     uint kind;  /* 0: not traced, 1: nothing hit, 2: a box, 3: a shape */
-    uint place; /* or the box */
+    uint place; /* place, or box if `kind` is 2 */
     uint triangle;
     float distance;
     uint missing;
@@ -185,23 +185,24 @@ SLUICE_SHARED_SIZE(struct PbrtDebug, 40)
 #define PBRT_LAUNCH_FACE_FORWARD 2u
 #define PBRT_LAUNCH_VERSION_4 4u  /* alpha is a probability */
 #define PBRT_LAUNCH_LIST_ONE 8u   /* list 1 is read, 0 is written */
-#define PBRT_LAUNCH_HEADLIGHT 16u /* all lights are shapes */
+#define PBRT_LAUNCH_HEADLIGHT 16u /* the scene has no lights but shapes */
 #define PBRT_LAUNCH_DARK_SKY 32u  /* no light comes from infinity: ambient light is white */
-#define PBRT_LAUNCH_GRAY 64u      /* boxes and surfaces that are not made are gray */
+#define PBRT_LAUNCH_GRAY 64u      /* boxes and unmade surfaces are gray */
 
 /* Constants of the pipeline */
-#define PBRT_CONSTANT_PREVIEW 0 /* coarser texels are seen where finer ones are missing */
+#define PBRT_CONSTANT_PREVIEW 0 /* coarser texels replace missing finer ones */
 
 /* Push constants of one launch. */
 struct PbrtLaunch {
     uint width, height; /* pixels */
-    uint count;         /* pixels to trace: the first so many of the list */
+    uint count;         /* pixels to trace: the first `count` in the list */
     uint sampleIndex;
     float eye[3];
-    float spread;    /* radians that a pixel covers; of orthographic cameras: units */
-    float corner[3]; /* perspective: direction of the upper left corner; else: offset of its ray */
+    float spread; /* radians per pixel; orthographic cameras: units per pixel */
+    float
+        corner[3]; /* direction of the upper left corner; orthographic cameras: offset of its ray */
     uint lightCount;
-    float right[3]; /* ... and its change across the picture */
+    float right[3]; /* change of `corner` across the picture */
     uint mode;
     float down[3];
     uint bounces;
@@ -209,7 +210,7 @@ struct PbrtLaunch {
     uint flags;
     float background[3];
     uint launchIndex;
-    uint surfacePage; /* first pages of requests */
+    uint surfacePage; /* first page of surface requests */
     uint proxyPage;
     uint emitterCount;
 };

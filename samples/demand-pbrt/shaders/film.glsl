@@ -1,18 +1,18 @@
-/* Which pixel is traced, and where its light goes. */
+/* Pixels of the film: which one to trace, and where to add its light. */
 #ifndef PBRT_FILM_GLSL
 #define PBRT_FILM_GLSL
 
 layout(std430, set = 1, binding = PBRT_BINDING_FILM) buffer Film
 {
-    vec4 film[]; /* the sum of a pixel's complete samples, and how many they are */
+    vec4 film[]; /* sum of a pixel's complete samples; w: their count */
 };
 layout(std430, set = 1, binding = PBRT_BINDING_LATEST) buffer Latest
 {
-    vec4 latest[]; /* the last sample, complete or not; w: 1 if it is not */
+    vec4 latest[]; /* last sample; w: 1 if incomplete */
 };
 layout(std430, set = 1, binding = PBRT_BINDING_LISTS) buffer Lists
 {
-    uint lists[]; /* two of width * height pixels each: those to trace, those to trace again */
+    uint lists[]; /* two lists of width * height pixels: to trace, and to trace again */
 };
 layout(std430, set = 1, binding = PBRT_BINDING_COUNTERS) buffer Counters
 {
@@ -29,7 +29,7 @@ uint pixelAt(uint place)
     return lists[readList() * launch.width * launch.height + place];
 }
 
-/** Keeps what is complete; what is not is traced again in the next launch. */
+/** Adds a complete sample to the film. An incomplete pixel is traced again in the next launch. */
 void endPixel(uint pixel, vec3 light, bool complete)
 {
     latest[pixel] = vec4(light, complete ? 0.0 : 1.0);
@@ -41,7 +41,7 @@ void endPixel(uint pixel, vec3 light, bool complete)
     }
 }
 
-/** Where the ray of a pixel begins and goes. The first sample is the pixel's center. */
+/** Sets the ray of a pixel. The first sample is the pixel's center. */
 void startPixel(uint pixel, out vec3 origin, out vec3 direction)
 {
     vec2 offset = fract(vec2(0.5) + float(launch.sampleIndex) * vec2(0.7548776662, 0.5698402910));

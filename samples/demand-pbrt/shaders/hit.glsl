@@ -1,16 +1,16 @@
-/* Where a ray hits a triangle of a mesh, and what its pixel covers there. */
+/* Hit of a ray on a mesh triangle, and the pixel's footprint there. */
 #ifndef PBRT_HIT_GLSL
 #define PBRT_HIT_GLSL
 
 #include "sluice/ray_footprint.glsl"
 
 struct Hit {
-    vec3 position, face, normal; /* in the world; face and normal of length 1 */
+    vec3 position, face, normal; /* world space; `face` and `normal` have length 1 */
     vec2 uv, dx, dy;
-    vec3 px, py; /* what the pixel covers, in the world */
+    vec3 px, py; /* axes of the pixel's footprint, world space */
 };
 
-/** Interpolated uv; without uvs the corners are (0, 0), (1, 0) and (1, 1). */
+/** Reads the uv of the corners. Without uvs they are (0, 0), (1, 0) and (1, 1). */
 void readUvs(PbrtMesh mesh, Words words, uvec3 corner, out vec2 uv[3])
 {
     uv[0] = vec2(0.0);
@@ -37,7 +37,7 @@ vec3 shadingNormal(PbrtPlace place, PbrtMesh mesh, Words words, uvec3 corner, ve
     return (place.flags & PBRT_PLACE_NEGATED) != 0u ? -n : n;
 }
 
-/** The axes of what the cone covers on the triangle's plane, in the world. */
+/** Computes the axes of the cone's footprint on the triangle's plane, in world space. */
 void coverPlane(vec3 face, vec3 direction, float width, out vec3 px, out vec3 py)
 {
     vec3 a = direction - dot(face, direction) * face;
@@ -67,7 +67,7 @@ Hit findHit(PbrtPlace place, uint triangle, vec2 weights, vec3 direction, float 
     hit.face = (place.flags & PBRT_PLACE_REVERSED) != 0u ? -t.normal : t.normal;
     hit.normal = shadingNormal(place, mesh, words, corner, w, worldToObject, hit.face);
     if (dot(hit.face, hit.normal) < 0.0)
-        hit.face = -hit.face; /* with normals the file's side counts */
+        hit.face = -hit.face; /* the file's normals decide which side is the front */
     hit.uv = w.x * uv[0] + w.y * uv[1] + w.z * uv[2];
     coverPlane(hit.face, direction, width, hit.px, hit.py);
     hit.dx = sluiceUvAlong(t, hit.px);
@@ -75,7 +75,7 @@ Hit findHit(PbrtPlace place, uint triangle, vec2 weights, vec3 direction, float 
     return hit;
 }
 
-/** For alpha, which both versions of pbrt look up without a footprint: in the finest level. */
+/** Removes the footprint for alpha, which both versions of pbrt look up in the finest level. */
 Hit withoutFootprint(Hit hit)
 {
     hit.dx = hit.dy = vec2(0.0);

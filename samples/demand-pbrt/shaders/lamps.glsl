@@ -1,10 +1,10 @@
-/* Lights that paths look for: all but infinitely large ones. */
+/* Lights that paths sample: all except infinite ones. */
 #ifndef PBRT_LAMPS_GLSL
 #define PBRT_LAMPS_GLSL
 
 #define FAR 1.0e30
 
-/** Light of a lamp at a point, without shadow; false if it is no lamp. */
+/** Light of a lamp at a point, without shadows. Returns false if light `i` is no lamp. */
 bool lampAt(uint i, vec3 at, out vec3 toward, out float distance, out vec3 color)
 {
     uint kind = lights[i].kind;
@@ -29,22 +29,22 @@ bool lampAt(uint i, vec3 at, out vec3 toward, out float distance, out vec3 color
     return true;
 }
 
-/** How much a way of finding light counts beside another that finds the same light: Veach and
- *  Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995, with the
- *  power 2. Arguments are probabilities per solid angle. */
+/** Weight of one sampling technique beside another that finds the same light: power heuristic with
+ * exponent 2 (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo
+ * Rendering", 1995). Arguments are probabilities per solid angle. */
 float weightOf(float found, float other)
 {
     float ratio = other / max(found, 1.0e-30);
     return 1.0 / (1.0 + ratio * ratio);
 }
 
-/** Probability per solid angle of a point that is chosen on an emitter. */
+/** Probability per solid angle of a sampled point on an emitter. */
 float emitterChance(float density, float distance, float cosine)
 {
     return density * distance * distance / max(cosine, 1.0e-20);
 }
 
-/** The last emitter whose share of the power begins at `chosen` or below. */
+/** Returns the last emitter whose `below` is at most `chosen`. */
 uint findEmitter(float chosen)
 {
     uint least = 0u, most = launch.emitterCount;
@@ -59,8 +59,9 @@ uint findEmitter(float chosen)
 }
 
 /**
- * Light of a point of the shapes that emit, without shadow; false if it shines elsewhere. `color`
- * is divided by the chance of the point, and weighed against finding the point by a diffuse bounce.
+ * Light from a random point on the emitting shapes, without shadows. Returns false if no light
+ * reaches `at`. `color` is divided by the point's probability, and weighted against a diffuse
+ * bounce that finds the same point.
  */
 bool emitterAt(vec3 chosen, vec3 at, vec3 normal, out vec3 toward, out float distance,
                out vec3 color)
@@ -86,7 +87,7 @@ bool emitterAt(vec3 chosen, vec3 at, vec3 normal, out vec3 toward, out float dis
     return true;
 }
 
-/** What a preview shows of a surface as if it were matt. */
+/** Diffuse color of a surface in previews. Mirrors and glass appear matte. */
 vec3 previewColor(Payload s)
 {
     vec3 color = s.diffuse;
@@ -101,7 +102,7 @@ float highlight(Payload s, vec3 direction, vec3 normal, vec3 toward)
     return pow(max(dot(reflect(direction, normal), toward), 0.0), exponent);
 }
 
-/** Lamps without shadows, and some light from everywhere. The sky comes in addition. */
+/** Shades with lamps without shadows and some ambient light. The caller adds the sky. */
 vec3 shadePreview(Payload s, vec3 at, vec3 direction, vec3 normal)
 {
     vec3 albedo = previewColor(s);

@@ -14,28 +14,28 @@
 #define PBRT_PATH_GLSL
 
 #define MEAN_SKY 10.0      /* skySpread of the whole sky */
-#define NO_LAMP (launch.lightCount + 1u) /* lightCount stands for all shapes that emit */
-#define DIFFUSE_SPREAD 0.35 /* after a diffuse bounce detail does not matter */
+#define NO_LAMP (launch.lightCount + 1u) /* index lightCount stands for all emitting shapes */
+#define DIFFUSE_SPREAD 0.35 /* cone spread after a diffuse bounce, where detail does not matter */
 
 struct Path {
-    vec3 origin, direction; /* of the ray that is to be traced */
+    vec3 origin, direction; /* next ray to trace */
     float far, coneWidth, coneSpread;
     bool isShadow, done, complete;
     vec3 light;
-    vec3 share; /* of what is yet to come */
+    vec3 share; /* throughput: factor for light found later */
     vec3 skyWeight, skyDirection;
     float skySpread;
-    uint depth, lamp; /* next lamp that may shine on the surface */
-    float chance;     /* of the ray's direction, per solid angle; 0: no lamp was looked for there */
-    /* Of the surface that was met: */
+    uint depth, lamp; /* next lamp to test */
+    float chance;     /* density of the ray's direction per solid angle; 0: no lamp was sampled */
+    /* The surface that was hit. */
     vec3 at, normal, face, albedo;
     float distance;
-    vec3 pending;     /* light of the lamp, or weight of the sky, if nothing is in the way */
+    vec3 pending;     /* light of the lamp, or weight of the sky, added if the shadow ray is free */
     bool pendingSky;
-    vec3 nextShare, nextDirection; /* how the path goes on after the lamps */
+    vec3 nextShare, nextDirection; /* continuation of the path after the lamps */
     float nextSpread, nextChance;
     bool goesOn;
-    uint random; /* state */
+    uint random; /* state of the generator */
 };
 
 float random1(inout uint state)
@@ -70,7 +70,7 @@ Path startPath(uint pixel)
     return path;
 }
 
-/** Off the surface, to the side that a ray leaves to. */
+/** Offsets the origin from the surface, to the side of `direction`. */
 vec3 leave(Path path, vec3 direction)
 {
     vec3 a = abs(path.at);
@@ -87,7 +87,7 @@ vec3 cosineDirection(vec3 normal, inout uint random)
                      sqrt(max(1.0 - square, 0.0)) * normal);
 }
 
-/** Fresnel's reflection of glass, without polarization. */
+/** Fresnel reflectance of glass for unpolarized light. */
 float reflectance(float cosine, float eta)
 {
     float square = 1.0 - eta * eta * (1.0 - cosine * cosine);
@@ -99,7 +99,7 @@ float reflectance(float cosine, float eta)
     return 0.5 * (s * s + p * p);
 }
 
-/** Chooses how a path goes on from mirrors and glass. */
+/** Chooses the next direction at a mirror or glass. */
 void scatterSharply(inout Path path, Payload s, vec3 normal, bool inside)
 {
     vec3 direction = reflect(path.direction, normal), share = s.specular;
@@ -119,7 +119,7 @@ void scatterSharply(inout Path path, Payload s, vec3 normal, bool inside)
     path.nextSpread = path.coneSpread + s.roughness;
 }
 
-/** A shape that emits may have been found in two ways. */
+/** Adds the light of an emitter, weighted because lamps may find the same emitter. */
 void meetEmitter(inout Path path, Payload s)
 {
     float weight = 1.0;
@@ -129,7 +129,7 @@ void meetEmitter(inout Path path, Payload s)
     path.light += path.share * s.emission * weight;
 }
 
-/** The last ray only asks for light. */
+/** True for the last ray, which only collects emitted light. */
 bool isLast(Path path)
 {
     return launch.mode == PBRT_MODE_PATH && path.depth > launch.bounces;
@@ -198,7 +198,7 @@ void meetSurface(inout Path path, Payload s)
         meetForOcclusion(path, s, normal);
 }
 
-/** After a ray to a lamp or the sky. */
+/** Ends a shadow ray to a lamp or the sky. */
 void endShadow(inout Path path, bool isFree)
 {
     bool lit = !path.pendingSky || (launch.flags & PBRT_LAUNCH_DARK_SKY) != 0u;
@@ -214,7 +214,7 @@ void endShadow(inout Path path, bool isFree)
     }
 }
 
-/** The next lamp that shines on the surface. */
+/** Sets a shadow ray to the next lamp that lights the surface. */
 bool chooseLamp(inout Path path)
 {
     for (; path.lamp < NO_LAMP; path.lamp++) {
@@ -240,7 +240,7 @@ bool chooseLamp(inout Path path)
 /** Sets the next ray, or ends the path. */
 void chooseRay(inout Path path)
 {
-    if (path.pendingSky) /* the ray of ambient occlusion is set */
+    if (path.pendingSky) /* the ray of ambient occlusion is already set */
         return;
     if (path.complete && chooseLamp(path))
         return;

@@ -1,5 +1,6 @@
-/* All rays of a pixel. Declare `Payload payload` and trace() before: it follows the path's ray and
- * fills the payload. The only call, so that compilers put the code in line once. */
+/* Traces all rays of a pixel. Declare `Payload payload` and trace() before including this file:
+ * trace() follows the path's ray and fills the payload. It is called in one place, so that
+ * compilers inline it once. */
 #ifndef PBRT_PIXEL_GLSL
 #define PBRT_PIXEL_GLSL
 
@@ -21,7 +22,7 @@ void tellDebug(bool complete)
         debug.diffuse[i] = payload.diffuse[i];
 }
 
-/** Of the list's pixel at `place`. */
+/** Traces the pixel at index `place` of the list. */
 void tracePixel(uint place)
 {
     uint pixel = pixelAt(place);

@@ -1,4 +1,4 @@
-/* What the stages of the pipeline know of a ray at a triangle. */
+/* Inputs of the pipeline's hit stages at a triangle. */
 #ifndef PBRT_RAYS_GLSL
 #define PBRT_RAYS_GLSL
 

@@ -34,11 +34,11 @@ layout(std430, set = 1, binding = PBRT_BINDING_EMITTERS) readonly buffer Emitter
 };
 layout(std430, set = 1, binding = PBRT_BINDING_WANTED) buffer Wanted
 {
-    uint wanted[]; /* of each surface that is asked for: 1 + log2 of texels per unit of uv */
+    uint wanted[]; /* by surface: 1 + log2 of the requested texels per unit of uv */
 };
 layout(std430, set = 1, binding = PBRT_BINDING_USED) writeonly buffer Used
 {
-    uint used[]; /* of each place: the last launch that hit it */
+    uint used[]; /* by place: the last launch that hit it */
 };
 
 /** The words of a mesh. */
@@ -62,25 +62,25 @@ vec2 readPair(Words words, uint at)
     return uintBitsToFloat(uvec2(words.at[at], words.at[at + 1u]));
 }
 
-/** What a ray tells the surfaces that it meets, and what they tell it. */
+/** Input and output of a ray that meets a surface. */
 struct Payload {
-    /* In: */
+    /* Input: */
     float coneWidth, coneSpread;
-    bool isShadow; /* only whether there is something matters */
-    /* Out: */
-    float distance; /* below 0: nothing */
-    bool missing;   /* something is not there yet */
-    vec3 normal;    /* for shading, of length 1 */
-    vec3 face;      /* geometric, of length 1 */
+    bool isShadow; /* true: only whether something is hit matters */
+    /* Output: */
+    float distance; /* below 0: no hit */
+    bool missing;   /* something is not resident yet */
+    vec3 normal;    /* shading normal, length 1 */
+    vec3 face;      /* geometric normal, length 1 */
     vec3 diffuse, specular, transmission;
     vec3 emission; /* toward the ray's origin */
-    float density; /* of chosen points per area, where it emits; 0: its points are never chosen */
-    uint kind;     /* of the surface */
+    float density; /* sampled points per area of an emitter; 0: its points are never sampled */
+    uint kind;     /* kind of the surface */
     float roughness, eta;
     uint place, triangle; /* for --debug */
 };
 
-/** Of places that were asked for and are not there yet. */
+/** Color of surfaces whose material is requested but not made yet. */
 #define PROXY_MATERIAL_COLOR vec3(0.8, 0.8, 0.1)
 
 #endif

@@ -1,19 +1,19 @@
 /*
- * What is looked at where a ray meets a triangle or a box: the nearest one asks for what it lacks.
- * Include demand.glsl, scene.glsl, hit.glsl, programs.glsl and alpha.glsl before, and declare
- * `Payload payload`.
+ * Evaluates a ray's hit on a triangle or a box. The nearest hit requests whatever it lacks. Include
+ * demand.glsl, scene.glsl, hit.glsl, programs.glsl and alpha.glsl before, and declare `Payload
+ * payload`.
  */
 #ifndef PBRT_SURFACE_GLSL
 #define PBRT_SURFACE_GLSL
 
 #include "sluice/proxy.glsl"
 
-/** A ray at a triangle. */
+/** A ray that meets a triangle. */
 struct Meeting {
     uint place, triangle;
-    vec2 weights; /* of its second and third corner */
+    vec2 weights; /* barycentric weights of the second and third corner */
     float distance;
-    vec3 origin, direction; /* of the ray, in the world */
+    vec3 origin, direction; /* ray in world space */
     mat4x3 objectToWorld, worldToObject;
 };
 
@@ -24,7 +24,7 @@ Hit hitOf(Meeting m)
                    m.worldToObject);
 }
 
-/** Also tells how sharp its pictures have to be. */
+/** Requests a surface, and tells how many texels per unit of uv its pictures need. */
 void requestSurface(uint surface, Hit hit)
 {
     float lod = sluiceDemandComputeLod(hit.dx, hit.dy, 1.0);
@@ -70,12 +70,14 @@ void describeSurface(uint surface, vec3 values[4])
 }
 
 /**
- * The nearest surface asks for its alpha, then for its material, then for their texels.
+ * Evaluates a hit. The nearest surface requests its alpha, then its material, then their texels.
  *
- * With `isCandidate` it is one on the way to it, and the function returns whether the ray goes on
- * through a hole. SLUICE_DEMAND_QUIET must be true then: a hit whose alpha is not there yet counts
- * as solid. If it is the nearest one, it asks for its alpha. So nothing is asked for behind another
- * surface. Both are one function because compilers put programs in line wherever they are called.
+ * With `isCandidate` the hit is a candidate on the ray's way. The function then returns whether the
+ * ray passes through a hole. SLUICE_DEMAND_QUIET must be true: a candidate whose alpha is not
+ * resident counts as solid, and requests its alpha only once it is the nearest hit. So nothing
+ * behind another surface is requested.
+ *
+ * One function serves both cases because compilers inline programs at each call.
  */
 bool meetTriangle(Meeting m, bool isCandidate)
 {
@@ -83,7 +85,7 @@ bool meetTriangle(Meeting m, bool isCandidate)
     Hit hit = hitOf(m);
     if (!isCandidate)
         describeHit(m, place, hit);
-    /* Alpha first: 0. Then diffuse, specular, transmission. */
+    /* Index 0 is alpha. 1 to 3 are diffuse, specular and transmission. */
     vec3 values[4] = vec3[4](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     bool resident = true, known = false;
     values[0] = vec3(place.alphaValue);

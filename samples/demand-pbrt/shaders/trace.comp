@@ -1,4 +1,4 @@
-/* A ray or a path for each pixel of the list, without ray tracing of the device. */
+/* Traces a ray or path for each pixel of the list, without the device's ray tracing. */
 #version 460
 #extension GL_EXT_nonuniform_qualifier : require
 #extension GL_EXT_buffer_reference : require
@@ -32,7 +32,7 @@ mat4x3 columns(float m[12])
     return mat4x3(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10], m[3], m[7], m[11]);
 }
 
-/** Of the inverse, only what directions need is right. */
+/** Builds the meeting of a spot. The inverse is right for directions only. */
 Meeting meetingAt(Walk walk, Spot spot)
 {
     float n[9] = instances[spot.place].toObject;
@@ -41,7 +41,7 @@ Meeting meetingAt(Walk walk, Spot spot)
                    mat4x3(n[0], n[3], n[6], n[1], n[4], n[7], n[2], n[5], n[8], 0.0, 0.0, 0.0));
 }
 
-/** What is looked at first are triangles that may be holes, and at last what was hit. */
+/** Evaluates candidates that may be holes on the way, then the nearest hit. */
 void trace(Path path)
 {
     Walk walk = startWalk(path.origin, path.direction, path.far);

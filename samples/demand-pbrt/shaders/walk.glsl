@@ -1,10 +1,10 @@
 /*
- * What a ray hits first, without ray tracing of the device: down the tree of the world (top_tree.c),
- * and down those of meshes (mesh_tree.c).
+ * Finds a ray's nearest hit without the device's ray tracing. Walks the tree of the world
+ * (top_tree.c) and the trees of meshes (mesh_tree.c).
  *
- * Include scene.glsl and box.glsl before. Which hit is the nearest does not depend on the order in
- * which the trees are built or walked: of triangles at the same distance the one counts that the
- * scene names first, and boxes come before triangles.
+ * Include scene.glsl and box.glsl before. The nearest hit does not depend on the order in which the
+ * trees are built or walked. Among triangles at equal distance, the first one in the scene wins.
+ * Boxes win over triangles.
  */
 #ifndef PBRT_WALK_GLSL
 #define PBRT_WALK_GLSL
@@ -13,36 +13,36 @@
 
 layout(std430, set = 1, binding = PBRT_BINDING_WORLD) readonly buffer World
 {
-    uint worldNodes[2]; /* address of the world's tree */
+    uint worldNodes[2]; /* device address of the world's tree */
 };
 layout(std430, set = 1, binding = PBRT_BINDING_INSTANCES) readonly buffer Instances
 {
     PbrtInstance instances[];
 };
-/** Two words of four for each node: see box_tree.h. */
+/** A node has two elements: see box_tree.h. */
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Nodes
 {
     uvec4 at[];
 };
 
-/** A triangle or a box. */
+/** A hit on a triangle or a box. */
 struct Spot {
     float distance;
-    uint place;    /* or the box; PBRT_NONE: nothing */
-    uint triangle; /* in the order of leaves; PBRT_NONE: a box */
+    uint place;    /* place, or box; PBRT_NONE: no hit */
+    uint triangle; /* in the order of leaves; PBRT_NONE: the hit is a box */
     vec2 weights;
-    uint face; /* of a box */
+    uint face; /* face of the box */
 };
 
 struct Walk {
     vec3 worldOrigin, worldDirection;
-    vec3 origin, direction, inverse; /* in a mesh's space while inside one */
+    vec3 origin, direction, inverse; /* in the mesh's space while inside a mesh */
     bool inside, opaque;
     uint place;
-    uvec2 nodes; /* of the tree that it is in */
-    uint height, base;  /* of the stack, and where it was outside the mesh */
-    uint triangle, end; /* of a leaf */
-    vec3 shear;         /* of triangles, see intersectTriangle */
+    uvec2 nodes; /* device address of the current tree */
+    uint height, base;  /* stack height now, and at the entry into the mesh */
+    uint triangle, end; /* triangles of the current leaf */
+    vec3 shear;         /* shear of the ray, see intersectTriangle */
     uint axis;
     Spot best;
 };
@@ -75,13 +75,13 @@ Walk startWalk(vec3 origin, vec3 direction, float far)
     return walk;
 }
 
-/** The axis that is the largest of the ray becomes z. */
+/** Rotates the components so that the ray's largest axis becomes z. */
 vec3 permute(vec3 v, uint axis)
 {
     return axis == 0u ? v.yzx : axis == 1u ? v.zxy : v;
 }
 
-/** 3 x 3, of rows. */
+/** Multiplies by a 3 x 3 matrix, stored by rows. */
 vec3 turn(float m[9], vec3 v)
 {
     return vec3(dot(vec3(m[0], m[1], m[2]), v), dot(vec3(m[3], m[4], m[5]), v),
@@ -94,7 +94,7 @@ void enterInstance(inout Walk walk, uint place)
     vec3 at = vec3(instances[place].toWorld[3], instances[place].toWorld[7],
                    instances[place].toWorld[11]);
     setWalkRay(walk, turn(toObject, walk.worldOrigin - at),
-               turn(toObject, walk.worldDirection)); /* not of length 1: keeps distances */
+               turn(toObject, walk.worldDirection)); /* keeps its length, so distances stay valid */
     vec3 size = abs(walk.direction);
     walk.axis = size.x > size.y ? (size.x > size.z ? 0u : 2u) : (size.y > size.z ? 1u : 2u);
     vec3 d = permute(walk.direction, walk.axis);
@@ -108,8 +108,8 @@ void enterInstance(inout Walk walk, uint place)
 }
 
 /**
- * Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013: without holes between
- * triangles that share corners. Both sides are hit, and edges belong to both triangles.
+ * Intersects a triangle: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013.
+ * Triangles with common corners leave no gaps. Both sides are hit. Edges belong to both triangles.
  */
 bool intersectTriangle(Walk walk, uint triangle, out float distance, out vec2 weights)
 {
@@ -132,7 +132,7 @@ bool intersectTriangle(Walk walk, uint triangle, out float distance, out vec2 we
            distance <= walk.best.distance;
 }
 
-/** Of two places at the same distance. */
+/** Orders two spots at equal distance: by shape, instance and triangle. */
 bool isNamedBefore(Spot one, Spot other)
 {
     uvec3 a = uvec3(places[one.place].shape, places[one.place].instance, one.triangle);
@@ -140,20 +140,20 @@ bool isNamedBefore(Spot one, Spot other)
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-/** No spot is farther than the best one so far. */
+/** Returns whether `spot` replaces the best spot. It is not farther than the best one. */
 bool isBetter(Walk walk, Spot spot)
 {
     bool isBox = spot.triangle == PBRT_NONE, bestIsBox = walk.best.triangle == PBRT_NONE;
     if (spot.distance < walk.best.distance)
         return true;
-    if (walk.best.place == PBRT_NONE) /* where the ray ends, which is no part of it */
+    if (walk.best.place == PBRT_NONE) /* the ray ends here; the end is not part of it */
         return false;
     if (isBox || bestIsBox)
         return isBox && (!bestIsBox || spot.place < walk.best.place);
     return isNamedBefore(spot, walk.best);
 }
 
-/** The nearer child comes first. */
+/** Pushes both children if hit. The nearer one is visited first. */
 void pushChildren(inout Walk walk, uint first)
 {
     float left, right;
@@ -172,7 +172,7 @@ void pushChildren(inout Walk walk, uint first)
         walkStack[walk.height++] = nearer;
 }
 
-/** Of the tree of the world: a shape that is there, or a box. */
+/** Visits an item of the world's tree: a placed shape, or a box. */
 void visitItem(inout Walk walk, uint item)
 {
     if (item == PBRT_NONE)
@@ -188,7 +188,7 @@ void visitItem(inout Walk walk, uint item)
         walk.best = spot;
 }
 
-/** Since it was pushed something nearer may have been hit. */
+/** Tests the node again: since it was pushed, something nearer may have been hit. */
 void visitNode(inout Walk walk, uint node)
 {
     float enter;
@@ -207,7 +207,7 @@ void visitNode(inout Walk walk, uint node)
     }
 }
 
-/** False when the way is over. */
+/** Visits the next node. Returns false at the end. */
 bool visitNext(inout Walk walk)
 {
     if (walk.inside && walk.height == walk.base) {
@@ -222,8 +222,8 @@ bool visitNext(inout Walk walk)
 }
 
 /**
- * Goes on: true with a triangle that may be a hole, and else takes the place of walk.best; false
- * when the way is over, with what was hit.
+ * Continues the walk. Returns true with a candidate triangle that may be a hole; the caller stores
+ * it in walk.best if it is solid. Returns false at the end, with the nearest hit.
  */
 bool walkOn(inout Walk walk, out Spot spot)
 {
@@ -246,7 +246,7 @@ bool walkOn(inout Walk walk, out Spot spot)
     }
 }
 
-/** The number of a triangle in its file. */
+/** Returns the number of a triangle in its file. */
 uint triangleInFile(Spot spot)
 {
     PbrtMesh mesh = meshes[places[spot.place].mesh];
