@@ -114,7 +114,7 @@ static bool copy_list(struct build_batch *b, const struct structure_build *build
     return true;
 }
 
-/** What a batch has of its own. */
+/** Frees the batch's queries and arrays. */
 static void end(const struct gpu *gpu, struct build_batch *b)
 {
     vkDestroyQueryPool(gpu->device, b->queries, NULL);
@@ -214,7 +214,7 @@ void build_batch_finish(const struct gpu *gpu, struct structures *s, struct buil
     if (!gpu->device)
         return;
     vkDeviceWaitIdle(gpu->device);
-    for (uint32_t i = 0; i < b->count; i++) /* targets belong to others */
+    for (uint32_t i = 0; i < b->count; i++) /* targets belong to the caller */
         structures_give(gpu, s, &b->smaller[i]);
     end(gpu, b);
     gpu_destroy_buffer(gpu, &b->scratch);

@@ -9,21 +9,22 @@
 /** A mesh in memory, or being read. */
 struct kept {
     struct mesh_read read;
-    bool is_there;              ///< else a thread reads it
-    uint32_t user_count;        ///< calls that have not given it back
-    uint64_t had;               ///< devices that have given it back: a bit each
-    struct kept *older, *newer; ///< in the list of those without users
+    bool is_there;              ///< false: a thread is reading it
+    uint32_t user_count;        ///< readers that have not given it back
+    uint64_t had;               ///< bit mask of devices that have given it back
+    struct kept *older, *newer; ///< links in the list of meshes without users
 };
 
 struct mesh_cache {
     const struct scene *scene;
-    uint64_t all;          ///< devices: a bit each
+    uint64_t all;          ///< bit mask of all devices
     uint64_t most_kept;    ///< bytes
-    pthread_mutex_t mutex; ///< of all below
+    pthread_mutex_t mutex; ///< guards all fields below
     pthread_cond_t done;
-    struct kept **kept;           ///< owned, and each of them; by shape
-    struct kept *oldest, *newest; ///< without users, by the time when the last one gave it back
-    uint64_t size;                ///< bytes of those that are there
+    struct kept **kept; ///< owned, with its elements; by shape
+    struct kept *oldest,
+        *newest;   ///< meshes without users, ordered by when their last user gave them back
+    uint64_t size; ///< bytes of meshes in memory
     uint64_t read_count, shared_count;
 };
 
@@ -75,8 +76,8 @@ static void remove_unused(struct mesh_cache *c, struct kept *kept)
     *(kept->newer ? &kept->newer->older : &c->newest) = kept->older;
 }
 
-/* Some devices never ask for a mesh that others have had, so it stays until newer ones need room.
- */
+/* Some devices never read a mesh that others have read. Such a mesh stays until newer meshes need
+ * room. */
 static void drop_oldest(struct mesh_cache *c)
 {
     while (c->size > c->most_kept && c->oldest) {
@@ -107,7 +108,7 @@ static void read_shape(const struct scene *scene, uint32_t shape, struct mesh_re
     read->seconds = clock_seconds() - start;
 }
 
-/** Reads without the mutex, which is held before and afterwards. */
+/** Releases the mutex while reading. The caller holds it. */
 static void read_unlocked(struct mesh_cache *c, uint32_t shape, struct mesh_read *read)
 {
     pthread_mutex_unlock(&c->mutex);
@@ -116,11 +117,11 @@ static void read_unlocked(struct mesh_cache *c, uint32_t shape, struct mesh_read
     c->read_count++;
 }
 
-/** For the first who asks; the mutex is held. */
+/** Reads for the first caller. The mutex is held. */
 static void read_and_keep(struct mesh_cache *c, uint32_t shape, struct mesh_read *read)
 {
     struct kept *kept = calloc(1, sizeof *kept);
-    if (!kept) { /* for this caller alone */
+    if (!kept) { /* not cached; this caller frees it */
         read_unlocked(c, shape, read);
         return;
     }

@@ -1,42 +1,44 @@
-/** Meshes that are read once for all devices. */
+/** A cache that reads meshes once for all devices. */
 #ifndef DEMAND_PBRT_MESH_CACHE_H
 #define DEMAND_PBRT_MESH_CACHE_H
 
 #include "scene.h"
 
-/** Counts of reads. */
+/** A mesh that was read. */
 struct mesh_read {
     SluiceResult result;
     SluicePbrtMesh mesh;
     uint32_t shape;
-    double seconds; ///< of the thread; 0: another device had read it
-    bool is_kept;   ///< in the cache
+    double seconds; ///< time of the reading thread; 0: another device had read it
+    bool is_kept;   ///< true: in the cache
 };
 
-/** Opaque. With one device nothing is kept. */
+/** Opaque. With one device, the cache keeps nothing. */
 struct mesh_cache;
 
-/** Bytes of meshes in memory that programs allow. */
+/** Default limit of cached meshes in bytes. */
 #define MESH_CACHE_BYTES ((uint64_t)1 << 30)
 
-/** `device_count`: at most 64. `most_kept`: bytes of meshes in memory, unless more are in use. The
- *  scene outlives the cache. Says on stderr why it failed; NULL then. */
+/** `device_count`: at most 64. `most_kept`: limit of cached meshes in bytes, exceeded only by
+ * meshes in use. The scene must outlive the cache. Returns NULL on error and reports it on
+ * stderr. */
 struct mesh_cache *mesh_cache_create(const struct scene *scene, uint32_t device_count,
                                      uint64_t most_kept);
-/** NULL is fine. All meshes were given back. */
+/** Accepts NULL. All meshes must have been given back. */
 void mesh_cache_destroy(struct mesh_cache *cache);
 
-/** Reads the mesh of a shape, or gets it from memory, or waits for the thread that reads it. Any
- *  thread. */
+/** Reads the mesh of a shape, gets it from the cache, or waits for the thread that reads it.
+ * Thread-safe. */
 void mesh_cache_read(struct mesh_cache *cache, uint32_t shape, struct mesh_read *read);
 /**
- * Gives a mesh back, once for each call of mesh_cache_read, also after an error. It is freed when
- * all devices have given it back. Beyond `most_kept` bytes the mesh that was given back first is
- * freed first. Any thread.
+ * Gives a mesh back. Call once per mesh_cache_read, also after an error. The mesh is freed when all
+ * devices have given it back. Beyond `most_kept` bytes, meshes are freed in the order in which they
+ * were given back. Thread-safe.
  */
 void mesh_cache_give(struct mesh_cache *cache, uint32_t device, struct mesh_read *read);
 
-/** Files and meshes of the text read so far, and reads that needed none. */
+/** Returns the reads of files and of meshes in the scene's text, and the reads that the cache
+ * answered. */
 void mesh_cache_get_counts(struct mesh_cache *cache, uint64_t *read_count, uint64_t *shared_count);
 
 #endif /* DEMAND_PBRT_MESH_CACHE_H */

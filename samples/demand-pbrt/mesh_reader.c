@@ -12,14 +12,14 @@ enum job_state { JOB_FREE, JOB_WAITS, JOB_RUNS, JOB_DONE };
 struct job {
     enum job_state state;
     uint32_t shape;
-    uint64_t number; ///< threads take the lowest
+    uint64_t number; ///< threads take the lowest number first
     struct mesh_read read;
 };
 
 struct mesh_reader {
     struct mesh_cache *cache;
     uint32_t device;
-    pthread_mutex_t mutex; ///< of all below
+    pthread_mutex_t mutex; ///< guards all fields below
     pthread_cond_t asked, done;
     bool ends;
     uint64_t number;
@@ -79,7 +79,8 @@ struct mesh_reader *mesh_reader_create(struct mesh_cache *cache, uint32_t device
     pthread_mutex_init(&r->mutex, NULL);
     pthread_cond_init(&r->asked, NULL);
     pthread_cond_init(&r->done, NULL);
-    /* Fewer threads are fine, and none is: mesh_reader_take reads what no thread has begun. */
+    /* Any number of threads suffices, even 0: mesh_reader_take reads meshes that no thread has
+     * begun. */
     for (uint32_t i = 0; i < choose_count(thread_count); i++)
         if (pthread_create(&r->threads[r->thread_count], NULL, work, r) == 0)
             r->thread_count++;

@@ -7,9 +7,9 @@
 #include "../../tools/common/clock.h"
 #include "../../tools/common/text.h"
 
-#define AHEAD (MESH_READER_ROOM / 2) /* meshes that are read while another is built */
+#define AHEAD (MESH_READER_ROOM / 2) /* meshes that are read while another one is built */
 
-/** A PLY file that several shapes have has one pointer as its path. */
+/** A PLY file. Shapes that share a file share the pointer `path`. */
 struct known_file {
     const char *path;
     uint32_t mesh;
@@ -105,7 +105,7 @@ static uint32_t *append(uint32_t *words, const void *values, size_t count)
     return values ? words + count : words;
 }
 
-/** Of the compute path: behind everything else. */
+/** Writes the compute path's tree behind the mesh's other data. */
 static void write_tree(const SluicePbrtMesh *read, const struct box_tree *tree, uint32_t *at,
                        struct mesh *mesh, struct PbrtMesh *entry)
 {
@@ -165,7 +165,7 @@ static void set_geometry(const SluicePbrtMesh *read, const struct mesh *mesh,
                 .indexData.deviceAddress = mesh->data.address + 4ull * entry->indices}}};
 }
 
-/** Copies what was read to the device, where the compute path's tree is behind it. */
+/** Copies a mesh to the device, followed by the compute path's tree. */
 static bool place_mesh(const struct gpu *gpu, const SluicePbrtMesh *read, struct meshes *m,
                        struct mesh *mesh, struct PbrtMesh *entry)
 {
@@ -181,7 +181,7 @@ static bool place_mesh(const struct gpu *gpu, const SluicePbrtMesh *read, struct
     return done;
 }
 
-/** False: there is nothing to build. */
+/** Returns false if there is nothing to build. */
 static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct meshes *m,
                       uint32_t index, struct structure_build *build)
 {
@@ -208,7 +208,7 @@ static bool read_mesh(const struct gpu *gpu, const struct scene *scene, struct m
         m->uv_count += read.pUvs ? read.vertexCount : 0;
         m->bytes_read += read.bytesRead;
     } else {
-        fail(m, mesh); /* the library has said why, or the arena */
+        fail(m, mesh); /* the library or the arena has reported the error */
     }
     mesh_reader_give(m->reader, &taken);
     return done;

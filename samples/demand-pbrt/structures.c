@@ -3,7 +3,7 @@
 #include "../common/one_time.h"
 #include "../common/ray_table.h"
 
-/* Scratch memory of builds that run side by side; a single build may take more. */
+/* Scratch memory for builds that run in parallel. A single build may use more. */
 #define SCRATCH_SIZE ((VkDeviceSize)64 << 20)
 
 static PFN_vkVoidFunction function(const struct gpu *gpu, const char *name)
@@ -105,7 +105,8 @@ static bool create_target(const struct gpu *gpu, struct structures *s, struct st
     return structures_take(gpu, s, b->type, sizes.accelerationStructureSize, b->target);
 }
 
-/** Places builds in scratch memory: at 0 begins a group that waits for the one before. */
+/** Places builds in scratch memory. A build at offset 0 begins a group that waits for the previous
+ * one. */
 static VkDeviceSize place_scratch(struct structure_build *builds, uint32_t count)
 {
     VkDeviceSize at = 0, most = 0;
@@ -192,7 +193,7 @@ bool structures_build(const struct gpu *gpu, struct structures *s, struct struct
     struct batch batch = {gpu, s, builds, count};
     if (!gpu->ray_tracing || count == 0)
         return true;
-    /* What another queue has built is read here, and by launches behind this. */
+    /* This queue and later launches read structures that another queue has built: wait for it. */
     const bool done = structures_prepare(gpu, s, builds, count, &s->scratch) &&
                       one_time_run_after(gpu, s->ready, s->ready_value, record_batch, &batch);
     for (uint32_t i = 0; i < count && !done; i++)
