@@ -55,7 +55,7 @@ static bool is_canceled(const struct scene *scene)
     return scene->watch && atomic_load(scene->watch->canceled);
 }
 
-/** Whether rays can see the shape at all. Says on stderr why not, if that is a mistake. */
+/** Returns whether rays can see the shape. Reports mistakes of the scene on stderr. */
 static bool is_visible(const struct scene *scene, const SluicePbrtShape *shape)
 {
     if (shape->alpha.texture == SLUICE_PBRT_NONE && !(shape->alpha.value[0] > 0.0f))
@@ -71,7 +71,7 @@ static bool is_visible(const struct scene *scene, const SluicePbrtShape *shape)
     return false;
 }
 
-/* Boxes of proxies end at 2^100; they are a little wider than these. */
+/* Limit of coordinates. Proxy boxes end at 2^100 and are slightly larger than these. */
 #define MOST_COORDINATE 0x1p99f
 
 static bool is_too_large(const SluicePbrtBounds *box)
@@ -82,7 +82,7 @@ static bool is_too_large(const SluicePbrtBounds *box)
     return false;
 }
 
-/* Boxes of no thickness are fine: rays hit their faces. */
+/* Boxes of zero thickness are valid: rays hit their faces. */
 static void find_box(struct scene *scene, uint32_t index)
 {
     const SluicePbrtShape shape = scene_shape(scene, index);
@@ -159,7 +159,7 @@ bool scene_for_each(const struct scene *scene,
     return going;
 }
 
-/* Of the instance's object, which has at least one shape that is placed. */
+/* Counts the placed shapes of the instance's object, which has at least one. */
 static uint32_t count_places(const struct scene *scene, uint32_t instance)
 {
     const SluicePbrtObject object = scene_object_of(scene, instance);

@@ -1,5 +1,5 @@
-/** The compute path's twin of the top level on the device: the tree over the shapes in the world
- * and all boxes. */
+/** Tree over all placed shapes and boxes: the compute path's counterpart of the top-level
+ * acceleration structure. */
 #ifndef DEMAND_PBRT_TOP_TREE_H
 #define DEMAND_PBRT_TOP_TREE_H
 
@@ -11,32 +11,33 @@
 
 /** Zeroed is empty. */
 struct top_tree {
-    struct gpu_buffer world; ///< address of the nodes
+    struct gpu_buffer world; ///< holds the device address of the nodes
     struct gpu_buffer nodes;
     struct table instances; ///< struct PbrtInstance by place
     struct world_tree tree;
 };
 
-/** `clusters` outlives the tree. Says on stderr why it failed. */
+/** `clusters` must outlive the tree. Reports errors on stderr. */
 bool top_tree_create(const struct gpu *gpu, const struct clusters *clusters, struct top_tree *tree);
 void top_tree_finish(const struct gpu *gpu, struct top_tree *tree);
 
-/** A mesh in the world. */
+/** A placed mesh. */
 struct top_tree_place {
     float to_world[12];
-    struct box_tree_box box; ///< of the mesh, in its own space
-    uint64_t nodes;          ///< address of its tree
+    struct box_tree_box box; ///< bounds of the mesh in its own space
+    uint64_t nodes;          ///< device address of the mesh's tree
     bool opaque;
 };
 
-/** In a part of the world_tree. `place` NULL: there is nothing any more. What has no inverse is not
- *  hit. No launch is under way. Says on stderr why it failed. */
+/** Sets the place `index` in a part of the world_tree. `place` NULL: removes it. Rays miss places
+ * whose transform has no inverse. Call only while no launch is running. Reports errors on
+ * stderr. */
 bool top_tree_set(const struct gpu *gpu, struct top_tree *tree, uint32_t index, uint32_t part,
                   const struct top_tree_place *place);
-/** The same for the box of a proxy. */
+/** Sets the box of a proxy. `box` NULL: removes it. */
 bool top_tree_set_box(struct top_tree *tree, uint32_t index, uint32_t part,
                       const SluiceProxyBox *box);
-/** Builds what has changed. No launch is under way. Says on stderr why it failed. */
+/** Builds changed parts. Call only while no launch is running. Reports errors on stderr. */
 bool top_tree_build(const struct gpu *gpu, struct top_tree *tree);
 
 #endif /* DEMAND_PBRT_TOP_TREE_H */

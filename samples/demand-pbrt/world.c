@@ -13,8 +13,8 @@
 
 #define MOST_PLACES (1u << 24) /* instanceCustomIndex has 24 bits */
 
-/* Of scene_node.shape: all shapes of the instance that are alike, this one being the first; without
- * an instance, a node of the tree of clusters. */
+/* Flag of scene_node.shape. In an instance: all shapes like this one, which is the first. Without
+ * an instance: a node in the tree of clusters. */
 #define GROUP (1u << 31)
 
 static enum world_box node_kind(struct scene_node node)
@@ -26,7 +26,7 @@ static enum world_box node_kind(struct scene_node node)
     return node.shape & GROUP ? BOX_GROUP : BOX_INSTANCE_SHAPE;
 }
 
-/** Of the compute path. */
+/** Creates the compute path's tree. */
 static bool create_tree(struct world *w)
 {
     const struct clusters *clusters = &w->scene->clusters;
@@ -95,7 +95,7 @@ static bool has_room(void **items, uint32_t count, uint32_t *room, size_t size)
     return true;
 }
 
-/** Its instance is written when the top level is built. */
+/** Notes a place whose instance must be rewritten when the top level is built. */
 static bool note_moved(struct world *w, uint32_t place)
 {
     if (!has_room((void **)&w->moved, w->moved_count, &w->moved_room, sizeof(uint32_t)))
@@ -104,7 +104,8 @@ static bool note_moved(struct world *w, uint32_t place)
     return true;
 }
 
-/* A mesh that is absent is in the list as often as something is placed that has it, until then. */
+/* Lists an absent mesh for building. Until one of its places is live, each new place lists it
+ * again. */
 static bool ask_for_mesh(struct world *w, uint32_t mesh)
 {
     if (w->meshes.items[mesh].state != MESH_ABSENT || w->meshes.items[mesh].place_count > 0)
@@ -171,7 +172,8 @@ static bool place_shape(struct world *w, struct scene_node node)
     return true;
 }
 
-/** Whether two shapes of an object may share a box: PBRT.md has no such rule, the peer does. */
+/** Returns whether two shapes of an object may share a box. The rule is OptiX Toolkit's; PBRT.md
+ * has none. */
 static bool is_alike(const struct world *w, uint32_t a, uint32_t b)
 {
     const SluicePbrtShape one = scene_shape(w->scene, a), other = scene_shape(w->scene, b);
@@ -182,7 +184,8 @@ static bool is_alike(const struct world *w, uint32_t a, uint32_t b)
            (m.diffuse.texture == SLUICE_PBRT_NONE) == (n.diffuse.texture == SLUICE_PBRT_NONE);
 }
 
-/** The next shape from `from` on that is placed and, unless `like` is NONE, like that one. */
+/** Returns the next placed shape from `from` on. `like`: shape that it must resemble, or
+ * SLUICE_PBRT_NONE. */
 static uint32_t next_shape(const struct world *w, const SluicePbrtObject *object, uint32_t from,
                            uint32_t like)
 {
@@ -221,7 +224,7 @@ static bool fetch_mesh(struct world *w, uint32_t shape, bool *ready)
            meshes_prepare(w->gpu, w->scene, &w->meshes, mesh);
 }
 
-/** An instance with a single part becomes that part. */
+/** Fetches an instance with a single part, which needs no box of its own. */
 static bool fetch_single(struct world *w, uint32_t instance, bool *ready)
 {
     const SluicePbrtObject object = scene_object_of(w->scene, instance);
@@ -242,7 +245,7 @@ static bool fetch_group(struct world *w, struct scene_node node, bool *ready)
     return done;
 }
 
-/** Boxes for the parts of an instance. A single part needs none. */
+/** Adds boxes for the parts of an instance. A single part needs none. */
 static bool resolve_instance(struct world *w, uint32_t instance)
 {
     const SluicePbrtObject object = scene_object_of(w->scene, instance);
@@ -258,7 +261,7 @@ static bool resolve_instance(struct world *w, uint32_t instance)
         const SluicePbrtBounds box = scene_node_box(w->scene, node);
         if (!w->coarse)
             done = add_box(w, node, &box);
-        else if (next_shape(w, &object, object.firstShape, i) == i) /* the first of its kind */
+        else if (next_shape(w, &object, object.firstShape, i) == i) /* first shape of its group */
             done = add_group(w, instance, &object, i);
     }
     return done;
@@ -282,7 +285,7 @@ static bool add_node(void *user_data, struct scene_node node)
     return add_box(w, node, &box);
 }
 
-/** A node of the tree of clusters. */
+/** Adds a box for a node in the tree of clusters. */
 static bool add_cluster(struct world *w, uint32_t index)
 {
     const struct box_tree_node *node = &w->scene->clusters.tree.nodes[index];
@@ -292,7 +295,7 @@ static bool add_cluster(struct world *w, uint32_t index)
     return add_box(w, (struct scene_node){SLUICE_PBRT_NONE, index | GROUP}, &box);
 }
 
-/** A bounded number of boxes, so that frames end in time. */
+/** Resolves a cluster to a bounded number of boxes, so that frames end in time. */
 static bool resolve_cluster(struct world *w, uint32_t index)
 {
     const struct clusters *clusters = &w->scene->clusters;
@@ -343,13 +346,13 @@ bool world_begin(struct world *w)
         fprintf(stderr, "out of memory\n");
         return false;
     }
-    /* A box around one box is the same box. */
+    /* With a single node, the scene's box would equal the node's box. */
     if (w->scene->node_count == 1)
         return world_resolve(w, all);
     return add_box(w, all, &w->scene->box);
 }
 
-/* Meshes that could not be read leave the world. */
+/* Removes places whose meshes could not be read. */
 static void remove_failed(struct world *w)
 {
     for (uint32_t i = 0; i < w->moved_count; i++) {
@@ -358,7 +361,7 @@ static void remove_failed(struct world *w)
     }
 }
 
-/** Puts a box in the place of a shape whose mesh leaves. */
+/** Replaces a shape whose mesh is evicted by a box. */
 static bool take_back(struct world *w, uint32_t index)
 {
     struct place *place = &w->places[index];
@@ -396,7 +399,7 @@ static bool build_some(struct world *w, uint32_t first, uint32_t count, uint32_t
     return true;
 }
 
-/** One after the other, until the budget is spent; the others become boxes again. */
+/** Builds meshes one by one until the budget is spent. The remaining shapes become boxes again. */
 static bool build_within_budget(struct world *w, uint32_t count, uint32_t launch)
 {
     bool fits = true;
@@ -436,7 +439,7 @@ bool world_continue_builds(struct world *w, uint32_t launch, bool waits)
     return done;
 }
 
-/* The mesh that the last launch built may be one too many. It stayed for that launch. */
+/* The last launch may have built one mesh above the budget. It was kept for that launch. */
 static bool return_to_budget(struct world *w, uint32_t launch)
 {
     bool fits;
@@ -458,7 +461,7 @@ bool world_build_meshes(struct world *w, uint32_t launch)
     return true;
 }
 
-/** Cost follows what has changed: instances keep their places in the buffer. */
+/** Writes changed instances only: instances keep their index in the buffer. */
 static void write_instances(struct world *w)
 {
     VkAccelerationStructureInstanceKHR *instances = w->instances.mapped;
@@ -477,7 +480,7 @@ static void write_instances(struct world *w)
     w->moved_count = 0;
 }
 
-/** A larger buffer takes over what the old one has, by the host's copy. */
+/** Grows the buffer, and copies the old content on the host. */
 static bool reserve_instances(struct world *w)
 {
     const VkDeviceSize size = (w->place_count + 1ull) * sizeof(VkAccelerationStructureInstanceKHR);
@@ -511,7 +514,7 @@ static bool build_top(struct world *w)
     return structures_build(w->gpu, &w->structures, &build, 1);
 }
 
-/** The part of the tree that a node belongs to. */
+/** Returns the part of the tree that a node belongs to. */
 static uint32_t part_of(const struct world *w, struct scene_node node)
 {
     const enum world_box kind = node_kind(node);
@@ -535,7 +538,7 @@ static bool place_in_tree(struct world *w, uint32_t index)
     return top_tree_set(w->gpu, &w->tree, index, part_of(w, place->node), place->live ? &at : NULL);
 }
 
-/** The same without ray tracing of the device. */
+/** Builds the compute path's tree. */
 static bool build_top_tree(struct world *w)
 {
     for (uint32_t i = 0; i < w->moved_count; i++)
