@@ -1,19 +1,19 @@
-/** Which meshes and materials leave when their memory is short. */
+/** Evicts meshes and materials to stay within their memory budgets. */
 #ifndef DEMAND_PBRT_BUDGET_H
 #define DEMAND_PBRT_BUDGET_H
 
 #include "world.h"
 
 /**
- * Marks meshes to leave, those first that no launch has hit for longest, until the others fit into
- * the budget. Meshes that this launch has built stay. `*fits`: they do fit.
+ * Marks meshes for eviction, least recently hit first, until the remaining meshes fit into the
+ * budget. Meshes built in this launch are kept. `*fits`: whether the remaining meshes fit.
  */
 bool budget_make_room(struct world *world, uint32_t launch, bool *fits);
 
 /**
- * Evicts surfaces that no launch has hit for longest, until the others fit into their budget. Those
- * made for this launch stay. `*fits`: they do fit. No launch is under way. Says on stderr why it
- * failed.
+ * Evicts surfaces, least recently hit first, until the remaining surfaces fit into their budget.
+ * Surfaces made for this launch are kept. `*fits`: whether the remaining surfaces fit. Call only
+ * while no launch is running. Reports errors on stderr.
  */
 bool budget_make_surface_room(const struct world *world, struct surfaces *surfaces, uint32_t launch,
                               bool *fits);

@@ -27,7 +27,7 @@ static void default_window(float width, float height, float window[4])
     window[0] = -x, window[1] = x, window[2] = -y, window[3] = y;
 }
 
-/* A window that the scene does not name follows the shape of the picture. */
+/* Without a window in the scene, the window has the picture's aspect ratio. */
 static void choose_window(const SluicePbrtSceneInfo *info, const uint32_t size[2], float window[4])
 {
     const float *crop = info->cropWindow;
@@ -77,6 +77,7 @@ void camera_constants(const struct scene *scene, const float m[12], const uint32
     write_vector(m, 0, 0, 1, c->forward);
     c->flags |= perspective ? 0 : PBRT_LAUNCH_ORTHOGRAPHIC;
     const float pixel = fabsf(along) * scale / (float)size[1];
-    const float unit = sqrtf(m[1] * m[1] + m[5] * m[5] + m[9] * m[9]); /* of the camera's y */
+    const float unit =
+        sqrtf(m[1] * m[1] + m[5] * m[5] + m[9] * m[9]); /* length of the camera's y axis */
     c->spread = perspective ? atanf(pixel) : pixel * unit;
 }

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/** Axes of length 1 that form a right-handed system, how long they were, and where. */
+/** Right-handed axes of length 1, their former lengths, and the camera's position. */
 struct pose {
     double axes[3][3], lengths[3], eye[3];
 };
@@ -19,7 +19,7 @@ static void cross(const double a[3], const double b[3], double out[3])
         out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-/** Returns the length; a vector without one stays as it is. */
+/** Scales to length 1 and returns the former length. Vectors of length 0 stay as they are. */
 static double normalize(double v[3])
 {
     const double length = sqrt(dot(v, v));
@@ -28,7 +28,7 @@ static double normalize(double v[3])
     return length;
 }
 
-/** Mirrored axes: the length of x is negative. */
+/** Splits a matrix. The length of x is negative if the matrix mirrors. */
 static struct pose pose_of(const float m[12])
 {
     struct pose p;
@@ -69,7 +69,7 @@ void camera_look_at(const struct camera_view *view, const float like[12], float 
     normalize(p.axes[2]);
     normalize(p.axes[1]);
     cross(p.axes[1], p.axes[2], p.axes[0]);
-    if (normalize(p.axes[0]) < 1e-6) { /* up is the way that the camera looks */
+    if (normalize(p.axes[0]) < 1e-6) { /* the camera looks along the up vector */
         cross(old.axes[fabs(dot(old.axes[0], p.axes[2])) < 0.9 ? 0 : 1], p.axes[2], p.axes[1]);
         normalize(p.axes[1]);
         cross(p.axes[1], p.axes[2], p.axes[0]);
@@ -79,8 +79,8 @@ void camera_look_at(const struct camera_view *view, const float like[12], float 
     write_matrix(&p, matrix);
 }
 
-/** Of the rotation that takes x, y, z to the axes: w, x, y, z. The largest component is found
- *  first (Shepperd, "Quaternion from Rotation Matrix", 1978). */
+/** Quaternion w, x, y, z of the rotation that takes x, y, z to the axes. Finds the largest
+ * component first (Shepperd, "Quaternion from Rotation Matrix", 1978). */
 static void quaternion_of(const struct pose *p, double q[4])
 {
     double squares[4] = {1.0, 1.0, 1.0, 1.0};

@@ -12,7 +12,7 @@
 
 /* Meshes whose structures are built in one submission. */
 #define BATCH 16u
-/* Pictures that are being opened at a time. */
+/* Limit of pictures that are opened at a time. */
 #define MOST_PICTURES 64u
 
 static bool check(SluiceResult result, const char *what)
@@ -29,7 +29,7 @@ static void turn(float v[2], double c, double s)
     v[1] = (float)(s * x + c * y);
 }
 
-/** The axis that is up is the one of y and z that is more upright in the picture. */
+/** Orbits around y or z: the axis that is closer to the picture's vertical. */
 static void orbit(const struct scene *scene, const struct PbrtLaunch *last, double share,
                   struct PbrtLaunch *constants)
 {
@@ -71,7 +71,8 @@ void flight_place_camera(const struct scene *scene, const struct pbrt_options *o
     camera_constants(scene, between, size, constants);
 }
 
-/** Pictures are opened by other threads. Those that are open tell what their formats mean. */
+/** Waits up to `wait` for pictures that other threads open, and applies the formats of opened
+ * pictures. */
 static bool look_at_pictures(struct launches *l, uint64_t wait)
 {
     struct surfaces *s = l->surfaces;
@@ -91,7 +92,7 @@ static bool look_at_pictures(struct launches *l, uint64_t wait)
     return true;
 }
 
-/** Makes a material without waiting for its pictures: rays miss them until they are open. */
+/** Makes a material without waiting for its pictures. Rays miss its texels until they are open. */
 static bool make_surface(struct launches *l, uint32_t surface)
 {
     struct surfaces *s = l->surfaces;
@@ -121,7 +122,7 @@ static bool serve_surfaces(struct launches *l, struct flight *f)
     return true;
 }
 
-/* What waits for its file or its build stays a box, and is asked for again. */
+/* Nodes whose files or builds are not ready stay boxes, and rays request them again. */
 static bool serve_nodes(struct launches *l, struct flight *f)
 {
     const struct proxy_requests *r = &l->requests;
@@ -153,7 +154,7 @@ bool flight_serve(struct launches *l, struct flight *f)
             serve_nodes(l, f));
 }
 
-/* The list of all pixels is the first; launches write the second. */
+/* Launches read list 0, with all pixels, and write list 1. */
 static void begin_frame(struct film *film)
 {
     film->list_index = 0;

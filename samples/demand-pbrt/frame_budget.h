@@ -1,28 +1,29 @@
-/** How long the host may work for a frame before it launches. No device; the clock is given. */
+/** Limits the host's work per frame before the launch. Needs no device; the caller supplies the
+ * clock. */
 #ifndef DEMAND_PBRT_FRAME_BUDGET_H
 #define DEMAND_PBRT_FRAME_BUDGET_H
 
 #include <stdbool.h>
 
-/** Zeroed but for `seconds`, `now` and `user_data` is the beginning. */
+/** Set `seconds`, `now` and `user_data`, and zero the rest. */
 struct frame_budget {
-    double seconds; ///< of a frame; 0: no limit
+    double seconds; ///< frame time; 0: no limit
     double (*now)(void *user_data);
     void *user_data;
     /* Private. */
     double start, work_end;
-    double last;    ///< when the last item began, or the frame
-    double longest; ///< item, as far as it is remembered
-    double reserve; ///< what follows the items: the top level and the launch
+    double last;    ///< time when the frame or its last item began
+    double longest; ///< longest recent item, in s; decays by half per frame
+    double reserve; ///< time kept for the top level and the launch after the items, in s
 };
 
 void frame_budget_begin(struct frame_budget *budget);
-/** Whether another item may begin: it would end in time, if it takes as long as the longest of the
- *  last frames. Call it between any two items. */
+/** Returns whether another item may begin: true if an item as long as the longest recent one would
+ * end in time. Call it between any two items. */
 bool frame_budget_has_time(struct frame_budget *budget);
-/** After the last item. Returns the seconds of all items. */
+/** Call after the last item. Returns the total time of all items in s. */
 double frame_budget_end_work(struct frame_budget *budget);
-/** After the launch. Returns the seconds of the frame. */
+/** Call after the launch. Returns the frame time in s. */
 double frame_budget_end(struct frame_budget *budget);
 
 #endif /* DEMAND_PBRT_FRAME_BUDGET_H */

@@ -1,9 +1,9 @@
 /**
- * Renders scenes of pbrt with geometry, materials and textures on demand; see --help.
+ * Renders pbrt scenes with geometry, materials and textures on demand. See --help.
  *
- * device.c has what each GPU has for itself, launches.c the loop, world.c what is built when a ray
- * enters a box, surfaces.c what is made when a ray hits a material, and shaders/mesh.rchit in which
- * order a hit asks for them.
+ * device.c has the objects of each GPU. launches.c is the launch loop. world.c builds geometry when
+ * a ray enters a box. surfaces.c makes materials that rays hit. shaders/mesh.rchit sets the order
+ * in which a hit requests them.
  */
 #include <stdatomic.h>
 #include <stdio.h>
@@ -32,13 +32,13 @@ struct renderer {
     struct pbrt_options options;
     struct shared shared;
     struct device *devices;  ///< owned
-    struct device_crew crew; ///< of the devices
+    struct device_crew crew; ///< devices as crew members
     bool unsupported;
-    uint32_t validation_messages; ///< of all devices, once they are destroyed
+    uint32_t validation_messages; ///< sum over all devices, read after their destruction
     struct contact_sheet sheet;
-    struct flight flight; ///< of the only device
-    double start;         ///< of the program
-    double trace_start;   ///< of the first launch
+    struct flight flight; ///< camera flight; one device only
+    double start;         ///< clock_seconds() at the program's start
+    double trace_start;   ///< clock_seconds() at the first launch
 };
 
 static uint32_t first_picture(const struct pbrt_options *o)
@@ -46,13 +46,13 @@ static uint32_t first_picture(const struct pbrt_options *o)
     return o->pictures.given ? o->pictures.first - 1 : 0;
 }
 
-/** Behind the last one. */
+/** Index after the last picture. */
 static uint32_t end_of_pictures(const struct pbrt_options *o)
 {
     return o->pictures.given ? o->pictures.last : o->animation > 0 ? o->animation : 1;
 }
 
-/** FILE, or FILE with the picture's number before its ending. */
+/** Path of a picture: FILE, or FILE with the picture's number before its extension. */
 static void name_picture(const struct pbrt_options *o, uint32_t picture, char path[4096])
 {
     const char *ending = strrchr(o->file, '.');
@@ -62,7 +62,7 @@ static void name_picture(const struct pbrt_options *o, uint32_t picture, char pa
         snprintf(path, 4096, "%s", o->file);
 }
 
-/* Before anything takes its time. */
+/* Checks all output paths before any long work. */
 static bool can_write_outputs(const struct pbrt_options *o)
 {
     const char *const paths[] = {o->dump, o->statistics, o->contact_sheet, o->bounds};
@@ -77,7 +77,7 @@ static bool can_write_outputs(const struct pbrt_options *o)
     return good && (!o->sequence || files_make_folders(o->sequence));
 }
 
-/** FILE.cache beside the picture, unless --cache names a folder. */
+/** Uses FILE.cache beside the picture, unless --cache names a folder. */
 static bool create_pictures(struct renderer *r)
 {
     char cache[4096];
@@ -114,7 +114,7 @@ static bool create_device(void *user_data, uint32_t index, const char *name, boo
     return *exists && !d->unsupported;
 }
 
-/** The first one has the instance. */
+/** Creates all devices. The first one owns the instance. */
 static bool create_devices(struct renderer *r)
 {
     const struct pbrt_options *o = &r->options;
@@ -141,7 +141,7 @@ static bool write_picture(void *user_data, const struct picture *picture, uint32
     return picture_output_write(picture, o->exposure, path);
 }
 
-/** Share of the way. */
+/** Share of the camera path, 0 to 1. */
 static double way_of(const struct pbrt_options *o, uint32_t picture)
 {
     return o->animation > 0 ? (picture + 1.0) / o->animation : o->fly_at;
@@ -154,7 +154,7 @@ static bool render_picture(void *user_data, uint32_t device, uint32_t index,
     return device_render(&r->devices[device], way_of(&r->options, index), picture);
 }
 
-/** The scene is open. */
+/** Call after the scene is open. */
 static void set_up_crew(struct renderer *r)
 {
     static const struct device_crew_calls calls = {create_device, render_picture, write_picture};
@@ -235,7 +235,7 @@ static void tell_debug(const struct renderer *r, const struct device *device)
 static bool after_launch(void *user_data)
 {
     struct renderer *r = user_data;
-    const struct device *d = &r->devices[0]; /* launches are shown of an only device */
+    const struct device *d = &r->devices[0]; /* --verbose shows launches of a single device only */
     const struct pbrt_options *o = &r->options;
     char path[4096];
     if (atomic_load(&r->crew.ends))
@@ -298,7 +298,7 @@ static bool render(struct renderer *r)
     uint64_t missing = 0;
     if (r->crew.ring.count > 0)
         r->crew.picture =
-            picture_ring_next(&r->crew.ring); /* launches of a flight are shown in it */
+            picture_ring_next(&r->crew.ring); /* launches of a flight are written as its pictures */
     r->trace_start = clock_seconds();
     for (uint32_t i = 0; i < r->crew.device_count; i++) {
         r->devices[i].launches.user_data = r;

@@ -1,4 +1,4 @@
-/** Pictures of a scene as files: each is opened once for all devices. */
+/** Picture files of a scene. Each file is opened once for all devices. */
 #ifndef DEMAND_PBRT_PICTURE_FILES_H
 #define DEMAND_PBRT_PICTURE_FILES_H
 
@@ -9,12 +9,12 @@
 
 #include "../common/shared_source.h"
 
-/** A picture. Its address is known to the loaders. */
+/** A picture. Loaders keep its address, so it must not move. */
 struct picture_file {
-    const char *path; ///< of the scene
-    const char *file; ///< text that names it first
+    const char *path; ///< owned by the scene
+    const char *file; ///< scene file that names the picture first
     uint32_t line;
-    bool has_failed; ///< which stderr has said
+    bool has_failed; ///< the error was reported on stderr
     bool says_what_it_reads;
     SluiceImageOpener *opener;
     struct shared_source shared;
@@ -24,18 +24,18 @@ struct picture_file {
 struct picture_files {
     SluiceImageOpener *opener;
     bool says_what_it_reads;
-    pthread_mutex_t mutex;       ///< of all below
-    struct picture_file **items; ///< owned, and each of them
+    pthread_mutex_t mutex;       ///< guards all fields below
+    struct picture_file **items; ///< owned, with its elements
     uint32_t count, room;
 };
 
-/** `cache`: folder for baked pictures. Says on stderr why it failed. */
+/** `cache`: folder for baked pictures. Reports errors on stderr. */
 bool picture_files_create(const char *cache, uint32_t thread_count, struct picture_files *files);
-/** After all loaders. */
+/** Call after all loaders are destroyed. */
 void picture_files_finish(struct picture_files *files);
 
-/** Finds or adds the file of an image texture. It stays until picture_files_finish. Any thread.
- *  NULL: says on stderr why it failed. */
+/** Finds or adds the file of an image texture. The file lives until picture_files_finish.
+ * Thread-safe. Returns NULL on error and reports it on stderr. */
 struct picture_file *picture_files_find(struct picture_files *files,
                                         const SluicePbrtTexture *texture);
 

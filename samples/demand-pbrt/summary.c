@@ -24,15 +24,15 @@ void summary_print_figure(const struct figure *figure, bool json)
         printf("%-22s %16s %s\n", figure->name, value, figure->unit);
 }
 
-/* Linux counts it in KiB. */
+/* ru_maxrss is in KiB on Linux. */
 static double peak_host_bytes(void)
 {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (double)usage.ru_maxrss * 1024.0 : 0.0;
 }
 
-/** Of instances, and shapes of no object, that are boxes or in clusters: all memory for boxes and
- *  clusters, their structure among it. */
+/** Bytes per unresolved node: memory of boxes and clusters, divided by the instances and free
+ * shapes that are still in boxes or clusters. */
 static double bytes_per_unresolved(const struct launches *l)
 {
     const struct scene *scene = l->scene;
@@ -46,7 +46,7 @@ static double bytes_per_unresolved(const struct launches *l)
            (double)(scene->node_count - l->world->resolved_nodes);
 }
 
-/** How figures of several devices become one. */
+/** Rules that combine the figures of several devices. */
 enum rule { FIRST, SUM, MOST };
 
 struct device_figure {
@@ -57,7 +57,7 @@ struct device_figure {
 
 #define MOST_FIGURES 64
 
-/** Returns how many there are; 0: there are no statistics, which stderr says. */
+/** Returns the number of figures. Returns 0 on error and reports it on stderr. */
 static size_t list_figures(const struct device *device, struct device_figure list[MOST_FIGURES])
 {
     const struct launches *l = &device->launches;
@@ -126,13 +126,13 @@ static void merge(struct device_figure *sum, const struct device_figure *figure)
         sum->value = fmax(sum->value, figure->value);
 }
 
-/** NAN if no time passed. */
+/** Returns NAN without elapsed time. */
 static double rate(double count, double seconds)
 {
     return seconds > 0.0 && count > 0.0 ? count / seconds : NAN;
 }
 
-/** Times of the complete pictures, on the clock of all devices. */
+/** Prints rates over the complete pictures. All devices share one clock. */
 static void print_rates(const struct summary *s, bool json)
 {
     double paths = 0.0, fill_paths = 0.0, fill_tiles = 0.0, end = s->trace_start, repeat = 0.0;
@@ -173,7 +173,7 @@ static void print_rates(const struct summary *s, bool json)
         summary_print_figure(&figures[i], json);
 }
 
-/** Figures that differ from device to device. */
+/** Prints figures per device. */
 static void print_device(const struct device *d, const struct device_figure *list, size_t count,
                          bool json)
 {

@@ -9,7 +9,7 @@
 #include "../../tools/common/text.h"
 #include "programs.h"
 
-#define PICTURE_ROOM 4096u /* of the surfaces that one launch asks for */
+#define PICTURE_ROOM 4096u /* most pictures of the surfaces that one launch requests */
 
 bool surfaces_create(const struct gpu *gpu, const struct scene *scene, struct surfaces *s)
 {
@@ -49,7 +49,7 @@ void surfaces_begin(struct surfaces *s)
     s->picture_count = 0;
 }
 
-/** Of a mixture: the first that is no mixture. */
+/** Follows a mixture to its first material that is no mixture. */
 static SluicePbrtMaterial leading_material(const struct scene *scene, uint32_t index)
 {
     SluicePbrtMaterial m = scene_material(scene, index);
@@ -121,8 +121,8 @@ uint64_t surfaces_size(const struct surfaces *s)
     return (uint64_t)s->ops.count * s->ops.element;
 }
 
-/** Moves the ops of a surface toward the beginning. Targets and programs are places in the table.
- */
+/** Moves the ops of a surface toward the beginning. Op targets and programs are indices of the
+ * table. */
 static void move_down(struct surfaces *s, const struct made_surface *made, uint32_t to)
 {
     const uint32_t by = made->first_op - to;
@@ -138,7 +138,7 @@ static void move_down(struct surfaces *s, const struct made_surface *made, uint3
         *programs[i] -= *programs[i] == PBRT_NONE ? 0 : by;
 }
 
-/** Pictures are listed in the order of their ops, too. */
+/** Updates the pictures' op indices. Pictures are listed in the order of their ops. */
 static void move_pictures(struct surfaces *s, const struct made_surface *made, uint32_t to,
                           uint32_t *next)
 {
@@ -179,7 +179,7 @@ static uint32_t encoding_flags(const struct picture_image *image, SluicePbrtEnco
         encoding == SLUICE_PBRT_ENCODING_DEFAULT || encoding == SLUICE_PBRT_ENCODING_SRGB;
     if (image->kind != SLUICE_IMAGE_FILE_KIND_PICTURE || image->info.width == 0)
         return 0;
-    switch (format) { /* as the baker stores pictures: docs/baking.md */
+    switch (format) { /* formats as stored by the baker: docs/baking.md */
     case SLUICE_FORMAT_R8_UNORM:
     case SLUICE_FORMAT_R8G8_UNORM:
     case SLUICE_FORMAT_R16_UNORM:

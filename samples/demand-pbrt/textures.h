@@ -1,5 +1,5 @@
-/** Pictures of a scene as demand textures of a loader. One file is opened once, however it is
- *  sampled. */
+/** Pictures of a scene as demand textures of a loader. Each file is opened once, whatever its
+ * samplers. */
 #ifndef DEMAND_PBRT_TEXTURES_H
 #define DEMAND_PBRT_TEXTURES_H
 
@@ -9,9 +9,9 @@
 
 /** A picture of a loader. */
 struct picture_image {
-    struct picture_file *file; ///< of all loaders
-    SluiceDemandTextureId id;  ///< with the sampler that came first
-    SluiceImageInfo info;      ///< known once it was opened: width is not 0 then
+    struct picture_file *file; ///< shared by all loaders
+    SluiceDemandTextureId id;  ///< texture with the sampler that came first
+    SluiceImageInfo info;      ///< width 0: not opened yet
     SluiceImageFileKind kind;
 };
 
@@ -28,23 +28,23 @@ struct picture_use {
 struct textures {
     SluiceDemandLoader *loader;
     struct picture_files *files;
-    struct picture_image **images; ///< owned, and each of them
-    struct picture_use **uses;     ///< owned, and each of them
+    struct picture_image **images; ///< owned, with its elements
+    struct picture_use **uses;     ///< owned, with its elements
     uint32_t image_count, use_count, image_room, use_room;
     float max_anisotropy;
 };
 
 void textures_create(SluiceDemandLoader *loader, struct picture_files *files,
                      struct textures *textures);
-/** After the loader is destroyed, and before the files. */
+/** Call after the loader is destroyed, and before picture_files_finish. */
 void textures_finish(struct textures *textures);
 
-/** Finds or adds the demand texture of an image texture. The result stays until textures_finish.
- * Says on stderr if that fails. */
+/** Finds or adds the demand texture of an image texture. The result lives until textures_finish.
+ * Returns NULL on error and reports it on stderr. */
 const struct picture_use *textures_find(struct textures *textures,
                                         const SluicePbrtTexture *texture);
 
-/** Whether the file has an alpha channel, as far as its first bytes say so. */
+/** Returns whether the file's first bytes declare an alpha channel. */
 bool textures_has_alpha(const char *path);
 
 #endif /* DEMAND_PBRT_TEXTURES_H */
