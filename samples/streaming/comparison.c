@@ -66,13 +66,13 @@ bool comparison_keep(struct comparison *comparison, uint32_t frame, const uint8_
             frame_file_write(&comparison->truth, frame, truth));
 }
 
-/** Some frames, and what is done with each by whichever worker comes first. */
+/** A list of frames and the work that threads do on each. */
 struct pass {
     const struct comparison *comparison;
     const struct frame_file *truth;
     const uint32_t *frames; ///< borrowed
     uint32_t count;
-    const bool *written; ///< of every frame of the walk
+    const bool *written; ///< by frame of the walk
     bool (*work)(const struct pass *pass, uint32_t frame, const uint8_t *pixels,
                  const uint8_t *truth, float *errors);
     atomic_uint next, done;
@@ -110,7 +110,7 @@ static void *run_worker(void *argument)
     return NULL;
 }
 
-/** On all processors, this thread among them. */
+/** Runs on all processors, this thread included. */
 static bool run_pass(struct pass *pass, const char *what)
 {
     pthread_t threads[MAX_WORKERS];
@@ -192,7 +192,7 @@ static bool find_metrics(const struct pass *pass, uint32_t frame, const uint8_t 
            (!written || write_errors(pass, frame, errors));
 }
 
-/** That with the lowest PSNR; the number of frames if all are as the truth. */
+/** Returns the frame with the lowest PSNR, or frame_count if all frames equal the truth. */
 static uint32_t find_worst(const struct measure *measure)
 {
     uint32_t worst = measure->frame_count;
@@ -205,7 +205,7 @@ static uint32_t find_worst(const struct measure *measure)
     return worst;
 }
 
-/** Chooses the frames to look at, fills `pass->frames` and completes `written`. */
+/** Chooses the frames to measure, fills `pass->frames` and completes `written`. */
 static void choose(struct pass *pass, uint32_t *frames, bool *is_written,
                    struct written_frames *written)
 {
@@ -225,7 +225,7 @@ static void choose(struct pass *pass, uint32_t *frames, bool *is_written,
     }
 }
 
-/** Of all frames, one after another as workers come. */
+/** Computes the PSNR of all frames. */
 static bool compare_all(struct pass *pass, uint32_t *frames)
 {
     pass->count = pass->comparison->measure->frame_count;

@@ -1,6 +1,6 @@
 /**
- * The frames of a walk against those of the truth, after the walk: PSNR where it was not computed
- * meanwhile, SSIM and FLIP of some. Until then frames are in files without a name.
+ * Compares the frames of a walk with the truth, after the walk. Computes PSNR where the walk has
+ * not, and SSIM and FLIP of some frames. Until then the frames are in unnamed files.
  */
 #ifndef SAMPLES_STREAMING_COMPARISON_H
 #define SAMPLES_STREAMING_COMPARISON_H
@@ -12,12 +12,12 @@
 struct comparison {
     const struct gallery *gallery; ///< borrowed
     struct measure *measure;       ///< borrowed
-    struct frame_file streamed;    ///< all frames with --reference, else those that are looked at
-    struct frame_file truth;       ///< of the same frames, without --reference
-    double lowest;                 ///< PSNR so far
+    struct frame_file streamed;    ///< with --reference all frames, else the frames to measure
+    struct frame_file truth; ///< true versions of the frames in `streamed`; unused with --reference
+    double lowest;           ///< PSNR so far
 };
 
-/** Frames that have pictures, in order. */
+/** Frames whose pictures are written, in order. */
 struct written_frames {
     uint32_t *frames; ///< room for all frames of the walk
     uint32_t count;
@@ -25,20 +25,20 @@ struct written_frames {
 
 bool comparison_begin(const struct gallery *gallery, struct measure *measure,
                       struct comparison *comparison);
-/** A zeroed struct is fine. */
+/** Accepts a zeroed struct. */
 void comparison_finish(struct comparison *comparison);
 
 /**
- * Keeps a frame of the walk, if it will be looked at. `truth` is NULL with --reference; else the
- * frame's PSNR must be in the record.
+ * Keeps a frame of the walk if it will be measured. With --reference `truth` is NULL. Without it
+ * the record must hold the frame's PSNR.
  */
 bool comparison_keep(struct comparison *comparison, uint32_t frame, const uint8_t *pixels,
                      const uint8_t *truth, bool written);
 
 /**
- * Completes the records, on all processors, and writes the pictures of the error of the written
- * frames and, with --reference, these frames and their truth. The frame that differs most is
- * written, too, with --write-frames some. Nothing without a truth.
+ * Completes the records on all processors. Writes error pictures of the written frames. With
+ * --reference also writes these frames and their truth; with --write-frames some, also the frame
+ * that differs most. Does nothing without a truth.
  */
 bool comparison_run(const struct comparison *comparison, struct written_frames *written);
 

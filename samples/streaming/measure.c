@@ -35,13 +35,13 @@ static uint32_t count_frames(const struct measure *measure)
     return measure->frame_count - measure->first_frame;
 }
 
-/** The first measured frame in which the camera stands still. */
+/** Returns the first measured frame with a camera at rest. */
 static uint32_t first_at_rest(const struct measure *measure)
 {
     return measure->rest_frame > measure->first_frame ? measure->rest_frame : measure->first_frame;
 }
 
-/** Frames after the camera stopped until the picture is sharp for good; NaN if it never is. */
+/** Frames from the camera's stop until the picture stays sharp; NaN: never. */
 static double frames_to_sharp(const struct measure *measure)
 {
     uint32_t sharp_from = measure->frame_count;
@@ -57,7 +57,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/** The value that `share` of the frames do not exceed. */
+/** The value that at most a share `share` of the frames stays below or equals. */
 static double quantile(const struct measure *measure, size_t offset, double share)
 {
     const uint32_t count = count_frames(measure);
@@ -89,7 +89,7 @@ static double lowest_psnr(const struct measure *measure)
     return finite_psnr(lowest);
 }
 
-/** Of the mean squared error over all frames. */
+/** PSNR of the mean squared error over all frames. */
 static double mean_psnr(const struct measure *measure)
 {
     double sum = 0;
@@ -98,9 +98,9 @@ static double mean_psnr(const struct measure *measure)
     return finite_psnr(-10 * log10(sum / count_frames(measure)));
 }
 
-/** What SSIM and FLIP are over the frames that were looked at. */
+/** Summary of SSIM or FLIP over the measured frames. */
 struct metric_summary {
-    double mean; ///< of every Nth frame, whichever others were looked at
+    double mean; ///< mean of every Nth frame; other measured frames do not count
     double lowest, highest;
 };
 
@@ -146,15 +146,15 @@ static double needed_bytes_peak(const struct measure *measure)
     return MEASURE_TILE_BYTES * most;
 }
 
-/** Bytes of different tiles; NaN where it is not known what was needed. */
+/** Bytes of distinct tiles; NaN if requirements were not counted. */
 static double tile_bytes(const struct needs *needs, bool loaded, bool needed)
 {
     return needs ? MEASURE_TILE_BYTES * (double)needs_count_tiles(needs, loaded, needed) : NAN;
 }
 
-#define FINAL_DB 0.1 ///< the PSNR of the end, but for the noise of random texels
+#define FINAL_DB 0.1 ///< tolerance in dB, for the noise of random texels
 
-/** Frames after the camera stopped until the PSNR is that of the last frame for good. */
+/** Frames from the camera's stop until the PSNR stays at the last frame's. */
 static double frames_to_final(const struct measure *measure)
 {
     double last = measure->frames[measure->frame_count - 1].psnr;
@@ -167,8 +167,8 @@ static double frames_to_final(const struct measure *measure)
 
 #define FIRST_DB 0.5
 
-/** Frames from the first one, with nothing in memory, until the PSNR is about the best of the way's
- *  first tenth. */
+/** Frames from the first frame, with empty memory, until the PSNR almost equals the best of the
+ * way's first tenth. */
 static double frames_to_first_sharp(const struct measure *measure)
 {
     uint32_t count = measure->frame_count / 10 > 8 ? measure->frame_count / 10 : 8, frame = 0;
@@ -186,7 +186,7 @@ static double last_frames_flip(const struct measure *measure)
     return measure->frames[measure->frame_count - 1].flip;
 }
 
-/* How a neural set was streamed. NaN where none hangs. */
+/* Figures of a streamed neural set. NaN without a set. */
 static uint32_t neural_figures(const struct measure *measure, struct figure *figures)
 {
     bool hangs = !isnan(measure->file_bytes);
@@ -213,7 +213,7 @@ static uint32_t neural_figures(const struct measure *measure, struct figure *fig
     return sizeof list / sizeof *list;
 }
 
-/* What was loaded, and what of it had to be. */
+/* Figures of loaded and required tiles. */
 static uint32_t loaded_figures(const struct measure *measure, struct figure *figures)
 {
     const struct needs *needs = measure->needs;
@@ -244,7 +244,7 @@ static uint32_t loaded_figures(const struct measure *measure, struct figure *fig
     return sizeof list / sizeof *list;
 }
 
-/* How long the picture was coarser than wanted, and where. */
+/* Figures of the time in which regions were coarser than requested. */
 static uint32_t wait_figures(const struct measure *measure, struct figure *figures)
 {
     const struct needs_wait *wait = measure->needs ? &measure->needs->wait : NULL;

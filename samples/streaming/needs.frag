@@ -1,13 +1,13 @@
-/* The same surfaces once more, to find out what all of their samples together ask for. */
+/* Draws the surfaces again to find out what all their samples together request. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-/* As where they are drawn: what is hidden counts as little here as there. */
+/* Hidden fragments request nothing, as in the drawing pass. */
 layout(early_fragment_tests) in;
 
 #include "gallery.glsl"
 
-/* The streamer must not see this feedback. */
+/* Feedback goes to a buffer that the streamer does not read. */
 layout(set = 2, binding = GALLERY_BINDING_REQUIRED, std430) buffer Required { uint words[]; } required;
 #undef SLUICE_FEEDBACK_WORD
 #define SLUICE_FEEDBACK_WORD(i) required.words[i]
@@ -27,7 +27,7 @@ void main()
     uint missing = sluiceMissingLevels(sluiceResolveSampling(draw.colorTexture, uv, dx, dy,
                                                              frame.lodBias, frame.maxAnisotropy));
     sluiceWriteFeedback(draw.colorTexture, uv, dx, dy, frame.lodBias, frame.maxAnisotropy);
-    if ((draw.flags & GALLERY_PAINTED) != 0u) /* what it samples, whatever it follows */
+    if ((draw.flags & GALLERY_PAINTED) != 0u) /* even if the relief shares feedback */
         sluiceWriteFeedback(draw.reliefTexture, uv, dx, dy, frame.lodBias, frame.maxAnisotropy);
     outColor = vec4(0.0);
 

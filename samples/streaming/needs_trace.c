@@ -22,8 +22,8 @@ static void put_header(FILE *file, uint32_t texture_count, uint32_t frame_count,
     put(file, texture_count, 4); /* maps per frame */
     put(file, frame_microseconds, 4);
     put(file, 0, 4);            /* seed */
-    put(file, 1000, 4);         /* per mille are visible ... */
-    put(file, 0, 4);            /* ... and dropped */
+    put(file, 1000, 4);         /* visibility, per mille */
+    put(file, 0, 4);            /* dropped, per mille */
     put(file, 1, 4);            /* textures per set */
     for (int i = 0; i < 6; i++) /* profile, reserved */
         put(file, 0, 4);
@@ -50,7 +50,7 @@ static void put_texture(FILE *file, const SluiceStreamedTextureLayout *layout, u
     put(file, 0, 4);
 }
 
-/* What the fields of the format hold. */
+/* Returns whether all values fit into the fields of the format. */
 static bool fits(const SluiceStreamedTextureLayout *layout)
 {
     const SluiceStreamedTextureDesc *desc = &layout->desc;
@@ -89,7 +89,7 @@ bool needs_trace_begin(struct needs_trace *trace, const char *path, const struct
     return true;
 }
 
-/* Pairs of a run's length, as a varint, and its value: no more than 2 bytes per texel. */
+/* Encodes pairs of run length (varint) and value. At most 2 bytes per texel. */
 static size_t encode(const uint8_t *map, size_t count, uint8_t *runs)
 {
     size_t size = 0;

@@ -15,15 +15,15 @@
 #include "reference_key.h"
 #include "supersample.h"
 
-/** The frames while they are drawn. */
+/** State while the frames are drawn. */
 struct drawing {
     const struct gallery *gallery;
-    struct settings settings; ///< those of the truth
+    struct settings settings; ///< settings of the truth
     struct target target;
     struct view view;
-    uint32_t first; ///< frames that it was filled in
+    uint32_t first; ///< frames spent on filling the view
     struct supersample tables;
-    uint8_t *small; ///< owned; a frame averaged down
+    uint8_t *small; ///< owned; the averaged frame
     struct frame_file frames;
     struct reference_content content;
 };
@@ -98,7 +98,7 @@ static bool draw_frames(struct drawing *drawing)
     return true;
 }
 
-/** Draws into a file for `path`, which is still to be kept. */
+/** Draws into a new file for `path`. The caller renames it. */
 static bool draw(const struct gallery *gallery, const char *path, struct drawing *drawing)
 {
     *drawing = (struct drawing){.gallery = gallery, .settings = gallery->settings};
@@ -162,7 +162,7 @@ static enum reference_match open_kept(const struct settings *settings, const str
     return REFERENCE_DIFFERS;
 }
 
-/** The text comes first: with its checksum, older frames beside it are found to be damaged. */
+/** Writes the text first: its checksum marks older frames beside it as damaged. */
 static bool draw_anew(const struct gallery *gallery, const struct paths *paths, const char *key)
 {
     struct drawing *drawing = malloc(sizeof *drawing);

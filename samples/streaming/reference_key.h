@@ -1,6 +1,6 @@
 /**
- * What the frames of a truth were drawn of, and how: lines of text that must be the same for them
- * to be used again.
+ * Inputs and settings that a truth was drawn with, as lines of text. The frames are reused only if
+ * the text is equal.
  */
 #ifndef SAMPLES_STREAMING_REFERENCE_KEY_H
 #define SAMPLES_STREAMING_REFERENCE_KEY_H
@@ -8,27 +8,27 @@
 #include "../../tools/common/gpu.h"
 #include "pictures.h"
 
-/** For the caller to free; NULL if out of memory. */
+/** Returns text that the caller frees. Returns NULL when out of memory. */
 char *reference_key_create(const struct settings *settings, const struct gpu *gpu,
                            const struct picture_list *pictures);
 
-/** What else is known of the frames. */
+/** Facts about the frames that are stored with the key. */
 struct reference_content {
-    uint32_t checksum;      ///< CRC-32 of all frames, one after another
-    uint64_t device_memory; ///< bytes that everything resident took
+    uint32_t checksum;      ///< CRC-32 of all frames in order
+    uint64_t device_memory; ///< bytes of all resident pictures
 };
 
 enum reference_match {
     REFERENCE_MATCHES,
     REFERENCE_MISSING,
-    REFERENCE_DIFFERS, ///< stderr says in what
-    REFERENCE_FOREIGN, ///< What is there was not written by reference_key_write, or cannot be read.
+    REFERENCE_DIFFERS, ///< stderr names the difference
+    REFERENCE_FOREIGN, ///< not written by reference_key_write, or unreadable
 };
 
 /** Compares the key with the text file at `path`. */
 enum reference_match reference_key_compare(const char *path, const char *key,
                                            struct reference_content *content);
-/** Complete or, if it fails, absent; stderr says why. */
+/** Writes the file completely or not at all. Reports errors on stderr. */
 bool reference_key_write(const char *path, const char *key,
                          const struct reference_content *content);
 

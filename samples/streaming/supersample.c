@@ -17,7 +17,7 @@ void supersample_init(struct supersample *tables)
     }
 }
 
-/** Of the square of `factor` pixels whose first is `corner`. */
+/** Averages a square of `factor` pixels per side; `corner` is its first pixel. */
 static void average_square(const struct supersample *tables, const uint8_t *corner, uint32_t factor,
                            size_t pitch, uint8_t *pixel)
 {

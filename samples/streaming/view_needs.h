@@ -1,25 +1,25 @@
-/** What a view's frames need, and what was read for them. */
+/** Counts the required tiles of a view's frames, and the reads from its sources. */
 #ifndef SAMPLES_STREAMING_VIEW_NEEDS_H
 #define SAMPLES_STREAMING_VIEW_NEEDS_H
 
 #include "view.h"
 
-/** The pass that finds it out, if the view's request has it; for view_create. */
+/** Creates the counting pass if the view's request has `needs`. Called by view_create. */
 bool view_needs_create(struct view *view);
 
-/** Of the view's pool. */
+/** Allocates sets from the view's pool. */
 bool view_allocate_sets(const struct view *view, VkDescriptorSetLayout layout, uint32_t count,
                         VkDescriptorSet *sets);
 
-/** Prepares to follow what the view's frames need. */
+/** Prepares to count the required tiles of the view's frames. */
 bool view_needs_begin(const struct view *view, struct needs *needs);
-/** What a frame that was waited for needed, where the view finds it out. Frames in order. */
+/** Adds a frame that has finished. Requires request.needs. Add frames in order. */
 bool view_needs(struct view *view, uint32_t slot, struct needs *needs, struct needs_frame *frame);
 
-/** What was read of the textures' sources. */
+/** Textures by what was read from their sources. */
 struct view_reads {
-    uint32_t never;  ///< textures: nothing
-    uint32_t packed; ///< textures: nothing but packed levels, which are loaded whatever is sampled
+    uint32_t never;  ///< textures without any read
+    uint32_t packed; ///< textures of which only packed levels were read; these are always loaded
 };
 
 struct view_reads view_reads(const struct view *view);
