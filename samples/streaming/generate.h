@@ -1,4 +1,4 @@
-/** The gallery's own pictures: computed once, kept as OpenEXR files. */
+/** Pictures of the gallery itself: generated once, kept as OpenEXR files. */
 #ifndef SAMPLES_STREAMING_GENERATE_H
 #define SAMPLES_STREAMING_GENERATE_H
 
@@ -6,7 +6,7 @@
 
 #include "patterns.h"
 
-/** What a procedural source draws. Must outlive the source. */
+/** Image that a procedural source draws. Must outlive the source. */
 struct pattern_image {
     const char *name;
     uint32_t width, height;
@@ -14,18 +14,19 @@ struct pattern_image {
     uint32_t supersamples; ///< per axis below level 0, for patterns that do not filter themselves
 };
 
-/** Linear colors of `format`, full chain. */
+/** Creates a source with linear colors in `format` and a full mip chain. */
 SluiceResult pattern_create_source(const struct pattern_image *image, SluiceFormat format,
                                    SluiceImageSource **source);
 
 #define GENERATED_COUNT 7
 
-/** "$cache/gallery-2", or the user's cache folder for NULL. False if there is no such folder. */
+/** Writes "$cache/gallery-2". `cache` NULL: the user's cache folder. Returns false if there is
+ * none. */
 bool generate_folder(const char *cache, uint32_t scale, char *path, size_t size);
 
 /**
- * Makes what is missing of the set, with a progress bar; files are complete or absent, so what was
- * interrupted goes on. Writes the paths in hanging order.
+ * Generates missing pictures of the set, with a progress bar. Files are complete or absent, so an
+ * interrupted run can be continued. Writes the paths in hanging order.
  */
 bool generate_pictures(const char *folder, uint32_t scale, uint32_t thread_count,
                        char paths[GENERATED_COUNT][4096]);

@@ -1,6 +1,6 @@
 /**
- * What a view has of a neural set: latents and weights in GPU memory, where the GPU decodes tiles,
- * and a demand loader of pages, where the shader decodes.
+ * A neural set in a view. If the GPU decodes tiles: latents and weights in GPU memory. If the
+ * shader decodes: a demand loader of pages.
  */
 #ifndef SAMPLES_STREAMING_NEURAL_VIEW_H
 #define SAMPLES_STREAMING_NEURAL_VIEW_H
@@ -17,41 +17,42 @@
 struct neural_view {
     const struct gpu *gpu;              ///< borrowed; NULL: no set
     const struct neural_files *files;   ///< borrowed
-    SluiceVulkanNeuralDecoder *decoder; ///< owned; NULL: no picture is decoded on feedback
+    SluiceVulkanNeuralDecoder *decoder; ///< owned; NULL: no picture uses NEURAL_FEEDBACK
     uint64_t decoder_size;              ///< bytes of GPU memory
-    SluiceDemandLoader *loader;         ///< owned; NULL: no picture is decoded by the shader
+    SluiceDemandLoader *loader;         ///< owned; NULL: no picture uses NEURAL_SAMPLE
     SluiceDemandResourceId resource;
     SluiceNeuralPages pages;
     struct gpu_buffer set_buffer, weights;
-    const uint32_t *words;        ///< SPIR-V of the shader that decodes
+    const uint32_t *words;        ///< SPIR-V of the decoding shader
     size_t words_size;            ///< bytes
     VkDescriptorSetLayout layout; ///< set 3 of the pipelines; VK_NULL_HANDLE without a loader
     VkDescriptorPool pool;
     VkDescriptorSet set;
     SluiceDemandLaunch launches[NEURAL_VIEW_SLOTS];
-    bool under_way[NEURAL_VIEW_SLOTS]; ///< submitted and not processed
+    bool under_way[NEURAL_VIEW_SLOTS]; ///< true: submitted and not processed
 };
 
-/** Makes what the modes of the pictures need. Says on stderr why it failed. */
+/** Creates the objects that the pictures' modes require. Reports errors on stderr. */
 bool neural_view_create(const struct gpu *gpu, SluiceVulkanContext *context,
                         const struct picture_list *pictures, const struct settings *settings,
                         struct neural_view *view);
-/** After the streamer, once the device is idle. A zeroed struct is fine. */
+/** Call after the streamer is destroyed, with an idle device. Accepts a zeroed struct. */
 void neural_view_destroy(struct neural_view *view);
 
-/** The tiles of a picture that is decoded on feedback. NULL, said on stderr, if it failed. */
+/** Returns the tile producer of a NEURAL_FEEDBACK picture. Returns NULL on error and reports it on
+ * stderr. */
 const SluiceTileProducer *neural_view_add_producer(struct neural_view *view,
                                                    const struct neural_picture *picture);
 
-/** Around the draws of a frame; nothing without a loader. `slot` was waited for. */
+/** Begins and ends the draws of a frame. Does nothing without a loader. The slot's previous frame
+ * must have finished. */
 bool neural_view_begin(struct neural_view *view, uint32_t slot, VkCommandBuffer commands);
 bool neural_view_end(struct neural_view *view, VkCommandBuffer commands);
-/** Loads what the frame of a slot missed. With `settle` waits for the frame, and until all is
- * there.
- */
+/** Loads pages that the frame of a slot missed. `settle`: wait for the frame, and until all pages
+ * are resident. */
 bool neural_view_process(struct neural_view *view, uint32_t slot, bool settle);
 
-/** Bytes of latents, weights and pages in GPU memory now. */
+/** Bytes of latents, weights and pages in GPU memory. */
 uint64_t neural_view_memory(const struct neural_view *view);
 
 #endif /* SAMPLES_STREAMING_NEURAL_VIEW_H */

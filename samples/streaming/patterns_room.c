@@ -61,7 +61,7 @@ void pattern_parquet(float u, float v, float footprint, float rgb[3])
 static float flower(float x, float y, float size, float depth, float footprint)
 {
     float squared = x * x + y * y + 1e-9f, radius = sqrtf(squared);
-    float c = x * x / squared; /* of the angle, squared: cos 4a = 8 c^2 - 8 c + 1 */
+    float c = x * x / squared; /* squared cosine of the angle: cos 4a = 8 c^2 - 8 c + 1 */
     float edge = size * (1.0f + depth * (8.0f * c * c - 8.0f * c + 1.0f));
     return noise_clamp((edge - radius) / (footprint + 0.004f) + 0.5f, 0.0f, 1.0f);
 }
@@ -71,7 +71,7 @@ void pattern_wallpaper(float u, float v, float footprint, float rgb[3])
 {
     float x = u * 4.0f, y = v * 4.0f, size = footprint * 4.0f;
     float fx = x - floorf(x) - 0.5f, fy = y - floorf(y) - 0.5f;
-    float gx = 0.5f - fabsf(fx), gy = 0.5f - fabsf(fy); /* to the nearest corner */
+    float gx = 0.5f - fabsf(fx), gy = 0.5f - fabsf(fy); /* distances to the nearest corner */
     float ornament = flower(fx, fy, 0.24f, 0.30f, size) - flower(fx, fy, 0.17f, 0.30f, size) +
                      flower(fx, fy, 0.10f, -0.35f, size) + flower(gx, gy, 0.16f, -0.35f, size) -
                      flower(gx, gy, 0.08f, 0.2f, size);

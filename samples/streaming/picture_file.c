@@ -21,7 +21,7 @@ static void say_nothing(exr_const_context_t context, exr_result_t code, const ch
     (void)context, (void)code, (void)message;
 }
 
-/* What cannot be read counts as without levels: whoever reads it then says what is wrong. */
+/* Returns false for unreadable files: the later reader reports the error. */
 static bool exr_has_levels(const char *path)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -64,7 +64,7 @@ SluiceResult picture_file_kind(const char *path, enum picture_kind *kind)
     return later ? SLUICE_NOT_READY : failed ? SLUICE_ERROR_IO : SLUICE_SUCCESS;
 }
 
-/** Half of the memory and bandwidth for what a screen cannot show. */
+/** Halves memory and bandwidth by dropping precision that screens cannot show. */
 static SluiceFormat narrowed(SluiceFormat format)
 {
     switch (format) {
@@ -130,7 +130,7 @@ static SluiceResult open_store(const char *path, const struct picture_opening *o
 }
 
 #ifdef HAVE_CONTAINER
-/* Headers without DXGI formats cannot say sRGB, and the colors of pictures are. */
+/* Headers without a DXGI format cannot declare sRGB. Pictures hold sRGB colors. */
 static SluiceFormat dds_color_format(const char *path, SluiceFormat format)
 {
     char bytes[88] = {0};

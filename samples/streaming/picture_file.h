@@ -1,4 +1,4 @@
-/** One file of a picture: what it is, and the source that reads it in place. */
+/** One file of a picture: its kind, and the source that reads it in place. */
 #ifndef SAMPLES_STREAMING_PICTURE_FILE_H
 #define SAMPLES_STREAMING_PICTURE_FILE_H
 
@@ -8,40 +8,42 @@
 #include "../../tools/common/picture_names.h"
 #include "settings.h"
 
-/** Files of folders that are looked at. */
+/** Suffixes of files in folders that are shown. */
 #define HANGABLE_SUFFIXES SLUICE_STORE_EXTENSION "|" PICTURE_SUFFIXES
 
 enum picture_kind {
     PICTURE_STORE,
-    PICTURE_EXR,            ///< tiled and with levels: any tile is read by itself
-    PICTURE_EXR_LEVEL_ZERO, ///< has to be read whole before anything of it can be shown
+    PICTURE_EXR,            ///< tiled and with levels: tiles can be read one by one
+    PICTURE_EXR_LEVEL_ZERO, ///< must be read whole before any tile is available
     PICTURE_DDS,
     PICTURE_KTX2,
-    PICTURE_OTHER ///< for libvips
+    PICTURE_OTHER ///< read by libvips
 };
 
 /**
- * By the first bytes. Errors: NOT_READY for want of file descriptors, not said; IO, also for a pipe
- * or a device, said on stderr.
+ * Detects the kind from the first bytes. Errors: NOT_READY without free file descriptors (not
+ * printed); IO, also for a pipe or a device (printed on stderr).
  */
 SluiceResult picture_file_kind(const char *path, enum picture_kind *kind);
 
-/** What is read in place: neither stores of a build that has none, nor what only libvips reads. */
+/** Options to open a file in place. Fails for stores if the build has none, and for
+ * PICTURE_OTHER. */
 struct picture_opening {
-    enum pixel_format pixels;  ///< of OpenEXR files; others deliver what is in them
-    SluiceStoreReadPool *pool; ///< for all stores; outlives them
-    /** For OpenEXR files without levels together; outlives them. NULL: each has the library's
-     *  default. */
+    enum pixel_format pixels;  ///< format for OpenEXR files; other files keep their own
+    SluiceStoreReadPool *pool; ///< shared by all stores; must outlive them
+    /** Shared by all OpenEXR files without levels; must outlive them. NULL: each file has the
+     * library's default budget. */
     SluiceExrMemoryBudget *memory;
-    const SluiceInput *input; ///< of a store on a server; NULL: the path is a file
+    const SluiceInput *input; ///< input for a store on a server; NULL: the path is a file
 };
 
-/** Says on stderr why it failed. UNSUPPORTED for PICTURE_OTHER. */
+/** Reports errors on stderr. Returns UNSUPPORTED for PICTURE_OTHER. */
 SluiceResult picture_file_open(const char *path, enum picture_kind kind,
                                const struct picture_opening *opening, SluiceImageSource **source,
                                SluiceImageInfo *info);
 
-/** What OpenEXR files are streamed as: never floats of 32 bits, which a screen cannot show. */
+/** Chooses the format in which an OpenEXR file is streamed. Never 32-bit floats, which exceed what
+ * screens show. */
 SluiceResult picture_file_exr_format(const char *path, enum pixel_format pixels,
                                      SluiceFormat *format);
 

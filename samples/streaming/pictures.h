@@ -1,4 +1,4 @@
-/** The pictures that hang in the gallery: files of many kinds that could be opened. */
+/** The pictures of the gallery: opened files of many kinds. */
 #ifndef SAMPLES_STREAMING_PICTURES_H
 #define SAMPLES_STREAMING_PICTURES_H
 
@@ -14,36 +14,37 @@ struct neural_picture;
 
 struct picture {
     char *path;                ///< owned
-    struct remote_file remote; ///< of a URL; closed after `color`
-    SluiceImageSource *color;  ///< owned; NULL where `neural` says so
+    struct remote_file remote; ///< connection of a URL; closed after `color`
+    SluiceImageSource *color;  ///< owned; may be NULL if `neural` is set
     SluiceImageInfo info;
-    float exposure;            ///< factor that brings the picture to a middle brightness
-    bool gray;                 ///< one channel, to be shown as gray
+    float exposure;            ///< factor for a medium brightness
+    bool gray;                 ///< true: one channel, shown as gray
     SluiceImageSource *relief; ///< owned; height of canvas and paint, half the picture's size
     struct pattern_image relief_pattern;
-    struct neural_picture *neural; ///< owned; NULL: no texture of a neural set
+    struct neural_picture *neural; ///< owned; NULL: not from a neural set
 };
 
 struct picture_list {
     struct picture *pictures; ///< owned
     uint32_t count;
     uint32_t refused;              ///< files that could not be opened; the reasons were printed
-    SluiceStoreReadPool *pool;     ///< owned; that all stores share
-    SluiceExrMemoryBudget *memory; ///< owned; that all OpenEXR files without levels share
-    struct neural_files *neural;   ///< owned; NULL: no neural set hangs
+    SluiceStoreReadPool *pool;     ///< owned; shared by all stores
+    SluiceExrMemoryBudget *memory; ///< owned; shared by all OpenEXR files without levels
+    struct neural_files *neural;   ///< owned; NULL: no neural set
     struct remote_session session; ///< connections of the URLs
 };
 
-/** What the device can hold of one image. */
+/** Limits of the device for one image. */
 struct picture_limits {
-    uint32_t max_size;  ///< texels in a direction
-    uint64_t max_bytes; ///< with all levels
-    bool takes_blocks;  ///< BC formats
+    uint32_t max_size;  ///< texels per axis
+    uint64_t max_bytes; ///< including all levels
+    bool takes_blocks;  ///< true: BC formats are supported
 };
 
 /**
- * Generates first if the settings name no images, and bakes what cannot be streamed as it is. Files
- * that cannot be shown are left out and named on stderr; false if none is left.
+ * Generates pictures if the settings name none, and bakes pictures that cannot be streamed
+ * directly. Skips files that cannot be shown, and names them on stderr. Returns false if none is
+ * left.
  */
 bool pictures_open(const struct settings *settings, const struct picture_limits *limits,
                    struct picture_list *list);

@@ -1,4 +1,4 @@
-/** The gallery as triangles, lamps and a list of what to draw. Meters; y is up. */
+/** The gallery as triangles, lamps and a list of draw calls. Meters; y is up. */
 #ifndef SAMPLES_STREAMING_ROOM_H
 #define SAMPLES_STREAMING_ROOM_H
 
@@ -18,16 +18,16 @@ enum room_surface { ROOM_PLAIN, ROOM_FLOOR, ROOM_WALL, ROOM_PICTURE };
 /** One draw call. */
 struct room_part {
     enum room_surface surface;
-    uint32_t picture; ///< of ROOM_PICTURE
+    uint32_t picture; ///< index for ROOM_PICTURE
     uint32_t first_vertex, vertex_count;
-    uint32_t lights[GALLERY_LIGHTS_PER_DRAW]; ///< those that reach it
+    uint32_t lights[GALLERY_LIGHTS_PER_DRAW]; ///< lamps that reach the part
     float color[3];
     bool glowing;
 };
 
-/** Where a picture hangs. */
+/** Position and size of a picture. */
 struct room_place {
-    struct vec3 center, normal, right; ///< right as seen by who looks at it
+    struct vec3 center, normal, right; ///< `right` as seen by a viewer
     float width, height;
 };
 
@@ -43,10 +43,10 @@ struct room {
     bool out_of_memory;
 };
 
-#define ROOM_FLOOR_REPEAT 3.2f ///< meters that the floor's texture covers
+#define ROOM_FLOOR_REPEAT 3.2f ///< size of one repeat of the floor's texture, in meters
 #define ROOM_WALL_REPEAT 1.8f
 
-/** False if out of memory. */
+/** Returns false when out of memory. */
 bool room_build(const struct picture_list *pictures, struct room *room);
 void room_finish(struct room *room);
 
