@@ -1,4 +1,4 @@
-/* The same surfaces once more, to count samples that would read a texel that is not there. */
+/* Draws the surfaces again to count samples that would read a texel that is not resident. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

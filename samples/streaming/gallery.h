@@ -1,4 +1,4 @@
-/** Everything that one walk needs, made in order and released in reverse. */
+/** Objects of one walk. gallery_close destroys them in reverse order. */
 #ifndef SAMPLES_STREAMING_GALLERY_H
 #define SAMPLES_STREAMING_GALLERY_H
 
@@ -20,16 +20,16 @@ struct gallery {
 
 enum gallery_outcome { GALLERY_READY, GALLERY_NO_DEVICE, GALLERY_FAILED };
 
-/** Fills all but the settings. Says on stderr what is wrong; gallery_close is due in any case. */
+/** Fills all fields but `settings`. Reports errors on stderr. Call gallery_close in any case. */
 enum gallery_outcome gallery_open(struct gallery *gallery);
-/** False if the recording could not be written. */
+/** Returns false if the recording could not be written. */
 bool gallery_close(struct gallery *gallery);
 
-/** Of a frame of the walk; at rest in the last ones. */
+/** Camera of a frame of the walk. At rest in the last frames. */
 struct camera gallery_camera(const struct settings *settings, const struct room *room,
                              uint32_t frame);
 
-/** Draws a view that wants everything, from the entrance, until it has all its tiles. */
+/** Draws a view with `everything`, from the entrance, until all its tiles are resident. */
 bool gallery_fill(struct view *view, const struct room *room);
 
 #endif /* SAMPLES_STREAMING_GALLERY_H */

@@ -1,9 +1,9 @@
 #define _POSIX_C_SOURCE 200809L
 /**
- * A walk through a room hung with pictures whose textures are streamed; see --help.
+ * Walks through a room of pictures with streamed textures. See --help.
  *
- * What an application has to do for one frame stands in view.c (record_frame); here the frames are
- * strung together, looked at and written down.
+ * record_frame in view.c shows the application's part of a frame. This file runs the frames,
+ * measures them, and writes the results.
  */
 #include <math.h>
 #include <stdio.h>
@@ -37,12 +37,13 @@ struct walk {
     struct measure *measure;
     struct written_frames written; ///< owned
     struct comparison comparison;
-    struct needs needs; ///< of the frames collected, where they are found out
+    struct needs needs; ///< requirements of the collected frames, if counted
     struct needs_trace trace;
-    uint64_t tiles_mapped; ///< when it was last looked which tiles are there
+    uint64_t tiles_mapped; ///< counter of mapped tiles when residency was last looked up
 };
 
-/** The way, the moment when the camera stops and what follows it, the end. */
+/** Returns whether a frame's picture is written. WRITE_FRAMES_SOME: frames along the way, the
+ * camera's stop, 10 frames later, and the last frame. */
 static bool is_written(const struct walk *walk, uint32_t frame)
 {
     uint32_t count = walk->measure->frame_count, rest = walk->measure->rest_frame;
@@ -66,13 +67,13 @@ static bool write_picture(const struct walk *walk, const uint8_t *pixels, bool t
     return png_file_write(path, pixels, settings->size[0], settings->size[1]);
 }
 
-/** Time stamps follow the frames, not the clock: a slow machine streams the same way. */
+/** Derives time stamps from frames, not from the clock: slow machines stream alike. */
 static uint64_t time_stamp_of(const struct settings *settings, uint32_t frame)
 {
     return ((uint64_t)settings->warm_up + frame + 1) * 1000000u / settings->frames_per_second;
 }
 
-/** What the frame needed, and how much of it was not to be seen. */
+/** Records the required tiles and the missing pixels of a frame. */
 static bool collect_needs(struct walk *walk, uint32_t frame)
 {
     struct view *view = &walk->gallery->streamed;
@@ -95,7 +96,7 @@ static bool collect_needs(struct walk *walk, uint32_t frame)
     return true;
 }
 
-/** Waits for a frame that was submitted earlier and looks at what came out. */
+/** Waits for a submitted frame, and measures it. */
 static bool collect_frame(struct walk *walk, uint32_t frame)
 {
     struct gallery *gallery = walk->gallery;
@@ -111,7 +112,7 @@ static bool collect_frame(struct walk *walk, uint32_t frame)
         return false;
     const uint8_t *pixels = view_pixels(streamed, slot), *truth_pixels = NULL;
     if (gallery->settings.compare) {
-        /* The truth has drawn more frames: those in which it was filled. */
+        /* The truth has drawn more frames: the ones that filled it. */
         uint32_t ago = streamed->frame_index - frame;
         uint32_t truth_slot = (truth->frame_index - ago) % VIEW_FRAMES_IN_FLIGHT;
         truth_pixels = view_pixels(truth, truth_slot);
@@ -125,13 +126,13 @@ static bool collect_frame(struct walk *walk, uint32_t frame)
         walk->written.frames[walk->written.count++] = frame;
     if (!comparison_keep(&walk->comparison, frame, pixels, truth_pixels, written))
         return false;
-    if (!written || gallery->settings.reference) /* then the comparison writes them */
+    if (!written || gallery->settings.reference) /* with --reference, comparison_run writes them */
         return true;
     return write_picture(walk, pixels, false, frame) &&
            (!truth_pixels || write_picture(walk, truth_pixels, true, frame));
 }
 
-/** Draws one frame, in both views if they are compared. */
+/** Draws one frame; with --compare in both views. */
 static bool draw_frame(struct walk *walk, uint32_t frame, uint64_t time_stamp)
 {
     struct gallery *gallery = walk->gallery;
@@ -155,7 +156,7 @@ static bool settle(struct walk *walk, uint32_t frame)
     return view_wait(view, frame % VIEW_FRAMES_IN_FLIGHT) && view_settle(view);
 }
 
-/** Frames before the range, for what they load. The slots of frames are those of a whole walk. */
+/** Draws the frames before the range for their loads. Slots are numbered as in a whole walk. */
 static bool play_in(struct walk *walk)
 {
     const struct settings *settings = &walk->gallery->settings;
@@ -316,7 +317,7 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
     return done;
 }
 
-/* Before anything takes its time. */
+/* Checks all output paths before any long work. */
 static bool can_write_outputs(const struct settings *settings)
 {
     char report[4096], csv[4096];

@@ -1,8 +1,8 @@
-/* The streamed surfaces from where the camera will be: asks for what it will need, and draws nothing. */
+/* Draws the streamed surfaces from the future camera to request their tiles. Writes no color. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-/* What will be hidden is not asked for. */
+/* Fragments that will be hidden request nothing. */
 layout(early_fragment_tests) in;
 
 #include "gallery.glsl"
@@ -13,7 +13,8 @@ layout(location = 1) in vec2 uv;
 layout(location = 2) flat in vec3 normal;
 layout(location = 3) flat in vec3 tangent;
 
-/* The camera comes less close than it seems to more often than not: at most a level finer than now. */
+/* Limits the request to one level finer than now: the camera often approaches less than
+ * predicted. */
 float farther()
 {
     float now = distance(toVec3(frame.presentEye), position);
@@ -23,7 +24,7 @@ float farther()
 
 void main()
 {
-    /* As if each pixel were one of the picture. */
+    /* Derivatives at the size of the picture's pixels. */
     float scale = frame.pixelScale * farther();
     vec2 dx = dFdx(uv) * scale, dy = dFdy(uv) * scale;
     sluiceWriteFeedback(draw.colorTexture, uv, dx, dy, frame.lodBias, frame.maxAnisotropy);

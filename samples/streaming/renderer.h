@@ -1,4 +1,4 @@
-/** How the room is drawn: pipelines, samplers, vertices; knows textures only as descriptor sets. */
+/** Draws the room: pipelines, samplers, vertices. Knows textures only as descriptor sets. */
 #ifndef SAMPLES_STREAMING_RENDERER_H
 #define SAMPLES_STREAMING_RENDERER_H
 
@@ -21,72 +21,72 @@ struct renderer {
     const struct room *room; ///< borrowed
     VkDescriptorSetLayout frame_layout, texture_layout;
     VkPipelineLayout pipeline_layout;
-    VkShaderModule vertex;                     ///< of all pipelines
-    VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the last three only where asked for
-    VkSampler clamp, repeat;                   ///< as drawn
-    VkSampler probe_clamp, probe_repeat;       ///< nearest between levels, for the counting pass
+    VkShaderModule vertex;                     ///< vertex shader of all pipelines
+    VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the last three exist only if requested
+    VkSampler clamp, repeat;                   ///< samplers of the drawing pass
+    VkSampler probe_clamp, probe_repeat; ///< samplers of the counting pass; nearest between levels
     struct gpu_buffer vertices, lights;
 };
 
-/** What a surface is drawn with. */
+/** Textures and parameters of a surface. */
 struct renderer_surface {
     VkDescriptorSet textures;
     uint32_t color_index, relief_index; ///< in the texture table
-    bool relief_feedback;               ///< writes feedback of its own
+    bool relief_feedback;               ///< true: the relief writes feedback of its own
     float exposure, relief_scale;
     bool gray, painted;
-    bool hdr;     ///< decoded, and values may be above 1
-    bool missing; ///< left out: drawn like a plain part
-    bool decoded; ///< by the shader, of a neural set; plain but in RENDERER_SURFACE
+    bool hdr;     ///< true: decoded, with values above 1
+    bool missing; ///< true: left out; drawn like a plain part
+    bool decoded; ///< true: decoded by the shader; plain except in RENDERER_SURFACE
 };
 
 struct renderer_request {
     const struct room *room;     ///< must outlive the renderer
-    const struct target *target; ///< compatible with those drawn to
+    const struct target *target; ///< compatible with the targets that are drawn to
     VkDescriptorSetLayout streamer_layout;
-    VkDescriptorSetLayout neural_layout; ///< of set 3; VK_NULL_HANDLE: nothing is decoded
+    VkDescriptorSetLayout neural_layout; ///< layout of set 3; VK_NULL_HANDLE: nothing is decoded
     const uint32_t *neural_words;        ///< SPIR-V of RENDERER_NEURAL
     size_t neural_size;                  ///< bytes
     uint32_t anisotropy;
-    bool counting, needs; ///< create the pipelines of these passes, too
+    bool counting, needs; ///< also create the pipelines of these passes
     bool paged;           ///< shaders for paged residency
 };
 
-/** Sets of a frame. Set 1 has the textures of a surface and is bound for each surface. */
+/** Sets of a frame. Set 1, a surface's textures, is bound per surface. */
 struct renderer_sets {
-    VkDescriptorSet streamer; ///< set 0; the streamer's for this frame
+    VkDescriptorSet streamer; ///< set 0; the streamer's set for this frame
     VkDescriptorSet frame;    ///< set 2; of `frame_layout`
     VkDescriptorSet neural;   ///< set 3; VK_NULL_HANDLE: nothing is decoded
 };
 
 bool renderer_create(const struct gpu *gpu, const struct renderer_request *request,
                      struct renderer *renderer);
-/** A zeroed struct is fine. */
+/** Accepts a zeroed struct. */
 void renderer_destroy(struct renderer *renderer);
 
-/** Descriptors of set 2. Buffers that no pass with this set uses may be any. */
+/** Writes set 2. Pass any buffer for bindings that no pass with this set uses. */
 void renderer_write_frame_set(const struct renderer *renderer, VkDescriptorSet set, VkBuffer frame,
                               VkBuffer counts, VkBuffer required);
-/** Descriptors of set 1; without a relief, pass the color's view twice. */
+/** Writes set 1. Without a relief, pass the color's view twice. */
 void renderer_write_texture_set(const struct renderer *renderer, VkDescriptorSet set,
                                 VkImageView color, VkImageView relief, bool repeat);
 
 /**
- * A pipeline of the room's vertices. Without a `fragment` shader it writes depth alone. `target` is
- * of the pass and the samples that are drawn to.
+ * Creates a pipeline for the room's vertices. Without a `fragment` shader it writes depth only.
+ * `target`: target of the pass, with the sample count to draw with.
  */
 bool renderer_create_pipeline(const struct renderer *renderer, const struct target *target,
                               VkShaderModule fragment, bool writes_color, VkPipeline *pipeline);
-/** What a part is drawn with; NULL if it has no streamed texture. */
+/** Returns the surface of a part. Returns NULL if it has no streamed texture. */
 const struct renderer_surface *renderer_surface_of(const struct room_part *part,
                                                    const struct renderer_surface *surfaces);
 
-/** Binds vertices and sets. Done by renderer_draw. */
+/** Binds vertices and sets. renderer_draw calls it. */
 void renderer_bind(const struct renderer *renderer, VkCommandBuffer commands,
                    const struct renderer_sets *sets);
 
-/** `surfaces`: floor, wall, then one per picture; `pass` is how they are drawn. Inside a render
- * pass. */
+/** Draws inside a render pass. `surfaces`: floor, wall, then one per picture. `pass`: selects the
+ * pipeline. */
 void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands,
                    const struct renderer_sets *sets, const struct renderer_surface *surfaces,
                    enum renderer_pass pass);

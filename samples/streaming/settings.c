@@ -19,7 +19,7 @@ static const char notes[] = "Exit status: 0, also if pictures were left out, whi
 
 #define TILE_SIZE 65536u
 
-/* Rounded down to whole heaps. */
+/* Reduces the heaps to the budget, rounded down to whole heaps. */
 static void keep_to_budget(struct settings *s)
 {
     uint32_t tiles = (uint32_t)(s->budget / TILE_SIZE);
@@ -31,7 +31,7 @@ static void keep_to_budget(struct settings *s)
         s->max_heaps = tiles / s->heap_tiles;
 }
 
-/** What the truth takes over from the run. */
+/** Settings that the truth inherits from the run. */
 static bool complete_reference(const struct option_table *table, struct settings *s)
 {
     s->reference_anisotropy = s->reference_anisotropy ? s->reference_anisotropy : s->anisotropy;
@@ -50,7 +50,7 @@ static bool complete_reference(const struct option_table *table, struct settings
     return true;
 }
 
-/** Each once. */
+/** Lists each mode once. */
 static bool read_neural_modes(const struct option_table *table, struct settings *s)
 {
     static const char *const names[NEURAL_MODE_COUNT] = {"raw", "bc7", "load", "feedback",
@@ -75,7 +75,7 @@ static bool read_neural_modes(const struct option_table *table, struct settings 
            options_refuse(table, "--neural-set: hangs instead of --images, not with them");
 }
 
-/* Everything that the table cannot say. */
+/* Checks rules that the option table cannot express. */
 static bool check(const struct option_table *table, struct settings *s)
 {
     if (s->samples & (s->samples - 1))

@@ -1,4 +1,4 @@
-/** What the command line asks of the gallery. */
+/** Command-line options of the gallery. */
 #ifndef SAMPLES_STREAMING_SETTINGS_H
 #define SAMPLES_STREAMING_SETTINGS_H
 
@@ -15,11 +15,11 @@ enum on_off { SETTING_ON, SETTING_OFF };
 
 /** How a texture of a neural set is streamed. */
 enum neural_mode {
-    NEURAL_RAW,      ///< texels as they were before compression, from a tile store
+    NEURAL_RAW,      ///< BC7 blocks, from a tile store
     NEURAL_BC7,      ///< blocks, from a tile store
     NEURAL_LOAD,     ///< decoded by the loader's threads
     NEURAL_FEEDBACK, ///< decoded by the GPU, tile by tile
-    NEURAL_SAMPLE,   ///< decoded by the shader that samples
+    NEURAL_SAMPLE,   ///< decoded by the sampling shader
     NEURAL_MODE_COUNT
 };
 
@@ -29,7 +29,7 @@ enum neural_path {
     NEURAL_PATH_PLAIN,
     NEURAL_PATH_DOT,       ///< integer dot products
     NEURAL_PATH_VECTOR,    ///< cooperative vectors with INT8 weights
-    NEURAL_PATH_VECTOR_FP8 ///< with FP8 weights
+    NEURAL_PATH_VECTOR_FP8 ///< cooperative vectors with FP8 weights
 };
 
 struct settings {
@@ -38,18 +38,18 @@ struct settings {
     const char *cache;
     uint32_t generate_scale;
     bool generate_only;
-    const char *neural; ///< .ntc file; NULL: pictures hang
+    const char *neural; ///< .ntc file; NULL: show pictures
     struct option_list neural_as;
-    enum neural_mode neural_modes[NEURAL_MODE_COUNT]; ///< after parsing, of neural_as
+    enum neural_mode neural_modes[NEURAL_MODE_COUNT]; ///< from `neural_as`, set by parsing
     uint32_t neural_mode_count, neural_picks;
     int neural_path;      ///< enum neural_path
-    const char *material; ///< folder to write a material to; NULL: none
+    const char *material; ///< output folder of a material; NULL: none
     int format;           ///< enum pixel_format
     /* frames */
     uint32_t size[2];
     uint32_t frames, rest_frames;
-    struct frame_range range; ///< after parsing all frames if none was given
-    uint32_t play_in; ///< frames before the range, rounded up; after parsing at most `first`
+    struct frame_range range; ///< all frames if not given, set by parsing
+    uint32_t play_in;         ///< frames before the range, rounded up; parsing limits it to `first`
     uint32_t frames_per_second;
     uint32_t samples;
     const char *output;
@@ -63,11 +63,11 @@ struct settings {
     uint32_t textures_per_frame, tiles_per_frame;
     double timeout; ///< seconds
     uint32_t standby, heap_tiles, max_heaps, threads, touched_tiles;
-    uint64_t budget;  ///< bytes for tiles, 0: no cap; heap_tiles and max_heaps keep to it
+    uint64_t budget;  ///< bytes for tiles; 0: no limit; parsing fits heap_tiles and max_heaps to it
     int texture_sets; ///< enum on_off
     uint32_t loads_in_flight;
     double fade;             ///< seconds
-    double source_latency;   ///< milliseconds of the frames' time
+    double source_latency;   ///< milliseconds, in the time of the frames
     double source_bandwidth; ///< MB/s, 0: no limit
     const char *record;
     double predict;   ///< seconds
@@ -82,10 +82,10 @@ struct settings {
     int check_residency; ///< enum three_way
     int needs;           ///< enum three_way
     const char *needs_trace;
-    const char *reference;                            ///< folder of the truth; NULL: none is kept
-    uint32_t reference_anisotropy, reference_samples; ///< after parsing never 0
+    const char *reference;                            ///< folder of the truth; NULL: do not keep
+    uint32_t reference_anisotropy, reference_samples; ///< not 0 after parsing
     uint32_t reference_supersample;                   ///< 1, 2 or 4
-    double reference_lod_bias;                        ///< after parsing never NaN
+    double reference_lod_bias;                        ///< not NaN after parsing
     uint32_t metrics_every;                           ///< 0 without a truth
     /* device */
     const char *device;
@@ -99,7 +99,7 @@ void settings_report_path(const struct settings *settings, const char *name, con
                           char *path, size_t size);
 
 SluiceResidencyMode settings_residency_mode(int residency);
-/** Whether it is to be found out what frames need. */
+/** Returns whether to count the required tiles of frames. */
 bool settings_find_needs(const struct settings *settings);
 
 #endif /* SAMPLES_STREAMING_SETTINGS_H */

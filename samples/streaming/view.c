@@ -23,7 +23,7 @@ static bool check(SluiceResult result, const char *what)
     return false;
 }
 
-/** Floor, wall, and two of each picture. */
+/** Counts floor, wall, and two textures per picture. */
 uint32_t view_texture_count(const struct picture_list *pictures)
 {
     return 2 + 2 * pictures->count;
@@ -143,7 +143,7 @@ SluiceResult view_add_texture(struct view *view, SluiceImageSource *source,
     return result;
 }
 
-/* A picture is not shown without its relief. */
+/* Removes a picture's color texture: without its relief the picture is not shown. */
 static void take_back(struct view *view, const SluiceVulkanTexture *texture)
 {
     check(sluiceRemoveVulkanTexture(view->streamer, texture->textureId),
@@ -182,7 +182,7 @@ static bool create_descriptor_pool(struct view *view)
         "vkCreateDescriptorPool");
 }
 
-/** A texture without a relief: floor and walls. */
+/** Creates floor or wall: a repeating texture without a relief. */
 static bool create_tiled_surface(struct view *view, SluiceImageSource *source,
                                  struct renderer_surface *surface)
 {
@@ -231,7 +231,7 @@ static bool is_fatal(SluiceResult result)
            result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-/* What the streamer has no room for stays plain, and so does what cannot be streamed. */
+/* Pictures that cannot be streamed, or for which the streamer has no room, stay plain. */
 static bool create_pictures(struct view *view)
 {
     uint32_t count = view->request.pictures->count, left_out = 0;
@@ -325,7 +325,7 @@ bool view_create(const struct view_request *request, const char *record_path, st
     *view = (struct view){.request = *request};
     bool created = begin_slowness(view) && create_context(view) && create_streamer(view) &&
                    view_neural_create(view) && create_renderer(view);
-    /* Before the first texture, so that the recording is complete. */
+    /* Begins before the first texture, so that the recording is complete. */
     const SluiceFileRecordingInfo recording = {
         .structSize = sizeof recording, .pPath = record_path, .log = {.pfnLog = log_say}};
     if (created && record_path)
@@ -391,14 +391,14 @@ static void write_frame_data(const struct view *view, const struct camera *camer
         .highlight = settings->highlight && !view->request.everything,
         .neuralPicks = settings->neural_picks,
     };
-    if (view->request.everything) { /* its feedback is not needed */
+    if (view->request.everything) { /* a fully resident view needs no feedback */
         frame->feedbackProbability = 0.0f;
         frame->latticeFrame = GALLERY_NO_TEXTURE;
     }
     memcpy(frame->viewProjection, view_projection.m, sizeof frame->viewProjection);
 }
 
-/** Feedback, and nothing else, from where the camera will be. */
+/** Writes feedback, and nothing else, from the future camera. */
 static void record_prediction(const struct view *view, VkDescriptorSet streamer_set,
                               VkCommandBuffer commands)
 {
@@ -410,7 +410,7 @@ static void record_prediction(const struct view *view, VkDescriptorSet streamer_
                    view->frame_index % VIEW_FRAMES_IN_FLIGHT, &frame, view->surfaces);
 }
 
-/** The room once more, only to count what its samples would read. */
+/** Draws the room again to count what its samples would read. */
 static void record_counting(const struct view *view, const struct view_slot *slot,
                             const struct renderer_sets *sets)
 {
@@ -432,7 +432,7 @@ static uint32_t first_query(const struct view *view)
     return 2 * (view->frame_index % VIEW_FRAMES_IN_FLIGHT);
 }
 
-/* From here on the frame is submitted, or abandoned. */
+/* After this call the frame must be submitted or abandoned. */
 static bool begin_frame(struct view *view, struct view_slot *slot, uint64_t time_stamp,
                         SluiceStreamingFrame *frame)
 {
@@ -441,12 +441,13 @@ static bool begin_frame(struct view *view, struct view_slot *slot, uint64_t time
     vkCmdResetQueryPool(commands, view->timestamps, query, 2);
     vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, view->timestamps, query);
 
-    /* Uploads what arrived and publishes it; its answers decide what the shaders may sample. */
+    /* Records uploads of loaded tiles, and publishes them to the shaders. */
     return check(sluiceBeginStreamingFrame(view->streamer, commands, time_stamp, frame),
                  "sluiceBeginStreamingFrame");
 }
 
-/* One frame of an application that streams; what is behind the last time stamp is no part of it. */
+/* Records one frame of a streaming application. Commands after the last time stamp are for
+ * measuring only. */
 static bool record_frame(struct view *view, struct view_slot *slot,
                          const SluiceStreamingFrame *frame, double *needs_seconds)
 {
@@ -466,7 +467,7 @@ static bool record_frame(struct view *view, struct view_slot *slot,
     renderer_draw(&view->renderer, commands, &sets, view->surfaces, RENDERER_SURFACE);
     target_end(request->target, commands);
 
-    /* Takes down what the shaders wanted. */
+    /* Records the readback of the shaders' feedback. */
     if (!neural_view_end(&view->neural, commands) ||
         !check(sluiceEndStreamingFrame(view->streamer, commands), "sluiceEndStreamingFrame"))
         return false;
@@ -530,7 +531,8 @@ static void look_ahead(struct view *view, const struct camera *camera, double se
     view->looks_ahead = false;
     if (!view->predict.renderer)
         return;
-    (void)sluiceAddCameraFrame(&view->motion, &look.m[0][0], seconds); /* a bad one is no motion */
+    (void)sluiceAddCameraFrame(&view->motion, &look.m[0][0],
+                               seconds); /* an invalid camera counts as no motion */
     sluicePredictCamera(&view->motion, &info, &ahead);
     view->looks_ahead = ahead.draw;
     view->now = *camera;
@@ -558,7 +560,8 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
     if (!record_frame(view, slot, &frame, &needs_seconds) ||
         !gpu_check(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer") ||
         !submit(view, slot, &frame)) {
-        sluiceAbandonStreamingFrame(view->streamer, &frame); /* the next one uploads what it had */
+        sluiceAbandonStreamingFrame(view->streamer,
+                                    &frame); /* the next frame repeats its uploads */
         return false;
     }
     out->host_seconds = clock_seconds() - start - needs_seconds;
