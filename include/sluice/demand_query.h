@@ -1,6 +1,6 @@
 /**
- * Says which tiles of a demand loader (demand.h) are resident, waits for them, and lists what
- * launches missed. Link `sluice-vulkan`.
+ * Says which tiles of a demand loader (demand.h) are resident and in which slots of memory, waits
+ * for them, and lists what launches missed. Link `sluice-vulkan`.
  *
  * Thread safety: external on the loader.
  */
@@ -132,6 +132,60 @@ typedef struct SluiceDemandMiss {
  */
 SLUICE_API SluiceResult sluiceGetDemandMisses(const SluiceDemandLoader *loader,
                                               uint32_t *pMissCount, SluiceDemandMiss *pMisses);
+
+/** Array image whose layers are slots of 64 KiB for tiles. Never grows. */
+typedef struct SluiceDemandSlotImage {
+    uint32_t image; ///< Upper 16 bits of places in the page table. Below 1024.
+    SluiceFormat format;
+    uint32_t slotCount;      ///< Layers.
+    uint32_t usedSlotCount;  ///< Slots with tiles or mip tails of this loader.
+    uint32_t otherSlotCount; ///< Slots of other loaders and streamers of the context.
+} SluiceDemandSlotImage;
+
+/**
+ * Lists the array images of the context's tile memory, by ascending `image`: for pictures of
+ * memory.
+ *
+ * Set `*pImageCount` to the capacity of `pImages`. The call sets it to the number written. Returns
+ * SLUICE_INCOMPLETE if there are more. With `pImages` NULL, writes the number of images.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceGetDemandSlotImages(const SluiceDemandLoader *loader,
+                                                  uint32_t *pImageCount,
+                                                  SluiceDemandSlotImage *pImages);
+
+/** State of a tile in a slot. */
+typedef enum SluiceDemandSlotState {
+    SLUICE_DEMAND_SLOT_LOADING = 0,  ///< The slot waits for the texels of the tile.
+    SLUICE_DEMAND_SLOT_RESIDENT = 1, ///< Launches from the next one on find the tile.
+    SLUICE_DEMAND_SLOT_STANDBY = 2 ///< Evicted; comes back without a read until the slot is taken.
+} SluiceDemandSlotState;
+
+/** Tile or mip tail in a slot. Never grows. */
+typedef struct SluiceDemandSlot {
+    uint32_t image; ///< As in SluiceDemandSlotImage.
+    uint32_t layer;
+    SluiceDemandSlotState state;
+    bool isTail; ///< All coarse levels from `level` on.
+    SluiceDemandTextureId textureId;
+    uint32_t page;  ///< Virtual page, as in SluiceDemandTileInfo.
+    uint32_t level; ///< First level of the page.
+    uint32_t x, y;  ///< Tiles: column and row in tiles of the level.
+} SluiceDemandSlot;
+
+/**
+ * Lists the tiles and mip tails that have a slot, in no order, with those that were evicted and
+ * whose slot nobody has taken yet. Mip tails that share a slot are listed each, and so are equal
+ * tiles that share one. Takes time in proportion to the slots. Free slots are not listed.
+ *
+ * Set `*pSlotCount` to the capacity of `pSlots`. The call sets it to the number written. Returns
+ * SLUICE_INCOMPLETE if there are more. With `pSlots` NULL, writes the number of entries.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceGetDemandSlots(const SluiceDemandLoader *loader, uint32_t *pSlotCount,
+                                             SluiceDemandSlot *pSlots);
 
 #ifdef __cplusplus
 } /* extern "C" */

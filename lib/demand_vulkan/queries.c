@@ -3,6 +3,7 @@
 #include "base/struct_size.h"
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/pages.h"
+#include "demand_vulkan/queries.h"
 #include "demand_vulkan/refused_arguments.h"
 #include "demand_vulkan/tiles.h"
 
@@ -116,7 +117,7 @@ static SluiceDemandMiss miss_of_resource(const SluiceDemandLoader *loader, uint3
                               .id = slc_resource_id(resource)};
 }
 
-static SluiceDemandMiss miss_of(const SluiceDemandLoader *loader, uint32_t page)
+SluiceDemandMiss slc_demand_miss_of(const SluiceDemandLoader *loader, uint32_t page)
 {
     uint32_t index;
     switch (slc_pages_find(loader, page, &index)) {
@@ -138,6 +139,6 @@ SluiceResult sluiceGetDemandMisses(const SluiceDemandLoader *loader, uint32_t *p
     uint32_t room = pMisses ? *pMissCount : 0;
     *pMissCount = pMisses ? slc_min_u32(room, loader->miss_count) : loader->miss_count;
     for (uint32_t i = 0; pMisses && i < *pMissCount; i++)
-        pMisses[i] = miss_of(loader, loader->misses[i]);
+        pMisses[i] = slc_demand_miss_of(loader, loader->misses[i]);
     return pMisses && room < loader->miss_count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
 }

@@ -175,6 +175,133 @@ static void tiles_and_misses_are_told(void **state)
     runner_image_finish(&image);
 }
 
+/* Entries of a tile; the last one of them. */
+static uint32_t slots_of(const SluiceDemandSlot *slots, uint32_t count, uint32_t page,
+                         SluiceDemandSlot *found)
+{
+    uint32_t entries = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (slots[i].page == page) {
+            *found = slots[i];
+            entries++;
+        }
+    return entries;
+}
+
+/* All entries name tiles as sluiceGetDemandTileInfo has them, in slots of images that exist. */
+static void check_slots(struct runner *r, SluiceDemandTextureId id, uint32_t size)
+{
+    static SluiceDemandSlot slots[1024];
+    static bool taken[64][2048];
+    SluiceDemandSlotImage images[64];
+    uint32_t count = 1024, image_count = 64, resident = 0, held = 0, used = 0;
+    CHECK_OK(sluiceGetDemandSlots(r->loader, &count, slots));
+    CHECK_OK(sluiceGetDemandSlotImages(r->loader, &image_count, images));
+    memset(taken, 0, sizeof taken);
+    for (uint32_t i = 0; i < count; i++) {
+        const SluiceDemandSlot *s = &slots[i];
+        const SluiceDemandTileInfo info = tile_info(r, id, s->level, 128 * s->x, 128 * s->y);
+        assert_true(s->textureId == id && s->page == info.page && s->isTail == info.isTail);
+        assert_true((s->state == SLUICE_DEMAND_SLOT_RESIDENT) ==
+                    (info.state == SLUICE_DEMAND_PAGE_RESIDENT));
+        assert_true(s->image < 64 && s->layer < 2048 && !taken[s->image][s->layer]);
+        taken[s->image][s->layer] = true;
+        resident += s->state == SLUICE_DEMAND_SLOT_RESIDENT;
+        held += s->state != SLUICE_DEMAND_SLOT_STANDBY;
+        uint32_t at = 0;
+        while (at < image_count && images[at].image != s->image)
+            at++;
+        assert_true(at < image_count && s->layer < images[at].slotCount &&
+                    images[at].format == SLUICE_FORMAT_R8G8B8A8_UNORM);
+    }
+    for (uint32_t i = 0; i < image_count; i++)
+        used += images[i].usedSlotCount;
+    assert_int_equal(used, held);
+    for (uint32_t l = 0; size >> l >= 128; l++)
+        for (uint32_t i = 0, side = size >> l >> 7; i < side * side; i++) {
+            SluiceDemandSlot found = {0};
+            const SluiceDemandTileInfo info =
+                tile_info(r, id, l, 128 * (i % side), 128 * (i / side));
+            if (info.state == SLUICE_DEMAND_PAGE_RESIDENT)
+                assert_int_equal(slots_of(slots, count, info.page, &found), 1);
+        }
+    assert_true(resident == runner_statistics(r).residentTileCount);
+}
+
+/* The oracle is the state of each tile. 64 slots for 512 tiles: most are evicted. */
+static void each_resident_tile_has_one_slot(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = 4u << 20};
+    SluiceDemandSlot slot;
+    uint32_t count = 7;
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 2048, 2048, 5);
+    const SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    CHECK_OK(sluiceGetDemandSlots(r.loader, &count, NULL));
+    assert_int_equal(count, 0);
+    for (uint32_t row = 0; row < 16; row += 2) {
+        runner_clear(&r);
+        runner_add_tiles(&r, id, 2048, row, 2);
+        runner_load(&r, 20);
+        assert_true(runner_all_resident(&r));
+        check_slots(&r, id, 2048);
+    }
+    assert_true(runner_statistics(&r).evictedCount >= 160);
+    CHECK_RESULT(sluiceGetDemandSlots(r.loader, (count = 1, &count), &slot), SLUICE_INCOMPLETE);
+    assert_int_equal(count, 1);
+    SluiceDemandSlotImage images[1];
+    CHECK_RESULT(sluiceGetDemandSlotImages(r.loader, (count = 0, &count), images),
+                 SLUICE_INCOMPLETE);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+/* A tile that stands by comes back into its slot, without a read: tiles of another format evict it,
+ * and cannot have its slot yet. */
+static void a_tile_that_stands_by_is_restored_to_its_slot(void **state)
+{
+    (void)state;
+    static SluiceDemandSlot slots[1024], later[1024];
+    struct runner r;
+    struct runner_image image, other;
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    uint32_t count = 1024, later_count = 1024, restored = 0;
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 4096, 4096, 1);
+    runner_image_init(&other, SLUICE_FORMAT_R32G32B32A32_SFLOAT, 4096, 4096, 2);
+    const SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    const SluiceDemandTextureId other_id = runner_add_texture(&r, &other);
+    runner_add_tiles(&r, id, 4096, 0, 7);
+    runner_load(&r, 30);
+    const uint64_t reads = image.source.read_count;
+    runner_clear(&r);
+    runner_add_tiles(&r, other_id, 4096, 0, 1);
+    runner_load(&r, 2);
+    CHECK_OK(sluiceGetDemandSlots(r.loader, &count, slots));
+    runner_clear(&r);
+    runner_add_tiles(&r, id, 4096, 0, 7);
+    runner_load(&r, 30);
+    CHECK_OK(sluiceGetDemandSlots(r.loader, &later_count, later));
+    for (uint32_t i = 0; i < count; i++) {
+        SluiceDemandSlot now = {0};
+        if (slots[i].textureId != id || slots[i].state != SLUICE_DEMAND_SLOT_STANDBY)
+            continue;
+        assert_int_equal(slots_of(later, later_count, slots[i].page, &now), 1);
+        assert_true(now.state == SLUICE_DEMAND_SLOT_RESIDENT && now.image == slots[i].image &&
+                    now.layer == slots[i].layer);
+        restored++;
+    }
+    assert_true(restored > 0 && restored == runner_statistics(&r).restoredCount);
+    assert_int_equal(image.source.read_count, reads);
+    runner_finish(&r);
+    runner_image_finish(&image);
+    runner_image_finish(&other);
+}
+
 static void a_texture_smaller_than_a_pixel_needs_no_tile(void **state)
 {
     (void)state;
@@ -568,6 +695,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(colors_are_the_images_own_when_nothing_is_missing),
         cmocka_unit_test(tiles_and_misses_are_told),
+        cmocka_unit_test(each_resident_tile_has_one_slot),
+        cmocka_unit_test(a_tile_that_stands_by_is_restored_to_its_slot),
         cmocka_unit_test(only_what_is_sampled_is_opened_and_only_its_tiles_are_read),
         cmocka_unit_test(a_texture_smaller_than_a_pixel_needs_no_tile),
         cmocka_unit_test(a_variant_shares_tiles_and_not_the_sampler),

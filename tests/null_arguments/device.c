@@ -123,6 +123,8 @@ sluiceGetDemandTileInfo(f->loader, f->id, 0, 0, 0, &f->out.tile_info)
 sluiceGetDemandRegionProgress(f->loader, f->id, ?NULL, &f->out.region_progress)
 sluiceWaitDemandRegion(f->loader, f->id, ?NULL, ?0, &f->out.demand_wait)
 sluiceGetDemandMisses(f->loader, &f->out.miss_count, ?f->out.misses)
+sluiceGetDemandSlotImages(f->loader, &f->out.image_count, ?f->out.slot_images)
+sluiceGetDemandSlots(f->loader, &f->out.slot_count, ?f->out.slots)
 sluiceSetDemandStrictMode(f->loader, ?NULL)
 sluiceIsDemandSourceInUse(f->loader, f->source, &f->out.in_use)
 !sluiceReleaseDemandSource(f->loader, f->source)
@@ -200,7 +202,9 @@ struct fixture {
         SluiceDemandRegionProgress region_progress;
         SluiceDemandWaitStatus demand_wait;
         SluiceDemandMiss misses[1];
-        uint32_t miss_count;
+        SluiceDemandSlotImage slot_images[1];
+        SluiceDemandSlot slots[1];
+        uint32_t miss_count, slot_count, image_count;
         SluiceVulkanLoadStages stages;
         SluiceTextureRequestId request;
         SluiceVulkanTextureControl control;

@@ -1,0 +1,12 @@
+/** Which texture, level and tile a page is. */
+#ifndef SLC_DEMAND_VULKAN_QUERIES_H
+#define SLC_DEMAND_VULKAN_QUERIES_H
+
+#include "demand_vulkan/loader.h"
+
+#include <sluice/demand_query.h>
+
+/** The page, as sluiceGetDemandMisses tells it. */
+SluiceDemandMiss slc_demand_miss_of(const SluiceDemandLoader *loader, uint32_t page);
+
+#endif /* SLC_DEMAND_VULKAN_QUERIES_H */
