@@ -137,8 +137,8 @@ typedef struct SluiceBaker SluiceBaker;
 /**
  * Creates a baker and starts its threads. Initializes libvips for the process and disables the
  * operation cache of libvips. While a baker exists, warnings of libvips (GLib's log domain VIPS)
- * come to Sluice: those of a picture go to the baker's log, with its name, and others to GLib's
- * default handler.
+ * come to Sluice. Warnings about a picture go to the baker's log, with its name. All others go to
+ * GLib's default handler.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED if libvips does not start;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY, also if a thread cannot be started.

@@ -3,8 +3,8 @@
  *
  * Each frame, add the view matrix of the camera. Then ask for the camera some time ahead, and draw
  * feedback, and nothing else, from there: small, with a depth test of its own, in the same
- * streaming frame as the picture. Its marks go where those of the picture go. docs/control.md shows
- * the calls, docs/trade-offs.md what they save.
+ * streaming frame as the picture. Its marks go into the feedback buffer of the picture.
+ * docs/control.md shows the calls, docs/trade-offs.md how much they save.
  *
  * Pure functions without allocations. Thread safety: external on the motion.
  */
@@ -49,17 +49,17 @@ typedef struct SluiceLookAheadInfo {
     double seconds;
     uint64_t frameIndex; ///< Frames look ahead all the way and half of it, in turns.
     uint32_t pictureWidth, pictureHeight; ///< Pixels of the picture, above 0.
-    uint32_t shrink; ///< Width and height of the picture over those of the feedback. Default: 4.
+    uint32_t shrink; ///< Pixels of the picture per pixel of the feedback, per axis. Default: 4.
 } SluiceLookAheadInfo;
 
 /** The predicted camera, for a draw that marks tiles alone. */
 typedef struct SluiceLookAhead {
     uint32_t structSize; ///< sizeof(SluiceLookAhead).
-    /** The camera is going to move. If false, the picture's own feedback says all. */
+    /** The camera is going to move. If false, the feedback of the picture suffices. */
     bool draw;
     double seconds;         ///< How far ahead this frame looks.
     float viewMatrix[16];   ///< The camera there. Use the projection of the picture.
-    uint32_t width, height; ///< Pixels to draw: those of the picture over `shrink`, rounded up.
+    uint32_t width, height; ///< Pixels to draw: picture size / `shrink`, rounded up.
     /** Add it to the level of detail of feedback, which has larger pixels than the picture:
      * -log2(shrink). */
     float lodBias;
@@ -68,10 +68,10 @@ typedef struct SluiceLookAhead {
 /**
  * Predicts the camera from its last 5 frames.
  *
- * A motion that goes on evenly, or speeds up or slows down evenly, is followed exactly. Turns of
- * the viewing direction are followed nearly; rolls about it are not predicted.
- * One that slows down ends at a halt and does not turn back; what speeding up adds is at most what
- * the present speed does. A jump is no motion: until it has left the last frames, `draw` is false.
+ * A motion of constant speed or constant acceleration is followed exactly. Turns of the viewing
+ * direction are followed nearly; rolls about it are not predicted. A motion that slows down ends at
+ * a halt and does not turn back. Acceleration at most doubles the distance that the present speed
+ * gives. A jump is no motion: until it has left the last 5 frames, `draw` is false.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a picture without pixels, or
  *         for a wrong structSize.

@@ -150,7 +150,7 @@ typedef struct SluiceDemandLoaderSettings {
 } SluiceDemandLoaderSettings;
 
 /**
- * Gets the settings in use, or those last set. Set structSize first.
+ * Gets the settings that were last set, or else the initial ones. Set structSize first.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize.
  */
@@ -209,10 +209,10 @@ typedef struct SluiceDemandByteBuffers {
  * Gets the buffers that hold byte pages, for applications that write their own descriptors. Unused
  * elements are another buffer of the loader.
  *
- * After sluiceBeginDemandLaunch they are those of the launch. A buffer is destroyed only after all
- * launches that had it are processed. The descriptor sets of launches hold them as
- * SLUICE_DEMAND_BINDING_BYTES, except on devices with fewer than 39 storage buffers per shader
- * stage.
+ * After sluiceBeginDemandLaunch the call returns the buffers of that launch. A buffer is destroyed
+ * only after all launches that had it are processed. The descriptor sets of launches hold the
+ * buffers as SLUICE_DEMAND_BINDING_BYTES, except on devices with fewer than 39 storage buffers per
+ * shader stage.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize.
  */
@@ -393,8 +393,8 @@ typedef struct SluiceDemandStatistics {
     uint64_t deviceMemorySize;          ///< Bytes of all device memory that is not host-mapped.
     float lodBias;                      ///< LOD bias of all textures, in levels.
     /**
-     * Reads and fills by time from request to end. Bucket i counts those of less than 2^i us that
-     * bucket i - 1 does not; the last bucket counts all others.
+     * Reads and fills by time from request to end. Bucket i counts 2^(i - 1) us to below 2^i us;
+     * bucket 0 everything below 1 us, the last bucket all longer times.
      */
     uint64_t latencyHistogram[24];
     uint64_t retriedCount; ///< Failed pages and openings that may be requested again.
@@ -414,7 +414,7 @@ typedef struct SluiceDemandStatistics {
     uint64_t tailPageCount;         ///< Pages of 64 KiB that resident mip tails share.
     uint64_t texturesForgotten;     ///< See forgetAfterLaunches. They count as opened again later.
     uint64_t producedCount;         ///< Tiles, mip tails and byte pages that commands made.
-    uint64_t remadeCount;           ///< Those of them that were resident before.
+    uint64_t remadeCount;           ///< Tiles and pages of producedCount that were resident before.
 } SluiceDemandStatistics;
 
 /**

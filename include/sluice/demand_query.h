@@ -84,12 +84,12 @@ typedef enum SluiceDemandWaitStatus {
 } SluiceDemandWaitStatus;
 
 /**
- * Waits for the tiles of a rectangle, at most `timeoutNs` nanoseconds: for loading screens. 0: only
- * says how it is. `pRegion` is that of sluiceGetDemandRegionProgress.
+ * Waits for the tiles of a rectangle, at most `timeoutNs` nanoseconds: for loading screens. 0:
+ * returns the status. `pRegion` is defined as in sluiceGetDemandRegionProgress.
  *
- * Launches take what was read, copy and show it, and start what did not fit into maxTilesInFlight.
- * So this function returns SLUICE_DEMAND_WAIT_LAUNCH at once when a launch has something to do, and
- * sleeps only while nothing but reads is under way. It requests nothing: call
+ * Launches copy and show tiles that were read, and start reads beyond maxTilesInFlight. So this
+ * function returns SLUICE_DEMAND_WAIT_LAUNCH at once when a launch has something to do, and sleeps
+ * only while nothing but reads is under way. It requests nothing: call
  * sluicePreloadDemandRegion first. Threads of the context read meanwhile. If reads run on threads
  * of the application, these must not be the one that waits: pass 0 there.
  *

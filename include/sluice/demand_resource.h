@@ -83,9 +83,9 @@ typedef struct SluiceDemandResourceCreateInfo {
     /**
      * Records commands that write all bytes of the pages of a batch, in place of pfnRead. Must be
      * NULL if pageSize is 0 or pfnRead is set. sluiceBeginDemandLaunch calls it on its thread.
-     * Answers, barriers and rules are those of SluiceTileProducer.pfnRecordTiles (vulkan.h): a page
-     * is shown when the launch that wrote it was processed, a page that failed is asked for again
-     * after failureRetryDelayNs, and shaders see it as missing until then.
+     * Answers, barriers and rules: see SluiceTileProducer.pfnRecordTiles (vulkan.h). A page is
+     * shown when the launch that wrote it was processed. A page that failed is recorded again after
+     * failureRetryDelayNs; shaders see it as missing until then.
      */
     SluiceResult (*pfnRecordPages)(void *pUserData, const SluiceBytePageBatch *pBatch,
                                    SluiceResult *pResults);
@@ -143,7 +143,7 @@ SLUICE_API SluiceResult sluiceRemakeDemandPages(SluiceDemandLoader *loader,
 
 /**
  * Lists pages that launches missed, of a resource without pfnFill and pfnRead. Pages of earlier
- * launches come first, and those of one launch ascend.
+ * launches come first; pages of one launch ascend.
  *
  * A page is listed once, and not again until you answer it and it is missed anew. Answer with
  * sluiceSetDemandPageValue or sluiceSetDemandPageBytes, whenever you like. Until then

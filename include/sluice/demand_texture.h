@@ -260,9 +260,9 @@ SLUICE_API SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader,
  * coarser ones, coarse levels first. The region's array layer is ignored.
  *
  * Enlarge the rectangle if your filter is wider. A rectangle that leaves its level is refused if
- * the texture is open; otherwise it is logged and loads nothing. All else is as
- * sluicePreloadDemandTexture does it: nothing is evicted, and what could not be read is not tried
- * again. sluiceWaitDemandRegion (demand_query.h) waits for the rectangle.
+ * the texture is open; otherwise it is logged and loads nothing. Like sluicePreloadDemandTexture,
+ * the call evicts nothing, and tiles that cannot be read are not tried again.
+ * sluiceWaitDemandRegion (demand_query.h) waits for the rectangle.
  *
  * Errors: as sluicePreloadDemandTexture; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for an
  *         empty rectangle.

@@ -88,7 +88,7 @@ typedef struct SluiceHttpClientCreateInfo {
      * nothing is kept.
      */
     const char *pCacheFolder;
-    /** Most bytes in the folder. Beyond, what was read longest ago is removed. Default:
+    /** Most bytes in the folder. Beyond, the least recently read ranges are removed. Default:
      * SLUICE_HTTP_DEFAULT_CACHE_SIZE. */
     uint64_t maxCacheSize;
 } SluiceHttpClientCreateInfo;
@@ -174,14 +174,14 @@ SLUICE_API SluiceResult sluiceGetHttpInput(SluiceHttpFile *file, SluiceInput *pI
 SLUICE_API SluiceResult sluiceOpenHttpPath(void *pClient, const char *path, SluiceInput *pInput,
                                            void **ppOpened);
 
-/** Closes what sluiceOpenHttpPath opened. NULL is allowed. Thread safety: external on `pOpened`. */
+/** Closes a file of sluiceOpenHttpPath. NULL is allowed. Thread safety: external on `pOpened`. */
 SLUICE_API void sluiceCloseHttpPath(void *pClient, void *pOpened);
 
 /**
- * Asks the server for one byte of what sluiceOpenHttpPath opened, past memory and cache folder. For
- * SluiceImageOpenerCreateInfo::pfnCheckPath.
+ * Asks the server for one byte of a file that sluiceOpenHttpPath opened. Bypasses memory and cache
+ * folder. For SluiceImageOpenerCreateInfo::pfnCheckPath.
  *
- * Returns SLUICE_SUCCESS if ETag, date and size are those of the opening.
+ * Returns SLUICE_SUCCESS if ETag, date and size have not changed since the file was opened.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_IO if the file was changed, which is not logged,
  *         or cannot be read; SLUICE_ERROR_UNSUPPORTED if the size is that of the opening, and the
@@ -197,7 +197,7 @@ typedef struct SluiceHttpStatistics {
     uint32_t connectionCount; ///< Connections that are open or were not found closed yet.
     uint32_t requestsInFlight;
     uint32_t waitingReadCount; ///< Reads that wait for a connection.
-    uint64_t requestTotal;     ///< Attempts, with those of opening.
+    uint64_t requestTotal;     ///< Attempts, including attempts to open.
     uint64_t connectTotal;     ///< Connections made.
     uint64_t retryTotal;       ///< Attempts after the first one of a request.
     uint64_t failureTotal;     ///< Requests whose attempts all failed.

@@ -307,7 +307,7 @@ SLUICE_API SluiceResult sluiceWaitTileLoaderIdle(SluiceTileLoader *loader);
  */
 typedef struct SluiceTileLoaderStatistics {
     uint32_t structSize;     ///< sizeof(SluiceTileLoaderStatistics).
-    uint64_t readCount;      ///< Reads submitted. Those in none of the next three counts are open.
+    uint64_t readCount;      ///< Reads submitted. Open reads are in none of the next three counts.
     uint64_t succeededCount; ///< Ended with SLUICE_SUCCESS.
     uint64_t givenUpCount;   ///< Ended with an error or SLUICE_NOT_READY.
     uint64_t canceledCount;  ///< Ended with SLUICE_ERROR_CANCELED.

@@ -375,15 +375,15 @@ SLUICE_API SluiceResult sluiceRemoveStreamedTexture(SluiceStreamedTextureManager
                                                     uint64_t retireValue);
 
 /**
- * Forgets a texture that nothing wants: makes all of its tiles FREE, and drops what its maps asked
- * for. The texture stays. Its next map requests its tiles as the first one did.
+ * Forgets a texture that nothing wants: makes all of its tiles FREE, and drops the requests of its
+ * maps. The texture stays. Its next map requests tiles as the first map did.
  *
- * Its tiles are not listed to be unmapped. They must not be shown from now on, and their slots are
- * released once `retireValue` has completed. For packed tiles to be forgotten, alwaysMapPackedTiles
- * must be off.
+ * The tiles are not listed by sluiceGetTilesToUnmap. Shaders must not sample them from now on.
+ * Their slots are released once `retireValue` has completed. Packed tiles are forgotten only if
+ * alwaysMapPackedTiles is off.
  *
- * Returns SLUICE_NOT_READY, with nothing changed, while any map of it counts, or while any of its
- * tiles is neither FREE nor STANDBY.
+ * Returns SLUICE_NOT_READY, with nothing changed, while a map of the texture still counts, or while
+ * a tile is in another state than FREE or STANDBY.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_TIME_BACKWARDS if `retireValue` is below an earlier one.
@@ -393,13 +393,13 @@ SLUICE_API SluiceResult sluiceForgetStreamedTexture(SluiceStreamedTextureManager
                                                     uint64_t retireValue);
 
 /**
- * Evicts a texture that is out of sight: drops what its maps requested, as if it never had one, and
- * lists its STANDBY tiles for unmapping until at most `keepTileCount` are left, finer levels first.
- * UINT32_MAX keeps all of them STANDBY.
+ * Evicts a texture that is out of sight: drops the requests of all its maps, and lists its STANDBY
+ * tiles for unmapping until at most `keepTileCount` are left, finer levels first. UINT32_MAX keeps
+ * all tiles STANDBY.
  *
- * Textures that follow it are evicted, too, and keep as many tiles each. Tiles that are being
- * loaded are CANCELED. Packed tiles stay wanted if alwaysMapPackedTiles is on. The next map
- * requests tiles as usual, and restores those that are still STANDBY.
+ * Followers of the texture are evicted, too, and keep at most `keepTileCount` tiles each. Tiles
+ * that are being loaded are CANCELED. Packed tiles stay wanted if alwaysMapPackedTiles is on. The
+ * next map requests tiles as usual, and restores requested tiles that are still STANDBY.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.
  */
@@ -482,15 +482,17 @@ SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *ma
 
 /**
  * Sets the priority of a texture: -SLUICE_MAX_PRIORITY to SLUICE_MAX_PRIORITY. Default: 0. A
- * texture that follows a primary has the primary's.
+ * texture that follows a primary has the primary's priority.
  *
- * Priorities order tiles of one level; coarser levels still come first. One more counts as if twice
- * as much of level 0 requested each tile of the texture. While slots are short, a wanted tile makes
- * room for a request of more priority of the same or a coarser level, and of the finest wanted
- * tiles those of the least priority go first. The number of slots, and the global mip bias, are the
- * same for all: where not even coarse levels fit, use finestLevel or mipBias.
+ * Priorities order tiles of one level. Coarser levels still come first. A priority that is higher
+ * by 1 counts as if twice as much of level 0 requested each tile of the texture. While slots are
+ * short, a request may evict wanted tiles of less priority, of the same level or a finer one. The
+ * finest wanted tiles are evicted first, and among them the tiles of the least priority. Priorities
+ * do not change the number of slots or the global mip bias. If not even coarse levels fit, use
+ * finestLevel or mipBias.
  *
- * Waiting requests of the texture get their new places at once, behind those that are there.
+ * Waiting requests of the texture are reordered at once. They come behind waiting requests of equal
+ * order.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a priority out of range.
@@ -558,7 +560,7 @@ SLUICE_API SluiceResult sluiceSetUvTransform(SluiceStreamedTextureManager *manag
  * - If no texture is that idle, wanted tiles are evicted, finest first. They are listed for
  *   unmapping and STANDBY until then, and REQUESTED after that.
  *
- * Which wanted tile is evicted for a request:
+ * Wanted tiles that a request may evict:
  * - A tile that its texture's last map does not show: for a request of a coarser level, or of the
  *   same level if the request has waited for a whole round of maps.
  * - A tile that the last map shows: for a request at least three levels coarser; two if the request
@@ -653,7 +655,7 @@ SLUICE_API SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *man
 
 /**
  * Reports that CANCELED tiles were not loaded and never mapped. ALLOCATED tiles may be given back
- * in the same way; those that are wanted become REQUESTED again.
+ * in the same way; wanted ones become REQUESTED again.
  *
  * The slots are released once `retireValue` has completed. Pass 0 to release them at once. If a
  * bind or copy was already recorded, pass the value of its frame.
@@ -762,12 +764,13 @@ SLUICE_API SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager
                                               size_t size, uint8_t *pMinMip);
 
 /**
- * Writes which level is requested where: minMipHeight rows of minMipWidth bytes, `rowPitch` bytes
- * apart, as sluiceWriteMinMipData writes what is resident.
+ * Writes the requested levels of a texture: minMipHeight rows of minMipWidth bytes, `rowPitch`
+ * bytes apart. sluiceWriteMinMipData writes the resident levels in the same layout.
  *
- * A texel is the finest level that the maps which still count request of the tile of level 0,
- * with the global mip bias that was added when the last map came. SLUICE_MIP_UNTOUCHED: none. Where
- * it is below the texel of the MinMip map, finer tiles are missing.
+ * A texel stands for a tile of level 0. It is the finest level that unexpired maps request there,
+ * made coarser by the global mip bias at the time of the last map. SLUICE_MIP_UNTOUCHED: no map
+ * requests anything there. If a texel is below the texel of the MinMip map, finer tiles are
+ * missing.
  *
  * Errors: as sluiceWriteMinMipData.
  */

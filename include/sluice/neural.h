@@ -127,7 +127,7 @@ typedef struct SluiceNeuralSetInfo {
 } SluiceNeuralSetInfo;
 
 /**
- * Gets what a set contains.
+ * Gets the properties of a set.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize.
  * Thread safety: may run beside calls that take a const set.
@@ -330,7 +330,7 @@ SLUICE_API SluiceResult sluiceGetNeuralWeights(const SluiceNeuralSet *set,
                                                const SluiceNeuralOutput *pOutputs, uint64_t *pSize,
                                                void *pBytes);
 
-/** Texels to decode: a rectangle of mip `firstMip`, and what lies over it in coarser mips. All
+/** Texels to decode: a rectangle of mip `firstMip`, and the texels over it in coarser mips. All
  *  zeros: the whole set. Never grows. */
 typedef struct SluiceNeuralRequest {
     uint32_t firstMip;      ///< Finest mip.
@@ -448,7 +448,7 @@ typedef struct SluiceNeuralMaskInfo {
     uint32_t maskChannels;     ///< Bit c: channel c is a mask, and clamped.
     uint32_t clampedChannels;  ///< Bit c: decoded values of channel c are clamped to 0..1.
     const float *pLossWeights; ///< Of squared errors, one per channel. NULL: 1.
-    /** Per mip of the constants [height][width][channelCount] floats: what texels should be. */
+    /** Target values: per mip of the constants [height][width][channelCount] floats. */
     const float *const *ppMips;
     uint64_t maxWrongCount; ///< Nothing is changed if more texels are wrong. Default: no limit.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
@@ -459,8 +459,8 @@ typedef struct SluiceNeuralMaskInfo {
 typedef struct SluiceNeuralMaskReport {
     uint32_t structSize;  ///< sizeof(SluiceNeuralMaskReport).
     uint64_t texelCount;  ///< Texels of which a mask should be exactly 0 or 1.
-    uint64_t wrongBefore; ///< Of these, texels that decoded to something else, clamped to 0..1.
-    uint64_t wrongAfter;  ///< The same after the repair. Usually 0.
+    uint64_t wrongBefore; ///< Wrong texels before: they decoded to another value, clamped to 0..1.
+    uint64_t wrongAfter;  ///< Wrong texels after the repair. Usually 0.
 } SluiceNeuralMaskReport;
 
 /**
@@ -512,7 +512,7 @@ typedef struct SluiceNeuralWriteInfo {
     uint32_t lowFeatures;  ///< Schema 1.
     uint32_t lowBits;      ///< Schema 1.
     uint32_t gridScale;    ///< Texels of mip 0 per texel of the finest grid. 1 to 6.
-    /** At most 8, in schema 3 an even number. Default: those with more than one texel. */
+    /** At most 8, in schema 3 even. Default: all latent images with more than one texel. */
     uint32_t latentImageCount;
     /** All codes, a byte each: grid after grid, each [y][x][feature]. Grids have the order of the
      *  slices of sluicePlanNeuralFile. Required without pLatents. */
@@ -529,7 +529,7 @@ typedef struct SluiceNeuralWriteInfo {
  * Gets the constants and the latent layout of a file before it is written, as compressors need
  * them. Latents, weights and the target of `pInfo` are not used.
  *
- * Slices are those of whole grids, also of those that no mip uses. `*pLatentSize` is the number of
+ * Slices are whole grids, including grids that no mip uses. `*pLatentSize` is the number of
  * bytes of SluiceNeuralWriteInfo::pLatents. Mips use latents by the rules of the format's own
  * compressors.
  *

@@ -57,9 +57,10 @@ typedef struct SluiceNeuralPathFeatures {
 } SluiceNeuralPathFeatures;
 
 /**
- * Says what to enable for paths: clear those of `pPaths` that you do not use. Sets features in
- * `*pVulkan12` (shaderFloat16, shaderInt8, vulkanMemoryModel) and keeps those that are set. Chain
- * `pFeatures->pNext` into VkDeviceCreateInfo, and name the extensions.
+ * Gets the features and extensions to enable for paths. Clear paths in `pPaths` that you do not use
+ * first. Sets features in `*pVulkan12` (shaderFloat16, shaderInt8, vulkanMemoryModel); features
+ * that are already set are kept. Chain `pFeatures->pNext` into VkDeviceCreateInfo, and name the
+ * extensions.
  *
  * `pNext` may be NULL.
  *

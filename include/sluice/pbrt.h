@@ -30,9 +30,9 @@ typedef struct SluicePbrtSceneCreateInfo {
     uint32_t structSize;                         ///< sizeof(SluicePbrtSceneCreateInfo).
     const char *pPath;                           ///< Required. The scene file. Copied.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
-    /** Messages "FILE:LINE:COLUMN: TEXT". Warnings say what is approximated or ignored. Errors say
-     *  what is left out. At most 1000 while the scene is opened, and one for each later call that
-     *  fails. */
+    /** Messages "FILE:LINE:COLUMN: TEXT". Warnings name approximated or ignored input, errors name
+     *  input that is left out. At most 1000 messages while the scene is opened, and one for each
+     *  later call that fails. */
     SluiceLogCallback log;
     /** File that sluiceWritePbrtBounds has written. It is read if it exists; entries of files that
      *  have changed since are not used. Default: NULL, none. */
@@ -87,8 +87,8 @@ typedef struct SluicePbrtSceneInfo {
     uint32_t materialCount;
     uint32_t textureCount;
     uint32_t lightCount;
-    uint32_t warningCount; ///< Also those that the log did not get.
-    uint32_t errorCount;   ///< Also those that the log did not get.
+    uint32_t warningCount; ///< Warnings, including those that were not logged.
+    uint32_t errorCount;   ///< Errors, including those that were not logged.
     uint64_t textSize;     ///< Bytes of text that were read. A file counts each time.
     uint32_t filmWidth;    ///< Pixels. Default: 1280.
     uint32_t filmHeight;   ///< Pixels. Default: 720.

@@ -19,7 +19,7 @@
  * used next. An index is used again only when all launches that could name the removed proxy are
  * processed (sluiceAddProxyRequests). So applications may keep arrays by index.
  *
- * The same calls give the same ids, requests and orders on every machine.
+ * Equal calls give equal ids, requests and orders on every machine.
  *
  * Thread safety, unless a function says otherwise: external on the set.
  */
@@ -174,9 +174,9 @@ typedef struct SluiceProxyRequests {
  * Adds the requests of launches. sluiceProcessDemandProxies calls it; call it yourself only if your
  * shaders report in a way of their own.
  *
- * Live proxies become requested. All other indices are ignored. Removed proxies are noted to be in
- * use until begunLaunch is processed, and indices of those that were in use up to processedLaunch
- * become free. Call it also without requests: otherwise no index is used again.
+ * Live proxies become requested. All other indices are ignored. Indices of removed proxies stay in
+ * use until the launch that was begunLaunch at the first call after the removal is processed. Call
+ * it without requests, too: otherwise no index is used again.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if
  *         processedLaunch is above begunLaunch.
@@ -203,8 +203,8 @@ typedef struct SluiceProxyListInfo {
  * or its request is cleared.
  *
  * Set `*pCount` to the capacity of `pProxyIds`. The call sets it to the number of ids written.
- * Returns SLUICE_INCOMPLETE if there are more; those written are the first in order. The number of
- * all is requestedCount of SluiceProxySetInfo. `pInfo` may be NULL: SLUICE_PROXY_ORDER_INDEX.
+ * Returns SLUICE_INCOMPLETE if more proxies are requested; the ids written are the first in order.
+ * SluiceProxySetInfo.requestedCount counts all. `pInfo` may be NULL: SLUICE_PROXY_ORDER_INDEX.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for an
  * order that is unknown or needs boxes that the set does not have, or a point that is not finite.
@@ -232,7 +232,7 @@ typedef struct SluiceProxyRange {
 typedef struct SluiceProxyBoxWrite {
     uint32_t structSize;       ///< sizeof(SluiceProxyBoxWrite).
     uint32_t capacity;         ///< Boxes of pBoxes. At least indexCount.
-    SluiceProxyBox *pBoxes;    ///< Box i is that of index i. May be mapped memory; it is not read.
+    SluiceProxyBox *pBoxes;    ///< By index of proxy. May be mapped memory: it is only written.
     uint32_t rangeCapacity;    ///< Elements of pRanges. At least 1.
     SluiceProxyRange *pRanges; ///< Receives the runs that were written, ascending.
 } SluiceProxyBoxWrite;

@@ -70,8 +70,8 @@ typedef struct SluiceVulkanStreamerDebugInfo {
      */
     bool mapEverything;
     /**
-     * Reads back whole feedback maps rather than what changed in them. Decisions are the same.
-     * Shows what reading back changes saves.
+     * Reads back whole feedback maps instead of their changes. Decisions are the same. For
+     * measuring how much the readback of changes saves.
      */
     bool wholeFeedbackMaps;
     /**
@@ -277,7 +277,7 @@ typedef struct SluiceVulkanStreamerSettings {
     uint32_t framesPerRound; ///< 0: texturesPerFrame alone says how many maps are read back.
     /**
      * Requested tiles wait, mip tails of new textures too: frames start no load until the setting
-     * is false again, except those that sluiceStepVulkanLoads asks for. Tiles whose loads have
+     * is false again, except by sluiceStepVulkanLoads. Tiles whose loads have
      * started still become resident. Restoring a tile from standby counts as a load. For debugging
      * tools: waits for requests ask for frames without end meanwhile.
      */
@@ -289,7 +289,7 @@ typedef struct SluiceVulkanStreamerSettings {
 } SluiceVulkanStreamerSettings;
 
 /**
- * Gets the settings in use, or those last set. Set structSize first.
+ * Gets the settings that were last set, or else the initial ones. Set structSize first.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize.
  */
@@ -298,7 +298,7 @@ SLUICE_API SluiceResult sluiceGetVulkanStreamerSettings(const SluiceVulkanStream
 
 /**
  * Changes all settings. Get them, change fields, and set them. They take effect when the next frame
- * begins; the frame that is being recorded keeps its own. Recordings of the manager hold what
+ * begins; the frame that is being recorded keeps its own. Recordings of the manager hold the
  * changes of its configuration.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a value
@@ -580,8 +580,8 @@ typedef struct SluiceVulkanStreamerStatistics {
      *  (vulkan_control.h). */
     uint64_t tilesReloaded;
     uint64_t uploadQueueCopies; ///< Tiles, and parts of mip tails, copied on uploadQueue.
-    /** Tiles whose source had no texels yet (SLUICE_NOT_READY), again and again. They are asked for
-     *  later like failed ones, but count in tilesFailed only if a producer said so. */
+    /** Tiles whose source had no texels yet (SLUICE_NOT_READY) after repeated reads. They are
+     *  retried later like failed tiles, but count in tilesFailed only if a producer said so. */
     uint64_t tilesNotReady;
 } SluiceVulkanStreamerStatistics;
 

@@ -229,9 +229,9 @@ typedef struct SluiceVulkanContextCreateInfo {
      * VK_QUEUE_TRANSFER_BIT alone. The library submits to it. Drawing does not wait for copies:
      * a tile is shown by the first frame that begins when its copy is complete.
      *
-     * Frames still copy what is in their way at once: the first levels of new textures, texels that
-     * changed (vulkan_control.h), tiles of producers, and what the granularity of the family
-     * (minImageTransferGranularity) forbids. Demand loaders do not use the queue.
+     * Frames still copy some texels themselves: the first levels of new textures, texels that
+     * changed (vulkan_control.h), tiles of producers, and rectangles that the granularity of the
+     * family (minImageTransferGranularity) forbids. Demand loaders do not use the queue.
      *
      * Images and buffers have VK_SHARING_MODE_CONCURRENT if the family is not queueFamilyIndex.
      * Default: none, frames copy everything.
@@ -293,7 +293,8 @@ SLUICE_API void sluiceDestroyVulkanContext(SluiceVulkanContext *context);
  * one heap of each streamer in sparse mode and up to as many pages in paged mode, pages that two
  * front ends share, page images with the tail of a texture of a demand loader. Front ends that
  * begin no frames or launches free nothing. A streamer logs one warning when more is in use than
- * the budget and nothing was freed for many frames: how many bytes are too many, and what has them.
+ * the budget and nothing was freed for many frames. The warning names the bytes beyond the budget
+ * and their users.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, below
  *         4 MiB.

@@ -41,10 +41,11 @@ typedef struct SluiceVulkanTextureState {
 } SluiceVulkanTextureState;
 
 /**
- * Gets what shaders see of a texture, or of a rectangle of it, in the last frame begun.
+ * Gets the levels of a texture, or of a rectangle of it, that shaders can sample in the last frame
+ * begun.
  *
- * Whole tiles of level 0 count. Takes time in proportion to their number. `pRect` NULL: the whole
- * texture.
+ * A rectangle counts as the tiles of level 0 that it touches. Takes time in proportion to their
+ * number. `pRect` NULL: the whole texture.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the rectangle leaves the texture or
@@ -75,10 +76,10 @@ typedef struct SluiceVulkanTextureRequest {
 /**
  * Requests tiles of a texture, as if every frame sampled the rectangle at `level`.
  *
- * The next frame begun starts to load what is not resident. Requests count beside feedback: the
- * finer of both counts in each region. Like feedback, they are made coarser while more is wanted
- * than memory holds, and they expire feedbackTimeoutTicks after they are over. Textures that follow
- * this one load what it requests. Recordings hold requests as part of feedback maps.
+ * The next frame begun starts to load the tiles that are not resident. In each region the finer of
+ * feedback and requests counts. Like feedback, requests are made coarser while more tiles are
+ * wanted than memory holds, and they expire feedbackTimeoutTicks after they are over. Followers of
+ * the texture load the requested levels, too. Recordings hold requests as part of feedback maps.
  *
  * `pRequestId` may be NULL if you do not want to withdraw the request or see its progress.
  *
@@ -136,7 +137,7 @@ typedef enum SluiceVulkanWaitStatus {
 } SluiceVulkanWaitStatus;
 
 /**
- * Waits for a request, at most `timeoutNanoseconds`: for loading screens. 0: only says how it is.
+ * Waits for a request, at most `timeoutNanoseconds`: for loading screens. 0: returns its status.
  *
  * Frames give requests to the manager, take what was read, bind and copy it. So this function
  * returns SLUICE_VULKAN_WAIT_FRAME at once when a frame has something to do, and sleeps only while
@@ -168,13 +169,13 @@ typedef struct SluiceVulkanTextureControl {
      * view again: its first map then restores what is still resident.
      */
     bool hidden;
-    /** As sluiceSetTexturePriority (manager.h): who gets the level that does not fit for all.
-     *  -SLUICE_MAX_PRIORITY to SLUICE_MAX_PRIORITY. */
+    /** Order among textures if memory is too small for a level of all: highest first. See
+     *  sluiceSetTexturePriority (manager.h). -SLUICE_MAX_PRIORITY to SLUICE_MAX_PRIORITY. */
     int32_t priority;
 } SluiceVulkanTextureControl;
 
 /**
- * Gets what was set last. Set structSize first.
+ * Gets the control of a texture as it was last set. Set structSize first.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the texture follows another one, or
@@ -185,9 +186,8 @@ SLUICE_API SluiceResult sluiceGetVulkanTextureControl(const SluiceVulkanStreamer
                                                       SluiceVulkanTextureControl *pControl);
 
 /**
- * Sets what the application decides about a texture. Takes effect when the next frame begins. Tiles
- * that are too fine for new limits become standby tiles at once. Recordings hold the effect as
- * feedback maps and evictions.
+ * Sets the control of a texture. Takes effect when the next frame begins. Tiles finer than a new
+ * limit become standby tiles at once. Recordings hold the effect as feedback maps and evictions.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a mipBias out of range, if the
@@ -199,9 +199,9 @@ SLUICE_API SluiceResult sluiceSetVulkanTextureControl(SluiceVulkanStreamer *stre
                                                       const SluiceVulkanTextureControl *pControl);
 
 /**
- * Evicts tiles of a texture, and of those that follow it: drops what feedback requested, and
- * evicts standby tiles until at most `keepTileCount` are left of each texture, finer levels first.
- * The next frame unmaps them. UINT32_MAX: keep all as standby tiles.
+ * Evicts tiles of a texture and of its followers: drops the requests of feedback, and evicts
+ * standby tiles until at most `keepTileCount` are left of each texture, finer levels first. The
+ * next frame unmaps them. UINT32_MAX: keep all as standby tiles.
  *
  * Packed levels stay, unless packedLevelsOnDemand is set. If the texture is still in view, or
  * requests of the application count, its tiles are loaded again.
@@ -216,8 +216,7 @@ SLUICE_API SluiceResult sluiceEvictVulkanTexture(SluiceVulkanStreamer *streamer,
  * SLUICE_NO_TEXTURE: its own feedback counts from now on. Does nothing if it is its primary.
  *
  * A texture that begins to follow another one loses its requests and its control. Neither it nor
- * its primary is forgotten from then on (forgetTextures). What earlier maps requested expires as
- * usual.
+ * its primary is forgotten from then on (forgetTextures). Requests of earlier maps expire as usual.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the primary is the texture itself

@@ -54,7 +54,7 @@ typedef struct SluiceProxyGeometry {
 } SluiceProxyGeometry;
 
 /**
- * Gets what vkCmdBuildAccelerationStructuresKHR needs: AABBs with a stride of 24 bytes at
+ * Gets the geometry for vkCmdBuildAccelerationStructuresKHR: AABBs with a stride of 24 bytes at
  * `address`, where sluiceWriteProxyBoxes has written them, one for each index below indexCount.
  * gl_PrimitiveID is then the index of the proxy. The flag
  * VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR is set, VK_GEOMETRY_OPAQUE_BIT_KHR is not.

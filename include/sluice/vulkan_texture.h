@@ -162,7 +162,8 @@ typedef struct SluiceVulkanTextureCreateInfo {
      * Default: AUTO.
      */
     SluiceResidencyMode residencyMode;
-    /** As sluiceSetVulkanUvTransform (vulkan_control.h). Copied. Default: none. */
+    /** Transform of uv, as in sluiceSetVulkanUvTransform (vulkan_control.h). Copied. Default: none.
+     */
     const SluiceUvTransform *pUvTransform;
     /**
      * The image has VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT: you may make views of other formats of
