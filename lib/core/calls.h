@@ -35,9 +35,9 @@ enum slc_call_kind {
 };
 
 /**
- * Inputs as the caller gave them and outputs as he got them. Only the fields that the kind has are
- * set; pointers are valid during the notification. A call refused for a NULL pointer or an unknown
- * texture is reported too: its pointers may be NULL.
+ * Inputs and outputs of a call. Only the fields of its kind are set. Pointers are valid during the
+ * notification. A call refused for a NULL pointer or an unknown texture is reported, too: its
+ * pointers may be NULL.
  */
 struct slc_call {
     enum slc_call_kind kind;
@@ -46,7 +46,7 @@ struct slc_call {
     SluiceTextureId primary_id; ///< MATCH_PRIMARY, SET_PRIMARY
     uint64_t time_stamp;        ///< UPDATE_FEEDBACK, MATCH_PRIMARY, REPORT_FAILED
     uint64_t timeout;           ///< UPDATE_FEEDBACK, MATCH_PRIMARY
-    uint64_t retire_value;      ///< where the call takes one
+    uint64_t retire_value;      ///< calls with a retire value
     const SluiceStreamedTextureManagerConfig *config; ///< SET_CONFIG
     const SluiceStreamedTextureDesc *desc;            ///< ADD_TEXTURE
     const SluiceFeedbackDesc *feedback;               ///< UPDATE_FEEDBACK
@@ -54,8 +54,8 @@ struct slc_call {
     int32_t priority;                                 ///< SET_PRIORITY
     uint32_t keep_count; ///< TRIM_STANDBY, EVICT_TEXTURE; EVACUATE_HEAPS: the most tiles
     uint32_t heap_id;    ///< RELEASE_HEAP, HEAP_ANSWER
-    uint32_t room;       ///< of the list calls: *pCount on entry
-    bool query;          ///< of the list calls: the array was NULL
+    uint32_t room;       ///< list calls: *pCount on entry
+    bool query;          ///< list calls: the array was NULL
     uint32_t count;      ///< list calls: *pCount on return; answers: number of tile_indices
     const uint32_t *tile_indices;  ///< UPDATE_MAPPING, REPORT_FAILED, REPORT_CANCELED
     const SluiceTile *tiles;       ///< out: GET_TILES_TO_*, GET_GIVEN_UP

@@ -1,30 +1,30 @@
-/** What enters and leaves the core, call by call, for a recorder to write down. */
+/** Observer of a manager's calls, for recorders: inputs and outputs, call by call. */
 #ifndef SLC_CORE_OBSERVER_H
 #define SLC_CORE_OBSERVER_H
 
 #include "core/calls.h"
 
-/** A zeroed observer switches off. One at a time. */
+/** Sets the only observer. A zeroed observer: none. */
 void slc_manager_set_observer(SluiceStreamedTextureManager *manager, struct slc_observer observer);
 
 /** Tells the observer, if there is one. */
 void slc_notify(SluiceStreamedTextureManager *manager, const struct slc_call *call);
 
-/** Whether a changing call but sluiceSetConfig was made. */
+/** Whether a changing call other than sluiceSetConfig was made. */
 bool slc_manager_is_used(const SluiceStreamedTextureManager *manager);
 
-/** Whether an observer is there. */
+/** Whether the manager has an observer. */
 bool slc_manager_is_observed(const SluiceStreamedTextureManager *manager);
 
-/** Read only; what the player needs to make an equal manager. */
+/** Returns the create-info, with which a player makes an equal manager. */
 const SluiceStreamedTextureManagerCreateInfo *
 slc_manager_create_info(const SluiceStreamedTextureManager *manager);
 
-/** What sluiceSetConfig was given last; all 0 before. */
+/** Returns the configuration that sluiceSetConfig was given last; all 0 before. */
 const SluiceStreamedTextureManagerConfig *
 slc_manager_config(const SluiceStreamedTextureManager *manager);
 
-/** Sets a configuration that a snapshot has. Tells nobody. */
+/** Sets the configuration of a snapshot. Does not notify the observer. */
 void slc_manager_take_config(SluiceStreamedTextureManager *manager,
                              const SluiceStreamedTextureManagerConfig *config);
 

@@ -5,8 +5,8 @@
 #include <stdint.h>
 
 struct slc_grid {
-    uint32_t width, height;           ///< of the whole, in units of its own
-    uint32_t cell_width, cell_height; ///< the cells of the last column and row may be cut off
+    uint32_t width, height;           ///< size of the whole grid, in any unit
+    uint32_t cell_width, cell_height; ///< cell size; the last column and row may be cut off
     uint32_t columns, rows;
 };
 

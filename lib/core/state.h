@@ -1,5 +1,5 @@
-/** The state of a manager. Each file of the core works on a part; docs/manager-specification.md has
- * the rules. */
+/** State of a manager. Each file of the core works on a part of it. docs/manager-specification.md
+ * has the rules. */
 #ifndef SLC_CORE_STATE_H
 #define SLC_CORE_STATE_H
 
@@ -24,122 +24,122 @@ struct slc_level {
 
 #define SLC_MAX_SPANS 6
 
-/** Maps that count as one: the least level that any of them asked for. See history.c. */
+/** Consecutive maps merged into one: the finest level that any of them requested. See history.c. */
 struct slc_span {
-    uint64_t begin, end; ///< times of the first and of the last map
-    uint32_t weight;     ///< in maps
-    uint8_t below;       ///< only levels below this are still in the map
-    bool empty;          ///< nothing is left of it, as far as was looked
+    uint64_t begin, end; ///< times of the first and of the last map of the span
+    uint32_t weight;     ///< number of maps
+    uint8_t below;       ///< levels from this one on were removed from `map`
+    bool empty;          ///< `map` requests nothing, as found by the last removal of levels
     uint8_t *map;        ///< [padded regions], owned; stays for reuse when the span is dropped
 };
 
 /**
- * What the maps of a texture asked for. One allocation, but for the spans' maps. Textures of a set
- * that have the same shape and have always got the same maps have one together.
+ * Requests of a texture's maps. One allocation, except for the maps of spans. Textures of a set
+ * share a history if they have equal shapes and have always got the same maps.
  */
 struct slc_history {
-    uint32_t users;                       ///< textures
+    uint32_t users;                       ///< textures that share the history
     struct slc_span spans[SLC_MAX_SPANS]; ///< [0, span_count) live, oldest first
     uint32_t span_count;
-    uint32_t bias;       ///< of the manager when `under` was computed
-    uint32_t absence;    ///< misses that the last maps stand for, as none saw anything
-    uint8_t asked_least; ///< of `asked`
-    uint8_t *under; ///< [regular tiles + a block]: the least level held in a region under the tile
-    uint8_t *asked; ///< [padded regions]: what the last map asked for (a, not w)
-    uint8_t *known; ///< [padded regions]: the least of many maps, lapsed ones too; for learning
-    uint8_t *least; ///< [padded regions]: the least over all spans
+    uint32_t bias;       ///< global mip bias that `under` was computed with
+    uint32_t absence;    ///< misses that the last consecutive empty maps count as
+    uint8_t asked_least; ///< finest level in `asked`
+    uint8_t *under; ///< [regular tiles + a block]: finest requested level under each tile, biased
+    uint8_t *asked; ///< [padded regions]: requests of the last map (a in the specification, not w)
+    uint8_t *known; ///< [padded regions]: finest level of many maps, expired ones too; for learning
+    uint8_t *least; ///< [padded regions]: finest level of all spans
     bool has_same_hits;
-    uint32_t same_hits; ///< of a map like the last one, if they were counted
+    uint32_t same_hits; ///< hits of a map equal to `asked`; valid if has_same_hits
     /* The map being merged: */
-    const uint8_t *next;    ///< in the manager's scratch, NULL: as `asked`
-    uint32_t hits, returns; ///< what slc_texture's will grow by
+    const uint8_t *next;    ///< in the manager's scratch; NULL: equal to `asked`
+    uint32_t hits, returns; ///< added to the texture's hits and returns by the merge
 };
 
 /** Blocks of one size class for the arrays of textures. */
 struct slc_spares {
-    void *first;   ///< free ones, in each of which the next one stands
-    void *chunks;  ///< owned memory of all
-    uint32_t used; ///< that textures have
+    void *first;   ///< free blocks; each begins with the pointer to the next one
+    void *chunks;  ///< owned memory of all blocks
+    uint32_t used; ///< blocks that textures have
 };
 
-/** What textures of one description have in common; counted references. See shape.c. */
+/** Data shared by textures of one description; reference-counted. See shape.c. */
 struct slc_shape {
     uint32_t users;
     uint32_t hash;
-    struct slc_shape *next, **link; ///< in its bucket; `link` is what points to it
+    struct slc_shape *next, **link; ///< list of the bucket; `link` points to the pointer to this
     SluiceStreamedTextureDesc desc;
     uint32_t regular_tile_count, tile_count;
     uint32_t feedback_width, feedback_height, region_count;
     uint32_t min_mip_width, min_mip_height;
-    uint8_t region_shift_x, region_shift_y; ///< regions per tile, log2; SLC_UNALIGNED
-    size_t work_size;                       ///< see wants.h
+    uint8_t region_shift_x, region_shift_y; ///< log2 of regions per tile, or SLC_UNALIGNED
+    size_t work_size;                       ///< bytes of scratch of a commit, see wants.h
     struct slc_level levels[SLUICE_MAX_MIP_LEVELS];
 };
 
-/** What is done about the GIVEN_UP tiles of a texture. See given_up.c. */
+/** State of the retries of a texture's GIVEN_UP tiles. See given_up_retry.c. */
 enum slc_trouble {
     SLC_TROUBLE_NONE = 0,
-    SLC_TROUBLE_RESTING, ///< until the interval is over
-    SLC_TROUBLE_DUE,     ///< to be probed as soon as fewer others are
-    SLC_TROUBLE_PROBED,  ///< some of its tiles are being tried
+    SLC_TROUBLE_RESTING, ///< waits for the end of the interval
+    SLC_TROUBLE_DUE,     ///< waits until fewer textures are probed
+    SLC_TROUBLE_PROBED,  ///< some of its tiles are requested again
     SLC_TROUBLE_COUNT
 };
 
-/** Indices; unspecified while it is empty. */
+/** List of textures. */
 struct slc_texture_list {
-    uint32_t first, last, count;
+    uint32_t first, last, count; ///< first, last: indices; unspecified while count is 0
 };
 
 struct slc_managed_texture {
-    /* What every answer and every map touches comes first: it is one cache line. */
-    uint32_t *nodes;  ///< [regular tiles]: node index, 0: FREE; owned, NULL until sampled. Behind
-                      ///< them: tiles resident, then wanted, by regular level
-    uint8_t *min_mip; ///< [minMipHeight][minMipWidth], behind these
+    /* Fields that every answer and every map touches come first, in one cache line. */
+    uint32_t *nodes;  ///< [regular tiles]: node index, 0: FREE; owned, NULL until sampled. Followed
+                      ///< by counts of resident, then of wanted tiles per regular level
+    uint8_t *min_mip; ///< [minMipHeight][minMipWidth], in the same allocation behind the counts
     struct slc_history *history; ///< may be shared; NULL: empty
     struct slc_shape *shape;
     uint32_t generation;
     uint32_t index;
     bool live;
-    bool has_map;             ///< a map was merged; without a history it was empty
+    bool has_map;             ///< a map was merged; it was empty if there is no history
     bool dirty;               ///< in the manager's list of MinMip updates
-    bool visited;             ///< in the list of those that hold something
+    bool visited;             ///< in the manager's list of textures with requests
     uint32_t packed_resident; ///< packed tiles MAPPED or STANDBY
     uint32_t regular_nodes;   ///< nodes of regular tiles
     uint32_t requested_count;
-    uint32_t held_regions;   ///< that hold anything
-    uint32_t wanted_tiles;   ///< regular ones
-    uint32_t first_follower; ///< index, SLC_NONE, as those below
+    uint32_t held_regions;   ///< regions with a request
+    uint32_t wanted_tiles;   ///< regular tiles
+    uint32_t first_follower; ///< index or SLC_NONE, like next_follower and last_follower
 
-    /* What every map touches */
+    /* Fields that every map touches */
     uint32_t visit_prev, visit_next;
-    uint32_t hits, returns;     ///< how reliable maps are; see history.c
-    uint32_t bias_epoch;        ///< of the global bias that the last map was merged with
-    uint32_t next_follower;     ///< index, SLC_NONE
-    uint32_t failed_total;      ///< fills what would be padding, as unmapped_total below
-    uint64_t map_time;          ///< of the last map
-    uint64_t interval, timeout; ///< between the last two maps; of the last one
-    uint32_t *packed_nodes;     ///< owned, [packedTileCount], NULL if there are none
+    uint32_t hits, returns;     ///< reliability of maps; see history.c
+    uint32_t bias_epoch;        ///< bias.epoch when the last map was merged
+    uint32_t next_follower;     ///< index or SLC_NONE
+    uint32_t failed_total;      ///< placed to fill padding, like unmapped_total below
+    uint64_t map_time;          ///< time of the last map
+    uint64_t interval, timeout; ///< interval between the last two maps; timeout of the last map
+    uint32_t *packed_nodes;     ///< owned, [packedTileCount]; NULL if there are none
 
-    /* What every answer touches */
+    /* Fields that every answer touches */
     uint32_t given_up_first; ///< node; 0: none
-    uint32_t resident_tiles; ///< regular ones, MAPPED or STANDBY
-    uint32_t hidden_tiles;   ///< of these: some coarser tile over it is not resident
+    uint32_t resident_tiles; ///< regular tiles that are MAPPED or STANDBY
+    uint32_t hidden_tiles;   ///< resident_tiles under a coarser tile that is not resident
     uint32_t dirty_x0, dirty_y0, dirty_x1, dirty_y1; ///< exclusive ends
     uint32_t dirty_prev, dirty_next;
 
-    uint32_t last_follower, prev_follower, primary;   ///< indices, SLC_NONE
+    uint32_t last_follower, prev_follower, primary;   ///< indices or SLC_NONE
     uint32_t given_up_last;                           ///< node; 0: none
     uint32_t report_count, first_report, last_report; ///< numbers; see reports.c
     uint8_t trouble;                                  ///< enum slc_trouble
     bool retried_all;                                 ///< since the last probe
-    bool seen;                                        ///< some map asked for something
-    int8_t priority;                                  ///< its followers have it, too
-    uint32_t trouble_prev, trouble_next; ///< indices, SLC_NONE; in the list of its trouble
+    bool seen;                                        ///< some map requested something
+    int8_t priority;                                  ///< valid for the followers, too
+    uint32_t trouble_prev, trouble_next; ///< indices or SLC_NONE; links of the list `trouble`
     uint32_t unmapped_total;
-    uint64_t trouble_time; ///< when it entered that
+    uint64_t trouble_time; ///< time at which the texture entered the list `trouble`
 
-    uint64_t seen_time;          ///< of the last map that did
-    struct slc_uv_transform *uv; ///< owned; NULL: none, it is sampled where its primary is
+    uint64_t seen_time;          ///< time of the last map that requested something
+    struct slc_uv_transform *uv; ///< owned; NULL: the texture has the UVs of its primary
     uint32_t mapped_total;
 };
 
@@ -147,66 +147,66 @@ struct slc_managed_texture {
 #define SLC_SHAPE_BUCKETS 256
 #define SLC_SPARE_CLASSES 160 /* to 2^45 bytes */
 
-/** A tile that was given up and not asked for yet. See reports.c. */
+/** GIVEN_UP tile that sluiceGetGivenUpTiles has not listed yet. See reports.c. */
 struct slc_report {
-    SluiceTextureId texture_id; ///< SLUICE_NO_TEXTURE: removed since
+    SluiceTextureId texture_id; ///< SLUICE_NO_TEXTURE: the texture was removed
     uint32_t tile;
-    uint32_t next; ///< number of the texture's next one, if there is one
+    uint32_t next; ///< number of the texture's next report, if there is one
 };
 
 struct slc_reports {
     struct slc_report *list; ///< owned queue: [first, end)
     uint32_t first, end, room;
     uint32_t base;        ///< number of list[0]
-    uint32_t dropped;     ///< without a texture
-    struct slc_map tiles; ///< (texture, tile) of all others; room for `room`
+    uint32_t dropped;     ///< reports whose texture was removed
+    struct slc_map tiles; ///< (texture, tile) of all other reports; capacity `room`
 };
 
-/** See mip_bias.c. */
+/** Global mip bias. See mip_bias.c. */
 struct slc_global_bias {
     uint32_t value;  ///< sixteenths of a level
-    uint32_t maps;   ///< merged since it was looked at last
+    uint32_t maps;   ///< maps merged since the last round
     uint32_t epoch;  ///< changes so far
     uint32_t behind; ///< visited textures that got no map since the last change
-    uint32_t rounds; ///< looks since the last change
+    uint32_t rounds; ///< rounds since the last change
     bool raised;     ///< the last change was a raise
-    /* What did not fit: */
-    uint32_t floor;        ///< below this value too much was wanted; 0: nothing failed yet
-    uint64_t failed_limit; ///< for so many slots
-    uint64_t demand;       ///< tiles wanted once it had been raised; 0: not known yet
-    bool changed;          ///< since then some texture holds something else, not by the bias
-    uint32_t trials;       ///< values below the floor that failed again, one after the other
-    uint32_t waited;       ///< looks since the last raise
+    /* The last value that failed, because more tiles were wanted than slots exist: */
+    uint32_t floor;        ///< least value that has not failed; 0: no value failed yet
+    uint64_t failed_limit; ///< slot limit at the failure
+    uint64_t demand;       ///< tiles wanted after the raise; 0: not known yet
+    bool changed;          ///< some texture's requests changed since the failure, bias aside
+    uint32_t trials;       ///< consecutive trials of values below the floor that failed
+    uint32_t waited;       ///< rounds since the last raise
 };
 
-/** A round of maps of all textures. Sequences are those of requests. */
+/** Round of maps of all textures. `began` and `waited` are sequence numbers of requests. */
 struct slc_round {
-    uint32_t maps;   ///< merged in it
-    uint64_t began;  ///< the next sequence when it began
+    uint32_t maps;   ///< maps merged in the round
+    uint64_t began;  ///< next sequence number when the round began
     uint64_t waited; ///< requests before this one have waited for a whole round
     uint32_t count;
-    uint64_t began_long, waited_long; ///< the same, for some rounds
+    uint64_t began_long, waited_long; ///< as began and waited, for periods of several rounds
 };
 
-/** See tile_events.h. */
+/** State changes of tiles. See tile_events.h. */
 struct slc_tile_events {
-    SluiceTileEvent *ring;        ///< owned; `capacity`, NULL: none
-    uint64_t count;               ///< events so far, which wrote ring[count % capacity]
-    uint64_t first;               ///< number of the oldest one since the ring was made
-    uint64_t mark;                ///< of the application
-    uint32_t capacity;            ///< of the ring
-    SluiceTileEventReason reason; ///< of what changes from now on
+    SluiceTileEvent *ring;        ///< owned, [capacity]; NULL: none
+    uint64_t count;               ///< events so far; event n is ring[n % capacity]
+    uint64_t first;               ///< number of the first event since the ring was made
+    uint64_t mark;                ///< mark that the application set
+    uint32_t capacity;            ///< events that the ring holds
+    SluiceTileEventReason reason; ///< reason of changes from now on
 };
 
 struct SluiceStreamedTextureManager {
     SluiceStreamedTextureManagerCreateInfo info; ///< pAllocator points to `given` or is NULL
     SluiceAllocationCallbacks given;
-    SluiceAllocationCallbacks cb; ///< counts into host_memory_size, hands on to `given`
+    SluiceAllocationCallbacks cb; ///< counts into host_memory_size, then calls `given`
     uint64_t host_memory_size;
     SluiceStreamedTextureManagerConfig config;
     uint64_t config_count; ///< calls of sluiceSetConfig that succeeded
     struct slc_observer observer;
-    bool used; ///< a call was made that changed something
+    bool used; ///< some call other than sluiceSetConfig was made
 
     struct slc_shape *shapes[SLC_SHAPE_BUCKETS]; ///< by hash, owned lists
     struct slc_spares spares[SLC_SPARE_CLASSES]; ///< owned blocks
@@ -223,21 +223,21 @@ struct SluiceStreamedTextureManager {
 
     uint8_t *scratch; ///< owned, for the maps of one call
     size_t scratch_room;
-    uint32_t visit_first, visit_last; ///< textures that hold something, the oldest map first
+    uint32_t visit_first, visit_last; ///< textures with requests, the oldest map first
     uint32_t visited_count;
-    uint64_t map_interval; ///< of the texture that got a map last
+    uint64_t map_interval; ///< `interval` of the texture that got a map last
     struct slc_global_bias bias;
     struct slc_round round;
     bool starved;   ///< the last hand-out stopped for lack of slots
-    bool refused;   ///< the heap allocator's last answer
+    bool refused;   ///< the heap allocator refused the last heap
     bool cut_short; ///< host memory ran out while the call under way handed out tiles
 
     struct slc_reports reports;
 
-    struct slc_texture_list troubles[SLC_TROUBLE_COUNT]; ///< that of NONE is not kept
-    uint32_t trouble_count;                              ///< in all of them
+    struct slc_texture_list troubles[SLC_TROUBLE_COUNT]; ///< by trouble; the list NONE is unused
+    uint32_t trouble_count;                              ///< textures in all lists
 
-    uint32_t prefetch_level, prefetch_texture; ///< what to look at next; levels from the coarsest
+    uint32_t prefetch_level, prefetch_texture; ///< next level (0: the coarsest) and texture to try
 
     uint32_t dirty_first, dirty_last; ///< indices, SLC_NONE
     uint32_t dirty_count;
@@ -249,7 +249,7 @@ struct SluiceStreamedTextureManager {
     uint64_t moved_total, given_up_retried_total;
 };
 
-/** Calls that hand out or answer are refused: whoever created the manager makes them alone. */
+/** Whether the owner has locked the manager: calls that hand out or answer tiles are refused. */
 static inline bool slc_is_locked(const SluiceStreamedTextureManager *manager)
 {
     return manager->info.pLocked && *manager->info.pLocked;
@@ -272,7 +272,7 @@ static inline uint32_t slc_tile_index(const struct slc_managed_texture *t, struc
 {
     return t->shape->levels[p.level].first_tile + p.y * t->shape->levels[p.level].width + p.x;
 }
-/** The place of a tile whose level is known; regularMipCount for packed ones. */
+/** Returns the place of a tile. `level` is regularMipCount for packed tiles. */
 static inline struct slc_place slc_place_at(const struct slc_managed_texture *t, uint32_t tile,
                                             uint32_t level)
 {
@@ -292,17 +292,18 @@ struct slc_tile_range {
     uint32_t x0, y0, x1, y1; ///< inclusive
 };
 
-/** How many tiles of a regular level are resident. The texture has a state. */
+/** Returns the counter of resident tiles of a regular level. The texture must have a state. */
 static inline uint32_t *slc_resident_in_level(const struct slc_managed_texture *t, uint32_t level)
 {
     return &t->nodes[t->shape->regular_tile_count + level];
 }
-/** How many are wanted. */
+/** Returns the counter of wanted tiles of a regular level. The texture must have a state. */
 static inline uint32_t *slc_wanted_in_level(const struct slc_managed_texture *t, uint32_t level)
 {
     return slc_resident_in_level(t, t->shape->desc.regularMipCount + level);
 }
-/** Where a tile keeps its node; NULL for a regular one without a state. */
+/** Returns the cell that holds a tile's node; NULL for a regular tile of a texture without a state.
+ */
 static inline uint32_t *slc_node_cell(const struct slc_managed_texture *t, uint32_t tile)
 {
     if (tile >= t->shape->regular_tile_count)
