@@ -1,4 +1,4 @@
-/* What the application answers to tiles that were handed out. */
+/* Answers of the application to tiles that were handed out: mapped, failed, or canceled. */
 #include "base/alloc.h"
 #include "base/bits.h"
 #include "base/checked.h"
@@ -15,10 +15,10 @@
 #include "residency/node.h"
 #include "residency/nodes.h"
 
-/** Marks a node while an answer is checked, so that a tile that stands twice is seen. */
+/** Marks a node while an answer is checked, so that a tile listed twice is found. */
 #define NODE_SEEN 128
 
-/** Tiles in a call from which on it pays to fetch memory for all of them before the first one. */
+/** Least number of tiles in a call for which prefetching the memory of all pays off. */
 #define MANY 4
 
 static bool is_in_flight(const struct slc_node *n)
@@ -26,7 +26,7 @@ static bool is_in_flight(const struct slc_node *n)
     return n->state == SLUICE_TILE_STATE_ALLOCATED || n->state == SLUICE_TILE_STATE_CANCELED;
 }
 
-/** Marks a tile that was handed out, and was not marked before. */
+/** Marks a tile. Fails if it was not handed out, or is marked already. */
 static SluiceResult mark_tile(slc_manager *m, const struct slc_managed_texture *t, uint32_t tile)
 {
     if (tile >= t->shape->tile_count)
@@ -49,8 +49,8 @@ static void unmark_tiles(slc_manager *m, const struct slc_managed_texture *t, ui
 }
 
 /**
- * All tiles are handed out and stand in the list once, or nothing happens. Then they are marked,
- * which ends when their states change.
+ * Checks that all tiles were handed out and are listed once, and marks them. Marks end when the
+ * states change. After an error no tile is marked.
  */
 static SluiceResult check_tiles(slc_manager *m, const struct slc_managed_texture *t, uint32_t count,
                                 const uint32_t *tiles)
@@ -119,7 +119,7 @@ static void answer_failed(slc_manager *m, uint32_t node, uint64_t time)
     slc_reports_add(m, slc_texture_at(m, n->owner), n->tile);
 }
 
-/** The slot retires; a wanted tile gets a node of its own again, which the caller reserved. */
+/** Retires the slot. A wanted tile gets a new node, which the caller has reserved. */
 static void answer_canceled(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
     bool wanted = is_wanted(slc_node_at(&m->residency, node));

@@ -1,7 +1,7 @@
 /*
- * Which tiles are evicted when requests have no slots: first those on standby, then those of
- * textures that get no maps any more, then wanted ones that are worth less than the requests.
- * Evicted tiles are listed for unmapping; sluiceGetTilesToUnmap hands them out.
+ * Eviction order when requests have no slots: first STANDBY tiles, then tiles of textures that get
+ * no maps any more, then wanted tiles that are worth less than the requests. Evicted tiles are
+ * listed for unmapping; sluiceGetTilesToUnmap hands them out.
  */
 #include "core/eviction.h"
 
@@ -19,7 +19,7 @@ static bool is_idle(const slc_manager *m, const struct slc_managed_texture *t)
     uint64_t age = m->time - t->map_time, usual = m->map_interval;
     usual = t->interval > usual ? t->interval : usual;
     usual = t->timeout > usual ? t->timeout : usual;
-    return age > 0 && age / (t->interval ? 4 : 16) >= usual; /* it may be a slow one's first */
+    return age > 0 && age / (t->interval ? 4 : 16) >= usual; /* 16: no interval is known yet */
 }
 
 uint64_t slc_surplus_slots(const slc_manager *m)
@@ -48,14 +48,14 @@ bool slc_take_own_slot(slc_manager *m, uint32_t node)
     return slc_tile_heaps_take(heaps, node, &n->heap, &n->slot);
 }
 
-/** Tiles that one call looks at for one that is not seen any more. */
+/** Most tiles that one call examines to find unseen ones. */
 enum { MAX_LOOKED_FOR = 1024 };
 
-/** Where the search is: each tile is looked at once. */
+/** State of the search for victims. Each tile is examined once. */
 struct eviction {
-    uint32_t looks;
-    uint32_t compares;                    ///< of priorities
-    uint32_t left[SLUICE_MAX_MIP_LEVELS]; ///< of m->residency.mapped
+    uint32_t looks;                       ///< tiles that may still be examined
+    uint32_t compares;                    ///< priorities that may still be compared
+    uint32_t left[SLUICE_MAX_MIP_LEVELS]; ///< tiles of m->residency.mapped not examined yet
 };
 
 static struct eviction begin_eviction(const slc_manager *m)
@@ -67,8 +67,8 @@ static struct eviction begin_eviction(const slc_manager *m)
 }
 
 /**
- * A wanted tile of a level below `end` that the last map does not show; 0 if none is found. Tiles
- * that are seen go to the end of their list, so all get their turn.
+ * Finds a wanted tile of a level below `end` that the last map does not show; 0 if none is found.
+ * Tiles that the map shows go to the end of their list, so that later calls examine other ones.
  */
 static uint32_t unseen_mapped(slc_manager *m, struct eviction *d, uint32_t end)
 {
@@ -89,10 +89,10 @@ static int32_t priority_of(const slc_manager *m, uint32_t node)
     return slc_priority_of(m, slc_texture_at(m, slc_node_at(&m->residency, node)->owner));
 }
 
-/** Tiles at the head of a list among which the least priority is looked for. */
+/** Number of tiles at the head of a list that are compared by priority. */
 enum { MAX_COMPARED = 64 };
 
-/** Finds the first tile of the least priority among the first ones of a list. */
+/** Finds the first tile of the least priority among the first MAX_COMPARED tiles of a list. */
 static uint32_t least_of(const slc_manager *m, const struct slc_list *list)
 {
     uint32_t least = list->head, node = list->head;
@@ -104,7 +104,8 @@ static uint32_t least_of(const slc_manager *m, const struct slc_list *list)
     return least;
 }
 
-/** The finest wanted tile of a level below `end`, the first in its list; 0 if there is none. */
+/** Finds the finest wanted tile of a level below `end`, the first in its list; 0 if there is none.
+ */
 static uint32_t finest_mapped(const slc_manager *m, uint32_t end)
 {
     for (uint32_t l = 0; l < end && l < SLUICE_MAX_MIP_LEVELS; l++)
@@ -113,7 +114,8 @@ static uint32_t finest_mapped(const slc_manager *m, uint32_t end)
     return 0;
 }
 
-/** The finest wanted tile of less priority than the request and of no coarser level. */
+/** Finds the finest wanted tile of less priority than the request, and of its level or a finer one.
+ */
 static uint32_t minor_mapped(slc_manager *m, struct eviction *d, uint32_t request)
 {
     const struct slc_node *n = slc_node_at(&m->residency, request);
@@ -138,7 +140,7 @@ static void evict_wanted(slc_manager *m, struct eviction *d, uint32_t node)
     d->left[level] = slc_min_u32(d->left[level], m->residency.mapped[level].count);
 }
 
-/** A wanted tile that may make room for the request; 0 if there is none. */
+/** Finds a wanted tile to evict for the request; 0 if there is none. */
 static uint32_t victim_for(slc_manager *m, struct eviction *d, uint32_t request)
 {
     const struct slc_node *n = slc_node_at(&m->residency, request);
@@ -153,10 +155,10 @@ static uint32_t victim_for(slc_manager *m, struct eviction *d, uint32_t request)
 }
 
 /**
- * Wanted tiles make room for requests that are coarser: what came first would stay sharp else, and
- * what comes later would not be seen. It ends, because each exchange is for something coarser or
- * takes a tile that is not seen. A tile that is seen is not worth the upload for one or two levels
- * unless the request has waited for rounds of maps.
+ * Wanted tiles are evicted for coarser requests. Otherwise early textures would stay sharp, and
+ * later ones would never be loaded. The exchange ends: each one loads a coarser tile, or evicts a
+ * tile that the last map does not show. A tile that the map shows is evicted for a request one or
+ * two levels coarser only if the request has waited for rounds of maps: the upload costs more.
  */
 void slc_evict_wanted_for(slc_manager *m, struct slc_request_walk walk, uint32_t unserved)
 {
@@ -186,8 +188,8 @@ void slc_evict_wanted_for(slc_manager *m, struct slc_request_walk walk, uint32_t
 }
 
 /**
- * Makes room for `unserved` requests out of what is on standby or not looked at any more. Returns
- * whether a texture was dropped and requests with it.
+ * Makes room for `unserved` requests: evicts STANDBY tiles and drops the requests of idle textures.
+ * Returns whether a texture was dropped, which ends its requests.
  */
 bool slc_evict_unwanted_for(slc_manager *m, uint32_t unserved)
 {

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #define DEFAULT_TEXTURES_PER_FRAME 10
-#define PROBABILITY_STEPS 8388608.0 /* 2^23: what a shader draws from */
+#define PROBABILITY_STEPS 8388608.0 /* 2^23: random numbers that a shader can draw */
 #define CORNER_TURNS 4              /* frames in which each pixel marks each corner once */
 
 /* Products like 0.29 * 100 come out just below a whole number. */
@@ -34,7 +34,7 @@ static double frames_per_turn(const SluiceFeedbackRate *rate)
     return (double)rate->textureCount / textures_per_frame(rate);
 }
 
-/** The same if all are equally long, else 0. */
+/** Frames from one turn of a texture to its next, if all turns are equally long; else 0. */
 static uint32_t equal_turns(const SluiceFeedbackRate *rate)
 {
     uint32_t count = textures_per_frame(rate);
@@ -51,8 +51,8 @@ static SluiceResult check_rate(const SluiceFeedbackRate *rate, double probabilit
 }
 
 /**
- * Frames whose marks are in the maps of one timeout, the newest map always among them. The maps of
- * a timeout bring all of its frames where marks accumulate, in turns a frame each.
+ * Number of frames whose marks are in the maps of one timeout. The newest map always counts. If
+ * marks accumulate, the maps bring all frames of the timeout. In turns, each map brings one frame.
  */
 static double collected_frames(const SluiceFeedbackRate *rate)
 {
@@ -64,10 +64,10 @@ static double collected_frames(const SluiceFeedbackRate *rate)
 
 /* Draws ------------------------------------------------------------------------------------- */
 
-/** What marks a region where it lies worst. */
+/** Writers that can mark a region in its worst position. */
 struct writers {
-    double count;   ///< that draw in a frame
-    uint32_t turns; ///< of four consecutive frames, in which they do: 1, 2 or 4
+    double count;   ///< writers that draw in a frame
+    uint32_t turns; ///< frames of four consecutive ones in which they draw: 1, 2 or 4
 };
 
 static double half_up(uint32_t count)
@@ -77,9 +77,9 @@ static double half_up(uint32_t count)
 
 /**
  * Along an axis a region is touched by the upper corners of some pixels, by both corners of the
- * next ones and by the lower corners of the last ones; the corners of a quad's two pixels change
- * places every frame. However that lies, of 3 pixels and more (count - 1) / 2 quads or more mark in
- * every frame. Of 1 or 2 there may be one quad, and only in every other frame.
+ * next ones and by the lower corners of the last ones. The corners of a quad's two pixels change
+ * places every frame. Of 3 pixels or more, at least (count - 1) / 2 quads mark in every frame,
+ * whatever the position. Of 1 or 2 pixels, one quad may mark, in every other frame only.
  */
 static struct writers shared_writers(const SluiceFeedbackRate *rate)
 {
@@ -98,7 +98,7 @@ static struct writers find_writers(const SluiceFeedbackRate *rate)
     return (struct writers){(double)rate->regionWidth * rate->regionHeight, CORNER_TURNS};
 }
 
-/** Whether a texture's turns come to all four corners: else some are never marked. */
+/** Whether a texture's turns meet all four corners. Otherwise some corners are never marked. */
 static bool meets_all_corners(const SluiceFeedbackRate *rate, struct writers writers)
 {
     return writers.turns == CORNER_TURNS || !rate->inTurns || equal_turns(rate) % 2 == 1;
@@ -111,12 +111,12 @@ static double count_draws(const SluiceFeedbackRate *rate)
     double frames = collected_frames(rate);
     if (!meets_all_corners(rate, writers))
         return 0;
-    if (writers.turns < CORNER_TURNS) /* whole rounds alone are sure to have each turn */
+    if (writers.turns < CORNER_TURNS) /* only whole rounds are sure to contain each turn */
         frames = floor(frames / CORNER_TURNS) * writers.turns;
     return frames * writers.count;
 }
 
-/** (1 - p)^draws, also for tiny p and for draws without end. */
+/** (1 - p)^draws, also for tiny p and for infinitely many draws. */
 static double draws_miss(double draws, double probability)
 {
     if (draws == 0 || probability == 0)
@@ -153,7 +153,7 @@ SluiceResult sluicePredictFeedbackMiss(const SluiceFeedbackRate *pRate, double p
 
 /* Choosing ---------------------------------------------------------------------------------- */
 
-/** Nothing is allowed: only what always writes never misses, although doubles may not tell. */
+/** `allowed` 0: only probability 1 never misses, although rounding may say that less suffices. */
 static bool is_enough(double draws, double probability, double allowed)
 {
     return allowed > 0 ? draws_miss(draws, probability) <= allowed : probability == 1;
@@ -164,7 +164,7 @@ static double choose_probability(double draws, double allowed)
     if (isinf(draws))
         return 1 / PROBABILITY_STEPS;
     double steps = fmax(ceil(-expm1(log(allowed) / draws) * PROBABILITY_STEPS), 1);
-    /* that was rounded */
+    /* correct the rounding of `steps` */
     if (steps > 1 && is_enough(draws, (steps - 1) / PROBABILITY_STEPS, allowed))
         steps--;
     while (steps < PROBABILITY_STEPS && !is_enough(draws, steps / PROBABILITY_STEPS, allowed))
@@ -194,7 +194,7 @@ SluiceResult sluiceChooseFeedbackProbability(const SluiceFeedbackRate *pRate, do
 
 /* Delays ------------------------------------------------------------------------------------ */
 
-/** Frames that have to be collected until a share of `late` of all regions is left unmarked. */
+/** Number of frames to collect until only a share of `late` of all regions is unmarked. */
 static double frames_to_mark(const SluiceFeedbackRate *rate, double probability, double late)
 {
     struct writers writers = find_writers(rate);
@@ -205,7 +205,7 @@ static double frames_to_mark(const SluiceFeedbackRate *rate, double probability,
     return writers.turns == CORNER_TURNS ? frames : ceil(frames / writers.turns) * CORNER_TURNS;
 }
 
-/** Frames until so many are collected and the texture's turn comes, whenever it was last. */
+/** Most frames until `frames` frames are collected and the texture's turn comes. */
 static double frames_to_notice(const SluiceFeedbackRate *rate, double frames)
 {
     double turn = frames_per_turn(rate);

@@ -1,22 +1,22 @@
 /*
- * Tiles that were given up are tried again: a few per texture as a probe, all of them as soon as
- * one comes. See docs/manager-specification.md, "Loads that fail".
+ * GIVEN_UP tiles are tried again: a few per texture as a probe, all as soon as one of them loads.
+ * See docs/manager-specification.md, "Loads that fail".
  *
- * A texture that gave up tiles rests, becomes due, is probed, and rests again. Three lists of
- * textures keep these states, each in the order in which textures entered it. A texture whose tiles
- * are all gone from GIVEN_UP leaves when its turn to be probed comes.
+ * A texture with GIVEN_UP tiles rests, becomes due, is probed, and rests again. Each of these
+ * states has a list of textures, in the order in which they entered it. A texture without GIVEN_UP
+ * tiles leaves the lists when its turn to be probed comes.
  */
 #include "core/given_up_retry.h"
 
 #include "residency/node.h"
 
-#define PROBED_TEXTURES 16u /* at a time, whatever the number of those that are in trouble */
+#define PROBED_TEXTURES 16u /* most textures that are probed at a time */
 #define TILES_PER_PROBE 4u  /* more than one, because some may be damaged for good */
-#define DEFAULT_FACTOR 120u /* of retryDelayTicks */
-#define EARLY_PART 8u       /* of the delay, after which a load that succeeds counts as a sign */
+#define DEFAULT_FACTOR 120u /* default delay / retryDelayTicks */
+#define EARLY_PART 8u       /* delay / time after which a load that succeeds starts a probe */
 #define LONGEST (UINT64_C(1) << 62)
 
-/* 0: never. */
+/* Delay until GIVEN_UP tiles are tried again. 0: never. */
 static uint64_t retry_interval(const slc_manager *m)
 {
     uint64_t given = m->config.givenUpRetryDelayTicks, delay = m->config.retryDelayTicks;
@@ -58,7 +58,7 @@ void slc_trouble_move(slc_manager *m, struct slc_managed_texture *t, enum slc_tr
     m->trouble_count++;
 }
 
-/* The first of a list that has been in it for the whole interval, or NULL. */
+/* The first texture of a list if it has been there for the whole interval, or NULL. */
 static struct slc_managed_texture *first_due(const slc_manager *m, enum slc_trouble state,
                                              uint64_t interval)
 {
@@ -72,8 +72,8 @@ static bool is_packed(const slc_manager *m, uint32_t node)
     return slc_is_packed_class(slc_node_at(&m->residency, node)->level);
 }
 
-/* They keep their failures: one more and they are given up again. Packed tiles are loaded together,
- * so they are not counted. */
+/* Requests `count` GIVEN_UP tiles. Tiles keep their failures: one more makes them GIVEN_UP again.
+ * Packed tiles are loaded together, so they do not count. */
 static void request_tiles(slc_manager *m, struct slc_managed_texture *t, uint32_t count)
 {
     m->events.reason = SLUICE_TILE_EVENT_RETRIED;
@@ -97,7 +97,7 @@ void slc_given_up_advance(slc_manager *m)
     if (interval == 0)
         return;
     for (struct slc_managed_texture *t; (t = first_due(m, SLC_TROUBLE_PROBED, interval));)
-        slc_trouble_move(m, t, SLC_TROUBLE_RESTING); /* no answer: others have their turn */
+        slc_trouble_move(m, t, SLC_TROUBLE_RESTING); /* no answer: other textures are next */
     for (struct slc_managed_texture *t; (t = first_due(m, SLC_TROUBLE_RESTING, interval));)
         slc_trouble_move(m, t, SLC_TROUBLE_DUE);
     while (m->troubles[SLC_TROUBLE_DUE].count > 0 &&

@@ -1,4 +1,4 @@
-/* Which requested tiles are loaded next, and which slots they get. */
+/* Hand-out: chooses the requested tiles to load next, and their slots. */
 #include "base/alloc.h"
 #include "base/bits.h"
 #include "core/mip_bias.h"
@@ -20,8 +20,8 @@ static bool may_add_heap(const slc_manager *m)
 }
 
 /**
- * Slots that a tile of `level` leaves in a call for one texture when no heap is to be had: what
- * makes room for coarser requests of other textures must not go to the texture that is asked first.
+ * Number of slots that a call for one texture leaves to coarser requests of other textures, if no
+ * heap can be added. Otherwise the texture that is listed first would take their slots.
  */
 static uint64_t owed_slots(const slc_manager *m, uint32_t level)
 {
@@ -33,7 +33,7 @@ static uint64_t owed_slots(const slc_manager *m, uint32_t level)
     return owed;
 }
 
-/** Takes a slot from a new heap. BUDGET_REACHED if there is none to be had. */
+/** Takes a slot from a new heap. BUDGET_REACHED if no heap can be added. */
 static SluiceResult take_from_new_heap(slc_manager *m, struct slc_node *n, uint32_t node,
                                        bool separate, bool *refused)
 {
@@ -54,8 +54,8 @@ static SluiceResult take_from_new_heap(slc_manager *m, struct slc_node *n, uint3
     return SLUICE_SUCCESS;
 }
 
-/** Takes a free slot for the node, from a new heap if need be. The last ones are for packed tiles.
- *  Slots in heaps of the other kind come last. */
+/** Takes a free slot for the node, from a new heap if need be. The last free slots are kept for
+ *  packed tiles. Slots in heaps of the other kind are taken last. */
 static SluiceResult take_slot(slc_manager *m, const struct slc_managed_texture *scope,
                               uint32_t node, bool *refused)
 {
@@ -91,7 +91,7 @@ static uint32_t requests_in_scope(const slc_manager *m, const struct slc_managed
     return scope ? scope->requested_count : m->residency.requests.count;
 }
 
-/** What will be needed for the requests that come next. */
+/** Prefetches the memory of the next requests. */
 static void prefetch_request(const slc_manager *m, uint32_t node)
 {
     if (!node)
@@ -134,20 +134,20 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_managed_texture *s
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
         return result;
     slc_end_round(&m->round, m->visited_count, m->residency.requests.next_sequence);
-    slc_update_bias(m, limit); /* not earlier: a call that fails changes nothing */
+    slc_update_bias(m, limit); /* not earlier: a failing call must change nothing */
     m->handed_out_total += written;
     *count = written;
     uint32_t left = requests_in_scope(m, scope);
     if (room > 0)
         m->starved = result == SLUICE_BUDGET_REACHED;
-    /* Whatever the room: slots come back calls later. */
+    /* Whatever the room in `tiles`: evicted slots become free only in later calls. */
     bool evicts = result == SLUICE_BUDGET_REACHED && !m->config.noEviction;
     if (evicts || slc_surplus_slots(m)) {
         if (!slc_evict_unwanted_for(m, evicts ? left : 0))
             slc_evict_wanted_for(m, walk, evicts ? left : 0);
     }
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
-        result = SLUICE_SUCCESS; /* what was handed out stands; the next call meets it first */
+        result = SLUICE_SUCCESS; /* keeps the tiles handed out; the next call fails first */
         m->cut_short = true;
     }
     return result == SLUICE_SUCCESS && left > 0 ? SLUICE_INCOMPLETE : result;

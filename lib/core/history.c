@@ -7,10 +7,10 @@
 #include "core/spares.h"
 
 /*
- * A region holds the least level of all maps within the timeout. The maps themselves are not kept:
- * those that lie close together in time share a span, which keeps their least level per region. A
- * span ends a quarter of the timeout after it began, so few are alive at a time, and all work is on
- * whole arrays of bytes: how often regions flicker between maps costs nothing.
+ * A region has the finest level of all maps within the timeout. The maps themselves are not kept:
+ * maps that are close in time share a span, which keeps their finest level per region. A span ends
+ * a quarter of the timeout after it began, so few spans are alive. All work is on whole arrays of
+ * bytes, so its cost does not depend on how often regions flicker between maps.
  */
 
 /* Memory ------------------------------------------------------------------------------------ */
@@ -25,7 +25,7 @@ static size_t texel_count(const struct slc_managed_texture *t)
     return (size_t)t->shape->min_mip_width * t->shape->min_mip_height;
 }
 
-/** Nodes, counts by level and MinMip map. */
+/** Bytes of nodes, counts by level and MinMip map. */
 static size_t state_size(const struct slc_shape *s)
 {
     return (s->regular_tile_count + 2 * (size_t)s->desc.regularMipCount) * sizeof(uint32_t) +
@@ -89,7 +89,7 @@ static void destroy_history(slc_manager *m, const struct slc_managed_texture *t,
     slc_spares_give(m, h, history_size(t->shape));
 }
 
-/** The texture's own from now on. */
+/** Replaces a shared history by a copy of the texture's own. */
 static SluiceResult copy_history(slc_manager *m, struct slc_managed_texture *t)
 {
     struct slc_history *from = t->history, *h = create_history(m, t);
@@ -158,7 +158,7 @@ void slc_state_destroy(slc_manager *m, struct slc_managed_texture *t)
 
 void slc_state_release(slc_manager *m, struct slc_managed_texture *t)
 {
-    /* Nothing held and nothing left: the last map was empty, which is what no state means. */
+    /* No requests and no nodes: equal to a texture without a state, whose last map was empty. */
     if (t->nodes && t->held_regions == 0 && t->regular_nodes == 0)
         slc_state_destroy(m, t);
 }
@@ -166,10 +166,10 @@ void slc_state_release(slc_manager *m, struct slc_managed_texture *t)
 /* Spans ------------------------------------------------------------------------------------- */
 
 /*
- * A region that is sampled shows in a map with some chance q only. Of maps that show it, those that
- * follow one that showed it too are hits, those that follow one that missed it returns, so
- * returns / hits estimates x = (1 - q) / q; a camera that moves on makes no returns. n misses in a
- * row have the chance (1 - q)^n, and 14 (x + 1/2) >= ln(10^-6) / ln(1 - q).
+ * A map shows a sampled region with a chance q. A map that shows the region is a hit if the map
+ * before it did, too, and a return if the map before it missed the region. So returns / hits
+ * estimates x = (1 - q) / q. A camera that moves on makes no returns. n misses in a row have the
+ * chance (1 - q)^n, and 14 (x + 1/2) >= ln(10^-6) / ln(1 - q).
  */
 static uint32_t maps_to_believe(const slc_manager *m, const struct slc_managed_texture *t)
 {
@@ -194,7 +194,7 @@ static void count_returns(struct slc_managed_texture *t, uint32_t hits, uint32_t
     }
 }
 
-/** The hits of a map like the last one. */
+/** Counts the hits of a map equal to the last one. */
 static uint32_t same_hits(const struct slc_managed_texture *t)
 {
     struct slc_history *h = t->history;
@@ -218,8 +218,8 @@ static uint32_t add_weights(uint32_t a, uint32_t b)
 }
 
 /**
- * How many misses the last maps stand for if they saw nothing at all: every region agrees. Only as
- * long as it lasts: one map that sees something says that it was chance.
+ * Misses that the last maps count as if all are empty: one per map and region with a request. A map
+ * that is not empty resets the count to 0.
  */
 static uint32_t absence(const struct slc_managed_texture *t, const uint8_t *map)
 {
@@ -228,14 +228,14 @@ static uint32_t absence(const struct slc_managed_texture *t, const uint8_t *map)
     return add_weights(t->history->absence, slc_max_u32(t->held_regions, 1));
 }
 
-/** log2 of the regions along the side of a tile of level 0; 0 where they do not fit. */
+/** log2 of the regions along the side of a tile of level 0; 0 if tiles are not whole regions. */
 static uint32_t region_shift(const struct slc_managed_texture *t)
 {
     uint8_t x = t->shape->region_shift_x, y = t->shape->region_shift_y;
     return x == SLC_UNALIGNED || y == SLC_UNALIGNED ? 0 : slc_min_u32(slc_min_u32(x, y), 8);
 }
 
-/** The least level that a span no longer keeps: a tile of level w is seen by 4^(w + s) regions. */
+/** Finest level that a span no longer keeps. A tile of level w is seen by 4^(w + s) regions. */
 static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region_shift)
 {
     uint8_t level = 0;
@@ -244,7 +244,7 @@ static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region
     return level;
 }
 
-/** The least of a block over all spans. */
+/** Finest levels of a block over all spans. */
 static slc_block least_of_spans(const struct slc_history *h, size_t i)
 {
     slc_block least = slc_load_block(h->spans[0].map + i);
@@ -253,7 +253,7 @@ static slc_block least_of_spans(const struct slc_history *h, size_t i)
     return least;
 }
 
-/** A block of `least` gets new values. */
+/** Sets a block of `least`, and counts the regions with a request. */
 static void set_least(struct slc_managed_texture *t, size_t i, slc_block before, slc_block least,
                       struct slc_range *changed)
 {
@@ -266,7 +266,7 @@ static void set_least(struct slc_managed_texture *t, size_t i, slc_block before,
     t->held_regions -= slc_count_bits(slc_block_difference(before, untouched));
 }
 
-/** Removes levels from `below` on, and what of `least` came from them. */
+/** Removes levels from `below` on from a span, and updates `least`. */
 static void thin_span(struct slc_managed_texture *t, struct slc_span *span, uint8_t below,
                       struct slc_range *changed)
 {
@@ -281,7 +281,7 @@ static void thin_span(struct slc_managed_texture *t, struct slc_span *span, uint
         slc_block gone = slc_equal_block(slc_max_block(v, limit), v), left = v | gone;
         slc_store_block(span->map + i, left);
         rest &= left;
-        /* most of it stands in other spans too, and then nothing is to be searched */
+        /* other spans are searched only for levels that `least` had from this span */
         slc_block before = slc_load_block(h->least + i);
         slc_block lost = gone & slc_equal_block(v, before) & ~slc_equal_block(v, untouched);
         if (slc_block_difference(lost, slc_block_of(0)))
@@ -300,11 +300,11 @@ static void drop_spans(struct slc_history *h, uint32_t count)
     h->span_count -= count;
 }
 
-/** What a call knows when it decides about older maps. */
+/** Parameters of one merge, for the expiry of older maps. */
 struct now {
     uint64_t time, timeout;
-    uint32_t absence; ///< misses that the last maps, all of them empty, stand for
-    uint32_t needed;  ///< maps to believe
+    uint32_t absence; ///< misses that the last maps count as, if they are empty
+    uint32_t needed;  ///< misses after which a region is no longer wanted
 };
 
 /** Expires requests that timed out and that enough newer maps missed. */
@@ -325,7 +325,7 @@ static void lapse(struct slc_managed_texture *t, const struct now *now, struct s
     drop_spans(h, dropped); /* the oldest ones */
 }
 
-/** Takes the map into the newest span or a new one. Returns whether it is new. */
+/** Adds the map to the newest span or to a new one. Returns whether the span is new. */
 static bool join_span(struct slc_history *h, const struct now *now)
 {
     struct slc_span *newest = h->span_count ? &h->spans[h->span_count - 1] : NULL;
@@ -388,7 +388,7 @@ struct slc_range slc_history_merge(const slc_manager *m, struct slc_managed_text
         .time = time, .timeout = timeout, .absence = h->absence, .needed = maps_to_believe(m, t)};
     struct slc_range changed = {0, 0};
     lapse(t, &now, &changed);
-    /* a map like the last one is in the newest span, unless that has just lost it */
+    /* the newest span contains a map equal to the last one, unless its levels were just removed */
     bool has_map =
         !h->next && h->span_count > 0 && h->spans[h->span_count - 1].below == SLUICE_MIP_UNTOUCHED;
     bool fresh = join_span(h, &now);
@@ -427,7 +427,7 @@ static bool any_at_most(const uint8_t *bytes, uint32_t count, uint32_t limit)
     return false;
 }
 
-/** Whether the last map asks for a level in a region under tiles of it; `r` is inclusive. */
+/** Whether the last map requests `level` or a finer one under the tiles `r` of that level. */
 static bool is_asked_in(const struct slc_managed_texture *t, uint32_t level,
                         struct slc_tile_range r)
 {
@@ -436,7 +436,7 @@ static bool is_asked_in(const struct slc_managed_texture *t, uint32_t level,
     const SluiceStreamedTextureDesc *d = &s->desc;
     uint32_t x0, x1, y0, y1, inside;
     if (!t->history || t->history->asked_least > level)
-        return false; /* as where the camera has left, and the area under a tile can be large */
+        return false; /* saves the search where the camera has left: areas can be large */
     regions_under(r.x0, level, r.x0 + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
                   s->feedback_width, &x0, &x1);
     regions_under(r.y0, level, r.y0 + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
@@ -468,8 +468,8 @@ bool slc_is_seen(const slc_manager *m, uint32_t node)
     const struct slc_node *n = slc_node_at(&m->residency, node);
     const struct slc_managed_texture *t = slc_texture_at(m, n->owner);
     struct slc_place p = slc_node_place(t, n);
-    /* one map misses nine tiles by chance as rarely as nine maps miss one; half of what is needed
-     * to forget for good will do */
+    /* one map misses nine tiles by chance as rarely as nine maps miss one tile; half of the misses
+     * that end a request suffice here */
     if (first_unbelieved(18, maps_to_believe(m, t), region_shift(t)) > p.level)
         return true;
     const struct slc_level *grid = &t->shape->levels[p.level];

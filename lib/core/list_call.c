@@ -32,7 +32,7 @@ SluiceResult slc_list_call_make(slc_manager *m, const struct slc_list_call *call
         record.result = get_list(m, call, get);
         record.count = *call->count;
         if (m->cut_short)
-            record.room = record.count; /* which gives the same where memory suffices */
+            record.room = record.count; /* replays equally on a machine with enough memory */
     }
     slc_notify(m, &record);
     return record.result;
