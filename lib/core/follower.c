@@ -36,7 +36,7 @@ static struct slc_grid region_grid(const struct slc_managed_texture *t)
                              t->shape->feedback_height};
 }
 
-/** Regions lie on regions. */
+/** Whether the regions of both textures are equal. */
 static bool has_same_regions(const struct slc_managed_texture *p,
                              const struct slc_managed_texture *f)
 {
@@ -63,7 +63,7 @@ uint64_t slc_follower_scratch(const struct slc_managed_texture *primary,
     return work + SLC_BLOCK + slc_padded(slc_region_count(follower));
 }
 
-/* The follower's map, in levels of the primary; `*offset` turns them into its own. */
+/* Writes the follower's map in levels of the primary; `*offset` converts them to its own levels. */
 static void match_regions(slc_manager *m, const struct slc_managed_texture *primary,
                           const uint8_t *asked, const struct slc_managed_texture *follower,
                           uint8_t *map, int *offset, struct slc_wants_need *need)
@@ -86,7 +86,7 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_managed
 {
     if (!follower->nodes &&
         (!asked || slc_bytes_are(asked, slc_region_count(primary), SLUICE_MIP_UNTOUCHED)))
-        return SLUICE_SUCCESS; /* an empty map onto nothing */
+        return SLUICE_SUCCESS; /* an empty map for a texture without a state */
     SluiceResult result = slc_history_make(m, follower, 1);
     if (result != SLUICE_SUCCESS)
         return result;

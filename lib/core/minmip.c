@@ -7,9 +7,10 @@
 #include <string.h>
 
 /*
- * A texel of the map is one tile of level 0; the tiles over it form a chain to the coarsest regular
- * level. A tile counts only if every coarser one of its chain does, so a change shows in the area
- * under the tile only if its parent counts, and below it as far as resident tiles go down.
+ * A texel of the map is one tile of level 0. The tiles over it form a chain to the coarsest regular
+ * level. A resident tile counts only if every coarser tile of its chain counts. So a change shows
+ * only if the parent of the tile counts: in the area under the tile, and in finer tiles as far as
+ * they are resident.
  */
 
 uint8_t slc_min_mip_floor(const struct slc_managed_texture *t)
@@ -24,7 +25,8 @@ static bool is_resident(const struct slc_managed_texture *t, struct slc_place p)
     return t->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
 }
 
-/** Tiles of the next finer level whose parent is in the range: the last ones take what is over. */
+/** Tiles of the next finer level whose parent is in the range. The last parent has all that remain.
+ */
 static struct slc_tile_range children(const struct slc_managed_texture *t, uint32_t level,
                                       struct slc_tile_range r)
 {
@@ -37,7 +39,7 @@ static struct slc_tile_range children(const struct slc_managed_texture *t, uint3
     };
 }
 
-/** From the tile `i` of `count` on a level to those of level 0: the last one takes what is over. */
+/** Tiles of level 0 under tile `i` of `count` of a level. The last tile covers all that remain. */
 static void axis_area(uint32_t i, uint32_t count, uint32_t level, uint32_t fine_count,
                       uint32_t *first, uint32_t *last)
 {
@@ -108,7 +110,8 @@ void slc_min_mip_drop_update(slc_manager *m, struct slc_managed_texture *t)
     m->dirty_count--;
 }
 
-/** `unit` bytes at the beginning and at the end of each row: all of it, if rows are no longer. */
+/** Fills `unit` bytes at both ends of each row: the whole row, if it has at most 2 * `unit` bytes.
+ */
 static inline void fill_ends(uint8_t *row, size_t pitch, uint32_t rows, size_t width, size_t unit,
                              uint64_t word)
 {
@@ -139,7 +142,7 @@ static void fill(struct slc_managed_texture *t, struct slc_tile_range r, uint8_t
 
 static void show(struct slc_managed_texture *t, struct slc_place p, struct slc_tile_range area);
 
-/** The tiles below one that counts, which therefore count if they are resident. */
+/** Shows the resident children of a tile that counts. They count, too. */
 static void show_children(struct slc_managed_texture *t, struct slc_place p)
 {
     struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
@@ -153,7 +156,8 @@ static void show_children(struct slc_managed_texture *t, struct slc_place p)
         }
 }
 
-/** Writes the area of a tile that counts, and of those below it that do. Depth: the level. */
+/** Writes the area of a tile that counts, and of finer tiles that count. Recursion depth: the
+ * level. */
 static void show(struct slc_managed_texture *t, struct slc_place p, struct slc_tile_range area)
 {
     fill(t, area, (uint8_t)p.level);
@@ -161,7 +165,7 @@ static void show(struct slc_managed_texture *t, struct slc_place p, struct slc_t
         show_children(t, p);
 }
 
-/** Whether a tile below one that counts does: then the map has a finer level where that begins. */
+/** Whether a child of a tile that counts does, too: the map is finer at the child's first texel. */
 static bool shows_children(const struct slc_managed_texture *t, struct slc_place p)
 {
     if (p.level == 0)
@@ -176,7 +180,7 @@ static bool shows_children(const struct slc_managed_texture *t, struct slc_place
     return false;
 }
 
-/** How many tiles below one count. */
+/** Counts the finer tiles under a tile that count. */
 static uint32_t count_shown(const struct slc_managed_texture *t, struct slc_place p)
 {
     uint32_t count = 0;
@@ -253,7 +257,7 @@ static void tile_went(slc_manager *m, struct slc_managed_texture *t, struct slc_
     mark_dirty(m, t, area);
 }
 
-/** As below for most tiles there are: on level 0 a tile is a texel. */
+/** slc_min_mip_changed for tiles of level 0, which are most tiles: each is one texel. */
 static void finest_changed(slc_manager *m, struct slc_managed_texture *t, uint32_t tile,
                            uint8_t above, bool resident)
 {
@@ -283,8 +287,8 @@ void slc_min_mip_changed(slc_manager *m, struct slc_managed_texture *t, const st
         finest_changed(m, t, n->tile, 1, resident);
         return;
     }
-    /* Under a tile that does not count the map has one value: that of the last one above that does.
-     */
+    /* Under a tile that does not count, the map has one value: the level of the finest coarser tile
+     * that counts. */
     struct slc_place p = slc_node_place(t, n);
     struct slc_tile_range r = slc_area(t, p);
     uint8_t shown = t->min_mip[(size_t)r.y0 * shape->min_mip_width + r.x0];

@@ -1,4 +1,4 @@
-/* What the application reads of the MinMip maps. */
+/* MinMip maps as the application reads them: texels, and rectangles that changed. */
 #include "base/checked.h"
 #include "core/lookup.h"
 #include "core/minmip.h"
@@ -25,7 +25,7 @@ static void copy_rect(const struct slc_managed_texture *t, const SluiceMinMipRec
     }
 }
 
-/** A rectangle inside the map, to where there is room for it. */
+/** Writes a rectangle that is inside the map. Checks the size of the target. */
 static SluiceResult write_rect(const struct slc_managed_texture *t, const SluiceMinMipRect *r,
                                size_t row_pitch, size_t size, uint8_t *out)
 {

@@ -7,19 +7,19 @@
 #include <string.h>
 
 /*
- * When more tiles are wanted than there can be slots, every region of every texture wants a coarser
- * level than it asks for. The bias counts in sixteenths of a level: an ordered dither over blocks
+ * While more tiles are wanted than there can be slots, every region of every texture gets a coarser
+ * level than it requests. The bias counts in sixteenths of a level. An ordered dither over blocks
  * of regions and over textures turns the fraction into whole levels, so that the demand follows the
- * bias smoothly. A change works on a texture when its next map comes, so the bias rests until every
- * texture has had a map.
+ * bias smoothly. A change applies to a texture when its next map comes, so the bias rests until
+ * every texture has had a map.
  *
- * A step down can be far too much, as where one texture is all there is: its one block of regions
- * gets a whole level finer. So what failed is remembered until something is different.
+ * A step down can be far too much: with a single texture, its only block of regions becomes a whole
+ * level finer. So a value that failed is not tried again until something has changed.
  */
 
 enum { STEPS = 16, BLOCK = 8, MAX_BIAS = SLC_MAX_MIP_BIAS, OVERCOMMIT_HALVES = 7 };
 
-/** Rounds that maps which are due are waited for; trials of what failed before. */
+/** PATIENCE: most rounds to wait for maps that are due. Trials: of values that failed before. */
 enum { PATIENCE = 16, MAX_TRIALS = SLC_MAX_BIAS_TRIALS, TRIAL_PERIODS = 8 };
 
 static uint8_t dither(uint32_t texture, uint32_t x, uint32_t y)
@@ -46,7 +46,7 @@ void slc_bias_map(const slc_manager *m, const struct slc_managed_texture *t, uin
 uint64_t slc_slot_limit(const slc_manager *m)
 {
     uint64_t heaps = m->config.maxHeapCount ? m->config.maxHeapCount : UINT32_MAX;
-    /* no heap at all says nothing yet */
+    /* a refusal without any heap says nothing about the limit */
     if (m->refused && m->residency.heaps.live_count > 0 && m->residency.heaps.live_count < heaps)
         heaps = m->residency.heaps.live_count;
     return heaps * m->residency.heaps.capacity * OVERCOMMIT_HALVES / 2;
@@ -59,7 +59,7 @@ static void change(slc_manager *m)
     m->bias.rounds = 0;
 }
 
-/** `failed`: what is wanted is surely too much for the present value. */
+/** Raises the bias. `failed`: more tiles are surely wanted than the present value allows. */
 static void raise_bias(slc_manager *m, uint64_t wanted, uint64_t limit, bool failed)
 {
     struct slc_global_bias *b = &m->bias;
@@ -83,8 +83,8 @@ static void raise_bias(slc_manager *m, uint64_t wanted, uint64_t limit, bool fai
 }
 
 /**
- * Whether a value that failed may fit by now. Where nothing has changed it cannot, so a scene that
- * stands still comes to rest. Each trial that fails doubles the time to the next one.
+ * Whether a value that failed may fit by now. It cannot if nothing has changed, so that a still
+ * scene comes to rest. Each trial that fails doubles the time to the next one.
  */
 static bool may_try_again(const struct slc_global_bias *b, uint64_t wanted, uint64_t limit)
 {
@@ -92,8 +92,8 @@ static bool may_try_again(const struct slc_global_bias *b, uint64_t wanted, uint
         return false;
     if (limit > b->failed_limit)
         return true;
-    /* The demand that was noted may be of a later scene than the failure. A whole level finer,
-     * which is four times as many tiles, should fit in any. */
+    /* `demand` may be of a later scene than the failure. In any scene, a value may be tried if a
+     * whole level finer fits: four times as many tiles. */
     return b->changed && (wanted * 4 <= limit || wanted + wanted / 8 <= b->demand);
 }
 
@@ -123,9 +123,9 @@ static void turn_off(slc_manager *m)
 }
 
 /*
- * Textures that got no map since the last change want what they did before it. After a raise that
- * is more than they will want, after a step down less: what is wanted in all is a bound that may
- * say enough, else the maps that are due are waited for, though not for ever.
+ * Textures that got no map since the last change still want the tiles of the bias before it: too
+ * many after a raise, too few after a step down. So the number of wanted tiles is a bound. If the
+ * bound does not decide, the function waits for the maps that are due, at most PATIENCE rounds.
  */
 void slc_update_bias(slc_manager *m, uint64_t limit)
 {

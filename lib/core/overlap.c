@@ -4,13 +4,13 @@
 
 /*
  * Cell i of one grid is [i * c, (i + 1) * c) of `size`, cell j of the other [j * r, (j + 1) * r) of
- * `other_size`. The quotients that give the first and the last j grow by the same step from cell to
- * cell, so one division per axis serves them all.
+ * `other_size`. The quotients for the first and the last j grow by a constant step from cell to
+ * cell, so one division per axis suffices for all cells.
  */
 struct axis {
     uint64_t unit; ///< size * r
     uint64_t step, remainder_step;
-    uint64_t quotient, remainder; ///< of begin * other_size / unit
+    uint64_t quotient, remainder; ///< begin * other_size / unit, and the remainder
     uint32_t other_count;
 };
 
@@ -36,7 +36,7 @@ static void next_overlap(struct axis *a, uint32_t *first, uint32_t *last)
     }
     /* (end * other_size - 1) / unit, where the next begin is this end */
     uint64_t end = a->remainder > 0 ? a->quotient : a->quotient - 1;
-    /* the last cell may reach beyond the whole */
+    /* the last cell may reach beyond the grid */
     *last = end < a->other_count ? (uint32_t)end : a->other_count - 1;
 }
 
@@ -53,8 +53,8 @@ static uint8_t least_in(const uint8_t *values, uint32_t columns, uint32_t x0, ui
 }
 
 /*
- * Neighbors that overlap the same cells share one answer. Without that, thin cells of one grid
- * under thick ones of the other would cost the product of their counts.
+ * Neighbors that overlap the same cells share one result. Otherwise thin cells of one grid under
+ * thick cells of the other would cost the product of their counts.
  */
 void slc_least_overlapped(const struct slc_grid *from, const uint8_t *values,
                           const struct slc_grid *to, uint8_t *least)

@@ -74,7 +74,8 @@ SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *manager,
     return call.result;
 }
 
-/* It does not get its primary's maps any longer: what both have got so far stays with both. */
+/* Gives a follower a history of its own, because it gets other maps than its primary from now on.
+ */
 static SluiceResult leave_shared_history(slc_manager *m, struct slc_managed_texture *t)
 {
     if (!t->history || t->history->users == 1)

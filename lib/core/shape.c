@@ -1,6 +1,6 @@
 /*
- * Textures of one description share what follows from it. There are few descriptions, so that is
- * nearly always in the cache, and a texture itself is small.
+ * Textures of one description share a shape: all values derived from the description. Descriptions
+ * are few, so shapes are nearly always in the cache, and a texture itself is small.
  */
 #include "core/shape.h"
 
@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-/* A bucket is searched no further: then a texture gets a shape of its own. */
+/* Most shapes of a bucket that are searched. Beyond, a texture gets a shape of its own. */
 enum { MAX_SEARCHED = 8 };
 
 static uint32_t hash_of(const SluiceStreamedTextureDesc *d)
@@ -46,12 +46,12 @@ size_t slc_shape_rows_size(const struct slc_shape *s)
     return 2 * (slc_padded(s->levels[0].width) + SLC_BLOCK);
 }
 
-/** Scratch that merging a map of the shape needs. */
+/** Bytes of scratch for merging a map of the shape. */
 static size_t work_size(const struct slc_shape *s)
 {
     if (s->desc.regularMipCount == 0)
         return 0;
-    /* rows, what the regions hold, the tiles of level 0; blocks are read over the end */
+    /* rows, levels of the regions, levels of the tiles of level 0; blocks are read over the end */
     size_t tiles = (size_t)s->levels[0].width * s->levels[0].height + SLC_BLOCK;
     size_t regions = slc_padded(s->region_count) + SLC_BLOCK;
     return slc_shape_rows_size(s) + regions + (slc_regions_are_tiles(s) ? 0 : tiles);
@@ -89,7 +89,7 @@ void slc_shape_give(slc_manager *m, struct slc_shape *shape)
 {
     if (--shape->users > 0)
         return;
-    *shape->link = shape->next; /* not searched for: a bucket may be long */
+    *shape->link = shape->next; /* unlinks without a search: a bucket may be long */
     if (shape->next)
         shape->next->link = shape->link;
     slc_free(&m->cb, shape, 1, sizeof *shape);

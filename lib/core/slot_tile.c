@@ -1,4 +1,4 @@
-/* Which tile is in a slot of a heap, and since when a tile waits. */
+/* Queries: the tile in a slot of a heap, and the sequence numbers of requests. */
 #include "core/observer.h"
 #include "core/refusal.h"
 #include "core/texture_tiles.h"

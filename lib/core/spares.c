@@ -1,8 +1,8 @@
 /*
- * Textures that come into view and leave it take the same memory again and again. What they give
- * back is kept for others, of any shape: blocks have sizes of classes, four to each power of two,
- * so a camera that moves soon finds all that it needs. Of a class an eighth more is held than was
- * in use at one time, and nothing once none is.
+ * Textures that come into view and leave it take and give back equal amounts of memory. Blocks that
+ * are given back are kept for other textures, of any shape: block sizes have classes, four per
+ * power of two. So a moving camera soon allocates no more. A class holds at most an eighth more
+ * blocks than were in use at one time. Its memory is freed when no block is in use.
  */
 #include "core/spares.h"
 
@@ -14,7 +14,7 @@
 
 enum { SMALLEST_LOG2 = 6 };
 
-/** Rounds the size up to that of its class, which is a quarter more at most. */
+/** Returns the class of a size, and rounds the size up to the class, by at most a quarter. */
 static uint32_t class_of(size_t *size)
 {
     if (*size <= (size_t)1 << SMALLEST_LOG2) {
@@ -24,12 +24,12 @@ static uint32_t class_of(size_t *size)
     uint32_t log2 = SMALLEST_LOG2;
     while ((*size - 1) >> log2 > 1)
         log2++;
-    size_t quarters = (*size - 1) >> (log2 - 2); /* 4 to 7 of them and a bit more */
+    size_t quarters = (*size - 1) >> (log2 - 2); /* 4 to 7 whole quarters of the power of two */
     *size = (quarters + 1) << (log2 - 2);
     return (log2 - SMALLEST_LOG2) * 4 + (uint32_t)quarters - 3;
 }
 
-/* What is asked for at once; its blocks follow. */
+/* Header of one allocation. Its blocks follow. */
 struct chunk {
     alignas(max_align_t) struct chunk *next;
     size_t block_count;
@@ -60,7 +60,7 @@ static bool add_chunk(slc_manager *m, struct slc_spares *spares, size_t block_co
     return true;
 }
 
-/* An eighth more than there are, so that a scene of any size is grown into in a few steps. */
+/* Adds an eighth of the blocks in use, so that a scene of any size takes few allocations. */
 static bool grow(slc_manager *m, struct slc_spares *spares, size_t size)
 {
     uint32_t more = spares->used / 8;

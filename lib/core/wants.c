@@ -37,15 +37,16 @@ SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t wo
 
 /* Preparing --------------------------------------------------------------------------------- */
 
-/** The most tiles of one level that a region can touch along one axis. */
+/** Most tiles of one level that a region can touch along one axis. */
 static uint64_t tiles_across(uint32_t region, uint32_t tile)
 {
-    /* no region is larger than the texture; else the products below might not fit */
+    /* keeps the products of the caller in range; no region is larger than the texture */
     region = slc_min_u32(region, SLUICE_MAX_TEXTURE_SIZE);
     return tile % region == 0 ? 1 : (uint64_t)region / tile + 2;
 }
 
-/** Adds what merging a map can need, in which `finer` regions ask for more than they hold. */
+/** Adds the nodes that merging a map can take. `finer`: regions that request a finer level than
+ * before. */
 static void add_need(const slc_manager *m, const struct slc_managed_texture *t, uint64_t finer,
                      struct slc_wants_need *need)
 {
@@ -60,13 +61,14 @@ static void add_need(const slc_manager *m, const struct slc_managed_texture *t, 
         need->nodes += d->packedTileCount;
 }
 
-/** What a pass over a map and the state found, in numbers of regions. */
+/** Numbers of regions, from comparing a map with the history. */
 struct compared {
-    uint32_t finer;         ///< ask for more than all maps did
+    uint32_t finer;         ///< regions that request a finer level than all maps did
     uint32_t hits, returns; ///< see history.c
 };
 
-/** slc_levels in blocks: bytes are stored between uses, and those might be its own. */
+/** slc_levels as blocks. A local copy, because stores of bytes between uses may alias slc_levels.
+ */
 struct level_blocks {
     slc_block coarsest, up, down, lowest, last;
 };
@@ -89,7 +91,7 @@ static inline void compare(slc_block next, slc_block asked, slc_block least, slc
     sums[2] -= again & ~seen;
 }
 
-/** Writes what `values` ask for. Returns whether that differs from the last map. */
+/** Writes the levels that `values` request. Returns whether they differ from the last map. */
 static bool ask_all(const struct slc_managed_texture *t, const uint8_t *values,
                     const struct slc_levels *levels, uint8_t *next)
 {
@@ -155,7 +157,7 @@ void slc_wants_set_map(slc_manager *m, struct slc_managed_texture *t, const uint
 {
     struct slc_history *h = t->history;
     struct compared c = {0};
-    /* what was asked for once asks for itself */
+    /* without changes of levels, values equal to the last map request the same levels */
     bool plain =
         !levels->up && !levels->down && !levels->lowest && levels->coarsest == levels->last;
     bool differs = !(plain && memcmp(values, h->asked, slc_region_count(t)) == 0) &&
@@ -168,7 +170,7 @@ void slc_wants_set_map(slc_manager *m, struct slc_managed_texture *t, const uint
     add_need(m, t, c.finer, need);
 }
 
-/** Levels of a map of the texture's own. */
+/** Returns the levels for a map of the texture itself, not of a primary. */
 static struct slc_levels own_levels(const struct slc_managed_texture *t,
                                     const SluiceFeedbackDesc *f)
 {
@@ -204,9 +206,9 @@ void slc_wants_abandon(slc_manager *m, struct slc_managed_texture *t)
 
 /* Committing -------------------------------------------------------------------------------- */
 
-/* A tile of level l is wanted if a region under it holds l or a finer level. So the least level
- * held under each tile says it all, level by level from the one below: where nothing changes in a
- * level, nothing does above it, and how many regions changed matters to no one.
+/* A tile of level l is wanted if a region under it requests l or a finer level. So the finest level
+ * under each tile suffices. Each level is computed from the next finer one. If a level does not
+ * change, no coarser one does. The cost does not depend on how many regions changed.
  */
 
 static slc_block at_most(slc_block values, slc_block limit)
@@ -215,17 +217,17 @@ static slc_block at_most(slc_block values, slc_block limit)
 }
 
 /**
- * Tiles that become wanted or no longer are. They are settled some at a time, because then the
- * memory that each of them needs is on its way while the others are looked for.
+ * Tiles that become wanted or unwanted. They are settled in batches, so that the memory of each
+ * tile is prefetched while further tiles are searched.
  */
 struct moves {
     uint32_t count;
     struct slc_move tiles[64];
-    struct slc_move_log *log; ///< NULL: nobody repeats them
-    bool counted_only;        ///< a snapshot has the tiles
+    struct slc_move_log *log; ///< log of the moves; NULL: none
+    bool counted_only;        ///< only counts wanted tiles; a snapshot restores their nodes
 };
 
-/** 255 in the first `count` bytes, at most a block. */
+/** Returns a block with 255 in the first `count` bytes, at most a block, and 0 in the rest. */
 static slc_block first_bytes(uint32_t count)
 {
     static const uint8_t ramp[2 * SLC_BLOCK] = {255, 255, 255, 255, 255, 255, 255, 255,
@@ -233,7 +235,7 @@ static slc_block first_bytes(uint32_t count)
     return slc_load_block(ramp + SLC_BLOCK - count);
 }
 
-/** log2 of the tiles of level 0 that want a tile, which some do. */
+/** log2 of the tiles of level 0 that request a tile. At least one does. */
 static uint32_t need_of(const struct slc_managed_texture *t, uint32_t tile, uint32_t level)
 {
     if (level == 0)
@@ -247,7 +249,7 @@ static uint32_t need_of(const struct slc_managed_texture *t, uint32_t tile, uint
         for (uint32_t x = 0; x < width; x += SLC_BLOCK) {
             slc_block inside = first_bytes(slc_min_u32(width - x, SLC_BLOCK));
             sums -= at_most(slc_load_block(under + (size_t)y * pitch + x), limit) & inside;
-            if (++added % 255 == 0) { /* a byte of the sum holds no more */
+            if (++added % 255 == 0) { /* bytes of the sum are full */
                 count += slc_block_sum(sums);
                 sums = slc_block_of(0);
             }
@@ -299,8 +301,8 @@ static void add_move(slc_manager *m, struct slc_managed_texture *t, struct moves
 }
 
 /**
- * Takes over the least levels of `count` tiles of a level, beginning with `tile`. `least` is
- * readable to the end of its last block. Returns which may have changed.
+ * Sets the finest levels of `count` tiles of a level, beginning with `tile`. `least` is readable to
+ * the end of its last block. Returns a range with all tiles that changed.
  */
 static struct slc_range settle_tiles(slc_manager *m, struct slc_managed_texture *t,
                                      struct moves *moves, uint32_t level, uint32_t tile,
@@ -328,7 +330,7 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_managed_texture 
     return changed;
 }
 
-/** What the regions hold: the least level of their maps, and the bias. */
+/** Returns the requested levels of the regions: finest level of their maps plus bias. */
 static const uint8_t *held_levels(slc_manager *m, const struct slc_managed_texture *t,
                                   uint8_t *work)
 {
@@ -367,7 +369,7 @@ static const uint8_t *search_tiles(const struct slc_managed_texture *t, const ui
     return work;
 }
 
-/** Level 0: tiles are regions, or the regions over each tile are searched. Returns rows. */
+/** Settles level 0: tiles are regions, or the regions over each tile are searched. Returns rows. */
 static struct slc_range settle_level_0(slc_manager *m, struct slc_managed_texture *t,
                                        struct moves *moves, struct slc_range regions)
 {
@@ -390,7 +392,8 @@ static struct slc_range settle_level_0(slc_manager *m, struct slc_managed_textur
     return (struct slc_range){tiles.first / grid->width, (tiles.end - 1) / grid->width + 1};
 }
 
-/** The least of the rows of the finer level under row `y`, and then of the columns. */
+/** Computes the finest levels of row `y` from the next finer level: first over rows, then columns.
+ */
 static void reduce_row(const struct slc_managed_texture *t, uint32_t level, uint32_t y,
                        uint8_t *columns, uint8_t *least)
 {
@@ -404,7 +407,7 @@ static void reduce_row(const struct slc_managed_texture *t, uint32_t level, uint
         slc_store_block(columns + x, v);
     }
     slc_halve_bytes(columns, here->width - 1, least);
-    uint8_t last = SLUICE_MIP_UNTOUCHED; /* the last tile takes what is over */
+    uint8_t last = SLUICE_MIP_UNTOUCHED; /* the last tile covers all remaining columns */
     for (uint32_t x = 2 * here->width - 2; x < fine->width; x++)
         last = columns[x] < last ? columns[x] : last;
     least[here->width - 1] = last;
@@ -440,7 +443,7 @@ static void packed_after(slc_manager *m, struct slc_managed_texture *t, bool hel
         slc_packed_tiles_unwanted(m, t);
 }
 
-/** Returns whether some tile of level 0 holds another level. The texture has regular levels. */
+/** Returns whether the level of some tile of level 0 changed. The texture has regular levels. */
 static bool settle_levels(slc_manager *m, struct slc_managed_texture *t, struct moves *moves,
                           struct slc_range regions)
 {
@@ -462,7 +465,7 @@ void slc_wants_restore(slc_manager *m, struct slc_managed_texture *t)
     m->bias.value = bias;
 }
 
-/** Some region holds another level. Returns whether some tile of level 0 does. */
+/** Settles changed regions. Returns whether the level of some tile of level 0 changed. */
 static bool settle(slc_manager *m, struct slc_managed_texture *t, struct slc_range regions,
                    bool held_before, struct slc_move_log *log)
 {
@@ -477,7 +480,7 @@ static bool settle(slc_manager *m, struct slc_managed_texture *t, struct slc_ran
     return changed;
 }
 
-/* The texture's history has just taken in a map. */
+/* Notes the time of a merged map that requested something. */
 static void take_sight(struct slc_managed_texture *t, uint64_t time)
 {
     if (t->history->asked_least == SLUICE_MIP_UNTOUCHED)
@@ -544,7 +547,7 @@ void slc_wants_repeat(slc_manager *m, const struct slc_managed_texture *leader,
     take_time(m, t, time, timeout);
 }
 
-/** Takes all wants of a texture back whose history the caller ends. */
+/** Makes all tiles of a texture unwanted. The caller drops the history afterwards. */
 static void unwant_all(slc_manager *m, struct slc_managed_texture *t)
 {
     struct moves moves = {.count = 0};
