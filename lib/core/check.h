@@ -1,14 +1,14 @@
-/** Invariants of the manager, for tests: slow, looks at everything. */
+/** Checks of the manager's invariants, for tests. Slow: they look at everything. */
 #ifndef SLC_CORE_CHECK_H
 #define SLC_CORE_CHECK_H
 
 #include <sluice/manager.h>
 
-/** NULL if all is well, else what is wrong. */
+/** Returns NULL, or the broken invariant. */
 const char *slc_manager_check(const SluiceStreamedTextureManager *manager);
 /**
- * The invariants that a snapshot could break. Leaves out which textures share a history: finding
- * them takes time that is quadratic in the textures.
+ * Checks the invariants that a snapshot could break. Does not check which textures share a history,
+ * because that takes time quadratic in the number of textures.
  */
 const char *slc_manager_check_restored(const SluiceStreamedTextureManager *manager);
 

@@ -4,7 +4,7 @@
 
 #include "core/state.h"
 
-/** A node that has become GIVEN_UP, or is going to be something else. */
+/** Adds a node that has become GIVEN_UP to its texture's list, or removes it before it changes. */
 void slc_given_up_enter(slc_manager *m, uint32_t node);
 void slc_given_up_leave(slc_manager *m, uint32_t node);
 

@@ -1,4 +1,4 @@
-/** Entry points that hand out a list of tiles: what they check, and what an observer is told. */
+/** Common part of calls that hand out a list of tiles: checks, and the observer's record. */
 #ifndef SLC_CORE_LIST_CALL_H
 #define SLC_CORE_LIST_CALL_H
 

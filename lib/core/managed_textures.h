@@ -1,4 +1,4 @@
-/** Textures are added and removed. */
+/** Adding, removing and restoring textures. */
 #ifndef SLC_CORE_MANAGED_TEXTURES_H
 #define SLC_CORE_MANAGED_TEXTURES_H
 
@@ -8,12 +8,12 @@
 void slc_textures_finish(slc_manager *m);
 
 /**
- * Adds the texture with the next index as a snapshot has it, without tiles. `desc` NULL: the index
- * is free. Errors: OUT_OF_HOST_MEMORY; those of sluiceAddStreamedTexture for `desc`.
+ * Adds the texture with the next index from a snapshot, without tiles. `desc` NULL: the index is
+ * free. Errors: OUT_OF_HOST_MEMORY; errors of sluiceAddStreamedTexture for `desc`.
  */
 SluiceResult slc_texture_restore(slc_manager *m, uint32_t generation,
                                  const SluiceStreamedTextureDesc *desc);
-/** All textures are restored: free indices can be handed out. */
+/** Ends the restoration of textures: collects the free indices. */
 void slc_textures_restored(slc_manager *m);
 
 #endif /* SLC_CORE_MANAGED_TEXTURES_H */

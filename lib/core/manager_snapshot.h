@@ -1,4 +1,4 @@
-/** A recording that begins while the manager is in use begins with its state. */
+/** Snapshot of a manager: the beginning of recordings of a manager that is in use. */
 #ifndef SLC_CORE_MANAGER_SNAPSHOT_H
 #define SLC_CORE_MANAGER_SNAPSHOT_H
 
@@ -10,9 +10,9 @@
 void slc_snapshot_write(const SluiceStreamedTextureManager *manager, struct slc_snapshot_io *io);
 
 /**
- * Gives a new manager a state, which may be any: what no manager can have is refused. After an
- * error, io->result, the manager can only be destroyed. The heap allocator is not asked for the
- * heaps, but will be told of their release.
+ * Reads a state into a new manager. Invalid states are refused. After an error, io->result, the
+ * manager can only be destroyed. The heap allocator is not called for the heaps of the snapshot,
+ * but is called when they are released.
  */
 void slc_snapshot_read(SluiceStreamedTextureManager *manager, struct slc_snapshot_io *io);
 

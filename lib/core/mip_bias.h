@@ -1,4 +1,4 @@
-/** A coarser level for all while more is wanted than there are slots. */
+/** Global mip bias: makes all requests coarser while more tiles are wanted than there are slots. */
 #ifndef SLC_CORE_MIP_BIAS_H
 #define SLC_CORE_MIP_BIAS_H
 
@@ -6,17 +6,18 @@
 
 /** The greatest bias, in sixteenths of a level. */
 #define SLC_MAX_MIP_BIAS 320u
-/** Values below the floor that can fail one after the other. */
+/** Most consecutive failures of values below the floor that are counted. */
 #define SLC_MAX_BIAS_TRIALS 12u
 
-/** How many tiles may be wanted: a multiple of the slots that there can be, as far as is known. */
+/** Returns how many tiles may be wanted: a multiple of the slots that can exist, as far as known.
+ */
 uint64_t slc_slot_limit(const slc_manager *m);
 /**
- * Once per hand-out: raises the bias if too much is wanted, lowers it if there is room. `limit` is
- * the slot limit before heaps were asked for.
+ * Raises the bias if too many tiles are wanted, lowers it if there is room. Call it once per
+ * hand-out. `limit` is the slot limit before new heaps were requested.
  */
 void slc_update_bias(slc_manager *m, uint64_t limit);
-/** Writes what the global bias adds in each region. */
+/** Writes the levels that the global bias adds to each region. */
 void slc_bias_map(const slc_manager *m, const struct slc_managed_texture *t, uint8_t *map);
 
 #endif /* SLC_CORE_MIP_BIAS_H */

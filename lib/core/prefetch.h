@@ -1,12 +1,12 @@
-/** Coarse tiles are loaded while nothing is requested. */
+/** Prefetch of coarse tiles while nothing is requested. */
 #ifndef SLC_CORE_PREFETCH_H
 #define SLC_CORE_PREFETCH_H
 
 #include "core/state.h"
 
 /**
- * Hands out coarse tiles of what may come into view. INCOMPLETE if the list is full or host memory
- * runs out; OUT_OF_HOST_MEMORY if nothing was handed out for want of it.
+ * Hands out coarse tiles that nothing requests yet. INCOMPLETE if the list is full, or if host
+ * memory runs out after some tiles; OUT_OF_HOST_MEMORY if it runs out before the first tile.
  */
 SluiceResult slc_prefetch(slc_manager *m, uint32_t room, uint32_t *written, SluiceTile *tiles);
 

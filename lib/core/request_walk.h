@@ -1,4 +1,4 @@
-/** Requests in the order in which they are handed out: of one texture, or of all. */
+/** Iterates over requests of one texture, or of all, in the order of hand-out. */
 #ifndef SLC_CORE_REQUEST_WALK_H
 #define SLC_CORE_REQUEST_WALK_H
 
@@ -10,27 +10,27 @@ struct slc_request_key {
     uint64_t order;
 };
 
-/** Requests that may be passed over in one call, so that a call's cost has a bound. */
+/** Most requests that one call may skip. Bounds the cost of the call. */
 enum { SLC_MAX_PASSED_OVER = 4096 };
 
-/** The texture's requests in order. The caller frees `requested_count` keys. NULL without memory.
- */
+/** Returns the texture's requests in order. The caller frees `requested_count` keys. NULL without
+ * memory. */
 struct slc_request_key *slc_sort_requests(const slc_manager *m,
                                           const struct slc_managed_texture *t);
 
-/** Where the next request comes from: a texture's sorted keys, or the queues of all. */
+/** Position of the next request: in a texture's sorted keys, or in the queues of all textures. */
 struct slc_request_walk {
     const struct slc_request_key *keys;
-    uint32_t at, count; ///< in keys; no keys: all textures
-    uint32_t node;      ///< 0: the end
+    uint32_t at, count; ///< index in `keys`, and number of keys. No keys: all textures
+    uint32_t node;      ///< node of the next request; 0: the end
 };
 
-/** `keys` are those of the scope. No scope: all textures. */
+/** Begins a walk. `keys`: sorted requests of `scope`. `scope` NULL: all textures. */
 struct slc_request_walk slc_walk_requests(const slc_manager *m,
                                           const struct slc_managed_texture *scope,
                                           const struct slc_request_key *keys);
 
-/** To be called before the state of the walk's node changes. */
+/** Moves on to the next request. Call it before the state of the walk's node changes. */
 void slc_walk_on(const slc_manager *m, struct slc_request_walk *w);
 
 #endif /* SLC_CORE_REQUEST_WALK_H */

@@ -6,7 +6,7 @@
 #include "base/snapshot_io.h"
 #include "core/state.h"
 
-/** A texture of the snapshot. Returns NULL, with an error, if the index has none. */
+/** Finds a texture of the snapshot. Returns NULL, with an error, if the index has none. */
 struct slc_managed_texture *slc_snapshot_texture(slc_manager *m, struct slc_snapshot_io *io,
                                                  uint32_t index);
 

@@ -4,24 +4,24 @@
 
 #include "core/state.h"
 
-/** Told by the machine what becomes of entries. */
+/** Returns the callbacks by which the residency machine reports changes of tiles. */
 struct slc_machine_user slc_tiles_user(slc_manager *m);
 
-/** A FREE tile becomes REQUESTED. `cell` is where the tile keeps its node; needs a node. */
+/** Makes a FREE tile REQUESTED. `cell` holds the tile's node. A node must be reserved. */
 void slc_tile_requested(slc_manager *m, struct slc_managed_texture *t, uint32_t *cell,
                         uint32_t tile, uint32_t level, uint32_t need);
-/** A tile that is not wanted, in whatever state. `level` is the class of packed ones. */
+/** Makes a tile wanted, in whatever state it is. `level` is the class for packed tiles. */
 void slc_tile_wanted(slc_manager *m, struct slc_managed_texture *t, uint32_t *cell, uint32_t tile,
                      uint32_t level);
-/** The class of a texture's packed tiles. */
+/** Returns the class of a texture's packed tiles. */
 static inline uint32_t slc_packed_class(const struct slc_managed_texture *t)
 {
     return t->shape->desc.packedTilesOutside ? SLC_OUTSIDE_CLASS : SLC_PACKED_CLASS;
 }
-/** All packed tiles of a texture; as slc_tile_wanted. */
+/** Makes all packed tiles of a texture wanted, like slc_tile_wanted, or unwanted. */
 void slc_packed_tiles_wanted(slc_manager *m, struct slc_managed_texture *t);
 void slc_packed_tiles_unwanted(slc_manager *m, struct slc_managed_texture *t);
-/** A FREE tile gets a node as if it had been handed out and then no longer wanted. */
+/** Makes a FREE tile CANCELED, as if it had been handed out and then become unwanted. */
 uint32_t slc_tile_prefetch(slc_manager *m, struct slc_managed_texture *t, uint32_t tile,
                            uint32_t level);
 SluiceTile slc_node_tile(const slc_manager *m, uint32_t node);

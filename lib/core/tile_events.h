@@ -1,4 +1,4 @@
-/** A ring of the last state changes of tiles, if the application asked for one. */
+/** Ring of the last state changes of tiles. Exists only if the application sets a capacity. */
 #ifndef SLC_CORE_TILE_EVENTS_H
 #define SLC_CORE_TILE_EVENTS_H
 
@@ -6,7 +6,7 @@
 
 void slc_tile_events_finish(struct slc_tile_events *events, const SluiceAllocationCallbacks *cb);
 
-/** Told by the machine; `user` is the manager. */
+/** Adds an event. Called by the residency machine; `user` is the manager. */
 void slc_tile_event_add(void *user, const struct slc_node *node, uint8_t from, uint8_t to);
 
 #endif /* SLC_CORE_TILE_EVENTS_H */

@@ -1,4 +1,4 @@
-/** Maps of a primary for followers whose UVs are scaled and shifted against the primary's. */
+/** Turns maps of a primary into maps of followers whose UVs are scaled and shifted. */
 #ifndef SLC_CORE_UV_TRANSFORM_H
 #define SLC_CORE_UV_TRANSFORM_H
 
@@ -11,7 +11,7 @@
 /** Fixed point, so that all machines decide alike. */
 #define SLC_UV_BITS 24
 
-/** One axis: follower = primary * scale + offset, in 2^-24; then `wrap` counts. */
+/** One axis: follower = primary * scale + offset, in units of 2^-24; then `wrap` applies. */
 struct slc_uv_axis {
     int64_t scale, offset;
     SluiceUvWrap wrap;
@@ -21,11 +21,11 @@ struct slc_uv_transform {
     struct slc_uv_axis u, v;
 };
 
-/** Returns NULL, or what is wrong with the transform. */
+/** Reads a transform. Returns NULL, or the reason why it is refused. */
 const char *slc_uv_transform_read(struct slc_uv_transform *t, const SluiceUvTransform *from);
 /** Whether slc_uv_transform_read can have made the axis. */
 bool slc_uv_axis_is_valid(const struct slc_uv_axis *axis);
-/** It moves nothing: follower and primary match cell by cell. */
+/** Whether the transform is the identity: follower and primary match cell by cell. */
 bool slc_uv_transform_is_none(const struct slc_uv_transform *t);
 
 /** The greatest d with w * |scale| >= W * 2^d in both axes; lower case is the follower. */
@@ -33,7 +33,7 @@ int slc_uv_level_offset(const struct slc_uv_transform *t, const SluiceStreamedTe
                         const SluiceStreamedTextureDesc *follower);
 
 /**
- * Each cell of `to` gets the least value of the cells of `from` that are sampled where it is.
+ * Writes to each cell of `to` the least value of the cells of `from` that are sampled there.
  * `work` has from->rows * to->columns bytes.
  */
 void slc_least_transformed(const struct slc_uv_transform *t, const struct slc_grid *from,

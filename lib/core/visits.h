@@ -4,7 +4,7 @@
 
 #include "core/state.h"
 
-/** Puts the texture at the end of the list of those that hold something, or takes it out. */
+/** Moves the texture to the end of the list of textures with requests, or removes it. */
 void slc_visit(slc_manager *m, struct slc_managed_texture *t, bool holds);
 
 #endif /* SLC_CORE_VISITS_H */
