@@ -6,14 +6,14 @@
 #include <math.h>
 #include <string.h>
 
-/* Less than this in all is standing still. */
+/* A camera that moves less than this over all frames stands still. */
 #define STILL_METERS 0.004
 #define STILL_RADIANS 0.004
 
-#define MOST_SPEEDING_UP 1.0 /* times the way that the speed of now makes */
-#define JUMP 4.0             /* times as long as the other steps together */
+#define MOST_SPEEDING_UP 1.0 /* most way by acceleration / way by the present speed */
+#define JUMP 4.0             /* least length of a jump / length of all other steps together */
 #define LONGEST_STEP 0.25    /* seconds between two frames */
-#define MOST_TURN 1.5        /* radians: not to where nothing of the picture is left */
+#define MOST_TURN 1.5        /* radians: the prediction must still overlap the picture */
 #define DEFAULT_SHRINK 4u
 
 enum { FRAMES = SLUICE_CAMERA_FRAMES, MIDDLE = FRAMES / 2, NEWEST = FRAMES - 1 };
@@ -59,7 +59,7 @@ static double length_of(struct vector a)
 
 /* Matrices ------------------------------------------------------------------------------------- */
 
-/* Axis of the camera, as the world sees it. */
+/* Returns an axis of the camera in world space. */
 static struct vector axis_of(const float *m, uint32_t row)
 {
     return (struct vector){m[row], m[4 + row], m[8 + row]};
@@ -72,7 +72,7 @@ static struct vector eye_of(const float *m)
     return subtract(eye, scale(axis_of(m, 2), m[14]));
 }
 
-/* A rotation or a reflection, and a translation. NaN is none. */
+/* Whether a matrix is a rotation or reflection, and a translation. False for NaN. */
 static bool is_rigid(const float *m)
 {
     const double slack = 1e-3;
@@ -139,7 +139,7 @@ static void fit(const double points[FRAMES][3], const double times[FRAMES], stru
     *speed = add(new_speed, scale(*change, after / 2.0));
 }
 
-/* One step is far longer than all others together. */
+/* Whether one step is far longer than all others together. */
 static bool has_jump(const double points[FRAMES][3], double still)
 {
     double longest = 0.0, all = 0.0;
@@ -151,7 +151,7 @@ static bool has_jump(const double points[FRAMES][3], double still)
     return longest > still && longest > JUMP * (all - longest);
 }
 
-/* The way from the newest point on. */
+/* Predicts the way from the newest point on. */
 static struct vector way_ahead(const double points[FRAMES][3], const double times[FRAMES],
                                double seconds, double still)
 {
@@ -170,7 +170,7 @@ static struct vector way_ahead(const double points[FRAMES][3], const double time
     return isfinite(far) && far > still ? way : none;
 }
 
-/* Turns all axes as the last one goes by `arc`, in radians, at a right angle to itself. */
+/* Turns all axes so that the last one moves by `arc`, in radians, at a right angle to itself. */
 static void turn(struct vector axes[3], struct vector arc)
 {
     arc = subtract(arc, scale(axes[2], dot(arc, axes[2])));
@@ -187,7 +187,7 @@ static void turn(struct vector axes[3], struct vector arc)
     }
 }
 
-/* False: the camera stays where it is, or nothing can be said. */
+/* Predicts the view matrix. False: the camera stands still, or cannot be predicted. */
 static bool look_ahead(const SluiceCameraMotion *motion, double seconds, float *matrix)
 {
     memcpy(matrix, motion->viewMatrix, sizeof motion->viewMatrix);
@@ -225,7 +225,7 @@ SluiceResult sluicePredictCamera(const SluiceCameraMotion *pMotion,
                            .width = slc_div_up_u32(info.pictureWidth, shrink),
                            .height = slc_div_up_u32(info.pictureHeight, shrink),
                            .lodBias = -log2f((float)shrink)};
-    /* Where the camera turns, what lies between is seen first, and may never have been far ahead.
+    /* A camera that turns meets the near views first, and a far prediction may have skipped them.
      */
     out.seconds = info.frameIndex % 2 ? 0.5 * info.seconds : info.seconds;
     out.draw = look_ahead(pMotion, out.seconds, out.viewMatrix);

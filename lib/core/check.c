@@ -6,7 +6,7 @@
 #include "core/texture_tiles.h"
 #include "residency/due.h"
 
-/* Each function answers NULL or the first thing that is wrong. */
+/* Each function returns NULL or the first condition that is false. */
 #define REQUIRE(condition)                                                                         \
     do {                                                                                           \
         if (!(condition))                                                                          \
@@ -80,7 +80,7 @@ static const char *check_lists(const slc_manager *m)
         mapped += m->residency.mapped[l].count;
     }
     REQUIRE(mapped <=
-            m->residency.state_counts[SLUICE_TILE_STATE_MAPPED]); /* packed ones are in none */
+            m->residency.state_counts[SLUICE_TILE_STATE_MAPPED]); /* packed ones are in no list */
     uint32_t evicted_wanted = 0;
     for (uint32_t node = m->residency.evicted.head; node;
          node = slc_node_at(&m->residency, node)->next)
@@ -210,7 +210,7 @@ static const char *check_texture(const slc_manager *m, const struct slc_managed_
     return check_resident(t);
 }
 
-/** Who shares a history got the same maps; `t` is one of its users. */
+/** Checks the textures that share the history of `t`: they have got equal maps. */
 static const char *check_users(const slc_manager *m, const struct slc_managed_texture *t)
 {
     uint32_t users = 0;
@@ -226,7 +226,7 @@ static const char *check_users(const slc_manager *m, const struct slc_managed_te
         REQUIRE(t->hits == other->hits && t->returns == other->returns);
     }
     REQUIRE(users == t->history->users);
-    REQUIRE(users == 1 || t->history->bias == 0); /* it is dithered by the texture */
+    REQUIRE(users == 1 || t->history->bias == 0); /* the dither depends on the texture */
     return NULL;
 }
 
@@ -264,8 +264,8 @@ static uint32_t count_packed_heaps(const struct slc_tile_heaps *h)
     return free_slots == h->packed_free && empty == h->empty_count ? count : UINT32_MAX;
 }
 
-/** Every other living heap is in the bucket of its free slots, or loose; none has fewer than the
- * open one. */
+/** Every other live heap is in the bucket of its free slots, or loose. The open heap has the fewest
+ * free slots. */
 static const char *check_buckets(const struct slc_tile_heaps *h)
 {
     uint32_t count = 0, fewest = UINT32_MAX, packed = count_packed_heaps(h);

@@ -1,4 +1,4 @@
-/* Heaps without tiles: the application may take them back. */
+/* Empty heaps, which the application may release. */
 #include "base/checked.h"
 #include "core/eviction.h"
 #include "core/observer.h"

@@ -1,4 +1,4 @@
-/* A texture that the caller knows to be out of sight. */
+/* Eviction of a texture that the caller knows to be out of sight. */
 #include "core/history.h"
 #include "core/lookup.h"
 #include "core/observer.h"
@@ -12,7 +12,7 @@ static uint32_t first_tile(const struct slc_managed_texture *t)
     return t->nodes ? 0 : t->shape->regular_tile_count;
 }
 
-/* On standby, and not listed for unmapping yet. 0: another state. */
+/* Returns the node of a STANDBY tile that is not listed for unmapping yet. 0: any other tile. */
 static uint32_t idle_node(const slc_manager *m, const struct slc_managed_texture *t, uint32_t tile)
 {
     uint32_t node = slc_find_node(t, tile);
@@ -22,7 +22,7 @@ static uint32_t idle_node(const slc_manager *m, const struct slc_managed_texture
     return n->state == SLUICE_TILE_STATE_STANDBY && !(n->flags & SLC_NODE_LISTED) ? node : 0;
 }
 
-/* Finer levels come first. */
+/* Lists STANDBY tiles for unmapping until `keep` are left, finer levels first. */
 static void list_tiles(slc_manager *m, const struct slc_managed_texture *t, uint32_t keep)
 {
     uint32_t count = 0, end = t->shape->tile_count;

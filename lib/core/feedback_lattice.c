@@ -4,7 +4,7 @@
 
 enum { SIDE = 8, PHASES = SLC_LATTICE_PHASES };
 
-/** Where the lattice is in each of its frames: y * 8 + x. */
+/** Lists the lattice's position in each of its frames: y * 8 + x. */
 static void list_places(uint8_t places[PHASES])
 {
     for (uint32_t f = 0; f < PHASES; f++) {
@@ -14,7 +14,7 @@ static void list_places(uint8_t places[PHASES])
     }
 }
 
-/** A bit for each frame of 64 in which the lattice is inside the region that begins at x, y. */
+/** Returns a bit per frame: the lattice is inside the region that begins at x, y. */
 static uint64_t find_phases(const uint8_t places[PHASES], uint32_t x, uint32_t y, uint32_t width,
                             uint32_t height)
 {
@@ -26,8 +26,8 @@ static uint64_t find_phases(const uint8_t places[PHASES], uint32_t x, uint32_t y
     return phases;
 }
 
-/** The first of `count` frames from `first` on, `step` apart, that is among the phases; or `count`.
- */
+/** Returns how many of `count` frames from `first` on, `step` apart, come before the first one in
+ * `phases`. */
 static uint32_t frames_before(uint64_t phases, uint32_t first, uint32_t step, uint32_t count)
 {
     uint32_t frame = 0;
@@ -36,7 +36,7 @@ static uint32_t frames_before(uint64_t phases, uint32_t first, uint32_t step, ui
     return frame;
 }
 
-/** For how many of the 64 first frames the first `n` frames, n below the index, miss it all. */
+/** Adds to misses[n], n up to `limit`: first frames of 64 whose first n frames miss the region. */
 static void count_misses(uint64_t phases, uint32_t step, uint32_t limit,
                          uint32_t misses[PHASES + 1])
 {
@@ -47,11 +47,11 @@ static void count_misses(uint64_t phases, uint32_t step, uint32_t limit,
     }
 }
 
-/** misses[n]: of 64 first frames, from how many n frames miss the region, where it lies worst. */
+/** misses[n]: first frames of 64 from which n frames miss the region in its worst position. */
 static void find_misses(uint32_t width, uint32_t height, uint32_t step, uint32_t misses[PHASES + 1])
 {
     uint8_t places[PHASES];
-    uint32_t limit = step ? PHASES : 1; /* then the frames come again */
+    uint32_t limit = step ? PHASES : 1; /* after PHASES frames the positions repeat */
     list_places(places);
     for (uint32_t n = 0; n <= PHASES; n++)
         misses[n] = 0;

@@ -25,7 +25,7 @@ static SluiceResult check_feedback(const slc_manager *m, SluiceTextureId id,
     return slc_time_is_backwards(m, time) ? SLUICE_ERROR_TIME_BACKWARDS : SLUICE_SUCCESS;
 }
 
-/** Textures of more tiles have a history of their own: a log of moves is kept for the others. */
+/** Most tiles of textures that share a history: the log of moves for followers has one per tile. */
 enum { MAX_SHARED_TILES = 65536 };
 
 static size_t log_size(const struct slc_managed_texture *t)
@@ -35,7 +35,7 @@ static size_t log_size(const struct slc_managed_texture *t)
     return slc_padded(t->shape->regular_tile_count * sizeof(struct slc_move));
 }
 
-/** Scratch for the maps of a texture and of those that follow it, and for the log before them. */
+/** Reserves scratch for the log, and for the maps of a texture and of its followers behind it. */
 static SluiceResult reserve_scratch(slc_manager *m, const struct slc_managed_texture *t)
 {
     size_t work = t->shape->work_size;
@@ -49,7 +49,8 @@ static SluiceResult reserve_scratch(slc_manager *m, const struct slc_managed_tex
     return slc_wants_reserve_scratch(m, bytes, work);
 }
 
-/** How many textures have the texture's history and will get its map: itself and followers. */
+/** Counts the textures that share the texture's history and will get its map: itself and followers.
+ */
 static uint32_t users_of_history(const slc_manager *m, const struct slc_managed_texture *t)
 {
     const struct slc_history *h = t->history;
@@ -63,8 +64,8 @@ static uint32_t users_of_history(const slc_manager *m, const struct slc_managed_
 }
 
 /**
- * Whether the follower, which has no history, will never differ from its primary's new one. An
- * empty map is none for a follower without a state, though the primary may have one.
+ * Whether a follower without a history can share the new history of its primary. An empty map makes
+ * no history for a follower without a state, though the primary may have one.
  */
 static bool may_share(const slc_manager *m, const struct slc_managed_texture *t,
                       const struct slc_managed_texture *follower)
@@ -135,7 +136,7 @@ static void commit(slc_manager *m, struct slc_managed_texture *t, uint64_t time,
     }
 }
 
-/** Nothing was asked for before and nothing is now. */
+/** Whether neither earlier maps nor this one request anything. */
 static bool changes_nothing(const slc_manager *m, const struct slc_managed_texture *t,
                             const SluiceFeedbackDesc *feedback)
 {

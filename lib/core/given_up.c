@@ -1,6 +1,6 @@
 /*
- * GIVEN_UP tiles have no order, so that field holds the links of those of one texture, oldest
- * first.
+ * Lists of the GIVEN_UP tiles of a texture, oldest first. The links are stored in the nodes' field
+ * `order`, which GIVEN_UP tiles do not use otherwise.
  */
 #include "core/given_up.h"
 

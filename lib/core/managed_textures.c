@@ -46,7 +46,7 @@ static uint32_t heap_pop(uint32_t *heap, uint32_t count)
     return least;
 }
 
-/** Room for one more texture, and for every index to be free at a time. */
+/** Reserves memory for one more texture, and for the case that every index is free. */
 static SluiceResult reserve_texture(slc_manager *m)
 {
     if (m->free_index_count > 0 || m->texture_end < m->chunk_count * SLC_TEXTURES_PER_CHUNK)
@@ -91,7 +91,7 @@ static void destroy_texture_memory(slc_manager *m, struct slc_managed_texture *t
     t->shape = NULL;
 }
 
-/** On an error everything that it made is in `t`. */
+/** Makes the memory of a texture in `t`. After an error the caller frees what `t` owns. */
 static SluiceResult reserve_for_add(slc_manager *m, const SluiceStreamedTextureDesc *desc,
                                     struct slc_managed_texture *t)
 {

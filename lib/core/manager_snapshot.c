@@ -97,7 +97,7 @@ static void exchange(slc_manager *m, struct slc_snapshot_io *io)
 void slc_snapshot_write(const SluiceStreamedTextureManager *manager, struct slc_snapshot_io *io)
 {
     assert(!io->reading);
-    exchange((slc_manager *)manager, io); /* writes only what it reads */
+    exchange((slc_manager *)manager, io); /* does not change the manager while writing */
 }
 
 static uint32_t textures_behind(const slc_manager *m)

@@ -5,7 +5,7 @@
 #include "core/texture_tiles.h"
 #include "residency/nodes.h"
 
-/** Textures that one call looks at for something to prefetch. */
+/** Most textures that one call examines for tiles to prefetch. */
 enum { MAX_LOOKED_AT = 256 };
 
 static bool may_prefetch(const slc_manager *m)
@@ -17,8 +17,8 @@ static bool may_prefetch(const slc_manager *m)
 }
 
 /**
- * Hands out FREE tiles of a level. Anything but SUCCESS ends prefetching: BUDGET_REACHED where no
- * more may be, INCOMPLETE where the list is full.
+ * Hands out FREE tiles of a level. Any result but SUCCESS ends prefetching: BUDGET_REACHED if no
+ * more tiles may be prefetched, INCOMPLETE if the list is full.
  */
 static SluiceResult prefetch_level(slc_manager *m, struct slc_managed_texture *t, uint32_t level,
                                    uint32_t room, uint32_t *written, SluiceTile *tiles)

@@ -1,8 +1,8 @@
 /*
- * Tiles that were given up and not asked for yet, oldest first. The reports of one texture are
- * linked, so that removing the texture does not search the others': they stay in the queue without
- * a texture until they are half of it. Links are numbers that a report keeps: its place in the
- * array and `base`.
+ * Queue of GIVEN_UP tiles that the application has not listed yet, oldest first. The reports of one
+ * texture are linked, so that removing a texture does not search the queue. Its reports stay in the
+ * queue without a texture until half of the queue has none. A link is the number of a report: its
+ * index in the array plus `base`.
  */
 #include "core/reports.h"
 
@@ -34,7 +34,7 @@ static void append(struct slc_reports *r, struct slc_managed_texture *t, uint32_
     r->list[r->end++] = (struct slc_report){slc_texture_id(t), tile, 0};
 }
 
-/** Moves what is left to the beginning of `list`, under new numbers. */
+/** Moves the reports with a texture to the beginning of `list`, under new numbers. */
 static void pack(slc_manager *m, struct slc_report *list)
 {
     struct slc_reports *r = &m->reports, old = *r;
@@ -74,12 +74,12 @@ void slc_reports_add(slc_manager *m, struct slc_managed_texture *t, uint32_t til
 {
     uint64_t key = slc_pair_key(t->index, tile);
     if (slc_map_get(&m->reports.tiles, key) != SLC_MAP_NONE)
-        return; /* nobody has asked since it was given up before */
+        return; /* reported already, and not listed since */
     slc_map_add(&m->reports.tiles, key, 0);
     append(&m->reports, t, tile);
 }
 
-/** The queue is not empty. False: the report had no texture any more. */
+/** Takes the first report of a queue that is not empty. False: its texture was removed. */
 static bool take(slc_manager *m, SluiceTile *tile)
 {
     struct slc_reports *r = &m->reports;

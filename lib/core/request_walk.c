@@ -19,7 +19,7 @@ static struct slc_request_key key_of(const slc_manager *m, uint32_t node)
     return (struct slc_request_key){(uint32_t)n->level << 8 | n->need, node, n->order};
 }
 
-/** Fewer requests of all textures than tiles of this one: they stand in order in the queues. */
+/** Collects a texture's requests from the queues of all textures, where they are in order. */
 static uint32_t pick_requests(const slc_manager *m, const struct slc_managed_texture *t,
                               struct slc_request_key *keys)
 {

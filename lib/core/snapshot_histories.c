@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/** Levels of regions: those that the texture has, and SLUICE_MIP_UNTOUCHED. */
+/** Exchanges levels of regions: levels of the texture, or SLUICE_MIP_UNTOUCHED. */
 static void exchange_map(struct slc_snapshot_io *io, const struct slc_managed_texture *t,
                          uint8_t *map)
 {
@@ -41,7 +41,7 @@ static void exchange_span(slc_manager *m, struct slc_snapshot_io *io, struct slc
     exchange_map(io, t, span->map);
 }
 
-/** The wants that a history has from its maps. */
+/** Restores values that follow from the maps of a history, and the wanted tiles. */
 static void restore_derived(slc_manager *m, struct slc_snapshot_io *io,
                             struct slc_managed_texture *t)
 {
@@ -101,7 +101,7 @@ static void restore_shared(slc_manager *m, struct slc_snapshot_io *io,
         *slc_wanted_in_level(t, l) = *slc_wanted_in_level(leader, l);
 }
 
-/** The first texture with each history that textures share. */
+/** Maps each shared history to the first texture that has it. */
 static void map_leaders(const slc_manager *m, struct slc_snapshot_io *io, struct slc_map *leaders)
 {
     for (uint32_t i = 0; i < m->texture_end && slc_snapshot_is_good(io); i++) {
@@ -119,7 +119,8 @@ static void map_leaders(const slc_manager *m, struct slc_snapshot_io *io, struct
     }
 }
 
-/** 0: no history; 1: its own, or the first of those that share it; else 2 + that one's index. */
+/** 0: no history. 1: its own history, or the first user of a shared one. Else 2 + index of the
+ * first. */
 static uint64_t history_mark(const struct slc_managed_texture *t, const struct slc_map *leaders)
 {
     if (!t->history)

@@ -15,7 +15,8 @@ struct slc_managed_texture *slc_snapshot_texture(slc_manager *m, struct slc_snap
     return NULL;
 }
 
-/** The index of a texture plus 1; 0 ends a list. Returns NULL at the end and after an error. */
+/** Exchanges the index of a texture plus 1; 0 ends a list. Returns NULL at the end or after an
+ * error. */
 static struct slc_managed_texture *exchange_index(slc_manager *m, struct slc_snapshot_io *io,
                                                   uint32_t index)
 {

@@ -1,4 +1,4 @@
-/* Textures: what they are, what was set, and which follow which. */
+/* Textures of a snapshot: descriptions, settings, primaries and followers. */
 #include "base/alloc.h"
 #include "core/managed_textures.h"
 #include "core/sets.h"

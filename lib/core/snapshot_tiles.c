@@ -40,7 +40,7 @@ void slc_snapshot_heaps(slc_manager *m, struct slc_snapshot_io *io)
     io->part(io->user);
 }
 
-/** A list of heaps, each index plus 1; 0 ends it. Buckets follow each other in one list. */
+/** Exchanges a list of heaps: each index plus 1, then 0. Buckets follow each other in one list. */
 static void exchange_heaps(struct slc_tile_heaps *h, struct slc_snapshot_io *io, bool loose)
 {
     uint32_t bucket = 0, next = loose ? h->loose : h->buckets[0], behind = UINT32_MAX;
@@ -118,7 +118,8 @@ static bool has_slot(const struct slc_node *n)
             n->state == SLC_NODE_RETIRING);
 }
 
-/** The tile's owner has room for it. Returns where it keeps the node; NULL after an error. */
+/** Makes the memory for a tile in its texture. Returns the cell for the node; NULL after an error.
+ */
 static uint32_t *restore_cell(slc_manager *m, struct slc_snapshot_io *io, struct slc_node *n)
 {
     struct slc_managed_texture *t = slc_snapshot_texture(m, io, n->owner);
@@ -152,7 +153,7 @@ static void restore_tile(slc_manager *m, struct slc_snapshot_io *io, const struc
         slc_snapshot_fail(io, "the snapshot has a tile whose slot is another's or not there");
 }
 
-/** Returns false at the end of the tiles. */
+/** Exchanges one tile. Returns false at the end of the tiles. */
 static bool exchange_tile(slc_manager *m, struct slc_snapshot_io *io, const struct slc_node *from)
 {
     struct slc_node n = from ? *from : (struct slc_node){.heap = SLC_NONE};
@@ -190,7 +191,8 @@ static void write_list(slc_manager *m, struct slc_snapshot_io *io, const struct 
         exchange_tile(m, io, slc_node_at(&m->residency, node));
 }
 
-/** ALLOCATED tiles, packed MAPPED ones and canceled ones that were handed out are in no list. */
+/** Writes tiles that are in no list: ALLOCATED, packed MAPPED, and CANCELED ones once handed out.
+ */
 static void write_unlisted(slc_manager *m, struct slc_snapshot_io *io)
 {
     for (uint32_t node = 1; node < m->residency.node_end; node++) {

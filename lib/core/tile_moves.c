@@ -1,11 +1,11 @@
-/* Moves that empty heaps, as the application gets them. */
+/* Moves of tiles that empty heaps. */
 #include "core/clock.h"
 #include "core/observer.h"
 #include "core/refusal.h"
 #include "core/texture_tiles.h"
 #include "residency/defragment.h"
 
-/** Where moves are written. */
+/** Array that moves are written to. */
 struct moves {
     slc_manager *manager;
     uint32_t count;

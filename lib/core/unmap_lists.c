@@ -24,10 +24,10 @@ static uint32_t count_in_scope(const slc_manager *m, const struct slc_list *list
     return count;
 }
 
-/** False if there is no host memory for it; then nothing has happened. */
+/** Takes a node from a list. False, with nothing changed, without host memory. */
 typedef bool (*take_function)(slc_manager *m, uint32_t node, uint64_t retire_value);
 
-/** Hands out a list from its head, as far as it is in scope. */
+/** Hands out the tiles of a list that are in scope, from the head on. */
 static SluiceResult take_list(slc_manager *m, struct slc_list *list,
                               const struct slc_managed_texture *scope, uint64_t retire_value,
                               take_function take, uint32_t *count, SluiceTile *tiles)

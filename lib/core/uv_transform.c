@@ -68,7 +68,7 @@ static uint64_t size_of(int64_t value)
 int slc_uv_level_offset(const struct slc_uv_transform *t, const SluiceStreamedTextureDesc *primary,
                         const SluiceStreamedTextureDesc *follower)
 {
-    int d = -33; /* below each ratio of sizes times each scale */
+    int d = -33; /* below every ratio of sizes times scale */
     while (
         is_at_least(follower->width * size_of(t->u.scale), primary->width, d + 1 + SLC_UV_BITS) &&
         is_at_least(follower->height * size_of(t->v.scale), primary->height, d + 1 + SLC_UV_BITS))
@@ -102,7 +102,7 @@ static int64_t smaller(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/** The part of [begin, end) within the `turn`th period, forth or back. */
+/** Adds the part of [begin, end) within period `turn`; `back`: mirrored. */
 static void add_turn(struct intervals *out, int64_t begin, int64_t end, int64_t turn,
                      int64_t period, bool back)
 {
@@ -114,7 +114,7 @@ static void add_turn(struct intervals *out, int64_t begin, int64_t end, int64_t 
         add(out, first, last);
 }
 
-/** [begin, end) begins in the period from 0 on. */
+/** Folds [begin, end) into one period. `begin` is in the period from 0 on. */
 static void fold_periodic(struct intervals *out, int64_t begin, int64_t end, int64_t period,
                           bool mirror)
 {
@@ -157,11 +157,11 @@ struct pair {
     uint32_t from_size, from_cell, from_count, to_size, to_cell, to_count;
 };
 
-/** Where cell `i` of the primary is sampled in the follower. */
+/** Finds the intervals of the follower in which cell `i` of the primary is sampled. */
 static void place_cell(const struct pair *p, uint32_t i, struct intervals *out)
 {
     uint64_t begin = (uint64_t)i * p->from_cell, end = begin + p->from_cell;
-    end = end < p->from_size ? end : p->from_size; /* the last one is cut off */
+    end = end < p->from_size ? end : p->from_size; /* the last cell is cut off */
     int64_t shift = p->axis->offset * p->from_size;
     int64_t a = (int64_t)begin * p->axis->scale + shift;
     int64_t b = (int64_t)end * p->axis->scale + shift;
@@ -193,7 +193,7 @@ static void lower_row(uint8_t *row, const uint8_t *by, uint32_t count)
         row[i] = row[i] < by[i] ? row[i] : by[i];
 }
 
-/* Row by row of the primary, with the follower's columns. */
+/* Writes one row per row of the primary, with the follower's columns. */
 static void spread_columns(const struct pair *p, uint32_t rows, const uint8_t *values, uint8_t *out)
 {
     memset(out, SLUICE_MIP_UNTOUCHED, (size_t)rows * p->to_count);

@@ -3,7 +3,7 @@
 static void visit_append(slc_manager *m, struct slc_managed_texture *t)
 {
     t->visited = true;
-    t->bias_epoch = m->bias.epoch; /* it has just been merged with */
+    t->bias_epoch = m->bias.epoch; /* the bias that the map was merged with */
     t->visit_prev = m->visit_last;
     t->visit_next = SLC_NONE;
     if (m->visit_last != SLC_NONE)
