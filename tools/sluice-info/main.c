@@ -2,26 +2,18 @@
  */
 #include "show.h"
 
+#include "file_report.h"
 #include "neural_file.h"
 
 #include "../common/text.h"
 
 #include <stdio.h>
 
-static int show_any_file(const struct options *options, const char *path)
-{
-#ifdef HAVE_NEURAL
-    if (is_neural_file(path))
-        return show_neural_file(options, path);
-#endif
-    return is_catalogue(path) ? show_catalogue(options, path) : show_file(options, path);
-}
-
 static int show_files(const struct options *options)
 {
     int status = ALL_SHOWN;
     for (size_t i = 0; i < options->files.count; i++)
-        if (show_any_file(options, options->files.items[i]) != ALL_SHOWN)
+        if (!report_file(options->files.items[i], options->json, stdout))
             status = NOT_SHOWN;
     return status;
 }

@@ -6,14 +6,8 @@
 
 #include <sluice/neural.h>
 
-/** Whether the file begins as one does. False also if it cannot be read. */
-bool is_neural_file(const char *path);
-
 /** Opens a file; NULL, having said why. Destroy the set. */
 SluiceNeuralSet *open_neural_file(const char *path);
-
-/** Says what is in a file. An exit status. */
-int show_neural_file(const struct options *options, const char *path);
 
 /** Decodes a mip to a file of floats: [height][width][channels], row 0 first. An exit status. */
 int decode_neural_file(const struct options *options);

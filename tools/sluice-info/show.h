@@ -12,15 +12,6 @@ int show_devices(const struct options *options);
 /** Runs the device tests on a device and reports each. */
 int self_test(const struct options *options);
 
-/** What a store, an OpenEXR, DDS or KTX2 file says of itself. */
-int show_file(const struct options *options, const char *path);
-
-/** False also for a file that cannot be read, and for URLs. */
-bool is_catalogue(const char *path);
-
-/** How many stores a catalogue names. */
-int show_catalogue(const struct options *options, const char *path);
-
 /** A level or a tile of the file as a PNG. */
 int write_picture(const struct options *options);
 

@@ -1,4 +1,4 @@
-#include "show.h"
+#include "file_report.h"
 
 #include "../common/input.h"
 #include "../common/remote.h"
@@ -57,22 +57,23 @@ static void count(FILE *file, struct catalogue *catalogue)
         catalogue->damaged = line;
 }
 
-static void print(const struct catalogue *c, const char *path, bool json)
+static void print(FILE *out, const struct catalogue *c, const char *path, bool json)
 {
     if (json) {
-        printf("{\"file\": ");
-        text_write_json(stdout, path);
-        printf(", \"kind\": \"catalogue\", \"stores\": %" PRIu64 ", \"storeSize\": %" PRIu64 "}\n",
-               c->store_count, c->size);
+        fprintf(out, "{\"file\": ");
+        text_write_json(out, path);
+        fprintf(out,
+                ", \"kind\": \"catalogue\", \"stores\": %" PRIu64 ", \"storeSize\": %" PRIu64 "}\n",
+                c->store_count, c->size);
         return;
     }
-    text_write(stdout, path);
-    printf(": catalogue of tile stores\n");
-    printf("  stores                  %" PRIu64 "\n", c->store_count);
-    printf("  their files             %" PRIu64 " bytes\n", c->size);
+    text_write(out, path);
+    fprintf(out, ": catalogue of tile stores\n");
+    fprintf(out, "  stores                  %" PRIu64 "\n", c->store_count);
+    fprintf(out, "  their files             %" PRIu64 " bytes\n", c->size);
 }
 
-int show_catalogue(const struct options *options, const char *path)
+bool report_catalogue(const char *path, bool json, FILE *out)
 {
     struct catalogue catalogue = {0};
     FILE *file = input_open(path);
@@ -90,7 +91,7 @@ int show_catalogue(const struct options *options, const char *path)
         text_say("sluice-info: %s: is a catalogue whose line %" PRIu64 " is damaged", path,
                  catalogue.damaged);
     if (!done || catalogue.damaged)
-        return NOT_SHOWN;
-    print(&catalogue, path, options->json);
-    return ALL_SHOWN;
+        return false;
+    print(out, &catalogue, path, json);
+    return true;
 }

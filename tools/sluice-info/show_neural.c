@@ -1,8 +1,9 @@
+#include "file_report.h"
+
 #include "neural_file.h"
 
 #include "../common/input.h"
 #include "../common/text.h"
-#include "show.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -93,180 +94,190 @@ static uint64_t weight_size(const SluiceNeuralSet *set, SluiceNeuralWeightKind k
     return sluiceGetNeuralWeights(set, kind, NULL, &size, NULL) == SLUICE_SUCCESS ? size : 0;
 }
 
-static void print_weights(const SluiceNeuralSet *set, const SluiceNeuralSetInfo *info)
+static void print_weights(FILE *out, const SluiceNeuralSet *set, const SluiceNeuralSetInfo *info)
 {
-    printf("  weights                ");
+    fprintf(out, "  weights                ");
     if (info->hasInt8)
-        printf(" INT8, %" PRIu64 " bytes%s", weight_size(set, SLUICE_NEURAL_WEIGHTS_INT8),
-               info->hasFp8 ? ";" : "");
+        fprintf(out, " INT8, %" PRIu64 " bytes%s", weight_size(set, SLUICE_NEURAL_WEIGHTS_INT8),
+                info->hasFp8 ? ";" : "");
     if (info->hasFp8)
-        printf(" FP8, %" PRIu64 " bytes", weight_size(set, SLUICE_NEURAL_WEIGHTS_FP8));
-    printf("\n");
+        fprintf(out, " FP8, %" PRIu64 " bytes", weight_size(set, SLUICE_NEURAL_WEIGHTS_FP8));
+    fprintf(out, "\n");
 }
 
-static void print_textures(const SluiceNeuralSet *set, uint32_t count)
+static void print_textures(FILE *out, const SluiceNeuralSet *set, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
         SluiceNeuralTexture t = texture_of(set, i);
-        printf("  texture %-15u ", i);
-        text_write(stdout, t.pName);
-        printf(": channels %u to %u, %s", t.firstChannel, t.firstChannel + t.channelCount - 1,
-               formats[t.format]);
-        printf(", %s", spaces[t.rgbColorSpace]);
+        fprintf(out, "  texture %-15u ", i);
+        text_write(out, t.pName);
+        fprintf(out, ": channels %u to %u, %s", t.firstChannel, t.firstChannel + t.channelCount - 1,
+                formats[t.format]);
+        fprintf(out, ", %s", spaces[t.rgbColorSpace]);
         if (t.channelCount == 4)
-            printf(", alpha %s", spaces[t.alphaColorSpace]);
+            fprintf(out, ", alpha %s", spaces[t.alphaColorSpace]);
         if (t.bcFormat)
-            printf(", as BC%u", t.bcFormat);
-        printf("\n");
+            fprintf(out, ", as BC%u", t.bcFormat);
+        fprintf(out, "\n");
     }
 }
 
-static void print_images(const SluiceNeuralSet *set, uint32_t count)
+static void print_images(FILE *out, const SluiceNeuralSet *set, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
         SluiceNeuralLatentImage image = image_of(set, i);
         bool is_compressed;
         uint64_t size = stored_size(set, i, image.partCount, &is_compressed);
-        printf("  latent image %-10u %u x %u", i, image.width, image.height);
+        fprintf(out, "  latent image %-10u %u x %u", i, image.width, image.height);
         if (image.lowWidth)
-            printf(" and %u x %u", image.lowWidth, image.lowHeight);
-        printf(" texels, %" PRIu64 " bytes%s", size, is_compressed ? " (GDeflate)" : "");
+            fprintf(out, " and %u x %u", image.lowWidth, image.lowHeight);
+        fprintf(out, " texels, %" PRIu64 " bytes%s", size, is_compressed ? " (GDeflate)" : "");
         if (image.mipCount)
-            printf(", mips %u to %u\n", image.firstMip, image.firstMip + image.mipCount - 1);
+            fprintf(out, ", mips %u to %u\n", image.firstMip, image.firstMip + image.mipCount - 1);
         else
-            printf(", no mip\n");
+            fprintf(out, ", no mip\n");
     }
 }
 
-static void print_mips(const SluiceNeuralSet *set, uint32_t count)
+static void print_mips(FILE *out, const SluiceNeuralSet *set, uint32_t count)
 {
-    printf("  mip   width  height  latents  fused with      lod  position scale\n");
+    fprintf(out, "  mip   width  height  latents  fused with      lod  position scale\n");
     for (uint32_t i = 0; i < count; i++) {
         SluiceNeuralMip mip = mip_of(set, i);
-        printf("  %3u %7u %7u  %7u  %4u to %-4u %8.4f  %g\n", i, mip.width, mip.height,
-               mip.latentImage, mip.firstFusedMip, mip.firstFusedMip + mip.fusedMipCount - 1,
-               (double)mip.positionLod, (double)mip.positionScale);
+        fprintf(out, "  %3u %7u %7u  %7u  %4u to %-4u %8.4f  %g\n", i, mip.width, mip.height,
+                mip.latentImage, mip.firstFusedMip, mip.firstFusedMip + mip.fusedMipCount - 1,
+                (double)mip.positionLod, (double)mip.positionScale);
     }
 }
 
-static void print_set(const SluiceNeuralSet *set, const SluiceNeuralSetInfo *info, const char *path)
+static void print_set(FILE *out, const SluiceNeuralSet *set, const SluiceNeuralSetInfo *info,
+                      const char *path)
 {
     uint64_t offset = 0, size = 0;
     sluiceGetNeuralLatentRange(set, 0, info->mipCount, &offset, &size);
-    text_write(stdout, path);
-    printf(": neural textures, schema %u\n", info->schema);
-    printf("  size                    %u x %u texels, %u mips\n", info->width, info->height,
-           info->mipCount);
-    printf("  channels                %u:", info->channelCount);
+    text_write(out, path);
+    fprintf(out, ": neural textures, schema %u\n", info->schema);
+    fprintf(out, "  size                    %u x %u texels, %u mips\n", info->width, info->height,
+            info->mipCount);
+    fprintf(out, "  channels                %u:", info->channelCount);
     for (uint32_t c = 0; c < info->channelCount; c++)
-        printf(" %s", info->validChannels >> c & 1 ? channel_space(set, c) : "unused");
-    printf("\n  network                 %s, %u inputs\n", networks[info->network],
-           info->inputCount);
-    print_weights(set, info);
+        fprintf(out, " %s", info->validChannels >> c & 1 ? channel_space(set, c) : "unused");
+    fprintf(out, "\n  network                 %s, %u inputs\n", networks[info->network],
+            info->inputCount);
+    print_weights(out, set, info);
     if (info->schema == 1)
-        printf("  codes                   %u of %u bits, coarse %u of %u bits\n",
-               info->highFeatures, info->highBits, info->lowFeatures, info->lowBits);
+        fprintf(out, "  codes                   %u of %u bits, coarse %u of %u bits\n",
+                info->highFeatures, info->highBits, info->lowFeatures, info->lowBits);
     else
-        printf("  codes                   %u of %u bits\n", info->highFeatures, info->highBits);
-    printf("  latents                 %" PRIu64 " bytes from %" PRIu64 " on, 1 texel for %u x %u\n",
-           info->latentSize, offset, info->gridScale, info->gridScale);
-    printf("  file                    %" PRIu64 " bytes, %.3f bits per texel of mip 0\n",
-           info->fileSize,
-           8 * (double)info->fileSize / ((double)info->width * (double)info->height));
-    print_textures(set, info->textureCount);
-    print_images(set, info->latentImageCount);
-    print_mips(set, info->mipCount);
+        fprintf(out, "  codes                   %u of %u bits\n", info->highFeatures,
+                info->highBits);
+    fprintf(out,
+            "  latents                 %" PRIu64 " bytes from %" PRIu64
+            " on, 1 texel for %u x %u\n",
+            info->latentSize, offset, info->gridScale, info->gridScale);
+    fprintf(out, "  file                    %" PRIu64 " bytes, %.3f bits per texel of mip 0\n",
+            info->fileSize,
+            8 * (double)info->fileSize / ((double)info->width * (double)info->height));
+    print_textures(out, set, info->textureCount);
+    print_images(out, set, info->latentImageCount);
+    print_mips(out, set, info->mipCount);
 }
 
-static void print_textures_json(const SluiceNeuralSet *set, uint32_t count)
+static void print_textures_json(FILE *out, const SluiceNeuralSet *set, uint32_t count)
 {
-    printf(", \"textures\": [");
+    fprintf(out, ", \"textures\": [");
     for (uint32_t i = 0; i < count; i++) {
         SluiceNeuralTexture t = texture_of(set, i);
-        printf("%s{\"name\": ", i ? ", " : "");
-        text_write_json(stdout, t.pName);
-        printf(", \"firstChannel\": %u, \"channelCount\": %u, \"format\": \"%s\", "
-               "\"rgbColorSpace\": \"%s\", \"alphaColorSpace\": \"%s\", \"bcFormat\": %u}",
-               t.firstChannel, t.channelCount, formats[t.format], spaces[t.rgbColorSpace],
-               spaces[t.alphaColorSpace], t.bcFormat);
+        fprintf(out, "%s{\"name\": ", i ? ", " : "");
+        text_write_json(out, t.pName);
+        fprintf(out,
+                ", \"firstChannel\": %u, \"channelCount\": %u, \"format\": \"%s\", "
+                "\"rgbColorSpace\": \"%s\", \"alphaColorSpace\": \"%s\", \"bcFormat\": %u}",
+                t.firstChannel, t.channelCount, formats[t.format], spaces[t.rgbColorSpace],
+                spaces[t.alphaColorSpace], t.bcFormat);
     }
-    printf("]");
+    fprintf(out, "]");
 }
 
-static void print_images_json(const SluiceNeuralSet *set, uint32_t count)
+static void print_images_json(FILE *out, const SluiceNeuralSet *set, uint32_t count)
 {
-    printf(", \"latentImages\": [");
+    fprintf(out, ", \"latentImages\": [");
     for (uint32_t i = 0; i < count; i++) {
         SluiceNeuralLatentImage image = image_of(set, i);
-        printf("%s{\"width\": %u, \"height\": %u, \"lowWidth\": %u, \"lowHeight\": %u, "
-               "\"firstMip\": %u, \"mipCount\": %u, \"parts\": [",
-               i ? ", " : "", image.width, image.height, image.lowWidth, image.lowHeight,
-               image.firstMip, image.mipCount);
+        fprintf(out,
+                "%s{\"width\": %u, \"height\": %u, \"lowWidth\": %u, \"lowHeight\": %u, "
+                "\"firstMip\": %u, \"mipCount\": %u, \"parts\": [",
+                i ? ", " : "", image.width, image.height, image.lowWidth, image.lowHeight,
+                image.firstMip, image.mipCount);
         for (uint32_t p = 0; p < image.partCount; p++) {
             SluiceNeuralLatentPart part;
             sluiceGetNeuralLatentPart(set, i, p, &part);
-            printf("%s{\"offset\": %" PRIu64 ", \"storedSize\": %" PRIu64 ", \"size\": %" PRIu64
-                   ", \"compressed\": %s}",
-                   p ? ", " : "", part.offset, part.storedSize, part.size,
-                   part.isCompressed ? "true" : "false");
+            fprintf(out,
+                    "%s{\"offset\": %" PRIu64 ", \"storedSize\": %" PRIu64 ", \"size\": %" PRIu64
+                    ", \"compressed\": %s}",
+                    p ? ", " : "", part.offset, part.storedSize, part.size,
+                    part.isCompressed ? "true" : "false");
         }
-        printf("]}");
+        fprintf(out, "]}");
     }
-    printf("]");
+    fprintf(out, "]");
 }
 
-static void print_mips_json(const SluiceNeuralSet *set, uint32_t count)
+static void print_mips_json(FILE *out, const SluiceNeuralSet *set, uint32_t count)
 {
-    printf(", \"mips\": [");
+    fprintf(out, ", \"mips\": [");
     for (uint32_t i = 0; i < count; i++) {
         SluiceNeuralMip mip = mip_of(set, i);
         uint64_t offset = 0, size = 0;
         sluiceGetNeuralLatentRange(set, i, 1, &offset, &size);
-        printf("%s{\"width\": %u, \"height\": %u, \"latentImage\": %u, \"latentImageCount\": %u, "
-               "\"firstFusedMip\": %u, \"fusedMipCount\": %u, \"positionLod\": %.9g, "
-               "\"positionScale\": %.9g, \"latentOffset\": %" PRIu64 ", \"latentSize\": %" PRIu64
-               "}",
-               i ? ", " : "", mip.width, mip.height, mip.latentImage, mip.latentImageCount,
-               mip.firstFusedMip, mip.fusedMipCount, (double)mip.positionLod,
-               (double)mip.positionScale, offset, size);
+        fprintf(out,
+                "%s{\"width\": %u, \"height\": %u, \"latentImage\": %u, \"latentImageCount\": %u, "
+                "\"firstFusedMip\": %u, \"fusedMipCount\": %u, \"positionLod\": %.9g, "
+                "\"positionScale\": %.9g, \"latentOffset\": %" PRIu64 ", \"latentSize\": %" PRIu64
+                "}",
+                i ? ", " : "", mip.width, mip.height, mip.latentImage, mip.latentImageCount,
+                mip.firstFusedMip, mip.fusedMipCount, (double)mip.positionLod,
+                (double)mip.positionScale, offset, size);
     }
-    printf("]");
+    fprintf(out, "]");
 }
 
-static void print_set_json(const SluiceNeuralSet *set, const SluiceNeuralSetInfo *info,
+static void print_set_json(FILE *out, const SluiceNeuralSet *set, const SluiceNeuralSetInfo *info,
                            const char *path)
 {
-    printf("{\"file\": ");
-    text_write_json(stdout, path);
-    printf(", \"kind\": \"neural textures\", \"schema\": %u, \"width\": %u, \"height\": %u, "
-           "\"mipLevelCount\": %u, \"channelCount\": %u, \"network\": \"%s\", \"inputCount\": %u",
-           info->schema, info->width, info->height, info->mipCount, info->channelCount,
-           networks[info->network], info->inputCount);
-    printf(", \"highFeatures\": %u, \"highBits\": %u, \"lowFeatures\": %u, \"lowBits\": %u, "
-           "\"gridScale\": %u, \"int8Size\": %" PRIu64 ", \"fp8Size\": %" PRIu64
-           ", \"fileSize\": %" PRIu64 ", \"latentSize\": %" PRIu64 ", \"channels\": [",
-           info->highFeatures, info->highBits, info->lowFeatures, info->lowBits, info->gridScale,
-           info->hasInt8 ? weight_size(set, SLUICE_NEURAL_WEIGHTS_INT8) : 0,
-           info->hasFp8 ? weight_size(set, SLUICE_NEURAL_WEIGHTS_FP8) : 0, info->fileSize,
-           info->latentSize);
+    fprintf(out, "{\"file\": ");
+    text_write_json(out, path);
+    fprintf(out,
+            ", \"kind\": \"neural textures\", \"schema\": %u, \"width\": %u, \"height\": %u, "
+            "\"mipLevelCount\": %u, \"channelCount\": %u, \"network\": \"%s\", \"inputCount\": %u",
+            info->schema, info->width, info->height, info->mipCount, info->channelCount,
+            networks[info->network], info->inputCount);
+    fprintf(out,
+            ", \"highFeatures\": %u, \"highBits\": %u, \"lowFeatures\": %u, \"lowBits\": %u, "
+            "\"gridScale\": %u, \"int8Size\": %" PRIu64 ", \"fp8Size\": %" PRIu64
+            ", \"fileSize\": %" PRIu64 ", \"latentSize\": %" PRIu64 ", \"channels\": [",
+            info->highFeatures, info->highBits, info->lowFeatures, info->lowBits, info->gridScale,
+            info->hasInt8 ? weight_size(set, SLUICE_NEURAL_WEIGHTS_INT8) : 0,
+            info->hasFp8 ? weight_size(set, SLUICE_NEURAL_WEIGHTS_FP8) : 0, info->fileSize,
+            info->latentSize);
     for (uint32_t c = 0; c < info->channelCount; c++)
-        printf("%s{\"colorSpace\": \"%s\", \"valid\": %s}", c ? ", " : "", channel_space(set, c),
-               info->validChannels >> c & 1 ? "true" : "false");
-    printf("]");
-    print_textures_json(set, info->textureCount);
-    print_images_json(set, info->latentImageCount);
-    print_mips_json(set, info->mipCount);
-    printf("}\n");
+        fprintf(out, "%s{\"colorSpace\": \"%s\", \"valid\": %s}", c ? ", " : "",
+                channel_space(set, c), info->validChannels >> c & 1 ? "true" : "false");
+    fprintf(out, "]");
+    print_textures_json(out, set, info->textureCount);
+    print_images_json(out, set, info->latentImageCount);
+    print_mips_json(out, set, info->mipCount);
+    fprintf(out, "}\n");
 }
 
-int show_neural_file(const struct options *options, const char *path)
+bool report_neural_file(const char *path, bool json, FILE *out)
 {
     SluiceNeuralSetInfo info = {.structSize = sizeof info};
     SluiceNeuralSet *set = open_neural_file(path);
     if (!set)
-        return NOT_SHOWN;
+        return false;
     sluiceGetNeuralSetInfo(set, &info);
-    (options->json ? print_set_json : print_set)(set, &info, path);
+    (json ? print_set_json : print_set)(out, set, &info, path);
     sluiceDestroyNeuralSet(set);
-    return ALL_SHOWN;
+    return true;
 }
