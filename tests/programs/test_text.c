@@ -79,12 +79,31 @@ static void bytes_that_are_no_utf8_are_told_from_letters(void **state)
     check_all(cases, sizeof cases / sizeof cases[0]);
 }
 
+static void keep_line(void *user_data, const char *line)
+{
+    strncat(user_data, line, 100);
+}
+
+static void a_listener_gets_the_lines_that_are_said(void **state)
+{
+    char lines[256] = "";
+    (void)state;
+    text_say("%s", "before");
+    text_set_listener(keep_line, lines);
+    text_say("one %d;", 1);
+    text_say("a\nb");
+    text_set_listener(NULL, NULL);
+    text_say("behind");
+    assert_string_equal(lines, "one 1;a\nb");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(letters_of_all_alphabets_stay_as_they_are),
         cmocka_unit_test(what_a_terminal_acts_on_is_spelled_out),
         cmocka_unit_test(bytes_that_are_no_utf8_are_told_from_letters),
+        cmocka_unit_test(a_listener_gets_the_lines_that_are_said),
     };
     return RUN_TESTS(tests);
 }

@@ -56,6 +56,18 @@ void text_write(FILE *out, const char *text)
     }
 }
 
+/* One for the program, as stderr is. */
+static struct {
+    void (*listen)(void *user_data, const char *line);
+    void *user_data;
+} listener;
+
+void text_set_listener(void (*listen)(void *user_data, const char *line), void *user_data)
+{
+    listener.listen = listen;
+    listener.user_data = user_data;
+}
+
 void text_say(const char *format, ...)
 {
     char line[8192];
@@ -65,6 +77,8 @@ void text_say(const char *format, ...)
     va_end(arguments);
     text_write(stderr, line);
     fputc('\n', stderr);
+    if (listener.listen)
+        listener.listen(listener.user_data, line);
 }
 
 bool text_flush(const char *speaker)

@@ -31,6 +31,10 @@ __attribute__((format(printf, 1, 2)))
 void
 text_say(const char *format, ...);
 
+/** Calls `listen` with each line of text_say, from any thread and without its '\n'; NULL: nobody.
+ *  No other thread may say anything during the call. */
+void text_set_listener(void (*listen)(void *user_data, const char *line), void *user_data);
+
 /**
  * A JSON string with its quotes; U+FFFD stands for bytes that are no UTF-8. No '<' is in it, so
  * that it ends no element of a web page that it is put into.

@@ -10,10 +10,15 @@
  *  file cannot be read. */
 bool report_file(const char *path, bool json, FILE *out);
 
+/** Whether report_file knows the kind of the file, by its first bytes. False for URLs. */
+bool report_takes(const char *path);
+
 /** Parts of report_file. */
 bool report_texture_file(const char *path, bool json, FILE *out);
 bool report_neural_file(const char *path, bool json, FILE *out);
 bool report_catalogue(const char *path, bool json, FILE *out);
+/** Whether a file begins as a tile store, an OpenEXR, DDS or KTX2 file does. */
+bool is_texture_file(const char *path);
 /** False also for a file that cannot be read, and for URLs. */
 bool is_catalogue(const char *path);
 /** Whether the file begins as one of neural textures does. False also if it cannot be read. */

@@ -1,5 +1,7 @@
 #include "open_file.h"
 
+#include "file_report.h"
+
 #include "../common/input.h"
 #include "../common/text.h"
 
@@ -112,10 +114,31 @@ static SluiceResult open_container(struct texture_file *file, const char *path, 
 #endif
 }
 
+enum start { START_UNKNOWN, START_EXR, START_DDS, START_KTX2, START_STORE };
+
+static enum start start_of(const char bytes[12])
+{
+    return memcmp(bytes, "\x76\x2F\x31\x01", 4) == 0            ? START_EXR
+           : memcmp(bytes, "DDS ", 4) == 0                      ? START_DDS
+           : memcmp(bytes, "\xABKTX 20\xBB\r\n\x1A\n", 12) == 0 ? START_KTX2
+           : memcmp(bytes, "\x89SLS\r\n\x1A\n", 8) == 0         ? START_STORE
+                                                                : START_UNKNOWN;
+}
+
+bool is_texture_file(const char *path)
+{
+    char start[12] = {0};
+    FILE *file = remote_is_url(path) ? NULL : input_open(path);
+    if (!file)
+        return false;
+    (void)!fread(start, 1, sizeof start, file);
+    fclose(file);
+    return start_of(start) != START_UNKNOWN;
+}
+
 bool open_texture_file(struct texture_file *file, const char *path,
                        const struct texture_opening *opening)
 {
-    static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n", store[] = "\x89SLS\r\n\x1A\n";
     char start[12] = {0};
     SluiceLogCallback log = {file, on_log};
     SluiceResult result;
@@ -125,13 +148,12 @@ bool open_texture_file(struct texture_file *file, const char *path,
         close_texture_file(file);
         return false;
     }
-    if (memcmp(start, "\x76\x2F\x31\x01", 4) == 0)
-        result = open_exr(file, path, opening, log);
-    else if (memcmp(start, "DDS ", 4) == 0 || memcmp(start, ktx2, 12) == 0)
-        result = open_container(file, path, start[0] == 'D', opening, log);
-    else if (memcmp(start, store, 8) == 0)
-        result = open_store(file, path, log);
-    else {
+    switch (start_of(start)) {
+    case START_EXR: result = open_exr(file, path, opening, log); break;
+    case START_DDS: result = open_container(file, path, true, opening, log); break;
+    case START_KTX2: result = open_container(file, path, false, opening, log); break;
+    case START_STORE: result = open_store(file, path, log); break;
+    default:
         text_say(
             "sluice-info: %s: is not a tile store, OpenEXR, DDS, KTX2 or .ntc file; sluice-bake "
             "makes tile stores of other pictures",

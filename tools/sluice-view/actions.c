@@ -275,6 +275,7 @@ static const struct action table[] = {
     {"Panels", "I", NULL, "inspector", toggle_panel, PANEL_INSPECTOR},
     {"Panels", "K", NULL, "events", toggle_panel, PANEL_EVENTS},
     {"Panels", "J", NULL, "device", toggle_panel, PANEL_DEVICE},
+    {"Panels", "Shift+I", NULL, "file and messages", toggle_panel, PANEL_FILE},
     {"Panels", "Shift+T", NULL, "what settings cost here", toggle_panel, PANEL_TRADE},
     {"Panels", "Ctrl+T", NULL, "sweep settings, or cancel", sweep, 0},
     {"Panels", "H", "H or Esc", "hide all, and back", hide_panels, 0},

@@ -28,6 +28,7 @@ void app_finish(struct view_app *app)
 {
     app_close(app);
     camera_path_finish(&app->path);
+    file_facts_finish(&app->file);
 }
 
 static void begin_scene(struct view_app *app, bool walks)
@@ -61,6 +62,8 @@ void app_reset(struct view_app *app, const struct view_settings *settings, bool 
     app->demonstrating = app->recording = false;
     app->dragged_budget = 0;
     app->said_seconds = 0;
+    file_facts_finish(&app->file);
+    file_facts_begin(&app->file);
     if (app->stage)
         begin_scene(app, walks);
 }

@@ -4,6 +4,7 @@
 
 #include "camera.h"
 #include "facts.h"
+#include "file_facts.h"
 #include "flip_map.h"
 #include "keys.h"
 #include "probe.h"
@@ -26,6 +27,7 @@ enum app_panel {
     PANEL_EVENTS,
     PANEL_DEVICE,
     PANEL_TRADE,
+    PANEL_FILE,
     PANEL_KEYS,
     PANEL_MENU,
     PANEL_COUNT
@@ -50,6 +52,7 @@ struct view_app {
     struct view_camera bookmarks[APP_BOOKMARKS];
     bool bookmark_set[APP_BOOKMARKS];
     bool open[PANEL_COUNT];
+    struct file_facts file;
     char texture_filter[64]; ///< words of the table of textures
     bool touched;            ///< the visitor has the camera
     bool dragging;           ///< the mouse turns the camera

@@ -102,10 +102,13 @@ static void draw_texture(struct view_app *app)
     ui_text(UI_BLUE, "%s", texture->name);
     ui_text(UI_GRAY, "%u x %u, %u levels, %s", texture->width, texture->height,
             texture->level_count, texture->format);
-    if (stage_traced(app->stage))
+    if (stage_traced(app->stage)) {
         panel_traced_inspector(app);
-    else
+        if (ui_button("Its file", 0, 0, false))
+            texture_actions_do(app, "file");
+    } else {
         draw_streamer(app, texture);
+    }
 }
 
 void panel_inspector(struct view_app *app)

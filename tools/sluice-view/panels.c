@@ -51,7 +51,7 @@ uint32_t panel_level_color(uint32_t level)
 bool panel_is_right(enum app_panel panel)
 {
     return panel == PANEL_GRAPHS || panel == PANEL_TEXTURES || panel == PANEL_MEMORY ||
-           panel == PANEL_DEVICE || panel == PANEL_TRADE;
+           panel == PANEL_DEVICE || panel == PANEL_TRADE || panel == PANEL_FILE;
 }
 
 /* One panel on each side, below what is always there, so that none covers another. */
@@ -167,5 +167,6 @@ void panels_draw(struct view_app *app)
     panel_events(app);
     panel_device(app);
     panel_trade(app);
+    panel_file(app);
     panel_menu(app);
 }

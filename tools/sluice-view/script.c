@@ -216,7 +216,7 @@ static const struct {
     {"wheel", "a number of turns", take_wheel},
     {"drop", "a path", take_drop},
     {"set", "the name of an option and a value", take_set},
-    {"do", "evict, pin, hide or retry", take_do},
+    {"do", "evict, pin, hide, retry or file", take_do},
     {"record", "a file", take_record},
     {"screenshot", "a file", take_screenshot},
     {"reset", "nothing else", take_reset},

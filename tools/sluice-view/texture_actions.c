@@ -62,6 +62,16 @@ static bool retry(struct view_app *app, uint32_t texture)
            SLUICE_SUCCESS;
 }
 
+static bool look_at_file(struct view_app *app, uint32_t texture)
+{
+    const char *path = stage_texture(app->stage, texture)->path;
+    if (!path[0])
+        return false;
+    file_facts_look(&app->file, path);
+    app_set_panel(app, PANEL_FILE, true);
+    return true;
+}
+
 static const struct texture_action table[] = {
     {"evict", "Evict", NULL, "Evicts its tiles. What is still seen comes again.", evict, NULL},
     {"pin", "Pin", "Unpin",
@@ -71,6 +81,7 @@ static const struct texture_action table[] = {
      "Hidden: its feedback is not read, its tiles leave when others need the memory.", hide,
      is_hidden},
     {"retry", "Retry", NULL, "Reads again at once what failed to load.", retry, NULL},
+    {"file", "Its file", NULL, "Shows what sluice-info says of its file.", look_at_file, NULL},
 };
 
 #define COUNT (sizeof table / sizeof *table)
@@ -87,7 +98,7 @@ bool texture_actions_do(struct view_app *app, const char *name)
         text_say("sluice-view: %s: no texture is selected", name);
         return false;
     }
-    if (stage_traced(app->stage)) {
+    if (stage_traced(app->stage) && strcmp(name, "file") != 0) {
         text_say("sluice-view: %s: not for textures of pbrt scenes, which rays ask for", name);
         return false;
     }
@@ -97,7 +108,8 @@ bool texture_actions_do(struct view_app *app, const char *name)
     for (size_t i = 0; i < COUNT; i++) {
         if (strcmp(table[i].name, name) != 0)
             continue;
-        if (table[i].act(app, table[i].act == retry ? app->selected : primary))
+        if (table[i].act(app, table[i].act == retry || table[i].act == look_at_file ? app->selected
+                                                                                    : primary))
             return true;
         text_say("sluice-view: %s: %s was refused", texture->name, name);
         return false;

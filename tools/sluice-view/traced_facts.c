@@ -253,7 +253,7 @@ const char *traced_explain(const struct traced *t, uint32_t picture, bool *good,
                    "No ray has asked for it: no material that was hit names it.");
     if (p->refused_count > 0 && p->tile_count == 0)
         return say(text, size, good, false,
-                   "It cannot be read: its surfaces are gray. The terminal says why.");
+                   "It cannot be read: its surfaces are gray. Shift+I says why.");
     if (p->tile_count == 0)
         return say(text, size, good, false,
                    "It is being opened. Its tiles are made first if the cache has none.");

@@ -4,6 +4,7 @@
 #include "viewer.h"
 
 #include "controls.h"
+#include "messages.h"
 #include "panels.h"
 #include "scene_hall.h"
 #include "settings_file.h"
@@ -510,6 +511,7 @@ static void finish(struct viewer *v)
     script_finish(&v->script);
     files_finish(&v->paths);
     log_finish();
+    messages_end();
 }
 
 /* Without words it is the hall, if there is one. */
@@ -528,6 +530,7 @@ int viewer_run(const struct view_options *options)
         return EXIT_FAILURE;
     v->options = options;
     v->begin = clock_seconds();
+    messages_begin();
     v->input.mouse_x = v->input.mouse_y = -1; /* over nothing */
     app_init(&v->app);
     for (size_t i = 0; i < options->words.count; i++)

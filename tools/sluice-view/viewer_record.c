@@ -22,7 +22,7 @@ static void name_recording(struct viewer *v)
 static void say_failed(struct viewer *v, SluiceResult result)
 {
     text_say("sluice-view: %s: cannot be recorded: %s", v->recording, sluiceGetResultName(result));
-    app_say(&v->app, "Cannot record %s; the terminal says why", v->recording);
+    app_say(&v->app, "Cannot record %s: Shift+I says why", v->recording);
     v->recording_failed = true;
 }
 

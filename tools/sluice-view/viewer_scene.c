@@ -54,7 +54,7 @@ bool viewer_fit_other(struct viewer *v)
         v->other = create_stage(v, &settings, kind == VIEW_WITH_EVERYTHING, &scene);
     if (v->other)
         return true;
-    app_say(&v->app, "The second picture cannot be drawn; the terminal says why");
+    app_say(&v->app, "The second picture cannot be drawn: Shift+I says why");
     v->app.settings.compare = VIEW_COMPARE_OFF;
     if (truth)
         v->app.settings.view = VIEW_PICTURE;
@@ -159,6 +159,13 @@ static void restore_settings(struct viewer *v, const struct kept_settings *befor
     memcpy(v->settings_path, before->path, sizeof before->path);
 }
 
+/* A panel shows why, and what of a file that was opened is missing. */
+static void note_file(struct viewer *v, const struct file_list *paths, bool opened)
+{
+    if (file_facts_note(&v->app.file, (const char *const *)paths->paths, paths->count, opened))
+        app_set_panel(&v->app, PANEL_FILE, true);
+}
+
 /* Shows a scene instead of the one that is shown, which stays if this fails. `paths`, if there are
  * any, are exchanged with those of the scene before. */
 static bool show(struct viewer *v, struct scene_data *scene, struct file_list *paths)
@@ -187,18 +194,21 @@ static bool show(struct viewer *v, struct scene_data *scene, struct file_list *p
         return false;
     if (first && v->options->record)
         viewer_begin_recording(v, v->options->record);
-    if (first)
+    if (first) {
         begin_walk(v);
-    else if (paths)
+    } else if (paths) {
         app_say(&v->app, "Opened %s", stage_name(stage));
-    else
+        note_file(v, &v->paths, true);
+    } else {
         v->app.camera = camera;
+    }
     return true;
 }
 
 static void say_failed(struct viewer *v, const struct file_list *paths)
 {
-    app_say(&v->app, "Cannot open %s; the terminal says why",
+    note_file(v, paths, false);
+    app_say(&v->app, "Cannot open %s: Shift+I says why",
             paths->count > 0 ? paths->paths[0] : "the room");
 }
 
@@ -214,6 +224,7 @@ static void park_load(struct viewer *v)
 static bool begin_load(struct viewer *v, struct file_list *paths)
 {
     park_load(v);
+    file_facts_begin(&v->app.file);
     v->load = scene_load_begin(paths, v->options->cache, v->options->deterministic);
     return v->load != NULL;
 }
@@ -222,6 +233,7 @@ bool viewer_open_scene(struct viewer *v)
 {
     struct scene_data scene;
     struct file_list paths = v->paths;
+    file_facts_begin(&v->app.file);
     name_command(v);
     v->paths = (struct file_list){0};
     if (v->window)
@@ -234,6 +246,7 @@ bool viewer_open_scene(struct viewer *v)
 void viewer_reopen(struct viewer *v, struct file_list *paths)
 {
     struct scene_data scene;
+    file_facts_begin(&v->app.file);
     if (paths && v->window)
         begin_load(v, paths);
     else if (!open_now(v, paths ? paths : &v->paths, &scene) || !show(v, &scene, paths))
@@ -313,7 +326,7 @@ void viewer_reload_shaders(struct viewer *v)
         return;
     }
     if (!shader_files_compile(code)) {
-        app_say(&v->app, "The shaders stay as they were; the terminal says why");
+        app_say(&v->app, "The shaders stay as they were: Shift+I says why");
         return;
     }
     const bool used = use_shaders(v, code);
