@@ -1,9 +1,9 @@
 /* Plays "SLUICERT" recordings; docs/replay.md has the format. */
+#include "replay/recording_steps.h"
+
 #include "base/checked.h"
 #include "core/manager_snapshot.h"
 #include "replay/decisions.h"
-#include "replay/record.h"
-#include "replay/replay.h"
 #include "replay/runs.h"
 #include "replay/snapshot.h"
 #include "replay/trace_reader.h"
@@ -59,15 +59,17 @@ static SluiceResult prepare_indices(struct slc_replay *replay, struct slc_record
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult play_call(struct slc_replay *replay, struct slc_record *record, size_t offset)
+SluiceResult slc_recording_play(struct slc_replay *replay, struct slc_recording_steps *steps)
 {
     struct slc_player *player = &replay->player;
+    struct slc_record *record = &steps->next;
     struct slc_call *call = &record->call;
     const struct slc_call recorded = *call;
     SluiceResult result = SLUICE_SUCCESS;
+    steps->has_next = false;
     player->dump.indices_absent = false;
     if (player->answer_count > 0 && call->kind != SLC_CALL_GET_TILES_TO_MAP)
-        return slc_replay_corrupt(replay, offset, "a heap was answered outside of its call");
+        return slc_replay_corrupt(replay, steps->offset, "a heap was answered outside of its call");
     if (slc_call_fields(call->kind) & SLC_FIELD_FEEDBACK)
         result = prepare_map(replay, record);
     if (slc_call_fields(call->kind) & SLC_FIELD_INDICES)
@@ -83,7 +85,7 @@ static SluiceResult play_call(struct slc_replay *replay, struct slc_record *reco
         (call->kind == SLC_CALL_ADD_TEXTURE && call->result >= SLUICE_SUCCESS &&
          call->texture_id != recorded.texture_id) ||
         (slc_call_lists(call->kind) && player->hash != record->hash))
-        slc_note_divergence(replay, player->event_count, offset,
+        slc_note_divergence(replay, player->event_count, steps->offset,
                             sluiceGetResultName(recorded.result),
                             sluiceGetResultName(call->result));
     player->answer_count = player->answers_used = 0;
@@ -91,26 +93,40 @@ static SluiceResult play_call(struct slc_replay *replay, struct slc_record *reco
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult play_block(struct slc_replay *replay, size_t end)
+static SluiceResult next_block(struct slc_replay *replay, struct slc_recording_steps *steps)
 {
-    struct slc_cursor in = {replay->in.data, replay->in.pos, end, NULL};
-    while (in.pos < end) {
-        struct slc_record record;
-        size_t offset = in.pos;
-        slc_get_record(&in, &record);
-        SluiceResult result = slc_replay_check(replay, &in);
-        if (result == SLUICE_SUCCESS && record.call.kind == SLC_CALL_HEAP_ANSWER)
-            result =
-                slc_player_add_answer(&replay->player, record.call.result, record.call.heap_id);
-        else if (result == SLUICE_SUCCESS)
-            result = play_call(replay, &record, offset);
-        if (result != SLUICE_SUCCESS)
-            return result;
-    }
+    const struct slc_trace_player player = {NULL, &replay->player.hash,
+                                            &replay->player.event_count};
     if (replay->player.answer_count > 0)
-        return slc_replay_corrupt(replay, end, "a heap was answered outside of its call");
-    replay->in.pos = end;
-    return SLUICE_SUCCESS;
+        return slc_replay_corrupt(replay, steps->block_end,
+                                  "a heap was answered outside of its call");
+    return slc_read_next_block(replay, &steps->checksum, &player, &steps->block_end, &steps->ended);
+}
+
+/* A heap's answer belongs to the call behind it. */
+static SluiceResult read_record(struct slc_replay *replay, struct slc_recording_steps *steps)
+{
+    struct slc_cursor in = {replay->in.data, replay->in.pos, steps->block_end, NULL};
+    struct slc_record *record = &steps->next;
+    steps->offset = in.pos;
+    slc_get_record(&in, record);
+    SluiceResult result = slc_replay_check(replay, &in);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    replay->in.pos = in.pos;
+    steps->has_next = record->call.kind != SLC_CALL_HEAP_ANSWER;
+    return steps->has_next
+               ? SLUICE_SUCCESS
+               : slc_player_add_answer(&replay->player, record->call.result, record->call.heap_id);
+}
+
+SluiceResult slc_recording_read(struct slc_replay *replay, struct slc_recording_steps *steps)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    while (result == SLUICE_SUCCESS && !steps->has_next && !steps->ended)
+        result = replay->in.pos == steps->block_end ? next_block(replay, steps)
+                                                    : read_record(replay, steps);
+    return result;
 }
 
 static void read_state(void *manager, struct slc_snapshot_io *io)
@@ -137,13 +153,13 @@ static SluiceResult read_snapshot(struct slc_replay *replay, uint64_t *checksum)
     return result;
 }
 
-SluiceResult slc_play_recording(struct slc_replay *replay)
+SluiceResult slc_recording_begin(struct slc_replay *replay, struct slc_recording_steps *steps)
 {
     uint32_t words[SLC_TRACE_WORDS];
     uint32_t version;
-    uint64_t checksum;
-    SluiceResult result =
-        slc_read_trace_header(replay, SLC_TRACE_VERSION_SNAPSHOT, &version, &checksum, words);
+    *steps = (struct slc_recording_steps){.checksum = 0};
+    SluiceResult result = slc_read_trace_header(replay, SLC_TRACE_VERSION_SNAPSHOT, &version,
+                                                &steps->checksum, words);
     if (result != SLUICE_SUCCESS)
         return result;
     replay->out->kind = SLUICE_TRACE_KIND_RECORDING;
@@ -157,13 +173,24 @@ SluiceResult slc_play_recording(struct slc_replay *replay)
     result = slc_replay_start(replay, &info, true);
     if (result == SLUICE_ERROR_ZERO_HEAP_CAPACITY || result == SLUICE_ERROR_INVALID_ARGUMENT)
         return slc_replay_corrupt(replay, 16, "no manager has such heaps");
-    if (result == SLUICE_SUCCESS && version == SLC_TRACE_VERSION_SNAPSHOT)
-        result = read_snapshot(replay, &checksum);
+    steps->begins_in_use = version == SLC_TRACE_VERSION_SNAPSHOT;
+    if (result == SLUICE_SUCCESS && steps->begins_in_use)
+        result = read_snapshot(replay, &steps->checksum);
+    steps->block_end = replay->in.pos;
+    return result;
+}
+
+SluiceResult slc_play_recording(struct slc_replay *replay)
+{
+    struct slc_recording_steps steps;
+    SluiceResult result = slc_recording_begin(replay, &steps);
     if (result == SLUICE_SUCCESS)
         result = slc_replay_record(replay);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    const struct slc_trace_player player = {play_block, &replay->player.hash,
-                                            &replay->player.event_count};
-    return slc_play_blocks(replay, checksum, &player);
+    while (result == SLUICE_SUCCESS) {
+        result = slc_recording_read(replay, &steps);
+        if (result != SLUICE_SUCCESS || steps.ended)
+            break;
+        result = slc_recording_play(replay, &steps);
+    }
+    return result;
 }

@@ -90,18 +90,28 @@ SluiceResult slc_read_block(struct slc_replay *replay, uint64_t *checksum, size_
     return SLUICE_SUCCESS;
 }
 
+SluiceResult slc_read_next_block(struct slc_replay *replay, uint64_t *checksum,
+                                 const struct slc_trace_player *player, size_t *end, bool *ended)
+{
+    struct slc_cursor *in = &replay->in;
+    size_t start = in->pos;
+    *end = start;
+    *ended = slc_get_u32(in) == 0 && !in->why;
+    if (*ended)
+        return read_end(replay, start, *checksum, player);
+    in->pos = in->why ? in->pos : start;
+    return slc_read_block(replay, checksum, end);
+}
+
 SluiceResult slc_play_blocks(struct slc_replay *replay, uint64_t checksum,
                              const struct slc_trace_player *player)
 {
-    struct slc_cursor *in = &replay->in;
+    size_t end;
+    bool ended = false;
     SluiceResult result = SLUICE_SUCCESS;
-    while (result == SLUICE_SUCCESS) {
-        size_t start = in->pos, end = start;
-        if (slc_get_u32(in) == 0 && !in->why)
-            return read_end(replay, start, checksum, player);
-        in->pos = in->why ? in->pos : start;
-        result = slc_read_block(replay, &checksum, &end);
-        if (result == SLUICE_SUCCESS)
+    while (result == SLUICE_SUCCESS && !ended) {
+        result = slc_read_next_block(replay, &checksum, player, &end, &ended);
+        if (result == SLUICE_SUCCESS && !ended)
             result = player->play_block(replay, end);
     }
     return result;

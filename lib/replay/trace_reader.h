@@ -20,10 +20,17 @@ SluiceResult slc_read_block(struct slc_replay *replay, uint64_t *checksum, size_
 
 /** Who plays the records. */
 struct slc_trace_player {
-    /** Plays the records from replay->in up to `end`, whose checksum is right. */
+    /** Plays the records from replay->in up to `end`, whose checksum is right. Unused by
+     *  slc_read_next_block. */
     SluiceResult (*play_block)(struct slc_replay *replay, size_t end);
     const uint64_t *hash, *event_count; ///< over what was played so far
 };
+/**
+ * Reads the head of the next block as slc_read_block does, or the end mark: `*ended`. Nothing may
+ * follow the end mark. Errors: CORRUPT_DATA.
+ */
+SluiceResult slc_read_next_block(struct slc_replay *replay, uint64_t *checksum,
+                                 const struct slc_trace_player *player, size_t *end, bool *ended);
 /** Plays block after block, up to and with the end mark. */
 SluiceResult slc_play_blocks(struct slc_replay *replay, uint64_t checksum,
                              const struct slc_trace_player *player);
