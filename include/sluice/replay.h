@@ -167,6 +167,178 @@ typedef struct SluiceReplayResult {
  */
 SLUICE_API SluiceResult sluiceReplay(const SluiceReplayInfo *pInfo, SluiceReplayResult *pResult);
 
+/** Plays a recording of a manager call by call. */
+typedef struct SluiceTracePlayer SluiceTracePlayer;
+
+/** Settings of a trace player. A field of zero selects its default. */
+typedef struct SluiceTracePlayerCreateInfo {
+    uint32_t structSize; ///< sizeof(SluiceTracePlayerCreateInfo).
+    const void *pData;   ///< Whole "SLUICERT" recording. Required. Must outlive the player.
+    size_t size;         ///< Bytes of the recording.
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
+    SluiceLogCallback log;                       ///< Problems of the trace, with the byte offset.
+    /** Events that the player's manager keeps, as sluiceSetTileEventCapacity. Default: none. */
+    uint32_t tileEventCapacity;
+} SluiceTracePlayerCreateInfo;
+
+/** Calls of a recording, by the numbers of docs/replay.md. Later versions may add some. */
+typedef enum SluiceTraceCallKind {
+    SLUICE_TRACE_CALL_NONE = 0,                 ///< The recording ends here.
+    SLUICE_TRACE_CALL_SET_CONFIG = 1,           ///< sluiceSetConfig
+    SLUICE_TRACE_CALL_ADD_TEXTURE = 2,          ///< sluiceAddStreamedTexture
+    SLUICE_TRACE_CALL_REMOVE_TEXTURE = 3,       ///< sluiceRemoveStreamedTexture
+    SLUICE_TRACE_CALL_UPDATE_FEEDBACK = 4,      ///< sluiceUpdateWithSamplerFeedback
+    SLUICE_TRACE_CALL_MATCH_PRIMARY = 5,        ///< sluiceMatchPrimaryTexture
+    SLUICE_TRACE_CALL_SET_PRIMARY = 6,          ///< sluiceSetPrimaryTexture
+    SLUICE_TRACE_CALL_GET_TILES_TO_MAP = 7,     ///< sluiceGetTilesToMap
+    SLUICE_TRACE_CALL_UPDATE_MAPPING = 8,       ///< sluiceUpdateTilesMapping
+    SLUICE_TRACE_CALL_REPORT_FAILED = 9,        ///< sluiceReportFailedTiles
+    SLUICE_TRACE_CALL_RETRY_FAILED = 10,        ///< sluiceRetryFailedTiles
+    SLUICE_TRACE_CALL_GET_GIVEN_UP = 11,        ///< sluiceGetGivenUpTiles
+    SLUICE_TRACE_CALL_GET_TILES_TO_CANCEL = 12, ///< sluiceGetTilesToCancel
+    SLUICE_TRACE_CALL_REPORT_CANCELED = 13,     ///< sluiceReportCanceledTiles
+    SLUICE_TRACE_CALL_GET_TILES_TO_UNMAP = 14,  ///< sluiceGetTilesToUnmap
+    SLUICE_TRACE_CALL_COMPLETE_RETIRE = 15,     ///< sluiceCompleteRetireValue
+    SLUICE_TRACE_CALL_TRIM_STANDBY = 16,        ///< sluiceTrimStandbyTiles
+    SLUICE_TRACE_CALL_DEFRAGMENT = 17,          ///< sluiceDefragmentTiles
+    SLUICE_TRACE_CALL_RELEASE_HEAP = 18,        ///< sluiceReleaseHeap
+    SLUICE_TRACE_CALL_GET_MINMIP_UPDATES = 19,  ///< sluiceGetMinMipUpdates
+    SLUICE_TRACE_CALL_EVACUATE_HEAPS = 21,      ///< sluiceEvacuateHeaps
+    SLUICE_TRACE_CALL_FORGET_TEXTURE = 22,      ///< sluiceForgetStreamedTexture
+    SLUICE_TRACE_CALL_EVICT_TEXTURE = 23,       ///< sluiceEvictStreamedTexture
+    SLUICE_TRACE_CALL_SET_UV_TRANSFORM = 24,    ///< sluiceSetUvTransform
+    SLUICE_TRACE_CALL_SET_PRIORITY = 25         ///< sluiceSetTexturePriority
+} SluiceTraceCallKind;
+
+/** Recorded call. Fields that its kind lacks are 0. */
+typedef struct SluiceTraceCall {
+    uint32_t structSize; ///< sizeof(SluiceTraceCall).
+    SluiceTraceCallKind kind;
+    SluiceResult result;         ///< That the call had when it was recorded.
+    SluiceTextureId textureId;   ///< Of added textures the id that they got.
+    SluiceTextureId primaryId;   ///< MATCH_PRIMARY, SET_PRIMARY.
+    bool hasTimeStamp;           ///< UPDATE_FEEDBACK, MATCH_PRIMARY, REPORT_FAILED.
+    uint64_t timeStamp, timeout; ///< In the ticks of the recorded program.
+    uint64_t retireValue;
+    uint32_t tileCount; ///< Entries that a list call returned; tiles that an answer names.
+    uint32_t feedbackWidth, feedbackHeight; ///< UPDATE_FEEDBACK: texels of the map.
+    uint32_t heapCount;                     ///< GET_TILES_TO_MAP: heaps that were allocated.
+    uint32_t refusedHeapCount;              ///< GET_TILES_TO_MAP: heaps that were refused.
+    uint64_t offset;                        ///< Byte of the recording where it stands.
+} SluiceTraceCall;
+
+/** State of a trace player. */
+typedef struct SluiceTracePlayerState {
+    uint32_t structSize;           ///< sizeof(SluiceTracePlayerState).
+    uint32_t formatVersion;        ///< Of the recording: 1 or 2.
+    uint32_t libraryVersion;       ///< That recorded: major << 22, minor << 12, patch.
+    uint32_t heapTileCapacity;     ///< Slots per heap.
+    uint32_t tileSize;             ///< Bytes.
+    bool alwaysMapPackedTiles;     ///< Packed tiles are loaded when their texture is added.
+    uint64_t offset;               ///< Bytes of the recording that were read.
+    uint64_t eventCount;           ///< Calls that were played.
+    uint64_t decisionHash;         ///< Of these calls, as in SluiceReplayResult.
+    uint64_t recordedHash;         ///< From the end mark. 0 before it was read.
+    uint64_t divergedEvent;        ///< As in SluiceReplayResult.
+    uint64_t divergedOffset;       ///< As in SluiceReplayResult.
+    uint64_t errorOffset;          ///< As in SluiceReplayResult.
+    uint32_t maxHeapCount;         ///< Of the configuration in force. 0: no limit.
+    uint32_t targetHeapCount;      ///< Of the configuration in force. 0: none.
+    uint32_t numExtraStandbyTiles; ///< Of the configuration in force.
+} SluiceTracePlayerState;
+
+/**
+ * Creates a player with a manager of its own, in the state that the recording begins with. Plays
+ * no call. A malicious trace can request much memory: limit it in pAllocator.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if only one
+ *         of pAllocator's functions is set or tileEventCapacity is above SLUICE_MAX_TILE_EVENTS;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_UNSUPPORTED, with a log message, for newer
+ *         versions, recordings of demand loading and feedback traces; SLUICE_ERROR_CORRUPT_DATA,
+ *         with a log message.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceCreateTracePlayer(const SluiceTracePlayerCreateInfo *pInfo,
+                                                SluiceTracePlayer **pPlayer);
+
+/** Destroys a player and its manager. NULL is allowed. Thread safety: external on `player`. */
+SLUICE_API void sluiceDestroyTracePlayer(SluiceTracePlayer *player);
+
+/**
+ * Returns the call that sluicePlayTraceCall will make. SLUICE_TRACE_CALL_NONE: all were played and
+ * the end mark is right.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a wrong
+ *         structSize; SLUICE_ERROR_CORRUPT_DATA, with a log message, if the trace is damaged or cut
+ *         off there; SLUICE_ERROR_OUT_OF_HOST_MEMORY. The calls before stay played after an error,
+ *         and the error is returned again.
+ * Thread safety: external on `player`.
+ */
+SLUICE_API SluiceResult sluiceGetNextTraceCall(SluiceTracePlayer *player, SluiceTraceCall *pCall);
+
+/**
+ * Makes the next recorded call. Decisions that differ from the recording are not an error: see
+ * SluiceTracePlayerState::divergedEvent. Does nothing at the end of the recording.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_CORRUPT_DATA, with a log message;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. The error is returned again.
+ * Thread safety: external on `player`.
+ */
+SLUICE_API SluiceResult sluicePlayTraceCall(SluiceTracePlayer *player);
+
+/**
+ * Returns the manager that decides. Read it with the functions that take a const manager, and with
+ * sluiceMarkTileEvents. Other calls make the replay decide differently. Valid until
+ * sluiceReadTraceCheckpoint and sluiceDestroyTracePlayer.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER. Thread safety: external on `player`.
+ */
+SLUICE_API SluiceResult sluiceGetTracePlayerManager(SluiceTracePlayer *player,
+                                                    SluiceStreamedTextureManager **pManager);
+
+/**
+ * Returns how far a player is.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a wrong
+ *         structSize.
+ * Thread safety: external on `player`.
+ */
+SLUICE_API SluiceResult sluiceGetTracePlayerState(const SluiceTracePlayer *player,
+                                                  SluiceTracePlayerState *pState);
+
+/**
+ * Lists the textures that the manager has, in the order of their indices. Two-call idiom:
+ * `*pIdCount` is the capacity of `pIds` on entry and the number written on return; if pIds is NULL,
+ * it becomes the number of textures.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER. Returns SLUICE_INCOMPLETE if there are more.
+ * Thread safety: external on `player`.
+ */
+SLUICE_API SluiceResult sluiceGetTracePlayerTextures(const SluiceTracePlayer *player,
+                                                     uint32_t *pIdCount, SluiceTextureId *pIds);
+
+/**
+ * Writes the state between two calls: position, hash, and the snapshot of the manager, about as
+ * many bytes as sluiceBeginRecording writes. Tile events are left out.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_OUT_OF_HOST_MEMORY; the error of a damaged trace;
+ *         results of the writer.
+ * Thread safety: external on `player`.
+ */
+SLUICE_API SluiceResult sluiceWriteTraceCheckpoint(SluiceTracePlayer *player,
+                                                   const SluiceRecordWriter *pWriter);
+
+/**
+ * Goes to the state that sluiceWriteTraceCheckpoint wrote, with a new manager, which decides as the
+ * old one did from there on. `pData` must come from a player of the same recording.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_CORRUPT_DATA,
+ *         with a log message, for other bytes. Nothing has changed after an error.
+ * Thread safety: external on `player`.
+ */
+SLUICE_API SluiceResult sluiceReadTraceCheckpoint(SluiceTracePlayer *player, const void *pData,
+                                                  size_t size);
+
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -48,6 +48,7 @@
     X(StoreWriter, SluiceStoreWriter)                                                              \
     X(StreamedTextureManager, SluiceStreamedTextureManager)                                        \
     X(TileLoader, SluiceTileLoader)                                                                \
+    X(TracePlayer, SluiceTracePlayer)                                                              \
     X(VulkanContext, SluiceVulkanContext)                                                          \
     X(VulkanNeuralDecoder, SluiceVulkanNeuralDecoder)                                              \
     X(VulkanStreamer, SluiceVulkanStreamer)

@@ -39,6 +39,10 @@
 #define SLC_FIRST_SluiceFileRecordingInfo SLC_UP_TO(SluiceFileRecordingInfo, log)
 #define SLC_FIRST_SluiceReplayInfo SLC_UP_TO(SluiceReplayInfo, pStatistics)
 #define SLC_FIRST_SluiceReplayResult SLC_UP_TO(SluiceReplayResult, demand)
+#define SLC_FIRST_SluiceTracePlayerCreateInfo                                                      \
+    SLC_UP_TO(SluiceTracePlayerCreateInfo, tileEventCapacity)
+#define SLC_FIRST_SluiceTraceCall SLC_UP_TO(SluiceTraceCall, offset)
+#define SLC_FIRST_SluiceTracePlayerState SLC_UP_TO(SluiceTracePlayerState, numExtraStandbyTiles)
 #define SLC_FIRST_SluiceProxySetCreateInfo SLC_UP_TO(SluiceProxySetCreateInfo, log)
 #define SLC_FIRST_SluiceProxySetInfo SLC_UP_TO(SluiceProxySetInfo, hostMemorySize)
 #define SLC_FIRST_SluiceProxyRequests SLC_UP_TO(SluiceProxyRequests, pIndices)

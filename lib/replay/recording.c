@@ -109,6 +109,8 @@ static SluiceResult read_record(struct slc_replay *replay, struct slc_recording_
     struct slc_cursor in = {replay->in.data, replay->in.pos, steps->block_end, NULL};
     struct slc_record *record = &steps->next;
     steps->offset = in.pos;
+    if (replay->player.answer_count == 0)
+        steps->first_offset = in.pos;
     slc_get_record(&in, record);
     SluiceResult result = slc_replay_check(replay, &in);
     if (result != SLUICE_SUCCESS)

@@ -14,6 +14,7 @@ struct slc_recording_steps {
     bool has_next;
     struct slc_record next; ///< the call to play; its heap answers are in the player
     size_t offset;          ///< of that call's record
+    size_t first_offset;    ///< of the first heap answer that belongs to it, or its own
 };
 
 /** Reads the header, makes the player and reads the snapshot. Errors: those of sluiceReplay. */

@@ -12,6 +12,7 @@
 #include <sluice/udim.h>
 
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 /* clang-format off */
@@ -110,10 +111,27 @@ sluiceBeginRecordingToFile(f->fresh, f->path, ?NULL, &f->out.recorder) => sluice
 sluiceBeginFileRecording(f->fresh, &f->recording, &f->out.recorder) => sluiceEndRecording(f->out.recorder)
 sluiceEndRecording(?NULL)
 !sluiceReplay(&f->replay, &f->out.replay)
+sluiceCreateTracePlayer(&f->player_info, &f->out.player) => sluiceDestroyTracePlayer(f->out.player)
+!sluiceDestroyTracePlayer(f->player)
+sluiceGetNextTraceCall(f->player, &f->out.trace_call)
+sluicePlayTraceCall(f->player)
+sluiceGetTracePlayerManager(f->player, &f->out.manager)
+sluiceGetTracePlayerState(f->player, &f->out.player_state)
+sluiceGetTracePlayerTextures(f->player, one(f), ?&f->out.id)
+sluiceWriteTraceCheckpoint(f->player, &f->writer)
+sluiceReadTraceCheckpoint(f->player, f->checkpoint.data, f->checkpoint.size)
 */
 /* clang-format on */
 
+struct bytes {
+    uint8_t data[1024];
+    size_t size;
+};
+
 struct fixture {
+    SluiceTracePlayerCreateInfo player_info;
+    SluiceTracePlayer *player;
+    struct bytes trace, checkpoint;
     SluiceCameraMotion motion;
     SluiceLookAheadInfo look;
     float view[16];
@@ -187,6 +205,9 @@ struct fixture {
         SluiceTileEvent events[1];
         SluiceRecorder *recorder;
         SluiceReplayResult replay;
+        SluiceTracePlayer *player;
+        SluiceTraceCall trace_call;
+        SluiceTracePlayerState player_state;
     } out;
 };
 
@@ -221,6 +242,28 @@ static SluiceResult write_nothing(void *user, const void *data, size_t size)
 {
     (void)user, (void)data, (void)size;
     return SLUICE_SUCCESS;
+}
+
+static SluiceResult keep_bytes(void *user, const void *data, size_t size)
+{
+    struct bytes *bytes = user;
+    assert_true(size <= sizeof bytes->data - bytes->size);
+    memcpy(bytes->data + bytes->size, data, size);
+    bytes->size += size;
+    return SLUICE_SUCCESS;
+}
+
+static void init_player(struct fixture *f)
+{
+    const SluiceRecordWriter trace = {&f->trace, keep_bytes};
+    const SluiceRecordWriter checkpoint = {&f->checkpoint, keep_bytes};
+    SluiceRecorder *recorder;
+    CHECK_OK(sluiceBeginRecording(f->manager, &trace, NULL, &recorder));
+    CHECK_OK(sluiceEndRecording(recorder));
+    f->player_info = (SluiceTracePlayerCreateInfo){
+        .structSize = sizeof f->player_info, .pData = f->trace.data, .size = f->trace.size};
+    CHECK_OK(sluiceCreateTracePlayer(&f->player_info, &f->player));
+    CHECK_OK(sluiceWriteTraceCheckpoint(f->player, &checkpoint));
 }
 
 static void init_manager(struct fixture *f)
@@ -298,10 +341,12 @@ static void fixture_init(struct fixture *f, void **state)
     assert_non_null(cell);
     fclose(cell);
     init_manager(f);
+    init_player(f);
 }
 
 static void fixture_finish(struct fixture *f)
 {
+    sluiceDestroyTracePlayer(f->player);
     sluiceDestroyTileLoader(f->loader);
     sluiceDestroyFilePool(f->pool);
     sluiceDestroyReadPool(f->read_pool);
