@@ -30,6 +30,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     SluiceResult status = play_damaged(copy, size - 1, &result);
     if (status == SLUICE_ERROR_CORRUPT_DATA && result.errorOffset > size - 1)
         abort();
+    /* Recordings of managers are played call by call, too, with the same outcome. */
+    SluiceTracePlayerState state = {.structSize = sizeof state};
+    SluiceResult by_calls = play_damaged_by_calls(copy, size - 1, &state);
+    if (size > 8 && memcmp(copy, "SLUICERT", 8) == 0 && status != SLUICE_ERROR_OUT_OF_HOST_MEMORY &&
+        by_calls != SLUICE_ERROR_OUT_OF_HOST_MEMORY &&
+        (by_calls != status ||
+         (state.eventCount > 0 &&
+          (state.eventCount != result.eventCount || state.decisionHash != result.decisionHash))))
+        abort();
     free(copy);
     return 0;
 }

@@ -73,6 +73,62 @@ static void ignore_line(void *user, const char *line)
     *total += strlen(line);
 }
 
+struct kept_bytes {
+    uint8_t *data;
+    size_t size;
+};
+
+static SluiceResult keep(void *user, const void *data, size_t size)
+{
+    struct kept_bytes *kept = user;
+    uint8_t *grown = realloc(kept->data, kept->size + size + 1);
+    if (!grown)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    kept->data = grown;
+    memcpy(kept->data + kept->size, data, size);
+    kept->size += size;
+    return SLUICE_SUCCESS;
+}
+
+/* After every 16th call the player goes on from a checkpoint. */
+static SluiceResult play_on(SluiceTracePlayer *player)
+{
+    SluiceTraceCall call = {.structSize = sizeof call};
+    SluiceResult result = sluiceGetNextTraceCall(player, &call);
+    for (uint32_t i = 1; result == SLUICE_SUCCESS && call.kind != SLUICE_TRACE_CALL_NONE; i++) {
+        struct kept_bytes kept = {NULL, 0};
+        const SluiceRecordWriter writer = {&kept, keep};
+        result = sluicePlayTraceCall(player);
+        if (result == SLUICE_SUCCESS && i % 16 == 0)
+            result = sluiceWriteTraceCheckpoint(player, &writer);
+        if (result == SLUICE_SUCCESS && i % 16 == 0)
+            result = sluiceReadTraceCheckpoint(player, kept.data, kept.size);
+        free(kept.data);
+        if (result == SLUICE_SUCCESS)
+            result = sluiceGetNextTraceCall(player, &call);
+    }
+    return result;
+}
+
+SluiceResult play_damaged_by_calls(const void *data, size_t size, SluiceTracePlayerState *state)
+{
+    struct limited_memory memory;
+    limited_memory_init(&memory, UINT64_C(12) << 20); /* two managers, and a checkpoint */
+    const SluiceTracePlayerCreateInfo info = {
+        .structSize = sizeof info, .pData = data, .size = size, .pAllocator = &memory.callbacks};
+    SluiceTracePlayer *player;
+    SluiceResult result = sluiceCreateTracePlayer(&info, &player);
+    if (result == SLUICE_SUCCESS) {
+        result = play_on(player);
+        if (sluiceGetTracePlayerState(player, state) != SLUICE_SUCCESS)
+            abort();
+    }
+    sluiceDestroyTracePlayer(player);
+    if (memory.left != memory.limit)
+        abort();
+    return result;
+}
+
 SluiceResult play_damaged(const void *data, size_t size, SluiceReplayResult *result)
 {
     struct limited_memory memory;

@@ -18,4 +18,8 @@ void reseal_trace(uint8_t *data, size_t size);
 /** Plays with little memory; aborts if any of it is lost. */
 SluiceResult play_damaged(const void *data, size_t size, SluiceReplayResult *result);
 
+/** Plays call by call, with little memory and checkpoints; aborts if any memory is lost. `state` is
+ *  as it was if there was nothing to play. */
+SluiceResult play_damaged_by_calls(const void *data, size_t size, SluiceTracePlayerState *state);
+
 #endif /* TESTS_REPLAY_DAMAGE_H */
