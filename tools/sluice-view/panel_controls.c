@@ -1,9 +1,8 @@
 #include "panels.h"
 
 #include "controls.h"
+#include "feedback_words.h"
 #include "panel_traced.h"
-
-#include <sluice/feedback_rate.h>
 
 #include <math.h>
 #include <stddef.h>
@@ -144,30 +143,18 @@ static void draw_widget(struct view_app *app, const struct control *control, con
     }
 }
 
-/* Says what a probability of feedback means for a region of 8 x 8 pixels. */
-static void draw_feedback_rate(const struct view_app *app)
+/* Says how soon a region of 8 x 8 pixels is noticed. */
+static void draw_feedback_outlook(const struct view_app *app)
 {
-    const struct view_settings *s = &app->settings;
-    const SluiceFeedbackRate rate = {.structSize = sizeof rate,
-                                     .selection = SLUICE_FEEDBACK_SELECTION_SHARED_QUADS,
-                                     .regionWidth = 8,
-                                     .regionHeight = 8,
-                                     .textureCount =
-                                         app->facts.texture_count ? app->facts.texture_count : 1,
-                                     .texturesPerFrame = s->textures_per_frame,
-                                     .frameRate = s->frame_cap ? s->frame_cap : 60,
-                                     .timeoutSeconds = s->timeout};
-    SluiceFeedbackDelay delay = {.structSize = sizeof delay};
-    double miss = 1;
-    if (s->feedback == VIEW_FEEDBACK_OFF ||
-        sluicePredictFeedbackDelay(&rate, s->probability, &delay) != SLUICE_SUCCESS ||
-        sluicePredictFeedbackMiss(&rate, s->probability, &miss) != SLUICE_SUCCESS)
+    const uint32_t count = app->stage ? feedback_texture_count(app->stage) : 1;
+    const struct feedback_outlook outlook = feedback_outlook_of(&app->settings, count);
+    if (!outlook.known)
         return;
-    if (miss < 1e-4)
-        ui_text(UI_GRAY, "seen within %.0f frames, missed less than 0.01 %%", delay.percentile99);
+    if (outlook.missed < 1e-4)
+        ui_text(UI_GRAY, "seen within %.0f frames, missed less than 0.01 %%", outlook.frames);
     else
-        ui_text(miss > 0.01 ? UI_ORANGE : UI_GRAY, "seen within %.0f frames, missed %.2g %%",
-                delay.percentile99, 100 * miss);
+        ui_text(outlook.missed > 0.01 ? UI_ORANGE : UI_GRAY,
+                "seen within %.0f frames, missed %.2g %%", outlook.frames, 100 * outlook.missed);
     ui_hint("Predicted for 8 x 8 pixels: 99 of 100 are noticed within so many frames; so many that "
             "stay in view are evicted, because no map shows them within --timeout.");
 }
@@ -179,7 +166,11 @@ static void draw_control(struct view_app *app, const struct control *control)
         draw_budget(app, control->label);
         return;
     }
+    const bool unused = control->offset == offsetof(struct view_settings, probability) &&
+                        app->settings.feedback_by != VIEW_BY_QUADS;
+    ui_begin_disabled(unused);
     draw_widget(app, control, control->label);
+    ui_end_disabled();
     ui_hint("%s.%s\nDouble click: %s. --%s", control->option.help,
             control->flags & CONTROL_REOPENS ? " Takes effect when the scene is opened again (F5)."
                                              : "",
@@ -187,7 +178,7 @@ static void draw_control(struct view_app *app, const struct control *control)
     if (ui_double_clicked() && control->option.kind != OPTION_CHOICE)
         control_reset(control, &app->settings);
     if (control->offset == offsetof(struct view_settings, probability))
-        draw_feedback_rate(app);
+        draw_feedback_outlook(app);
 }
 
 void panel_controls(struct view_app *app)

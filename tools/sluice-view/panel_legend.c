@@ -1,5 +1,6 @@
 #include "panels.h"
 
+#include "feedback_words.h"
 #include "panel_traced.h"
 #include "tile_marks.h"
 
@@ -99,6 +100,14 @@ static void draw_ages(void)
     draw_swatch(UI_COLOR(255, 0, 255, 255), MARK_FAILED, "3 loads in 10 s: thrashes");
 }
 
+static void draw_writers(const struct view_app *app)
+{
+    char words[96];
+    const uint32_t count = feedback_texture_count(app->stage);
+    draw_color(UI_COLOR(255, 217, 51, 255), "wrote feedback in this frame:");
+    ui_text(UI_GRAY, "%s", feedback_writers(&app->settings, count, words, sizeof words));
+}
+
 static void draw_checks(void)
 {
     ui_text(UI_GRAY, "texels of level 0 per pixel");
@@ -192,7 +201,7 @@ static void draw_legend(const struct view_app *app)
         ui_text(UI_GRAY, "a color per texture; white edges:");
         ui_text(UI_GRAY, "a side that is no power of two");
         break;
-    case VIEW_WRITTEN: ui_text(UI_GRAY, "dots: pixels that wrote"); break;
+    case VIEW_WRITTEN: draw_writers(app); break;
     case VIEW_CHECKS: draw_checks(); break;
     default: break;
     }

@@ -47,6 +47,7 @@ bool panel_traced_takes(const char *control)
                                         "timeout",
                                         "residency",
                                         "feedback",
+                                        "feedback-by",
                                         "probability",
                                         "tiles-per-frame",
                                         "loads-in-flight",

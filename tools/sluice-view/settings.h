@@ -7,6 +7,8 @@
 
 enum view_residency { VIEW_AUTO, VIEW_SPARSE, VIEW_PAGED, VIEW_DENSE };
 enum view_feedback { VIEW_FEEDBACK_ON, VIEW_FEEDBACK_OFF };
+/** Pixels that write feedback. shaders/scene_push.glsl has the same numbers. */
+enum view_feedback_by { VIEW_BY_QUADS, VIEW_BY_LATTICE, VIEW_BY_EVERY_PIXEL, VIEW_BY_TURNS };
 enum view_motion { VIEW_WALK, VIEW_FLY, VIEW_ORBIT };
 enum view_compare { VIEW_COMPARE_OFF, VIEW_DIVIDER, VIEW_DIFFERENCE, VIEW_FLICKER };
 enum view_render_mode { VIEW_PRIMARY, VIEW_NEAR, VIEW_DISTANT, VIEW_PATHS }; ///< PBRT_MODE_...
@@ -32,10 +34,12 @@ enum view_number {
 struct view_settings {
     uint64_t budget; ///< bytes; 0: no limit
     double lod_bias;
-    int feedback; ///< enum view_feedback
+    int feedback;    ///< enum view_feedback
+    int feedback_by; ///< enum view_feedback_by
     double probability;
-    double predict; ///< seconds
-    uint32_t textures_per_frame, tiles_per_frame, loads_in_flight;
+    double predict;              ///< seconds
+    uint32_t textures_per_frame; ///< 0: all
+    uint32_t tiles_per_frame, loads_in_flight;
     double timeout; ///< seconds
     uint32_t standby;
     double fade;   ///< seconds

@@ -102,6 +102,13 @@ uint32_t stage_heap_tiles(const struct stage *s)
     return s->heap_tiles;
 }
 
+/* Maps per frame; the streamer has room for a texture more. */
+static uint32_t maps_per_frame(const struct stage *s, uint32_t wanted)
+{
+    const uint32_t all = s->scene.image_count + 1;
+    return wanted == 0 || wanted > all ? all : wanted;
+}
+
 static bool create_streamer(struct stage *s, const struct stage_request *request)
 {
     const SluiceVulkanStreamerDebugInfo debug = {.structSize = sizeof debug,
@@ -122,8 +129,9 @@ static bool create_streamer(struct stage *s, const struct stage_request *request
         .residencyMode = mode_of(&s->settings),
         .framesInFlight = FRAMES_SLOTS,
         .maxTextureCount = s->scene.image_count + 1,
-        .maxTexturesPerFrame = s->scene.image_count < 1024 ? 1024 : s->scene.image_count,
-        .texturesPerFrame = s->settings.textures_per_frame,
+        .maxTexturesPerFrame = s->scene.image_count + 1,
+        .texturesPerFrame = maps_per_frame(s, s->settings.textures_per_frame),
+        .feedbackInTurns = true, /* as shaders choose in each frame */
         .tilesPerFrame = s->settings.tiles_per_frame,
         .maxLoadsInFlight = s->settings.loads_in_flight,
         .heapTileCapacity = s->heap_tiles,
@@ -197,9 +205,8 @@ static SluiceResult wrap_replaced(struct stage *s, uint32_t i)
         result = slow_source_create(&s->line, source, &s->slow[i]);
         source = s->slow[i];
     }
-    return result == SLUICE_SUCCESS
-               ? fault_source_create(&s->source_fails, source, &s->faulty[i])
-               : result;
+    return result == SLUICE_SUCCESS ? fault_source_create(&s->source_fails, source, &s->faulty[i])
+                                    : result;
 }
 
 static bool add_texture(struct stage *s, uint32_t i)
@@ -334,10 +341,7 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
     if (!check(sluiceGetVulkanStreamerSettings(s->streamer, &now),
                "sluiceGetVulkanStreamerSettings"))
         return;
-    /* As create_streamer allows it; the streamer has no more maps than textures. */
-    const uint32_t most = s->scene.image_count < 1024 ? s->scene.image_count + 1 : 1024;
-    now.texturesPerFrame =
-        settings->textures_per_frame < most ? settings->textures_per_frame : most;
+    now.texturesPerFrame = maps_per_frame(s, settings->textures_per_frame);
     now.tilesPerFrame = settings->tiles_per_frame;
     now.numExtraStandbyTiles = settings->standby;
     now.feedbackTimeoutTicks =

@@ -219,6 +219,23 @@ static bool writes_feedback(const struct view_settings *s)
     return s->feedback == VIEW_FEEDBACK_ON && !s->pause && !s->freeze_wants;
 }
 
+/* FLAG_... of scene_push.glsl. */
+static uint32_t flags_of(const struct view_settings *s)
+{
+    const uint32_t borders = s->borders == VIEW_NUMBERED_BORDERS ? 3u
+                             : s->borders == VIEW_BORDERS        ? 1u
+                                                                 : 0u;
+    return borders | (uint32_t)s->feedback_by << 8;
+}
+
+/* Of the pixels that the kind of feedback selects; 0: none writes. */
+static float probability_of(const struct view_settings *s)
+{
+    if (!writes_feedback(s))
+        return 0.0f;
+    return s->feedback_by == VIEW_BY_QUADS ? (float)s->probability : 1.0f;
+}
+
 static struct push push_of(const struct scene_data *scene, const struct stage_draw *draw)
 {
     const struct view_settings *s = draw->settings;
@@ -227,13 +244,11 @@ static struct push push_of(const struct scene_data *scene, const struct stage_dr
                          .eye = draw->camera.position,
                          .view = s->view == VIEW_TRUTH ? VIEW_PICTURE : s->view,
                          .seed = (uint32_t)draw->number,
-                         .probability = writes_feedback(s) ? (float)s->probability : 0.0f,
+                         .probability = probability_of(s),
                          .lod_bias = (float)s->lod_bias,
                          .anisotropy = (float)s->anisotropy,
                          .tint = (float)s->tint,
-                         .flags = s->borders == VIEW_NUMBERED_BORDERS ? 3u
-                                  : s->borders == VIEW_BORDERS        ? 1u
-                                                                      : 0u};
+                         .flags = flags_of(s)};
 }
 
 static void draw_part(const struct stage_drawing *d, const struct scene_part *part,

@@ -178,7 +178,7 @@ void ui_show_hint(const char *text)
 
 void ui_hint(const char *format, ...)
 {
-    if (!ImGui::IsItemHovered())
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
         return;
     char text[1024];
     va_list arguments;

@@ -9,12 +9,15 @@ layout(early_fragment_tests) in;
 layout(constant_id = 0) const bool paged = false;
 #define SLUICE_PAGED paged
 #define SLUICE_SET 0
+#define SLUICE_FEEDBACK_IN_TURNS
 #define SLUICE_TEXTURE_ARRAY SLUICE_TEXTURES_COMBINED
 #include "sluice/bindings.glsl"
+#include "scene_push.glsl"
+#undef SLUICE_FEEDBACK_TURN_WORD
+#define SLUICE_FEEDBACK_TURN_WORD(i) (feedbackBy() == BY_TURNS ? sluiceFeedbackTurnWords[i] : 0xFFFFFFFFu)
 #include "sluice/feedback.glsl"
 #include "sluice/sample.glsl"
 #include "sluice/stochastic.glsl"
-#include "scene_push.glsl"
 
 #include "scene_material.glsl"
 #include "scene_digits.glsl"
@@ -103,11 +106,39 @@ void sampleSlots()
     }
 }
 
+bool isSelected()
+{
+    if (!(push.probability > 0.0))
+        return false;
+    if (feedbackBy() == BY_QUADS)
+        return sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, push.seed, push.probability);
+    return feedbackBy() != BY_LATTICE || sluiceSelectFragmentLattice(gl_FragCoord.xy, push.seed);
+}
+
+bool slotWrites(Slot slot)
+{
+    return slot.tableIndex != NO_TEXTURE && (slot.flags & SLOT_WRITES) != 0u && sluiceTakesPart(slot.tableIndex);
+}
+
+bool anySlotWrites()
+{
+    bool any = false;
+    [[dont_unroll]] for (uint i = 0u; i < SLOT_COUNT; i++)
+        any = any || slotWrites(materials[push.material].slots[i]);
+    return any;
+}
+
+/* Pixels of a quad share the work; others write alone. */
 void writeSlots()
 {
     [[dont_unroll]] for (uint i = 0u; i < SLOT_COUNT; i++) {
         Slot slot = materials[push.material].slots[i];
-        if (slot.tableIndex != NO_TEXTURE && (slot.flags & SLOT_WRITES) != 0u)
+        if (!slotWrites(slot))
+            continue;
+        if (feedbackBy() != BY_QUADS)
+            sluiceWriteFeedback(slot.tableIndex, turnBySlot(slot, uvs) + slot.offset, turnBySlot(slot, uvsDx),
+                                turnBySlot(slot, uvsDy), push.lodBias, push.anisotropy);
+        else
             sluiceWriteQuadFeedback(slot.tableIndex, turnBySlot(slot, uvs) + slot.offset, turnBySlot(slot, uvsDx),
                                     turnBySlot(slot, uvsDy), push.lodBias, push.anisotropy,
                                     uvec2(gl_FragCoord.xy), push.seed);
@@ -182,13 +213,13 @@ bool onNumber(vec2 texels, vec2 tileSize)
 
 vec3 bordered(vec3 picture, vec3 color, Slot slot, Place at, float level)
 {
-    if ((push.flags & 1u) == 0u)
+    if ((push.flags & FLAG_BORDERS) == 0u)
         return picture;
     vec2 tileSize = vec2(markTileSize(slot.flags >> SLOT_IMAGE_SHIFT)) * exp2(level);
     vec2 perPixel = (abs(at.dx) + abs(at.dy)) * at.size, pixels = tileSize / perPixel;
     if (min(pixels.x, pixels.y) < 4.0) /* nothing else would be seen */
         return picture;
-    bool numbered = (push.flags & 2u) != 0u && min(pixels.x, pixels.y) >= 28.0;
+    bool numbered = (push.flags & FLAG_NUMBERS) != 0u && min(pixels.x, pixels.y) >= 28.0;
     return onBorder(at.uv * at.size, perPixel, tileSize) ||
                    (numbered && onNumber(fract(at.uv) * at.size, tileSize))
                ? color
@@ -271,10 +302,9 @@ void main()
     sampleSlots();
     vec4 base = baseColor();
     vec3 picture = lit(base.rgb);
-    bool writes = push.probability > 0.0 &&
-                  sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, push.seed, push.probability);
-    if (push.view > 1u || push.flags != 0u)
-        picture = decode(show(encode(picture), materials[push.material].slots[SLOT_COLOR], writes));
+    bool writes = isSelected();
+    if (push.view > 1u || (push.flags & FLAG_BORDERS) != 0u)
+        picture = decode(show(encode(picture), materials[push.material].slots[SLOT_COLOR], writes && anySlotWrites()));
 #ifdef MASKED
     if (base.a < materials[push.material].emissive.w)
         discard;

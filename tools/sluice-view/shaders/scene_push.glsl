@@ -8,5 +8,15 @@ layout(push_constant) uniform Push
     uint seed;
     float probability; // 0: no feedback
     float lodBias, anisotropy, tint;
-    uint flags; // 1: borders of tiles; 2: with numbers
+    uint flags; // below
 } push;
+
+const uint FLAG_BORDERS = 1, FLAG_NUMBERS = 2;
+// Pixels that write feedback: settings.h, enum view_feedback_by.
+const uint FEEDBACK_BY_SHIFT = 8, FEEDBACK_BY_MASK = 3;
+const uint BY_QUADS = 0, BY_LATTICE = 1, BY_EVERY_PIXEL = 2, BY_TURNS = 3;
+
+uint feedbackBy()
+{
+    return push.flags >> FEEDBACK_BY_SHIFT & FEEDBACK_BY_MASK;
+}
