@@ -24,13 +24,6 @@ const char *facts_series_name(enum facts_series series)
     return names[series];
 }
 
-static SluiceStreamedTextureManager *manager_of(const struct stage *stage)
-{
-    SluiceStreamedTextureManager *manager = NULL;
-    sluiceGetVulkanStreamerManager(stage_streamer(stage), &manager);
-    return manager;
-}
-
 static size_t map_size_of(const SluiceStreamedTextureManager *manager, SluiceTextureId id,
                           SluiceStreamedTextureLayout *layout)
 {
@@ -47,7 +40,7 @@ static bool create_log(struct view_facts *f, const struct stage *stage)
     for (uint32_t i = 0; ids && tiles && i < f->texture_count; i++) {
         SluiceStreamedTextureLayout layout;
         ids[i] = stage_texture(stage, i)->id;
-        if (map_size_of(manager_of(stage), ids[i], &layout) > 0)
+        if (map_size_of(stage_manager(stage), ids[i], &layout) > 0)
             tiles[i] = layout.tileCount;
     }
     const bool created = ids && tiles && tile_log_create(ids, tiles, f->texture_count, &f->log);
@@ -63,7 +56,7 @@ bool facts_create(struct view_facts *f, const struct stage *stage)
     f->events = calloc(FACTS_EVENTS, sizeof *f->events);
     for (uint32_t i = 0; !stage_traced(stage) && i < f->texture_count; i++) {
         SluiceStreamedTextureLayout layout;
-        size_t size = map_size_of(manager_of(stage), stage_texture(stage, i)->id, &layout);
+        size_t size = map_size_of(stage_manager(stage), stage_texture(stage, i)->id, &layout);
         f->tails_size += (uint64_t)layout.desc.packedTileCount * TILE_SIZE;
         f->map_size = size > f->map_size ? size : f->map_size;
         f->all_size += stage_texture(stage, i)->size;
@@ -129,7 +122,7 @@ static size_t compare_maps(struct view_facts *f, const SluiceStreamedTextureMana
 
 static void look_at_maps(struct view_facts *f, const struct stage *stage)
 {
-    const SluiceStreamedTextureManager *manager = manager_of(stage);
+    const SluiceStreamedTextureManager *manager = stage_manager(stage);
     for (size_t done = 0, i = 0; i < f->texture_count && done < TEXELS_PER_FRAME; i++) {
         done += compare_maps(f, manager, stage_texture(stage, f->map_texture)->id,
                              &f->textures[f->map_texture]);
@@ -144,7 +137,7 @@ static void look_at_maps(struct view_facts *f, const struct stage *stage)
 
 static void sum_textures(struct view_facts *f, const struct stage *stage)
 {
-    const SluiceStreamedTextureManager *manager = manager_of(stage);
+    const SluiceStreamedTextureManager *manager = stage_manager(stage);
     f->resident_size = f->wanted_size = 0;
     for (uint32_t i = 0; i < f->texture_count; i++) {
         struct facts_texture *texture = &f->textures[i];
@@ -164,7 +157,7 @@ static void sum_textures(struct view_facts *f, const struct stage *stage)
 struct budget_need facts_budget_need(const struct view_facts *f, const struct stage *stage)
 {
     struct budget_need need = {0};
-    const SluiceStreamedTextureManager *manager = manager_of(stage);
+    const SluiceStreamedTextureManager *manager = stage_manager(stage);
     for (uint32_t i = 0; i < f->texture_count; i++) {
         SluiceStreamedTextureLayout layout;
         const SluiceTextureId id = stage_texture(stage, i)->id;
@@ -238,7 +231,7 @@ static void look_at_streamer(struct view_facts *f, const struct stage *stage,
     sum_textures(f, stage);
     look_at_maps(f, stage);
     look_at_reads(f, stage);
-    read_events(f, manager_of(stage), (uint64_t)(settings->timeout * STAGE_TICKS_PER_SECOND));
+    read_events(f, stage_manager(stage), (uint64_t)(settings->timeout * STAGE_TICKS_PER_SECOND));
 }
 
 void facts_update(struct view_facts *f, const struct stage *stage,

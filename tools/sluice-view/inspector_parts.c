@@ -9,13 +9,6 @@
 #define MAP_WIDTH 82.0f
 #define MOST_SQUARES 64u /* along a side; of more tiles, some are shown */
 
-static SluiceStreamedTextureManager *manager_of(const struct view_app *app)
-{
-    SluiceStreamedTextureManager *manager = NULL;
-    sluiceGetVulkanStreamerManager(stage_streamer(app->stage), &manager);
-    return manager;
-}
-
 static uint32_t larger(uint32_t a, uint32_t b)
 {
     return a > b ? a : b;
@@ -87,8 +80,9 @@ static void draw_level(struct view_app *app, uint32_t texture,
             const float wide = fmaxf(width * (float)step, 1), high = fmaxf(height * (float)step, 1);
             SluiceTileState state = SLUICE_TILE_STATE_FREE;
             SluiceTile tile = {0};
-            if (sluiceGetTileState(manager_of(app), stage_texture(app->stage, texture)->id, index,
-                                   &state, &tile) != SLUICE_SUCCESS)
+            if (sluiceGetTileState(stage_manager(app->stage),
+                                   stage_texture(app->stage, texture)->id, index, &state,
+                                   &tile) != SLUICE_SUCCESS)
                 continue;
             ui_fill(left, top, fmaxf(wide - gap, 1), fmaxf(high - gap, 1), color_of(state));
             if (over && x >= left && x < left + wide && y >= top && y < top + high)
@@ -100,8 +94,8 @@ static void draw_level(struct view_app *app, uint32_t texture,
 void inspector_draw_levels(struct view_app *app, uint32_t texture)
 {
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    if (sluiceGetTextureLayout(manager_of(app), stage_texture(app->stage, texture)->id, &layout) !=
-            SLUICE_SUCCESS ||
+    if (sluiceGetTextureLayout(stage_manager(app->stage), stage_texture(app->stage, texture)->id,
+                               &layout) != SLUICE_SUCCESS ||
         layout.desc.regularMipCount == 0)
         return;
     const uint32_t columns = layout.levelWidthInTiles[0], rows = layout.levelHeightInTiles[0];
@@ -211,15 +205,15 @@ void inspector_draw_maps(const struct view_app *app, uint32_t texture)
 {
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     const SluiceTextureId id = stage_texture(app->stage, texture)->id;
-    if (sluiceGetTextureLayout(manager_of(app), id, &layout) != SLUICE_SUCCESS)
+    if (sluiceGetTextureLayout(stage_manager(app->stage), id, &layout) != SLUICE_SUCCESS)
         return;
     const size_t size = (size_t)layout.minMipWidth * layout.minMipHeight;
     uint8_t *maps = malloc(2 * size);
     if (maps &&
-        sluiceWriteMinMipData(manager_of(app), id, layout.minMipWidth, size, maps) ==
+        sluiceWriteMinMipData(stage_manager(app->stage), id, layout.minMipWidth, size, maps) ==
             SLUICE_SUCCESS &&
-        sluiceWriteRequestedLevels(manager_of(app), id, layout.minMipWidth, size, maps + size) ==
-            SLUICE_SUCCESS)
+        sluiceWriteRequestedLevels(stage_manager(app->stage), id, layout.minMipWidth, size,
+                                   maps + size) == SLUICE_SUCCESS)
         for (int kind = 0; kind < MAP_COUNT; kind++) {
             if (kind > 0)
                 ui_same_line(0);

@@ -8,10 +8,8 @@
 static bool middle_of(const struct view_app *app, const struct stage_texture *texture,
                       const SluiceTile *tile, float middle[2])
 {
-    SluiceStreamedTextureManager *manager = NULL;
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    sluiceGetVulkanStreamerManager(stage_streamer(app->stage), &manager);
-    if (sluiceGetTextureLayout(manager, texture->id, &layout) != SLUICE_SUCCESS)
+    if (sluiceGetTextureLayout(stage_manager(app->stage), texture->id, &layout) != SLUICE_SUCCESS)
         return false;
     middle[0] = middle[1] = 0.5f;
     if (tile->mipLevel >= layout.desc.regularMipCount)

@@ -4,20 +4,13 @@
 
 #include <math.h>
 
-static SluiceStreamedTextureManager *manager_of(const struct stage *stage)
-{
-    SluiceStreamedTextureManager *manager = NULL;
-    sluiceGetVulkanStreamerManager(stage_streamer(stage), &manager);
-    return manager;
-}
-
 bool memory_slot_get(const struct stage *stage, const struct view_facts *facts, uint32_t heap,
                      uint32_t slot, struct memory_slot *to)
 {
     *to = (struct memory_slot){.age = -1};
-    if (sluiceGetSlotTile(manager_of(stage), heap, slot, &to->tile) != SLUICE_SUCCESS ||
+    if (sluiceGetSlotTile(stage_manager(stage), heap, slot, &to->tile) != SLUICE_SUCCESS ||
         to->tile.textureId == SLUICE_NO_TEXTURE ||
-        sluiceGetTileState(manager_of(stage), to->tile.textureId, to->tile.tileIndex, &to->state,
+        sluiceGetTileState(stage_manager(stage), to->tile.textureId, to->tile.tileIndex, &to->state,
                            NULL) != SLUICE_SUCCESS)
         return false;
     const struct tile_log_tile *log =
@@ -82,7 +75,7 @@ struct memory_sums memory_sums_of(const struct stage *stage)
 {
     SluiceStreamedTextureStatistics now = {.structSize = sizeof now};
     struct memory_sums sums = {0};
-    if (sluiceGetStatistics(manager_of(stage), &now) != SLUICE_SUCCESS || now.heapCount == 0)
+    if (sluiceGetStatistics(stage_manager(stage), &now) != SLUICE_SUCCESS || now.heapCount == 0)
         return sums;
     sums.heaps = now.heapCount;
     const uint32_t tiles = stage_heap_tiles(stage);

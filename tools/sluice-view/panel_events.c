@@ -19,13 +19,6 @@ static const char *const reason_names[] = {"feedback", "added",   "taken up", "p
     "all reasons|feedback|added|taken up|prefetched|answered|retried|evicted|unmapped|called|"     \
     "removed"
 
-static SluiceStreamedTextureManager *manager_of(const struct view_app *app)
-{
-    SluiceStreamedTextureManager *manager = NULL;
-    sluiceGetVulkanStreamerManager(stage_streamer(app->stage), &manager);
-    return manager;
-}
-
 /* The end of a path, which names the file. */
 static const char *end_of(const char *path, const char **before)
 {
@@ -102,7 +95,7 @@ static void draw_row(const struct view_app *app, const SluiceTileEvent *event, u
     SluiceTile tile = {0};
     uint32_t texture = 0;
     tile_log_index(&app->facts.log, event->textureId, &texture);
-    sluiceGetTileState(manager_of(app), event->textureId, event->tileIndex, NULL, &tile);
+    sluiceGetTileState(stage_manager(app->stage), event->textureId, event->tileIndex, NULL, &tile);
     ui_table_row((int)row, false);
     ui_table_cell(UI_WHITE, "%llu", (unsigned long long)event->mark);
     ui_table_cell(

@@ -7,13 +7,6 @@
 
 #define COLUMNS 32u
 
-static SluiceStreamedTextureManager *manager_of(const struct view_app *app)
-{
-    SluiceStreamedTextureManager *manager = NULL;
-    sluiceGetVulkanStreamerManager(stage_streamer(app->stage), &manager);
-    return manager;
-}
-
 static const char *state_name(SluiceTileState state)
 {
     switch (state) {
@@ -50,7 +43,7 @@ static bool draw_heap(struct view_app *app, uint32_t heap, float cell)
     float r[4], x, y;
     SluiceTile tile;
     struct memory_slot slot;
-    if (sluiceGetSlotTile(manager_of(app), heap, 0, &tile) != SLUICE_SUCCESS)
+    if (sluiceGetSlotTile(stage_manager(app->stage), heap, 0, &tile) != SLUICE_SUCCESS)
         return false;
     const uint32_t tiles = stage_heap_tiles(app->stage), rows = (tiles + COLUMNS - 1) / COLUMNS;
     ui_canvas((float)COLUMNS * cell, (float)rows * cell + 6 * ui_scale(), r);
@@ -175,7 +168,7 @@ static void draw_buttons(struct view_app *app)
     ui_hint("Moves at most 64 tiles together, so that heaps become empty and are freed.");
     ui_same_line(0);
     if (ui_button("Trim standby", 0, 0, false))
-        sluiceTrimStandbyTiles(manager_of(app), 0);
+        sluiceTrimStandbyTiles(stage_manager(app->stage), 0);
     ui_hint("Evicts all tiles that nothing requests.");
 }
 

@@ -2,13 +2,6 @@
 
 #include <math.h>
 
-static SluiceStreamedTextureManager *manager_of(const struct stage *stage)
-{
-    SluiceStreamedTextureManager *manager = NULL;
-    sluiceGetVulkanStreamerManager(stage_streamer(stage), &manager);
-    return manager;
-}
-
 static uint32_t texel_of(float part, uint32_t size)
 {
     const uint32_t texel = (uint32_t)(part * (float)size);
@@ -37,7 +30,7 @@ static void look_at_tile(const struct stage *stage, const struct view_facts *fac
                          SluiceTextureId id, struct view_probe *probe)
 {
     const struct tile_log_tile *log = tile_log_get(&facts->log, id, probe->tile_index);
-    sluiceGetTileState(manager_of(stage), id, probe->tile_index, &probe->state, &probe->tile);
+    sluiceGetTileState(stage_manager(stage), id, probe->tile_index, &probe->state, &probe->tile);
     if (!log)
         return;
     probe->loads = log->loads;
@@ -59,7 +52,7 @@ void probe_point(const struct stage *stage, const struct view_facts *facts,
     probe->texel[0] = texel_of(pick->u, texture->width);
     probe->texel[1] = texel_of(pick->v, texture->height);
     const SluiceTextureRect rect = {probe->texel[0], probe->texel[1], 1, 1};
-    if (sluiceGetTextureLayout(manager_of(stage), texture->id, &layout) != SLUICE_SUCCESS ||
+    if (sluiceGetTextureLayout(stage_manager(stage), texture->id, &layout) != SLUICE_SUCCESS ||
         sluiceExplainVulkanTexture(stage_streamer(stage), texture->id, &rect, &probe->why) !=
             SLUICE_SUCCESS)
         return;

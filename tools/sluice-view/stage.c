@@ -440,6 +440,14 @@ SluiceVulkanStreamer *stage_streamer(const struct stage *s)
     return s->streamer;
 }
 
+SluiceStreamedTextureManager *stage_manager(const struct stage *s)
+{
+    SluiceStreamedTextureManager *manager = NULL;
+    if (s->streamer)
+        sluiceGetVulkanStreamerManager(s->streamer, &manager);
+    return manager;
+}
+
 struct traced *stage_traced(const struct stage *s)
 {
     return s->traced;

@@ -98,6 +98,8 @@ double stage_resident_part(const struct stage *stage);
 const char *stage_name(const struct stage *stage);
 /** NULL for scenes that are traced. */
 SluiceVulkanStreamer *stage_streamer(const struct stage *stage);
+/** The manager that decides about the textures; NULL for scenes that are traced. */
+SluiceStreamedTextureManager *stage_manager(const struct stage *stage);
 /** The scene of pbrt, whose rays ask a demand loader; NULL for others. */
 struct traced *stage_traced(const struct stage *stage);
 SluiceVulkanContext *stage_context(const struct stage *stage);
