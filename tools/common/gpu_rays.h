@@ -1,4 +1,4 @@
-/** What the ray-tracing pipeline needs of a device. */
+/** Device features of the ray-tracing pipeline. */
 #ifndef TOOLS_COMMON_GPU_RAYS_H
 #define TOOLS_COMMON_GPU_RAYS_H
 
@@ -11,11 +11,11 @@ struct gpu_ray_features {
     VkPhysicalDeviceRayTracingPipelineFeaturesKHR pipelines;
 };
 
-/** Whether the device has the pipeline, acceleration structures and buffer addresses. */
+/** Returns whether the device has the pipeline, acceleration structures and buffer addresses. */
 bool gpu_traces_rays(VkPhysicalDevice device);
-/** Adds features to what a device is created with; `rays` is part of the chain. */
+/** Adds features for device creation. `rays` becomes part of the chain. */
 void gpu_require_rays(struct gpu_ray_features *rays, VkPhysicalDeviceVulkan12Features *vulkan12);
-/** The extensions of the device that the features need. */
+/** Device extensions of the features. */
 #define GPU_RAY_EXTENSIONS 3
 extern const char *const gpu_ray_extensions[GPU_RAY_EXTENSIONS];
 

@@ -18,12 +18,12 @@
 
 struct output_file {
     struct slc_part_file part;
-    FILE *stream; ///< A descriptor of its own for the same open file.
+    FILE *stream; ///< A separate descriptor of the same open file.
 };
 
-/* Of the program, which has one set of inputs. */
+/* Global: a program has one set of inputs. */
 static const char *speaker = "";
-static pthread_mutex_t input_lock = PTHREAD_MUTEX_INITIALIZER; ///< of the inputs
+static pthread_mutex_t input_lock = PTHREAD_MUTEX_INITIALIZER; ///< guards the inputs
 static struct input {
     dev_t device;
     ino_t inode;
@@ -35,7 +35,7 @@ void output_set_speaker(const char *text)
     speaker = text;
 }
 
-/* Room for one more; the mutex is held. */
+/* Makes room for one more. The mutex is held. */
 static bool reserve_input(void)
 {
     if (input_count < input_capacity)
@@ -87,7 +87,7 @@ bool output_spares_inputs(const char *path)
     return spares;
 }
 
-/* Opening a pipe would wait for its reader, and closing it would tell him that this is all. */
+/* Opening a pipe would wait for its reader; closing it would signal the end of the data. */
 static bool is_stream(const char *path)
 {
     struct stat status;
@@ -100,7 +100,7 @@ static bool refuse_name(const char *path)
     return false;
 }
 
-/* Several outputs may go to one pipe or device. */
+/* Several outputs may share a pipe or a device. */
 static bool take_name(const char *path, enum output_name_owner owner)
 {
     if (is_stream(path))
@@ -193,7 +193,7 @@ FILE *output_file_stream(struct output_file *file)
     return file->stream;
 }
 
-/* Everything that the stream still holds; says why not. */
+/* Flushes the stream. Reports errors on stderr. */
 static bool flush(struct output_file *file)
 {
     bool failed = ferror(file->stream) != 0;
@@ -210,7 +210,7 @@ bool output_file_end(struct output_file *file, bool keep)
     if (!file)
         return false;
     keep = keep && flush(file);
-    fclose(file->stream); /* the descriptor is synced by the part file, which has another one */
+    fclose(file->stream); /* the part file syncs its own descriptor */
     keep = slc_part_file_finish(&file->part, keep) == SLUICE_SUCCESS && keep;
     free(file);
     return keep;

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 
 struct name {
-    dev_t device; ///< of the folder
+    dev_t device; ///< device of the folder
     ino_t folder;
     char *word; ///< last part of the path; owned
     uint64_t hash;
@@ -28,7 +28,7 @@ static uint64_t hash_word(uint64_t hash, const char *word)
     return hash;
 }
 
-/* False without a folder, or without memory. */
+/* Returns false without a folder, or when out of memory. */
 static bool describe(const char *path, struct name *name, bool *has_memory)
 {
     struct stat status;
@@ -67,7 +67,7 @@ static bool grow(void)
     return true;
 }
 
-/* Takes over the word if the name is new. */
+/* Takes the word if the name is new. */
 static enum output_name_answer add(struct name *name)
 {
     if (find(name))

@@ -11,8 +11,8 @@
 #include <string.h>
 
 #define FIRST_SUBMISSION 64u /* steps; a software device takes a second or more for them */
-#define MOST_STEPS 1024u     /* of a submission */
-#define SHORT_SECONDS 0.1    /* after a shorter submission the next one has twice the steps */
+#define MOST_STEPS 1024u     /* limit of steps per submission */
+#define SHORT_SECONDS 0.1    /* after a shorter submission, the next one has twice the steps */
 #define CHECKPOINT_SECONDS 60.0
 #define CHECKPOINT_LIMIT (UINT64_C(4) << 30)
 
@@ -84,7 +84,7 @@ static void destroy(struct session *s)
         vkFreeCommandBuffers(device, s->run->gpu->command_pool, 1, &s->commands);
 }
 
-/* `max_steps` steps, or a readback for 0. `*steps` were recorded. */
+/* Submits up to `max_steps` steps, or a readback if 0. `*steps`: number of recorded steps. */
 static bool run_commands(struct session *s, uint32_t max_steps, uint32_t *steps)
 {
     const struct gpu *gpu = s->run->gpu;
@@ -105,7 +105,7 @@ static bool run_commands(struct session *s, uint32_t max_steps, uint32_t *steps)
            gpu_check(vkResetFences(gpu->device, 1, &s->fence), "vkResetFences");
 }
 
-/* A line each second, and the last one. */
+/* Prints progress each second, and after the last step. */
 static void show(struct session *s)
 {
     SluiceNeuralProgress progress = {.structSize = sizeof progress};
@@ -142,8 +142,7 @@ static bool train(struct session *s)
 {
     uint32_t steps = 1, wanted = FIRST_SUBMISSION;
     s->start = clock_seconds();
-    s->saved =
-        s->start - CHECKPOINT_SECONDS; /* at once, so that a wrong name is no late surprise */
+    s->saved = s->start - CHECKPOINT_SECONDS; /* saves at once, so that a bad path fails early */
     while (steps > 0) {
         const double begin = clock_seconds();
         if (!run_commands(s, wanted, &steps))
@@ -161,7 +160,7 @@ static bool train(struct session *s)
     return run_commands(s, 0, &steps);
 }
 
-/* Codes of 4 bits in the layout of slices. */
+/* Packs codes of 4 bits into the layout of slices. */
 static void pack(const SluiceNeuralTrainedSet *trained, const SluiceNeuralConstants *constants,
                  uint8_t *latents)
 {
@@ -197,7 +196,7 @@ static bool repair_masks(struct training_run *run, const SluiceNeuralConstants *
         .channelCount = set->channel_count,
         .pLossWeights = weights,
         .ppMips = (const float *const *)set->mips,
-        /* More are no rest: training was too short, repair would be long. */
+        /* More wrong texels mean that training was too short. Repair would take long. */
         .maxWrongCount = 1 + (uint64_t)set->width * set->height / 50,
         .log = {NULL, log_say}};
     for (uint32_t c = 0; c < set->channel_count; c++) {
@@ -257,7 +256,7 @@ static bool write_file(struct session *s)
     return is_written;
 }
 
-/* Squared errors of mip 0, by channel; masks are counted in all mips. */
+/* Squared errors of mip 0 by channel. Masks are counted in all mips. */
 struct errors {
     double squares[SLUICE_NEURAL_MAX_CHANNELS], certain, exact;
 };
@@ -304,7 +303,7 @@ static bool has_mask(const struct training_set *set)
     return false;
 }
 
-/* What a reader of the file gets. */
+/* Decodes the written file, as its readers do. */
 static bool decode(const struct training_run *run, SluiceNeuralSet *file,
                    SluiceNeuralWeightKind kind, struct errors *errors)
 {
