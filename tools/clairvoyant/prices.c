@@ -1,9 +1,9 @@
 /**
- * A lower bound on the levels too coarse under budget, cap and latency, by Lagrangian relaxation:
- * every frame has a price for an upload and one for a slot, every node plays its own best game at
- * these prices, and what the nodes gain plus what the limits are worth bounds what any schedule
- * can gain. That holds for all prices that are not negative; subgradient steps look for good ones.
- * It is also relaxed that a tile counts only if its coarser ones are there.
+ * A lower bound on the levels too coarse under budget, cap and latency, by Lagrangian relaxation.
+ * Every frame has a price per upload and per slot. Every node plays its best game at these prices.
+ * The sum of the nodes' gains and the value of the limits bounds the gain of any schedule. The
+ * bound holds for all non-negative prices; subgradient steps search good ones. The rule that a tile
+ * counts only with its coarser tiles is relaxed, too.
  */
 #include "clairvoyant.h"
 
@@ -13,8 +13,8 @@
 struct ascent {
     const struct workload *w;
     const struct limits *limits;
-    double *uploads, *slots; ///< what the nodes take at the prices of now
-    double total;            ///< levels too coarse if nothing is ever there
+    double *uploads, *slots; ///< uploads and slots that the nodes take at the current prices
+    double total;            ///< levels too coarse if nothing is ever resident
 };
 
 static uint32_t log2_floor(uint32_t x)
@@ -34,7 +34,7 @@ static void range_least_build(struct range_least *r)
         uint32_t *row = r->places + (size_t)k * r->count;
         for (uint32_t i = 0; i + (1u << k) <= r->count; i++) {
             uint32_t a = below[i], b = below[i + (1u << (k - 1))];
-            row[i] = r->values[a] < r->values[b] ? a : b; /* of equals the later */
+            row[i] = r->values[a] < r->values[b] ? a : b; /* the later one of equals */
         }
     }
 }
@@ -94,7 +94,7 @@ struct game {
     uint32_t first, end;
 };
 
-/** In which frame to hand out for `use`, given that the node was not there at the use before. */
+/** Chooses the frame in which to load for `use`, for a node that was absent at the previous use. */
 static bool load_frame(const struct game *g, uint32_t use, uint32_t *frame)
 {
     const struct use *uses = g->a->w->uses;
@@ -135,7 +135,7 @@ static double gain_dropped(const struct game *g, uint32_t use)
     return lost ? g->p->after_free[use] : g->p->after_free[use - 1];
 }
 
-/** Fills in the gains of a node's uses from the last to the first, returns the whole gain. */
+/** Fills in the gains of a node's uses from the last to the first. Returns the total gain. */
 static double play_backward(const struct game *g)
 {
     struct prices *p = g->p;
@@ -150,7 +150,7 @@ static double play_backward(const struct game *g)
     return loaded > skipped ? loaded : skipped;
 }
 
-/** Notes what the best game takes; the slots as differences from frame to frame. */
+/** Adds up what the best game takes. Slots are differences between frames. */
 static void play_forward(const struct game *g, struct ascent *a)
 {
     enum { FREE, LOST, HELD } state = FREE;
@@ -175,7 +175,7 @@ static void play_forward(const struct game *g, struct ascent *a)
         a->slots[uses[g->end - 1].frame] -= slot;
 }
 
-/** What no schedule can gain more than, at these prices. */
+/** Returns the bound on the gain of any schedule at these prices. */
 static double play_all(struct ascent *a, struct prices *p)
 {
     const struct workload *w = a->w;
@@ -200,8 +200,7 @@ static double play_all(struct ascent *a, struct prices *p)
     return gain;
 }
 
-/** A component of the subgradient. A crowd in one frame, `crowd` times the limit, counts no more.
- */
+/** Component of the subgradient, limited to a crowd of `crowd` times the limit per frame. */
 static double excess(double taken, double limit, double price, double crowd)
 {
     double over = taken - limit;
@@ -210,7 +209,7 @@ static double excess(double taken, double limit, double price, double crowd)
     return over < crowd * limit ? over : crowd * limit;
 }
 
-/** One step along the smoothed subgradient, as long as Polyak's rule says. */
+/** Steps along the smoothed subgradient, with a length by Polyak's rule. */
 static void step(struct ascent *a, struct prices *p, double *direction, double length, double crowd)
 {
     uint32_t frames = p->frame_count;

@@ -1,8 +1,8 @@
 /**
- * Plays a trace with the whole of it known. In every frame the nodes that are not there bid for
- * uploads, and where slots are short those that are there bid to stay. Without prices a bid is a
- * deadline: earliest next use, then coarse levels, then many regions. With prices it is what the
- * node gains by being handed out (or kept) now instead of later, or not at all.
+ * Plays a trace with full knowledge of it. In every frame, absent nodes bid for uploads; when slots
+ * are short, resident nodes bid to stay. Without prices a bid is a deadline: earliest next use,
+ * then coarse levels, then many regions. With prices a bid is the gain of acting now instead of
+ * later or never.
  */
 #include "clairvoyant.h"
 
@@ -16,12 +16,12 @@
 enum presence { ABSENT, COMING, THERE };
 
 struct live {
-    uint32_t next;     ///< first use after the frame of now
+    uint32_t next;     ///< first use after the current frame
     uint32_t usable;   ///< first use that it may be loaded for
-    uint32_t held_at;  ///< last use that it was there for, NONE after a drop that was none
-    uint32_t children; ///< that are coming or there
+    uint32_t held_at;  ///< last use that it was resident for; NONE after a drop that counts as none
+    uint32_t children; ///< children that are resident or in flight
     uint8_t presence;
-    bool served; ///< since it came
+    bool served; ///< true: used since it arrived
 };
 
 struct bid {
@@ -32,11 +32,11 @@ struct bid {
 struct bid_heap {
     struct bid *bids;
     uint32_t count;
-    double sign; ///< 1: greatest first, -1: least first
+    double sign; ///< 1: greatest first; -1: least first
 };
 
 struct arrival {
-    uint32_t node, frame; ///< frame after whose maps it is there
+    uint32_t node, frame; ///< the node is resident after this frame's maps
 };
 
 struct play {
@@ -45,14 +45,14 @@ struct play {
     const struct prices *prices;
     FILE *plan;
     struct live *live;
-    uint32_t *seen; ///< per node: frame + 1 in which it and all over it were last found there
+    uint32_t *seen; ///< by node: last frame + 1 in which it and all nodes over it were resident
     uint32_t *active, active_count;
-    uint32_t *visit; ///< per set: its next visit
+    uint32_t *visit; ///< by set: its next visit
     struct bid_heap loads, stays;
     struct arrival *arrivals;
     uint32_t arrival_first, arrival_end, packed_next;
     uint64_t used, packed_used;
-    int64_t room; ///< uploads left in this frame; below zero: taken from the next ones
+    int64_t room; ///< uploads left in this frame; below 0: taken from the next frames
     uint32_t frame;
     struct outcome out;
 };
@@ -105,7 +105,7 @@ static double kept_cost(const struct play *p, const struct node *node, uint32_t 
     return node->packed ? 0 : node->size * (p->prices->held[to] - p->prices->held[p->frame + 1]);
 }
 
-/** Best gain of a node that has no slot after this frame, from `use` on. */
+/** Best gain of a node without a slot after this frame, from `use` on. */
 static double gain_later(const struct play *p, const struct node *node, uint32_t first,
                          uint32_t use)
 {
@@ -130,7 +130,8 @@ static double priced_bid(const struct play *p, const struct node *node, uint32_t
     return (now - gain_later(p, node, later, use)) / node->size;
 }
 
-/** Held to a drop: it would be back in time for the map that the drop has cost. */
+/** Returns whether limits.hold forbids a load: the node would be back for the map that its drop has
+ * cost. */
 static bool is_barred(const struct play *p, uint32_t n)
 {
     const struct live *live = &p->live[n];
@@ -148,12 +149,12 @@ static void bid_to_load(struct play *p, uint32_t n, uint32_t end)
         return;
     const struct node *node = &p->w->nodes[n];
     double amount = p->prices ? priced_bid(p, node, use, 0) : 0;
-    if (amount <= WORTHLESS) /* as good later: only where nothing has to go for it */
+    if (amount <= WORTHLESS) /* later is as good: load only if nothing must be dropped for it */
         amount = deadline_bid(p, node, use);
     p->loads.bids[p->loads.count++] = (struct bid){amount, n, use};
 }
 
-/** The first use that a node dropped now may be loaded for. */
+/** First use that a node may be loaded for if it is dropped now. */
 static uint32_t usable_after_drop(const struct play *p, uint32_t n)
 {
     const struct live *live = &p->live[n];
@@ -205,7 +206,7 @@ static void drop(struct play *p, uint32_t n)
         }
 }
 
-/** Frees slots by dropping what bids less than `amount`. */
+/** Frees slots by dropping nodes that bid less than `amount`. */
 static bool make_room(struct play *p, uint32_t size, double amount)
 {
     while (p->limits->cap != UINT64_MAX && p->used + size > p->limits->cap) {
@@ -233,7 +234,8 @@ static void hand_out(struct play *p, uint32_t n)
     if (p->room < 0)
         wait += (uint32_t)((-p->room + budget - 1) / budget);
     p->arrivals[p->arrival_end++] = (struct arrival){n, p->frame + wait};
-    if (p->arrival_end == p->w->node_count) { /* what is under way is far fewer */
+    if (p->arrival_end ==
+        p->w->node_count) { /* far fewer loads are in flight, so the array can be compacted */
         p->arrival_end -= p->arrival_first;
         memmove(p->arrivals, p->arrivals + p->arrival_first, p->arrival_end * sizeof *p->arrivals);
         p->arrival_first = 0;
@@ -248,7 +250,7 @@ static void hand_out(struct play *p, uint32_t n)
     write_plan(p, n, '+');
 }
 
-/** Hands out a node after those over it. False if there is no slot or no upload left. */
+/** Hands out a node after its parents. Returns false without a free slot or upload. */
 static bool admit(struct play *p, uint32_t n, double amount)
 {
     const struct node *node = &p->w->nodes[n];
@@ -259,7 +261,7 @@ static bool admit(struct play *p, uint32_t n, double amount)
     if (p->room <= 0 || is_barred(p, n))
         return false;
     if (node->parent != NO_NODE)
-        p->live[node->parent].children++; /* so that it is not dropped to make room */
+        p->live[node->parent].children++; /* keeps the parent from being dropped to make room */
     if (!node->packed && !make_room(p, node->size, amount)) {
         p->live[node->parent].children--;
         return false;
@@ -305,14 +307,14 @@ static void hand_out_frame(struct play *p)
         if (absent && admit(p, bid.node, bid.amount))
             count_return(p, bid.node, bid.use);
     }
-    /* packed tiles are always wanted, also those of which no map ever tells */
+    /* packed tiles are always loaded, even without any map */
     for (; p->packed_next < p->w->set_count && p->room > 0; p->packed_next++)
         admit(p, p->packed_next, 0);
     uint64_t slots = p->used + p->packed_used;
     p->out.peak = slots > p->out.peak ? slots : p->out.peak;
 }
 
-/** Nothing in the latest map of the set needs the tile that has come. */
+/** Returns whether the set's latest map does not need the arrived tile. */
 static bool is_stale(const struct play *p, uint32_t n)
 {
     const struct workload *w = p->w;

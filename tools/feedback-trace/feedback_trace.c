@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_SIZE ((uint64_t)4 << 30) ///< bytes of a trace; more would take the machine's memory
+#define MAX_SIZE ((uint64_t)4 << 30) ///< bytes of a trace; larger ones could exhaust the memory
 
 enum { HEADER_SIZE = 64, TEXTURE_SIZE = 40, FRAME_SIZE = 12, MAP_SIZE = 8, TILE_BYTES = 65536 };
 
@@ -20,7 +20,7 @@ static void fail(struct feedback_trace *t, size_t at, const char *why)
     t->why_at = at;
 }
 
-/** Little endian; 0 once something is wrong. */
+/** Reads a little-endian number. Returns 0 after an error. */
 static uint64_t get(struct feedback_trace *t, uint32_t byte_count)
 {
     uint64_t value = 0;
@@ -39,7 +39,7 @@ static uint32_t get_u32(struct feedback_trace *t)
     return (uint32_t)get(t, 4);
 }
 
-/** LEB128 of at most 32 bits; `end` is that of the map. */
+/** Reads a LEB128 number of at most 32 bits. `end`: end of the map. */
 static uint32_t get_run(struct feedback_trace *t, size_t end)
 {
     uint64_t run = 0;
@@ -53,7 +53,7 @@ static uint32_t get_run(struct feedback_trace *t, size_t end)
     return 0;
 }
 
-/* What the trace says of a texture beside its description, which must agree with it. */
+/* Values in the trace that must agree with the texture's description. */
 struct stated {
     uint32_t packed_levels, map_width, map_height, tile_bytes, tile_count;
 };
@@ -122,7 +122,7 @@ static size_t map_size(const struct feedback_texture *texture)
     return (size_t)texture->layout.feedbackWidth * texture->layout.feedbackHeight;
 }
 
-/** False if memory is short. */
+/** Returns false when out of memory. */
 static bool read_textures(struct feedback_trace *t)
 {
     size_t largest = 1;
@@ -222,7 +222,7 @@ static void check_frames(struct feedback_trace *t)
         fail(t, t->at, "there is more behind the last frame");
 }
 
-/* Also from /dev/fd/N. */
+/* Reads any file, including /dev/fd/N. */
 static bool read_file(struct feedback_trace *t, const char *path)
 {
     char *data = NULL;
