@@ -23,7 +23,7 @@ static bool is_folder(const char *path)
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-/* "folder/name", malloc'd; NULL without memory. */
+/* Returns "folder/name", allocated; NULL when out of memory. */
 static char *join(const char *folder, const char *name)
 {
     size_t length = strlen(folder), size = length + strlen(name) + 2;
@@ -40,7 +40,7 @@ static const char *extension(const char *name)
     return dot && dot != name && (!slash || dot > slash + 1) ? dot : name + strlen(name);
 }
 
-/* Takes both strings, which may be NULL for want of memory. */
+/* Takes both strings. NULL: an allocation has failed before. */
 static bool add(struct files *files, char *input, char *output)
 {
     if (files->count == files->capacity) {
@@ -63,7 +63,7 @@ static bool add(struct files *files, char *input, char *output)
     return true;
 }
 
-/* The same name in `folder` with .store instead of its own ending. */
+/* Returns the path of `name` in `folder`, with .store instead of its extension. */
 static char *output_in(const char *folder, const char *name)
 {
     int length = (int)(extension(name) - name);
@@ -77,7 +77,7 @@ static char *output_in(const char *folder, const char *name)
     return path;
 }
 
-/* All pictures of a folder and of those below it. */
+/* Adds all pictures of a folder and its subfolders. */
 static bool search(struct files *files, const char *input, const char *output)
 {
     struct file_list found = {.speaker = "sluice-bake: "};

@@ -1,4 +1,4 @@
-/** Which pictures there are, and where their stores go. */
+/** Finds the input pictures and the paths of their stores. */
 #ifndef TOOLS_SLUICE_BAKE_FIND_H
 #define TOOLS_SLUICE_BAKE_FIND_H
 
@@ -10,20 +10,20 @@
 
 struct file {
     char *input, *output;
-    uint64_t size; ///< bytes of the input, 0 if that is not known
+    uint64_t size; ///< bytes of the input; 0: unknown
 };
 
 struct files {
     struct file *files;
     size_t count, capacity;
-    size_t unreadable_count; ///< folders and files in them, which were named on standard error
+    size_t unreadable_count; ///< unreadable folders, and files in folders; all named on stderr
 };
 
 /**
- * Pictures named and found in folders, sorted by output. A folder holds pictures if their names
- * end as pictures' do; hidden ones and stores do not count. Links to folders are not
- * followed there. False, having said why, if two pictures would go to one file or there is no
- * memory.
+ * Lists the named pictures and the pictures in named folders, sorted by output. In a folder, files
+ * count by their extension; hidden files and stores do not. Links to folders are not followed
+ * there. Returns false if two pictures have one output, or when out of memory, and reports it on
+ * stderr.
  */
 bool find_files(struct files *files, const struct option_list *inputs, const char *output);
 void free_files(struct files *files);

@@ -30,7 +30,7 @@ static const char notes[] =
     "Exit status: 0 all is well; 1 a file could not be baked, or is damaged; the others are\n"
     "baked all the same; 2 wrong usage.\n";
 
-/* In the order of the words of --format, --quality, --filter and --alpha. */
+/* Names in the order of the enumerations, for --format, --quality, --filter and --alpha. */
 static const char format_names[] =
     "auto|r8|rg8|rgba8|r16f|rg16f|rgba16f|r32f|rg32f|rgba32f|"
     "rgb10a2|rg11b10f|rgb9e5|bc1|bc3|bc4|bc5|bc6h|bc7|astc-4x4|astc-8x8";
@@ -65,7 +65,7 @@ static const SluiceBakeAlpha alphas[] = {SLUICE_BAKE_ALPHA_AUTO, SLUICE_BAKE_ALP
 
 _Static_assert(SLUICE_BAKE_DEFAULT_COMPRESSION == 10, "--compression has the library's default");
 
-/* What settings are made of. */
+/* Parsed choices that the settings are computed from. */
 struct choices {
     int format, quality, filter, alpha;
     bool srgb, linear;
@@ -87,7 +87,7 @@ static bool parse_wrap_of_axis(const char *text, size_t length, SluiceBakeWrap *
     return false;
 }
 
-/* "both" or "x,y" */
+/* Parses "both" or "x,y". */
 static bool parse_wrap(const char *text, void *value)
 {
     SluiceBakeSettings *settings = value;
@@ -109,7 +109,7 @@ static bool parse_compression(const char *text, void *value)
     return *text >= '0' && *text <= '9' && *end == '\0' && level >= 1 && level <= 22;
 }
 
-/* "I/N", from 1 to N */
+/* Parses "I/N" with I from 1 to N. */
 static bool parse_shard(const char *text, void *value)
 {
     struct shard *shard = value;
@@ -122,7 +122,7 @@ static bool parse_shard(const char *text, void *value)
     return true;
 }
 
-/* Slurm gives a task fewer processors than the machine has. 0: by the number of processors. */
+/* Returns Slurm's number of processors for the task. 0: outside Slurm, use all processors. */
 static uint32_t threads_of_task(void)
 {
     const char *text = getenv("SLURM_CPUS_PER_TASK");
@@ -138,7 +138,7 @@ static bool parse_cutout(const char *text, void *value)
     return end != text && *end == '\0' && *cutout > 0.0f && *cutout <= 1.0f;
 }
 
-/* sluice-bake cannot write pictures. A folder may be named like one. */
+/* sluice-bake writes no pictures. A folder may have a picture's name. */
 static bool is_named_as_picture(const char *output)
 {
     struct stat status;
@@ -153,7 +153,7 @@ static bool is_folder(const char *path)
            (path[strlen(path) - 1] == '/' || (stat(path, &status) == 0 && S_ISDIR(status.st_mode)));
 }
 
-/* Layers make one store of pictures that are named. */
+/* With layers, all named pictures form one store. */
 static bool has_one_output(const struct option_table *table, const struct options *o)
 {
     const char *option = o->neural ? "--neural" : o->cube ? "--cube" : "--array";
@@ -174,7 +174,7 @@ static bool is_named_as_store(const char *name)
     return length > 6 && strcmp(name + length - 6, ".store") == 0;
 }
 
-/* Plans are made of pictures that have a store each; shards and --merge take one plan. */
+/* Plans require a store per picture. Shards and --merge take one plan. */
 static bool fits_plan(const struct option_table *table, const struct options *o)
 {
     bool is_shard = o->shard.count && !o->merge;

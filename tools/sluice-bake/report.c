@@ -23,7 +23,7 @@ static const char *reason(const struct bake_job *job)
     return job->message[0] ? job->message : sluiceGetResultName(job->result);
 }
 
-/* In the largest unit that leaves three digits. */
+/* Formats a size with three digits in the largest fitting unit. */
 static const char *size_text(uint64_t size, char text[16])
 {
     static const char *const units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
@@ -80,7 +80,7 @@ static void print_object(const struct bake_job *job)
 static void print_totals(const struct bake_job *jobs, size_t count, double seconds)
 {
     size_t counts[3] = {0};
-    double texels = 0.0; /* of level 0 of what was baked */
+    double texels = 0.0; /* texels of level 0 in all baked files */
     uint64_t in = 0, out = 0;
     char in_text[16], out_text[16];
     for (size_t i = 0; i < count; i++) {
@@ -98,7 +98,7 @@ static void print_totals(const struct bake_job *jobs, size_t count, double secon
     putchar('\n');
 }
 
-/* "3 texels held NaN, stored as 0; ..." */
+/* Formats "3 texels held NaN, stored as 0; ...". */
 static void print_replaced(const char *input, const SluiceBakeReport *r)
 {
     const struct {

@@ -18,7 +18,8 @@
 
 static char speaker[] = "sluice-bake: ";
 
-/* Adds a picture with what its header tells. False without memory; `failures` counts others. */
+/* Adds a picture with the facts in its header. Returns false when out of memory; counts other
+ * errors in `failures`. */
 static bool describe(SluiceBaker *baker, const struct file *file, struct plan *plan,
                      size_t *failures)
 {
@@ -132,7 +133,8 @@ bool shards_choose(const struct options *options, struct plan *plan, struct file
     return done;
 }
 
-/* What a store lacks to be the planned one; NULL: nothing. Then `hash` and `size` are its own. */
+/* Returns how a store differs from the planned one. NULL: it does not; then writes its `hash` and
+ * `size`. */
 static const char *defect_of(const struct plan *plan, const struct plan_picture *picture,
                              uint64_t *hash, uint64_t *size)
 {
@@ -160,7 +162,7 @@ static const char *defect_of(const struct plan *plan, const struct plan_picture 
     return defect;
 }
 
-/* Relative to the catalogue's folder, so that both can be moved or put on a server together. */
+/* Writes a path relative to the catalogue's folder, so that both can be moved together. */
 static void write_store_name(FILE *out, const char *catalogue, const char *store)
 {
     const char *slash = strrchr(catalogue, '/');
@@ -205,7 +207,7 @@ static void print_defect(const struct plan_picture *p, const char *defect, bool 
     }
 }
 
-/* "shards to run again, of 8: 2,5" in the form that sbatch --array takes. */
+/* Prints "shards to run again, of 8: 2,5", in the form that sbatch --array accepts. */
 static void print_shards(const struct options *options, const struct plan *plan, const bool *lacks)
 {
     uint32_t count = options->shard.count, printed = 0;
@@ -225,7 +227,7 @@ static void print_shards(const struct options *options, const struct plan *plan,
     free(again);
 }
 
-/* Returns how many stores are missing or wrong; `lacks` tells which. */
+/* Returns the number of missing or wrong stores. `lacks`: marks them. */
 static size_t check_all(const struct options *options, const struct plan *plan, FILE *out,
                         bool *lacks)
 {

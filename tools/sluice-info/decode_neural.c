@@ -7,15 +7,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Rows that are decoded at once. */
+/* Rows decoded at once. */
 #define STRIP 64u
 
-/* What decoding takes. */
+/* Inputs and buffers of decoding. */
 struct job {
     const char *path;
     SluiceNeuralSet *set;
     SluiceNeuralMip mip;
-    uint32_t number; ///< of the mip
+    uint32_t number; ///< index of the mip
     SluiceNeuralWeightKind kind;
     uint8_t *weights;
     uint64_t weight_size;
@@ -28,7 +28,7 @@ static bool say(const struct job *job, const char *what)
     return false;
 }
 
-/* Floats as little-endian bytes, as every machine that Sluice runs on has them. */
+/* Writes floats as little-endian bytes. All supported machines are little-endian. */
 static bool write_strip(const struct job *job, uint32_t y, float *texels, FILE *out)
 {
     uint32_t height = job->mip.height - y < STRIP ? job->mip.height - y : STRIP;
@@ -89,7 +89,7 @@ static bool prepare(struct job *job, const struct options *options)
     if (sluiceGetNeuralMip(job->set, job->number, &job->mip) != SLUICE_SUCCESS ||
         sluiceGetNeuralWeights(job->set, job->kind, NULL, &job->weight_size, NULL) !=
             SLUICE_SUCCESS)
-        return false; /* the library has said why */
+        return false; /* the library has reported the error */
     job->weights = malloc((size_t)job->weight_size);
     return job->weights ? sluiceGetNeuralWeights(job->set, job->kind, NULL, &job->weight_size,
                                                  job->weights) == SLUICE_SUCCESS

@@ -42,7 +42,8 @@ bool open_devices(struct devices *d)
     *d = (struct devices){0};
     d->library = dlopen(LIBRARY, RTLD_NOW | RTLD_LOCAL);
     if (d->library)
-        *(void **)&d->get = dlsym(d->library, "vkGetInstanceProcAddr"); /* as POSIX shows it */
+        *(void **)&d->get =
+            dlsym(d->library, "vkGetInstanceProcAddr"); /* the conversion that POSIX recommends */
     if (!d->get) {
         text_say("sluice-info: the Vulkan loader is not installed: %s", dlerror());
         return false;
@@ -64,18 +65,18 @@ void close_devices(struct devices *d)
 {
     if (d->instance)
         ((PFN_vkDestroyInstance)find(d, "vkDestroyInstance"))(d->instance, NULL);
-    /* The loader stays: drivers keep threads that outlive an unload badly. */
+    /* The loader stays loaded: threads of drivers may outlive an unload and crash. */
     *d = (struct devices){0};
 }
 
-/* The last message says why. */
+/* Keeps the last message, which says why. */
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     (void)severity;
     snprintf(user, MAX_REASON, "%s", message);
 }
 
-/* Leaves `missing` empty if the device has the mode. */
+/* Leaves `missing` empty if the device supports the mode. */
 static void ask_mode(const struct devices *d, VkPhysicalDevice physical, enum format_mode mode,
                      char missing[MAX_REASON])
 {

@@ -1,4 +1,4 @@
-/** The Vulkan devices of a machine, and what is asked of them. */
+/** Queries the Vulkan devices of a machine. */
 #ifndef TOOLS_SLUICE_INFO_DEVICES_H
 #define TOOLS_SLUICE_INFO_DEVICES_H
 
@@ -15,26 +15,27 @@ struct devices {
     uint32_t count;
 };
 
-/** Says on standard error what is missing. */
+/** Reports errors on stderr. */
 bool open_devices(struct devices *devices);
 void close_devices(struct devices *devices);
 
 struct format_report {
     SluiceVulkanFormatCapabilities capabilities;
     bool has_layout;
-    SluiceVulkanSparseImageLayout layout; ///< of an image of the size asked for
+    SluiceVulkanSparseImageLayout layout; ///< layout of an image of the requested size
 };
 
 struct device_report {
     uint32_t index;
     SluiceVulkanDeviceCapabilities capabilities;
-    char missing[MAX_REASON];                   ///< what keeps it from streaming; empty: nothing
-    char missing_for[FORMAT_MODES][MAX_REASON]; ///< what keeps it from a mode; empty: nothing
+    char missing[MAX_REASON]; ///< reason why the device cannot stream; empty: it can
+    char missing_for[FORMAT_MODES]
+                    [MAX_REASON]; ///< by mode: reason why the device lacks it; empty: supported
     uint32_t width, height;
     struct format_report formats[SLUICE_FORMAT_COUNT];
 };
 
-/** False, having said why, if the device cannot even be asked. */
+/** Returns false if the device cannot be queried, and reports it on stderr. */
 bool ask_device(const struct devices *devices, uint32_t index, uint32_t width, uint32_t height,
                 struct device_report *report);
 

@@ -1,4 +1,4 @@
-/** Opens whatever file of a texture this build reads. */
+/** Opens any texture file that this build reads. */
 #ifndef TOOLS_SLUICE_INFO_OPEN_FILE_H
 #define TOOLS_SLUICE_INFO_OPEN_FILE_H
 
@@ -7,25 +7,24 @@
 #include "../common/remote.h"
 
 struct texture_file {
-    struct remote_session session; ///< of a URL
+    struct remote_session session; ///< connection of a URL
     struct remote_file remote;
     SluiceImageSource *source;
     SluiceImageInfo image;
     const char *kind; ///< "tile store" and so on
     bool is_store;
-    bool has_spoken; ///< the library has said what is wrong
+    bool has_spoken; ///< true: the library has reported the error
 };
 
-/** What a file is opened for. */
+/** Options of opening a file. */
 struct texture_opening {
-    /** Bytes that reading may take; UINT64_MAX where no texels are read. */
+    /** Byte limit for reading; UINT64_MAX if no texels are read. */
     uint64_t memory;
-    /** Nothing but level 0 is read. Files without levels are not read as a whole then, and have one
-     *  level. */
+    /** Reads only level 0. Files without levels then have one level and are not read as a whole. */
     bool level_zero_alone;
 };
 
-/** Says on standard error what is wrong. The struct stays where it is until it is closed. */
+/** Opens a file. Reports errors on stderr. The struct must not move until it is closed. */
 bool open_texture_file(struct texture_file *file, const char *path,
                        const struct texture_opening *opening);
 void close_texture_file(struct texture_file *file);

@@ -12,23 +12,23 @@ struct tile_choice {
 
 struct options {
     struct option_list files;
-    const char *png; ///< NULL: no picture is written
+    const char *png; ///< NULL: write no picture
     uint32_t level;
     struct tile_choice tile;
     int32_t decode;     ///< mip of a neural set to decode; -1: none
     int weights;        ///< 0: INT8, 1: FP8
-    const char *output; ///< where decoded floats go
-    uint64_t memory;    ///< bytes that a picture and the reading of its file may take
-    const char *device; ///< number or a part of the name; NULL: all
-    uint32_t image[2];  ///< width and height of the image whose layout is shown
+    const char *output; ///< path for decoded floats
+    uint64_t memory;    ///< byte limit for a picture and the reading of its file
+    const char *device; ///< index or part of the name; NULL: all
+    uint32_t image[2];  ///< width and height of the image whose layout is printed
     bool list_devices, json;
-    bool formats; ///< only the formats, by residency mode
+    bool formats; ///< print only the formats, by residency mode
     bool self_test;
-    const char *group;  ///< of checks; NULL: all
-    const char *report; ///< text file with what the self-test finds; NULL: none
+    const char *group;  ///< group of checks; NULL: all
+    const char *report; ///< text file for the self-test's results; NULL: none
 };
 
-/** Prints the help text if it was asked for. On failure says on standard error what is wrong. */
+/** Parses the command line. Prints the help text for --help; reports errors on stderr. */
 enum option_outcome parse_options(struct options *options, int argc, char **argv);
 
 #endif /* TOOLS_SLUICE_INFO_OPTIONS_H */

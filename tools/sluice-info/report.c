@@ -32,7 +32,7 @@ static void print_version(FILE *out, uint32_t version)
             VK_API_VERSION_PATCH(version));
 }
 
-/* Of a few exact units, so that round sizes look round. */
+/* Prints a size in the smallest unit that keeps the number below 10240. Round sizes stay round. */
 static void print_bytes(FILE *out, uint64_t size)
 {
     static const char *const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};

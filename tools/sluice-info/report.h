@@ -1,4 +1,4 @@
-/** What was found out, for people and for programs, on standard output. */
+/** Prints device reports on stdout, as tables or as JSON. */
 #ifndef TOOLS_SLUICE_INFO_REPORT_H
 #define TOOLS_SLUICE_INFO_REPORT_H
 
@@ -6,19 +6,19 @@
 
 #include <stdio.h>
 
-/** `follows`: another one came before. */
+/** Prints a table. `follows`: true after another table. */
 void print_table(const struct device_report *report, bool follows);
 
-/** The device without its formats. */
+/** Prints the device without its formats. */
 void print_limits(FILE *out, const struct device_report *report);
 
-/** One line. */
+/** Prints one line of JSON. */
 void print_json(const struct device_report *report);
 
-/** Only the formats: a row for each, a column for each mode and for demand loading. */
+/** Prints only the formats: a row per format, a column per mode and for demand loading. */
 void print_formats(const struct device_report *report, bool follows);
 
-/** The table of print_formats as one line. */
+/** Prints the table of print_formats as one line of JSON. */
 void print_formats_json(const struct device_report *report);
 
 #endif /* TOOLS_SLUICE_INFO_REPORT_H */

@@ -1,7 +1,7 @@
 /*
  * Runs device tests (tests/device) on the user's driver and reports each. Every group runs in a
- * process of its own, so that a driver that crashes or hangs fails one group. This process never
- * loads a driver: a forked child of it would not be safe.
+ * process of its own: a driver that crashes or hangs fails one group only. This process never loads
+ * a driver, because forking would not be safe then.
  */
 #define _XOPEN_SOURCE 700
 
@@ -25,14 +25,14 @@
 #include <time.h>
 #include <unistd.h>
 
-#define GROUP_SECONDS 240u ///< a group that takes longer has failed
-#define NO_DEVICE 100      ///< exit status of the process that asks for devices
+#define GROUP_SECONDS 240u ///< time limit; a slower group fails
+#define NO_DEVICE 100      ///< exit status of the process that looks for devices
 #define LINE 2048
 #define TEXT_OF(number) #number
 #define VERSION(major, minor, patch) TEXT_OF(major) "." TEXT_OF(minor) "." TEXT_OF(patch)
 #define VERSION_TEXT VERSION(SLUICE_VERSION_MAJOR, SLUICE_VERSION_MINOR, SLUICE_VERSION_PATCH)
 
-/* The main functions of the tests, renamed by the build. */
+/* Main functions of the tests, renamed by the build. */
 int self_test_conformance(void);
 int self_test_conformance_sampler(void);
 int self_test_residency(void);
@@ -43,7 +43,7 @@ int self_test_extremes(void);
 struct group {
     const char *name;
     int (*run)(void);
-    uint32_t mode_count; ///< of `modes`, the first ones; 0: does not depend on them
+    uint32_t mode_count; ///< number of leading `modes` to run; 0: independent of the mode
 };
 
 static const struct group groups[] = {
@@ -59,10 +59,10 @@ struct run {
     const struct options *options;
     const struct group *group;
     const char *mode, *device;
-    FILE *file; ///< of --report, or NULL
-    FILE *log;  ///< what the group printed
+    FILE *file; ///< file of --report, or NULL
+    FILE *log;  ///< output of the group
     char current[256];
-    char validation[8]; ///< "on" or "off", as the groups say it; empty before the first one
+    char validation[8]; ///< "on" or "off", as printed by the groups; empty before the first one
     uint32_t passed, failed, skipped;
 };
 
@@ -97,12 +97,13 @@ static void report(struct run *run, const char *name, const char *result, double
     }
     if (run->file) {
         print_check(run->file, run, name, result, seconds, reason);
-        fflush(run->file); /* a child would write it again */
+        fflush(run->file); /* otherwise a child would write it again */
     }
     fflush(stdout);
 }
 
-/* Empty, or the last line of the group's output that has these words, from them on. */
+/* Copies the last line of the group's output that contains `words`, from there on; empty if
+ * none. */
 static void find_line(FILE *log, const char *words, char *line, size_t size)
 {
     char text[LINE];
@@ -134,7 +135,7 @@ static void take_line(struct run *run, char *line)
         report(run, fields[1], fields[2], strtod(fields[3], NULL), fields[4]);
 }
 
-/* How the process of a group ended, where its checks do not say it. */
+/* Reports how the process of a group ended, if its checks do not tell. */
 static void take_end(struct run *run, int status, uint32_t failed_before)
 {
     char reason[LINE] = "";
@@ -198,7 +199,7 @@ static bool run_group(struct run *run)
     return ran;
 }
 
-/* In a process of its own. Prints the device, and returns its number. `file`: see struct run. */
+/* Prints the device in a process of its own, and returns its index. `file`: see struct run. */
 static int show_device(const struct options *options, FILE *file)
 {
     static struct device_report report;
@@ -250,7 +251,7 @@ static int choose_device(const struct options *options, FILE *file)
     return WEXITSTATUS(status);
 }
 
-/* Prints the version, the date, the system and the groups. The device follows. */
+/* Prints version, date, system and groups. The device follows. */
 static void print_head(FILE *out, const struct options *options)
 {
     struct utsname system = {0};
@@ -275,7 +276,7 @@ static void print_sum(FILE *out, const struct run *run, double seconds, double p
             run->validation[0] ? run->validation : "unknown");
 }
 
-/* Seconds of the processes of all groups. */
+/* Processor time of all groups' processes in s. */
 static double processor_seconds(void)
 {
     struct rusage usage = {0};
@@ -307,7 +308,7 @@ static bool run_all(struct run *run)
     return true;
 }
 
-/* False if a process could not start, or no device is there to test. */
+/* Returns false if a process could not start, or if there is no device to test. */
 static bool run_on_device(struct run *run)
 {
     char device[16];

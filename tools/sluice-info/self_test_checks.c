@@ -8,16 +8,16 @@
 
 enum outcome { PASSED, FAILED, SKIPPED };
 
-/* Of the test that runs. */
+/* State of the running test. */
 static struct {
     FILE *out;
     jmp_buf end;
     enum outcome outcome;
-    char reason[1024], message[256]; ///< the last one that was printed
+    char reason[1024], message[256]; ///< last printed message
 } now;
 
 void tap_filter_stdout(void);
-/* The tests call it; there is no TAP to filter. */
+/* Called by the tests. There is no TAP to filter here. */
 void tap_filter_stdout(void) {}
 
 void self_test_report_to(FILE *out)
@@ -25,7 +25,7 @@ void self_test_report_to(FILE *out)
     now.out = out;
 }
 
-/* A line may have no tab and no end inside. */
+/* Removes tabs and line ends, which a report line must not contain. */
 static void flatten(char *text)
 {
     for (; *text; text++)
@@ -47,7 +47,7 @@ void print_message(const char *format, ...)
 
 void skip(void)
 {
-    static const char prefix[] = "# skipped: "; /* of SKIP_TEST */
+    static const char prefix[] = "# skipped: "; /* prefix that SKIP_TEST prints */
     size_t length = strncmp(now.message, prefix, sizeof prefix - 1) == 0 ? sizeof prefix - 1 : 0;
     now.outcome = SKIPPED;
     snprintf(now.reason, sizeof now.reason, "%s", now.message + length);

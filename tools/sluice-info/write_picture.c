@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* More than this is no picture to look at. */
+/* Limit of texels: larger pictures cannot be viewed. */
 #define MAX_TEXELS ((uint64_t)1 << 28)
 
 static bool fail(const char *path, const char *why)
@@ -28,7 +28,7 @@ static uint32_t least(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-/* The level, or one tile of the standard shape. */
+/* Finds the region to write: the level, or one tile of the standard shape. */
 static bool find_region(const struct options *o, const SluiceImageInfo *image,
                         SluiceImageRegion *region)
 {
@@ -54,7 +54,7 @@ static bool find_region(const struct options *o, const SluiceImageInfo *image,
     return true;
 }
 
-/* Rows that are read at once: few enough for half of the memory. */
+/* Returns the number of rows read at once. They take at most half of the memory. */
 static uint32_t strip_height(const struct options *options, const SluiceImageRegion *region,
                              SluiceFormat format)
 {
@@ -65,14 +65,15 @@ static uint32_t strip_height(const struct options *options, const SluiceImageReg
     return least(height, region->height);
 }
 
-/* What one strip takes on its way. */
+/* Buffers of one strip of rows. */
 struct strip {
     uint32_t height;
     char *texels;
     uint8_t *rgba;
 };
 
-/* Blocks of lines and tiles begin at multiples of their height, so that most are decoded once. */
+/* Strips begin at multiples of the height of tiles and blocks of lines, so that most are decoded
+ * once. */
 static bool write_rows(struct texture_file *file, const char *in, const SluiceImageRegion *region,
                        const struct strip *strip, struct png_rows *rows)
 {

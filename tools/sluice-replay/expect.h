@@ -1,4 +1,4 @@
-/** Compares a dump, line by line as it comes, with a file. */
+/** Compares a dump with a file, line by line. */
 #ifndef TOOLS_SLUICE_REPLAY_EXPECT_H
 #define TOOLS_SLUICE_REPLAY_EXPECT_H
 
@@ -11,18 +11,18 @@ struct expectation {
     char *text;    ///< owned
     size_t size;   ///< bytes of the text
     char *next;    ///< first character of the next line
-    size_t number; ///< of that line, from 1 on
+    size_t number; ///< number of that line, from 1
     bool hash_only;
     bool differs;
 };
 
-/** Reads at most `memory` bytes. On failure says why on standard error. */
+/** Reads at most `memory` bytes. Reports errors on stderr. */
 bool expectation_open(struct expectation *expectation, const char *path, uint64_t memory);
 
-/** Says on standard error which line differs, if it is the first. */
+/** Compares the next line. Reports the first difference on stderr. */
 void expectation_line(struct expectation *expectation, const char *line);
 
-/** True if every line was as expected and none is missing. */
+/** Returns true if all lines were as expected and none is missing. */
 bool expectation_close(struct expectation *expectation);
 
 #endif /* TOOLS_SLUICE_REPLAY_EXPECT_H */

@@ -1,4 +1,4 @@
-/* Plays a trace and prints what is decided: see --help and docs/replay.md. */
+/* Plays a trace and prints the decisions: see --help and docs/replay.md. */
 #include "expect.h"
 #include "options.h"
 #include "report.h"
@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A few bytes of a trace can ask for a texture of a billion tiles, so memory has a limit. */
+/* Limits memory: a few bytes of a trace can request a texture of a billion tiles. */
 struct limited_memory {
     uint64_t left;
 };
@@ -42,7 +42,7 @@ static void release(void *user, void *block, size_t size)
 
 struct output {
     bool dump;
-    struct expectation *expectation; ///< NULL: nothing is compared
+    struct expectation *expectation; ///< NULL: compare nothing
 };
 
 static void take_line(void *user, const char *line)
@@ -67,7 +67,7 @@ static SluiceResult replay(const struct options *o, const char *data, size_t siz
     size_t expected = output->expectation ? output->expectation->size : 0;
     struct limited_memory memory = {o->memory - expected - size};
     const SluiceAllocationCallbacks callbacks = {&memory, allocate, release};
-    /* The log's user pointer is not const; it is only printed. */
+    /* The log's user pointer is not const, but is only printed. */
     const SluiceReplayInfo info = {
         .structSize = sizeof info,
         .pData = data,
@@ -90,7 +90,7 @@ static SluiceResult replay(const struct options *o, const char *data, size_t siz
     return sluiceReplay(&info, result);
 }
 
-/* Everything but the expectation, which the caller closes. */
+/* Does everything but close the expectation, which is the caller's. */
 static bool run(const struct options *o, struct expectation *expectation)
 {
     char *data;
@@ -109,7 +109,7 @@ static bool run(const struct options *o, struct expectation *expectation)
             snprintf(where, sizeof where, " at byte %" PRIu64, result.errorOffset);
         text_say("sluice-replay: %s: %s%s after %" PRIu64 " events, hash %016" PRIx64, o->trace,
                  sluiceGetResultName(status), where, result.eventCount, result.decisionHash);
-        if (expectation) /* what is missing in the dump follows from this */
+        if (expectation) /* the missing lines of the dump follow from this error */
             expectation->differs = true;
         return false;
     }

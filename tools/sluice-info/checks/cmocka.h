@@ -1,6 +1,6 @@
 /**
- * What the device tests use of cmocka, for sluice-info --self-test, which runs them without it. A
- * check that fails ends its test; the tests behind it go on.
+ * The part of cmocka that the device tests use, for sluice-info --self-test, which does without
+ * cmocka. A failed check ends its test; later tests still run.
  */
 #ifndef TOOLS_SLUICE_INFO_CHECKS_CMOCKA_H
 #define TOOLS_SLUICE_INFO_CHECKS_CMOCKA_H
@@ -16,15 +16,15 @@ struct CMUnitTest {
     void *initial_state;
 };
 
-/** Runs tests and reports each (self_test_checks.h). Returns the number of those that failed. */
+/** Runs tests and reports each (self_test_checks.h). Returns the number of failed tests. */
 int self_test_run(const struct CMUnitTest *tests, size_t count);
-/** Ends the test, which failed. printf arguments. */
+/** Fails and ends the test. Takes printf arguments. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4), noreturn))
 #endif
 void
 self_test_fail(const char *file, int line, const char *format, ...);
-/** Ends the test, which is skipped; the last message says why. */
+/** Skips and ends the test. The last message says why. */
 #if defined(__GNUC__)
 __attribute__((noreturn))
 #endif
