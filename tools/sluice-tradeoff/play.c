@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/** What a policy that knows the whole trace does, and what no policy can do better than. */
+/** Prints the figures of a clairvoyant policy, and bounds for all policies. */
 static void print_clairvoyant(const struct play_printer *p, const struct play_options *o,
                               const struct workload *w, const struct limits *limits)
 {

@@ -1,15 +1,15 @@
-/** "A recorded trace alone": plays a feedback trace with the settings that it is given, and prints
- *  what they cost. --help says which there are. */
+/** The subcommand `play`: plays a feedback trace with given settings, and prints their cost. --help
+ * lists the settings. */
 #ifndef SLUICE_TRADEOFF_PLAY_H
 #define SLUICE_TRADEOFF_PLAY_H
 
 #include <stdio.h>
 
-/** The subcommand: argv[0] is its name. Returns the exit status: 0; 1 for a trace that cannot be
- *  played or a file that cannot be written; 2 for wrong usage. */
+/** Runs the subcommand. argv[0] is its name. Returns the exit status: 0; 1 for an unplayable trace
+ * or a file that cannot be written; 2 for wrong usage. */
 int play_main(int argc, char **argv);
 
-/** The same, with the figures elsewhere. */
+/** Runs the subcommand, and prints the figures to `out`. */
 int play_print(int argc, char **argv, FILE *out);
 
 #endif /* SLUICE_TRADEOFF_PLAY_H */

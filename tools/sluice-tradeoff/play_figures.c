@@ -26,7 +26,7 @@ void play_print_figure(const struct play_printer *p, const char *name, double va
         fprintf(p->out, "%-38s %16s %s\n", name, text, unit);
 }
 
-/** Of all frames. */
+/** Sums over all frames. */
 struct sums {
     double touched, missing, levels, wrong, loaded, stale, unmapped, canceled;
     double resident_peak, heaps_peak;
@@ -124,7 +124,7 @@ static void print_memory(const struct play_printer *p, const struct play_loop *l
     play_print_figure(p, "host_bytes", (double)l->statistics.hostMemorySize, "B");
 }
 
-/** Frames per second, as the time stamps say. */
+/** Frames per second from the time stamps. */
 static double frame_rate(const struct play_loop *l)
 {
     const uint32_t count = l->trace->frame_count;
@@ -145,7 +145,7 @@ bool play_print_figures(const struct play_printer *p, const struct play_loop *l)
     return print_times(p, l);
 }
 
-/** The folder and those that it is in. */
+/** Creates the folder and its parents. */
 static bool make_folders(const char *folder)
 {
     char path[4096];

@@ -1,4 +1,4 @@
-/** What is said of a trace that was played: a line for each figure, and a table of its frames. */
+/** Prints the figures of a played trace, and writes a table of its frames. */
 #ifndef SLUICE_TRADEOFF_PLAY_FIGURES_H
 #define SLUICE_TRADEOFF_PLAY_FIGURES_H
 
@@ -8,17 +8,17 @@
 
 struct play_printer {
     FILE *out;
-    bool json; ///< an object for each figure
+    bool json; ///< true: a JSON object per figure
 };
 
-/** A line; a value that is not finite is left out, or null. */
+/** Prints a line. A value that is not finite is left out, or null in JSON. */
 void play_print_figure(const struct play_printer *printer, const char *name, double value,
                        const char *unit);
 
-/** After play_loop_run. False, with a message, if memory is short. */
+/** Call after play_loop_run. Returns false when out of memory, with a message on stderr. */
 bool play_print_figures(const struct play_printer *printer, const struct play_loop *loop);
 
-/** frames.csv in a folder that is made if it is not there. Says on stderr why it failed. */
+/** Writes frames.csv to a folder, and creates the folder if necessary. Reports errors on stderr. */
 bool play_write_frames(const struct play_loop *loop, const char *folder);
 
 #endif /* SLUICE_TRADEOFF_PLAY_FIGURES_H */

@@ -25,7 +25,7 @@ static uint64_t nanoseconds(void)
     return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
-/** Makes a call of the manager, whose time counts, and says whether it went well. */
+/** Calls a function of the manager and measures its time. Returns whether it succeeded. */
 #define CORE(loop, function, ...)                                                                  \
     ((loop)->began_ns = nanoseconds(),                                                             \
      end_call(loop, function((loop)->manager, __VA_ARGS__), #function))
@@ -88,7 +88,7 @@ static bool add_textures(struct play_loop *l)
     return true;
 }
 
-/** How many loads may be under way. */
+/** Limit of loads in flight. */
 static uint32_t load_room(const struct play_options *o)
 {
     return o->loads_in_flight ? o->loads_in_flight : o->tiles_per_frame * (o->latency + 1);
@@ -132,7 +132,7 @@ void play_loop_finish(struct play_loop *l)
 
 /* A frame ----------------------------------------------------------------------------------- */
 
-/** Looks at what was there for all maps before any of them is processed. */
+/** Records what is resident for all maps of the frame before any map is processed. */
 static bool take_maps(struct play_loop *l, uint32_t frame)
 {
     feedback_trace_next_frame(l->trace, &l->now.time, &l->now.map_count);
@@ -164,7 +164,7 @@ static bool give_feedback(struct play_loop *l)
     return true;
 }
 
-/** Stopped before it arrives. In flight are few frames' worth, so a search per tile is cheap. */
+/** Cancels a load before it arrives. Few loads are in flight, so a linear search is cheap. */
 static void drop_load(struct play_loop *l, const SluiceTile *tile)
 {
     for (uint32_t i = 0; i < l->load_count; i++) {
@@ -222,13 +222,13 @@ static bool start_loads(struct play_loop *l, uint32_t frame)
     return true;
 }
 
-/** Ids are dense from 0, as nothing is ever removed. */
+/** Texture ids count up from 0, because no texture is removed. */
 static uint32_t index_of(SluiceTextureId id)
 {
     return (uint32_t)id;
 }
 
-/** The loads that are due, oldest first. */
+/** Answers the loads that are due, oldest first. */
 static bool answer_loads(struct play_loop *l, uint32_t frame)
 {
     const struct play_options *o = l->options;
@@ -252,7 +252,7 @@ static bool answer_loads(struct play_loop *l, uint32_t frame)
     return true;
 }
 
-/** As an application publishes them: each rectangle is written somewhere. */
+/** Publishes MinMip updates as an application does: copies each rectangle. */
 static bool publish(struct play_loop *l)
 {
     SluiceMinMipRect rects[LIST_ROOM];

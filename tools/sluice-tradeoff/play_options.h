@@ -1,4 +1,4 @@
-/** What playing a trace can be told. */
+/** Options of playing a trace. */
 #ifndef SLUICE_TRADEOFF_PLAY_OPTIONS_H
 #define SLUICE_TRADEOFF_PLAY_OPTIONS_H
 
@@ -9,7 +9,7 @@ struct play_options {
     const char *output; ///< folder for frames.csv; NULL: none
     /* memory */
     uint32_t heap_tiles, max_heaps; ///< max_heaps 0: any number
-    uint64_t budget;                ///< bytes for all heaps, 0: as max_heaps says
+    uint64_t budget;                ///< bytes for all heaps; 0: max_heaps decides
     uint32_t standby, prefetch_levels;
     /* loads */
     uint32_t tiles_per_frame, latency;
@@ -17,18 +17,18 @@ struct play_options {
     /* feedback */
     double timeout; ///< s
     uint32_t misses_to_forget, textures_per_frame;
-    uint32_t writers;   ///< of a region
-    double probability; ///< that one of them writes
-    double drop;        ///< that none does: that a region is left out of a frame's map
-    int32_t mip_bias;   ///< levels
-    uint32_t seed;      ///< of what is left out
-    bool in_turns;      ///< a map shows the frame that it is read in alone
-    /* what is printed beside */
+    uint32_t writers;   ///< pixels that see a region
+    double probability; ///< probability that a pixel writes feedback
+    double drop; ///< probability that no pixel of a region writes: the map then lacks the region
+    int32_t mip_bias; ///< levels
+    uint32_t seed;    ///< seed of the regions that are left out
+    bool in_turns;    ///< true: a map shows only the frame in which it is read
+    /* Extra output. */
     bool json, clairvoyant;
-    uint32_t rounds; ///< of the search for its bound
+    uint32_t rounds; ///< rounds of the search for the clairvoyant bound
 };
 
-/** Says on stderr what is wrong. */
+/** Reports errors on stderr. */
 enum option_outcome play_options_parse(struct play_options *options, int argc, char **argv);
 
 #endif /* SLUICE_TRADEOFF_PLAY_OPTIONS_H */
