@@ -1,4 +1,4 @@
-/** Which points deserve room on the page: the base, what is recommended, then the extremes. */
+/** Chooses points for the page: the base, recommended points, then the extremes. */
 #ifndef SLUICE_TRADEOFF_PAGE_CHOOSE_H
 #define SLUICE_TRADEOFF_PAGE_CHOOSE_H
 
@@ -6,13 +6,14 @@
 
 struct page_choice {
     uint32_t point;
-    const char *role;   ///< "base", a recommendation's name, "least flip_mean" by parts; "" if none
-    const char *metric; ///< what it is extreme in, "" if nothing
+    const char *role;   ///< "base", a recommendation's name, "least flip_mean"; several are joined;
+                        ///< "" if none
+    const char *metric; ///< metric in which the point is extreme; "" if none
 };
 
 /**
- * Writes every point that is done once, the most important first, to choices[sweep->point_count].
- * `prominent` is how many of them have a role: those get pictures. Returns how many there are.
+ * Writes every complete point once to choices[sweep->point_count], the most important first.
+ * `prominent`: number of points with a role, which get pictures. Returns the number of points.
  */
 uint32_t page_choose(const struct sweep *sweep, const struct sweep_recommendation *recommendations,
                      uint32_t recommendation_count, struct page_choice *choices,

@@ -1,6 +1,6 @@
 'use strict';
-/* What all sections use: the data, elements, the chosen run. Words from the data become text nodes
- * and attribute values alone, never markup. */
+/* Shared by all sections: the data, elements, the chosen run. Text from the data becomes text nodes
+ * and attribute values only, never markup. */
 
 function showTrouble(error) {
   const box = document.getElementById('trouble');
@@ -9,7 +9,7 @@ function showTrouble(error) {
 }
 window.addEventListener('error', event => showTrouble(event.message));
 
-/** Controls, and what turns the direction of writing, would make words look like others. */
+/** Escapes control characters and direction marks, which can disguise words. */
 function visible(key, value) {
   return typeof value !== 'string' ? value : value.replace(/[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/g,
     letter => `\\u${letter.charCodeAt(0).toString(16).padStart(4, '0')}`);
@@ -44,7 +44,7 @@ function svg(tag, attributes, ...children) {
   return fill(document.createElementNS(svgNamespace, tag), attributes, children);
 }
 
-/** Tells screen readers. */
+/** Announces a text to screen readers. */
 function say(text) {
   byId('says').textContent = text;
 }
@@ -52,7 +52,7 @@ function say(text) {
 async function copyText(text, button) {
   try {
     await navigator.clipboard.writeText(text);
-  } catch (refused) { // files opened from disk may not have the clipboard
+  } catch (refused) { // pages opened from disk may lack clipboard access
     const area = html('textarea', {class: 'hidden'});
     area.value = text;
     document.body.append(area);
@@ -88,7 +88,7 @@ const base = points[sweep.base] && points[sweep.base].state === 'done' ? sweep.b
 const chosenListeners = [];
 let chosen = -1;
 
-/** Calls the listener now and whenever another run is chosen. */
+/** Calls the listener now, and whenever another run is chosen. */
 function onChosen(listener) {
   chosenListeners.push(listener);
   if (chosen >= 0)
@@ -144,7 +144,7 @@ function groupColor(group) {
   return group === 'several' ? 'var(--other)' : `var(--c${varied.indexOf(group) % hueCount})`;
 }
 
-/** A path around 0, 0. */
+/** Returns a path around (0, 0). */
 function groupShape(group, r) {
   const circle = `M${-r} 0A${r} ${r} 0 1 0 ${r} 0A${r} ${r} 0 1 0 ${-r} 0Z`;
   const k = r * 0.9, t = r * 1.15;

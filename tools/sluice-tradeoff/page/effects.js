@@ -1,5 +1,5 @@
 'use strict';
-/* What each setting does alone: its figures against its values, all else as in the base. */
+/* Effect of each setting alone: plots figures over its values, with all other settings as in the base. */
 
 /** A setting's value as a number: "16", "1/16"; NaN for words. */
 function settingNumber(text) {
@@ -7,7 +7,7 @@ function settingNumber(text) {
   return parts ? Number(parts[1]) / (parts[2] ? Number(parts[2]) : 1) : NaN;
 }
 
-/** Whether the setting's 0 stands for no bound at all, and so for more than any number. */
+/** Returns whether 0 means no limit for a setting, and so sorts above all numbers. */
 function zeroIsAll(setting) {
   return /\b0: (no|any|all|as many)\b/.test(sweep.settings[setting].meaning);
 }
@@ -22,10 +22,10 @@ function alone(setting) {
   return {rows, numeric};
 }
 
-/** Values at even distances, unless numbers of one magnitude: then where they are. */
+/** Spaces values evenly. Numbers of one magnitude are placed to scale instead. */
 function alongX({rows, numeric}, left, right) {
   const values = rows.map(row => row.value), finite = values.filter(Number.isFinite), low = Math.min(...finite), high = Math.max(...finite);
-  if (numeric && values.includes(Infinity) && finite.length > 0) { // at the end, beyond a gap
+  if (numeric && values.includes(Infinity) && finite.length > 0) { // infinity: at the end, behind a gap
     const others = alongX({rows: rows.slice(0, finite.length), numeric}, left, right - (right - left) / 4);
     return i => values[i] === Infinity ? right : others(i);
   }
@@ -51,7 +51,7 @@ function drawWhisker(row, x, metric, scale, color) {
     ? svg('line', {class: 'bar', stroke: color, x1: x, x2: x, y1: scale.place(e.mean - e.half), y2: scale.place(e.mean + e.half)}) : null;
 }
 
-/** Labels of the values, each where it has room beside the one before. */
+/** Draws labels of the values, except where they would overlap the previous label. */
 function drawValues(rows, xs, y) {
   let free = -Infinity;
   return rows.map((row, i) => {

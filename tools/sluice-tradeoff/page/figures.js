@@ -1,10 +1,10 @@
 'use strict';
-/* Figures: which there are, what is known of them at a point, how they are written. */
+/* Figures: their list, their estimates at a point, and their formatting. */
 
-const equalPsnr = 150; // dB; above this a mean has pictures in it that do not differ at all
+const equalPsnr = 150; // dB; above this a mean includes pictures without any difference
 const minus = '\u2212', infinitySign = '\u221e', plusMinus = '\u2009\u00b1\u2009';
 
-/** JSON has no infinity; it comes as a word. */
+/** Parses a number. JSON has no infinity, so it arrives as a word. */
 function number(value) {
   return value === null || value === undefined ? NaN
     : value === 'inf' ? Infinity : value === '-inf' ? -Infinity : Number(value);
@@ -14,7 +14,7 @@ function withoutEqual(value, unit) {
   return unit === 'dB' && value >= equalPsnr ? Infinity : value;
 }
 
-/** {mean, half, count} of a metric at a point; NaN where nothing is known. */
+/** {mean, half, count} of a metric at a point; NaN: unknown. */
 function estimate(index, metric) {
   const given = points[index].estimates && metric >= 0 ? points[index].estimates[metric] : null;
   if (!given)
@@ -39,12 +39,12 @@ const telling = ['resident_bytes_peak', 'flip_mean', 'psnr_mean_db', 'psnr_lowes
   'host_ms_median', 'frame_ms_median', 'levels_too_coarse', 'time', 'bytes_read', 'loaded_bytes', 'missing_pixels_percent',
   'frames_until_sharp_p99', 'loaded_per_needed', 'wrong_evictions_percent', 'core_us_per_frame', 'requests'];
 
-/** Whether a figure is the same in all runs, so that it says nothing of the settings. */
+/** Returns whether a figure is equal in all runs, and so independent of the settings. */
 function isConstant(metric) {
   return done.every(i => estimate(i, metric).mean === estimate(done[0], metric).mean);
 }
 
-/** The figures that say most, at most `count`, then whatever else differs between runs. */
+/** Lists at most `count` figures: the most telling ones, then others that differ between runs. */
 function tellingMetrics(count) {
   const found = telling.map(findMetric).filter(m => m >= 0);
   return [...found, ...known.filter(m => !found.includes(m) && !isConstant(m))].slice(0, count);
@@ -85,7 +85,7 @@ function formatValue(value, unit, count = 3) {
   return Number.isNaN(value) ? digits(value, count) : withUnit(digits(value / divisor, count), shown);
 }
 
-/** As many digits as the half width makes sense of. */
+/** Formats a mean with as many digits as its half width justifies. */
 function formatEstimate(e, unit) {
   if (!Number.isFinite(e.mean) || !(e.half > 0))
     return [formatValue(e.mean, unit, 4), ''];
@@ -100,8 +100,8 @@ function estimateText(index, metric) {
 }
 
 /**
- * {change, noise} to the base: repeat by repeat where that is known, since what repeats share, a slow
- * hour or a seed, has no part in it then; else of the two means.
+ * {change, noise} against the base. Compares repeat by repeat if possible: influences that both share,
+ * such as a seed or a slow hour, cancel out. Otherwise compares the means.
  */
 function changeOf(index, metric) {
   const given = points[index].deltas ? points[index].deltas[metric].map(number) : [NaN, NaN];
@@ -131,7 +131,7 @@ function compare(index, metric) {
   const ratio = mine.mean / usual.mean;
   const text = !relative ? sign + (unit === '%' ? withUnit(digits(size, 2), 'points') : formatValue(size, unit, 2))
     : ratio >= 3 ? `\u00d7\u2009${digits(ratio, 2)}` : sign + withUnit(digits(100 * size / Math.abs(usual.mean), 2), '%');
-  /* What a few times say may be the machine's mood. */
+  /* Fewer than three measured times are too noisy to judge. */
   const doubtful = ['s', 'ms', 'us', 'ns'].includes(unit) && Math.min(mine.count, usual.count) < 3;
   return {text, kind: better === 'neither' || doubtful ? '' : (change < 0) === (better === 'less') ? 'better' : 'worse'};
 }

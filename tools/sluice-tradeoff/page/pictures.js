@@ -1,5 +1,5 @@
 'use strict';
-/* What was drawn beside the truth, with a line between them that can be moved. */
+/* Compares the drawn picture with the truth, separated by a line that can be moved. */
 
 const viewer = {set: null, left: 'streamed', right: 'truth'};
 
@@ -12,7 +12,7 @@ function image(index, text) {
   return html('img', {src: pictureUrl(index), width, height, alt: text, draggable: 'false'});
 }
 
-/** Why a run has pictures: its role, or what it is extreme in. */
+/** Reason why a run has pictures: its role, or the metric in which it is extreme. */
 function roleText(set) {
   const metric = sweep.metrics.findIndex(m => m.name === set.metric);
   return metric >= 0 ? `${set.role} ${metricName(metric)}` : set.role;
@@ -24,7 +24,7 @@ function qualityText(set) {
   return [Number.isNaN(psnr) ? null : `PSNR ${formatValue(psnr, 'dB')}`, Number.isNaN(flip) || flip === undefined ? null : `FLIP ${digits(flip, 3)}`].filter(Boolean).join(', ');
 }
 
-/** key -> [name, picture] of all that can stand on a side: also other runs at the same frame. */
+/** key -> [name, picture] of all choices for a side, other runs at this frame included. */
 function choices(set) {
   const found = new Map();
   for (const [kind, name] of [['streamed', 'streamed'], ['truth', 'truth'], ['flip', 'FLIP map']])
@@ -36,7 +36,7 @@ function choices(set) {
   return found;
 }
 
-/** Two pictures over each other, and the line. */
+/** Stacks two pictures, with a movable line between them. */
 function stage(left, right) {
   const top = image(left[1], left[0]), bar = html('div', {class: 'bar'});
   const slider = html('input', {type: 'range', class: 'wipe', min: 0, max: 100, step: 0.5, value: 50, 'aria-label': `how much of ${left[0]} is shown over ${right[0]}`});
@@ -94,13 +94,13 @@ function drawPictures() {
   byId('picture-body').replaceChildren(sides, html('p', {class: 'muted small'}, `${pointName(set.point)}, frame ${set.frame}${qualityText(set) ? `: ${qualityText(set)}` : ''}`), frame, slider, drawThree(set));
 }
 
-/** Only some runs have pictures; those that should and do not are named. */
+/** Says how many runs have pictures, and lists the frames that were left out. */
 function showMissingPictures() {
   const there = new Set(album.sets.map(set => set.point)), rest = done.filter(i => !there.has(i)).length;
   const lines = album.left_out.map(gone => html('li', {}, `${pointName(gone.point)}, frame ${gone.frame}: ${gone.why}`));
   byId('picture-missing').replaceChildren(html('p', {class: 'muted small'},
     `Pictures are on this page for ${there.size} of ${done.length} runs: the base, what is recommended, and extremes.` +
-    (rest > 0 ? ' Those of the others are in their folders.' : '')),
+    (rest > 0 ? ' Pictures of other runs are in their folders.' : '')),
   lines.length > 0 ? html('details', {class: 'note small'}, html('summary', {}, lines.length === 1 ? 'One frame was left out' : `${lines.length} frames were left out`), html('ul', {}, lines)) : '');
 }
 

@@ -13,7 +13,7 @@ function columnOf(run, name) {
   return column ? {most: column.most.map(number), least: (column.least || column.most).map(number)} : null;
 }
 
-/** Of the sampled pixels, since their number changes with the view. */
+/** Percentage of missing pixels among the sampled ones, whose number changes with the view. */
 function missingPercent(run) {
   const missing = columnOf(run, 'missing_pixels'), sampled = columnOf(run, 'sampled_pixels');
   if (!missing || !sampled)
@@ -56,7 +56,7 @@ function drawRest(point, along, box) {
 function drawLine(data, kind, along, scale) {
   const at = (values, i) => [along(i * data.step + (data.step - 1) / 2), scale.place(values[i])];
   const middle = data.most.map((v, i) => at(data.most, i)), known = middle.filter(p => !Number.isNaN(p[1]));
-  if (known.length * 2 < middle.length) // of every few frames alone: dots, and a line through them
+  if (known.length * 2 < middle.length) // measured in every few frames only: dots, and a line through them
     return [svg('path', {class: `line thin ${kind}`, d: path(known)}), ...known.map(p => svg('circle', {class: `dot ${kind}`, cx: p[0], cy: p[1], r: 2.5}))];
   if (data.step === 1)
     return [svg('path', {class: `line ${kind}`, d: path(middle)})];

@@ -13,7 +13,7 @@ function sortKey(index) {
   return table.by === null ? index : estimate(index, table.by).mean;
 }
 
-/** What is not known comes last, however it is sorted. */
+/** Filters and sorts the points. Unknown values come last in either direction. */
 function sortedPoints() {
   const wanted = byId('table-filter').value.trim().toLowerCase();
   const text = i => `${pointName(i)} ${points[i].command_line} ${points[i].reason || ''} ${roles(i).join(' ')}`.toLowerCase();
@@ -60,7 +60,7 @@ function drawTable() {
   byId('table-text').textContent = `${shown.length} of ${points.length} combinations; ${metrics.length} of ${known.length} figures.`;
 }
 
-/** Quoted; a value that a spreadsheet would take for a formula gets a quote in front. */
+/** Quotes a cell. A value that a spreadsheet would read as a formula gets an apostrophe in front. */
 function csvCell(value) {
   const text = String(value);
   const safe = /^[=+@\t]/.test(text) || /^-[^\d.]/.test(text) ? `'${text}` : text;
