@@ -18,7 +18,7 @@
 #include "../common/input.h"
 #include "memory.h"
 
-#define MOST_OUTPUT (64 << 20) ///< bytes of standard output, and of standard error
+#define MOST_OUTPUT (64 << 20) ///< limit in bytes, for each of standard output and standard error
 #define LONGEST_REASON 400
 #define NOT_STARTED 127
 
@@ -45,7 +45,7 @@ bool child_is_interrupted(void)
     return interrupted != 0;
 }
 
-/* In the new process. */
+/* Runs in the new process. */
 static void execute(const struct child_info *info, const int files[3])
 {
     for (int i = 0; i < 3; i++)
@@ -66,7 +66,7 @@ static void become(const struct child_info *info, const int files[3])
     execute(info, files);
 }
 
-/* The process between the two ends at once, so that the program is no child of this process. */
+/* Forks twice: the process between ends at once, so the program is no child of this process. */
 static void detach(const struct child_info *info, const int files[3])
 {
     setsid();
@@ -76,7 +76,7 @@ static void detach(const struct child_info *info, const int files[3])
     _exit(pid > 0 ? 0 : NOT_STARTED);
 }
 
-/* Returns -1 with errno if the files cannot be opened or there is no process. */
+/* Returns -1 and sets errno if the files cannot be opened or no process can be created. */
 static pid_t begin(const struct child_info *info,
                    void (*run)(const struct child_info *info, const int files[3]))
 {
@@ -101,7 +101,7 @@ bool child_begin(const struct child_info *info, struct child *child)
     const pid_t pid = begin(info, become);
     if (pid <= 0)
         return false;
-    setpgid(pid, pid); /* whoever is first */
+    setpgid(pid, pid); /* parent and child both call it; the first call counts */
     child->pid = pid;
     return true;
 }
@@ -138,7 +138,7 @@ enum child_state child_poll(struct child *child, int *status)
     }
     if (ended == 0 || (ended < 0 && errno == EINTR))
         return CHILD_RUNS;
-    kill(-child->pid, SIGKILL); /* what it left behind */
+    kill(-child->pid, SIGKILL); /* its remaining children */
     child->pid = 0;
     return ended > 0 && WIFEXITED(*status) && WEXITSTATUS(*status) == 0 && !child->killed
                ? CHILD_DONE
@@ -169,7 +169,7 @@ enum child_state child_wait(struct child *child, int *status)
     return state;
 }
 
-/* The last line that is not empty, of the end of a file; "" if there is none. */
+/* Copies the last non-empty line of a file's end; "" if there is none. */
 static void last_line(const char *path, char *line, size_t size)
 {
     char text[2 * LONGEST_REASON + 1];

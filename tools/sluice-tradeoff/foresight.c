@@ -13,16 +13,17 @@
 #include "folders.h"
 #include "help_text.h"
 
-#define ROUNDS "100" ///< of the search; more hardly change what it finds
+#define ROUNDS "100" ///< rounds of the search; more hardly improve the result
 
-/** One question: a trace and the settings that bound the policy. */
+/** A trace, and the settings that bound the policy. */
 struct question {
     const char *own_path;
     char *trace, *answer;    ///< paths; owned
     struct text_list bounds; ///< options of `play`
 };
 
-/* What the point has, or else what the program was told, or has of its own; NULL: nothing. */
+/* Returns a setting's value: of the point, else of the command line, else the program's default.
+ * NULL: unknown. */
 static char *find_value(const struct runs *runs, uint32_t point, const char *name)
 {
     const struct sweep *sweep = runs->sweep;
@@ -43,7 +44,7 @@ static char *find_value(const struct runs *runs, uint32_t point, const char *nam
     return value;
 }
 
-/* Memory in heaps of the same size, and as much time for loads. */
+/* Adds bounds: heaps of the same size and number, and the same time for loads. */
 static void add_bounds(const struct runs *runs, uint32_t point, struct text_list *bounds)
 {
     static const char *const names[] = {"heap-tiles", "max-heaps", "budget", "tiles-per-frame",
@@ -60,7 +61,7 @@ static void add_bounds(const struct runs *runs, uint32_t point, struct text_list
     }
 }
 
-/* False if there is no such trace. */
+/* Returns false if there is no such trace. */
 static bool make_question(const struct runs *runs, uint32_t point, struct question *question)
 {
     const char *own_trace = runs->options->trace;

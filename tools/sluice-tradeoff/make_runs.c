@@ -1,5 +1,5 @@
-/* Runs that are not there yet are made: repeats in turn, so that a machine that gets slower in the
- * course of a sweep does so for all points. */
+/* Makes missing runs. Points take turns within each repeat, so a machine that slows down during a
+ * sweep affects all points alike. */
 #include "runs.h"
 
 #include <errno.h>
@@ -17,7 +17,7 @@
 
 #define EXIT_NO_DEVICE 77
 
-/** A run that is being made; `run` is NULL between runs. */
+/** A run in progress. `run` is NULL between runs. */
 struct job {
     struct run *run;
     char *partial, *out, *error; ///< owned
@@ -69,7 +69,7 @@ static void begin_job(struct maker *maker, struct job *job, struct run *run)
     maker->running++;
 }
 
-/* What the tool itself measures stands behind what the program printed. */
+/* Appends figures that the tool itself measures to the program's output. */
 static bool add_own_figures(const struct job *job, double seconds)
 {
     char *trace = memory_text("%s/manager.trace", job->partial);
@@ -103,7 +103,7 @@ static bool write_reason(const struct job *job, const char *reason)
     return file && (fclose(file) == 0) & written;
 }
 
-/* The folder gets its name only when everything is in it. */
+/* Renames the folder last, when all its files are complete. */
 static void end_job(struct maker *maker, struct job *job, char *reason)
 {
     struct run *run = job->run;
@@ -143,7 +143,7 @@ static void look_after(struct maker *maker, struct job *job)
                                   : NULL);
 }
 
-/* A point that has failed would fail again, and may take the whole time limit for it. */
+/* Skips other runs of a failed point: they would fail too, and may take the whole time limit. */
 static bool is_needed(const struct runs *runs, const struct run *run)
 {
     for (uint32_t i = run->point; i < runs->count; i += runs->sweep->point_count)
@@ -155,7 +155,7 @@ static bool is_needed(const struct runs *runs, const struct run *run)
 static void begin_jobs(struct maker *maker)
 {
     struct runs *runs = maker->runs;
-    /* The first one alone makes what they share. */
+    /* The first run is alone: it makes the files that all runs share. */
     uint32_t most = maker->made == 0 ? 1 : runs->options->jobs;
     while (maker->running < most && maker->next < runs->count && maker->outcome == RUNS_DONE) {
         struct run *run = &runs->items[maker->next++];
@@ -180,7 +180,7 @@ static void stop_jobs(struct maker *maker)
     }
 }
 
-/* Those that failed before are tried again. */
+/* Counts runs to make, including runs that failed before. */
 static uint32_t count_wanted(struct runs *runs)
 {
     uint32_t wanted = 0;

@@ -60,7 +60,7 @@ char *program_find(const char *own_path, const char *relative, const char *name)
     return found;
 }
 
-/* Runs it with --help in a folder of its own, which `path` is in. */
+/* Runs the program with --help in a folder of its own, which contains `path`. */
 static bool ask_help(const struct program *program, const char *path, char *environment)
 {
     struct text_list arguments = {0};
@@ -95,7 +95,7 @@ static bool hash_file(const char *path, uint64_t *hash)
     return true;
 }
 
-/* What the dynamic linker lists: "name => path (address)". */
+/* Hashes the libraries that the dynamic linker lists as "name => path (address)". */
 static void hash_libraries(const char *list_path, uint64_t *hash)
 {
     char *text;
@@ -113,7 +113,7 @@ static void hash_libraries(const char *list_path, uint64_t *hash)
     free(text);
 }
 
-/* The libraries of a build change without the program, so they count too. */
+/* Hashes the program and its libraries: a build may change libraries without the program. */
 static bool find_build(struct program *program, const char *folder)
 {
     char trace[] = "LD_TRACE_LOADED_OBJECTS=1";
@@ -123,7 +123,7 @@ static bool find_build(struct program *program, const char *folder)
     if (!read)
         text_say("sluice-tradeoff: %s: %s", program->arguments.items[0], strerror(errno));
     for (size_t i = 1; i < program->arguments.count; i++)
-        hash_file(program->arguments.items[i], &program->build); /* a trace, if there is one */
+        hash_file(program->arguments.items[i], &program->build); /* a trace, if any */
     if (read && ask_help(program, list_path, trace))
         hash_libraries(list_path, &program->build);
     free(list_path);
@@ -139,7 +139,7 @@ static bool read_help(struct program *program, const char *path)
     return false;
 }
 
-/* What the program says to --help, in `folder`; kept in the results for program_recall. */
+/* Asks for --help in `folder`, and keeps the answer in the results for program_recall. */
 static bool keep_help(struct program *program, const char *folder, const char *results)
 {
     char *answer = memory_text("%s/help.txt", folder);

@@ -39,7 +39,7 @@ static void collect_metrics(const struct runs *runs, struct sweep *sweep)
     sweep->metrics = metrics;
 }
 
-/* [repeat] of a point; NaN where nothing is known. */
+/* Writes a point's values by repeat. NaN: unknown. */
 static void get_values(const struct runs *runs, uint32_t point, const char *name, double *values)
 {
     const struct scene_metric *metric = find_metric(runs->options->scene, name);
@@ -87,7 +87,7 @@ static void judge_point(const struct runs *runs, struct sweep *sweep, uint32_t i
     }
     if (done == sweep->repeats)
         point->state = SWEEP_DONE;
-    /* To be pasted into a shell, it must not write over what was measured. */
+    /* A command line to paste into a shell must not overwrite measurements. */
     char *again = memory_text("%s/again", runs->results);
     runs_add_arguments(runs, first, again, &arguments);
     point->command_line = text_list_join(&arguments);
@@ -96,7 +96,7 @@ static void judge_point(const struct runs *runs, struct sweep *sweep, uint32_t i
     text_list_finish(&arguments);
 }
 
-/* A text that some run printed; NULL: none did. */
+/* Returns a text that some run printed, or NULL. */
 static const char *find_text(const struct runs *runs, const char *name)
 {
     for (uint32_t i = 0; i < runs->count; i++) {
@@ -107,7 +107,7 @@ static const char *find_text(const struct runs *runs, const char *name)
     return NULL;
 }
 
-/* Runs are kept whatever drew them, so that some may be of another device. */
+/* Returns whether all runs agree. Runs are kept whatever drew them, so devices may differ. */
 static bool is_of_one(const struct runs *runs, const char *name)
 {
     const char *first = find_text(runs, name);
@@ -119,7 +119,7 @@ static bool is_of_one(const struct runs *runs, const char *name)
     return true;
 }
 
-/* What drew it, if some run says so, and what else tells this machine from another. */
+/* Describes device and driver, if some run printed them, and this machine. */
 static char *describe_this_machine(const struct runs *runs)
 {
     struct utsname system = {0};
@@ -133,7 +133,7 @@ static char *describe_this_machine(const struct runs *runs)
                        system.release, system.machine);
 }
 
-/* Where it was measured, not where it is looked at. */
+/* Reads the machine of the measurement, which may not be this one. */
 static char *recall_machine(const struct runs *runs)
 {
     size_t size;

@@ -13,7 +13,7 @@
 
 #define LONGEST_PREFIX 48
 
-/* What decides of a run's figures, without where they are written. */
+/* Adds the arguments that decide a run's figures. Output paths are not among them. */
 static void add_deciding_arguments(const struct runs *runs, const struct run *run,
                                    struct text_list *arguments)
 {
@@ -37,7 +37,7 @@ void runs_add_arguments(const struct runs *runs, const struct run *run, const ch
     free(reference);
 }
 
-/* Readable first, then what makes it the only one. */
+/* Makes a key: a readable prefix, then a hash that makes it unique. */
 static char *make_key(const struct runs *runs, const struct run *run)
 {
     char prefix[LONGEST_PREFIX + 1];
@@ -57,7 +57,7 @@ static char *make_key(const struct runs *runs, const struct run *run)
     return memory_text("%s-r%u-%016" PRIx64, prefix, run->repeat + 1, hash);
 }
 
-/* What it printed, and what follows from its frames. */
+/* Reads the figures that the run printed, and derives figures from its frames. */
 static bool read_figures(const char *folder, struct figures *figures)
 {
     struct frames frames;
