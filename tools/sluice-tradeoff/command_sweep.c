@@ -20,7 +20,7 @@
 #include "session.h"
 #include "table.h"
 
-/* As many of the files as can be written. */
+/* Writes all files, even after one has failed. */
 static bool write_files(const struct session *s, const struct sweep_recommendation *recommendations)
 {
     char *points = memory_text("%s/points.csv", s->options.results);
@@ -35,7 +35,7 @@ static bool write_files(const struct session *s, const struct sweep_recommendati
     return good;
 }
 
-/* Everything that is made of the runs. */
+/* Writes and prints all results of the runs. */
 static int show_results(struct session *s)
 {
     struct sweep_recommendation recommendations[RECOMMEND_COUNT];
@@ -62,7 +62,7 @@ static int show_results(struct session *s)
     return good ? TRADEOFF_DONE : TRADEOFF_FAILED;
 }
 
-/* Whether the trace that is to be played lies in a folder that would be removed. */
+/* Returns whether the trace is in a folder that would be removed. */
 static bool holds_trace(const char *folder, const char *trace)
 {
     char *whole = realpath(folder, NULL), *file = trace ? realpath(trace, NULL) : NULL;
@@ -76,7 +76,7 @@ static bool holds_trace(const char *folder, const char *trace)
     return holds;
 }
 
-/* All or none. */
+/* Removes all folders or none. */
 static bool forget(const struct options *o)
 {
     static const char *const names[] = {"runs", "reference", "clairvoyant"};
@@ -94,7 +94,7 @@ static bool forget(const struct options *o)
     return gone;
 }
 
-/* What a sweep writes at its end is there, but not what it writes before. */
+/* Returns whether the folder has results but no sweep.words: a sweep writes that file first. */
 static bool is_of_somebody_else(const char *results)
 {
     static const char *const names[] = {"points.csv", "runs.csv", "page.html", "machine.txt"};
@@ -113,7 +113,7 @@ static bool is_of_somebody_else(const char *results)
     return has;
 }
 
-/* The results folder is this process's alone from here on. */
+/* Claims the results folder for this process. */
 static bool prepare_folder(const struct options *o)
 {
     char *runs = memory_text("%s/runs", o->results);
@@ -131,7 +131,7 @@ static bool prepare_folder(const struct options *o)
     return ready;
 }
 
-/* Marked before the scene's program writes into it. */
+/* Marks the folder before the scene's program writes into it. */
 static bool make_reference(const struct session *s)
 {
     if (!s->options.scene->keeps_reference || !program_has_option(&s->program, "reference"))
@@ -195,7 +195,7 @@ int command_sweep(int argc, char **argv)
     return status;
 }
 
-/* The folder may have been moved since. */
+/* Uses the folder's current path: it may have been moved since. */
 static int show_again(struct session *s, const struct text_list *words, const char *own_path,
                       const char *results, bool json)
 {

@@ -1,4 +1,4 @@
-/** What the first word of the command line may be. */
+/** Commands: the first word of the command line. */
 #ifndef SLUICE_TRADEOFF_COMMANDS_H
 #define SLUICE_TRADEOFF_COMMANDS_H
 
@@ -10,9 +10,10 @@ enum tradeoff_exit {
     TRADEOFF_INTERRUPTED = 130,
 };
 
-/** `argv[0]` is the tool's own path, the words behind it are the command's; exit statuses. */
+/** Runs a command. `argv[0]` is the tool's own path; the command's words follow. Returns the exit
+ * status. */
 int command_sweep(int argc, char **argv);
-/** RESULTS [--json]: table, CSV files and page of what is there, without a run. */
+/** RESULTS [--json]: writes table, CSV files and page of existing results, without a run. */
 int command_page(int argc, char **argv);
 
 #endif /* SLUICE_TRADEOFF_COMMANDS_H */

@@ -6,12 +6,12 @@
 #include "memory.h"
 #include "scenes.h"
 
-/** Texts are borrowed from the command line, but those of lists. */
+/** Texts are borrowed from the command line, except those of lists. */
 struct options {
     const struct scene *scene;
-    const char *trace;              ///< of scene trace, else NULL
+    const char *trace;              ///< path for scene `trace`; else NULL
     const char *results;            ///< folder
-    const char *program;            ///< NULL: found beside the tool
+    const char *program;            ///< NULL: look beside the tool
     struct text_list sweeps, bases; ///< "name=value,value", "name=value"
     struct text_list scene_arguments;
     bool grid, full, fresh, json;
@@ -19,9 +19,10 @@ struct options {
     double run_limit; ///< seconds
 };
 
-/** Says on stderr what is wrong; prints the help text for --help. `argv[0]` is passed over. */
+/** Parses the command line. Prints the help text for --help; reports errors on stderr. Skips
+ * `argv[0]`. */
 enum option_outcome options_parse_sweep(int argc, char **argv, struct options *options);
-/** What the plan says of the scene, but for what the command line says otherwise. */
+/** Adds the scene's arguments from the plan, unless the command line overrides them. */
 void options_add_scene(const struct options *options, struct text_list *arguments);
 void options_finish(struct options *options);
 

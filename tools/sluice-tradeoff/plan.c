@@ -60,7 +60,7 @@ static bool is_flag(const struct program *program, const char *name)
     return flag;
 }
 
-/* Takes over name, meaning and unit; the base value is freed by the point that has it. */
+/* Takes name, meaning and unit. The point that holds the base value frees it. */
 static void add_setting(struct planner *planner, const struct sweep_setting *setting,
                         const char *base)
 {
@@ -84,7 +84,8 @@ static void add_setting(struct planner *planner, const struct sweep_setting *set
     help_entry_finish(&entry);
 }
 
-/* Of "name=values": the scene's own, or one that the program has besides. */
+/* Returns the setting that "name=values" names. Adds it if the program has the option but the scene
+ * does not list it. */
 static int need_setting(struct planner *planner, const char *text)
 {
     size_t length = strcspn(text, "=");
@@ -139,7 +140,7 @@ static char *make_label(const struct sweep *sweep, char *const *values)
     return label;
 }
 
-/* `values` are copied. */
+/* Copies `values`. */
 static void add_point(struct planner *planner, char *const *values)
 {
     struct sweep *sweep = planner->sweep;
@@ -161,7 +162,7 @@ static void add_point(struct planner *planner, char *const *values)
     point->label = make_label(sweep, values);
 }
 
-/* All combinations of the axes; `values` holds what is chosen otherwise. */
+/* Adds all combinations of the axes. `values` holds the choices for the other axes. */
 static void add_grid(struct planner *planner, const struct axis *axes, size_t count, char **values)
 {
     if (count == 0) {
@@ -176,7 +177,7 @@ static void add_grid(struct planner *planner, const struct axis *axes, size_t co
     values[axes->setting] = before;
 }
 
-/* "name=a,b": the base's value first in a grid, so that it has a place there. */
+/* Reads "name=a,b". A grid includes the base's value, first. */
 static bool read_axis(struct planner *planner, const char *text, bool with_base, struct axis *axis)
 {
     int setting = need_setting(planner, text);
@@ -202,7 +203,7 @@ static void add_product(struct planner *planner, const struct axis *axes, size_t
     free(values);
 }
 
-/* The product of all of them, or each by itself. */
+/* Adds the product of all axes, or each axis by itself. */
 static void add_axes(struct planner *planner, const struct text_list *texts, bool grid)
 {
     struct axis axes[MOST_GRID_SETTINGS];
@@ -224,7 +225,7 @@ static void add_axes(struct planner *planner, const struct text_list *texts, boo
         text_list_finish(&axes[i].values);
 }
 
-/* Settings come first, so that all points have the same. */
+/* Adds all settings before any point, so that all points have equal settings. */
 static void add_settings(struct planner *planner, const struct options *options)
 {
     const struct scene *scene = planner->scene;
@@ -243,8 +244,8 @@ static void add_settings(struct planner *planner, const struct options *options)
     }
 }
 
-/* Each point sets all settings, so that what the program is told besides would be without effect.
- */
+/* Refuses settings among the program's arguments: each point sets all settings, so they would have
+ * no effect. */
 static void refuse_settings(struct planner *planner, const struct text_list *arguments)
 {
     for (size_t i = 0; i < arguments->count; i++) {
@@ -258,7 +259,7 @@ static void refuse_settings(struct planner *planner, const struct text_list *arg
     }
 }
 
-/* Of what the scene has to offer, that which the program has. */
+/* Adds the scene's axes and grid, as far as the program has the options. */
 static void add_built_in(struct planner *planner, bool full)
 {
     const struct scene *scene = planner->scene;

@@ -7,11 +7,11 @@
 #include "memory.h"
 #include "statistics.h"
 
-#define LEAST_DIFFERENCE 0.01      ///< of the mean
-#define LEAST_LONE_DIFFERENCE 0.10 ///< where there is no second repeat to doubt it
-#define LEAST_TIMES 3              ///< with fewer repeats no time is surely less
+#define LEAST_DIFFERENCE 0.01      ///< relative to the mean
+#define LEAST_LONE_DIFFERENCE 0.10 ///< with a single repeat
+#define LEAST_TIMES 3              ///< repeats; with fewer, no time is surely less
 
-/** What a point must keep to: a metric at most `factor` times that of the base. */
+/** A limit: a metric may be at most `factor` times that of the base. */
 struct bound {
     int metric;
     double factor;
@@ -20,11 +20,11 @@ struct bound {
 struct chooser {
     const struct sweep *sweep;
     const struct recommend_metrics *metrics;
-    bool *candidates; ///< per point
-    double *scratch;  ///< per repeat
+    bool *candidates; ///< by point
+    double *scratch;  ///< by repeat
 };
 
-/* So that less is better: decibels become the root of the squared error. */
+/* Cost of a value, less is better. Decibels become the root of the squared error. */
 static double cost_of(const struct sweep *sweep, int metric, double value)
 {
     const struct sweep_metric *m = &sweep->metrics[metric];
@@ -48,7 +48,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Of what is known; NaN if nothing is. The order changes. */
+/* Median of the values that are not NaN; NaN if all are. Reorders the values. */
 static double median(double *values, uint32_t count)
 {
     uint32_t known = 0;
@@ -59,7 +59,7 @@ static double median(double *values, uint32_t count)
     return known == 0 ? NAN : 0.5 * (values[(known - 1) / 2] + values[known / 2]);
 }
 
-/* How much more a point costs than `factor` times another, repeat by repeat: the median. */
+/* Median over the repeats of a point's cost minus `factor` times another's. */
 static double excess(const struct chooser *c, uint32_t point, uint32_t other, int metric,
                      double factor)
 {
@@ -75,15 +75,15 @@ static double typical_cost(const struct chooser *c, uint32_t point, int metric)
     return median(c->scratch, c->sweep->repeats);
 }
 
-/* Of both together, so that it is known beside nothing, too. */
+/* Difference relative to the mean of both, so that it is defined even if one is 0. */
 static double relative_difference(double a, double b)
 {
     double sum = fabs(a) + fabs(b);
     return sum == 0.0 ? 0.0 : 2.0 * (a - b) / sum;
 }
 
-/* By more than 1 %, and by more than the differences of the repeats let one doubt; 10 % for one,
- * which is not enough for times. */
+/* Returns whether `a` is less than `b` by more than 1 % and by more than the repeats' uncertainty.
+ * With one repeat: by more than 10 %. Times require LEAST_TIMES repeats. */
 static bool surely_less(const struct chooser *c, uint32_t a, uint32_t b, int metric)
 {
     for (uint32_t i = 0; i < c->sweep->repeats; i++)
@@ -96,7 +96,7 @@ static bool surely_less(const struct chooser *c, uint32_t a, uint32_t b, int met
     return difference.mean < -LEAST_DIFFERENCE && difference.mean + difference.half_width < 0.0;
 }
 
-/* Nobody chooses how slow a disk is. */
+/* Returns whether all differing settings are choices. The speed of a disk is none. */
 static bool is_choice(const struct sweep *sweep, uint32_t point)
 {
     for (uint32_t i = 0; i < sweep->setting_count; i++)
@@ -117,7 +117,7 @@ static bool is_measured(const struct chooser *c, uint32_t point)
     return true;
 }
 
-/* Whether `other` is no worse in anything and surely better in something. */
+/* Returns whether `other` is worse in nothing and surely better in something. */
 static bool beats(const struct chooser *c, uint32_t other, uint32_t point)
 {
     const int metrics[] = {c->metrics->quality, c->metrics->memory, c->metrics->time};
@@ -140,14 +140,14 @@ static bool is_beaten(const struct chooser *c, uint32_t point)
     return false;
 }
 
-/* What is measured decides, however well it is known: doubt is no reason to recommend. */
+/* Returns whether a point keeps to a bound. The measured median decides, however uncertain. */
 static bool keeps_to(const struct chooser *c, uint32_t point, const struct bound *bound)
 {
     return bound->metric < 0 || point == c->sweep->base ||
            excess(c, point, c->sweep->base, bound->metric, bound->factor) <= 0.0;
 }
 
-/* Leaves the candidates that are not surely worse than the one with the least. */
+/* Keeps the candidates that are not surely worse than the best one. */
 static void keep_least(struct chooser *c, int metric)
 {
     int64_t best = -1;
@@ -159,8 +159,9 @@ static void keep_least(struct chooser *c, int metric)
         c->candidates[i] = c->candidates[i] && !surely_less(c, (uint32_t)best, i, metric);
 }
 
-/* The best by the first metric, in which no candidate is worse than the base: points that count as
- * equal may still differ by the whole doubt. Of those equal in it the best by the next metric. */
+/* Chooses the best point by the first metric, among candidates that are not worse than the base in
+ * it: points that count as equal may still differ by the whole uncertainty. The next metrics decide
+ * among equal points. */
 static int64_t choose(struct chooser *c, const struct bound bounds[2], const int order[3])
 {
     const struct sweep *sweep = c->sweep;
@@ -189,7 +190,8 @@ static char *write_name(const struct chooser *c, int metric)
     return memory_text("%s (%s)", word, m->name);
 }
 
-/* ", with a time (gpu_ms_median) up to 1.25 times the base's"; "" for what is not measured. */
+/* Writes ", with a time (gpu_ms_median) up to 1.25 times the base's", or "" for a metric that is
+ * not measured. */
 static char *write_bound(const struct chooser *c, const struct bound *bound, const char *before)
 {
     if (bound->metric < 0)
@@ -204,7 +206,7 @@ static char *write_bound(const struct chooser *c, const struct bound *bound, con
     return text;
 }
 
-/* What surely_less leaves undecided. */
+/* Explains when surely_less calls two points equal. */
 static const char *equality(const struct chooser *c)
 {
     return c->sweep->repeats < 2

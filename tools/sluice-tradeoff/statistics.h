@@ -1,29 +1,28 @@
-/** Means of a few repeats, and how well they are known. */
+/** Means of a few repeats, and their uncertainty. */
 #ifndef SLUICE_TRADEOFF_STATISTICS_H
 #define SLUICE_TRADEOFF_STATISTICS_H
 
 #include "sweep.h"
 
 /**
- * Student's t: the factor by which a share of `confidence` of all means of `degrees` + 1 values
- * lies within that many standard errors. `degrees` from 1 on, `confidence` in (0, 1).
- * Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 26.7.3 and 26.7.4.
+ * Student's t: the number of standard errors within which a share `confidence` of all means of
+ * `degrees` + 1 values lies. `degrees`: 1 or more. `confidence`: in (0, 1). Source: Abramowitz and
+ * Stegun, Handbook of Mathematical Functions, 26.7.3 and 26.7.4.
  */
 double statistics_student_t(uint32_t degrees, double confidence);
 
-/** NaN among the values: not measured. */
+/** Estimates a mean. NaN values count as not measured. */
 struct sweep_estimate statistics_estimate(const double *values, uint32_t count);
 
 /**
- * Of the differences values[i] - base[i], where both were measured: what both share, a slow hour of
- * the machine or a seed, has no part in it.
+ * Estimates the mean of values[i] - base[i] over pairs where both were measured. Influences that
+ * both share, such as a seed or a slow hour of the machine, cancel out.
  */
 struct sweep_estimate statistics_paired(const double *values, const double *base, uint32_t count);
 
 /**
- * The same of decibels, where 999 stands for no error at all: it has no part in a mean of decibels,
- * so that beside others the mean is that of the squared errors, and a difference to it is not
- * known.
+ * Estimates means of decibels, where 999 stands for no error. If only some values are 999, the mean
+ * is taken over squared errors. The difference between 999 and another value is unknown.
  */
 struct sweep_estimate statistics_decibels(const double *values, uint32_t count);
 struct sweep_estimate statistics_paired_decibels(const double *values, const double *base,
