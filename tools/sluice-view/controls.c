@@ -42,6 +42,13 @@ static const struct control table[] = {
      FIELD(residency),
      NULL,
      CONTROL_REOPENS},
+    {"Memory",
+     "Load",
+     {OPTION_CHOICE, "load", "wanted|everything", "wanted", NULL,
+      "tiles that are loaded: those that feedback wants, or all, whatever is seen"},
+     FIELD(load),
+     NULL,
+     CONTROL_REOPENS},
 
     {"Feedback",
      "Feedback",
@@ -110,14 +117,14 @@ static const struct control table[] = {
       "time that each read takes longer, whatever else is read meanwhile", 0, 60000},
      FIELD(source_latency),
      "%.0f ms",
-     CONTROL_LOGARITHMIC},
+     CONTROL_LOGARITHMIC | CONTROL_REOPENS},
     {"Loading",
      "Source bandwidth",
      {OPTION_REAL, "source-bandwidth", "MB/S", "0", NULL,
       "10^6 bytes of texels per second that all reads share; 0: no limit", 0, 1e9},
      FIELD(source_bandwidth),
      "%.0f MB/s",
-     CONTROL_LOGARITHMIC},
+     CONTROL_LOGARITHMIC | CONTROL_REOPENS},
     {"Loading",
      "Reads fail",
      {OPTION_UINT, "source-fails", "N", "0", NULL,
@@ -130,14 +137,14 @@ static const struct control table[] = {
      {OPTION_CHOICE, "pause", "off|on", "off", NULL, "streaming stands still; the camera does not"},
      FIELD(pause),
      NULL,
-     CONTROL_PASSING},
+     CONTROL_PASSING | CONTROL_OF_BOTH},
     {"Loading",
      "Freeze wants",
      {OPTION_CHOICE, "freeze-wants", "off|on", "off", NULL,
       "tiles are requested for the camera as it was, while one flies on"},
      FIELD(freeze_wants),
      NULL,
-     CONTROL_PASSING},
+     CONTROL_PASSING | CONTROL_OF_BOTH},
 
     {"Sampling",
      "Mip bias",
@@ -384,12 +391,21 @@ void controls_set_defaults(struct view_settings *settings)
         control_reset(&table[i], settings);
 }
 
-static const struct control *find(const char *name)
+const struct control *controls_find(const char *name)
 {
     for (size_t i = 0; i < COUNT; i++)
         if (strcmp(table[i].option.name, name) == 0)
             return &table[i];
     return NULL;
+}
+
+bool control_is_of_sets(const struct control *control)
+{
+    static const char *const groups[] = {"Memory", "Feedback", "Loading", "Sampling"};
+    for (size_t i = 0; i < sizeof groups / sizeof *groups; i++)
+        if (strcmp(control->group, groups[i]) == 0)
+            return !(control->flags & CONTROL_OF_BOTH);
+    return false;
 }
 
 bool controls_budget_fits(const struct view_settings *settings)
@@ -401,7 +417,7 @@ bool controls_set(struct view_settings *settings, const char *name, const char *
                   const char *speaker)
 {
     char wanted[512];
-    const struct control *control = find(name);
+    const struct control *control = controls_find(name);
     if (!control) {
         text_say("%s: there is no setting %s", speaker, name);
         return false;

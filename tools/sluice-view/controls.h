@@ -14,7 +14,8 @@
 enum control_flags {
     CONTROL_LOGARITHMIC = 1,
     CONTROL_REOPENS = 2, ///< takes effect when the scene is opened again
-    CONTROL_PASSING = 4  ///< not kept in files of settings
+    CONTROL_PASSING = 4, ///< not kept in files of settings
+    CONTROL_OF_BOTH = 64 ///< A and B of a comparison share it, though streaming depends on it
 };
 
 struct control {
@@ -28,6 +29,10 @@ struct control {
 #define CONTROLS_MAX 48
 
 const struct control *controls_get(uint32_t *count);
+/** NULL: there is none of this name. */
+const struct control *controls_find(const char *name);
+/** Whether streaming or sampling depends on it: A and B of a comparison have one each. */
+bool control_is_of_sets(const struct control *control);
 /** The row as an option over these settings. */
 struct option control_option(const struct control *control, struct view_settings *settings);
 /** Writes headings and options. Returns how many; there is room for 2 * CONTROLS_MAX. */

@@ -46,6 +46,7 @@ bool panel_traced_takes(const char *control)
     static const char *const names[] = {"standby",
                                         "timeout",
                                         "residency",
+                                        "load",
                                         "feedback",
                                         "feedback-by",
                                         "probability",

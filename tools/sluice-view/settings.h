@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 enum view_residency { VIEW_AUTO, VIEW_SPARSE, VIEW_PAGED, VIEW_DENSE };
+enum view_load { VIEW_LOAD_WANTED, VIEW_LOAD_EVERYTHING };
 enum view_feedback { VIEW_FEEDBACK_ON, VIEW_FEEDBACK_OFF };
 /** Pixels that write feedback. shaders/scene_push.glsl has the same numbers. */
 enum view_feedback_by { VIEW_BY_QUADS, VIEW_BY_LATTICE, VIEW_BY_EVERY_PIXEL, VIEW_BY_TURNS };
@@ -44,6 +45,7 @@ struct view_settings {
     uint32_t standby;
     double fade;   ///< seconds
     int residency; ///< enum view_residency
+    int load;      ///< enum view_load
     uint32_t anisotropy;
     double source_latency, source_bandwidth; ///< milliseconds, MB/s
     uint32_t source_fails;                   ///< reads of one region in so many fail; 0: none

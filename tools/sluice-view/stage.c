@@ -111,8 +111,8 @@ static uint32_t maps_per_frame(const struct stage *s, uint32_t wanted)
 
 static bool create_streamer(struct stage *s, const struct stage_request *request)
 {
-    const SluiceVulkanStreamerDebugInfo debug = {.structSize = sizeof debug,
-                                                 .mapEverything = request->everything};
+    const SluiceVulkanStreamerDebugInfo debug = {
+        .structSize = sizeof debug, .mapEverything = s->settings.load == VIEW_LOAD_EVERYTHING};
     const struct gpu *gpu = s->gpu;
     const SluiceVulkanContextCreateInfo context = {.structSize = sizeof context,
                                                    .queueFamilyIndex = gpu->family,

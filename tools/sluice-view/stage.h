@@ -66,7 +66,6 @@ struct stage_draw {
 struct stage_request {
     const struct gpu *gpu;
     uint32_t threads;
-    bool everything; ///< all tiles are resident, whatever is seen
     bool waits;      ///< frames wait for all that they asked for, so that each run is the same
     const struct shader_code *code; ///< SCENE_SHADER_COUNT modules; NULL: those of the build
 };

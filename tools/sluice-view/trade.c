@@ -72,24 +72,15 @@ static void add(struct text_list *list, const char *option, const char *value)
     text_list_add(list, value);
 }
 
-/* What streaming depends on; sizes and views are the sweep's own. */
-static bool decides_streaming(const struct control *control)
-{
-    static const char *const groups[] = {"Memory", "Feedback", "Loading", "Sampling"};
-    for (size_t i = 0; i < sizeof groups / sizeof *groups; i++)
-        if (strcmp(control->group, groups[i]) == 0)
-            return !(control->flags & CONTROL_PASSING);
-    return false;
-}
-
 static void add_bases(const struct view_settings *settings, struct text_list *list)
 {
     char value[64];
     uint32_t count;
     const struct control *controls = controls_get(&count);
     for (uint32_t i = 0; i < count; i++) {
-        if (!decides_streaming(&controls[i]) || control_is_default(&controls[i], settings))
-            continue;
+        if (!control_is_of_sets(&controls[i]) || controls[i].flags & CONTROL_PASSING ||
+            control_is_default(&controls[i], settings))
+            continue; /* sizes and views are the sweep's own */
         char *base = memory_text("%s=%s", controls[i].option.name,
                                  control_write(&controls[i], settings, value, sizeof value));
         add(list, "--base", base);

@@ -9,11 +9,10 @@
 #include <string.h>
 
 static struct stage *create_stage(struct viewer *v, const struct view_settings *settings,
-                                  bool everything, struct scene_data *scene)
+                                  struct scene_data *scene)
 {
     const struct stage_request request = {.gpu = &v->gpu,
                                           .threads = v->options->threads,
-                                          .everything = everything,
                                           .waits = v->options->deterministic,
                                           .code = v->code[0].words ? v->code : NULL};
     return stage_create(&request, settings, scene);
@@ -48,10 +47,11 @@ bool viewer_fit_other(struct viewer *v)
         return true;
     struct view_settings settings = *s;
     settings.budget = kind == VIEW_WITH_BUDGET ? 16u << 20 : 0;
+    settings.load = kind == VIEW_WITH_BUDGET ? VIEW_LOAD_WANTED : VIEW_LOAD_EVERYTHING;
     v->other_kind = kind;
     struct scene_data scene;
     if (open_now(v, &v->paths, &scene))
-        v->other = create_stage(v, &settings, kind == VIEW_WITH_EVERYTHING, &scene);
+        v->other = create_stage(v, &settings, &scene);
     if (v->other)
         return true;
     app_say(&v->app, "The second picture cannot be drawn: Shift+I says why");
@@ -175,7 +175,7 @@ static bool show(struct viewer *v, struct scene_data *scene, struct file_list *p
     struct kept_settings kept;
     if (!first && paths)
         change_settings(v, paths, &kept);
-    struct stage *stage = create_stage(v, &v->app.settings, false, scene);
+    struct stage *stage = create_stage(v, &v->app.settings, scene);
     if (!stage) {
         if (!first && paths)
             restore_settings(v, &kept);
