@@ -339,7 +339,7 @@ static uint32_t choose_queues(struct gpu *gpu, struct gpu_queue_list *queues)
     return gpu->has_build_queue ? gpu_queue_add_builder(queues, families, count, gpu) : 0;
 }
 
-static bool create_device(struct gpu *gpu)
+static bool create_device(const struct gpu_request *request, struct gpu *gpu)
 {
     VkPhysicalDeviceVulkan12Features vulkan12 = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
@@ -361,6 +361,12 @@ static bool create_device(struct gpu *gpu)
                                         &log, &features.features, &vulkan12) != SLUICE_SUCCESS)
             return false;
 
+    for (int i = 0; request->every_mode && i < 3; i++) { /* without features: nothing changes */
+        static const SluiceResidencyMode modes[] = {
+            SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_DENSE};
+        sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
+                                    modes[i], NULL, &features.features, &vulkan12);
+    }
     if (gpu->byte_pages) {
         if (sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
                                         SLUICE_RESIDENCY_MODE_PAGED, &log, &features.features,
@@ -434,7 +440,7 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
                 sluiceGetNeuralPaths(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
                                      NULL, &gpu->neural) != SLUICE_SUCCESS;
         }
-        if (!*unsupported && create_device(gpu))
+        if (!*unsupported && create_device(request, gpu))
             return true;
     }
     gpu_destroy(gpu);

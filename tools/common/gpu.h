@@ -20,6 +20,7 @@ struct gpu_request {
     bool ray_tracing;      ///< enable the ray-tracing pipeline if the device has it
     bool buffer_addresses; ///< enable buffer addresses if the device has them
     bool build_queue;      ///< create a queue for builds beside the others if the device has one
+    bool every_mode;       ///< enable the features of all residency modes that the device has
     bool byte_pages; ///< enable byte pages of demand loaders, and addresses, if the device has them
     bool neural;     ///< enable all decode paths of the device; not with ray_tracing
     /** Extensions for a window's surface. Enables presentation (VK_KHR_swapchain). Not with neural.
