@@ -244,8 +244,9 @@ static const struct control table[] = {
      CONTROL_PASSING},
     {"Compare",
      "Compare to",
-     {OPTION_CHOICE, "compare-to", "everything|budget", "everything", NULL,
-      "the second picture: everything resident, or 16 MiB for tiles"},
+     {OPTION_CHOICE, "compare-to", "everything|budget|b", "everything", NULL,
+      "the second picture: everything resident, 16 MiB for tiles, or B, which has settings of its "
+      "own"},
      FIELD(compared),
      NULL,
      0},
