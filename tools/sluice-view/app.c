@@ -3,6 +3,7 @@
 #include "actions.h"
 #include "controls.h"
 #include "panels.h"
+#include "sets.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -20,6 +21,7 @@ void app_init(struct view_app *app)
 {
     *app = (struct view_app){.last_view = VIEW_PICTURE, .selected = STAGE_NO_TEXTURE};
     controls_set_defaults(&app->settings);
+    controls_set_defaults(&app->b);
     app->mouse_x = app->mouse_y = -1;
     app->click_age = 10;
 }
@@ -51,6 +53,16 @@ bool app_open(struct view_app *app, struct stage *stage, bool walks)
         return false;
     app->stage = stage;
     begin_scene(app, walks);
+    return true;
+}
+
+bool app_set_b(struct view_app *app, const char *name, const char *value)
+{
+    struct view_settings b = app->settings.compared == VIEW_WITH_B ? app->b : app->settings;
+    if (!sets_set(&b, name, value, "sluice-view: B"))
+        return false;
+    app->b = b;
+    app->settings.compared = VIEW_WITH_B;
     return true;
 }
 
@@ -111,10 +123,13 @@ void app_inspect(struct view_app *app, const struct stage_pick *pick)
 
 void app_write_command(const struct view_app *app, char *text, size_t size)
 {
-    char options[4096], camera[160];
+    char options[4096], camera[160], b[2048] = "";
     const bool stands = app->stage && app->follow == FOLLOW_NOTHING;
     controls_write_command(&app->settings, options, sizeof options);
-    snprintf(text, size, "%s%s%s%s", app->program, options, stands ? " --camera " : "",
+    if (app->settings.compared == VIEW_WITH_B)
+        sets_write(&app->settings, &app->b, b, sizeof b);
+    snprintf(text, size, "%s%s%s%s%s%s", app->program, options, b[0] ? " --b " : "", b,
+             stands ? " --camera " : "",
              stands ? view_camera_write(&app->camera, camera, sizeof camera) : "");
 }
 

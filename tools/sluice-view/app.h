@@ -36,9 +36,10 @@ enum app_panel {
 enum app_follow { FOLLOW_NOTHING, FOLLOW_TOUR, FOLLOW_PATH };
 
 struct view_app {
-    struct view_settings settings;
-    const struct gpu *gpu; ///< borrowed
-    struct stage *stage;   ///< borrowed; NULL while none is open
+    struct view_settings settings; ///< of A, and what A and B share
+    struct view_settings b;        ///< sets.h
+    const struct gpu *gpu;         ///< borrowed
+    struct stage *stage;           ///< borrowed; NULL while none is open
     struct view_facts facts;
     struct view_camera camera;
     struct vec3 center;        ///< of VIEW_ORBIT
@@ -96,6 +97,9 @@ void app_finish(struct view_app *app);
 /** A scene was opened: the camera begins its tour. False without memory. */
 bool app_open(struct view_app *app, struct stage *stage, bool walks);
 void app_close(struct view_app *app);
+/** Changes a setting of B, which begins as a copy of A unless it is compared with already. False,
+ *  with a line on stderr, as sets_set. */
+bool app_set_b(struct view_app *app, const char *name, const char *value);
 /** Settings, panels, camera and selection as they were when the program began. */
 void app_reset(struct view_app *app, const struct view_settings *settings, bool walks);
 /** Input of a frame, behind ui_begin_frame. */

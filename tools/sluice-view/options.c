@@ -3,6 +3,7 @@
 #include "camera.h"
 #include "controls.h"
 #include "scene_open.h"
+#include "sets.h"
 
 #include "../common/shared_options.h"
 
@@ -21,10 +22,24 @@ static const char notes[] =
     "can\n"
     "stream.\n";
 
+/* Into a copy: files of settings stand below them. */
+static bool read_b(const struct view_options *o)
+{
+    struct view_settings b = o->settings;
+    for (size_t i = 0; i < o->b.count; i++)
+        if (!sets_read(&b, o->b.items[i], "sluice-view: --b"))
+            return false;
+    return true;
+}
+
 enum option_outcome options_read(int argc, char **argv, struct view_options *o)
 {
     const struct option own[] = {
         {OPTION_WORDS, .value = &o->words, .help = "a scene, or pictures", .minimum = 0},
+        {OPTION_SECTION, .help = "Compare with B"},
+        {OPTION_REPEATED, "b", "NAME=VALUE,...", "(as A)", &o->b,
+         "settings of B that differ from those of A: budget=16,probability=1/512. All of Memory, "
+         "Feedback, Loading and Sampling, but pause and freeze-wants. V shows both pictures"},
         {OPTION_SECTION, .help = "Scene"},
         {OPTION_FLAG, "room", .value = &o->room,
          .help = "without a scene: a room of computed pictures, which needs no file"},
@@ -78,6 +93,8 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
         options_refuse(&table, "--budget: " CONTROLS_BUDGET_WANTED);
         return OPTIONS_ERROR;
     }
+    if (outcome == OPTIONS_RUN && !read_b(o))
+        return OPTIONS_ERROR;
     if (outcome == OPTIONS_RUN &&
         !scene_open_takes((const char *const *)o->words.items, (uint32_t)o->words.count))
         return OPTIONS_ERROR;

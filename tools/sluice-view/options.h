@@ -8,6 +8,7 @@
 
 struct view_options {
     struct view_settings settings;
+    struct option_texts b;    ///< settings of B, as sets_read takes them
     struct option_list words; ///< scenes
     bool room, headless, deterministic, fresh, json, validation, list_devices, still;
     uint32_t frames; ///< 0: until the script ends, or the window is closed

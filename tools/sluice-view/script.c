@@ -174,6 +174,8 @@ static bool take_drop(struct line *line)
 
 static bool take_set(struct line *line)
 {
+    if (line->count == 3 && strcmp(line->words[0], "b") == 0)
+        return add_text(line, SCRIPT_SET_B, line->words[1], line->words[2]);
     return line->count == 2 && add_text(line, SCRIPT_SET, line->words[0], line->words[1]);
 }
 
@@ -215,7 +217,7 @@ static const struct {
     {"drag", "X Y X Y, and maybe a number of frames", take_drag},
     {"wheel", "a number of turns", take_wheel},
     {"drop", "a path", take_drop},
-    {"set", "the name of an option and a value", take_set},
+    {"set", "the name of an option and a value, and maybe b before them", take_set},
     {"do", "evict, pin, hide, retry or file", take_do},
     {"record", "a file", take_record},
     {"screenshot", "a file", take_screenshot},

@@ -8,7 +8,8 @@
  *     120 quit
  *
  * Events are key CHORD, hold CHORD FRAMES, type TEXT, hover X Y, click X Y [left|right|middle],
- * double-click X Y, drag X Y X Y [FRAMES], wheel N, drop PATH, set NAME VALUE, do ACTION,
+ * double-click X Y, drag X Y X Y [FRAMES], wheel N, drop PATH, set NAME VALUE, set b NAME VALUE, do
+ * ACTION,
  * record FILE, screenshot FILE, reset and quit. Empty lines and what follows '#' are passed over.
  */
 #ifndef SLUICE_VIEW_SCRIPT_H
@@ -26,6 +27,7 @@ enum script_kind {
     SCRIPT_TYPE,   ///< text
     SCRIPT_DROP,   ///< text
     SCRIPT_SET,    ///< text, value
+    SCRIPT_SET_B,  ///< text, value
     SCRIPT_DO,     ///< text: texture_actions.h
     SCRIPT_RECORD, ///< text: a file
     SCRIPT_RESET,  ///< settings, panels and camera as at first

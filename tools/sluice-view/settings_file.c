@@ -4,6 +4,7 @@
 #include "settings_file.h"
 
 #include "controls.h"
+#include "sets.h"
 
 #include "../common/files.h"
 #include "../common/input.h"
@@ -52,6 +53,11 @@ static bool read_line(char *line, struct view_app *app)
         app->bookmark_set[line[9] - '1'] = true;
         return view_camera_read(value, &app->bookmarks[line[9] - '1']);
     }
+    char *of_b = value + strcspn(value, " ");
+    if (strcmp(line, "b") == 0 && *of_b) {
+        *of_b++ = '\0';
+        return sets_set(&app->b, value, of_b, "sluice-view");
+    }
     return controls_set(&app->settings, line, value, "sluice-view");
 }
 
@@ -82,7 +88,7 @@ void settings_file_read(const char *path, struct view_app *app)
 {
     char *text = NULL;
     size_t size = 0;
-    const struct view_settings before = app->settings;
+    const struct view_settings before = app->settings, before_b = app->b;
     struct view_camera bookmarks[APP_BOOKMARKS];
     bool set[APP_BOOKMARKS];
     memcpy(bookmarks, app->bookmarks, sizeof bookmarks);
@@ -94,6 +100,7 @@ void settings_file_read(const char *path, struct view_app *app)
     }
     if (strlen(text) != size || !read_text(text, app)) {
         app->settings = before;
+        app->b = before_b;
         memcpy(app->bookmarks, bookmarks, sizeof bookmarks);
         memcpy(app->bookmark_set, set, sizeof set);
         set_aside(path);
@@ -120,6 +127,11 @@ bool settings_file_write(const char *path, const struct view_app *app)
             !control_is_default(&controls[i], &app->settings))
             fprintf(file, "%s %s\n", controls[i].option.name,
                     control_write(&controls[i], &app->settings, value, sizeof value));
+    for (uint32_t i = 0; app->settings.compared == VIEW_WITH_B && i < count; i++)
+        if (control_is_of_sets(&controls[i]) && !(controls[i].flags & CONTROL_PASSING) &&
+            !control_is_default(&controls[i], &app->b))
+            fprintf(file, "b %s %s\n", controls[i].option.name,
+                    control_write(&controls[i], &app->b, value, sizeof value));
     for (int i = 0; i < APP_BOOKMARKS; i++) {
         const struct view_camera *c = &app->bookmarks[i];
         if (app->bookmark_set[i])

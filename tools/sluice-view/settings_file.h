@@ -6,7 +6,8 @@
 
 /** Path of the file of a scene in the user's folder of settings. False without such a folder. */
 bool settings_file_path(const char *scene, char *path, size_t size);
-/** Reads a file into settings and bookmarks; no file is fine. A damaged file is named on stderr,
+/** Reads a file into the settings of A and B, and bookmarks; no file is fine. What the file does not
+ * name stays. A damaged file is named on stderr,
  * set aside under the name PATH.damaged, and changes nothing. */
 void settings_file_read(const char *path, struct view_app *app);
 /** Says on stderr what failed. */

@@ -7,6 +7,7 @@
 #include "messages.h"
 #include "panels.h"
 #include "scene_hall.h"
+#include "sets.h"
 #include "settings_file.h"
 #include "texture_actions.h"
 
@@ -50,7 +51,8 @@ static bool create_gpu(struct viewer *v, bool *unsupported)
                                   .ray_tracing = true,
                                   .build_queue = true,
                                   .buffer_addresses = true,
-                                  .byte_pages = true};
+                                  .byte_pages = true,
+                                  .every_mode = true};
     if (v->window)
         request.instance_extensions =
             window_extensions(v->window, &request.instance_extension_count);
@@ -63,6 +65,18 @@ static void drop(struct viewer *v, const char *path)
     if (files_add(path, &paths))
         viewer_reopen(v, &paths);
     files_finish(&paths);
+}
+
+/* The command line stands above files of settings. `kept`: B is that of the file. */
+static void begin_b(struct viewer *v, bool kept)
+{
+    const struct option_texts *texts = &v->options->b;
+    if (!kept)
+        sets_copy(&v->app.settings, &v->app.b);
+    if (texts->count > 0)
+        v->app.settings.compared = VIEW_WITH_B;
+    for (size_t i = 0; i < texts->count; i++)
+        sets_read(&v->app.b, texts->items[i], "sluice-view: --b"); /* was read before */
 }
 
 static void take_script_step(struct viewer *v, const struct script_step *step)
@@ -79,11 +93,13 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
     case SCRIPT_TYPE: snprintf(in->text, sizeof in->text, "%s", step->text); break;
     case SCRIPT_DROP: drop(v, step->text); break;
     case SCRIPT_SET: controls_set(&v->app.settings, step->text, step->value, "sluice-view"); break;
+    case SCRIPT_SET_B: app_set_b(&v->app, step->text, step->value); break;
     case SCRIPT_DO: texture_actions_do(&v->app, step->text); break;
     case SCRIPT_RECORD: viewer_begin_recording(v, step->text); break;
     case SCRIPT_SCREENSHOT: snprintf(v->screenshot, sizeof v->screenshot, "%s", step->text); break;
     case SCRIPT_RESET:
         app_reset(&v->app, &v->options->settings, v->stage && !v->options->still);
+        begin_b(v, false);
         break;
     case SCRIPT_QUIT: v->app.quit = true; break;
     }
@@ -470,13 +486,19 @@ static void read_settings(struct viewer *v)
     v->app.settings = o->settings;
     if (o->headless || !settings_file_path(scene, v->settings_path, sizeof v->settings_path)) {
         v->settings_path[0] = '\0';
+        begin_b(v, false);
         return;
     }
-    if (o->fresh)
+    if (o->fresh) {
+        begin_b(v, false);
         return;
+    }
     controls_set_defaults(&v->app.settings);
+    controls_set_defaults(&v->app.b);
     settings_file_read(v->settings_path, &v->app);
+    const bool kept = v->app.settings.compared == VIEW_WITH_B;
     controls_take_changes(&o->settings, &v->app.settings);
+    begin_b(v, kept);
 }
 
 static bool begin(struct viewer *v)

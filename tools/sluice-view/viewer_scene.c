@@ -110,7 +110,7 @@ static void begin_walk(struct viewer *v)
 
 /** What files of settings hold, while another scene is tried. */
 struct kept_settings {
-    struct view_settings settings;
+    struct view_settings settings, b;
     struct view_camera bookmarks[APP_BOOKMARKS];
     bool bookmark_set[APP_BOOKMARKS];
     char path[4096];
@@ -135,6 +135,7 @@ static void change_settings(struct viewer *v, const struct file_list *paths,
 {
     struct view_app *app = &v->app;
     before->settings = app->settings;
+    before->b = app->b;
     memcpy(before->bookmarks, app->bookmarks, sizeof app->bookmarks);
     memcpy(before->bookmark_set, app->bookmark_set, sizeof app->bookmark_set);
     memcpy(before->path, v->settings_path, sizeof before->path);
@@ -147,6 +148,7 @@ static void change_settings(struct viewer *v, const struct file_list *paths,
     if (v->options->fresh || files_size(v->settings_path) == 0)
         return;
     controls_set_defaults(&app->settings);
+    controls_set_defaults(&app->b);
     settings_file_read(v->settings_path, app);
     keep_window(&before->settings, &app->settings);
 }
@@ -154,6 +156,7 @@ static void change_settings(struct viewer *v, const struct file_list *paths,
 static void restore_settings(struct viewer *v, const struct kept_settings *before)
 {
     v->app.settings = before->settings;
+    v->app.b = before->b;
     memcpy(v->app.bookmarks, before->bookmarks, sizeof before->bookmarks);
     memcpy(v->app.bookmark_set, before->bookmark_set, sizeof before->bookmark_set);
     memcpy(v->settings_path, before->path, sizeof before->path);
