@@ -4,6 +4,7 @@
 #include "actions.h"
 #include "controls.h"
 #include "options.h"
+#include "sets.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -60,6 +61,7 @@ static void every_setting_and_the_camera_come_back_from_the_copied_command(void 
         if (control_is_default(&controls[i], &app.settings))
             fail_msg("--%s %s is the default", controls[i].option.name, value);
     }
+    app.b = app.settings;
     app.camera = (struct view_camera){{0.1f, -2.3f, 4e-5f}, 1.0f / 3, -0.7f, 1.2f};
     app.stage = (struct stage *)(void *)&nothing; /* there is one */
     app_write_command(&app, line, sizeof line);
@@ -68,6 +70,60 @@ static void every_setting_and_the_camera_come_back_from_the_copied_command(void 
     assert_memory_equal(&options.settings, &app.settings, sizeof app.settings);
     assert_true(view_camera_read(options.camera, &camera));
     assert_memory_equal(&camera, &app.camera, sizeof camera);
+}
+
+/* A has other values than the defaults, and B the defaults: nothing may be left out. */
+static void every_setting_of_b_comes_back_from_the_copied_command(void **state)
+{
+    (void)state;
+    static struct view_app app;
+    static char line[16384], value[64];
+    uint32_t count, written = 0;
+    struct view_options options;
+    struct view_settings b;
+    const struct control *controls = controls_get(&count);
+    app.program = "sluice-view --room";
+    controls_set_defaults(&app.settings);
+    controls_set_defaults(&app.b);
+    app.settings.compared = VIEW_WITH_B;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!control_is_of_sets(&controls[i]))
+            continue;
+        choose_value(&controls[i].option, value, sizeof value);
+        assert_true(controls_set(&app.settings, controls[i].option.name, value, "t"));
+        written++;
+    }
+    assert_true(written > 15);
+    app_write_command(&app, line, sizeof line);
+    assert_int_equal(read_command(line, &options), OPTIONS_RUN);
+    assert_int_equal(options.settings.compared, VIEW_WITH_B);
+    b = options.settings;
+    for (size_t i = 0; i < options.b.count; i++)
+        assert_true(sets_read(&b, options.b.items[i], "t"));
+    assert_int_equal(options.b.count, 1);
+    for (uint32_t i = 0; i < count; i++)
+        if (control_is_of_sets(&controls[i]) && !control_is_default(&controls[i], &b))
+            fail_msg("%s of B is not the default", controls[i].option.name);
+}
+
+static void names_and_values_that_b_does_not_have_are_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {
+        "bugdet=16", "budget=2",  "budget",          "=16",
+        "view=3",    "pause=on",  "probability=2",   "budget=16,,fade=0",
+        "load=some", "fade=0 16", "budget=16;fade=0"};
+    struct view_options options;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char program[] = "sluice-view", option[] = "--b", text[64];
+        char *words[] = {program, option, text};
+        snprintf(text, sizeof text, "%s", wrong[i]);
+        if (options_read(3, words, &options) != OPTIONS_ERROR)
+            fail_msg("--b %s was taken", wrong[i]);
+    }
+    char twice[] = "sluice-view --b budget=16,fade=0 --b probability=1/512";
+    assert_int_equal(read_command(twice, &options), OPTIONS_RUN);
+    assert_int_equal(options.b.count, 2);
 }
 
 static void a_camera_that_moves_is_not_in_the_command(void **state)
@@ -132,6 +188,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_setting_and_the_camera_come_back_from_the_copied_command),
+        cmocka_unit_test(every_setting_of_b_comes_back_from_the_copied_command),
+        cmocka_unit_test(names_and_values_that_b_does_not_have_are_refused),
         cmocka_unit_test(a_camera_that_moves_is_not_in_the_command),
         cmocka_unit_test(wrong_cameras_are_refused),
         cmocka_unit_test(every_control_says_what_it_is),

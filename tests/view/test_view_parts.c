@@ -10,6 +10,7 @@
 #include "mark_words.h"
 #include "pbrt_frame.h"
 #include "script.h"
+#include "sets.h"
 #include "settings_file.h"
 
 #include <math.h>
@@ -265,16 +266,116 @@ static void settings_come_back_from_their_file(void **state)
     controls_set_defaults(&read->settings);
     app->settings.budget = 32u << 20;
     app->settings.pause = 1; /* passes */
+    app->settings.compared = VIEW_WITH_B;
+    controls_set_defaults(&app->b);
+    controls_set_defaults(&read->b);
+    app->b.anisotropy = 2;
+    app->b.source_fails = 3; /* passes */
     app->bookmarks[2] = (struct view_camera){{1, 2, 3}, 0.5f, 0.25f, 1};
     app->bookmark_set[2] = true;
     assert_true(settings_file_write(file, app));
     settings_file_read(file, read);
     assert_int_equal(read->settings.budget, 32u << 20);
     assert_int_equal(read->settings.pause, 0);
+    assert_int_equal(read->settings.compared, VIEW_WITH_B);
+    assert_int_equal(read->b.anisotropy, 2);
+    assert_int_equal(read->b.budget, 0);
+    assert_int_equal(read->b.source_fails, 0);
     assert_true(read->bookmark_set[2] && !read->bookmark_set[1]);
     assert_float_equal(read->bookmarks[2].pitch, 0.25f, 0);
     free(app);
     free(read);
+}
+
+static struct view_settings other_than(const struct view_settings *settings)
+{
+    struct view_settings other = *settings;
+    other.budget += 8u << 20;
+    other.timeout += 1;
+    other.anisotropy += 1;
+    other.feedback = !other.feedback;
+    other.source_latency += 10;
+    return other;
+}
+
+static void sets_share_nothing_but_what_is_of_both(void **state)
+{
+    (void)state;
+    struct view_settings a, b, second;
+    char text[512];
+    controls_set_defaults(&a);
+    a.view = VIEW_MISSING;
+    a.pause = 1;
+    a.compared = VIEW_WITH_B;
+    b = other_than(&a);
+    b.view = VIEW_PICTURE;
+    b.pause = 0;
+    second = sets_of_second(&a, &b);
+    assert_int_equal(second.view, VIEW_MISSING);
+    assert_int_equal(second.pause, 1);
+    sets_write(&second, &b, text, sizeof text);
+    assert_string_equal(text, "");
+    a.budget = 4u << 20; /* B does not follow */
+    second = sets_of_second(&a, &b);
+    assert_int_equal(second.budget, 8u << 20);
+    sets_write(&a, &b, text, sizeof text);
+    assert_string_equal(text, "budget=8,timeout=2,feedback=off,source-latency=10,anisotropy=9");
+    sets_write(&b, &b, text, sizeof text);
+    assert_string_equal(text, "");
+}
+
+static void sets_that_are_swapped_twice_are_as_before(void **state)
+{
+    (void)state;
+    struct view_settings a, b, a_before, b_before, second;
+    controls_set_defaults(&a);
+    b = other_than(&a);
+    a.compared = VIEW_WITH_B;
+    a_before = a;
+    b_before = b;
+    sets_swap(&a, &b);
+    assert_int_equal(a.budget, b_before.budget);
+    assert_int_equal(b.budget, a_before.budget);
+    sets_swap(&a, &b);
+    assert_memory_equal(&a, &a_before, sizeof a);
+    assert_memory_equal(&b, &b_before, sizeof b);
+    a.compared = VIEW_WITH_EVERYTHING;
+    sets_swap(&a, &b);
+    assert_int_equal(a.load, VIEW_LOAD_EVERYTHING);
+    assert_int_equal(b.load, VIEW_LOAD_WANTED);
+    sets_swap(&a, &b);
+    second = sets_of_second(&a, &b);
+    assert_int_equal(second.load, VIEW_LOAD_EVERYTHING);
+    assert_int_equal(a.load, VIEW_LOAD_WANTED);
+}
+
+static void view_8_compares_with_everything_whatever_b_is(void **state)
+{
+    (void)state;
+    struct view_settings a, second;
+    controls_set_defaults(&a);
+    a.compared = VIEW_WITH_B;
+    a.view = VIEW_TRUTH;
+    const struct view_settings b = other_than(&a);
+    second = sets_of_second(&a, &b);
+    assert_int_equal(second.load, VIEW_LOAD_EVERYTHING);
+    assert_int_equal(second.budget, 0);
+    assert_int_equal(second.anisotropy, a.anisotropy);
+}
+
+static void scripts_set_a_and_b(void **state)
+{
+    (void)state;
+    struct script script;
+    assert_true(script_parse("s", "3 set budget 16\n4 set b budget 32\n", &script));
+    assert_int_equal(script.count, 2);
+    assert_int_equal(script.steps[0].kind, SCRIPT_SET);
+    assert_int_equal(script.steps[1].kind, SCRIPT_SET_B);
+    assert_string_equal(script.steps[1].text, "budget");
+    assert_string_equal(script.steps[1].value, "32");
+    script_finish(&script);
+    assert_false(script_parse("s", "3 set c budget 16\n", &script));
+    assert_false(script_parse("s", "3 set b budget\n4 set b\n", &script));
 }
 
 static void a_damaged_file_of_settings_is_set_aside(void **state)
@@ -485,6 +586,10 @@ int main(void)
         cmocka_unit_test(orbit_keeps_the_distance),
         cmocka_unit_test(paths_are_read_as_they_were_written),
         cmocka_unit_test(settings_come_back_from_their_file),
+        cmocka_unit_test(sets_share_nothing_but_what_is_of_both),
+        cmocka_unit_test(sets_that_are_swapped_twice_are_as_before),
+        cmocka_unit_test(view_8_compares_with_everything_whatever_b_is),
+        cmocka_unit_test(scripts_set_a_and_b),
         cmocka_unit_test(a_damaged_file_of_settings_is_set_aside),
         cmocka_unit_test(a_scenes_camera_comes_back_as_it_was),
         cmocka_unit_test(steps_and_turns_go_where_the_picture_shows_them),
