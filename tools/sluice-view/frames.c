@@ -21,7 +21,7 @@ static bool create_times(struct frames *f)
 {
     const VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                         .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                        .queryCount = 2 * FRAMES_SLOTS};
+                                        .queryCount = FRAMES_TIMES * FRAMES_SLOTS};
     return gpu_check(vkCreateQueryPool(f->gpu->device, &info, NULL, &f->times),
                      "vkCreateQueryPool");
 }
@@ -90,19 +90,64 @@ uint32_t frames_slot(const struct frames *f)
     return (uint32_t)(f->number % FRAMES_SLOTS);
 }
 
-static void read_times(struct frames *f, uint32_t slot)
+/* Reads the seconds between two time stamps of a slot. */
+static bool read_pair(const struct frames *f, uint32_t slot, uint32_t first, double *seconds)
 {
     uint64_t ticks[2];
-    if (vkGetQueryPoolResults(f->gpu->device, f->times, 2 * slot, 2, sizeof ticks, ticks,
-                              sizeof *ticks, VK_QUERY_RESULT_64_BIT) == VK_SUCCESS)
-        f->gpu_seconds = (double)(ticks[1] - ticks[0]) *
-                         (double)f->gpu->properties.limits.timestampPeriod * 1e-9;
+    if (vkGetQueryPoolResults(f->gpu->device, f->times, FRAMES_TIMES * slot + first, 2,
+                              sizeof ticks, ticks, sizeof *ticks,
+                              VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
+        return false;
+    *seconds =
+        (double)(ticks[1] - ticks[0]) * (double)f->gpu->properties.limits.timestampPeriod * 1e-9;
+    return true;
+}
+
+static void read_times(struct frames *f, uint32_t number)
+{
+    const struct frames_slot *slot = &f->slots[number];
+    read_pair(f, number, 0, &f->gpu_seconds);
+    for (uint32_t half = 0; half < 2; half++) {
+        const uint32_t now = slot->swapped ? 1 - half : half;
+        if (slot->halves >> half & 1 && read_pair(f, number, 2 + 2 * half, &f->half_seconds[now]))
+            f->halves_known |= 1u << now;
+    }
+}
+
+/* Commands before have ended when those behind begin. */
+static void write_time_between(struct frames *f, uint32_t time)
+{
+    const uint32_t number = frames_slot(f);
+    const VkCommandBuffer commands = f->slots[number].commands;
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 0, NULL);
+    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times,
+                        FRAMES_TIMES * number + time);
+}
+
+void frames_begin_half(struct frames *f, uint32_t half)
+{
+    write_time_between(f, 2 + 2 * half);
+}
+
+void frames_end_half(struct frames *f, uint32_t half)
+{
+    write_time_between(f, 3 + 2 * half);
+    f->slots[frames_slot(f)].halves |= 1u << half;
+}
+
+void frames_swap_halves(struct frames *f)
+{
+    for (uint32_t i = 0; i < FRAMES_SLOTS; i++)
+        if (i != frames_slot(f))
+            f->slots[i].swapped = !f->slots[i].swapped;
 }
 
 VkCommandBuffer frames_begin(struct frames *f)
 {
     const uint32_t number = frames_slot(f);
     struct frames_slot *slot = &f->slots[number];
+    f->halves_known = 0;
     if (slot->submitted) {
         if (!gpu_check(vkWaitForFences(f->gpu->device, 1, &slot->fence, VK_TRUE, UINT64_MAX),
                        "vkWaitForFences") ||
@@ -115,8 +160,11 @@ VkCommandBuffer frames_begin(struct frames *f)
                                             .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     if (!gpu_check(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer"))
         return VK_NULL_HANDLE;
-    vkCmdResetQueryPool(slot->commands, f->times, 2 * number, 2);
-    vkCmdWriteTimestamp(slot->commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, f->times, 2 * number);
+    slot->halves = 0;
+    slot->swapped = false;
+    vkCmdResetQueryPool(slot->commands, f->times, FRAMES_TIMES * number, FRAMES_TIMES);
+    vkCmdWriteTimestamp(slot->commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, f->times,
+                        FRAMES_TIMES * number);
     return slot->commands;
 }
 
@@ -170,7 +218,8 @@ bool frames_end(struct frames *f, const struct frames_end *end)
         swapchain_record_copy(end->swapchain, end->image, &f->target, commands);
     if (end->read)
         target_copy_out(&f->target, commands, f->pixels.buffer);
-    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times, 2 * number + 1);
+    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, f->times,
+                        FRAMES_TIMES * number + 1);
     if (!gpu_check(vkEndCommandBuffer(commands), "vkEndCommandBuffer") || !submit(f, end, number))
         return false;
     f->number++;

@@ -7,6 +7,7 @@
 
 #define FRAMES_SLOTS UI_DRAW_SLOTS
 #define FRAMES_MAX_SIGNALS 4
+#define FRAMES_TIMES 6 ///< time stamps per slot: of the frame, and of two halves
 
 struct frames {
     const struct gpu *gpu; ///< borrowed
@@ -16,11 +17,15 @@ struct frames {
         VkCommandBuffer commands;
         VkFence fence;
         bool submitted;
+        unsigned halves; ///< bits: those that were recorded
+        bool swapped;    ///< half 0 was recorded as half 1
     } slots[FRAMES_SLOTS];
     struct gpu_buffer pixels; ///< for screenshots
-    VkQueryPool times;        ///< two per slot
+    VkQueryPool times;        ///< FRAMES_TIMES per slot
     uint64_t number;          ///< of the next frame
     double gpu_seconds;       ///< of the last frame that is known
+    double half_seconds[2];   ///< of the last frames that are known
+    unsigned halves_known;    ///< bits: half_seconds that frames_begin has just read
 };
 
 /** A timeline semaphore that the frame signals. */
@@ -49,6 +54,12 @@ bool frames_resize(struct frames *frames, uint32_t width, uint32_t height);
 uint32_t frames_slot(const struct frames *frames);
 /** Waits until the slot is free, and begins its commands. VK_NULL_HANDLE if that failed. */
 VkCommandBuffer frames_begin(struct frames *frames);
+/** Around the commands of half 0 or 1. Halves do not overlap on the GPU, so that each is measured
+ *  by itself. */
+void frames_begin_half(struct frames *frames, uint32_t half);
+void frames_end_half(struct frames *frames, uint32_t half);
+/** Half 0 of the frames in flight is half 1 from now on. Before halves of this frame. */
+void frames_swap_halves(struct frames *frames);
 bool frames_end(struct frames *frames, const struct frames_end *end);
 /** Writes the pixels of the last frame, whose `read` was set, as a PNG file. */
 bool frames_write(struct frames *frames, const char *path);
