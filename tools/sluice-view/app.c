@@ -71,7 +71,7 @@ void app_reset(struct view_app *app, const struct view_settings *settings, bool 
     app->settings = *settings;
     memset(app->open, 0, sizeof app->open);
     app->last_view = VIEW_PICTURE;
-    app->demonstrating = app->recording = false;
+    app->demonstrating = app->recording = app->keeps_b = app->swap = app->edits_b = false;
     app->dragged_budget = 0;
     app->said_seconds = 0;
     file_facts_finish(&app->file);
@@ -139,6 +139,17 @@ void app_copy_command(struct view_app *app)
     app_write_command(app, line, sizeof line);
     ui_copy_text(line);
     app_say(app, "Copied: %s", line);
+}
+
+bool app_has_second(const struct view_app *app)
+{
+    return app->settings.view == VIEW_TRUTH || app->settings.compare != VIEW_COMPARE_OFF ||
+           app->keeps_b;
+}
+
+bool app_compares(const struct view_app *app)
+{
+    return app->other && app->settings.view != VIEW_TRUTH;
 }
 
 bool app_shows_difference(const struct view_app *app)
@@ -305,6 +316,13 @@ static void follow(struct view_app *app, double seconds)
         camera_path_get(path, fmodf((float)app->follow_seconds, length), &app->camera);
 }
 
+void app_end_demonstration(struct view_app *app)
+{
+    if (app->demonstrating)
+        app->settings.budget = app->budget_before;
+    app->demonstrating = false;
+}
+
 /* Down to 16 MiB within a second, and back in the last one. */
 static void demonstrate(struct view_app *app, double seconds)
 {
@@ -317,8 +335,7 @@ static void demonstrate(struct view_app *app, double seconds)
     app->settings.budget = (uint64_t)(exp2(log2(most) + (log2(least) - log2(most)) * part));
     if (at < DEMONSTRATION_SECONDS)
         return;
-    app->settings.budget = app->budget_before;
-    app->demonstrating = false;
+    app_end_demonstration(app);
 }
 
 /* The setting may come from a key, a control, a script or a file. */

@@ -6,6 +6,7 @@
 #include "facts.h"
 #include "file_facts.h"
 #include "flip_map.h"
+#include "half_times.h"
 #include "keys.h"
 #include "probe.h"
 #include "settings.h"
@@ -40,7 +41,10 @@ struct view_app {
     struct view_settings b;        ///< sets.h
     const struct gpu *gpu;         ///< borrowed
     struct stage *stage;           ///< borrowed; NULL while none is open
-    struct view_facts facts;
+    struct stage *other;           ///< of B, borrowed; NULL: nothing is compared
+    struct view_facts facts, facts_b;
+    struct half_times times[2]; ///< of A and B, since their settings changed last
+    bool keeps_b;               ///< B is drawn though nothing is compared: X swaps the pictures
     struct view_camera camera;
     struct vec3 center;        ///< of VIEW_ORBIT
     struct view_camera frozen; ///< for which tiles are loaded while wants are frozen
@@ -54,6 +58,7 @@ struct view_app {
     bool bookmark_set[APP_BOOKMARKS];
     bool open[PANEL_COUNT];
     struct file_facts file;
+    bool edits_b;            ///< controls change B
     char texture_filter[64]; ///< words of the table of textures
     bool touched;            ///< the visitor has the camera
     bool dragging;           ///< the mouse turns the camera
@@ -89,7 +94,7 @@ struct view_app {
     struct thumbs *thumbs;     ///< borrowed
     /* Requests to the loop, which resets them. */
     bool quit, reload, step, step_tile, restart, screenshot, screenshot_plain, trace;
-    bool trade_toggle, trade_page, reload_shaders;
+    bool trade_toggle, trade_page, reload_shaders, swap;
 };
 
 void app_init(struct view_app *app);
@@ -117,6 +122,12 @@ void app_look_at_tile(struct view_app *app, uint32_t texture, const SluiceTile *
 /** The command that shows this: scene, settings, and the camera unless it moves by itself. */
 void app_write_command(const struct view_app *app, char *text, size_t size);
 void app_copy_command(struct view_app *app);
+/** Ends the demonstration of the budget, if it runs, with the budget before. */
+void app_end_demonstration(struct view_app *app);
+/** Whether a second picture is drawn. */
+bool app_has_second(const struct view_app *app);
+/** Whether A and B are compared: there is a second picture, and not that of view 8. */
+bool app_compares(const struct view_app *app);
 /** Whether the picture is a difference of two. */
 bool app_shows_difference(const struct view_app *app);
 /** Whether a divider can be dragged. */

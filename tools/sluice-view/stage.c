@@ -23,6 +23,7 @@ struct stage {
     const struct gpu *gpu;
     struct scene_data scene;
     struct view_settings settings; ///< applied last
+    struct view_settings opened;   ///< those that it was created with
     struct traced *traced; ///< scenes of pbrt: most of the rest is unused then; NULL: others
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
@@ -95,6 +96,11 @@ static uint32_t choose_heap_tiles(uint64_t budget)
     while (budget > 0 && tiles > most && tiles > STAGE_LEAST_HEAP_TILES)
         tiles /= 2;
     return tiles;
+}
+
+const struct view_settings *stage_opened(const struct stage *s)
+{
+    return &s->opened;
 }
 
 uint32_t stage_heap_tiles(const struct stage *s)
@@ -282,7 +288,7 @@ struct stage *stage_create(const struct stage_request *request,
     s->scene = *scene;
     *scene = (struct scene_data){0};
     s->gpu = request->gpu;
-    s->settings = *settings;
+    s->settings = s->opened = *settings;
     s->heap_tiles = choose_heap_tiles(settings->budget);
     if (s->scene.pbrt) {
         s->traced = traced_create(request, settings, s->scene.pbrt);

@@ -66,7 +66,7 @@ struct stage_draw {
 struct stage_request {
     const struct gpu *gpu;
     uint32_t threads;
-    bool waits;      ///< frames wait for all that they asked for, so that each run is the same
+    bool waits; ///< frames wait for all that they asked for, so that each run is the same
     const struct shader_code *code; ///< SCENE_SHADER_COUNT modules; NULL: those of the build
 };
 
@@ -102,6 +102,8 @@ SluiceStreamedTextureManager *stage_manager(const struct stage *stage);
 /** The scene of pbrt, whose rays ask a demand loader; NULL for others. */
 struct traced *stage_traced(const struct stage *stage);
 SluiceVulkanContext *stage_context(const struct stage *stage);
+/** Settings that the scene was opened with. */
+const struct view_settings *stage_opened(const struct stage *stage);
 /** Tiles per heap: an eighth of the budget that the scene was opened with. */
 uint32_t stage_heap_tiles(const struct stage *stage);
 /** What the scene lacks: images that are missing, extensions that are not supported. */

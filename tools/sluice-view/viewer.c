@@ -175,12 +175,8 @@ static void answer_requests(struct viewer *v)
         viewer_end_recording(v);
     else if (app->trace)
         viewer_begin_recording(v, NULL);
-    struct view_settings now = app->settings;
-    now.pause = now.pause && !app->step;
-    if (v->stage && memcmp(&v->applied, &now, sizeof v->applied) != 0) {
-        stage_apply(v->stage, &now);
-        v->applied = now;
-    }
+    viewer_swap(v);
+    viewer_apply(v);
     if (v->stage && app->step_tile)
         sluiceStepVulkanLoads(stage_streamer(v->stage), 1);
     if (v->window)
@@ -215,23 +211,75 @@ static struct view_camera camera_of(const float m[16], float fov)
 }
 
 /* Settings may change in any frame, so the motion is known in all. */
-static struct stage_ahead look_ahead(struct viewer *v, const struct stage_draw *draw)
+static void note_motion(struct viewer *v)
 {
-    const struct view_camera *camera = &draw->camera;
+    const struct view_camera *camera = &v->app.camera;
     const struct mat4 look =
         mat4_look_at(camera->position, vec3_add(camera->position, view_camera_forward(camera)));
+    (void)sluiceAddCameraFrame(&v->motion, &look.m[0][0],
+                               v->app.seconds); /* a bad one: no motion */
+}
+
+static struct stage_ahead look_ahead(struct viewer *v, const struct stage_draw *draw)
+{
     const SluiceLookAheadInfo info = {.structSize = sizeof info,
-                                      .seconds = v->app.settings.predict,
+                                      .seconds = draw->settings->predict,
                                       .frameIndex = draw->number,
                                       .pictureWidth = draw->width,
                                       .pictureHeight = draw->height};
     SluiceLookAhead ahead = {.structSize = sizeof ahead};
-    (void)sluiceAddCameraFrame(&v->motion, &look.m[0][0],
-                               v->app.seconds); /* a bad one: no motion */
     if (sluicePredictCamera(&v->motion, &info, &ahead) != SLUICE_SUCCESS || !ahead.draw)
         return (struct stage_ahead){.draw = false};
-    return (struct stage_ahead){true, camera_of(ahead.viewMatrix, camera->fov), ahead.width,
+    return (struct stage_ahead){true, camera_of(ahead.viewMatrix, draw->camera.fov), ahead.width,
                                 ahead.height, ahead.lodBias};
+}
+
+/* Half 0 is A. Time stamps are written while both are drawn. */
+static bool record_half(struct viewer *v, uint32_t half, struct stage_draw *draw, VkBuffer copy,
+                        struct frames_end *end, VkCommandBuffer commands)
+{
+    const double begin = clock_seconds();
+    draw->copy = copy;
+    draw->ahead = look_ahead(v, draw);
+    if (v->other)
+        frames_begin_half(&v->frames, half);
+    if (!stage_record(half == 0 ? v->stage : v->other, draw, commands, end))
+        return false;
+    if (v->other) {
+        frames_end_half(&v->frames, half);
+        half_series_add(&v->app.times[half].host, clock_seconds() - begin);
+    }
+    if (v->frames.halves_known >> half & 1)
+        half_series_add(&v->app.times[half].gpu, v->frames.half_seconds[half]);
+    return true;
+}
+
+/* In turns: neither is always behind the other. */
+static bool record_halves(struct viewer *v, const struct stage_draw *draw, bool copies,
+                          struct frames_end *end, VkCommandBuffer commands)
+{
+    static const uint32_t textures[2] = {UI_TEXTURE_PICTURE, UI_TEXTURE_OTHER};
+    struct view_settings settings[2] = {v->app.settings, viewer_second_settings(v)};
+    VkImageView views[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
+    note_motion(v);
+    for (uint32_t i = 0; i < 2; i++) {
+        const uint32_t half = v->other ? (uint32_t)(i + v->frames.number) % 2 : i;
+        struct stage_draw own = *draw;
+        if (half == 1 && !v->other)
+            continue;
+        own.settings = &settings[half];
+        settings[half].pause = settings[half].pause && !v->app.step;
+        if (!record_half(v, half, &own, copies ? v->flip.pictures[half].buffer : VK_NULL_HANDLE,
+                         end, commands))
+            return false;
+        views[half] = end->views[UI_TEXTURE_PICTURE];
+    }
+    for (uint32_t half = 0; half < 2; half++)
+        if (views[half])
+            end->views[textures[half]] = views[half];
+    if (v->other)
+        v->app.truth_part = stage_resident_part(v->other);
+    return true;
 }
 
 static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer commands)
@@ -243,12 +291,6 @@ static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer com
                               .height = (uint32_t)(v->input.height * scale + 0.5),
                               .number = v->frames.number,
                               .time_stamp = v->clock};
-    struct view_settings stepping;
-    if (v->app.step) {
-        stepping = v->app.settings;
-        stepping.pause = 0;
-        draw.settings = &stepping;
-    }
     draw.width = draw.width < 16 ? 16 : draw.width;
     draw.height = draw.height < 16 ? 16 : draw.height;
     if (!v->stage)
@@ -259,16 +301,7 @@ static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer com
     thumbs_record(&v->thumbs, v->frames.number, commands);
     if (v->thumbs.texels.filled)
         end->views[UI_TEXTURE_THUMBS] = v->thumbs.texels.image.view;
-    if (v->other) {
-        draw.copy = copies ? v->flip.pictures[1].buffer : VK_NULL_HANDLE;
-        if (!stage_record(v->other, &draw, commands, end))
-            return false;
-        v->app.truth_part = stage_resident_part(v->other);
-        end->views[UI_TEXTURE_OTHER] = end->views[UI_TEXTURE_PICTURE];
-    }
-    draw.copy = copies ? v->flip.pictures[0].buffer : VK_NULL_HANDLE;
-    draw.ahead = look_ahead(v, &draw);
-    return stage_record(v->stage, &draw, commands, end);
+    return record_halves(v, &draw, copies, end, commands);
 }
 
 static bool write_figures(struct viewer *v)
@@ -350,6 +383,13 @@ static bool draw_frame(struct viewer *v, double step)
     v->app.facts.gpu_seconds = v->frames.gpu_seconds;
     if (v->window && swapchain_present(&v->swapchain, end.image) == SWAPCHAIN_FAILED)
         return false;
+    if (v->other) {
+        const struct view_settings b = viewer_second_settings(v);
+        v->app.facts_b.host_seconds = v->app.facts.host_seconds;
+        v->app.facts_b.gpu_seconds = v->app.facts.gpu_seconds;
+        v->app.facts_b.real_seconds = v->app.facts.real_seconds;
+        facts_update(&v->app.facts_b, v->other, &b, step);
+    }
     if (v->stage) {
         facts_update(&v->app.facts, v->stage, &v->app.settings, step);
         summary_add(&v->summary, &v->app.facts);

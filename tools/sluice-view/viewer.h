@@ -25,8 +25,7 @@ struct viewer {
     struct view_app app;
     struct frames frames;
     struct stage *stage;
-    struct stage *other;                         ///< what is compared with; NULL: nothing
-    int other_kind;                              ///< enum view_compared of `other`
+    struct stage *other;                         ///< of B; NULL: nothing is compared
     struct shader_code code[SCENE_SHADER_COUNT]; ///< compiled last; empty: those of the build
     struct window *window;                       ///< NULL: headless
     struct swapchain swapchain;
@@ -34,13 +33,14 @@ struct viewer {
     SluiceCameraMotion motion; ///< of the last frames
     struct script script;
     struct ui_input input;
-    struct view_settings applied; ///< what the streamer has
-    struct file_list paths;       ///< owned; of the scene; none: the room
-    struct scene_load *load;      ///< of the next scene; NULL: none
-    struct scene_load *canceled;  ///< canceled loads whose threads have not ended
-    char command[4200];           ///< of "copy command line", without options
-    char settings_path[4096];     ///< "": none are kept
-    char screenshot[4096];        ///< to write after this frame; "": none
+    struct view_settings applied;   ///< what the streamer has
+    struct view_settings applied_b; ///< what that of B has
+    struct file_list paths;         ///< owned; of the scene; none: the room
+    struct scene_load *load;        ///< of the next scene; NULL: none
+    struct scene_load *canceled;    ///< canceled loads whose threads have not ended
+    char command[4200];             ///< of "copy command line", without options
+    char settings_path[4096];       ///< "": none are kept
+    char screenshot[4096];          ///< to write after this frame; "": none
     struct summary summary;
     struct trade trade;
     struct thumbs thumbs;     ///< of `stage`, once the table of textures was open
@@ -71,9 +71,21 @@ bool viewer_watch_load(struct viewer *viewer);
 void viewer_cancel_load(struct viewer *viewer);
 /** Cancels what is being opened, and waits for all threads that open scenes. */
 void viewer_end_load(struct viewer *viewer);
+bool viewer_open_now(const struct viewer *viewer, const struct file_list *paths,
+                     struct scene_data *scene);
+struct stage *viewer_create_stage(struct viewer *viewer, const struct view_settings *settings,
+                                  struct scene_data *scene);
 /** Creates or destroys the second streamer, as the settings of the comparison want it. False if the
  *  device failed. */
 bool viewer_fit_other(struct viewer *viewer);
+/** No frame may be in flight. */
+void viewer_close_other(struct viewer *viewer);
+/** All that the second picture is drawn with. */
+struct view_settings viewer_second_settings(const struct viewer *viewer);
+/** Gives the streamers settings that have changed. */
+void viewer_apply(struct viewer *viewer);
+/** Exchanges A and B, if that was asked for and both are open. */
+void viewer_swap(struct viewer *viewer);
 /** Records what the streamer decides into a file for sluice-replay, between two frames. Ends the
  *  recording before. `path` NULL: a new name in the working folder. */
 void viewer_begin_recording(struct viewer *viewer, const char *path);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct stage *create_stage(struct viewer *v, const struct view_settings *settings,
+struct stage *viewer_create_stage(struct viewer *v, const struct view_settings *settings,
                                   struct scene_data *scene)
 {
     const struct stage_request request = {.gpu = &v->gpu,
@@ -18,7 +18,7 @@ static struct stage *create_stage(struct viewer *v, const struct view_settings *
     return stage_create(&request, settings, scene);
 }
 
-static bool open_now(const struct viewer *v, const struct file_list *paths,
+bool viewer_open_now(const struct viewer *v, const struct file_list *paths,
                      struct scene_data *scene)
 {
     const struct scene_request request = {.paths = (const char *const *)paths->paths,
@@ -26,39 +26,6 @@ static bool open_now(const struct viewer *v, const struct file_list *paths,
                                           .cache = v->options->cache,
                                           .wait = v->options->deterministic};
     return scene_open_paths(&request, scene);
-}
-
-/* The second streamer of a comparison lives as long as the comparison is shown. */
-bool viewer_fit_other(struct viewer *v)
-{
-    const struct view_settings *s = &v->app.settings;
-    const bool truth = s->view == VIEW_TRUTH;
-    if (v->stage && stage_traced(v->stage))
-        return true;
-    const bool wanted = v->stage && (truth || s->compare != VIEW_COMPARE_OFF);
-    const int kind = truth ? VIEW_WITH_EVERYTHING : s->compared;
-    if (v->other && (!wanted || v->other_kind != kind)) {
-        if (!frames_wait(&v->frames))
-            return false;
-        stage_destroy(v->other);
-        v->other = NULL;
-    }
-    if (!wanted || v->other)
-        return true;
-    struct view_settings settings = *s;
-    settings.budget = kind == VIEW_WITH_BUDGET ? 16u << 20 : 0;
-    settings.load = kind == VIEW_WITH_BUDGET ? VIEW_LOAD_WANTED : VIEW_LOAD_EVERYTHING;
-    v->other_kind = kind;
-    struct scene_data scene;
-    if (open_now(v, &v->paths, &scene))
-        v->other = create_stage(v, &settings, &scene);
-    if (v->other)
-        return true;
-    app_say(&v->app, "The second picture cannot be drawn: Shift+I says why");
-    v->app.settings.compare = VIEW_COMPARE_OFF;
-    if (truth)
-        v->app.settings.view = VIEW_PICTURE;
-    return true;
 }
 
 /* "sluice-view PATH ..."; paths that do not fit are left out. */
@@ -88,9 +55,9 @@ void viewer_close_scene(struct viewer *v)
     viewer_end_recording(v);
     app_close(&v->app);
     thumbs_end(&v->thumbs);
-    stage_destroy(v->other);
+    viewer_close_other(v);
     stage_destroy(v->stage);
-    v->stage = v->other = NULL;
+    v->stage = NULL;
 }
 
 static void begin_walk(struct viewer *v)
@@ -178,7 +145,7 @@ static bool show(struct viewer *v, struct scene_data *scene, struct file_list *p
     struct kept_settings kept;
     if (!first && paths)
         change_settings(v, paths, &kept);
-    struct stage *stage = create_stage(v, &v->app.settings, scene);
+    struct stage *stage = viewer_create_stage(v, &v->app.settings, scene);
     if (!stage) {
         if (!first && paths)
             restore_settings(v, &kept);
@@ -241,7 +208,7 @@ bool viewer_open_scene(struct viewer *v)
     v->paths = (struct file_list){0};
     if (v->window)
         return begin_load(v, &paths);
-    const bool shown = open_now(v, &paths, &scene) && show(v, &scene, &paths);
+    const bool shown = viewer_open_now(v, &paths, &scene) && show(v, &scene, &paths);
     files_finish(&paths);
     return shown;
 }
@@ -252,7 +219,7 @@ void viewer_reopen(struct viewer *v, struct file_list *paths)
     file_facts_begin(&v->app.file);
     if (paths && v->window)
         begin_load(v, paths);
-    else if (!open_now(v, paths ? paths : &v->paths, &scene) || !show(v, &scene, paths))
+    else if (!viewer_open_now(v, paths ? paths : &v->paths, &scene) || !show(v, &scene, paths))
         say_failed(v, paths ? paths : &v->paths);
 }
 

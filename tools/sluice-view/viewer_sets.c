@@ -1,0 +1,119 @@
+/* The two sets of settings of a comparison. Each has a streamer and facts of its own. */
+#include "viewer.h"
+
+#include "sets.h"
+
+#include <string.h>
+
+/* Settings that wait for the scene of A to be opened again do not act on B either. */
+struct view_settings viewer_second_settings(const struct viewer *v)
+{
+    struct view_settings a = v->app.settings;
+    if (v->stage)
+        sets_copy_opened(stage_opened(v->stage), &a);
+    return sets_of_second(&a, &v->app.b);
+}
+
+void viewer_close_other(struct viewer *v)
+{
+    if (!v->other)
+        return;
+    if (v->thumbs.stage == v->other) /* since a swap */
+        thumbs_end(&v->thumbs);
+    facts_destroy(&v->app.facts_b);
+    stage_destroy(v->other);
+    v->other = v->app.other = NULL;
+}
+
+static void forget_times(struct viewer *v)
+{
+    memset(v->app.times, 0, sizeof v->app.times);
+}
+
+static bool open_other(struct viewer *v, const struct view_settings *settings)
+{
+    struct scene_data scene;
+    if (!viewer_open_now(v, &v->paths, &scene))
+        return false;
+    v->other = viewer_create_stage(v, settings, &scene);
+    if (v->other && !facts_create(&v->app.facts_b, v->other)) {
+        stage_destroy(v->other);
+        v->other = NULL;
+    }
+    v->app.facts_b.frame = v->app.facts.frame;
+    v->app.facts_b.seconds = v->app.facts.seconds;
+    v->app.facts_b.frame_seconds = v->app.facts.frame_seconds;
+    v->app.other = v->other;
+    v->applied_b = *settings;
+    forget_times(v);
+    return v->other != NULL;
+}
+
+/* The second streamer lives as long as its picture is wanted. Sliders that are held do not open it
+ * again and again. */
+bool viewer_fit_other(struct viewer *v)
+{
+    struct view_app *app = &v->app;
+    if (!v->stage || stage_traced(v->stage))
+        return true;
+    const bool wanted = app_has_second(app);
+    const struct view_settings settings = viewer_second_settings(v);
+    if (v->other && (!wanted || (!v->input.buttons[0] &&
+                                 sets_must_reopen(stage_opened(v->other), &settings)))) {
+        if (!frames_wait(&v->frames))
+            return false;
+        viewer_close_other(v);
+    }
+    if (!wanted || v->other || open_other(v, &settings))
+        return true;
+    app_say(app, "The second picture cannot be drawn: Shift+I says why");
+    app->settings.compare = VIEW_COMPARE_OFF;
+    app->keeps_b = app->swap = false;
+    if (app->settings.view == VIEW_TRUTH)
+        app->settings.view = VIEW_PICTURE;
+    return true;
+}
+
+static void apply(struct stage *stage, const struct view_settings *now,
+                  struct view_settings *applied, struct viewer *v)
+{
+    if (!stage || memcmp(applied, now, sizeof *now) == 0)
+        return;
+    stage_apply(stage, now);
+    *applied = *now;
+    forget_times(v);
+}
+
+void viewer_apply(struct viewer *v)
+{
+    struct view_settings a = v->app.settings, b = viewer_second_settings(v);
+    a.pause = b.pause = a.pause && !v->app.step;
+    apply(v->stage, &a, &v->applied, v);
+    apply(v->other, &b, &v->applied_b, v);
+}
+
+/* Pointers and figures change places. No tile is loaded, evicted or copied. */
+void viewer_swap(struct viewer *v)
+{
+    struct view_app *app = &v->app;
+    if (!app->swap || !v->other)
+        return; /* the second streamer is opened before the next frame */
+    const struct view_facts facts = app->facts;
+    const struct view_settings applied = v->applied;
+    const struct half_times times = app->times[0];
+    struct stage *stage = v->stage;
+    viewer_end_recording(v);
+    app_end_demonstration(app);
+    sets_swap(&app->settings, &app->b);
+    v->stage = app->stage = v->other;
+    v->other = app->other = stage;
+    app->facts = app->facts_b;
+    app->facts_b = facts;
+    v->applied = v->applied_b;
+    v->applied_b = applied;
+    app->times[0] = app->times[1];
+    app->times[1] = times;
+    frames_swap_halves(&v->frames);
+    app->swap = false;
+    app_say(app, "A and B are swapped: nothing is loaded again");
+}
