@@ -2,6 +2,7 @@
 
 #include "controls.h"
 #include "feedback_words.h"
+#include "panel_compare.h"
 #include "panel_traced.h"
 
 #include <math.h>
@@ -188,10 +189,16 @@ void panel_controls(struct view_app *app)
         return;
     if (panel_begin(app, PANEL_CONTROLS, "Controls (U)", 380, 520)) {
         const struct control *controls = controls_get(&count);
+        struct panel_compare_set set;
+        if (!stage_traced(app->stage))
+            panel_compare_choose(app);
+        panel_compare_begin_set(app, &set);
         const char *group = "";
         bool open = false;
         for (uint32_t i = 0; i < count; i++) {
             if (stage_traced(app->stage) && !panel_traced_takes(controls[i].option.name))
+                continue;
+            if (set.is_b && !control_is_of_sets(&controls[i]))
                 continue;
             if (strcmp(group, controls[i].group) != 0)
                 open = ui_begin_group(controls[i].group, i == 0);
@@ -199,6 +206,7 @@ void panel_controls(struct view_app *app)
             if (open)
                 draw_control(app, &controls[i]);
         }
+        panel_compare_end_set(app, &set);
         ui_space(4);
         if (stage_traced(app->stage))
             ui_paragraph(UI_GRAY, "Controls of feedback, of sources and of comparisons are left "
@@ -207,8 +215,10 @@ void panel_controls(struct view_app *app)
             app_copy_command(app);
         ui_hint("Copies a command that opens the viewer with these settings.");
         ui_same_line(0);
-        if (ui_button("All defaults", 0, 0, false))
-            controls_set_defaults(&app->settings);
+        if (ui_button("All defaults", 0, 0, false)) {
+            controls_set_defaults(set.is_b ? &app->b : &app->settings);
+            app->settings.compared = set.is_b ? VIEW_WITH_B : app->settings.compared;
+        }
     }
     ui_end_panel();
 }

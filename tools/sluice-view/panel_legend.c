@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "feedback_words.h"
+#include "panel_compare.h"
 #include "panel_traced.h"
 #include "tile_marks.h"
 
@@ -226,15 +227,19 @@ void panel_legend(struct view_app *app)
     const float placement[4] = {left && !right ? app->width - margin : margin, app->height - bottom,
                                 0, 0};
     const uint32_t view = app->settings.view;
-    const bool differs = app_shows_difference(app);
+    const bool differs = app_shows_difference(app), compares = app_compares(app);
+    const bool colors = view > VIEW_PICTURE && view <= VIEW_CHECKS;
     app->legend_width = 0;
-    if (!differs && (view <= VIEW_PICTURE || view > VIEW_CHECKS))
+    if (!differs && !compares && !colors)
         return;
     if (ui_begin_panel("legend", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
+        if (compares)
+            panel_compare_figures(app);
+        if (compares && (differs || colors))
+            ui_line();
         if (differs && view != VIEW_TRUTH)
-            ui_text(UI_BLUE, "V  Difference to %s",
-                    app->settings.compared == VIEW_WITH_BUDGET ? "16 MB" : "everything");
-        else
+            ui_text(UI_BLUE, "V  Difference of A and B");
+        else if (colors)
             ui_text(UI_BLUE, "%u  %s", view, view_names[view]);
         if (!(left && right) && app->height >= 480 * scale)
             draw_legend(app);

@@ -1,5 +1,7 @@
 #include "panels.h"
 
+#include "panel_compare.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -117,6 +119,7 @@ static void draw_difference(const struct view_app *app)
 
 void panels_draw_picture(const struct view_app *app)
 {
+    char name[160];
     const struct view_settings *s = &app->settings;
     const float all[4] = {0, 0, app->width, app->height}, uv[4] = {0, 0, 1, 1};
     if (!app->stage) {
@@ -138,7 +141,7 @@ void panels_draw_picture(const struct view_app *app)
     if (s->compare != VIEW_DIVIDER)
         return;
     draw_right_of_divider(app, UI_TEXTURE_OTHER);
-    draw_divider(app, "A: now", s->compared == VIEW_WITH_BUDGET ? "B: 16 MB" : "B: everything");
+    draw_divider(app, "A", panel_compare_name(app, name, sizeof name));
 }
 
 void panels_draw(struct view_app *app)
