@@ -128,6 +128,19 @@ static void compare(struct view_app *app, int argument)
 {
     (void)argument;
     app->settings.compare = (app->settings.compare + 1) % 4;
+    app->keeps_b = false;
+}
+
+/* B stays open behind the picture of A, so that X comes back at once. V closes it. */
+static void swap(struct view_app *app, int argument)
+{
+    (void)argument;
+    if (app->settings.view == VIEW_TRUTH) {
+        app_say(app, "View 8 compares with the truth; 1, then X swaps A and B");
+        return;
+    }
+    app->swap = true;
+    app->keeps_b |= app->settings.compare == VIEW_COMPARE_OFF;
 }
 
 static void copy_command(struct view_app *app, int argument)
@@ -252,7 +265,8 @@ static const struct action table[] = {
     {"Views", "8", NULL, "difference to the truth", show_view, VIEW_TRUTH},
     {"Views", "9", NULL, "checks: texels per pixel", show_view, VIEW_CHECKS},
     {"Views", "tab", "Tab or `", "last view, and back", show_last_view, 0},
-    {"Views", "V", NULL, "compare with another picture", compare, 0},
+    {"Views", "V", NULL, "compare A with B", compare, 0},
+    {"Views", "X", NULL, "swap A and B", swap, 0},
 
     {"Streaming", "P", NULL, "pause", pause, 0},
     {"Streaming", "N", NULL, "step one frame", step, 0},

@@ -16,6 +16,7 @@ static const struct {
     {"8", "View 8 is not for scenes of pbrt: demand-pbrt --preload renders the truth"},
     {"9", "View 9 is not for scenes of pbrt: view 3 marks what is missing"},
     {"V", "There is nothing to compare with: scenes of pbrt have one loader"},
+    {"X", "There is nothing to swap: scenes of pbrt have one loader"},
     {"Shift+N", "Tiles are not stepped one by one: a launch loads all that its rays lack"},
     {"Ctrl+T", "Scenes of pbrt are not swept: demand-pbrt --json has their figures"},
     {"L", "Wants cannot be frozen: rays ask anew in each launch"},
