@@ -15,33 +15,33 @@
 struct slc_read_pool;
 
 struct slc_shared_parts {
-    const struct slc_vk *vk; ///< of the context, with its memory client
+    const struct slc_vk *vk; ///< the context's, with the context as memory client
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     uint32_t thread_count;         ///< 0: the default of tile loaders
-    SluiceJobSystem job_system;    ///< without function: threads
-    SluiceReadPool *read_pool;     ///< has the threads; NULL: they are the context's
+    SluiceJobSystem job_system;    ///< without a function: reads run on threads
+    SluiceReadPool *read_pool;     ///< owner of the threads; NULL: the context has threads
     uint32_t max_reads_per_source; ///< 0: the default of tile loaders
     uint32_t max_page_chunks;      ///< images of pages
-    uint64_t min_tile_memory;      ///< bytes that are made ahead
-    SluiceTileRetryPolicy retry;   ///< of failed reads
-    struct slc_mutex mutex;        ///< around the next four
+    uint64_t min_tile_memory;      ///< bytes that are allocated ahead
+    SluiceTileRetryPolicy retry;   ///< policy for failed reads
+    struct slc_mutex mutex;        ///< guards the next four fields
     struct slc_page_pool *pages;
     struct slc_read_pool *threads;
     uint32_t page_users, loader_count;
     struct slc_staging_group staging; ///< has its own mutex
 };
 
-/** Takes the settings. Makes nothing yet. */
+/** Copies the settings. Makes no threads and pages yet. */
 void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk *vk,
                            const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                            const SluiceVulkanContextCreateInfo *info);
-/** The context exists, or is destroyed: it is a member of its read pool meanwhile. */
+/** Makes a new context a member of its read pool, and ends the membership. */
 void slc_shared_parts_join(struct slc_shared_parts *shared);
 void slc_shared_parts_leave(struct slc_shared_parts *shared);
-/** True if reads are jobs of the application. */
+/** Whether reads are jobs of the application. */
 bool slc_shares_jobs(const struct slc_shared_parts *shared);
-/** There are no front ends. */
+/** Finishes the parts. There must be no front ends. */
 void slc_shared_parts_finish(struct slc_shared_parts *shared);
 
 /** Returns the pages of the context; makes them for the first user. Errors: OUT_OF_HOST_MEMORY,
