@@ -1,8 +1,8 @@
 /**
- * The array images ("chunks") whose layers are the pages of a pool: when one is made, which layers
- * of it are free, and when one has been empty for so long that it can go.
+ * Chunks: array images whose layers are the pages of a pool. Makes chunks, tracks their free
+ * layers, and retires chunks that have been empty for a while.
  *
- * Free layers keep their texels. They stand in a ring, and the one that was freed longest ago is
+ * Free layers keep their texels. They form a ring, and the layer that was freed longest ago is
  * taken first. Not thread-safe: the pool locks.
  */
 #ifndef SLC_VULKAN_PAGE_CHUNKS_H
@@ -15,7 +15,7 @@
 /* Bit of a format: commands of the application write these pages. They lie in chunks of their own,
  * which shaders can store to. */
 #define SLC_PAGE_PRODUCED 128u
-#define SLC_PAGE_CHUNK_LAYERS 2048u /* at most, 128 MiB; fewer if the device has fewer layers */
+#define SLC_PAGE_CHUNK_LAYERS 2048u /* most layers, 128 MiB; fewer if the device has fewer */
 #define SLC_MAX_PAGE_CHUNKS (1u << 10)
 #define SLC_NO_OWNER UINT32_MAX
 
@@ -26,14 +26,14 @@ enum slc_page_chunk_state {
 };
 
 struct slc_page_layer {
-    uint16_t previous, next; ///< free: in the ring
+    uint16_t previous, next; ///< free: neighbors in the ring
     uint32_t owner;          ///< free: owner of its texels; SLC_NO_OWNER: none
     uint64_t value; ///< free: the last frame of `user` that could read it; held: the last frame
                     ///< that copies its texels; 0: none
     uint8_t user;   ///< user that holds it, or gave it back
     bool held;
-    bool moved;      ///< a move made its texels, unless it was taken again since
-    uint32_t shared; ///< held: 1 + the index of its entry in the directory; 0: it has none
+    bool moved;      ///< the texels were written by a move, and the layer was not taken since
+    uint32_t shared; ///< held: 1 + index of the entry in the directory; 0: no entry
 };
 
 struct slc_page_chunk {
@@ -47,42 +47,43 @@ struct slc_page_chunk {
     bool fresh;    ///< its layout transition is not recorded yet
     uint8_t maker; ///< user that records the transition; SLC_MAX_PAGE_USERS: whoever records next
     uint64_t layout_frame; ///< the maker's frame with the transition; 0: none yet
-    uint64_t tick;         ///< LIVE: the last tick in which it was not empty
-    uint64_t retire_values[SLC_MAX_PAGE_USERS]; ///< RETIRING: each user's last frame that sees it
+    uint64_t tick;         ///< LIVE: last tick in which the chunk was not empty
+    uint64_t retire_values[SLC_MAX_PAGE_USERS]; ///< RETIRING: by user, last frame that sees it
 };
 
 struct slc_page_chunks {
     struct slc_page_chunk *at; ///< owned; by the upper 16 bits of a page
     uint32_t count;
-    const struct slc_vk *vk; ///< borrowed, as the next two
+    const struct slc_vk *vk; ///< borrowed, like the next two fields
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     struct slc_image_memory memory;
-    uint32_t last[SLC_PAGE_FORMATS];       ///< chunk that the last page was taken from
-    uint32_t page_count[SLC_PAGE_FORMATS]; ///< of all live chunks of the format
-    uint64_t next_prepare_tick;            ///< in which the device is asked for memory ahead again
+    uint32_t last[SLC_PAGE_FORMATS];       ///< by format: chunk of the page taken last
+    uint32_t page_count[SLC_PAGE_FORMATS]; ///< by format: pages of all live chunks
+    uint64_t next_prepare_tick;            ///< next tick in which chunks are made ahead
     uint64_t refused_tick; ///< 1 + the tick in which the device refused a chunk; 0: not refused
-    bool has_freed;        ///< a chunk was freed since then: the device may be asked at once
+    bool has_freed;        ///< a chunk was freed since the refusal: the device may be asked at once
     uint32_t max_layer_count;
     uint64_t max_size;    ///< bytes of device memory, a hard limit; 0: none
-    uint64_t kept_size;   ///< bytes of chunks that stay while they are empty, unless in a hurry
+    uint64_t kept_size;   ///< bytes of empty chunks that stay, unless retired in a hurry
     uint32_t image_count; ///< chunks that have an image
     uint64_t shortages;   ///< pages that were missing because all chunks were in use
 };
 
-/** The format of the pages of a texture. `produced`: commands of the application write them. */
+/** Returns the page format of a texture. `produced`: commands of the application write its pages.
+ */
 static inline SluiceFormat slc_page_format(SluiceFormat format, bool produced)
 {
     return (SluiceFormat)((uint32_t)format | (produced ? SLC_PAGE_PRODUCED : 0u));
 }
 
-/** The format of the texels in a chunk. */
+/** Returns the texel format of a page format. */
 static inline SluiceFormat slc_page_texel_format(SluiceFormat format)
 {
     return (SluiceFormat)(format & ~SLC_PAGE_PRODUCED);
 }
 
-/** Most pages that `chunk_count` chunks hold: all chunks are of one format then. */
+/** Returns the most pages that `chunk_count` chunks can hold, which is if all have one format. */
 uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers);
 
 /** Finish it after an error, too. Errors: OUT_OF_HOST_MEMORY. */
@@ -97,20 +98,21 @@ static inline struct slc_page_layer *slc_page_layer(const struct slc_page_chunks
     return &chunks->at[page >> 16].layers[page & 0xFFFFu];
 }
 
-/** Pages of all live chunks, free ones included. */
+/** Returns the pages of all live chunks, including free ones. */
 uint32_t slc_page_chunks_present(const struct slc_page_chunks *chunks);
-/** Pages that chunks can still be made for, by max_size and the number of chunks. */
+/** Returns the pages that further chunks can hold, by max_size and the number of chunks. */
 uint32_t slc_page_chunks_room(const struct slc_page_chunks *chunks, uint64_t tick);
-/** The device had no memory for a chunk a short while ago. */
+/** Whether the device refused memory for a chunk a short while ago. */
 bool slc_page_chunks_is_refused(const struct slc_page_chunks *chunks, uint64_t tick);
 
-/** A new chunk belongs to its maker until its layout transition is complete. */
+/** Whether the user may use a chunk: only its maker may before the layout transition is complete.
+ */
 bool slc_page_chunk_is_ready(const struct slc_page_chunk *chunk,
                              const struct slc_page_timelines *timelines, uint32_t user);
-/** Free pages of the chunk that the user may write to now. */
+/** Returns the free pages of a chunk that the user may write to now. */
 uint32_t slc_page_chunk_free_count(const struct slc_page_chunk *chunk,
                                    const struct slc_page_timelines *timelines, uint32_t user);
-/** Free pages of the format that the user may write to now. */
+/** Returns the free pages of a format that the user may write to now. */
 uint32_t slc_page_chunks_free_count(const struct slc_page_chunks *chunks,
                                     const struct slc_page_timelines *timelines, uint32_t user,
                                     SluiceFormat format);
@@ -120,7 +122,7 @@ uint32_t slc_page_chunks_find(struct slc_page_chunks *chunks,
                               const struct slc_page_timelines *timelines, uint32_t user,
                               SluiceFormat format);
 
-/** False if asking the device for another chunk is of no use now. */
+/** Whether the limits allow another chunk, and the device did not refuse one a short while ago. */
 bool slc_page_chunks_can_grow(const struct slc_page_chunks *chunks, uint64_t tick);
 /** Makes a chunk for the user. It doubles the pages of the format, or has fewer pages if the device
  *  lacks memory. Returns false if the device has no memory, or all chunks are in use. */
@@ -133,18 +135,19 @@ void slc_page_chunks_prepare(struct slc_page_chunks *chunks, uint64_t tick, uint
                              SluiceFormat format);
 
 void slc_page_chunks_take(struct slc_page_chunks *chunks, uint32_t page, uint32_t user);
-/** True if the page is free and still has the texels of `owner` of this user. */
+/** Whether the page is free and still has the texels of this user's `owner`. */
 bool slc_page_chunks_is_left(const struct slc_page_chunks *chunks, uint32_t page, uint32_t user,
                              uint32_t owner);
-/** `value`: the last frame of `user` that may read the page. */
+/** Frees a page. `value`: last frame of `user` that may read the page. `owner`: owner of its
+ * texels. */
 void slc_page_chunks_free(struct slc_page_chunks *chunks, uint32_t page, uint32_t user,
                           uint64_t value, uint32_t owner);
 
-/** Retires the chunk if it has been empty for a while and kept_size holds without it, or just now
- * if `hurry`. No frame that is recorded from then on may see it. */
+/** Retires a chunk if it has been empty for a while and other chunks have kept_size bytes. `hurry`:
+ * retires any empty chunk at once. Frames recorded later may not see the chunk. */
 void slc_page_chunks_retire(struct slc_page_chunks *chunks, uint32_t index,
                             const struct slc_page_timelines *timelines, bool hurry);
-/** Destroys the chunk if it is retiring and no frame that sees it is left. */
+/** Destroys a retiring chunk if all frames that see it are complete. */
 void slc_page_chunks_end_retired(struct slc_page_chunks *chunks, uint32_t index,
                                  const struct slc_page_timelines *timelines);
 
@@ -152,7 +155,8 @@ void slc_page_chunks_end_retired(struct slc_page_chunks *chunks, uint32_t index,
 void slc_page_chunks_record(struct slc_page_chunks *chunks, uint32_t index,
                             const struct slc_page_timelines *timelines, uint32_t user,
                             VkCommandBuffer commands);
-/** The user abandons its frames from `frame` on. `last` is its last frame that will complete. */
+/** Abandons the user's frames from `frame` on. `last`: last frame of the user that will complete.
+ */
 void slc_page_chunks_abandon(struct slc_page_chunks *chunks, uint32_t user, uint64_t frame,
                              uint64_t last);
 /** Removes all values of the timeline of a user, which holds no page and is removed. */

@@ -1,6 +1,6 @@
 /**
- * The array of views that shaders find pages in. All of them are valid in every mode, so that one
- * pipeline layout serves all: a place that holds no pages shows an image of one texel.
+ * Array of image views in which shaders find pages. Every element is valid in every mode, so that
+ * one pipeline layout suffices: an element without pages shows an image of one texel.
  */
 #ifndef SLC_VULKAN_PAGE_VIEWS_H
 #define SLC_VULKAN_PAGE_VIEWS_H
@@ -8,9 +8,9 @@
 #include "vulkan/plain_image.h"
 
 struct slc_page_views {
-    VkImageView *views; ///< owned array; of views it owns only `empty`
+    VkImageView *views; ///< owned array, [count]; borrowed views, except `empty`
     uint32_t count;
-    uint64_t generation; ///< of the array: more with each change
+    uint64_t generation; ///< grows with each change of the array
     VkSampler sampler;   ///< LINEAR, one level, clamped to the edge
     struct slc_image_memory memory;
     struct slc_plain_image image;
@@ -24,26 +24,27 @@ SluiceResult slc_page_views_init(struct slc_page_views *views, const struct slc_
 void slc_page_views_finish(struct slc_page_views *views, const struct slc_vk *vk,
                            const SluiceAllocationCallbacks *cb);
 
-/** Once, before anything is drawn: the empty image into its layout. */
+/** Records the layout transition of the empty image. Once, before anything is drawn. */
 void slc_page_views_record(const struct slc_page_views *views, const struct slc_vk *vk,
                            VkCommandBuffer commands);
 
-/** From nothing into VK_IMAGE_LAYOUT_GENERAL, all layers of the only level. */
+/** Records a transition from UNDEFINED to GENERAL layout, for all layers of an image of one level.
+ */
 void slc_record_general_layout(const struct slc_vk *vk, VkCommandBuffer commands, VkImage image);
 
-/** A copy of what all places of `views` are when they are empty, with an array of its own. Finish
- * it with slc_page_views_finish_copy. Errors: OUT_OF_HOST_MEMORY. */
+/** Makes an array of its own in which all elements are empty, with the image of `views`. Finish it
+ * with slc_page_views_finish_copy. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_page_views_copy(struct slc_page_views *copy, const struct slc_page_views *views,
                                  const SluiceAllocationCallbacks *cb);
 void slc_page_views_finish_copy(struct slc_page_views *copy, const SluiceAllocationCallbacks *cb);
 
-/** VK_NULL_HANDLE: the place is empty again. Nothing happens if it is what it was. */
+/** Sets an element. `view` VK_NULL_HANDLE: empties it. Does nothing if the view is unchanged. */
 void slc_page_views_set(struct slc_page_views *views, uint32_t index, VkImageView view);
 
-/** True if the place has an image of pages. */
+/** Whether the element has an image of pages. */
 bool slc_page_views_has(const struct slc_page_views *views, uint32_t index);
 
-/** A view of all layers of an image of one level. */
+/** Creates a view of all layers of an image of one level. */
 SluiceResult slc_create_array_view(const struct slc_vk *vk, VkImage image, VkFormat format,
                                    VkImageView *view);
 
