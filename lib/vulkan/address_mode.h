@@ -1,4 +1,4 @@
-/** Which address modes a texture has: the caller's, or what its source records. */
+/** Address modes of a texture: the caller's, or the modes that its source records. */
 #ifndef SLC_VULKAN_ADDRESS_MODE_H
 #define SLC_VULKAN_ADDRESS_MODE_H
 
@@ -6,7 +6,7 @@
 
 #include "base/log.h"
 
-/** `otherwise` if the source records none. */
+/** Returns the recorded address mode, or `otherwise` if the source records none. */
 static inline VkSamplerAddressMode slc_recorded_address_mode(SluiceImageAddressMode recorded,
                                                              VkSamplerAddressMode otherwise)
 {
@@ -15,7 +15,7 @@ static inline VkSamplerAddressMode slc_recorded_address_mode(SluiceImageAddressM
     return (VkSamplerAddressMode)((int)recorded - SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
 }
 
-/** REPEAT is 0, so without `is_explicit` it means that the caller says nothing. */
+/** Returns the mode to use. Without `is_explicit`, REPEAT (0) means that the caller chose none. */
 static inline VkSamplerAddressMode slc_address_mode(VkSamplerAddressMode given, bool is_explicit,
                                                     SluiceImageAddressMode recorded)
 {
@@ -23,7 +23,7 @@ static inline VkSamplerAddressMode slc_address_mode(VkSamplerAddressMode given, 
     return said ? given : slc_recorded_address_mode(recorded, given);
 }
 
-/** The source records another mode than the one that is used. */
+/** Whether the source records another mode than the one that is used. */
 static inline bool slc_address_mode_differs(VkSamplerAddressMode used,
                                             SluiceImageAddressMode recorded)
 {
@@ -31,7 +31,7 @@ static inline bool slc_address_mode_differs(VkSamplerAddressMode used,
            (int)recorded - SLUICE_IMAGE_ADDRESS_MODE_REPEAT != (int)used;
 }
 
-/** The words of Vulkan's constants. */
+/** Returns the name of a mode, as in Vulkan's constants. */
 static inline const char *slc_address_mode_name(VkSamplerAddressMode mode)
 {
     switch ((int)mode) {

@@ -1,9 +1,9 @@
 /**
- * The sparse binds and unbinds that go into one batch: one final state per tile, in an order in
- * which rectangles of tiles with consecutive pages become one bind.
+ * Sparse binds and unbinds of one batch: one final state per tile, sorted so that rectangles of
+ * tiles with consecutive pages become one bind.
  *
- * A range that occurs twice in a batch is an error that no validation layer sees and that real
- * drivers resolve the wrong way round, so the merge happens here. Knows nothing of Vulkan handles.
+ * A range that occurs twice in a batch is an error. Validation layers do not report it, and drivers
+ * resolve it the wrong way round. So the list merges them. Knows nothing of Vulkan handles.
  */
 #ifndef SLC_VULKAN_BIND_LIST_H
 #define SLC_VULKAN_BIND_LIST_H
@@ -24,7 +24,7 @@ struct slc_bind {
 /** A rectangle of tiles. Their slots follow each other row by row, or they are unbound. */
 struct slc_bind_run {
     uint32_t image;
-    struct slc_tile_place place; ///< of the first
+    struct slc_tile_place place; ///< place of the first tile
     uint32_t column_count, row_count;
     uint32_t heap_id, slot;
 };
@@ -43,8 +43,8 @@ void slc_bind_list_finish(struct slc_bind_list *list, const SluiceAllocationCall
 bool slc_bind_list_put(struct slc_bind_list *list, uint32_t image, struct slc_tile_place place,
                        uint32_t heap_id, uint32_t slot);
 
-/** Merges, sorts by image, level, row and column, and fills `runs`. A run has several rows where
- *  no other run lies beside them: whole rows of a level, as a rule. Pages of a tail stay single. */
+/** Merges, sorts by image, level, row and column, and fills `runs`. A run has several rows if no
+ *  other run lies beside them: usually whole rows of a level. Pages of a tail stay single. */
 void slc_bind_list_build_runs(struct slc_bind_list *list);
 
 void slc_bind_list_clear(struct slc_bind_list *list);

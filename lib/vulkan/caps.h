@@ -1,4 +1,4 @@
-/** What a device can do. */
+/** Capabilities of a device. */
 #ifndef SLC_VULKAN_CAPS_H
 #define SLC_VULKAN_CAPS_H
 
@@ -22,15 +22,15 @@ struct slc_caps {
 void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk);
 
 /**
- * The first type of `type_bits` with all of `required` and `preferred`, else with `required` and
- * most of `preferred` left out; UINT32_MAX if there is none.
+ * Returns the first type of `type_bits` with all flags of `required` and `preferred`, else the
+ * first one with all flags of `required`. UINT32_MAX if there is none.
  */
 uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits,
                               VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred);
 
-/** Index of the largest device-local heap of memory. */
+/** Returns the index of the largest device-local memory heap. */
 uint32_t slc_device_memory_heap(const struct slc_caps *caps);
-/** Bytes of the largest device-local heap. Larger allocations are not allowed. */
+/** Returns the bytes of the largest device-local heap. Larger allocations are not allowed. */
 uint64_t slc_device_memory_size(const struct slc_caps *caps);
 
 #define SLC_DEFAULT_TEXTURE_COUNT 1024u
@@ -41,11 +41,12 @@ static inline bool slc_mode_is_known(SluiceResidencyMode mode)
            mode == SLUICE_RESIDENCY_MODE_PAGED || mode == SLUICE_RESIDENCY_MODE_DENSE;
 }
 
-/** sluiceChooseVulkanResidencyMode, but for devices that cannot page. */
+/** Resolves a mode like sluiceChooseVulkanResidencyMode. But AUTO becomes SPARSE, not PAGED, on a
+ * sparse device that cannot index arrays of images dynamically. */
 SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidencyMode mode,
                                     uint32_t max_texture_count);
 
-/** What a mode other than AUTO needs and the device lacks; NULL: nothing. */
+/** Returns the feature that a mode other than AUTO requires and the device lacks; NULL: none. */
 const char *slc_missing_for_mode(const struct slc_caps *caps, SluiceResidencyMode mode);
 
 #endif /* SLC_VULKAN_CAPS_H */

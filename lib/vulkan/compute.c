@@ -150,7 +150,7 @@ uint32_t slc_compute_group_size(const struct slc_vk *vk, uint32_t wanted)
     vk->GetPhysicalDeviceProperties2(vk->physical_device, &properties);
     const VkPhysicalDeviceLimits *limits = &properties.properties.limits;
     uint32_t size = wanted;
-    while (size > 128 && /* which each device has */
+    while (size > 128 && /* every device supports 128 */
            (size > limits->maxComputeWorkGroupInvocations ||
             size > limits->maxComputeWorkGroupSize[0]))
         size /= 2;

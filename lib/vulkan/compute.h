@@ -11,7 +11,7 @@
 struct slc_compute_pass {
     const uint32_t *code;  ///< SPIR-V; its entry point is main
     size_t size;           ///< bytes
-    uint32_t constants[2]; ///< specialization constants 0 and 1; those it lacks are ignored
+    uint32_t constants[2]; ///< specialization constants 0 and 1, if the module has them
 };
 
 struct slc_compute_create_info {
@@ -20,10 +20,10 @@ struct slc_compute_create_info {
     uint32_t set_count;
     const struct slc_compute_pass *passes;
     uint32_t pass_count;
-    const char *name; ///< of the pipelines, for debuggers
+    const char *name; ///< name of the pipelines for debuggers
 };
 
-/** A zeroed one is finished with nothing to do. */
+/** Compute passes. Finishing a zeroed struct does nothing. */
 struct slc_compute {
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
@@ -33,13 +33,13 @@ struct slc_compute {
     uint32_t binding_count, push_size;
 };
 
-/** Up to the limits above. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN; finish it
- * then, too. */
+/** Creates passes, within the limits above. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY,
+ * VULKAN; finish it then, too. */
 SluiceResult slc_compute_init(struct slc_compute *compute, const struct slc_vk *vk,
                               const struct slc_compute_create_info *info);
 void slc_compute_finish(struct slc_compute *compute, const struct slc_vk *vk);
 
-/** Whole buffers, binding_count of them, for a set that no commands under way use. */
+/** Writes binding_count whole buffers to a set that no commands in progress use. */
 void slc_compute_set_buffers(struct slc_compute *compute, const struct slc_vk *vk, uint32_t set,
                              const VkBuffer *buffers);
 
@@ -49,10 +49,11 @@ void slc_compute_bind(const struct slc_compute *compute, const struct slc_vk *vk
 void slc_compute_dispatch(const struct slc_compute *compute, const struct slc_vk *vk,
                           VkCommandBuffer commands, uint32_t pass, uint32_t x, uint32_t y);
 
-/** The largest power of two up to `wanted` that a workgroup may have on the device; 128 on any. */
+/** Returns `wanted`, halved until the device supports workgroups of that size, but not below 128.
+ */
 uint32_t slc_compute_group_size(const struct slc_vk *vk, uint32_t wanted);
 
-/** A global memory barrier. */
+/** Records a global memory barrier. */
 void slc_compute_barrier(const struct slc_vk *vk, VkCommandBuffer commands,
                          VkPipelineStageFlags from, VkAccessFlags written, VkPipelineStageFlags to,
                          VkAccessFlags used);

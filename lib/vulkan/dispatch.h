@@ -40,24 +40,24 @@ struct slc_vk {
     SLC_VK_INSTANCE_FUNCTIONS(SLC_VK_MEMBER)
     SLC_VK_DEVICE_FUNCTIONS(SLC_VK_MEMBER)
 #undef SLC_VK_MEMBER
-    PFN_vkSetDebugUtilsObjectNameEXT SetDebugUtilsObjectNameEXT; ///< NULL: names go nowhere
+    PFN_vkSetDebugUtilsObjectNameEXT SetDebugUtilsObjectNameEXT; ///< NULL: objects get no names
     PFN_vkGetBufferDeviceAddress GetBufferDeviceAddress; ///< NULL: buffers have no addresses
     VkPipelineCache pipeline_cache;                      ///< may be VK_NULL_HANDLE
     SluiceLogCallback log;
-    struct slc_memory_client *memory_client;             ///< NULL: nobody counts
+    struct slc_memory_client *memory_client;             ///< NULL: memory is not counted
     const SluiceDeviceMemoryCallbacks *memory_callbacks; ///< NULL: Vulkan allocates
     const SluiceVulkanQueueLockCallbacks *queue_lock;    ///< NULL: none; queues.h uses it
-    /** Different ones, of all queues that use images and buffers; with one they are exclusive. */
+    /** Distinct families of all queues that use images and buffers. One: exclusive sharing. */
     uint32_t families[SLC_MAX_QUEUE_FAMILIES];
     uint32_t family_count;
 };
 
-/** Only what needs no device. Errors: UNSUPPORTED if a function is missing. */
+/** Loads the instance functions. Errors: UNSUPPORTED if a function is missing. */
 SluiceResult slc_vk_init_instance(struct slc_vk *vk, VkInstance instance,
                                   VkPhysicalDevice physical_device, PFN_vkGetInstanceProcAddr get,
                                   const SluiceLogCallback *log);
 
-/** The rest, after slc_vk_init_instance. */
+/** Loads the device functions, after slc_vk_init_instance. */
 SluiceResult slc_vk_init_device(struct slc_vk *vk, VkDevice device);
 
 /** Names an object for debuggers, if the instance has VK_EXT_debug_utils: "sluice: " and `name`.
@@ -74,7 +74,7 @@ void slc_vk_name(const struct slc_vk *vk, VkObjectType type, uint64_t handle, co
         }                                                                                          \
     } while (0)
 
-/** What a VkResult means here; logs `what` and the code unless it is success. */
+/** Converts a VkResult; logs `what` and the code unless it is success. */
 SluiceResult slc_vk_result(const struct slc_vk *vk, VkResult result, const char *what);
 
 #endif /* SLC_VULKAN_DISPATCH_H */
