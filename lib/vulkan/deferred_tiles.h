@@ -1,8 +1,7 @@
 /**
- * Tiles that the manager gave a slot and that have no page, because the device has no memory for
- * more. They keep their slots, so that the manager knows how many there really are: it asks for
- * coarser tiles, and takes those away that are needed least. Nothing is read for them until there
- * is a page.
+ * Deferred tiles: the manager gave them slots, but the device has no memory for their pages. They
+ * keep their slots, so that the manager finds its slots used up: it requests coarser tiles, and
+ * evicts others. A deferred tile is not read until there is a page.
  */
 #ifndef SLC_VULKAN_DEFERRED_TILES_H
 #define SLC_VULKAN_DEFERRED_TILES_H
@@ -19,19 +18,19 @@ struct slc_deferred_tiles {
     uint32_t count, room;
 };
 
-/** A zeroed struct is fine. */
+/** Frees the list. `deferred` may be zeroed. */
 void slc_deferred_tiles_finish(struct slc_deferred_tiles *deferred,
                                const SluiceAllocationCallbacks *cb);
 
-/** False: there is no memory for it. */
+/** Adds a tile at the end. False: there is no host memory. */
 bool slc_deferred_tiles_add(struct slc_deferred_tiles *deferred,
                             const SluiceAllocationCallbacks *cb, uint32_t texture,
                             const SluiceTile *tile);
 void slc_deferred_tiles_remove_at(struct slc_deferred_tiles *deferred, uint32_t at);
-/** False: it is not there. */
+/** Removes a tile. False: it is not in the list. */
 bool slc_deferred_tiles_remove(struct slc_deferred_tiles *deferred, uint32_t texture,
                                uint32_t tile_index);
-/** All of a texture. */
+/** Removes all tiles of a texture. */
 void slc_deferred_tiles_drop(struct slc_deferred_tiles *deferred, uint32_t texture);
 
 #endif /* SLC_VULKAN_DEFERRED_TILES_H */

@@ -26,7 +26,7 @@ struct slc_descriptors_create_info {
 
 #define SLC_DESCRIPTOR_ARRAY 16u
 
-/** All elements of the array of storage buffers. */
+/** Elements of the array of storage buffers. */
 struct slc_buffer_array {
     VkBuffer buffers[SLC_DESCRIPTOR_ARRAY];
     uint64_t generation; ///< from 1 on; changes with `buffers`
@@ -38,7 +38,7 @@ struct slc_descriptor_set {
     uint64_t page_generation, texture_generation, array_generation;
 };
 
-/** A zeroed one has no layout and no sets, and is finished with nothing to do. */
+/** Descriptor sets. A zeroed struct has no layout and no sets; finishing it does nothing. */
 struct slc_descriptors {
     VkDescriptorSetLayout layout;
     VkDescriptorPool pool;
@@ -47,8 +47,8 @@ struct slc_descriptors {
 };
 
 /**
- * Leaves the sets out if the device has fewer samplers per shader stage than `page_count`: layout
- * and sets are then VK_NULL_HANDLE. After an error it can be finished.
+ * Creates layout and sets. Both are VK_NULL_HANDLE if the device has fewer samplers per shader
+ * stage than `page_count`. Finish the struct after an error, too.
  *
  * Errors: LIMIT_EXCEEDED, with a log message, if pages and textures are too many for a stage;
  *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
@@ -68,8 +68,8 @@ VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, cons
 void slc_descriptors_update_array(struct slc_descriptors *descriptors, const struct slc_vk *vk,
                                   uint32_t index, const struct slc_buffer_array *array);
 
-/** The layout for the application. Errors: UNSUPPORTED, with a log message, if there are no sets.
- */
+/** Returns the layout for the application. Errors: UNSUPPORTED, with a log message, if there are no
+ * sets. */
 SluiceResult slc_descriptors_get_layout(const struct slc_descriptors *descriptors,
                                         const struct slc_vk *vk, const struct slc_caps *caps,
                                         VkDescriptorSetLayout *layout);

@@ -1,7 +1,7 @@
 /**
  * Limits the context's memory budget to the memory that the device can spare
  * (VK_EXT_memory_budget). The device is polled every SLC_DEVICE_BUDGET_TURNS frames and launches.
- * Changes below a step are ignored, so that they do not make tiles come and go.
+ * Changes below a step are ignored, so that tiles are not evicted and loaded in turns.
  */
 #ifndef SLC_VULKAN_DEVICE_BUDGET_H
 #define SLC_VULKAN_DEVICE_BUDGET_H
@@ -11,11 +11,11 @@
 
 /** Zeroed: no limit, and the device is not polled. */
 struct slc_device_budget {
-    struct slc_mutex mutex; ///< around `limit` and `turns`: front ends may be on different threads
+    struct slc_mutex mutex; ///< guards `limit` and `turns`: front ends may be on different threads
     PFN_vkGetPhysicalDeviceMemoryProperties2 get; ///< NULL: the limit stays SLC_NO_MEMORY_LIMIT
     VkPhysicalDevice physical_device;
-    uint32_t heap;  ///< the largest that is local to the device
-    uint64_t step;  ///< bytes that are left to others; smaller changes are ignored
+    uint32_t heap;  ///< largest device-local heap
+    uint64_t step;  ///< bytes left to other processes; smaller changes are ignored
     uint64_t limit; ///< bytes of tile memory
     uint32_t turns; ///< frames and launches since the last poll
 };

@@ -1,4 +1,4 @@
-/** How the application uses the image of a streamed texture, beyond sampling it. */
+/** Uses of a streamed texture's image by the application, besides sampling. */
 #ifndef SLC_VULKAN_IMAGE_USE_H
 #define SLC_VULKAN_IMAGE_USE_H
 
@@ -6,12 +6,12 @@
 
 #define SLC_MAX_VIEW_FORMATS 16u
 
-/** Zeroed: it is only sampled. */
+/** Uses of an image. Zeroed: it is only sampled. */
 struct slc_image_use {
     bool produced;           ///< shaders may store to it
     bool mutable_format;     ///< the application makes views of other formats
-    const VkFormat *formats; ///< of these views; borrowed
-    uint32_t format_count;   ///< at most SLC_MAX_VIEW_FORMATS; 0: any that are compatible
+    const VkFormat *formats; ///< formats of these views; borrowed
+    uint32_t format_count;   ///< at most SLC_MAX_VIEW_FORMATS; 0: any compatible format
 };
 
 /** Arrays that a VkImageCreateInfo points to. */
@@ -20,8 +20,8 @@ struct slc_image_formats {
     VkFormat formats[SLC_MAX_VIEW_FORMATS + 1];
 };
 
-/** Adds what mutable_format asks for to `create`, whose format is set. `create` then points to
- *  `formats`, if there is a list. */
+/** Adds flags and view formats for mutable_format to `create`, whose format is set. If there is a
+ *  list of formats, `create` points to `formats` afterwards. */
 void slc_image_use_apply(const struct slc_image_use *use, VkImageCreateInfo *create,
                          struct slc_image_formats *formats);
 

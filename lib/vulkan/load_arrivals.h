@@ -1,10 +1,10 @@
-/** Reads that are over: texels have arrived, or the manager hears of the failure. */
+/** Reads that have ended: units with texels, or failures reported to the manager. */
 #ifndef SLC_VULKAN_LOAD_ARRIVALS_H
 #define SLC_VULKAN_LOAD_ARRIVALS_H
 
 #include "vulkan/streamer.h"
 
-/** Collects all reads that are over. */
+/** Collects all reads that have ended. */
 SluiceResult slc_loads_collect(SluiceVulkanStreamer *s);
 /** Ends the read of a tile with `answer`. */
 SluiceResult slc_tile_back(SluiceVulkanStreamer *s, uint32_t unit, SluiceResult answer);

@@ -1,4 +1,4 @@
-/** Loads that nobody wants any more. */
+/** Cancellation of loads that are not wanted any more. */
 #ifndef SLC_VULKAN_LOAD_CANCELS_H
 #define SLC_VULKAN_LOAD_CANCELS_H
 

@@ -4,8 +4,8 @@
 
 #include "vulkan/streamer.h"
 
-/** The manager knows of slots alone. If pages are short, evicts standby tiles for those that wait.
- *  Before tiles are unmapped. */
+/** Evicts standby tiles for tiles that wait for pages: the manager knows only slots. Call it before
+ *  tiles are unmapped. */
 SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s);
 /** Lets the tile wait for a page; gives it back if the manager has canceled it. */
 SluiceResult slc_load_defer(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);
@@ -13,10 +13,10 @@ SluiceResult slc_load_defer(SluiceVulkanStreamer *s, uint32_t texture, const Slu
 SluiceResult slc_load_await(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);
 /** Tells the manager that the tile is not loaded. */
 SluiceResult slc_load_give_back(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);
-/** Pages for further loads of the texture's format; UINT32_MAX if there is no known limit. Counted
- *  once a frame. */
+/** Returns the pages for further loads of the texture's format; UINT32_MAX if there is no known
+ *  limit. Counted once per frame. */
 uint32_t slc_pages_left(SluiceVulkanStreamer *s, uint32_t texture);
-/** Counts them again. */
+/** Lets slc_pages_left count the pages again. */
 void slc_pages_left_forget(SluiceVulkanStreamer *s);
 
 #endif /* SLC_VULKAN_LOAD_DEFERRED_H */

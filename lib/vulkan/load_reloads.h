@@ -11,27 +11,27 @@
 
 #include "vulkan/streamer.h"
 
-/** Makes room for so many tiles. Errors: OUT_OF_HOST_MEMORY. */
+/** Makes room for `tile_count` tiles. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_reloads_reserve(SluiceVulkanStreamer *s, uint32_t tile_count);
-/** The texels of a regular tile, or of the mip tail, have changed. Needs slc_reloads_reserve. */
+/** Queues a regular tile, or the mip tail, to be read again. Needs slc_reloads_reserve. */
 void slc_reload_tile(SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile);
 void slc_reload_tail(SluiceVulkanStreamer *s, uint32_t texture);
 /** Whether texels of the tile wait to be read again. */
 bool slc_reload_is_due(const SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile);
-/** Tiles of the texture that show old texels. A mip tail counts as one. */
+/** Returns the tiles of the texture that show old texels. A mip tail counts as one. */
 uint32_t slc_reload_count(const SluiceVulkanStreamer *s, uint32_t texture);
 
 /** Starts reads, at most a quarter of maxLoadsInFlight at a time. */
 SluiceResult slc_reloads_start(SluiceVulkanStreamer *s);
-/** A read of a reload is over. */
+/** Ends a read of a reload with `answer`. */
 void slc_reload_back(SluiceVulkanStreamer *s, uint32_t unit, SluiceResult answer);
-/** Reads a unit again whose read began before the change. Returns false if the loader refuses. */
+/** Repeats a read that began before the change. Returns false if the loader refuses. */
 bool slc_unit_read_again(SluiceVulkanStreamer *s, uint32_t unit, SluiceResult *answer);
-/** The mip tail is unmapped: what was read of it is no use. */
+/** Drops reloads of a mip tail that is unmapped. */
 void slc_reloads_drop_tail(SluiceVulkanStreamer *s, uint32_t texture);
-/** The texture is removed. */
+/** Drops reloads of a texture that is removed. */
 void slc_reloads_drop(SluiceVulkanStreamer *s, uint32_t texture);
-/** False: the tile must have a page of its own, and there is none. */
+/** Gives a reloaded tile a page of its own if necessary. False: no page is free. */
 bool slc_reload_has_place(SluiceVulkanStreamer *s, const struct slc_unit *unit);
 
 #endif /* SLC_VULKAN_LOAD_RELOADS_H */

@@ -1,4 +1,4 @@
-/** What is read next: tiles that the manager hands out, and packed levels as a whole. */
+/** Starts loads: tiles that the manager hands out, and packed levels as a whole. */
 #ifndef SLC_VULKAN_LOAD_STARTS_H
 #define SLC_VULKAN_LOAD_STARTS_H
 

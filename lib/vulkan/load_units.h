@@ -1,15 +1,15 @@
-/** Staging slots of the streamer: which are free, and lists of those that are not. */
+/** Units (staging slots) of the streamer: free ones, and lists of units in use. */
 #ifndef SLC_VULKAN_LOAD_UNITS_H
 #define SLC_VULKAN_LOAD_UNITS_H
 
 #include "vulkan/streamer.h"
 
 void slc_unit_list_append(SluiceVulkanStreamer *s, struct slc_unit_list *list, uint32_t unit);
-/** SLC_NONE if the list is empty. */
+/** Removes the first unit of a list; SLC_NONE if the list is empty. */
 uint32_t slc_unit_list_pop(SluiceVulkanStreamer *s, struct slc_unit_list *list);
 
-/** True if `count` units can be taken. Makes memory for them. Without device memory it puts units
- *  that have memory first. */
+/** Whether `count` units can be taken. Allocates staging memory for them. If that fails, puts units
+ *  with memory first. */
 bool slc_units_are_ready(SluiceVulkanStreamer *s, uint32_t count);
 /** Takes any free unit, without staging memory. */
 uint32_t slc_unit_take_empty(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit);
