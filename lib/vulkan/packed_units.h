@@ -1,8 +1,8 @@
 /**
- * How the packed levels of a texture travel: cut into rectangles that fit into staging slots.
+ * Packed levels of a texture, cut into rectangles that fit into staging slots.
  *
- * A unit is what one slot holds and one read fills: several small levels, or a piece of a large
- * one.
+ * A unit fits into one staging slot and is filled by one read. It has several small levels, or a
+ * part of a large one.
  */
 #ifndef SLC_VULKAN_PACKED_UNITS_H
 #define SLC_VULKAN_PACKED_UNITS_H
@@ -10,12 +10,12 @@
 #include <sluice/loader.h>
 #include <sluice/manager.h>
 
-/** Rectangles begin at multiples of this in their slot: a multiple of every block size and of 4. */
+/** Alignment of rectangles in their slot, in bytes: a multiple of every block size and of 4. */
 #define SLC_STAGING_ALIGNMENT 16u
 
 struct slc_packed_rect {
     SluiceImageRegion region;
-    uint32_t offset; ///< bytes in its slot
+    uint32_t offset; ///< bytes from the start of the slot
 };
 
 struct slc_packed_unit {
@@ -29,7 +29,7 @@ struct slc_packed_units {
     uint32_t unit_room; ///< units that were allocated
 };
 
-/** Of the levels [regularMipCount, mipLevelCount). Rectangles are whole blocks of `format`. */
+/** Cuts the levels [regularMipCount, mipLevelCount). Rectangles are whole blocks of `format`. */
 SluiceResult slc_packed_units_init(struct slc_packed_units *packed,
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceStreamedTextureDesc *desc,

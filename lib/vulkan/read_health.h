@@ -1,4 +1,4 @@
-/** Whether the reads of a texture succeed, and what was said about it. */
+/** Health of a texture's reads, and the state of messages about them. */
 #ifndef SLC_VULKAN_READ_HEALTH_H
 #define SLC_VULKAN_READ_HEALTH_H
 
@@ -7,16 +7,16 @@
 
 enum slc_read_health {
     SLC_READS_WELL = 0,
-    SLC_READS_FAIL,    ///< they are tried again soon
-    SLC_READS_GIVEN_UP ///< they are tried again much later
+    SLC_READS_FAIL,    ///< failed reads are tried again soon
+    SLC_READS_GIVEN_UP ///< failed reads are tried again much later
 };
 
-/** Of a texture; of all layers of an array together. */
+/** Read failures of a texture. All layers of an array share one. */
 struct slc_read_trouble {
-    enum slc_read_health health, said; ///< `said`: what the last message was about
-    uint32_t texture, tile;            ///< whose read failed last: it will show a recovery
-    uint64_t failed_count;             ///< reads since it was well
-    uint64_t time;                     ///< of the last message
+    enum slc_read_health health, said; ///< `said`: health in the last message
+    uint32_t texture, tile;            ///< tile whose read failed last; its success is a recovery
+    uint64_t failed_count;             ///< failed reads since `health` was SLC_READS_WELL
+    uint64_t time;                     ///< time of the last message
     bool has_spoken;
 };
 

@@ -1,6 +1,6 @@
 /**
- * Says once that a source cannot be read, and once that it can be read again. Everything between is
- * counted in the statistics: a file with 182 damaged tiles is two lines, not hundreds.
+ * Logs once that a source cannot be read, and once that it can be read again. Failures between are
+ * counted in the statistics: a file with 182 damaged tiles gives two lines, not hundreds.
  */
 #ifndef SLC_VULKAN_READ_TROUBLES_H
 #define SLC_VULKAN_READ_TROUBLES_H
@@ -8,12 +8,12 @@
 #include "vulkan/streamer.h"
 
 /**
- * A read of the texture for `count` tiles failed, and the manager was told. `tile` is one of them.
- * Counts them. A source that is not ready yet is no trouble: its tiles are counted apart.
+ * Notes a failed read of `count` tiles, which the manager knows. `tile` is one of them. Tiles of a
+ * source that is not ready yet are counted separately, without a message.
  */
 void slc_read_trouble_failed(SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile,
                              uint32_t count, SluiceResult result);
-/** A read of the texture delivered `tile`. After a recovery other layers are tried again. */
+/** Notes a successful read of `tile`. After a recovery other layers are tried again. */
 void slc_read_trouble_delivered(SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile);
 
 #endif /* SLC_VULKAN_READ_TROUBLES_H */

@@ -1,6 +1,6 @@
 /**
- * Resolved feedback on its way to the host: one slot per frame in flight, in host memory, written
- * by the resolve passes of its frame and read when that frame is over.
+ * Readback of resolved feedback: one slot per frame in flight, in host memory. The resolve passes
+ * of a frame write the slot. The host reads it when the frame is complete.
  */
 #ifndef SLC_VULKAN_READBACK_RING_H
 #define SLC_VULKAN_READBACK_RING_H
@@ -12,15 +12,16 @@
 struct slc_readback_slot {
     uint64_t frame; ///< 0: empty
     uint64_t time_stamp;
-    /** What was resolved into it last, which may be what is resolved into it next. */
+    /** The last list of resolves, which the next frame of the slot may use again. */
     uint32_t item_count, segment_count;
     SluiceTextureId *items;        ///< part of slc_readback_ring.items
-    uint64_t list_version;         ///< SluiceVulkanStreamer.list_version at that time; 0: none
-    uint32_t list_first, list_end; ///< cursors before and after
-    bool share_of_all;             ///< some items are there because all textures are asked for
+    uint64_t list_version;         ///< the streamer's list_version when the list was made; 0: none
+    uint32_t list_first, list_end; ///< primary_cursor before and after the list was made
+    bool share_of_all;             ///< some items are turns of sluiceResolveAllVulkanTextures
 };
 
-/** In the buffer a slot is max_items results and then `capacity` words that they name. */
+/** Ring of slots. In the buffer a slot has max_items results, then `capacity` words of their data.
+ */
 struct slc_readback_ring {
     struct slc_buffer buffer;
     struct slc_readback_slot *slots; ///< owned
@@ -29,7 +30,7 @@ struct slc_readback_ring {
     uint32_t capacity;
 };
 
-/** Bytes of the buffer, for comparing with limits. */
+/** Returns the bytes of the buffer, for comparing with limits. */
 uint64_t slc_readback_ring_size(uint32_t slot_count, uint32_t max_items, uint32_t capacity);
 
 SluiceResult slc_readback_ring_init(struct slc_readback_ring *ring, const struct slc_vk *vk,
@@ -39,19 +40,19 @@ SluiceResult slc_readback_ring_init(struct slc_readback_ring *ring, const struct
 void slc_readback_ring_finish(struct slc_readback_ring *ring, const struct slc_vk *vk,
                               const SluiceAllocationCallbacks *cb);
 
-/** A slot whose last frame was read or abandoned; its items are those of that frame. */
+/** Begins a slot whose last frame was read or abandoned. Keeps the items of that frame. */
 struct slc_readback_slot *slc_readback_begin(struct slc_readback_ring *ring, uint32_t index,
                                              uint64_t frame, uint64_t time_stamp);
-/** Words of the buffer: where the slot's results are, and where what they name is. */
+/** Offsets in words of the slot's results and of their data. */
 uint32_t slc_readback_result_offset(const struct slc_readback_ring *ring,
                                     const struct slc_readback_slot *slot);
 uint32_t slc_readback_data_offset(const struct slc_readback_ring *ring,
                                   const struct slc_readback_slot *slot);
-/** The oldest slot whose frame is at most `completed_frame`, or NULL. Set its frame to 0 when read.
- */
+/** Returns the oldest slot whose frame is at most `completed_frame`, or NULL. Set its frame to 0
+ * when read. */
 struct slc_readback_slot *slc_readback_oldest(struct slc_readback_ring *ring,
                                               uint64_t completed_frame);
-/** What the device wrote for one item; NULL in place of `*data` if that is outside of the slot. */
+/** Returns the result of one item. `*data` is NULL if the result's data is outside of the slot. */
 struct SluiceResolveResult slc_readback_result(const struct slc_readback_ring *ring,
                                                const struct slc_readback_slot *slot, uint32_t item,
                                                const uint32_t **data);

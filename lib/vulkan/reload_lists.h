@@ -1,7 +1,7 @@
 /**
- * Tiles of textures that wait to be read again, in a list for each texture. Textures whose turn may
- * come are in one list, those whose reads failed in another, the first one due in front. So a frame
- * looks at neither tiles nor textures that wait. Knows no device and no clock.
+ * Tiles that wait to be read again, in a list per texture. Textures that are ready are in one list,
+ * textures that wait after a failed read in another, sorted by due time. So the cost of a frame
+ * does not depend on the waiting tiles and textures. Knows no device and no clock.
  */
 #ifndef SLC_VULKAN_RELOAD_LISTS_H
 #define SLC_VULKAN_RELOAD_LISTS_H
@@ -9,11 +9,11 @@
 #include "base/map.h"
 
 struct slc_reload_node {
-    uint32_t tile, next; ///< of the texture, or free; index + 1, 0: none
+    uint32_t tile, next; ///< next: 1 + index of the texture's next node, or next free one; 0: none
 };
 
 enum slc_reload_place {
-    SLC_RELOAD_NOWHERE = 0, ///< it has no tiles
+    SLC_RELOAD_NOWHERE = 0, ///< the texture has no tiles
     SLC_RELOAD_READY,
     SLC_RELOAD_WAITING,
     SLC_RELOAD_TURN, ///< between slc_reload_lists_begin and _end
@@ -21,22 +21,22 @@ enum slc_reload_place {
 
 /** Tiles of one texture that are to be read again. */
 struct slc_reload_list {
-    uint32_t first, last, count; ///< nodes; index + 1
+    uint32_t first, last, count; ///< first, last: 1 + index of a node
     enum slc_reload_place place;
-    bool waits;             ///< until `due`
+    bool waits;             ///< waits until `due`
     uint64_t due;           ///< a time stamp
-    uint32_t before, after; ///< textures of the place; index + 1, 0: none
+    uint32_t before, after; ///< neighbors in the list `place`: 1 + index of a texture; 0: none
 };
 
 struct slc_reload_chain {
-    uint32_t first, last, count; ///< textures; index + 1
+    uint32_t first, last, count; ///< first, last: 1 + index of a texture
 };
 
 struct slc_reload_lists {
     const SluiceAllocationCallbacks *cb; ///< borrowed
     struct slc_map keys;                 ///< slc_pair_key(texture, tile)
     struct slc_reload_node *nodes;       ///< owned
-    uint32_t count, capacity, free_node; ///< of nodes; count: tiles of all textures
+    uint32_t count, capacity, free_node; ///< nodes; count: tiles of all textures
     uint32_t spare;                      ///< tiles that were taken and may come back
     struct slc_reload_list *lists;       ///< owned; by texture
     uint32_t texture_count;
@@ -51,8 +51,8 @@ void slc_reload_lists_finish(struct slc_reload_lists *r);
 /** Makes room for `count` calls of slc_reload_lists_add. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_reload_lists_reserve(struct slc_reload_lists *r, uint32_t count);
 
-/** Puts a tile behind all others of its texture, unless it is there. Needs
- * slc_reload_lists_reserve, or was taken. */
+/** Appends a tile to the list of its texture, unless it is there. Needs slc_reload_lists_reserve,
+ * except for a tile that was taken. */
 void slc_reload_lists_add(struct slc_reload_lists *r, uint32_t texture, uint32_t tile);
 bool slc_reload_lists_has(const struct slc_reload_lists *r, uint32_t texture, uint32_t tile);
 uint32_t slc_reload_lists_count(const struct slc_reload_lists *r, uint32_t texture);
@@ -61,13 +61,13 @@ uint32_t slc_reload_lists_take(struct slc_reload_lists *r, uint32_t texture);
 /** Drops all tiles of a texture, which waits no longer. */
 void slc_reload_lists_drop(struct slc_reload_lists *r, uint32_t texture);
 
-/** The texture has no turn before the time stamp `due`. */
+/** Lets a texture wait until the time stamp `due`. */
 void slc_reload_lists_wait(struct slc_reload_lists *r, uint32_t texture, uint64_t due);
-/** Textures that are due at `now` are ready. Time stamps may wrap. */
+/** Makes textures ready that are due at `now`. Time stamps may wrap. */
 void slc_reload_lists_wake(struct slc_reload_lists *r, uint64_t now);
 /** Begins the turn of the first texture that is ready; there must be one. */
 uint32_t slc_reload_lists_begin(struct slc_reload_lists *r);
-/** Ends it: the texture is behind all others that are ready if it has tiles and need not wait. */
+/** Ends a turn. The texture becomes the last ready one if it has tiles and does not wait. */
 void slc_reload_lists_end(struct slc_reload_lists *r, uint32_t texture);
 
 #endif /* SLC_VULKAN_RELOAD_LISTS_H */

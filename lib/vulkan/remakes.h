@@ -1,8 +1,8 @@
 /**
- * Tiles and pages whose producers are to write them again, in place
- * (docs/decisions/0079-produced-tiles-are-remade-in-place.md). A key stays from the call that says
- * that the content has changed until commands that write it are recorded, so each is written once
- * however often it changes meanwhile.
+ * Queue of tiles and pages that their producers must write again, in place
+ * (docs/decisions/0079-produced-tiles-are-remade-in-place.md). A key stays from the report of a
+ * change until commands that write it are recorded. So each is written once, however often it
+ * changes meanwhile.
  */
 #ifndef SLC_VULKAN_REMAKES_H
 #define SLC_VULKAN_REMAKES_H
@@ -23,7 +23,7 @@ struct slc_remakes {
 /** `spare`: most keys that are taken at a time. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_remakes_init(struct slc_remakes *remakes, const SluiceAllocationCallbacks *cb,
                               uint32_t spare);
-/** It may be zeroed. */
+/** Frees the queue. It may be zeroed. */
 void slc_remakes_finish(struct slc_remakes *remakes);
 /** Makes room for `count` calls of slc_remakes_add. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_remakes_reserve(struct slc_remakes *remakes, uint32_t count);
@@ -31,17 +31,17 @@ SluiceResult slc_remakes_reserve(struct slc_remakes *remakes, uint32_t count);
 void slc_remakes_add(struct slc_remakes *remakes, uint64_t key);
 /** Takes the first key of the queue, which must not be empty. End it with one of the next two. */
 uint64_t slc_remakes_take(struct slc_remakes *remakes);
-/** A taken key is last in the queue. */
+/** Puts a taken key at the end of the queue. */
 void slc_remakes_put_back(struct slc_remakes *remakes, uint64_t key);
-/** A taken key is done with. */
+/** Removes a taken key. */
 void slc_remakes_end(struct slc_remakes *remakes, uint64_t key);
-/** What was ended is taken again. Returns false if the key is in the queue, or taken. */
+/** Takes a removed key again. Returns false if the key is in the queue, or taken. */
 bool slc_remakes_retake(struct slc_remakes *remakes, uint64_t key);
 /** Removes keys of the queue for which `drop` returns true. */
 void slc_remakes_drop(struct slc_remakes *remakes, bool (*drop)(void *user, uint64_t key),
                       void *user);
 
-/** Texels whose content has changed: a rectangle of a level, and what it covers of coarser levels.
+/** Texels that have changed: a rectangle of a level, and the texels over it in coarser levels.
  */
 struct slc_remake_area {
     uint32_t width, height; ///< of the texture

@@ -1,4 +1,4 @@
-/** Samplers for streamed textures: one for each kind that was asked for. */
+/** Samplers for streamed textures: one per kind in use. */
 #ifndef SLC_VULKAN_SAMPLERS_H
 #define SLC_VULKAN_SAMPLERS_H
 
@@ -7,8 +7,8 @@
 struct slc_sampler_kind {
     VkSamplerAddressMode modes[2];
     float max_anisotropy; ///< 1: none
-    bool nearest;         ///< between texels and levels, for formats without linear filters
-    bool integer;         ///< of border colors
+    bool nearest;         ///< NEAREST between texels and levels, for formats without linear filters
+    bool integer;         ///< border colors are integers
 };
 
 struct slc_sampler {
@@ -16,14 +16,14 @@ struct slc_sampler {
     VkSampler sampler;
 };
 
-/** A zeroed one has no samplers yet. */
+/** Samplers made so far. Zeroed: none. */
 struct slc_samplers {
-    struct slc_sampler *list; ///< owned; `count`
+    struct slc_sampler *list; ///< owned, [count]
     uint32_t count, capacity;
 };
 
-/** Finds or makes one. `*index` never changes. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY,
- *  VULKAN. */
+/** Finds or makes a sampler. Its `*index` never changes. Errors: OUT_OF_HOST_MEMORY,
+ *  OUT_OF_DEVICE_MEMORY, VULKAN. */
 SluiceResult slc_samplers_get(struct slc_samplers *samplers, const struct slc_vk *vk,
                               const SluiceAllocationCallbacks *cb,
                               const struct slc_sampler_kind *kind, uint32_t *index);
