@@ -1,6 +1,6 @@
 /**
- * The record of sparse bindings: which tile of which image is bound to which page, once the bind
- * list has been executed, and which of these tiles were evicted.
+ * Record of sparse bindings: the page to which each tile of each image is bound once the bind list
+ * has been executed, and the tiles among them that were evicted.
  *
  * An evicted tile keeps its binding. Its page is unbound when another tile gets it, or when its
  * heap is released. Evicted neighbors in its row are unbound with it, because a run costs as much
@@ -31,16 +31,16 @@ struct slc_bound_page {
     uint32_t image; ///< SLC_NO_IMAGE: bound nowhere
     struct slc_tile_place place;
     bool live;               ///< false: evicted
-    bool spoiled;            ///< the page may hold other texels than the tile's
+    bool spoiled;            ///< the page may have texels of another tile
     uint32_t previous, next; ///< pages of the same image
-    uint32_t slot;           ///< index of the slot that stands for this page
-    uint32_t page_of_slot;   ///< the page that the slot of this index stands for
+    uint32_t slot;           ///< slot that stands for this page
+    uint32_t page_of_slot;   ///< page that the slot with this page's index stands for
 };
 
 struct slc_sparse_bindings {
     struct slc_bound_page *pages; ///< owned; heap id * heap_page_count + slot
     uint32_t page_count;
-    uint32_t heap_page_count; ///< of every heap; 0 until there is one
+    uint32_t heap_page_count; ///< pages of every heap; 0 until there is a heap
     struct slc_map places;    ///< (image, place) -> page
     uint32_t *first_pages;    ///< owned; by image
     uint32_t image_count;
@@ -89,7 +89,7 @@ void slc_sparse_bindings_evict(struct slc_sparse_bindings *bindings, uint32_t im
 /** Marks a bound tile: its page may hold other texels. Holds until the tile is bound again. */
 void slc_sparse_bindings_spoil(struct slc_sparse_bindings *bindings, uint32_t image,
                                struct slc_tile_place place);
-/** As the function above, for a tile that may have no page. */
+/** Marks a tile like slc_sparse_bindings_spoil, if it has a page. */
 void slc_sparse_bindings_spoil_evicted(struct slc_sparse_bindings *bindings, uint32_t image,
                                        struct slc_tile_place place);
 bool slc_sparse_bindings_is_spoiled(const struct slc_sparse_bindings *bindings, uint32_t image,

@@ -1,4 +1,4 @@
-/** Sparse images: creation, what the driver says of their layout, and the pages of the metadata. */
+/** Sparse images: creation, layout as reported by the driver, and pages of the metadata. */
 #ifndef SLC_VULKAN_SPARSE_IMAGE_H
 #define SLC_VULKAN_SPARSE_IMAGE_H
 
@@ -14,26 +14,26 @@ struct slc_sparse_image {
     bool storage;  ///< shaders can store to it
     struct slc_sparse_layout layout;
     uint32_t layer, layer_count;
-    struct slc_memory metadata;       ///< as the image; zeroed where there is none
-    bool metadata_bound;              ///< of this layer
-    struct slc_touched_tiles touched; ///< the residency's business
-    uint64_t last_value;              ///< of the last batch that names it
-    uint32_t unmap_count;             ///< not yet in a batch
+    struct slc_memory metadata;       ///< owned by the first layer; zeroed if there is none
+    bool metadata_bound;              ///< the metadata of this layer is bound
+    struct slc_touched_tiles touched; ///< used by the residency
+    uint64_t last_value;              ///< value of the last batch with binds of the image
+    uint32_t unmap_count;             ///< unmaps that are not in a batch yet
 };
 
 /**
- * Creates info->arrayLayerCount `images`, one for 0. Shaders can store to produced ones, if the
- * device can with this format. Errors: UNSUPPORTED, with a log message, or if `refusal` is not
- * NULL, with the reason there; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
+ * Creates info->arrayLayerCount `images`, one for 0. Shaders can store to produced images, if the
+ * device supports that for the format. Errors: UNSUPPORTED, with a log message, or with the reason
+ * in `refusal` if that is not NULL; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
  */
 SluiceResult slc_sparse_image_create(struct slc_sparse_image *images, const struct slc_vk *vk,
                                      const struct slc_caps *caps, uint32_t memory_type,
                                      const SluiceImageInfo *info, const struct slc_image_use *use,
                                      const char **refusal);
-/** `images` is the first layer; all of them go. */
+/** Destroys all layers of an image. `images` points to the first one. */
 void slc_sparse_image_destroy(struct slc_sparse_image *images, const struct slc_vk *vk);
 
-/** Device-local memory that sparse images can be bound to. Errors: as above. */
+/** Gets a device-local memory type for sparse images. Errors: as slc_sparse_image_create. */
 SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps,
                                     uint32_t *memory_type);
 

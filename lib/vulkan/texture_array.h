@@ -1,9 +1,9 @@
 /**
- * Images and samplers of all textures by table index, for shaders that choose a texture by a
- * number. Every element is valid: a place without a texture shows an image of one texel.
+ * Array of the images and samplers of all textures by table index, for shaders that choose a
+ * texture by a number. Every element is valid: one without a texture shows an image of one texel.
  *
- * Cube maps have an array of their own, of cube views. The place of a cube is the table index of
- * its first face divided by 6: faces have consecutive indices, so no two cubes have one place.
+ * Cube maps have a separate array of cube views. The index of a cube is the table index of its
+ * first face divided by 6. Faces have consecutive table indices, so the indices of cubes differ.
  */
 #ifndef SLC_VULKAN_TEXTURE_ARRAY_H
 #define SLC_VULKAN_TEXTURE_ARRAY_H
@@ -15,24 +15,24 @@
 struct slc_texture_element {
     VkImageView view;
     VkSampler sampler;
-    uint64_t generation; ///< of the array, in which it changed last
+    uint64_t generation; ///< generation of the array when the element last changed
 };
 
-/** A zeroed one has no elements. */
+/** Array of textures. Zeroed: no elements. */
 struct slc_texture_array {
     SluiceTextureArray kind;
-    struct slc_texture_element *elements; ///< owned; `count`, then `cube_count`
+    struct slc_texture_element *elements; ///< owned, [count + cube_count]: textures, then cubes
     uint32_t count, cube_count;
-    uint64_t generation;                 ///< more with each change; counts from 1
+    uint64_t generation;                 ///< grows with each change; counts from 1
     VkImageView empty, empty_cube;       ///< owned
     VkSampler empty_sampler;             ///< borrowed
-    const struct slc_samplers *samplers; ///< borrowed; those of the textures
+    const struct slc_samplers *samplers; ///< borrowed; samplers of the textures
 };
 
 /**
- * Shows `image`, of six layers and one level, with `sampler` where no texture is. The image is
- * compatible with cube views. Both, and `samplers`, must outlive the array. After an error it can
- * be finished.
+ * Makes an array whose elements all show `image` with `sampler`. The image has six layers and one
+ * level, and is compatible with cube views. `image`, `sampler` and `samplers` must outlive the
+ * array. Finish the array after an error, too.
  *
  * Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
@@ -43,8 +43,8 @@ SluiceResult slc_texture_array_init(struct slc_texture_array *array, const struc
 void slc_texture_array_finish(struct slc_texture_array *array, const struct slc_vk *vk,
                               const SluiceAllocationCallbacks *cb);
 
-/** Shows a texture at `index`, from the next write of a set on. `cube`: of the cube whose first
- * face it is, or VK_NULL_HANDLE. */
+/** Shows a texture at `index`, from the next write of a set on. `cube`: view of the cube if the
+ * texture is its first face, else VK_NULL_HANDLE. */
 void slc_texture_array_set(struct slc_texture_array *array, uint32_t index, VkImageView view,
                            VkImageView cube, VkSampler sampler);
 /** Shows no texture at `index` any more, and no cube if it is the first face of one. */
@@ -54,7 +54,7 @@ void slc_texture_array_clear(struct slc_texture_array *array, uint32_t index, bo
 uint32_t slc_texture_array_bindings(const struct slc_texture_array *array, uint32_t binding,
                                     VkDescriptorSetLayoutBinding bindings[]);
 
-/** Writes to a set, from `binding` on, what changed after `generation`. 0: everything. */
+/** Writes elements that changed after `generation` to a set, from `binding` on. 0: all elements. */
 void slc_texture_array_write(const struct slc_texture_array *array, const struct slc_vk *vk,
                              VkDescriptorSet set, uint32_t binding, uint64_t generation);
 

@@ -1,5 +1,5 @@
-/** Residency of a texture: the streamer's own, that of paged textures beside it, or that of images
- *  with all levels. */
+/** Choice of a texture's residency: the streamer's main one, the one for paged textures beside it,
+ * or the one for images with all levels. */
 #ifndef SLC_VULKAN_TEXTURE_MODE_H
 #define SLC_VULKAN_TEXTURE_MODE_H
 
@@ -16,14 +16,15 @@ SluiceResult slc_texture_create_image(SluiceVulkanStreamer *s, uint32_t first,
                                       struct slc_residency **residency,
                                       struct slc_residency_image *out);
 
-/** Like slc_texture_create_image, of one layer, but for one thing: a texture that is to be dense is
- *  not put elsewhere if there is no memory. */
+/** Creates an image of one layer like slc_texture_create_image. But a dense texture stays dense: if
+ *  memory is short, no other residency is tried. */
 SluiceResult slc_texture_try_image(SluiceVulkanStreamer *s, uint32_t index,
                                    SluiceResidencyMode mode, const SluiceImageInfo *image,
                                    struct slc_residency **residency,
                                    struct slc_residency_image *out);
 
-/** The mode of a texture whose layout is known: DENSE if one image has all of its levels. */
+/** Returns the mode of a texture whose layout is known: DENSE if one image has all of its levels.
+ */
 SluiceResidencyMode slc_texture_mode(const SluiceVulkanStreamer *s,
                                      const struct slc_texture *texture);
 

@@ -1,4 +1,4 @@
-/** Rectangles of textures, as the application gives them: checked, and in tiles of level 0. */
+/** Rectangles that the application gives: checks them, and converts them to tiles of level 0. */
 #ifndef SLC_VULKAN_TEXTURE_RECT_H
 #define SLC_VULKAN_TEXTURE_RECT_H
 
@@ -6,7 +6,7 @@
 
 #include <sluice/vulkan_control.h>
 
-/** Half open. */
+/** Rectangle [x0, x1) x [y0, y1). */
 struct slc_tile_rect {
     uint32_t x0, y0, x1, y1;
 };
@@ -15,23 +15,26 @@ struct slc_tile_rect {
 SluiceResult slc_streamer_find(const SluiceVulkanStreamer *s, SluiceTextureId id,
                                struct slc_texture **texture);
 
-/** Finds a texture that follows no other one. Errors: as above; INVALID_ARGUMENT, logged. */
+/** Finds a texture that follows no other one. Errors: as slc_streamer_find; INVALID_ARGUMENT,
+ * logged.
+ */
 SluiceResult slc_streamer_find_primary(const SluiceVulkanStreamer *s, SluiceTextureId id,
                                        struct slc_texture **texture);
 
-/** Cells of `cell_width` by `cell_height` texels, `columns` by `rows` of them. */
+/** Grid of `columns` x `rows` cells of `cell_width` x `cell_height` texels. */
 struct slc_cells {
     uint32_t cell_width, cell_height, columns, rows;
 };
 
-/** Texels of MinMip maps. */
+/** Returns the cells that are texels of MinMip maps. */
 static inline struct slc_cells slc_min_mip_cells(const SluiceStreamedTextureLayout *layout)
 {
     return (struct slc_cells){layout->desc.tileWidth, layout->desc.tileHeight, layout->minMipWidth,
                               layout->minMipHeight};
 }
 
-/** Which cells a rectangle touches. Errors, logged: INVALID_ARGUMENT if it leaves the texture. */
+/** Gets the cells that `rect` touches. Errors, logged: INVALID_ARGUMENT if it leaves the texture.
+ */
 SluiceResult slc_texture_rect_cells(const SluiceVulkanStreamer *s,
                                     const struct slc_texture *texture,
                                     const SluiceTextureRect *rect, const struct slc_cells *cells,

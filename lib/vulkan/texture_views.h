@@ -4,7 +4,7 @@
 
 #include "vulkan/dispatch.h"
 
-/** Views that do not exist are VK_NULL_HANDLE, so a zeroed one can be finished. */
+/** Views of a texture. Missing ones are VK_NULL_HANDLE, so a zeroed struct can be finished. */
 struct slc_texture_views {
     VkImageView layer;      ///< 2D
     VkImageView array;      ///< 2D_ARRAY; owned by layer 0 of an array
@@ -13,9 +13,9 @@ struct slc_texture_views {
 };
 
 /**
- * Creates the views that layer `layer` of `info->arrayLayerCount` owns. All have every level of
- * `image`. `cube_arrays`: the device has the feature imageCubeArray. After an error they can be
- * finished.
+ * Creates the views that layer `layer` of `info->arrayLayerCount` owns. All views have all levels
+ * of `image`. `cube_arrays`: the device has the feature imageCubeArray. Finish them after an error,
+ * too.
  *
  * Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
