@@ -1,8 +1,8 @@
 /**
  * Calls of vkQueueBindSparse with a limited number of regions.
  *
- * Calls are ordered by a timeline semaphore only: a later one may rebind what an earlier one
- * unbinds. Each call waits for the value of the one before it and signals the next value.
+ * Calls are ordered by a timeline semaphore only: a later call may rebind tiles that an earlier
+ * call unbinds. Each call waits for the value of the call before it, and signals the next value.
  */
 #ifndef SLC_VULKAN_BIND_CALLS_H
 #define SLC_VULKAN_BIND_CALLS_H
@@ -23,7 +23,7 @@ struct slc_bind_calls {
     uint64_t count;        ///< calls
     struct slc_bind_calls_limits limits;
 
-    /* The next call: owned arrays and what is in them. */
+    /* The next call: owned arrays and their counts. */
     VkSparseImageMemoryBind *tiles;
     VkSparseMemoryBind *pages;
     VkSparseImageMemoryBindInfo *tile_images;
@@ -31,7 +31,8 @@ struct slc_bind_calls {
     uint32_t tile_count, page_count, tile_image_count, page_image_count;
 };
 
-/** Errors: OUT_OF_HOST_MEMORY, and those of vkCreateSemaphore; finish it then, too. */
+/** Creates the semaphore and arrays. Errors: OUT_OF_HOST_MEMORY, those of vkCreateSemaphore. Finish
+ * it after an error, too. */
 SluiceResult slc_bind_calls_init(struct slc_bind_calls *calls, const struct slc_vk *vk,
                                  VkQueue queue, const SluiceAllocationCallbacks *cb,
                                  const struct slc_bind_calls_limits *limits);

@@ -8,7 +8,7 @@
 #include "vulkan/memory.h"
 
 struct slc_device_heap {
-    struct slc_memory memory; ///< none: free id
+    struct slc_memory memory; ///< zeroed: free id
     bool spare;
 };
 
@@ -28,11 +28,11 @@ void slc_device_heaps_prepare(struct slc_device_heaps *heaps, const struct slc_v
 uint64_t slc_device_heaps_free_spare(struct slc_device_heaps *heaps, const struct slc_vk *vk,
                                      uint64_t wanted);
 
-/** OUT_OF_DEVICE_MEMORY when the device refuses: that is the budget, and is not logged. */
+/** Allocates a heap. OUT_OF_DEVICE_MEMORY, not logged, if budget or device refuse it. */
 SluiceResult slc_device_heaps_allocate(struct slc_device_heaps *heaps, const struct slc_vk *vk,
                                        const SluiceAllocationCallbacks *cb, uint64_t size,
                                        uint32_t memory_type, uint32_t *heap_id);
-/** Nothing is bound to the heap. */
+/** Releases a heap that nothing is bound to. */
 void slc_device_heaps_release(struct slc_device_heaps *heaps, const struct slc_vk *vk,
                               uint32_t heap_id);
 void slc_device_heaps_finish(struct slc_device_heaps *heaps, const struct slc_vk *vk,

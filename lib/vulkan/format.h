@@ -4,7 +4,7 @@
 
 #include <sluice/vulkan.h>
 
-/** VK_FORMAT_UNDEFINED for formats that have no counterpart. */
+/** Returns the Vulkan format; VK_FORMAT_UNDEFINED for formats that Vulkan does not have. */
 VkFormat slc_vk_format(SluiceFormat format);
 
 #endif /* SLC_VULKAN_FORMAT_H */

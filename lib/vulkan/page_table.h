@@ -1,7 +1,7 @@
 /**
- * The page table of paged mode, which shaders read (sluice/paged.glsl): a buffer of words, with one
- * part for each texture. A part begins with one word per regular level, the index of the level's
- * first tile. A word for each tile follows: its page, or SLUICE_PAGE_NONE.
+ * Page table of paged mode, which shaders read (sluice/paged.glsl): a buffer of words, with one
+ * part per texture. A part begins with one word per regular level, the index of the level's first
+ * tile. A word per tile follows: its page, or SLUICE_PAGE_NONE.
  *
  * Tiles take, show and give back pages here. The device gets these changes with the next
  * slc_page_table_record_publish.
@@ -25,7 +25,7 @@ struct slc_page_table_part {
     uint32_t first_word, word_count; ///< 0: all levels are packed
     uint64_t recorded_frame;         ///< frame that wrote the part; 0: none
     uint64_t stored_frame;           ///< last frame that stored words of the part
-    bool is_lost;                    ///< the device may have other words than are in `entries`
+    bool is_lost;                    ///< the device may have other words than `entries`
 };
 
 struct slc_page_store;
@@ -34,13 +34,13 @@ struct slc_page_table {
     const struct slc_vk *vk; ///< borrowed
     const SluiceAllocationCallbacks *cb;
     struct slc_buffer buffer;
-    struct slc_region_arena arena;     ///< its words
+    struct slc_region_arena arena;     ///< words of `buffer`
     struct slc_page_table_part *parts; ///< owned; by texture
     uint32_t part_count;
     uint32_t *new_parts; ///< owned; parts that are not written yet
     uint32_t new_part_count;
-    uint32_t *entries; ///< owned; by word: the page that was taken, shown or not; or, with
-                       ///< SLC_PAGE_GIVEN, that was given back
+    uint32_t *entries;             ///< owned; by word: the page that was taken, shown or not; with
+                                   ///< SLC_PAGE_GIVEN: the page that was given back
     struct slc_page_store *stores; ///< owned
     uint32_t store_count, store_capacity;
     bool has_lost; ///< some part has is_lost set

@@ -1,6 +1,6 @@
 /**
- * How far each user of a page pool is. A user is a streamer in paged mode or a demand loader. Users
- * record independently of each other: each has its own timeline of frames or launches.
+ * Progress of each user of a page pool. A user is a streamer in paged mode or a demand loader.
+ * Users record independently of each other: each has its own timeline of frames or launches.
  *
  * The pool counts the frames of all users in ticks. A user's safe tick orders its timeline among
  * the others: all of its frames that were recorded up to that tick are complete.
@@ -14,7 +14,7 @@
 #define SLC_PAGE_FRAMES 16u /* at least as many as a user may have in flight */
 
 struct slc_page_timeline {
-    VkSemaphore semaphore;            ///< VK_NULL_HANDLE: the place is free
+    VkSemaphore semaphore;            ///< VK_NULL_HANDLE: no user
     uint64_t recorded;                ///< the last frame that was recorded, and not abandoned
     uint64_t frames[SLC_PAGE_FRAMES]; ///< ring of the last recorded frames
     uint64_t frame_count;             ///< frames put into the ring, without abandoned ones
@@ -34,9 +34,9 @@ struct slc_page_timelines {
     uint64_t tick; ///< frames recorded, of all users
 };
 
-/** Returns a free place for a user; SLC_MAX_PAGE_USERS if there is none. */
+/** Returns a free index for a user; SLC_MAX_PAGE_USERS if there is none. */
 uint32_t slc_page_timelines_free_place(const struct slc_page_timelines *timelines);
-/** `semaphore`: timeline that the user's frames signal with their numbers. */
+/** Adds a user. `semaphore`: timeline that the user's frames signal with their numbers. */
 void slc_page_timelines_add(struct slc_page_timelines *timelines, uint32_t user,
                             VkSemaphore semaphore);
 void slc_page_timelines_remove(struct slc_page_timelines *timelines, uint32_t user);
@@ -44,9 +44,9 @@ void slc_page_timelines_remove(struct slc_page_timelines *timelines, uint32_t us
 /** Begins a tick with a frame of the user: polls the semaphores of all others. */
 void slc_page_timelines_advance(struct slc_page_timelines *timelines, const struct slc_vk *vk,
                                 uint32_t user, uint64_t completed_frame);
-/** The user's frame may read pages from now on. */
+/** Notes that the user's frame is recorded, and may read pages. */
 void slc_page_timelines_record(struct slc_page_timelines *timelines, uint32_t user, uint64_t frame);
-/** The user's frames from `frame` on will never be complete: nothing may wait for them. */
+/** Abandons the user's frames from `frame` on: nothing waits for them any more. */
 void slc_page_timelines_abandon(struct slc_page_timelines *timelines, uint32_t user,
                                 uint64_t frame);
 
@@ -56,12 +56,11 @@ static inline bool slc_page_timelines_reached(const struct slc_page_timelines *t
     return timelines->of[user].completed >= frame;
 }
 
-/** True if all recorded frames of the users in the bit set are complete, without those of
- *  `except`. */
+/** Whether all recorded frames of the users in the bit set are complete. `except` is ignored. */
 bool slc_page_timelines_are_idle(const struct slc_page_timelines *timelines, uint32_t users,
                                  uint32_t except);
-/** True if all frames that these users recorded up to the tick are complete, without those of
- *  `except`. */
+/** Whether all frames that the users in the bit set recorded up to the tick are complete. `except`
+ *  is ignored. */
 bool slc_page_timelines_passed(const struct slc_page_timelines *timelines, uint32_t users,
                                uint32_t except, uint64_t tick);
 

@@ -8,8 +8,8 @@
 
 #include "vulkan/dispatch.h"
 
-#define SLC_PRODUCER_BATCH 64u   /* tiles or pages of a call */
-#define SLC_PRODUCER_TIMEOUT 64u /* frames or launches, by default */
+#define SLC_PRODUCER_BATCH 64u   /* most tiles or pages of a call */
+#define SLC_PRODUCER_TIMEOUT 64u /* default timeout in frames or launches */
 
 /** Calls in one command buffer. The last batch decides whether the next one needs a barrier. */
 struct slc_producer_calls {
@@ -26,15 +26,15 @@ void slc_producer_calls_order(struct slc_producer_calls *calls, uint32_t owner, 
 /** Records the barrier behind all batches, if there were any. */
 void slc_producer_calls_end(const struct slc_producer_calls *calls);
 
-/** Sets all answers to SLUICE_SUCCESS, as producers find them. */
+/** Sets all answers to SLUICE_SUCCESS before a producer is called. */
 void slc_producer_answers_init(SluiceResult *answers, uint32_t count);
-/** Applies the returned value of a call, which counts for all unless it is SLUICE_SUCCESS. */
+/** Applies the return value of a call to all answers, unless it is SLUICE_SUCCESS. */
 void slc_producer_answers_end(SluiceResult *answers, uint32_t count, SluiceResult returned);
 
 enum slc_producer_effect {
-    SLC_PRODUCER_WROTE,  ///< commands that write it are recorded
-    SLC_PRODUCER_WAITS,  ///< to be asked for again
-    SLC_PRODUCER_FAILED, ///< by an error, or was not ready for too long
+    SLC_PRODUCER_WROTE,  ///< the commands that write the tile or page are recorded
+    SLC_PRODUCER_WAITS,  ///< the producer must be called again
+    SLC_PRODUCER_FAILED, ///< the producer failed, or was not ready for too long
 };
 
 /** Returns what an answer means. `*asked`: frame in which the producer was asked first, 0 at first.

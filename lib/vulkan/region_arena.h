@@ -7,7 +7,7 @@
 
 #include <sluice/base.h>
 
-/** Ranges begin at multiples of this, so that no two textures share a MinMip word. */
+/** Alignment of ranges, so that no two textures share a MinMip word. */
 #define SLC_REGION_ALIGNMENT 4u
 
 struct slc_region_gap {
@@ -20,19 +20,19 @@ struct slc_region_arena {
     uint32_t size;
 };
 
-/** `max_ranges` may be alive at a time. */
+/** Makes an arena for at most `max_ranges` ranges at a time. */
 SluiceResult slc_region_arena_init(struct slc_region_arena *arena,
                                    const SluiceAllocationCallbacks *cb, uint32_t size,
                                    uint32_t max_ranges);
 void slc_region_arena_finish(struct slc_region_arena *arena, const SluiceAllocationCallbacks *cb);
 
-/** Makes room for more ranges than were said at first. Errors: OUT_OF_HOST_MEMORY. */
+/** Raises the number of ranges to `max_ranges`. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_region_arena_reserve(struct slc_region_arena *arena,
                                       const SluiceAllocationCallbacks *cb, uint32_t max_ranges);
 
-/** False if no gap is large enough. */
+/** Takes a range. False if no gap is large enough. */
 bool slc_region_arena_take(struct slc_region_arena *arena, uint32_t count, uint32_t *first);
-/** Exactly what was taken. */
+/** Gives back a range exactly as it was taken. */
 void slc_region_arena_give(struct slc_region_arena *arena, uint32_t first, uint32_t count);
 
 #endif /* SLC_VULKAN_REGION_ARENA_H */

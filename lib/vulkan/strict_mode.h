@@ -6,9 +6,9 @@
 
 void slc_strict_not_ended(SluiceVulkanStreamer *s);
 void slc_strict_not_begun(SluiceVulkanStreamer *s);
-/** A begin is not ready: `frame` is not complete. */
+/** Counts a begin that returned SLUICE_NOT_READY because `frame` is not complete. */
 void slc_strict_not_ready(SluiceVulkanStreamer *s, uint64_t frame);
-/** A frame has begun: its decisions are made. */
+/** Checks the decisions of a frame that has begun. */
 void slc_strict_begun(SluiceVulkanStreamer *s);
 
 #endif /* SLC_VULKAN_STRICT_MODE_H */

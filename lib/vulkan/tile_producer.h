@@ -6,7 +6,7 @@
 
 struct slc_tile_producer {
     void *user;
-    /** NULL: there is no producer. */
+    /** Records the tiles. NULL: there is no producer. */
     SluiceResult (*pfn)(void *user, const SluiceTileBatch *batch, SluiceResult *results);
     uint32_t timeout_frames;
 };

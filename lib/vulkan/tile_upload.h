@@ -1,4 +1,4 @@
-/** From staging slots to images. */
+/** Copies of texels from staging slots to images. */
 #ifndef SLC_VULKAN_TILE_UPLOAD_H
 #define SLC_VULKAN_TILE_UPLOAD_H
 

@@ -1,4 +1,4 @@
-/** Timeline semaphores: how they are created, and waits for what was submitted with one of them. */
+/** Timeline semaphores: creation, and waits for submitted work. */
 #ifndef SLC_VULKAN_TIMELINE_H
 #define SLC_VULKAN_TIMELINE_H
 

@@ -4,15 +4,15 @@
 
 #include "vulkan/streamer.h"
 
-/** How many units, from the first one on, are of its texture and staging buffer, and copied or not
- *  as it is. */
+/** Returns how many units, from the first one on, have equal texture, staging buffer and `copied`.
+ */
 uint32_t slc_unit_group(const SluiceVulkanStreamer *s, const uint32_t *units, uint32_t count);
 
-/** Records the copies of a group, or what shows its tiles; `parts` are of slc_upload_part. */
+/** Records copies of a group, or the display of its tiles. `parts`: bits of slc_upload_part. */
 void slc_record_group(SluiceVulkanStreamer *s, VkCommandBuffer commands, const uint32_t *units,
                       uint32_t count, uint32_t parts);
 
-/** True if copies of two commands to the texture must have a barrier between them. */
+/** Whether consecutive copy commands to the texture require a barrier between them. */
 bool slc_copies_need_barriers(const SluiceVulkanStreamer *s, uint32_t texture);
 
 /** Sorts units by ascending key. */

@@ -1,6 +1,6 @@
 /**
- * Says once that a memory budget cannot be reached: more is in use than it allows, and nothing that
- * is in use becomes less for many frames.
+ * Logs once that a memory budget cannot be met: more memory is in use than it allows, and the
+ * memory in use has not shrunk for many frames.
  */
 #ifndef SLC_VULKAN_UNMET_BUDGET_H
 #define SLC_VULKAN_UNMET_BUDGET_H
