@@ -1,4 +1,4 @@
-/* Pictures that are in memory, or read by a function: baked like the same bytes in a file. */
+/* Pictures in memory, or read by a function, are baked like a file of equal bytes. */
 #define _XOPEN_SOURCE 700
 
 #include "bake/baked.h"
@@ -18,7 +18,7 @@ struct fixture {
     char picture[256], of_file[256], of_bytes[256];
     uint8_t *bytes;
     size_t size;
-    SluiceResult result; ///< of the callback
+    SluiceResult result; ///< result of the callback
     SluiceInput input, callback;
     int errors;
     char last[1024];
@@ -53,7 +53,8 @@ static void setup(struct fixture *f)
     FILE *file = fopen(f->picture, "rb");
     f->bytes = malloc(1 << 20);
     f->size = fread(f->bytes, 1, 1 << 20, file);
-    f->bytes = realloc(f->bytes, f->size); /* so that a byte too many is seen */
+    f->bytes = realloc(f->bytes,
+                       f->size); /* exactly sized, so that sanitizers see a read beyond the end */
     fclose(file);
     unlink(f->picture);
     f->input =

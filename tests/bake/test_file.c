@@ -1,4 +1,5 @@
-/* What sluiceBakeFile does beside filtering: the same whatever the way, or an error and nothing. */
+/* sluiceBakeFile beside its filters: equal results for any strips and threads; after an error, no
+ * file. */
 #define _XOPEN_SOURCE 700
 
 #include "bake/baked.h"
@@ -208,7 +209,7 @@ static bool cancel_the_third_call(void *user, uint64_t done, uint64_t total)
     return ++other->calls < 3;
 }
 
-/* Called by the bake that has the memory: the other one cannot have it before this returns. */
+/* Called by the bake that holds the memory. Another bake gets none before this call returns. */
 static bool bake_another(void *user, uint64_t done, uint64_t total)
 {
     struct waiting_bake *other = user;
@@ -251,7 +252,7 @@ static void a_bake_that_waits_for_memory_can_be_canceled(void **state)
     bake_folder_finish(&folder);
 }
 
-/* One thread, because the allocator counts for one. */
+/* One thread, because the allocator is not thread-safe. */
 static void run_out_of_memory(const SluiceBakeInfo *info)
 {
     SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -295,8 +296,8 @@ static void no_memory_is_an_ordinary_result(void **state)
     bake_folder_finish(&folder);
 }
 
-/* From a store of blocks to another, tile by tile on several threads; then with memory that runs
- * out. */
+/* Copies a store of blocks to another one, tile by tile on several threads. Repeats it while memory
+ * runs out. */
 static void blocks_are_copied_as_they_are(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Files that are not read through libvips: OpenEXR in strips, DDS as it is. */
+/* Files that are read without libvips: OpenEXR in strips, DDS as it is. */
 #include "bake/baked.h"
 
 #include "exr/exr_paths.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What bake.h says of halves that are no finite numbers. */
+/* Rule of bake.h for halves that are not finite. */
 static uint16_t finite(uint16_t half)
 {
     if ((half & 0x7C00) != 0x7C00)
@@ -20,7 +20,7 @@ static uint16_t finite(uint16_t half)
     return half & 0x3FF ? 0 : (half & 0x8000) | 0x7BFF;
 }
 
-/* Level 0 against the whole image, as the source reads it that builds a chain in memory. */
+/* Compares level 0 with the whole image, read by the source that builds a chain in memory. */
 static void check_exr(const char *path)
 {
     struct bake_folder folder;
@@ -86,7 +86,7 @@ static void tiled_files_are_read_in_strips(void **state)
     bake_folder_finish(&folder);
 }
 
-/* Of lines and of tiles, with levels and without, with all halves there are. */
+/* Files with scanlines and with tiles, with and without levels, and one with all halves. */
 static void files_from_elsewhere_are_read_in_strips(void **state)
 {
     (void)state;
@@ -112,7 +112,7 @@ static SluiceStoreColorSpace color_space_of(const char *path)
     return info.colorSpace;
 }
 
-/* Conversion itself has a test of its own: here is whether it is asked for. */
+/* Another test covers the conversion. This one shows that it is applied. */
 static void colors_of_other_primaries_are_stored_as_those_of_rec709(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What numbers mean decides how they are averaged. Expectations are worked out here in double. */
+/* Averages follow the meaning of the numbers. Expected values are computed here in double. */
 #include "bake/baked.h"
 #include "support/test.h"
 
@@ -57,7 +57,7 @@ static SluiceStoreInfo store_info(const char *path)
     return info;
 }
 
-/* Bytes of level 1 against the mean of the four above it. */
+/* Compares bytes of level 1 with the mean of the four texels above. */
 static void check_means(const char *path, const uint8_t *samples, uint32_t width, uint32_t height,
                         uint32_t channels, double (*from)(double), double (*to)(double))
 {
@@ -140,7 +140,7 @@ static void bytes_of_the_picture_are_kept(void **state)
     bake_folder_finish(&f.folder);
 }
 
-/* Each of EXIF's eight orientations: where the upright picture's texel is in the file. */
+/* Where each of EXIF's eight orientations stores a texel of the upright picture. */
 static void pictures_are_turned_as_exif_says(void **state)
 {
     (void)state;
@@ -213,7 +213,7 @@ static void words_of_the_picture_are_kept(void **state)
     bake_folder_finish(&f.folder);
 }
 
-/* Color of level 1 is weighted by alpha; without alpha it is the plain mean. */
+/* Checks that level 1 has colors weighted by alpha, or plain means without alpha. */
 static void check_weighted(const float *texels, const float *level, uint32_t width, uint32_t height)
 {
     for (uint32_t y = 0; y < height / 2; y++)
@@ -292,7 +292,7 @@ static void premultiplied_colors_are_averaged_as_they_are(void **state)
     bake_folder_finish(&f.folder);
 }
 
-/* Level 0 as it was; below it all vectors have length 1, as near as bytes come to it. */
+/* Level 0 is unchanged. Below it all vectors have length 1, as nearly as bytes allow. */
 static void normals_keep_their_length(void **state)
 {
     (void)state;
@@ -344,7 +344,7 @@ static void normals_that_cancel_point_up(void **state)
     bake_folder_finish(&f.folder);
 }
 
-/* What bake.h promises, in half and in 32-bit floats. */
+/* Replacement of non-finite numbers as bake.h promises, in half and in 32-bit floats. */
 static void numbers_that_are_none_become_some(void **state)
 {
     (void)state;
@@ -392,7 +392,7 @@ static void numbers_that_are_none_become_some(void **state)
     }
 }
 
-/* Numbers of any size and sign, every third next to what a float holds at most. */
+/* Returns numbers of any size and sign. Every third is near the largest float. */
 static float extreme_number(uint32_t *random)
 {
     static const float most[] = {FLT_MAX, 0x1.fp127f, 0x1.8p126f, 0x1p121f};
@@ -402,7 +402,7 @@ static float extreme_number(uint32_t *random)
     return bits & 8 ? -value : value;
 }
 
-/* The mean of the area that texel `i` of the level below covers along one axis. */
+/* Mean along one axis of the area that texel `i` of the level below covers. */
 static long double mean_along(const float *values, uint32_t size, uint32_t i)
 {
     uint32_t below = size > 1 ? size / 2 : 1;

@@ -1,4 +1,4 @@
-/* Levels that are made row by row, against sums over every texel in long double. */
+/* Compares levels made row by row with sums over all texels in long double. */
 #include "bake/pyramid.h"
 
 #include "base/alloc.h"
@@ -18,7 +18,7 @@ struct case_ {
     SluiceBakeWrap wrap_x, wrap_y;
 };
 
-/* What came out, and what should have. */
+/* Levels that were made, and the expected ones. */
 struct levels {
     const struct case_ *what;
     uint32_t count;
@@ -59,7 +59,7 @@ static void levels_finish(struct levels *levels)
     }
 }
 
-/* How much of the texel `s` above the texel `i` below covers, as a share of the latter. */
+/* Share of texel `i` below that texel `s` above covers. */
 static long double overlap(uint32_t size, uint32_t below, uint32_t i, long s)
 {
     long double scale = (long double)size / below;
@@ -67,7 +67,8 @@ static long double overlap(uint32_t size, uint32_t below, uint32_t i, long s)
     return high > low ? (high - low) / scale : 0;
 }
 
-/* I0(x) as the mean of exp(x cos t) over half a turn; a few points do, since it is periodic. */
+/* I0(x) as the mean of exp(x cos t) over half a turn. Few points suffice, since the function is
+ * periodic. */
 static long double bessel(long double x)
 {
     long double sum = 0;
@@ -76,7 +77,7 @@ static long double bessel(long double x)
     return sum / 20;
 }
 
-/* bake.h: a sinc 6 texels wide, windowed (alpha 4); here by an integral of its own. */
+/* Kaiser filter of bake.h: a sinc 6 texels wide, windowed (alpha 4), integrated independently. */
 static long double kaiser(uint32_t size, uint32_t below, uint32_t i, long s)
 {
     long double scale = (long double)size / below, sum = 0, pi = acosl(-1), peak = bessel(4);
@@ -88,7 +89,7 @@ static long double kaiser(uint32_t size, uint32_t below, uint32_t i, long s)
     return sum;
 }
 
-/* The texel that stands beyond an edge, found by walking. */
+/* Returns the texel beyond an edge, found by walking. */
 static uint32_t wrapped(SluiceBakeWrap wrap, long s, uint32_t size)
 {
     long at = 0, step = 1;
@@ -107,7 +108,7 @@ static uint32_t wrapped(SluiceBakeWrap wrap, long s, uint32_t size)
     return (uint32_t)at;
 }
 
-/* [below][size] weights, everything beyond the edges folded in. */
+/* Weights [below][size], with everything beyond the edges folded in. */
 static long double *weights(uint32_t size, uint32_t below, SluiceBakeFilter filter,
                             SluiceBakeWrap wrap)
 {
@@ -232,7 +233,7 @@ static void wider_filters_see_the_other_edge_or_the_mirror_image(void **state)
         }
 }
 
-/* Taller than the rows that are kept at the start. */
+/* Pictures taller than the rows that are kept at the start. */
 static void rows_that_wrap_around_come_last(void **state)
 {
     (void)state;

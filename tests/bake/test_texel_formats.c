@@ -1,6 +1,6 @@
 /*
- * UNORM16, SNORM, packed and integer formats. Levels are worked out here in double, from what the
- * formats are in Vulkan's specification.
+ * UNORM16, SNORM, packed and integer formats. Expected levels are computed here in double, from the
+ * definitions in Vulkan's specification.
  */
 #include "bake/baked.h"
 #include "support/test.h"
@@ -431,7 +431,7 @@ static uint32_t picked(uint32_t size, uint32_t level, uint32_t i)
     for (; level > 0; level--) {
         uint32_t above = size >> (level - 1), right = 0;
         for (uint32_t k = above; k > 0; k /= 2)
-            right = !right; /* of sizes that halve, every second one takes the right texel */
+            right = !right; /* with even sizes, every second step takes the right texel */
         i = above > 1 ? 2 * i + (above % 2 == 1 || right == 0) : 0;
     }
     return i;

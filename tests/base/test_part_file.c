@@ -1,4 +1,4 @@
-/* Whatever fails, what was there stays; whatever is not ours, is not touched. */
+/* A failure leaves existing files unchanged, and files of others are never touched. */
 #define _DEFAULT_SOURCE /* mknod */
 
 #include "base/alloc.h"
@@ -21,10 +21,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* A folder of our own, so that what is left can be seen. */
+/* A folder of the test's own, so that remaining files show. */
 struct place {
     char folder[64], name[96], part[112], other[96];
-    char told[512]; ///< the last message
+    char told[512]; ///< last message
     SluiceAllocationCallbacks cb;
     SluiceLogCallback log;
 };
@@ -48,7 +48,7 @@ static void place_init(struct place *place)
     snprintf(place->other, sizeof place->other, "%s/other", place->folder);
 }
 
-/* The entries but for . and .. */
+/* Counts the entries except . and ... */
 static int count_entries(const struct place *place)
 {
     DIR *directory = opendir(place->folder);
@@ -92,7 +92,7 @@ static SluiceResult open_part(struct place *place, uint32_t flags, struct slc_pa
     return slc_part_file_open(part, place->name, flags, &place->cb, &place->log);
 }
 
-/* Of a whole file. */
+/* Writes a whole file. */
 static SluiceResult write_text(struct place *place, uint32_t flags, const char *text)
 {
     struct slc_part_file part;
@@ -103,7 +103,7 @@ static SluiceResult write_text(struct place *place, uint32_t flags, const char *
     return result == SLUICE_SUCCESS ? finished : result;
 }
 
-/* Nothing is opened, nothing is left open, and the message names the file and the reason. */
+/* Checks a refused open: it leaves no file, and the message names the file and the reason. */
 static void check_refused(struct place *place, uint32_t flags, const char *path, const char *why)
 {
     struct slc_part_file part;
@@ -187,7 +187,7 @@ static void devices_stay_and_take_streams_alone(void **state)
     struct place place;
     struct stat status;
     place_init(&place);
-    if (mknod(place.name, S_IFCHR | 0600, makedev(1, 3)) != 0) /* as /dev/null */
+    if (mknod(place.name, S_IFCHR | 0600, makedev(1, 3)) != 0) /* the device number of /dev/null */
         assert_int_equal(symlink("/dev/null", place.name), 0);
     assert_int_equal(lstat(place.name, &status), 0);
     check_refused(&place, 0, place.name,
@@ -202,8 +202,7 @@ static void devices_stay_and_take_streams_alone(void **state)
     assert_true(after.st_ino == status.st_ino && after.st_mode == status.st_mode);
     assert_int_equal(count_entries(&place), 1);
     unlink(place.name);
-    if (mknod(place.name, S_IFBLK | 0600, makedev(7, 250)) ==
-        0) /* what a disk holds is no stream */
+    if (mknod(place.name, S_IFBLK | 0600, makedev(7, 250)) == 0) /* a block device is no stream */
         check_refused(&place, SLC_PART_FILE_STREAM, place.name, "no regular file");
     place_finish(&place);
 }
@@ -242,7 +241,7 @@ static void a_pipe_takes_a_stream_and_stays(void **state)
     assert_string_equal(text, "text");
     struct slc_part_file part;
     CHECK_OK(open_part(&place, SLC_PART_FILE_STREAM, &part));
-    CHECK_OK(slc_part_file_finish(&part, false)); /* what fails leaves it, too */
+    CHECK_OK(slc_part_file_finish(&part, false)); /* an output that fails leaves the pipe, too */
     close(reader);
     assert_int_equal(lstat(place.name, &status), 0);
     assert_true(S_ISFIFO(status.st_mode));
@@ -322,7 +321,7 @@ static void a_second_writer_is_told_so_and_the_first_file_is_whole(void **state)
     place_finish(&place);
 }
 
-/* As of a service that was started with its standard streams closed. */
+/* A program may be started with its standard streams closed. Its output then goes to no file. */
 static void what_a_program_prints_ends_in_no_file(void **state)
 {
     (void)state;
@@ -346,7 +345,7 @@ static void what_a_program_prints_ends_in_no_file(void **state)
     place_finish(&place);
 }
 
-/* Somebody removes NAME.sluice-part of a writer at work, and another writer begins. */
+/* Another process removes NAME.sluice-part while a writer works, and another writer begins. */
 static void a_writer_gives_no_name_to_the_part_file_of_another(void **state)
 {
     (void)state;
@@ -420,7 +419,7 @@ static void what_comes_to_the_name_meanwhile_stays(void **state)
 }
 
 static struct {
-    const char *name; ///< that must not be there, or be as it was, when the first call comes
+    const char *name; ///< file that must be absent or unchanged at the first call
     int calls, fail_at;
 } sync_watch;
 

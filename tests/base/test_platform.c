@@ -1,4 +1,4 @@
-/* What lib/platform promises, on every operating system. Uses nothing else of the system. */
+/* Promises of lib/platform on every operating system. Uses no other system interface. */
 #define _POSIX_C_SOURCE 200809L /* for the type in rw_lock.h */
 #include "base/alloc.h"
 #include "base/part_file.h"
@@ -52,7 +52,7 @@ static void threads_wait_for_a_condition_and_are_joined(void **state)
     slc_mutex_finish(&meeting.mutex);
 }
 
-/* With a condition that looks at another clock, this returns at once. */
+/* A condition on another clock would return at once. */
 static void a_wait_ends_at_its_time_and_not_before(void **state)
 {
     (void)state;
@@ -96,7 +96,7 @@ static void memory_has_its_alignment(void **state)
     }
 }
 
-/* A name with a letter that needs two bytes in UTF-8. */
+/* A name with a letter of two bytes in UTF-8. */
 #define NAME "sluice-platform-\xC3\xA4.test"
 #define OTHER "sluice-platform-other.test"
 
@@ -187,7 +187,7 @@ static int create_with(const char *name, const char *bytes)
     return file;
 }
 
-/* As a store that is baked again while it streams. */
+/* A store is replaced like this when it is baked again while it streams. */
 static void an_open_file_is_replaced_and_stays_readable(void **state)
 {
     (void)state;

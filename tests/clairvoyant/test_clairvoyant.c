@@ -1,5 +1,4 @@
-/* The policy that knows a whole trace, on tiny random ones of two sets, where everything can be
- * tried out. */
+/* Tests the clairvoyant policy on tiny random traces of two sets, by exhaustive search. */
 #include <clairvoyant.h>
 
 #include "support/test.h"
@@ -12,7 +11,7 @@ enum { SETS = 2, NODES = 7, FRAMES = 12, CASES = 400 };
 
 struct tiny {
     struct workload w;
-    uint32_t regions[FRAMES][NODES]; ///< that need a node in a frame
+    uint32_t regions[FRAMES][NODES]; ///< regions that need a node in a frame
 };
 
 static uint64_t random_state = 1;
@@ -23,7 +22,7 @@ static uint32_t random_below(uint32_t limit)
     return (uint32_t)(random_state >> 33) % limit;
 }
 
-/** Every other node is of the same set; every need of a node is one of its parent too. */
+/** Every second node is of the same set. A region that needs a node needs its parent, too. */
 static void tiny_fill(struct tiny *t, uint32_t nodes)
 {
     struct workload *w = &t->w;
@@ -51,7 +50,8 @@ static void tiny_fill(struct tiny *t, uint32_t nodes)
     }
 }
 
-/** The frame of the last map of a set before `frame`, in which something was needed; -1: none. */
+/** Returns the frame of the set's last map before `frame` in which something was needed; -1:
+ * none. */
 static int last_visit(const struct tiny *t, uint32_t set, uint32_t frame)
 {
     int f = (int)frame - 1;
@@ -117,7 +117,7 @@ static uint32_t largest_need(const struct tiny *t)
     return most;
 }
 
-/** Fewest uploads over all sequences of cache contents that serve every frame. */
+/** Searches the fewest uploads over all sequences of cache contents that serve every frame. */
 static uint32_t fewest_uploads(const struct tiny *t, uint32_t cap)
 {
     enum { CONTENTS = 1 << (NODES - SETS), FAR = 1000000 };
@@ -140,11 +140,12 @@ static uint32_t fewest_uploads(const struct tiny *t, uint32_t cap)
     return least;
 }
 
-/** Of all nodes, as bits. `coming`: handed out in the frame before, with latency 1. */
+/** State of the cache, a bit per node. `coming`: handed out in the previous frame, with latency
+ * 1. */
 struct contents {
     uint32_t there, coming;
-    uint32_t held; ///< there since the last map that needs it, with all over it
-    uint32_t lost; ///< dropped, and not to be back for the next map that needs it
+    uint32_t held; ///< resident since the last map that needed it, with all nodes over it
+    uint32_t lost; ///< dropped; must not return for the next map that needs it
 };
 
 enum { PACKED = (1 << SETS) - 1, BITS = 5, STATES = 1 << 4 * BITS, FAR_OFF = 1000000 };
@@ -161,7 +162,7 @@ static uint32_t pack(struct contents c)
     return c.there | c.coming << BITS | c.held << 2 * BITS | c.lost << 3 * BITS;
 }
 
-/** Samples the maps of a frame, returns the levels too coarse. */
+/** Samples the maps of a frame. Returns the levels too coarse. */
 static uint32_t sample_tiny(const struct tiny *t, uint32_t frame, struct contents *c)
 {
     uint32_t sum = 0, seen = 0;
@@ -186,7 +187,8 @@ static const struct use *next_use(const struct tiny *t, uint32_t node, uint32_t 
     return NULL;
 }
 
-/** Drops and hands out after the maps of a frame. False if that is against the limits. */
+/** Drops and hands out nodes after the maps of a frame. Returns false if that exceeds the
+ * limits. */
 static bool act(const struct tiny *t, const struct limits *limits, uint32_t frame, uint32_t kept,
                 uint32_t loaded, struct contents *c)
 {
@@ -221,7 +223,7 @@ static void try_actions(const struct tiny *t, const struct limits *limits, uint3
     }
 }
 
-/** Fewest levels too coarse over all schedules, for latency 0 and 1. */
+/** Searches the fewest levels too coarse over all schedules, for latency 0 and 1. */
 static uint32_t least_deficit(const struct tiny *t, const struct limits *limits)
 {
     static uint32_t cost[STATES], next[STATES];
@@ -326,7 +328,8 @@ static void check_legal(bool hold)
     assert_int_equal(wrong, 0);
 }
 
-/** Schedules lie between the optimum and, summed over all cases, 1.1 times that. */
+/** Checks that schedules are between the optimum and 1.1 times the optimum, summed over all
+ * cases. */
 static void check_optimum(bool hold)
 {
     uint32_t wrong = 0, cases = CASES / 8;
@@ -355,7 +358,7 @@ static void check_optimum(bool hold)
     assert_true(bounds >= 0.9 * (double)optimum);
 }
 
-/** Nothing is there before frame 0, so only its maps can be wrong. */
+/** Nothing is loaded before frame 0, so only the maps of frame 0 can be too coarse. */
 static void without_limits_only_the_first_frame_is_too_coarse(void **state)
 {
     (void)state;
