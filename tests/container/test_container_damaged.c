@@ -1,4 +1,4 @@
-/* Files that are not to be trusted and systems that fail: an error or the image, nothing worse. */
+/* Damaged files and failing systems give an error or the image, and nothing worse. */
 #define _XOPEN_SOURCE 700
 #define _FILE_OFFSET_BITS 64
 
@@ -19,12 +19,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The linker puts these in front of pread (--wrap): what the system does is the test's to say. */
+/* The linker puts these in front of pread (--wrap), so that tests decide the system's answers. */
 static struct {
-    int fail_at;    ///< the read of this number, from 1, and all later ones fail; 0: none
-    int error;      ///< errno, 0: the file ends
-    int interrupts; ///< so many reads are interrupted first
-    size_t most;    ///< bytes that a read delivers at most; 0: all
+    int fail_at;    ///< number, from 1, of the first read to fail; later reads fail too; 0: none
+    int error;      ///< errno; 0: end of file
+    int interrupts; ///< number of interrupted reads at first
+    size_t most;    ///< most bytes per read; 0: all
     atomic_int count;
 } disk;
 
@@ -33,7 +33,7 @@ ssize_t __real_pread64(int descriptor, void *buffer, size_t size, off_t offset);
 ssize_t __wrap_pread(int descriptor, void *buffer, size_t size, off_t offset);
 ssize_t __wrap_pread64(int descriptor, void *buffer, size_t size, off_t offset);
 
-/* True if the read is answered with `*answer`; otherwise it may be shorter now. */
+/* Returns true if the test answers the read with `*answer`. Otherwise may reduce `*size`. */
 static bool disk_answers(size_t *size, ssize_t *answer)
 {
     disk.count++;
@@ -82,7 +82,7 @@ static SluiceResult create(const char *path, bool is_ktx2,
                    : sluiceCreateDdsImageSource(&dds, source);
 }
 
-/* The kinds of file there are. */
+/* Kinds of files. */
 enum { DDS, DX10, KTX2, KTX2_ZSTD, KIND_COUNT };
 
 static bool kind_is_built(int kind)
@@ -106,14 +106,14 @@ static struct file_bytes make_file(int kind, const struct picture *picture)
     }
 }
 
-/* A small file of a kind. */
+/* A small file of one kind. */
 struct sample {
     struct picture picture;
     struct file_bytes file;
     struct scratch scratch;
 };
 
-/* False for what this build cannot make. */
+/* Returns false if this build cannot make the file. */
 static bool sample_init(struct sample *sample, int kind)
 {
     const struct format_names *format = format_names_of(SLUICE_FORMAT_BC3_UNORM_BLOCK);
@@ -131,7 +131,7 @@ static void sample_finish(struct sample *sample)
     free(sample->file.bytes);
 }
 
-/* What all reads of a file answer; an error must have been logged once, success not at all. */
+/* Reads a whole file. An error must be logged exactly once, success not at all. */
 static SluiceResult read_file(const char *path, int kind)
 {
     struct log_tally tally;
@@ -161,7 +161,7 @@ static void a_file_cut_at_any_byte_is_an_error(void **state)
     }
 }
 
-/* Bytes of headers that say nothing about where texels are or how they are stored. */
+/* Returns whether a header byte affects neither the position nor the encoding of texels. */
 static bool is_ignored(int kind, size_t at)
 {
     if (kind >= KTX2)
@@ -228,12 +228,12 @@ static void nothing_is_opened_before_it_is_asked_for(void **state)
         assert_int_equal(disk.count, 0);
         CHECK_RESULT(read_everything(source), SLUICE_ERROR_FILE_NOT_FOUND);
         CHECK_RESULT(read_everything(source), SLUICE_ERROR_FILE_NOT_FOUND);
-        assert_int_equal(tally.errors, 1);         /* which is said once */
+        assert_int_equal(tally.errors, 1);         /* logged once */
         FILE *again = fopen(s.scratch.path, "wb"); /* files come and go */
         assert_int_equal(fwrite(s.file.bytes, 1, s.file.size, again), s.file.size);
         fclose(again);
         check_picture(source, &s.picture);
-        unlink(s.scratch.path); /* what is open stays readable */
+        unlink(s.scratch.path); /* an open file stays readable */
         check_picture(source, &s.picture);
         sluiceDestroyImageSource(source);
         sample_finish(&s);
@@ -280,7 +280,7 @@ static void a_file_that_shrinks_while_it_is_open_is_an_error(void **state)
     }
 }
 
-/* The same read fails in turn, until there are fewer. */
+/* Fails read 1, 2, ... in turn, until the file needs fewer reads. */
 static void every_failing_read_is_told_from_damage(void **state)
 {
     (void)state;
@@ -322,7 +322,7 @@ static void what_passes_by_itself_is_no_failure_of_the_file(void **state)
     }
 }
 
-/* Reads of all sources through a loader; how many delivered. */
+/* Reads all sources through a loader. Returns how many succeeded. */
 static uint32_t load_all(SluiceTileLoader *loader, SluiceImageSource *const *sources,
                          uint32_t count)
 {
@@ -343,7 +343,7 @@ static uint32_t load_all(SluiceTileLoader *loader, SluiceImageSource *const *sou
         assert_true(sluiceCollectTileReads(loader, &one, &result) >= 0 && one == 1);
         delivered += result.result == SLUICE_SUCCESS;
         if (result.result != SLUICE_SUCCESS)
-            CHECK_RESULT(result.result, SLUICE_NOT_READY); /* of which none is permanent */
+            CHECK_RESULT(result.result, SLUICE_NOT_READY); /* no error is permanent */
     }
     return delivered;
 }
@@ -365,8 +365,8 @@ static void files_beyond_the_limit_of_descriptors_are_read_later(void **state)
     CHECK_OK(sluiceCreateTileLoader(&info, &loader));
     few_descriptors_begin(&few, FEW_DESCRIPTORS_LIMIT / 4 + ROOM);
     uint32_t first = load_all(loader, sources, COUNT);
-    uint32_t again = load_all(loader, sources, COUNT); /* those that are open stay so */
-    int output = dup(STDERR_FILENO);                   /* and others find room */
+    uint32_t again = load_all(loader, sources, COUNT); /* open files stay open */
+    int output = dup(STDERR_FILENO);                   /* other files find descriptors */
     few_descriptors_end(&few);
     assert_int_equal(first, ROOM);
     assert_int_equal(again, ROOM);

@@ -1,6 +1,6 @@
 /*
- * In place of Zstandard where no package of it can be had when cross building: compresses nothing,
- * so that stores keep every tile as it is, and decompresses nothing.
+ * Replaces Zstandard for cross builds without its package. Compresses nothing, so that stores keep
+ * every tile uncompressed, and decompresses nothing.
  */
 #define ZSTD_STATIC_LINKING_ONLY
 #include <zstd.h>
@@ -8,7 +8,7 @@
 
 #define FAILED ((size_t)-1)
 
-static char nothing; /* what a context points to */
+static char nothing; /* target of all context pointers */
 
 ZSTD_CCtx *ZSTD_createCCtx_advanced(ZSTD_customMem memory)
 {

@@ -1,5 +1,5 @@
-/** Places in chunks, as page caches have them: a chunk belongs to a kind while a place of it is
- * taken. Places that were given back longest ago are taken first. */
+/** Places in chunks, as in page caches: a chunk belongs to a kind while one of its places is taken.
+ * Places that were given back first are taken first. */
 #ifndef TESTS_DEMAND_FAKE_MEMORY_H
 #define TESTS_DEMAND_FAKE_MEMORY_H
 
@@ -9,10 +9,11 @@ enum { FAKE_PLACES = 8192 };
 
 struct fake_memory {
     uint32_t place_count, chunk_size;
-    uint32_t owners[FAKE_PLACES]; ///< of free places: who may retake; SLC_NO_PAGE: nobody
-    uint64_t given[FAKE_PLACES];  ///< when it was given back; 0: never taken
+    uint32_t owners[FAKE_PLACES]; ///< by free place: page that may restore its content;
+                                  ///< SLC_NO_PAGE: none
+    uint64_t given[FAKE_PLACES];  ///< time when it was given back; 0: never taken
     bool taken[FAKE_PLACES];
-    uint32_t kinds[FAKE_PLACES]; ///< of chunks
+    uint32_t kinds[FAKE_PLACES]; ///< by chunk
     uint64_t clock, taken_count;
 };
 

@@ -1,4 +1,4 @@
-/** What residency.h promises, with arrays and linear scans. The LOD bias is not decided here. */
+/** The rules of residency.h, with arrays and linear scans. Does not choose the LOD bias. */
 #ifndef TESTS_DEMAND_NAIVE_RESIDENCY_H
 #define TESTS_DEMAND_NAIVE_RESIDENCY_H
 
@@ -14,14 +14,14 @@ struct naive_page {
     enum slc_page_shown shown;
     uint8_t class_index, rank;
     bool pinned, dropped, restorable;
-    bool waiting; ///< resident, and not known to launches so far
+    bool waiting; ///< resident, but not visible to launches yet
     uint64_t visible_from, last_use, value, shown_value;
-    uint64_t overflow; ///< refused for want of memory: when; else 0
+    uint64_t overflow; ///< time when it was refused for lack of memory; else 0
 };
 
 struct naive_residency {
     bool no_eviction, no_lod_bias, blurriest;
-    struct naive_page pages[NAIVE_PAGES]; ///< ascending ids
+    struct naive_page pages[NAIVE_PAGES]; ///< in the order of ids
     uint64_t limits[NAIVE_CLASSES], launch, prepared, touched, refusals, refused_idle;
     bool refused;
     struct slc_page_memory memories[NAIVE_CLASSES];

@@ -97,7 +97,7 @@ static void visit_level(struct renderer *r, const struct view *v, uint32_t level
             visit(user, r, t, level, t->first[level] + y * width + x);
 }
 
-/* Trilinear: two levels, one where the level of detail is whole. */
+/* Trilinear: visits two levels, or one if the level of detail is whole. */
 static void visit_view(struct renderer *r, const struct view *v, float bias, visit_page *visit,
                        void *user)
 {
@@ -140,7 +140,7 @@ static uint32_t parent(const struct pyramid *t, uint32_t level, uint32_t page)
     return t->first[level + 1] + y * parent_width + x;
 }
 
-/* As a shader: what will not be there is replaced by what is coarser. */
+/* Looks a page up like a shader: replaces refused pages by coarser ones. */
 static void look_up(void *user, struct renderer *r, const struct pyramid *t, uint32_t level,
                     uint32_t page)
 {
@@ -156,7 +156,7 @@ static void look_up(void *user, struct renderer *r, const struct pyramid *t, uin
         flight->missed[flight->missed_count++] = page;
 }
 
-/* What was not listed is asked for still, unless the bias is another one now. */
+/* Repeats requests that did not fit into the last list, unless the bias has changed. */
 static void add_left_over(struct renderer *r, float bias, struct flight *flight)
 {
     if (bias != r->bias)
@@ -262,7 +262,7 @@ static void end_reads(struct renderer *r)
     }
 }
 
-/* A launch is traced with the page table of its time, and processed when others are in flight. */
+/* Traces a launch with the current page table, and processes it after later launches have begun. */
 void renderer_launch(struct renderer *r)
 {
     uint64_t recorded = r->launch + r->in_flight;

@@ -1,4 +1,4 @@
-/** The LOD bias of demand loading by itself: views that stand still come to rest. */
+/** The LOD bias of demand loading alone: it settles for still views. */
 #include "demand/lod_bias.h"
 
 #include "demand/random.h"
@@ -8,20 +8,21 @@
 
 enum { QUARTERS = SLC_MAX_BIAS_QUARTERS + 1, LAUNCHES = 3000, REST = 1000, MAX_CHANGES = 100 };
 
-/* What a view needs at each bias: any numbers that do not grow. */
+/* Pages that a view needs at each bias: any numbers that do not grow. */
 struct view {
     uint64_t need[QUARTERS];
     uint64_t pinned;
-    uint64_t room;   ///< places, as far as the controller is told
-    uint64_t places; ///< that there are
+    uint64_t room;   ///< places that the controller is told of
+    uint64_t places; ///< places in memory
     uint64_t resident;
-    uint32_t delay; ///< launches until a page that is missing is there
+    uint32_t delay; ///< launches until a missing page is resident
     uint64_t pending[4];
-    uint64_t broken;     ///< pages that never load, and are asked for again and again
-    uint32_t broken_for; ///< launches since they were asked for
+    uint64_t broken;     ///< pages that never load and are requested repeatedly
+    uint32_t broken_for; ///< launches since their last request
 };
 
-/* A step divides by 1 to 16, or by nothing for a while: coarse levels, few regions, one texture. */
+/* Makes a view. A bias step divides the need by 1 to 16, or by 1 for some steps, as with coarse
+ * levels, few regions or one texture. */
 static void make_view(struct view *v, uint64_t *state)
 {
     memset(v, 0, sizeof *v);

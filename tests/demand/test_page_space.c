@@ -13,12 +13,12 @@
 #define BLOCK SLUICE_DEMAND_BLOCK_PAGES
 #define SECTION_BLOCKS (SECTION / BLOCK)
 
-/* The naive model: an owner per block, a rank per section, nothing else. */
+/* The naive model: an owner per block and a rank per section. */
 enum { SECTIONS = 40, BLOCKS = SECTIONS * SECTION_BLOCKS, RANGES = 600, NOBODY = -1 };
 
 struct range {
     uint32_t first, count, rank;
-    uint64_t launch; /* freed: until it is over; else 0 */
+    uint64_t launch; /* launch after which the freed range can be reused; else 0 */
     bool used;
 };
 
@@ -52,7 +52,7 @@ static uint32_t longest_run(const struct model *m, uint32_t section)
     return longest;
 }
 
-/* What page_space.h promises: sections in a row, or a place within a section of the rank. */
+/* Rule of page_space.h: needs free consecutive sections, or room within a section of the rank. */
 static bool is_possible(const struct model *m, uint32_t rank, uint32_t count)
 {
     uint32_t blocks = blocks_of(count), in_a_row = 0;
@@ -132,7 +132,8 @@ static void check_ranks(struct slc_page_space *space, const struct model *m, uin
         memcpy(mirror + first, ranks + first, count);
     for (uint32_t s = 0; s < SECTIONS; s++) {
         assert_int_equal(ranks[s], m->ranks[s]);
-        assert_int_equal(mirror[s], m->ranks[s]); /* what was not told has not changed */
+        assert_int_equal(mirror[s],
+                         m->ranks[s]); /* ranks outside the reported range have not changed */
     }
 }
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A static view of random textures and a budget from 4 places to all that it needs. */
+/* A static view of random textures, with a budget from 4 places to all that it needs. */
 struct setup {
     uint32_t kinds, chunk_size, in_flight, slowest_load, list_limit;
     bool no_eviction, no_lod_bias;
@@ -36,7 +36,7 @@ static uint32_t start(struct renderer *r, uint64_t seed, const struct setup *set
     return limit;
 }
 
-/* The last of `count` launches that missed or loaded anything, or changed how sharp all is. */
+/* Returns the last of `count` launches that missed or loaded a page, or changed the sharpness. */
 static uint32_t last_unrest(struct renderer *r, uint32_t count)
 {
     uint32_t last = 0;
@@ -176,7 +176,7 @@ static void a_view_that_needs_less_becomes_sharp_again(void **state)
     free(r);
 }
 
-/* Each launch samples a little elsewhere, and a little finer or coarser. */
+/* Each launch samples slightly different places and levels. */
 static uint32_t tremble(struct renderer *r, uint32_t launches)
 {
     struct view views[RENDERER_VIEWS];

@@ -1,4 +1,4 @@
-/* Files that name their primaries: what they are in Rec. 709, worked out here in long double. */
+/* Files that name their primaries. Expected Rec. 709 values are computed here in long double. */
 #include <sluice/exr.h>
 
 #include "exr/exr_paths.h"
@@ -24,7 +24,7 @@ static real determinant(real m[3][3])
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-/* By Cramer's rule: matrix * x = right. */
+/* Solves matrix * x = right by Cramer's rule. */
 static void solve(real matrix[3][3], const real right[3], real x[3])
 {
     for (int k = 0; k < 3; k++) {
@@ -88,8 +88,8 @@ static void convert(const real space[8], const real *neutral, const real rgb[3],
 
 struct colored {
     const char *name;
-    const real *space, *neutral; ///< neutral: what becomes R = G = B
-    uint32_t level_count;        ///< of the file
+    const real *space, *neutral; ///< neutral: color that becomes R = G = B
+    uint32_t level_count;        ///< levels in the file
     bool has_alpha;
 };
 
@@ -98,11 +98,11 @@ static const real d50[2] = {0.3457L, 0.3585L};
 static const struct colored files[] = {
     {"scan_xyz.exr", xyz, rec709 + 6, 1, false}, /* nothing is adapted */
     {"scan_rec2020.exr", rec2020, rec2020 + 6, 1, true},  {"mip_aces.exr", aces, aces + 6, 6, true},
-    {"scan_aces_neutral.exr", aces, rec709 + 6, 1, true}, /* as its adoptedNeutral says */
+    {"scan_aces_neutral.exr", aces, rec709 + 6, 1, true}, /* as in its adoptedNeutral */
     {"scan_neutral_alone.exr", rec709, d50, 1, false},
 };
 
-/* What tests/exr/data/README.md says of a texel. */
+/* Formula of tests/exr/data/README.md for a texel. */
 static real formula(uint32_t level, uint32_t x, uint32_t y, uint32_t k)
 {
     return (real)((3 * x + 5 * y + 18 * level + 13 * k) % 64) / 16 - 1;
@@ -228,7 +228,8 @@ static void other_formats_hold_the_converted_colors(void **state)
     sluiceDestroyImageSource(red);
 }
 
-/* Primaries that are Rec. 709's already or that make no sense, gray, and what is to be kept. */
+/* Files with Rec. 709 or invalid primaries, gray files, and files whose primaries are to be
+ * kept. */
 static void other_files_keep_their_bits(void **state)
 {
     (void)state;

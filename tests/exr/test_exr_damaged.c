@@ -1,4 +1,4 @@
-/* Files that are not to be trusted: an error or an image, and nothing worse. */
+/* Damaged files give an error or an image, and nothing worse. */
 #define _XOPEN_SOURCE 700
 #define _FILE_OFFSET_BITS 64
 
@@ -20,7 +20,7 @@
 struct scratch {
     char path[64];
     int descriptor;
-    unsigned char *bytes; ///< as they were
+    unsigned char *bytes; ///< original bytes
     size_t size;
 };
 
@@ -104,7 +104,7 @@ static bool is_answer_to_damage(SluiceResult result)
            result == SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* Files of the collection that are whole as far as they go, but of a kind that is not read. */
+/* Intact files in the collection of a kind that is not supported. */
 static const char *const unsupported[] = {
     "asan_heap-oob_7f178ac80539_109_519f88e9ededfff61f535d6c9eb25a85_exr",      /* its channels */
     "asan_stack-oob_433d4f_436_bb29e6f88ad5f5b2f5f9b68a3655b1d8_exr",           /* DWA */
@@ -121,7 +121,7 @@ static bool is_unsupported(const char *name)
     return false;
 }
 
-/* Newer versions of OpenEXRCore read DWA, and mend what 3.1 calls damaged. */
+/* Newer versions of OpenEXRCore read DWA, and repair files that 3.1 calls damaged. */
 static bool is_core_3_1(void)
 {
     int major, minor, patch;
@@ -221,7 +221,7 @@ static void a_file_that_shrinks_while_it_is_open_is_an_error(void **state)
     }
 }
 
-/* Reading address 0 of one's own memory is an I/O error where there is such a file. */
+/* Reading address 0 of /proc/self/mem is an I/O error, if that file exists. */
 static void an_error_of_the_system_is_told_from_damage(void **state)
 {
     (void)state;
@@ -233,7 +233,7 @@ static void an_error_of_the_system_is_told_from_damage(void **state)
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_IO);
 }
 
-/* All of it is decoded for the first tile: what went wrong then must not be kept for good. */
+/* The first tile decodes the whole file. An error must not be kept for good. */
 static void a_file_that_is_mended_is_decoded_again(void **state)
 {
     (void)state;
@@ -258,7 +258,7 @@ static void a_file_that_is_mended_is_decoded_again(void **state)
     scratch_finish(&scratch);
 }
 
-/* A header alone that promises more than its file could hold. */
+/* A header that promises more than its file can hold. */
 static void absurd_sizes_are_refused_before_anything_is_allocated(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* The OpenEXR project's images: the outcome of each, and every texel against a plain reader. */
+/* Images of the OpenEXR project: the result of each, and all texels against a plain reader. */
 #include <sluice/exr.h>
 
 #include "base/checked.h"
@@ -80,7 +80,7 @@ static SluiceImageRegion whole_level(const SluiceImageInfo *info, uint32_t level
                                slc_mip_size(info->height, level)};
 }
 
-/* The bits that a component must have: those of the file's channel, or the constant for none. */
+/* Expected bits of a component: from the file's channel, or a constant without one. */
 static uint32_t expected_bits(const struct plain_level *level, uint32_t component_count, int c,
                               uint32_t x, uint32_t y)
 {
@@ -167,7 +167,7 @@ static long double decode(long double code)
 }
 
 struct codes {
-    long double middle[256], lowest[256], highest[256]; ///< that round to a code
+    long double middle[256], lowest[256], highest[256]; ///< values that round to a code
 };
 
 static const struct codes *srgb_codes(void)
@@ -181,13 +181,13 @@ static const struct codes *srgb_codes(void)
     return &codes;
 }
 
-/* Large levels are compared in every 13th row, which all phases of chunks and filters share. */
+/* Large levels are compared in every 13th row, which meets all phases of chunks and filters. */
 static uint32_t row_step(const SluiceImageRegion *region)
 {
     return region->height > 128 ? 13 : 1;
 }
 
-/* Whether a byte is what a value is encoded as; NaN is 0. Thresholds are floats in the library. */
+/* Returns whether a byte encodes a value; NaN is 0. The library's thresholds are floats. */
 static bool is_code(long double value, uint8_t byte, bool is_alpha)
 {
     const struct codes *codes = srgb_codes();
@@ -208,7 +208,7 @@ static long double channel_value(const struct plain_channel *channel, size_t at)
     return (long double)value;
 }
 
-/* A level that is in the file. */
+/* Compares a level in the file. */
 static void compare_bytes(const struct image *image, const SluiceImageRegion *region,
                           const uint8_t *texels, const struct plain_level *level)
 {
@@ -236,7 +236,7 @@ struct numbers {
     void *texels;
 };
 
-/* Not a number counts as 0. */
+/* Returns a number; NaN is 0. */
 static long double number_at(const struct numbers *n, uint32_t count, uint32_t x, uint32_t y,
                              uint32_t c)
 {
@@ -253,7 +253,7 @@ static long double number_at(const struct numbers *n, uint32_t count, uint32_t x
     return isnan(value) ? 0 : (long double)value;
 }
 
-/* The texels that one texel below covers along an axis, and how much of each: at most three. */
+/* Finds the texels, at most three, that one texel below covers along an axis, with their shares. */
 static uint32_t find_cover(uint32_t size, uint32_t i, long double weights[3])
 {
     uint32_t below = size > 1 ? size / 2 : 1;
@@ -264,7 +264,7 @@ static uint32_t find_cover(uint32_t size, uint32_t i, long double weights[3])
     return begin;
 }
 
-/* `*size`: the mean of the magnitudes, which says how exact doubles are. */
+/* Returns a mean. `*size`: mean of the magnitudes, which bounds the error of doubles. */
 static long double mean_of(const struct numbers *above, uint32_t count, uint32_t x, uint32_t y,
                            uint32_t c, long double *size)
 {
@@ -283,7 +283,7 @@ static long double mean_of(const struct numbers *above, uint32_t count, uint32_t
     return sum;
 }
 
-/* Half of the distance between two halves there, and a little for double's own rounding. */
+/* Allows half of the distance between two halves, and a little for rounding in double. */
 static bool is_nearest_half(long double mean, long double value)
 {
     mean = isnan(mean) ? 0 : fminl(fmaxl(mean, -65504), 65504);
@@ -291,7 +291,7 @@ static bool is_nearest_half(long double mean, long double value)
     return fabsl(value - mean) <= 0.501L * ldexpl(1, exponent - 10);
 }
 
-/* A level that was built: each texel is the mean of what the level above it holds. */
+/* Compares a built level: each texel is a mean of the level above. */
 static void compare_mean(const struct image *image, const struct numbers *above,
                          const struct numbers *level)
 {
@@ -449,7 +449,7 @@ static void a_wide_float_range_saturates_as_half(void **state)
     uint16_t *h = read_region(halves, &half_info, &region);
     uint32_t saturated = 0;
     for (size_t i = 0; i < (size_t)region.width * region.height; i++) {
-        assert_int_equal(h[i], slc_half_from_float(f[i])); /* which has a test of its own */
+        assert_int_equal(h[i], slc_half_from_float(f[i])); /* which has its own test */
         saturated += fabsf(f[i]) > 65520.0f && (h[i] & 0x7FFF) == 0x7BFF;
     }
     assert_true(saturated > 0);

@@ -1,4 +1,4 @@
-/* Every kind of file, from tests/exr/data, against the formula that made it. */
+/* Compares every kind of file in tests/exr/data with the formula that made it. */
 #include <sluice/exr.h>
 
 #include "base/checked.h"
@@ -15,7 +15,7 @@ enum layout { BUILT, MIP, RIP };
 
 struct kind {
     const char *name;
-    SluiceResult result;          ///< of opening
+    SluiceResult result;          ///< result of opening
     const char *channels, *types; ///< letters; h half, f float, u uint
     enum layout layout;
     uint32_t width, height;
@@ -77,7 +77,7 @@ static SluiceResult open_kind(const struct kind *kind, SluiceFormat format,
     return sluiceCreateExrImageSource(&create, source);
 }
 
-/* Which level of the file in one direction is read for a level of the image. */
+/* Returns the file's level along one axis that is read for a level of the image. */
 static uint32_t file_level(const struct kind *kind, uint32_t level, uint32_t size)
 {
     if (kind->layout != RIP)
@@ -88,7 +88,7 @@ static uint32_t file_level(const struct kind *kind, uint32_t level, uint32_t siz
     return slc_min_u32(level, count - 1);
 }
 
-/* What the file says of one texel, as linear RGBA. */
+/* Formula of the file for one texel, as linear RGBA. */
 static void formula(const struct kind *kind, uint32_t level, uint32_t x, uint32_t y, float rgba[4])
 {
     uint32_t lx = file_level(kind, level, kind->width), ly = file_level(kind, level, kind->height);
@@ -106,7 +106,7 @@ static void formula(const struct kind *kind, uint32_t level, uint32_t x, uint32_
     }
 }
 
-/* A file of a single channel fills single components, whatever its name. */
+/* A file with one channel fills one component, whatever its name. */
 static void formula_for(const struct kind *kind, SluiceFormat format, uint32_t level, uint32_t x,
                         uint32_t y, float rgba[4])
 {
@@ -199,7 +199,8 @@ static void every_texel_of_every_level_is_what_was_written(void **state)
         }
 }
 
-/* B44 keeps 14 bytes of 32 per 4 x 4 halves; the pattern is harsh, so this bounds only blunders. */
+/* B44 keeps 14 of 32 bytes per 4 x 4 halves. The pattern is hard to compress, so the bound is
+ * wide. */
 static void lossy_files_come_near_what_was_written(void **state)
 {
     (void)state;
@@ -228,7 +229,7 @@ static void lossy_files_come_near_what_was_written(void **state)
     }
 }
 
-/* The filter has its own test; this one shows that it is applied to the file's level 0. */
+/* The filter has its own test. This one shows that it is applied to the file's level 0. */
 static void built_levels_are_those_of_the_same_texels_in_memory(void **state)
 {
     (void)state;
@@ -255,7 +256,7 @@ static void built_levels_are_those_of_the_same_texels_in_memory(void **state)
     }
 }
 
-/* Writes behind the rows would show in what lies between them. */
+/* Checks a region in a larger buffer: writes beyond its rows would show. */
 static void check_random_region(SluiceImageSource *source, const SluiceImageInfo *info,
                                 uint32_t level, const char *whole, uint32_t *random)
 {

@@ -1,4 +1,4 @@
-/* What is written is what the source says, or nothing is. */
+/* The writer stores the source's texels, or writes no file. */
 #define _XOPEN_SOURCE 700
 
 #include <sluice/exr.h>
@@ -22,7 +22,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* A folder of our own, so that what is left can be seen. */
+/* A folder of the test's own, so that remaining files show. */
 struct folder {
     char path[64];
     char file[96];
@@ -81,7 +81,7 @@ static SluiceImageSource *create_source(uint32_t width, uint32_t height, SluiceF
     return source;
 }
 
-/* The halves that the file must hold for one row of a level. */
+/* Expected halves of one row of a level. */
 static void expected_row(SluiceImageSource *source, const SluiceImageInfo *info, uint32_t level,
                          uint32_t y, uint16_t (*halves)[4], uint32_t width)
 {
