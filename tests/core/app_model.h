@@ -1,6 +1,6 @@
 /**
- * What an application knows: which of its loads are under way, which tiles it has bound where, and
- * which slots the GPU may still read. Every answer of the manager is held against that.
+ * Model of an application: its loads in flight, its bound tiles, and the slots that the GPU may
+ * still read. Checks every answer of the manager.
  */
 #ifndef TESTS_CORE_APP_MODEL_H
 #define TESTS_CORE_APP_MODEL_H
@@ -11,10 +11,10 @@ enum { APP_TEXTURES = 4, APP_TILES = 64, APP_CAPACITY = 8, APP_HEAPS = 16 };
 
 enum app_tile { APP_NOTHING, APP_LOADING, APP_CANCELING, APP_BOUND };
 
-/** 0: free; else held by a tile or retiring. */
+/** A slot. 0: free; else held by a tile or retiring. */
 struct app_slot {
     bool held;
-    uint64_t retire; ///< > 0: not to be used before this has completed
+    uint64_t retire; ///< > 0: retire value that must complete before the slot is used again
 };
 
 struct app_texture {
@@ -33,10 +33,11 @@ struct app_model {
 };
 
 void app_open(struct app_model *a, uint64_t seed);
-/** Removes everything and waits for the GPU: every slot must be free and every heap released. */
+/** Removes all textures and waits for the GPU. All slots must be free then, and all heaps
+ * released. */
 void app_close(struct app_model *a);
 
-/** Each of these is one call, or one per tile, on textures and tiles chosen at random. */
+/** Each function makes one call, or one per tile, with random textures and tiles. */
 void app_feed(struct app_model *a);
 void app_read_map_list(struct app_model *a);
 void app_read_cancel_list(struct app_model *a);
@@ -47,7 +48,7 @@ void app_defragment(struct app_model *a);
 void app_release_heaps(struct app_model *a);
 void app_complete(struct app_model *a);
 
-/** Every tile and every slot, against the manager's states and counts. */
+/** Checks every tile and slot against the manager's states and counts. */
 void app_check(const struct app_model *a);
 
 #endif /* TESTS_CORE_APP_MODEL_H */

@@ -1,4 +1,4 @@
-/** One call of sluice/manager.h as data, and what came out of it. */
+/** A call of sluice/manager.h as data, and its outcome. */
 #ifndef TESTS_CORE_CALL_H
 #define TESTS_CORE_CALL_H
 
@@ -33,26 +33,26 @@ enum call_kind {
     CALL_LAYOUT,
     CALL_TEXTURE_LAYOUT,
     CALL_STATISTICS,
-    CALL_EVACUATE, ///< made of a CALL_TRIM, so that sequences from files keep their meaning
-    CALL_FORGET,   ///< made of a CALL_TRIM, too
-    CALL_EVICT,    ///< made of a CALL_TRIM, too
+    CALL_EVACUATE, ///< made from a CALL_TRIM, so that sequences in files keep their meaning
+    CALL_FORGET,   ///< made from a CALL_TRIM, too
+    CALL_EVICT,    ///< made from a CALL_TRIM, too
     CALL_KIND_COUNT
 };
 
-/** Which pointer of a call is NULL. `second` is the array of a list call, which makes it a query.
- */
+/** The pointer of a call that is NULL. `second`: the array of a list call, which makes it a
+ * query. */
 enum call_null { NULL_NONE, NULL_MANAGER, NULL_FIRST, NULL_SECOND };
 
-/** Room of the arrays that calls are made with; the same number of heap answers per call. */
+/** Length of the arrays in calls, and limit of heap answers per call. */
 #define CALL_MAX_ROOM 4096u
 #define CALL_MAX_INDICES 4096u
 #define CALL_MAX_MAP 4096u
 
-/** Only the fields that the kind needs are set. */
+/** A call. Only the fields that its kind uses are set. */
 struct call {
     enum call_kind kind;
     enum call_null null;
-    SluiceTextureId texture; ///< of SET_PRIMARY and MATCH_PRIMARY: the follower
+    SluiceTextureId texture; ///< SET_PRIMARY and MATCH_PRIMARY: the follower
     SluiceTextureId primary;
     uint64_t time, timeout, retire;
     SluiceStreamedTextureManagerConfig config;
@@ -61,12 +61,12 @@ struct call {
     int32_t bias;
     uint32_t streamed_levels;
     bool null_map;
-    uint32_t room;  ///< of list calls and of DEFRAGMENT
-    uint32_t count; ///< of indices
+    uint32_t room;  ///< list calls and DEFRAGMENT
+    uint32_t count; ///< number of indices
     uint32_t keep, heap, tile;
     SluiceMinMipRect rect;
     size_t pitch, size;
-    /** So many allocations of this call succeed, then none; UINT64_MAX: all do. */
+    /** Number of allocations in this call that succeed; UINT64_MAX: all. */
     uint64_t refuse_after;
     /* Not cleared between calls. */
     uint8_t map[CALL_MAX_MAP];
@@ -80,7 +80,7 @@ struct heap_answer {
 
 struct outcome {
     SluiceResult result;
-    bool memory_refused;     ///< an allocation failed, even if the call did not
+    bool memory_refused;     ///< true: an allocation failed, even if the call succeeded
     SluiceTextureId texture; ///< ADD_TEXTURE
     uint32_t count;          ///< list calls
     SluiceTile tiles[CALL_MAX_ROOM];
@@ -91,16 +91,16 @@ struct outcome {
     SluiceTileState state;       ///< TILE_STATE, with tiles[0]
     SluiceStreamedTextureLayout layout;
     SluiceStreamedTextureStatistics statistics;
-    uint32_t answer_count; ///< of the heap allocator, in the order in which it was asked
+    uint32_t answer_count; ///< answers of the heap allocator, in order
     struct heap_answer answers[CALL_MAX_ROOM];
 };
 
-/** Makes the call and fills in what it answered, but for the heap allocator's answers. */
+/** Makes the call and writes its outcome, except for the heap allocator's answers. */
 void call_make(SluiceStreamedTextureManager *manager, const struct call *call, struct outcome *out);
-/** Whether it takes a count in and out, and an array. */
+/** Returns whether the call takes an array and a count in and out. */
 bool call_is_list(enum call_kind kind);
 const char *call_kind_name(enum call_kind kind);
-/** One line, but for feedback maps, which follow row by row. */
+/** Prints one line. Feedback maps follow row by row. */
 void call_print(FILE *file, const struct call *call);
 
 #endif /* TESTS_CORE_CALL_H */

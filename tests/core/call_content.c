@@ -1,4 +1,4 @@
-/* What random calls carry: texture descriptions and feedback maps. */
+/* Content of random calls: texture descriptions and feedback maps. */
 #include "core/call_sequence.h"
 
 #include <string.h>
@@ -83,7 +83,7 @@ void call_sequence_desc(struct call_sequence *s, SluiceStreamedTextureDesc *desc
     *desc = (SluiceStreamedTextureDesc){8, 8, 2, 2, 0, 4, 4, 0, 0};
 }
 
-/* Makes one thing wrong with a description that was right. */
+/* Makes one mistake in a valid description. */
 static void spoil_desc(struct choice *c, SluiceStreamedTextureDesc *d)
 {
     const bool across = choice_once_in(c, 2);
@@ -120,7 +120,7 @@ void call_sequence_bad_desc(struct call_sequence *s, SluiceStreamedTextureDesc *
 {
     call_sequence_desc(s, d);
     spoil_desc(&s->choice, d);
-    if (choice_once_in(&s->choice, 3)) /* a second thing: the order of the checks shows */
+    if (choice_once_in(&s->choice, 3)) /* a second mistake shows the order of the checks */
         spoil_desc(&s->choice, d);
 }
 
@@ -137,7 +137,7 @@ static void fill_map(struct call_sequence *s, uint32_t regions, uint32_t levels,
 {
     struct choice *c = &s->choice;
     uint32_t kind = choice_below(c, 8);
-    if (kind < 3 && s->last_map_size == regions) { /* the last one, flickering */
+    if (kind < 3 && s->last_map_size == regions) { /* the last map, with random gaps */
         memcpy(map, s->last_map, regions);
         for (uint32_t i = choice_below(c, 4); i > 0; i--)
             map[choice_below(c, regions)] = random_texel(c, levels, choice_below(c, 3));
@@ -153,7 +153,8 @@ static void fill_map(struct call_sequence *s, uint32_t regions, uint32_t levels,
         map[i] = kind == 6 ? (uint8_t)choice_below(c, 256) : random_texel(c, levels, untouched);
 }
 
-/* What a camera sees of a texture as long as it stays, each region of it with some chance. */
+/* Writes what a resting camera sees of a texture. Each visible region is sampled with some
+ * chance. */
 static void look(struct call_sequence *s, const SluiceStreamedTextureLayout *l, uint64_t texture,
                  uint8_t *map)
 {

@@ -4,7 +4,7 @@
 
 #define COUNT_OF(array) ((uint32_t)(sizeof(array) / sizeof((array)[0])))
 
-/* How often each call is made, relative to the others. */
+/* Relative frequency of each call. */
 static const uint32_t base_weights[CALL_KIND_COUNT] = {
     [CALL_SET_CONFIG] = 2,
     [CALL_ADD_TEXTURE] = 6,
@@ -34,7 +34,7 @@ static const uint32_t base_weights[CALL_KIND_COUNT] = {
     [CALL_STATISTICS] = 1,
 };
 
-/* The pointers of each call that may be NULL: the manager, the first, the second. */
+/* Last pointer of each call that may be NULL: the manager, the first, the second. */
 static const enum call_null last_pointer[CALL_KIND_COUNT] = {
     [CALL_SET_CONFIG] = NULL_FIRST,       [CALL_ADD_TEXTURE] = NULL_SECOND,
     [CALL_REMOVE_TEXTURE] = NULL_MANAGER, [CALL_FEEDBACK] = NULL_FIRST,
@@ -85,7 +85,7 @@ void call_sequence_start(struct call_sequence *s, struct choice choice)
     s->time = choice_once_in(c, 3) ? choice_u64(c) : times[choice_below(c, COUNT_OF(times))];
     s->timeout = timeouts[choice_below(c, COUNT_OF(timeouts))];
     s->next_heap = choice_once_in(c, 2) ? 0 : (uint32_t)choice_u64(c);
-    s->sets = s->visibility % 3 == 0; /* no choice of its own: files keep their meaning */
+    s->sets = s->visibility % 3 == 0; /* derived, so that files keep their meaning */
     if (s->sets) {
         s->weights[CALL_SET_PRIMARY] *= 6;
         s->max_textures = s->max_textures < 3 ? 3 : s->max_textures;
@@ -122,7 +122,7 @@ static struct naive_texture *any_texture(struct call_sequence *s, struct naive_m
     return NULL;
 }
 
-/* Mostly that of a living texture. */
+/* Returns an id, mostly of a living texture. */
 static SluiceTextureId any_id(struct call_sequence *s, struct naive_manager *n)
 {
     struct choice *c = &s->choice;
@@ -138,7 +138,7 @@ static SluiceTextureId any_id(struct call_sequence *s, struct naive_manager *n)
     }
 }
 
-/* The first texture that follows none: of most sets of a sequence that has some. */
+/* Returns the first texture that follows none: the primary of most sets. */
 static const struct naive_texture *head_of_sets(const struct naive_manager *n)
 {
     for (uint32_t i = 0; i < n->texture_room; i++)
@@ -147,7 +147,7 @@ static const struct naive_texture *head_of_sets(const struct naive_manager *n)
     return NULL;
 }
 
-/* NULL where the sequence has no sets, and now and then. */
+/* Returns NULL in a sequence without sets, and sometimes otherwise. */
 static const struct naive_texture *usual_primary(struct call_sequence *s,
                                                  const struct naive_manager *n)
 {
@@ -269,14 +269,14 @@ static void make_layout(struct call_sequence *s, struct call *call)
         call_sequence_bad_desc(s, &call->desc);
     else
         call_sequence_desc(s, &call->desc);
-    if (choice_once_in(c, 6)) /* as large as can be, and a tile more */
+    if (choice_once_in(c, 6)) /* the largest description, or one tile more */
         call->desc = (SluiceStreamedTextureDesc){
             1u << 20, 1u << 20, 2, 1, choice_range(c, 1, 2), 1u << 10, 2, 1u << 10, 1};
     if (choice_once_in(c, 6))
         call->desc = (SluiceStreamedTextureDesc){1u << 20, 1, 21, 21, 0, 1, 1, 0, 0};
 }
 
-/* Tiles to answer: those of a state of one texture that are under way, some of them or all. */
+/* Chooses tiles to answer: tiles of one texture in one state in flight, some or all. */
 static void make_answer(struct call_sequence *s, struct naive_manager *n, struct call *call)
 {
     struct choice *c = &s->choice;
@@ -317,7 +317,7 @@ static void make_answer(struct call_sequence *s, struct naive_manager *n, struct
     call->indices[call->count++] = index;
 }
 
-/* Empty, or reaching out of the map. */
+/* Makes a rectangle empty, or larger than the map. */
 static void spoil_rect(struct choice *c, SluiceMinMipRect *r)
 {
     const uint32_t value = choice_once_in(c, 2) ? UINT32_MAX : r->width + r->height + 1000;
@@ -412,7 +412,7 @@ static void make_feedback(struct call_sequence *s, struct naive_manager *n, stru
     }
 }
 
-/* The first idle one from `at` on, if there is one. */
+/* Returns the first idle texture from `at` on, or NULL. */
 static const struct naive_texture *texture_to_forget(const struct naive_manager *n, uint32_t at)
 {
     const struct naive_texture *any = NULL;
@@ -425,7 +425,7 @@ static const struct naive_texture *texture_to_forget(const struct naive_manager 
     return any;
 }
 
-/* Of 14, 20 or 26; the first texture that holds anything, if there is one. */
+/* Evicts the first texture that holds anything, or any texture. */
 static void make_evict(const struct naive_manager *n, struct call *call)
 {
     const struct naive_texture *any = NULL;
@@ -441,7 +441,7 @@ static void make_evict(const struct naive_manager *n, struct call *call)
 static void make_trim(struct call_sequence *s, const struct naive_manager *n, struct call *call)
 {
     call->keep = choice_once_in(&s->choice, 3) ? 0 : choice_below(&s->choice, 30);
-    if (call->keep % 3 == 1) /* no choice of its own: files keep their meaning */
+    if (call->keep % 3 == 1) /* derived, so that files keep their meaning */
         call->kind = CALL_EVACUATE;
     if (call->keep % 6 == 2 && call->keep > 8)
         make_evict(n, call);
@@ -510,7 +510,7 @@ static void fill_in(struct call_sequence *s, struct naive_manager *n, struct cal
             call->retire = choice_once_in(c, 2) ? 0 : n->completed - 1;
         break;
     }
-    default: /* list calls, and those that take a texture and a retire value at most */
+    default: /* list calls, and calls with at most a texture and a retire value */
         call->texture = any_id(s, n);
         if (choice_once_in(c, 2) && ((call_is_list(call->kind) && call->kind != CALL_DEFRAGMENT) ||
                                      call->kind == CALL_RETRY))
@@ -548,7 +548,7 @@ void call_sequence_next(struct call_sequence *s, struct naive_manager *n, struct
         call->null = NULL_SECOND;
     else if (mistake(s) && choice_once_in(c, 4))
         call->null = (enum call_null)choice_range(c, 1, last_pointer[call->kind]);
-    if (call->kind == CALL_LAYOUT && call->null == NULL_MANAGER) /* it has none */
+    if (call->kind == CALL_LAYOUT && call->null == NULL_MANAGER) /* the call has no manager */
         call->null = NULL_NONE;
     if (call->null == NULL_FIRST && call->kind >= CALL_MAPPED && call->kind <= CALL_CANCELED &&
         call->count == 0)
@@ -569,8 +569,7 @@ struct heap_answer call_sequence_heap_answer(struct call_sequence *s, const uint
         answer.id = living[choice_below(c, living_count)];
         return answer;
     }
-    for (uint32_t i = 0; i < living_count;
-         i++) /* ids may come back, but not those of living ones */
+    for (uint32_t i = 0; i < living_count; i++) /* ids may repeat, but not those of living heaps */
         if (living[i] == answer.id) {
             answer.id++;
             i = UINT32_MAX;

@@ -1,4 +1,4 @@
-/** Where a random sequence takes its decisions from: a seeded generator, or the bytes of a file. */
+/** Source of a random sequence's decisions: a seeded generator, or the bytes of a file. */
 #ifndef TESTS_CORE_CHOICE_H
 #define TESTS_CORE_CHOICE_H
 
@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 struct choice {
-    uint64_t state;       ///< of the generator
-    const uint8_t *bytes; ///< if not NULL, decisions are read from here
+    uint64_t state;       ///< state of the generator
+    const uint8_t *bytes; ///< if not NULL: source of decisions
     size_t size, at;
 };
 
@@ -31,25 +31,25 @@ static inline uint64_t choice_u64(struct choice *c)
     return choice_bits(c, 8);
 }
 
-/** 0 to n - 1; 0 for n = 0. */
+/** Returns 0 to n - 1, or 0 if n is 0. */
 static inline uint32_t choice_below(struct choice *c, uint32_t n)
 {
     return n ? (uint32_t)(choice_bits(c, n <= 256 ? 1 : 4) % n) : 0;
 }
 
-/** low to high, both included. */
+/** Returns low to high, inclusive. */
 static inline uint32_t choice_range(struct choice *c, uint32_t low, uint32_t high)
 {
     return low + choice_below(c, high - low + 1);
 }
 
-/** True once in n times. */
+/** Returns true once in n times. */
 static inline bool choice_once_in(struct choice *c, uint32_t n)
 {
     return choice_below(c, n) == 1 % n;
 }
 
-/** False from the moment when all bytes are used up; always true for a generator. */
+/** Returns false once all bytes are used. Always true for a generator. */
 static inline bool choice_goes_on(const struct choice *c)
 {
     return !c->bytes || c->at < c->size;

@@ -11,7 +11,7 @@
 
 #define MAX_HEAPS 1024
 
-/* What an application would keep: a copy of a MinMip map, brought up to date by rectangles. */
+/* An application's copy of a MinMip map, updated by rectangles. */
 struct published {
     SluiceTextureId id;
     uint8_t *texels;
@@ -29,7 +29,7 @@ struct differential {
     uint32_t heaps[MAX_HEAPS];
     struct published published[64];
     uint64_t coverage[CALL_KIND_COUNT][64]; ///< by result + 32
-    uint64_t entries[CALL_KIND_COUNT];      ///< of all lists that were handed out
+    uint64_t entries[CALL_KIND_COUNT];      ///< number of list entries by kind of call
     uint64_t restored, textures, tiles, calls;
     uint64_t events[NAIVE_EVENT_COUNT];
     bool failed;
@@ -39,7 +39,7 @@ struct differential {
 static void fail(struct differential *d, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Keeps the first message. */
+/* Keeps the first message only. */
 static void fail(struct differential *d, const char *format, ...)
 {
     if (d->failed)
@@ -201,7 +201,7 @@ static void compare_statistics(struct differential *d, const SluiceStreamedTextu
              d->allocator.live_bytes);
 }
 
-/* Bytes that are compared for the calls that write rows, gaps between them included. */
+/* Number of compared bytes in calls that write rows, gaps included. */
 static size_t row_bytes(const struct call *c)
 {
     return c->kind == CALL_WRITE_MINMIP || c->kind == CALL_WRITE_RECT ? CALL_MAX_MAP : 0;
@@ -315,7 +315,7 @@ static struct published *published_copy(struct differential *d, const struct nai
     return p;
 }
 
-/* Brings the published copies up to date and compares those that have no update left to read. */
+/* Updates the published copies. Compares copies without pending updates. */
 static void publish(struct differential *d)
 {
     struct naive_manager *n = &d->naive;
@@ -340,7 +340,7 @@ static void publish(struct differential *d)
     }
 }
 
-/* A list call that fails leaves the count as it was. */
+/* A failing list call must not change the count. */
 static void check_count_is_kept(struct differential *d)
 {
     if (call_is_list(d->call.kind) && d->call.null != NULL_FIRST && d->call.null != NULL_MANAGER &&
@@ -348,7 +348,7 @@ static void check_count_is_kept(struct differential *d)
         fail(d, "the failed call changed the count to %" PRIu32, d->seen.count);
 }
 
-/* The entry behind the room of a list, which nobody may write. */
+/* Returns the entry behind the end of the list, which must not be written. */
 static void *entry_behind(struct differential *d, size_t *size)
 {
     struct outcome *out = &d->seen;
@@ -373,7 +373,7 @@ static void check_behind(struct differential *d)
             fail(d, "more was written than there was room for");
 }
 
-/* Makes d->call, alone. Returns whether memory was refused. */
+/* Makes d->call on the manager. Returns whether memory was refused. */
 static bool make_call(struct differential *d)
 {
     const struct call *call = &d->call;
@@ -395,7 +395,8 @@ static bool make_call(struct differential *d)
     return refused;
 }
 
-/* Makes d->call on both and compares; with one allocation more each time as long as they fail. */
+/* Makes d->call on both and compares. Repeats it with one more allocation each time until it
+ * succeeds. */
 static void step(struct differential *d)
 {
     struct call *call = &d->call;
@@ -412,7 +413,7 @@ static void step(struct differential *d)
         return;
     if (refused && (call->kind == CALL_TILES_TO_MAP || call->kind == CALL_TILES_TO_UNMAP) &&
         d->seen.result == SLUICE_INCOMPLETE && d->seen.count > 0 && call->null == NULL_NONE)
-        call->room = d->seen.count; /* host memory ran out after these: as if for lack of room */
+        call->room = d->seen.count; /* after these, lack of host memory acts like lack of room */
     memset(d->expected.bytes, 0xEE, row_bytes(call));
     naive_call(&d->naive, call, &d->seen, &d->expected);
     compare_outcomes(d);
@@ -444,7 +445,7 @@ static void start(struct differential *d, struct choice choice)
         fail(d, "sluiceCreateStreamedTextureManager says %s", sluiceGetResultName(result));
 }
 
-/* Repeated calls of DefragmentTiles end. */
+/* Repeats DefragmentTiles until it makes no move. */
 static void defragment_to_the_end(struct differential *d, FILE *log)
 {
     uint64_t left = (uint64_t)d->naive.heap_count * d->naive.capacity + 1;

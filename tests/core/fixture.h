@@ -1,4 +1,4 @@
-/** A manager with counted memory and fake heaps, and the few calls that every fact is made of. */
+/** A manager with counted memory and fake heaps, and short forms of frequent calls. */
 #ifndef TESTS_CORE_FIXTURE_H
 #define TESTS_CORE_FIXTURE_H
 
@@ -10,13 +10,13 @@
 #define FIXTURE_HEAPS 256
 #define FIXTURE_ROOM 2048
 
-/** Hands out ids from 0, the lowest free one first; checks what comes back. */
+/** Hands out the lowest free id, from 0. Checks released ids. */
 struct fake_heaps {
-    uint32_t limit; ///< heaps that may live at a time
+    uint32_t limit; ///< limit of living heaps
     uint32_t living_count;
-    uint32_t asked, refused, released; ///< calls so far
-    uint64_t size;                     ///< of the last heap, bytes
-    bool answers_duplicate;            ///< success, but with the id of a living heap
+    uint32_t asked, refused, released; ///< number of calls so far
+    uint64_t size;                     ///< bytes of the last heap
+    bool answers_duplicate;            ///< true: succeeds with the id of a living heap
     bool living[FIXTURE_HEAPS];
 };
 
@@ -24,17 +24,18 @@ struct fixture {
     SluiceStreamedTextureManager *manager;
     struct failing_allocator memory;
     struct fake_heaps heaps;
-    uint32_t count; ///< of the last list
+    uint32_t count; ///< length of the last list
     SluiceTile tiles[FIXTURE_ROOM];
 };
 
-/** Any number of heaps; change heaps.limit for a budget. */
+/** Creates a manager without a limit of heaps. Set heaps.limit for a budget. */
 void fixture_open(struct fixture *f, uint32_t heap_capacity, bool always_map_packed);
 
-/** Destroys the manager; every byte and every heap must have come back. */
+/** Destroys the manager. All bytes and heaps must have been returned. */
 void fixture_close(struct fixture *f);
 
-/** Full chain; levels at least one tile large both ways are regular, the rest is in one tile. */
+/** Describes a full chain. Levels of at least one tile in both directions are regular; the others
+ * share one packed tile. */
 SluiceStreamedTextureDesc full_chain(uint32_t width, uint32_t height, uint32_t tile_width,
                                      uint32_t tile_height);
 
@@ -43,11 +44,11 @@ SluiceStreamedTextureDesc small_texture(void);
 
 SluiceTextureId fixture_add(struct fixture *f, const SluiceStreamedTextureDesc *desc);
 SluiceTextureId fixture_add_small(struct fixture *f);
-/** And missesToExpire 1, which is what the fixture begins with. */
+/** Sets the configuration, with missesToExpire 1 like the fixture's default. */
 void fixture_configure(struct fixture *f, uint32_t standby, uint32_t max_heaps, uint32_t attempts,
                        uint64_t retry_delay);
 
-/** The same level for every region; a whole map; one region, the others untouched. */
+/** Feeds one level for all regions; a whole map; or one region with the others untouched. */
 void fixture_feed(struct fixture *f, SluiceTextureId id, uint8_t level, uint64_t time,
                   uint64_t timeout);
 void fixture_feed_map(struct fixture *f, SluiceTextureId id, const uint8_t *map, uint64_t time,
@@ -55,19 +56,19 @@ void fixture_feed_map(struct fixture *f, SluiceTextureId id, const uint8_t *map,
 void fixture_feed_region(struct fixture *f, SluiceTextureId id, uint32_t region, uint8_t level,
                          uint64_t time, uint64_t timeout);
 
-/** Fill tiles and count; the result is returned. */
+/** Fill tiles and count. Return the call's result. */
 SluiceResult fixture_to_map(struct fixture *f, SluiceTextureId id);
 SluiceResult fixture_to_map_at_most(struct fixture *f, SluiceTextureId id, uint32_t room);
 SluiceResult fixture_to_unmap(struct fixture *f, SluiceTextureId id, uint64_t retire_value);
 SluiceResult fixture_to_cancel(struct fixture *f, SluiceTextureId id);
 
-/** What the last list held is mapped, one call per tile. */
+/** Reports all tiles of the last list as mapped, one call per tile. */
 void fixture_answer_mapped(struct fixture *f);
 
-/** Lists and maps until nothing more is handed out. */
+/** Lists and maps tiles until none is handed out. */
 void fixture_load(struct fixture *f);
 
-/** Whether the last list held exactly these tiles of `id`, in this order. */
+/** Returns whether the last list held exactly these tiles of `id`, in this order. */
 bool fixture_listed(const struct fixture *f, SluiceTextureId id, uint32_t count,
                     const uint32_t *tiles);
 
@@ -80,17 +81,17 @@ SluiceTile fixture_tile(const struct fixture *f, SluiceTextureId id, uint32_t ti
 SluiceStreamedTextureStatistics fixture_statistics(const struct fixture *f);
 SluiceStreamedTextureLayout fixture_layout(const struct fixture *f, SluiceTextureId id);
 
-/** Prints the tile and both states when they differ. */
+/** Prints the tile and both states if they differ. */
 void check_state(const struct fixture *f, SluiceTextureId id, uint32_t tile,
                  SluiceTileState expected, int line);
 
 #define CHECK_STATE(f, id, tile, state)                                                            \
     check_state(f, id, tile, SLUICE_TILE_STATE_##state, __LINE__)
 
-/** A hash over everything that can be seen without changing anything, host memory apart. */
+/** Hashes all visible state except host memory. */
 uint64_t fixture_digest(const struct fixture *f, uint32_t id_count, const SluiceTextureId *ids);
 
-/** Numbers that differ from call to call and not from run to run. */
+/** Returns pseudo-random numbers, equal in each run. */
 uint32_t next_random(uint64_t *state);
 
 #endif /* TESTS_CORE_FIXTURE_H */

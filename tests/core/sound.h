@@ -1,25 +1,26 @@
-/** Every invariant that can be looked at, after every call. */
+/** Checks all visible invariants after every call. */
 #ifndef TESTS_CORE_SOUND_H
 #define TESTS_CORE_SOUND_H
 
 #include "core/fixture.h"
 
 /**
- * The manager's own invariants; every slot of every heap is free, retiring or held by one counted
- * tile; the statistics say how much memory is taken.
+ * Checks the manager's own invariants, and that every slot is free, retiring or held by one counted
+ * tile. The statistics must match the allocated memory.
  */
 void check_sound(const struct fixture *f, int line);
 
 #define CHECK_SOUND(f) check_sound(f, __LINE__)
 
-/** A call that must succeed, and what must hold after it. */
+/** Makes a call that must succeed, and checks all invariants. */
 #define SOUND(f, call)                                                                             \
     do {                                                                                           \
         CHECK_OK(call);                                                                            \
         CHECK_SOUND(f);                                                                            \
     } while (0)
 
-/** A call that must be refused and change nothing that can be seen of these textures. */
+/** Makes a call that must be refused, and checks that no visible state of these textures
+ * changed. */
 #define REFUSED(f, id_count, ids, call, expected)                                                  \
     do {                                                                                           \
         uint64_t digest_before_ = fixture_digest(f, id_count, ids);                                \
@@ -28,16 +29,16 @@ void check_sound(const struct fixture *f, int line);
         assert_true(fixture_digest(f, id_count, ids) == digest_before_);                           \
     } while (0)
 
-/** As those of the fixture, with a check after the call. */
+/** The fixture's functions of these names, with a check after each call. */
 void sound_feed(struct fixture *f, SluiceTextureId id, uint8_t level, uint64_t time,
                 uint64_t timeout);
 void sound_feed_region(struct fixture *f, SluiceTextureId id, uint32_t region, uint8_t level,
                        uint64_t time, uint64_t timeout);
 
-/** All tiles that the last list held, one answer per tile, with a check after each. */
+/** Reports all tiles of the last list as mapped, one answer per tile, with a check after each. */
 void sound_answer_mapped(struct fixture *f);
 
-/** Lists and maps until nothing more is handed out: one answer per run of equal textures. */
+/** Lists and maps tiles until none is handed out, one answer per run of equal textures. */
 void sound_load(struct fixture *f);
 
 #endif /* TESTS_CORE_SOUND_H */
