@@ -1,7 +1,9 @@
-/* Which moves are made is up to the manager; here is what every one of them must keep to. */
+/* Rules for moves. The manager chooses the moves; these checks accept any choice that follows the
+ * rules. */
 #include "core/naive_manager.h"
 
-/* The living tile that a move names, if it is where the move says; NULL with a complaint. */
+/* Returns the living tile that a move names, if it is at the named position. Otherwise complains
+ * and returns NULL. */
 static struct naive_tile *moved_tile(struct naive_manager *n, const SluiceTileMove *m, uint32_t i)
 {
     SluiceResult result;
@@ -42,7 +44,7 @@ static void make_move(struct naive_manager *n, const struct call *call, const Sl
     n->totals.movedTotal++;
 }
 
-/* With room for all moves, no heap is left half empty: a move that empties none is not made. */
+/* With room for all moves, every move must help to empty a heap. */
 static void check_sources_are_empty(struct naive_manager *n, const struct outcome *seen)
 {
     for (uint32_t i = 0; i < seen->count; i++) {
@@ -52,8 +54,8 @@ static void check_sources_are_empty(struct naive_manager *n, const struct outcom
     }
 }
 
-/* Whether all tiles of the heap could be moved to heaps that are at least as full, or, if they are
- * to be evicted, to heaps for packed tiles. */
+/* Returns whether all tiles of the heap could move to heaps that are at least as full. For
+ * evacuation: to heaps for packed tiles. */
 static bool could_be_emptied(const struct naive_manager *n, const struct naive_heap *heap,
                              bool evicts)
 {
@@ -97,7 +99,7 @@ static bool has_packed_tile(const struct naive_manager *n, const struct naive_he
     return false;
 }
 
-/* Returns the heap with the fewest tiles, the last one of equals; NULL if none can be evacuated. */
+/* Returns the heap with the fewest tiles, the last among equals. NULL: none can be evacuated. */
 static const struct naive_heap *heap_to_evacuate(const struct naive_manager *n)
 {
     const struct naive_heap *best = NULL;
@@ -155,7 +157,7 @@ SluiceResult naive_defragment(struct naive_manager *n, const struct call *call,
         make_move(n, call, &seen->moves[i], i);
     }
     out->count = seen->count;
-    if (seen->count < call->room) { /* there are no more moves to make */
+    if (seen->count < call->room) { /* no move is left */
         check_sources_are_empty(n, seen);
         for (uint32_t i = 0; i < n->heap_count; i++)
             if (could_be_emptied(n, &n->heaps[i], false))

@@ -1,17 +1,17 @@
-/* Wanted tiles that make room: "Evicting" of docs/manager-specification.md. */
+/* Eviction of requested tiles: "Evicting" in docs/manager-specification.md. */
 #include "core/naive_manager.h"
 
 #include <stdlib.h>
 
 enum { MAX_LOOKED_AT = 1024 };
 
-/* How many tiles a call may still look at, in all and of each level. */
+/* Number of tiles that a call may still examine, in total and per level. */
 struct looks {
     uint32_t all;
     uint32_t of_level[SLUICE_MAX_MIP_LEVELS];
 };
 
-/* Of the MAPPED regular tiles of a level the one that stands first. */
+/* Returns the first MAPPED regular tile of a level in eviction order. */
 static struct naive_ref first_mapped(const struct naive_manager *n, uint32_t level)
 {
     uint32_t count;
@@ -99,7 +99,7 @@ static void evict(struct naive_manager *n, struct looks *looks, struct naive_til
         looks->of_level[tile->level] = left;
 }
 
-/* The tile that makes room for a request, NULL if none does. */
+/* Returns the tile to evict for a request, or NULL. */
 static struct naive_tile *find_for(struct naive_manager *n, struct looks *looks,
                                    const struct naive_tile *request)
 {

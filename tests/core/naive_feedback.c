@@ -1,4 +1,4 @@
-/* What feedback maps ask for, of textures and of their followers. */
+/* Requests of feedback maps, for textures and their followers. */
 #include "core/naive_manager.h"
 
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static uint64_t region_end(uint32_t r, uint32_t region_size, uint32_t size)
     return end < size ? end : size;
 }
 
-/* The map's time is noted even where nothing else is. */
+/* Notes the map's time, even if nothing else is noted. */
 static void note_time(struct naive_manager *n, struct naive_texture *t, uint64_t time,
                       uint64_t timeout)
 {
@@ -38,7 +38,7 @@ static bool asks_for_anything(const struct naive_texture *t, const uint8_t *aske
     return false;
 }
 
-/* `asked` is `a` per region, 255: nothing. The texture keeps it. */
+/* Merges a map. `asked`: `a` by region, 255: nothing. The texture takes ownership. */
 static void merge_map(struct naive_manager *n, struct naive_texture *t, uint8_t *asked,
                       uint64_t time, uint64_t timeout)
 {
@@ -64,7 +64,8 @@ static int64_t clamp_i64(int64_t value, int64_t low, int64_t high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* Whether region r of one texture and region q of the other overlap by more than a border. */
+/* Returns whether region r of one texture and region q of the other overlap by more than a
+ * border. */
 static bool overlap(uint32_t r, uint32_t r_size, uint32_t w, uint32_t q, uint32_t q_size,
                     uint32_t other_w)
 {
@@ -73,7 +74,7 @@ static bool overlap(uint32_t r, uint32_t r_size, uint32_t w, uint32_t q, uint32_
     return x0 * other_w < q1 * w && q0 * w < x1 * other_w;
 }
 
-/* Whether size >= other * 2^d. */
+/* Returns whether size >= other * 2^d. */
 static bool at_least(uint64_t size, uint64_t other, int d)
 {
     return d >= 0 ? size >= other << d : size << -d >= other;

@@ -16,7 +16,7 @@ static uint64_t max_u64(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
-/* A heap for packed tiles is one until it is empty. */
+/* A heap for packed tiles stays one until it is empty. */
 static void note_empty_heaps(struct naive_manager *n)
 {
     for (uint32_t i = 0; i < n->heap_count; i++)
@@ -24,7 +24,7 @@ static void note_empty_heaps(struct naive_manager *n)
             n->heaps[i].packed = false;
 }
 
-/* The heap for regular tiles with the fewest free slots, or the one with the most; NULL: all are
+/* Returns the heap for regular tiles with the fewest free slots, or with the most. NULL: all are
  * full. */
 static struct naive_heap *regular_heap(const struct naive_manager *n, bool fullest)
 {
@@ -47,7 +47,7 @@ static struct naive_heap *empty_heap(const struct naive_manager *n)
     return heap && naive_count_slots(n, heap, NAIVE_SLOT_FREE) == n->capacity ? heap : NULL;
 }
 
-/* The first heap for packed tiles with a free slot; NULL: there is none. */
+/* Returns the first heap for packed tiles with a free slot, or NULL. */
 static struct naive_heap *packed_heap(const struct naive_manager *n)
 {
     struct naive_heap *best = NULL;
@@ -63,7 +63,7 @@ static bool is_separate(const struct naive_manager *n, const struct naive_tile *
     return tile->packed && n->config.separatePackedTiles;
 }
 
-/* A heap that the rules allow a slot to be taken from. There is a free slot. */
+/* Returns a heap from which the rules allow to take a slot. There is a free slot. */
 static const struct naive_heap *choose_heap(struct naive_manager *n, const struct naive_tile *tile)
 {
     struct naive_heap *heap = packed_heap(n), *regular = regular_heap(n, true);
@@ -88,7 +88,7 @@ static uint32_t lowest_free_number(const struct naive_manager *n)
     return number;
 }
 
-/* Takes the next answer that the other manager got. */
+/* Takes the next heap answer of the other manager. */
 static void ask_for_heap(struct naive_manager *n, const struct outcome *seen, struct outcome *out)
 {
     n->heap_refused = true;
@@ -108,7 +108,7 @@ static void ask_for_heap(struct naive_manager *n, const struct outcome *seen, st
         answer.id, number, naive_alloc(n->capacity, sizeof(struct naive_slot)), false};
 }
 
-/* Takes the slot that the other manager took for its tile number `i`, if that is allowed. */
+/* Takes the slot that the other manager took for its tile number `i`, if the rules allow it. */
 static void take_slot(struct naive_manager *n, const struct outcome *seen, uint32_t i,
                       struct naive_tile *tile)
 {
@@ -137,7 +137,7 @@ static void take_slot(struct naive_manager *n, const struct outcome *seen, uint3
     heap->slots[other->slot].use = NAIVE_SLOT_USED;
 }
 
-/* Hands out one tile; false with a complaint if the other manager could not have done so. */
+/* Hands out one tile. Complains and returns false if the other manager could not have done so. */
 static bool hand_out(struct naive_manager *n, struct naive_texture *t, struct naive_tile *tile,
                      const struct outcome *seen, struct outcome *out)
 {
@@ -163,7 +163,8 @@ static bool may_have_more_heaps(const struct naive_manager *n)
     return (most == 0 || n->heap_count < most) && (target == 0 || n->heap_count < target);
 }
 
-/* Slots that a call for one texture leaves to coarser requests if there are no more heaps. */
+/* Returns the slots that a call for one texture must leave to coarser requests, if no more heaps
+ * are available. */
 static uint32_t owed_slots(const struct naive_manager *n, const struct call *call,
                            const struct naive_tile *tile)
 {
@@ -212,7 +213,7 @@ bool naive_is_passed_over(const struct naive_manager *n, const struct naive_ref 
            ref->texture->last_wishes[tile - ref->texture->tiles] > tile->level;
 }
 
-/* Of the textures that hold anything, the one whose last map is the oldest. */
+/* Returns the texture with the oldest last map, among textures that hold anything. */
 static struct naive_texture *oldest_texture(struct naive_manager *n)
 {
     struct naive_texture *oldest = NULL;
@@ -253,7 +254,8 @@ void naive_count_standby(const struct naive_manager *n, uint32_t *listed, uint32
     free(refs);
 }
 
-/* Room is left for `unserved` requests, but no slot. Returns whether a texture was forgotten. */
+/* Call when the list has room for `unserved` requests, but no slot is free. Returns whether a
+ * texture was forgotten. */
 static bool make_room(struct naive_manager *n, uint64_t unserved)
 {
     const uint32_t reserved = naive_kept(n), free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
@@ -308,7 +310,7 @@ static struct naive_ref *request_queue(const struct naive_manager *n,
     return refs;
 }
 
-/* Returns whether handing out stopped for lack of slots, then at request number *stopped_at. */
+/* Returns whether handing out stopped for lack of slots. `*stopped_at`: number of that request. */
 static bool hand_out_requests(struct naive_manager *n, const struct call *call,
                               const struct naive_ref *refs, uint32_t count,
                               const struct outcome *seen, struct outcome *out, uint32_t *stopped_at)
@@ -343,7 +345,8 @@ static uint32_t count_canceled(const struct naive_manager *n)
     return count;
 }
 
-/* Whether one more may be handed out; if not, whether that is for lack of room or host memory. */
+/* Returns whether one more tile may be handed out. If not, tells whether room or host memory is
+ * lacking. */
 static bool may_prefetch(struct naive_manager *n, const struct call *call,
                          const struct outcome *seen, const struct outcome *out, bool *cut_short)
 {
@@ -356,7 +359,7 @@ static bool may_prefetch(struct naive_manager *n, const struct call *call,
     return !*cut_short;
 }
 
-/* Returns whether prefetching goes on. */
+/* Returns whether prefetching continues. */
 static bool prefetch_level(struct naive_manager *n, struct naive_texture *t,
                            const struct call *call, const struct outcome *seen, struct outcome *out,
                            bool *cut_short)
@@ -377,7 +380,7 @@ static bool prefetch_level(struct naive_manager *n, struct naive_texture *t,
     return true;
 }
 
-/* Returns whether it was cut short. */
+/* Returns whether prefetching was cut short. */
 static bool prefetch(struct naive_manager *n, const struct call *call, const struct outcome *seen,
                      struct outcome *out)
 {

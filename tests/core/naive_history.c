@@ -1,4 +1,4 @@
-/* What the regions of a texture hold: the section "What a region holds". */
+/* Levels that the regions of a texture hold: the section "What a region holds". */
 #include "core/naive_manager.h"
 
 #include <stdlib.h>
@@ -122,7 +122,7 @@ static uint64_t misses_needed(const struct naive_manager *n, const struct naive_
     return needed < 4096 ? needed : 4096;
 }
 
-/* -1: the tile's size is not the region's times a power of two. */
+/* Returns -1 if the tile's size is not the region's times a power of two. */
 static int log2_ratio(uint32_t tile, uint32_t region)
 {
     for (int s = 0; s < 32; s++)
@@ -156,7 +156,7 @@ bool naive_would_believe(const struct naive_manager *n, const struct naive_textu
     return level_to_delete(misses_needed(n, t), s, misses) <= level;
 }
 
-/* Returns whether nothing is left. */
+/* Returns whether no level is left. */
 static bool delete_levels(struct naive_manager *n, const struct naive_texture *t,
                           struct naive_span *span, uint32_t below)
 {

@@ -1,4 +1,4 @@
-/* What becomes of one tile, and of its slot. */
+/* State changes of a tile and its slot. */
 #include "core/naive_manager.h"
 
 #include <stdlib.h>
@@ -113,7 +113,7 @@ void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint3
     case SLUICE_TILE_STATE_ALLOCATED:
     case SLUICE_TILE_STATE_MAPPED:
     case SLUICE_TILE_STATE_FAILED:
-    case SLUICE_TILE_STATE_GIVEN_UP: abort(); /* these were wanted already */
+    case SLUICE_TILE_STATE_GIVEN_UP: abort(); /* already wanted */
     }
 }
 
@@ -148,10 +148,10 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
         break;
     case SLUICE_TILE_STATE_MAPPED: naive_stand_by(n, tile); break;
     case SLUICE_TILE_STATE_CANCELED: break;
-    case SLUICE_TILE_STATE_STANDBY: /* an evicted one stays listed */
+    case SLUICE_TILE_STATE_STANDBY: /* an evicted tile stays listed */
         n->events[NAIVE_EVICTED_UNWANTED]++;
         break;
-    case SLUICE_TILE_STATE_FREE: abort(); /* it was not wanted */
+    case SLUICE_TILE_STATE_FREE: abort(); /* not wanted */
     }
 }
 
@@ -183,13 +183,13 @@ void naive_limit_standby(struct naive_manager *n)
     list_standby(n, true, n->config.numExtraStandbyTiles);
 }
 
-/* FAILED tiles in the order in which they become due. */
+/* Lists FAILED tiles in the order of their due times. */
 static struct naive_ref *collect_failed(struct naive_manager *n, const struct naive_texture *only,
                                         uint32_t *count)
 {
     struct naive_ref *refs = naive_collect(n, only, SLUICE_TILE_STATE_FAILED, count);
     for (uint32_t i = 0; i < *count; i++) {
-        /* Relative to now, moved up by half of the range: sorts serial numbers right. */
+        /* Shifted by half of the range relative to now, so that wrapping times sort correctly. */
         refs[i].key[0] = refs[i].tile->due - n->time + ((uint64_t)1 << 63);
         refs[i].key[1] = refs[i].tile->failed_at;
     }
