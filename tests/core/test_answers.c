@@ -128,7 +128,7 @@ static void an_empty_answer_is_fine(void **state)
     fixture_close(&f);
 }
 
-/* Brings the six tiles into eight states: one per step, and stops before step `state`. */
+/* Brings the six tiles into eight states, one per step, and stops before step `state`. */
 static SluiceTextureId reach(struct fixture *f, SluiceTileState state)
 {
     const uint32_t all[] = {0, 1, 2, 3, 4, 5};
@@ -190,12 +190,12 @@ static void removal_is_right_in_every_state(void **state)
         const uint32_t tile = 0;
         for (uint32_t i = 0; i < 3; i++) /* late answers */
             CHECK_RESULT(answers[i](f.manager, id, 1, &tile), SLUICE_ERROR_STALE_TEXTURE);
-        SluiceTextureId next = fixture_add_small(&f); /* the same index, another texture */
+        SluiceTextureId next = fixture_add_small(&f); /* a new texture with the same index */
         for (uint32_t i = 0; i < 3; i++)
             CHECK_RESULT(answers[i](f.manager, id, 1, &tile), SLUICE_ERROR_STALE_TEXTURE);
         for (uint32_t i = 0; i < 6; i++)
             CHECK_STATE(&f, next, i, FREE);
-        fixture_feed(&f, next, 0, 5000, 0); /* due retries of the old one included */
+        fixture_feed(&f, next, 0, 5000, 0); /* includes due retries of the old texture */
         fixture_load(&f);
         CHECK_STATE(&f, next, 0, MAPPED);
         CHECK_OK(sluiceCompleteRetireValue(f.manager, 7));

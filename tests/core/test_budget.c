@@ -5,7 +5,7 @@ static void pass(struct fixture *f, SluiceTextureId id, uint64_t time)
     fixture_feed(f, id, SLUICE_MIP_UNTOUCHED, time, 0);
 }
 
-/* Heaps of 6 slots, at most `limit`; the first texture fills one of them. */
+/* Opens heaps of 6 slots, at most `limit`. The first texture fills one of them. */
 static SluiceTextureId open_full(struct fixture *f, uint32_t limit)
 {
     fixture_open(f, 6, false);
@@ -51,7 +51,7 @@ static void a_refusal_is_the_budget_and_is_heard_once_per_call(void **state)
         CHECK_STATE(&f, id, 0, REQUESTED);
     }
     uint32_t count = 0;
-    CHECK_OK(sluiceGetTilesToMap(f.manager, id, &count, NULL)); /* asking how many asks no heap */
+    CHECK_OK(sluiceGetTilesToMap(f.manager, id, &count, NULL)); /* a query requests no heap */
     assert_int_equal(count, 6);
     assert_int_equal(f.heaps.refused, 3);
     f.heaps.limit = 2; /* there is room after all */
@@ -87,7 +87,7 @@ static void the_heap_cap_is_kept_without_asking(void **state)
     fixture_configure(&f, 0, 2, 0, 0);
     CHECK_OK(fixture_to_map(&f, id));
     assert_int_equal(f.heaps.asked, 2);
-    fixture_configure(&f, 0, 1, 0, 0); /* below what lives: releases none */
+    fixture_configure(&f, 0, 1, 0, 0); /* below the number of living heaps: releases none */
     assert_int_equal(f.heaps.living_count, 2);
     fixture_close(&f);
 }
@@ -106,7 +106,7 @@ static void wanted_tiles_make_room_for_coarser_requests_only(void **state)
         CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
         fixture_answer_mapped(&f);
     }
-    assert_int_equal(loads, 2); /* two of level 0 made room, and that was all */
+    assert_int_equal(loads, 2); /* two evictions of level 0 made room, and no more */
     CHECK_STATE(&f, id, 5, MAPPED);
     CHECK_STATE(&f, id, 4, MAPPED);
     CHECK_STATE(&f, full, 5, MAPPED);
@@ -139,7 +139,7 @@ static void a_texture_that_gets_no_more_maps_gives_way(void **state)
     fixture_close(&f);
 }
 
-/* 16 slots or more: one in 16 is kept, so that new textures show something at once. */
+/* With 16 slots or more, one in 16 is reserved, so that new textures show something at once. */
 static void the_last_slots_are_for_packed_tiles(void **state)
 {
     (void)state;
@@ -187,7 +187,7 @@ static void the_global_bias_rises_with_the_demand_and_falls_with_the_budget(void
     fixture_close(&f);
 }
 
-/* Eight textures ask for far too much until all that is seen is a small one. */
+/* Eight textures request far too much, until only a small one is visible. */
 static void check_bias_after_a_cut(uint64_t cut)
 {
     struct fixture f;
@@ -236,11 +236,12 @@ static void standby_is_evicted_oldest_first_as_many_as_needed(void **state)
     fixture_feed_region(&f, id, 0, 0, 1, 0);
     assert_int_equal(listed_for_unmapping(&f), 0);
     CHECK_RESULT(fixture_to_map_at_most(&f, id, 1), SLUICE_BUDGET_REACHED);
-    assert_int_equal(listed_for_unmapping(&f), 3); /* as many as wait, whatever the room */
+    assert_int_equal(listed_for_unmapping(&f),
+                     3); /* as many as there are waiting requests, whatever the list's room */
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
     assert_int_equal(listed_for_unmapping(&f), 3);
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
-    assert_int_equal(listed_for_unmapping(&f), 3); /* asking again takes no more */
+    assert_int_equal(listed_for_unmapping(&f), 3); /* another call evicts no more tiles */
     f.count = 1;
     CHECK_RESULT(sluiceGetTilesToUnmap(f.manager, full, 6, &f.count, f.tiles), SLUICE_INCOMPLETE);
     assert_true(LISTED(&f, full, 0));
@@ -249,7 +250,7 @@ static void standby_is_evicted_oldest_first_as_many_as_needed(void **state)
     CHECK_OK(fixture_to_unmap(&f, full, 7));
     assert_true(LISTED(&f, full, 1, 2));
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
-    assert_int_equal(listed_for_unmapping(&f), 0); /* slots on their way are counted */
+    assert_int_equal(listed_for_unmapping(&f), 0); /* retiring slots are counted */
     CHECK_OK(sluiceCompleteRetireValue(f.manager, 7));
     CHECK_OK(fixture_to_map(&f, id));
     assert_true(LISTED(&f, id, 5, 4, 0));
@@ -361,7 +362,7 @@ static void retire_values_going_backwards_are_refused(void **state)
     CHECK_RESULT(sluiceDefragmentTiles(f.manager, 9, &moves, &move), SLUICE_ERROR_TIME_BACKWARDS);
     CHECK_RESULT(sluiceCompleteRetireValue(f.manager, 4), SLUICE_ERROR_TIME_BACKWARDS);
     assert_true(fixture_digest(&f, 2, ids) == digest);
-    CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 1, &tile, 0)); /* 0 says none is needed */
+    CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 1, &tile, 0)); /* 0: no upload was made */
     CHECK_OK(fixture_to_unmap(&f, full, 10));
     assert_int_equal(f.count, 5);
     fixture_close(&f);

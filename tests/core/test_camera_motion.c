@@ -1,4 +1,4 @@
-/* Where a camera is expected, against the motions that it is shown. */
+/* Compares predicted cameras with known motions. */
 #include "support/test.h"
 
 #include <sluice/camera_motion.h>
@@ -39,7 +39,7 @@ static struct vec3 cross(struct vec3 a, struct vec3 b)
     return (struct vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/* The usual view matrix: x to the right, y up, z back. */
+/* Writes the usual view matrix: x to the right, y up, z back. */
 static void view_matrix(const struct camera *c, float m[16])
 {
     struct vec3 axes[3];
@@ -62,7 +62,7 @@ static SluiceResult motion_add(SluiceCameraMotion *motion, const struct camera *
     return sluiceAddCameraFrame(motion, m, seconds);
 }
 
-/* `target` is one meter away. */
+/* Predicts with a `target` one meter away. */
 static bool motion_look_ahead(const SluiceCameraMotion *motion, double seconds,
                               struct camera *ahead)
 {
@@ -100,13 +100,13 @@ static bool is_finite(const struct camera *camera)
            isfinite(camera->target.x) && isfinite(camera->target.y) && isfinite(camera->target.z);
 }
 
-/** Looks at what is ahead in -z from x, which is all that moves. */
+/** Returns a camera at x that looks along -z. Only x varies. */
 static struct camera at(double x)
 {
     return (struct camera){{(float)x, 1.6f, 0.0f}, {(float)x, 1.6f, -1.0f}};
 }
 
-/** Shows x = path(t) in frames of uneven length that end at `now`. */
+/** Feeds x = path(t) in frames of uneven length that end at `now`. */
 static SluiceCameraMotion follow(double (*path)(double), double now)
 {
     static const double steps[] = {0.9, 1.3, 0.7, 1.1, 1.0, 0.8};
@@ -232,7 +232,7 @@ static void a_jump_is_no_motion(void **state)
     }
 }
 
-/* Neither motion alone is drawn while the other jumped. */
+/* A jump of position or rotation stops the prediction of both. */
 static void a_jump_while_the_camera_turns_is_no_motion(void **state)
 {
     (void)state;
@@ -259,20 +259,20 @@ static void a_pause_is_forgotten_over(void **state)
     assert_false(motion_look_ahead(&motion, 0.3, &ahead));
     motion = follow(evenly, 1.0);
     camera = at(evenly(1.0));
-    motion_add(&motion, &camera, 1.0); /* the same time again */
+    motion_add(&motion, &camera, 1.0); /* repeats the time */
     assert_false(motion_look_ahead(&motion, 0.3, &ahead));
 }
 
 static uint32_t random_state;
 
-/** From -1 to 1. */
+/** Returns a number from -1 to 1. */
 static double draw(void)
 {
     random_state = random_state * 1664525u + 1013904223u;
     return (double)random_state / 2147483648.0 - 1.0;
 }
 
-/* The speed that fits is at most twice that of the fastest step; speeding up adds as much again. */
+/* The fitted speed is at most twice that of the fastest step. Acceleration adds as much again. */
 static void no_tremble_makes_the_way_longer_than_four_times_the_fastest_step(void **state)
 {
     (void)state;
@@ -312,7 +312,7 @@ static void nothing_makes_a_place_that_is_no_number(void **state)
             struct camera camera = at(0.1 * i);
             float m[16];
             view_matrix(&camera, m);
-            for (int k = 0; k < (round % 4); k++) /* places more often than axes */
+            for (int k = 0; k < (round % 4); k++) /* positions more often than axes */
                 m[k == 2 ? (round / 4) % 16 : 12 + k] =
                     odd[(int)((draw() * 0.5 + 0.5) * odd_count) % odd_count];
             double step = times[(int)((draw() * 0.5 + 0.5) * time_count) % time_count];
@@ -334,7 +334,7 @@ static void nothing_makes_a_place_that_is_no_number(void **state)
     assert_true(refused > 1000 && drawn > 1000);
 }
 
-/* Roll goes with the turn, and the mirrored matrices of other conventions are turned alike. */
+/* Roll is part of the rotation. Mirrored matrices of other conventions rotate alike. */
 static void all_axes_turn_alike(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 /**
- * What calls cost when there is much of something: steps of searches are counted, not timed. Twice
- * as much of it must take at most three times as many steps, where a square would take four.
+ * Cost of calls with many objects, in counted steps of searches. Twice as many objects must cost at
+ * most three times as many steps. Quadratic cost would be four times.
  */
 #include "core/fixture.h"
 
@@ -11,7 +11,7 @@ enum { MOVES = 16 };
 
 static SluiceTextureId ids[20000];
 
-/* Textures of one packed tile, of which the last list of each call names some. */
+/* Adds textures of one packed tile. The last list of each call names some of them. */
 static void add_many(struct fixture *f, uint32_t count)
 {
     const SluiceStreamedTextureDesc desc = full_chain(64, 64, 128, 128);
@@ -56,7 +56,7 @@ static void defragmenting_looks_at_each_heap_a_few_times(void **state)
         uint64_t once = steps_of_defragmenting(FIXTURE_HEAPS / 2, movable);
         uint64_t twice = steps_of_defragmenting(FIXTURE_HEAPS, movable);
         check_growth(once, twice);
-        assert_true(twice < 30 * FIXTURE_HEAPS); /* looking at all for each is 65 536 at least */
+        assert_true(twice < 30 * FIXTURE_HEAPS); /* examining all for each takes at least 65 536 */
     }
 }
 
@@ -113,7 +113,8 @@ static void failed_tiles_come_back_in_the_order_in_which_they_are_due(void **sta
     uint64_t last_due = 0, last_id = 0;
     uint32_t listed = 0;
     for (uint64_t time = 0; time < 200; time += 7) {
-        CHECK_OK(sluiceReportFailedTiles(f.manager, ids[0], 0, NULL, time)); /* brings the time */
+        CHECK_OK(sluiceReportFailedTiles(f.manager, ids[0], 0, NULL,
+                                         time)); /* brings the time forward */
         CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
         for (uint32_t i = 0; i < f.count; i++, listed++) {
             uint32_t at = (uint32_t)f.tiles[i].textureId;
@@ -127,7 +128,7 @@ static void failed_tiles_come_back_in_the_order_in_which_they_are_due(void **sta
     fixture_close(&f);
 }
 
-/* Each texture has a tile that was given up and that nobody asked for. */
+/* Each texture has a given-up tile without requests. */
 static uint64_t steps_of_removing_what_was_given_up(uint32_t count)
 {
     struct fixture f;

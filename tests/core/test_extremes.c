@@ -1,4 +1,4 @@
-/** The least and the greatest that a description allows. */
+/** Smallest and largest values of a description. */
 #include "core/fixture.h"
 
 #include "core/check.h"
@@ -23,7 +23,7 @@ static SluiceStreamedTextureDesc shape(uint32_t width, uint32_t height, uint32_t
     return d;
 }
 
-/* Two regions' worth of 2^32 tiles along each axis is a product that 64 bits do not hold. */
+/* A region of 2^32 tiles or more along each axis has a product beyond 64 bits. */
 static void a_region_may_be_any_number_of_tiles_large(void **state)
 {
     (void)state;
@@ -41,7 +41,8 @@ static void a_region_may_be_any_number_of_tiles_large(void **state)
     }
 }
 
-/* Loads what random maps want, with too few slots; every state is left behind by some removal. */
+/* Loads the requests of random maps, with too few slots. Each state ends by removal at least
+ * once. */
 static void stream(struct fixture *f, SluiceTextureId id, SluiceTextureId follower, uint64_t begin,
                    uint64_t *random)
 {
@@ -77,7 +78,7 @@ static void every_shape_streams(void **state)
         static const uint32_t levels[] = {0, 1, 5, 21};
         uint32_t tile = tiles[i / 8 % 5], region = regions[i / 40 % 6];
         if (size[0] * (uint64_t)size[1] > 1u << 16 && (tile < 16 || (region && region < 16)))
-            continue; /* the same as smaller ones, but slow */
+            continue; /* covered by smaller sizes; slow */
         struct fixture f;
         fixture_open(&f, 8, i % 2);
         SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,

@@ -1,4 +1,4 @@
-/** The chances that feedback_rate.h predicts, against the formula in long double. */
+/** Compares the chances predicted by feedback_rate.h with the formula in long double. */
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 #define STEP (1.0L / 8388608)
 
-/* 60 Hz, a second, 1000 textures, 10 a frame: 6 turns in a timeout. */
+/* 60 Hz, 1 s timeout, 1000 textures, 10 per frame: 6 turns per timeout. */
 static SluiceFeedbackRate usual(SluiceFeedbackSelection selection, uint32_t side, bool in_turns)
 {
     return (SluiceFeedbackRate){.structSize = sizeof(SluiceFeedbackRate),
@@ -46,7 +46,7 @@ static uint32_t draw_count(double greatest)
     return (uint32_t)draw_magnitude(1, greatest);
 }
 
-/* Whole frames and whole turns, so that nothing is rounded: a frame lasts a second. */
+/* A frame lasts a second: whole frames and whole turns need no rounding. */
 static SluiceFeedbackRate draw_rate(long double *draws)
 {
     uint32_t turn = draw_count(300), turns = draw_count(1e4), per_frame = draw_count(50);
@@ -105,7 +105,7 @@ static void chosen_probability_is_the_least_step_that_is_enough(void **state)
         CHECK_OK(sluiceChooseFeedbackProbability(&rate, allowed, &p));
         assert_true(miss_of(&rate, (double)p) <= allowed);
         assert_true(fmodl((long double)p, STEP) == 0 && (long double)p >= STEP);
-        if ((long double)p > STEP) /* 1e-12: rounding may decide for either of two steps */
+        if ((long double)p > STEP) /* 1e-12: rounding may choose either of two steps */
             assert_true(draws * log1pl(-((long double)p - STEP)) > logl(allowed) * (1 + 1e-12L));
     }
 }
@@ -117,11 +117,12 @@ static void marks_accumulate_unless_they_are_made_in_turns(void **state)
     SluiceFeedbackRate turns = usual(SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS, 1, true);
     assert_true(fabs(miss_of(&all, 0.001) - pow(0.999, 600)) < 1e-15);
     assert_true(fabs(miss_of(&turns, 0.001) - pow(0.999, 6)) < 1e-15);
-    all.textureCount = turns.textureCount = 7; /* fewer than are read back per frame */
+    all.textureCount = turns.textureCount = 7; /* fewer textures than are read back per frame */
     assert_true(miss_of(&all, 0.001) == miss_of(&turns, 0.001));
 }
 
-/* What is not whole is rounded down: 0.29 * 100 is 29 all the same. */
+/* Fractions of frames and turns are rounded down. 0.29 * 100 counts as 29 despite float
+ * rounding. */
 static void whole_frames_and_turns_count(void **state)
 {
     (void)state;
@@ -132,7 +133,7 @@ static void whole_frames_and_turns_count(void **state)
     rate.frameRate = 103.4;
     assert_true(fabs(miss_of(&rate, 0.5) - 0x1p-29) < 1e-20);
     rate = usual(SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS, 1, true);
-    rate.timeoutSeconds = 3.3; /* 1.98 turns: there is one in some timeouts */
+    rate.timeoutSeconds = 3.3; /* 1.98 turns: some timeouts have one only */
     assert_true(miss_of(&rate, 0.25) == 0.75);
 }
 
@@ -180,7 +181,7 @@ static void ends_of_the_probability_are_never_and_always(void **state)
     }
 }
 
-/* One corner of one pixel: one draw in four frames, whole rounds of them. */
+/* One corner of one pixel: one draw in four frames, in whole rounds. */
 static void shared_corners_need_rounds_of_four_frames(void **state)
 {
     (void)state;
@@ -221,7 +222,7 @@ static void lattice_meets_eight_by_eight_pixels_in_every_frame(void **state)
     assert_true(delay.median == 100 && delay.percentile99 == 100);
 }
 
-/* A single pixel is met once in 64 frames: after n frames 1 - n / 64 are left. */
+/* The lattice visits a pixel once in 64 frames. After n frames the miss chance is 1 - n / 64. */
 static void lattice_meets_one_pixel_in_sixty_four_frames(void **state)
 {
     (void)state;
@@ -237,7 +238,7 @@ static void lattice_meets_one_pixel_in_sixty_four_frames(void **state)
     assert_true(delay.median == 32 && delay.percentile99 == 64);
 }
 
-/* 100 frames are 36 of the lattice further, of whose 64 places that meets 16. */
+/* After 100 frames the lattice is 36 steps further: these turns visit 16 of its 64 positions. */
 static void lattice_in_turns_may_never_come_to_a_pixel(void **state)
 {
     (void)state;

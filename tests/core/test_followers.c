@@ -13,7 +13,7 @@ static SluiceTextureId add(struct fixture *f, uint32_t width, uint32_t height, u
     return fixture_add(f, &desc);
 }
 
-/* Tiles of one level that are wanted, none of which has been handed out yet. */
+/* Counts wanted tiles of one level. None has been handed out. */
 static uint32_t requested_at(const struct fixture *f, SluiceTextureId id, uint32_t level)
 {
     SluiceStreamedTextureLayout layout = fixture_layout(f, id);
@@ -60,7 +60,7 @@ static void levels_shift_by_the_smaller_ratio_rounded_down(void **state)
     }
 }
 
-/* A packed level of the primary is told apart from its coarser ones. */
+/* Levels of the primary that are packed count by their own number. */
 static void levels_are_those_asked_for_not_those_cut_into_tiles(void **state)
 {
     (void)state;
@@ -94,7 +94,7 @@ static void bias_and_limit_of_the_primary_go_over(void **state)
     fixture_close(&f);
 }
 
-/* Whether region p of the one axis and q of the other share ground: cut [0, 1) into W * w cells. */
+/* Returns whether region p of one axis and q of the other overlap: cuts [0, 1) into W * w cells. */
 static bool overlap(uint32_t p, uint32_t p_region, uint32_t p_size, uint32_t q, uint32_t q_region,
                     uint32_t q_size)
 {
@@ -105,9 +105,9 @@ static bool overlap(uint32_t p, uint32_t p_region, uint32_t p_size, uint32_t q, 
     return false;
 }
 
-enum { MOST_REGIONS = 20 }; /* along one axis */
+enum { MOST_REGIONS = 20 }; /* limit along one axis */
 
-/* Which regions of the primary meet which of the follower's, along x and along y. */
+/* Regions of the primary and the follower that overlap, along x and along y. */
 struct meeting {
     bool x[MOST_REGIONS][MOST_REGIONS], y[MOST_REGIONS][MOST_REGIONS];
 };
@@ -128,7 +128,7 @@ static void meet(const SluiceStreamedTextureLayout *from, const SluiceStreamedTe
     }
 }
 
-/* The follower's map, by looking at every pair of regions. */
+/* Computes the follower's map from every pair of regions. */
 static void expected_map(const SluiceStreamedTextureLayout *from, const uint8_t *map,
                          const SluiceStreamedTextureLayout *to, const struct meeting *meeting,
                          int shift, uint8_t *out)
@@ -206,7 +206,7 @@ struct moved_axis {
     SluiceUvWrap wrap;
 };
 
-/* Cell of the follower at numerator / (16 steps), which is on no border. */
+/* Returns the follower's cell at numerator / (16 steps), which is on no border. */
 static uint32_t wrapped_cell(int64_t numerator, int64_t whole, SluiceUvWrap wrap, uint32_t size,
                              uint32_t cell)
 {
@@ -221,7 +221,7 @@ static uint32_t wrapped_cell(int64_t numerator, int64_t whole, SluiceUvWrap wrap
     return (uint32_t)(numerator * size / whole / cell);
 }
 
-/* Looks at points so dense that none of the borders of both grids lies between two of one cell. */
+/* Samples points so densely that every cell of both grids contains one. */
 static void meet_moved(uint32_t from_size, uint32_t from_cell, uint32_t to_size, uint32_t to_cell,
                        const struct moved_axis *axis, bool out[MOST_REGIONS][MOST_REGIONS])
 {
@@ -310,7 +310,7 @@ static void a_detail_map_repeated_8_times_wants_levels_3_coarser(void **state)
     SluiceTextureId primary = add(&f, 512, 512, 64, 64), detail = add(&f, 512, 512, 64, 64);
     const SluiceUvTransform eight = {.scaleU = 8, .scaleV = 8};
     CHECK_OK(sluiceSetPrimaryTexture(f.manager, detail, primary));
-    fixture_feed(&f, primary, 2, 0, 9); /* both have one history */
+    fixture_feed(&f, primary, 2, 0, 9); /* both share one history */
     CHECK_OK(sluiceSetUvTransform(f.manager, detail, &eight));
     assert_null(slc_manager_check(f.manager));
     assert_int_equal(finest_requested(&f, detail), 2); /* until its request expires */
@@ -360,7 +360,7 @@ static void two_primaries_within_the_timeout_are_united(void **state)
     CHECK_STATE(&f, c, 0, REQUESTED);
     CHECK_STATE(&f, c, 1, FREE);
     CHECK_STATE(&f, c, 3, REQUESTED);
-    CHECK_OK(sluiceMatchPrimaryTexture(f.manager, b, c, 17, 5)); /* a's was matched at 12 */
+    CHECK_OK(sluiceMatchPrimaryTexture(f.manager, b, c, 17, 5)); /* a was matched at 12 */
     CHECK_STATE(&f, c, 0, FREE);
     CHECK_STATE(&f, c, 3, REQUESTED);
     fixture_close(&f);
@@ -388,7 +388,7 @@ static void a_primary_that_never_had_a_map_gives_nothing(void **state)
     SluiceTextureId primary = fixture_add_small(&f), follower = fixture_add_small(&f);
     fixture_feed(&f, follower, 0, 0, 10);
     CHECK_OK(sluiceMatchPrimaryTexture(f.manager, primary, follower, 20, 10));
-    CHECK_STATE(&f, follower, 0, REQUESTED); /* no map came, so nothing lapsed */
+    CHECK_STATE(&f, follower, 0, REQUESTED); /* without a map nothing expires */
     fixture_close(&f);
 }
 
@@ -410,7 +410,7 @@ static void an_empty_map_of_the_primary_is_a_map(void **state)
 static void followers_leave_their_set_one_by_one(void **state)
 {
     (void)state;
-    for (uint32_t gone = 0; gone < 8; gone++) { /* which of three, as bits */
+    for (uint32_t gone = 0; gone < 8; gone++) { /* removed followers, as bits */
         struct fixture f;
         fixture_open(&f, 64, false);
         SluiceTextureId primary = fixture_add_small(&f), followers[3];
@@ -428,7 +428,7 @@ static void followers_leave_their_set_one_by_one(void **state)
         CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
         uint32_t next = 0;
         assert_true(f.tiles[next++].textureId == primary);
-        for (uint32_t i = 0; i < 3; i++) /* those left, in the order in which they came */
+        for (uint32_t i = 0; i < 3; i++) /* remaining followers, in the order of their addition */
             if (!(gone >> i & 1))
                 assert_true(f.tiles[next++].textureId == followers[i]);
         assert_int_equal(f.count, next);
@@ -452,7 +452,8 @@ static void a_set_needs_no_call(void **state)
     CHECK_STATE(&f, second, 5, FREE);                              /* from the next map on */
     fixture_feed(&f, primary, 2, 1, 1);
     CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
-    assert_int_equal(f.count, 3); /* the texture, then its followers as they were set */
+    assert_int_equal(
+        f.count, 3); /* the texture, then its followers in the order of sluiceSetPrimaryTexture */
     assert_true(f.tiles[0].textureId == primary && f.tiles[1].textureId == second &&
                 f.tiles[2].textureId == first);
     CHECK_OK(sluiceSetPrimaryTexture(f.manager, second, SLUICE_NO_TEXTURE));
@@ -512,7 +513,7 @@ static void followers_stand_alone_when_their_primary_is_removed(void **state)
     fixture_load(&f);
     CHECK_OK(sluiceRemoveStreamedTexture(f.manager, a, 0));
     CHECK_STATE(&f, b, 0, MAPPED);
-    SluiceTextureId again = fixture_add_small(&f); /* the index of the old primary */
+    SluiceTextureId again = fixture_add_small(&f); /* has the index of the old primary */
     fixture_feed(&f, again, SLUICE_MIP_UNTOUCHED, 10, 0);
     CHECK_STATE(&f, b, 0, MAPPED);
     CHECK_OK(sluiceSetPrimaryTexture(f.manager, c, b)); /* b may be a primary now */
@@ -523,7 +524,7 @@ static void followers_stand_alone_when_their_primary_is_removed(void **state)
     fixture_close(&f);
 }
 
-/* 349 526 regions against 2^20: looking at each pair would take hours. */
+/* 349 526 regions against 2^20: comparing each pair would take hours. */
 static void thin_regions_under_thick_ones_do_not_multiply(void **state)
 {
     (void)state;

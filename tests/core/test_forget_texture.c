@@ -1,5 +1,4 @@
-/** Forgetting a texture of which nothing is wanted, and evicting one: what it gives back, and that
- * it returns. */
+/** Forgetting an unwanted texture, and evicting one: memory that is freed, and reloading. */
 #include "core/sound.h"
 
 #include <string.h>
@@ -134,7 +133,7 @@ static void nothing_stays_of_it_in_host_memory(void **state)
     sound_feed(&f, id, SLUICE_MIP_UNTOUCHED, 2, 0);
     SOUND(&f, sluiceForgetStreamedTexture(f.manager, id, 0));
     const uint64_t before = fixture_statistics(&f).hostMemorySize;
-    for (uint64_t i = 0; i < 50; i++) { /* what it gives back is enough for the next round */
+    for (uint64_t i = 0; i < 50; i++) { /* the freed memory suffices for the next round */
         sound_feed(&f, id, 0, 3 + 2 * i, 0);
         sound_load(&f);
         sound_feed(&f, id, SLUICE_MIP_UNTOUCHED, 4 + 2 * i, 0);

@@ -14,7 +14,7 @@ static void check_in_use(struct fixture *f, SluiceTextureId id, uint32_t heap)
     assert_int_equal(f->heaps.released, 0);
 }
 
-/* One slot of 64 is enough, whatever it is held for. */
+/* One held slot of 64 suffices, in every state. */
 static void a_heap_is_in_use_in_every_state_that_holds_a_slot(void **state)
 {
     (void)state;
@@ -59,7 +59,7 @@ static void a_heap_is_in_use_in_every_state_that_holds_a_slot(void **state)
     fixture_close(&f);
 }
 
-/* Heaps that hold a tile of one of these textures. */
+/* Counts heaps that hold a tile of one of these textures. */
 static uint32_t used_heaps(const struct fixture *f, uint32_t count, const SluiceTextureId *ids)
 {
     bool used[FIXTURE_HEAPS] = {false};
@@ -77,7 +77,7 @@ static uint32_t used_heaps(const struct fixture *f, uint32_t count, const Sluice
 
 enum { CROWD = 60, CROWD_CAPACITY = 8 };
 
-/* A walk past pictures, of which only a few are in sight: each is loaded and dropped in turn. */
+/* Simulates a walk past pictures. Few are visible: each is loaded and dropped in turn. */
 static void a_smaller_working_set_empties_heaps_by_placement_alone(void **state)
 {
     (void)state;
@@ -94,13 +94,13 @@ static void a_smaller_working_set_empties_heaps_by_placement_alone(void **state)
     assert_true(all.heapCount <= (CROWD * 6 + all.reservedSlotCount) / CROWD_CAPACITY + 1);
     assert_int_equal(used_heaps(&f, CROWD, ids), CROWD * 6 / CROWD_CAPACITY);
     bool seen[CROWD] = {false};
-    for (uint32_t i = 0; i < CROWD; i++) { /* one picture in ten stays: all heaps have holes */
+    for (uint32_t i = 0; i < CROWD; i++) { /* one picture in ten stays, so all heaps have holes */
         seen[i] = i % 10 == 0;
         if (!seen[i])
             sound_feed(&f, ids[i], SLUICE_MIP_UNTOUCHED, ++time, 0);
     }
     SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
-    for (uint32_t step = 0; step < 200; step++) { /* one comes, then one goes */
+    for (uint32_t step = 0; step < 200; step++) { /* one is loaded, then one dropped */
         uint32_t come = next_random(&random) % CROWD, go = next_random(&random) % CROWD;
         while (seen[come])
             come = (come + 1) % CROWD;
@@ -113,13 +113,14 @@ static void a_smaller_working_set_empties_heaps_by_placement_alone(void **state)
         seen[come] = true, seen[go] = false;
     }
     assert_int_equal(fixture_statistics(&f).mappedTileCount, CROWD / 10 * 6);
-    /* 36 tiles fill 5 heaps, 42 at the height of a step fill 6; most of 45 have become empty. */
+    /* 36 tiles fill 5 heaps; at most 42 tiles fill 6. Most of the 45 heaps have become empty. */
     assert_true(used_heaps(&f, CROWD, ids) <= 8);
     assert_true(fixture_statistics(&f).heapCount == all.heapCount);
     fixture_close(&f);
 }
 
-/* Few moves at a time until there are none; with every copy completed in between, or no copy. */
+/* Repeats short defragmentations until no move is left. `complete`: completes every copy in
+ * between. */
 static uint32_t defragment_to_the_end(struct fixture *f, uint32_t room, bool complete,
                                       uint64_t *retire)
 {
@@ -137,7 +138,7 @@ static uint32_t defragment_to_the_end(struct fixture *f, uint32_t room, bool com
     }
 }
 
-/* Every heap is left with the one packed tile of one texture, which nothing ever evicts. */
+/* Every heap holds only the packed tile of one texture, which is never evicted. */
 static void packed_tiles_move_too_and_pin_no_heap(void **state)
 {
     (void)state;
@@ -187,7 +188,7 @@ static void defragmentation_ends_and_then_gains_nothing(void **state)
             sound_feed(&f, ids[i], 0, i, 0);
         }
         sound_load(&f);
-        for (uint32_t i = 0; i < 20; i++) /* of each picture something else is still wanted */
+        for (uint32_t i = 0; i < 20; i++) /* other regions of each picture are still requested */
             sound_feed_region(&f, ids[i], next_random(&random) % 4,
                               (uint8_t)(next_random(&random) % 3), 20, 0);
         SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));

@@ -7,7 +7,7 @@ static void say_nothing_wanted(struct fixture *f, SluiceTextureId id, uint64_t t
     fixture_feed(f, id, SLUICE_MIP_UNTOUCHED, time, 0);
 }
 
-/* Three small textures in heaps of 8: the heaps hold 8, 8 and 2 tiles. */
+/* Opens three small textures in heaps of 8 slots. The heaps hold 8, 8 and 2 tiles. */
 static void open_three(struct fixture *f, SluiceTextureId ids[3])
 {
     fixture_open(f, 8, false);
@@ -19,7 +19,7 @@ static void open_three(struct fixture *f, SluiceTextureId ids[3])
     assert_int_equal(f->heaps.living_count, 3);
 }
 
-/* Tiles that hold a slot, per heap; no slot may be held twice. */
+/* Counts tiles with a slot by heap. No slot may be held twice. */
 static void count_slots(const struct fixture *f, uint32_t id_count, const SluiceTextureId *ids,
                         uint32_t capacity, uint32_t used[FIXTURE_HEAPS])
 {
@@ -135,7 +135,7 @@ static void empty_heaps_are_listed_and_released(void **state)
     assert_int_equal(empty_heaps(&f), 2);
     assert_int_equal(fixture_statistics(&f).heapCount, 2);
     assert_int_equal(fixture_statistics(&f).freeSlotCount, 16);
-    SluiceTextureId again[3]; /* the id of the released heap may come again */
+    SluiceTextureId again[3]; /* the id of the released heap may be used again */
     for (uint32_t i = 0; i < 3; i++) {
         again[i] = fixture_add_small(&f);
         fixture_feed(&f, again[i], 0, 1, 0);
@@ -148,7 +148,7 @@ static void empty_heaps_are_listed_and_released(void **state)
     fixture_close(&f);
 }
 
-/* So that a working set at the edge of a heap does not have it released and asked for again. */
+/* Otherwise a working set at the edge of a heap would release and request it repeatedly. */
 static void an_empty_heap_is_listed_only_if_half_a_heap_stays_free(void **state)
 {
     (void)state;
@@ -207,7 +207,7 @@ static void an_allocator_that_answers_a_living_id_has_refused(void **state)
     fixture_feed(&f, more[0], 0, 1, 0);
     fixture_feed(&f, more[1], 0, 1, 0);
     CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
-    assert_int_equal(f.count, 5); /* what was free, but for the slot that is reserved */
+    assert_int_equal(f.count, 5); /* all free slots except the reserved one */
     assert_int_equal(fixture_statistics(&f).heapCount, 3);
     f.heaps.answers_duplicate = false;
     CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
@@ -216,11 +216,11 @@ static void an_allocator_that_answers_a_living_id_has_refused(void **state)
     uint32_t used[FIXTURE_HEAPS];
     count_slots(&f, 5, all, 8, used);
     assert_int_equal(used[3], 6);
-    assert_int_equal(f.heaps.released, 0); /* the living heap was not given back for it */
+    assert_int_equal(f.heaps.released, 0); /* the living heap was not released for it */
     fixture_close(&f);
 }
 
-/* Moves at most `room` tiles; each move must say where the tile was and where it now is. */
+/* Moves at most `room` tiles. Each move must state the tile's old and new slot. */
 static uint32_t defragment(struct fixture *f, uint64_t retire_value, uint32_t room)
 {
     static const uint32_t most = 64;
@@ -306,7 +306,7 @@ static void nothing_moves_when_no_heap_can_be_emptied(void **state)
     fixture_close(&f);
 }
 
-/* Loads and drops at random until heaps are holed; then moves until nothing is left to move. */
+/* Loads and drops at random until heaps have holes, then moves until no move is left. */
 static void repeated_defragmentation_ends_in_the_fewest_heaps(void **state)
 {
     (void)state;

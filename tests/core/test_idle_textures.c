@@ -1,13 +1,13 @@
-/** Textures that get no maps any more: what they hold is room for others when slots are short. */
+/** Textures without new maps: their tiles make room for others when slots are short. */
 #include "core/scene.h"
 
-enum { CAPACITY = 64, TILES = 86 }; /* of a texture of 1024 x 1024 */
+enum { CAPACITY = 64, TILES = 86 }; /* TILES: of a texture of 1024 x 1024 */
 
 static const struct scene_window all_of_it = {0, 0, 8, 8, 0, 0};
 
 static struct scene s;
 
-/* `count` textures in 512 slots; five of them and their reserve fit. */
+/* Opens `count` textures with 512 slots. Five of them and their reserve fit. */
 static void open_scene(uint32_t count)
 {
     scene_open(&s, CAPACITY, 8);
@@ -93,7 +93,7 @@ static void one_that_is_looked_at_again_comes_back(void **state)
     scene_close(&s);
 }
 
-/* Nodes, regions and maps of a texture of 1365 regular tiles are more than those of one of 85. */
+/* A texture with 1365 regular tiles has more nodes, regions and maps than one with 85. */
 static void their_memory_comes_back_too(void **state)
 {
     (void)state;
@@ -113,7 +113,7 @@ static void their_memory_comes_back_too(void **state)
     scene_close(&s);
 }
 
-/* 16 textures, a map of each every `round` frames; they need 1.5 times the slots. */
+/* 16 textures with a map every `round` frames each. They require 1.5 times the slots. */
 static void check_slow_round(uint32_t timeout, bool one_is_fast)
 {
     scene_open(&s, CAPACITY, 8);

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* One call with all that it needs, so that it can be made again. */
+/* A call with all its arguments, so that it can be repeated. */
 struct op {
     uint32_t kind;
     SluiceTextureId a, b;
@@ -131,7 +131,7 @@ static SluiceResult apply(struct fixture *f, const struct op *op, uint64_t *out)
     }
 }
 
-/* Tiles of the texture that an answer is waited for. */
+/* Chooses tiles of the texture that await an answer. */
 static void choose_answers(const struct fixture *f, struct op *op, uint64_t *random)
 {
     uint32_t count = fixture_layout(f, op->a).tileCount;
@@ -164,7 +164,7 @@ static struct op random_op(const struct fixture *f, uint32_t id_count, const Slu
     return op;
 }
 
-/* Ids of the live textures, kept by the test: lowest free index first is not assumed. */
+/* Tracks the ids of live textures, without assuming that the lowest free index comes first. */
 static uint32_t update_ids(struct fixture *f, uint32_t count, SluiceTextureId *ids,
                            SluiceTextureId added)
 {
@@ -178,8 +178,8 @@ static uint32_t update_ids(struct fixture *f, uint32_t count, SluiceTextureId *i
 }
 
 /*
- * Makes the call with room for 0, 1, 2, ... allocations until it succeeds; counts the refusals.
- * Where memory ran out after some tiles were handed out, that counts as all the room there was.
+ * Makes the call with 0, 1, 2, ... allowed allocations until it succeeds, and counts the refusals.
+ * If memory ran out after some tiles were handed out, treats their number as the list's room.
  */
 static uint32_t apply_under_pressure(struct fixture *f, struct op *op, uint32_t id_count,
                                      const SluiceTextureId *ids, uint64_t *out,
@@ -206,7 +206,7 @@ static uint32_t apply_under_pressure(struct fixture *f, struct op *op, uint32_t 
     }
 }
 
-/* A run under pressure and one without make the same decisions, call by call. */
+/* A run with refused allocations and one without must decide alike, call by call. */
 static void check_run(uint64_t seed, bool always_packed, uint32_t refused[KIND_COUNT])
 {
     struct fixture pressed, calm;
@@ -310,8 +310,7 @@ static void creation_survives_every_refused_allocation(void **state)
     assert_int_equal(memory.live_count, 0);
 }
 
-/* A heap that was made but for which there is no memory to count slots goes back, or stays usable.
- */
+/* If no memory is left to track a new heap's slots, the heap is released or stays usable. */
 static void a_heap_is_never_lost_for_lack_of_memory(void **state)
 {
     (void)state;
@@ -337,7 +336,7 @@ static void a_heap_is_never_lost_for_lack_of_memory(void **state)
     }
 }
 
-/* 32 slots are full of fine tiles, one coarser one is asked for; every node is taken. */
+/* 32 slots hold fine tiles, one coarser tile is requested, and every node is used. */
 static SluiceTextureId open_with_a_displaced_tile(struct fixture *f)
 {
     fixture_open(f, 16, true);
@@ -394,7 +393,7 @@ static void a_displaced_tile_is_unmapped_once_there_is_memory_for_its_request(vo
     }
 }
 
-/* A slot that retires needs a node: 1024 without an allocation, of which the first is none. */
+/* A retiring slot needs a node. 1023 nodes are available without an allocation. */
 static void unmapping_ends_where_memory_does_and_goes_on_later(void **state)
 {
     (void)state;
@@ -424,7 +423,7 @@ static void unmapping_ends_where_memory_does_and_goes_on_later(void **state)
     fixture_close(&f);
 }
 
-/* Memory that the nodes of a texture too large for it took is not kept for ever. */
+/* Memory for the nodes of a texture that is too large is freed. */
 static void a_texture_that_is_too_large_leaves_nothing_behind(void **state)
 {
     (void)state;
@@ -439,12 +438,12 @@ static void a_texture_that_is_too_large_leaves_nothing_behind(void **state)
     f.memory.refuse_from = f.memory.calls + 50;
     CHECK_RESULT(sluiceAddStreamedTexture(f.manager, &d, &id), SLUICE_ERROR_OUT_OF_HOST_MEMORY);
     f.memory.refuse_from = UINT64_MAX;
-    assert_true(f.memory.live_bytes < before + 4096); /* of the table of chunks */
+    assert_true(f.memory.live_bytes < before + 4096); /* memory of the table of chunks */
     fixture_close(&f);
 }
 
-/* Two heaps of two slots are full and a fifth tile waits. Returns the heap that it gets when a tile
- * of heap 0 and one of heap 1 have gone. */
+/* Fills two heaps of two slots while a fifth tile waits. Returns the heap of the fifth tile after
+ * one tile of each heap was freed. */
 static uint32_t heap_of_the_fifth_tile(bool fails_before)
 {
     struct fixture f;

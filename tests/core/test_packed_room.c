@@ -1,4 +1,4 @@
-/** Packed tiles come first and have room, also where wanted tiles hold every slot. */
+/** Packed tiles come first and find room, even if wanted tiles hold every slot. */
 #include "core/check.h"
 #include "core/scene.h"
 
@@ -13,7 +13,7 @@ static const struct scene_window all_of_it = {0, 0, 8, 8, 0, 0};
 
 static struct scene s;
 
-/* One texture that wants many more slots than there are, and holds all but the reserved ones. */
+/* Opens a texture that requests many more slots than exist, and holds all but the reserved ones. */
 static void open_full(uint32_t heaps, bool always)
 {
     if (always)
@@ -102,7 +102,7 @@ static void textures_come_one_after_another_up_to_the_reserve(void **state)
     }
 }
 
-/* What packed tiles have taken of the reserve is made good as soon as regular tiles go. */
+/* Packed tiles that used the reserve are compensated as soon as regular tiles are dropped. */
 static void the_reserve_fills_up_again_before_regular_tiles_are_loaded(void **state)
 {
     (void)state;
@@ -150,7 +150,7 @@ static void packed_tiles_stand_first_in_every_list(void **state)
     scene_close(&s);
 }
 
-/* Few slots for many textures: those that come first must not keep the others from view. */
+/* Few slots for many textures: the first ones must not keep the others invisible. */
 static void every_texture_shows_something_as_long_as_packed_tiles_fit(void **state)
 {
     (void)state;
@@ -170,7 +170,7 @@ static void every_texture_shows_something_as_long_as_packed_tiles_fit(void **sta
     }
 }
 
-/** 64x64, all of it in one packed tile. */
+/** Describes 64x64 texels in one packed tile. */
 static SluiceStreamedTextureDesc tiny_texture(bool outside)
 {
     return (SluiceStreamedTextureDesc){.width = 64,
@@ -215,8 +215,8 @@ static void packed_tiles_outside_of_heaps_need_no_slot(void **state)
     fixture_close(&f);
 }
 
-/* Textures that take slots follow `outside` small ones that were in view, and leave it, too.
- * Returns after how many frames another texture has all of its tiles. */
+/* Returns the frames until another texture has all its tiles. Before, `outside` small visible
+ * textures and larger ones come and go. */
 static uint32_t frames_beside(uint32_t outside)
 {
     struct fixture f;
@@ -243,7 +243,7 @@ static uint32_t frames_beside(uint32_t outside)
     assert_null(slc_manager_check(f.manager));
     assert_int_equal(fixture_statistics(&f).mappedTileCount, 6);
     if (outside > 0)
-        CHECK_STATE(&f, ids[0], 0, STANDBY); /* nothing is won by evicting it */
+        CHECK_STATE(&f, ids[0], 0, STANDBY); /* evicting it gains nothing */
     for (uint32_t i = 0; i < outside; i++)
         CHECK_OK(sluiceRemoveStreamedTexture(f.manager, ids[i], 1));
     fixture_close(&f);
@@ -288,7 +288,7 @@ static void packed_tiles_outside_leave_standby_to_tiles_with_slots(void **state)
     fixture_close(&f);
 }
 
-/* A texture that wants far more than there are slots, beside textures that cannot be loaded. */
+/* A texture requests far more than there are slots, beside textures that cannot be loaded. */
 static void blur_beside(uint32_t failing, SluiceStreamedTextureStatistics *now)
 {
     struct fixture f;
