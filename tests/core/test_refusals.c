@@ -9,8 +9,8 @@
 static struct {
     SluiceStreamedTextureManager *manager;
     bool locked;
-    uint32_t count; ///< of messages
-    char text[256]; ///< the last one
+    uint32_t count; ///< number of messages
+    char text[256]; ///< last message
 } rig;
 
 static void keep_line(void *user, SluiceLogSeverity severity, const char *message)

@@ -70,7 +70,7 @@ static void priorities_order_tiles_of_one_level(void **state)
     fixture_feed(&f, ids[0], 0, 0, 100);
     fixture_feed(&f, ids[1], 0, 0, 100);
     const uint64_t calls = f.memory.calls;
-    CHECK_OK(sluiceSetTexturePriority(f.manager, ids[1], 4)); /* of requests that wait, too */
+    CHECK_OK(sluiceSetTexturePriority(f.manager, ids[1], 4)); /* also reorders waiting requests */
     CHECK_OK(sluiceSetTexturePriority(f.manager, ids[2], -9));
     assert_int_equal(f.memory.calls, calls);
     CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
@@ -85,7 +85,7 @@ static void priorities_order_tiles_of_one_level(void **state)
     fixture_close(&f);
 }
 
-/* Checks the places of textures 0 to 2 among requests of one level. */
+/* Checks the positions of textures 0 to 2 among requests of one level. */
 static void check_places(struct fixture *f, const SluiceTextureId ids[3], const uint32_t places[3])
 {
     CHECK_OK(fixture_to_map(f, SLUICE_ALL_TEXTURES));

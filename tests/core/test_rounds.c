@@ -1,9 +1,10 @@
-/* How long a request waits until a finer tile that is seen makes room for it. */
+/* Number of rounds that a request waits until a visible finer tile makes room. */
 #include "core/fixture.h"
 
-enum { FINE = 4 }; /* slots that there are, all taken by tiles of level 0 */
+enum { FINE = 4 }; /* number of slots, all taken by tiles of level 0 */
 
-/* Square, `levels` of them, all regular; the coarsest is one tile, or four if it is alone. */
+/* Adds a square texture with `levels` levels, all regular. The coarsest has one tile, or four if it
+ * is alone. */
 static SluiceTextureId add_square(struct fixture *f, uint32_t levels)
 {
     const uint32_t size = levels > 1 ? 128u << (levels - 1) : 256;
@@ -11,8 +12,8 @@ static SluiceTextureId add_square(struct fixture *f, uint32_t levels)
     return fixture_add(f, &desc);
 }
 
-/* Every texture that holds something gets a map, then what can be is handed out: that is a round.
- * The fine texture's map shows level `seen`. */
+/* Runs a round: every texture that holds something gets a map, then tiles are handed out. The fine
+ * texture's map shows level `seen`. */
 static bool displaced_in_round(struct fixture *f, SluiceTextureId fine, uint8_t seen,
                                SluiceTextureId coarse, uint32_t level, uint64_t time)
 {
@@ -27,7 +28,7 @@ static bool displaced_in_round(struct fixture *f, SluiceTextureId fine, uint8_t 
     return count > 0;
 }
 
-/* The round in which a tile of level 0 makes room for a request that is made in the given one. */
+/* Returns the round in which a tile of level 0 makes room for a request of round `requested`. */
 static uint32_t round_of_displacing(uint32_t level, uint32_t requested)
 {
     struct fixture f;
@@ -66,7 +67,7 @@ static void one_level_is_after_four_rounds_that_end_with_a_fourth(void **state)
         assert_int_equal(round_of_displacing(1, requested), (requested + 3) / 4 * 4 + 4);
 }
 
-/* The same for tiles that their texture's maps do not show any more, but that are still wanted. */
+/* Returns that round for tiles that are still wanted, but no longer in their texture's maps. */
 static uint32_t round_of_displacing_unseen(uint32_t level, uint32_t requested)
 {
     struct fixture f;

@@ -1,6 +1,6 @@
 /*
- * A set against textures that sluiceMatchPrimaryTexture feeds one by one, which never share a
- * history: two managers get the same calls but for that, and must not differ in anything.
+ * Compares a set with single textures that sluiceMatchPrimaryTexture feeds one by one, without a
+ * shared history. Two managers get equal calls otherwise, and must not differ.
  */
 #include "core/fixture.h"
 
@@ -12,12 +12,12 @@ enum { MEMBERS = 7, TILES = 16, REGIONS = TILES * TILES };
 
 struct twins {
     struct fixture set, lone;
-    SluiceTextureId ids[MEMBERS]; ///< the same ones in both
+    SluiceTextureId ids[MEMBERS]; ///< equal in both
     SluiceTextureId followers[MEMBERS];
-    uint32_t follower_count; ///< of the first texture, in the order in which they came
+    uint32_t follower_count; ///< followers of the first texture, in the order of their addition
     uint64_t random, time, retire;
-    bool calm;                               ///< the set seldom changes
-    uint32_t refused, shared, biased, apart; ///< steps with that
+    bool calm;                               ///< true: the set seldom changes
+    uint32_t refused, shared, biased, apart; ///< number of steps with each condition
 };
 
 static uint32_t below(struct twins *t, uint32_t n)
@@ -82,7 +82,7 @@ static void follow(struct twins *t, uint32_t member)
     t->followers[t->follower_count++] = id;
 }
 
-/* A window of the texture, of which some regions do not show; or nothing. */
+/* Makes a map of a window, with gaps; or an empty map. */
 static void make_map(struct twins *t, uint8_t *map)
 {
     memset(map, SLUICE_MIP_UNTOUCHED, REGIONS);
@@ -94,7 +94,8 @@ static void make_map(struct twins *t, uint8_t *map)
                 map[y * TILES + x] = (uint8_t)(level + below(t, 2));
 }
 
-/* With room for 0, 1, 2... allocations, until it does not fail; what failed changed nothing. */
+/* Retries with 0, 1, 2, ... allowed allocations until it succeeds. A failed attempt must change
+ * nothing. */
 static void feed_under_pressure(struct twins *t, const SluiceFeedbackDesc *feedback,
                                 uint64_t timeout)
 {
@@ -184,7 +185,7 @@ static void check_same_lists(const struct twins *t)
     }
 }
 
-/* Most loads succeed at once, some fail, some stay under way. */
+/* Most loads succeed at once. Some fail, some stay in flight. */
 static void hand_out(struct twins *t)
 {
     uint32_t room = below(t, 2) ? FIXTURE_ROOM : below(t, 100);

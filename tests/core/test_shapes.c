@@ -1,11 +1,10 @@
-/* Textures of one description share what follows from it; any number of descriptions may be there.
- */
+/* Textures with equal descriptions share derived data. The number of descriptions is unlimited. */
 #include "core/fixture.h"
 #include "core/same_desc.h"
 
 #include <string.h>
 
-enum { SHAPES = 4000, SHAPES_PER_ROW = 100 }; /* some 16 for each place of the table */
+enum { SHAPES = 4000, SHAPES_PER_ROW = 100 }; /* about 16 per entry of the table */
 
 static SluiceStreamedTextureDesc desc_of(uint32_t number)
 {
@@ -24,7 +23,7 @@ static void check_layout(const struct fixture *f, SluiceTextureId id, uint32_t n
         assert_int_equal(layout.levelFirstTile[l], expected.levelFirstTile[l]);
 }
 
-/* From the oldest, from the newest, and from the middle outwards. */
+/* Returns the order of removal: oldest first, newest first, or from the middle outwards. */
 static uint32_t nth_to_go(uint32_t order, uint32_t n)
 {
     uint32_t side = n % 2 ? SHAPES - 1 - n / 2 : n / 2;
@@ -64,7 +63,7 @@ static void a_second_texture_of_a_description_takes_no_memory_for_it(void **stat
     SluiceStreamedTextureDesc desc = full_chain(1000, 600, 128, 128), changed[10];
     fixture_add(&f, &desc);
     uint64_t one = f.memory.live_bytes;
-    desc.feedbackRegionWidth = desc.feedbackRegionHeight = 128; /* what 0 stands for */
+    desc.feedbackRegionWidth = desc.feedbackRegionHeight = 128; /* the default for 0 */
     fixture_add(&f, &desc);
     const uint64_t packed = sizeof(uint32_t);
     assert_int_equal(f.memory.live_bytes, one + packed);

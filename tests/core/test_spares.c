@@ -6,9 +6,9 @@
 
 #include <string.h>
 
-#define HEADER 32u /* of what is asked for at once */
+#define HEADER 32u /* bytes of the header in each block allocated at once */
 
-static slc_manager m; /* of which only spares and callbacks are used */
+static slc_manager m; /* only spares and callbacks are used */
 
 static struct failing_allocator memory;
 
@@ -18,7 +18,7 @@ static void begin(uint64_t refuse_from)
     m = (slc_manager){.cb = memory.callbacks};
 }
 
-/* The allocator checks that blocks come back with the size that they were asked for. */
+/* The allocator checks that blocks are freed with the size of their allocation. */
 static void blocks_have_the_size_asked_for_and_a_quarter_more_at_most(void **state)
 {
     (void)state;
@@ -56,7 +56,7 @@ static void what_was_given_back_serves_others_of_about_that_size(void **state)
     slc_spares_give(&m, NULL, 1025);
 }
 
-/* However they come and go. All of these sizes are of one class, whose blocks have 512 bytes. */
+/* In any order of use. All these sizes belong to one class with blocks of 512 bytes. */
 static void an_eighth_more_is_held_than_was_in_use_at_once(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 /**
- * Scenes that stand still, of random textures in random budgets: each comes to rest. Every texture
- * gets the map that it got before, so after a while nothing is loaded and the picture stays.
+ * Still scenes of random textures in random budgets come to rest. Every texture repeats its map, so
+ * in the end nothing is loaded and the picture stays.
  */
 #include "core/fixture.h"
 
@@ -12,13 +12,13 @@ enum { TEXTURES = 4, MAX_REGIONS = 4096, LOADS = 64, PATIENCE = 16 };
 
 struct still {
     struct fixture f;
-    uint32_t count, followers; ///< the last textures follow the first one
+    uint32_t count, followers; ///< followers: the last textures follow the first one
     SluiceTextureId ids[TEXTURES];
     uint8_t maps[TEXTURES][MAX_REGIONS];
-    uint32_t periods[TEXTURES]; ///< frames from map to map
-    uint64_t chance;            ///< not 0: state for periods that vary, up to twice as long
-    uint64_t due[TEXTURES];     ///< frame of the next map
-    uint32_t room, latency;     ///< of lists; frames until slots retire
+    uint32_t periods[TEXTURES]; ///< frames between maps
+    uint64_t chance; ///< 0: constant periods; else random state: periods vary up to twice as long
+    uint64_t due[TEXTURES]; ///< frame of the next map
+    uint32_t room, latency; ///< room of lists; latency: frames until slots retire
     uint64_t frame, uploads, last_change;
     uint32_t bias, bias_changes;
 };
@@ -50,7 +50,7 @@ static SluiceStreamedTextureDesc random_desc(uint64_t *seed)
     return desc;
 }
 
-/* All of the texture, a window of it, or levels that differ from region to region. */
+/* Fills a map: all of the texture, a window, or levels that differ by region. */
 static void fill_map(struct still *scene, uint32_t i, uint64_t *seed)
 {
     SluiceStreamedTextureLayout l = fixture_layout(&scene->f, scene->ids[i]);
@@ -64,7 +64,7 @@ static void fill_map(struct still *scene, uint32_t i, uint64_t *seed)
         }
 }
 
-/* From a tenth of what brings the bias to a bit more. */
+/* Sets a budget between a tenth of the bias threshold and a bit above it. */
 static void set_budget(uint32_t capacity, uint64_t *seed)
 {
     uint64_t tiles = fixture_statistics(&s.f).tileCount;
@@ -126,7 +126,7 @@ static void run_frame(uint64_t timeout)
     s.bias = bias;
 }
 
-/* The frame of the last upload, of the last tile that was unmapped, of the last change of bias. */
+/* Checks the frames of the last upload, the last unmapping and the last bias change. */
 static uint64_t check_rest(uint64_t seed, uint32_t frames, uint32_t rest, uint64_t timeout)
 {
     while (s.frame < frames)
@@ -179,8 +179,8 @@ static void open_full(uint32_t count, const SluiceStreamedTextureDesc *desc, uin
     }
 }
 
-/* One step of the bias makes all of these textures a level finer, which is more than four times as
- * many tiles, because the coarser levels do not shrink as fast. */
+/* One step of the bias makes all these textures one level finer. That is more than four times as
+ * many tiles, because coarser levels shrink less. */
 static void a_bias_step_that_fits_only_one_way_is_taken_once(void **state)
 {
     (void)state;
@@ -195,8 +195,8 @@ static void a_bias_step_that_fits_only_one_way_is_taken_once(void **state)
     }
 }
 
-/* What was wanted before a raise counts until the next map comes: it must not raise the bias again.
- */
+/* Requests from before a raise of the bias count until the next map. They must not raise it
+ * again. */
 static void a_texture_that_is_seen_rarely_is_waited_for(void **state)
 {
     (void)state;
@@ -226,7 +226,7 @@ static void a_texture_that_gets_no_maps_any_more_is_not_waited_for_for_good(void
     s.due[1] = UINT64_MAX;
     for (uint32_t i = 1; i < PATIENCE; i++)
         run_frame(1000);
-    assert_int_equal(s.bias, bias); /* what is wanted may still shrink */
+    assert_int_equal(s.bias, bias); /* the requests may still shrink */
     for (uint32_t i = 0; i < 2 * PATIENCE; i++)
         run_frame(1000);
     assert_true(s.bias > bias);

@@ -4,12 +4,12 @@
 
 enum { HEAPS = 6 };
 
-/* Slots of a few heaps, and how many of each are free by the test's own count. */
+/* Slots of a few heaps, and the test's own count of free slots. */
 struct shelf {
     struct slc_tile_heaps heaps;
     struct failing_allocator memory;
     uint32_t capacity, count, next_id;
-    uint32_t index[HEAPS]; ///< what the manager's side calls them
+    uint32_t index[HEAPS]; ///< indices in struct slc_tile_heaps
     uint32_t free[HEAPS];
     uint32_t released;
 };
@@ -54,7 +54,7 @@ static void shelf_close(struct shelf *s)
     assert_int_equal(s->memory.live_bytes, 0);
 }
 
-/* The slots of a heap are taken from 0 up and given back from the top down: a stack. */
+/* Takes slots from 0 up and returns them from the top down, like a stack. */
 static void set_free(struct shelf *s, uint32_t heap, uint32_t free)
 {
     for (; s->free[heap] > free; s->free[heap]--) {
@@ -66,7 +66,7 @@ static void set_free(struct shelf *s, uint32_t heap, uint32_t free)
         slc_tile_heaps_give(&s->heaps, s->index[heap], s->capacity - s->free[heap] - 1);
 }
 
-/* By looking at all of them: the fewest free slots, but some; UINT32_MAX if there are none. */
+/* Returns the fewest free slots above 0 by looking at all heaps; UINT32_MAX: none. */
 static uint32_t fewest_free(const struct shelf *s)
 {
     uint32_t fewest = UINT32_MAX;
@@ -76,7 +76,7 @@ static uint32_t fewest_free(const struct shelf *s)
     return fewest;
 }
 
-/* Takes a slot and gives it back: it must be one of a heap with the fewest free ones. */
+/* Takes and returns a slot. It must belong to a heap with the fewest free slots. */
 static void check_choice(struct shelf *s)
 {
     uint32_t heap = UINT32_MAX, slot = UINT32_MAX, fewest = fewest_free(s), at = 0;
@@ -96,7 +96,7 @@ static void check_choice(struct shelf *s)
     slc_tile_heaps_give(&s->heaps, heap, slot);
 }
 
-/* Free counts on both sides of every border of the bit set: words of 64, words over words. */
+/* Free counts on both sides of every border of the bit set: words of 64, and words over words. */
 static uint32_t border(uint32_t number, uint32_t capacity)
 {
     static const uint32_t borders[] = {0,    64,    128,    4096,   4160,
@@ -138,14 +138,14 @@ static void the_fullest_of_two_is_found_at_every_pair_of_borders(void **state)
                 set_free(&s, 1, border(k, s.capacity));
                 check_choice(&s);
             }
-            set_free(&s, 1, border(i / 2, s.capacity)); /* of large ones each with one other */
+            set_free(&s, 1, border(i / 2, s.capacity)); /* large heaps with one other border each */
             check_choice(&s);
         }
         shelf_close(&s);
     }
 }
 
-/* Counts walk up and down; now and then all the way to a border. */
+/* Counts walk up and down, and sometimes jump to a border. */
 static void random_counts_are_searched_as_by_looking_at_all(void **state)
 {
     (void)state;

@@ -83,7 +83,7 @@ static void wanted_again_before_the_cancel_list_is_read_goes_on_loading(void **s
     fixture_close(&f);
 }
 
-/* Tile 0 was listed for canceling and is wanted again; takes three units of time. */
+/* Tile 0 is listed for canceling and wanted again. Takes three units of time. */
 static SluiceTextureId cancel_and_want_again(struct fixture *f, uint64_t time)
 {
     SluiceTextureId id = fixture_add_small(f);
@@ -258,7 +258,7 @@ static void trim_lists_the_oldest_down_to_what_is_kept(void **state)
     CHECK_OK(fixture_to_unmap(&f, id, 0));
     assert_int_equal(f.count, 0);
     CHECK_OK(sluiceTrimStandbyTiles(f.manager, 4));
-    CHECK_OK(sluiceTrimStandbyTiles(f.manager, 4)); /* those listed do not count again */
+    CHECK_OK(sluiceTrimStandbyTiles(f.manager, 4)); /* listed tiles do not count again */
     CHECK_OK(fixture_to_unmap(&f, id, 0));
     assert_true(LISTED(&f, id, 0, 1));
     CHECK_OK(sluiceTrimStandbyTiles(f.manager, 0));
@@ -293,7 +293,8 @@ static void lists_hand_out_what_there_is_room_for(void **state)
     fixture_close(&f);
 }
 
-/* Of a texture whose regions are 2x2: level 0 has tiles 0 to 3, level 1 has 4, 5 is packed. */
+/* Checks the statistics of a texture whose regions are 2x2: level 0 has tiles 0 to 3, level 1 has
+ * 4, 5 is packed. */
 static void check_wanted(const struct fixture *f, SluiceTextureId id,
                          const SluiceTextureStatistics *s)
 {
@@ -309,7 +310,7 @@ static void check_wanted(const struct fixture *f, SluiceTextureId id,
     assert_int_equal(s->wantedSize, (wanted + any) * (uint64_t)65536);
 }
 
-/* Each resident tile is in its slot, and each slot that has a tile is that tile's. */
+/* Checks that each resident tile is in its slot, and that each used slot has its tile. */
 static void check_slots(const struct fixture *f, const SluiceTextureId *ids, uint32_t count)
 {
     uint32_t used = 0, placed = 0;
@@ -335,7 +336,7 @@ static void check_slots(const struct fixture *f, const SluiceTextureId *ids, uin
     CHECK_RESULT(sluiceGetSlotTile(f->manager, 200, 0, &tile), SLUICE_ERROR_UNKNOWN_HEAP);
 }
 
-/* Against the states of all tiles, and the totals of the manager. */
+/* Checks sums against the states of all tiles, and against the manager's totals. */
 static void check_sums(const struct fixture *f, const SluiceTextureId *ids, uint32_t count)
 {
     const SluiceStreamedTextureStatistics all = fixture_statistics(f);
@@ -415,7 +416,8 @@ static void statistics_of_textures_add_up(void **state)
 
 enum { EVENT_TEXTURES = 4, EVENT_TILES = 6 };
 
-/* What a manager with few slots goes through: loads that come, fail and are canceled, evictions. */
+/* Makes a random step of a manager with few slots: loads arrive, fail and are canceled; tiles are
+ * evicted. */
 static void random_step(struct fixture *f, const SluiceTextureId *ids, uint64_t time,
                         uint64_t *random)
 {
@@ -459,7 +461,7 @@ static void open_for_events(struct fixture *f, SluiceTextureId *ids, uint32_t ca
         ids[k] = fixture_add_small(f);
 }
 
-/* Follows the states of all tiles by events alone. */
+/* Tracks the states of all tiles by events alone. */
 static void follow_events(const struct fixture *f, uint64_t *cursor, uint64_t time,
                           SluiceTileState states[EVENT_TEXTURES][EVENT_TILES], uint32_t reasons[10])
 {
@@ -533,7 +535,7 @@ static void events_that_are_overwritten_are_counted(void **state)
     cursor = 5;
     CHECK_RESULT(sluiceReadTileEvents(f.manager, &cursor, &count, events, &lost),
                  SLUICE_ERROR_INVALID_ARGUMENT);
-    CHECK_OK(sluiceSetTileEventCapacity(f.manager, 5)); /* what was kept is lost */
+    CHECK_OK(sluiceSetTileEventCapacity(f.manager, 5)); /* drops the stored events */
     cursor = 3, count = 8;
     CHECK_OK(sluiceReadTileEvents(f.manager, &cursor, &count, events, &lost));
     assert_true(cursor == 4 && count == 0 && lost == 1);

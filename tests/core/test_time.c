@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Feeds a map that samples nothing: only time passes. */
+/* Feeds an empty map, so that only time passes. */
 static void pass(struct fixture *f, SluiceTextureId id, uint64_t time, uint64_t timeout)
 {
     fixture_feed(f, id, SLUICE_MIP_UNTOUCHED, time, timeout);
@@ -184,7 +184,7 @@ static void lapsed_stays_lapsed_with_a_longer_timeout(void **state)
 static void several_levels_may_lapse_in_one_call(void **state)
 {
     (void)state;
-    for (uint8_t last = 0; last < 4; last++) { /* what the map that lets them lapse asks for */
+    for (uint8_t last = 0; last < 4; last++) { /* levels in the map that makes them expire */
         struct fixture f;
         fixture_open(&f, 16, false);
         const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
@@ -223,7 +223,7 @@ static void a_texture_without_maps_keeps_its_wants(void **state)
     fixture_close(&f);
 }
 
-/* Adds the last list to the hash; addresses of heaps and slots included. */
+/* Hashes the last list, including heaps and slots. */
 static uint64_t hash_list(uint64_t h, const struct fixture *f)
 {
     for (uint32_t i = 0; i < f->count; i++) {
@@ -235,7 +235,7 @@ static uint64_t hash_list(uint64_t h, const struct fixture *f)
     return h;
 }
 
-/* Loads that were started a frame ago end in one of three ways, canceled or not. */
+/* Answers loads of the last frame in one of three ways, whether canceled or not. */
 static void answer_at_random(struct fixture *f, uint32_t count, const SluiceTile *tiles,
                              uint64_t time, uint64_t *random)
 {
@@ -251,7 +251,7 @@ static void answer_at_random(struct fixture *f, uint32_t count, const SluiceTile
     }
 }
 
-/* 300 frames of random feedback with failing loads; a hash of all that came out. */
+/* Runs 300 frames of random feedback with failing loads. Returns a hash of all results. */
 static uint64_t run_from(uint64_t start, uint64_t unit)
 {
     struct fixture f;

@@ -9,7 +9,7 @@ enum { FRAMES = 400, TEXTURES = 4 };
 static const uint64_t frame_time = 16667; /* microseconds */
 static const uint64_t day = UINT64_C(86400) * 1000000;
 
-/* The statistics after each frame, host memory apart. */
+/* Statistics after each frame, without host memory. */
 struct record {
     SluiceStreamedTextureStatistics frames[FRAMES];
 };
@@ -38,7 +38,7 @@ static void open_app(struct app *a, uint64_t start)
     sound_feed(&a->f, a->ids[3], SLUICE_MIP_UNTOUCHED, start, 0);
 }
 
-/* A spot that wanders, and jumps to and fro now and then; everything else is not sampled. */
+/* A visible spot moves, and sometimes jumps to and fro. All else is not sampled. */
 static void feed(struct app *a, SluiceTextureId id, uint32_t frame, uint64_t time)
 {
     SluiceStreamedTextureLayout layout = fixture_layout(&a->f, id);
@@ -55,7 +55,7 @@ static void feed(struct app *a, SluiceTextureId id, uint32_t frame, uint64_t tim
     CHECK_SOUND(&a->f);
 }
 
-/* Loads take a frame; some fail, some of the canceled ones arrive all the same. */
+/* Loads take a frame. Some fail; some canceled ones arrive anyway. */
 static void answer(struct app *a, uint64_t time)
 {
     for (uint32_t i = 0; i < a->loading; i++) {
@@ -125,7 +125,7 @@ static bool same_counts(const SluiceStreamedTextureStatistics *a,
            a->restoredTotal == b->restoredTotal && a->movedTotal == b->movedTotal;
 }
 
-/* Records of two starts, frame by frame. */
+/* Compares the records of two start times, frame by frame. */
 static void check_start(uint64_t start, const struct record *expected)
 {
     static struct record seen;
@@ -144,7 +144,7 @@ static const struct record *from_zero(void)
     static struct record record;
     run_from(0, &record);
     const SluiceStreamedTextureStatistics *last = &record.frames[FRAMES - 1];
-    /* Else the comparison would say little. */
+    /* Otherwise the comparison would mean little. */
     assert_true(last->failedTotal > 20 && last->canceledTotal > 20 && last->restoredTotal > 2 &&
                 last->unmappedTotal > 100 && last->mappedTotal > 200);
     return &record;
@@ -168,12 +168,12 @@ static void a_wrap_of_the_time_stamp_changes_no_count_of_any_frame(void **state)
     const uint64_t half = FRAMES / 2 * frame_time;
     check_start(UINT64_MAX - half, expected);     /* between two frames */
     check_start(0 - half, expected);              /* a frame at exactly 0 */
-    check_start(UINT64_MAX - half + 1, expected); /* the same, from the other side */
+    check_start(UINT64_MAX - half + 1, expected); /* one tick later */
     check_start(UINT64_MAX, expected);            /* after the first frame */
     check_start(0 - (FRAMES - 1) * frame_time, expected);
 }
 
-/* Where a narrower clock, a signed one or one of floating point would show. */
+/* Times at which clocks of other types would overflow: narrower, signed or floating point. */
 static void no_power_of_two_on_the_way_changes_a_count(void **state)
 {
     (void)state;
