@@ -1,4 +1,4 @@
-/* Why a texture is coarse: each reason is caused, and told. */
+/* Reasons why a texture is coarse: causes each, and checks the answer. */
 #include "vulkan/control_stage.h"
 
 #include <sluice/vulkan_explain.h>
@@ -15,7 +15,7 @@ static SluiceVulkanExplanation explain(const struct stage *s, uint32_t texture,
     return why;
 }
 
-/* Words that the sentence must have. */
+/* Checks the reason, and that the sentence contains `words`. */
 #define CHECK_WHY(s, texture, rect, expected, words)                                               \
     do {                                                                                           \
         SluiceVulkanExplanation why_ = explain(s, texture, rect);                                  \
@@ -70,7 +70,7 @@ void what_the_application_decides_is_told(void **state)
     assert_int_equal(explain(s, 1, all).missingLevel, SLUICE_MIP_UNTOUCHED);
     set_control(s, 0, (SluiceVulkanTextureControl){0});
     CHECK_WHY(s, 0, all, QUEUED, "from the next frame on");
-    /* What the limit does not forbid has other reasons. */
+    /* A limit that does not apply is not the reason. */
     s = (stage_finish(s), stage_init(&(SluiceVulkanStreamerCreateInfo){0}));
     memset(s->seen[0], 2, sizeof s->seen[0]);
     set_control(s, 0, (SluiceVulkanTextureControl){.finestLevel = 1});
@@ -192,13 +192,13 @@ void stages_of_loads_are_counted_in_frames(void **state)
     struct stage *s = stage_init(
         &(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .tilesPerFrame = 2});
     const uint32_t regular = 64 + 16 + 4;
-    const uint32_t loads = regular + 2 * TEXTURES; /* level 3 fills a staging slot; the rest */
+    const uint32_t loads = regular + 2 * TEXTURES; /* level 3 fills a staging slot */
     frames(s, 8);
     memset(s->seen[0], 0, sizeof s->seen[0]);
     frames(s, 60);
     SluiceVulkanLoadStages out = {.structSize = sizeof out};
     CHECK_OK(sluiceGetVulkanLoadStages(s->streamer, &out));
-    /* frames() lets reads, binds and copies be over before the next frame */
+    /* reads, binds and copies of frames() complete before the next frame */
     check_stage(&out.stages[SLUICE_LOAD_STAGE_READ], loads, 1);
     check_stage(&out.stages[SLUICE_LOAD_STAGE_COPY], loads, 1);
     /* Two loads are copied per frame. Two mip tails, of two loads each, arrive in one frame, and
@@ -233,7 +233,7 @@ void stages_of_loads_are_counted_in_frames(void **state)
     stage_finish(s);
 }
 
-/* Of random scenes, frame by frame: what the other questions answer says the same. */
+/* Explanations must agree with the other queries in every frame of random scenes. */
 void explanations_agree_with_the_state_of_each_tile(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Texels that change while their tiles are resident, and sources that are replaced. */
+/* Changing texels of resident tiles, and replacing sources. */
 #include "vulkan/control_reload.h"
 
 #include "image/read_pool.h"
@@ -8,7 +8,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-static atomic_uint shade; ///< of all texels, 1 to 255
+static atomic_uint shade; ///< value of all texels, 1 to 255
 
 static void shaded_texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
                          uint32_t height, float rgba[4])
@@ -30,7 +30,7 @@ static SluiceImageSource *make_source(uint32_t width, SluiceFormat format)
     return source;
 }
 
-/* Texture 0 has the source, and all of its tiles are resident. */
+/* Creates a stage whose texture 0 has the source, with all its tiles resident. */
 static struct stage *begin(SluiceResidencyMode mode, SluiceImageSource *source)
 {
     struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
@@ -54,7 +54,8 @@ static bool is_copy_of(const struct fake_copy *copy, uint32_t texel)
     return copy->texel == texel * 0x01010101u;
 }
 
-/* Frames until nothing shows old texels. Returns how many copies they made, all of this shade. */
+/* Runs frames until no tile shows old texels. Returns the number of copies, which must all have the
+ * new shade. */
 static uint32_t settle(struct stage *s, uint32_t texel)
 {
     uint32_t count = 0;
@@ -91,7 +92,8 @@ void changed_tiles_are_copied_again_in_place(void **state)
         if (modes[i] != SLUICE_RESIDENCY_MODE_PAGED)
             assert_true(copy->image == s->textures[0].image && copy->level == 0 && copy->x == 3 &&
                         copy->y == 2);
-        atomic_store(&shade, 3); /* that tile and those over it; level 3 is in the mip tail */
+        atomic_store(&shade,
+                     3); /* changes the tile and the tiles over it; level 3 is in the mip tail */
         CHECK_OK(sluiceInvalidateVulkanTexture(
             s->streamer, id, &(SluiceImageRegion){0, 3 * 128 + 5, 2 * 128 + 5, 1, 1, 0}, 3));
         assert_int_equal(settle(s, 3), 3);
@@ -168,7 +170,7 @@ void a_reload_that_fails_keeps_the_old_texels(void **state)
     sluiceDestroyImageSource(source);
 }
 
-/* The loader has no room, once. */
+/* The loader refuses one read for lack of room. */
 void a_refused_reload_of_a_mip_tail_is_tried_again(void **state)
 {
     (void)state;
@@ -189,7 +191,7 @@ void a_refused_reload_of_a_mip_tail_is_tried_again(void **state)
     sluiceDestroyImageSource(source);
 }
 
-/* A failure that is final for the reader, and for the manager too often. */
+/* The failure is final for the reader, and too frequent for the manager. */
 void given_up_tiles_are_tried_again_after_a_change(void **state)
 {
     (void)state;
@@ -223,7 +225,7 @@ void given_up_tiles_are_tried_again_after_a_change(void **state)
     sluiceDestroyImageSource(source);
 }
 
-/* One frame that waits for no read. */
+/* Runs a frame without waiting for reads. */
 static void hasty_frame(struct stage *s)
 {
     SluiceStreamingFrame frame = {.structSize = sizeof frame};
@@ -292,7 +294,7 @@ static SluiceTextureRequestId request_all(const struct stage *s)
     return request;
 }
 
-/* Any frame takes what the timeout of a minute waited for. */
+/* Waits end with the reads, before their timeout of a minute. Any frame then takes the results. */
 void waits_end_with_reads_and_ask_for_frames(void **state)
 {
     (void)state;
@@ -309,7 +311,7 @@ void waits_end_with_reads_and_ask_for_frames(void **state)
             hasty_frame(s);
             status = wait_for(s, request, 1000);
         }
-        assert_int_equal(status, SLUICE_VULKAN_WAIT_TIMEOUT); /* nothing but reads is left */
+        assert_int_equal(status, SLUICE_VULKAN_WAIT_TIMEOUT); /* only reads are pending */
         fault_source_release(&s->faults);
         uint32_t count = 0;
         while ((status = wait_for(s, request, minute)) == SLUICE_VULKAN_WAIT_FRAME) {
@@ -366,7 +368,7 @@ void sources_of_another_shape_are_refused(void **state)
     sluiceDestroyImageSource(srgb);
 }
 
-/* All tiles of one size are equal. */
+/* Gives all tiles of one size the same identity. */
 static bool identify(SluiceImageSource *source, const SluiceImageRegion *region, uint64_t *identity)
 {
     (void)source, (void)region;

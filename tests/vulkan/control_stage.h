@@ -1,4 +1,4 @@
-/** Four textures on a fake device, for facts of what an application may know and decide of them. */
+/** Four textures on a fake device, for tests of texture state and control. */
 #ifndef TESTS_VULKAN_CONTROL_STAGE_H
 #define TESTS_VULKAN_CONTROL_STAGE_H
 
@@ -17,26 +17,26 @@ struct stage {
     struct failing_allocator memory;
     SluiceVulkanStreamer *streamer;
     SluiceImageSource *source;
-    struct fault_source faults; ///< what the textures read, from `source`
+    struct fault_source faults; ///< source of the textures; wraps `source`
     SluiceVulkanTexture textures[TEXTURES];
     uint64_t time;
-    uint8_t seen[TEXTURES][TILES * TILES]; ///< what shaders mark
-    char last[256];                        ///< message
+    uint8_t seen[TEXTURES][TILES * TILES]; ///< levels that shaders mark
+    char last[256];                        ///< last message
 };
 
-/** Reads of the next stages. NULL: threads of the context. */
+/** Job system of the next stages. NULL: threads of the context. */
 extern const SluiceJobSystem *stage_job_system;
 
-/** One at a time. Sets structSize, maxTextureCount and maxRegionCount of the settings. */
+/** Creates the only stage. Sets structSize, maxTextureCount and maxRegionCount of the settings. */
 struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings);
 void stage_finish(struct stage *s);
-/** Frames whose predecessors are over, binds and reads included. */
+/** Runs frames. Each begins after the previous one's binds and reads are complete. */
 void frames(struct stage *s, uint32_t count);
 
 void set_control(struct stage *s, uint32_t texture, SluiceVulkanTextureControl control);
 SluiceVulkanStreamerStatistics statistics(const struct stage *s);
 
-/** Facts of control_explain.c. */
+/** Tests in control_explain.c. */
 void each_step_of_a_load_is_told(void **state);
 void what_the_application_decides_is_told(void **state);
 void what_nobody_sees_is_told(void **state);

@@ -1,4 +1,4 @@
-/* Misuse, each kind made once, and what strict mode says of it. */
+/* Makes each kind of misuse once, and checks the report of strict mode. */
 #include "vulkan/control_strict.h"
 
 #include "support/gray_source.h"
@@ -96,7 +96,7 @@ void frames_that_are_never_signaled_are_reported_once(void **state)
     stage_finish(s);
 }
 
-/* As after a wait for a fence that was signaled before the semaphore. */
+/* A fence may be signaled shortly before the semaphore. */
 void a_semaphore_that_is_late_by_a_moment_is_waited_for(void **state)
 {
     (void)state;

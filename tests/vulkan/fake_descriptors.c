@@ -87,7 +87,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
     FAKE_MAY_FAIL(device);
     struct fake_vulkan *fake = fake_of(device);
     for (uint32_t i = 0; i < info->descriptorSetCount; i++)
-        sets[i] = (VkDescriptorSet)fake; /* of passes: never looked at */
+        sets[i] = (VkDescriptorSet)fake; /* sets of passes are never examined */
     if (FAKE_OBJECT(info->pSetLayouts[0])->first_image == UINT32_MAX)
         return VK_SUCCESS;
     assert_in_range(fake->set_count, 0, FAKE_SETS - 1);

@@ -10,7 +10,7 @@
 
 /** One function. Lists end with a NULL name. */
 struct fake_function {
-    const char *name; ///< as Vulkan spells it, such as vkCreateImage
+    const char *name; ///< Vulkan's name, such as vkCreateImage
     PFN_vkVoidFunction function;
 };
 

@@ -14,18 +14,19 @@ struct fake_object {
     uint32_t level_count, layer_count;
     uint64_t size;
     void *memory;
-    VkBufferUsageFlags usage;    ///< of a buffer
-    VkMemoryAllocateFlags flags; ///< of memory
-    VkImage image;               ///< of a view
+    VkBufferUsageFlags usage;    ///< buffers
+    VkMemoryAllocateFlags flags; ///< memory
+    VkImage image;               ///< views
     VkImageCreateFlags image_flags;
-    VkFormat view_formats[32]; ///< of an image; format_count of them
+    VkFormat view_formats[32]; ///< images: formats of views, format_count of them
     uint32_t format_count;
-    uint32_t families[8]; ///< that share an image or buffer; family_count of them, 0: exclusive
+    uint32_t
+        families[8]; ///< images and buffers: sharing families, family_count of them; 0: exclusive
     uint32_t family_count;
-    bool general;           ///< the layout of an image
-    uint64_t general_frame; ///< in which it got that
+    bool general;           ///< images: true in layout GENERAL
+    uint64_t general_frame; ///< frame in which the image got that layout
     bool has_name, needs_name;
-    uint32_t first_image; ///< binding of a set layout; UINT32_MAX: it has buffers alone
+    uint32_t first_image; ///< set layouts: first binding of images; UINT32_MAX: buffers only
 };
 
 #define FAKE_OBJECT(handle) ((struct fake_object *)(handle))
