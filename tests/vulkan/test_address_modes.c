@@ -1,4 +1,4 @@
-/* Which address modes a texture has: what its source records, unless the caller says otherwise. */
+/* A texture uses the address modes that its source records, unless the caller overrides them. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/gray_source.h"
@@ -42,7 +42,7 @@ static const struct mode_case {
      {0, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE},
      false,
      {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE},
-     1}, /* told once */
+     1}, /* reported once */
 };
 
 static void the_source_decides_unless_the_caller_does_and_a_mismatch_is_logged_once(void **state)

@@ -1,4 +1,4 @@
-/* A camera on its rounds: once it has seen all of them, the streamer asks for no more memory. */
+/* A camera moves in circles: after the first circle the streamer allocates no more memory. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/gray_source.h"
@@ -10,7 +10,7 @@
 /* REGIONS: of each texture, in tiles of FAKE_TILE. */
 enum { TEXTURES = 40, REGIONS = 64, ROUND = 200, VIEW = 10 };
 
-/* Of different sizes, with as many regions. */
+/* Shapes differ in size, with equal numbers of regions. */
 enum { SHAPES = 3 };
 static const uint32_t sizes[SHAPES][2] = {{1024, 1024}, {1000, 900}, {1024, 950}};
 
@@ -40,7 +40,7 @@ struct walk {
     uint32_t step;
 };
 
-/* Textures stand in a circle, and a window goes round: the nearer the middle, the finer. */
+/* Textures stand in a circle, and a window moves around: levels are finer near its middle. */
 static uint8_t want(void *user, uint32_t region)
 {
     const struct walk *w = user;

@@ -1,4 +1,4 @@
-/* What is concluded from what a driver says, with drivers that say what the tests want. */
+/* Device capabilities from answers of a driver that the tests control. */
 #include "vulkan/caps.h"
 
 #include "support/test.h"
@@ -11,7 +11,7 @@ static struct {
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceFeatures features;
     VkBool32 timeline;
-} driver; /* functions of Vulkan's 1.0 get no pointer of the test's */
+} driver; /* Vulkan 1.0 functions have no user pointer */
 
 static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *count,
                                                VkQueueFamilyProperties *families)
@@ -60,7 +60,7 @@ static SluiceVulkanDeviceCapabilities ask(void)
     return caps.public;
 }
 
-/* A discrete device that can stream. */
+/* Resets the driver to a discrete device that can stream. */
 static int reset(void **state)
 {
     (void)state;
@@ -167,7 +167,7 @@ static void largest_device_local_heap_is_told(void **state)
     assert_true(ask().deviceLocalMemorySize == 1ull << 33);
 }
 
-/* As on an H200: the first type that sparse images allow is plain system memory. */
+/* Memory types of an H200: the first type allowed for sparse images is plain system memory. */
 static void memory_is_device_local_although_another_type_comes_first(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Contexts: what they refuse and name, and that their children keep them alive. */
+/* Contexts: refused arguments, names of objects, and lifetime beyond their children. */
 #include "image/read_pool.h"
 #include "vulkan/fake_vulkan.h"
 #include "vulkan/streamer.h"
@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The last line and how many there were. */
+/* Last log line, and number of lines. */
 struct lines {
     uint32_t count;
     char last[512];
@@ -71,7 +71,7 @@ static void queue_families_must_exist_and_suit(void **state)
     static const struct {
         bool sparse; ///< with a sparse queue
         uint32_t family, sparse_family;
-        const char *line; ///< NULL: good
+        const char *line; ///< NULL: valid
     } cases[] = {
         {true, 0, 0, NULL},
         {true, FAKE_COMPUTE_FAMILY, FAKE_SPARSE_FAMILY, NULL},
@@ -100,7 +100,7 @@ static void queue_families_must_exist_and_suit(void **state)
     }
 }
 
-/* As loaders do when the instance was created for an older version. */
+/* Loaders lack these functions if the instance was created for an older version. */
 static void instances_of_vulkan_1_1_hear_what_to_do(void **state)
 {
     (void)state;
@@ -368,7 +368,7 @@ static void objects_go_without_names_if_the_instance_has_no_debug_utils(void **s
     }
 }
 
-/* It is the application's, and stays when the context goes. */
+/* The cache belongs to the application, and outlives the context. */
 static void a_given_pipeline_cache_is_used_and_kept(void **state)
 {
     (void)state;
@@ -520,7 +520,7 @@ static void questions_take_no_memory(void **state)
     assert_int_equal(memory.live_count, 0);
 }
 
-/* Those that could not be created are none. */
+/* Children whose creation failed do not count. */
 static void creation_that_fails_leaves_no_child(void **state)
 {
     (void)state;

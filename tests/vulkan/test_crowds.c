@@ -1,4 +1,4 @@
-/* More textures than a device bears: what fits goes on, and a line says what to do. */
+/* More textures than the device supports: the rest streams, and a log line says what to do. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/streamer_manager.h"
@@ -116,17 +116,17 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     for (uint64_t time = 1; time < 200; time++)
         frame(&fake, streamer, time);
     CHECK_OK(sluiceGetVulkanStreamerStatistics(streamer, &stats));
-    assert_int_equal(stats.pageChunkCount, 2); /* of 64 tiles each; level 0 alone has 256 */
+    assert_int_equal(stats.pageChunkCount, 2); /* 64 tiles each; level 0 alone has 256 */
     assert_in_range(stats.pageChunkShortages, 2, 10);
     assert_int_equal(warnings, 1);
-    assert_int_equal(misuse_count, 1); /* 600 frames until the next */
+    assert_int_equal(misuse_count, 1); /* the next report follows after 600 frames */
     assert_int_equal(stats.tilesMapped - stats.tilesUnmapped, 2 * 64 + 2);
     fake_vulkan_destroy(streamer);
     sluiceDestroyImageSource(create.source);
     assert_int_equal(fake.live_objects, 0);
 }
 
-/* The first texture has the regions below, the second those from 256 on. */
+/* The first texture has the regions below 256, the second one the others. */
 static uint8_t want_one(void *user, uint32_t region)
 {
     return (region < 256) == (*(uint32_t *)user == 0) ? 0 : SLUICE_MIP_UNTOUCHED;
@@ -157,7 +157,7 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     for (uint64_t time = 1; time < 60; time++)
         frame(&fake, streamer, time);
-    seen = 1; /* 85 tiles, where 128 have pages */
+    seen = 1; /* 85 tiles; 128 have pages */
     for (uint64_t time = 60; time < 100; time++)
         frame(&fake, streamer, time);
     CHECK_OK(sluiceGetVulkanStreamerStatistics(streamer, &stats));
@@ -170,7 +170,7 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
         CHECK_OK(sluiceGetTileState(manager, texture.textureId, i, &tile_state, NULL));
         assert_int_equal(tile_state, SLUICE_TILE_STATE_MAPPED);
     }
-    assert_in_range(stats.standbyTileCount, 30, 128); /* no more went than had to */
+    assert_in_range(stats.standbyTileCount, 30, 128); /* only as many as necessary were evicted */
     fake_vulkan_destroy(streamer);
     for (uint32_t i = 0; i < 2; i++)
         sluiceDestroyImageSource(sources[i]);

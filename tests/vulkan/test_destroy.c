@@ -1,4 +1,4 @@
-/* What destruction waits for: work of the streamer or the loader that was submitted, no other. */
+/* Destruction waits for submitted work of the streamer or loader, and for no other work. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/gray_source.h"
@@ -70,7 +70,7 @@ static SluiceStreamingFrame whole_frame(struct stage *s)
     return frame;
 }
 
-/* How often it waited for the semaphore of frames or launches. */
+/* Returns how often it waited for the semaphore of frames or launches. */
 static uint32_t frame_waits(const struct stage *s)
 {
     uint32_t count = 0;
@@ -131,14 +131,14 @@ static void streamer_does_not_wait_for_frames_that_cannot_be_under_way(void **st
 {
     (void)state;
     for (int i = 0; i < MODES; i++) {
-        struct stage *s = stage_of_streamer(modes[i]); /* no frame at all */
+        struct stage *s = stage_of_streamer(modes[i]); /* no frame */
         destroy(s);
         assert_int_equal(frame_waits(s), 0);
 
         s = stage_of_streamer(modes[i]); /* complete */
         s->fake.frame_value = whole_frame(s).signalValue;
         s->fake.frame_value = whole_frame(s).signalValue;
-        begin(s); /* and not ended */
+        begin(s); /* begun, not ended */
         destroy(s);
         assert_int_equal(frame_waits(s), 0);
         assert_int_equal(s->fake.device_waits + s->warnings, 0);
@@ -168,7 +168,7 @@ static void frame_that_could_not_be_begun_is_not_waited_for(void **state)
     s->fake.published = false;
     s->fake.fails_on = true;
     s->fake.failure = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    s->fake.failing_call = s->fake.calls + 2; /* behind the look at the semaphore */
+    s->fake.failing_call = s->fake.calls + 2; /* after the query of the semaphore */
     SluiceResult result =
         sluiceBeginStreamingFrame(s->streamer, fake_vulkan_commands(&s->fake), ++s->time, &frame);
     s->fake.failing_call = 0;
@@ -180,7 +180,8 @@ static void frame_that_could_not_be_begun_is_not_waited_for(void **state)
     assert_int_equal(s->fake.device_waits, 0);
 }
 
-/* Nobody can know whether it was: the wait is bounded, and what follows it is safe. */
+/* The streamer cannot know whether the frame was submitted. The wait is bounded, and the calls
+ * after it are safe. */
 static void ended_frame_that_was_not_submitted_does_not_hang_destruction(void **state)
 {
     (void)state;
@@ -282,7 +283,7 @@ static void loader_does_not_wait_for_launches_that_cannot_be_under_way(void **st
     CHECK_OK(sluiceProcessDemandRequests(s->loader, &launch, 0, &requests, NULL));
     launch = whole_launch(s);
     CHECK_OK(sluiceAbandonDemandLaunch(s->loader, &launch));
-    prepare(s); /* and not ended */
+    prepare(s); /* begun, not ended */
     destroy_loader(s);
     assert_int_equal(s->fake.wait_count + s->fake.device_waits + s->warnings, 0);
 }

@@ -1,5 +1,5 @@
-/* VK_EXT_memory_budget: tile memory follows what the device can spare, in steps, and not at all
- * without the extension. */
+/* VK_EXT_memory_budget: tile memory follows the device's budget in steps. Without the extension it
+ * does not. */
 #include "vulkan/fake_vulkan.h"
 
 #include "core/observer.h"
@@ -8,7 +8,7 @@
 #include "support/test.h"
 
 #define MIB (UINT64_C(1) << 20)
-#define HEAP (256 * MIB) /* of the device; so a step is 4 MiB */
+#define HEAP (256 * MIB) /* memory heap of the device; a step is 4 MiB */
 #define STEP (4 * MIB)
 
 enum { FRAMES_PER_POLL = 256 };
@@ -48,7 +48,7 @@ static void run_frames(uint32_t count)
     }
 }
 
-/* 4096x4096 texels, all of them wanted: 87 MiB in heaps of 4 MiB. */
+/* Opens a streamer with 4096x4096 texels, all requested: 87 MiB in heaps of 4 MiB. */
 static void open_streamer(bool has_extension, bool ignored, uint64_t used_by_others)
 {
     fake = (struct fake_vulkan){.tail_page_count = 1,
@@ -87,8 +87,8 @@ static void close_streamer(void)
     assert_int_equal(fake.live_memory, 0);
 }
 
-/* Tile memory that the heap can spare: without other programs, other memory of the context, and a
- * step. */
+/* Returns the tile memory that fits into the heap beside other programs, other memory of the
+ * context, and a step. */
 static uint64_t spare(void)
 {
     SluiceVulkanContextStatistics s = statistics();
@@ -119,12 +119,13 @@ static void tile_memory_follows_the_budget_down_and_up(void **state)
     close_streamer();
 }
 
-/* Less than a step up and down around the budget. */
+/* Changes of less than a step, up and down around the budget. */
 static void small_changes_are_ignored(void **state)
 {
     (void)state;
     open_streamer(true, false, HEAP - 90 * MIB);
-    fake.used_by_others = HEAP - 80 * MIB; /* more than a step: the limit is what it is now */
+    fake.used_by_others =
+        HEAP - 80 * MIB; /* more than a step: the limit becomes the current size */
     run_frames(4 * FRAMES_PER_POLL);
     SluiceVulkanContextStatistics before = statistics();
     assert_true(before.deviceMemoryBudget < 80 * MIB);
@@ -158,7 +159,7 @@ static SluiceStreamedTextureManagerConfig config(void)
     return *slc_manager_config(manager_of(streamer));
 }
 
-/* The application sets the number that memory pressure has just set, or settings without it. */
+/* The application sets the heap count that memory pressure has just set, or settings without it. */
 static void a_target_of_the_application_stays_when_the_pressure_is_over(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 /*
- * Tiles with equal texels on one page, against a naive model: two users read, show, evict and
- * restore tiles in any order, move pages, complete their frames when they like, and abandon some.
+ * Equal tiles on shared pages, against a naive model. Two users read, show, evict and restore tiles
+ * in any order, move pages, complete their frames at any time, and abandon some.
  */
 #include "vulkan/page_pool.h"
 
@@ -37,7 +37,7 @@ enum state { ABSENT, READING, WRITTEN, SHOWN };
 struct tile {
     enum state state;
     uint32_t page;
-    uint64_t frame; ///< WRITTEN: that copies it
+    uint64_t frame; ///< WRITTEN: frame that copies it
 };
 
 struct copy {
@@ -45,7 +45,7 @@ struct copy {
     uint64_t frame;
 };
 
-/* Tiles go from one page to the other with this frame. */
+/* Tiles move from one page to the other with this frame. */
 struct move {
     uint32_t from, to;
     uint64_t frame;
@@ -53,23 +53,23 @@ struct move {
 };
 
 struct user {
-    uint32_t number; ///< of the pool
+    uint32_t number; ///< number in the pool
     struct tile tiles[TILES];
-    struct copy copies[COPIES]; ///< that are not complete
+    struct copy copies[COPIES]; ///< copies that are not complete
     uint32_t copy_count;
-    struct move moves[MOVES]; ///< whose old pages are held
+    struct move moves[MOVES]; ///< moves whose old pages are still held
     uint32_t move_count;
     uint64_t recorded;
-    uint64_t last_read[CHUNKS][PAGES]; ///< by page: frame that could read it
+    uint64_t last_read[CHUNKS][PAGES]; ///< by page: last frame that could read it
 };
 
 struct model {
     SluiceVulkanContext *context;
     struct slc_page_pool pool;
     struct user users[USERS];
-    uint32_t texels[CHUNKS][PAGES]; ///< 1 + content, of complete copies
+    uint32_t texels[CHUNKS][PAGES]; ///< 1 + content of complete copies
     uint32_t shared, read, restored, moved, moved_together, moved_back;
-    bool shrinks; ///< users give more tiles back than they take
+    bool shrinks; ///< true: users return more tiles than they take
 };
 
 static atomic_uint_fast64_t timelines[USERS];
@@ -127,7 +127,7 @@ static void init(struct model *m)
     }
 }
 
-/* All frames are complete, and pages that were going have gone. */
+/* Completes all frames, and frees pages that are leaving. */
 static void finish(struct model *m)
 {
     for (uint32_t i = 0; i < 2 * USERS; i++) {
@@ -163,7 +163,7 @@ static uint32_t count_tiles(const struct user *u, uint32_t page)
     return count;
 }
 
-/* Nobody shows the page, and no frame of the other user can still read it. */
+/* Checks that no tile shows the page, and that no frame of the other user can still read it. */
 static void check_fresh(struct model *m, uint32_t user, uint32_t page)
 {
     for (uint32_t i = 0; i < USERS; i++) {
@@ -179,7 +179,7 @@ static void add_copy(struct user *u, uint32_t page, uint32_t content)
     u->copies[u->copy_count++] = (struct copy){page, content, u->recorded};
 }
 
-/* The read is over: to a page of its own. */
+/* Ends a read: takes a new page for the tile. */
 static void place(struct model *m, uint32_t user, uint32_t index)
 {
     struct user *u = &m->users[user];
@@ -237,7 +237,7 @@ static void give(struct model *m, uint32_t user, uint32_t index, bool keep)
     slc_page_pool_give(&m->pool, u->number, page, keep ? index : SLC_NO_OWNER);
 }
 
-/* Takes a page for one tile, or gives it back, or cancels its read. */
+/* Takes or returns a tile's page, or cancels its read. */
 static void change_tile(struct model *m, uint32_t user)
 {
     struct user *u = &m->users[user];
@@ -277,7 +277,7 @@ static void record(struct model *m, uint32_t user)
         }
 }
 
-/* Old pages are given in the order of the moves. */
+/* Releases old pages in the order of the moves. */
 static void end_moves(struct model *m, uint32_t user)
 {
     struct user *u = &m->users[user];
@@ -300,7 +300,7 @@ static void copy_moved(struct model *m, uint32_t user, uint64_t frame)
             *texels_of(m, u->moves[i].to) = *texels_of(m, u->moves[i].from);
 }
 
-/* Tiles that are still on the new page are on the old one again. */
+/* Moves tiles that are still on the new page back to the old one. */
 static void move_back(struct model *m, uint32_t user)
 {
     struct user *u = &m->users[user];
@@ -315,7 +315,7 @@ static void move_back(struct model *m, uint32_t user)
     }
 }
 
-/* The oldest frame that is not complete. */
+/* Completes the oldest incomplete frame. */
 static void complete(struct model *m, uint32_t user)
 {
     struct user *u = &m->users[user];
@@ -352,7 +352,8 @@ static void abandon(struct model *m, uint32_t user)
     move_back(m, user);
 }
 
-/* The page whose texels the tile will show: those of a page are there when its move is complete. */
+/* Returns the page with the texels that the tile will show: a move's target has them once the move
+ * is complete. */
 static uint32_t page_with_texels(const struct user *u, uint32_t user, uint32_t page)
 {
     for (uint32_t i = u->move_count; i-- > 0;)
@@ -395,7 +396,7 @@ static void check(struct model *m)
     assert_int_equal(m->pool.held_count - m->pool.shared.going_count, all);
 }
 
-/* All tiles on a page move with it. Pages that another user holds, too, stay. */
+/* Moves all tiles on a page. Pages that another user also holds stay. */
 static void move_page(struct model *m, uint32_t user, uint32_t index)
 {
     struct user *u = &m->users[user];
@@ -480,7 +481,7 @@ static void tiles_of_another_shape_are_other_tiles(void **state)
     assert_int_not_equal(wide.level, high.level);
 }
 
-/* One thread per user; each shows all contents, many times, from pages that either wrote. */
+/* A thread per user. Each shows all contents many times, from pages that either user wrote. */
 struct walker {
     struct model *model;
     uint32_t user;

@@ -1,4 +1,4 @@
-/* From a source that fails, through the loader and the manager, to what is shown. */
+/* Failing reads, from the source through the loader and the manager to the shown texels. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/streamer_manager.h"
@@ -10,8 +10,8 @@
 
 enum { SIZE = 512, TILES = SIZE / FAKE_TILE, LOADER_ATTEMPTS = 3, MANAGER_ATTEMPTS = 5 };
 
-/* Two tiles of level 0 cannot be read for as long as it is broken; all of level 0 while there is an
- * outage; nothing is ready while it is absent. */
+/* A source that can fail. Broken: two tiles of level 0 cannot be read. Outage: all of level 0
+ * cannot be read. Absent: no read is ready. */
 struct broken_source {
     SluiceImageSource base;
     SluiceImageSource *inner;
@@ -65,8 +65,8 @@ struct fixture {
     SluiceVulkanTexture texture;
     uint64_t time;
     uint32_t warnings, recoveries;
-    uint32_t loads_in_flight; ///< set before setup; 0: the default
-    uint32_t lost_copies;     ///< of texels to the tiles that cannot be read
+    uint32_t loads_in_flight; ///< set before setup; 0: default
+    uint32_t lost_copies;     ///< copies to the tiles that cannot be read
 };
 
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
@@ -122,7 +122,7 @@ static void teardown(struct fixture *f)
     assert_int_equal(f->fake.live_objects, 0);
 }
 
-/* Frames that are long enough apart for every delay of the manager to be over. */
+/* Runs frames far enough apart that every delay of the manager has passed. */
 static void run_frames(struct fixture *f, uint32_t count)
 {
     struct fake_vulkan *fake = &f->fake;
@@ -144,7 +144,7 @@ static void run_frames(struct fixture *f, uint32_t count)
     }
 }
 
-/* What each tile of level 0 is, and what may be sampled there. */
+/* Checks the state and the sampled level of each tile of level 0. */
 static void check_level_0(struct fixture *f, SluiceTileState lost_state, uint8_t lost_level)
 {
     SluiceStreamedTextureManager *manager = manager_of(f->streamer);
@@ -187,7 +187,7 @@ static void check_counts(struct fixture *f)
     assert_int_equal(reads.retriedCount, 2 * MANAGER_ATTEMPTS * (LOADER_ATTEMPTS - 1));
     assert_int_equal(reads.byteCount, stats.bytesRead);
     assert_memory_equal(&reads, &all, sizeof all); /* there is one source */
-    assert_int_equal(f->warnings, 2);              /* that reads fail, and that they are given up */
+    assert_int_equal(f->warnings, 2);              /* one for failing reads, one for giving up */
     assert_int_equal(f->recoveries, 0);
     for (uint32_t y = 0; y < TILES; y++)
         for (uint32_t x = 0; x < TILES; x++)
@@ -204,11 +204,11 @@ static void check_story(SluiceResidencyMode mode)
     check_level_0(&f, SLUICE_TILE_STATE_GIVEN_UP, 1);
     check_given_up(&f);
     check_counts(&f);
-    if (mode == SLUICE_RESIDENCY_MODE_SPARSE) /* in others copies go to pages */
+    if (mode == SLUICE_RESIDENCY_MODE_SPARSE) /* in other modes, copies go to pages */
         assert_int_equal(f.lost_copies, 0);
 
     f.source.is_broken = false;
-    run_frames(&f, 5); /* nobody asks of its own accord */
+    run_frames(&f, 5); /* no retry without a request */
     check_level_0(&f, SLUICE_TILE_STATE_GIVEN_UP, 1);
     SluiceStreamedTextureManager *manager = manager_of(f.streamer);
     CHECK_OK(sluiceRetryFailedTiles(manager, f.texture.textureId));
@@ -229,7 +229,7 @@ static void tiles_that_are_given_up_stay_coarser_until_they_are_asked_for_again(
     check_story(SLUICE_RESIDENCY_MODE_DENSE);
 }
 
-/* Fails while the manager still tries: nobody has to ask. */
+/* Fails while the manager still retries by itself. */
 static void tiles_that_fail_for_a_while_come_by_themselves(void **state)
 {
     (void)state;
@@ -260,7 +260,7 @@ static uint32_t count_refused(const struct fixture *f)
     return count;
 }
 
-/* Longer than all attempts, and nobody calls anything: four reads an interval, and then all. */
+/* Lasts longer than all attempts, without calls: four reads per interval at first, later all. */
 static void after_an_outage_every_tile_comes_by_itself(void **state)
 {
     (void)state;
@@ -295,7 +295,7 @@ static void a_source_that_is_said_to_be_well_is_read_at_once(void **state)
     run_frames(&f, 30);
     f.source.is_out = false;
     CHECK_RESULT(sluiceRetryVulkanSource(NULL, NULL), SLUICE_ERROR_NULL_POINTER);
-    CHECK_OK(sluiceRetryVulkanSource(f.streamer, f.source.inner)); /* of no texture */
+    CHECK_OK(sluiceRetryVulkanSource(f.streamer, f.source.inner)); /* belongs to no texture */
     run_frames(&f, 5);
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(f.streamer, &stats);
@@ -306,7 +306,7 @@ static void a_source_that_is_said_to_be_well_is_read_at_once(void **state)
     teardown(&f);
 }
 
-/* A flapping source is not two lines for each of its turns. */
+/* A source that fails and recovers repeatedly must not log two lines each time. */
 static void messages_of_a_source_that_comes_and_goes_are_bounded(void **state)
 {
     (void)state;
@@ -324,7 +324,7 @@ static void messages_of_a_source_that_comes_and_goes_are_bounded(void **state)
     teardown(&f);
 }
 
-/* Textures that are not ready must not hold every staging slot: others could not be loaded. */
+/* Textures that are not ready must not occupy every staging slot. */
 static void sources_that_are_not_ready_leave_room_for_others(void **state)
 {
     (void)state;
@@ -349,7 +349,8 @@ static void sources_that_are_not_ready_leave_room_for_others(void **state)
     teardown(&f);
 }
 
-/* Few loads in flight: most tiles are told to the manager as failed, and asked for again. */
+/* With few loads in flight, most tiles are reported to the manager as failed, and requested
+ * again. */
 static void sources_that_are_not_ready_are_no_trouble(void **state)
 {
     (void)state;
@@ -388,7 +389,7 @@ static void statistics_of_a_removed_texture_are_forgotten(void **state)
     CHECK_OK(sluiceRemoveVulkanTexture(f.streamer, f.texture.textureId));
     run_frames(&f, 5);
     CHECK_OK(sluiceGetVulkanReadStatistics(f.streamer, &f.source.base, &reads));
-    assert_true(reads.readCount > 0); /* the other one has it still */
+    assert_true(reads.readCount > 0); /* the other one still has it */
     CHECK_OK(sluiceRemoveVulkanTexture(f.streamer, second.textureId));
     run_frames(&f, 5);
     CHECK_OK(sluiceGetVulkanReadStatistics(f.streamer, &f.source.base, &reads));

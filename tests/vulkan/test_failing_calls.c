@@ -1,10 +1,10 @@
-/* Every Vulkan call that may fail does so once, with each of the results that it may have. */
+/* Every Vulkan call that may fail does so once, with each possible result. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/gray_source.h"
 #include "support/test.h"
 
-/* Enough for the global bias, which a refused heap raises by a level, to fall again. */
+/* Enough frames for the global bias to fall again, after a refused heap raised it by a level. */
 enum { FRAMES = 32 };
 
 static const struct {
@@ -26,8 +26,8 @@ static uint8_t want_all(void *user, uint32_t region)
 
 static SluiceImageSource *gray;
 
-static SluiceResidencyMode mode; /* that is tested */
-static bool mixes;               /* paged textures are beside those of the streamer */
+static SluiceResidencyMode mode; /* tested mode */
+static bool mixes;               /* true: also adds paged textures */
 
 static bool uses_upload_queue;
 
@@ -101,7 +101,7 @@ static void adding_survives(uint64_t objects_per_texture)
     check_nothing_left(&fake);
 }
 
-/* `objects_per_array`: what is there more once it was added. */
+/* `objects_per_array`: live objects that adding an array creates. */
 static void adding_arrays_survives(uint64_t objects_per_array, bool metadata)
 {
     static struct fake_vulkan fake; /* large */
@@ -141,7 +141,7 @@ static void adding_arrays_survives(uint64_t objects_per_array, bool metadata)
     sluiceDestroyImageSource(array);
 }
 
-/* An image, its memory, a view of each layer and one of all. */
+/* An image, its memory, a view per layer, and a view of all layers. */
 static void adding_an_array_survives_every_failing_call(void **state)
 {
     (void)state;
@@ -153,7 +153,7 @@ static void adding_an_array_survives_every_failing_call(void **state)
     adding_arrays_survives(6, false);
 }
 
-/* Frames that complete at once, until one fails. */
+/* Runs frames that complete at once, until one fails. */
 static SluiceResult stream(struct fake_vulkan *fake, SluiceVulkanStreamer *streamer)
 {
     for (uint64_t i = 1; i <= FRAMES; i++) {
@@ -173,10 +173,11 @@ static SluiceResult stream(struct fake_vulkan *fake, SluiceVulkanStreamer *strea
     return SLUICE_SUCCESS;
 }
 
-/* A buffer per frame in flight that MinMip maps go through; without it they come later. */
+/* A buffer per frame in flight, through which MinMip maps are copied. Without it they are copied
+ * later. */
 #define STAGING_CALLS (3u * 4u)
 
-/* All that may be done with a streamer whose frame failed is to destroy it. */
+/* After a failed frame, a streamer may only be destroyed. */
 static void frames_survive(uint32_t packed_count, uint32_t binds_per_call, uint32_t harmless_calls)
 {
     uint32_t harmless = 0;

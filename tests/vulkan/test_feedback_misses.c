@@ -1,7 +1,7 @@
 /**
- * How often a region is missed, counted with the selection functions of the shaders frame by frame
- * and map by map, beside what feedback_rate.h predicts. Counts may be 5 standard deviations off, by
- * the exact binomial tail; seeds are fixed.
+ * Compares how often a region is missed with the prediction of feedback_rate.h. Counts with the
+ * shaders' selection functions, frame by frame and map by map. Counts may be 5 standard deviations
+ * off, by the exact binomial tail. Seeds are fixed.
  */
 #include <math.h>
 
@@ -10,18 +10,18 @@
 #include "support/test.h"
 #include "vulkan/shader_twins.h"
 
-#define FIVE_SIGMA 2.87e-7 /* on either side */
+#define FIVE_SIGMA 2.87e-7 /* on each side */
 
 struct rectangle {
     uint32_t x, y, width, height;
 };
 
-/** A region on screen, in pixels, and how far the corners of a footprint are from its middle. */
+/** A region on screen in pixels, and the distance of a footprint's corners from its middle. */
 struct extent {
     double x0, y0, x1, y1, reach;
 };
 
-/** A still picture of one region, and the pixels that touch it. */
+/** A still picture of one region: the pixels that touch it. */
 struct picture {
     SluiceFeedbackRate rate;
     struct rectangle pixels;
@@ -29,7 +29,7 @@ struct picture {
     float probability;
 };
 
-/** Whether the corner that sluiceWriteQuadFeedback gives a pixel is in the region. */
+/** Returns whether the corner that sluiceWriteQuadFeedback gives a pixel is in the region. */
 static bool marks_by_corner(const struct extent *e, uint32_t x, uint32_t y, uint32_t seed)
 {
     double corner_x = x + 0.5 + ((x ^ seed) & 1 ? e->reach : -e->reach);
@@ -63,8 +63,8 @@ static bool frame_marks(const struct picture *p, uint32_t frame)
     return false;
 }
 
-/** Whether all maps less than a timeout old are empty when the last one is read, at frame `last`.
- */
+/** Returns whether all maps less than a timeout old are empty when the last one is read, at frame
+ * `last`. */
 static bool timeout_misses(const struct picture *p, uint32_t last, uint32_t frames)
 {
     uint32_t turn = p->rate.textureCount / p->rate.texturesPerFrame;
@@ -77,7 +77,7 @@ static bool timeout_misses(const struct picture *p, uint32_t last, uint32_t fram
     return true;
 }
 
-/** Timeouts that share no frame, whose beginnings come to every frame of the lattice. */
+/** Counts misses over disjoint timeouts, whose beginnings meet every frame of the lattice. */
 static uint32_t count_misses(const struct picture *p, uint32_t trials)
 {
     uint32_t frames = (uint32_t)(p->rate.frameRate * p->rate.timeoutSeconds), misses = 0;
@@ -96,7 +96,7 @@ static double chance_of_count(uint32_t n, uint32_t k, double p)
                (n - k) * log1p(-p));
 }
 
-/** Of `n` draws: the chance of k or more (1) or k or fewer (-1). */
+/** Chance of k or more (side 1) or of k or fewer (side -1) in `n` draws. */
 static double tail(uint32_t n, uint32_t k, double p, int side)
 {
     double sum = 0;
@@ -112,7 +112,7 @@ static double predicted(const struct picture *p)
     return miss;
 }
 
-/** As predicted, or, where only that is promised, at most that. */
+/** Expects the predicted number of misses, or at most that number unless `exactly`. */
 static void expect_misses(const struct picture *p, uint32_t trials, bool exactly)
 {
     double chance = predicted(p);
@@ -126,7 +126,7 @@ static void expect_misses(const struct picture *p, uint32_t trials, bool exactly
                  (unsigned)trials, chance);
 }
 
-/* Sixty frames a second, a timeout of a second. */
+/* 60 frames per second, a timeout of one second. */
 static struct picture picture_of(SluiceFeedbackSelection selection, struct rectangle pixels,
                                  uint32_t turn, bool in_turns)
 {
@@ -142,7 +142,7 @@ static struct picture picture_of(SluiceFeedbackSelection selection, struct recta
                             .pixels = pixels};
 }
 
-/** With the probability that is chosen for a chance of misses; false if none is enough. */
+/** Sets the probability chosen for an allowed chance of misses. Returns false if none suffices. */
 static bool choose(struct picture *p, double allowed)
 {
     SluiceResult result = sluiceChooseFeedbackProbability(&p->rate, allowed, &p->probability);
@@ -155,7 +155,7 @@ static const uint32_t sides[] = {1, 2, 3, 8, 15, 64};
 enum { SIDES = sizeof sides / sizeof *sides };
 static const uint32_t turns[] = {1, 10};
 
-/* Pixels and quads that begin where the region does: what is predicted is exact. */
+/* Pixels and quads that begin at the region's border: the prediction is exact. */
 static void check_random(SluiceFeedbackSelection selection, double allowed)
 {
     for (uint32_t side = 0; side < SIDES; side++)
@@ -194,7 +194,7 @@ static void quads_that_lie_across_a_region_miss_it_no_more_often(void **state)
         }
 }
 
-/** Reached by the lower right corner of one pixel alone, one of the four of a quad. */
+/** A region reached only by the lower right corner of one pixel of a quad. */
 static struct picture picture_of_corner(uint32_t place, uint32_t turn, bool in_turns)
 {
     struct rectangle pixel = {640 + place % 2, 358 + place / 2, 1, 1};
@@ -236,7 +236,8 @@ static double draw_between(double least, double greatest)
     return least + (greatest - least) * (slc_twin_hash(drawn, 7, 11) >> 8) / 16777216.0;
 }
 
-/** Where a region of that size touches `count` pixels from `first` on; some are hidden. */
+/** Places a region of that size so that it touches `count` pixels from `first` on. Some are
+ * hidden. */
 static void draw_axis(double size, double reach, uint32_t *first, uint32_t *count, double *x0)
 {
     *x0 = draw_between(64, 66);
@@ -247,7 +248,7 @@ static void draw_axis(double size, double reach, uint32_t *first, uint32_t *coun
     *count = (uint32_t)(greatest - least) + 1;
 }
 
-/** A region no smaller than footprints are, as all that are marked by their corners. */
+/** A region at least as large as the footprints, marked by their corners. */
 static struct picture draw_picture(double greatest)
 {
     struct extent e = {.reach = draw_between(0.5, 1.2)};
@@ -263,7 +264,7 @@ static struct picture draw_picture(double greatest)
     return p;
 }
 
-/** Quads that mark the region if they are selected in that frame. */
+/** Counts quads that mark the region if they are selected in that frame. */
 static uint32_t count_quads(const struct picture *p, uint32_t frame)
 {
     const struct rectangle *r = &p->pixels;
@@ -281,7 +282,8 @@ static uint32_t count_quads(const struct picture *p, uint32_t frame)
     return quads;
 }
 
-/** What is promised of four frames, from the prediction: at p = 1/2 each quad halves the chance. */
+/** Number of quads promised over four frames, from the prediction: at p = 1/2 each quad halves the
+ * chance. */
 static uint32_t promised_quads(struct picture *p)
 {
     p->rate.timeoutSeconds = 4 / p->rate.frameRate;
@@ -289,7 +291,7 @@ static uint32_t promised_quads(struct picture *p)
     return (uint32_t)lround(-log2(predicted(p)));
 }
 
-/* In the worst case there are no more than promised, so no greater promise could be kept. */
+/* In the worst case there are no more quads than promised, so the promise is tight. */
 static void promised_quads_mark_wherever_corners_lie(void **state)
 {
     (void)state;
@@ -323,7 +325,7 @@ static void shared_corners_miss_no_more_often_than_predicted(void **state)
     }
 }
 
-/* No chance in it: all first frames, and the worst place of 64. */
+/* Deterministic: tries all first frames, and takes the worst of 64 positions. */
 static double worst_lattice_miss(struct picture *p)
 {
     uint32_t worst = 0;
@@ -338,7 +340,7 @@ static double worst_lattice_miss(struct picture *p)
     return worst / 64.0;
 }
 
-/* Where turns do not divide the timeout, now and then there is one more than predicted. */
+/* If turns do not divide the timeout, some timeouts have one more turn than predicted. */
 static void lattice_misses_exactly_as_often_as_predicted(void **state)
 {
     (void)state;
@@ -354,7 +356,8 @@ static void lattice_misses_exactly_as_often_as_predicted(void **state)
             }
 }
 
-/* Half are marked within the median, fewer within a frame less; the same for 99 of 100. */
+/* Half of the regions are marked within the median, and fewer one frame earlier. Likewise for 99 of
+ * 100. */
 static void check_quantile(struct picture *p, double frames, double share)
 {
     uint32_t trials = 4000, within = 0, before = 0, n = (uint32_t)frames;

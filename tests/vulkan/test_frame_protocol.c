@@ -1,11 +1,12 @@
 /*
- * The promises of the frame loop, with frames and bindings that finish when they like:
- * - texels are copied only into tiles whose binding is over,
+ * Promises of the frame loop, with frames and bindings that finish at any time:
+ * - texels are copied only to tiles whose binding is complete,
  * - MinMip maps show only tiles that are bound and were copied to since,
- * - no binding of a tile changes, and no image goes, while a frame that may read it is incomplete,
+ * - no tile's binding changes and no image is destroyed while an incomplete frame may read it,
  * - no page belongs to two tiles,
- * - the upload queue copies only what no incomplete frame may read, and is done before images go,
- * - memory goes only when nothing is bound to it any more, and nothing under way was.
+ * - the upload queue copies only to tiles that no incomplete frame may read,
+ * - the upload queue is done before images are destroyed,
+ * - memory is freed only when nothing is bound to it, and no pending binding was.
  */
 #include "vulkan/fake_vulkan.h"
 #include "vulkan/streamer.h"
@@ -17,7 +18,7 @@
 
 #include <string.h>
 
-static uint32_t binds_per_call; /* 0: the default */
+static uint32_t binds_per_call; /* 0: default */
 static bool uses_upload_queue;
 static uint32_t binds_in_parts; /* frames of the last run that made several calls */
 
@@ -26,9 +27,9 @@ enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 64, FRAMES_IN_FLIGHT = 6 };
 struct tile {
     VkDeviceMemory memory; ///< VK_NULL_HANDLE: unbound
     uint64_t offset;
-    uint64_t batch;        ///< of the last change
-    VkDeviceMemory before; ///< that change
-    bool copied;           ///< since it was bound
+    uint64_t batch;        ///< batch of the last change
+    VkDeviceMemory before; ///< memory before that change
+    bool copied;           ///< true: copied since it was bound
 };
 
 struct texture {
@@ -38,29 +39,28 @@ struct texture {
     SluiceStreamedTextureLayout layout;
     struct tile tiles[MAX_TILES];
     bool visible[HISTORY][MAX_TILES]; ///< by frame
-    uint64_t removed_frame;           ///< when not used, but `removed`
+    uint64_t removed_frame;           ///< for removed textures
     bool removed;
-    uint64_t upload_value; ///< of the last copy on the upload queue
+    uint64_t upload_value; ///< upload value of the last copy on the upload queue
 };
 
 struct model {
     struct fake_vulkan fake;
     SluiceVulkanStreamer *streamer;
-    struct texture textures[2 * TEXTURES]; ///< removed ones stay until their image is gone
+    struct texture textures[2 * TEXTURES]; ///< removed textures stay until their image is destroyed
     uint64_t frame;
-    uint64_t submitted;        ///< frames up to this one are
+    uint64_t submitted;        ///< last submitted frame
     bool abandoned[HISTORY];   ///< by frame
-    uint32_t abandon_one_in;   ///< frames; 0: none
-    uint32_t abandoned_in_all; ///< frames
+    uint32_t abandon_one_in;   ///< one frame in this many; 0: none
+    uint32_t abandoned_in_all; ///< abandoned frames in total
     uint32_t heaps_freed, added;
-    uint32_t window; ///< seed of what the camera sees
-    uint32_t
-        shrink_one_in; ///< frames, before which the budget changes or heaps are emptied; 0: none
-    uint32_t moved;    ///< tiles moved by emptying heaps
-    uint32_t frames_in_parts; ///< that made several calls
+    uint32_t window;        ///< seed of the visible window
+    uint32_t shrink_one_in; ///< one frame in this many changes the budget or empties heaps; 0: none
+    uint32_t moved;         ///< tiles moved by emptying heaps
+    uint32_t frames_in_parts; ///< frames that made several calls
 };
 
-/* A few wanted regions that change with the window. */
+/* Returns a few requested regions that change with the window. */
 static uint8_t want(void *user, uint32_t region)
 {
     const struct model *m = user;
@@ -76,7 +76,7 @@ static void model_add(struct model *m)
     while (i < 2 * TEXTURES && (m->textures[i].used || m->textures[i].removed))
         i++;
     if (i == 2 * TEXTURES)
-        return; /* the removed ones are not gone yet */
+        return; /* removed textures still exist */
     const uint32_t *size = sizes[roll() % 5];
     struct texture *t = &m->textures[i];
     m->added++;
@@ -109,7 +109,7 @@ static uint32_t tile_index(const struct texture *t, uint32_t level, uint32_t x, 
     return l->levelFirstTile[level] + y * l->levelWidthInTiles[level] + x;
 }
 
-/* No incomplete frame before this one may show the tile. */
+/* Checks that no incomplete earlier frame may show the tile. */
 static void check_unseen(const struct model *m, const struct texture *t, uint32_t tile)
 {
     for (uint64_t f = m->fake.frame_value + 1; f < m->frame; f++)
@@ -118,7 +118,7 @@ static void check_unseen(const struct model *m, const struct texture *t, uint32_
                      (unsigned long long)m->frame, tile, (unsigned long long)f);
 }
 
-/* No other tile is on the page that this one has got. */
+/* Checks that no other tile is on this tile's page. */
 static void check_page(const struct model *m, const struct tile *tile)
 {
     for (uint32_t i = 0; i < 2 * TEXTURES && tile->memory; i++)
@@ -151,7 +151,7 @@ static void take_binds(struct model *m)
         uint32_t index = tile_index(t, bind->level, bind->x, bind->y);
         check_unseen(m, t, index);
         struct tile *tile = &t->tiles[index];
-        assert_true(tile->batch < m->fake.submitted_bind_value); /* once in a batch */
+        assert_true(tile->batch < m->fake.submitted_bind_value); /* at most once per batch */
         *tile = (struct tile){bind->memory, bind->offset, m->fake.submitted_bind_value,
                               tile->memory, false};
     }
@@ -164,7 +164,7 @@ static void take_binds(struct model *m)
     }
 }
 
-/* Images that are gone have been taken out before. */
+/* Images that were destroyed have been removed from the model before. */
 static void take_freed(struct model *m)
 {
     for (uint32_t f = 0; f < m->fake.freed_count; f++)
@@ -184,7 +184,7 @@ static void check_copied_into(const struct model *m, const struct tile *tile)
     assert_true(tile->batch <= m->fake.bind_value);
 }
 
-/* `early`: on the upload queue, else of the frame. */
+/* `early`: copies on the upload queue; otherwise copies of the frame. */
 static void take_copies(struct model *m, bool early)
 {
     for (uint32_t i = 0; i < m->fake.copy_count; i++) {
@@ -219,7 +219,7 @@ static uint32_t take_visible(struct model *m)
     for (uint32_t i = 0; i < 2 * TEXTURES; i++) {
         struct texture *t = &m->textures[i];
         for (uint32_t j = 0; t->removed && j < t->layout.tileCount; j++)
-            t->visible[m->frame % HISTORY][j] = false; /* not drawn with any more */
+            t->visible[m->frame % HISTORY][j] = false; /* no longer drawn */
         for (uint32_t j = 0; t->used && j < t->layout.tileCount; j++) {
             SluiceTileState state;
             CHECK_OK(sluiceGetTileState(manager, t->texture.textureId, j, &state, NULL));
@@ -243,7 +243,7 @@ static uint32_t frames_under_way(const struct model *m)
     return count;
 }
 
-/* The timeline never stands at an abandoned frame. */
+/* The timeline never stops at an abandoned frame. */
 static uint64_t advance_frames(const struct model *m, uint64_t value)
 {
     while (value > m->fake.frame_value && m->abandoned[value % HISTORY])
@@ -262,14 +262,14 @@ static bool is_visible(const struct model *m, const struct fake_copy *copy)
     return false;
 }
 
-/* What is copied is shown: nothing is copied to where another tile may be by now. */
+/* Every copied tile is shown: a hidden tile's page may belong to another tile by now. */
 static void check_copies_are_shown(const struct model *m)
 {
     for (uint32_t i = 0; i < m->fake.copy_count; i++)
         assert_true(m->fake.copies[i].early || is_visible(m, &m->fake.copies[i]));
 }
 
-/* The last frames, one or several, whose commands were undone. */
+/* Undoes the last frames, one or several. */
 static void abandon(struct model *m, const SluiceStreamingFrame *first)
 {
     CHECK_OK(sluiceAbandonStreamingFrame(m->streamer, first));
@@ -295,13 +295,13 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
     fake->published = false;
     fake->frame_value = advance_frames(
         m, advance(fake->frame_value, m->frame < m->submitted ? m->frame : m->submitted));
-    if (roll() % 4 == 0) /* slow at times, so that batches pile up */
+    if (roll() % 4 == 0) /* sometimes slow, so that batches accumulate */
         fake->bind_value = advance(fake->bind_value, fake->submitted_bind_value);
     if (uses_upload_queue)
         fake->upload_value = advance(fake->upload_value, fake->submitted_upload_value);
     fake->now_frame = m->frame + 1;
     if (roll() % 2)
-        CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* for the reads */
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* waits for reads */
     SluiceResult result =
         sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, frame);
     if (result == SLUICE_NOT_READY) {
@@ -313,7 +313,7 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
     assert_int_equal(frame->frameIndex, m->frame + 1);
     m->frame = frame->frameIndex;
     m->abandoned[m->frame % HISTORY] = false;
-    for (uint32_t i = 0; i < 2 * TEXTURES; i++) /* those that are abandoned show nothing */
+    for (uint32_t i = 0; i < 2 * TEXTURES; i++) /* an abandoned frame shows nothing */
         memset(m->textures[i].visible[m->frame % HISTORY], 0, MAX_TILES * sizeof(bool));
     take_destroyed(m);
     take_freed(m); /* before the binds of this frame */
@@ -325,7 +325,7 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
     return result;
 }
 
-/* One to three frames that are begun, most of them ended, and given up together. */
+/* Begins one to three frames, ends most of them, and abandons them together. */
 static void abandoned_frames(struct model *m, uint64_t time)
 {
     SluiceStreamingFrame first = {.structSize = sizeof first}, frame = {.structSize = sizeof frame};
@@ -372,7 +372,7 @@ static void remove_any(struct model *m)
     model_add(m);
 }
 
-/* As an application does that wants its memory back; some of it is needed again at once. */
+/* Releases heaps like an application that needs memory. Some tiles are requested again at once. */
 static void release_heaps(struct model *m)
 {
     SluiceStreamedTextureManager *manager = manager_of(m->streamer);
@@ -386,7 +386,7 @@ static void release_heaps(struct model *m)
 
 #define HEAP_SIZE (64u * 65536u)
 
-/* Sets a budget of 1 to 5 heaps or none, or moves tiles together. */
+/* Sets a budget of 1 to 5 heaps or none, or compacts tiles. */
 static void change_memory(struct model *m)
 {
     uint32_t count = 0;
@@ -503,7 +503,7 @@ static void promises_hold_where_frames_are_abandoned(void **state)
     run_abandoning(2, 196608, 32, 3, 47, 2);
 }
 
-/* Which run empties a heap depends on the loader's threads. */
+/* The loader's threads decide which run empties a heap. */
 static void heaps_were_freed_in_some_run(void **state)
 {
     (void)state;
@@ -534,7 +534,7 @@ static void promises_hold_with_metadata_that_is_bound_once(void **state)
     run(1, 196608, 64, 6, 45);
 }
 
-/* The binding queue stands between two calls of a frame as often as between frames. */
+/* The binding queue stops between two calls of a frame as often as between frames. */
 static void promises_hold_where_a_call_binds_two_regions(void **state)
 {
     (void)state;
@@ -550,7 +550,7 @@ static void promises_hold_with_room_for_everything(void **state)
     run(2, 0, 256, 0, 44);
 }
 
-/* Its regions still hold what was asked of a texture that is gone; they are cleared by the next. */
+/* Its regions still hold requests for a removed texture. The next resolve clears them. */
 static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
 {
     (void)state;
@@ -575,14 +575,14 @@ static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
         SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
         sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
         assert_int_equal(stats.feedbackMaps,
-                         i == 3); /* of the second frame, heard of in the third */
+                         i == 3); /* map of the second frame, read in the third */
     }
     fake_vulkan_destroy(m->streamer);
     sluiceDestroyImageSource(m->textures[0].source);
     assert_int_equal(m->fake.live_objects, 0);
 }
 
-/* Pages of the tails of three layers: two of each, a stride apart; and metadata once per layer. */
+/* Pages of the tails of three layers: two each, one stride apart. Metadata once per layer. */
 static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state)
 {
     (void)state;
