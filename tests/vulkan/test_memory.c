@@ -1,5 +1,5 @@
-/* What a streamer takes of the device's memory: all of it is counted, it is little at first, grows
- * with what is under way, and shrinks again. */
+/* Device memory of a streamer: all of it is counted. It starts small, grows with pending loads, and
+ * shrinks again. */
 #include "vulkan/fake_vulkan.h"
 #include "vulkan/streamer.h"
 #include "vulkan/load_units.h"
@@ -24,7 +24,7 @@ struct stage {
     uint64_t time;
     bool looks;
     uint32_t unmet;   ///< messages that the budget cannot be reached
-    uint32_t refused; ///< messages that memory of images is refused
+    uint32_t refused; ///< messages that image memory was refused
     char message[512];
 };
 
@@ -55,7 +55,7 @@ static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
     assert_true(stats.tileMemorySize <= stats.deviceMemorySize);
     SluiceVulkanContextStatistics all = {.structSize = sizeof all};
     CHECK_OK(sluiceGetVulkanContextStatistics(s->streamer->context, &all));
-    assert_true(stats.tileMemorySize == all.tileMemorySize); /* it is alone */
+    assert_true(stats.tileMemorySize == all.tileMemorySize); /* the only user of the context */
     return stats;
 }
 
@@ -159,7 +159,7 @@ static void staging_grows_with_the_loads_and_shrinks_when_idle(void **state)
     }
 }
 
-/* Default: 1024 loads in flight, of 64 KiB each. */
+/* Default: 1024 loads in flight of 64 KiB each. */
 static void staging_that_was_asked_for_is_there_from_the_start_and_stays(void **state)
 {
     (void)state;
@@ -196,7 +196,7 @@ static void without_memory_for_more_staging_loads_are_slower_and_all_arrive(void
     }
 }
 
-/* Frames until all tiles are mapped. */
+/* Runs frames until all tiles are mapped. Returns their number. */
 static uint32_t fill(struct stage *s)
 {
     uint32_t frames = 0;
@@ -239,7 +239,7 @@ static void memory_for_tiles_is_there_before_they_need_it_and_stays(void **state
         add_textures(s);
         uint64_t ahead = tile_memory(s);
         assert_in_range(ahead, 128 * MIB, 128 * MIB + little);
-        assert_int_equal(fill(s), frames); /* nothing is decided otherwise */
+        assert_int_equal(fill(s), frames); /* decisions are unchanged */
         assert_true(tile_memory(s) == ahead);
         for (int t = 0; t < TEXTURES; t++)
             CHECK_OK(sluiceRemoveVulkanTexture(s->streamer, s->textures[t].textureId));
@@ -273,7 +273,7 @@ static void a_budget_that_falls_frees_memory_without_tiles_first(void **state)
     tile_memory_ahead = 0;
 }
 
-/* A message if and only if more stays in use. */
+/* Expects a message if and only if more memory stays in use. */
 static void lower_budget(struct stage *s, uint64_t budget)
 {
     char words[64];
@@ -289,7 +289,7 @@ static void lower_budget(struct stage *s, uint64_t budget)
     assert_non_null(strstr(s->message, words));
 }
 
-/* One heap of 16 MiB stays in sparse mode. */
+/* In sparse mode one heap of 16 MiB remains. */
 static void a_budget_that_cannot_be_reached_is_told_once_with_what_is_too_much(void **state)
 {
     (void)state;
@@ -368,7 +368,7 @@ struct order {
     uint32_t tiles[1024], count;
 };
 
-/* The last ones first: reads of other textures may have come back so. */
+/* Reverses the slots, as other textures' reads may have returned them. */
 static void turn_slots(SluiceVulkanStreamer *s)
 {
     s->free_units = (struct slc_unit_list){SLC_NONE, SLC_NONE};

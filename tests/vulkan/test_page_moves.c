@@ -1,5 +1,5 @@
-/* Tiles that move out of an image of pages, one or many on a page, with frames that are abandoned.
- */
+/* Moves tiles out of an image of pages, with one or many tiles per page. Some frames are
+ * abandoned. */
 #include "vulkan/page_moves.h"
 
 #include "vulkan/context.h"
@@ -14,14 +14,15 @@
 #include <string.h>
 
 #define FORMAT SLUICE_FORMAT_R8G8B8A8_UNORM
-#define SINGLE(page) (TILES - 1u - (page)) /* tile of the first part that is alone on the page */
+#define SINGLE(page)                                                                               \
+    (TILES - 1u - (page)) /* tile of the first part that shares its page with none */
 
 enum { CHUNKS = 4, LAYERS = 64, PARTS = 3, EDGE = 40, TILES = EDGE * EDGE, CHANGES = 256 };
 
 static struct fake_vulkan fake; /* large */
 static struct slc_page_moves moves;
-static uint64_t completed;  ///< frame
-static uint32_t copy_count; ///< of the last frame
+static uint64_t completed;  ///< completed frame
+static uint32_t copy_count; ///< copies of the last frame
 
 struct rig {
     struct failing_allocator allocator;
@@ -89,7 +90,7 @@ static void finish(struct rig *r)
     assert_int_equal(r->allocator.live_count, 0);
 }
 
-/* Returns how many pages the frame copies. */
+/* Returns the number of pages that the frame copies. */
 static uint32_t record(struct rig *r)
 {
     VkCommandBuffer commands = fake_vulkan_commands(&fake);
@@ -132,8 +133,8 @@ static uint32_t take(struct rig *r)
     return page;
 }
 
-/* The first image is full, and the second one has one tile. `count` tiles of each part are on the
- * first page. */
+/* Fills the first image, and one tile of the second. `count` tiles of each part share the first
+ * page. */
 static void fill(struct rig *r, uint32_t count)
 {
     const struct slc_tile_key key = key_of(0);
@@ -268,7 +269,7 @@ static void a_page_whose_texels_a_frame_copies_moves_later(void **state)
     finish(&r);
 }
 
-/* The list of words that change must grow. */
+/* The list of changed words must grow. */
 static void without_host_memory_a_page_of_many_tiles_moves_later(void **state)
 {
     (void)state;
@@ -295,7 +296,7 @@ static uint32_t choose(struct rig *r, uint32_t pages, uint32_t *chunk)
     return lacking;
 }
 
-/* Images of 64, 64, 128 and 256 pages, of which the last one has 84. */
+/* Images of 64, 64, 128 and 256 pages. The last one has 84 tiles. */
 static void images_leave_so_that_much_of_the_budget_can_be_used(void **state)
 {
     (void)state;

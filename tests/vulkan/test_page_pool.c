@@ -1,4 +1,4 @@
-/* Pages that users with timelines of their own share. */
+/* Pages shared by users with separate timelines. */
 #include "vulkan/page_pool.h"
 
 #include "vulkan/context.h"
@@ -17,8 +17,8 @@
 
 enum { USERS = 2, CHUNKS = 3, LAYERS = 64, NONE = SLC_MAX_PAGE_USERS };
 
-static atomic_uint_fast64_t timelines[USERS]; ///< what the semaphores 1, 2, ... have reached
-static uint32_t layout_count; ///< images put into their layout since it was set to 0
+static atomic_uint_fast64_t timelines[USERS]; ///< values of the semaphores 1, 2, ...
+static uint32_t layout_count; ///< images transitioned to their layout since it was reset
 static const VkCommandBuffer commands = (VkCommandBuffer)(uintptr_t)64;
 
 static VkResult VKAPI_CALL get_value(VkDevice device, VkSemaphore semaphore, uint64_t *value)
@@ -87,7 +87,7 @@ static uint32_t record(struct rig *r, uint32_t user, uint64_t frame)
     return layout_count;
 }
 
-/* All pages of the first chunk, by this user, with the chunk in its layout. */
+/* Takes all pages of the first chunk for a user, with the chunk in its layout. */
 static void take_all(struct rig *r, uint32_t user, uint32_t pages[LAYERS])
 {
     for (uint32_t i = 0; i < LAYERS; i++) {
@@ -147,7 +147,7 @@ static void a_new_image_belongs_to_its_maker_until_it_is_in_its_layout(void **st
     assert_int_equal(record(&r, 0, 1), 1); /* each user its own */
     assert_int_equal(record(&r, 1, 1), 1);
     slc_page_pool_abandon(&r.pool, r.users[0], 1);
-    timelines[0] = 2; /* a later frame; the abandoned one never ran */
+    timelines[0] = 2; /* a later frame; the abandoned one was never submitted */
     slc_page_pool_give(&r.pool, r.users[1], other, SLC_NO_OWNER);
     record(&r, 1, 2);
     for (uint32_t i = 0; i < LAYERS; i++)
@@ -182,7 +182,8 @@ static void an_empty_image_goes_when_no_user_can_see_it(void **state)
     assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 1);
     const struct slc_page_views *other = slc_page_pool_views(&r.pool, r.users[1]);
     assert_ptr_equal(slc_page_pool_views(&r.pool, r.users[0])->views[0], r.pool.views.empty);
-    assert_ptr_not_equal(other->views[0], r.pool.views.empty); /* its thread may be reading it */
+    assert_ptr_not_equal(other->views[0],
+                         r.pool.views.empty); /* another thread may be reading it */
     timelines[1] = 1;
     record(&r, 0, frame);
     assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 0);
@@ -208,7 +209,7 @@ static void a_retired_image_leaves_the_views_with_the_next_frame(void **state)
     }
     const struct slc_page_views *other = slc_page_pool_views(&r.pool, r.users[1]);
     uint64_t generation = other->generation;
-    record(&r, 1, 2); /* frame 1 is not complete: the image still exists */
+    record(&r, 1, 2); /* frame 1 is not complete, so the image still exists */
     assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 1);
     assert_ptr_equal(other->views[0], r.pool.views.empty);
     assert_true(other->generation > generation);
@@ -230,7 +231,7 @@ static void a_user_that_goes_gives_its_pages_back(void **state)
     finish(&r);
 }
 
-/* Its own limit is not what others leave of the pool's. */
+/* A user's capacity is its own limit, not the rest of the pool's. */
 static void pages_that_others_hold_are_no_capacity(void **state)
 {
     (void)state;
@@ -246,7 +247,7 @@ static void pages_that_others_hold_are_no_capacity(void **state)
     finish(&r);
 }
 
-/* Each has a chunk that its limit allows. One limit falls to a quarter. */
+/* Each user has a chunk within its limit. One limit falls to a quarter. */
 static void memory_beyond_the_limits_is_for_the_user_beyond_its_own_to_free(void **state)
 {
     (void)state;
@@ -268,12 +269,12 @@ static void memory_beyond_the_limits_is_for_the_user_beyond_its_own_to_free(void
     assert_int_equal(slc_page_pool_excess(&r.pool, r.users[0]), BEYOND);
     assert_int_equal(slc_page_pool_excess(&r.pool, r.users[1]), 0);
     slc_page_pool_give(&r.pool, r.users[0], pages[0], SLC_NO_OWNER);
-    for (uint32_t i = 0; i < USERS; i++) /* nobody is beyond its limit any more */
+    for (uint32_t i = 0; i < USERS; i++) /* no user exceeds its limit */
         assert_int_equal(slc_page_pool_excess(&r.pool, r.users[i]), BEYOND);
     finish(&r);
 }
 
-/* Frames that never run hold nothing back, even if no other frame of the user follows. */
+/* Frames that are never submitted delay nothing, even if no other frame of the user follows. */
 static void an_abandoned_frame_is_not_waited_for(void **state)
 {
     (void)state;
@@ -319,7 +320,7 @@ static void a_page_that_came_back_is_shared_when_its_copy_is_complete(void **sta
     finish(&r);
 }
 
-/* The place of a user that stood still for long goes to one that has just begun to read a tile. */
+/* A new user takes the number of a user that was idle for long, and begins to read a tile. */
 static void a_new_user_is_waited_for_in_the_place_of_an_idle_one(void **state)
 {
     (void)state;
@@ -343,7 +344,7 @@ static void a_new_user_is_waited_for_in_the_place_of_an_idle_one(void **state)
     finish(&r);
 }
 
-/* User 0 has read the tile and copied it with frame 1. Returns its page. */
+/* User 0 has read the tile and copied it in frame 1. Returns its page. */
 static uint32_t copy_tile(struct rig *r, const struct slc_tile_key *key)
 {
     uint32_t page = slc_page_pool_take(&r->pool, r->users[0], FORMAT);
@@ -380,7 +381,7 @@ static void a_shared_page_is_free_when_no_frame_of_any_reader_is_left(void **sta
     finish(&r);
 }
 
-/* Two textures of one source, in each of two users. */
+/* Each of two users has two textures of one source. */
 static void a_page_is_held_once_for_all_tiles_on_it(void **state)
 {
     (void)state;
@@ -450,7 +451,7 @@ static void texels_from_before_a_change_get_no_name_of_new_ones(void **state)
     finish(&r);
 }
 
-/* The texels were there before the abandoned frames, unless one of these copied them anew. */
+/* The texels are older than the abandoned frames, unless one of these copied them again. */
 static void an_abandoned_frame_leaves_the_texels_that_came_back(void **state)
 {
     (void)state;
@@ -504,17 +505,17 @@ struct walker {
     struct rig *rig;
     uint32_t user;
     uint32_t pages[LAYERS];
-    uint32_t taken, wrong; ///< pages taken; pages that another user had, too
+    uint32_t taken, wrong; ///< pages taken; pages that another user held at that time
 };
 
-static atomic_uint owners[CHUNKS][LAYERS * 4]; ///< user + 1; 0: nobody has the page
+static atomic_uint owners[CHUNKS][LAYERS * 4]; ///< user + 1; 0: unused
 
 static atomic_uint *owner_of(uint32_t page)
 {
     return &owners[page >> 16][page & 0xFFFFu];
 }
 
-/* Frames of one user on its own thread. Each frame replaces half of its pages. */
+/* Runs frames of one user on its own thread. Each frame replaces half of its pages. */
 static void *walk(void *argument)
 {
     struct walker *w = argument;
@@ -579,7 +580,7 @@ static VkResult VKAPI_CALL count_allocation(VkDevice device, const VkMemoryAlloc
     return real_allocate(device, info, cb, memory);
 }
 
-/* In one tick 50 textures are added and 50 pages wanted. */
+/* In each tick 50 textures are added and 50 pages requested. */
 static void textures_that_are_added_do_not_make_a_full_device_try_again(void **state)
 {
     (void)state;

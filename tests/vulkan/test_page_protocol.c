@@ -1,14 +1,13 @@
 /*
- * The promises of paged residency, with frames that finish when they like:
- * - what a MinMip map shows has a page in the table, and that page holds its texels,
- * - texels that change are those of the tile once nothing of its texture waits to be read again,
- * - no page belongs to two tiles that are shown,
- * - no image of pages goes while a frame that may have it bound is incomplete,
- * - the descriptor set of a frame shows all of them, and is not written until the frame is
- * complete.
+ * Promises of paged residency, with frames that finish at any time:
+ * - everything a MinMip map shows has a page in the table, and the page holds its texels,
+ * - changed texels are up to date once no tile of the texture waits to be read again,
+ * - no page belongs to two visible tiles,
+ * - no image of pages is destroyed while an incomplete frame may have it bound,
+ * - a frame's descriptor set shows all images, and is not written until the frame is complete.
  *
- * Commands run in the order in which they were recorded, as on one queue behind barriers. Copies on
- * the upload queue come first, to pages that no incomplete frame may read.
+ * Commands run in the order of recording, as on one queue behind barriers. Copies on the upload
+ * queue run first, to pages that no incomplete frame may read.
  */
 #include "vulkan/fake_vulkan.h"
 #include "vulkan/streamer.h"
@@ -26,14 +25,14 @@
 
 enum { TEXTURES = 6, CHUNKS = 8, LAYERS = 256, HISTORY = 64, FRAMES_IN_FLIGHT = 6 };
 
-/** By number, level and tile: how often its texels have changed, modulo 16. Any thread reads it. */
+/** By number, level and tile: count of texel changes, modulo 16. Read by any thread. */
 static atomic_uchar versions[256][12][16][16];
 
 static bool uses_upload_queue;
 
 struct texture {
-    bool settled;    ///< nothing of it waits to be read again
-    uint32_t number; ///< 0: not used; in its texels
+    bool settled;    ///< true: no tile waits to be read again
+    uint32_t number; ///< 0: unused; also encoded in its texels
     SluiceVulkanTexture texture;
     SluiceImageSource *source;
     SluiceStreamedTextureLayout layout;
@@ -45,16 +44,16 @@ struct model {
     SluiceVulkanStreamer *streamer;
     struct texture textures[TEXTURES];
     SluiceImageSource *old_sources[256];
-    uint32_t numbers[256], old_count; ///< numbers: what sources paint
+    uint32_t numbers[256], old_count; ///< numbers: values that sources paint
     uint32_t next_number;
     uint64_t frame;
-    uint32_t abandon_one_in, abandoned_in_all; ///< frames; 0: none
-    uint64_t submitted;                        ///< frames up to this one are
+    uint32_t abandon_one_in, abandoned_in_all; ///< one frame in this many; 0: none
+    uint64_t submitted;                        ///< last submitted frame
     bool abandoned[HISTORY];
     uint32_t window;
-    uint32_t reload_one_in; ///< frames, before which texels of a texture change; 0: none
-    uint32_t shrink_one_in; ///< frames, before which the budget changes; 0: none
-    uint32_t moved;         ///< tiles, from page to page
+    uint32_t reload_one_in; ///< one frame in this many changes a texture's texels; 0: none
+    uint32_t shrink_one_in; ///< one frame in this many changes the budget; 0: none
+    uint32_t moved;         ///< tiles moved from page to page
     bool seen[HISTORY][CHUNKS][LAYERS]; ///< pages, by frame
     VkImage shown[HISTORY][CHUNKS];     ///< by frame
     struct {
@@ -67,7 +66,8 @@ struct model {
     } chunks[CHUNKS];
 };
 
-/* Which texture, level, version and tile: what is copied tells where it belongs. */
+/* Returns a value for a tile's texels: texture, level, version and tile. Copies can be identified
+ * by it. */
 static uint32_t name_of(uint32_t number, uint32_t level, uint32_t x, uint32_t y)
 {
     uint32_t version = versions[number][level][y][x] & 15;
@@ -91,7 +91,7 @@ static uint8_t want(void *user, uint32_t region)
     return h % 4 == 0 ? (uint8_t)(h >> 8 & 3) : SLUICE_MIP_UNTOUCHED;
 }
 
-/* Where a texture's tiles begin: what its entry and the words per level say. */
+/* Finds a texture's first tile from its entry and the words per level. */
 static uint32_t find_first_word(const struct model *m, const struct texture *t)
 {
     struct SluiceTextureEntry entry;
@@ -125,7 +125,7 @@ static void model_add(struct model *m)
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = t->source};
     SluiceResult result = sluiceAddVulkanTexture(m->streamer, &create, &t->texture);
     if (result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY && m->shrink_one_in) {
-        sluiceDestroyImageSource(t->source); /* its packed levels are beyond the budget */
+        sluiceDestroyImageSource(t->source); /* its packed levels exceed the budget */
         *t = (struct texture){0};
         return;
     }
@@ -179,7 +179,7 @@ static void check_sets(const struct model *m)
                              m->sets[f % HISTORY].write_count);
 }
 
-/* Texel on a page of an image that is bound. */
+/* Returns a texel on a page of a bound image. */
 static uint32_t texel_of(const struct model *m, VkImage image, uint32_t layer)
 {
     for (uint32_t c = 0; c < CHUNKS; c++)
@@ -194,7 +194,7 @@ static void check_unseen(const struct model *m, uint32_t chunk, uint32_t layer)
         assert_false(m->seen[f % HISTORY][chunk][layer]);
 }
 
-/* `early`: on the upload queue, else of the frame. */
+/* `early`: copies on the upload queue; otherwise copies of the frame. */
 static void take_copies(struct model *m, bool early)
 {
     for (uint32_t i = 0; i < m->fake.copy_count; i++) {
@@ -211,7 +211,7 @@ static void take_copies(struct model *m, bool early)
     }
 }
 
-/* The page of a tile holds what the tile is called. */
+/* Checks that the page of a tile holds the tile's value. */
 static void check_tile(struct model *m, const struct texture *t, uint32_t tile)
 {
     const SluiceStreamedTextureLayout *l = &t->layout;
@@ -254,7 +254,7 @@ static uint32_t check_shown(struct model *m)
     return count;
 }
 
-/* One tile, or all. */
+/* Changes one tile or all. */
 static void change_texels(struct model *m, const struct texture *t)
 {
     const SluiceStreamedTextureLayout *l = &t->layout;
@@ -271,7 +271,7 @@ static void change_texels(struct model *m, const struct texture *t)
                                            all ? UINT32_MAX : 1));
 }
 
-/* Another source of the same size, all of whose texels differ. */
+/* Sets another source of equal size. All its texels differ. */
 static void replace_source(struct model *m, struct texture *t)
 {
     SluiceProceduralImage image = {&m->numbers[t->number], texel};
@@ -293,7 +293,7 @@ static void model_reload(struct model *m)
         change_texels(m, t);
 }
 
-/* The timeline never stands at an abandoned frame. */
+/* The timeline never stops at an abandoned frame. */
 static uint64_t advance(const struct model *m)
 {
     uint64_t now = m->fake.frame_value, end = m->frame < m->submitted ? m->frame : m->submitted;
@@ -314,7 +314,7 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
         fake->upload_value +=
             (uint64_t)roll() % (fake->submitted_upload_value - fake->upload_value + 1);
     if (roll() % 2)
-        CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* for the reads */
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* waits for reads */
     SluiceResult result =
         sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, frame);
     if (result == SLUICE_NOT_READY)
@@ -331,7 +331,7 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
     return result;
 }
 
-/* One to three frames that are begun, most of them ended, and given up together. */
+/* Begins one to three frames, ends most of them, and abandons them together. */
 static void abandoned_frames(struct model *m, uint64_t time)
 {
     SluiceStreamingFrame first = {.structSize = sizeof first}, frame = {.structSize = sizeof frame};
@@ -351,7 +351,7 @@ static void abandoned_frames(struct model *m, uint64_t time)
     CHECK_OK(sluiceAbandonStreamingFrame(m->streamer, &first));
     for (uint64_t f = first.frameIndex; f <= m->frame; f++) {
         m->abandoned[f % HISTORY] = true;
-        memset(m->shown[f % HISTORY], 0, sizeof m->shown[f % HISTORY]); /* nobody binds them */
+        memset(m->shown[f % HISTORY], 0, sizeof m->shown[f % HISTORY]); /* no frame binds them */
         m->abandoned_in_all++;
     }
 }
@@ -371,7 +371,7 @@ static uint32_t model_frame(struct model *m, uint64_t time)
     return shown;
 }
 
-/* From time to time all textures go, so that images of pages do. */
+/* Removes all textures now and then, so that images of pages are destroyed. */
 static void model_step(struct model *m, uint64_t step)
 {
     if (step % 3 == 0)
@@ -398,7 +398,7 @@ static void check_buffers(const struct fake_vulkan *fake, const SluiceVulkanBuff
     }
 }
 
-/* Sets a random memory budget, in MiB; 0: no limit. */
+/* Sets a random memory budget in MiB; 0: no limit. */
 static void change_memory(struct model *m)
 {
     static const uint64_t budgets[] = {0, 4, 5, 6, 8, 10, 12, 16};
@@ -454,7 +454,7 @@ static void run_plan(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.tilesRestored > 500);
     assert_true((stats.tilesReloaded > 500) == (reload_one_in > 0));
-    assert_true(generation >= 6); /* images came, went, and came again */
+    assert_true(generation >= 6); /* images were destroyed and created again */
     assert_true((m->moved > 10) == (shrink_one_in > 0));
     check_buffers(&m->fake, &buffers);
     assert_true(!abandon_one_in || m->abandoned_in_all > 500);

@@ -1,4 +1,4 @@
-/* Tiles that the application's commands fill: who is asked for which texels, and when the tiles are
+/* Tiles filled by the application's commands: requests for texels, and the time when tiles are
  * shown. */
 #include "vulkan/fake_vulkan.h"
 
@@ -15,7 +15,7 @@ static const SluiceResidencyMode modes[] = {
     SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_DENSE};
 enum { MODES = sizeof modes / sizeof *modes };
 
-/* One tile of one batch. */
+/* One tile of a batch. */
 struct call {
     SluiceTextureId id;
     VkImage image;
@@ -34,15 +34,16 @@ struct fixture {
     uint64_t time;
     uint32_t warnings;
     char last_warning[256];
-    uint8_t wanted;         ///< level, of all regions
-    bool stuck;             ///< the GPU completes no more frames
-    bool removes;           ///< the callback removes the texture, which it must not
-    uint32_t failing_level; ///< of the mip tail; 0: none
-    /** The answer for tiles of level 0 of the upper left quarter, and for all other texels. */
+    uint8_t wanted;         ///< requested level of all regions
+    bool stuck;             ///< true: the GPU completes no more frames
+    bool removes;           ///< true: the callback removes the texture, which is forbidden
+    uint32_t failing_level; ///< failing level of the mip tail; 0: none
+    /** Answers for level 0 tiles in the upper left quarter, for all other texels, and for the
+     * batch. */
     SluiceResult first_answer, answer, batch_answer;
     struct call calls[CALLS];
     uint32_t call_count, batch_count;
-    uint32_t tiles_per_frame; ///< set before setup, as the next ones; 0: the default
+    uint32_t tiles_per_frame; ///< this and later fields are set before setup; 0: default
     uint32_t timeout;
     const SluiceAllocationCallbacks *cb;
 };
@@ -146,7 +147,7 @@ static void teardown(struct fixture *f)
     f->tiles_per_frame = f->timeout = 0;
 }
 
-/* Binds are over at once; frames unless the GPU is stuck. */
+/* Completes binds at once, and frames unless the GPU is stuck. */
 static void begin_frame(struct fixture *f)
 {
     struct fake_vulkan *fake = &f->fake;
@@ -194,7 +195,7 @@ static SluiceVulkanStreamerStatistics statistics(const struct fixture *f)
     return stats;
 }
 
-/* How often each texel of a level was asked for. */
+/* Checks how often each texel of a level was requested. */
 static void check_covered(const struct fixture *f, uint32_t level, uint8_t times)
 {
     static uint8_t covered[SIZE][SIZE];
@@ -216,7 +217,7 @@ static void check_covered(const struct fixture *f, uint32_t level, uint8_t times
                          covered[y][x], times);
 }
 
-/* Targets do not overlap, and lie within their images. */
+/* Checks that targets do not overlap, and lie within their images. */
 static void check_targets(const struct fixture *f, SluiceResidencyMode mode)
 {
     for (uint32_t i = 0; i < f->call_count; i++) {
@@ -277,7 +278,7 @@ static void a_tile_is_shown_when_its_frame_is_complete(void **state)
                 f.fake.frame_value = f.frame.signalValue;
         }
         assert_int_equal(state_of(&f, 0), SLUICE_TILE_STATE_ALLOCATED);
-        run_frames(&f, 1); /* begun behind it, while it is under way */
+        run_frames(&f, 1); /* begun after it, while it is pending */
         assert_int_equal(state_of(&f, 0), SLUICE_TILE_STATE_ALLOCATED);
         assert_true(statistics(&f).loadsInFlight > 0);
         f.fake.frame_value = produced;
@@ -380,7 +381,7 @@ static void tiles_of_a_producer_that_fails_stay_coarser_and_are_reported(void **
     }
 }
 
-/* The mip tail, too: nothing is shown before. */
+/* Includes the mip tail: nothing is shown before. */
 static void a_batch_fails_as_a_whole(void **state)
 {
     (void)state;
@@ -482,7 +483,7 @@ static void tiles_that_are_never_ready_fail(void **state)
     }
 }
 
-/* Nobody waits for what nobody wants. */
+/* Unwanted tiles are not waited for. */
 static void tiles_that_are_not_ready_and_not_wanted_are_given_back(void **state)
 {
     (void)state;
@@ -591,7 +592,7 @@ static void a_texture_is_removed_while_it_is_produced(void **state)
         }
 }
 
-/* The callback must not do it, but no tile or page is lost. */
+/* The callback must not do it, but no tile or page may be lost. */
 static void a_texture_may_be_removed_by_its_producer(void **state)
 {
     (void)state;

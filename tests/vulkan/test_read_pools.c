@@ -1,4 +1,4 @@
-/* Contexts of several fake devices on one read pool, each used by a thread of its own. */
+/* Contexts of several fake devices share a read pool. A thread uses each device. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/fault_source.h"
@@ -18,13 +18,13 @@ struct device {
     SluiceVulkanTexture texture;
     SluiceImageSource *source;
     uint64_t time;
-    uint32_t rounds; ///< of `change`
+    uint32_t rounds; ///< rounds of the function `change`
     bool looks;      ///< shaders sample everything
-    uint32_t copies; ///< of tiles and levels
-    uint32_t oldest; ///< version among them
+    uint32_t copies; ///< copies of tiles and levels
+    uint32_t oldest; ///< oldest version in them
 };
 
-/* Every texel is the version. */
+/* A source whose texels all equal the version. */
 struct versions {
     SluiceImageSource base; ///< must be first
     atomic_uint version;
@@ -55,7 +55,7 @@ static const SluiceImageSourceInterface versions_interface = {
 static struct device devices[DEVICES]; /* large */
 static struct versions versions;
 static SluiceReadPool *pool;
-static struct fault_source source; ///< of all textures
+static struct fault_source source; ///< shared by all textures
 
 static uint8_t want(void *user, uint32_t region)
 {
@@ -174,7 +174,8 @@ static void devices_on_threads_read_what_one_device_reads(void **state)
     }
 }
 
-/* Looks away, invalidates, and removes and adds the texture, while frames and reads go on. */
+/* Stops sampling, invalidates, and removes and adds the texture, while frames and reads
+ * continue. */
 static void *change(void *argument)
 {
     struct device *d = argument;
@@ -197,8 +198,8 @@ static void *change(void *argument)
     return NULL;
 }
 
-/* Everything is there. What is read again after a change has the version of the change, or a later
- * one of another device. */
+/* Everything is resident. Tiles read after a change have its version, or a later one of another
+ * device. */
 static void *read_again(void *argument)
 {
     struct device *d = argument;
@@ -242,7 +243,7 @@ static void a_context_is_a_member_while_it_exists(void **state)
     CHECK_OK(sluiceGetReadPoolStatistics(pool, &now));
     assert_int_equal(now.memberCount, 1);
     assert_int_equal(now.keptCount, 0);
-    run_until_sharp(&devices[1]); /* keeps nothing: it is alone */
+    run_until_sharp(&devices[1]); /* caches nothing, because it is alone */
     CHECK_OK(sluiceGetReadPoolStatistics(pool, &now));
     assert_int_equal(now.keptCount, 0);
     assert_true(now.keptPeakSize > 0);

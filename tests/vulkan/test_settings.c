@@ -1,4 +1,5 @@
-/* What a running application changes takes effect with the next frame or launch, or not at all. */
+/* Changed settings of a running application take effect with the next frame or launch, or not at
+ * all. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/failing_allocator.h"
@@ -24,7 +25,7 @@ struct stage {
     SluiceTextureId last_texture;
     uint64_t time;
     bool looks, looks_at_some;
-    char last[256]; ///< message
+    char last[256]; ///< last message
 };
 
 static uint8_t want(void *user, uint32_t region)
@@ -205,7 +206,7 @@ static void tiles_per_frame_limit_the_next_frame(void **state)
     stage_finish(s);
 }
 
-/* Some frames, in which all that has started becomes resident. */
+/* Runs frames until all started loads are resident. Returns the total of mapped tiles. */
 static uint64_t mapped_after_frames(struct stage *s)
 {
     for (int i = 0; i < 6; i++)
@@ -229,7 +230,7 @@ static void held_loads_start_as_many_tiles_as_they_are_stepped(void **state)
                                           .feedbackTimeoutTicks = 1000});
     for (int i = 0; i < 10; i++)
         frame(s);
-    CHECK_OK(sluiceStepVulkanLoads(s->streamer, 7)); /* nothing is held: nothing is kept of it */
+    CHECK_OK(sluiceStepVulkanLoads(s->streamer, 7)); /* without a hold, steps are not kept */
     hold(s, true);
     uint64_t before = mapped_after_frames(s);
     assert_int_equal(mapped_after_frames(s), before);
@@ -246,7 +247,7 @@ static void held_loads_start_as_many_tiles_as_they_are_stepped(void **state)
         assert_int_equal(mapped_after_frames(s) - before, steps[i]);
         before += steps[i];
     }
-    CHECK_OK(sluiceStepVulkanLoads(s->streamer, UINT32_MAX)); /* calls add up without a wrap */
+    CHECK_OK(sluiceStepVulkanLoads(s->streamer, UINT32_MAX)); /* steps add up without overflow */
     CHECK_OK(sluiceStepVulkanLoads(s->streamer, 2));
     frame(s);
     hold(s, false);
@@ -273,7 +274,7 @@ static void textures_per_frame_are_those_of_the_frame_that_began(void **state)
     SluiceVulkanStreamerSettings settings = get(s);
     settings.texturesPerFrame = 1;
     CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
-    frame(s); /* reads the last frame's */
+    frame(s); /* reads the last frame's maps */
     before = statistics(s).feedbackMaps;
     for (int i = 0; i < 5; i++)
         frame(s);
@@ -287,7 +288,7 @@ static void textures_per_frame_are_those_of_the_frame_that_began(void **state)
     stage_finish(s);
 }
 
-/* Maps of the frame that has just been read. */
+/* Returns the number of maps that the last frame has read. */
 static uint64_t maps_of_frame(struct stage *s)
 {
     uint64_t before = statistics(s).feedbackMaps;
@@ -310,7 +311,7 @@ static void all_textures_have_their_turn_after_a_cut(void **state)
         s->memory.refuse_from = 0;
         CHECK_OK(sluiceResolveAllVulkanTextures(s->streamer));
         s->memory.refuse_from = UINT64_MAX;
-        assert_int_equal(maps_of_frame(s), 1); /* of the frame before */
+        assert_int_equal(maps_of_frame(s), 1); /* map of the previous frame */
         for (uint32_t left = TEXTURES; left > 0;) {
             uint32_t maps = left < most ? left : most;
             assert_int_equal(maps_of_frame(s), maps);
@@ -420,7 +421,7 @@ static void configuration_of_the_manager_and_settings_are_one(void **state)
     assert_int_equal(settings.numExtraStandbyTiles, 21);
     assert_int_equal(settings.missesToExpire, 2);
     assert_int_equal(settings.prefetchLevels, 1);
-    SluiceVulkanStreamerSettings old = settings; /* of a program that knows holdLoads alone */
+    SluiceVulkanStreamerSettings old = settings; /* as in a program that only knows holdLoads */
     old.structSize = offsetof(SluiceVulkanStreamerSettings, missesToExpire);
     old.missesToExpire = old.prefetchLevels = 0;
     CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &old));
@@ -469,7 +470,7 @@ static void regions_expire_once_as_many_maps_miss_them_as_the_settings_say(void 
         const uint32_t mapped = statistics(s).mappedTileCount;
         assert_true(mapped > 4 * 64);
         s->looks = false;
-        s->looks_at_some = true; /* an empty map would stand for many */
+        s->looks_at_some = true; /* an empty map would count for many */
         for (int i = 0; i < 10; i++)
             frame(s);
         assert_int_equal(statistics(s).mappedTileCount < mapped - 4 * 16, misses == 1);

@@ -30,7 +30,7 @@ static VkSparseImageMemoryRequirements color(uint32_t tile_width, uint32_t tile_
 static const VkMemoryRequirements small = {
     .size = 1 << 20, .alignment = 65536, .memoryTypeBits = 1};
 
-/* As an H200 says of RGBA8 16384^2: the tail starts at the 64 texel level and has one page. */
+/* Reported by an H200 for RGBA8 16384^2: the tail starts at the 64 texel level and has one page. */
 static void one_page_tail_is_one_packed_tile(void **state)
 {
     (void)state;
@@ -50,7 +50,7 @@ static void one_page_tail_is_one_packed_tile(void **state)
     assert_int_equal(place.x, 0);
 }
 
-/* As an H200 says of RGBA8 16384x128: 2.75 MiB of tail from level 1 on. */
+/* Reported by an H200 for RGBA8 16384x128: 2.75 MiB of tail from level 1 on. */
 static void many_page_tail_is_as_many_packed_tiles(void **state)
 {
     (void)state;
@@ -67,7 +67,7 @@ static void many_page_tail_is_as_many_packed_tiles(void **state)
     assert_int_equal(streamed.tileCount, 128 + 44);
 }
 
-/* As an H200 says of images smaller than a tile. */
+/* Reported by an H200 for images smaller than a tile. */
 static void image_that_is_all_tail_has_one_region(void **state)
 {
     (void)state;
@@ -82,7 +82,7 @@ static void image_that_is_all_tail_has_one_region(void **state)
     assert_int_equal(streamed.minMipWidth * streamed.minMipHeight, 1);
 }
 
-/* As lavapipe says: no tail, tailFirstLod is the level count. */
+/* Reported by lavapipe: no tail, tailFirstLod is the level count. */
 static void without_a_tail_levels_within_one_tile_are_packed(void **state)
 {
     (void)state;
@@ -105,7 +105,7 @@ static void without_a_tail_levels_within_one_tile_are_packed(void **state)
     }
 }
 
-/* Their packed levels are an image of their own. */
+/* With standard layouts, packed levels are an image of their own. */
 static void standard_layouts_count_packed_levels_by_their_texels(void **state)
 {
     (void)state;

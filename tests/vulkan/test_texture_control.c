@@ -1,4 +1,4 @@
-/* What an application may know and decide about single textures. */
+/* State and control of single textures. */
 #include "vulkan/control_reload.h"
 #include "vulkan/control_stage.h"
 #include "vulkan/control_strict.h"
@@ -16,7 +16,7 @@ static SluiceVulkanTextureState state_of(const struct stage *s, uint32_t texture
     return state;
 }
 
-/* The finest level whose tile over (x, y) is over (tx, ty), too. */
+/* Returns the finest level with one tile over both (x, y) and (tx, ty). */
 static uint32_t shared_level(uint32_t x, uint32_t y, uint32_t tx, uint32_t ty)
 {
     uint32_t level = 0;
@@ -168,7 +168,7 @@ static void a_request_loads_its_tiles_without_any_feedback(void **state)
     uint32_t waited = 0;
     for (; !progress_of(s, id).ready && waited < 20; waited++)
         frames(s, 1);
-    assert_true(waited >= 2 && waited <= 5); /* no turn of four textures is waited for */
+    assert_true(waited >= 2 && waited <= 5); /* does not wait for a turn of four textures */
     frames(s, 40);
     assert_int_equal(progress_of(s, id).residentTileCount, TAIL + 1);
     assert_int_equal(mapped_tiles(s), before + TAIL);
@@ -199,14 +199,14 @@ static void requests_are_over_at_their_time(void **state)
     frames(s, 1);
     SluiceVulkanRequestProgress end = progress_of(s, id);
     assert_true(end.over && !end.ready && end.tileCount == 0);
-    assert_int_equal(mapped_tiles(s), before + TAIL - 1); /* the timeout has only begun */
+    assert_int_equal(mapped_tiles(s), before + TAIL - 1); /* the timeout has just begun */
     frames(s, 30);
     assert_int_equal(mapped_tiles(s), before);
     CHECK_OK(sluiceWithdrawVulkanRequest(s->streamer, id));
     stage_finish(s);
 }
 
-/* What a tile of level 0 shows if regions hold these levels. */
+/* Returns the level that a tile of level 0 shows if regions hold these levels. */
 static uint32_t expected_level(const uint8_t held[TILES * TILES], uint32_t x, uint32_t y)
 {
     uint32_t finest = TAIL;
@@ -415,7 +415,7 @@ static void hidden_textures_leave_their_turns_and_their_tiles_stand_by(void **st
     assert_int_equal(mapped_tiles(s), each + (TEXTURES - 1)); /* and mip tails */
     assert_int_equal(statistics(s).standbyTileCount, (TEXTURES - 1) * (each - 1));
     memset(s->seen[0], 0, sizeof s->seen[0]);
-    frames(s, 5); /* each frame is its turn */
+    frames(s, 5); /* its turn comes in each frame */
     assert_int_equal(state_of(s, 0, (SluiceTextureRect){0}).residentLevel, 0);
     assert_int_equal(statistics(s).standbyTileCount, (TEXTURES - 1) * (each - 1));
     SluiceTextureRequestId id = request(s, 2, 1, (SluiceTextureRect){0}, UINT64_MAX);
@@ -486,7 +486,7 @@ static void primaries_change_while_textures_stream(void **state)
     assert_non_null(strstr(s->last, "followers of its own"));
     CHECK_RESULT(sluiceSetVulkanPrimaryTexture(s->streamer, s->textures[2].textureId, id),
                  SLUICE_ERROR_INVALID_ARGUMENT);
-    CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, id, other)); /* nothing changes */
+    CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, id, other)); /* no change */
     const uint64_t calls = s->memory.calls;
     CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, id, SLUICE_NO_TEXTURE));
     CHECK_OK(sluiceSetVulkanPrimaryTexture(s->streamer, id, SLUICE_NO_TEXTURE));
@@ -501,9 +501,8 @@ static void primaries_change_while_textures_stream(void **state)
     stage_finish(s);
 }
 
-/* Tile 3, 2 of 8 x 8 becomes 5.5 to 7.5, 4 to 6: tiles 5 to 7, 4 and 5, of which level 1 has 2 to
- * 3,
- * 2. The wrap given does not count. */
+/* Tile 3, 2 of 8 x 8 becomes 5.5 to 7.5, 4 to 6: tiles 5 to 7, 4 and 5. At level 1 these are tiles
+ * 2 to 3, 2. The given wrap is ignored. */
 static void followers_load_where_their_transform_samples(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What a zeroed create info means: times in seconds, whatever the time stamps count. */
+/* Defaults of a zeroed create info: times in seconds, for any unit of the time stamps. */
 #include "vulkan/fake_vulkan.h"
 
 #include "vulkan/time_defaults.h"
@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-enum { TILES = 16 }; /* of level 0 */
+enum { TILES = 16 }; /* tiles of level 0 */
 
 struct stage {
     struct fake_vulkan fake;
@@ -36,7 +36,7 @@ static void count_warnings(void *user, SluiceLogSeverity severity, const char *m
     assert_non_null(strstr(message, "ticksPerSecond"));
 }
 
-/* Of `info`, unit and times stay as they are. */
+/* Creates a stage. Keeps the unit and the times of `info`. */
 static struct stage *stage_init(SluiceVulkanStreamerCreateInfo info, uint64_t step)
 {
     static struct stage s; /* large */

@@ -1,5 +1,5 @@
-/* What callers and their sources say wrongly is refused, with a line that names it, and leaves
- * nothing behind. */
+/* Wrong arguments of callers and sources are refused. A log line names them, and nothing is left
+ * behind. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/streamer_manager.h"
@@ -15,7 +15,7 @@ enum { MODES = 3 };
 static const SluiceResidencyMode modes[MODES] = {
     SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_DENSE};
 
-/* The last line and how many there were. */
+/* Last log line, and number of lines. */
 struct lines {
     uint32_t count;
     char last[512];
@@ -139,7 +139,7 @@ static void release(void *user, void *memory, size_t size)
     free(memory);
 }
 
-/* A context that has what it needs, and from then on no memory for anything else. */
+/* Returns a context whose allocator fails from now on. */
 static SluiceVulkanContext *context_without_memory(struct fake_vulkan *fake, struct lines *lines)
 {
     static bool refuses;
@@ -181,8 +181,7 @@ static void set_field(void *info, const struct field *field, uint64_t value)
            field->size);
 }
 
-/* Limits come first: at a limit it is memory that is lacking, without which creation stops early.
- */
+/* Limits are checked first. At a limit, creation stops early for lack of memory. */
 static void streamers_take_every_limit_of_the_header_and_nothing_beyond(void **state)
 {
     (void)state;
@@ -443,7 +442,8 @@ static void what_demand_loading_refuses_is_named(void **state)
     sluiceDestroyVulkanContext(demand.context);
 }
 
-/* What the streamer does itself nobody else does; what pages tell people to call goes on. */
+/* The manager of a streamer refuses calls that the streamer makes itself. Calls that pages
+ * recommend still work. */
 static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
 {
     (void)state;
