@@ -20,8 +20,7 @@ struct fake_object {
     VkImageCreateFlags image_flags;
     VkFormat view_formats[32]; ///< images: formats of views, format_count of them
     uint32_t format_count;
-    uint32_t
-        families[8]; ///< images and buffers: sharing families, family_count of them; 0: exclusive
+    uint32_t families[8]; ///< images, buffers: family_count sharing families; 0: exclusive
     uint32_t family_count;
     bool general;           ///< images: true in layout GENERAL
     uint64_t general_frame; ///< frame in which the image got that layout

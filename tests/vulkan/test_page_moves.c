@@ -14,8 +14,7 @@
 #include <string.h>
 
 #define FORMAT SLUICE_FORMAT_R8G8B8A8_UNORM
-#define SINGLE(page)                                                                               \
-    (TILES - 1u - (page)) /* tile of the first part that shares its page with none */
+#define SINGLE(page) (TILES - 1u - (page)) /* tile of the first part, alone on its page */
 
 enum { CHUNKS = 4, LAYERS = 64, PARTS = 3, EDGE = 40, TILES = EDGE * EDGE, CHANGES = 256 };
 

@@ -293,7 +293,7 @@ static void an_abandoned_frame_is_not_waited_for(void **state)
     finish(&r);
 }
 
-/* The copy may still be under way when the tile comes back to its page. */
+/* The copy may still be pending when the tile returns to its page. */
 static void a_page_that_came_back_is_shared_when_its_copy_is_complete(void **state)
 {
     (void)state;
@@ -530,7 +530,7 @@ static void *walk(void *argument)
                 w->wrong += atomic_exchange(owner_of(w->pages[i]), 0) != w->user + 1;
                 slc_page_pool_give(pool, w->user, w->pages[i], SLC_NO_OWNER);
             }
-            w->pages[i] = frame / 200 % 2 ? SLUICE_PAGE_NONE /* until images go */
+            w->pages[i] = frame / 200 % 2 ? SLUICE_PAGE_NONE /* until images are destroyed */
                                           : slc_page_pool_take(pool, w->user, FORMAT);
             if (w->pages[i] == SLUICE_PAGE_NONE)
                 continue;
