@@ -102,6 +102,15 @@ if [ -n "$drop_files" ]; then
         [ "$(printf '%s\n' "${budgets[@]}" | sort -u | wc -l)" = 2 ]
     fact a_dropped_scene_has_settings_of_its_own_and_those_of_the_one_before_stay
 fi
+cp black.ppm 'a b.ppm' && recent=config/sluice/view-recent.list
+open_viewer && sleep 1 && xdotool key ctrl+o && xdotool type --delay 20 "$folder/a b.ppm" && xdotool key Return &&
+    until_true 20 copies "^sluice-view '$folder/a b.ppm'" && xdotool key ctrl+q && ended_well &&
+    [ "$(sed -n 2p "$recent")" = "$folder/a b.ppm" ]
+fact a_typed_path_is_opened_and_is_recent_afterwards
+echo damaged >"$recent" && open_viewer --fresh && xdotool key ctrl+q && ended_well && [ "$(cat "$recent")" = damaged ] && [ ! -s err ] &&
+    open_viewer && xdotool key ctrl+q && ended_well && grep -q "view-recent.list is damaged: it is" err &&
+    [ "$(cat "$recent.damaged")" = damaged ]
+fact a_damaged_list_of_recent_files_is_set_aside_but_for_fresh
 mkdir many
 for i in {1..5000}; do printf 'P6 2 2 255\n%012d' 0 >"many/$i.ppm"; done
 open_viewer many && xdotool key ctrl+q && ended_well

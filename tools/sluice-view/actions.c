@@ -1,5 +1,6 @@
 #include "actions.h"
 
+#include "panel_open.h"
 #include "panel_traced.h"
 
 #include <math.h>
@@ -224,6 +225,12 @@ static void hide_panels(struct view_app *app, int argument)
     app->settings.panels = !app->settings.panels;
 }
 
+static void open_file(struct view_app *app, int argument)
+{
+    (void)argument;
+    panel_open_toggle(app);
+}
+
 static void quit(struct view_app *app, int argument)
 {
     (void)argument;
@@ -296,6 +303,7 @@ static const struct action table[] = {
 
     {"Program", "F1", NULL, "all keys", toggle_panel, PANEL_KEYS},
     {"Program", "F10", NULL, "menu", toggle_panel, PANEL_MENU},
+    {"Program", "Ctrl+O", NULL, "open a file", open_file, 0},
     {"Program", "C", NULL, "copy command line", copy_command, 0},
     {"Program", "F5", NULL, "open the scene again", reload, 0},
     {"Program", "Ctrl+F5", NULL, "compile the shaders again", reload_shaders, 0},

@@ -2,6 +2,7 @@
 
 #include "actions.h"
 #include "controls.h"
+#include "panel_open.h"
 #include "panels.h"
 #include "sets.h"
 
@@ -31,6 +32,7 @@ void app_finish(struct view_app *app)
     app_close(app);
     camera_path_finish(&app->path);
     file_facts_finish(&app->file);
+    browser_finish(&app->browser);
 }
 
 static void begin_scene(struct view_app *app, bool walks)
@@ -183,6 +185,15 @@ static void read_keys(struct view_app *app, const struct ui_input *input)
 {
     for (uint32_t i = 0; i < input->key_count; i++) {
         const struct ui_key_event *event = &input->keys[i];
+        if (event->key == VIEW_KEY_NONE) {
+            if (app->open[PANEL_OPEN])
+                panel_open_type(app, event->text);
+            continue;
+        }
+        if (app->open[PANEL_OPEN] && event->down &&
+            (event->key < VIEW_KEY_SHIFT || event->key > VIEW_KEY_ALT) &&
+            panel_open_key(app, event->key, modifiers_held(app)))
+            continue;
         if (event->key < 0 || event->key >= VIEW_KEY_COUNT ||
             (event->down && ui_owns_key(event->key)))
             continue;

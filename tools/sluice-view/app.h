@@ -2,6 +2,7 @@
 #ifndef SLUICE_VIEW_APP_H
 #define SLUICE_VIEW_APP_H
 
+#include "browser.h"
 #include "camera.h"
 #include "facts.h"
 #include "file_facts.h"
@@ -31,6 +32,7 @@ enum app_panel {
     PANEL_FILE,
     PANEL_KEYS,
     PANEL_MENU,
+    PANEL_OPEN,
     PANEL_COUNT
 };
 
@@ -59,6 +61,7 @@ struct view_app {
     bool open[PANEL_COUNT];
     struct file_facts file;
     bool edits_b;            ///< controls change B
+    struct browser browser;  ///< of PANEL_OPEN
     char texture_filter[64]; ///< words of the table of textures
     bool touched;            ///< the visitor has the camera
     bool dragging;           ///< the mouse turns the camera

@@ -14,7 +14,7 @@ static const char usage[] =
     "Shows a scene whose textures are streamed, and why they look as they do. SCENE is a glTF,\n"
     "OBJ or pbrt file; without one, a hall that comes with this program. Pictures, those of\n"
     "folders, of URLs (http, https, s3: give 32 --threads then) and of catalogues (sluice-bake\n"
-    "--merge) hang in a room. Drop files onto the window to open them.\n";
+    "--merge) hang in a room. Drop files onto the window to open them, or press Ctrl+O.\n";
 
 static const char notes[] =
     "Without a display, use --headless: it draws the same frames, with the panels, into pictures.\n"

@@ -2,6 +2,7 @@
 
 #include "actions.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define KEY_COLUMNS 3
@@ -57,6 +58,21 @@ void panel_keys(struct view_app *app)
     ui_end_panel();
 }
 
+static void draw_recent(struct view_app *app)
+{
+    char name[160];
+    const struct file_list *recent = &app->browser.recent;
+    if (recent->count > 0)
+        ui_text(UI_BLUE, "Recent files");
+    for (size_t i = 0; i < recent->count; i++) {
+        const char *path = recent->paths[i], *slash = strrchr(path, '/');
+        snprintf(name, sizeof name, "%.100s##recent%zu", slash && slash[1] ? slash + 1 : path, i);
+        if (ui_button(name, 220 * ui_scale(), 0, false))
+            browser_choose(&app->browser, path);
+        ui_hint("%s", path);
+    }
+}
+
 void panel_menu(struct view_app *app)
 {
     uint32_t count;
@@ -76,6 +92,7 @@ void panel_menu(struct view_app *app)
             ui_same_line(0);
             ui_text(UI_GRAY, "%s", actions[i].shown ? actions[i].shown : actions[i].chord);
         }
+        draw_recent(app);
     }
     ui_end_panel();
 }

@@ -146,7 +146,8 @@ static void draw_messages(const struct view_app *app)
     for (uint32_t i = 0; i < count && length < sizeof text; i++)
         length += (size_t)snprintf(text + length, sizeof text - length, "%s%s", i > 0 ? "\n" : "",
                                    stage_message(app->stage, i));
-    ui_text(UI_ORANGE, "%u part%s of the scene cannot be shown (Shift+I)", count, count == 1 ? "" : "s");
+    ui_text(UI_ORANGE, "%u part%s of the scene cannot be shown (Shift+I)", count,
+            count == 1 ? "" : "s");
     ui_hint("%s", text);
 }
 

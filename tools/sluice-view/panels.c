@@ -155,6 +155,10 @@ void panels_draw(struct view_app *app)
         panel_keys(app);
         return;
     }
+    if (app->open[PANEL_OPEN] && app->stage) {
+        panel_open(app);
+        return;
+    }
     panel_start(app);
     if (!app->stage)
         return;

@@ -31,6 +31,7 @@ void panel_events(struct view_app *app);
 void panel_device(struct view_app *app);
 void panel_trade(struct view_app *app);
 void panel_file(struct view_app *app);
+void panel_open(struct view_app *app);
 void panel_keys(struct view_app *app);
 void panel_menu(struct view_app *app);
 

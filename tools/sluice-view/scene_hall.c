@@ -22,7 +22,7 @@ static bool read_path(const char *folder, char *path, size_t size)
     return read && files_size(path) > 0;
 }
 
-bool scene_hall_find(char *path, size_t size)
+bool scene_hall_look(char *path, size_t size)
 {
     char folder[4096];
     if (own_folder(folder, sizeof folder)) {
@@ -34,6 +34,13 @@ bool scene_hall_find(char *path, size_t size)
         if (read_path(folder, path, size))
             return true;
     }
+    return false;
+}
+
+bool scene_hall_find(char *path, size_t size)
+{
+    if (scene_hall_look(path, size))
+        return true;
     text_say("sluice-view: the hall is not installed (%s): showing a room of computed pictures",
              HALL_FROM_BIN);
     return false;

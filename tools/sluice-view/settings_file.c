@@ -28,20 +28,24 @@ static uint64_t hash(const char *text)
     return h;
 }
 
-bool settings_file_path(const char *scene, char *path, size_t size)
+bool settings_file_named(const char *name, char *path, size_t size)
 {
-    char resolved[4096];
     const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
-    const char *named = scene[0] ? realpath(scene, resolved) : scene;
-    const uint64_t number = hash(named ? named : scene);
     int length = -1;
     if (config && config[0] == '/')
-        length = snprintf(path, size, "%s/sluice/view-%016llx.settings", config,
-                          (unsigned long long)number);
+        length = snprintf(path, size, "%s/sluice/%s", config, name);
     else if (home && home[0] == '/')
-        length = snprintf(path, size, "%s/.config/sluice/view-%016llx.settings", home,
-                          (unsigned long long)number);
+        length = snprintf(path, size, "%s/.config/sluice/%s", home, name);
     return length > 0 && (size_t)length < size;
+}
+
+bool settings_file_path(const char *scene, char *path, size_t size)
+{
+    char resolved[4096], name[64];
+    const char *named = scene[0] ? realpath(scene, resolved) : scene;
+    snprintf(name, sizeof name, "view-%016llx.settings",
+             (unsigned long long)hash(named ? named : scene));
+    return settings_file_named(name, path, size);
 }
 
 static bool read_line(char *line, struct view_app *app)
@@ -73,13 +77,12 @@ static bool read_text(char *text, struct view_app *app)
     return true;
 }
 
-static void set_aside(const char *path)
+void settings_file_set_aside(const char *path, const char *outcome)
 {
     char aside[4200];
     snprintf(aside, sizeof aside, "%s.damaged", path);
     if (rename(path, aside) == 0)
-        text_say("sluice-view: %s is damaged: it is %s now, and all settings are the defaults",
-                 path, aside);
+        text_say("sluice-view: %s is damaged: it is %s now, and %s", path, aside, outcome);
     else
         text_say("sluice-view: %s is damaged and cannot be renamed: %s", path, strerror(errno));
 }
@@ -103,7 +106,7 @@ void settings_file_read(const char *path, struct view_app *app)
         app->b = before_b;
         memcpy(app->bookmarks, bookmarks, sizeof bookmarks);
         memcpy(app->bookmark_set, set, sizeof set);
-        set_aside(path);
+        settings_file_set_aside(path, "all settings are the defaults");
     }
     free(text);
 }

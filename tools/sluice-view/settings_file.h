@@ -4,6 +4,12 @@
 
 #include "app.h"
 
+/** Path of a file in the user's folder of settings: "view-recent.list". False without such a
+ * folder.
+ */
+bool settings_file_named(const char *name, char *path, size_t size);
+/** Renames a damaged file to PATH.damaged, and says so on stderr. `outcome`: what follows. */
+void settings_file_set_aside(const char *path, const char *outcome);
 /** Path of the file of a scene in the user's folder of settings. False without such a folder. */
 bool settings_file_path(const char *scene, char *path, size_t size);
 /** Reads a file into the settings of A and B, and bookmarks; no file is fine. What the file does not

@@ -32,12 +32,14 @@ extern "C" {
 #define UI_RED UI_COLOR(255, 110, 90, 255)
 #define UI_BLUE UI_COLOR(105, 175, 255, 255)
 
+/** A key, or a character. */
 struct ui_key_event {
-    int key; ///< enum view_key
+    int key; ///< enum view_key; VIEW_KEY_NONE: a character
     bool down;
+    char text[5]; ///< a character
 };
 
-#define UI_MAX_KEY_EVENTS 32
+#define UI_MAX_KEY_EVENTS 256 /* of a slow frame */
 
 /** What happened since the last frame. */
 struct ui_input {
@@ -49,7 +51,7 @@ struct ui_input {
     bool shift, control, alt;
     struct ui_key_event keys[UI_MAX_KEY_EVENTS];
     uint32_t key_count;
-    char text[64]; ///< typed
+    char text[256]; ///< typed; also in `keys`, between the keys
 };
 
 /* Life. */
@@ -79,7 +81,8 @@ float ui_text_width(const char *text);
 enum ui_panel_flags {
     UI_PANEL_PLAIN = 1, ///< no title, cannot be moved
     UI_PANEL_FIT = 2,   ///< as large as its contents
-    UI_PANEL_NO_INPUT = 4
+    UI_PANEL_NO_INPUT = 4,
+    UI_PANEL_NO_KEYS = 8 ///< the keyboard moves no focus in it
 };
 /** `open` NULL: it has no button to close it. `placement`: x, y, width, height at first; with
  *  UI_PANEL_PLAIN always. `pivot`: which point of the panel is at x, y, 0 to 1. Always end it. */
@@ -91,6 +94,15 @@ float ui_panel_width(void);
 /** A part of a panel that scrolls. */
 void ui_begin_part(const char *id, float width, float height);
 void ui_end_part(void);
+/** A list of `count` lines of text that scrolls: draw lines *first to *last - 1. `follow`: scrolls
+ *  to line `selected`. `count` 0: draw all. */
+void ui_begin_list(const char *id, float width, float height, uint32_t count, uint32_t selected,
+                   bool follow, uint32_t *first, uint32_t *last);
+/** Returns how often the line was clicked: 0, 1 or 2. */
+int ui_list_line(int id, bool selected, uint32_t color, const char *text);
+void ui_end_list(uint32_t count);
+/** Scrolls to the widget before. */
+void ui_follow(void);
 bool ui_begin_group(const char *label, bool open_at_first);
 
 /* Widgets. */

@@ -18,6 +18,8 @@ bool ui_begin_panel(const char *title, bool *open, const float placement[4], con
         window |= ImGuiWindowFlags_AlwaysAutoResize;
     if (flags & UI_PANEL_NO_INPUT)
         window |= ImGuiWindowFlags_NoInputs;
+    if (flags & UI_PANEL_NO_KEYS)
+        window |= ImGuiWindowFlags_NoNav;
     const ImGuiCond when = flags & UI_PANEL_PLAIN ? ImGuiCond_Always : ImGuiCond_Appearing;
     ImGui::SetNextWindowPos(ImVec2(placement[0], placement[1]), when, ImVec2(pivot[0], pivot[1]));
     if (!(flags & UI_PANEL_FIT))
@@ -43,6 +45,58 @@ void ui_begin_part(const char *id, float width, float height)
 void ui_end_part(void)
 {
     ImGui::EndChild();
+}
+
+void ui_begin_list(const char *id, float width, float height, uint32_t count, uint32_t selected,
+                   bool follow, uint32_t *first, uint32_t *last)
+{
+    ImGui::BeginChild(id, ImVec2(width, height), true, ImGuiWindowFlags_NoNav);
+    if (count == 0) {
+        if (first)
+            *first = *last = 0;
+        return;
+    }
+    const float line = ImGui::GetTextLineHeightWithSpacing(), room = ImGui::GetWindowHeight();
+    float scroll = ImGui::GetScrollY();
+    const float at = (float)selected * line;
+    if (follow && (at < scroll || at + 2 * line > scroll + room)) {
+        scroll = at < scroll ? at : at + 2 * line - room;
+        scroll = scroll > 0.0f ? scroll : 0.0f;
+        ImGui::SetScrollY(scroll);
+    }
+    *first = (uint32_t)(scroll / line);
+    *last = *first + (uint32_t)(room / line) + 2;
+    *last = *last < count ? *last : count;
+    *first = *first < *last ? *first : *last;
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + (float)*first * line);
+}
+
+int ui_list_line(int id, bool selected, uint32_t color, const char *text)
+{
+    ImGui::PushID(id);
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    const bool clicked =
+        ImGui::Selectable("##line", selected, ImGuiSelectableFlags_AllowDoubleClick);
+    ImGui::SameLine(0.0f, 0.0f);
+    ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
+    ImGui::PopID();
+    return !clicked ? 0 : ImGui::IsMouseDoubleClicked(0) ? 2 : 1;
+}
+
+void ui_end_list(uint32_t count)
+{
+    if (count > 0) {
+        const float line = ImGui::GetTextLineHeightWithSpacing();
+        ImGui::SetCursorPosY(ImGui::GetStyle().WindowPadding.y + (float)count * line);
+        ImGui::Dummy(ImVec2(0.0f, 0.0f));
+    }
+    ImGui::EndChild();
+}
+
+void ui_follow(void)
+{
+    ImGui::SetScrollHereY();
 }
 
 bool ui_begin_group(const char *label, bool open_at_first)

@@ -6,6 +6,7 @@
 #include "controls.h"
 #include "messages.h"
 #include "panels.h"
+#include "recent.h"
 #include "scene_hall.h"
 #include "sets.h"
 #include "settings_file.h"
@@ -90,7 +91,7 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
     case SCRIPT_BUTTON: in->buttons[step->number] = step->down; break;
     case SCRIPT_KEY: window_note_key(in, step->number, step->down); break;
     case SCRIPT_WHEEL: in->wheel += step->x; break;
-    case SCRIPT_TYPE: snprintf(in->text, sizeof in->text, "%s", step->text); break;
+    case SCRIPT_TYPE: window_note_text(in, step->text); break;
     case SCRIPT_DROP: drop(v, step->text); break;
     case SCRIPT_SET: controls_set(&v->app.settings, step->text, step->value, "sluice-view"); break;
     case SCRIPT_SET_B: app_set_b(&v->app, step->text, step->value); break;
@@ -169,6 +170,7 @@ static void answer_requests(struct viewer *v)
         app->reload = true;
     if (app->reload)
         viewer_reopen(v, NULL);
+    viewer_open_chosen(v);
     if (app->screenshot)
         name_screenshot(v);
     if (app->trace && v->recorder)
@@ -524,6 +526,11 @@ static void read_settings(struct viewer *v)
     const struct view_options *o = v->options;
     const char *scene = o->words.count > 0 ? o->words.items[0] : "";
     v->app.settings = o->settings;
+    if (!o->headless && !o->fresh &&
+        settings_file_named("view-recent.list", v->recent_path, sizeof v->recent_path))
+        recent_read(v->recent_path, &v->app.browser.recent);
+    else
+        v->recent_path[0] = '\0';
     if (o->headless || !settings_file_path(scene, v->settings_path, sizeof v->settings_path)) {
         v->settings_path[0] = '\0';
         begin_b(v, false);

@@ -40,6 +40,7 @@ struct viewer {
     struct scene_load *canceled;    ///< canceled loads whose threads have not ended
     char command[4200];             ///< of "copy command line", without options
     char settings_path[4096];       ///< "": none are kept
+    char recent_path[4096];         ///< of the list of recent files; "": it is not kept
     char screenshot[4096];          ///< to write after this frame; "": none
     struct summary summary;
     struct trade trade;
@@ -67,6 +68,8 @@ void viewer_reopen(struct viewer *viewer, struct file_list *paths);
 /** Shows a scene that a thread has opened, and says before how far it is. False if there is nothing
  *  to show. */
 bool viewer_watch_load(struct viewer *viewer);
+/** Opens what the browser or the menu chose. */
+void viewer_open_chosen(struct viewer *viewer);
 /** Does not wait. The scene that is shown stays; without one, the room is opened. */
 void viewer_cancel_load(struct viewer *viewer);
 /** Cancels what is being opened, and waits for all threads that open scenes. */

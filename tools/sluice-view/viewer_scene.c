@@ -1,6 +1,7 @@
 #include "viewer.h"
 
 #include "controls.h"
+#include "recent.h"
 #include "settings_file.h"
 #include "shader_files.h"
 
@@ -129,6 +130,20 @@ static void restore_settings(struct viewer *v, const struct kept_settings *befor
     memcpy(v->settings_path, before->path, sizeof before->path);
 }
 
+/* The browser begins at the scene. Another viewer may have changed the list meanwhile. */
+static void note_recent(struct viewer *v, bool first)
+{
+    struct browser *b = &v->app.browser;
+    const bool is_named = v->paths.count == 1 && (!first || v->options->words.count > 0);
+    snprintf(b->scene, sizeof b->scene, "%s", v->paths.count > 0 ? v->paths.paths[0] : "");
+    if (!is_named)
+        return;
+    if (v->recent_path[0])
+        recent_read(v->recent_path, &b->recent);
+    if (recent_add(v->paths.paths[0], &b->recent) && v->recent_path[0])
+        recent_write(v->recent_path, &b->recent);
+}
+
 /* A panel shows why, and what of a file that was opened is missing. */
 static void note_file(struct viewer *v, const struct file_list *paths, bool opened)
 {
@@ -160,6 +175,8 @@ static bool show(struct viewer *v, struct scene_data *scene, struct file_list *p
         *paths = before;
     }
     name_command(v);
+    if (paths)
+        note_recent(v, first);
     if (!app_open(&v->app, stage, first && !v->options->still))
         return false;
     if (first && v->options->record)
@@ -221,6 +238,17 @@ void viewer_reopen(struct viewer *v, struct file_list *paths)
         begin_load(v, paths);
     else if (!viewer_open_now(v, paths ? paths : &v->paths, &scene) || !show(v, &scene, paths))
         say_failed(v, paths ? paths : &v->paths);
+}
+
+void viewer_open_chosen(struct viewer *v)
+{
+    char path[BROWSER_PATH];
+    struct file_list paths = {0};
+    if (!browser_take(&v->app.browser, path, sizeof path))
+        return;
+    if (!path[0] || files_add(path, &paths))
+        viewer_reopen(v, &paths);
+    files_finish(&paths);
 }
 
 static bool end_load(struct viewer *v)

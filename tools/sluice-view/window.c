@@ -38,7 +38,23 @@ void window_note_key(struct ui_input *input, int key, bool down)
     if (key == VIEW_KEY_ALT)
         input->alt = down;
     if (input->key_count < UI_MAX_KEY_EVENTS)
-        input->keys[input->key_count++] = (struct ui_key_event){key, down};
+        input->keys[input->key_count++] = (struct ui_key_event){.key = key, .down = down};
+}
+
+void window_note_text(struct ui_input *input, const char *text)
+{
+    const size_t length = strlen(input->text);
+    if (length + strlen(text) < sizeof input->text)
+        strcpy(input->text + length, text);
+    while (*text && input->key_count < UI_MAX_KEY_EVENTS) {
+        struct ui_key_event *event = &input->keys[input->key_count++];
+        size_t size = 1;
+        while (size < 4 && ((unsigned char)text[size] & 0xC0) == 0x80)
+            size++;
+        *event = (struct ui_key_event){.key = VIEW_KEY_NONE, .down = true};
+        memcpy(event->text, text, size);
+        text += size;
+    }
 }
 
 static struct window *of(GLFWwindow *glfw)
@@ -50,8 +66,9 @@ static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int modi
 {
     (void)scancode;
     (void)modifiers;
-    if (action == GLFW_REPEAT && key != GLFW_KEY_BACKSPACE && key != GLFW_KEY_LEFT &&
-        key != GLFW_KEY_RIGHT)
+    const bool repeats =
+        key == GLFW_KEY_BACKSPACE || (key >= GLFW_KEY_RIGHT && key <= GLFW_KEY_PAGE_DOWN);
+    if (action == GLFW_REPEAT && !repeats)
         return;
     if (key == GLFW_KEY_RIGHT_SHIFT || key == GLFW_KEY_RIGHT_CONTROL || key == GLFW_KEY_RIGHT_ALT)
         key -= GLFW_KEY_RIGHT_SHIFT - GLFW_KEY_LEFT_SHIFT;
@@ -59,14 +76,18 @@ static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int modi
         window_note_key(&of(glfw)->pending, key, action != GLFW_RELEASE);
 }
 
+/* As UTF-8. */
 static void on_character(GLFWwindow *glfw, unsigned code)
 {
-    char *text = of(glfw)->pending.text;
-    const size_t length = strlen(text);
-    if (code >= 32 && code < 127 && length + 2 < sizeof of(glfw)->pending.text) {
-        text[length] = (char)code;
-        text[length + 1] = '\0';
-    }
+    static const unsigned char marks[] = {0, 0xC0, 0xE0, 0xF0};
+    const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+    char text[5] = "";
+    if (code < 32 || (code >= 127 && code < 160) || code > 0x10FFFF)
+        return;
+    text[0] = (char)(marks[more] | code >> (6 * more));
+    for (int i = 1; i <= more; i++)
+        text[i] = (char)(0x80 | (code >> (6 * (more - i)) & 0x3F));
+    window_note_text(&of(glfw)->pending, text);
 }
 
 /* From points of the screen to pixels. */

@@ -32,5 +32,7 @@ bool window_dropped(struct window *window, struct file_list *paths);
 void window_set_full_screen(struct window *window, bool full);
 /** Adds a key, and sets the modifiers by it. */
 void window_note_key(struct ui_input *input, int key, bool down);
+/** Adds characters of UTF-8 behind the keys. */
+void window_note_text(struct ui_input *input, const char *text);
 
 #endif /* SLUICE_VIEW_WINDOW_H */
