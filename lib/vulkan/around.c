@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Loops without branches, so that compilers make vectors of them. */
+/* Loops without branches, so that compilers vectorize them. */
 
 static void take_max(uint16_t *row, const uint16_t *other, uint32_t count)
 {
@@ -10,7 +10,7 @@ static void take_max(uint16_t *row, const uint16_t *other, uint32_t count)
         row[x] = row[x] > other[x] ? row[x] : other[x];
 }
 
-/* The largest of the rows around, column by column. */
+/* Finds the largest texel of the rows around, column by column. */
 static void reduce_rows(const struct slc_around *a, uint32_t y, uint16_t *row)
 {
     memcpy(row, a->texels + (uint64_t)y * a->width, a->width * sizeof *row);
@@ -29,7 +29,7 @@ void slc_around_row(const struct slc_around *a, uint32_t y, uint16_t *scratch, u
     uint16_t *row = scratch + a->radius;
     reduce_rows(a, y, row);
     for (uint32_t d = 1; d <= a->radius; d++) {
-        /* maps may be narrower than what is around */
+        /* maps may be narrower than the radius */
         scratch[a->radius - d] = a->wraps_x ? row[(a->width * d - d) % a->width] : 0;
         row[a->width - 1 + d] = a->wraps_x ? row[(d - 1) % a->width] : 0;
     }

@@ -80,7 +80,7 @@ static bool is_next_row(const struct slc_bind_run *run, const struct slc_bind_ru
            slots_follow(run, row->slot);
 }
 
-/* The last run is a whole row of neighbors: it joins the run before it if it lies below that. */
+/* Joins the last run, which is a whole row, to the run before it if it is the next row. */
 static void end_row(struct slc_bind_list *list)
 {
     if (list->run_count < 2)
@@ -98,7 +98,7 @@ void slc_bind_list_build_runs(struct slc_bind_list *list)
     uint32_t kept = 0;
     for (uint32_t i = 0; i < list->count; i++) {
         if (i + 1 < list->count && compare_places(&list->binds[i], &list->binds[i + 1]) == 0)
-            continue; /* a later one follows */
+            continue; /* a later state of the tile follows */
         list->binds[kept++] = list->binds[i];
     }
     list->count = kept;

@@ -1,6 +1,6 @@
 #include "vulkan/buffer.h"
 
-/* Memory of the host alone, if there is any. */
+/* Finds a memory type that is not device-local, if there is one. */
 static uint32_t find_host_type(const struct slc_caps *caps, uint32_t type_bits)
 {
     const VkPhysicalDeviceMemoryProperties *memory = &caps->memory;
@@ -15,9 +15,9 @@ static uint32_t find_host_type(const struct slc_caps *caps, uint32_t type_bits)
     return slc_find_memory_type(memory, type_bits, host, 0);
 }
 
-/* The GPU's own memory, if the host sees all of it (resizable BAR): on an H200 copies to images
- * take 2.8 us per tile instead of 2.9 to 4.2 us, and allocations a tenth of the time. A window of
- * 256 MiB is left to the application. */
+/* Finds device-local memory if the host can map all of it (resizable BAR). On an H200 copies to
+ * images then take 2.8 us per tile instead of 2.9 to 4.2 us, and allocations a tenth of the time. A
+ * window of only 256 MiB is left to the application. */
 static uint32_t find_staging_type(const struct slc_caps *caps, uint32_t type_bits)
 {
     const VkPhysicalDeviceMemoryProperties *memory = &caps->memory;
@@ -42,7 +42,7 @@ bool slc_staging_is_uncached(const struct slc_caps *caps)
 static uint32_t find_type(const struct slc_caps *caps, uint32_t type_bits,
                           enum slc_buffer_kind kind)
 {
-    /* Coherent for all, so that nothing needs to be flushed or invalidated. */
+    /* All kinds are coherent, so that no flush or invalidation is required. */
     const VkMemoryPropertyFlags host =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     switch (kind) {
@@ -81,7 +81,7 @@ static const char *name_of(enum slc_buffer_kind kind)
     }
 }
 
-/* If the GPU's memory is full, staging memory is the host's. */
+/* Allocates memory. Staging memory falls back to host memory if device memory is full. */
 static VkResult allocate(struct slc_buffer *buffer, const struct slc_vk *vk,
                          const struct slc_caps *caps, const VkMemoryRequirements *memory,
                          enum slc_buffer_kind kind, bool device_address)

@@ -8,10 +8,12 @@
 #include <string.h>
 
 #define MAX_QUEUE_FAMILIES 32u
-#define USUAL_PACKED_TILES 8u /* of a texture on software devices, which pack no levels */
+#define USUAL_PACKED_TILES                                                                         \
+    8u /* packed tiles per texture on software devices, which pack no levels */
 
-/* A software device maps every page that is bound into its process, and keeps the map until the
- * image goes. When the system refuses more it loses data silently. A quarter is left to others. */
+/* A software device maps every bound page into the process, and keeps the map until the image is
+ * destroyed. It loses data silently when the system refuses more maps. A quarter of the system's
+ * limit is left to others. */
 static uint32_t find_max_touched_tiles(void)
 {
     unsigned long maps = 65530; /* Linux's default */
@@ -25,7 +27,7 @@ static uint32_t find_max_touched_tiles(void)
     return limit < UINT32_MAX ? (uint32_t)limit : UINT32_MAX;
 }
 
-/* A family of its own overlaps with drawing; the drawing family makes binds wait for frames. */
+/* Prefers a family that does not draw: its binds run beside frames instead of waiting for them. */
 static bool find_sparse_family(const struct slc_vk *vk, SluiceVulkanDeviceCapabilities *caps)
 {
     VkQueueFamilyProperties families[MAX_QUEUE_FAMILIES];
@@ -77,7 +79,8 @@ static void take_properties(SluiceVulkanDeviceCapabilities *out,
     out->timestampPeriod = p->limits.timestampComputeAndGraphics ? p->limits.timestampPeriod : 0.0f;
 }
 
-/* Per stage and per pipeline layout. Combined image samplers count as both. */
+/* Takes the lower limit: per stage or per layout. Combined image samplers count as images and as
+ * samplers. */
 static void take_descriptor_limits(struct slc_caps *caps, const VkPhysicalDeviceLimits *limits)
 {
     caps->max_stage_images = slc_min_u32(limits->maxPerStageDescriptorSampledImages,
@@ -242,7 +245,8 @@ SluiceResult sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDe
     return SLUICE_SUCCESS;
 }
 
-/* Of pages and of textures. In every mode: one shader may serve all of them. */
+/* Requires features for arrays of pages and textures, in every mode: one shader may serve all
+ * modes. */
 static void require_arrays(const struct slc_caps *caps, VkPhysicalDeviceFeatures *features,
                            VkPhysicalDeviceVulkan12Features *vulkan12)
 {

@@ -68,7 +68,7 @@ static void add_family(struct slc_vk *vk, uint32_t family)
     vk->families[vk->family_count++] = family;
 }
 
-/* Families that exist; all of them have queues that sample or copy. */
+/* Collects the distinct families of all queues that sample or copy, and checks that they exist. */
 static SluiceResult share_families(SluiceVulkanContext *context,
                                    const SluiceVulkanContextCreateInfo *info)
 {
@@ -139,7 +139,7 @@ static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContext
         result = share_families(context, info);
     if (result != SLUICE_SUCCESS)
         return result;
-    /* Functions of instance extensions are found by the instance alone, and only if enabled. */
+    /* Functions of instance extensions are found only through the instance, and only if enabled. */
     context->vk.SetDebugUtilsObjectNameEXT =
         (PFN_vkSetDebugUtilsObjectNameEXT)info->pfnGetInstanceProcAddr(
             info->instance, "vkSetDebugUtilsObjectNameEXT");

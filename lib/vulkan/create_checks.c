@@ -2,7 +2,7 @@
 
 #include "base/log.h"
 
-#define MAX_FAMILIES 64u /* those beyond are believed */
+#define MAX_FAMILIES 64u /* families that are checked; further ones are accepted */
 
 SluiceResult slc_check_required(const SluiceLogCallback *log, const struct slc_required *fields,
                                 size_t count)
@@ -37,5 +37,5 @@ VkExtent3D slc_transfer_granularity(const struct slc_vk *vk, uint32_t family)
     uint32_t count = MAX_FAMILIES;
     vk->GetPhysicalDeviceQueueFamilyProperties(vk->physical_device, &count, families);
     return family < count ? families[family].minImageTransferGranularity
-                          : (VkExtent3D){0, 0, 0}; /* whole levels, which all can copy */
+                          : (VkExtent3D){0, 0, 0}; /* whole levels, which every family can copy */
 }

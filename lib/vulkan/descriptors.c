@@ -9,7 +9,7 @@
 #define MAX_BINDINGS (SLC_DESCRIPTOR_BUFFERS + 1 + SLC_TEXTURE_ARRAY_BINDINGS)
 #define WRITES_AT_ONCE 64u
 
-/* Any stage may use them: nobody knows here which one samples. */
+/* Makes a layout binding for all stages: the library does not know which stage samples. */
 static VkDescriptorSetLayoutBinding binding_of(uint32_t binding, VkDescriptorType type,
                                                uint32_t count)
 {
@@ -68,7 +68,7 @@ static SluiceResult allocate_set(struct slc_descriptors *d, const struct slc_vk 
     VkDescriptorBufferInfo buffers[SLC_DESCRIPTOR_BUFFERS];
     for (uint32_t i = 0; i < info->buffer_count; i++)
         buffers[i] = (VkDescriptorBufferInfo){info->buffers[i], 0, VK_WHOLE_SIZE};
-    /* One write may continue in the next bindings, since all of them are alike. */
+    /* One write may continue in the next bindings, since all have equal types and stages. */
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                   .dstSet = *set,
                                   .descriptorCount = info->buffer_count,
@@ -78,8 +78,8 @@ static SluiceResult allocate_set(struct slc_descriptors *d, const struct slc_vk 
     return SLUICE_SUCCESS;
 }
 
-/* Combined image samplers need a sampler each; separate images only those of the array of samplers.
- */
+/* Checks the limits per stage. Combined image samplers take a sampler each, separate images only
+ * the array of samplers. */
 static SluiceResult check_limits(const struct slc_vk *vk, const struct slc_caps *caps,
                                  const struct slc_descriptors_create_info *info)
 {

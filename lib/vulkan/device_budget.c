@@ -27,7 +27,7 @@ static SluiceResult find_extension(const struct slc_vk *vk, const SluiceAllocati
     return SLUICE_SUCCESS;
 }
 
-/* Tile memory in use, plus what the heap can spare or less what it lacks. */
+/* Returns tile memory in use, plus bytes that the heap can spare, or minus bytes that it lacks. */
 static uint64_t ask(const struct slc_device_budget *device, struct slc_memory_budget *budget)
 {
     VkPhysicalDeviceMemoryBudgetPropertiesEXT answer = {

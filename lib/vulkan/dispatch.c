@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Loaders and drivers hide what is newer than the version that the instance was created for. */
+/* Loaders and drivers hide functions newer than the version that the instance was created for. */
 static bool is_of_vulkan_1_0(const char *function)
 {
     static const char *const newer[] = {"vkGetPhysicalDeviceFeatures2",

@@ -6,8 +6,8 @@
 #include "vulkan/load_units.h"
 #include "vulkan/unit_copies.h"
 
-/* A range of texels, along one axis of a level, that starts and ends at multiples of `step`, or is
- * the whole level. */
+/* Whether a range of texels, along one axis of a level, starts and ends at multiples of `step`, or
+ * ends with the level. */
 static bool is_aligned(uint32_t first, uint32_t size, uint32_t step, uint32_t level_size)
 {
     if (first == 0 && size == level_size)
@@ -15,7 +15,7 @@ static bool is_aligned(uint32_t first, uint32_t size, uint32_t step, uint32_t le
     return step && first % step == 0 && (size % step == 0 || first + size == level_size);
 }
 
-/* The family can copy so small a part of a level. Its granularity counts blocks of texels. */
+/* Whether the family can copy this part of a level. Its granularity counts blocks of texels. */
 static bool may_copy(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
                      const SluiceImageRegion *region)
 {
@@ -30,7 +30,7 @@ static bool may_copy(const SluiceVulkanStreamer *s, const struct slc_texture *te
     uint32_t width = slc_mip_size(texture->info.width, region->mipLevel);
     uint32_t height = slc_mip_size(texture->info.height, region->mipLevel);
     if (texture->residency->interface->page_table && region->mipLevel < desc->regularMipCount) {
-        at.x = at.y = 0; /* a page, which a tile at the edge does not fill */
+        at.x = at.y = 0; /* in a page, which a tile at the edge does not fill */
         at.width = slc_div_up_u32(at.width, format.blockWidth) * format.blockWidth;
         at.height = slc_div_up_u32(at.height, format.blockHeight) * format.blockHeight;
         width = desc->tileWidth;
@@ -54,7 +54,7 @@ static bool may_copy_unit(const SluiceVulkanStreamer *s, const struct slc_textur
     return true;
 }
 
-/* New images get their layout in a frame, which copies their first texels, too. */
+/* The frame that records the layout of a new image copies its first texels, too. */
 bool slc_upload_is_early(const SluiceVulkanStreamer *s, const struct slc_unit *unit)
 {
     const struct slc_texture *texture = &s->textures[unit->texture];
@@ -66,14 +66,14 @@ bool slc_upload_is_early(const SluiceVulkanStreamer *s, const struct slc_unit *u
            may_copy_unit(s, texture, unit);
 }
 
-/* No frame under way can read the tile's place. */
+/* Whether no frame in progress can read the tile's memory. */
 static bool is_unread(const SluiceVulkanStreamer *s, const struct slc_unit *unit)
 {
     return slc_residency_of(s, unit->texture)->interface->maps_unread ||
            unit->bound_frame <= s->completed_frame;
 }
 
-/* Into frame_units; how many. */
+/* Collects units into frame_units. Returns how many. */
 static uint32_t take_units(SluiceVulkanStreamer *s)
 {
     uint64_t bound = s->residency->interface->completed_value(s->residency);

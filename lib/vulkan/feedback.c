@@ -1,4 +1,5 @@
-/* Which textures' feedback is resolved in a frame, and what the manager gets of it. */
+/* Feedback: chooses textures to resolve, reads their maps back, and gives the maps to the manager.
+ */
 #include "vulkan/load_stages.h"
 #include "vulkan/texture_control.h"
 #include "vulkan/texture_forgetting.h"
@@ -9,7 +10,7 @@
 
 #include <string.h>
 
-/* The one place where feedback enters the manager. */
+/* Gives a map to the manager. All feedback enters the manager here. */
 static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const uint8_t *map,
                              uint32_t width, uint32_t height, uint64_t time_stamp, uint64_t timeout)
 {
@@ -18,10 +19,10 @@ static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const 
     SluiceResult result =
         sluiceUpdateWithSamplerFeedback(s->manager, id, &desc, time_stamp, timeout);
     if (result == SLUICE_ERROR_STALE_TEXTURE || result == SLUICE_ERROR_UNKNOWN_TEXTURE)
-        return SLUICE_SUCCESS; /* removed while its map was on its way */
+        return SLUICE_SUCCESS; /* the texture was removed before its map was read back */
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
         slc_log(&s->vk.log, SLUICE_LOG_WARNING, "no memory to take in a feedback map");
-        return SLUICE_NOT_READY; /* nothing has changed, and there will be another one */
+        return SLUICE_NOT_READY; /* nothing has changed, and another map will come */
     }
     if (result < 0)
         return slc_streamer_check(s, result, "sluiceUpdateWithSamplerFeedback");
@@ -38,7 +39,7 @@ static SluiceResult give_map_of(SluiceVulkanStreamer *s, const struct slc_textur
                     texture->layout.feedbackHeight, time_stamp, s->info.feedbackTimeoutTicks);
 }
 
-/* The next primaries in turn, each at most once a frame. */
+/* Returns the next primary in turn. */
 static uint32_t next_primary(SluiceVulkanStreamer *s)
 {
     if (s->primary_cursor >= s->primary_count)
@@ -46,7 +47,7 @@ static uint32_t next_primary(SluiceVulkanStreamer *s)
     return s->primaries[s->primary_cursor++];
 }
 
-/* Textures may have gone since the frame began. */
+/* Returns the maps of this frame. Textures may have been removed since the frame began. */
 static uint32_t share_of_frame(const SluiceVulkanStreamer *s)
 {
     return slc_min_u32(s->share, s->primary_count);
@@ -71,7 +72,7 @@ SluiceResult sluiceResolveAllVulkanTextures(SluiceVulkanStreamer *streamer)
     return SLUICE_SUCCESS;
 }
 
-/* Everything is wanted always: no map has to come from the GPU. */
+/* Gives the manager maps that request everything (mapEverything), without feedback. */
 static SluiceResult want_everything(SluiceVulkanStreamer *s)
 {
     for (uint32_t i = share_of_frame(s); i > 0; i--) {
@@ -127,13 +128,14 @@ void slc_feedback_record_new(SluiceVulkanStreamer *s, const struct slc_texture *
     slc_resolve_record_new(&s->resolve, &s->vk, commands, texture->region_first,
                            texture->region_count);
     if (!s->buffers_cleared)
-        return; /* the whole buffer has just been filled */
+        return; /* the whole buffer was cleared in this frame */
     uint64_t size = slc_feedback_size(s, 4);
     s->vk.CmdFillBuffer(commands, s->feedback.buffer, texture->region_first / 4 * size,
                         (texture->region_count + 3) / 4 * size, slc_feedback_clear_value(s));
 }
 
-/* There was no room: its marks are still there, and next time it is among the first. */
+/* Resolves a texture again that did not fit: its marks are kept, and the next round begins with it.
+ */
 static void try_again(SluiceVulkanStreamer *s, const struct slc_texture *texture, bool *first)
 {
     s->counts.feedbackPostponed++;
@@ -154,7 +156,7 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
     for (uint32_t i = 0; i < slot->item_count; i++) {
         struct slc_texture *texture = slc_streamer_texture(s, slot->items[i]);
         if (texture->state != SLC_TEXTURE_LIVE || texture->id != slot->items[i])
-            continue; /* removed while its feedback was on its way */
+            continue; /* the texture was removed before its feedback was read back */
         const uint32_t *data;
         struct SluiceResolveResult resolved = slc_readback_result(&s->readback, slot, i, &data);
         if (resolved.state == SLUICE_RESOLVED_NOTHING) {
@@ -191,7 +193,7 @@ static SluiceResult give_due_map(SluiceVulkanStreamer *s, struct slc_texture *te
     return empty ? SLUICE_SUCCESS : give_map_of(s, texture, time_stamp);
 }
 
-/* Maps that do not wait for feedback. Their time is none before that of feedback to come. */
+/* Gives maps that do not wait for feedback. Their time is not after that of feedback to come. */
 static SluiceResult give_due_maps(SluiceVulkanStreamer *s)
 {
     const struct slc_readback_slot *pending = slc_readback_oldest(&s->readback, UINT64_MAX);
@@ -230,7 +232,7 @@ static bool takes_part(const SluiceVulkanStreamer *s, uint32_t index)
     return !s->info.feedbackInTurns || (s->turns[index / 32] >> index % 32 & 1);
 }
 
-/* Those that slc_feedback_record of this frame will come to. */
+/* Marks the textures that slc_feedback_record of this frame will resolve. */
 static void choose_turns(SluiceVulkanStreamer *s)
 {
     memset(s->turns, 0, slc_turns_size(s));
@@ -252,7 +254,7 @@ void slc_feedback_record_turns(SluiceVulkanStreamer *s, VkCommandBuffer commands
     choose_turns(s);
     const uint8_t *bytes = (const uint8_t *)s->turns;
     for (uint64_t done = 0, size = slc_turns_size(s); done < size; done += 65536) {
-        uint64_t piece = size - done < 65536 ? size - done : 65536; /* as much as an update takes */
+        uint64_t piece = size - done < 65536 ? size - done : 65536; /* most bytes of an update */
         s->vk.CmdUpdateBuffer(commands, s->feedback_turns.buffer, done, piece, bytes + done);
     }
 }
@@ -266,15 +268,15 @@ static void list_items(SluiceVulkanStreamer *s, struct slc_readback_slot *slot, 
     for (uint32_t i = 0; i < share; i++) {
         uint32_t index = next_primary(s);
         const struct slc_texture *texture = &s->textures[index];
-        /* The next frame clears what an older texture left in the regions of a new one; and those
-         * that came or went since the frame began may have shifted the turns. */
+        /* The next frame clears marks that an older texture left in the regions of a new one.
+         * Textures that were added or removed since the frame began may have shifted the turns. */
         if (texture->added_frame == s->frame || !takes_part(s, index)) {
             slot->list_version = 0;
             continue;
         }
         if (!slc_resolve_add(&s->resolve, texture->region_first, texture->feedback.region_count,
                              texture->feedback_whole ? SLUICE_RESOLVE_WHOLE : 0))
-            break; /* cannot be: there is room for all textures */
+            break; /* not reached: there is room for all textures */
         slot->items[slot->item_count++] = texture->id;
     }
     slot->list_end = s->primary_cursor;
@@ -312,7 +314,7 @@ void slc_feedback_abandon(SluiceVulkanStreamer *s, uint64_t frame)
             continue;
         if (slot->frame < oldest)
             s->primary_cursor = slot->list_first;
-        if (slot->share_of_all) /* their turns come again */
+        if (slot->share_of_all) /* all textures are resolved again */
             s->all_left = s->primary_count;
         oldest = slot->frame < oldest ? slot->frame : oldest;
         slot->frame = 0;

@@ -34,8 +34,7 @@ static bool take_changes(struct slc_feedback_map *map, uint32_t count, const uin
     return true;
 }
 
-/* Words that are equal are passed over, because maps are asked for as a whole where little changes,
- * too. */
+/* Applies a whole map. Skips equal words, because whole maps are also read where little changes. */
 static bool take_map(struct slc_feedback_map *map, uint32_t count, const uint32_t *data)
 {
     if (count != (map->region_count + 3) / 4)

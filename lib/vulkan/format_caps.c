@@ -43,7 +43,7 @@ static bool get_granularity(const struct slc_vk *vk, VkFormat format, VkExtent3D
 bool slc_filters_linear(const struct slc_vk *vk, SluiceFormat format)
 {
     VkFormatProperties features;
-    if (slc_format_is_integer(format)) /* Vulkan has none for them */
+    if (slc_format_is_integer(format)) /* Vulkan has no linear filter for integers */
         return false;
     vk->GetPhysicalDeviceFormatProperties(vk->physical_device, slc_vk_format(format), &features);
     return features.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;

@@ -32,8 +32,8 @@ static SluiceResult poll_frames(SluiceVulkanStreamer *s)
     return result;
 }
 
-/* A fence may be signaled before the semaphore of the same submission: lavapipe does that. So
- * whoever waited for the fence waits a moment more here, and needs no second wait. */
+/* Waits a moment for a frame. A fence may be signaled before the semaphore of its submission, as in
+ * lavapipe. So callers that waited for the fence need no second wait. */
 static SluiceResult await_frame(SluiceVulkanStreamer *s, uint64_t value)
 {
     if (value <= s->completed_frame)
@@ -50,7 +50,7 @@ static SluiceResult await_frame(SluiceVulkanStreamer *s, uint64_t value)
     return result == SLUICE_SUCCESS && value > s->completed_frame ? SLUICE_NOT_READY : result;
 }
 
-/* What the GPU has finished: slots, images and staging memory come back. */
+/* Collects completed frames: releases slots, images and staging memory. */
 static SluiceResult retire(SluiceVulkanStreamer *s)
 {
     SluiceResult result = slc_residencies_update(s);
@@ -67,7 +67,7 @@ static SluiceResult retire(SluiceVulkanStreamer *s)
                               "sluiceCompleteRetireValue");
 }
 
-/* Tiles leave the MinMip maps with this frame; their pages are free when older frames are over. */
+/* Unmaps tiles. MinMip maps hide them from this frame on; pages are free after older frames. */
 static SluiceResult unmap_tiles(SluiceVulkanStreamer *s)
 {
     for (;;) {
@@ -105,7 +105,7 @@ static SluiceResult bind(SluiceVulkanStreamer *s)
 static SluiceResult decide(SluiceVulkanStreamer *s)
 {
     SluiceResult result = retire(s);
-    s->memory_pressure = slc_memory_client_begin(&s->memory); /* after memory was freed above */
+    s->memory_pressure = slc_memory_client_begin(&s->memory); /* after the releases above */
     slc_unmet_budget_step(s);
     if (result >= 0)
         result = slc_productions_publish(s);
@@ -132,7 +132,7 @@ static SluiceResult decide(SluiceVulkanStreamer *s)
     return result;
 }
 
-/* Shaders of earlier frames before the copies; new images into the layout in which they stay. */
+/* Records a barrier from shaders of earlier frames to copies, and layouts of new images. */
 static void barrier_before(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     VkImageMemoryBarrier images[MAX_BARRIERS];
@@ -199,7 +199,7 @@ static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     slc_feedback_record_turns(s, commands);
     s->buffers_cleared = true;
     s->has_put_back = false;
-    if (written_twice) /* entries and words of the page table, which what follows changes */
+    if (written_twice) /* later commands change the same entries and words of the page table */
         barrier_after(s, commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
     SluiceResult result = slc_tile_uploads_record(s, commands);
     if (result >= 0)
@@ -207,7 +207,7 @@ static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     if (result >= 0)
         slc_residencies_record_publish(s, commands);
     if (result >= 0)
-        result = slc_min_mip_record(s, commands); /* after the texels that it shows */
+        result = slc_min_mip_record(s, commands); /* after the copies of texels that it shows */
     barrier_after(s, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
     return result;

@@ -7,12 +7,12 @@
 #include <string.h>
 
 #define UNIT 256u
-#define FIRST_UNITS 256u   /* 64 KiB: the first block of a pool */
-#define BLOCK_UNITS 32768u /* 8 MiB: the largest */
+#define FIRST_UNITS 256u   /* 64 KiB: first block of a pool */
+#define BLOCK_UNITS 32768u /* 8 MiB: largest block */
 #define SMALL_UNITS 8192u
 #define BLOCK_ALIGNMENT 4096u
 #define FIRST_RANGES 15u
-/* Ranges begin at multiples of this. Images round up to more themselves. */
+/* Alignment of ranges in bytes. Offsets of images with a larger alignment are rounded up. */
 #define RANGE_ALIGNMENT (UNIT * SLC_REGION_ALIGNMENT)
 
 static SluiceResult allocate(const struct slc_image_memory *pool, const struct slc_vk *vk,
@@ -50,7 +50,7 @@ static SluiceResult grow(struct slc_image_memory *pool, const SluiceAllocationCa
     return SLUICE_SUCCESS;
 }
 
-/* As much again as the pool has, so that few images take little and many few allocations. */
+/* Doubles the pool with each block: few images take little memory, many take few allocations. */
 static uint32_t next_block_units(const struct slc_image_memory *pool, uint32_t needed)
 {
     uint32_t units = FIRST_UNITS;
@@ -96,7 +96,7 @@ static SluiceResult take_from(struct slc_image_memory *pool, const SluiceAllocat
     return SLUICE_SUCCESS;
 }
 
-/* Begins with the block that had room last: those before it are most often full. */
+/* Takes a range. Begins with the block that had room last: blocks before it are usually full. */
 static SluiceResult take(struct slc_image_memory *pool, const struct slc_vk *vk,
                          const SluiceAllocationCallbacks *cb, uint32_t type,
                          struct slc_image_place *place)
@@ -127,7 +127,7 @@ SluiceResult slc_image_memory_bind(struct slc_image_memory *pool, const struct s
     if (type == UINT32_MAX || memory.size > slc_device_memory_size(caps))
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
     uint64_t size = memory.size;
-    if (memory.alignment > RANGE_ALIGNMENT) /* room to round the offset up */
+    if (memory.alignment > RANGE_ALIGNMENT) /* leaves room to round the offset up */
         size += memory.alignment - RANGE_ALIGNMENT;
     *place = (struct slc_image_place){0};
     SluiceResult result;

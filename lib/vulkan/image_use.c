@@ -10,7 +10,7 @@ void slc_image_use_apply(const struct slc_image_use *use, VkImageCreateInfo *cre
     create->flags |= VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT;
     if (use->format_count == 0)
         return;
-    formats->formats[0] = create->format; /* of the library's own views */
+    formats->formats[0] = create->format; /* format of the library's own views */
     for (uint32_t i = 0; i < use->format_count; i++)
         formats->formats[i + 1] = use->formats[i];
     formats->list =
