@@ -102,7 +102,7 @@ static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResul
     struct slc_unit *unit = &s->units[index];
     assert(unit->state == SLC_UNIT_READING);
     s->counts.bytesRead += read->size;
-    if (unit->source != s->textures[unit->texture].source) /* and may be destroyed next */
+    if (unit->source != s->textures[unit->texture].source) /* the application may destroy it next */
         slc_loader_drop_texels(s->loader, unit->source);
     if (s->textures[unit->texture].state == SLC_TEXTURE_REMOVED) {
         slc_unit_free(s, index);
@@ -127,7 +127,7 @@ static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResul
 SluiceResult slc_loads_collect(SluiceVulkanStreamer *s)
 {
     SluiceTileReadResult reads[BATCH];
-    /* A source that is never ready is asked again at once; without a limit that would not end. */
+    /* A source that is not ready is read again at once. The limit ends the loop if it never is. */
     for (uint32_t left = s->info.maxLoadsInFlight; left > 0;) {
         uint32_t count = slc_min_u32(BATCH, left);
         SluiceResult result = sluiceCollectTileReads(s->loader, &count, reads);

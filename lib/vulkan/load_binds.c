@@ -7,7 +7,7 @@
 #include "vulkan/load_stages.h"
 #include "vulkan/load_units.h"
 
-/* Gives what the residency has room for; the units move on when the batch has its number. */
+/* Maps packed tiles while the residency has room. Units move on when the batch has its value. */
 static void bind_packed(SluiceVulkanStreamer *s)
 {
     for (uint32_t i = 0; i < s->packed_queue_count; i++) {
@@ -24,8 +24,8 @@ static void bind_packed(SluiceVulkanStreamer *s)
     }
 }
 
-/* There is no memory for it. Later it is read again, and its staging slot serves others till then.
- */
+/* Fails a unit for which there is no memory. It is read again later. Until then other units use its
+ * staging slot. */
 static void refuse_unit(SluiceVulkanStreamer *s, uint32_t index)
 {
     const struct slc_unit *unit = &s->units[index];
@@ -48,7 +48,7 @@ void slc_loads_bind(SluiceVulkanStreamer *s)
             slc_unit_free(s, unit);
             continue;
         }
-        if (u->canceled) { /* a producer has not filled it yet, so nothing is lost */
+        if (u->canceled) { /* the producer has not written the tile yet, so nothing is lost */
             slc_load_give_back(s, u->texture, &u->tile);
             slc_unit_forget_tile(s, u);
             slc_unit_free(s, unit);
@@ -132,7 +132,7 @@ bool slc_loads_unmap(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile
     return false;
 }
 
-/* They come before all others: MinMip maps are about to show them. */
+/* Repeats come before all other copies, because MinMip maps are about to show their tiles. */
 void slc_loads_abandon(SluiceVulkanStreamer *s, uint64_t frame)
 {
     struct slc_unit_list kept = {SLC_NONE, SLC_NONE}, again = kept;
@@ -143,7 +143,7 @@ void slc_loads_abandon(SluiceVulkanStreamer *s, uint64_t frame)
             continue;
         }
         u->state = SLC_UNIT_BINDING;
-        u->value = 0; /* its bind is over */
+        u->value = 0; /* its bind is complete */
         u->published = true;
         slc_unit_list_append(s, &again, unit);
     }

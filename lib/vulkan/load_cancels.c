@@ -17,14 +17,15 @@ static void leave_packed_queue(SluiceVulkanStreamer *s, uint32_t index)
     }
 }
 
-/* A forgotten texture need not come back. */
+/* Ends the wait of a forgotten texture to be made again. */
 static void wait_no_more(SluiceVulkanStreamer *s, uint32_t index)
 {
     leave_packed_queue(s, index);
     s->textures[index].packed_state = SLC_PACKED_COLLECTING;
 }
 
-/* Given back while others are not even handed out; later it goes on and ends on standby. */
+/* Gives a packed tile back while others are not handed out yet. Once all are, the load goes on, and
+ * the tiles end on standby. */
 static SluiceResult cancel_packed_tile(SluiceVulkanStreamer *s, uint32_t index,
                                        const SluiceTile *tile)
 {
@@ -63,7 +64,7 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
                 slc_load_give_back(s, texture, &tiles[i]);
                 continue;
             }
-            /* What has arrived goes on to standby: its read is paid for already. */
+            /* Units whose texels have arrived go on to standby: their reads are done. */
             if (unit == SLC_MAP_NONE)
                 continue;
             if (s->units[unit].produced)

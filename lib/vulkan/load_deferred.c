@@ -3,7 +3,7 @@
 #include "core/observer.h"
 #include "vulkan/load_units.h"
 
-/* One that was asked to stop is not waited for. */
+/* Adds a tile to a list of waiting tiles, unless the manager has canceled it. */
 static SluiceResult wait_in(SluiceVulkanStreamer *s, struct slc_deferred_tiles *list,
                             uint32_t texture, const SluiceTile *tile)
 {
@@ -24,7 +24,7 @@ SluiceResult slc_load_await(SluiceVulkanStreamer *s, uint32_t texture, const Slu
     return wait_in(s, &s->awaited, texture, tile);
 }
 
-/* Tiles that are going to ask for a page of the format. */
+/* Counts the loads that will take a page of the format. */
 static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
 {
     uint32_t count = 0;
@@ -38,8 +38,7 @@ static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
     return count;
 }
 
-/* For further loads of the texture's format; UINT32_MAX: nobody knows of an end. Counted once a
- * frame. */
+/* Pages are counted once per frame and format. */
 uint32_t slc_pages_left(SluiceVulkanStreamer *s, uint32_t texture)
 {
     struct slc_residency *residency = slc_residency_of(s, texture);
@@ -61,7 +60,7 @@ void slc_pages_left_forget(SluiceVulkanStreamer *s)
         s->pages_left[i] = SLC_NONE;
 }
 
-/* Deferred tiles that even pages which are free now do not suffice for. */
+/* Counts the deferred tiles beyond the pages that are free now. */
 static uint32_t count_without_page(SluiceVulkanStreamer *s)
 {
     uint32_t count = 0;

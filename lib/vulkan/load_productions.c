@@ -18,7 +18,7 @@ void slc_production_start(SluiceVulkanStreamer *s, uint32_t texture, const Sluic
     uint32_t unit = slc_unit_take_empty(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
-    /* In paged and dense mode a page is there at once, so this frame can record the tile. */
+    /* In paged and dense mode the tile has its page at once, so this frame can record it. */
     bool at_once = !residency->interface->going_size &&
                    residency->interface->map(residency, texture, tile) == SLUICE_SUCCESS;
     s->units[unit].state = at_once ? SLC_UNIT_BINDING : SLC_UNIT_ARRIVED;
@@ -92,8 +92,8 @@ static void await_frame(SluiceVulkanStreamer *s, uint32_t index)
     slc_unit_list_append(s, &s->produced, index);
 }
 
-/* Moves a unit on as the producer's answer says: recorded, asked again later, or failed. A mip tail
- * that failed keeps its pages until the frame is complete, because finer levels may be recorded. */
+/* Applies the producer's answer to a unit: recorded, to be asked again, or failed. A mip tail that
+ * failed keeps its pages until the frame is complete, because finer levels may be recorded. */
 static SluiceResult answered(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
 {
     struct slc_unit *unit = &s->units[index];
@@ -129,7 +129,7 @@ static void ask(SluiceVulkanStreamer *s, struct slc_producer_calls *calls, uint3
     slc_producer_answers_end(results, batch->tileCount, result);
 }
 
-/* Target of texels that have their place in the texture's image. */
+/* Sets the target of texels that are in the texture's own image. */
 static void place_in_image(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
                            const SluiceImageRegion *region, SluiceTileBatch *batch,
                            SluiceTileTarget *target)
@@ -252,7 +252,7 @@ SluiceResult slc_productions_record(SluiceVulkanStreamer *s, VkCommandBuffer com
     slc_sort_units(s, s->frame_units, count, batch_key);
     for (uint32_t i = 0, next; i < count; i = next) {
         next = i + 1;
-        if (is_removed(s, units[i])) { /* by a callback of this frame */
+        if (is_removed(s, units[i])) { /* a callback of this frame removed the texture */
             slc_unit_free(s, units[i]);
             continue;
         }

@@ -39,7 +39,7 @@ void slc_fill_tile_read(SluiceVulkanStreamer *s, uint32_t index, SluiceTileRead 
                              .userValue = index};
 }
 
-/* Gives a unit to the loader; also again, for a source that was not ready. */
+/* Submits a unit to the loader, for the first time or after SLUICE_NOT_READY. */
 SluiceResult slc_unit_submit(SluiceVulkanStreamer *s, uint32_t index)
 {
     struct slc_unit *unit = &s->units[index];

@@ -98,22 +98,22 @@ static void start_unit(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTi
         slc_reload_back(s, unit, result);
 }
 
-/* True: the key is done with. */
+/* Starts a reload of a mip tail. Returns true if the key can be removed. */
 static bool start_tail(SluiceVulkanStreamer *s, uint32_t index, uint32_t *started)
 {
     struct slc_texture *texture = &s->textures[index];
     const SluiceTile tile = {.tileIndex = texture->layout.regularTileCount};
     if (texture->packed_state != SLC_PACKED_COLLECTING || texture->packed_collected)
-        return false; /* its load goes on first */
+        return false; /* the load in progress ends first */
     if (texture->packed_mapped < texture->image.desc.packedTileCount)
-        return true; /* it is read as a whole when it comes */
+        return true; /* a later load will read the whole tail */
     while (texture->reload_next < texture->packed.unit_count) {
         if (!may_start(s, *started))
             return false;
         ++*started;
         start_unit(s, index, &tile, texture->reload_next++);
         if (texture->reload_next == 0)
-            return false; /* the loader refused: all units are read later */
+            return false; /* the loader refused: all units are read again later */
     }
     return true;
 }
@@ -124,13 +124,13 @@ static bool start_tile(SluiceVulkanStreamer *s, uint32_t texture, uint32_t index
     if (slc_map_get(&s->tile_units, slc_pair_key(texture, index)) != SLC_MAP_NONE)
         return false;
     if (!is_resident(s, texture, index, &tile))
-        return true; /* it is read anew when it comes */
+        return true; /* a later load will read the new texels */
     ++*started;
     start_unit(s, texture, &tile, SLC_NONE);
     return true;
 }
 
-/* Each tile once. A read that fails at once asks for its tile again, and lets the texture wait. */
+/* Tries each tile once. A read that fails at once queues its tile again, and the texture waits. */
 static void start_texture(SluiceVulkanStreamer *s, uint32_t index, uint32_t *started)
 {
     struct slc_reload_lists *r = &s->reloads;

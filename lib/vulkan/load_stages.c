@@ -30,7 +30,7 @@ void slc_load_stage_left(SluiceVulkanStreamer *s, SluiceLoadStage stage, uint64_
     add(&s->stages.counts.stages[stage], s->frame - since);
 }
 
-/* The frame that made a request: the last one that began with no later number. */
+/* Returns the frame that made a request: the last one that began at or before its number. */
 static uint64_t frame_of(const SluiceVulkanStreamer *s, uint64_t request)
 {
     uint64_t low = s->stages.first_frame, high = s->frame;

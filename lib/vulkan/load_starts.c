@@ -10,7 +10,7 @@
 #include "vulkan/read_batch.h"
 #include "vulkan/texture_forgetting.h"
 
-/* Before anything is read for it: the tile cannot ever be bound. */
+/* Fails a tile that can never be bound, before it is read. */
 static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
     s->counts.tilesFailed++;
@@ -20,7 +20,8 @@ static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const
                               "sluiceReportFailedTiles");
 }
 
-/* SLC_SHARE_READY: it is mapped, WAIT: it waits, or was given back; `*result` says so. */
+/* Tries to share a page. READY: the tile is mapped. WAIT: it waits or was given back (`*result`).
+ */
 static enum slc_share share_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile,
                                  SluiceResult *result)
 {
@@ -54,7 +55,7 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, struct slc_read_batch *b
     const struct slc_residency_interface *interface = residency->interface;
     SluiceResult result = SLUICE_SUCCESS;
     bool produced = s->textures[texture].producer.pfn;
-    if (s->textures[texture].presence != SLC_PRESENT) /* its mip tail brings it back */
+    if (s->textures[texture].presence != SLC_PRESENT) /* loading its mip tail makes it again */
         return slc_load_defer(s, texture, tile);
     if (!produced && share_tile(s, texture, tile, &result) != SLC_SHARE_NONE)
         return result;
@@ -85,8 +86,8 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, struct slc_read_batch *b
     return slc_read_batch_add(s, batch, unit);
 }
 
-/* Shares the page of an equal tile while pages or units are short. Returns false if the tile goes
- * on waiting. */
+/* Shares the page of an equal tile while pages or units are short. Returns false if the tile keeps
+ * waiting. */
 static bool share_deferred(SluiceVulkanStreamer *s, const struct slc_deferred_tile *deferred,
                            SluiceResult *result)
 {
@@ -124,7 +125,8 @@ static SluiceResult start_deferred(SluiceVulkanStreamer *s, struct slc_read_batc
     return result;
 }
 
-/* All packed tiles are there or handed out: then the levels are read, as one. */
+/* Queues the packed levels once all packed tiles are mapped or handed out: they are read together.
+ */
 static void check_packed(SluiceVulkanStreamer *s, uint32_t index)
 {
     struct slc_texture *texture = &s->textures[index];
@@ -151,7 +153,7 @@ static SluiceResult start_awaited(SluiceVulkanStreamer *s, struct slc_read_batch
     return result;
 }
 
-/* One that comes while the others are on their way was evicted meanwhile. Its turn is later. */
+/* Collects a packed tile. One handed out while the others load was evicted: it is loaded later. */
 static SluiceResult collect_packed_tile(SluiceVulkanStreamer *s, uint32_t index,
                                         const SluiceTile *tile)
 {
@@ -186,7 +188,7 @@ static SluiceResult start_packed(SluiceVulkanStreamer *s, uint32_t index)
     return SLUICE_SUCCESS;
 }
 
-/* True if one waits for staging slots: then tiles must not take them away. */
+/* `*waits`: a texture waits for staging slots, which tiles must not take. */
 static SluiceResult start_packed_queue(SluiceVulkanStreamer *s, bool *waits)
 {
     *waits = false;
@@ -225,7 +227,7 @@ static SluiceResult start_loads(SluiceVulkanStreamer *s, struct slc_read_batch *
         return result;
     result = sluiceGetTilesToMap(s->manager, SLUICE_ALL_TEXTURES, &count, s->tiles);
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
-        return SLUICE_SUCCESS; /* they stay requested */
+        return SLUICE_SUCCESS; /* the tiles stay requested */
     if (result < 0)
         return slc_streamer_check(s, result, "sluiceGetTilesToMap");
     s->strict.budget_reached = result == SLUICE_BUDGET_REACHED;

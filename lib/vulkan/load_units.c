@@ -31,7 +31,7 @@ static void push_free(SluiceVulkanStreamer *s, uint32_t unit)
     s->free_units.first = unit;
 }
 
-/* The free ones that have memory come first; how many there are. */
+/* Moves free units with memory to the front. Returns their number. */
 static uint32_t sort_free(SluiceVulkanStreamer *s)
 {
     const struct slc_unit_list empty = {SLC_NONE, SLC_NONE};
@@ -48,8 +48,7 @@ static uint32_t sort_free(SluiceVulkanStreamer *s)
     return count;
 }
 
-/* True: so many units can be taken. Makes memory for them, and where there is none makes do with
- * those that have some. */
+/* Without device memory, units that have memory already are used. */
 bool slc_units_are_ready(SluiceVulkanStreamer *s, uint32_t count)
 {
     if (count > s->free_unit_count)
@@ -137,7 +136,7 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
 void slc_loads_finish(SluiceVulkanStreamer *s)
 {
     slc_destroy_shared_loader(&s->context->shared,
-                              s->loader); /* first: its threads write into the staging slots */
+                              s->loader); /* first, because its threads write into staging slots */
     slc_staging_finish(&s->staging);
     slc_map_finish(&s->tile_units, &s->cb);
     slc_reload_lists_finish(&s->reloads);

@@ -29,7 +29,7 @@ static VkResult allocate_by_vulkan(const struct slc_vk *vk,
     return result;
 }
 
-/* NULL, or what is wrong. */
+/* Checks the memory that a callback returned. Returns NULL, or the error. */
 static const char *check_answer(const struct slc_memory_request *request,
                                 const SluiceDeviceMemory *answer)
 {
@@ -58,7 +58,7 @@ static VkResult allocate_by_callback(const struct slc_vk *vk,
                                              .pName = request->name};
     SluiceDeviceMemory answer = {0};
     VkResult result = callbacks->pfnAllocate(callbacks->pUserData, &asked, &answer);
-    if (result != VK_SUCCESS) /* positive ones are no success, either */
+    if (result != VK_SUCCESS) /* positive results are failures, too */
         return result < 0 ? result : VK_ERROR_UNKNOWN;
     const char *trouble = check_answer(request, &answer);
     if (trouble) {

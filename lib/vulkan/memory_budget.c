@@ -110,7 +110,7 @@ void slc_memory_client_finish(struct slc_memory_client *client)
     *client = (struct slc_memory_client){0};
 }
 
-/* The largest, not the sum: who is refused asks again, and for less. */
+/* Keeps the largest refused size, not the sum: a refused client asks again, for less. */
 static void note_refusal(struct slc_memory_client *client, uint64_t size)
 {
     if (client->refused < size)
@@ -201,8 +201,7 @@ void slc_memory_client_blame(struct slc_memory_client *source, struct slc_memory
     slc_mutex_unlock(&source->budget->mutex);
 }
 
-/* The part of `amount` that `own` is of `all`. Rounded up, so that the shares of all clients reach
- * `amount`. */
+/* Returns amount * own / all, rounded up, so that the shares of all clients reach `amount`. */
 static uint64_t share_of(uint64_t amount, uint64_t own, uint64_t all)
 {
     const uint64_t unit = 1 << 16; /* products of bytes could be beyond 64 bits */
@@ -212,8 +211,8 @@ static uint64_t share_of(uint64_t amount, uint64_t own, uint64_t all)
     return slc_min_u64(slc_min_u64(share, amount), own);
 }
 
-/* What was refused stays visible until the client has begun twice: others, which begin at other
- * times, then have begun in between. */
+/* A refusal stays visible until the client has begun twice. In between, every other client has
+ * begun. */
 struct slc_memory_pressure slc_memory_client_begin(struct slc_memory_client *client)
 {
     struct slc_memory_budget *budget = client->budget;

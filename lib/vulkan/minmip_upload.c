@@ -1,8 +1,8 @@
 /*
- * Publishes the MinMip maps. The manager's changed rectangles are what texels are to become; what
- * they are moves there step by step (fade.h). What moved goes through this frame's staging memory,
- * with what is around (around.h), and is copied row by row. That memory grows with what moves;
- * where there is none texels go through the command buffer.
+ * Publishes the MinMip maps. The manager's changed rectangles are targets, toward which texels move
+ * step by step (fade.h). Words of moved texels, with the texels around them (around.h), are written
+ * to the frame's staging memory and copied row by row. Staging memory grows with the number of
+ * words. Without memory, words go through the command buffer.
  */
 #include "vulkan/streamer.h"
 
@@ -16,10 +16,10 @@
 #define BATCH 64u
 #define MIN_STAGING (64u << 10)
 #define NOT_STAGED UINT64_MAX
-#define UPDATE_WORDS 16384u /* as much as an update takes */
-#define REFUSED_FRAMES 60u  /* until the device is asked for memory again */
+#define UPDATE_WORDS 16384u /* most words of vkCmdUpdateBuffer */
+#define REFUSED_FRAMES 60u  /* frames until the device is asked for memory again */
 
-/* Of this frame; the one that used it before is over. */
+/* Returns the staging buffer of this frame. The last frame that used it is complete. */
 static struct slc_buffer *staging_of(SluiceVulkanStreamer *s)
 {
     return &s->min_mip_staging[s->slot];
@@ -82,7 +82,7 @@ static struct slc_around around_of(const SluiceVulkanStreamer *s, const struct s
         .wraps_y = texture->sampler_kind.modes[1] == VK_SAMPLER_ADDRESS_MODE_REPEAT};
 }
 
-/* Whole rows, and as many beside those of the rectangle as their words look around. */
+/* Finds the rows to write: those of the rectangle, and `radius` rows above and below. */
 static void find_rows(const struct slc_around *around, const struct slc_fade_rect *rect,
                       uint32_t *y0, uint32_t *y1)
 {
@@ -93,7 +93,7 @@ static void find_rows(const struct slc_around *around, const struct slc_fade_rec
         *y0 = 0, *y1 = around->height;
 }
 
-/* Bytes of staging memory. */
+/* Returns the bytes of staging memory for a texture. */
 static uint64_t staged_size(const SluiceVulkanStreamer *s, const struct slc_texture *texture)
 {
     struct slc_around around = around_of(s, texture);
@@ -102,8 +102,8 @@ static uint64_t staged_size(const SluiceVulkanStreamer *s, const struct slc_text
     return (uint64_t)(y1 - y0) * around.width * sizeof(uint32_t);
 }
 
-/* Through the command buffer, where there is no staging memory: what was unmapped must not be shown
- * any longer, whatever memory there is. */
+/* Writes a row through the command buffer, if there is no staging memory: unmapped tiles must be
+ * hidden in any case. */
 static void update_row(SluiceVulkanStreamer *s, VkCommandBuffer commands, uint64_t offset,
                        uint32_t count)
 {
@@ -114,8 +114,8 @@ static void update_row(SluiceVulkanStreamer *s, VkCommandBuffer commands, uint64
     }
 }
 
-/* To `offset` in the staging memory; NOT_STAGED: straight into the buffer, and nothing is left to
- * copy. */
+/* Writes words to `offset` in the staging memory, and returns the copy. NOT_STAGED: writes them
+ * through the command buffer, and returns an empty copy. */
 static VkBufferCopy stage(SluiceVulkanStreamer *s, const struct slc_texture *texture,
                           const struct slc_fade_rect *rect, uint64_t offset,
                           VkCommandBuffer commands)
@@ -137,7 +137,7 @@ static VkBufferCopy stage(SluiceVulkanStreamer *s, const struct slc_texture *tex
     return (VkBufferCopy){offset, at, (y1 - y0) * row};
 }
 
-/* What shaders look at before they look at the map. */
+/* Publishes whole_shown, which shaders read before the map. */
 static void publish_whole(SluiceVulkanStreamer *s, uint32_t index, VkCommandBuffer commands)
 {
     struct slc_texture *texture = &s->textures[index];
@@ -157,7 +157,7 @@ static void publish_whole(SluiceVulkanStreamer *s, uint32_t index, VkCommandBuff
                           sizeof word, &word);
 }
 
-/* One step of all that moves in a texture; the rectangle shrinks to the rows that move on. */
+/* Moves a texture's texels by one step. The rectangle shrinks to the rows that still fade. */
 static VkBufferCopy move(SluiceVulkanStreamer *s, struct slc_texture *texture, uint16_t steps,
                          uint64_t offset, VkCommandBuffer commands)
 {
@@ -184,7 +184,7 @@ static void copy(SluiceVulkanStreamer *s, VkCommandBuffer commands, const VkBuff
     *count = 0;
 }
 
-/* Makes room for all that moves in this frame, if there is memory. */
+/* Reserves staging memory for all words of this frame, if there is memory. */
 static void reserve(SluiceVulkanStreamer *s)
 {
     struct slc_buffer *staging = staging_of(s);

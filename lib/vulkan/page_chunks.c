@@ -12,8 +12,8 @@
 #include <assert.h>
 
 #define MIN_LAYERS 64u    /* 4 MiB */
-#define IDLE_TICKS 60u    /* for which an empty chunk is kept */
-#define REFUSED_TICKS 60u /* until the device is asked for memory again */
+#define IDLE_TICKS 60u    /* ticks for which an empty chunk is kept */
+#define REFUSED_TICKS 60u /* ticks until the device is asked for memory again */
 
 uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers)
 {
@@ -102,7 +102,8 @@ uint32_t slc_page_chunks_present(const struct slc_page_chunks *chunks)
     return count;
 }
 
-/* Layers that max_size allows. Counts whole blocks of memory, which small chunks share. */
+/* Returns the layers that max_size allows. Counts whole blocks of memory, which small chunks share.
+ */
 static uint32_t layers_left(const struct slc_page_chunks *chunks)
 {
     if (!chunks->max_size)
@@ -134,7 +135,7 @@ static uint32_t find_free_chunk(const struct slc_page_chunks *chunks)
     return at;
 }
 
-/* Drivers may ask for more than the texels need. */
+/* Whether chunks exceed max_size. Drivers may require more memory than the texels take. */
 static bool is_beyond_cap(const struct slc_page_chunks *chunks)
 {
     return chunks->max_size && chunks->memory.total_size > chunks->max_size;
@@ -150,8 +151,8 @@ static void log_shortage(struct slc_page_chunks *chunks, SluiceFormat format)
                 sluiceGetFormatName(slc_page_texel_format(format)));
 }
 
-/* Tries fewer and fewer layers until the device has memory for them and max_size holds. Returns how
- * many; 0: none. */
+/* Tries fewer and fewer layers until the device has memory and max_size holds. Returns the number
+ * of layers; 0: none. */
 static uint32_t create_largest(struct slc_page_chunks *chunks, struct slc_page_chunk *chunk,
                                SluiceFormat format, uint32_t layers)
 {
@@ -200,7 +201,7 @@ bool slc_page_chunks_grow(struct slc_page_chunks *chunks, uint64_t tick, uint32_
                       slc_max_u32(MIN_LAYERS, chunks->page_count[format]));
 }
 
-/* Nobody lacks a page when this fails, so `refused_tick` stays as it was. */
+/* A failure here leaves no user without a page, so `refused_tick` is restored. */
 void slc_page_chunks_prepare(struct slc_page_chunks *chunks, uint64_t tick, uint32_t user,
                              SluiceFormat format)
 {
@@ -332,7 +333,7 @@ bool slc_page_chunks_is_left(const struct slc_page_chunks *chunks, uint32_t page
                              uint32_t owner)
 {
     const struct slc_page_chunk *chunk = &chunks->at[page >> 16];
-    /* another chunk may be there by now, and smaller */
+    /* the index may belong to another, smaller chunk by now */
     if (chunk->state != SLC_CHUNK_LIVE || chunk->leaving || (page & 0xFFFFu) >= chunk->layer_count)
         return false;
     const struct slc_page_layer *layer = slc_page_layer(chunks, page);

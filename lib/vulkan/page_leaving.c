@@ -15,7 +15,7 @@ static uint32_t count_tiles(const struct slc_page_pool *pool, const struct slc_p
     return tile->users == 1u << user ? tile->holds[user] : 0;
 }
 
-/* Number of tiles on the pages of the chunk; SLC_NONE if another user holds any of them. */
+/* Counts the tiles on the chunk's pages; SLC_NONE if another user holds any of them. */
 static uint32_t count_own(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk,
                           uint32_t user)
 {
@@ -32,16 +32,16 @@ static uint32_t count_own(const struct slc_page_pool *pool, const struct slc_pag
     return count;
 }
 
-/* What it costs to empty a chunk, and how much it gives, in pages. */
+/* Cost of emptying a chunk, and memory that it frees, in pages. */
 struct candidate {
     uint32_t index;
     uint32_t held;    ///< pages whose tiles move
     uint32_t lacking; ///< tiles that must be evicted, because others of the format have no room
-    uint32_t useful;  ///< pages of memory, without more than has to be freed
+    uint32_t useful;  ///< pages of memory that are freed, up to the number required
 };
 
-/* Few evictions for much memory. Small chunks that are emptied first leave a large one in the end,
- * which is too large to stay: of equal ones the larger comes first. */
+/* Prefers few evictions for much memory. Among equal candidates the larger chunk is first: emptying
+ * small ones first would leave a large one that exceeds the limit. */
 static bool is_better(const struct candidate *a, const struct candidate *b)
 {
     int64_t cost_a = (int64_t)a->lacking - a->useful, cost_b = (int64_t)b->lacking - b->useful;
@@ -59,7 +59,7 @@ static bool can_leave(const struct slc_page_pool *pool, const struct slc_page_ch
            count_own(pool, chunk, user) != SLC_NONE;
 }
 
-/* The best chunk of those that the user alone holds. `needed`: pages of memory that must go. */
+/* Finds the best chunk among those that only this user holds. `needed`: pages of memory to free. */
 static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user, uint64_t needed)
 {
     uint32_t free_of[SLC_PAGE_FORMATS] = {0};
@@ -109,7 +109,7 @@ uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32
     return held;
 }
 
-/* One front end at a time empties a chunk. */
+/* Only one front end at a time empties a chunk. */
 static void choose_leaving(struct slc_page_pool *pool, uint32_t user, uint64_t size)
 {
     if (pool->leaving != SLC_NONE && pool->leaving_user == user &&
@@ -141,7 +141,7 @@ uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user,
     return lacking;
 }
 
-/* Bytes beyond the user's own limit, of chunks that nobody else has pages in. */
+/* Returns the bytes beyond the user's limit, of chunks in which no other user has pages. */
 static uint64_t own_excess(const struct slc_page_pool *pool, uint32_t user)
 {
     uint64_t size = 0, limit = pool->users[user].max_size;
@@ -210,8 +210,8 @@ static struct slc_shared_tile *entry_of(struct slc_page_pool *pool, uint32_t pag
     return shared ? &pool->shared.entries[shared - 1] : NULL;
 }
 
-/* The user alone holds the page, and its texels are complete: an abandoned frame that copies them
- * would copy them again, to the page that the tile was on. */
+/* Whether only this user holds the page, and the copy of its texels is complete. If a frame with a
+ * pending copy were abandoned, the copy would be repeated to the old page. */
 static bool can_move(const struct slc_page_pool *pool, uint32_t user, uint32_t page,
                      const struct slc_shared_tile *tile)
 {
@@ -220,8 +220,8 @@ static bool can_move(const struct slc_page_pool *pool, uint32_t user, uint32_t p
            (!tile || (tile->users == 1u << user && tile->written));
 }
 
-/* Another thread may have made the image of a page ready since the user's array of views was
- * filled: then it is not used yet. */
+/* Finds a page in an image that the user's array of views already has: another thread may have made
+ * an image ready since the array was filled. */
 static uint32_t find_target(struct slc_page_pool *pool, uint32_t user, uint32_t from)
 {
     uint32_t to = slc_page_chunks_find(&pool->chunks, &pool->timelines, user,
@@ -242,7 +242,7 @@ bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from
         move_entry(pool, from, *to);
         slc_page_layer(&pool->chunks, *to)->value = frame;
         slc_page_layer(&pool->chunks, *to)->moved = true;
-        if (tile) { /* others can take it when the copy is complete */
+        if (tile) { /* other users can take it when the copy is complete */
             tile->writer = (uint8_t)user;
             tile->adopted = false;
             tile->value = frame;
@@ -263,7 +263,7 @@ bool slc_page_pool_end_move(struct slc_page_pool *pool, uint32_t user, uint32_t 
     return over;
 }
 
-/* The page still has tiles that a move put there. */
+/* Whether the page still has tiles that a move put there. */
 static bool has_moved(const struct slc_page_pool *pool, uint32_t user, uint32_t page,
                       const struct slc_shared_tile *tile)
 {
@@ -285,7 +285,7 @@ bool slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t
             tile->value = pool->timelines.of[user].recorded;
         }
     } else if (layer->moved && !layer->held) {
-        layer->owner = SLC_NO_OWNER; /* its texels never came */
+        layer->owner = SLC_NO_OWNER; /* its texels were never copied */
     }
     slc_page_pool_give_locked(pool, user, there ? to : from, SLC_NO_OWNER);
     slc_mutex_unlock(&pool->mutex);
