@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WORDS_PER_FRAME 65536u /* words of the table that a frame scans, about */
+#define WORDS_PER_FRAME 65536u /* approximate words of the table that a frame scans */
 
 void slc_page_moves_complete(struct slc_page_moves *moves, uint64_t completed_frame)
 {
@@ -36,13 +36,13 @@ static void record_copy(const struct slc_page_pool *pool, uint32_t from, uint32_
                           slc_page_image(pool, to), VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
 }
 
-/* The moves of a frame while they are recorded. */
+/* State of recording the moves of a frame. */
 struct turn {
     struct slc_page_moves *moves;
-    uint32_t leaving; ///< image that runs empty
+    uint32_t leaving; ///< image that is being emptied
     uint32_t room;    ///< pages that may still be moved
-    uint32_t tiles;   ///< on pages that were moved
-    uint32_t stored;  ///< of these, tiles whose words show the new page
+    uint32_t tiles;   ///< tiles on moved pages
+    uint32_t stored;  ///< moved tiles whose words show the new page
     uint64_t frame;
     VkCommandBuffer commands;
 };
@@ -77,8 +77,7 @@ static bool move_page(struct turn *t, uint32_t from)
     return true;
 }
 
-/* Moves the pages of a part's tiles while there is room, and shows the tiles of moved pages there.
- */
+/* Moves the pages of a part's tiles while there is room, and shows the tiles on their new pages. */
 static void move_part(struct turn *t, uint32_t part)
 {
     struct slc_page_table *table = t->moves->table;

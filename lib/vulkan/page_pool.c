@@ -39,7 +39,7 @@ void slc_page_pool_finish(struct slc_page_pool *pool)
     *pool = (struct slc_page_pool){0};
 }
 
-/* The pool's limit is the sum of its users', if all of them have one. */
+/* Sets the pool's limit to the sum of the users' limits, if all users have one. */
 static void sum_limits(struct slc_page_pool *pool)
 {
     bool unlimited = false;
@@ -134,7 +134,7 @@ bool slc_page_pool_was_refused(struct slc_page_pool *pool)
     return refused;
 }
 
-/* Pages that the user does not hold, and others do. */
+/* Returns the pages that only other users hold. */
 static uint32_t held_by_others(const struct slc_page_pool *pool, uint32_t user)
 {
     return pool->held_count - pool->users[user].held_count;
@@ -205,7 +205,7 @@ uint32_t slc_page_pool_take(struct slc_page_pool *pool, uint32_t user, SluiceFor
     return page;
 }
 
-/* Pages that are made ahead are nobody's shortage. */
+/* Refused pages ahead of need are charged to no client. */
 void slc_page_pool_prepare(struct slc_page_pool *pool, uint32_t user, SluiceFormat format)
 {
     slc_mutex_lock(&pool->mutex);
@@ -221,7 +221,7 @@ static void free_page(struct slc_page_pool *pool, uint32_t page, uint32_t user, 
     pool->held_count--;
 }
 
-/* Nobody holds the page and no frame of others reads it. */
+/* Frees a shared page that no user holds and no frame of other users reads. */
 static void end_shared(struct slc_page_pool *pool, uint32_t index, uint32_t owner)
 {
     uint32_t page = pool->shared.entries[index].page, user = pool->shared.entries[index].last_user;
@@ -231,7 +231,7 @@ static void end_shared(struct slc_page_pool *pool, uint32_t index, uint32_t owne
               owner);
 }
 
-/* The user has no tile on the page any more. */
+/* Ends the use of a shared page by a user that has no tile on it any more. */
 static void release_shared(struct slc_page_pool *pool, uint32_t user, uint32_t index,
                            uint32_t owner)
 {
@@ -240,7 +240,7 @@ static void release_shared(struct slc_page_pool *pool, uint32_t user, uint32_t i
     pool->users[user].held_count--;
     tile->holds[user] = 0;
     tile->users &= ~(1u << user);
-    if (tile->users) { /* who took it after the writer saw its copy complete */
+    if (tile->users) { /* users that took it after the writer's copy was complete */
         if (tile->writer == user)
             tile->writer = SLC_MAX_PAGE_USERS;
         struct slc_page_layer *layer = slc_page_layer(&pool->chunks, tile->page);
@@ -264,7 +264,7 @@ void slc_page_pool_give_locked(struct slc_page_pool *pool, uint32_t user, uint32
 {
     uint32_t shared = slc_page_layer(&pool->chunks, page)->shared;
     if (shared && --pool->shared.entries[shared - 1].holds[user] > 0) {
-        pool->users[user].equal_count--; /* other tiles of the user are on it */
+        pool->users[user].equal_count--; /* other tiles of the user are on the page */
         return;
     }
     if (shared) {
@@ -292,7 +292,7 @@ void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page
     slc_mutex_unlock(&pool->mutex);
 }
 
-/* Gives back all pages of the user but shared ones: leave_shared does those. */
+/* Gives back all pages of the user except shared ones, which leave_shared gives back. */
 static void give_all(struct slc_page_pool *pool, uint32_t user)
 {
     for (uint32_t i = 0; i < pool->chunks.count; i++)
@@ -303,7 +303,7 @@ static void give_all(struct slc_page_pool *pool, uint32_t user)
         }
 }
 
-/* Tiles that others show from a page that the user copied stay. */
+/* Leaves shared pages. Pages that the user copied stay if other users show tiles from them. */
 static void leave_shared(struct slc_page_pool *pool, uint32_t user)
 {
     for (uint32_t i = 0; i < pool->shared.high; i++) {
@@ -353,7 +353,7 @@ bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t pa
         struct slc_page_layer *layer = slc_page_layer(&pool->chunks, page);
         const struct slc_page_layer left = *layer;
         slc_page_pool_hold_locked(pool, user, page);
-        layer->value = left.value; /* its texels stay */
+        layer->value = left.value; /* the texels stay */
         layer->moved = left.moved;
     }
     slc_mutex_unlock(&pool->mutex);
@@ -386,7 +386,7 @@ void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t fr
         slc_page_chunks_retire(chunks, i, &pool->timelines, pool->hurry);
     }
     if (pool->leaving != SLC_NONE && chunks->at[pool->leaving].state != SLC_CHUNK_LIVE)
-        slc_page_pool_stay_locked(pool); /* it has run empty */
+        slc_page_pool_stay_locked(pool); /* the chunk is empty */
     slc_page_timelines_record(&pool->timelines, user, frame);
     for (uint32_t i = 0; i < chunks->count; i++)
         slc_page_chunks_record(chunks, i, &pool->timelines, user, commands);
@@ -420,7 +420,7 @@ static void abandon_shared(struct slc_page_pool *pool, uint32_t user, uint64_t f
         if (tile->adopted)
             tile->value = last;
         else
-            tile->written = false; /* copied again, or given back */
+            tile->written = false; /* the user copies it again, or gives it back */
     }
 }
 

@@ -5,9 +5,10 @@
 #include <assert.h>
 
 #define FIRST_GENERATIONS 16u
-#define STALLED_FRAMES 8u /* of the one that waits, without any of the other: it is not coming */
+#define STALLED_FRAMES 8u /* frames that a user waits for another one that begins no frame */
 
-/* SLC_NONE: read it. Else the entry, and whether its texels are there. */
+/* Finds the entry of an equal tile, and whether its texels are complete. SLC_NONE: there is none.
+ */
 static uint32_t find(const struct slc_page_pool *pool, const struct slc_tile_key *key, bool *ready)
 {
     uint32_t index = slc_shared_tiles_find(&pool->shared, key);
@@ -80,7 +81,7 @@ static void place(struct slc_page_pool *pool, uint32_t user, uint32_t index, uin
     slc_page_layer(&pool->chunks, page)->shared = index + 1;
 }
 
-/* The entry of a tile that the user reads and that has no page. */
+/* Finds the entry of a tile that the user reads and that has no page yet. */
 static uint32_t find_own(const struct slc_page_pool *pool, uint32_t user,
                          const struct slc_tile_key *key)
 {
@@ -142,7 +143,7 @@ void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struc
     if (index != SLC_NONE) {
         place(pool, user, index, page);
         pool->shared.entries[index].written = pool->shared.entries[index].adopted = true;
-        /* a frame at or after the copy: only copied texels can be taken back */
+        /* this frame comes at or after the copy, because only copied texels can be taken back */
         pool->shared.entries[index].value = slc_page_layer(&pool->chunks, page)->value;
     }
     slc_mutex_unlock(&pool->mutex);
@@ -161,7 +162,7 @@ bool slc_page_is_shared(struct slc_page_pool *pool, uint32_t user, uint32_t page
     return shared;
 }
 
-/* A tile without a page is nothing without its name. */
+/* Unlists an entry. Removes it if the tile has no page. */
 static void unlist(struct slc_page_pool *pool, uint32_t index)
 {
     if (pool->shared.entries[index].page == SLC_NONE)
@@ -185,7 +186,8 @@ void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,
     slc_mutex_unlock(&pool->mutex);
 }
 
-/* Without host memory all sources have new texels: they share no pages with what is there. */
+/* Sets the generation of a source. Without host memory all sources get it, and share no old pages.
+ */
 static void set_generation(struct slc_page_pool *pool, const SluiceImageSource *source)
 {
     struct slc_map *map = &pool->generations;

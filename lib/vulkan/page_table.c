@@ -11,7 +11,7 @@
 
 #define STORE_BATCH 256u /* words */
 
-/* A word of the table that changes with this frame. */
+/* Store of a word of the table in this frame. */
 struct slc_page_store {
     uint32_t word, value;
     uint32_t turn; ///< order of the stores: the last store to a word counts
@@ -57,7 +57,7 @@ static uint32_t level_width(const SluiceStreamedTextureDesc *desc, uint32_t leve
     return slc_div_up_u32(slc_mip_size(desc->width, level), desc->tileWidth);
 }
 
-/* The first word of a level's tiles, from the beginning of the texture's part of the table. */
+/* Returns the first word of a level's tiles, counted from the start of the texture's part. */
 static uint32_t level_word(const SluiceStreamedTextureDesc *desc, uint32_t level)
 {
     uint32_t word = desc->regularMipCount;

@@ -12,7 +12,7 @@ void slc_page_timelines_add(struct slc_page_timelines *timelines, uint32_t user,
                             VkSemaphore semaphore)
 {
     timelines->of[user].semaphore = semaphore;
-    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++) /* values of the last user in this place */
+    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++) /* clears values of the index's last user */
         timelines->of[i].seen[user] = timelines->of[i].still[user] = 0;
     timelines->user_count++;
 }
@@ -23,7 +23,7 @@ void slc_page_timelines_remove(struct slc_page_timelines *timelines, uint32_t us
     timelines->user_count--;
 }
 
-/* Pages can be taken, and chunks destroyed, when other users have finished their frames. */
+/* Polls the other users: their completed frames release pages and chunks. */
 static void poll_others(struct slc_page_timelines *timelines, const struct slc_vk *vk,
                         uint32_t user)
 {
@@ -37,7 +37,7 @@ static void poll_others(struct slc_page_timelines *timelines, const struct slc_v
     }
 }
 
-/* Only one mark is kept per user. It moves on when the marked frame is complete. */
+/* Advances safe_tick of each user whose marked frame is complete, and sets the next mark. */
 static void advance_safe_ticks(struct slc_page_timelines *timelines)
 {
     for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++) {

@@ -41,7 +41,7 @@ SluiceResult slc_page_views_init(struct slc_page_views *views, const struct slc_
                                  uint32_t count)
 {
     *views = (struct slc_page_views){.count = count, .generation = 1};
-    views->memory.purpose = SLUICE_DEVICE_MEMORY_PURPOSE_TABLE; /* of a texel; no tile's */
+    views->memory.purpose = SLUICE_DEVICE_MEMORY_PURPOSE_TABLE; /* one texel, no tiles */
     views->views = slc_calloc(cb, count, sizeof *views->views);
     if (!views->views)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -127,7 +127,7 @@ void slc_record_general_layout(const struct slc_vk *vk, VkCommandBuffer commands
 void slc_page_views_record(const struct slc_page_views *views, const struct slc_vk *vk,
                            VkCommandBuffer commands)
 {
-    /* Several front ends may do this before any of them is over. */
+    /* Several front ends may record this before the first one has run. */
     VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                               .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
                               .dstAccessMask = VK_ACCESS_MEMORY_WRITE_BIT};

@@ -14,7 +14,7 @@ static uint64_t texel_bytes(const SluiceImageInfo *info, uint32_t first_level)
     return bytes;
 }
 
-/* NULL, or what is wrong. */
+/* Returns NULL, or the reason why the device does not support the image. */
 static const char *check_format(const struct slc_vk *vk, const VkImageCreateInfo *create,
                                 uint64_t size)
 {
@@ -55,7 +55,7 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
                                 .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
                                 .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
     if (memory->purpose == SLUICE_DEVICE_MEMORY_PURPOSE_PAGES)
-        create.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT; /* tiles move from one to another */
+        create.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT; /* for moves of tiles between images */
     struct slc_image_formats formats;
     SLC_VK_SHARE(vk, &create);
     slc_image_use_apply(use, &create, &formats);

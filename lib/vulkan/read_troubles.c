@@ -1,7 +1,7 @@
 /*
- * The tile whose read failed last stands for its source: when it comes, the source has recovered.
- * Of several damaged tiles it may be any, so a message may say that a source is well and the next
- * one that it is not; a minimum of time between such messages bounds their number.
+ * The tile whose read failed last stands for its source: when its read succeeds, the source has
+ * recovered. If several tiles are damaged, messages may alternate between failure and recovery. A
+ * minimum time between messages limits their number.
  */
 #include "vulkan/read_troubles.h"
 
@@ -56,7 +56,7 @@ static void say_given_up(const SluiceVulkanStreamer *s, const struct slc_texture
                 seconds(s, s->info.givenUpRetryDelayTicks));
 }
 
-/* Of a source that fails and recovers in turns only each interval. */
+/* Whether enough time has passed since the last message about a source. */
 static bool may_speak(const SluiceVulkanStreamer *s, const struct slc_read_trouble *trouble)
 {
     return trouble->said != SLC_READS_WELL || !trouble->has_spoken ||

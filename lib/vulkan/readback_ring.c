@@ -8,7 +8,7 @@
 
 #define RESULT_WORDS 4u
 
-/* Whole results, so that those of the next slot are aligned. */
+/* Returns the words of a slot, rounded up to whole results, so that the next slot is aligned. */
 static uint32_t slot_words(uint32_t max_items, uint32_t capacity)
 {
     return RESULT_WORDS * (max_items + slc_div_up_u32(capacity, RESULT_WORDS));

@@ -68,7 +68,7 @@ static void leave_place(struct slc_reload_lists *r, uint32_t texture)
     chain->count--;
 }
 
-/* Behind `before`, index + 1; 0: in front. */
+/* Inserts a texture after `before` (1 + index); 0: at the front. */
 static void enter_place(struct slc_reload_lists *r, uint32_t texture, enum slc_reload_place place,
                         uint32_t before)
 {
@@ -87,7 +87,7 @@ static bool is_reached(uint64_t now, uint64_t due)
     return now - due <= UINT64_MAX / 2;
 }
 
-/* Almost always last: the delay after a failure is the same for all textures. */
+/* Inserts a texture by due time. Usually at the end: all textures have the same retry delay. */
 static void enter(struct slc_reload_lists *r, uint32_t texture)
 {
     const struct slc_reload_list *list = &r->lists[texture];
@@ -132,7 +132,7 @@ void slc_reload_lists_end(struct slc_reload_lists *r, uint32_t texture)
 {
     struct slc_reload_list *list = &r->lists[texture];
     if (list->place != SLC_RELOAD_TURN)
-        return; /* dropped */
+        return; /* the texture was dropped */
     list->place = SLC_RELOAD_NOWHERE;
     if (list->count)
         enter(r, texture);

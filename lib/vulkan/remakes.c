@@ -113,7 +113,7 @@ SluiceResult slc_remake_area_read(struct slc_remake_area *area, const SluiceImag
     return SLUICE_SUCCESS;
 }
 
-/* The texels of `to` that [begin, end) of `from` covers, in tiles. Sizes need not be halves. */
+/* Maps texels [begin, end) of `from` to tiles of `to`. `to` need not be half of `from`. */
 static void scale(uint32_t begin, uint32_t end, uint32_t from, uint32_t to, uint32_t tile,
                   uint32_t *first, uint32_t *last)
 {

@@ -55,7 +55,7 @@ static struct slc_residency_create_info create_info(const SluiceVulkanStreamer *
     };
 }
 
-/* Dense and paged streamers hold every texture that paged mode can hold. */
+/* Creates the paged residency beside sparse mode. Other modes can hold every paged texture. */
 static SluiceResult create_paged(SluiceVulkanStreamer *s, struct slc_residency_create_info info)
 {
     if (!s->info.pagedTextures || s->info.residencyMode != SLUICE_RESIDENCY_MODE_SPARSE)
@@ -101,7 +101,7 @@ SluiceResult slc_residencies_update(SluiceVulkanStreamer *s)
     return s->residency->interface->update(s->residency, s->frame, s->completed_frame);
 }
 
-/* Of which textures the next unmaps are is not known. */
+/* Takes the minimum, because the textures of the next unmaps are not known. */
 uint32_t slc_residencies_room_to_unmap(const SluiceVulkanStreamer *s)
 {
     uint32_t room = s->residency->interface->room_to_unmap(s->residency);

@@ -1,9 +1,10 @@
 /*
- * Everything has memory from the start: ordinary images, and maps that only the manager keeps. The
- * truth to compare other modes with, and a mode for few or small textures on any device.
+ * Dense residency: ordinary images with memory for all levels from the start. Only the manager
+ * tracks maps. A reference to compare other modes with, and a mode for few or small textures on any
+ * device.
  *
- * Copies come behind a barrier on the queue that draws, so a tile may be copied to again while
- * earlier frames are under way, and nothing has to be waited for.
+ * Copies are recorded after a barrier on the queue that draws. So a tile may be copied again while
+ * earlier frames are in progress, without waiting.
  */
 #include "vulkan/residency.h"
 
@@ -16,7 +17,7 @@
 struct dense_image {
     struct slc_plain_image own;
     VkImage image;
-    uint32_t layer_count; ///< 0 but for the first
+    uint32_t layer_count; ///< of the first layer; 0 in all others
 };
 
 struct dense_residency {
@@ -77,7 +78,7 @@ static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
     return true;
 }
 
-/* A heap is a share of the budget and has no memory. */
+/* Makes a heap without memory. It counts against the budget only. */
 static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size, uint32_t *heap_id)
 {
     struct dense_residency *d = dense(residency);

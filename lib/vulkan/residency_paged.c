@@ -1,10 +1,10 @@
 /*
- * Residency by a page table that shaders read: tiles are layers of array images (page_pool.h), and
- * a table in a storage buffer says which. The packed levels are an ordinary image of their own.
+ * Paged residency: tiles are layers of array images (page_pool.h), and shaders find them through a
+ * page table in a storage buffer. The packed levels are in an ordinary image of their own.
  *
- * Nothing has to be waited for: copies and stores to the table are recorded behind a barrier on the
- * queue that draws, so earlier frames have read a page before it is overwritten, and a frame that
- * no longer shows a tile may give its page away (docs/decisions/0023-paged-residency.md).
+ * Nothing waits for the GPU. Copies and stores to the table are recorded after a barrier on the
+ * queue that draws, so earlier frames have read a page before it is overwritten. A frame that no
+ * longer shows a tile may give its page to another tile (docs/decisions/0023-paged-residency.md).
  */
 #include "vulkan/residency.h"
 
@@ -23,14 +23,14 @@
 
 #define COPY_BATCH 64u
 
-/* The layers of an array have parts of the table of their own and share the tail. */
+/* Layers of an array have separate parts of the table, and share the tail. */
 struct paged_image {
-    struct slc_plain_image own_tail; ///< the packed levels; owned by layer 0, of all layers
+    struct slc_plain_image own_tail; ///< packed levels of all layers; owned by layer 0
     VkImage tail;
-    uint32_t layer_count;      ///< of layer 0; 0 in all others
+    uint32_t layer_count;      ///< layer 0: layers of the array; 0 in all other layers
     SluiceImageSource *source; ///< borrowed
     uint32_t source_layer;
-    uint32_t generation;                ///< of the texels that its tiles are named for
+    uint32_t generation;                ///< generation of the texels, for keys of tiles
     SluiceFormat page_format;           ///< may have SLC_PAGE_PRODUCED
     uint32_t block_width, block_height; ///< texels
 };
@@ -40,18 +40,18 @@ struct paged_residency {
     const struct slc_vk *vk;
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
-    struct slc_image_memory memory; ///< of tails
+    struct slc_image_memory memory; ///< memory of tails
     struct slc_page_pool *pool;     ///< borrowed
-    uint32_t user;                  ///< of the pool
+    uint32_t user;                  ///< user of `pool`
     struct paged_image *images;     ///< owned
     uint32_t max_image_count;
-    struct slc_page_table table; ///< its parts are those of the images
+    struct slc_page_table table; ///< one part per image, by index
     struct slc_page_moves moves;
     uint32_t upload_reserve; ///< changes that unmapping must leave to uploads and moves
     bool packed_outside;
     uint64_t frame;
     uint32_t next_heap, heap_count;
-    uint64_t most_tiles; ///< since a refusal, for which there was a heap too many
+    uint64_t most_tiles; ///< most tiles since a refusal for which slots of a heap were too many
 };
 
 static struct paged_residency *paged(struct slc_residency *residency)
@@ -81,7 +81,7 @@ static void give_pages(struct paged_residency *p, uint32_t index)
     }
 }
 
-/* Also of one that was not created to the end. */
+/* Destroys an image, also one whose creation failed halfway. */
 static void destroy_image(struct slc_residency *residency, uint32_t index)
 {
     struct paged_residency *p = paged(residency);
@@ -95,7 +95,8 @@ static void destroy_image(struct slc_residency *residency, uint32_t index)
     count_memory(p);
 }
 
-/* Pages share a sampler, and shaders blend across their edges: both filter linearly. */
+/* Checks that the format has linear filters: the shared sampler and the shaders' blending use them.
+ */
 static SluiceResult check_filter(const struct paged_residency *p, const SluiceImageInfo *info)
 {
     if (slc_filters_linear(p->vk, info->format))
@@ -171,8 +172,8 @@ static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
     return true;
 }
 
-/* After a refusal slots must not run ahead of the pages that there are, but for one heap: tiles
- * that need no page of their own could fill all slots, and nobody would ask for pages again. */
+/* After a refusal, slots may exceed the existing pages by one heap only. The heap is necessary:
+ * tiles that share pages could fill all slots, and then no tile would ask for pages again. */
 static bool may_have_heap(struct paged_residency *p, uint64_t slots)
 {
     uint64_t tiles = slc_page_pool_present(p->pool, p->user);
@@ -185,7 +186,7 @@ static bool may_have_heap(struct paged_residency *p, uint64_t slots)
     return true;
 }
 
-/* A heap is a share of the budget; memory comes with the pages. */
+/* Makes a heap without memory. It counts against the budget; pages have the memory. */
 static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size, uint32_t *heap_id)
 {
     struct paged_residency *p = paged(residency);
@@ -317,7 +318,7 @@ static bool renew(struct slc_residency *residency, uint32_t index, const SluiceT
     if (own == SLUICE_PAGE_NONE)
         return false;
     if (!slc_page_views_has(slc_page_pool_views(p->pool, p->user), own >> 16)) {
-        /* A chunk of this frame has neither layout nor view before the next one. */
+        /* A chunk made in this frame has neither layout nor view before the next frame. */
         slc_page_pool_give(p->pool, p->user, own, SLC_NO_OWNER);
         return false;
     }
@@ -331,7 +332,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     struct paged_residency *p = paged(residency);
     const struct paged_image *image = &p->images[index];
     if (tile->mipLevel >= p->table.parts[index].desc.regularMipCount)
-        return SLUICE_SUCCESS; /* the packed levels have their own image */
+        return SLUICE_SUCCESS; /* packed levels are in an image of their own */
     uint32_t *page = &p->table.entries[word_of(p, index, tile)];
     assert(!slc_page_is_taken(*page));
     *page = slc_page_pool_take(p->pool, p->user, image->page_format);
@@ -343,7 +344,8 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     return SLUICE_SUCCESS;
 }
 
-/* This frame's maps no longer show it, and earlier frames come before what this frame copies. */
+/* Gives the page back at once: this frame hides the tile, and its copies wait for earlier frames.
+ */
 static void unmap(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
                   uint64_t frame, bool filled)
 {
@@ -390,7 +392,8 @@ static void show(struct slc_residency *residency, uint32_t index, const SluiceTi
     slc_page_table_store(&p->table, index, word, p->frame);
 }
 
-/* A tile was copied to its page before it was shown, and only what is shown is unmapped. */
+/* The texels are complete: a tile is copied before it is shown, and only shown tiles are unmapped.
+ */
 static bool revive(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct paged_residency *p = paged(residency);
@@ -478,7 +481,7 @@ static uint32_t round_up(uint32_t size, uint32_t to)
     return slc_div_up_u32(size, to) * to;
 }
 
-/* The copy into the image that holds the texels; which one that is. */
+/* Redirects a copy to the page or tail with the texels. Returns the image. */
 static VkImage place_copy(struct paged_residency *p, uint32_t index, VkBufferImageCopy *copy,
                           bool shows)
 {
@@ -503,7 +506,7 @@ static VkImage place_copy(struct paged_residency *p, uint32_t index, VkBufferIma
     copy->imageSubresource.baseArrayLayer = page & 0xFFFFu;
     copy->imageOffset.x %= (int32_t)desc->tileWidth;
     copy->imageOffset.y %= (int32_t)desc->tileHeight;
-    /* A tile at the edge ends inside the page, where only whole blocks may end. */
+    /* A tile at the edge ends inside the page, and must end with a whole block there. */
     copy->imageExtent.width = round_up(copy->imageExtent.width, image->block_width);
     copy->imageExtent.height = round_up(copy->imageExtent.height, image->block_height);
     return slc_page_image(p->pool, page);
@@ -601,7 +604,7 @@ static const struct slc_residency_interface paged_interface = {
     .page_table_offset = page_table_offset,
 };
 
-/* A chain has less than twice the tiles of level 0, but for rounding up at the edges. */
+/* A chain has less than twice the tiles of level 0, apart from rounding up at the edges. */
 static uint32_t table_size(const struct slc_residency_create_info *info)
 {
     uint64_t words = 2ull * info->max_region_count + 64ull * info->max_image_count;
