@@ -1,7 +1,7 @@
 /*
- * Residency by sparse binding: one batch per frame, in as few calls of vkQueueBindSparse as
- * maxBindsPerCall allows, signaling a timeline semaphore that is only ever polled. Tiles that are
- * unmapped keep their bindings until their pages are needed (sparse_bindings.h).
+ * Sparse residency: one batch of binds per frame, in as few calls of vkQueueBindSparse as
+ * maxBindsPerCall allows. The batch signals a timeline semaphore, which is only polled. Unmapped
+ * tiles keep their bindings until their pages are needed (sparse_bindings.h).
  */
 #include "vulkan/residency.h"
 
@@ -17,24 +17,24 @@
 
 #include <assert.h>
 
-/* Batches that may be under way; more would only queue up behind a slow binding queue. */
+/* Most batches in progress. More would only queue up behind a slow binding queue. */
 #define MAX_BATCHES 16u
 
-/* A tile that is evicted when the last frame that may read it is over. */
+/* Unmapped tile. It is evicted when the last frame that may read it is complete. */
 struct pending_unmap {
-    uint64_t frame; ///< the first one that does not read it
-    uint64_t key;   ///< in pending_tiles
+    uint64_t frame; ///< first frame that does not read the tile
+    uint64_t key;   ///< key in pending_tiles
     uint32_t index;
     struct slc_tile_place place;
-    bool filled; ///< its texels are there
+    bool filled; ///< the texels are on the page
 };
 
-/* A heap that was released: it goes when the last binding to it is over. */
+/* Released heap. It is freed when no tile is bound to it any more. */
 struct dying_heap {
     uint32_t heap_id;
-    uint32_t next_slot; ///< those before it are bound nowhere
-    uint64_t value;     ///< of the batch that made the last one so
-    bool unbound;       ///< all of them are; `value` is final
+    uint32_t next_slot; ///< slots before this one are unbound
+    uint64_t value;     ///< value of the batch with the last unbind
+    bool unbound;       ///< all slots are unbound; `value` is final
 };
 
 struct sparse_residency {
@@ -49,7 +49,7 @@ struct sparse_residency {
     struct slc_touch_budget touched;
     bool told_of_touched;
 
-    struct pending_unmap *pending; ///< owned ring, oldest first, frames never decrease
+    struct pending_unmap *pending; ///< owned ring, oldest first, sorted by frame
     uint32_t pending_first, pending_count, pending_capacity;
     struct slc_map pending_tiles;
 
@@ -60,7 +60,7 @@ struct sparse_residency {
     struct slc_bind_list list;
     struct slc_bind_calls calls;
     uint64_t submitted_value, completed_value; ///< batches
-    uint64_t batch_ends[MAX_BATCHES];          ///< of the semaphore, by batch
+    uint64_t batch_ends[MAX_BATCHES];          ///< by batch: value of the semaphore at its end
 };
 
 static struct sparse_residency *sparse(struct slc_residency *residency)
@@ -83,7 +83,7 @@ static void destroy_image(struct slc_residency *residency, uint32_t index)
     slc_sparse_image_destroy(&s->images[index], s->vk);
 }
 
-/* Packed tiles are needed always, so they count from the beginning. */
+/* Counts packed tiles from the start, because they are always needed. */
 static SluiceResult reserve_packed(struct sparse_residency *s, struct slc_sparse_image *image,
                                    const SluiceImageInfo *info)
 {
@@ -155,7 +155,7 @@ static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
     return image->last_value <= s->completed_value && image->unmap_count == 0;
 }
 
-/* All that is in the list or under way is over once the timeline stands there. */
+/* Returns the value at which all listed and submitted changes are complete. */
 static uint64_t last_value(const struct sparse_residency *s)
 {
     return s->submitted_value + (s->list.count ? 1 : 0);
@@ -182,11 +182,11 @@ static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size
     struct sparse_residency *s = sparse(residency);
     const VkPhysicalDeviceMemoryProperties *memory = &s->caps->memory;
     uint64_t page_count = size / SLC_TILE_SIZE;
-    /* More than there is may not even be asked for. */
+    /* Vulkan forbids allocations larger than the memory heap. */
     if (size > memory->memoryHeaps[memory->memoryTypes[s->memory_type].heapIndex].size ||
         page_count > UINT32_MAX)
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
-    if (s->dying_count) { /* all are equal, and what is bound to it still is good */
+    if (s->dying_count) { /* reuses a released heap of equal size; its bindings stay valid */
         *heap_id = s->dying[--s->dying_count].heap_id;
         return SLUICE_SUCCESS;
     }
@@ -202,7 +202,7 @@ static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size
     return result;
 }
 
-/* Half of the list is left to maps. */
+/* Unbinds slots of a released heap. Leaves half of the list to maps. */
 static bool unbind_heap(struct sparse_residency *s, struct dying_heap *heap)
 {
     for (; heap->next_slot < s->pages.heap_page_count; heap->next_slot++) {
@@ -216,7 +216,7 @@ static bool unbind_heap(struct sparse_residency *s, struct dying_heap *heap)
         s->images[image].last_value = s->submitted_value + 1;
         heap->value = s->submitted_value + 1;
     }
-    /* Its last tiles may have been unbound just now, as neighbors of tiles of other heaps. */
+    /* The last tiles may have been unbound just now, as neighbors of tiles of other heaps. */
     if (!heap->unbound && last_value(s) > heap->value)
         heap->value = last_value(s);
     heap->unbound = true;
@@ -240,7 +240,7 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
 {
     struct sparse_residency *s = sparse(residency);
     assert(s->dying_count < s->dying_capacity);
-    /* Tiles that lay there may have been bound elsewhere by what is still under way. */
+    /* Batches in progress may still move tiles of the heap to other pages. */
     s->dying[s->dying_count++] = (struct dying_heap){heap_id, 0, last_value(s), false};
 }
 
@@ -293,15 +293,15 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
 {
     struct sparse_residency *s = sparse(residency);
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
-    /* Frames under way may still read the old page through their MinMip maps. */
+    /* Frames in progress may still read the old page through their MinMip maps. */
     if (slc_map_get(&s->pending_tiles, slc_place_key(index, place)) != SLC_MAP_NONE)
         return SLUICE_NOT_READY;
     uint32_t unbound, count = s->list.count;
-    /* While no batch can be submitted the list only grows, so it may be full. */
+    /* The list may be full, because it grows while no batch can be submitted. */
     if (!slc_sparse_bindings_bind(&s->pages, &s->list, index, place, tile->heapId, tile->slot,
                                   &unbound))
         return SLUICE_NOT_READY;
-    /* not idle from here on */
+    /* the image is not idle from here on */
     if (s->list.count > count)
         s->images[index].last_value = s->submitted_value + 1;
     if (unbound != SLC_NO_IMAGE)
@@ -309,7 +309,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     return SLUICE_SUCCESS;
 }
 
-/* An evicted tile was shown before, so its texels are on its page, unless unmap said otherwise. */
+/* An evicted tile was shown, so its texels are on its page, unless unmap had `filled` false. */
 static bool revive(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct sparse_residency *s = sparse(residency);
@@ -329,7 +329,7 @@ static void spoil(struct slc_residency *residency, uint32_t index, const SluiceT
         slc_sparse_bindings_spoil_evicted(&s->pages, index, place);
 }
 
-/* Tiles that no incomplete frame reads any more: their pages may go to others. */
+/* Evicts unmapped tiles that no incomplete frame reads: other tiles may have their pages. */
 static void release_pending(struct sparse_residency *s, uint64_t completed_frame)
 {
     while (s->pending_count) {
@@ -384,7 +384,7 @@ struct slot_memory {
     VkDeviceSize offset;
 };
 
-/* Of the first slot of a run. */
+/* Returns the memory of the first slot of a run. */
 static struct slot_memory slot_memory(const struct sparse_residency *s,
                                       const struct slc_bind_run *run)
 {
@@ -406,7 +406,7 @@ static VkSparseImageMemoryBind tile_bind(const struct sparse_residency *s,
     return (VkSparseImageMemoryBind){
         .subresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, image->layer},
         .offset = {(int32_t)x, (int32_t)y, 0},
-        /* A tile at the edge ends with the level. */
+        /* Tiles at the edge are clipped to the level. */
         .extent = {slc_min_u32(run->column_count * desc->tileWidth,
                                slc_mip_size(desc->width, level) - x),
                    slc_min_u32(run->row_count * desc->tileHeight,
@@ -416,7 +416,7 @@ static VkSparseImageMemoryBind tile_bind(const struct sparse_residency *s,
         .memoryOffset = heap.offset};
 }
 
-/* Pages one by one: a driver takes a longer opaque bind for its first page only. */
+/* Binds one page of a tail. Drivers bind only the first page of longer opaque binds. */
 static VkSparseMemoryBind page_bind(const struct sparse_residency *s,
                                     const struct slc_sparse_image *image,
                                     const struct slc_bind_run *run)
@@ -442,7 +442,7 @@ static VkSparseMemoryBind metadata_bind(const struct slc_sparse_image *image)
         .flags = VK_SPARSE_MEMORY_BIND_METADATA_BIT};
 }
 
-/* Before the first run of an image. */
+/* Begins the binds of an image, before its first run. */
 static SluiceResult begin_image(struct sparse_residency *s, struct slc_sparse_image *image)
 {
     image->last_value = s->submitted_value + 1;
@@ -477,12 +477,12 @@ static SluiceResult submit_runs(struct sparse_residency *s)
     return result == SLUICE_SUCCESS ? slc_bind_calls_end(&s->calls) : result;
 }
 
-/* After an error the list stays, and the next batch binds all of it again. */
+/* After an error the list is kept, and the next batch repeats all of its binds. */
 static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
 {
     struct sparse_residency *s = sparse(residency);
-    /* What is collected now goes out with the next batch, in this call or in a later one. Tiles
-     * that got their old pages again are in none. */
+    /* Collected changes are submitted with the next batch, by this call or a later one. Tiles that
+     * got their old pages again are in no batch. */
     *value = last_value(s);
     if (s->list.count == 0 || s->submitted_value - s->completed_value == MAX_BATCHES)
         return SLUICE_SUCCESS;
@@ -591,7 +591,7 @@ static SluiceResult create_calls(struct sparse_residency *s,
     const struct slc_bind_calls_limits limits = {
         .regions_per_call = info->max_binds_per_call,
         .tile_count = s->list.capacity,
-        .page_count = s->list.capacity + s->max_image_count, /* metadata once for each image */
+        .page_count = s->list.capacity + s->max_image_count, /* metadata once per image */
         .image_count = s->max_image_count};
     return slc_bind_calls_init(&s->calls, s->vk, info->sparse_queue, s->cb, &limits);
 }

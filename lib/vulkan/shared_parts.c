@@ -98,7 +98,7 @@ void slc_drop_pages(struct slc_shared_parts *shared, struct slc_page_pool *pool)
     slc_mutex_unlock(&shared->mutex);
 }
 
-/* With the lock held. */
+/* Makes the threads for the first loader. The caller holds the lock. */
 static SluiceResult use_threads(struct slc_shared_parts *shared,
                                 const SluiceTileLoaderCreateInfo *create)
 {

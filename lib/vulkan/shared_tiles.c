@@ -14,7 +14,7 @@ void slc_shared_tiles_finish(struct slc_shared_tiles *tiles, const SluiceAllocat
     *tiles = (struct slc_shared_tiles){.free = SLC_NONE};
 }
 
-#define KEY_IDENTITY UINT32_MAX /* a layer that no source has */
+#define KEY_IDENTITY UINT32_MAX /* layer in keys by identity; no source has it */
 
 struct slc_tile_key slc_tile_key(SluiceImageSource *source, const SluiceImageRegion *region,
                                  uint32_t generation)

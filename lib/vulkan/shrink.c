@@ -7,11 +7,11 @@
 #include "vulkan/residencies.h"
 
 #define HEAPS_AT_ONCE 16u
-/* In which tiles are read that need the pages for which a heap went. */
+/* Frames in which tiles can be read to the pages for which a heap was released. */
 #define FRAMES_FOR_PAGES 8u
-/* In which tiles that were given back come again. */
+/* Frames in which tiles that were given back are requested again. */
 #define FRAMES_OF_LACK 4u
-/* Few, because a wanted tile that moves shows a coarser level until it is read again. */
+/* Few, because a wanted tile that is evicted shows a coarser level until it is read again. */
 #define MOVES_PER_FRAME 64u
 
 static uint64_t without(uint64_t amount, uint64_t taken)
@@ -24,7 +24,7 @@ static uint64_t div_up(uint64_t a, uint64_t b)
     return a / b + (a % b > 0);
 }
 
-/* Heaps needed for all wanted tiles and for the slots reserved for packed tiles. */
+/* Returns the heaps needed for all wanted tiles and for the slots reserved for packed tiles. */
 static uint64_t needed_heaps(const SluiceVulkanStreamer *s,
                              const SluiceStreamedTextureStatistics *stats)
 {
@@ -34,7 +34,7 @@ static uint64_t needed_heaps(const SluiceVulkanStreamer *s,
     return div_up(tiles, s->info.heapTileCapacity);
 }
 
-/* How many heaps to keep; 0: all. Released heaps count as freed before their memory is. */
+/* Returns the number of heaps to keep; 0: all. Released heaps count as freed already. */
 static uint32_t choose_target(const SluiceVulkanStreamer *s,
                               const SluiceStreamedTextureStatistics *stats)
 {
@@ -54,7 +54,7 @@ static uint32_t choose_target(const SluiceVulkanStreamer *s,
     if (beyond)
         target = slc_min_u64(target, without(live, div_up(beyond, size)));
     if (!pressure->beyond && target == live && s->frame >= s->shrink.pages_until)
-        return 0; /* a target would keep new heaps from coming before the last ones are freed */
+        return 0; /* a target would forbid new heaps until the last released ones are freed */
     return target ? (uint32_t)target : 1;
 }
 
@@ -153,10 +153,10 @@ static SluiceResult shrink_pages(SluiceVulkanStreamer *s,
     uint64_t size = pressure->beyond + pressure->refused;
     if (size || !compacting)
         lacking = s->residency->interface->gather(s->residency, size);
-    s->shrink.compacting = false; /* the moves are of this frame */
+    s->shrink.compacting = false; /* the moves were for this frame only */
     SluiceResult result = SLUICE_SUCCESS;
     if (lacking != SLC_NONE && lacking > stats->standbyTileCount && !must)
-        s->residency->interface->gather(s->residency, 0); /* others use its pages */
+        s->residency->interface->gather(s->residency, 0); /* ends: wanted tiles would be evicted */
     else if (lacking != SLC_NONE && lacking > 0)
         result = give_back(s, stats, lacking, must, &target);
     if (result >= 0)
@@ -167,7 +167,7 @@ static SluiceResult shrink_pages(SluiceVulkanStreamer *s,
     return result >= 0 ? release_empty_heaps(s) : result;
 }
 
-/* Heaps that were made ahead go before any tile does. */
+/* Frees heaps that were made ahead, before any tile is evicted. */
 static void free_spare_heaps(SluiceVulkanStreamer *s)
 {
     struct slc_memory_pressure *pressure = &s->memory_pressure;
@@ -179,7 +179,8 @@ static void free_spare_heaps(SluiceVulkanStreamer *s)
     pressure->beyond = without(pressure->beyond, freed);
 }
 
-/* Tiles that wait for a page would hold slots in all heaps. Those still wanted come back. */
+/* Gives deferred tiles back, because they hold slots in all heaps. Wanted ones are requested again.
+ */
 static SluiceResult give_deferred_back(SluiceVulkanStreamer *s)
 {
     SluiceResult result = SLUICE_SUCCESS;
@@ -191,9 +192,8 @@ static SluiceResult give_deferred_back(SluiceVulkanStreamer *s)
     return result;
 }
 
-/* Tiles of paged textures have slots, and heaps took the memory that their pages need. One heap
- * goes at a time. What evicts tiles then, and makes everything coarser, treats all textures alike.
- */
+/* Releases a heap for pages, if tiles of paged textures have slots but heaps took the memory of
+ * their pages. One heap at a time. The following eviction treats all textures equally. */
 static SluiceResult make_room_for_pages(SluiceVulkanStreamer *s)
 {
     uint64_t *before = &s->shrink.size_before, size = slc_memory_client_tiles(&s->memory);
@@ -213,7 +213,7 @@ static SluiceResult make_room_for_pages(SluiceVulkanStreamer *s)
     return SLUICE_SUCCESS;
 }
 
-/* Pages beside heaps. What gives pages back is the eviction that empties heaps. */
+/* Moves pages together beside heaps. The eviction that empties heaps also gives pages back. */
 static void gather_pages(SluiceVulkanStreamer *s)
 {
     uint64_t size = s->memory_pressure.beyond + s->memory_pressure.refused;

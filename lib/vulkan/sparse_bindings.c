@@ -66,7 +66,7 @@ SluiceResult slc_sparse_bindings_add_heap(struct slc_sparse_bindings *bindings,
                                           const SluiceAllocationCallbacks *cb, uint32_t heap_id,
                                           uint32_t page_count)
 {
-    const uint64_t limit = (1u << 30) - 1; /* of the hash map */
+    const uint64_t limit = (1u << 30) - 1; /* most entries of the hash map */
     if (bindings->heap_page_count == 0)
         bindings->heap_page_count = page_count;
     assert(page_count > 0 && page_count == bindings->heap_page_count);

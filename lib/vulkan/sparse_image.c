@@ -39,7 +39,7 @@ SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_ca
     VkMemoryRequirements memory;
     vk->GetImageMemoryRequirements(vk->device, image, &memory);
     vk->DestroyImage(vk->device, image, NULL);
-    /* Asked for explicitly: the first allowed type may be plain system memory. */
+    /* DEVICE_LOCAL is requested explicitly: the first allowed type may be system memory. */
     *memory_type = slc_find_memory_type(&caps->memory, memory.memoryTypeBits,
                                         VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
     if (*memory_type != UINT32_MAX)
@@ -54,7 +54,8 @@ static uint32_t layer_count(const SluiceImageInfo *info)
     return slc_max_u32(1, info->arrayLayerCount);
 }
 
-/* At least what the driver will say; it may not even be asked for more than it allows. */
+/* Returns a lower bound of the image's size. Images beyond the driver's limit must not be created.
+ */
 static uint64_t texel_bytes(const SluiceImageInfo *info)
 {
     uint64_t size = 0;
@@ -89,7 +90,7 @@ static const char *check_format(const struct slc_vk *vk, const struct slc_caps *
     return NULL;
 }
 
-/* The layout of the image as the driver made it; NULL, or what is wrong with it. */
+/* Reads the layout of the image from the driver. Returns NULL, or why the layout is refused. */
 static const char *read_layout(struct slc_sparse_image *image, const struct slc_vk *vk,
                                const struct slc_caps *caps, uint32_t memory_type,
                                const SluiceImageInfo *info)
@@ -135,7 +136,7 @@ static SluiceResult allocate_metadata(struct slc_sparse_image *image, const stru
                          "vkAllocateMemory for image metadata");
 }
 
-/* The layers share image and memory; each binds its own part of both. */
+/* Fills in the other layers. Layers share image and metadata, and each binds its own part. */
 static void fill_layers(struct slc_sparse_image *images, uint32_t count)
 {
     images[0].layer_count = count;

@@ -2,7 +2,8 @@
 
 #include "image/format_size.h"
 
-/* The first level that fits into one tile; from there on pages would be mostly empty. */
+/* Returns the first level that fits into one tile. Pages of coarser levels would be mostly empty.
+ */
 static uint32_t own_packed_level(const SluiceImageInfo *info, VkExtent3D tile)
 {
     uint32_t level = 0;
@@ -12,7 +13,7 @@ static uint32_t own_packed_level(const SluiceImageInfo *info, VkExtent3D tile)
     return level;
 }
 
-/* Levels whose size is rounded down have tiles that begin behind the regions under them. */
+/* Whether no level is rounded down. Tiles of rounded levels begin behind the regions under them. */
 static bool halves_evenly(uint32_t size, uint32_t level_count)
 {
     for (uint32_t level = 1; level < level_count; level++)
@@ -24,7 +25,7 @@ static bool halves_evenly(uint32_t size, uint32_t level_count)
 
 static void set_regions(SluiceStreamedTextureDesc *desc)
 {
-    /* Without regular levels nothing can be wanted apart, so one region is enough. */
+    /* Without regular levels one region suffices: packed levels are wanted as a whole. */
     desc->feedbackRegionWidth = desc->regularMipCount ? desc->tileWidth : desc->width;
     desc->feedbackRegionHeight = desc->regularMipCount ? desc->tileHeight : desc->height;
 }
@@ -37,7 +38,7 @@ static uint64_t tile_size(const SluiceFormatInfo *format, VkExtent3D tile)
 
 VkExtent3D slc_sparse_tile_extent(const SluiceFormatInfo *format, VkExtent3D granularity)
 {
-    /* Lavapipe counts blocks: what it says would be a sixteenth of a page. */
+    /* Lavapipe's granularity counts blocks: taken as texels it would be a sixteenth of a page. */
     if (slc_format_is_compressed(format) &&
         (uint64_t)granularity.width * granularity.height * granularity.depth * format->blockSize ==
             SLC_TILE_SIZE) {
@@ -115,7 +116,7 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
     return SLUICE_SUCCESS;
 }
 
-/* They lie in an image of their own, not each on a page. */
+/* Returns the packed tiles of an image that has memory of its own, not one page per tile. */
 static uint32_t packed_pages(const SluiceStreamedTextureDesc *desc, const SluiceImageInfo *info)
 {
     uint64_t size = 0;
@@ -125,7 +126,7 @@ static uint32_t packed_pages(const SluiceStreamedTextureDesc *desc, const Sluice
     return (uint32_t)((size + SLC_TILE_SIZE - 1) / SLC_TILE_SIZE);
 }
 
-/* Their memory is the image's, whatever their number. */
+/* Marks packed tiles as outside: their memory belongs to the image. */
 static void put_outside(SluiceStreamedTextureDesc *desc)
 {
     desc->regularMipCount = 0;

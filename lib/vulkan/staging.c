@@ -37,7 +37,7 @@ static uint64_t block_size(const struct slc_staging *s, uint32_t index)
     return (uint64_t)slc_min_u32(SLC_STAGING_BLOCK_SLOTS, s->slot_count - first) * SLC_TILE_SIZE;
 }
 
-/* An idle buffer of another member goes to the block, and is counted there. */
+/* Moves an idle buffer of another member to the block, and counts it there. */
 static bool take_idle(struct slc_staging *s, uint32_t index)
 {
     struct slc_buffer *to = &s->blocks[index].buffer;

@@ -1,4 +1,4 @@
-/* Creation and destruction of a streamer, and what it tells about itself. */
+/* Creation and destruction of a streamer, and queries of it. */
 #include "vulkan/streamer.h"
 
 #include "base/alloc.h"
@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-/* Warns once if the streamer cannot allocate its first heap: nothing is shown without one. */
+/* Warns once if the streamer cannot allocate its first heap: without one nothing is shown. */
 static void tell_of_refused_heap(SluiceVulkanStreamer *s, uint64_t size)
 {
     SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
@@ -96,7 +96,7 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
     return result == SLUICE_SUCCESS ? slc_fill_in_times(info, log) : result;
 }
 
-/* The largest heap that can be allocated. Heaps that are slots without memory end at the device. */
+/* Returns the largest possible heap. Heaps without memory are limited by the device's memory. */
 static uint64_t largest_heap(const SluiceVulkanStreamer *s)
 {
     uint64_t limit = slc_device_memory_size(&s->caps);
@@ -327,7 +327,7 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
     if (result == SLUICE_SUCCESS && info.pDebug)
         result = slc_struct_read(SLC_STRUCT(SluiceVulkanStreamerDebugInfo), &debug, info.pDebug,
                                  &context->vk.log);
-    info.pDebug = NULL; /* copied */
+    info.pDebug = NULL; /* `debug` has a copy */
     if (result == SLUICE_SUCCESS)
         result = fill_in(&info);
     if (result != SLUICE_SUCCESS)
@@ -389,7 +389,7 @@ static void free_arrays(SluiceVulkanStreamer *s)
     slc_free(cb, s->textures, textures, sizeof *s->textures);
 }
 
-/* A frame that was not ended cannot be under way. */
+/* Waits for frames that were ended. Others cannot have been submitted. */
 static void wait_for_own_work(SluiceVulkanStreamer *s)
 {
     uint64_t frame = slc_streamer_last_submittable(s);

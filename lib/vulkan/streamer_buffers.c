@@ -1,4 +1,4 @@
-/* Buffers that shaders read and write, and what the application learns about them. */
+/* Buffers that shaders read and write, and queries of them. */
 #include "vulkan/streamer.h"
 
 #include "base/log.h"
@@ -21,7 +21,7 @@ SluiceResult slc_streamer_use_addresses(SluiceVulkanStreamer *s)
 void slc_streamer_fill_buffers(const SluiceVulkanStreamer *s, SluiceVulkanBuffers *buffers)
 {
     const struct slc_residency *residency = slc_residency_of_pages(s);
-    /* any buffer will do where it is not read */
+    /* without a page table any buffer will do: shaders do not read it */
     const struct slc_buffer *pages =
         residency ? residency->interface->page_table(residency) : &s->texture_table;
     *buffers = (SluiceVulkanBuffers){.structSize = sizeof(SluiceVulkanBuffers),

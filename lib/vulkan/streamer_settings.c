@@ -1,4 +1,4 @@
-/* What a running application changes. */
+/* Settings that can change while a streamer runs. */
 #include "vulkan/streamer.h"
 
 #include "base/alloc.h"
@@ -10,7 +10,7 @@
 
 #include <stddef.h>
 
-/* What is allocated for tilesPerFrame. */
+/* Arrays whose size depends on tilesPerFrame. */
 struct tile_arrays {
     uint32_t tile_count;
     uint32_t *frame_units;
@@ -44,7 +44,7 @@ static SluiceResult tile_arrays_init(struct tile_arrays *arrays,
     return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-/* They hold nothing between frames. */
+/* Replaces the arrays, which are empty between frames. */
 static SluiceResult set_tiles_per_frame(SluiceVulkanStreamer *s, uint32_t count)
 {
     if (count == s->info.tilesPerFrame)
@@ -112,7 +112,7 @@ static SluiceResult check(const SluiceVulkanStreamer *s,
     return slc_check_limits(&s->vk.log, limits, sizeof limits / sizeof limits[0]);
 }
 
-/* sluiceSetConfig was the only way to set these before the struct had them. */
+/* Whether the struct has the fields of expiry. Older ones leave them to sluiceSetConfig. */
 static bool has_expiry(uint32_t size)
 {
     return size >= offsetof(SluiceVulkanStreamerSettings, prefetchLevels) + sizeof(uint32_t);

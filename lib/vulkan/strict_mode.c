@@ -69,7 +69,7 @@ void slc_strict_not_ready(SluiceVulkanStreamer *s, uint64_t frame)
                (unsigned long long)s->completed_frame, (unsigned long long)frame);
 }
 
-/* The maps as they were read back last. */
+/* Whether some map that was read back last has marks. */
 static bool has_feedback(const SluiceVulkanStreamer *s)
 {
     for (uint32_t i = 0; i < s->primary_count; i++) {
@@ -80,7 +80,7 @@ static bool has_feedback(const SluiceVulkanStreamer *s)
     return s->primary_count == 0;
 }
 
-/* All maps are looked at once in so many frames. A mark in between counts. */
+/* Examines all maps once in a number of frames. Marks of frames in between count. */
 static void check_feedback(SluiceVulkanStreamer *s)
 {
     struct slc_strict *strict = &s->strict;
@@ -106,7 +106,7 @@ static bool may_repeat(const SluiceVulkanStreamer *s, uint64_t *told)
     return true;
 }
 
-/* For paged streamers, and sparse ones whose other textures are paged. */
+/* Returns the counters of pages: of a paged streamer, or of the paged textures of a sparse one. */
 static const struct slc_residency_counters *page_counters(const SluiceVulkanStreamer *s)
 {
     return s->paged ? &s->paged->counters : &s->residency->counters;

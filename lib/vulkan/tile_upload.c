@@ -1,4 +1,4 @@
-/* Copies texels from staging slots to the images whose bindings are over, and tells the manager. */
+/* Copies texels from staging slots to bound tiles, and reports them to the manager. */
 #include "vulkan/tile_upload.h"
 
 #include "base/alloc.h"
@@ -28,7 +28,7 @@ SluiceResult slc_packed_publish(SluiceVulkanStreamer *s, uint32_t index)
     return SLUICE_SUCCESS;
 }
 
-/* What is published: whole tiles at once, packed levels when their last unit is copied. */
+/* Publishes a unit: a tile at once, packed levels when their last unit is copied. */
 static SluiceResult publish(SluiceVulkanStreamer *s, uint32_t index, uint32_t packed_units,
                             uint32_t tile_count)
 {
@@ -46,8 +46,8 @@ static SluiceResult publish(SluiceVulkanStreamer *s, uint32_t index, uint32_t pa
     return slc_streamer_check(s, result, "sluiceUpdateTilesMapping");
 }
 
-/* Tiles that the manager does not know yet, in the order of their arrival: into tile_indices. The
- * order must not follow from staging slots, which depend on the timing of earlier reads. */
+/* Lists tiles to report to the manager in tile_indices, in the order of arrival. The order of
+ * staging slots would depend on the timing of earlier reads. */
 static void list_tiles(SluiceVulkanStreamer *s, const uint32_t *units, uint32_t count,
                        uint32_t *tile_count, uint32_t *packed_count)
 {
@@ -63,7 +63,7 @@ static void list_tiles(SluiceVulkanStreamer *s, const uint32_t *units, uint32_t 
     }
 }
 
-/* The copies of a group, and what shows its tiles. */
+/* Records the copies of a group, and shows its tiles. */
 static void upload_group(SluiceVulkanStreamer *s, VkCommandBuffer commands, const uint32_t *units,
                          uint32_t count)
 {
@@ -90,7 +90,7 @@ static uint64_t by_texture_and_slot(const SluiceVulkanStreamer *s, uint32_t unit
     return (uint64_t)s->units[unit].texture << 32 | unit;
 }
 
-/* By texture, and of each texture in the order of arrival. */
+/* Publishes units by texture, and per texture in the order of arrival. */
 static SluiceResult publish_units(SluiceVulkanStreamer *s, const uint32_t *units, uint32_t count)
 {
     SluiceResult result = SLUICE_SUCCESS;
@@ -105,8 +105,9 @@ static SluiceResult publish_units(SluiceVulkanStreamer *s, const uint32_t *units
     return result;
 }
 
-/* Round n has the nth command of each texture that needs barriers; round 0 has all of the others,
- * too. So there is at most one barrier for each staging buffer. False if nothing is left. */
+/* Records a round. Round n has the nth command of each texture that needs barriers; round 0 also
+ * has all other commands. So there is at most one barrier per staging buffer. False if none is
+ * left. */
 static bool record_round(SluiceVulkanStreamer *s, VkCommandBuffer commands, const uint32_t *units,
                          uint32_t count, uint32_t round)
 {
@@ -127,7 +128,7 @@ static bool record_round(SluiceVulkanStreamer *s, VkCommandBuffer commands, cons
     return any;
 }
 
-/* frame_units[0..count). The manager may know them from an abandoned frame. */
+/* Records frame_units[0..count). The manager may know them already, from an abandoned frame. */
 static SluiceResult record_units(SluiceVulkanStreamer *s, VkCommandBuffer commands, uint32_t count)
 {
     uint32_t round = 0;
@@ -139,7 +140,7 @@ static SluiceResult record_units(SluiceVulkanStreamer *s, VkCommandBuffer comman
     return result;
 }
 
-/* Units that the upload queue has copied, into frame_units. */
+/* Collects units that the upload queue has copied into frame_units. */
 static uint32_t take_early(SluiceVulkanStreamer *s, uint32_t *left)
 {
     uint32_t count = 0, unit;
@@ -157,7 +158,7 @@ static uint32_t take_early(SluiceVulkanStreamer *s, uint32_t *left)
     return count;
 }
 
-/* Units whose binding is over, into frame_units: all that the manager knows, and `*left` others. */
+/* Collects bound units into frame_units: all that the manager knows, and at most `*left` others. */
 static uint32_t take_units(SluiceVulkanStreamer *s, uint32_t *left)
 {
     uint64_t completed = s->residency->interface->completed_value(s->residency);
@@ -193,7 +194,7 @@ SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer co
     SluiceResult result = slc_upload_queue_poll(&s->uploads, &s->vk);
     if (result == SLUICE_SUCCESS)
         result = slc_early_uploads_start(s);
-    if (s->reload_unit_count) /* pages may have moved in this frame */
+    if (s->reload_unit_count) /* moves of this frame may have written the same pages */
         slc_record_transfer_barrier(&s->vk, commands);
     for (bool first = true; result >= 0 && (count = take_units(s, &left)) > 0; first = false) {
         if (!first && (s->residency->interface->ordinary_images || s->plain))

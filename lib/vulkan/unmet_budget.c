@@ -4,10 +4,10 @@
 #include "base/log.h"
 #include "vulkan/memory_budget.h"
 
-/* Frames after the last memory was freed. Emptying a heap takes its tiles divided by those that
- * leave per frame, and its memory goes after the frames in flight. */
+/* Frames without freed memory until the warning. Emptying a heap takes its tiles / tiles evicted
+ * per frame; its memory is freed after the frames in flight. */
 #define PATIENCE 64u
-#define TILES_PER_FRAME 16u /* at most tilesPerFrame */
+#define TILES_PER_FRAME 16u /* assumed evictions per frame; at most tilesPerFrame */
 
 static uint32_t count_packed_tiles(const SluiceVulkanStreamer *s)
 {
