@@ -1,4 +1,4 @@
-/* Streamed textures of a streamer: adding, removing, and what their first frame records. */
+/* Streamed textures of a streamer: adding, removing, and recording their first frame. */
 #include "base/struct_size.h"
 #include "vulkan/streamer.h"
 #include "vulkan/texture_entry.h"
@@ -23,10 +23,10 @@
 #include <math.h>
 #include <sluice/shared/bindings.h>
 
-#define MAX_ANISOTROPY 16.0f /* of sample.glsl */
+#define MAX_ANISOTROPY 16.0f /* limit of sample.glsl */
 #define LAST_ADDRESS_MODE VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE
 
-/* The first of `count` free ones side by side. */
+/* Finds the first of `count` consecutive free textures. */
 static uint32_t find_free(SluiceVulkanStreamer *s, uint32_t count)
 {
     while (s->texture_low < s->texture_high &&
@@ -109,7 +109,7 @@ static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *
     SluiceResult result = sluiceAddStreamedTexture(s->manager, &texture->image.desc, &texture->id);
     if (result != SLUICE_SUCCESS)
         return result;
-    /* Ids of what was taken back, below or in build_all, are not free before the next frame. */
+    /* Ids of textures that build_all or this function took back are free only in the next frame. */
     if ((uint32_t)texture->id >= s->info.maxTextureCount)
         result = SLUICE_ERROR_LIMIT_EXCEEDED;
     else if (info->primaryId != SLUICE_NO_TEXTURE)
@@ -126,7 +126,7 @@ static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
     struct slc_texture *texture = &s->textures[index];
     slc_texture_views_finish(&texture->views, &s->vk);
     slc_level_views_finish(&texture->level_views, &s->vk, &s->cb, &texture->image);
-    /* of an array when its last layer goes */
+    /* the image of an array is destroyed with the last layer */
     if (texture->image.image && texture->layer + 1 == texture->layer_count)
         texture->residency->interface->destroy_image(texture->residency, texture->first);
     if (texture->region_count)
@@ -138,7 +138,7 @@ static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
     s->texture_low = slc_min_u32(s->texture_low, index);
 }
 
-/* Views, regions and packed levels of one layer, whose image is there. */
+/* Makes views, regions and packed levels of one layer. The image exists. */
 static SluiceResult build(SluiceVulkanStreamer *s, struct slc_texture *texture)
 {
     SluiceResult result = SLUICE_SUCCESS;
@@ -165,7 +165,8 @@ static float choose_anisotropy(const SluiceVulkanStreamer *s, float wanted, bool
     return fmaxf(fminf(wanted, most), 1.0f);
 }
 
-/* Known by its index before the texture is added: an array of textures shows both at once. */
+/* Finds the sampler before the texture is added, because an array of textures shows both at once.
+ */
 static SluiceResult find_sampler(SluiceVulkanStreamer *s, const struct slc_sampler_kind *kind,
                                  uint32_t *index)
 {
@@ -183,7 +184,7 @@ static SluiceResult find_sampler(SluiceVulkanStreamer *s, const struct slc_sampl
 static void choose_modes(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreateInfo *info,
                          const SluiceImageInfo *image, VkSamplerAddressMode modes[2])
 {
-    modes[0] = modes[1] = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE; /* of each face by itself */
+    modes[0] = modes[1] = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE; /* per face */
     if (image->cube)
         return;
     modes[0] =
@@ -207,7 +208,8 @@ static void choose_kind(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreate
     kind->integer = slc_format_is_integer(image->format);
 }
 
-/* All layers, or none. The manager comes last: what it has got is only given back with a frame. */
+/* Makes all layers or none. Adds to the manager last: its textures are given back with frames only.
+ */
 static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                               const SluiceVulkanTextureCreateInfo *info,
                               const struct slc_tile_producer *producer,
@@ -303,7 +305,7 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
         .filter = texture->filter,
         .residencyMode = slc_texture_mode(s, texture),
     };
-    /* Samplers of the array are not those of integers: their elements stay empty. */
+    /* Samplers of the array cannot sample integers: elements of such textures stay empty. */
     if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE && texture->image.image &&
         !slc_format_is_integer(texture->info.format))
         slc_texture_array_set(&s->texture_array, index, texture->views.layer, texture->views.cube,
@@ -374,7 +376,7 @@ SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
     return sluiceAddVulkanTextureArray(streamer, pCreateInfo, 1, pTexture);
 }
 
-/* They stand alone from now on, so their own feedback is read. */
+/* Detaches the followers of a texture: their own feedback is read from now on. */
 static void free_followers(SluiceVulkanStreamer *s, SluiceTextureId primary)
 {
     for (uint32_t i = 0; i < s->texture_high; i++) {
@@ -421,7 +423,7 @@ SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer, SluiceTex
     SluiceVulkanStreamer *s = streamer;
     if (!s)
         return SLUICE_ERROR_NULL_POINTER;
-    /* The manager knows which ids are good. */
+    /* The manager validates ids. */
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     SluiceResult result = sluiceGetTextureLayout(s->manager, textureId, &layout);
     if (result != SLUICE_SUCCESS)
@@ -434,7 +436,7 @@ SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer, SluiceTex
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = remove_layer(s, first + i);
     s->manager_locked = true;
-    slc_loader_drop_texels(s->loader, source); /* it may be destroyed before the texture retires */
+    slc_loader_drop_texels(s->loader, source); /* the source may be destroyed before the texture */
     return result;
 }
 
@@ -466,7 +468,7 @@ static bool is_over(const SluiceVulkanStreamer *s, const struct slc_texture *fir
     return over;
 }
 
-/* The application may destroy it now, and make another one at the same address. */
+/* Forgets a source that the application may destroy now. Another may have its address later. */
 static void forget_source(SluiceVulkanStreamer *s, const SluiceImageSource *source)
 {
     if (!source)
@@ -474,7 +476,7 @@ static void forget_source(SluiceVulkanStreamer *s, const SluiceImageSource *sour
     for (uint32_t i = 0; i < s->texture_high; i++)
         if (s->textures[i].state != SLC_TEXTURE_FREE && s->textures[i].source == source)
             return;
-    sluiceDropTileLoaderStatistics(s->loader, source); /* nothing of it is under way */
+    sluiceDropTileLoaderStatistics(s->loader, source); /* no read of the source is in progress */
 }
 
 uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit)
@@ -491,7 +493,7 @@ uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit)
             s->removed_count -= count;
             forget_source(s, source);
         } else if (limit >= texture->removed_frame) {
-            /* Its pages are bound to its slots until it is gone. */
+            /* Pages stay bound to the texture's slots until it is destroyed. */
             limit = texture->removed_frame ? texture->removed_frame - 1 : 0;
         }
     }
@@ -511,13 +513,13 @@ bool slc_texture_is_ragged(const struct slc_texture *texture)
            desc->height % desc->feedbackRegionHeight;
 }
 
-/* 4 to the power of the first packed level, and a margin for samplers that come out finer. */
+/* Returns 4^(first packed level), with a margin for samplers that choose finer levels. */
 static float quick_packed2(const SluiceStreamedTextureDesc *desc)
 {
     return ldexpf(1.5f, 2 * (int)desc->regularMipCount);
 }
 
-/* Regions are tiles, and where all levels are packed there is one. */
+/* Regions are tiles. If all levels are packed, there is one region. */
 static float quick_reach2(const struct slc_texture *texture)
 {
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
@@ -584,7 +586,7 @@ void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands)
         struct SluiceTextureEntry entry = table_entry(s, index);
         s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer, (uint64_t)index * sizeof entry,
                               sizeof entry, &entry);
-        if (!texture->cleared_frame) { /* marks of one that comes back are there already */
+        if (!texture->cleared_frame) { /* a texture made again keeps its marks */
             slc_feedback_record_new(s, texture, commands);
             texture->cleared_frame = s->frame;
         }

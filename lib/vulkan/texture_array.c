@@ -144,7 +144,7 @@ static void write_samplers(const struct slc_texture_array *array, const struct s
     write_run(vk, set, binding, VK_DESCRIPTOR_TYPE_SAMPLER, 0, SLUICE_SAMPLER_COUNT, samplers);
 }
 
-/* Writes elements `begin` to `end`, which are one binding, that changed after `generation`. */
+/* Writes elements [begin, end) of one binding that changed after `generation`. */
 static void write_elements(const struct slc_texture_array *array, const struct slc_vk *vk,
                            VkDescriptorSet set, uint32_t binding, uint32_t begin, uint32_t end,
                            uint64_t generation)

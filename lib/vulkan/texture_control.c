@@ -18,7 +18,7 @@ void slc_control_drop(SluiceVulkanStreamer *s, struct slc_texture *texture)
     slc_due_map_drop(s, texture);
 }
 
-/* What a region requests once bias and limit count; UNTOUCHED stays. */
+/* Applies bias and limit to a requested level. UNTOUCHED stays. */
 static uint8_t controlled(const struct slc_texture *texture, uint8_t level, int32_t bias)
 {
     int32_t last = (int32_t)texture->layout.desc.mipLevelCount - 1, finest = texture->finest_level;
@@ -106,7 +106,7 @@ static void set_control(SluiceVulkanStreamer *s, struct slc_texture *texture,
         slc_feedback_leave(s, index);
     texture->drop_due |= texture->finest_level > before.finestLevel ||
                          control->mipBias > before.mipBias || (control->hidden && !before.hidden);
-    if (!before.hidden || control->hidden) /* what it marked before it was hidden is old */
+    if (!before.hidden || control->hidden) /* marks from before the texture was hidden are old */
         slc_due_map_add(s, texture);
 }
 

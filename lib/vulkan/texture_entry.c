@@ -4,13 +4,14 @@
 
 #include <stdbool.h>
 
-/* Chains that are cut short may halve evenly without. */
+/* A short mip chain may halve evenly although the size is no power of two. */
 static bool is_power_of_two(uint32_t size)
 {
     return (size & (size - 1)) == 0;
 }
 
-/* A border's texels are none, and footprints count them as the edge's. */
+/* Whether footprints clamp. Border texels need no tiles, and footprints treat them as edge texels.
+ */
 static bool clamps_to_edge(uint32_t mode)
 {
     return mode == SLUICE_ADDRESS_MODE_CLAMP_TO_EDGE || mode == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER;

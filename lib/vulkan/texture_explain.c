@@ -13,9 +13,9 @@ static uint8_t finer_of(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* What is asked for --------------------------------------------------------------------------- */
+/* Requested levels ---------------------------------------------------------------------------- */
 
-/* Level m of the primary is level m + offset of the texture, as the manager matches them. */
+/* Returns the offset of levels: level m of the primary is level m + offset of the texture. */
 static int32_t level_offset(const struct slc_coarse_place *p)
 {
     const SluiceStreamedTextureDesc *to = &p->texture->layout.desc, *from;
@@ -40,7 +40,7 @@ static uint8_t own_level(const struct slc_coarse_place *p, uint8_t level)
     return (uint8_t)(own < 0 ? 0 : own < own_last ? own : own_last);
 }
 
-/* Regions of the primary that the part [first, end) of `size` texels touches along one axis. */
+/* Finds the regions of the primary that texels [first, end) of `size` touch along one axis. */
 static void regions_of(uint64_t first, uint64_t end, uint32_t size, uint32_t primary_size,
                        uint32_t region, uint32_t count, uint32_t *begin, uint32_t *stop)
 {
@@ -94,7 +94,7 @@ static void look_at(const SluiceVulkanStreamer *s, struct slc_coarse_place *p, u
     p->marked = marked_level(s, p);
 }
 
-/* Higher: it says more about why the rectangle is coarse. */
+/* Returns how much a tile explains about the coarse rectangle. Higher is more. */
 static uint32_t weight(const struct slc_coarse_place *p)
 {
     uint32_t kind = p->requested.held < p->resident ? 4
@@ -140,7 +140,7 @@ static bool is_resident(SluiceTileState state)
     return state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
 }
 
-/* The coarsest tile over the place that is not shown: the next finer ones count only with it. */
+/* Finds the coarsest hidden tile over the place. Finer tiles are shown only together with it. */
 static uint32_t find_missing(const SluiceVulkanStreamer *s, struct slc_coarse_place *p)
 {
     const SluiceStreamedTextureLayout *layout = &p->texture->layout;
@@ -192,7 +192,7 @@ static SluiceCoarseReason why_packed_not_loaded(const SluiceVulkanStreamer *s,
     }
 }
 
-/* The manager has handed it out. */
+/* Explains why a tile that was handed out is not loaded yet. */
 static SluiceCoarseReason why_not_loaded(const SluiceVulkanStreamer *s,
                                          const struct slc_texture *texture, uint32_t tile)
 {
@@ -202,7 +202,8 @@ static SluiceCoarseReason why_not_loaded(const SluiceVulkanStreamer *s,
     uint32_t unit = slc_map_get(&s->tile_units, slc_pair_key(index, tile));
     if (unit != SLC_MAP_NONE && s->units[unit].state != SLC_UNIT_READING)
         return s->units[unit].produced ? SLUICE_COARSE_READING : SLUICE_COARSE_UPLOADING;
-    if (unit != SLC_MAP_NONE || !is_deferred(s, index, tile)) /* another front end may read it */
+    if (unit != SLC_MAP_NONE ||
+        !is_deferred(s, index, tile)) /* read here or by another front end */
         return SLUICE_COARSE_READING;
     return s->free_unit_count ? SLUICE_COARSE_BUDGET : SLUICE_COARSE_BANDWIDTH;
 }
@@ -216,7 +217,7 @@ static bool may_be_bound(const SluiceVulkanStreamer *s, const struct slc_texture
            residency->interface->may_reserve(residency, index, tile);
 }
 
-/* Its read failed, or it was refused before one. */
+/* Explains why a tile failed: its read failed, or the tile was refused before. */
 static SluiceCoarseReason why_failed(const SluiceVulkanStreamer *s, struct slc_coarse_place *p,
                                      uint32_t tile)
 {
@@ -255,10 +256,10 @@ static SluiceCoarseReason why_not_requested(const struct slc_coarse_place *p)
         return SLUICE_COARSE_LIMIT;
     return p->primary->mip_bias > 0 ? SLUICE_COARSE_MIP_BIAS
            : p->primary->hidden     ? SLUICE_COARSE_HIDDEN
-                                    : SLUICE_COARSE_QUEUED; /* its map is on its way */
+                                    : SLUICE_COARSE_QUEUED; /* the map is not read back yet */
 }
 
-/* Mip tails are wanted from the start, unless the application says on demand. */
+/* Mip tails are wanted from the start, unless packedLevelsOnDemand is set. */
 static SluiceCoarseReason explain(const SluiceVulkanStreamer *s, struct slc_coarse_place *p)
 {
     bool lacks_tail = p->resident == NO_LEVEL && !s->info.packedLevelsOnDemand;

@@ -12,7 +12,7 @@
 #define FORGOTTEN_PER_FRAME 256u
 #define LOOKED_AT_PER_FRAME 1024u
 #define MAX_HUNGER 8u
-#define FORGOTTEN_FOR_HEAP 64u /* nobody knows how many make room for one */
+#define FORGOTTEN_FOR_HEAP 64u /* a guess: how many textures make room for a heap is unknown */
 
 SluiceResult slc_forgetting_fill_in(SluiceVulkanStreamerCreateInfo *info,
                                     const SluiceLogCallback *log)
@@ -103,7 +103,7 @@ bool slc_forgetting_allows(const SluiceVulkanStreamer *s, const SluiceVulkanText
            info->viewFormatCount == 0 && !slc_format_is_integer(image->format);
 }
 
-/* As residency_dense.c and residency_paged.c lay images out. */
+/* Computes the layout that residency_dense.c or residency_paged.c would make, without an image. */
 static SluiceResult describe_without_memory(const SluiceVulkanStreamer *s,
                                             const struct slc_residency *residency,
                                             const SluiceImageInfo *image,
@@ -132,7 +132,7 @@ SluiceResult slc_forgetting_describe(SluiceVulkanStreamer *s, uint32_t index,
                                      struct slc_residency_image *out)
 {
     SluiceResult result = slc_texture_try_image(s, index, mode, image, residency, out);
-    if (result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY) /* all else is as it must be */
+    if (result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY) /* other errors stand */
         return describe_without_memory(s, *residency, image, out);
     if (result == SLUICE_SUCCESS) {
         (*residency)->interface->destroy_image(*residency, index);
@@ -192,7 +192,7 @@ bool slc_forgetting_wake(SluiceVulkanStreamer *s, uint32_t index)
         return true;
     if (texture->presence == SLC_LEAVING || s->forgetting.refused_frame == s->frame)
         return false;
-    if (make_image(s, index) != SLUICE_SUCCESS) { /* asked again in the next frame */
+    if (make_image(s, index) != SLUICE_SUCCESS) { /* tried again in the next frame */
         s->forgetting.refused_frame = s->frame;
         return false;
     }
@@ -211,7 +211,7 @@ bool slc_forgetting_wake(SluiceVulkanStreamer *s, uint32_t index)
 
 /* Forgetting --------------------------------------------------------------------------------- */
 
-/* Nothing of it is on its way, and its first frame was recorded. */
+/* Whether no load of the texture is in progress, and its first frame was recorded. */
 static bool is_at_rest(const struct slc_texture *texture)
 {
     return texture->unit_count == 0 && texture->packed_state == SLC_PACKED_COLLECTING &&
@@ -251,8 +251,8 @@ static uint32_t count_waiting(const SluiceVulkanStreamer *s)
     return count;
 }
 
-/* How many textures have to go because memory is short. Twice as many with each frame that still
- * lacks some: a large image may take the place of many. */
+/* Returns how many textures to forget because memory is short. Doubles with each frame that still
+ * lacks memory: a large image may need the memory of many textures. */
 static uint32_t count_lacking(SluiceVulkanStreamer *s)
 {
     struct slc_forgetting *f = &s->forgetting;
@@ -266,7 +266,8 @@ static uint32_t count_lacking(SluiceVulkanStreamer *s)
     return count > f->leaving_count ? count - f->leaving_count : 0;
 }
 
-/* All textures are in use. A heap or an image of pages that is not needed goes, if there is one. */
+/* Adds memory pressure, because all textures are in use: an unneeded heap or chunk is then freed.
+ * Warns if that does not help. */
 static void ask_others(SluiceVulkanStreamer *s)
 {
     if (s->memory_pressure.refused == 0)
@@ -294,7 +295,7 @@ SluiceResult slc_forgetting_step(SluiceVulkanStreamer *s)
         if (forget(s, index))
             gone++;
         else
-            use(s, index); /* something of it is wanted or loading */
+            use(s, index); /* tiles of the texture are wanted or loading */
     }
     if (lacking && gone == 0 && f->leaving_count == 0)
         ask_others(s);
@@ -322,7 +323,7 @@ uint64_t slc_forgetting_retire(SluiceVulkanStreamer *s, uint64_t limit)
             destroy_image(s, index);
             continue;
         }
-        /* Its pages are bound to its slots until its image is gone. */
+        /* Pages stay bound to the texture's slots until its image is destroyed. */
         limit = slc_min_u64(limit, texture->removed_frame - 1);
         f->leaving[kept++] = index;
     }

@@ -17,8 +17,8 @@ SluiceResult slc_texture_check_mode(const SluiceVulkanStreamer *s, SluiceResiden
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* Textures that fit into a tile have nothing to stream. A texture that is to be dense whatever its
- * size is read as a whole. */
+/* Whether a texture is an image with all levels: it is requested to be dense, or fits into a tile,
+ * so that there is nothing to stream. */
 static bool is_plain(const SluiceVulkanStreamer *s, SluiceResidencyMode mode,
                      const SluiceImageInfo *image)
 {
@@ -35,7 +35,8 @@ static SluiceResult create(struct slc_residency *in, uint32_t first, const Sluic
     return in->interface->create_image(in, first, image, use, refusal, out);
 }
 
-/* A texture that sparse mode refuses is paged, unless it has to be sparse. */
+/* Creates a sparse image, or a paged one if sparse mode refuses the texture and paging is allowed.
+ */
 static SluiceResult create_sparse_or_paged(SluiceVulkanStreamer *s, uint32_t first,
                                            SluiceResidencyMode mode, const SluiceImageInfo *image,
                                            const struct slc_image_use *use,
@@ -79,7 +80,7 @@ SluiceResult slc_texture_create_image(SluiceVulkanStreamer *s, uint32_t first,
     if (is_plain(s, mode, image)) {
         SluiceResult result = create(s->plain, first, image, use, NULL, residency, out);
         if (result != SLUICE_ERROR_OUT_OF_DEVICE_MEMORY || mode != SLUICE_RESIDENCY_MODE_AUTO)
-            return result; /* heaps may have taken the whole budget, and have a slot for it */
+            return result; /* else tiles may fit: heaps may hold the whole budget */
     }
     if (!s->paged)
         return create(s->residency, first, image, use, NULL, residency, out);

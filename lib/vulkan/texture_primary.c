@@ -1,4 +1,4 @@
-/* Textures that begin to follow another one while they stream, and that end it. */
+/* Changes of a texture's primary while it streams. */
 #include "vulkan/texture_primary.h"
 
 #include "base/log.h"
@@ -7,7 +7,7 @@
 #include "vulkan/texture_forgetting.h"
 #include "vulkan/texture_rect.h"
 
-/* What it had of its own ends: its primary's maps count from now on. */
+/* Ends a texture's own feedback, requests and control: the primary's maps count from now on. */
 static void begin_to_follow(SluiceVulkanStreamer *s, struct slc_texture *texture,
                             SluiceTextureId primary)
 {
@@ -86,7 +86,7 @@ SluiceResult sluiceSetVulkanPrimaryTexture(SluiceVulkanStreamer *streamer,
     if (result != SLUICE_SUCCESS || texture->primary_id == primaryId)
         return result;
     s->manager_locked = false;
-    result = sluiceSetPrimaryTexture(s->manager, textureId, primaryId); /* logs what it refuses */
+    result = sluiceSetPrimaryTexture(s->manager, textureId, primaryId); /* logs refusals */
     s->manager_locked = true;
     if (result != SLUICE_SUCCESS)
         return result;

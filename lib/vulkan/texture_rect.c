@@ -8,7 +8,7 @@
 SluiceResult slc_streamer_find(const SluiceVulkanStreamer *s, SluiceTextureId id,
                                struct slc_texture **texture)
 {
-    /* The manager knows which ids are good. */
+    /* The manager validates ids. */
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     SluiceResult result = sluiceGetTextureLayout(s->manager, id, &layout);
     if (result != SLUICE_SUCCESS)
@@ -34,7 +34,8 @@ static bool is_inside(uint32_t first, uint32_t count, uint32_t size)
     return count > 0 && first < size && count <= size - first;
 }
 
-/* The last cell takes the rest where cells do not divide the texture. */
+/* Finds the cells of a range of texels. The last cell has the rest if cells do not divide the size.
+ */
 static void range(uint32_t first, uint32_t count, uint32_t cell, uint32_t cells, uint32_t *begin,
                   uint32_t *end)
 {

@@ -1,4 +1,4 @@
-/* Textures whose source has changed, or is replaced. */
+/* Reload of textures whose source has changed, and replacement of sources. */
 #include "base/checked.h"
 #include "base/log.h"
 #include "image/info.h"
@@ -13,7 +13,8 @@ static const char *name_of(const struct slc_texture *texture)
     return texture->info.pName ? texture->info.pName : "image";
 }
 
-/* A tile that is read, or waits to be copied, may be resident before its turn comes. */
+/* Counts the tiles that may need a reload. Tiles being loaded count: they may be resident by then.
+ */
 static uint32_t most_reloads(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
                              const struct slc_remake_area *area)
 {
@@ -26,7 +27,8 @@ static uint32_t most_reloads(const SluiceVulkanStreamer *s, const struct slc_tex
     return (uint32_t)(count < most ? count : most);
 }
 
-/* Tiles at the edges of odd levels may reach beyond what the rectangle covers by halves. */
+/* Reloads the changed tiles of a level. The rectangle may be halved beyond the edge of odd levels.
+ */
 static void change_level(SluiceVulkanStreamer *s, uint32_t index,
                          const struct slc_remake_area *area, uint32_t level)
 {
@@ -40,7 +42,7 @@ static void change_level(SluiceVulkanStreamer *s, uint32_t index,
             slc_reload_tile(s, index, layout->levelFirstTile[level] + y * width + x);
 }
 
-/* Loads that failed may succeed with what has changed. */
+/* Retries failed loads, which may succeed after the change. */
 static void retry_failed(SluiceVulkanStreamer *s, uint32_t index)
 {
     SluiceTextureStatistics now = {.structSize = sizeof now};

@@ -21,7 +21,7 @@ void slc_texture_requests_finish(struct slc_texture_requests *requests,
 
 /* Places ------------------------------------------------------------------------------------- */
 
-/* Makes sure that a place is free. */
+/* Makes room for one more request. */
 static SluiceResult reserve(SluiceVulkanStreamer *s)
 {
     struct slc_texture_requests *r = &s->requests;
@@ -56,7 +56,7 @@ static struct slc_texture_request *take(struct slc_texture_requests *r)
     return request;
 }
 
-/* Ids are never reused: a place that had all of its generations stays empty. */
+/* Frees a request. An element whose generations are used up stays unused: ids are never reused. */
 static void give_back(struct slc_texture_requests *r, struct slc_texture_request *request)
 {
     request->live = false;
@@ -73,7 +73,7 @@ static SluiceTextureRequestId id_of(const struct slc_texture_requests *r,
     return (uint64_t)request->generation << 32 | (uint32_t)(request - r->list);
 }
 
-/* NULL: it is over. */
+/* Finds a live request. NULL: the request has ended. */
 static SluiceResult find(const SluiceVulkanStreamer *s, SluiceTextureRequestId id,
                          struct slc_texture_request **request)
 {
@@ -99,7 +99,7 @@ static void end_request(SluiceVulkanStreamer *s, struct slc_texture_request *req
         link = &s->requests.list[*link - 1].next;
     *link = request->next;
     give_back(&s->requests, request);
-    texture->drop_due |= texture->hidden; /* no later map lets it expire */
+    texture->drop_due |= texture->hidden; /* no later map would let the request expire */
     slc_due_map_add(s, texture);
 }
 
@@ -216,7 +216,8 @@ static void count_tile(const SluiceVulkanStreamer *s, const struct slc_texture *
     progress->givenUpTileCount += state == SLUICE_TILE_STATE_GIVEN_UP;
 }
 
-/* The parent of tile (x, y) is (x >> 1, y >> 1), clamped to the grid of the coarser level. */
+/* Counts the tiles of a level. The parent of tile (x, y) is (x >> 1, y >> 1), clamped to its grid.
+ */
 static void count_level(const SluiceVulkanStreamer *s, const struct slc_texture_request *request,
                         uint32_t level, SluiceVulkanRequestProgress *progress)
 {

@@ -3,7 +3,7 @@
 #include "base/struct_size.h"
 #include "vulkan/load_reloads.h"
 
-/* The coarsest of a rectangle. */
+/* Coarsest texels of a rectangle. */
 struct coarsest {
     uint8_t level;
     uint16_t texel;

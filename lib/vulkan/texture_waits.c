@@ -1,4 +1,4 @@
-/* Waiting for requests: who has the next step, the reads or a frame. */
+/* Waits for requests: for reads, or until a frame has work. */
 #include "core/observer.h"
 #include "image/read_pool.h"
 #include "platform/time_now.h"
@@ -19,7 +19,7 @@ static bool is_empty(const struct slc_unit_list *list)
     return list->first == SLC_NONE;
 }
 
-/* Something can be started, bound, copied or shown before any read ends. */
+/* Whether a frame can start, bind, copy or show tiles before any read ends. */
 static bool frame_has_work(const SluiceVulkanStreamer *s)
 {
     /* Outside of frames the manager is locked for calls of its interface. */

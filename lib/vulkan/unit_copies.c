@@ -13,7 +13,7 @@ static VkBufferImageCopy copy_of(uint64_t offset, const SluiceImageRegion *regio
         .imageExtent = {region->width, region->height, 1}};
 }
 
-/* The copies of one unit; how many. */
+/* Writes the copies of one unit. Returns their number. */
 static uint32_t unit_copies(const SluiceVulkanStreamer *s, uint32_t index,
                             VkBufferImageCopy *copies)
 {
@@ -66,7 +66,7 @@ void slc_record_group(SluiceVulkanStreamer *s, VkCommandBuffer commands, const u
 }
 
 /* Copies of a texture are disjoint and need no barrier. But synchronization validation (1.3.239)
- * takes block-compressed texels for rows of texels, and reports disjoint copies of two commands to
+ * treats block-compressed texels as rows of texels, and reports disjoint copies of two commands to
  * an ordinary image as overlapping. */
 bool slc_copies_need_barriers(const SluiceVulkanStreamer *s, uint32_t texture)
 {
