@@ -1,49 +1,49 @@
 /**
- * Which pages are resident: the deterministic core of demand loading. Knows no device, no clock, no
- * files and no threads; the same calls give the same answers.
+ * Page residency: the deterministic core of demand loading. Knows no device, no clock, no files and
+ * no threads. Equal calls give equal answers.
  *
- * A page is absent (nothing is kept of it), loading, resident or refused. Pages belong to classes:
- * those of a class compete for the same memory (tiles: one class for all formats, because each is
- * 64 KiB; each resource with a limit of its own has its class). Each resident page has a place that
- * the owner of the memory gave: an opaque word.
+ * A page is absent, loading, resident or refused. Pages of one class compete for the same memory.
+ * All tiles are one class, whatever their format, because each has 64 KiB. Each resource with a
+ * limit of its own has a class. Each resident page has a place: an opaque word from the owner of
+ * the memory.
  *
  * The protocol of a launch:
  *
- *     slc_residency_prepare(launch)          it is recorded, and has this LOD bias,
- *     slc_residency_take_changes             and its page table shows this
- *     slc_residency_begin(launch)            it is over; launches are numbered from 1
- *     slc_residency_use                      every resident page that the launch looked up
- *     slc_residency_request                  every page that it missed, in the order of the scan
- *     slc_residency_settle                   that was all: budgets and bias
- *     slc_residency_loaded, _failed          whenever reads are over
+ *     slc_residency_prepare(launch)          when the launch is recorded: returns its LOD bias
+ *     slc_residency_take_changes             changes for its page table
+ *     slc_residency_begin(launch)            when the launch is complete; numbers count from 1
+ *     slc_residency_use                      for every resident page that the launch looked up
+ *     slc_residency_request                  for every page that it missed, in the order of the
+ * scan slc_residency_settle                   after the last request: decides budgets and bias
+ *     slc_residency_loaded, _failed          whenever reads end
  *
  * Several launches may be prepared before the first of them begins here. Requests between settle
  * and begin are for pages that no launch asked for (preloading).
  *
- * What goes first: pages whose last use is oldest, of these the finest rank, of these the lowest
- * id. Where no page of a kind can go, pages of other kinds do: one tile, or 32 pages of any other
- * class. Never: pages that the launch used or asked for, pinned ones, and those that no launch that
- * is over could have used. An evicted page keeps its place in mind, and has it back if nobody took
- * it.
+ * Eviction order: oldest last use first, then finest rank, then lowest id. If no page of a kind can
+ * be evicted, pages of other kinds are: one tile, or 32 pages of any other class. Never evicted:
+ * pages that the launch used or requested, pinned pages, and pages that no complete launch could
+ * have used. An evicted page can be restored to its place until the place is taken.
  *
- * Tiles that need more places than there are. If what a launch used and missed exceeds the
- * limit, or there is no memory for it, the LOD bias rises by as many quarters of a level as
- * should do, and what has no place is POSTPONED: the next launches ask for coarser pages. It
- * falls again when two launches in a row, more after failures, show that a finer one fits, and
- * what did not fit is remembered: a view that does not change comes to rest, see lod_bias.h.
- * Without a bias (no_lod_bias, no_eviction), at the largest one, and where pinned pages alone fill
- * the class, pages that have no place are REFUSED, so that shaders take coarser ones. They are
- * absent again, and may be asked for, when a launch leaves more places idle than when they were
- * refused, an eighth of all at least; half as many at a time as there are such places. Pages of
- * other classes are POSTPONED until a launch does not use those that are there.
+ * Too many tiles: if the tiles that a launch used and missed exceed the limit, or memory runs out,
+ * the LOD bias rises by as many quarters of a level as should suffice. Tiles without a place are
+ * POSTPONED: the next launches request coarser pages. The bias falls again when two consecutive
+ * launches, more after failures, show that a finer one fits. Failures are remembered, so that a
+ * still view comes to rest, see lod_bias.h.
  *
- * A bias only tells of the launches that had it: what of their requests was not listed should not
- * be asked for again when it has changed.
+ * Pages without a place are REFUSED, so that shaders use coarser pages: without a bias
+ * (no_lod_bias, no_eviction), at the largest bias, and if pinned pages fill the class. Refused
+ * pages become absent again, and may be requested, when a launch leaves more places idle than when
+ * they were refused, and at least an eighth of all: half as many pages at a time as places are
+ * idle. Pages of other classes are POSTPONED until a launch does not use resident ones.
  *
- * Each use and request takes constant time on average, and a launch none beyond these; changes are
- * sorted, and pages that may be evicted once for each launch that used them last. Memory follows
- * the most pages that were ever loading, resident, refused or changed at a time, about 150 bytes
- * each. Externally synchronized.
+ * A bias is judged only by launches that had it. If the bias has changed, requests of earlier
+ * launches that were not listed should not be repeated.
+ *
+ * Each use and request takes constant time on average, and a launch no other time, except sorting:
+ * changes, and evictable pages once per launch that used them last. Memory: about 150 bytes per
+ * page, for the most pages that were ever loading, resident, refused or changed at a time.
+ * Externally synchronized.
  */
 #ifndef SLC_DEMAND_PAGE_RESIDENCY_H
 #define SLC_DEMAND_PAGE_RESIDENCY_H
@@ -55,114 +55,115 @@ struct slc_demand_residency;
 #define SLC_NO_PLACE UINT32_MAX
 #define SLC_NO_PAGE UINT32_MAX
 
-/** The memory of a class. All functions are called from within the calls below. */
+/** Memory of a class. Its functions are called only from within the functions below. */
 struct slc_page_memory {
     void *user;
-    /** A place for a page; SLC_NO_PLACE if there is none, even though the budget has room. `kind`
-     * is the page's (its format): pages that differ in it may not get each other's places. */
+    /** Takes a place for a page; SLC_NO_PLACE if there is none, even if the budget has room.
+     * `kind`: the page's kind (format). Pages of different kinds may not be able to share places.
+     */
     uint32_t (*take)(void *user, uint32_t kind);
-    /** The place is free; `page` may ask for it again until it is taken by another. SLC_NO_PAGE:
-     *  nobody will. */
+    /** Frees a place. `page` may retake it until another page takes it. SLC_NO_PAGE: no page will.
+     */
     void (*give)(void *user, uint32_t place, uint32_t page);
-    /** True: nobody has taken the place since `page` gave it, and now it has it again, with all
-     * that was in it. */
+    /** Takes a place again, with its contents, and returns true if no page took it since `page`
+     * gave it. */
     bool (*retake)(void *user, uint32_t place, uint32_t page);
 };
 
 enum slc_request_answer {
-    SLC_REQUEST_LOAD,     ///< the caller reads it, and says loaded or failed
-    SLC_REQUEST_PENDING,  ///< is being loaded; or was forgotten, and that read must end first
-    SLC_REQUEST_RESIDENT, ///< is there: the launch did not see it yet
-    SLC_REQUEST_RESTORED, ///< is there again, without a read
-    SLC_REQUEST_REFUSED,  ///< will not be there: the page table says so from the next launch on
+    SLC_REQUEST_LOAD,     ///< the caller must read the page, and report loaded or failed
+    SLC_REQUEST_PENDING,  ///< being loaded; or forgotten, and the old read must end first
+    SLC_REQUEST_RESIDENT, ///< resident, but the launch did not see the page yet
+    SLC_REQUEST_RESTORED, ///< resident again, without a read
+    SLC_REQUEST_REFUSED,  ///< refused; the page table shows that from the next launch on
     SLC_REQUEST_POSTPONED ///< no place now, but perhaps later
 };
 
 struct slc_page_residency_create_info {
     const SluiceAllocationCallbacks *cb; ///< NULL: malloc and free
-    uint32_t class_count;                ///< 1 to 256; class 0 is that of tiles
+    uint32_t class_count;                ///< 1 to 256; class 0: tiles
     bool no_eviction;                    ///< the bias stays 0, too
     bool no_lod_bias;
 };
 
-/** Errors: OUT_OF_HOST_MEMORY. */
+/** Creates a residency. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_residency_create(const struct slc_page_residency_create_info *info,
                                   struct slc_demand_residency **residency);
 void slc_residency_destroy(struct slc_demand_residency *residency);
 
-/** `limit`: pages that may be loading or resident at once; UINT64_MAX at first. `memory` is copied;
- *  NULL: pages of the class have no places, only values. May be called again with another limit,
- * which evicts what it can now and the rest after launches; and with other memory while none is
- * held. Always succeeds. */
+/** Sets limit and memory of a class. `limit`: most pages that are loading or resident; UINT64_MAX
+ * at first. `memory` is copied; NULL: pages of the class have no places, only values. A lower limit
+ *  evicts pages now and after the next launches. Other memory may be set only while no page of the
+ *  class is loading or resident. Always succeeds. */
 SluiceResult slc_residency_set_class(struct slc_demand_residency *residency, uint32_t class_index,
                                      uint64_t limit, const struct slc_page_memory *memory);
 
-/** As at creation. A bias that is switched off is 0 from the next launch that is prepared. */
+/** Changes settings of the create-info. Without a bias, the next prepared launch has bias 0. */
 void slc_residency_set_switches(struct slc_demand_residency *residency, bool no_eviction,
                                 bool no_lod_bias);
 
-/** Whether a request for the page would need a place. */
+/** Whether the page is absent, so that a request would need a place. */
 bool slc_residency_is_absent(const struct slc_demand_residency *residency, uint32_t page);
-/** True if the page is resident. `*place`: SLC_NO_PLACE if it has none. */
+/** Whether the page is resident. `*place`: SLC_NO_PLACE if the page has none. */
 bool slc_residency_is_resident(const struct slc_demand_residency *residency, uint32_t page,
                                uint32_t *place);
-/** Upper bound of the pages that slc_residency_visit visits. */
+/** Returns an upper bound of the pages that slc_residency_visit visits. */
 uint32_t slc_residency_known_count(const struct slc_demand_residency *residency);
 /** Visits all pages that are loading, resident or refused, or were evicted and can be restored, in
  *  any order. The visitor may forget the page. */
 void slc_residency_visit(const struct slc_demand_residency *residency,
                          void (*visit)(void *user, uint32_t page), void *user);
-/** The last use of the page of the class that would be evicted first; UINT64_MAX if none can be. */
+/** Returns the last use of the page of a class that is evicted next; UINT64_MAX if none can be. */
 uint64_t slc_residency_oldest_use(const struct slc_demand_residency *residency,
                                   uint32_t class_index);
 
-/** `launch` is larger than before. */
+/** Begins the uses and requests of a complete launch. `launch` must be larger than before. */
 void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch);
-/** Of a page that is not resident any more: ignored. */
+/** Notes a use of a page. Ignored if the page is not resident any more. */
 void slc_residency_use(struct slc_demand_residency *residency, uint32_t page);
 
 struct slc_page_request {
     uint32_t page;
     uint8_t class_index;
-    uint8_t rank;   ///< coarse ones are low
-    uint8_t pinned; ///< once resident it is never evicted: tails, opened textures. Not 0: yes
+    uint8_t rank;   ///< low for coarse pages
+    uint8_t pinned; ///< not 0: never evicted once resident (tails, opened textures)
     uint32_t kind;  ///< see slc_page_memory.take
 };
 /**
- * Evicts, if it must, pages that the launch did not use and that were used longest ago. Errors, in
- * `*result`, with nothing changed: OUT_OF_HOST_MEMORY; the answer is POSTPONED then.
+ * Requests a page. If necessary, evicts the least recently used pages that the launch did not use.
+ * Errors, in `*result`, with nothing changed: OUT_OF_HOST_MEMORY; the answer is POSTPONED then.
  */
 enum slc_request_answer slc_residency_request(struct slc_demand_residency *residency,
                                               const struct slc_page_request *request,
                                               SluiceResult *result);
-/** The place of a page that is loading: where its texels go. SLC_NO_PLACE if it has none, is not
- *  loading, or was forgotten meanwhile. */
+/** Returns the place of a page that is loading. SLC_NO_PLACE if the page has none, is not loading,
+ * or was forgotten meanwhile. */
 uint32_t slc_residency_place(const struct slc_demand_residency *residency, uint32_t page);
 
-/** `missing`: pages that the launch asked for, listed or not; those that were not requested count
- * as tiles. Decides about the LOD bias. */
+/** Ends the requests of a launch, and decides about the LOD bias. `missing`: pages that the launch
+ *  missed, listed or not. Pages that were not listed count as tiles. */
 void slc_residency_settle(struct slc_demand_residency *residency, uint64_t missing);
-/** The launch that is recorded now sees what take_changes gives from here on, and has the LOD bias
- *  that is returned: which launch knows what, where several are in flight. Left out: the launch
- * after the last one begun does. */
+/** Prepares a launch that is being recorded: it sees all changes that take_changes returns from now
+ *  on. Returns its LOD bias. Required if several launches are in flight; by default the launch
+ * after the last one begun sees the changes. */
 float slc_residency_prepare(struct slc_demand_residency *residency, uint64_t launch);
-/** Launches from this one on, which were not begun here, will never be: the next one that is
- * prepared has this number. What they were to see is seen by it at the latest. */
+/** Abandons prepared launches from `launch` on, which were not begun. The next prepared launch has
+ *  this number, and sees their changes at the latest. */
 void slc_residency_abandon(struct slc_demand_residency *residency, uint64_t launch);
-/** Of launches prepared from now on: 0 to 24, in quarters. */
+/** Returns the LOD bias of launches prepared from now on: 0 to 24 levels, in quarters. */
 float slc_residency_lod_bias(const struct slc_demand_residency *residency);
 
-/** Of a page that is loading. `value`: what the page table shows, for pages without a place
- *  (resources); for others it is the place. */
+/** Makes a loading page resident. `value`: value in the page table, for pages without a place
+ *  (resources). Other pages have their place there. */
 void slc_residency_loaded(struct slc_demand_residency *residency, uint32_t page, uint64_t value);
-/** `refuse`: not to be asked for again until it is forgotten or retried; else it is absent again.
- */
+/** Ends a load that failed. `refuse`: the page is refused until it is forgotten or retried;
+ * otherwise it is absent again. */
 void slc_residency_failed(struct slc_demand_residency *residency, uint32_t page, bool refuse);
-/** A refused page is absent again: it may be asked for. Returns false if it is not refused. */
+/** Makes a refused page absent, so that it may be requested. Returns false if it is not refused. */
 bool slc_residency_retry(struct slc_demand_residency *residency, uint32_t page);
-/** Absent from now on, whatever it was; a page that is loading still gets its loaded or failed, and
- *  is dropped then. Its place is given back, not to be retaken: at once, or when the read is over.
- */
+/** Makes `count` pages absent, whatever their state. A loading page must still be reported as
+ * loaded or failed, and is dropped then. Places are given back without the option to restore the
+ * page: at once, or when the read ends. */
 void slc_residency_forget(struct slc_demand_residency *residency, uint32_t first, uint64_t count);
 
 enum slc_page_shown { SLC_SHOW_ABSENT, SLC_SHOW_RESIDENT, SLC_SHOW_REFUSED };
@@ -172,8 +173,9 @@ struct slc_page_change {
     uint64_t value; ///< SLC_SHOW_RESIDENT
     uint8_t class_index;
 };
-/** What the page table does not show yet: each page once, with what it is now, ascending within a
- *  call; in pieces of `capacity`. Returns how many. A page that is what it was is left out. */
+/** Takes changes that the page table does not show yet: each page once, with its present state,
+ *  ascending within a call, at most `capacity` per call. Returns how many. Pages whose state is as
+ *  shown are left out. */
 uint32_t slc_residency_take_changes(struct slc_demand_residency *residency,
                                     struct slc_page_change *changes, uint32_t capacity);
 
@@ -182,28 +184,27 @@ struct slc_page_evicted {
     uint8_t class_index;
     uint64_t value;
 };
-/** Values of pages without a place that went, be it by eviction or because they were forgotten:
- * each value that was loaded is told once, in the order in which they went; in pieces of
- * `capacity`. Returns how many. What takes the changes first, and then these, knows that launches
- * prepared later see none of them. */
+/** Takes the values of pages without a place that were evicted or forgotten: each loaded value
+ * once, in the order of eviction, at most `capacity` per call. Returns how many. If the changes
+ * were taken before, launches prepared later see none of these values. */
 uint32_t slc_residency_take_evicted(struct slc_demand_residency *residency,
                                     struct slc_page_evicted *evicted, uint32_t capacity);
 
 struct slc_residency_counts {
-    uint64_t resident, loading, refused; ///< now
-    uint64_t evicted, restored;          ///< ever; forgotten ones do not count
+    uint64_t resident, loading, refused; ///< current pages
+    uint64_t evicted, restored;          ///< totals, without forgotten pages
 };
 void slc_residency_get_counts(const struct slc_demand_residency *residency, uint32_t class_index,
                               struct slc_residency_counts *counts);
 
-/** Pages that are no tiles and that were requested and found no memory since the last begin. */
+/** Returns the pages other than tiles that were requested without memory since the last begin. */
 uint64_t slc_residency_turned_away_count(const struct slc_demand_residency *residency);
-/** Tiles that are refused because they found no memory. */
+/** Returns the tiles that are refused for lack of memory. */
 uint64_t slc_residency_overflow_count(const struct slc_demand_residency *residency);
 
 struct slc_placed_page {
     uint32_t page, place;
-    bool stays;  ///< pinned, being loaded, or not seen by any launch that is over
+    bool stays;  ///< pinned, being loaded, or not seen by a complete launch yet
     bool in_use; ///< used by the last launch begun, if launches report use
 };
 /** Visits all pages of the class that have a place, in any order. Changes nothing. */
@@ -211,7 +212,7 @@ void slc_residency_visit_placed(const struct slc_demand_residency *residency, ui
                                 void (*visit)(void *user, const struct slc_placed_page *page),
                                 void *user);
 
-/** Every invariant, slowly. For tests. */
+/** Checks all invariants, slowly. For tests. */
 bool slc_residency_check(const struct slc_demand_residency *residency);
 
 #endif /* SLC_DEMAND_PAGE_RESIDENCY_H */
