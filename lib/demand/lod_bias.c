@@ -18,14 +18,14 @@ static uint32_t pages_of(uint64_t count)
     return count < MOST / PAGE ? (uint32_t)count * PAGE : MOST;
 }
 
-/* value * to / from, of values up to MOST. */
+/* Returns value * to / from, for values up to MOST. */
 static uint32_t scaled(uint32_t value, uint32_t to, uint32_t from)
 {
     uint64_t product = ((uint64_t)value * to + from / 2) / from;
     return product < MOST ? (uint32_t)product : MOST;
 }
 
-/* A level is a factor of 4 in texels, a quarter of one the square root of 2. */
+/* A level is a factor of 4 in texels, so a quarter of a level is a factor of sqrt(2). */
 static uint32_t quarter_finer(uint32_t pages)
 {
     return scaled(pages, 46341, 32768);
@@ -36,15 +36,15 @@ static uint32_t quarter_coarser(uint32_t pages)
     return scaled(pages, 32768, 46341);
 }
 
-/* What was seen tells nothing any more: other places, other pages. */
+/* Forgets the statistics of all biases, because the view has changed. */
 static void forget(struct slc_demand_bias *bias)
 {
     memset(bias->seen, 0, sizeof bias->seen);
     bias->loads = 0;
 }
 
-/* The view may be another by now: what was seen of other biases changes as the present one's did.
- */
+/* Learns the need of the present bias. Scales the needs of other biases by its change, because the
+ * view may have changed. */
 static void learn(struct slc_demand_bias *bias, uint32_t need, uint32_t total)
 {
     uint32_t now = bias->quarters;
@@ -76,7 +76,7 @@ static void change(struct slc_demand_bias *bias, uint32_t quarters)
     bias->loads = 0;
 }
 
-/* To where it should fit; further each time that it did not. */
+/* Raises the bias until the need should fit. Raises it further after each consecutive failure. */
 static void raise(struct slc_demand_bias *bias, uint32_t need, uint32_t room)
 {
     uint32_t to = bias->quarters, least = to + ++bias->raises;
@@ -93,8 +93,8 @@ static void raise(struct slc_demand_bias *bias, uint32_t need, uint32_t room)
         change(bias, to);
 }
 
-/* Whether the next finer bias may fit, if this one needs *need; that of the finer one then. What
- * was seen of a view that needed far more is no reason not to try. */
+/* Whether the next finer bias may fit if the present one needs *need. If so, sets *need to the need
+ * of the finer one. Old statistics do not forbid a trial. */
 static bool may_fit(const struct slc_demand_bias *bias, uint32_t finer, uint32_t room,
                     uint32_t *need)
 {
@@ -110,7 +110,8 @@ static bool may_fit(const struct slc_demand_bias *bias, uint32_t finer, uint32_t
     return true;
 }
 
-/* Half of the way to the finest bias that should fit, because estimates are rough. */
+/* Lowers the bias half of the way to the finest one that should fit, because estimates are rough.
+ */
 static void lower(struct slc_demand_bias *bias, uint32_t need, uint32_t room)
 {
     uint32_t to = bias->quarters;
@@ -131,7 +132,7 @@ void slc_demand_bias_update(struct slc_demand_bias *bias, const struct slc_deman
     uint32_t total = pages_of(count + need->used_pinned);
     if (bias->settled)
         bias->loads += need->loads;
-    /* A page that cannot be read is asked for in each launch: that is no other view. */
+    /* Failed loads do not count: a page that cannot be read is requested in each launch. */
     bias->loads -= need->failed_loads < bias->loads ? need->failed_loads : bias->loads;
     if (bias->loads > 2 * count + 16)
         forget(bias); /* another view */
@@ -143,7 +144,7 @@ void slc_demand_bias_update(struct slc_demand_bias *bias, const struct slc_deman
     }
     bias->raises = 0;
     if (need->missing * 8 > count) {
-        bias->calm = 0; /* most of it is not known yet */
+        bias->calm = 0; /* much is missing, so the need is not known yet */
         return;
     }
     learn(bias, pages, total);

@@ -1,48 +1,48 @@
 /**
- * How much blurrier all textures are sampled so that what a launch needs fits into memory: a LOD
- * bias in quarters of a level. Rises at once when a launch needs more than there are places; falls
- * when two launches in a row, more after failures, show that a finer bias fits, which it estimates
- * from what it saw of that bias before. So a view that does not change comes to rest.
+ * LOD bias of all textures, in quarters of a level, so that the pages of a launch fit into memory.
+ * Rises at once when a launch needs more pages than there are places. Falls when two consecutive
+ * launches, more after failures, show that a finer bias fits. The estimate uses statistics of that
+ * bias from earlier launches. So a still view comes to rest.
  *
- * Integers alone: the same launches give the same biases on every machine.
+ * Uses integers only: equal launches give equal biases on every machine.
  */
 #ifndef SLC_DEMAND_LOD_BIAS_H
 #define SLC_DEMAND_LOD_BIAS_H
 
 #include <sluice/base.h>
 
-#define SLC_MAX_BIAS_QUARTERS 96u /* 24 levels: nothing but tails */
+#define SLC_MAX_BIAS_QUARTERS 96u /* 24 levels: only tails are sampled */
 
 struct slc_demand_bias {
     uint32_t quarters;
-    uint32_t raises;        ///< one after the other
-    uint32_t calm;          ///< launches in a row that miss little
-    bool on_trial;          ///< it was lowered to this, not long ago
-    uint32_t failed_trials; ///< one after the other: each doubles the time to the next
+    uint32_t raises;        ///< consecutive raises
+    uint32_t calm;          ///< consecutive launches that miss little
+    bool on_trial;          ///< the bias was lowered to this value a short while ago
+    uint32_t failed_trials; ///< consecutive failed trials; each doubles the time to the next
     bool settled;           ///< a launch with this bias missed little
-    uint64_t loads;         ///< since then, but for those that failed
+    uint64_t loads;         ///< loads since `settled`, without failed ones
     struct {
         bool known;
-        bool fails;           ///< it did not fit
-        bool old;             ///< scaled so far that it is a guess
+        bool fails;           ///< the bias did not fit
+        bool old;             ///< the values are scaled so far that they are guesses
         uint32_t need, total; ///< in 256ths of pages, for launches like the last one; `total` with
                               ///< pinned pages
-        uint32_t scale;       ///< how far these were scaled, in 65536ths
+        uint32_t scale;       ///< factor that need and total were scaled by, in 65536ths
     } seen[SLC_MAX_BIAS_QUARTERS + 1];
 };
 
-/** What a launch did, in pages that compete for places. */
+/** Pages of a launch that compete for places. */
 struct slc_demand_need {
     uint64_t room;         ///< places for pages that are not pinned
     uint64_t used;         ///< not pinned, resident
     uint64_t missing;      ///< not pinned, not resident
-    uint64_t used_pinned;  ///< of them it is only known that they tell of the view
-    uint64_t loads;        ///< reads that it caused
+    uint64_t used_pinned;  ///< pinned pages that were used; they only describe the view
+    uint64_t loads;        ///< reads that the launch caused
     uint64_t failed_loads; ///< reads that have failed since the last launch
-    bool fails;            ///< there are fewer places than `room` after all
+    bool fails;            ///< memory has fewer places than `room`
 };
 
-/** A launch that was sampled with the present bias is over. */
+/** Updates the bias after a launch that sampled with the present bias. */
 void slc_demand_bias_update(struct slc_demand_bias *bias, const struct slc_demand_need *need);
 
 #endif /* SLC_DEMAND_LOD_BIAS_H */

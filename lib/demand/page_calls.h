@@ -5,7 +5,7 @@
 #include "demand/page_residency.h"
 
 enum slc_page_call_kind {
-    /* The memory of a class, within slc_residency_request; `give` within other calls, too. */
+    /* Calls of a class's memory, within slc_residency_request; `give` within other calls, too. */
     SLC_PAGE_CALL_TAKE = 1,
     SLC_PAGE_CALL_RETAKE,
     SLC_PAGE_CALL_GIVE,
@@ -33,7 +33,7 @@ struct slc_page_call {
     uint8_t class_index; ///< SET_CLASS
     bool flag;           ///< SET_CLASS: has memory; FAILED: refuse; SET_SWITCHES: no eviction
     bool answer;         ///< RETAKE, RETRY; SET_SWITCHES: no LOD bias
-    uint32_t page;       ///< of one page; FORGET: the first
+    uint32_t page;       ///< calls for one page; FORGET: first page
     uint32_t page_kind;  ///< TAKE
     uint32_t place;      ///< TAKE, RETAKE, GIVE
     uint64_t launch;     ///< BEGIN, PREPARE, ABANDON
@@ -50,7 +50,7 @@ struct slc_page_call {
 
 struct slc_page_observer {
     void *user;
-    /** The call was made; of memory: it has answered. */
+    /** Called after a call was made, or after the memory has answered. */
     void (*notify)(void *user, const struct slc_page_call *call);
 };
 

@@ -33,7 +33,7 @@ static void drop_if_useless(struct slc_demand_residency *r, uint32_t index)
 void slc_residency_note(struct slc_demand_residency *r, uint32_t index)
 {
     struct slc_page_node *node = slc_node(r, index);
-    /* Resident pages in no list wait for being shown, even if nothing is new about them. */
+    /* Resident pages in no list wait to be shown, even if the page table shows them already. */
     bool waits = node->state == SLC_PAGE_RESIDENT && node->home == SLC_HOME_NONE && !node->pinned;
     if (!node->changed && (waits || !is_shown(node))) {
         node->changed = true;
@@ -71,7 +71,7 @@ static void sort_changes(struct slc_demand_residency *r)
     r->changes_sorted = true;
 }
 
-/* From the next launch on it can be used, and is evicted if it is not. */
+/* Makes a page evictable from the next launch on, which can use it. */
 static void wait_for_launch(struct slc_demand_residency *r, uint32_t index)
 {
     struct slc_page_node *node = slc_node(r, index);

@@ -63,7 +63,7 @@ static bool check_lists(const struct slc_demand_residency *r)
     return homes == restorable + listed;
 }
 
-/* A node by itself. */
+/* Checks a node without its lists. */
 static bool check_node(const struct slc_demand_residency *r, const struct slc_page_node *node)
 {
     REQUIRE(node->class_index < r->class_count);

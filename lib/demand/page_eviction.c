@@ -4,8 +4,8 @@
 #include "demand/page_lru.h"
 #include "demand/page_release.h"
 
-/* Pages that the same launch used last lie together at the head; nothing joins them any more once
- * a later launch has begun, and before that they are not evicted. */
+/* Sorts the pages at the head of the list that one launch used last. Their number does not grow
+ * once a later launch has begun. Before that, they are not evicted. */
 static void sort_head(struct slc_demand_residency *r, struct slc_page_lru *lru)
 {
     struct slc_page_node *at = r->nodes.at;
@@ -39,7 +39,7 @@ static bool goes_before(const struct slc_page_node *a, const struct slc_page_nod
     return a->rank != b->rank ? a->rank > b->rank : a->page < b->page;
 }
 
-/* SLC_NO_NODE if all pages of the list were used by the launch. */
+/* Returns the first page to evict; SLC_NO_NODE if the launch used all pages of the list. */
 static uint32_t first_to_go(struct slc_demand_residency *r, struct slc_page_lru *lru)
 {
     if (lru->pages.head == SLC_NO_NODE || slc_node(r, lru->pages.head)->last_use >= r->launch)

@@ -143,7 +143,7 @@ static uint32_t merge(struct slc_page_node *at, uint32_t a, uint32_t b, enum slc
     return head;
 }
 
-/* Cuts off what is in order at the beginning; *rest is what follows. */
+/* Cuts off the sorted beginning of a chain. *rest: head of the remaining chain. */
 static void cut_run(struct slc_page_node *at, uint32_t head, enum slc_page_link link,
                     uint32_t *rest)
 {
