@@ -19,7 +19,7 @@ void slc_residency_become_restorable(struct slc_demand_residency *r, uint32_t in
     struct slc_page_class *c = slc_class_of(r, index);
     slc_node(r, index)->place = place;
     slc_page_list_append(&r->nodes, &c->restorable, index, SLC_HOME_RESTORABLE);
-    /* most of those that went long ago are taken by others */
+    /* other pages have taken most places of pages evicted long ago */
     while (c->restorable.count > LEAST_RESTORABLE && c->restorable.count > c->held)
         drop_restorable(r, c->restorable.head);
 }
@@ -131,7 +131,7 @@ static void forget(struct slc_demand_residency *r, uint32_t index)
 static void forget_range(struct slc_demand_residency *residency, uint32_t first, uint64_t count)
 {
     struct slc_page_nodes *nodes = &residency->nodes;
-    if (count > nodes->end) { /* ids are many, what is kept is little */
+    if (count > nodes->end) { /* fewer nodes than ids */
         for (uint32_t i = 0; i < nodes->end; i++) {
             uint32_t page = nodes->at[i].page;
             if (page >= first && page - first < count && slc_page_nodes_find(nodes, page) == i)

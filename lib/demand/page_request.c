@@ -6,9 +6,9 @@
 
 #include <assert.h>
 
-#define MOST_OTHERS 32u /* pages of other kinds that may be evicted for one page */
+#define MOST_OTHERS 32u /* most pages of other kinds that are evicted for one page */
 
-/* The launch needs a resident page: it is not evicted before the next one. */
+/* Notes that the launch needs a resident page: it is not evicted before the next launch. */
 static void touch(struct slc_demand_residency *r, uint32_t index)
 {
     struct slc_page_node *node = slc_node(r, index);
@@ -44,7 +44,7 @@ void slc_residency_use(struct slc_demand_residency *residency, uint32_t page)
     use(residency, page);
 }
 
-/* It was asked for as any other page, and now as one that stays. */
+/* Pins a page that was requested without `pinned` before. */
 static void pin(struct slc_demand_residency *r, uint32_t index)
 {
     struct slc_page_node *node = slc_node(r, index);
@@ -106,8 +106,8 @@ static bool evict_others(struct slc_demand_residency *r, uint32_t class_index)
     return count > 0;
 }
 
-/* There may be memory for one kind and not for another: places of the same kind help at once,
- * others when all that lies beside them is free, too. */
+/* Takes a place, and evicts pages for it. A place of an equal kind can be reused at once, a place
+ * of another kind only when all places beside it are free, too. */
 static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uint32_t lru,
                        uint32_t *place)
 {
@@ -126,7 +126,7 @@ static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uin
     return *place != SLC_NO_PLACE;
 }
 
-/* A page of which nothing is held begins to hold `place`. */
+/* Gives an absent page the place `place`. */
 static struct slc_page_node *hold(struct slc_demand_residency *r, uint32_t *index,
                                   const struct slc_page_request *request, uint32_t lru,
                                   uint32_t place)
@@ -211,7 +211,7 @@ static enum slc_request_answer answer_absent(struct slc_demand_residency *r, uin
     const struct slc_page_memory *memory = &r->classes[request->class_index].memory;
     uint32_t old_place = SLC_NO_PLACE, place;
     count_missing(r, request);
-    if (index != SLC_NO_NODE) { /* not restorable for now: evictions could drop it */
+    if (index != SLC_NO_NODE) { /* not restorable meanwhile: evictions could drop the node */
         slc_residency_leave_home(r, index);
         if (slc_node(r, index)->class_index == request->class_index)
             old_place = slc_node(r, index)->place;

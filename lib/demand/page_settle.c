@@ -6,7 +6,7 @@
 
 #include <assert.h>
 
-#define LIFT_SHARE 8u /* of the places must be idle before pages are asked for again */
+#define LIFT_SHARE 8u /* 1 / share of places that must be idle before refusals are lifted */
 
 void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch)
 {
@@ -78,7 +78,8 @@ static void decide_bias(struct slc_demand_residency *r, uint64_t missing)
     struct slc_demand_need need = {
         .room = less(tiles->limit, fixed),
         .used = r->use.used,
-        .missing = r->use.asked + less(missing, r->use.requests), /* what was not listed: tiles */
+        .missing =
+            r->use.asked + less(missing, r->use.requests), /* unlisted pages count as tiles */
         .used_pinned = r->use.used_pinned,
         .loads = r->use.loads,
         .failed_loads = r->failed_loads,
@@ -88,21 +89,20 @@ static void decide_bias(struct slc_demand_residency *r, uint64_t missing)
         return;
     need.fails = need.used + need.missing + fixed > r->use.full_at;
     if (tiles->pinned >= tiles->limit)
-        return; /* pinned pages alone fill memory: sharpness is not what is wrong */
+        return; /* pinned pages alone fill memory: a coarser bias would not help */
     slc_demand_bias_update(&r->bias, &need);
     r->bias_shown = r->bias.quarters == before;
 }
 
-/* Pages that were refused for want of memory may be asked for again, those of the earliest launches
- * first, half as many as there are places that the launch had no use for, if these are more than
- * when pages were refused. */
+/* Lifts refusals for lack of memory, oldest first, if more places are idle than when pages were
+ * refused: half as many pages as places that the launch left idle. */
 static void lift_refusals(struct slc_demand_residency *r)
 {
     struct slc_page_class *tiles = &r->classes[SLC_TILES];
     uint64_t needed = tiles->pinned + r->use.touched + tiles->counts.loading;
     uint64_t idle = less(tiles->limit, r->no_eviction ? tiles->held : needed);
     if (r->use.refused)
-        r->refused_idle = idle; /* these are of no use */
+        r->refused_idle = idle; /* so many idle places do not suffice */
     if (idle <= r->refused_idle || idle * LIFT_SHARE < tiles->limit)
         return;
     for (idle = (idle + 1) / 2; idle > 0 && r->overflow.head != SLC_NO_NODE; idle--) {

@@ -1,6 +1,6 @@
 /*
- * Nodes keep their indices: ranges of pages are forgotten in their order, and free ones are used
- * again in the order of their list.
+ * Nodes keep their indices, because forgetting ranges of pages visits them in that order. Free
+ * indices keep the order of their list, in which they are used again.
  */
 #include "demand/page_snapshot.h"
 
@@ -8,7 +8,7 @@
 #include "base/checked.h"
 #include "demand/page_lru.h"
 
-/* The least of the limits below is that of what products of the bias may be. */
+/* Limit of page counts, so that products in the bias do not overflow. */
 #define MOST_BIAS_PAGES (UINT32_C(1) << 31)
 #define MOST_FAILED_TRIALS 6u
 #define MOST_NODES (1u << 29)
@@ -38,7 +38,7 @@ static void exchange_fields(struct slc_demand_residency *r, struct slc_snapshot_
         slc_snapshot_fail(io, "the snapshot has a page whose kind it lacks");
 }
 
-/** Counts what a restored page holds. */
+/** Adds a restored page to the counters. */
 static void count_page(struct slc_demand_residency *r, const struct slc_page_node *n)
 {
     struct slc_page_class *c = &r->classes[n->class_index];
@@ -77,8 +77,8 @@ static void exchange_node(struct slc_demand_residency *r, struct slc_snapshot_io
     io->part(io->user);
 }
 
-/** The index of a node plus 1; 0 ends a list. Returns SLC_NO_NODE at the end, after an error too.
- */
+/** Exchanges the index of a node plus 1; 0 ends a list. Returns SLC_NO_NODE at the end and after an
+ * error. */
 static uint32_t exchange_index(struct slc_demand_residency *r, struct slc_snapshot_io *io,
                                uint32_t index)
 {
@@ -161,7 +161,7 @@ static void exchange_nodes(struct slc_demand_residency *r, struct slc_snapshot_i
     exchange_changes(r, io);
 }
 
-/* Values of pages without a place that went -----------------------------------------------------
+/* Values of evicted pages without a place -------------------------------------------------------
  */
 
 static void exchange_evicted(struct slc_demand_residency *r, struct slc_snapshot_io *io)
@@ -279,7 +279,7 @@ static void exchange(struct slc_demand_residency *r, const struct slc_page_memor
 void slc_residency_write_snapshot(const struct slc_demand_residency *residency,
                                   struct slc_snapshot_io *io)
 {
-    exchange((struct slc_demand_residency *)residency, NULL, io); /* writes only what it reads */
+    exchange((struct slc_demand_residency *)residency, NULL, io); /* does not change it */
 }
 
 void slc_residency_read_snapshot(struct slc_demand_residency *residency,

@@ -1,4 +1,4 @@
-/** A recording that begins while demand loading is in use begins with its state. */
+/** Snapshot of a page residency: the beginning of recordings of a residency in use. */
 #ifndef SLC_DEMAND_PAGE_SNAPSHOT_H
 #define SLC_DEMAND_PAGE_SNAPSHOT_H
 
@@ -9,13 +9,13 @@
 void slc_residency_write_snapshot(const struct slc_demand_residency *residency,
                                   struct slc_snapshot_io *io);
 /**
- * Gives a new residency a state, which may be any: what none can have is refused. `memory` is that
- * of all classes that have one; it is not asked. After an error, io->result, the residency can only
+ * Reads a state into a new residency. Invalid states are refused. `memory`: memory of all classes
+ * that have one; its functions are not called. After an error, io->result, the residency can only
  * be destroyed.
  */
 void slc_residency_read_snapshot(struct slc_demand_residency *residency,
                                  const struct slc_page_memory *memory, struct slc_snapshot_io *io);
-/** Writes the launch that was begun last and the one that was prepared last. */
+/** Gets the launches that were begun last and prepared last. */
 void slc_residency_get_launches(const struct slc_demand_residency *residency, uint64_t *begun,
                                 uint64_t *prepared);
 

@@ -16,9 +16,9 @@
 
 static_assert(SECTION / BLOCK == 32, "the blocks of a section are the bits of a word");
 
-/* A section with free and used blocks is in the bin of its rank and its longest free run. */
+/* Section of ids. With free and used blocks, it is in the bin of its rank and longest free run. */
 struct section {
-    uint32_t free; /* a bit per block; 0: all used, or all free and in `runs` */
+    uint32_t free; /* one bit per free block; 0: all used, or all free and in `runs` */
     uint32_t previous, next;
 };
 
@@ -34,11 +34,11 @@ struct slc_page_space {
     struct section *sections; /* owned, [runs.count] */
     uint8_t *ranks;           /* owned, [runs.count] */
     uint32_t bins[SLUICE_DEMAND_RANKS][32];
-    uint32_t filled_bins[SLUICE_DEMAND_RANKS]; /* a bit per bin */
-    uint32_t changed_begin, changed_end;       /* sections with another rank than before */
+    uint32_t filled_bins[SLUICE_DEMAND_RANKS]; /* one bit per bin that is not empty */
+    uint32_t changed_begin, changed_end;       /* sections whose rank has changed */
     struct freed *freed;                       /* owned ring, oldest first */
     uint32_t freed_capacity, freed_begin, freed_count;
-    uint32_t range_count; /* that exist: the ring has room for them, too */
+    uint32_t range_count; /* allocated ranges; the ring has room to free them all */
 };
 
 SluiceResult slc_page_space_create(const SluiceAllocationCallbacks *cb, uint64_t capacity,
@@ -87,7 +87,7 @@ static uint32_t longest_run(uint32_t bits)
     return length;
 }
 
-/* The first of `length` set bits in a row, which are there. */
+/* Returns the first of `length` consecutive set bits, which must exist. */
 static uint32_t first_run(uint32_t bits, uint32_t length)
 {
     for (uint32_t i = 1; i < length; i++)
@@ -147,7 +147,7 @@ static void set_ranks(struct slc_page_space *s, uint32_t first, uint32_t count, 
     note_changes(s, first, end);
 }
 
-/* Whole sections; the blocks of the last one beyond the range are free for others of its rank. */
+/* Takes whole sections. Blocks of the last one beyond the range are free for ranges of its rank. */
 static bool take_sections(struct slc_page_space *s, uint32_t rank, uint32_t blocks, uint32_t *block)
 {
     uint32_t count = slc_div_up_u32(blocks, 32), rest = blocks % 32, first;
@@ -162,7 +162,7 @@ static bool take_sections(struct slc_page_space *s, uint32_t rank, uint32_t bloc
     return true;
 }
 
-/* Fewer blocks than a section has, from where they fit best. */
+/* Takes fewer blocks than a section has, from the section where they fit best. */
 static bool take_blocks(struct slc_page_space *s, uint32_t rank, uint32_t blocks, uint32_t *block)
 {
     uint32_t fits = s->filled_bins[rank] >> blocks;
@@ -179,7 +179,7 @@ static bool take_blocks(struct slc_page_space *s, uint32_t rank, uint32_t blocks
     return true;
 }
 
-/* So that another range can be freed some day. */
+/* Reserves room in the ring to free one more range. */
 static bool reserve_freed(struct slc_page_space *s)
 {
     uint32_t needed = s->range_count + s->freed_count + 1, capacity = s->freed_capacity;

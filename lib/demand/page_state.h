@@ -1,4 +1,4 @@
-/** The state of the page residency. Each file works on a part of it. */
+/** State of the page residency. Each file works on a part of it. */
 #ifndef SLC_DEMAND_PAGE_STATE_H
 #define SLC_DEMAND_PAGE_STATE_H
 
@@ -6,15 +6,15 @@
 #include "demand/page_calls.h"
 #include "demand/page_nodes.h"
 
-#define SLC_TILES 0u /* the class that the bias is about */
+#define SLC_TILES 0u /* class of tiles, whose need decides the bias */
 #define SLC_NO_LRU UINT32_MAX
 
-/** Resident pages of one class and kind that may be evicted, the one used longest ago first. */
+/** Resident pages of one class and kind that may be evicted, least recently used first. */
 struct slc_page_lru {
     uint32_t class_index, kind;
-    uint32_t next; ///< of the class
+    uint32_t next; ///< next list of the class
     struct slc_page_list pages;
-    uint64_t sorted; ///< the launch whose pages, at the head, are in order of rank and page
+    uint64_t sorted; ///< launch whose pages, at the head, are sorted by rank and page
 };
 
 struct slc_page_class {
@@ -22,23 +22,23 @@ struct slc_page_class {
     struct slc_page_memory memory;
     bool has_memory;
     uint32_t first_lru;
-    uint64_t held;   ///< loading or resident: they count against the limit
-    uint64_t pinned; ///< of these
+    uint64_t held;   ///< pages loading or resident, which count against the limit
+    uint64_t pinned; ///< held pages that are pinned
     struct slc_page_list restorable;
     struct slc_residency_counts counts;
 };
 
-/** What the present launch did with tiles. */
+/** Uses and requests of the launch begun last. Tiles unless stated otherwise. */
 struct slc_launch_use {
-    uint64_t used, used_pinned; ///< seen by it
-    uint64_t touched;           ///< not pinned, resident, used or requested
-    uint64_t asked;             ///< not pinned, missing
-    uint64_t pinned_waiting;    ///< pinned, without a place
-    uint64_t requests;          ///< of all classes
+    uint64_t used, used_pinned; ///< resident tiles that the launch used: not pinned, and pinned
+    uint64_t touched;           ///< resident tiles, not pinned, that were used or requested
+    uint64_t asked;             ///< missing tiles, not pinned
+    uint64_t pinned_waiting;    ///< pinned tiles without a place
+    uint64_t requests;          ///< requests of all classes
     uint64_t loads;
-    uint64_t turned_away; ///< of other classes: not resident, and no memory for them
+    uint64_t turned_away; ///< requests of other classes for which there was no memory
     bool refused;
-    uint64_t full_at; ///< held tiles when there was no place left for one, and none to evict
+    uint64_t full_at; ///< held tiles when no place was free and no tile could be evicted
 };
 
 struct slc_demand_residency {
@@ -51,19 +51,19 @@ struct slc_demand_residency {
     uint32_t class_count;
     struct slc_page_lru *lrus; ///< owned
     uint32_t lru_count, lru_capacity;
-    uint64_t launch, prepared; ///< whose requests come; the last that was told of
+    uint64_t launch, prepared; ///< launches begun last and prepared last
     struct slc_page_list unseen, overflow;
     uint32_t changed_head, changed_tail;
-    bool changes_sorted, over_limit;  ///< over_limit: some class, perhaps
-    struct slc_page_evicted *evicted; ///< owned ring, with room for `valued` more
+    bool changes_sorted, over_limit;  ///< over_limit: some class may be over its limit
+    struct slc_page_evicted *evicted; ///< owned ring; has room for `valued` more entries
     uint32_t evicted_capacity, evicted_begin, evicted_count;
     uint32_t valued; ///< pages without a place that are loading or resident
     struct slc_launch_use use;
     struct slc_demand_bias bias;
-    uint64_t failed_loads; ///< of tiles, since the last launch was settled
-    uint64_t refused_idle; ///< places without use when tiles were last refused
-    uint64_t bias_from;    ///< the first launch with this bias, once it is known
-    bool bias_shown;       ///< it is
+    uint64_t failed_loads; ///< failed loads of tiles since the last launch was settled
+    uint64_t refused_idle; ///< idle places when tiles were last refused
+    uint64_t bias_from;    ///< first launch with this bias; valid if bias_shown
+    bool bias_shown;       ///< some launch has this bias
 };
 
 static inline struct slc_page_node *slc_node(struct slc_demand_residency *r, uint32_t index)
@@ -76,13 +76,12 @@ static inline struct slc_page_class *slc_class_of(struct slc_demand_residency *r
     return &r->classes[r->nodes.at[index].class_index];
 }
 
-/** Tells the observer, which is there, of a use. Not in line: it would slow down uses without one.
- */
+/** Reports a use to the observer, which must exist. Not inline, to keep uses without one fast. */
 void slc_tell_use(const struct slc_demand_residency *r, uint32_t page);
 
 /**
- * Tells the observer of a call, if there is one; the fields of the call follow. A macro, because
- * without an observer the call must not even be built: pages are used by the thousand.
+ * Reports a call to the observer, if there is one. Arguments: fields of the call. A macro, so that
+ * the call is not built without an observer: thousands of pages are used per launch.
  */
 #define SLC_TELL_PAGES(r, ...)                                                                     \
     do {                                                                                           \

@@ -75,7 +75,7 @@ void slc_section_runs_give(struct slc_section_runs *runs, uint32_t first, uint32
         count += length;
     }
     if (first > 0) {
-        /* Only if a run begins there that reaches to here is the note not an old one. */
+        /* The note is current only if a run begins there and reaches to here. */
         uint32_t before = runs->begin[first - 1];
         if (length_at(runs, before) == first - before) {
             count += first - before;

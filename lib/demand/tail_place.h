@@ -1,12 +1,13 @@
 /**
- * The tail of a texture: its levels that fit into half a tile. Tails share pages. A page is cut
- * into equal cells, and a cell into slots, one for each tail. The first levels of three tails are
- * quarters of the cell. The fourth quarter is cut in the same way for their next levels, and so on:
+ * Places of mip tails in pages. The mip tail of a texture is its levels that fit into half a tile.
+ * Tails share pages. A page is cut into equal cells, and a cell into slots, one for each tail. The
+ * first levels of three tails are quarters of the cell. The fourth quarter is cut in the same way
+ * for their next levels, and so on:
  *
  *     +-------+-------+
  *     |       |       |
  *     |  A0   |  B0   |     three tails A, B and C of 64x64 RGBA8 texels
- *     |       |       |     take a page of 128x128 texels but for one texel
+ *     |       |       |     take a page of 128x128 texels, except one texel
  *     +-------+---+---+
  *     |       |A1 |B1 |
  *     |  C0   +---+-+-+
@@ -28,8 +29,8 @@
 
 #include <stdbool.h>
 
-/** How many levels have tiles of their own: those wider or higher than half a tile. So it is the
- *  first level of the tail, too. A chain must reach it. */
+/** Returns the number of levels with tiles of their own: those wider or higher than half a tile. It
+ *  is the first level of the tail, too. The mip chain must reach that level. */
 static inline uint32_t slc_demand_regular_count(uint32_t width, uint32_t height,
                                                 uint32_t tile_width, uint32_t tile_height)
 {
@@ -40,21 +41,21 @@ static inline uint32_t slc_demand_regular_count(uint32_t width, uint32_t height,
     return count;
 }
 
-/** How a page is cut for a tail. */
+/** Partition of a page for tails of one size. */
 struct slc_tail_cut {
     uint32_t cell;                    ///< 0: the page is one cell; 1 to 3: SLUICE_DEMAND_CELL_SIDE
-    uint32_t slots;                   ///< of a cell: 2 or 3
-    uint32_t columns, rows;           ///< of cells
+    uint32_t slots;                   ///< slots per cell: 2 or 3
+    uint32_t columns, rows;           ///< cells per page
     uint32_t cell_width, cell_height; ///< texels
 };
 
-/** Levels that lie in quarters of a cell. */
+/** Returns the number of levels that are in quarters of a cell. */
 static inline uint32_t slc_tail_quarters(uint32_t cell_height, bool blocks)
 {
     return slc_log2_u32(cell_height / (blocks ? 4 : 1));
 }
 
-/** The smallest cells for a tail of `levels` levels, whose first has these texels. */
+/** Returns the partition with the smallest cells for a tail whose first level has these texels. */
 static inline struct slc_tail_cut slc_tail_cut(uint32_t tile_width, uint32_t tile_height,
                                                bool blocks, uint32_t width, uint32_t height,
                                                uint32_t levels)
@@ -75,7 +76,7 @@ static inline uint32_t slc_tail_slot_count(const struct slc_tail_cut *cut)
     return cut->columns * cut->rows * cut->slots;
 }
 
-/** The bits of a page's word that name the slot. The other bits name chunk and layer. Not 0. */
+/** Returns the bits of a page's word that name the slot, not 0. Other bits name chunk and layer. */
 static inline uint32_t slc_tail_slot_bits(const struct slc_tail_cut *cut, uint32_t slot)
 {
     uint32_t cell = slot / cut->slots;
@@ -100,8 +101,8 @@ struct slc_demand_place {
     uint32_t x, y; ///< texels from the page's corner; in block-compressed formats multiples of 4
 };
 
-/** Where level `k` of the tail begins: 0 is its first. `word` has the slot bits. `blocks`: texels
- *  come in blocks of 4x4. */
+/** Returns the position of level `k` of the tail, counted from 0. `word` has the slot bits.
+ * `blocks`: the format has blocks of 4x4 texels. */
 static inline struct slc_demand_place slc_demand_tail_place(uint32_t tile_width,
                                                             uint32_t tile_height, bool blocks,
                                                             uint32_t word, uint32_t k)
