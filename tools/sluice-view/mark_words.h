@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** Reasons by pattern, as shaders/scene_marks.glsl has them. */
+/** Reasons by pattern, as shaders/view_colors.glsl has them. */
 enum mark_reason {
     MARK_NOTHING,
     MARK_COMING,   ///< queued, read, copied or fading in

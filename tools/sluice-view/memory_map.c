@@ -34,7 +34,7 @@ uint32_t memory_state_color(SluiceTileState state)
     }
 }
 
-/* As ageColor of shaders/scene_marks.glsl. */
+/* As ageColor of shaders/view_colors.glsl. */
 uint32_t memory_age_color(double seconds)
 {
     return seconds < 0      ? UI_GRAY

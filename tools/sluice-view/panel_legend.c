@@ -12,7 +12,7 @@
 
 #define SWATCH_WIDTH 22.0f
 
-/* Strokes of a reason's pattern over a swatch, as markPattern in shaders/scene_marks.glsl has it.
+/* Strokes of a reason's pattern over a swatch, as markPattern in shaders/view_colors.glsl has it.
  */
 static void draw_pattern(enum mark_reason reason, const float r[4])
 {

@@ -21,6 +21,7 @@ layout(constant_id = 0) const bool paged = false;
 
 #include "scene_material.glsl"
 #include "scene_digits.glsl"
+#include "view_colors.glsl"
 #include "scene_marks.glsl"
 #include "scene_light.glsl"
 
@@ -28,13 +29,6 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 uvs;
 layout(location = 0) out vec4 outColor;
-
-const uint VIEW_RESIDENT = 2, VIEW_MISSING = 3, VIEW_WANTED = 4, VIEW_AGE = 5, VIEW_IDENTITY = 6,
-           VIEW_WRITTEN = 7, VIEW_CHECKS = 9;
-
-/* panels.c has the same colors. */
-const vec3 levelColors[8] = vec3[](vec3(214, 40, 40), vec3(247, 127, 0), vec3(252, 191, 73), vec3(190, 210, 110),
-                                   vec3(102, 194, 165), vec3(50, 136, 189), vec3(70, 80, 170), vec3(50, 40, 100));
 
 vec3 encode(vec3 color)
 {
@@ -45,23 +39,6 @@ vec3 encode(vec3 color)
 vec3 decode(vec3 color)
 {
     return mix(pow((color + 0.055) / 1.055, vec3(2.4)), color / 12.92, lessThanEqual(color, vec3(0.04045)));
-}
-
-vec3 levelColor(uint level)
-{
-    return levelColors[min(level, 7u)] / 255.0;
-}
-
-vec3 missingColor(uint missing)
-{
-    return missing == 1u ? vec3(240, 228, 66) / 255.0 : missing == 2u ? vec3(230, 159, 0) / 255.0 : vec3(213, 94, 0) / 255.0;
-}
-
-/* By the number of the image. memory_map.c has the same colors. */
-vec3 identityColor(uint index)
-{
-    float hue = fract(float(index) * 0.61803399);
-    return 0.55 + 0.4 * cos(6.2831853 * (hue + vec3(0.0, 0.33, 0.67)));
 }
 
 /* The picture in gray under a color, so that one sees both. */
