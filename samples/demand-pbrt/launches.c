@@ -69,6 +69,7 @@ static void bind_all(struct launches *l)
         [PBRT_BINDING_USED] = l->world->used.buffer.buffer,
         [PBRT_BINDING_BOXES] = boxes,
         [PBRT_BINDING_DEBUG] = l->debug.buffer,
+        [PBRT_BINDING_PROBES] = l->probes ? l->probes : l->unused.buffer,
         [PBRT_BINDING_WORLD] = top->world.buffer ? top->world.buffer : l->unused.buffer,
         [PBRT_BINDING_INSTANCES] =
             top->world.buffer ? top->instances.buffer.buffer : l->unused.buffer};
@@ -120,6 +121,8 @@ static bool launch_once(struct launches *l, bool traces, uint32_t sample,
     l->tile_count += launch.tileCount;
     if (traces)
         record(l, sample, launch.descriptorSet);
+    if (l->look)
+        l->look(l->user_data, l->commands, launch.descriptorSet);
     if (!check(sluiceEndDemandLaunch(l->loader, l->commands), "a launch cannot be ended") ||
         !submit(l, &launch)) {
         sluiceAbandonDemandLaunch(l->loader, &launch); /* the next one copies what it had */

@@ -37,8 +37,11 @@ struct launches {
     double trace_seconds;  ///< total time of launches that trace
     double last_seconds;   ///< time of the last launch that traced
     double repeat_seconds; ///< time of the fastest launch of launches_repeat; 0: none
+    VkBuffer probes;       ///< borrowed; PbrtProbe of each pixel; VK_NULL_HANDLE without preview
     void *user_data;
     bool (*after_launch)(void *user_data); ///< returns false to stop
+    /** Records commands into each launch, behind its rays. May be NULL. */
+    void (*look)(void *user_data, VkCommandBuffer commands, VkDescriptorSet demand_set);
 };
 
 /** Reports errors on stderr. */

@@ -24,8 +24,9 @@
 #define PBRT_BINDING_EMITTERS 13
 #define PBRT_BINDING_WORLD 14     /* compute path only */
 #define PBRT_BINDING_INSTANCES 15 /* compute path only */
-#define PBRT_OWN_BUFFERS 16
-#define PBRT_BINDING_SCENE 16 /* acceleration structure; ray-tracing pipelines only */
+#define PBRT_BINDING_PROBES 16
+#define PBRT_OWN_BUFFERS 17
+#define PBRT_BINDING_SCENE 17 /* acceleration structure; ray-tracing pipelines only */
 
 #define PBRT_ROW_WIDTH 1024 /* rays of one row of a launch */
 #define PBRT_GROUP_SIZE 64  /* threads of the compute path */
@@ -174,6 +175,15 @@ struct PbrtDebug {
 };
 SLUICE_SHARED_SIZE(struct PbrtDebug, 40)
 
+/* First picture that the first ray of a pixel samples, for views of programs that show them. */
+struct PbrtProbe {
+    uint texture; /* PBRT_NONE: none */
+    uint launch;  /* last launch of the pixel, if it lacked something then; else 0 */
+    float uv[2];
+    float dx[2], dy[2]; /* change of uv per pixel, with the LOD bias of the launch */
+};
+SLUICE_SHARED_SIZE(struct PbrtProbe, 32)
+
 /* PbrtLaunch.mode: --render-mode */
 #define PBRT_MODE_PRIMARY 0u
 #define PBRT_MODE_NEAR 1u
@@ -188,9 +198,10 @@ SLUICE_SHARED_SIZE(struct PbrtDebug, 40)
 #define PBRT_LAUNCH_HEADLIGHT 16u /* the scene has no lights but shapes */
 #define PBRT_LAUNCH_DARK_SKY 32u  /* no light comes from infinity: ambient light is white */
 #define PBRT_LAUNCH_GRAY 64u      /* boxes and unmade surfaces are gray */
+#define PBRT_LAUNCH_QUIET 128u    /* rays request nothing */
 
 /* Constants of the pipeline */
-#define PBRT_CONSTANT_PREVIEW 0 /* coarser texels replace missing finer ones */
+#define PBRT_CONSTANT_PREVIEW 0 /* coarser texels replace missing finer ones; probes are written */
 
 /* Push constants of one launch. */
 struct PbrtLaunch {
@@ -213,7 +224,8 @@ struct PbrtLaunch {
     uint surfacePage; /* first page of surface requests */
     uint proxyPage;
     uint emitterCount;
+    float lodBias; /* LOD bias of all pictures */
 };
-SLUICE_SHARED_SIZE(struct PbrtLaunch, 124)
+SLUICE_SHARED_SIZE(struct PbrtLaunch, 128)
 
 #endif

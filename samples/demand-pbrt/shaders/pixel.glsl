@@ -32,10 +32,13 @@ void tracePixel(uint place)
         payload.coneWidth = path.coneWidth;
         payload.coneSpread = path.coneSpread;
         payload.missing = false;
+        payload.triangle = first ? pixel : PBRT_NONE;
         trace(path);
         path.complete = path.complete && !payload.missing;
         if (first && pixel == debug.pixel)
             tellDebug(path.complete);
+        if (preview && first && (payload.distance < 0.0 || payload.triangle == PBRT_NONE))
+            probes[pixel].texture = PBRT_NONE; /* no surface wrote it */
         if (path.isShadow)
             endShadow(path, payload.distance < 0.0);
         else
@@ -44,6 +47,8 @@ void tracePixel(uint place)
     }
     if (path.skyWeight != vec3(0.0) && path.complete)
         path.light += path.skyWeight * skyLight(path.skyDirection, path.skySpread, path.complete);
+    if (preview)
+        probes[pixel].launch = path.complete ? 0u : launch.launchIndex;
     endPixel(pixel, path.light, path.complete);
 }
 

@@ -97,6 +97,22 @@ vec4 readTexel(uint at, vec4 color)
     return color;
 }
 
+/** Pixel whose probe the next sampled picture writes, or PBRT_NONE. */
+uint probedPixel = PBRT_NONE;
+
+void writeProbe(uint texture, vec2 uv, vec2 dx, vec2 dy)
+{
+    if (!preview || probedPixel == PBRT_NONE)
+        return;
+    probes[probedPixel].texture = texture;
+    for (int i = 0; i < 2; i++) {
+        probes[probedPixel].uv[i] = uv[i];
+        probes[probedPixel].dx[i] = dx[i];
+        probes[probedPixel].dy[i] = dy[i];
+    }
+    probedPixel = PBRT_NONE;
+}
+
 /** `resident` becomes false where a picture is not there yet. */
 vec3 runProgram(uint at, Hit hit, inout bool resident)
 {
@@ -112,8 +128,10 @@ vec3 runProgram(uint at, Hit hit, inout bool resident)
             vec2 dx, dy, st = mapHit(at, hit, dx, dy);
             bool here;
             st.y = 1.0 - st.y; /* row 0 of pictures is on top */
-            vec4 color = sluiceDemandGrad(ops[at].texture, st, vec2(dx.x, -dx.y),
-                                          vec2(dy.x, -dy.y), here);
+            dx *= exp2(launch.lodBias) * vec2(1.0, -1.0);
+            dy *= exp2(launch.lodBias) * vec2(1.0, -1.0);
+            writeProbe(ops[at].texture, st, dx, dy);
+            vec4 color = sluiceDemandGrad(ops[at].texture, st, dx, dy, here);
             resident = resident && here;
             if (preview && !here && color == vec4(0.0))
                 color = vec4(vec3(0.5), 1.0); /* it is not open */

@@ -41,6 +41,11 @@ layout(std430, set = 1, binding = PBRT_BINDING_USED) writeonly buffer Used
     uint used[]; /* by place: the last launch that hit it */
 };
 
+layout(std430, set = 1, binding = PBRT_BINDING_PROBES) writeonly buffer Probes
+{
+    PbrtProbe probes[]; /* probe of each pixel; absent unless `preview` is set */
+};
+
 /** The words of a mesh. */
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Words
 {
@@ -77,7 +82,8 @@ struct Payload {
     float density; /* sampled points per area of an emitter; 0: its points are never sampled */
     uint kind;     /* kind of the surface */
     float roughness, eta;
-    uint place, triangle; /* for --debug */
+    uint place;
+    uint triangle; /* input: pixel whose probe the surface writes, or PBRT_NONE */
 };
 
 /** Color of surfaces whose material is requested but not made yet. */

@@ -83,8 +83,11 @@ bool meetTriangle(Meeting m, bool isCandidate)
 {
     PbrtPlace place = places[m.place];
     Hit hit = hitOf(m);
+    uint probed = isCandidate ? PBRT_NONE : payload.triangle;
     if (!isCandidate)
         describeHit(m, place, hit);
+    if (preview && probed != PBRT_NONE)
+        probes[probed].texture = PBRT_NONE;
     /* Index 0 is alpha. 1 to 3 are diffuse, specular and transmission. */
     vec3 values[4] = vec3[4](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     bool resident = true, known = false;
@@ -103,7 +106,9 @@ bool meetTriangle(Meeting m, bool isCandidate)
         }
         uint program = i <= 1u ? surfaces[surface].diffuse
                                : i == 2u ? surfaces[surface].specular : surfaces[surface].transmission;
+        probedPixel = i == 0u ? PBRT_NONE : probed;
         values[i] = runProgram(program, seen, resident);
+        probed = i == 0u ? probed : probedPixel;
         known = i > 0u;
     }
     if (isCandidate)

@@ -5,7 +5,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_GOOGLE_include_directive : require
 
-bool quiet = false;
+bool quiet;
 #define SLUICE_DEMAND_QUIET quiet
 
 #include "demand.glsl"
@@ -26,6 +26,11 @@ Payload payload;
 
 #include "surface.glsl"
 #include "pixel.glsl"
+
+bool isQuietLaunch()
+{
+    return (launch.flags & PBRT_LAUNCH_QUIET) != 0u;
+}
 
 mat4x3 columns(float m[12])
 {
@@ -55,9 +60,9 @@ void trace(Path path)
             meetBox(payload, spot.place, spot.distance, spot.face);
             continue;
         }
-        quiet = goesOn;
+        quiet = goesOn || isQuietLaunch();
         bool isHole = meetTriangle(meetingAt(walk, spot), goesOn);
-        quiet = false;
+        quiet = isQuietLaunch();
         if (!goesOn)
             payload.triangle = triangleInFile(spot);
         else if (!isHole)
@@ -69,6 +74,7 @@ void main()
 {
     uint place = gl_WorkGroupID.y * PBRT_ROW_WIDTH + gl_WorkGroupID.x * PBRT_GROUP_SIZE +
                  gl_LocalInvocationID.x;
+    quiet = isQuietLaunch();
     if (place < launch.count)
         tracePixel(place);
 }
