@@ -90,6 +90,14 @@ static bool create_scene(struct traced *t)
            world_begin(&t->world) && tracing_create(t->gpu, t->loader, true, &t->tracing);
 }
 
+static void record_look(void *user_data, VkCommandBuffer commands, VkDescriptorSet demand_set)
+{
+    struct traced *t = user_data;
+    t->looked = t->looks && t->view.count > 0;
+    if (t->looked)
+        traced_view_record(&t->view, commands, demand_set);
+}
+
 static bool begin_launches(struct traced *t)
 {
     t->launches = (struct launches){.gpu = t->gpu,
@@ -103,7 +111,9 @@ static bool begin_launches(struct traced *t)
                                     .proxies = &t->proxies,
                                     .film = &t->film,
                                     .lights = &t->lights,
-                                    .emitters = &t->emitters};
+                                    .emitters = &t->emitters,
+                                    .user_data = t,
+                                    .look = record_look};
     t->flight = (struct flight){.budget = {.seconds = TRACED_FRAME_SECONDS, .now = read_clock}};
     return launches_create(&t->launches);
 }
@@ -128,7 +138,8 @@ struct traced *traced_create(const struct stage_request *request,
                  "addresses of buffers",
                  t->gpu->properties.deviceName);
     else if (create_loader(t, request->threads) && create_pictures(t) && create_scene(t) &&
-             begin_launches(t) && traced_show_create(t->gpu, &t->show)) {
+             begin_launches(t) && traced_view_create(t->gpu, t->loader, &t->view) &&
+             traced_show_create(t->gpu, &t->show)) {
         traced_apply(t, settings);
         return t;
     }
@@ -142,6 +153,8 @@ void traced_destroy(struct traced *t)
         return;
     vkDeviceWaitIdle(t->gpu->device);
     traced_show_destroy(&t->show);
+    traced_view_destroy(&t->view);
+    traced_tiles_finish(&t->tiles);
     if (t->launches.commands)
         vkFreeCommandBuffers(t->gpu->device, t->gpu->command_pool, 1, &t->launches.commands);
     launches_finish(&t->launches);

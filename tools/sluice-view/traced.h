@@ -56,6 +56,14 @@ struct traced {
     struct launches launches;
     struct flight flight;
     struct traced_show show;
+    struct traced_view view;
+    struct traced_tiles tiles;
+    bool looks;                  ///< launches find out what pixels have and want
+    bool looked;                 ///< the last launch did
+    uint32_t rays;               ///< number of the last launch with rays of this frame; 0: none
+    uint64_t time;               ///< microseconds, of the last frame
+    uint32_t use_count;          ///< uses of pictures that `show.pictures` has
+    uint32_t most_texture_index; ///< of these
     struct PbrtLaunch constants; ///< of the picture that is gathered
     uint32_t sample;             ///< that is traced: so many are complete
     uint32_t missing;            ///< pixels of it, after the last launch
@@ -88,6 +96,11 @@ struct PbrtLaunch traced_constants(struct traced *traced, const struct view_came
 /** The shape under x, y: one ray is traced. */
 struct stage_pick traced_pick(struct traced *traced, const struct view_camera *camera, float x,
                               float y);
+/** What the pixel at x, y, 0 to 1 from the left and the top, has and wants. NULL: unknown, or it
+ * has no texture. */
+const struct TracedView *traced_view_at(const struct traced *traced, float x, float y);
+/** Picture of a texture of the loader by its index, or UINT32_MAX. */
+uint32_t traced_picture_of(const struct traced *traced, uint32_t texture);
 /** Part of the pixels of the last launches that lack nothing. */
 double traced_complete(const struct traced *traced);
 /** Pictures that rays asked for and that are not open, as of the last looks at them. */

@@ -32,12 +32,13 @@ static void fit_window(struct PbrtLaunch *c)
 
 struct PbrtLaunch traced_constants(struct traced *t, const struct view_camera *camera)
 {
-    struct PbrtLaunch c = {.flags = PBRT_LAUNCH_GRAY};
+    struct PbrtLaunch c = {.flags = PBRT_LAUNCH_GRAY, .lodBias = (float)t->settings.lod_bias};
     const uint32_t size[2] = {t->film.width, t->film.height};
     float matrix[12];
     pbrt_frame_matrix(&t->pbrt->frame, camera, matrix);
     camera_constants(&t->pbrt->scene, matrix, size, &c);
     fit_window(&c);
+    c.flags |= t->settings.freeze_wants ? PBRT_LAUNCH_QUIET : 0u;
     t->options.mode = t->settings.render_mode;
     t->options.bounces = t->settings.depth;
     lights_constants(&t->pbrt->scene, &t->options, t->only_areas, t->emitters.count, &c);
@@ -63,16 +64,21 @@ static bool fit_film(struct traced *t, const struct stage_draw *draw)
         return false;
     film_destroy(t->gpu, &t->film);
     t->restarts = true;
-    return film_create(t->gpu, draw->width, draw->height, (struct film_share){0}, &t->film) &&
-           traced_show_fit(&t->show, &t->film);
+    t->launches.probes = VK_NULL_HANDLE;
+    t->looked = false;
+    if (!film_create(t->gpu, draw->width, draw->height, (struct film_share){0}, &t->film) ||
+        !traced_view_fit(&t->view, &t->film) || !traced_show_fit(&t->show, &t->film, &t->view))
+        return false;
+    t->launches.probes = t->view.probes.buffer;
+    return true;
 }
 
-/* The sample is complete, or nothing completes it. */
+/* The sample is complete, or nothing completes it: as while rays request nothing. */
 static void end_launch(struct traced *t, bool progress)
 {
     t->missing = t->film.missing_count;
     t->vain = progress ? 0 : t->vain + 1;
-    if (t->missing > 0 && t->vain < MOST_VAIN_LAUNCHES)
+    if (t->missing > 0 && t->vain < MOST_VAIN_LAUNCHES && !t->settings.freeze_wants)
         return;
     t->sample++;
     t->vain = 0;
@@ -87,6 +93,7 @@ static bool trace(struct traced *t)
     if (!launches_trace(&t->launches, t->sample, &t->ticket, &progress))
         return false;
     t->trace_seconds += t->launches.last_seconds;
+    t->rays = t->launches.count;
     traced_note_misses(t);
     end_launch(t, progress);
     return true;
@@ -142,19 +149,83 @@ static bool launch_some(struct traced *t)
     return true;
 }
 
+static uint32_t sides_of(const struct traced *t, uint32_t picture)
+{
+    const uint32_t width = t->pictures[picture].texture.width;
+    const uint32_t height = t->pictures[picture].texture.height;
+    return (width & (width - 1)) != 0 || (height & (height - 1)) != 0;
+}
+
+/* Words of textures for view 6 and for slots; sizes are known later than textures. */
+static bool name_textures(struct traced *t)
+{
+    for (; t->use_count < t->textures.use_count; t->use_count++) {
+        const struct picture_use *use = t->textures.uses[t->use_count];
+        const uint32_t index = (uint32_t)use->id;
+        uint32_t *words = traced_show_pictures(&t->show, index + 1), picture = 0;
+        if (!words)
+            return false;
+        while (picture < t->picture_count &&
+               strcmp(t->pictures[picture].texture.path, use->image->file->path) != 0)
+            picture++;
+        if (picture < t->picture_count)
+            words[index] = (1 + picture) << 1;
+        t->most_texture_index = index > t->most_texture_index ? index : t->most_texture_index;
+    }
+    uint32_t *words = t->show.pictures.mapped;
+    for (uint32_t i = 0; i <= t->most_texture_index; i++)
+        words[i] = words[i] ? (words[i] & ~1u) | sides_of(t, (words[i] >> 1) - 1) : 0;
+    return true;
+}
+
+uint32_t traced_picture_of(const struct traced *t, uint32_t texture)
+{
+    const uint32_t *words = t->show.pictures.mapped;
+    return texture <= t->most_texture_index && words[texture] ? (words[texture] >> 1) - 1
+                                                              : UINT32_MAX;
+}
+
+const struct TracedView *traced_view_at(const struct traced *t, float x, float y)
+{
+    if (!t->looked || !(x >= 0 && x < 1 && y >= 0 && y < 1))
+        return NULL;
+    const size_t pixel =
+        (size_t)(y * (float)t->film.height) * t->film.width + (size_t)(x * (float)t->film.width);
+    const struct TracedView *view = (const struct TracedView *)t->view.views.mapped + pixel;
+    return view->texture == PBRT_NONE ? NULL : view;
+}
+
+static bool show(struct traced *t, const struct stage_draw *draw)
+{
+    const struct view_settings *s = draw->settings;
+    const struct traced_look look = {.scale = exp2f((float)s->exposure),
+                                     .tint = (float)s->tint,
+                                     .view = s->view == VIEW_TRUTH ? VIEW_PICTURE : s->view,
+                                     .launch = t->rays,
+                                     .is_short = t->now.lodBias > 0,
+                                     .picture_count = t->most_texture_index + 1};
+    return (s->view != VIEW_AGE || traced_show_keep_tiles(&t->show, &t->tiles, t->time)) &&
+           traced_show_draw(&t->show, &look);
+}
+
 bool traced_record(struct traced *t, const struct stage_draw *draw, struct frames_end *end)
 {
     const struct view_settings *s = draw->settings;
     if (!fit_film(t, draw))
         return false;
+    t->looks = s->view > VIEW_PICTURE && s->view != VIEW_TRUTH;
+    t->rays = 0;
+    t->time = draw->time_stamp;
     const struct PbrtLaunch constants = traced_constants(t, &draw->camera);
     const bool moved = memcmp(&constants, &t->constants, sizeof constants) != 0;
     if ((moved || t->restarts) && (!s->pause || !t->show.drawn))
         restart(t, &constants);
     if ((!s->pause || !t->show.drawn) && !launch_some(t))
         return false;
-    if (!traced_show_draw(&t->show, exp2f((float)s->exposure),
-                          s->view == VIEW_MISSING ? (float)s->tint : 0.0f))
+    if (t->looks && !t->looked && !launches_idle(&t->launches)) /* a view was chosen in a pause */
+        return false;
+    traced_tiles_look(&t->tiles, t->loader, &t->now, draw->number, t->time);
+    if (!name_textures(t) || !show(t, draw))
         return false;
     end->views[UI_TEXTURE_PICTURE] = t->show.image.view;
     return true;
@@ -163,7 +234,7 @@ bool traced_record(struct traced *t, const struct stage_draw *draw, struct frame
 double traced_complete(const struct traced *t)
 {
     const double all = (double)t->film.width * t->film.height;
-    if (t->sample > 0 && t->vain == 0)
+    if (t->sample > 0 && t->vain == 0 && !t->settings.freeze_wants)
         return 1.0;
     return all > 0 ? 1.0 - t->missing / all : 0.0;
 }

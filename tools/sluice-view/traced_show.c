@@ -4,27 +4,40 @@
 
 #include "traced_show_comp.h"
 
+#include <string.h>
+
 #define GROUP 8u
+#define BINDINGS 7u
+#define IMAGE_BINDING 2u
+#define LEAST_TILES 64u
+#define LEAST_PICTURES 256u
+/* As view_colors.glsl has them. */
+#define MARK_THRASHES 16u
+#define MARK_OLDEST 0xFFFFu
 
 struct push {
     uint32_t width, height;
     float scale, tint;
-    uint32_t marks;
+    uint32_t view, launch, tile_mask, picture_count, is_short;
 };
+
+static VkDescriptorType type_of(uint32_t binding)
+{
+    return binding == IMAGE_BINDING ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                                    : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
 
 static bool create_layouts(struct traced_show *s)
 {
-    VkDescriptorSetLayoutBinding bindings[3];
-    for (uint32_t i = 0; i < 3; i++)
+    VkDescriptorSetLayoutBinding bindings[BINDINGS];
+    for (uint32_t i = 0; i < BINDINGS; i++)
         bindings[i] = (VkDescriptorSetLayoutBinding){.binding = i,
-                                                     .descriptorType =
-                                                         i < 2 ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
-                                                               : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                                                     .descriptorType = type_of(i),
                                                      .descriptorCount = 1,
                                                      .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
     const VkDescriptorSetLayoutCreateInfo set = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = 3,
+        .bindingCount = BINDINGS,
         .pBindings = bindings};
     if (!gpu_check(vkCreateDescriptorSetLayout(s->gpu->device, &set, NULL, &s->set_layout),
                    "vkCreateDescriptorSetLayout"))
@@ -42,7 +55,7 @@ static bool create_layouts(struct traced_show *s)
 
 static bool create_set(struct traced_show *s)
 {
-    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2},
+    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDINGS - 1},
                                           {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1}};
     const VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                              .maxSets = 1,
@@ -60,10 +73,43 @@ static bool create_set(struct traced_show *s)
                      "vkAllocateDescriptorSets");
 }
 
+/* Empties it, so that a search ends. */
+static bool grow_tiles(struct traced_show *s, uint32_t count)
+{
+    if (count <= s->tile_room)
+        return true;
+    gpu_destroy_buffer(s->gpu, &s->tiles);
+    s->tiles = (struct gpu_buffer){0};
+    s->tile_room = 0;
+    if (!gpu_create_buffer(s->gpu, count * sizeof(uint32_t[2]), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                           &s->tiles))
+        return false;
+    memset(s->tiles.mapped, 0xff, count * sizeof(uint32_t[2]));
+    s->tile_room = count;
+    s->tile_mask = count - 1;
+    return true;
+}
+
+uint32_t *traced_show_pictures(struct traced_show *s, uint32_t count)
+{
+    size_t size = s->pictures.size;
+    if (count * sizeof(uint32_t) <= size)
+        return s->pictures.mapped;
+    for (size = size ? size : LEAST_PICTURES * sizeof(uint32_t); size < count * sizeof(uint32_t);)
+        size *= 2;
+    gpu_destroy_buffer(s->gpu, &s->pictures);
+    s->pictures = (struct gpu_buffer){0};
+    if (!gpu_create_buffer(s->gpu, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &s->pictures))
+        return NULL;
+    memset(s->pictures.mapped, 0, size);
+    return s->pictures.mapped;
+}
+
 bool traced_show_create(const struct gpu *gpu, struct traced_show *s)
 {
     *s = (struct traced_show){.gpu = gpu};
-    return create_layouts(s) && create_set(s) &&
+    return create_layouts(s) && create_set(s) && grow_tiles(s, LEAST_TILES) &&
+           traced_show_pictures(s, 1) &&
            gpu_create_compute_pipeline(gpu, s->layout, traced_show_comp, sizeof traced_show_comp,
                                        NULL, &s->pipeline);
 }
@@ -73,6 +119,8 @@ void traced_show_destroy(struct traced_show *s)
     if (!s->gpu)
         return;
     gpu_destroy_image(s->gpu, &s->image);
+    gpu_destroy_buffer(s->gpu, &s->tiles);
+    gpu_destroy_buffer(s->gpu, &s->pictures);
     vkDestroyPipeline(s->gpu->device, s->pipeline, NULL);
     vkDestroyDescriptorPool(s->gpu->device, s->pool, NULL);
     vkDestroyPipelineLayout(s->gpu->device, s->layout, NULL);
@@ -80,27 +128,28 @@ void traced_show_destroy(struct traced_show *s)
     *s = (struct traced_show){0};
 }
 
-static void write_set(const struct traced_show *s, const struct film *film)
+static void write_set(const struct traced_show *s)
 {
-    const VkDescriptorBufferInfo buffers[2] = {{film->sums.buffer, 0, VK_WHOLE_SIZE},
-                                               {film->latest.buffer, 0, VK_WHOLE_SIZE}};
+    const VkBuffer buffers[BINDINGS] = {s->sums,  s->latest,       VK_NULL_HANDLE,    s->probes,
+                                        s->views, s->tiles.buffer, s->pictures.buffer};
+    VkDescriptorBufferInfo infos[BINDINGS];
+    VkWriteDescriptorSet writes[BINDINGS];
     const VkDescriptorImageInfo image = {.imageView = s->image.view,
                                          .imageLayout = VK_IMAGE_LAYOUT_GENERAL};
-    const VkWriteDescriptorSet writes[2] = {{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                             .dstSet = s->set,
-                                             .descriptorCount = 2,
-                                             .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                             .pBufferInfo = buffers},
-                                            {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                             .dstSet = s->set,
-                                             .dstBinding = 2,
-                                             .descriptorCount = 1,
-                                             .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                             .pImageInfo = &image}};
-    vkUpdateDescriptorSets(s->gpu->device, 2, writes, 0, NULL);
+    for (uint32_t i = 0; i < BINDINGS; i++) {
+        infos[i] = (VkDescriptorBufferInfo){buffers[i], 0, VK_WHOLE_SIZE};
+        writes[i] = (VkWriteDescriptorSet){.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                           .dstSet = s->set,
+                                           .dstBinding = i,
+                                           .descriptorCount = 1,
+                                           .descriptorType = type_of(i),
+                                           .pBufferInfo = &infos[i],
+                                           .pImageInfo = &image};
+    }
+    vkUpdateDescriptorSets(s->gpu->device, BINDINGS, writes, 0, NULL);
 }
 
-bool traced_show_fit(struct traced_show *s, const struct film *film)
+bool traced_show_fit(struct traced_show *s, const struct film *film, const struct traced_view *view)
 {
     gpu_destroy_image(s->gpu, &s->image);
     s->image = (struct gpu_image){0};
@@ -112,7 +161,34 @@ bool traced_show_fit(struct traced_show *s, const struct film *film)
                           VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                           VK_IMAGE_ASPECT_COLOR_BIT, &s->image))
         return false;
-    write_set(s, film);
+    s->sums = film->sums.buffer;
+    s->latest = film->latest.buffer;
+    s->probes = view->probes.buffer;
+    s->views = view->views.buffer;
+    return true;
+}
+
+/* As MARK_THRASHES and markAge of the shaders have it. */
+static uint32_t word_of(const struct traced_tile *tile, uint64_t now)
+{
+    const uint64_t age = (now - tile->loaded[0]) / 62500u; /* 1/16 s */
+    return (age < MARK_OLDEST ? (uint32_t)age : MARK_OLDEST) << 16 |
+           (traced_tile_thrashes(tile, now) ? MARK_THRASHES : 0u);
+}
+
+bool traced_show_keep_tiles(struct traced_show *s, const struct traced_tiles *tiles, uint64_t now)
+{
+    if (tiles->capacity == 0)
+        return true;
+    if (!grow_tiles(s, tiles->capacity))
+        return false;
+    uint32_t(*words)[2] = s->tiles.mapped;
+    for (uint32_t i = 0; i < tiles->capacity; i++) {
+        const struct traced_tile *tile = &tiles->entries[i];
+        words[i][0] = tile->slot.page;
+        words[i][1] = tile->slot.page == UINT32_MAX ? 0 : word_of(tile, now);
+    }
+    s->tile_mask = tiles->capacity - 1;
     return true;
 }
 
@@ -139,7 +215,10 @@ static void move_image(const struct traced_show *s, VkCommandBuffer commands, bo
 static void record(void *user_data, VkCommandBuffer commands)
 {
     struct traced_show *s = user_data;
-    const struct push push = {s->width, s->height, s->scale, s->tint, s->marks};
+    const struct traced_look *look = &s->look;
+    const struct push push = {s->width,     s->height,           look->scale,
+                              look->tint,   look->view,          look->launch,
+                              s->tile_mask, look->picture_count, look->is_short};
     move_image(s, commands, false);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, s->pipeline);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, s->layout, 0, 1, &s->set, 0,
@@ -149,11 +228,10 @@ static void record(void *user_data, VkCommandBuffer commands)
     move_image(s, commands, true);
 }
 
-bool traced_show_draw(struct traced_show *s, float scale, float tint)
+bool traced_show_draw(struct traced_show *s, const struct traced_look *look)
 {
-    s->scale = scale;
-    s->tint = tint;
-    s->marks = tint > 0;
+    s->look = *look;
+    write_set(s); /* nothing uses it: each picture is waited for */
     if (!one_time_run(s->gpu, record, s))
         return false;
     s->drawn = true;

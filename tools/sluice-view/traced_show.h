@@ -2,7 +2,17 @@
 #ifndef SLUICE_VIEW_TRACED_SHOW_H
 #define SLUICE_VIEW_TRACED_SHOW_H
 
-#include "../../samples/common/film.h"
+#include "traced_tiles.h"
+#include "traced_view.h"
+
+/** How a film is shown. */
+struct traced_look {
+    float scale, tint;      ///< of the light; how strong colors of views are, 0 to 1
+    uint32_t view;          ///< enum view_number
+    uint32_t launch;        ///< of the last rays; 0: none in this frame
+    bool is_short;          ///< the loader has a LOD bias
+    uint32_t picture_count; ///< textures that `pictures` has words for
+};
 
 /** Zeroed is empty. */
 struct traced_show {
@@ -14,19 +24,28 @@ struct traced_show {
     VkDescriptorSet set;
     struct gpu_image image; ///< in SHADER_READ_ONLY_OPTIMAL once it was drawn
     bool drawn;
-    /* As the shader has them. */
+    VkBuffer sums, latest, probes, views; ///< borrowed
+    struct gpu_buffer tiles, pictures;    ///< mapped; see traced_show.comp
+    uint32_t tile_room;                   ///< entries of `tiles`
     uint32_t width, height;
-    float scale, tint;
-    uint32_t marks;
+    struct traced_look look; ///< of the last picture
+    uint32_t tile_mask;
 };
 
 /** Says on stderr why it failed. */
 bool traced_show_create(const struct gpu *gpu, struct traced_show *show);
 void traced_show_destroy(struct traced_show *show);
 /** A picture for a film. No frame that reads the last one is under way. */
-bool traced_show_fit(struct traced_show *show, const struct film *film);
+bool traced_show_fit(struct traced_show *show, const struct film *film,
+                     const struct traced_view *view);
+/** Keeps for view 5 since when tiles are loaded. False without memory. */
+bool traced_show_keep_tiles(struct traced_show *show, const struct traced_tiles *tiles,
+                            uint64_t now);
+/** Words of textures by their index in the loader, for view 6: 1 + picture << 1 | 1 if a side is no
+ *  power of two. NULL without memory. */
+uint32_t *traced_show_pictures(struct traced_show *show, uint32_t count);
 /** Draws the film, of which no launch is under way, and waits for it. Frames that read the picture
- *  may be under way. `scale`: of the light; `tint`: how strong the marks of view 3 are; 0: none. */
-bool traced_show_draw(struct traced_show *show, float scale, float tint);
+ *  may be under way. */
+bool traced_show_draw(struct traced_show *show, const struct traced_look *look);
 
 #endif /* SLUICE_VIEW_TRACED_SHOW_H */
