@@ -172,27 +172,36 @@ static const char *const view_names[] = {"",
                                          "Difference to the truth",
                                          "Checks"};
 
-static void draw_traced(const struct view_app *app)
+static void draw_traced_missing(void)
 {
-    const char *why = panel_traced_refuses_view(app->settings.view);
-    if (why) {
-        ui_text(UI_ORANGE, "%s", why);
-        return;
+    const uint32_t yellow = UI_COLOR(240, 228, 66, 255);
+    draw_color(UI_COLOR(128, 128, 128, 255), "as sharp as wanted");
+    draw_color(yellow, "1 level, a shape or a material is missing");
+    draw_color(UI_COLOR(230, 159, 0, 255), "2 levels");
+    draw_color(UI_COLOR(213, 94, 0, 255), "3 levels or more");
+    ui_text(UI_GRAY, "because");
+    draw_swatch(yellow, MARK_COMING, "rays requested it");
+    draw_swatch(yellow, MARK_BUDGET, "memory is short");
+}
+
+/* Returns whether the view has a legend of its own in scenes that are traced. */
+static bool draw_traced(const struct view_app *app)
+{
+    switch (app->settings.view) {
+    case VIEW_MISSING: draw_traced_missing(); return true;
+    case VIEW_WRITTEN: ui_text(UI_GRAY, "dots: pixels whose rays requested something"); return true;
+    default: return false;
     }
-    draw_color(UI_COLOR(128, 128, 128, 255), "complete");
-    draw_color(UI_COLOR(240, 228, 66, 255), "a shape, a material or a tile is missing");
 }
 
 static void draw_legend(const struct view_app *app)
 {
-    if (stage_traced(app->stage)) {
-        draw_traced(app);
-        return;
-    }
     if (app_shows_difference(app)) {
         draw_differences(app);
         return;
     }
+    if (stage_traced(app->stage) && draw_traced(app))
+        return;
     switch (app->settings.view) {
     case VIEW_RESIDENT:
     case VIEW_WANTED: draw_levels(); break;

@@ -138,7 +138,7 @@ static void draw_ages(void)
     }
 }
 
-static void draw_colors(struct view_app *app)
+void panel_memory_colors(struct view_app *app)
 {
     static const char *const names[] = {"State", "Texture", "Level", "Age"};
     for (int i = 0; i < 4; i++) {
@@ -177,7 +177,7 @@ static void draw_streamer(struct view_app *app)
     const float cell = 12 * ui_scale();
     draw_sums(app);
     draw_buttons(app);
-    draw_colors(app);
+    panel_memory_colors(app);
     for (uint32_t heap = 0, drawn = 0; heap < 4096 && drawn < app->facts.now.heapCount; heap++)
         drawn += draw_heap(app, heap, cell);
 }

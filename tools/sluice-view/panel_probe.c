@@ -1,5 +1,7 @@
 #include "panels.h"
 
+#include "panel_traced.h"
+
 #include <stdio.h>
 
 /* A ray meets all triangles. While the camera moves, large scenes have no time for that. */
@@ -140,6 +142,10 @@ void panel_probe(const struct view_app *app)
 {
     const struct view_probe *p = &app->probe;
     char level[24];
+    if (stage_traced(app->stage)) {
+        panel_traced_probe(app);
+        return;
+    }
     if (!p->known || !shows_values(app))
         return;
     ui_line();

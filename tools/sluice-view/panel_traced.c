@@ -8,20 +8,11 @@
 static const struct {
     const char *chord, *why;
 } refused[] = {
-    {"2", "View 2 is not for scenes of pbrt: rays do not say which level they sampled"},
-    {"4", "View 4 is not for scenes of pbrt: rays do not say which level they wanted"},
-    {"5", "View 5 is not for scenes of pbrt: demand loaders keep no age of tiles"},
-    {"6", "View 6 is not for scenes of pbrt: right click a surface for its texture"},
-    {"7", "View 7 is not for scenes of pbrt: each ray reports what it lacks"},
     {"8", "View 8 is not for scenes of pbrt: demand-pbrt --preload renders the truth"},
-    {"9", "View 9 is not for scenes of pbrt: view 3 marks what is missing"},
     {"V", "There is nothing to compare with: scenes of pbrt have one loader"},
     {"X", "There is nothing to swap: scenes of pbrt have one loader"},
     {"Shift+N", "Tiles are not stepped one by one: a launch loads all that its rays lack"},
     {"Ctrl+T", "Scenes of pbrt are not swept: demand-pbrt --json has their figures"},
-    {"L", "Wants cannot be frozen: rays ask anew in each launch"},
-    {",", "Scenes of pbrt have no mip bias: the budget makes them coarser"},
-    {".", "Scenes of pbrt have no mip bias: the budget makes them coarser"},
     {"Shift+N", "Scenes of pbrt load what a launch asked for: N makes one launch"},
     {"Ctrl+T", "Sweeps are for streamed scenes: what they change does nothing here"},
 };
@@ -34,12 +25,6 @@ const char *panel_traced_refuses(const char *chord)
         if (strcmp(refused[i].chord, chord) == 0)
             return refused[i].why;
     return NULL;
-}
-
-const char *panel_traced_refuses_view(uint32_t view)
-{
-    const char chord[2] = {(char)('0' + view % 10), '\0'};
-    return panel_traced_refuses(chord);
 }
 
 bool panel_traced_takes(const char *control)
@@ -59,8 +44,6 @@ bool panel_traced_takes(const char *control)
                                         "source-latency",
                                         "source-bandwidth",
                                         "source-fails",
-                                        "lod-bias",
-                                        "freeze-wants",
                                         "compare-as",
                                         "compare-to",
                                         "divider",
@@ -68,43 +51,12 @@ bool panel_traced_takes(const char *control)
                                         "predict",
                                         "difference-as",
                                         "wireframe",
-                                        "memory-colors",
                                         "event-reason",
                                         "events-of"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(names[i], control) == 0)
             return false;
     return true;
-}
-
-static void draw_size(const char *name, uint64_t bytes)
-{
-    char size[32];
-    ui_text(UI_GRAY, "%s", name);
-    ui_same_line(220 * ui_scale());
-    ui_text(UI_WHITE, "%s", panel_size(bytes, size, sizeof size));
-}
-
-void panel_traced_memory(const struct view_app *app)
-{
-    const struct traced *t = stage_traced(app->stage);
-    const SluiceDemandStatistics *d = &t->now;
-    ui_text(UI_WHITE, "%llu tile%s and mip tails are resident, in %u image%s",
-            (unsigned long long)d->residentTileCount, d->residentTileCount == 1 ? "" : "s",
-            d->pageChunkCount, d->pageChunkCount == 1 ? "" : "s");
-    if (d->lodBias > 0)
-        ui_text(UI_RED, "memory is short: +%.1f level", (double)d->lodBias);
-    draw_size("tiles, on the device", d->tileMemorySize);
-    draw_size("loader in all, on the device", d->deviceMemorySize);
-    draw_size("loader, mapped memory", d->hostVisibleMemorySize);
-    draw_size("meshes, trees, materials", traced_geometry_size(t));
-    ui_text(UI_GRAY, "%llu of %llu shapes are built, %u boxes stand for others",
-            (unsigned long long)t->world.entered_count,
-            (unsigned long long)t->pbrt->scene.place_count, proxies_box_count(&t->proxies));
-    ui_hint("A shape is built when a ray enters its box.");
-    ui_text(UI_GRAY, "%llu tiles were evicted, %llu came back without a read",
-            (unsigned long long)d->evictedCount, (unsigned long long)d->restoredCount);
-    ui_paragraph(UI_GRAY, "There is no map of slots: demand loaders do not tell them.");
 }
 
 void panel_traced_latency(const struct view_app *app)

@@ -25,6 +25,8 @@ void panel_controls(struct view_app *app);
 void panel_graphs(struct view_app *app);
 void panel_latency(struct view_app *app);
 void panel_memory(struct view_app *app);
+/** Chooses the colors of slots, and explains them. */
+void panel_memory_colors(struct view_app *app);
 void panel_textures(struct view_app *app);
 void panel_inspector(struct view_app *app);
 void panel_events(struct view_app *app);
