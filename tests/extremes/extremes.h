@@ -1,10 +1,10 @@
 /**
- * What tests of extremes share: numbers from all of the range of float, and a line per result:
+ * Shared by tests of extremes: numbers from the whole range of float, and a line per result:
  *
  *     # extremes: name | cases | worst, and where | bound
  *
- * which scripts/lib/collect.py makes a table of. A program has a quick form and, with --long, one
- * of many more cases.
+ * scripts/lib/collect.py makes a table of these lines. A program has a quick form, and with --long
+ * a form with many more cases.
  */
 #ifndef TESTS_EXTREMES_EXTREMES_H
 #define TESTS_EXTREMES_EXTREMES_H
@@ -13,40 +13,39 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Reads the program's arguments: nothing, or --long. False, having said so, if there are others.
- */
+/** Reads the program's arguments: none, or --long. Returns false for others, with a message. */
 bool extremes_begin(int argc, char **argv);
 bool extremes_are_long(void);
-/** `quick`, or `many` in the long form. */
+/** Returns `quick`, or `many` in the long form. */
 uint64_t extremes_count(uint64_t quick, uint64_t many);
 
-/** The largest error of a function; all but name, unit and bound begin as 0. */
+/** The largest error of a function. Fields other than name, unit and bound begin as 0. */
 struct extremes_row {
     const char *name, *unit;
     double bound;
     uint64_t cases;
     double worst;
-    char at[160]; ///< the case that it was found in
+    char at[160]; ///< case of the largest error
 };
 
-/** Counts a case. NaN is the largest error. printf arguments say which case it is. */
+/** Counts a case. NaN is the largest error. The printf arguments name the case. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
 void extremes_add(struct extremes_row *row, double error, const char *format, ...);
 
-/** Prints the row, and fails the test if it has no case or exceeds its bound. */
+/** Prints the row. Fails the test if the row has no case or exceeds its bound. */
 void extremes_end(const struct extremes_row *row);
 
 #define EXTREMES_SPECIALS 26u
-/** Both zeros, denormals, FLT_MIN, around 1, 1e6, 1e30, FLT_MAX, infinities and NaN. */
+/** Both zeros, denormals, FLT_MIN, values around 1, 1e6, 1e30, FLT_MAX, infinities and NaN. */
 extern const float extremes_specials[EXTREMES_SPECIALS];
 
-/** 32 bits, of a hash of the number: the same on every machine. */
+/** Returns 32 bits of a hash of the number, equal on every machine. */
 uint32_t extremes_random(uint64_t number);
 
-/** Float `i` of a series: in 512 of them each exponent with both signs, NaN and infinities among
- *  them; of mantissas the smallest, its neighbors and the largest first, then any. */
+/** Returns float `i` of a series. 512 of them have each exponent with both signs, including NaN and
+ * infinities. The first mantissas are the smallest, its neighbors and the largest, then any. */
 float extremes_float(uint64_t i);
 
 float extremes_float_of(uint32_t bits);

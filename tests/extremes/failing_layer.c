@@ -11,7 +11,7 @@ static bool fails(void)
     return l->failing_call && (call == l->failing_call || (l->fails_on && call > l->failing_call));
 }
 
-/* A function that makes something or fails. */
+/* A function that creates something or fails. */
 #define MAKER(name, parameters, arguments)                                                         \
     static PFN_vk##name next_##name;                                                               \
     static VKAPI_ATTR VkResult VKAPI_CALL layer_##name parameters                                  \
@@ -57,7 +57,7 @@ MAKER(QueueBindSparse,
       (VkQueue queue, uint32_t count, const VkBindSparseInfo *infos, VkFence fence),
       (queue, count, infos, fence))
 
-/* What is given back is not counted: the test says when there is memory again. */
+/* Freed memory is not counted. The test sets when there is memory again. */
 static PFN_vkAllocateMemory next_AllocateMemory;
 static VKAPI_ATTR VkResult VKAPI_CALL layer_AllocateMemory(VkDevice device,
                                                            const VkMemoryAllocateInfo *info,
@@ -73,7 +73,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL layer_AllocateMemory(VkDevice device,
     return next_AllocateMemory(device, info, cb, memory);
 }
 
-/* The device below is not lost, and what it does has to end before anything is destroyed. */
+/* The underlying device is not lost, and must finish its work before anything is destroyed. */
 static PFN_vkDeviceWaitIdle next_DeviceWaitIdle;
 static VKAPI_ATTR VkResult VKAPI_CALL layer_DeviceWaitIdle(VkDevice device)
 {
@@ -81,7 +81,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL layer_DeviceWaitIdle(VkDevice device)
     return fails() ? failing_layer.failure : result;
 }
 
-/* A device that is lost answers a wait at once, whatever was never submitted. */
+/* A lost device returns from waits at once, even for work that was never submitted. */
 static PFN_vkWaitSemaphores next_WaitSemaphores;
 static VKAPI_ATTR VkResult VKAPI_CALL layer_WaitSemaphores(VkDevice device,
                                                            const VkSemaphoreWaitInfo *info,

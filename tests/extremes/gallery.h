@@ -1,11 +1,12 @@
-/** A streamer on a device that only takes notes, with a few textures that are looked at. */
+/** A streamer with a few visible textures, on a fake device that only records its calls. */
 #ifndef TESTS_EXTREMES_GALLERY_H
 #define TESTS_EXTREMES_GALLERY_H
 
 #include "support/failing_allocator.h"
 #include "vulkan/fake_vulkan.h"
 
-/** Of 512 x 512 texels each; GALLERY_TILES tiles in every mode, packed levels counted as one. */
+/** Textures have 512 x 512 texels each, and GALLERY_TILES tiles in every mode; packed levels count
+ * as one tile. */
 enum { GALLERY_TEXTURES = 3, GALLERY_TILES = 16 + 4 };
 
 struct gallery {
@@ -18,18 +19,18 @@ struct gallery {
     bool is_looked_at;
 };
 
-/** Nothing is made but the sources. */
+/** Creates the sources only. */
 void gallery_init(struct gallery *g);
-/** Destroys the streamer; nothing is left of it. Then the sources. */
+/** Destroys the streamer, checks that nothing of it is left, and destroys the sources. */
 void gallery_finish(struct gallery *g);
-/** Nothing is left of the streamer on the device and in memory. */
+/** Checks that nothing of the streamer is left on the device and in memory. */
 void gallery_check_nothing_left(const struct gallery *g);
 
 SluiceResult gallery_create(struct gallery *g, SluiceResidencyMode mode);
-/** Textures, the last of them a follower of the first, or the array of two. */
+/** Adds a texture, or the array of two. The last texture follows the first. */
 SluiceResult gallery_add(struct gallery *g, uint32_t texture);
 SluiceResult gallery_add_array(struct gallery *g);
-/** A frame that is over when it is recorded. */
+/** Runs a frame that completes as soon as it is recorded. */
 SluiceResult gallery_frame(struct gallery *g);
 SluiceVulkanStreamerStatistics gallery_statistics(const struct gallery *g);
 

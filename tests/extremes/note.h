@@ -1,4 +1,4 @@
-/** What tests of extremes share: a line for the table of results, and a long form. */
+/** Shared by tests of extremes: a line for the table of results, and a long form. */
 #ifndef TESTS_EXTREMES_NOTE_H
 #define TESTS_EXTREMES_NOTE_H
 
@@ -8,21 +8,21 @@
 #include <stdio.h>
 #include <string.h>
 
-/** "# extremes: name | cases | worst | bound": what was looked at, and how near it came. */
+/** Prints "# extremes: name | cases | worst | bound". */
 static inline void note(const char *name, uint64_t cases, double worst, double bound)
 {
     print_message("# extremes: %s | %llu | %.6g | %.6g\n", name, (unsigned long long)cases, worst,
                   bound);
 }
 
-/** Whether the program was started with --long. */
+/** Returns whether the program was started with --long. */
 static inline bool is_long(int argc, char **argv)
 {
     return argc > 1 && strcmp(argv[1], "--long") == 0;
 }
 
-/** Bytes that the process has in memory; 0 where that means nothing: under sanitizers, which keep
- *  what was freed, and where the system does not tell. */
+/** Returns the resident memory of the process in bytes. Returns 0 if unknown, and under sanitizers,
+ * which keep freed memory. */
 static inline uint64_t resident_size(void)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -1,6 +1,6 @@
 /**
- * Functions of shaders/include/sluice by number: how each is called in C and on a device, on which
- * arguments, and how far its results are from those of exact arithmetic (long double, integers).
+ * Functions of shaders/include/sluice by number: their call in C and on a device, their arguments,
+ * and the error of their results against exact arithmetic (long double, integers).
  */
 #ifndef TESTS_EXTREMES_NUMERICS_H
 #define TESTS_EXTREMES_NUMERICS_H
@@ -11,7 +11,7 @@
 
 #define NUMERICS_ROWS 3u
 
-/** One kind of error; bounds in C and on a device. */
+/** A kind of error, with bounds in C and on a device. */
 struct numerics_error {
     const char *name, *unit;
     double bound, device_bound;
@@ -19,12 +19,12 @@ struct numerics_error {
 
 struct numerics_function {
     const char *name;
-    struct numerics_error errors[NUMERICS_ROWS]; ///< those without a name are not there
-    uint64_t quick, many;                        ///< cases
+    struct numerics_error errors[NUMERICS_ROWS]; ///< errors; entries without a name are unused
+    uint64_t quick, many;                        ///< number of cases
     void (*make)(uint64_t i, uint32_t *arguments);
-    void (*call)(const uint32_t *arguments, uint32_t *results); ///< in C, or NULL
-    /** Adds to rows, one per error; or to none, if nothing is promised for the arguments. `device`:
-     *  denormals may have been 0, and NaN may have been anything. */
+    void (*call)(const uint32_t *arguments, uint32_t *results); ///< call in C, or NULL
+    /** Adds to rows, one per error; to none if nothing is promised for the arguments. `device`:
+     * denormals may have been flushed to 0, and NaN may have become any value. */
     void (*check)(const uint32_t *arguments, const uint32_t *results, bool device,
                   struct extremes_row *rows);
 };
@@ -34,36 +34,38 @@ extern const struct numerics_function numerics_lod[NUMERICS_LOD_COUNT];
 extern const struct numerics_function numerics_regions[NUMERICS_REGION_COUNT];
 extern const struct numerics_function numerics_pages[NUMERICS_PAGE_COUNT];
 
-/** By the number in numerics_shared.h. */
+/** Finds a function by its number in numerics_shared.h. */
 const struct numerics_function *numerics_find(uint32_t function);
 
-/** Rows of a function, before the first case; and prints them, with the prefix "c" or "device". */
+/** Initializes the rows of a function before the first case. numerics_end prints them, with the
+ * prefix "c" or "device". */
 void numerics_begin(const struct numerics_function *f, bool device,
                     struct extremes_row rows[NUMERICS_ROWS]);
 void numerics_end(const struct numerics_function *f, bool device,
                   struct extremes_row rows[NUMERICS_ROWS]);
 
 float numerics_real(const uint32_t *words, uint32_t i);
-/** All of the first `count` are numbers, and as finite as sluiceIsFinite has it. */
+/** Returns whether the first `count` words are numbers, and finite as sluiceIsFinite defines it. */
 bool numerics_are_finite(const uint32_t *words, uint32_t count);
 
-/** Levels of detail of derivatives in texels, without bias, in exact arithmetic. */
+/** Exact levels of detail for derivatives in texels, without bias. */
 struct numerics_lods {
     long double finest, coarsest, isotropic;
-    long double longer, minor; ///< lengths: of the longer derivative, of the ellipse's minor axis
+    long double longer,
+        minor; ///< lengths of the longer derivative, and of the ellipse's minor axis
 };
 struct numerics_lods numerics_exact_lods(const float dx[2], const float dy[2],
                                          long double anisotropy);
 
-/** The place inside [0, 1] that shows the same, of a finite coordinate. */
+/** Folds a finite coordinate into [0, 1]. */
 long double numerics_exact_fold(float coordinate, uint32_t mode);
 
-/* Arguments that several functions share: */
+/* Arguments that several functions share. */
 
-/** dx, dy: any floats, pairs of special ones, or a footprint that is nearly one thing or another:
- *  a whole level, thin, parallel. */
+/** Makes dx, dy: any floats, pairs of special floats, or a footprint near a special case: a whole
+ * level, thin, parallel. */
 void numerics_make_derivatives(uint64_t i, uint32_t *words);
-/** Any; for every second case near the image. */
+/** Makes any coordinate; every second case is near the image. */
 float numerics_make_coordinate(uint64_t i);
 float numerics_make_bias(uint64_t i);
 float numerics_make_anisotropy(uint64_t i);

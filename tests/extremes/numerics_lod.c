@@ -1,4 +1,4 @@
-/* Levels of detail, and what is made of them. */
+/* Levels of detail, and functions that use them. */
 #include "extremes/numerics.h"
 
 #include "vulkan/shader_twins.h"
@@ -18,7 +18,7 @@ static void put(uint32_t *results, uint32_t i, float value)
     results[i] = extremes_bits_of(value);
 }
 
-/* What the headers of the shaders promise, not how they do it. */
+/* Follows the promises of the shader headers, not their implementation. */
 static long double clamped_anisotropy(float n)
 {
     return n > 1 ? fminf(n, 16) : 1;
@@ -29,7 +29,7 @@ static long double clamped_lod(long double lod)
     return isnan(lod) || lod > 32 ? 32 : lod < -32 ? -32 : lod;
 }
 
-/* Lengths count from 2^-32 to 2^32, as floats whose squares are those: then the bias is added. */
+/* Lengths count from 2^-32 to 2^32, as floats with such squares. Then the bias is added. */
 static long double biased(long double lod, long double bias)
 {
     const long double low = log2l(5.4e-20f) / 2, high = log2l(1.8e19f) / 2;
@@ -100,9 +100,9 @@ static void check_lods(const uint32_t *a, const uint32_t *r, bool device, struct
 }
 
 /*
- * Levels that a sample marks. `lost`: how far one lies on the wrong side of what the margin
- * promises, in levels; what the margins of 1/8 and 3/16 are wider than the 0.12 that samplers were
- * measured to need is room for it. `more`: how much further out one lies than promised.
+ * Checks the levels that a sample marks. `lost`: how many levels a mark is on the wrong side of the
+ * promised margin. The margins of 1/8 and 3/16 exceed the measured 0.12 of samplers, which leaves
+ * room. `more`: how many levels a mark is beyond the promise.
  */
 static void check_levels(const struct numerics_lods *exact, float anisotropy, uint32_t count,
                          const uint32_t *levels, struct extremes_row *rows, const uint32_t *a)
@@ -151,7 +151,7 @@ static void check_quick_levels(const uint32_t *a, const uint32_t *r, bool device
 {
     float bias = numerics_real(a, 4);
     if (!(numerics_real(r, 3) < SLC_TWIN_QUICK_SQUARES) || !(fabsf(bias) <= SLC_TWIN_QUICK_BIAS))
-        return; /* not to be used then */
+        return; /* unused then */
     if (has_nan(a, 4) || (device && has_nan(a + 5, 1)))
         return;
     struct numerics_lods exact = exact_lods(a, bias, numerics_real(a, 5));
@@ -179,7 +179,7 @@ static void check_safe_levels(const uint32_t *a, const uint32_t *r, bool device,
     check_levels(&exact, numerics_real(a, 5), a[6], r, rows, a);
 }
 
-/* The exponents one after the other, and both sides of powers of four. */
+/* All exponents, and both sides of powers of four. */
 static void make_floor_log4(uint64_t i, uint32_t *a)
 {
     a[0] = extremes_bits_of(fabsf(extremes_float(i)));
@@ -222,7 +222,7 @@ static void call_ends(const uint32_t *a, uint32_t *r)
     r[1] = slc_twin_coarsest_level(numerics_real(a, 0), a[2]);
 }
 
-/* By how much the LOD is off that would give these levels. */
+/* Error of the LOD that would give these levels. */
 static void check_ends(const uint32_t *a, const uint32_t *r, bool device, struct extremes_row *rows)
 {
     (void)device;
@@ -300,7 +300,8 @@ static void call_half_box(const uint32_t *a, uint32_t *r)
     put(r, 1, box.y);
 }
 
-/* Squares of less leave the range: lengths below 2^-62 texels may be 0, beyond 2^63 infinite. */
+/* Squares of smaller values leave the range: lengths below 2^-62 texels may be 0, above 2^63
+ * infinite. */
 #define BOX_LEAST 1e-18L
 #define BOX_MOST 9e18L
 

@@ -1,4 +1,4 @@
-/* Where texels are in pages, and of how many samples a filter is made. No C twins. */
+/* Positions of texels in pages, and the sample count of filters. No C twins. */
 #include "extremes/numerics.h"
 
 #include <sluice/shared/texture_table.h>
@@ -10,7 +10,7 @@ static void put(uint32_t *words, uint32_t i, float value)
     words[i] = extremes_bits_of(value);
 }
 
-/* The place that shows the same, on pages: beside a border, up to a texel and a size outside. */
+/* Folds a coordinate onto pages: next to a border, up to a texel plus the size outside. */
 static long double exact_page_fold(float coordinate, uint32_t mode, uint32_t size)
 {
     long double reach = 1 + 1.0L / size, c = coordinate;
@@ -38,30 +38,30 @@ static void check_fold(const uint32_t *a, const uint32_t *r, bool device, struct
     const long double wanted[2] = {exact_page_fold(c, a[1], a[2]), numerics_exact_fold(c, a[1])};
     for (uint32_t i = 0; i < 2; i++) {
         long double error = fabsl(numerics_real(r, i) - wanted[i]);
-        if (a[1] == SLUICE_ADDRESS_MODE_REPEAT) /* 0 and 1 are one place */
+        if (a[1] == SLUICE_ADDRESS_MODE_REPEAT) /* 0 and 1 are the same position */
             error = fminl(error, fabsl(1 - error));
         extremes_add(&rows[i], (double)error, "%.9g, mode %u", (double)c, a[1]);
     }
     long double near = numerics_real(r, 2), moved = fabsl(near - (long double)c);
-    if (periodic) /* by whole periods, to 0 to 2 */
+    if (periodic) /* moved by whole periods into 0 to 2 */
         moved = near >= 0 && near <= 2 ? fabsl(remainderl(near - (long double)c, 2))
                                        : moved > 0x1p-126L;
     extremes_add(&rows[2], (double)moved, "%.9g, mode %u", (double)c, a[1]);
 }
 
-/* Vulkan's: the texel that a place stands for; -1: the border. */
+/* Vulkan's wrapping of texel coordinates. -1: border. */
 static int64_t wrapped(int64_t i, uint32_t mode, int64_t n)
 {
     switch (mode) {
     case SLUICE_ADDRESS_MODE_REPEAT: return (i % n + n) % n;
     case SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER: return i < 0 || i >= n ? -1 : i;
-    default: return i < 0 ? 0 : i >= n ? n - 1 : i; /* folded before */
+    default: return i < 0 ? 0 : i >= n ? n - 1 : i; /* already folded */
     }
 }
 
 /*
- * 0, 1: low, high; 2: weight; 3: the nearest. Error: how far low + weight is from the exact place,
- * for that of the texels with these names that is nearest to it.
+ * Words 0, 1: low, high; 2: weight; 3: the nearest. Returns the error of low + weight against the
+ * exact position, for the nearest texels with these numbers.
  */
 static long double axis_error(long double place, uint32_t mode, int64_t n, const uint32_t *r)
 {
@@ -72,7 +72,7 @@ static long double axis_error(long double place, uint32_t mode, int64_t n, const
             continue;
         long double here = fabsl((long double)k + weight - place);
         if (mode == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER && (int32_t)r[0] < 0 && (int32_t)r[1] < 0)
-            here = 0; /* border is border */
+            here = 0; /* both are border */
         error = fminl(error, here);
     }
     return error;
@@ -103,7 +103,7 @@ static void check_page_axis(const uint32_t *a, const uint32_t *r, bool device,
         return;
     long double c = exact_page_fold(numerics_real(a, 0), a[1], a[2]), scale = n / 16384.0L;
     long double errors[2] = {INFINITY, INFINITY};
-    int turns = a[1] == SLUICE_ADDRESS_MODE_REPEAT; /* 0 and 1 are one place */
+    int turns = a[1] == SLUICE_ADDRESS_MODE_REPEAT; /* 0 and 1 are the same position */
     for (int turn = -turns; turn <= turns; turn++) {
         long double place = (c + turn) * n;
         errors[0] = fminl(errors[0], axis_error(place - 0.5L, a[1], n, r));
@@ -114,7 +114,7 @@ static void check_page_axis(const uint32_t *a, const uint32_t *r, bool device,
                      "%.9g of %u texels, mode %u", (double)numerics_real(a, 0), a[2], a[1]);
 }
 
-/* dx, dy in uv; 4: width and height; 5: levels; 6: lod; 7: taps at most. */
+/* Arguments 0 to 3: dx, dy in uv; 4: width and height; 5: levels; 6: lod; 7: most taps. */
 static void make_taps(uint64_t i, uint32_t *a)
 {
     uint32_t size = numerics_make_size(i), levels = 1;
@@ -138,7 +138,7 @@ static bool ratio_gives(long double ratio, float most, uint32_t count)
     return count == (uint32_t)exact;
 }
 
-/* How far a ratio is from one that gives this count of samples, relative. */
+/* Relative error of a ratio against ratios that give this sample count. */
 static long double count_error(long double ratio, float most, uint32_t count)
 {
     if (!(most > 1))
@@ -179,7 +179,7 @@ static long double spline(long double x)
     return x >= 1 ? (2 - x) * (2 - x) * (2 - x) / 6 : (3 * x * x * x - 6 * x * x + 4) / 6;
 }
 
-/* What two linear samples (place and weight, twice) weigh texel `k`. */
+/* Weight of texel `k` in two linear samples (position and weight, twice). */
 static long double implied_weight(const uint32_t *r, long double n, long double k)
 {
     long double sum = 0;
@@ -214,7 +214,7 @@ static void make_demand_lod(uint64_t i, uint32_t *a)
     put(a, 4, i % 3 ? (float)(1 << extremes_random(i) % 7) : 1);
 }
 
-/* Promised for sums that are normal numbers, and below 3e38. */
+/* Promised for sums that are normal numbers below 3e38. */
 static void check_demand_lod(const uint32_t *a, const uint32_t *r, bool device,
                              struct extremes_row *rows)
 {
@@ -224,14 +224,14 @@ static void check_demand_lod(const uint32_t *a, const uint32_t *r, bool device,
     for (uint32_t i = 0; i < 4; i++)
         sum += fabsl(numerics_real(a, i));
     if (!(sum <= 2.99e38L && sum >= (device ? 0x1p-100L : 0x1p-126L)))
-        return; /* parts of a smaller one may be denormal, and 0 */
+        return; /* parts of a smaller one may be denormal, and flushed to 0 */
     struct numerics_lods lods = numerics_exact_lods(dx, dy, numerics_real(a, 4));
     extremes_add(rows, (double)fabsl(numerics_real(r, 0) - lods.finest),
                  "dx %g %g dy %g %g, %g to 1", (double)dx[0], (double)dx[1], (double)dy[0],
                  (double)dy[1], (double)numerics_real(a, 4));
 }
 
-/* 4: size, 5: width in texels. Derivatives in uv. */
+/* Arguments 0 to 3: derivatives in uv; 4: size; 5: width in texels. */
 static void make_widen(uint64_t i, uint32_t *a)
 {
     uint32_t size = numerics_make_size(i);
@@ -242,7 +242,8 @@ static void make_widen(uint64_t i, uint32_t *a)
     put(a, 5, exp2f((float)extremes_random(i + 1) / 4294967296.0f * 30 - 16));
 }
 
-/* Narrower than asked for would be finer than what is resident; the longer one must stay. */
+/* A narrower footprint would request finer levels than resident. The longer derivative must not
+ * change. */
 static void check_widen(const uint32_t *a, const uint32_t *r, bool device,
                         struct extremes_row *rows)
 {

@@ -1,11 +1,12 @@
-/* Regions under a sample, and which pixels write. */
+/* Regions under a sample, and pixels that write feedback. */
 #include "extremes/numerics.h"
 
 #include "vulkan/shader_twins.h"
 
 #include <math.h>
 
-/* Arguments 0 to 2: place, below, above; 3: address mode; 4: size; 5, 6: log2 of a region, last. */
+/* Arguments 0 to 2: position, below, above; 3: address mode; 4: size; 5, 6: log2 of a region,
+ * last. */
 static void make_axis(uint64_t i, uint32_t *a)
 {
     uint32_t size = numerics_make_size(i), shift = 2 + extremes_random(i + 1) % 7;
@@ -24,7 +25,7 @@ static void make_region_range(uint64_t i, uint32_t *a)
     a[1] = extremes_bits_of(apron * texel + box);
     a[2] = extremes_bits_of(0.5625f * texel + box);
     const uint64_t pairs = (uint64_t)EXTREMES_SPECIALS * EXTREMES_SPECIALS;
-    if (i < 5 * pairs) { /* of special values, in all modes */
+    if (i < 5 * pairs) { /* special values in all modes */
         uint64_t pair = i % pairs;
         a[0] = extremes_bits_of(extremes_specials[pair % EXTREMES_SPECIALS]);
         a[1] = a[2] = extremes_bits_of(fabsf(extremes_specials[pair / EXTREMES_SPECIALS]));
@@ -38,7 +39,7 @@ static void call_region_range(const uint32_t *a, uint32_t *r)
                           numerics_real(a, 4), a[5], a[6], r);
 }
 
-/* How far a place in [0, size] is from a region, in texels. */
+/* Distance of a position in [0, size] from a region, in texels. */
 static long double distance(long double place, uint32_t region, const uint32_t *a)
 {
     long double width = 1u << a[5], low = region * width, high = low + width;
@@ -47,7 +48,7 @@ static long double distance(long double place, uint32_t region, const uint32_t *
     return place < low ? low - place : place > high ? place - high : 0;
 }
 
-/* The same where the image repeats. */
+/* Distance from a region where the image repeats. */
 static long double distance_around(long double place, uint32_t region, const uint32_t *a)
 {
     long double size = numerics_real(a, 4), nearest = INFINITY;
@@ -62,7 +63,7 @@ static long double clamped(long double x, long double high)
     return x < 0 ? 0 : x > high ? high : x;
 }
 
-/* In texels, of those of 16384 that a float tells apart: larger images and boxes scale it. */
+/* Errors in texels that a float resolves at 16384. Larger images and boxes scale the error. */
 static void add_places(const uint32_t *a, long double error, long double reach,
                        struct extremes_row *rows)
 {
@@ -84,7 +85,7 @@ static void check_region_range(const uint32_t *a, const uint32_t *r, bool device
     long double below = numerics_real(a, 1), above = numerics_real(a, 2);
     bool repeats = a[3] == SLUICE_ADDRESS_MODE_REPEAT;
     if (repeats && r[0] == 0 && r[1] == a[6] && below + above >= size - (1u << a[5])) {
-        add_places(a, 0, 1, rows); /* all of it, rightly */
+        add_places(a, 0, 1, rows); /* all of it, as promised */
         return;
     }
     if (a[3] == SLUICE_ADDRESS_MODE_REPEAT || a[3] == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT)
@@ -103,7 +104,7 @@ static void check_region_range(const uint32_t *a, const uint32_t *r, bool device
     add_places(a, error, fabsl(c) * size + below + above, rows);
 }
 
-/* 7: the other axis's address mode. */
+/* Argument 7: address mode of the other axis. */
 static void make_quick_region(uint64_t i, uint32_t *a)
 {
     make_axis(i, a);
@@ -125,7 +126,7 @@ static void check_quick_region(const uint32_t *a, const uint32_t *r, bool device
     add_places(a, repeats ? distance_around(place, r[0], a) : distance(place, r[0], a), size, rows);
 }
 
-/* Three words mixed as stochastic.glsl documents it, in arithmetic modulo 2^32. */
+/* Mixes three words as stochastic.glsl documents, in arithmetic modulo 2^32. */
 static uint32_t mixed(uint64_t x, uint64_t y, uint64_t z)
 {
     const uint64_t modulus = 1ull << 32;
@@ -135,8 +136,7 @@ static uint32_t mixed(uint64_t x, uint64_t y, uint64_t z)
     return (uint32_t)((h ^ h / 8192) * 0x297A2D39u % modulus);
 }
 
-/* As fragments have it, from here: a compiler that sees the half added might fold it into others.
- */
+/* Adds the half pixel on the host: a compiler that saw the addition might fold it into others. */
 static void add_fragment_place(uint32_t *a)
 {
     for (uint32_t axis = 0; axis < 2; axis++)
@@ -152,7 +152,7 @@ static void make_select_random(uint64_t i, uint32_t *a)
         a[0] = i % 32 == 3 ? 0x3FFFFF : (uint32_t)(i / 32) & 0x3FFFFF;
     a[2] = i % 3 ? extremes_random(i + 2) : (uint32_t)(i / 3);
     uint32_t draw = mixed((a[0] >> 1) + 0x4B000000u, (a[1] >> 1) + 0x4B000000u, a[2]) >> 9;
-    float exact = (float)draw / 8388608.0f; /* the draw itself, and what is next to it */
+    float exact = (float)draw / 8388608.0f; /* the draw itself, and its neighbors */
     float any = i % 7 ? exp2f(-(float)(extremes_random(i + 3) % 24)) : extremes_float(i / 7);
     float near = i % 8 < 2 ? exact : nextafterf(exact, i % 8 < 4 ? 2.0f : -1.0f);
     a[3] = extremes_bits_of(i % 8 < 6 ? near : any);
@@ -172,7 +172,7 @@ static void check_select_random(const uint32_t *a, const uint32_t *r, bool devic
         return;
     uint32_t draw = mixed((a[0] >> 1) + 0x4B000000u, (a[1] >> 1) + 0x4B000000u, a[2]) >> 9;
     bool selected = draw / 8388608.0L < (long double)p;
-    /* Some drivers move the 1 to the other side, where it rounds p to a multiple of 2^-23. */
+    /* Some drivers move the 1 to the other side, which rounds p to a multiple of 2^-23. */
     if (device && p > 0 && p < 1 && fabsl(draw / 8388608.0L - (long double)p) < 0x1p-23L &&
         p * 8388608.0f != floorf(p * 8388608.0f))
         return;
@@ -193,7 +193,7 @@ static void call_select_lattice(const uint32_t *a, uint32_t *r)
     r[0] = r[1] = slc_twin_select_lattice(a[0], a[1], a[2]);
 }
 
-/* The order of frames in an 8x8 block: halves, quarters and eighths in turn, x moved by y. */
+/* Order of frames in an 8x8 block: halves, quarters and eighths in turn, with x shifted by y. */
 static void check_select_lattice(const uint32_t *a, const uint32_t *r, bool device,
                                  struct extremes_row *rows)
 {
@@ -210,7 +210,7 @@ static void check_select_lattice(const uint32_t *a, const uint32_t *r, bool devi
 
 #define AT(i) [(i)-NUMERICS_LOD_COUNT]
 
-/* Footprints have an apron of 1/16 texel for the device's coordinates and for this. */
+/* Footprints have an apron of 1/16 texel for the device's coordinates and for this error. */
 const struct numerics_function numerics_regions[NUMERICS_REGION_COUNT] = {
     AT(NUMERICS_REGION_RANGE) = {"region_range",
                                  {{"place", "texels of 16384", 0.004, 0.004}},

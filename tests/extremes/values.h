@@ -1,4 +1,4 @@
-/** A picture whose texels are the ends of what a half holds, and what each stage makes of them. */
+/** A picture of extreme half values, and the expected value at each stage. */
 #ifndef TESTS_EXTREMES_VALUES_H
 #define TESTS_EXTREMES_VALUES_H
 
@@ -6,16 +6,16 @@
 
 #include <stdbool.h>
 
-#define VALUES_WIDTH 160u /* four tiles of half RGBA, none of them whole but one */
+#define VALUES_WIDTH 160u /* four tiles of half RGBA, only one of them whole */
 #define VALUES_HEIGHT 100u
 #define VALUES_TEXELS (VALUES_WIDTH * VALUES_HEIGHT)
 #define VALUES_LEVELS 8u
 
-/** docs/numerics.md has the same table. */
+/** A row of the table in docs/numerics.md. */
 struct value {
     const char *name;
     uint16_t half;  ///< in the OpenEXR file
-    float in_file;  ///< what that means
+    float in_file;  ///< meaning of `half`
     float in_half;  ///< in a store of half floats
     float in_float; ///< in a store of 32-bit floats
     float in_byte;  ///< in a store of UNORM bytes
@@ -24,10 +24,10 @@ struct value {
 #define VALUES_COUNT 19u
 extern const struct value values[VALUES_COUNT];
 
-/** Which value a texel of a level has in R and G; B and A are 1. */
+/** Returns the value in R and G of a level's texel. B and A are 1. */
 uint32_t value_at(uint32_t level, uint32_t x, uint32_t y);
 
-/** The picture, all levels, as halves; a source for sluiceWriteExrFile. */
+/** Creates a source of the picture with all levels as halves, for sluiceWriteExrFile. */
 void values_source_init(SluiceImageSource *source);
 
 #endif /* TESTS_EXTREMES_VALUES_H */
