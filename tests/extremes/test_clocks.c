@@ -1,4 +1,4 @@
-/* Ten thousand days in every unit, all of it in one instant, and delays beyond every clock. */
+/* Ten thousand days in every unit, runs within one instant, and delays beyond any clock. */
 #include "core/sound.h"
 #include "extremes/note.h"
 
@@ -10,7 +10,7 @@ static bool is_long_run;
 
 enum { DAYS = 10000, TEXTURES = 4 };
 
-/* Of memory after the first tenth of a run. */
+/* Limit of memory growth after the first tenth of a run. */
 static const double GROWTH = 1.125;
 
 static uint64_t mix(uint64_t h, uint64_t value)
@@ -31,7 +31,7 @@ struct app {
     struct fixture f;
     SluiceTextureId ids[TEXTURES];
     uint64_t random, hash, retire;
-    uint64_t peak, early_peak; ///< bytes of the manager: ever, and in the first part
+    uint64_t peak, early_peak; ///< bytes of the manager: over the run, and in its first part
 };
 
 static void open_app(struct app *a, uint64_t delay)
@@ -72,12 +72,12 @@ static void answer(struct app *a, uint64_t time)
     }
 }
 
-/* Maps, unmaps, loads of which some fail; everything that comes out goes into the hash. */
+/* Maps and unmaps tiles; some loads fail. Hashes all results. */
 static void step_app(struct app *a, uint32_t step, uint64_t time, uint64_t timeout)
 {
     feed(a, step, time, timeout);
     CHECK_OK(fixture_to_cancel(&a->f, SLUICE_ALL_TEXTURES));
-    assert_int_equal(a->f.count, 0); /* all are answered at once */
+    assert_int_equal(a->f.count, 0); /* all loads are answered at once */
     CHECK_OK(sluiceCompleteRetireValue(a->f.manager, a->retire));
     CHECK_OK(fixture_to_unmap(&a->f, SLUICE_ALL_TEXTURES, ++a->retire));
     a->hash = mix_list(a->hash, &a->f);
@@ -89,7 +89,7 @@ static void step_app(struct app *a, uint32_t step, uint64_t time, uint64_t timeo
     a->peak = a->f.memory.live_bytes > a->peak ? a->f.memory.live_bytes : a->peak;
 }
 
-/* DAYS days from `start` on, `ticks` per day; a few steps each day. */
+/* Runs DAYS days from `start` on, with `ticks` per day and a few steps each day. */
 static uint64_t live(uint64_t start, uint64_t ticks, uint32_t steps_per_day)
 {
     static struct app a;
@@ -111,7 +111,7 @@ static void ten_thousand_days_are_the_same_in_every_unit(void **state)
 {
     (void)state;
     const uint32_t steps = is_long_run ? 240 : 4;
-    /* per day: days themselves cannot be cut, so steps of a day are the unit there */
+    /* Ticks per day. Whole days could not separate steps, so the coarsest unit is a step. */
     const uint64_t day = UINT64_C(86400);
     const uint64_t units[] = {steps, day, day * 1000, day * 1000000, day * 1000000000};
     const uint64_t all = DAYS * units[4];
@@ -119,8 +119,8 @@ static void ten_thousand_days_are_the_same_in_every_unit(void **state)
     uint32_t wrong = 0, cases = 0;
     for (uint32_t u = 1; u < 5; u++) {
         wrong += live(0, units[u], steps) != expected;
-        wrong +=
-            live(0 - all / 2, units[u], steps) != expected; /* over the wrap, in the last unit */
+        wrong += live(0 - all / 2, units[u], steps) !=
+                 expected; /* across the wrap of the clock in the last unit */
         cases += 2;
     }
     wrong += live(UINT64_MAX - DAYS * units[2] / 3, units[2], steps) != expected;
@@ -129,7 +129,8 @@ static void ten_thousand_days_are_the_same_in_every_unit(void **state)
     assert_int_equal(wrong, 0);
 }
 
-/* Nothing lapses but by timeout 0, nothing is tried again, and it goes on for as long as it may. */
+/* Without passing time, only timeout 0 expires tiles, and nothing is retried. Runs as long as
+ * allowed. */
 static void everything_in_one_instant_stays_sound_and_takes_no_more_memory(void **state)
 {
     (void)state;
@@ -149,7 +150,7 @@ static void everything_in_one_instant_stays_sound_and_takes_no_more_memory(void 
         worst = growth > worst ? growth : worst;
         SluiceStreamedTextureStatistics s = fixture_statistics(&a.f);
         assert_true(s.mappedTotal > 20);
-        if (i % 2) { /* nothing ever lapsed: what has failed waits for the clock */
+        if (i % 2) { /* nothing has expired: failed tiles wait for the clock */
             assert_true(s.failedTotal == s.failedTileCount + s.givenUpTileCount);
             step_app(&a, 0, time + 1, 1000);
             assert_true(fixture_statistics(&a.f).failedTileCount < s.failedTileCount ||
@@ -161,7 +162,7 @@ static void everything_in_one_instant_stays_sound_and_takes_no_more_memory(void 
     assert_true(worst <= GROWTH);
 }
 
-/* A delay that doubles is never beyond half the clock, where later would be earlier. */
+/* A doubling delay never exceeds half of the clock's range, beyond which later would be earlier. */
 static void the_longest_retry_delay_comes_due_and_not_before(void **state)
 {
     (void)state;

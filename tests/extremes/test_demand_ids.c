@@ -1,4 +1,4 @@
-/* Ids of a demand loader when the generations of an index are used up: never another thing's. */
+/* Ids of a demand loader whose index has no generations left never name another object. */
 #include "device/demand_runner.h"
 #include "extremes/note.h"
 
@@ -15,7 +15,7 @@ static SluiceResult fill(void *user, uint32_t page, uint64_t *value)
     return SLUICE_SUCCESS;
 }
 
-/* What was destroyed is free when the launches that may name it are over. */
+/* Runs launches until a destroyed texture's index is free. */
 static void pass_launches(struct runner *r)
 {
     runner_clear(r);
@@ -36,7 +36,7 @@ static void a_texture_of_the_last_generation_is_the_last_of_its_index(void **sta
         ids[i] = runner_add_texture(&r, &image);
         for (uint32_t j = 0; j < i; j++)
             repeated += ids[i] == ids[j];
-        if (i == 1) /* so many generations take 2^32 textures, so the count is moved there */
+        if (i == 1) /* 2^32 textures would take too long, so the counter is set */
             r.loader->textures[(uint32_t)ids[1]].generation = UINT32_MAX - 1;
         if (i == 1)
             ids[1] = (uint64_t)(UINT32_MAX - 1) << 32 | (uint32_t)ids[1];

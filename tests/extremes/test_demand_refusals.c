@@ -1,5 +1,4 @@
-/* Every allocation of every call of a demand loader is refused; the loader goes on with the next.
- */
+/* Refuses every allocation of every call of a demand loader. The next call must work. */
 #include "device/demand_runner.h"
 #include "extremes/note.h"
 #include "support/failing_allocator.h"
@@ -85,7 +84,7 @@ static SluiceResult create_answered(struct life *l)
     return sluiceAddDemandResource(l->r.loader, &info, &l->answered, &l->first_answered);
 }
 
-/* More than the arrays of a loader hold at first. */
+/* Sets more pages than the initial arrays of a loader hold. */
 static SluiceResult set_pages(struct life *l)
 {
     static const uint8_t bytes[5000];
@@ -150,7 +149,7 @@ static SluiceResult destroy(struct life *l)
     return result;
 }
 
-/* In the order of a life; launches between show what was made and changed. */
+/* Calls in the order of a loader's life. Launches between them use what was created and changed. */
 static SluiceResult (*const calls[])(struct life *) = {
     create_texture,  create_variant, create_grid, create_resource, create_bytes, create_large,
     create_answered, set_pages,      launch,      launch,          launch,       preload,
@@ -174,12 +173,12 @@ static void open_life(struct life *l)
     runner_init(&l->r, &h, &info);
 }
 
-/* Which of two images level 0 shows, at a texel where they differ. */
+/* Checks which of two images level 0 shows, at a texel where they differ. */
 static void check_shown(struct life *l, struct runner_image *image)
 {
     runner_clear(&l->r);
     runner_add_texel(&l->r, l->texture, 300, 300, 0, 299, 299);
-    /* After a refused image of pages the device is not asked for 60 launches. */
+    /* After a refused image of pages, the loader waits 60 launches before it tries again. */
     for (uint32_t i = 0;
          i < 3 || (i < 200 && (l->r.requests.missingCount || l->r.requests.lodBias > 0.0f)); i++)
         CHECK_OK(launch(l));
@@ -201,7 +200,7 @@ static void aim(struct life *l)
         runner_add_page(&l->r, l->first_large + i * 50);
 }
 
-/* With `step` all calls before it have what they need, and it has not, n times. */
+/* Lets call `step` run with n allocations refused in turn, after all earlier calls succeeded. */
 static uint64_t press(struct life *l, uint32_t step, bool lasting)
 {
     for (uint64_t n = 0;; n++) {
@@ -214,7 +213,7 @@ static uint64_t press(struct life *l, uint32_t step, bool lasting)
         if (result == SLUICE_SUCCESS && !refused)
             return n;
         if (result == SLUICE_SUCCESS && calls[step] != launch)
-            return n + 1; /* it did without */
+            return n + 1; /* succeeded without it */
         if (result != SLUICE_SUCCESS)
             CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
     }

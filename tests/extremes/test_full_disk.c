@@ -1,5 +1,5 @@
-/* A disk that is full after k bytes: baking and recording say so, name the file, and go on later.
- */
+/* A disk that is full after k bytes: baking and recording report it, name the file, and work again
+ * later. */
 #define _XOPEN_SOURCE 700
 
 #include "bake/baked.h"
@@ -28,7 +28,7 @@ static void keep(void *user, SluiceLogSeverity severity, const char *message)
         snprintf(told->last, sizeof told->last, "%s", message);
 }
 
-/* The system's own limit, which every write that goes beyond meets. */
+/* Sets the system's own limit for files, which every larger write exceeds. */
 static void limit_files(rlim_t size)
 {
     struct rlimit limit;
@@ -55,10 +55,10 @@ struct scene {
     char picture[256], path[256], whole[256];
     uint8_t *samples;
     SluiceBakeInfo info;
-    SluiceBakeReport report; ///< of the whole store
+    SluiceBakeReport report; ///< report of the whole store
 };
 
-/* A picture, and the store that it should become. */
+/* A picture, and the store expected from it. */
 static void scene_init(struct scene *s)
 {
     uint32_t random = 9;
@@ -97,7 +97,8 @@ static void check_same_levels(const char *a, const char *b)
     }
 }
 
-/* With room for k bytes, until there is enough: the disk gets back what there was no use for. */
+/* Bakes with room for k bytes, for growing k until it suffices. Failed attempts free their
+ * space. */
 static void a_bake_onto_a_full_disk_names_the_file_and_leaves_none(void **state)
 {
     (void)state;
@@ -126,7 +127,7 @@ static void a_bake_onto_a_full_disk_names_the_file_and_leaves_none(void **state)
     scene_finish(&s);
 }
 
-/* Each time anew: what was under the name stays until the new file is whole. */
+/* The existing file stays until the new one is complete. */
 static void a_bake_onto_a_full_disk_leaves_what_was_there(void **state)
 {
     (void)state;
@@ -141,12 +142,12 @@ static void a_bake_onto_a_full_disk_leaves_what_was_there(void **state)
         limit_files(s.report.outputSize * i / 12);
         CHECK_RESULT(bake_with(&s.info, NULL, &told, NULL), SLUICE_ERROR_IO);
         limit_files(RLIM_INFINITY);
-        check_same_levels(s.path, s.whole); /* the one of before */
+        check_same_levels(s.path, s.whole); /* still the older store */
     }
     scene_finish(&s);
 }
 
-/* A device that is always full, and one that is no file. */
+/* A device that is always full, and one that is no regular file. */
 static void devices_are_no_stores(void **state)
 {
     (void)state;
@@ -159,7 +160,7 @@ static void devices_are_no_stores(void **state)
     scene_finish(&s);
 }
 
-/* From a file, with a second pass for the cut-out: what libvips needs is its own. */
+/* Bakes from a file with a second pass for the cut-out. libvips allocates for itself. */
 static void a_bake_of_a_file_survives_every_refused_allocation(void **state)
 {
     (void)state;
@@ -200,7 +201,7 @@ static void release_no_heap(void *user, uint32_t id)
     (void)user, (void)id;
 }
 
-/* A manager with a recording of a few hundred calls; what the recording answers at its end. */
+/* Records a few hundred calls of a manager. Returns the result at the recording's end. */
 static SluiceResult record(const char *path, const SluiceAllocationCallbacks *memory)
 {
     SluiceStreamedTextureManagerCreateInfo info = {

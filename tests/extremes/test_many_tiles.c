@@ -1,4 +1,4 @@
-/* As many textures, tiles and texels as there may be: what is not looked at costs nothing. */
+/* The largest numbers of textures, tiles and texels. Invisible ones must cost nothing. */
 #include "core/sound.h"
 #include "extremes/note.h"
 
@@ -6,15 +6,15 @@
 
 static bool is_long_run;
 
-/* Bytes that a texture takes from which nothing was ever wanted; docs/limits.md promises it. */
+/* Limit of bytes for a texture of which nothing was ever wanted. docs/limits.md promises it. */
 enum { IDLE_BOUND = 256 };
 
-/* And what one that is looked at takes for each of its tiles and feedback regions. */
+/* Limits for visible textures, by tile and by feedback region. */
 enum { BYTES_PER_TILE = 8, BYTES_PER_REGION = 72 };
 
 enum { MANY = 100000, SEEN = 200, FRAMES = 60 };
 
-/* 1365 tiles and packed ones. */
+/* A texture of 1365 tiles and packed ones. */
 static SluiceStreamedTextureDesc large(void)
 {
     return full_chain(4096, 4096, 128, 128);
@@ -26,7 +26,7 @@ static uint64_t mix(uint64_t h, uint64_t value)
     return h ^ h >> 29;
 }
 
-/* A camera that passes the first textures, ten at a time; a hash of all that it caused. */
+/* Moves a camera past the first textures, ten at a time. Returns a hash of all results. */
 static uint64_t pass_by(struct fixture *f, const SluiceTextureId *ids)
 {
     uint64_t h = 1, random = 3;
@@ -46,8 +46,8 @@ static uint64_t pass_by(struct fixture *f, const SluiceTextureId *ids)
 }
 
 struct cost {
-    uint64_t hash, calls, bytes;  ///< of the camera: decisions, allocations, bytes more than before
-    uint64_t idle_bytes, virtual; ///< before it: bytes, tiles
+    uint64_t hash, calls, bytes;  ///< due to the camera: decisions, allocations, additional bytes
+    uint64_t idle_bytes, virtual; ///< before the camera: bytes, tiles
 };
 
 static struct cost cost_of(uint32_t count)
@@ -72,7 +72,7 @@ static struct cost cost_of(uint32_t count)
     return cost;
 }
 
-/* The same camera in a manager that has nothing else. */
+/* Compares with the camera in a manager without other textures. */
 static void a_hundred_million_tiles_out_of_sight_change_nothing(void **state)
 {
     (void)state;
@@ -115,12 +115,12 @@ static void a_hundred_thousand_textures_come_and_go_in_the_same_memory(void **st
     fixture_close(&f);
 }
 
-/* Sizes between which rounding, 16, 20 and 31 bits lie. */
+/* Sizes around rounding borders and around 16, 20 and 31 bits. */
 static const uint32_t sizes[] = {1,     2,     3,     127,   128,   129,    255,     16381,  16384,
                                  20011, 32749, 32768, 65536, 65537, 131071, 1048573, 1048576};
 enum { SIZE_COUNT = sizeof sizes / sizeof sizes[0] };
 
-/* By the definition: one level after the other. */
+/* Counts by definition, level by level. */
 static uint64_t count_tiles(const SluiceStreamedTextureDesc *d)
 {
     uint64_t count = d->packedTileCount, width = d->width, height = d->height;
@@ -133,7 +133,7 @@ static uint64_t count_tiles(const SluiceStreamedTextureDesc *d)
     return count;
 }
 
-/* The last tile of level 0 is looked at: it, its parents and the packed ones are all that comes. */
+/* Streams the last tile of level 0: only this tile, its parents and packed tiles may load. */
 static void stream_last_tile(struct fixture *f, const SluiceStreamedTextureDesc *desc)
 {
     SluiceTextureId id = fixture_add(f, desc);
@@ -151,7 +151,7 @@ static void stream_last_tile(struct fixture *f, const SluiceStreamedTextureDesc 
     CHECK_OK(sluiceRemoveStreamedTexture(f->manager, id, 0));
 }
 
-/* Feedback in at most 64 x 64 regions, and the nodes of a texture within a few megabytes. */
+/* Limits feedback to 64 x 64 regions, and the nodes of a texture to a few megabytes. */
 static uint32_t try_size(struct fixture *f, uint32_t width, uint32_t height, uint32_t tile)
 {
     SluiceStreamedTextureDesc desc = full_chain(width, height, tile, tile);
@@ -190,7 +190,7 @@ static void every_size_has_the_tiles_that_it_should_and_shows_its_last_one(void 
     fixture_close(&f);
 }
 
-/* The largest there is, in tiles of 8 bits: 22 million tiles, of which 21 are looked at. */
+/* The largest texture, with tiles of 8 bits: 22 million tiles, of which 21 are visible. */
 static void the_largest_texture_is_streamed_to_a_texel_of_its_last_level(void **state)
 {
     (void)state;

@@ -1,6 +1,7 @@
 /*
- * The same functions on a device. Bounds are those of docs/numerics.md: what Vulkan asks of float
- * division, sqrt, log2 and exp2 ("Precision of Individual Operations"), and what cancels in them.
+ * Tests the functions of numerics.h on a device. Bounds are those of docs/numerics.md: Vulkan's
+ * precision of float division, sqrt, log2 and exp2 ("Precision of Individual Operations"), and
+ * cancellation.
  */
 #include "device/conform.h"
 #include "extremes/numerics.h"
@@ -36,7 +37,7 @@ static void caller_finish(struct caller *c)
     harness_buffer_finish(c->h, &c->calls);
 }
 
-/* Cases [first, first + count), at most CAPACITY. */
+/* Runs cases [first, first + count), at most CAPACITY. */
 static void run_cases(struct caller *c, uint32_t function, uint64_t first, uint32_t count,
                       struct extremes_row *rows)
 {

@@ -1,4 +1,5 @@
-/* Conversions of texels, over the whole range of float: the largest error of each, in its steps. */
+/* Conversions of texels over the whole range of float: the largest error of each, in steps of the
+ * format. */
 #include "extremes/extremes.h"
 
 #include "base/alloc.h"
@@ -21,7 +22,7 @@ static double half_value(uint32_t half)
     return half & 0x8000 ? -magnitude : magnitude;
 }
 
-/* From a half to the next, at a value. */
+/* Distance from a half to the next one, at a value. */
 static double half_step(double value)
 {
     int exponent = 0;
@@ -29,7 +30,7 @@ static double half_step(double value)
     return ldexp(1, (exponent < -13 ? -13 : exponent) - 11);
 }
 
-/* In steps; what saturates and NaN as half.h has it. */
+/* Error in steps. Saturation and NaN follow half.h. */
 static double half_error(double value, uint16_t half)
 {
     double got = half_value(half);
@@ -55,7 +56,7 @@ static void every_half_becomes_itself(void **state)
     extremes_end(&row);
 }
 
-/* In the long form every float there is. */
+/* The long form tests every float. */
 static void floats_become_the_nearest_half(void **state)
 {
     (void)state;
@@ -72,7 +73,7 @@ static void floats_become_the_nearest_half(void **state)
     extremes_end(&row);
 }
 
-/* One that is special, or one of `count` between all of them. */
+/* Returns a special half, or one of `count` evenly spaced ones. */
 static uint16_t some_half(uint32_t i, uint32_t count)
 {
     static const uint16_t halves[] = {0,      0x8000, 1,      0x8001, 0x3FF,  0x400,  0x3C00,
@@ -81,7 +82,7 @@ static uint16_t some_half(uint32_t i, uint32_t count)
     return i < special ? halves[i] : (uint16_t)((uint64_t)i * 65536 / count + i % 3);
 }
 
-/* Infinities of one sign stay; what remains of two signs is a NaN, which counts as 0. */
+/* Infinities of equal sign stay. Infinities of opposite signs give NaN, which counts as 0. */
 static double exact_mean(double a, double b)
 {
     return ((isnan(a) ? 0 : a) + (isnan(b) ? 0 : b)) / 2;
@@ -101,7 +102,7 @@ static void check_pairs(struct slc_mip_chain *chain, const SluiceAllocationCallb
         double a = half_value(texels[2 * i]), b = half_value(texels[2 * i + 1]);
         double mean = exact_mean(a, b), error = half_error(mean, means[i]);
         if (mean == 0 && means[i] == 0)
-            error = 0; /* of either sign */
+            error = 0; /* zero of either sign */
         if (error > row->worst || row->cases == 0)
             extremes_add(row, error, "%04x and %04x", texels[2 * i], texels[2 * i + 1]);
         else
@@ -124,7 +125,7 @@ static void means_of_pairs_of_halves_are_nearest(void **state)
     extremes_end(&row);
 }
 
-/* A float of 5 bits of exponent, without a sign: its steps at a value. */
+/* Step at a value of an unsigned float with 5 bits of exponent. */
 static double small_step(double value, int mantissa_bits)
 {
     int exponent = 0;
@@ -180,7 +181,7 @@ static double ufloat_error(const float rgba[4], const float got[4])
     return worst;
 }
 
-/* One exponent for all: the step is that of the largest. */
+/* All components share an exponent. The step is that of the largest. */
 static double shared_error(const float rgba[4], const float got[4])
 {
     double wanted[3], largest = 0, worst = 0;
@@ -206,7 +207,7 @@ static double float_error(const float rgba[4], const float got[4])
     return worst;
 }
 
-/* Half a step; where floats carry what was decoded, a little more. */
+/* Half a step; slightly more if floats carry the decoded value. */
 static const struct conversion conversions[] = {
     {"c.r8_unorm.rounding", SLUICE_FORMAT_R8_UNORM, byte_error, 0.50002},
     {"c.a2b10g10r10_unorm.rounding", SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32, ten_bit_error, 0.5001},
@@ -216,7 +217,7 @@ static const struct conversion conversions[] = {
     {"c.r32_sfloat.rounding", SLUICE_FORMAT_R32G32B32A32_SFLOAT, float_error, 0},
 };
 
-/* Numbers from all of float, and as many from 0 to 1, where most steps are. */
+/* Numbers from the whole range of float, and as many from 0 to 1, where most steps are. */
 static void make_color(uint64_t i, float rgba[4])
 {
     for (uint64_t c = 0; c < 4; c++) {

@@ -1,4 +1,4 @@
-/* Comparisons of pictures, and predictions of feedback, where numbers are largest and smallest. */
+/* Picture comparisons and feedback predictions with the largest and smallest numbers. */
 #include "extremes/extremes.h"
 
 #include "support/test.h"
@@ -23,7 +23,7 @@ static SluicePicturePair pair_of(const float *a, const float *b, float peak)
                                .peak = peak};
 }
 
-/* Of all windows of two constants, with K1 = 0.01: the variances are 0. */
+/* SSIM of constant windows with K1 = 0.01: the variances are 0. */
 static double constant_ssim(double a, double b)
 {
     const double c1 = 0.01 * 0.01;
@@ -44,7 +44,7 @@ static void fill(float *picture, float value)
 static const float peaks[] = {0x1p-149f, FLT_MIN, 1e-20f, 1, 65504, 1e30f, FLT_MAX};
 #define PEAKS (sizeof peaks / sizeof peaks[0])
 
-/* All pairs of special values, and each beside the peaks themselves. */
+/* All pairs of special values, and each with the peaks. */
 static void ssim_of_constants_is_that_of_the_formula(void **state)
 {
     (void)state;
@@ -67,7 +67,8 @@ static void ssim_of_constants_is_that_of_the_formula(void **state)
     extremes_end(&row);
 }
 
-/* FLIP of constants depends on what they count as alone: bounded, symmetric, 0 for the same. */
+/* FLIP of constants depends only on the values that they count as. It is bounded, symmetric, and 0
+ * for equal values. */
 static void flip_of_constants_depends_on_what_they_count_as(void **state)
 {
     (void)state;
@@ -91,7 +92,7 @@ static void flip_of_constants_depends_on_what_they_count_as(void **state)
     extremes_end(&row);
 }
 
-/* A picture of light, and all of it times a power of two: the same, whatever the exponent. */
+/* Scaling a picture of light by a power of two must not change the result. */
 static void light_of_any_scale_is_compared_alike(void **state)
 {
     (void)state;
@@ -118,7 +119,7 @@ static void light_of_any_scale_is_compared_alike(void **state)
     extremes_end(&row);
 }
 
-/* One step in one of n values, and all of them as far apart as they can be. */
+/* One step in one of n values, and maximum difference in all values. */
 static void psnr_of_any_size_is_that_of_the_formula(void **state)
 {
     (void)state;
@@ -148,7 +149,7 @@ static void psnr_of_any_size_is_that_of_the_formula(void **state)
     extremes_end(&row);
 }
 
-/* Draws that are independent: (1 - p)^n, in units of what feedback_rate.h states. */
+/* Independent draws: (1 - p)^n, in units of the error that feedback_rate.h states. */
 static void predicted_misses_are_those_of_long_double(void **state)
 {
     (void)state;

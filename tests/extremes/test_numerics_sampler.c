@@ -1,7 +1,7 @@
 /*
- * What this device's own sampler reads where levels change, far from the ordinary, and in textures
- * that are long, thin or uneven: it is marked, and not coarser than it. How far a sampler's level
- * is off the formula that marks go by is seen in which levels it reads.
+ * Reads of this device's sampler at level borders, for extreme footprints, and in long, thin or
+ * uneven textures. Every read level must be marked, and marks must not be coarser. The read levels
+ * show the sampler's deviation from the formula of the marks.
  */
 #include "device/suite.h"
 #include "device/truth.h"
@@ -18,7 +18,7 @@ struct shape {
     uint32_t width, height, region_width, region_height;
 };
 
-/* 32 to 127 tiles each: what truth can tell apart. */
+/* 32 to 127 tiles each, as many as truth can distinguish. */
 static const struct shape shapes[] = {
     {16383, 1, 512, 8}, {1, 16383, 8, 512}, {16384, 2, 512, 8}, {12289, 3, 256, 8},   {1, 1, 8, 8},
     {511, 511, 64, 64}, {2047, 17, 64, 32}, {3, 4097, 8, 128},  {1024, 512, 128, 128}};
@@ -38,7 +38,7 @@ static double draw(uint64_t number)
     return (double)extremes_random(number) / 4294967296.0;
 }
 
-/* At a whole level, within 2^-1 to 2^-24 of it on either side. */
+/* At a whole level, or within 2^-1 to 2^-24 of it on either side. */
 static double near_whole_level(uint64_t i, uint32_t count)
 {
     double away = exp2(-(double)(1 + extremes_random(i) % 24));
@@ -59,7 +59,7 @@ static void make_sample(struct conform_sample *sample, struct SluiceTextureEntry
 {
     double length = exp2(near_whole_level(7 * i, e.mipLevelCount)), angle = draw(7 * i + 3) * 6.3;
     double ratio = i % 2 ? 1 : exp2(draw(7 * i + 4) * 5);
-    if (i % 4 == 0) /* huge and small */
+    if (i % 4 == 0) /* huge and small lengths */
         length = exp2(draw(7 * i + 5) * 60 - 40);
     if (i % 3 == 0)
         angle = 0;
@@ -73,7 +73,7 @@ static void make_sample(struct conform_sample *sample, struct SluiceTextureEntry
         .maxAnisotropy = anisotropy};
 }
 
-/* The finest and the coarsest level that has a tile; false: none has. */
+/* Finds the finest and the coarsest level with a tile. Returns false if there is none. */
 static bool levels_touched(const struct oracle_tiles *t, uint32_t *fine, uint32_t *coarse)
 {
     bool any = false;
@@ -87,7 +87,8 @@ static bool levels_touched(const struct oracle_tiles *t, uint32_t *fine, uint32_
     return any;
 }
 
-/* By how much the sampler's level must be finer than the formula's, or coarser, to read these. */
+/* Adds how much finer or coarser than the formula's the sampler's level must be to read these
+ * levels. */
 static void add_levels(struct comparison *c, const struct conform_sample *sample)
 {
     uint32_t fine, coarse;
@@ -97,7 +98,7 @@ static void add_levels(struct comparison *c, const struct conform_sample *sample
     double last = sample->entry.mipLevelCount - 1;
     double below = fmin(lods.finest, last) - (fine + 1.0);
     double above = (coarse - 1.0) - fmax(lods.coarsest, 0);
-    if (sample->in.maxAnisotropy > 1) /* docs/feedback.md: up to the level without it */
+    if (sample->in.maxAnisotropy > 1) /* docs/feedback.md: up to the level without anisotropy */
         above = (coarse - 1.0) - fmax(lods.isotropic, 0);
     const struct SluiceTextureEntry *e = &sample->entry;
     extremes_add(&c->finer, below, "level %u of %ux%u, LOD %g, %g to 1", fine, e->width, e->height,
@@ -131,7 +132,7 @@ static void compare(struct comparison *c, struct SluiceTextureEntry e, uint64_t 
     for (uint32_t i = 0; i < SAMPLES; i++)
         make_sample(&c->samples[i], e, turn * SAMPLES + i, anisotropy);
     truth_run(&c->truth, CONFORM_STAGE_COMPUTE, c->samples, SAMPLES);
-    for (uint32_t done = 0; done < SAMPLES;) /* fewer where no more maps fit */
+    for (uint32_t done = 0; done < SAMPLES;) /* fewer if no more maps fit */
         done += conform_run(&c->conform, CONFORM_STAGE_COMPUTE, c->samples + done, SAMPLES - done,
                             check_sample, c);
 }
@@ -154,7 +155,7 @@ static void compare_shapes(struct harness *h, struct comparison *c, const float 
     conform_finish(&c->conform);
 }
 
-/* Marks allow samplers to be 1/8 of a level finer than the formula, and 1/8 coarser. */
+/* Marks allow for samplers 1/8 of a level finer or coarser than the formula. */
 static void isotropic_samplers_read_no_level_that_is_not_marked(void **state)
 {
     struct comparison *c = &comparison;

@@ -1,5 +1,4 @@
-/* A real device whose memory ends while pictures are streamed: what is shown is coarser and right.
- */
+/* A real device runs out of memory while streaming: the picture is coarser, but correct. */
 #include "device/scene.h"
 #include "extremes/failing_layer.h"
 #include "extremes/note.h"
@@ -8,7 +7,8 @@ enum { SIZE = 1024, RECOVERY = 150 };
 
 static const struct scene_aim fine = {0.05, 0.05, 0.9, 0.9, 0.2, 0.3, 0, 0};
 
-/* With memory for so many bytes of tiles. How many samples are not as sharp as they want to be. */
+/* Streams with memory for a number of bytes of tiles. Returns the number of samples that are
+ * coarser than requested. */
 static uint32_t stream_with(struct harness *h, uint64_t memory, uint32_t *frames)
 {
     struct scene scene;
@@ -23,7 +23,7 @@ static uint32_t stream_with(struct harness *h, uint64_t memory, uint32_t *frames
     scene_aim(&scene, t, SCENE_SAMPLES, &fine);
     for (uint32_t i = 0; i < 20; i++) {
         scene_settle(&scene, 1);
-        scene_check_levels(&scene); /* every texel is of the level that it says */
+        scene_check_levels(&scene); /* every texel must belong to the level it claims */
     }
     uint32_t missing = scene_missing(&scene);
     SluiceVulkanStreamerStatistics s = {.structSize = sizeof s};
@@ -46,7 +46,7 @@ static void memory_that_ends_is_a_coarser_picture_until_there_is_more(void **sta
     CHECK_OK(harness_set_context(
         h, &(SluiceVulkanContextCreateInfo){.pfnGetInstanceProcAddr = failing_layer_get}));
     h->quiet = true;
-    static const uint64_t sizes[] = {0, 3u << 20, 16u << 20}; /* of 85 tiles, 5.6 MB */
+    static const uint64_t sizes[] = {0, 3u << 20, 16u << 20}; /* for 85 tiles, 5.6 MB */
     for (; cases < 3; cases++) {
         uint32_t frames;
         coarse += stream_with(h, sizes[cases], &frames) > 0;

@@ -1,5 +1,5 @@
-/* A real device, each of whose calls fails once, or from some call on: streamer and demand loader.
- */
+/* Streamer and demand loader on a real device. Each call fails once, or permanently from some call
+ * on. */
 #include "device/demand_runner.h"
 #include "device/pattern.h"
 #include "extremes/failing_layer.h"
@@ -66,13 +66,13 @@ static SluiceResult frame(SluiceVulkanStreamer *streamer)
         result = sluiceEndStreamingFrame(streamer, commands);
     assert_int_equal(h.EndCommandBuffer(commands), VK_SUCCESS);
     if (result != SLUICE_SUCCESS)
-        return result; /* it is never submitted */
+        return result; /* never submitted */
     submit(commands, frame.semaphore, frame.signalValue);
     wait_for(frame.semaphore, frame.signalValue);
     return SLUICE_SUCCESS;
 }
 
-/* The first error of a streamer's life. */
+/* Streams, and returns the first error. */
 static SluiceResult live_streaming(SluiceImageSource *source)
 {
     SluiceVulkanStreamer *streamer;
@@ -83,7 +83,7 @@ static SluiceResult live_streaming(SluiceImageSource *source)
         result = sluiceAddVulkanTexture(streamer, &info, &texture);
     for (uint32_t i = 0; i < FRAMES && result == SLUICE_SUCCESS; i++)
         result = frame(streamer);
-    if (streamer) { /* and what a program does that shuts down: it returns */
+    if (streamer) { /* a program that shuts down waits: the wait must return */
         SluiceResult idle = sluiceWaitVulkanStreamerIdle(streamer);
         assert_true(idle == SLUICE_SUCCESS || idle == SLUICE_ERROR_DEVICE_LOST);
         SluiceVulkanStreamerStatistics statistics = {.structSize = sizeof statistics};
@@ -107,7 +107,7 @@ static void a_streamer_on_a_device_that_is_lost_can_be_destroyed(void **state)
             CHECK_OK(result);
             break;
         }
-        /* those after the last frame are not asked for by one: three of them are waits */
+        /* the last frame makes no calls after these; three of them are waits */
         untold += result == SLUICE_SUCCESS && failing_layer.calls > n + 3;
         assert_true(result == SLUICE_SUCCESS || result == SLUICE_ERROR_DEVICE_LOST);
         cases++;
@@ -132,7 +132,8 @@ static SluiceResult create_loader(SluiceDemandLoader **loader)
     return result == SLUICE_SUCCESS ? sluiceCreateDemandLoader(&info, loader) : result;
 }
 
-/* Launches until nothing is missing, going on after errors that are no loss; the first error. */
+/* Launches until nothing is missing, and continues after errors that lose nothing. Returns the
+ * first error. */
 static SluiceResult launch(struct runner *r, bool *is_complete)
 {
     SluiceResult first = SLUICE_SUCCESS;
@@ -153,7 +154,7 @@ static SluiceResult launch(struct runner *r, bool *is_complete)
     return first;
 }
 
-/* The first error of a loader's life. */
+/* Runs a loader, and returns the first error. */
 static SluiceResult live_on_demand(struct runner_image *image, bool *is_complete)
 {
     SluiceDemandLoader *loader;

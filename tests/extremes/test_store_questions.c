@@ -1,5 +1,4 @@
-/* What may be asked of stores where there is no memory, and pools that many sources read through.
- */
+/* Queries of stores without memory, and pools shared by many sources. */
 #include "extremes/note.h"
 #include "store/stores.h"
 #include "support/failing_allocator.h"
@@ -52,7 +51,7 @@ static void questions_about_a_store_take_no_memory(void **state)
     scratch_finish(&scratch);
 }
 
-/* Sources of one pool: what a read lacked, it has the next time. */
+/* Sources of one pool: a read that lacked memory succeeds the next time. */
 static SluiceResult read_through_pool(const char *path, struct failing_allocator *memory)
 {
     static unsigned char texels[65536];

@@ -1,4 +1,4 @@
-/* A device whose memory ends, and one that is lost, while a streamer uses it. */
+/* A device that runs out of memory, and one that is lost, while a streamer uses it. */
 #include "extremes/gallery.h"
 #include "extremes/note.h"
 #include "support/streamer_manager.h"
@@ -21,7 +21,8 @@ static void open_gallery(SluiceResidencyMode mode)
         CHECK_OK(gallery_add(&g, t));
 }
 
-/* The coarsest level that any region of the textures shows; 255: one shows nothing. */
+/* Returns the coarsest level that any region of the textures shows; 255: some region shows
+ * nothing. */
 static uint8_t coarsest(void)
 {
     uint8_t worst = 0;
@@ -43,7 +44,8 @@ static SluiceResult run_frames(uint32_t count)
     return result;
 }
 
-/* Memory for so many heaps and no more, and later for all. Frames until everything is sharp. */
+/* Runs with memory for `heaps` heaps, later for all. Returns the frames until everything is
+ * sharp. */
 static uint32_t starve(SluiceResidencyMode mode, uint32_t heaps, bool *is_coarse)
 {
     open_gallery(mode);
@@ -71,7 +73,7 @@ static void memory_that_ends_is_a_coarser_picture_until_there_is_more(void **sta
 {
     (void)state;
     uint32_t coarse = 0, cases = 0, slowest = 0;
-    for (uint32_t m = 0; m < 2; m++) /* dense images have their memory or are not there */
+    for (uint32_t m = 0; m < 2; m++) /* dense images have their memory, or are not created */
         for (uint32_t heaps = 0; heaps < 12; heaps++, cases++) {
             bool is_coarse;
             uint32_t frames = starve(modes[m], heaps, &is_coarse);
@@ -83,7 +85,7 @@ static void memory_that_ends_is_a_coarser_picture_until_there_is_more(void **sta
     assert_true(coarse >= 8);
 }
 
-/* Tiles that wait for memory wait no longer when nobody wants them, or their texture is gone. */
+/* Tiles that wait for memory stop waiting when they are unwanted, or their texture is removed. */
 static void what_waits_for_memory_ends_with_the_wish_for_it(void **state)
 {
     (void)state;
@@ -125,7 +127,7 @@ static void a_texture_without_memory_can_be_added_when_there_is_some(void **stat
         g.fake.memory_limit = g.fake.live_memory;
         for (uint32_t i = 0; i < 5; i++) {
             SluiceResult result = gallery_add(&g, 1);
-            if (result == SLUICE_SUCCESS) { /* sparse: memory comes later */
+            if (result == SLUICE_SUCCESS) { /* sparse: memory is allocated later */
                 assert_int_equal(m, 0);
                 break;
             }
@@ -143,7 +145,7 @@ static void a_texture_without_memory_can_be_added_when_there_is_some(void **stat
     }
 }
 
-/* A life in which every call is made; the first error. */
+/* Makes every call of a streamer's life. Returns the first error. */
 static SluiceResult live(SluiceResidencyMode mode)
 {
     SluiceResult result = gallery_create(&g, mode);
@@ -160,7 +162,7 @@ static SluiceResult live(SluiceResidencyMode mode)
     return result;
 }
 
-/* What a program does that shuts down, after whatever went wrong. */
+/* Shuts down like a program, after any error. */
 static void shut_down(void)
 {
     if (!g.streamer)

@@ -1,5 +1,4 @@
-/* Every allocation of a streamer is refused once, and from then on, in every call that makes one.
- */
+/* Refuses every allocation of every call of a streamer, once or from then on. */
 #include "extremes/gallery.h"
 #include "extremes/note.h"
 #include "vulkan/fake_vulkan.h"
@@ -11,7 +10,7 @@ static const SluiceResidencyMode modes[] = {
 
 static struct gallery g; /* large */
 
-/* The n-th allocation from here on is refused; with `lasting` all after it, too. */
+/* Refuses the n-th allocation from here; with `lasting` later ones, too. */
 static void refuse(uint64_t n, bool lasting)
 {
     g.memory.refuse_from = g.memory.calls + n;
@@ -23,7 +22,8 @@ static bool was_refused(void)
     return g.memory.calls > g.memory.refuse_from;
 }
 
-/* A call is made with room for 0, 1, 2, ... allocations until none is refused; the refusals. */
+/* Makes a call with 0, 1, 2, ... allowed allocations until none is refused. Returns the number of
+ * refusals. */
 static uint64_t press(SluiceResult (*call)(struct gallery *), bool lasting)
 {
     for (uint64_t n = 0;; n++) {
@@ -83,10 +83,11 @@ static void creating_and_adding_survive_every_refused_allocation(void **state)
         added += press(add_follower, i % 2);
         uint64_t array = press(gallery_add_array, i % 2);
         assert_int_equal(press(get_sampler, i % 2), 1);
-        assert_int_equal(press(get_sampler, i % 2), 0); /* it is there now */
+        assert_int_equal(press(get_sampler, i % 2), 0); /* already exists */
         assert_true(created > 20 && added > 0 && array > 0);
         refusals += created + added + array;
-        for (uint32_t frame = 0; frame < FRAMES; frame++) /* nothing is missing after all that */
+        for (uint32_t frame = 0; frame < FRAMES;
+             frame++) /* nothing may be missing after all refusals */
             CHECK_OK(gallery_frame(&g));
         assert_true(gallery_statistics(&g).mappedTileCount >= 4 * GALLERY_TILES);
         gallery_finish(&g);
@@ -94,7 +95,7 @@ static void creating_and_adding_survive_every_refused_allocation(void **state)
     note("streamer: refused allocations of create and add", refusals, 0, 0);
 }
 
-/* Textures come and go between the frames; the first error. */
+/* Adds and removes textures between frames. Returns the first error. */
 static SluiceResult live(void)
 {
     SluiceResult result = SLUICE_SUCCESS;
@@ -114,8 +115,8 @@ static SluiceResult live(void)
     return result;
 }
 
-/* What is refused is told, or made good: then everything is there in the end. A poor device has
- * memory for few pages meanwhile. */
+/* A refused allocation is reported or compensated: in the end everything is resident. A poor device
+ * has memory for few pages meanwhile. */
 static bool survive_frames(uint64_t n, bool lasting, bool is_poor)
 {
     gallery_init(&g);
@@ -158,7 +159,7 @@ static void frames_survive_every_refused_allocation(void **state)
     note("streamer: refused allocations of frames", refusals, 0, 0);
 }
 
-/* What the list of allocations says of them. */
+/* Functions that the list of allocations marks as allocating nothing. */
 static void questions_take_no_memory(void **state)
 {
     (void)state;

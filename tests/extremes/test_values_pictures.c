@@ -1,6 +1,6 @@
 /*
- * The ends of what a half holds, from an OpenEXR file through the baker, a store, a streamer and a
- * shader to a comparison of pictures: what becomes of each value at each stage.
+ * Extreme half values on their way from an OpenEXR file through baker, store, streamer and shader
+ * to a comparison of pictures. Checks each value at each stage.
  */
 #include "bake/baked.h"
 #include "device/scene.h"
@@ -21,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the picture becomes on its way, and where. */
+/* Forms of the picture at its stages. */
 enum form { FORM_FILE, FORM_HALF, FORM_FLOAT, FORM_BYTE, FORM_COUNT };
 
 static const char *const form_names[FORM_COUNT] = {"file", "half", "float", "byte"};
@@ -41,7 +41,7 @@ static float wanted(enum form form, uint32_t value)
     return forms[form];
 }
 
-/* Until the next call. */
+/* Valid until the next call. */
 static const char *row_name(const char *stage, enum form form)
 {
     static char name[64];
@@ -62,7 +62,7 @@ static SluiceImageSource *open_form(enum form form)
     return source;
 }
 
-/* Level 0 as RGBA floats, malloc'd. */
+/* Returns level 0 as RGBA floats, allocated. */
 static float *read_form(enum form form)
 {
     SluiceImageSource *source = open_form(form);
@@ -113,7 +113,7 @@ static void write_pictures(void)
     bake(FORM_BYTE, SLUICE_FORMAT_R8G8B8A8_UNORM);
 }
 
-/* Bit by bit, but for which NaN it is. */
+/* Compares bit by bit, except for the kind of NaN. */
 static bool is_same(float got, float expected)
 {
     return isnan(expected) ? isnan(got) : memcmp(&got, &expected, sizeof got) == 0;
@@ -171,8 +171,8 @@ static void run_probe(struct scene *scene, uint32_t texture, uint32_t count, uin
 }
 
 /*
- * Vulkan lets shaders take denormals for 0, NaN for any number, and infinities for any ("Floating-
- * point controls"): what is special in 32 bits may come as something else, all else may not.
+ * Vulkan lets shaders flush denormals to 0, and replace NaN and infinities by any value
+ * ("Floating-point controls"). Values that are special in 32 bits may change; all others may not.
  */
 static bool may_show(float got, float expected)
 {
@@ -208,7 +208,7 @@ static void check_fetched(struct scene *scene, enum form form, uint32_t texture,
     extremes_end(&row);
 }
 
-/* Of the texels that a filter may reach which is a step of its coordinates off. */
+/* Largest value among the texels that a filter may reach with coordinates one step off. */
 static double largest_around(enum form form, uint32_t x, uint32_t y)
 {
     double largest = 0;
@@ -220,7 +220,8 @@ static double largest_around(enum form form, uint32_t x, uint32_t y)
     return largest;
 }
 
-/* Half-way between two texels: no sum on the way leaves the range. In parts of the largest. */
+/* Samples half-way between two texels: no sum overflows. Errors are relative to the largest
+ * value. */
 static void check_filtered(struct scene *scene, enum form form, uint32_t texture)
 {
     struct extremes_row row = {
@@ -246,10 +247,10 @@ static void check_filtered(struct scene *scene, enum form form, uint32_t texture
     extremes_end(&row);
 }
 
-/* Divisions by 255 may be products, denormals 0: FLIP grows with the root of a difference. */
+/* Divisions by 255 may be products, and denormals 0. FLIP grows with the root of a difference. */
 #define SHOWN_TOLERANCE 1e-3
 
-/* A NaN counts as 0 and an infinity as the largest there is, so file and store look alike. */
+/* NaN counts as 0 and infinity as the largest value, so file and store look alike. */
 static void check_alike(const float *a, const float *b, float peak, double tolerance)
 {
     SluicePicturePair pair = {.structSize = sizeof pair,
