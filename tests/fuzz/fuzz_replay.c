@@ -20,7 +20,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     if (size < 1)
         return 0;
-    uint8_t *copy = malloc(size); /* of the exact size, so that reading beyond it is seen */
+    uint8_t *copy = malloc(size); /* exactly sized, so that sanitizers see a read beyond the end */
     if (!copy)
         return 0;
     memcpy(copy, data + 1, size - 1);

@@ -24,14 +24,14 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* A tile as it is; then from its middle on, so that the tiles beside it take part. */
+/* Reads a tile, then a region from its middle on, which includes its neighbors. */
 static void read_tile(SluiceImageSource *source, const SluiceStoreInfo *info,
                       const SluiceImageRegion *tile)
 {
     SluiceFormat format = info->layout.format;
     size_t row = sluiceGetFormatRegionSize(format, tile->width, 1);
     size_t size = sluiceGetFormatRegionSize(format, tile->width, tile->height);
-    void *texels = malloc(size); /* of the exact size, so that writing beyond it is seen */
+    void *texels = malloc(size); /* exactly sized, so that sanitizers see a write beyond the end */
     if (!texels)
         return;
     if (sluiceReadImageRegion(source, tile, texels, row) == SLUICE_ERROR_INVALID_ARGUMENT)
@@ -65,7 +65,7 @@ static void read_tiles(SluiceImageSource *source, const SluiceStoreInfo *info)
                 }
 }
 
-/* Found tiles are not more than there are. */
+/* The number of found tiles must not exceed their total. */
 static void resume(const char *path, const SluiceStoreInfo *info, bool finishes)
 {
     SluiceStoreCreateInfo create = {
@@ -117,7 +117,7 @@ static void read_file(const char *path, const char *part_path, bool finishes)
     sluiceDestroyImageSource(source);
 }
 
-/* The bytes have the exact size, so a sanitizer sees reads beyond the end. */
+/* The bytes are exactly sized, so that sanitizers see a read beyond the end. */
 static void read_memory(const uint8_t *bytes, size_t size)
 {
     SluiceInput input = {.structSize = sizeof input, .pBytes = bytes, .size = size};

@@ -1,4 +1,4 @@
-/* Files on a web server that delays, cuts and lies on request: faulty_server.py. */
+/* Files on a web server that delays, truncates and falsifies on request: faulty_server.py. */
 #define _XOPEN_SOURCE 700
 
 #include "base/alloc.h"
@@ -20,7 +20,7 @@
 #include <unistd.h>
 
 #define DEFAULT_SIZE ((uint64_t)1 << 20)
-#define READ_AT ((uint64_t)500000) /* behind what is kept at opening */
+#define READ_AT ((uint64_t)500000) /* behind the part that opening keeps */
 #define READ_SIZE ((size_t)65536)
 #define KEPT_SIZE (READ_SIZE + 256) /* at most, in the cache folder */
 
@@ -49,7 +49,7 @@ static bool is_content(const unsigned char *bytes, uint64_t offset, size_t size)
     return true;
 }
 
-/* Short delays, so that tests do not wait. */
+/* Settings with short delays, so that tests do not wait. */
 static SluiceHttpClientCreateInfo quick(void)
 {
     logged[0] = '\0';
@@ -107,7 +107,7 @@ static SluiceHttpStatistics statistics_of(SluiceHttpClient *client)
     return statistics;
 }
 
-/* Opens a path, reads once behind the head and closes all. */
+/* Opens a path, reads once behind the head, and closes it. */
 static SluiceResult read_path(const char *path, SluiceHttpStatistics *statistics)
 {
     SluiceHttpClientCreateInfo info = quick();
@@ -142,7 +142,7 @@ static void any_range_has_the_bytes_of_the_file(void **state)
     sluiceDestroyHttpClient(client);
 }
 
-/* The first requests of a read go wrong, and a later one does not. */
+/* The first requests of a read fail. A later one succeeds. */
 static void faults_that_pass_cost_attempts_alone(void **state)
 {
     static const char *const faults[] = {"status-500", "status-502", "status-503", "status-504",
@@ -262,7 +262,7 @@ static void a_changed_file_is_never_mixed_with_its_old_version(void **state)
     }
 }
 
-/* Asks each time, though the byte is in memory; a change is no message. */
+/* Each check makes a request, though the byte is in memory. A change logs no message. */
 static void a_check_says_whether_the_file_was_changed(void **state)
 {
     static const char *const paths[] = {"etag/checked?from=3", "size/checked?from=3",
@@ -358,7 +358,7 @@ static void a_redirect_is_followed_once_and_again_when_its_target_is_gone(void *
     sluiceDestroyHttpClient(client);
 }
 
-/* Each target answers two requests and then 403. */
+/* Each target answers two requests, then 403. */
 static void reads_go_to_the_new_target_when_the_old_one_has_expired(void **state)
 {
     SluiceHttpClientCreateInfo info = quick();
@@ -633,7 +633,7 @@ static void urls_of_other_kinds_and_bad_settings_are_refused(void **state)
     CHECK_RESULT(sluiceCreateHttpClient(&info, &client), SLUICE_ERROR_INVALID_ARGUMENT);
 }
 
-/* Opens a path with a cache folder and reads `count` ranges of 64 KiB. */
+/* Opens a path with a cache folder, and reads `count` ranges of 64 KiB. */
 static SluiceHttpStatistics read_cached(const char *folder, uint64_t max_size, const char *path,
                                         uint32_t count)
 {
@@ -651,7 +651,7 @@ static SluiceHttpStatistics read_cached(const char *folder, uint64_t max_size, c
     return statistics;
 }
 
-/* Runs commands in a folder. */
+/* Runs shell commands in a folder. */
 static void shell(const char *folder, const char *commands)
 {
     char line[512];
@@ -676,7 +676,7 @@ static void a_second_start_reads_no_range_twice(void **state)
     assert_int_equal(again.requestTotal, 1);
     assert_int_equal(again.cacheHitTotal, 8);
     assert_in_range(again.cacheSize, 8 * READ_SIZE, 8 * KEPT_SIZE);
-    /* Another version, another file, one that is too new, and one without ETag and date. */
+    /* Another version, another file, a version that is too new, and one without ETag and date. */
     assert_int_equal(read_cached(folder, 0, "etag/kept?careless=1", 8).requestTotal, 9);
     assert_int_equal(read_cached(folder, 0, "plain/kept?size=1048575", 8).requestTotal, 9);
     for (int i = 0; i < 2; i++) {
@@ -703,7 +703,7 @@ static void damaged_and_cut_ranges_are_asked_for_again(void **state)
     remove_folder(folder);
 }
 
-/* Processes that fill the folder, and evict from it, are killed at any moment. */
+/* Kills processes at any moment while they fill the folder and evict from it. */
 static void a_folder_survives_processes_that_are_killed(void **state)
 {
     char folder[] = "/tmp/sluice-http-cache-XXXXXX";
@@ -759,7 +759,7 @@ static void a_folder_that_cannot_be_written_is_said_once_and_reads_go_on(void **
     char *first = strstr(logged, "cannot keep what was read");
     assert_non_null(first);
     assert_null(strstr(first + 1, "cannot keep what was read"));
-    assert_int_equal(rmdir(folder), 0); /* nothing was left in it */
+    assert_int_equal(rmdir(folder), 0); /* the folder must be empty */
     SluiceHttpClientCreateInfo info = quick();
     info.pCacheFolder = "/dev/null/cache";
     SluiceHttpClient *client;
@@ -780,7 +780,7 @@ static void a_folder_that_everybody_may_write_is_refused(void **state)
     assert_int_equal(rmdir(folder), 0);
 }
 
-/* As if both had one hash. */
+/* Gives both files the same hash. */
 static void a_range_of_another_file_is_not_taken(void **state)
 {
     char folder[] = "/tmp/sluice-http-cache-XXXXXX";
@@ -794,7 +794,7 @@ static void a_range_of_another_file_is_not_taken(void **state)
     remove_folder(folder);
 }
 
-/* With each allocation failing once, in turn. */
+/* Each allocation fails once in turn. */
 static void out_of_memory_is_an_ordinary_result(void **state)
 {
     SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;

@@ -62,7 +62,7 @@ static void srgb_encodes_to_the_nearest_value(void **state)
         random = random * 1664525u + 1013904223u;
         float x = (float)(random >> 8) * 0x1p-24f;
         if (i % 2)
-            x *= x * x; /* more of the dark ones */
+            x *= x * x; /* more dark values */
         uint8_t result = slc_srgb_from_linear(x);
         assert_true(fabsl(encode(x) * 255 - result) <= 0.5L + 1e-12L);
     }
@@ -137,7 +137,8 @@ static void snorm_rounds_to_the_nearest_step_and_clamps(void **state)
     assert_memory_equal(bytes, expected, sizeof expected);
 }
 
-/* What a format can hold comes back; what it lacks is black and opaque. */
+/* Representable values survive. Channels that a format lacks become 0; a lacking alpha becomes
+ * 1. */
 static void texels_survive_a_round_trip_in_every_format(void **state)
 {
     (void)state;

@@ -125,7 +125,7 @@ static void a_file_is_opened_closed_and_opened_again(void **state)
     teardown(&f);
 }
 
-/* No writer ever comes: whoever waited for one would be a loader thread less. */
+/* No writer ever opens the pipe. A loader thread that waited for one would be lost. */
 static void pipes_and_devices_are_refused_without_waiting(void **state)
 {
     (void)state;
@@ -189,7 +189,7 @@ static void a_file_that_found_no_descriptor_opens_later(void **state)
 
 struct bytes {
     const uint8_t *bytes;
-    SluiceResult result; ///< of the next call, which reads nothing unless it is SUCCESS
+    SluiceResult result; ///< result of the next call; reads only if it is SUCCESS
     uint32_t calls;
     uint64_t furthest;
 };

@@ -1,4 +1,4 @@
-/* Sources that fail and come back: what the loader makes of them, and what it counts. */
+/* Sources that fail and recover: results and counts of the loader. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <sluice/loader.h>
@@ -7,7 +7,7 @@
 #include "support/failing_allocator.h"
 #include "support/test.h"
 
-/* A read of a source that answers by the script, then always with `later`. */
+/* A read whose source answers by the script, then always with `later`. */
 struct story {
     SluiceResult script[6];
     SluiceResult later;
@@ -75,7 +75,7 @@ static void every_kind_of_failure_has_its_number_of_attempts(void **state)
         {{IO, TORN}, OK, OK, 3, 2, 0, 2},
         {{TORN, IO, TORN}, OK, TORN, 3, 3, 0, 3},
         {{GONE}, OK, GONE, 1, 1, 0, 1},
-        {{IO, GONE}, OK, GONE, 2, 2, 0, 2}, /* vanished meanwhile */
+        {{IO, GONE}, OK, GONE, 2, 2, 0, 2}, /* disappeared meanwhile */
         {{UNKNOWN}, OK, UNKNOWN, 1, 1, 0, 1},
     };
     for (size_t i = 0; i < sizeof stories / sizeof stories[0]; i++)
@@ -99,14 +99,14 @@ static void failures_are_reported_with_source_region_and_what_follows(void **sta
     for (uint32_t i = 0; i < 3; i++) {
         const SluiceTileReadFailure *failure = &f.failures[i];
         assert_ptr_equal(failure->source, &f.source.base);
-        assert_string_equal(failure->pName, "fault test"); /* the source lives still */
+        assert_string_equal(failure->pName, "fault test"); /* the source still exists */
         assert_true(failure->region.x == 9 && failure->region.width == 1);
         CHECK_RESULT(failure->result, SLUICE_ERROR_IO);
         assert_int_equal(failure->attempt, i + 1);
         assert_int_equal(failure->willRetry, i < 2);
         assert_int_equal(failure->retryDelayNs, delays[i]);
         assert_int_equal(failure->userValue, 9);
-        assert_true(failure->offset == SLUICE_UNKNOWN_OFFSET); /* it is no file */
+        assert_true(failure->offset == SLUICE_UNKNOWN_OFFSET); /* not a file */
     }
     SluiceTileLoaderStatistics s = fixture_statistics(&f, &f.source);
     CHECK_RESULT(s.lastFailure, SLUICE_ERROR_IO);
@@ -132,7 +132,7 @@ static void a_source_that_cannot_be_opened_at_first_is_tried_again(void **state)
     fixture_finish(&f);
 }
 
-/* What was delivered is not read again; what was cut short is. */
+/* Delivered regions are not read again; interrupted ones are. */
 static void another_attempt_goes_on_with_the_region_that_failed(void **state)
 {
     (void)state;
@@ -163,7 +163,7 @@ static void another_attempt_goes_on_with_the_region_that_failed(void **state)
     fixture_finish(&f);
 }
 
-/* Four sources, each failing at every fifth read, and more reads than slots. */
+/* Four sources fail at every fifth read, with more reads than slots. */
 static void many_reads_of_failing_sources_all_end_and_are_counted(void **state)
 {
     (void)state;
@@ -233,7 +233,7 @@ static void a_source_with_reads_is_not_forgotten(void **state)
     fixture_finish(&f);
 }
 
-/* Out of memory is an answer of creation alone: reading goes on where nothing is left. */
+/* Only creation can run out of memory. Reading works without free memory. */
 static void reads_need_no_memory(void **state)
 {
     (void)state;

@@ -22,7 +22,7 @@ static int smallest(const struct item *items, int count)
     return best;
 }
 
-/* Keys are distinct; whichever node goes, the smallest of the rest is in front. */
+/* Keys are distinct. After any removal, the smallest remaining key is in front. */
 static void the_smallest_is_in_front_whatever_comes_and_goes(void **state)
 {
     (void)state;
@@ -38,7 +38,7 @@ static void the_smallest_is_in_front_whatever_comes_and_goes(void **state)
             item = SLC_CONTAINER_OF(heap.root, struct item, node);
         if (slc_heap_node_is_in(&item->node)) {
             if (step % 3 == 0)
-                item->key = -1; /* what is removed may have changed */
+                item->key = -1; /* the key of a removed item may have changed */
             slc_pairing_heap_remove(&heap, &item->node);
         } else {
             item->key = (int)(random % 1000) * COUNT + (int)(item - items);

@@ -105,8 +105,8 @@ static void a_read_comes_back_to_the_loader_that_submitted_it(void **state)
     finish(&r);
 }
 
-/* One thread, held by a first read. The next read is the other loader's, even though the first
- * loader has more of them, more urgent and submitted earlier. */
+/* The only thread is held by a first read. The next read is the other loader's, although the first
+ * loader has more reads, more urgent and earlier ones. */
 static void loaders_take_turns(void **state)
 {
     (void)state;
@@ -225,7 +225,7 @@ static void statistics_are_of_one_loader(void **state)
     finish(&r);
 }
 
-/* A source with a stalled read is dropped by one loader and goes on in another one. */
+/* One loader drops a source with a stalled read. Another loader continues with it. */
 static void a_source_is_forgotten_by_one_loader_alone(void **state)
 {
     (void)state;
@@ -251,10 +251,10 @@ static void a_source_is_forgotten_by_one_loader_alone(void **state)
     finish(&r);
 }
 
-/* Writes a pattern, reads it again, and tells where it wrote. */
+/* A source that writes a pattern, and checks it afterwards. Records where it wrote. */
 struct picky_source {
     SluiceImageSource base; ///< must be first
-    const void *texels;     ///< of the last read
+    const void *texels;     ///< address of the last read's texels
     SluiceResult answer;
 };
 
@@ -316,7 +316,7 @@ static void sources_never_read_from_memory_that_is_not_cached(void **state)
     init(&r, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
                                           .threadCount = 1});
     CHECK_OK(read_picky(r.loaders[0], &source, 64, texels));
-    assert_ptr_equal(source.texels, texels); /* as usual */
+    assert_ptr_equal(source.texels, texels); /* reads directly, as usual */
     r.loaders[0]->uncached = true;
     memset(texels, 0, sizeof texels);
     CHECK_OK(read_picky(r.loaders[0], &source, 64, texels));
@@ -333,7 +333,7 @@ static void sources_never_read_from_memory_that_is_not_cached(void **state)
     source.answer = SLUICE_SUCCESS;
     CHECK_OK(read_picky(r.loaders[0], &source, 65, texels));
     assert_ptr_equal(source.texels, texels);
-    /* Sources that are no images find what they work for by the address. */
+    /* Objects that are no images are found by their address. */
     r.loaders[0]->direct[1] = &picky;
     CHECK_OK(read_picky(r.loaders[0], &source, 64, texels));
     assert_ptr_equal(source.texels, texels);

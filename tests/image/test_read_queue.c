@@ -4,7 +4,7 @@
 
 enum { CAPACITY = 13, SOURCES = 3, PER_SOURCE = 2, MAX_TEXELS = 20, MANY = 10000 };
 
-/* The same queue as plainly as can be: an array that is searched. */
+/* A naive queue: an array that is searched. */
 struct model_read {
     enum { QUEUED, DELAYED, RUNNING, ENDED } state;
     uint32_t priority, source, texels;
@@ -23,7 +23,7 @@ static bool is_more_urgent(const struct model_read *a, const struct model_read *
     return a->priority != b->priority ? a->priority > b->priority : a->order < b->order;
 }
 
-/* What is due is queued; of sources with room the most urgent read, if it fits. */
+/* Queues reads that are due. Starts the most urgent read of a source with room, if it fits. */
 static struct model_read *model_start(struct model *model, uint64_t now)
 {
     struct model_read *best = NULL;
@@ -70,7 +70,7 @@ static uint64_t submit(struct slc_read_queue *queue, uint32_t source, uint32_t p
     return ticket;
 }
 
-/* Formats are not known, so a texel counts for 16 bytes. */
+/* Without a known format, a texel counts as 16 bytes. */
 static void queue_init(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb,
                        uint32_t capacity)
 {
@@ -78,7 +78,7 @@ static void queue_init(struct slc_read_queue *queue, const SluiceAllocationCallb
     CHECK_OK(slc_read_queue_init(queue, cb, &limits));
 }
 
-/* One of those that run, or now and then of all that have not ended: at most CAPACITY. */
+/* Picks a running read, or sometimes any read that has not ended. At most CAPACITY reads exist. */
 static struct model_read *pick(struct model *model, uint32_t random)
 {
     struct model_read *open[CAPACITY];
@@ -177,13 +177,13 @@ static void a_delayed_read_is_started_when_it_is_due(void **state)
     slc_read_queue_finish(&queue, &cb);
 }
 
-/* Both limits are reached when the read that waited is resumed. */
+/* Both limits are reached when the waiting read is resumed. */
 static void copies_start_without_limits(void **state)
 {
     (void)state;
     SluiceAllocationCallbacks cb = slc_allocator(NULL);
     struct slc_read_queue queue;
-    struct slc_shared_region *texels = (struct slc_shared_region *)&cb; /* never looked at */
+    struct slc_shared_region *texels = (struct slc_shared_region *)&cb; /* never examined */
     for (int fails = 0; fails < 2; fails++) {
         queue_init(&queue, &cb, CAPACITY);
         submit(&queue, 0, 1, MAX_TEXELS);
@@ -199,7 +199,7 @@ static void copies_start_without_limits(void **state)
         assert_ptr_equal(slc_read_queue_start(&queue, 0), read);
         read->held = NULL;
         read->failed.result = SLUICE_SUCCESS;
-        slc_read_queue_resume(&queue, read); /* another region is left */
+        slc_read_queue_resume(&queue, read); /* another region remains */
         assert_null(slc_read_queue_start(&queue, 0));
         slc_read_queue_end(&queue, other, SLUICE_SUCCESS);
         struct slc_read *urgent = slc_read_queue_start(&queue, 0);
@@ -244,7 +244,7 @@ static void a_source_is_forgotten_when_nothing_of_it_is_left(void **state)
         CHECK_OK(slc_read_queue_forget(&queue, &many[i]));
         slc_read_queue_write_statistics(&queue, &many[i], &s);
         assert_int_equal(s.readCount, 0);
-        for (uint32_t k = 0; k < i; k++) { /* the others are found as before */
+        for (uint32_t k = 0; k < i; k++) { /* the others are still found */
             slc_read_queue_write_statistics(&queue, &many[k], &s);
             assert_int_equal(s.readCount, 1);
         }
@@ -254,7 +254,7 @@ static void a_source_is_forgotten_when_nothing_of_it_is_left(void **state)
     slc_read_queue_finish(&queue, &cb);
 }
 
-/* Three are remembered: of those without reads, the one longest without goes first. */
+/* Three sources are remembered. Among sources without reads, the one longest without goes first. */
 static void sources_without_reads_give_way_to_new_ones(void **state)
 {
     (void)state;

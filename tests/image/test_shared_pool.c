@@ -23,7 +23,7 @@ static void a_region_that_is_being_read_is_joined_without_a_thread(void **state)
     assert_int_equal(r.source.read_count, 1);
     const SluiceReadPoolStatistics now = statistics_of(&r);
     assert_int_equal(now.memberCount, 2);
-    assert_int_equal(now.readCount, 2); /* and that of the other source */
+    assert_int_equal(now.readCount, 2); /* includes the read of the other source */
     assert_int_equal(now.readSize, 8);
     assert_int_equal(now.joinedCount, 1);
     assert_int_equal(now.cachedCount, 0);
@@ -75,7 +75,7 @@ static void loaders_may_be_destroyed_before_their_reads_end(void **state)
         struct pool_rig r;
         pool_rig_init(&r, 3, two_threads);
         join(&r, 7);
-        if (gone == 1) { /* at once: it waits for nothing of the other loader */
+        if (gone == 1) { /* returns at once, without waiting for the other loader */
             sluiceDestroyTileLoader(r.loaders[1]);
             r.loaders[1] = NULL;
         }
@@ -103,7 +103,7 @@ static void note_failure(void *user, const SluiceTileReadFailure *failure)
     failures->last = *failure;
 }
 
-/* Loader 1 tries again. */
+/* Loader 1 retries. */
 static void a_failure_that_was_joined_is_an_attempt_of_each_reader(void **state)
 {
     (void)state;
@@ -154,14 +154,14 @@ static void a_failure_takes_no_longer_with_more_members(void **state)
         CHECK_OK(sluiceWaitTileLoaderIdle(r.loaders[i]));
         CHECK_OK(sluiceCollectTileReads(r.loaders[i], &count, results));
         assert_int_equal(count, 2);
-        CHECK_OK(results[0].result); /* of the other source */
+        CHECK_OK(results[0].result); /* read of the other source */
         CHECK_RESULT(results[1].result, SLUICE_ERROR_IO);
     }
     assert_int_equal(r.source.read_count, 1);
     pool_rig_finish(&r);
 }
 
-/* Loader 1 waits for x, with priority 1, and has a more urgent read. The other thread is held. */
+/* Loader 1 waits for x with priority 1, and has a more urgent read. The other thread is held. */
 static void reads_keep_their_priority_when_what_they_joined_fails(void **state)
 {
     (void)state;
@@ -181,7 +181,7 @@ static void reads_keep_their_priority_when_what_they_joined_fails(void **state)
     CHECK_OK(sluiceWaitTileLoaderIdle(r.loaders[1]));
     CHECK_OK(sluiceCollectTileReads(r.loaders[1], &count, results));
     assert_int_equal(count, 3);
-    assert_int_equal(results[1].userValue, 9); /* the first one is of the other source */
+    assert_int_equal(results[1].userValue, 9); /* the first result belongs to the other source */
     assert_int_equal(results[2].userValue, 7);
     CHECK_OK(results[2].result);
     fault_source_release(&r.other);
@@ -198,7 +198,7 @@ static void parts_of_a_read_may_be_kept_or_joined(void **state)
     expect(&r, 0, 1, SLUICE_SUCCESS);
     join(&r, 21);
     submit_regions(&r, 2, &r.source.base, 20, 4, 0);
-    fault_source_await(&r.source, 2); /* that of loader 0, and 22 of loader 2 */
+    fault_source_await(&r.source, 2); /* reads of loader 0, and region 22 of loader 2 */
     fault_source_release(&r.source);
     expect(&r, 2, 1, SLUICE_SUCCESS);
     for (uint32_t x = 20; x < 24; x++)
@@ -253,7 +253,7 @@ static void creation_survives_every_refused_allocation(void **state)
     }
 }
 
-/* Three loaders ask for the same texels, each in its own order, and cancel some. */
+/* Three loaders request the same texels, each in its own order, and cancel some. */
 static void crowd(const SluiceReadPoolCreateInfo *create)
 {
     struct pool_rig r;
@@ -295,7 +295,7 @@ static void jobs_read_each_region_once(void **state)
     }
 }
 
-/* Every texel is the version. */
+/* A source whose texels all equal the version. */
 struct versions {
     SluiceImageSource base; ///< must be first
     atomic_uint version;
@@ -321,8 +321,8 @@ static SluiceResult read_texel(SluiceImageSource *base, const SluiceImageRegion 
 static const SluiceImageSourceInterface versions_interface = {
     .structSize = sizeof versions_interface, .pfnGetInfo = get_info, .pfnReadRegion = read_texel};
 
-/* Texels are not older than the version when this loader last dropped them, while all loaders read,
- * cancel, change and drop on threads of their own. */
+/* A user of a loader. Its texels must not be older than the version when the loader last dropped
+ * them. All users read, cancel, change and drop on threads of their own. */
 struct user {
     struct pool_rig *rig;
     struct versions *versions;

@@ -1,4 +1,4 @@
-/* Every conversion against a search over all values that a format has. */
+/* Compares every conversion with a search over all values of the format. */
 #include "image/convert.h"
 #include "image/small_float.h"
 #include "support/test.h"
@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What the specification says a code means, in double. */
+/* Value of a code in double, by the specification. */
 static double ufloat_value(uint32_t code, uint32_t mantissa_bits)
 {
     uint32_t exponent = code >> mantissa_bits, mantissa = code & ((1u << mantissa_bits) - 1);
@@ -27,7 +27,7 @@ static void ufloats_decode_as_specified(void **state)
         }
 }
 
-/* The finite code whose value is nearest; of two equally near ones the even one. */
+/* Returns the finite code with the nearest value; the even one of two equally near ones. */
 static uint32_t nearest_ufloat(double value, uint32_t bits)
 {
     uint32_t best = 0;
@@ -78,8 +78,8 @@ static double shared_value(uint32_t texel, int channel)
 }
 
 /*
- * The smallest exponent with which the largest channel, rounded, has a mantissa; and with that one
- * each channel is a nearest multiple of the step.
+ * Checks a shared exponent: it is the smallest one for which the largest channel, rounded, has a
+ * mantissa. Each channel is a nearest multiple of its step.
  */
 static void check_shared(const float rgb[3])
 {

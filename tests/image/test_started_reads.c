@@ -16,17 +16,17 @@ struct pending {
     float *texels;
 };
 
-/* R32_SFLOAT: a texel is 1000 level + its x. */
+/* A source of R32_SFLOAT: a texel is 1000 level + its x. */
 struct source {
     SluiceImageSource base; ///< must be first
     pthread_mutex_t mutex;
     struct pending pending[MAX_PENDING];
     uint32_t count, start_count, read_count, cancel_count;
     uint32_t level_count;  ///< 0: LEVELS
-    bool at_once;          ///< completes before pfnStartRead returns
+    bool at_once;          ///< true: completes before pfnStartRead returns
     SluiceResult refusal;  ///< result of pfnStartRead, if not SLUICE_SUCCESS
-    bool obeys;            ///< completes reads that are canceled
-    bool ends;             ///< for complete_all
+    bool obeys;            ///< true: completes canceled reads
+    bool ends;             ///< tells complete_all to end
     SluiceResult failures; ///< result of the next `failure_count` completions
     uint32_t failure_count;
 };
@@ -96,7 +96,7 @@ static SluiceResult start_read(SluiceImageSource *base, const SluiceImageRegion 
     return SLUICE_SUCCESS;
 }
 
-/* Takes the newest pending read, or that of a token. */
+/* Takes the newest pending read, or the read of a token. */
 static bool take(struct source *source, const SluiceImageReadToken *token, struct pending *read)
 {
     pthread_mutex_lock(&source->mutex);
@@ -142,7 +142,7 @@ static const SluiceImageSourceInterface interface = {.structSize = sizeof interf
                                                      .pfnStartRead = start_read,
                                                      .pfnCancelRead = cancel_read};
 
-/* One thread, which a source that blocks would occupy. */
+/* Creates a loader with one thread, which a blocking source would occupy. */
 static SluiceTileLoader *begin(struct source *source, uint64_t max_bytes)
 {
     *source = (struct source){.base = {&interface}};
@@ -287,7 +287,7 @@ static void regions_that_failed_are_started_again_alone(void **state)
     await_pending(&source, 1);
     assert_int_equal(count_starts(&source), 4);
     CHECK_RESULT(sluiceCompleteImageRead(&first[0].token, SLUICE_SUCCESS),
-                 SLUICE_ERROR_INVALID_ARGUMENT); /* of the first attempt */
+                 SLUICE_ERROR_INVALID_ARGUMENT); /* token of the first attempt */
     assert_true(take(&source, NULL, &read));
     assert_int_equal(read.region.mipLevel, 2); /* the newest one failed */
     CHECK_OK(complete(&source, &read));
@@ -313,7 +313,7 @@ static void canceled_reads_end_when_their_source_completes_them(void **state)
         source.obeys = obeys;
         uint64_t ticket = submit(loader, &source.base, 2, 0, texels);
         await_pending(&source, 2);
-        for (uint32_t told = 0; told < 2; pause_briefly()) { /* once its start is over */
+        for (uint32_t told = 0; told < 2; pause_briefly()) { /* once its start has returned */
             CHECK_OK(sluiceCancelTileRead(loader, ticket));
             pthread_mutex_lock(&source.mutex);
             told = source.cancel_count;
@@ -351,7 +351,8 @@ static void finish(struct source *source, pthread_t thread)
     pthread_join(thread, NULL);
 }
 
-/* Two threads complete, one of the loader starts, this one cancels; some reads fail and go on. */
+/* Two threads complete reads, the loader starts them, and this thread cancels. Some reads fail and
+ * are retried. */
 static void completions_cancels_and_destruction_may_meet(void **state)
 {
     (void)state;
@@ -445,7 +446,7 @@ static void completed_chains_start_the_levels_that_they_do_not_build(void **stat
     while (take(&source, NULL, &read))
         CHECK_OK(complete(&source, &read));
     CHECK_OK(collect(loader).result);
-    assert_true(source.read_count > 0); /* of built levels */
+    assert_true(source.read_count > 0); /* reads for built levels */
     assert_true(texels[0] == 0 && texels[1] == 1000);
     assert_true(texels[2] == 1000.5f); /* the mean of texels 0 and 1 */
     uint64_t ticket = submit(loader, chain, 1, 1, &built);
@@ -465,7 +466,7 @@ static void bytes_of_started_reads_are_in_flight(void **state)
     struct pending read;
     float texels[6];
     SluiceTileLoader *loader = begin(&source, 2 * sizeof(float));
-    submit(loader, &source.base, 1, 0, texels); /* tells the format */
+    submit(loader, &source.base, 1, 0, texels); /* makes the format known */
     await_pending(&source, 1);
     assert_true(take(&source, NULL, &read));
     CHECK_OK(complete(&source, &read));
@@ -484,7 +485,7 @@ static void bytes_of_started_reads_are_in_flight(void **state)
 
 /* Pools -------------------------------------------------------------------------------------- */
 
-/* One thread for both loaders. */
+/* Creates a pool with one thread for both loaders. */
 static SluiceReadPool *begin_pool(struct source *source, SluiceTileLoader *loaders[2])
 {
     *source = (struct source){.base = {&interface}};
@@ -508,7 +509,7 @@ static void end_pool(SluiceReadPool *pool, SluiceTileLoader *loaders[2])
     sluiceDestroyReadPool(pool);
 }
 
-/* Loader 0 has started level 1, loader 1 waits for it and has started level 2. Returns the tickets
+/* Loader 0 has started level 1. Loader 1 waits for it, and has started level 2. Returns the tickets
  * of level 1. */
 static void join(struct source *source, SluiceTileLoader *loaders[2], float texels[3],
                  uint64_t tickets[2])
@@ -582,8 +583,8 @@ static void sources_are_not_told_of_a_cancel_while_others_wait(void **state)
     end_pool(pool, loaders);
 }
 
-/* It would wait for as long as the source takes, and for ever if the source waits for a cancel. The
- * read that joined starts itself. Also if the read was canceled before. */
+/* Otherwise the loader would wait for the source, or forever if the source waits for a cancel. The
+ * joined read starts itself, also if the read was canceled before. */
 static void a_loader_that_ends_tells_its_sources_at_once(void **state)
 {
     (void)state;
@@ -610,8 +611,8 @@ static void a_loader_that_ends_tells_its_sources_at_once(void **state)
     }
 }
 
-/* The reader of level 1 is canceled before or after the read that waits for it, or both loaders
- * are destroyed. The source completes reads only when it is told. */
+/* The reader of level 1 is canceled before or after the read that waits for it, or both loaders are
+ * destroyed. The source completes reads only on request. */
 static void sources_are_told_of_a_cancel_when_nobody_waits_any_more(void **state)
 {
     (void)state;
@@ -641,8 +642,8 @@ static void sources_are_told_of_a_cancel_when_nobody_waits_any_more(void **state
     }
 }
 
-/* Two levels are read and one is still wanted: the source is told of the other, and later of both.
- */
+/* Two levels are read and one is still wanted: the source gets a cancel for the other, and later
+ * for both. */
 static void each_region_is_canceled_once(void **state)
 {
     (void)state;
@@ -669,7 +670,7 @@ static void each_region_is_canceled_once(void **state)
     assert_int_equal(source.cancel_count, 3);
 }
 
-/* The source has not completed the canceled read: nobody joins it any more. */
+/* The source has not completed the canceled read. No other read may join it. */
 static void reads_that_were_canceled_are_not_joined(void **state)
 {
     (void)state;
@@ -679,7 +680,7 @@ static void reads_that_were_canceled_are_not_joined(void **state)
     SluiceReadPool *pool = begin_pool(&source, loaders);
     uint64_t ticket = submit(loaders[0], &source.base, 1, 1, &texels[0]);
     await_pending(&source, 1);
-    for (uint32_t told = 0; told < 1; pause_briefly()) { /* once its start is over */
+    for (uint32_t told = 0; told < 1; pause_briefly()) { /* once its start has returned */
         CHECK_OK(sluiceCancelTileRead(loaders[0], ticket));
         pthread_mutex_lock(&source.mutex);
         told = source.cancel_count;
@@ -694,8 +695,7 @@ static void reads_that_were_canceled_are_not_joined(void **state)
     end_pool(pool, loaders);
 }
 
-/* Both loaders try three times: one of them starts the second attempt, and the other one joins it.
- */
+/* Both loaders try three times. One starts the second attempt, and the other joins it. */
 static void a_started_failure_that_was_joined_is_an_attempt_of_each_reader(void **state)
 {
     (void)state;
@@ -754,8 +754,8 @@ static void regions_that_are_read_at_once_are_shared_too(void **state)
     }
 }
 
-/* As completions_cancels_and_destruction_may_meet, with two loaders of a pool that ask for the same
- * regions. Every read that succeeds has its texels. */
+/* Like completions_cancels_and_destruction_may_meet, with two loaders of a pool that request the
+ * same regions. Every successful read must have its texels. */
 static void joins_completions_and_cancels_may_meet(void **state)
 {
     (void)state;
