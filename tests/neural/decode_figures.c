@@ -1,5 +1,6 @@
-/* decode_figures: texels per second and core of the ways to decode, and their ratio to the plain
- * one. A set of random numbers of 256 x 256 texels, mip 0; the least time of some rounds. */
+/* decode_figures: texels per second and core of each way to decode, and their ratio to the plain
+ * one. Decodes mip 0 of a set of random numbers, 256 x 256 texels. Prints the least time of some
+ * rounds. */
 #include "neural/decoded.h"
 #include "neural/decoder.h"
 #include "neural/made_file.h"
@@ -12,7 +13,7 @@
 
 enum { EDGE = 256, ROUNDS = 5 };
 
-/* Of the processor: other programs do not count. */
+/* Processor time, so that other programs do not count. */
 static double seconds(void)
 {
     return (double)clock() / CLOCKS_PER_SEC;

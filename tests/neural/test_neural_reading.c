@@ -1,4 +1,4 @@
-/* What a file says of itself, and files that contradict themselves. */
+/* Properties of files, and files that contradict themselves. */
 #include "neural/neural_files.h"
 #include "neural/worked_example.h"
 #include "support/failing_allocator.h"
@@ -132,7 +132,7 @@ static void every_sample_opens(void **state)
     }
 }
 
-/* Replaces text of equal length. */
+/* Replaces text by text of equal length. */
 static void replace(uint8_t *bytes, const char *from, const char *to)
 {
     size_t length = strlen(from);
@@ -153,7 +153,7 @@ static void contradictions_are_refused(void **state)
     } CASES[] = {
         {"\"schemaVersion\":3", "\"schemaVersion\":2", SLUICE_ERROR_UNSUPPORTED},
         {"\"width\":4", "\"width\":0", SLUICE_ERROR_CORRUPT_DATA},
-        {"\"width\":4", "\"width\":8", SLUICE_ERROR_CORRUPT_DATA}, /* of mip 0: 4 */
+        {"\"width\":4", "\"width\":8", SLUICE_ERROR_CORRUPT_DATA}, /* mip 0 has 4 */
         {"\"width\":4", "\"width\":-", SLUICE_ERROR_CORRUPT_DATA},
         {"\"numChannels\":2", "\"numChannels\":1", SLUICE_ERROR_CORRUPT_DATA},
         {"\"numColorMips\":1", "\"numColorMips\":9", SLUICE_ERROR_CORRUPT_DATA},
@@ -276,7 +276,7 @@ static void ask(const SluiceNeuralSet *set)
     CHECK_OK(sluiceGetNeuralLatentRange(set, 0, 1, &offset, &size));
 }
 
-/* Latents, both ways, and texels of them. */
+/* Reads latents in both ways, and decodes texels from them. */
 static SluiceResult read_and_decode(const SluiceNeuralSet *set)
 {
     SluiceNeuralConstants constants;

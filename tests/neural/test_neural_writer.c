@@ -1,4 +1,4 @@
-/* What is written is read again. */
+/* Written files are read again. */
 #include "image/half.h"
 #include "neural/decoded.h"
 #include "neural/decoder.h"
@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Code `index` of a grid, from packed latents, a bit at a time. */
+/* Returns code `index` of a grid from packed latents, bit by bit. */
 static uint32_t packed_code(const uint8_t *latents, uint32_t bits, size_t index)
 {
     uint32_t code = 0;
@@ -94,7 +94,7 @@ static void what_is_written_is_read_again(void **state)
     }
 }
 
-/* Layers 0 to 2 are the same numbers in 16 bits; all else is the same bytes. */
+/* Layers 0 to 2 hold equal numbers in 16 bits. All other bytes are equal. */
 static void half_weights_are_those_of_fp8(void **state)
 {
     (void)state;
@@ -149,7 +149,7 @@ static void packed_latents_give_the_same_file(void **state)
     }
 }
 
-/* The rules of a writer give what the format's own compressors have written. */
+/* The writer's rules give the plans that the format's own compressors have written. */
 static void plans_are_those_of_the_samples(void **state)
 {
     static const char *const NAMES[] = {"v7_512_n2.ntc", "v7_64_g.ntc", "v9_300x200.ntc",
@@ -287,7 +287,7 @@ static void wrong_arguments_are_refused(void **state)
     REFUSES(latentImageCount, 9);
 #undef REFUSES
     parts.info = good;
-    parts.codes[5] = 4; /* of two bits */
+    parts.codes[5] = 4; /* two bits hold 0 to 3 */
     CHECK_RESULT(write_made_file(&parts, &file), SLUICE_ERROR_INVALID_ARGUMENT);
     parts.codes[5] = 3;
     memset(parts.int8_weights + 12288, 0xFF, 4); /* a scale */
@@ -300,7 +300,7 @@ static void wrong_arguments_are_refused(void **state)
     free_made_parts(&parts);
 }
 
-/* The longest names that are written are read again. */
+/* Names of the largest length can be written and read. */
 static void names_are_as_long_as_can_be_read(void **state)
 {
     enum { LIMIT = 1 << 20 };

@@ -27,7 +27,7 @@ static const char TEXT[] =
 struct layer {
     uint32_t inputs, outputs;
     int8_t weights[4][48];
-    float scale[4]; /* those of outputs beyond are 1 */
+    float scale[4]; /* unused outputs have scale 1 */
     int32_t bias[4];
 };
 
@@ -72,7 +72,7 @@ static void put_view(struct writer *w, const void *bytes, size_t size)
     w->view_count++;
 }
 
-/* Rows beyond the fourth are 0. */
+/* Writes a layer. Rows after the fourth are 0. */
 static void put_layer(struct writer *w, const struct layer *layer)
 {
     uint8_t weights[16 * 48] = {0}, numbers[2][64] = {{0}};

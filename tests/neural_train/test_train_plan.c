@@ -1,4 +1,4 @@
-/* Sizes, mips, samples and rates against the format's facts and by counting. */
+/* Checks sizes, mips, samples and rates against the format's facts and by counting. */
 #include "neural_train/train_plan.h"
 #include "neural_train/train_schedule.h"
 
@@ -43,7 +43,7 @@ static struct slc_train_plan plan_of(uint32_t width, uint32_t height, uint32_t s
     return plan;
 }
 
-/* As LibNTC's files of these sizes have it. */
+/* As in LibNTC's files of these sizes. */
 static void mips_use_the_latents_that_the_format_says(void **state)
 {
     (void)state;
@@ -97,7 +97,8 @@ static void sums_of_gradients_fit_into_32_bits(void **state)
     for (uint32_t size = 4; size <= 4096; size *= 4) {
         struct slc_train_plan plan = plan_of(size, size, 4);
         double unit = (double)slc_train_latent_unit(&plan);
-        /* A sample gives at most 8 in all to four corners; if all of them met at one texel: */
+        /* A sample adds at most 8 to its four corners in total. Worst case: all samples meet at one
+         * texel. */
         double samples = 0.0;
         for (uint32_t m = 0; m < plan.mip_count; m++)
             if (slc_train_first_image(&plan, m) == plan.image_count - 2)
@@ -115,8 +116,8 @@ static void latents_learn_until_the_int8_network_ends(void **state)
     struct slc_train_plan plan = plan_of(64, 64, 4);
     struct slc_train_push push, last;
     slc_train_write_push(&plan, 0, &push);
-    /* Adam's first step has the size of the rate, which begins with its half: 0.1 / (1 - 0.9) and
-     * so on cancel. */
+    /* Adam's first step equals the rate, which starts at its half: factors such as 0.1 / (1 - 0.9)
+     * cancel. */
     assert_float_equal(push.networkRate, 0.5 * 0.02 * sqrt(0.01) / 0.1, 1e-6);
     slc_train_write_push(&plan, 20, &last);
     assert_float_equal(last.networkRate * (1.0 - pow(0.9, 21.0)) / sqrt(1.0 - pow(0.99, 21.0)),
@@ -169,8 +170,8 @@ static void wrong_values_are_named(void **state)
     assert_string_equal(message, "latentRate is nan, must be 0 to 1");
 }
 
-/* Here 32 bits have room for the remainder alone: buffers would be small, and shaders write beyond.
- */
+/* Only the remainder fits into 32 bits: buffers would be too small, and shaders would write beyond
+ * them. */
 static void latents_that_32_bits_cannot_count_are_refused(void **state)
 {
     (void)state;

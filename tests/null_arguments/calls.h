@@ -1,6 +1,6 @@
 /**
- * What the generated tests share. The including file defines `struct fixture`, whose member `out`
- * is zeroed before each call, and the two functions below.
+ * Shared by the generated tests. The including file defines `struct fixture`, whose member `out` is
+ * zeroed before each call, and the two functions below.
  */
 #ifndef TESTS_NULL_ARGUMENTS_CALLS_H
 #define TESTS_NULL_ARGUMENTS_CALLS_H
@@ -14,7 +14,7 @@
 
 struct fixture;
 
-/** `f` is zeroed. */
+/** `f` is zeroed before. */
 static void fixture_init(struct fixture *f, void **state);
 static void fixture_finish(struct fixture *f);
 static void calls_begin(struct fixture *f);
@@ -58,30 +58,30 @@ static inline void check_good(const char *what, SluiceResult result)
         fail_msg("%s: %s", what, sluiceGetResultName(result));
 }
 
-/* It came back. */
+/* Accepts any result: the call has returned. */
 static inline void check_any(const char *what, SluiceResult result)
 {
     if (strcmp(sluiceGetResultName(result), "SLUICE_RESULT_UNKNOWN") == 0)
         fail_msg("%s: %d", what, (int)result);
 }
 
-/** Values of structSize: this version's, the first release's, a newer version's and wrong ones. */
+/** Values of structSize: this version's, the first release's, a newer version's, and wrong ones. */
 enum sized_case {
     SIZED_PRESENT,
     SIZED_LEAST,
     SIZED_LARGER,  ///< extra bytes of a struct to read are 0
     SIZED_NEWER,   ///< to read: one of the extra bytes is not 0
     SIZED_SMALLER, ///< a byte less than the first release
-    SIZED_EMPTY    ///< 0: the caller forgot it
+    SIZED_EMPTY    ///< 0: not set by the caller
 };
 
-/** A struct with structSize, between bytes that nobody may touch. */
+/** A struct with structSize, between guard bytes. */
 struct sized {
     _Alignas(max_align_t) unsigned char bytes[4096];
     unsigned char before[4096];
-    uint32_t known, given; ///< bytes of this version; structSize
+    uint32_t known, given; ///< bytes in this version; value of structSize
     enum sized_case kind;
-    bool read; ///< else written
+    bool read; ///< true: the call reads the struct; false: it writes it
 };
 
 enum { SIZED_EXTRA = 24, SIZED_UNTOUCHED = 0xa5 };
@@ -109,7 +109,7 @@ static inline struct sized sized_make(const void *from, size_t known, size_t lea
     return sized;
 }
 
-/** The result is right, and only bytes below structSize were written. */
+/** Checks the result, and that only bytes below structSize were written. */
 static inline void sized_check(const char *what, const struct sized *sized, SluiceResult result)
 {
     static const char *const names[] = {"present", "least", "larger", "newer", "smaller", "empty"};

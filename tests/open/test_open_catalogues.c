@@ -1,5 +1,5 @@
-/* A catalogue is read once for all of its stores, again when it was changed, and names are found as
- * by looking at all rows. */
+/* A catalogue is read once for all its stores, and again after a change. Names are found as by a
+ * search of all rows. */
 #define _XOPEN_SOURCE 700
 
 #include <sluice/open.h>
@@ -22,11 +22,11 @@
 #define THREADS 8
 #define NAMES 64
 
-/** Stands for a server with the files of a folder, and counts. */
+/** Simulates a server with the files of a folder, and counts accesses. */
 struct server {
     struct bake_folder folder;
-    atomic_uint opened, closed, checked; ///< of catalogues
-    atomic_ullong bytes;                 ///< of catalogues that were read
+    atomic_uint opened, closed, checked; ///< accesses to catalogues
+    atomic_ullong bytes;                 ///< bytes read from catalogues
     bool is_checking, tells_no_version;
     SluiceImageOpener *opener;
     atomic_int errors;
@@ -38,7 +38,7 @@ struct served {
     FILE *file;
     char path[512];
     bool is_catalogue;
-    unsigned char *bytes; ///< when it was opened
+    unsigned char *bytes; ///< contents at the opening
     size_t size;
 };
 
@@ -148,7 +148,7 @@ static void setup(struct server *server, bool is_checking)
     write_store(server, "b.store", 80);
 }
 
-/* All catalogues are closed at the latest with the opener. */
+/* Destroying the opener must close all catalogues. */
 static void teardown(struct server *server)
 {
     sluiceDestroyImageOpener(server->opener);
@@ -169,8 +169,8 @@ static unsigned long long hash_of(const struct server *server, const char *name)
     return hash;
 }
 
-/* Rows "pN.png" from `first` on, all with the same store. As sluice-bake does it: by another name.
- */
+/* Writes rows "pN.png" from `first` on, all with one store. Renames a temporary file, like
+ * sluice-bake. */
 static void write_catalogue(const struct server *server, const char *name, const char *store,
                             int first, int count)
 {
@@ -252,7 +252,7 @@ static void a_catalogue_of_a_server_is_read_once_for_all_threads_and_names(void 
     teardown(&server);
 }
 
-/* The text of a catalogue has more bytes than anything else that is allocated. */
+/* Counts catalogue texts: no other allocation is as large. */
 struct counter {
     size_t large;
     atomic_uint count;
@@ -295,7 +295,7 @@ static void a_file_of_names_is_read_once_until_it_is_changed(void **state)
     teardown(&server);
 }
 
-/* A name that is new, or that another store has: without a message before it is sure. */
+/* A name that is new, or that now has another store. No message may come before it is certain. */
 static void changes_on_a_server_are_noticed_before_a_name_is_missing(void **state)
 {
     (void)state;
@@ -316,7 +316,7 @@ static void changes_on_a_server_are_noticed_before_a_name_is_missing(void **stat
         width_of(server.opener, "net://list.tsv", "p9.png", SLUICE_ERROR_INVALID_ARGUMENT);
         assert_int_equal(atomic_load(&server.errors), 1);
         assert_non_null(strstr(server.last, "no picture and no store 'p9.png'"));
-        /* It was unchanged: read again only where that cannot be asked. */
+        /* Unchanged: read again only if the server cannot be asked. */
         assert_int_equal(atomic_load(&server.opened), way == 1 ? 3 : 4);
         teardown(&server);
     }
@@ -426,7 +426,7 @@ static void every_refused_allocation_is_survived(void **state)
     teardown(&server);
 }
 
-/* 2: it is the name; 1: it ends with the name, behind a slash. */
+/* Returns 2 if the texts are equal, and 1 if `text` ends with a slash and the name. */
 static int match(const char *text, const char *name)
 {
     size_t length = strlen(text), wanted = strlen(name);
@@ -448,7 +448,7 @@ static char random_name(uint32_t *seed, char name[8])
     return name[0];
 }
 
-/* The oracle looks at every row. */
+/* The oracle searches every row. */
 static void names_are_found_as_by_looking_at_all_rows(void **state)
 {
     (void)state;
