@@ -1,4 +1,4 @@
-/** Embree's C API, version 3 or 4, behind one pair of calls. */
+/** One interface to the C APIs of Embree 3 and 4. */
 #ifndef TESTS_ORACLE_EMBREE_H
 #define TESTS_ORACLE_EMBREE_H
 
@@ -10,7 +10,7 @@
 #error "ORACLE_EMBREE is the major version of Embree: 3 or 4"
 #endif
 
-/** What a filter function gets at the front of its context. */
+/** Context that a filter function gets. */
 #if ORACLE_EMBREE == 4
 typedef struct RTCRayQueryContext oracle_context;
 #else

@@ -4,9 +4,9 @@
 
 #include <stdlib.h>
 
-#define ORACLE_FAR 1e300 /* of lights without a place */
+#define ORACLE_FAR 1e300 /* distance of lights without a position */
 
-/* Direct light looks no alpha up where it chooses points. */
+/* Shapes with alpha are not sampled: pbrt's direct light looks up no alpha there. */
 bool oracle_is_chosen(const struct oracle_scene *scene, size_t place)
 {
     const SluicePbrtShape *shape = &scene->shapes[scene->places[place].shape];
@@ -14,7 +14,7 @@ bool oracle_is_chosen(const struct oracle_scene *scene, size_t place)
            shape->alpha.value[0] >= 1;
 }
 
-/* The side of area lights is that of the geometric normal, as oracle_find_point turns it. */
+/* The light's side is that of the geometric normal, as oracle_find_point turns it. */
 static struct oracle_emitter make_emitter(const struct oracle_scene *scene, size_t place,
                                           uint32_t triangle)
 {
@@ -88,7 +88,7 @@ struct vec oracle_surroundings(const struct oracle_lights *lights, struct vec di
     return sum;
 }
 
-/* A point on the surface, and what shadow rays begin with. */
+/* A point on the surface, with the start of its shadow rays. */
 struct receiver {
     struct oracle_rays *rays;
     struct vec point, normal, side;
@@ -96,14 +96,14 @@ struct receiver {
     uint64_t *seed;
 };
 
-/* The share of a direction's light that arrives: 0, or the cosine. */
+/* Share of a direction's light that arrives: 0, or the cosine. */
 static double arriving(const struct receiver *at, struct vec towards, double distance)
 {
     double cosine = dot(at->normal, towards);
     if (cosine <= 0 || dot(at->side, towards) <= 0)
         return 0;
-    /* From where the ray begins: aimed from the point itself, it would meet a lamp that it grazes
-     * before its end. */
+    /* Starts at the ray's origin: aimed from the point itself, the ray could graze a lamp before
+     * its end. */
     struct vec start = along(at->point, at->side, at->offset);
     struct vec path = sub(along(at->point, towards, distance), start);
     struct oracle_ray ray = {start, unit(path), length(path) * (1 - 1e-5), *at->seed};
@@ -114,7 +114,7 @@ static double arriving(const struct receiver *at, struct vec towards, double dis
     return oracle_rays_is_blocked(at->rays, &ray) ? 0 : cosine;
 }
 
-/* pbrt-v3: the fourth power of how far the cosine is between the edges. pbrt-v4: a smooth step. */
+/* pbrt-v3: fourth power of the cosine's position between the edges. pbrt-v4: a smooth step. */
 static double fall_off(const struct oracle_scene *scene, const SluicePbrtLight *light,
                        struct vec towards)
 {
@@ -180,7 +180,7 @@ static struct vec from_emitters(const struct oracle_lights *lights, const struct
     if (cosine <= 0 || distance <= 0)
         return vec(0, 0, 0);
     struct vec color = vec_of(light->color);
-    double density = mean(color) / lights->weight; /* of points, per area */
+    double density = mean(color) / lights->weight; /* sampled points per area */
     double share = arriving(at, towards, distance) * cosine / (distance * distance * density);
     return scale(color, share / ORACLE_PI);
 }

@@ -1,10 +1,10 @@
-/** Light that arrives at points directly. */
+/** Direct light at points. */
 #ifndef TESTS_ORACLE_LIGHTS_H
 #define TESTS_ORACLE_LIGHTS_H
 
 #include "oracle/rays.h"
 
-/** A triangle that emits light, in the world. */
+/** An emitting triangle in world space. */
 struct oracle_emitter {
     struct vec corner, side1, side2;
     struct vec outside; ///< unit normal
@@ -17,15 +17,16 @@ struct oracle_lights {
     struct oracle_values *values;
     struct oracle_emitter *emitters; ///< owned
     size_t emitter_count;
-    double weight;         ///< of all emitters
-    struct vec background; ///< arrives from everywhere, beside infinite lights
+    double weight;         ///< sum over all emitters
+    struct vec background; ///< light from all directions, in addition to infinite lights
 };
 
 bool oracle_lights_create(struct oracle_lights *lights, const struct oracle_scene *scene,
                           struct oracle_values *values, struct vec background);
 void oracle_lights_finish(struct oracle_lights *lights);
 
-/** Whether direct light counts what the shape emits. If not, paths count it where they hit it. */
+/** Returns whether direct light includes the shape's emission. If not, paths add it where they hit
+ * the shape. */
 bool oracle_is_chosen(const struct oracle_scene *scene, size_t place);
 /** Radiance that a surface emits towards a direction. */
 struct vec oracle_emitted(const struct oracle_lights *lights, const struct oracle_hit *hit,
@@ -34,15 +35,15 @@ struct vec oracle_emitted(const struct oracle_lights *lights, const struct oracl
 struct vec oracle_surroundings(const struct oracle_lights *lights, struct vec direction);
 
 /**
- * Estimates the irradiance over pi, with shadows, of all lights but infinite ones: `normal` is the
- * shading normal, `side` the geometric normal; both are on the viewer's side.
+ * Estimates the irradiance over pi from all lights but infinite ones, with shadows. `normal`:
+ * shading normal. `side`: geometric normal. Both face the viewer.
  */
 struct vec oracle_direct_light(const struct oracle_lights *lights, struct oracle_rays *rays,
                                const struct oracle_hit *hit, struct vec normal, struct vec side,
                                uint64_t *seed);
 
-/** Direction to a distant, point or spot light, its distance, and the light that it sends without
- *  shadows. False for other lights. */
+/** Computes direction, distance and unshadowed light of a distant, point or spot light. Returns
+ * false for other lights. */
 bool oracle_sent(const struct oracle_scene *scene, uint32_t light, struct vec point,
                  struct vec *towards, double *distance, struct vec *color);
 

@@ -5,11 +5,11 @@
 #include <string.h>
 #include <vips/vips.h>
 
-/* Of level and texel: less is what rounding of floats may do. */
+/* Tolerances of level and texel, for the rounding of floats. */
 #define LOD_SLACK 0.004
 #define TEXEL_SLACK 0.03
 
-/* A picture as far as its tiles go. */
+/* A picture's size and tile size. */
 struct oracle_shape {
     uint32_t width, height; /* 0: not read yet */
     uint32_t tile[2];
@@ -20,7 +20,7 @@ struct oracle_key {
     enum oracle_tile sure;
 };
 
-/* A sample of a texture: coordinates, and how they change along both axes of the cone. */
+/* A sample of a texture: coordinates, and their derivatives along both axes of the cone. */
 struct sample {
     uint32_t texture;
     double at[2], change[2][2];
@@ -62,7 +62,8 @@ static uint32_t first_of_picture(const struct oracle_scene *scene, uint32_t text
     return texture;
 }
 
-/* Vulkan's standard sparse image block shapes: 64 KiB of texels of 1 to 16 bytes. */
+/* Reads the tile size: Vulkan's standard sparse image block shapes, 64 KiB of texels of 1 to 16
+ * bytes. */
 static bool read_shape(struct oracle_tiles *t, uint32_t texture)
 {
     static const uint32_t TILES[5][2] = {{256, 256}, {256, 128}, {128, 128}, {128, 64}, {64, 64}};
@@ -83,7 +84,7 @@ static bool read_shape(struct oracle_tiles *t, uint32_t texture)
     return true;
 }
 
-/* A texel that is sampled for sure is one on both sides of the slack. */
+/* Marks texels. A texel on both sides of the tolerance is certainly sampled. */
 static bool mark_texels(struct oracle_tiles *t, const struct sample *s, uint32_t level,
                         bool is_sure)
 {
@@ -96,8 +97,8 @@ static bool mark_texels(struct oracle_tiles *t, const struct sample *s, uint32_t
         uint64_t key = (uint64_t)(s->texture + 1) << 40 | (uint64_t)level << 32;
         bool sure = is_sure, likely = true;
         for (int axis = 0; axis < 2; axis++) {
-            int way =
-                axis ? i / 6 : i % 6; /* below, at or above by the slack; first or second texel */
+            int way = axis ? i / 6
+                           : i % 6; /* below, at or above by the tolerance; first or second texel */
             double x = s->at[axis] * size[axis] - 0.5;
             long n = (long)size[axis],
                  texel = (long)floor(x + TEXEL_SLACK * (way / 2 - 1)) + way % 2;
@@ -141,7 +142,7 @@ static bool touch(struct oracle_tiles *t, struct sample *s)
     return true;
 }
 
-/* What the cone covers on the plane, in the world: along the ray's way, and across. */
+/* Computes the cone's footprint on the plane in world space: along the ray, and across. */
 static void cover(const struct oracle_tiles *t, const struct oracle_ray *ray,
                   const struct oracle_hit *hit, struct vec axes[2])
 {
@@ -153,7 +154,7 @@ static void cover(const struct oracle_tiles *t, const struct oracle_ray *ray,
     axes[1] = scale(across, width);
 }
 
-/* The point beside, on the plane of the triangle: solved for its barycentric coordinates. */
+/* Returns a neighboring point on the triangle's plane, solved for its barycentric coordinates. */
 static struct oracle_point beside(const struct oracle_tiles *t, const struct oracle_hit *hit,
                                   struct vec step)
 {

@@ -1,7 +1,7 @@
 /*
- * What PbrtSceneLoader of the OptiX Toolkit, another reader of pbrt scenes, does wrong is right
- * here. Numbers are those of a list of twenty; samples/demand-pbrt/test_peer_defects.py has the
- * others, which are a renderer's.
+ * Defects of PbrtSceneLoader, the reader of pbrt scenes in the OptiX Toolkit, must not occur here.
+ * Numbers are those of a list of twenty. samples/demand-pbrt/test_peer_defects.py has the defects
+ * of the renderer.
  */
 #include "pbrt/pbrt_files.h"
 #include "support/test.h"
@@ -64,18 +64,19 @@ static void write_ply(const char *faces, int count)
     pbrt_write(&files, "mesh.ply", text, (size_t)size);
 }
 
-/* The peer reads every mesh whole while it parses, and again for each use. */
+/* OptiX Toolkit reads every mesh completely while parsing, and again for each use. */
 static void defect_1_no_mesh_is_read_while_parsing(void **state)
 {
     (void)state;
     SluicePbrtBounds bounds;
     open_text(HEADER "Shape \"plymesh\" \"string filename\" \"mesh.ply\"\nTranslate 1 0 0\n"
                      "Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n");
-    write_ply("not a face\n", 1); /* the bounds do not need them */
+    write_ply("not a face\n", 1); /* not needed for the bounds */
     CHECK_OK(sluiceGetPbrtShapeBounds(files.scene, 0, &bounds));
     assert_true(bounds.least[0] == -1.0f && bounds.most[0] == 1.0f);
     assert_int_equal(unlink(pbrt_path(&files, "mesh.ply")), 0);
-    CHECK_OK(sluiceGetPbrtShapeBounds(files.scene, 1, &bounds)); /* of one file, read once */
+    CHECK_OK(sluiceGetPbrtShapeBounds(files.scene, 1,
+                                      &bounds)); /* bounds of the file that was read before */
     assert_true(bounds.least[0] == 0.0f && bounds.most[0] == 2.0f);
 }
 
@@ -135,7 +136,7 @@ static void defect_4_uvs_have_four_names_and_indices_are_checked(void **state)
     }
 }
 
-/* Cameras given by Transform, and mirrored ones. Element [row * 4 + column]. */
+/* Cameras placed by Transform, and mirrored ones. Element [row * 4 + column]. */
 static void defect_5_all_transforms_place_the_camera(void **state)
 {
     (void)state;
@@ -223,7 +224,7 @@ static void defect_10_orientation_toggles_and_no_object_ends_the_load(void **sta
     SluicePbrtSceneInfo info = pbrt_info(&files);
     assert_false(pbrt_shape(&files, 0).reverseOrientation);
     assert_int_equal(info.shapeCount, 3);
-    assert_int_equal(info.instanceCount, 1); /* not one of "a" inside of "b" */
+    assert_int_equal(info.instanceCount, 1); /* no instance of "a" inside of "b" */
     assert_int_equal(pbrt_shape(&files, 2).kind, SLUICE_PBRT_SHAPE_DISK);
 }
 

@@ -58,7 +58,7 @@ void naive_request(struct naive_set *set, uint64_t begun, uint64_t processed, ui
     }
 }
 
-/* As proxy.h says, in another way than the library: by the corners. */
+/* Key by the definition in proxy.h, computed from the corners, unlike the library. */
 static double key_of(const SluiceProxyBox *box, const SluiceProxyListInfo *info)
 {
     double volume = 1, distance = 0;

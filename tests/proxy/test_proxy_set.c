@@ -140,9 +140,9 @@ static void an_index_is_not_reused_while_launches_may_name_it(void **state)
     CHECK_OK(sluiceAddMaterialProxy(set, &old));
     CHECK_OK(sluiceRemoveProxy(set, old));
     CHECK_OK(sluiceAddMaterialProxy(set, &other));
-    assert_int_equal((uint32_t)other, 1); /* nobody has said what is under way */
-    request(set, 5, 3, 0, NULL);          /* 4 and 5 are */
-    request(set, 6, 4, 1, &zero);         /* 6 does not know the old one */
+    assert_int_equal((uint32_t)other, 1); /* no launch has been reported */
+    request(set, 5, 3, 0, NULL);          /* launches 4 and 5 are pending */
+    request(set, 6, 4, 1, &zero);         /* launch 6 does not know the old one */
     assert_int_equal(info_of(set).removedCount, 1);
     CHECK_OK(sluiceAddMaterialProxy(set, &other));
     assert_int_equal((uint32_t)other, 2);
@@ -150,7 +150,7 @@ static void an_index_is_not_reused_while_launches_may_name_it(void **state)
     assert_int_equal(info_of(set).removedCount, 0);
     CHECK_OK(sluiceAddMaterialProxy(set, &new));
     assert_int_equal((uint32_t) new, 0);
-    check_requested(set, 0, NULL); /* what was requested was the old one */
+    check_requested(set, 0, NULL); /* the request was for the old proxy */
     request(set, 6, 6, 1, &zero);
     check_requested(set, 1, &new);
     sluiceDestroyProxySet(set);
