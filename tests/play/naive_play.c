@@ -4,14 +4,14 @@
 
 #define NEVER UINT32_MAX
 
-/** Tiles of a level in a row or column of tiles. */
+/** Number of tiles of a level in a row or column of tiles. */
 static uint32_t tiles_across(uint32_t size, uint32_t level, uint32_t tile)
 {
     uint32_t texels = size >> level ? size >> level : 1;
     return (texels + tile - 1) / tile;
 }
 
-/** Step by step to the coarser level's grid. */
+/** Returns the parent position, computed step by step on each level's grid. */
 static uint32_t ancestor(uint32_t at, uint32_t level, uint32_t size, uint32_t tile)
 {
     for (uint32_t l = 1; l <= level; l++) {
@@ -32,8 +32,8 @@ static uint32_t regions_across(uint32_t size, uint32_t region)
     return (size + region - 1) / region;
 }
 
-/** What a map's region wants: a level, or the regular count for the packed ones; NEVER for nothing.
- */
+/** Returns the level that a map's region requests: the regular count for packed levels, NEVER for
+ * none. */
 static uint32_t wanted(const struct naive_trace *t, uint32_t frame, uint32_t texture, uint32_t x,
                        uint32_t y)
 {
@@ -45,7 +45,7 @@ static uint32_t wanted(const struct naive_trace *t, uint32_t frame, uint32_t tex
     return value < d->regularMipCount ? value : d->regularMipCount;
 }
 
-/** Whether a frame's map of the texture needs tile (x, y) of a level. */
+/** Returns whether a frame's map of the texture requires tile (x, y) of a level. */
 static bool needs(const struct naive_trace *t, uint32_t frame, uint32_t texture, uint32_t level,
                   uint32_t x, uint32_t y)
 {
@@ -75,7 +75,7 @@ static uint32_t first_need(const struct naive_trace *t, uint32_t texture, uint32
     return NEVER;
 }
 
-/** The latest map at `frame` does not need the tile. */
+/** Returns whether the latest map at `frame` does not require the tile. */
 static bool is_stale(const struct naive_trace *t, uint32_t frame, uint32_t texture, uint32_t level,
                      uint32_t x, uint32_t y)
 {
@@ -93,7 +93,7 @@ static uint32_t member_count(const struct naive_trace *t, uint32_t primary)
     return count;
 }
 
-/** Frame in which the tile of each place and level arrives. */
+/** Frames in which tiles arrive, by level and position. */
 struct arrivals {
     uint32_t at[SLUICE_MAX_MIP_LEVELS][16][16];
 };
@@ -120,7 +120,7 @@ static void load_texture(const struct naive_trace *t, uint32_t texture, uint32_t
             }
 }
 
-/** The finest level that is there, with all coarser ones, over tile (x, y) of level 0. */
+/** Returns the finest resident level over tile (x, y) of level 0 with all coarser ones resident. */
 static uint32_t level_there(const struct naive_trace *t, uint32_t texture,
                             const struct arrivals *arrivals, uint32_t frame, uint32_t latency,
                             uint32_t x, uint32_t y)

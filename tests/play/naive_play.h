@@ -1,6 +1,6 @@
 /**
- * What playing a trace must come to where no slot is short, nothing lapses and every map is read:
- * a tile is loaded once, and there from the frame on that follows its latency. Tile by tile,
+ * Expected result of playing a trace if slots suffice, nothing expires and every map is read. A
+ * tile is loaded once, and is resident from the frame after its latency on. Computed tile by tile,
  * without a manager.
  */
 #ifndef TESTS_PLAY_NAIVE_PLAY_H
@@ -10,7 +10,7 @@
 
 enum { NAIVE_TEXTURES = 4, NAIVE_FRAMES = 24, NAIVE_REGIONS = 256 };
 
-/** A trace before it is written; maps are [frame][texture]. */
+/** A trace before it is written. Maps are [frame][texture]. */
 struct naive_trace {
     uint32_t texture_count, frame_count;
     SluiceStreamedTextureDesc textures[NAIVE_TEXTURES];

@@ -1,4 +1,4 @@
-/* Playing a trace alone: figures beside a naive model, the same figures each time, and errors. */
+/* Playing a trace: compares figures with a naive model, repeats them, and checks errors. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "play/naive_play.h"
@@ -40,7 +40,7 @@ static SluiceStreamedTextureDesc random_texture(void)
     return d;
 }
 
-/** A window that moves over each texture, and a region here and there. */
+/** Makes a map: a moving window over each texture, and scattered regions. */
 static void random_map(const SluiceStreamedTextureDesc *d, uint32_t frame, uint8_t *map)
 {
     const uint32_t width = (d->width + d->feedbackRegionWidth - 1) / d->feedbackRegionWidth;
@@ -96,7 +96,7 @@ static struct trace_file write_naive(const struct naive_trace *t)
     return file;
 }
 
-/** Command line arguments behind "play TRACE", NULL at the end. */
+/** Arguments after "play TRACE", ending with NULL. */
 struct played {
     struct play_options options;
     struct feedback_trace trace;
@@ -182,7 +182,7 @@ static void same_settings_play_the_same(void **state)
         play(&file, arguments, &a);
         play(&file, arguments, &b);
         for (uint32_t f = 0; f < trace.frame_count; f++) {
-            a.loop.frames[f].core_us = b.loop.frames[f].core_us = 0; /* that is measured */
+            a.loop.frames[f].core_us = b.loop.frames[f].core_us = 0; /* a measured time */
             assert_memory_equal(&a.loop.frames[f], &b.loop.frames[f], sizeof a.loop.frames[f]);
         }
         end_play(&a);
@@ -191,7 +191,7 @@ static void same_settings_play_the_same(void **state)
     }
 }
 
-/** One texture of four regions, of which the first is in view at level 0 from frame 3 on. */
+/** One texture of four regions. The first one is visible at level 0 from frame 3 on. */
 static struct trace_file appearing_region(void)
 {
     const SluiceStreamedTextureDesc desc = {.width = 64,
@@ -234,7 +234,7 @@ static int run_main(const char *path, const char *option)
     return play_main(option ? 3 : 2, (char **)argv);
 }
 
-/** What play_main prints for a figure; NaN if it does not. */
+/** Returns a figure that play_main prints; NaN if it does not. */
 static double printed(const char *path, const char *figure, const char **arguments)
 {
     const char *argv[32] = {"play", path, "--json"};
@@ -256,9 +256,9 @@ static double printed(const char *path, const char *figure, const char **argumen
 }
 
 /**
- * The region misses both regular levels in the frame that it appears in and the next, of nine maps
- * that show it; who knows of it before misses nothing. A plan with a cap of one tile beside the
- * packed one gets along with the coarser level.
+ * Nine maps show the region. It lacks both regular levels in its first frame and the next. A
+ * clairvoyant policy lacks nothing. A plan with one tile beside the packed one uses the coarser
+ * level.
  */
 static void clairvoyance_tells_what_can_be_had(void **state)
 {
@@ -326,7 +326,8 @@ static void cut_traces_are_refused_at_every_byte(void **state)
     trace_file_finish(&file);
 }
 
-/** What is damaged is refused, or played if it is another good trace: a time, or a level. */
+/** A damaged trace is refused, or played if it is another valid trace: with another time or
+ * level. */
 static void damaged_traces_are_refused_or_played(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Regions that are in view all the time, with stochastic feedback: how many are evicted is what
- * sluicePredictFeedbackMiss says. */
+/* Regions that are always visible, with stochastic feedback: the number of evictions follows
+ * sluicePredictFeedbackMiss. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "play/trace_file.h"
@@ -14,7 +14,7 @@
 
 enum { TILES = 32, REGIONS = TILES * TILES, FRAMES = 150 };
 
-/** A texture each of whose regions is a tile, all of them wanted at level 0 in every frame. */
+/** Writes a trace whose regions are tiles, all requested at level 0 in every frame. */
 static void write_still_view(uint32_t texture_count, char *path)
 {
     const SluiceStreamedTextureDesc desc = {.width = TILES * 128,
@@ -39,11 +39,12 @@ static void write_still_view(uint32_t texture_count, char *path)
 }
 
 struct observed {
-    double evicted; ///< regions, each as often as it was
-    double miss;    ///< as predicted, of one timeout
+    double evicted; ///< number of evictions of regions
+    double miss;    ///< predicted chance for one timeout
 };
 
-/** Loads are over at once, so that every eviction is seen, and nothing else is wrong. */
+/** Plays with immediate loads, so that every eviction is seen, and checks that nothing else is
+ * wrong. */
 static struct observed play(uint32_t texture_count, const char *probability, const char *timeout,
                             bool in_turns)
 {
@@ -83,9 +84,9 @@ static struct observed play(uint32_t texture_count, const char *probability, con
 }
 
 /**
- * A region is evicted when a map shows it and all maps of the next timeout miss it. Of the events
- * of one region no two can happen within a timeout, so their count varies less than that of
- * independent draws: six standard deviations of these are enough.
+ * Checks the number of evictions. A region is evicted if a map shows it and all maps of the next
+ * timeout miss it. Two such events of a region cannot happen within a timeout, so their count
+ * varies less than independent draws. Six standard deviations of those suffice.
  */
 static void check_count(double evicted, double chance, double least_trials, double most_trials)
 {
@@ -123,7 +124,7 @@ static void evictions_in_turns_are_as_many_as_predicted(void **state)
     }
 }
 
-/** Maps that lie close together lapse as one, so regions are held longer than the timeout. */
+/** Maps close to each other expire together, so regions are held longer than the timeout. */
 static void evictions_are_no_more_than_predicted(void **state)
 {
     (void)state;

@@ -28,7 +28,7 @@ void limited_memory_init(struct limited_memory *memory, uint64_t limit)
     *memory = (struct limited_memory){limit, limit, {memory, allocate, release}};
 }
 
-/* Written from docs/replay.md, not with the library's own functions. */
+/* Written from docs/replay.md, without the library's functions. */
 static uint64_t fnv(uint64_t hash, const uint8_t *data, size_t size)
 {
     for (size_t i = 0; i < size; i++)
@@ -48,7 +48,7 @@ void reseal_trace(uint8_t *data, size_t size)
         return;
     uint64_t hash = fnv(UINT64_C(0xCBF29CE484222325), data, 32);
     put_u64(data + 32, hash);
-    bool snapshot = data[8] == 2; /* whose end is an empty block */
+    bool snapshot = data[8] == 2; /* a snapshot ends with an empty block */
     for (size_t at = 40; size - at >= 12;) {
         uint8_t *block = data + at;
         uint64_t length = block[0] | (uint64_t)block[1] << 8 | (uint64_t)block[2] << 16 |
@@ -90,7 +90,7 @@ static SluiceResult keep(void *user, const void *data, size_t size)
     return SLUICE_SUCCESS;
 }
 
-/* After every 16th call the player goes on from a checkpoint. */
+/* Continues from a checkpoint after every 16th call. */
 static SluiceResult play_on(SluiceTracePlayer *player)
 {
     SluiceTraceCall call = {.structSize = sizeof call};

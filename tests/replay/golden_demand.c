@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-/* Class 0: tiles, with places; class 1: values; class 2: byte pages, with places. A read ends when
+/* Class 0: tiles, with places. Class 1: values. Class 2: byte pages, with places. Reads end when
  * end_reads is called. */
 struct scene {
     struct slc_demand_residency *residency;
@@ -70,7 +70,7 @@ static void settle(struct scene *scene, uint64_t missing)
     slc_residency_settle(scene->residency, missing);
 }
 
-/* A texture is opened, then its mip tail and two levels of tiles are loaded. */
+/* Opens a texture, then loads its mip tail and two levels of tiles. */
 static void play_first_launches(struct scene *scene)
 {
     begin(scene);
@@ -95,7 +95,8 @@ static void play_first_launches(struct scene *scene)
     show(scene);
 }
 
-/* Places for six: the finest of the pages that were used longest ago go first, and come back. */
+/* With six places, the finest of the least recently used pages are evicted first, and loaded again
+ * later. */
 static void play_eviction(struct scene *scene)
 {
     limit_tiles(scene, 6);
@@ -124,7 +125,7 @@ static void play_eviction(struct scene *scene)
     show(scene);
 }
 
-/* More tiles than places: the bias rises, and falls when the view needs fewer. */
+/* More tiles than places: the bias rises, and falls when the view requires fewer. */
 static void play_bias(struct scene *scene)
 {
     limit_tiles(scene, 8);
@@ -140,7 +141,8 @@ static void play_bias(struct scene *scene)
     show(scene);
 }
 
-/* The same without a bias: what has no place is refused, and may be asked for again later. */
+/* More tiles than places without a bias: tiles without a place are refused, and may be requested
+ * again. */
 static void play_refusals(struct scene *scene)
 {
     limit_tiles(scene, 8);
@@ -154,7 +156,7 @@ static void play_refusals(struct scene *scene)
     show(scene);
 }
 
-/* Two formats in chunks of three places: the places of one must all be free for the other. */
+/* Two formats in chunks of three places: a chunk must be free before it holds the other format. */
 static void play_formats(struct scene *scene)
 {
     fake_memory_init(&scene->memory, 6, 3);
@@ -174,7 +176,7 @@ static void play_formats(struct scene *scene)
     show(scene);
 }
 
-/* Reads that fail, are refused, are tried again; a page is forgotten while it is read. */
+/* Reads fail, are refused and retried. A page is forgotten while it is read. */
 static void play_failures(struct scene *scene)
 {
     begin(scene);
@@ -201,7 +203,7 @@ static void play_failures(struct scene *scene)
     show(scene);
 }
 
-/* Values without places, four at a time: each that goes is told. */
+/* Values without places, four at a time. Each eviction is reported. */
 static void play_resources(struct scene *scene)
 {
     CHECK_OK(slc_residency_set_class(scene->residency, 1, 4, NULL));
@@ -228,7 +230,7 @@ static void request_bytes(struct scene *scene, uint32_t first, uint32_t count, u
 }
 
 /* Byte pages of two sizes in slabs of four places. A whole slab of one size is evicted for a page
- * of the other size, and one page comes back without a read. */
+ * of the other size. One page is restored without a read. */
 static void play_bytes(struct scene *scene)
 {
     const struct slc_page_memory memory = fake_page_memory(&scene->byte_memory);
@@ -256,7 +258,7 @@ static void play_bytes(struct scene *scene)
     show(scene);
 }
 
-/* Pages without a callback: answered late, never answered, and taken back. Two more pages, one of
+/* Pages without a callback: answered late, never answered, and withdrawn. Two more pages, one of
  * them pinned, are set before they are missed. */
 static void play_answers(struct scene *scene)
 {

@@ -9,7 +9,7 @@
 #define LIST_ROOM 64
 #define MAP_ROOM 4096
 
-/* Every random number is drawn in a statement of its own: C leaves the order open in which
+/* Every random number is drawn in its own statement, because C does not define the order in which
  * arguments and initializers are evaluated. */
 static uint32_t random_bits(struct random_app *app)
 {
@@ -75,7 +75,7 @@ void random_app_finish(struct random_app *app)
     assert_int_equal(app->memory.live_bytes, 0);
 }
 
-/* Mostly one that was handed out; sometimes all, none, or one that never was. */
+/* Returns an id: mostly a handed-out one; sometimes all, none, or one that never existed. */
 static SluiceTextureId some_id(struct random_app *app)
 {
     if (app->id_count == 0 || one_in(app, 40))
@@ -128,7 +128,7 @@ static SluiceResult add_texture(struct random_app *app)
     SluiceResult result = sluiceAddStreamedTexture(app->manager, &desc, &id);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (slot < app->id_count) /* keeps the number of living ones small */
+    if (slot < app->id_count) /* limits the number of living textures */
         sluiceRemoveStreamedTexture(app->manager, app->ids[slot], app->retire);
     else
         app->id_count++;
@@ -160,7 +160,7 @@ static SluiceResult give_feedback(struct random_app *app)
     assert_true(feedback.width * feedback.height <= MAP_ROOM);
     fill_map(app, map, feedback.width * feedback.height);
     if (one_in(app, 20))
-        feedback.width = UINT32_MAX; /* with no such map behind it */
+        feedback.width = UINT32_MAX; /* without such a map */
     if (one_in(app, 30))
         feedback.pMinMip = NULL;
     if (one_in(app, 4))
@@ -189,7 +189,7 @@ static SluiceResult get_tiles_to_map(struct random_app *app)
     return result;
 }
 
-/* Takes loads of one texture out of the list; sometimes adds one that is not a load. */
+/* Takes loads of one texture out of the list. Sometimes adds a tile that is no load. */
 static uint32_t take_loads(struct random_app *app, SluiceTextureId *id, uint32_t *tiles)
 {
     uint32_t count = 0, most = 1 + random_app_below(app, LIST_ROOM - 1);
@@ -221,7 +221,7 @@ static SluiceResult answer(struct random_app *app, enum slc_call_kind kind)
         result = sluiceReportFailedTiles(app->manager, id, count, given, next_time(app));
     else
         result = sluiceReportCanceledTiles(app->manager, id, count, given, next_retire(app));
-    /* Refused ones are still to be answered, unless the texture is gone. */
+    /* Refused loads still await an answer, unless the texture was removed. */
     for (uint32_t i = 0; result < SLUICE_SUCCESS && result != SLUICE_ERROR_STALE_TEXTURE &&
                          i < count && app->load_count < RANDOM_APP_LOADS;
          i++) {
@@ -338,7 +338,7 @@ static SluiceResult make_call(struct random_app *app, enum slc_call_kind kind)
     }
 }
 
-/* As often as applications make them, about. */
+/* Returns a kind of call, about as often as applications make it. */
 static enum slc_call_kind some_kind(struct random_app *app)
 {
     static const uint8_t kinds[] = {

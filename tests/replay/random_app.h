@@ -1,6 +1,6 @@
 /**
- * An application that makes calls at random: sensible ones, careless ones and wrong ones, with a
- * heap allocator that refuses now and then and host memory that runs out now and then.
+ * An application that makes random calls: sensible, careless and wrong ones. Its heap allocator
+ * sometimes refuses, and host memory sometimes runs out.
  */
 #ifndef TESTS_REPLAY_RANDOM_APP_H
 #define TESTS_REPLAY_RANDOM_APP_H
@@ -15,24 +15,24 @@
 
 struct random_app {
     uint64_t seed;
-    bool starved; ///< whether host memory runs out now and then
+    bool starved; ///< true: host memory sometimes runs out
     struct failing_allocator memory;
     SluiceStreamedTextureManager *manager;
-    SluiceTextureId ids[RANDOM_APP_TEXTURES]; ///< living and removed ones
+    SluiceTextureId ids[RANDOM_APP_TEXTURES]; ///< living and removed textures
     uint32_t id_count;
     struct {
         SluiceTextureId id;
         uint32_t tile;
-    } loads[RANDOM_APP_LOADS]; ///< handed out
+    } loads[RANDOM_APP_LOADS]; ///< handed-out loads
     uint32_t load_count;
     bool heap_lives[RANDOM_APP_HEAPS];
     uint64_t time, retire, completed;
-    uint64_t kinds_made; ///< bit per kind of call
-    uint64_t kinds_good; ///< those that succeeded at least once
+    uint64_t kinds_made; ///< a bit per kind of call
+    uint64_t kinds_good; ///< a bit per kind that has succeeded
     uint32_t out_of_memory_count, refused_heap_count;
 };
 
-/** Small heaps, so that budgets matter. The manager is the app's. */
+/** Initializes with small heaps, so that budgets matter. The app owns the manager. */
 void random_app_init(struct random_app *app, uint64_t seed, bool starved);
 void random_app_finish(struct random_app *app);
 
@@ -40,7 +40,7 @@ void random_app_run(struct random_app *app, uint32_t steps);
 
 uint32_t random_app_below(struct random_app *app, uint32_t limit);
 
-/** All counts and totals; the bytes of host memory may differ. */
+/** Compares all counts and totals, but not the bytes of host memory. */
 void check_same_statistics(const SluiceStreamedTextureManager *manager,
                            const SluiceStreamedTextureStatistics *expected);
 
@@ -48,7 +48,7 @@ void check_same_statistics(const SluiceStreamedTextureManager *manager,
 struct trace_buffer {
     uint8_t *data; ///< owned
     size_t size, capacity;
-    size_t full_at; ///< writes that go beyond fail with IO
+    size_t full_at; ///< writes beyond this size fail with IO
 };
 
 SluiceRecordWriter trace_buffer_writer(struct trace_buffer *buffer);

@@ -1,6 +1,6 @@
 /**
- * Recordings of demand loading that begin while it is in use. The residency that is recorded is the
- * oracle: one that is made from the snapshot must decide like it for every call that follows.
+ * Recordings of demand loading that begin during use. The recorded residency is the oracle: one
+ * made from the snapshot must decide every later call alike.
  */
 #include "damage.h"
 #include "demand_app.h"
@@ -24,7 +24,7 @@ static void record_later(struct demand_app *app, struct trace_buffer *trace, uin
     CHECK_OK(sluiceEndRecording(recorder));
 }
 
-/** Of a new application, which ends. */
+/** Records a new application, which is then destroyed. */
 static struct trace_buffer record_late_run_of(uint64_t seed, uint32_t before, uint32_t steps)
 {
     struct demand_app app;
@@ -156,7 +156,8 @@ static void every_truncation_is_found_at_or_before_the_cut(void **state)
     (void)state;
     struct trace_buffer trace = record_late_run_of(21, 240, 10);
     for (size_t cut = 0; cut < trace.size; cut++) {
-        uint8_t *copy = malloc(cut + 1); /* so that reading beyond it is seen */
+        uint8_t *copy =
+            malloc(cut + 1); /* exactly sized, so that sanitizers see a read beyond the end */
         assert_non_null(copy);
         memcpy(copy, trace.data, cut);
         SluiceReplayResult result = {.structSize = sizeof result};

@@ -1,7 +1,7 @@
 /**
  * Calls that fail for lack of host memory leave nothing behind. One manager has every call refused
- * at its first allocation, at its second one and so on until the call succeeds; a twin never sees a
- * refusal. Both must decide the same ever after, and the recording of the first must play back.
+ * at its first allocation, then at its second, and so on until the call succeeds. A twin never sees
+ * a refusal. Both must decide alike afterwards, and the recording of the first must play back.
  */
 #include "core/call_sequence.h"
 #include "core/check.h"
@@ -23,10 +23,10 @@ struct twin {
 
 static struct twins {
     struct call_sequence sequence;
-    struct naive_manager naive; ///< what calls are made up from; follows the one that never fails
+    struct naive_manager naive; ///< source of the calls; follows the manager that never fails
     struct twin refused, spared;
     uint32_t heap_count;
-    uint32_t heaps[MAX_HEAPS]; ///< of the refused one
+    uint32_t heaps[MAX_HEAPS]; ///< heaps of the refused manager
     struct call call;
     struct outcome expected;
     uint64_t failures, cut_short;
@@ -66,7 +66,7 @@ static void take_heap(void *user, uint32_t heap_id)
     twins.heaps[i] = twins.heaps[--twins.heap_count];
 }
 
-/* The answer that the refused manager got. */
+/* Returns the answer that the refused manager got. */
 static SluiceResult give_same_heap(void *user, uint64_t size, uint32_t *heap_id)
 {
     (void)user, (void)size;
@@ -126,7 +126,7 @@ static const char *difference(void)
 
 /* Running ----------------------------------------------------------------------------------- */
 
-/* Refuses the first allocation, then the second one, until the call succeeds. */
+/* Refuses the first allocation, then the second, and so on until the call succeeds. */
 static void make_refused_call(uint64_t seed, uint32_t number)
 {
     struct twin *t = &twins.refused;
@@ -149,7 +149,7 @@ static void make_refused_call(uint64_t seed, uint32_t number)
     bool hands_out = twins.call.kind == CALL_TILES_TO_MAP || twins.call.kind == CALL_TILES_TO_UNMAP;
     if (!was_refused || !hands_out || t->outcome.count == 0 || twins.call.null != NULL_NONE)
         return;
-    twins.call.room = t->outcome.count; /* memory ran out after these: as if for lack of room */
+    twins.call.room = t->outcome.count; /* after these, lack of memory acts like lack of room */
     twins.cut_short++;
 }
 

@@ -13,7 +13,7 @@ static uint64_t next_random(uint64_t *seed)
 {
     *seed = *seed * 6364136223846793005u + 1442695040888963407u;
     uint64_t bits = *seed >> 11 ^ *seed << 40;
-    return bits >> (*seed >> 58); /* of every magnitude */
+    return bits >> (*seed >> 58); /* any magnitude */
 }
 
 #define DESC_NUMBERS (offsetof(SluiceStreamedTextureDesc, packedTilesOutside) / sizeof(uint32_t))

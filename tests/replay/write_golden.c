@@ -1,6 +1,6 @@
 /*
- * Writes the recordings of tests/data: write_golden FOLDER. Run by `ninja update-golden-replays`
- * only; each scene is a few calls that show one thing.
+ * Writes the recordings in tests/data: write_golden FOLDER. Run it by `ninja
+ * update-golden-replays`. Each scene shows one feature with a few calls.
  */
 #include "feedback_scene.h"
 #include "golden_demand.h"
@@ -51,7 +51,7 @@ static SluiceTextureId add_texture(struct scene *scene, uint32_t width, uint32_t
     return id;
 }
 
-/* The same level in every region, or nothing. */
+/* Feeds one level in every region, or SLUICE_MIP_UNTOUCHED. */
 static void give_feedback(struct scene *scene, SluiceTextureId id, uint8_t level, uint64_t time)
 {
     uint8_t map[256];
@@ -96,7 +96,7 @@ static void get_unmaps(struct scene *scene, uint64_t retire)
     CHECK_OK(sluiceCompleteRetireValue(scene->manager, retire));
 }
 
-/* One texture from nothing to sharp, and away again. */
+/* A texture from nothing to sharp, and back. */
 static void play_first_light(struct scene *scene)
 {
     SluiceTextureId id = add_texture(scene, 200, 130);
@@ -112,7 +112,7 @@ static void play_first_light(struct scene *scene)
     get_updates(scene);
 }
 
-/* Wanted, handed out, no longer wanted, wanted again. */
+/* A tile is wanted, handed out, unwanted, and wanted again. */
 static void play_cancel(struct scene *scene)
 {
     SluiceTextureId id = add_texture(scene, 128, 128);
@@ -130,7 +130,7 @@ static void play_cancel(struct scene *scene)
     get_updates(scene);
 }
 
-/* Loads that fail, wait, fail again and are given up. */
+/* Loads fail, wait, fail again and are given up. */
 static void play_failures(struct scene *scene)
 {
     const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
@@ -154,7 +154,7 @@ static void play_failures(struct scene *scene)
     get_updates(scene);
 }
 
-/* Two textures and room for one: the standby tiles of the first make way for the second. */
+/* Two textures with room for one: the second evicts standby tiles of the first. */
 static void play_budget(struct scene *scene)
 {
     scene->heap_limit = 2;
@@ -175,7 +175,7 @@ static void play_budget(struct scene *scene)
     }
 }
 
-/* A follower of half the size, a match by hand, and a texture removed with loads under way. */
+/* A follower of half the size, a match by hand, and a texture removed during loads. */
 static void play_sets(struct scene *scene)
 {
     SluiceTextureId primary = add_texture(scene, 256, 128), follower = add_texture(scene, 128, 64);
@@ -195,7 +195,7 @@ static void play_sets(struct scene *scene)
     CHECK_OK(sluiceCompleteRetireValue(scene->manager, 1));
 }
 
-/* Heaps that are half empty are emptied into each other and given back. */
+/* Half-empty heaps are merged and released. */
 static void play_defragment(struct scene *scene)
 {
     SluiceTextureId ids[3];
@@ -254,7 +254,7 @@ static void record_random(const char *folder)
     random_app_finish(&app);
 }
 
-/* The one that has feedback only. */
+/* Writes the only scene with feedback. */
 static void write_feedback_scene(const char *folder)
 {
     char path[1024];
