@@ -1,4 +1,4 @@
-/* Trees of boxes, looked at node by node: what walks rely on. */
+/* Checks trees of boxes node by node, for the properties that walks rely on. */
 #include "../../samples/common/box_tree.h"
 
 #include "support/test.h"
@@ -110,7 +110,7 @@ static void equal_boxes_at_one_place_are_halved(void **state)
     assert_int_equal(check_tree(boxes, 2048, 4), 9);
 }
 
-/* Each plane between bins splits off one box or two: without a limit leaves lie 250 deep. */
+/* Each plane between bins splits off one or two boxes. Without a limit leaves would be 250 deep. */
 static void boxes_at_powers_of_two_stay_within_the_depth(void **state)
 {
     (void)state;
@@ -158,7 +158,8 @@ static void the_same_boxes_give_the_same_tree(void **state)
     box_tree_finish(&other);
 }
 
-/** Sum of the areas of all nodes, by the root's: boxes that a random ray enters. */
+/** Sum of the areas of all nodes relative to the root's: expected number of boxes that a random ray
+ * enters. */
 static double cost(const struct box_tree *tree)
 {
     double sum = 0.0, root = 0.0;
@@ -172,7 +173,7 @@ static double cost(const struct box_tree *tree)
     return sum / root;
 }
 
-/* The same number of nodes, and of boxes in them, where boxes are taken as they come. */
+/* Compares with trees of equally many nodes and boxes that split the list in the middle. */
 static void trees_cost_less_than_halves_of_the_list(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What the host does for a frame ends in time, by a clock of the test. */
+/* The host's work for a frame ends in time, by a clock of the test. */
 #include "../../samples/demand-pbrt/frame_budget.h"
 
 #include "support/test.h"
@@ -12,7 +12,7 @@ static double read_clock(void *user_data)
     return ((const struct clock *)user_data)->time;
 }
 
-/** A frame of items and a launch. Returns how many items began; the first always does. */
+/** Runs a frame of items and a launch. Returns the number of items; the first one always begins. */
 static int run_frame(struct frame_budget *budget, struct clock *clock, double item, double launch,
                      double *seconds)
 {
@@ -34,7 +34,7 @@ static void items_and_launch_fit_into_the_budget(void **state)
     struct clock clock = {5.0};
     struct frame_budget budget = {.seconds = 0.016, .now = read_clock, .user_data = &clock};
     double seconds;
-    run_frame(&budget, &clock, 0.001, 0.004, &seconds); /* nothing is known of the launch */
+    run_frame(&budget, &clock, 0.001, 0.004, &seconds); /* the launch time is still unknown */
     for (int i = 0; i < 100; i++) {
         const int count = run_frame(&budget, &clock, 0.001, 0.004, &seconds);
         assert_in_range(count, 11, 12);

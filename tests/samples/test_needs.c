@@ -1,4 +1,4 @@
-/** What frames need, compared with what a manager asks for when it is told all of it. */
+/** Compares the required tiles of frames with the requests of a manager that gets all feedback. */
 #include "support/test.h"
 
 #include "demand/random.h"
@@ -9,7 +9,7 @@
 
 #define FRAMES 40
 
-/* Even, wide, of sizes that do not halve evenly, of one packed tile, without packed levels. */
+/* Even, wide, not evenly halving, of one packed tile, and without packed levels. */
 static const SluiceStreamedTextureDesc descs[] = {
     {1024, 1024, 11, 4, 1, 128, 128, 0, 0}, {2048, 512, 12, 3, 2, 128, 128, 0, 0},
     {1000, 700, 10, 3, 1, 128, 64, 0, 0},   {1025, 517, 11, 2, 1, 128, 128, 0, 0},
@@ -17,7 +17,8 @@ static const SluiceStreamedTextureDesc descs[] = {
 };
 #define TEXTURES (sizeof descs / sizeof *descs)
 
-/* A few rectangles of a level each, and single regions of any level, also of packed ones. */
+/* Marks a few rectangles of one level each, and single regions of any level, packed ones
+ * included. */
 static void draw(struct needs_rig *rig, uint32_t texture, uint64_t *seed)
 {
     const SluiceStreamedTextureLayout *layout = &rig->needs.textures[texture].layout;
@@ -137,7 +138,7 @@ static void regions_are_missing_until_their_level_is_shown_whole(void **state)
     words[20] = 9; /* packed: level 4 shows it */
     assert_int_equal(needs_rig_frame(&rig).missing_regions, 3);
     shown[20] = 0xFFFF0000u | (4 * SLUICE_SHOWN_STEPS + SLUICE_SHOWN_MARGIN);
-    shown[0] = 2 * SLUICE_SHOWN_STEPS + SLUICE_SHOWN_MARGIN + 1; /* on its way */
+    shown[0] = 2 * SLUICE_SHOWN_STEPS + SLUICE_SHOWN_MARGIN + 1; /* still loading */
     shown[9] = 1;
     assert_int_equal(needs_rig_frame(&rig).missing_regions, 2);
     shown[0] = 2 * SLUICE_SHOWN_STEPS + SLUICE_SHOWN_MARGIN;

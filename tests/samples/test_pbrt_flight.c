@@ -36,7 +36,7 @@ struct opening {
     uint32_t steps, most, deepest;
 };
 
-/** As resolving every box would. */
+/** Opens all nodes, as resolving every box would. */
 static void open_all(struct opening *o, uint32_t node, uint32_t depth)
 {
     struct cluster_step step = {
@@ -75,7 +75,7 @@ static void each_step_is_bounded_and_everything_comes_once(void **state)
         }
 }
 
-/* Clusters of 64 out of 5000 are fewer than 256: their boxes come in one step. */
+/* Clusters of 64 out of 5000 are fewer than 256, so one step adds their boxes. */
 static void the_way_to_a_cluster_is_short(void **state)
 {
     (void)state;
@@ -95,15 +95,15 @@ static void the_way_to_a_cluster_is_short(void **state)
 #define BOX_BIT 0x80000000u
 #define NODES (8 * MOST)
 
-/** A tree, and what must be in it. */
+/** A tree, and its expected content. */
 struct world {
     struct clusters clusters;
     struct world_tree tree;
     struct box_tree_box boxes[MOST];
-    uint32_t *parts; ///< of keys
+    uint32_t *parts; ///< part by key
     bool is_there[2][MOST];
     uint8_t seen[2][MOST];
-    struct box_tree_node copy[NODES]; ///< of what was told to be written
+    struct box_tree_node copy[NODES]; ///< nodes reported as written
     uint32_t written;
 };
 
@@ -207,7 +207,7 @@ static void the_world_has_what_came_and_did_not_leave(void **state)
     }
 }
 
-/* A box becomes a shape: its cluster is built anew, and nothing else. */
+/* A box becomes a shape: only its cluster is rebuilt. */
 static void only_parts_that_changed_are_built(void **state)
 {
     (void)state;
@@ -230,7 +230,7 @@ static void only_parts_that_changed_are_built(void **state)
     destroy_world(w);
 }
 
-/* Whatever came first. */
+/* The order of changes does not matter. */
 static void equal_worlds_have_equal_parts(void **state)
 {
     (void)state;
@@ -249,14 +249,15 @@ static void equal_worlds_have_equal_parts(void **state)
         for (uint32_t i = 0; i < count; i++) {
             tops[turn][i] = w->tree.nodes[i];
             if (i >= 2 && w->clusters.tree.nodes[i - 2].count > 0)
-                tops[turn][i].first = 0; /* where the nodes of a part lie depends on the way */
+                tops[turn][i].first =
+                    0; /* the position of a part's nodes depends on the order of changes */
         }
         destroy_world(w);
     }
     assert_memory_equal(tops[0], tops[1], count * sizeof **tops);
 }
 
-/* pbrt's own: the camera at the origin looks along z, y is up. */
+/* pbrt's default: the camera at the origin looks along z, y is up. */
 static const float plain[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 static void assert_matrix(const float m[12], const float expected[12])
@@ -265,7 +266,7 @@ static void assert_matrix(const float m[12], const float expected[12])
         assert_true(fabsf(m[i] - expected[i]) < 1e-5f);
 }
 
-/* pbrt's LookAt: x is up cross forward, so from the south x is east. */
+/* In pbrt's LookAt, x is up cross forward: seen from the south, x is east. */
 static void cameras_look_at_points_as_those_of_pbrt(void **state)
 {
     (void)state;
@@ -301,7 +302,7 @@ static void looking_straight_up_gives_right_angles(void **state)
         }
 }
 
-/** Turned around y by an angle, at x = 4 share. */
+/** Writes a rotation around y by an angle, at the position x. */
 static void turned(double angle, float x, float m[12])
 {
     const float c = (float)cos(angle), s = (float)sin(angle);
@@ -324,7 +325,7 @@ static void the_way_between_cameras_turns_evenly(void **state)
         }
 }
 
-/* Each of the four components of the quaternion is the largest one in a turn. */
+/* Each of the quaternion's components is the largest one in one turn. */
 static void half_turns_end_where_they_should(void **state)
 {
     (void)state;
@@ -340,7 +341,8 @@ static void half_turns_end_where_they_should(void **state)
 
 #define DRAWS (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT)
 
-/** As gpu.c does, with a sparse queue of `sparse`. Returns the index of the queue for builds. */
+/** Chooses queues as gpu.c does, with a sparse queue in family `sparse`. Returns the index of the
+ * queue for builds. */
 static uint32_t choose(const VkQueueFamilyProperties *families, uint32_t count, uint32_t sparse,
                        struct gpu *gpu, struct gpu_queue_list *list)
 {

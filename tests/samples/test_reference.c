@@ -1,4 +1,4 @@
-/* What a kept truth is made of: averaged pictures, files of frames, and the text that vouches. */
+/* Parts of a kept truth: averaged pictures, files of frames, and the text that identifies them. */
 #define _XOPEN_SOURCE 700
 #include "frame_file.h"
 #include "reference_key.h"
@@ -77,7 +77,7 @@ static int tear_down(void **state)
     struct folder *folder = *state;
     remove(folder->file);
     remove(folder->key);
-    return remove(folder->path); /* nothing else is left in it */
+    return remove(folder->path); /* the folder must be empty */
 }
 
 static void frames_come_back_in_any_order(void **state)
@@ -90,7 +90,7 @@ static void frames_come_back_in_any_order(void **state)
         memset(pixels, i + 1, sizeof pixels);
         assert_true(frame_file_write(&file, (uint32_t)i, pixels));
     }
-    assert_int_not_equal(access(folder->file, F_OK), 0); /* not before it is whole */
+    assert_int_not_equal(access(folder->file, F_OK), 0); /* absent until complete */
     assert_true(frame_file_keep(&file));
     assert_true(frame_file_open(folder->file, sizeof pixels, 5, &file));
     for (uint32_t i = 0; i < 5; i++) {
@@ -122,7 +122,7 @@ static void files_of_another_size_are_not_opened(void **state)
 
 static void frames_that_are_not_kept_leave_what_was_there(void **state)
 {
-    const struct folder *folder = *state; /* tear_down finds what is left */
+    const struct folder *folder = *state; /* tear_down checks for leftover files */
     struct frame_file file;
     const uint8_t pixels[64] = {7};
     FILE *older = fopen(folder->file, "w");
@@ -139,7 +139,7 @@ static void frames_that_are_not_kept_leave_what_was_there(void **state)
 
 static void scratch_files_leave_nothing(void **state)
 {
-    const struct folder *folder = *state; /* tear_down finds what is left */
+    const struct folder *folder = *state; /* tear_down checks for leftover files */
     struct frame_file file;
     uint8_t pixels[64] = {7};
     assert_true(frame_file_create_scratch(folder->path, sizeof pixels, &file));
@@ -151,7 +151,7 @@ static void scratch_files_leave_nothing(void **state)
     assert_false(frame_file_create_scratch(folder->file, sizeof pixels, &file));
 }
 
-/** Something to draw, of one picture. */
+/** Inputs of a drawing with one picture. */
 struct scene {
     struct settings settings;
     struct gpu gpu;
@@ -207,7 +207,7 @@ static void the_same_settings_match(void **state)
     assert_int_equal(compare(&scene, folder->key), REFERENCE_MISSING);
     write_key(&scene, folder->key);
     assert_int_equal(compare(&scene, folder->key), REFERENCE_MATCHES);
-    scene.settings.anisotropy = 16; /* of the run, not of the truth */
+    scene.settings.anisotropy = 16; /* settings of the run, not of the truth */
     scene.settings.lod_bias = 1;
     assert_int_equal(compare(&scene, folder->key), REFERENCE_MATCHES);
 }

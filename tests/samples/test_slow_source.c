@@ -1,4 +1,4 @@
-/* Sources behind a slow line, whose clock the test sets. */
+/* Sources behind a slow line, with a clock that the test sets. */
 #include "slow_source.h"
 
 #include "support/fault_source.h"
@@ -8,7 +8,7 @@
 
 enum { SIZE = 64, PART = 16, PART_BYTES = PART * PART };
 
-/** A picture of bytes whose value tells the place, behind a line. */
+/** A picture of bytes whose values tell their position, behind a line. */
 struct rig {
     uint64_t now;
     struct slow_line line;
@@ -48,7 +48,7 @@ static void tear_down(struct rig *rig)
     sluiceDestroyImageSource(rig->memory);
 }
 
-/** Reads the part of this number, of 16 in rows of 4. */
+/** Reads one of 16 parts, in rows of 4. */
 static SluiceResult read_part(SluiceImageSource *source, uint32_t part)
 {
     uint8_t texels[PART_BYTES];
@@ -94,14 +94,14 @@ static void bytes_go_through_the_line_one_after_another(void **state)
 {
     (void)state;
     struct rig rig;
-    set_up(&rig, 300, 2); /* a part takes 128 */
+    set_up(&rig, 300, 2); /* a part takes 128 us */
     for (uint32_t i = 0; i < 3; i++)
         CHECK_RESULT(read_at(&rig, 5000, i), SLUICE_NOT_READY);
     for (uint32_t i = 0; i < 3; i++) {
         CHECK_RESULT(read_at(&rig, 5000 + 128 * (i + 1) + 299, i), SLUICE_NOT_READY);
         CHECK_OK(read_at(&rig, 5000 + 128 * (i + 1) + 300, i));
     }
-    /* what was not used of the line is lost */
+    /* unused capacity of the line is lost */
     CHECK_RESULT(read_at(&rig, 9000, 8), SLUICE_NOT_READY);
     CHECK_RESULT(read_at(&rig, 9427, 8), SLUICE_NOT_READY);
     CHECK_OK(read_at(&rig, 9428, 8));

@@ -1,4 +1,4 @@
-/* Files of millions of tiles: little is read and little is kept. The file has holes. */
+/* Files with millions of tiles: little is read and kept. The file is sparse. */
 #define _XOPEN_SOURCE 700
 #define _FILE_OFFSET_BITS 64
 
@@ -31,7 +31,7 @@ static uint64_t get(const unsigned char *at)
     return value;
 }
 
-/* What a writer leaves behind after few of very many tiles, made to look finished. */
+/* Makes an unfinished file look finished: few of very many tiles were written. */
 static void seal_by_hand(const struct scratch *scratch)
 {
     int file = open(scratch->part_path, O_RDWR);
@@ -66,7 +66,7 @@ static SluiceStoreCreateInfo describe(const struct scratch *scratch,
                                    .pAllocator = allocator};
 }
 
-/* 300 tiles far from each other, and the last one of level 0. */
+/* Returns the position of one of 300 distant tiles, or of the last one of level 0. */
 static void place_of(uint32_t i, uint32_t *x, uint32_t *y)
 {
     *x = i < 300 ? i * 97 % 512 : 511;
@@ -117,7 +117,7 @@ static void a_large_file_is_opened_by_one_small_read_and_little_is_kept(void **s
     write_far_tiles(&info);
     seal_by_hand(&scratch);
     failing_allocator_init(&allocator, UINT64_MAX);
-    SluiceStoreReadPool *pool; /* counts for itself */
+    SluiceStoreReadPool *pool; /* has its own counters */
     CHECK_OK(sluiceCreateStoreReadPool(NULL, &pool));
     SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
                                                .pPath = scratch.path,
@@ -136,7 +136,7 @@ static void a_large_file_is_opened_by_one_small_read_and_little_is_kept(void **s
         uint64_t reads = fault_io.count[FAULT_READ];
         for (int again = 0; again < 3; again++)
             CHECK_OK(sluiceReadImageRegion(source, &region, texels, 512));
-        /* once the index's, each time the tile's */
+        /* the index part once, the tile each time */
         assert_in_range(fault_io.count[FAULT_READ] - reads, 3, 4);
         assert_true(is_painted(PICTURE_MIXED, info.format, &region, texels, 512));
         assert_true(allocator.live_bytes <= KEPT);
@@ -150,7 +150,7 @@ static void a_large_file_is_opened_by_one_small_read_and_little_is_kept(void **s
     scratch_finish(&scratch);
 }
 
-/* Tiles 0 and 64 x 204, whose parts of the index are kept at the same place. */
+/* Tiles 0 and 64 x 204, whose parts of the index use the same slot. */
 static void what_was_checked_is_forgotten_with_its_part_of_the_index(void **state)
 {
     (void)state;
@@ -179,7 +179,7 @@ static void what_was_checked_is_forgotten_with_its_part_of_the_index(void **stat
     SluiceImageRegion tiles[] = {{0, 0, 0, 128, 128, 0},
                                  {0, 64 * 204 % 512 * 128, 64 * 204 / 512 * 128, 128, 128, 0}};
     CHECK_OK(sluiceReadImageRegion(source, &tiles[0], texels, 512));
-    for (int i = 0; i < 2; i++) /* its part of the index is kept from the first time on */
+    for (int i = 0; i < 2; i++) /* its part of the index is kept after the first read */
         CHECK_RESULT(sluiceReadImageRegion(source, &tiles[1], texels, 512),
                      SLUICE_ERROR_CORRUPT_DATA);
     free(texels);

@@ -1,4 +1,4 @@
-/* The cube flag of a store: what it says, and which files and writers are refused. */
+/* The cube flag of a store: its meaning, and refused files and writers. */
 #include "store/naive_store.h"
 #include "store/stores.h"
 #include "support/test.h"
@@ -49,7 +49,7 @@ static SluiceResult read_as_it_is(struct cube_file *file, struct messages *messa
     return read_store(file->scratch.path, PICTURE_MIXED, messages);
 }
 
-/* The flag in both infos. */
+/* Returns the flag, and checks it in both infos. */
 static bool is_cube(const char *path)
 {
     SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
@@ -108,7 +108,7 @@ static void a_flag_that_is_neither_0_nor_1_is_refused_with_its_value(void **stat
     assert_non_null(strstr(messages.last, file.scratch.path));
     assert_non_null(strstr(messages.last, "at 112: "));
     assert_non_null(strstr(messages.last, "the number is 7"));
-    file.bytes[AT_MINOR] = SLUICE_STORE_VERSION_MINOR + 1; /* which may know what 7 means */
+    file.bytes[AT_MINOR] = SLUICE_STORE_VERSION_MINOR + 1; /* a later version may define 7 */
     CHECK_OK(read_as_it_is(&file, &messages));
     assert_false(is_cube(file.scratch.path));
     cube_file_finish(&file);

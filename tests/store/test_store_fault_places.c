@@ -1,4 +1,4 @@
-/* A read that fails says in which file and where in it, through wrapping sources and the loader. */
+/* A failing read reports its file and offset, through wrapping sources and the loader. */
 #define _XOPEN_SOURCE 700
 
 #include "store/naive_store.h"
@@ -17,7 +17,8 @@ static SluiceImageSource *open_store(const char *path)
     return source;
 }
 
-/* Where the victim's chunks lie: 3 x 2 tiles, 2 x 1 of the next level, ... the tail last. */
+/* Returns the offset of one of the victim's chunks: 3 x 2 tiles, 2 x 1 of the next level, ..., the
+ * tail last. */
 static uint64_t chunk_offset(const struct victim *victim, uint64_t number)
 {
     struct naive_store store;
@@ -44,7 +45,7 @@ static void change_byte(const struct victim *victim, uint64_t at)
     fclose(file);
 }
 
-/* Reads a region of a file one byte of which is wrong. */
+/* Reads a region of a file with one wrong byte. */
 static void check_damage(uint32_t compression, uint64_t chunk, SluiceImageRegion region)
 {
     static unsigned char texels[300 * 140 * 4];
@@ -124,7 +125,7 @@ static void what_is_not_the_files_fault_has_no_place(void **state)
     victim_finish(&victim);
 }
 
-/* The last failure that a loader told, and what its counts say of it. */
+/* Last failure reported by a loader, and its counts. */
 struct told {
     SluiceTileReadFailure failure;
     char name[128];

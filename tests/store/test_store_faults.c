@@ -1,4 +1,4 @@
-/* What the system does to reads and writes: an error, and the same file or none. */
+/* Failing system calls give an error, and leave the unchanged file or none. */
 #define _XOPEN_SOURCE 700
 
 #include "store/fault_io.h"
@@ -69,7 +69,7 @@ static void every_read_that_fails_is_an_error_that_is_logged(void **state)
         SluiceResult result = read_store(scratch.path, PICTURE_MIXED, &messages);
         is_reached = fault_io.count[FAULT_READ] >= n;
         no_faults();
-        /* If the index cannot be read, no equal tiles are known; nothing is lost. */
+        /* Without the index no equal tiles are known, but nothing is lost. */
         bool has_failed = is_reached && result != SLUICE_SUCCESS;
         missed_count += is_reached && !has_failed;
         CHECK_RESULT(result, has_failed ? SLUICE_ERROR_IO : SLUICE_SUCCESS);
@@ -108,7 +108,8 @@ static void a_source_reads_on_after_an_error(void **state)
     scratch_finish(&scratch);
 }
 
-/* Creation, every write, sealing and publishing: what fails leaves no file, and can be resumed. */
+/* Fails creation, every write, sealing and publishing in turn. A failure leaves no file, and
+ * writing can be resumed. */
 static void fail_every_call(enum fault_call call, uint32_t compression, bool writes_half)
 {
     struct scratch clean;
@@ -131,7 +132,7 @@ static void fail_every_call(enum fault_call call, uint32_t compression, bool wri
         no_faults();
         CHECK_RESULT(result, has_failed ? SLUICE_ERROR_IO : SLUICE_SUCCESS);
         assert_true(!has_failed || messages.errors > 0);
-        /* the folder is synced when the name is there already */
+        /* when the folder is synced, the name already exists */
         bool is_last_sync = call == FAULT_SYNC && n == 2;
         assert_int_equal(exists(scratch.path), !has_failed || is_last_sync);
         if (has_failed && !is_last_sync)
@@ -196,7 +197,7 @@ static void a_tile_that_found_no_room_can_be_written_when_there_is_some(void **s
     }
 }
 
-/* The system's own refusal, not ours. */
+/* Uses the system's own limit, not an injected fault. */
 static void a_disk_that_is_full_is_an_error(void **state)
 {
     (void)state;
@@ -244,7 +245,7 @@ static void what_cannot_be_created_is_refused(void **state)
     info.pPath = NULL;
     CHECK_RESULT(sluiceCreateStoreWriter(&info, &writer), SLUICE_ERROR_NULL_POINTER);
     assert_null(writer);
-    scratch_finish(&scratch); /* nothing was left in it */
+    scratch_finish(&scratch); /* the folder must be empty */
 }
 
 static void what_is_no_tile_is_not_written(void **state)
@@ -295,7 +296,7 @@ static void what_is_no_tile_is_not_written(void **state)
     scratch_finish(&scratch);
 }
 
-/* Turn by turn as tiles of level 0 lie. */
+/* Writes tiles of level 0 in the order of their positions. */
 static SluiceResult write_turn(SluiceStoreWriter *writer, uint64_t turn)
 {
     static unsigned char texels[65536];
@@ -308,7 +309,7 @@ static SluiceResult write_turn(SluiceStoreWriter *writer, uint64_t turn)
     return sluiceWriteStoreTileInTurn(writer, turn, 0, 0, x, y, texels, 512);
 }
 
-/* Writes are a chunk and an entry for each tile. */
+/* A tile takes two writes: a chunk and an entry. */
 static void a_disk_that_refuses_a_tile_that_waited_is_told_later(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Files that are changed, cut or replaced while they are open. */
+/* Files that are changed, truncated or replaced while they are open. */
 #define _XOPEN_SOURCE 700
 
 #include "store/stores.h"
@@ -82,7 +82,7 @@ static void a_file_that_is_written_over_while_it_is_open_gives_an_error(void **s
     victim_finish(&other);
 }
 
-/* Writes one byte of the first tile's texels. */
+/* Overwrites one byte of the first tile's texels. */
 static void change_tile(const struct victim *victim, unsigned char value)
 {
     FILE *file = fopen(victim->scratch.path, "r+b");
@@ -114,7 +114,7 @@ static void raw_tiles_are_checked_once_or_each_time(void **state)
         CHECK_RESULT(sluiceReadImageRegion(source, &region, texels, 512),
                      always ? SLUICE_ERROR_CORRUPT_DATA : SLUICE_SUCCESS);
         assert_int_equal(texels[100], right ^ 1);
-        region.x = 128; /* that is not known to be right yet */
+        region.x = 128; /* this tile has not been verified yet */
         CHECK_OK(sluiceReadImageRegion(source, &region, texels, 512));
         sluiceDestroyImageSource(source);
         victim_finish(&victim);
@@ -144,7 +144,7 @@ static void a_store_that_found_no_descriptor_opens_later(void **state)
         .structSize = sizeof create, .pPath = victim.scratch.path, .log = messages_log(&messages)};
     SluiceImageSource *source = NULL;
     struct few_descriptors few;
-    few_descriptors_begin(&few, 2); /* which are kept for outputs */
+    few_descriptors_begin(&few, 2); /* two descriptors are kept for outputs */
     SluiceResult result = sluiceCreateStoreImageSource(&create, &source);
     few_descriptors_end(&few);
     CHECK_RESULT(result, SLUICE_NOT_READY);
@@ -157,7 +157,7 @@ static void a_store_that_found_no_descriptor_opens_later(void **state)
     victim_finish(&victim);
 }
 
-/* Loaders read what fails again and again. */
+/* Loaders retry failing reads again and again. */
 static void faults_of_a_file_are_logged_once_each_and_not_all_of_hundreds(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Any rectangle of any level, as GPUs with other tails and other readers ask for them. */
+/* Rectangles at any position of any level, as GPUs with other tails and other readers request
+ * them. */
 #include "base/checked.h"
 #include "store/stores.h"
 #include "support/failing_allocator.h"
@@ -25,7 +26,7 @@ static uint32_t draw(uint32_t *random, uint32_t below)
     return (*random >> 12) % below;
 }
 
-/* Whole blocks in compressed formats. */
+/* Draws a region. Compressed formats use whole blocks. */
 static SluiceImageRegion draw_region(const SluiceImageInfo *info, uint32_t *random)
 {
     SluiceFormatInfo format = {.structSize = sizeof format};
@@ -42,7 +43,7 @@ static SluiceImageRegion draw_region(const SluiceImageInfo *info, uint32_t *rand
     return region;
 }
 
-/* What lies between rows is the caller's. */
+/* Bytes between rows must stay unchanged. */
 static void check_region(SluiceImageSource *source, const SluiceImageInfo *info,
                          const SluiceImageRegion *region, size_t gap)
 {

@@ -1,4 +1,4 @@
-/* Writers that are stopped, killed, or told something else the next time. */
+/* Writers that are stopped, killed, or resumed with different settings. */
 #define _XOPEN_SOURCE 700
 
 #include "store/fault_io.h"
@@ -11,7 +11,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { TILES = 23 }; /* of the picture below: 12 + 6 + 2 + 1 + tail for R8G8B8A8, and a spare */
+enum {
+    TILES = 23
+}; /* tiles of the picture below: 12 + 6 + 2 + 1 + tail for R8G8B8A8, and a spare */
 
 static SluiceStoreCreateInfo describe(const struct scratch *scratch, uint32_t compression)
 {
@@ -92,7 +94,7 @@ static void a_writer_stopped_anywhere_is_resumed_to_the_same_file(void **state)
     }
 }
 
-/* The child dies in front of its call of a number; true if it lives to the end. */
+/* Writes in a child process that dies before its call of a number. Returns true if it survives. */
 static bool write_and_die(const SluiceStoreCreateInfo *info, enum fault_call call, uint64_t kill_at)
 {
     pid_t child = fork();
@@ -110,7 +112,7 @@ static bool write_and_die(const SluiceStoreCreateInfo *info, enum fault_call cal
     return true;
 }
 
-/* The number of times it was killed. */
+/* Returns how often the process was killed. */
 static uint32_t kill_before_every(enum fault_call call, uint32_t compression)
 {
     size_t size;
@@ -123,7 +125,7 @@ static uint32_t kill_before_every(enum fault_call call, uint32_t compression)
         SluiceStoreCreateInfo info = describe(&scratch, compression);
         lives = write_and_die(&info, call, kill_at);
         kills += !lives;
-        /* complete or absent: it has its name when the folder is all that is not on the disk yet */
+        /* complete or absent: the name exists once only the folder is left to be synced */
         bool is_named = lives || (call == FAULT_SYNC && kill_at == 2);
         assert_int_equal(exists(scratch.path), is_named);
         if (!is_named)
@@ -174,10 +176,10 @@ static void a_tile_that_is_damaged_meanwhile_is_written_again(void **state)
         stop_after(&info, 9);
         size_t size;
         unsigned char *bytes = read_bytes(scratch.part_path, &size);
-        bytes[8192 + 100] ^= 1;                    /* of the first tile */
+        bytes[8192 + 100] ^= 1;                    /* byte of the first tile */
         memset(bytes + 4096 + 2 * 20, 0xFF, 20);   /* the third tile's entry */
         bytes[4096 + 5 * 20 + 9] ^= 4;             /* the sixth tile's checksum */
-        memset(bytes + 4096 + 150 * 20, 0x11, 20); /* there is no such tile */
+        memset(bytes + 4096 + 150 * 20, 0x11, 20); /* no such tile */
         write_bytes(scratch.part_path, bytes, size);
         free(bytes);
         SluiceStoreWriter *writer;
@@ -288,7 +290,8 @@ static void a_second_writer_is_refused_until_the_first_is_gone(void **state)
     assert_non_null(strstr(messages.last, "another writer"));
     assert_null(second);
     CHECK_OK(write_tiles(first, &info, PICTURE_MIXED, UINT64_MAX)); /* nothing happened to it */
-    CHECK_OK(sluiceCreateStoreWriter(&other, &second)); /* that of the finished file is no more */
+    CHECK_OK(sluiceCreateStoreWriter(
+        &other, &second)); /* the finished file has no .sluice-part file any more */
     sluiceDestroyStoreWriter(first);
     sluiceDestroyStoreWriter(second);
     CHECK_OK(read_store(scratch.path, PICTURE_MIXED, NULL));

@@ -1,4 +1,4 @@
-/* What was written is read: by this library, and by a reader made from docs/store.md alone. */
+/* Written stores are read by this library, and by a reader made from docs/store.md alone. */
 #include "base/checked.h"
 #include "store/naive_store.h"
 #include "store/stores.h"

@@ -1,4 +1,4 @@
-/** A small file that a test changes: 300 x 140 texels of R8G8B8A8_UNORM, PICTURE_SMOOTH. */
+/** A small file that a test damages: 300 x 140 texels of R8G8B8A8_UNORM, PICTURE_SMOOTH. */
 #ifndef TESTS_STORE_VICTIM_H
 #define TESTS_STORE_VICTIM_H
 
@@ -9,7 +9,7 @@
 
 struct victim {
     struct scratch scratch;
-    unsigned char *bytes; ///< as they were, and room for one more
+    unsigned char *bytes; ///< original bytes, and room for one more
     size_t size;
 };
 
