@@ -1,4 +1,4 @@
-/* What the programs' log leaves out. */
+/* Messages that the programs' log suppresses. */
 #include "support/captured_stderr.h"
 #include "support/test.h"
 
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *text; ///< what was said
+static const char *text; ///< captured text
 
 static uint32_t count_lines(const char *part)
 {
@@ -58,7 +58,7 @@ static void a_file_with_many_damaged_tiles_takes_few_lines(void **state)
     assert_int_equal(count_lines(""), LOG_LINES_PER_FILE + 2);
 }
 
-/* Bounded, whatever is said; nothing is lost that is not counted. */
+/* The output is bounded. Every suppressed message is counted. */
 static void more_files_than_there_is_room_for_are_counted(void **state)
 {
     char name[32];

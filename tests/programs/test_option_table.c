@@ -1,4 +1,4 @@
-/* Command lines, what becomes of them, and what is said of those that are wrong. */
+/* Command lines: parsed values, and messages about errors. */
 #include "support/captured_stderr.h"
 #include "support/test.h"
 
@@ -54,7 +54,7 @@ static const struct option rows[] = {
 static const struct option_table table = {"program", "usage: program FIRST [OTHERS...]\n",
                                           "The end.\n", rows, sizeof rows / sizeof *rows};
 
-static const char *said; ///< on stderr, or in a help text
+static const char *said; ///< captured from stderr, or a help text
 
 static void print_help(const struct option_table *t)
 {
@@ -68,7 +68,7 @@ static void print_help(const struct option_table *t)
     said = text;
 }
 
-/* Of a command line whose words are separated by spaces; `said` has what stderr was told. */
+/* Parses a command line of words separated by spaces. `said` gets the text on stderr. */
 static enum option_outcome parse_with(const struct option_table *t, const char *line)
 {
     static char words[4096];
@@ -111,7 +111,7 @@ static void defaults_are_those_of_the_table(void **state)
     assert_int_equal(v.words.count, 0);
 }
 
-/* The value of an option as a number. */
+/* Returns the value of an option as a number. */
 static double value_of(const char *name)
 {
     return strcmp(name, "count") == 0     ? v.count
@@ -267,7 +267,7 @@ static void an_option_may_be_repeated_up_to_a_limit(void **state)
     assert_string_equal(said, "program: --sweep z: wants NAME=V, at most 64 times\n");
 }
 
-/* Tables without words: a list, what stands behind "--", and neither. */
+/* Tables without words: with a list, with operands after "--", and with neither. */
 static void lists_and_the_rest_are_taken_as_they_are(void **state)
 {
     struct option_list list = {0}, rest = {0};

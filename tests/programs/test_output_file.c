@@ -1,4 +1,4 @@
-/* Which names one run may give to its outputs. */
+/* Names that one run may give to its outputs. */
 #define _XOPEN_SOURCE 700
 #include "support/test.h"
 
@@ -101,7 +101,7 @@ static void *add_inputs(void *user_data)
     return NULL;
 }
 
-/* The thread sanitizer sees the reads of a list without a lock. */
+/* The thread sanitizer reports reads of the list without a lock. */
 static void inputs_are_added_while_outputs_are_checked(void **state)
 {
     pthread_t thread;

@@ -1,4 +1,4 @@
-/* What the tools print of words that others chose. */
+/* Text of other sources in the output of the tools. */
 #define _XOPEN_SOURCE 700
 
 #include "text.h"
@@ -70,9 +70,9 @@ static void bytes_that_are_no_utf8_are_told_from_letters(void **state)
     static const struct case_of_text cases[] = {
         {"\xFFx", "\\xffx", "\"\\ufffdx\""},
         {"\x80", "\\x80", "\"\\ufffd\""},
-        {"\xC3", "\\xc3", "\"\\ufffd\""}, /* ends too soon */
+        {"\xC3", "\\xc3", "\"\\ufffd\""}, /* truncated */
         {"\xF0\x9F\x8C", "\\xf0\\x9f\\x8c", "\"\\ufffd\\ufffd\\ufffd\""},
-        {"\xC0\xAF", "\\xc0\\xaf", "\"\\ufffd\\ufffd\""},                 /* longer than need be */
+        {"\xC0\xAF", "\\xc0\\xaf", "\"\\ufffd\\ufffd\""},                 /* overlong */
         {"\xED\xA0\x80", "\\xed\\xa0\\x80", "\"\\ufffd\\ufffd\\ufffd\""}, /* a surrogate */
         {"\xF4\x90\x80\x80", "\\xf4\\x90\\x80\\x80", "\"\\ufffd\\ufffd\\ufffd\\ufffd\""},
     };

@@ -23,7 +23,7 @@ static void wait_while_held(struct fault_source *source)
     pthread_mutex_unlock(&source->mutex);
 }
 
-/* What the test wants of the read of this number. */
+/* Returns the test's answer to the read of this number. */
 static SluiceResult answer_of(const struct fault_source *source, uint64_t number)
 {
     if (number <= source->script_length)

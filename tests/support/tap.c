@@ -12,8 +12,8 @@
 struct filter {
     FILE *out;
     size_t length;
-    char line[1024];   /* what of the current line has come; longer lines are cut */
-    char reason[1024]; /* of the next skipped test */
+    char line[1024];   /* received part of the current line; longer lines are cut */
+    char reason[1024]; /* reason of the next skipped test */
 };
 
 static bool begins_with(const char *text, const char *prefix)
@@ -28,7 +28,7 @@ static bool is_tap(const char *line)
            begins_with(line, "TAP version ") || begins_with(line, "Bail out!");
 }
 
-/* "not ok 3 # SKIP name" becomes "ok 3 - name # SKIP reason". */
+/* Rewrites "not ok 3 # SKIP name" to "ok 3 - name # SKIP reason". */
 static bool write_skipped(struct filter *filter)
 {
     int number = 0, name = 0;

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #define HEAPS 9
-/* What the manager's first 256 records leave beside those in use, THIN_HEAPS_TILES and index 0. */
+/* The manager's first 256 records, without the used ones: THIN_HEAPS_TILES and index 0. */
 #define WAITING 207
 
-/* A row of tiles, all wanted. */
+/* Adds a row of tiles, all wanted. */
 static SluiceTextureId add_row(SluiceStreamedTextureManager *manager, uint32_t tile_count)
 {
     const SluiceStreamedTextureDesc desc = {.width = 128 * tile_count,

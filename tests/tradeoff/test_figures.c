@@ -1,4 +1,4 @@
-/* What programs print, figure by figure and frame by frame. */
+/* Figures that programs print, by figure and by frame. */
 #define _POSIX_C_SOURCE 200809L
 #include "support/test.h"
 
@@ -11,7 +11,7 @@
 #include "figures.h"
 #include "frames.h"
 
-/* To be removed and freed. */
+/* Returns a path. The caller removes the file and frees the path. */
 static char *write_file(const char *text)
 {
     char *path = strdup("/tmp/sluice-figures-XXXXXX");
@@ -99,7 +99,7 @@ static void what_is_no_figure_is_refused(void **state)
     }
 }
 
-/* Every beginning of a good line, so that nothing is read behind its end. */
+/* Every prefix of a valid line, so that reads behind the end show. */
 static void cut_lines_are_refused(void **state)
 {
     static const char line[] = "{\"name\": \"a\\u00e9\", \"value\": \"x\", \"unit\": \"\"}";

@@ -1,4 +1,4 @@
-/* Which points a sweep has, and how they are called. */
+/* Points of a sweep, and their labels. */
 #include "support/test.h"
 
 #include <stdlib.h>
@@ -152,7 +152,7 @@ static void base_can_be_another(void **state)
     drop(&plan);
 }
 
-/* What the program lacks is left out, and what only --help knows can be swept. */
+/* Settings that the program lacks are left out. Options known from --help alone can be swept. */
 static void settings_are_those_of_the_program(void **state)
 {
     static const char *const labels[] = {"base", "strange c d"};
@@ -170,7 +170,8 @@ static void settings_are_those_of_the_program(void **state)
     drop(&plan);
 }
 
-/* The gallery's plan, as far as this program has the options; its grid asks for one it lacks. */
+/* The gallery's plan, as far as this program has the options. Its grid names an option that the
+ * program lacks. */
 static void built_in_plans_keep_to_what_the_program_has(void **state)
 {
     static const char *const quick[] = {

@@ -1,4 +1,4 @@
-/* Which points are recommended: against a naive front, and when noise moves what was measured. */
+/* Recommended points, compared with a naive front, also with noise in the measurements. */
 #include "support/test.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ struct rig {
     struct sweep_recommendation recommendations[RECOMMEND_COUNT];
 };
 
-/* Repeats lie so far from the mean, and at each point in another order. */
+/* Sets the repeats at fixed distances from the mean, in a different order at each point. */
 static void set_point(struct rig *rig, uint32_t index, const double means[METRIC_COUNT],
                       double spread)
 {
@@ -109,7 +109,7 @@ static void of_equals_the_cheaper_is_taken(void **state)
     recommend(&rig.sweep, &roles, rig.recommendations);
     assert_int_equal(rig.recommendations[0].point, 2);
     recommend_finish(rig.recommendations);
-    /* With repeats 2 % apart all three are equal, and the memory of the last two is, too. */
+    /* With repeats 2 % apart all three are equal, and so is the memory of the last two. */
     for (uint32_t i = 0; i < 4; i++)
         set_point(&rig, i, means[i], 0.02);
     recommend(&rig.sweep, &roles, rig.recommendations);
@@ -168,7 +168,7 @@ static void without_a_picture_metric_nothing_is_recommended(void **state)
     recommend_finish(rig.recommendations);
 }
 
-/* Half as slow again, in an hour when nothing is sure: doubt does not recommend it. */
+/* Half as slow again while times are uncertain: uncertainty must not recommend it. */
 static void a_slower_point_is_not_balanced_however_noisy_times_are(void **state)
 {
     static const double means[][METRIC_COUNT] = {{0.1, 100, 10}, {0.1, 50, 15.2}, {0.1, 80, 11}};
@@ -183,7 +183,7 @@ static void a_slower_point_is_not_balanced_however_noisy_times_are(void **state)
     recommend_finish(rig.recommendations);
 }
 
-/* Seeds and slow hours move both alike: what is less in each repeat is less. */
+/* Seeds and slow hours move both alike. A point that is lower in each repeat is lower. */
 static void what_all_repeats_share_hides_no_difference(void **state)
 {
     static const double means[][METRIC_COUNT] = {{0.100, 100, 10}, {0.080, 100, 10}};
@@ -208,7 +208,7 @@ static void repeats_that_do_not_count_are_passed_over(void **state)
     expect(&rig, 1, 1, 1);
 }
 
-/* One time that is 5 % less is no reason, a third less is. */
+/* With one repeat, a time 5 % lower does not count, and a figure a third lower does. */
 static void a_figure_of_one_run_counts_where_it_is_far_off_but_a_time_never(void **state)
 {
     static const double means[][METRIC_COUNT] = {{0.1, 100, 10}, {0.1, 100, 9.5}};
@@ -252,14 +252,14 @@ static uint32_t next_random(uint32_t *seed)
     return *seed >> 8;
 }
 
-/* One repeat leaves 10 % of doubt; less memory then does not excuse a worse picture. */
+/* One repeat leaves 10 % of uncertainty. Less memory then does not excuse a worse picture. */
 static void what_a_rule_names_is_never_worse_than_the_base(void **state)
 {
     static const double means[][METRIC_COUNT] = {
         {0.100, 100, 10}, /* the base */
-        {0.107, 40, 10},  /* as good within the doubt, and smaller */
+        {0.107, 40, 10},  /* equal within the uncertainty, and smaller */
         {0.080, 190, 10}, /* surely better for more memory */
-        {0.086, 105, 10}, /* as good as that one, and smaller */
+        {0.086, 105, 10}, /* equal to the previous one, and smaller */
     };
     struct rig rig;
     (void)state;
@@ -276,7 +276,7 @@ static void what_a_rule_names_is_never_worse_than_the_base(void **state)
     expect(&rig, 3, 1, 1);
 }
 
-/* Whatever is measured, and however often. */
+/* For any measurements and any number of repeats. */
 static void no_recommendation_is_below_the_base_in_its_own_figure(void **state)
 {
     static const int goals[RECOMMEND_COUNT] = {QUALITY, MEMORY, MEMORY};
@@ -349,7 +349,7 @@ static void what_is_recommended_is_never_dominated(void **state)
     }
 }
 
-/* Measured anew, each repeat within 3 % of the truth. */
+/* Measures again, each repeat within 3 % of the truth. */
 static void noise_within_the_intervals_does_not_change_them(void **state)
 {
     static const double truth[][METRIC_COUNT] = {

@@ -9,7 +9,7 @@
 #include <time.h>
 
 #define VERSION 5
-#define TRIES 500 /* of 10 ms */
+#define TRIES 500 /* pauses of 10 ms */
 
 struct drag {
     Display *display;
@@ -35,7 +35,7 @@ static void send(const struct drag *drag, const char *type, const long data[4])
     XFlush(drag->display);
 }
 
-/* The target asks for the list of files. */
+/* Answers the target's request for the list of files. */
 static void answer(const struct drag *drag, const XSelectionRequestEvent *request)
 {
     XEvent event = {.xselection = {.type = SelectionNotify,

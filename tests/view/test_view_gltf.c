@@ -17,7 +17,7 @@
 
 static char folder[] = "/tmp/view-gltf-XXXXXX";
 
-/* A triangle: three positions, three UVs, three indices, and two bytes that fill up. */
+/* A triangle: three positions, three UVs, three indices, and two bytes of padding. */
 static const struct {
     float positions[9], uvs[6];
     uint16_t indices[4];
@@ -54,7 +54,7 @@ static void write_base64(const uint8_t *bytes, size_t size, char *text)
     text[length] = '\0';
 }
 
-/* Replaces the first `from`, which must be there. */
+/* Replaces the first `from`, which must exist. */
 static void replace(char *text, size_t size, const char *from, const char *to)
 {
     char *at = strstr(text, from);
@@ -233,7 +233,7 @@ static void transforms_scale_then_turn_then_move(void **state)
     assert_true(gltf_open_bytes("a.gltf", text, strlen(text), &file));
     assert_true(gltf_read_material(&file, 0, &material));
     const struct scene_slot *slot = &material.slots[SLOT_COLOR];
-    /* As complex numbers with V up: a turn counterclockwise is a product. */
+    /* Computed with complex numbers, V up: a counterclockwise turn is a product. */
     const double x = 1.5 * u, y = -4 * v;
     const double turned[2] = {x * cos(turn) - y * sin(turn), x * sin(turn) + y * cos(turn)};
     assert_int_equal(slot->uv_set, 1);

@@ -5,7 +5,7 @@
 #include "sweep.h"
 
 #define PAGE_SWEEP_POINTS 11
-#define PAGE_SWEEP_DONE 9 ///< the first ones; then one that failed, one that is pending
+#define PAGE_SWEEP_DONE 9 ///< the first points; then one that failed, and one that is pending
 #define PAGE_SWEEP_BASE 2
 #define PAGE_SWEEP_SETTINGS 3
 #define PAGE_SWEEP_RECOMMENDATIONS 3
@@ -31,16 +31,16 @@ struct page_sweep {
     struct sweep_recommendation recommendations[PAGE_SWEEP_RECOMMENDATIONS];
 };
 
-/** What each word of the hostile sweep holds. */
+/** Text of each word in the hostile sweep. */
 extern const char page_sweep_hostile[];
 
 /**
- * Half widths are a fiftieth of the mean; of differences to the base they are 0, but 3 for
- * gpu_ms_median. Folders are ROOT/I. All words may be hostile ones.
+ * Half widths are a fiftieth of the mean. For differences to the base they are 0, but 3 for
+ * gpu_ms_median. Folders are ROOT/I. `hostile`: all words are hostile.
  */
 void page_sweep_init(struct page_sweep *s, const char *root, bool hostile);
 
-/** Writes a file into a point's folder, which is made. */
+/** Creates a point's folder, and writes a file into it. */
 void page_sweep_add_file(const struct page_sweep *s, uint32_t point, const char *name,
                          const void *bytes, size_t size);
 

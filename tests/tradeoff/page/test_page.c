@@ -17,7 +17,7 @@
 static struct page_sweep s;
 static char root[400], page_path[440];
 
-/* A folder of its own for each test, below the build's. */
+/* Makes a folder of its own for each test, below the build folder. */
 static void start(const char *name)
 {
     const char *build = getenv("SLUICE_BUILD_ROOT");
@@ -34,7 +34,7 @@ static bool write_page(void)
     return page_write(&s.sweep, s.recommendations, PAGE_SWEEP_RECOMMENDATIONS, page_path);
 }
 
-/* For the caller to free. */
+/* The caller frees the text. */
 static char *read_page(size_t *size)
 {
     FILE *file = fopen(page_path, "rb");
@@ -189,7 +189,7 @@ static void pictures_beyond_the_size_of_the_page_are_named(void **state)
     char *text = read_page(&size);
     assert_true(size <= PAGE_SIZE_MAX);
     assert_true(size > PAGE_SIZE_MAX - 2000000);
-    assert_int_equal(count_words(text, "\"png\":\""), 4); /* of 1.33 MB each */
+    assert_int_equal(count_words(text, "\"png\":\""), 4); /* 1.33 MB each */
     assert_true(count_words(text, "the page has no room for it") > 0);
     assert_int_equal(count_words(text, "\"estimates\":"), PAGE_SWEEP_POINTS);
     free(text);
