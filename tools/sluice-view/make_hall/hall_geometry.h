@@ -1,0 +1,45 @@
+/** Geometry of the hall: meshes of quads, in meters. */
+#ifndef SLUICE_VIEW_HALL_GEOMETRY_H
+#define SLUICE_VIEW_HALL_GEOMETRY_H
+
+#include <stdint.h>
+
+#define HALL_FLOOR 40u            ///< number of the floor, behind those of the paintings
+#define HALL_WALL 2.56f           ///< half the distance between the long walls
+#define HALL_FRONT 5.0f           ///< z of the wall behind the camera's first place
+#define HALL_BACK (-45.0f)        ///< z of the wall at the far end
+#define HALL_MOST_VERTICES 32768u ///< of a mesh
+
+/** Meshes without pictures, by their material. */
+enum hall_group { WALLS, CEILING, SKYLIGHTS, GOLD, WOOD, TRIM, GROUPS };
+
+struct hall_picture {
+    uint32_t number, width, height;
+    char path[64]; ///< from the folder of the scene
+};
+
+struct vertex {
+    float position[3], normal[3], uv[2];
+};
+
+/** Quads: four vertices each. */
+struct mesh {
+    struct vertex *vertices; ///< HALL_MOST_VERTICES
+    uint32_t count;
+};
+
+/** Painting `number`, or HALL_FLOOR. */
+struct hall_picture hall_picture(uint32_t number);
+
+/** Adds a quad. `corner` is its top left one, seen from its front. `right` and `down` lie along
+ * axes. uv is 0 to 1. */
+void hall_add_quad(struct mesh *mesh, const float corner[3], const float right[3],
+                   const float down[3]);
+
+/** Adds painting `number` to `mesh` and its frame to a mesh of `groups`. */
+void hall_add_painting(struct mesh *mesh, struct mesh groups[GROUPS], uint32_t number);
+
+/** Adds walls with their trim, the ceiling and its skylights. */
+void hall_add_room(struct mesh groups[GROUPS]);
+
+#endif /* SLUICE_VIEW_HALL_GEOMETRY_H */
