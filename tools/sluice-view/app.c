@@ -154,6 +154,17 @@ bool app_compares(const struct view_app *app)
     return app->other && app->settings.view != VIEW_TRUTH;
 }
 
+/* Flicker shows each four times a second, A first. */
+bool app_shows_b(const struct view_app *app, float x)
+{
+    const struct view_settings *s = &app->settings;
+    if (s->view == VIEW_TRUTH)
+        return false;
+    if (s->compare == VIEW_FLICKER)
+        return (uint64_t)(app->seconds * 4) % 2 == 1;
+    return s->compare == VIEW_DIVIDER && x > (float)s->divider * app->width;
+}
+
 bool app_shows_difference(const struct view_app *app)
 {
     return app->settings.view == VIEW_TRUTH || app->settings.compare == VIEW_DIFFERENCE;

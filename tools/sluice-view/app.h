@@ -131,6 +131,8 @@ void app_end_demonstration(struct view_app *app);
 bool app_has_second(const struct view_app *app);
 /** Whether A and B are compared: there is a second picture, and not that of view 8. */
 bool app_compares(const struct view_app *app);
+/** Whether the picture at x, in pixels, is that of B. */
+bool app_shows_b(const struct view_app *app, float x);
 /** Whether the picture is a difference of two. */
 bool app_shows_difference(const struct view_app *app);
 /** Whether a divider can be dragged. */

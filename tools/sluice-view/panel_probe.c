@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "panel_traced.h"
+#include "sets.h"
 
 #include <stdio.h>
 
@@ -41,9 +42,15 @@ void panel_probe_find(struct view_app *app)
     const struct stage_pick pick =
         stage_pick(app->stage, &app->camera, app->width / app->height, pixel.x, pixel.y);
     float texels[4];
-    probe_point(app->stage, &app->facts, &pick, &app->probe);
+    /* The inspector is of A. */
+    const bool of_b = app->other && !inspects && app_shows_b(app, app->mouse_x);
+    const struct view_settings settings =
+        of_b ? sets_of_second(&app->settings, &app->b) : app->settings;
+    probe_point(of_b ? app->other : app->stage, of_b ? &app->facts_b : &app->facts, &pick,
+                &app->probe);
+    app->probe.of_b = of_b;
     if (app->probe.known && stage_pick_pixel(app->stage, &pick, &pixel, texels))
-        probe_pixel(texels, &app->settings, &app->probe);
+        probe_pixel(texels, &settings, &app->probe);
 }
 
 static const char *reason_words(SluiceCoarseReason reason)
@@ -130,12 +137,14 @@ static void draw_identity(const struct view_app *app, const struct stage_texture
 
 static void draw_written(const struct view_app *app, const struct view_probe *p)
 {
-    const SluiceTextureStatistics *s = &app->facts.textures[p->texture].statistics;
+    const struct view_facts *facts = p->of_b ? &app->facts_b : &app->facts;
+    const struct stage *stage = p->of_b ? app->other : app->stage;
+    const SluiceTextureStatistics *s = &facts->textures[p->texture].statistics;
     if (s->seenTime == 0)
         ui_text(UI_WHITE, "no feedback of it so far");
     else
         ui_text(UI_WHITE, "feedback read back %.2f s ago",
-                (double)(stage_now(app->stage) - s->seenTime) / STAGE_TICKS_PER_SECOND);
+                (double)(stage_now(stage) - s->seenTime) / STAGE_TICKS_PER_SECOND);
 }
 
 void panel_probe(const struct view_app *app)
@@ -149,7 +158,7 @@ void panel_probe(const struct view_app *app)
     if (!p->known || !shows_values(app))
         return;
     ui_line();
-    ui_text(UI_BLUE, "%.40s", stage_texture(app->stage, p->texture)->name);
+    ui_text(UI_BLUE, "%s%.40s", p->of_b ? "B: " : "", stage_texture(app->stage, p->texture)->name);
     switch (app->settings.view) {
     case VIEW_RESIDENT:
         ui_text(UI_WHITE, "%s is resident", level_words(p->resident, level, sizeof level));

@@ -130,14 +130,13 @@ void panels_draw_picture(const struct view_app *app)
         ui_picture(UI_TEXTURE_PICTURE, UI_MODE_PLAIN, all, uv, UI_COLOR(255, 255, 255, 255));
         return;
     }
-    const bool flicker_other = s->compare == VIEW_FLICKER && s->view != VIEW_TRUTH &&
-                               (uint64_t)(app->seconds * 4) % 2 == 1;
     if (app_shows_difference(app)) {
         draw_difference(app);
         return;
     }
-    ui_picture(flicker_other ? UI_TEXTURE_OTHER : UI_TEXTURE_PICTURE, UI_MODE_PLAIN, all, uv,
-               UI_COLOR(255, 255, 255, 255));
+    ui_picture(s->compare == VIEW_FLICKER && app_shows_b(app, 0) ? UI_TEXTURE_OTHER
+                                                                 : UI_TEXTURE_PICTURE,
+               UI_MODE_PLAIN, all, uv, UI_COLOR(255, 255, 255, 255));
     if (s->compare != VIEW_DIVIDER)
         return;
     draw_right_of_divider(app, UI_TEXTURE_OTHER);

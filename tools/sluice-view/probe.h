@@ -8,6 +8,7 @@
 
 struct view_probe {
     bool known;          ///< a texture is there, and the streamer knows it
+    bool of_b;           ///< values of the picture of B
     uint32_t texture;    ///< index; STAGE_NO_TEXTURE: none
     uint32_t texel[2];   ///< of level 0
     uint8_t resident;    ///< finest level that is resident there; SLUICE_MIP_UNTOUCHED: none
