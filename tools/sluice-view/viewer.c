@@ -462,6 +462,20 @@ static bool run_frames(struct viewer *v)
     return true;
 }
 
+/* Of the last frames with the same settings. */
+static void print_halves(const struct view_app *app)
+{
+    static const char names[2] = {'a', 'b'};
+    for (int i = 0; i < 2; i++)
+        printf("{\"name\": \"gpu_ms_median_%c\", \"value\": %.4f, \"unit\": \"ms\"}\n"
+               "{\"name\": \"host_ms_median_%c\", \"value\": %.4f, \"unit\": \"ms\"}\n",
+               names[i], half_series_median(&app->times[i].gpu, HALF_TIMES_MOST), names[i],
+               half_series_median(&app->times[i].host, HALF_TIMES_MOST));
+    printf("{\"name\": \"resident_b\", \"value\": %llu, \"unit\": \"B\"}\n"
+           "{\"name\": \"sharp_b\", \"value\": %.4f, \"unit\": \"\"}\n",
+           (unsigned long long)app->facts_b.resident_size, app->facts_b.sharp);
+}
+
 static void print_summary(struct viewer *v)
 {
     const struct view_facts *f = &v->app.facts;
@@ -485,6 +499,8 @@ static void print_summary(struct viewer *v)
                                                    (v->frame - v->first_frame - 1)
                                              : 0.0);
         view_summary_print(&v->summary, f);
+        if (app_compares(&v->app))
+            print_halves(&v->app);
         if (v->flip.known)
             printf("{\"name\": \"FLIP\", \"value\": %.6f, \"unit\": \"\"}\n", v->flip.shown_mean);
         return;
