@@ -12,8 +12,8 @@
 #define CONFORM_GRAD 0u     /* dx, dy, lodBias, maxAnisotropy */
 #define CONFORM_LOD 1u      /* lod */
 #define CONFORM_IMPLICIT 2u /* fragments: dx and dy become those of the quad */
-#define CONFORM_QUAD 3u     /* as CONFORM_GRAD, a corner by each pixel of a quad */
-#define CONFORM_TURNS 4u    /* as CONFORM_GRAD, a corner in each of four frames */
+#define CONFORM_QUAD 3u     /* CONFORM_GRAD with a corner per pixel of a quad */
+#define CONFORM_TURNS 4u    /* CONFORM_GRAD with a corner in each of four frames */
 
 /* The fragment stage has a quad per sample. */
 #define CONFORM_TARGET_SIZE 128u

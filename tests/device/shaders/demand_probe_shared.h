@@ -8,15 +8,15 @@
 #include "sluice/shared/types.h"
 #endif
 
-/* What is done at an input. */
+/* Operations at an input. */
 #define DEMAND_GRAD 0u
 #define DEMAND_LOD 1u
 #define DEMAND_CUBIC 2u
 #define DEMAND_MAP 3u      /* a page of a resource: `index` */
-#define DEMAND_FORMULA 4u  /* the LOD alone; dx and dy in texels, maxAnisotropy in `lod` */
-#define DEMAND_HARDWARE 5u /* an ordinary image, by its sampler, with dx and dy */
-#define DEMAND_PLACE 6u    /* of tail level `lod`, of a texture's shape */
-#define DEMAND_SLOPES 7u   /* as DEMAND_GRAD, with derivatives */
+#define DEMAND_FORMULA 4u  /* the LOD only; dx and dy in texels, maxAnisotropy in `lod` */
+#define DEMAND_HARDWARE 5u /* an ordinary image by its sampler, with dx and dy */
+#define DEMAND_PLACE 6u    /* tail level `lod` of a texture's shape */
+#define DEMAND_SLOPES 7u   /* DEMAND_GRAD with derivatives */
 
 #define DEMAND_CHUNKS 2 /* array images */
 
@@ -26,8 +26,8 @@ struct DemandInput {
     float dy[2];
     float lod;
     uint kind;
-    uint index; /* of a texture */
-    uint word;  /* DEMAND_PLACE: of the page of the tail */
+    uint index; /* index of the texture */
+    uint word;  /* DEMAND_PLACE: word of the tail's page */
     uint reserved[2];
 };
 SLUICE_SHARED_SIZE(struct DemandInput, 48)

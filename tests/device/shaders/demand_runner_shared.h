@@ -1,4 +1,4 @@
-/* What one invocation of demand_runner.comp is told and tells. */
+/* Inputs and outputs of demand_runner.comp. */
 #ifndef TESTS_DEVICE_DEMAND_RUNNER_SHARED_H
 #define TESTS_DEVICE_DEMAND_RUNNER_SHARED_H
 
@@ -23,13 +23,13 @@ struct RunnerInput {
     float dx[2];
     float dy[2];
     uint cell;
-    float direction[9]; /* of RUNNER_CUBE_GRAD, and its derivatives */
+    float direction[9]; /* RUNNER_CUBE_GRAD: direction and its derivatives */
 };
 SLUICE_SHARED_SIZE(struct RunnerInput, 72)
 
 struct RunnerOutput {
     float color[4];
-    uint value[2]; /* of a page; of a byte page: its hash, and 0 unless its place is unaligned */
+    uint value[2]; /* value of a page; byte pages: hash, and 0 unless unaligned */
     uint resident;
     uint reserved;
 };

@@ -15,14 +15,14 @@ struct NeuralParams {
     int y;
     uint width;
     uint height;
-    uint colorSpace; /* not 0: of all channels, which become linear */
+    uint colorSpace; /* not 0: color space of all channels, which become linear */
 };
 SLUICE_SHARED_SIZE(struct NeuralParams, 28)
 
 struct NeuralOutput {
     float channels[16];
     uint resident;
-    uint size; /* of the mip: width, height << 16 */
+    uint size; /* size of the mip: width, height << 16 */
     uint mipCount;
     uint padding;
 };

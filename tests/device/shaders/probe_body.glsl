@@ -1,4 +1,4 @@
-/* What probe.comp and probe.hlsl do at one input, after their bindings. */
+/* Shared by probe.comp and probe.hlsl after their bindings: evaluates one input. */
 #include "sluice/feedback.glsl"
 #include "sluice/sample.glsl"
 #include "sluice/stochastic.glsl"

@@ -14,20 +14,21 @@
 #define PROBE_FETCH 8u  /* uv are texel coordinates, lodBias the level */
 #define PROBE_WORDS 16u /* copies feedback words instead */
 #define PROBE_TWINS 32u /* evaluates the functions that have C twins */
-/* textureGrad of the whole texture instead, clamped at -1 - lodBias if the sampler does that; where
- * lodBias >= 0 that many levels coarse, in a row of samples along the longer
- * derivative, as paged residency takes them */
+/* textureGrad of the whole texture. Clamped at -1 - lodBias if the sampler clamps. With lodBias >=
+ * 0: that many levels coarser, in a row of samples along the longer derivative, as in paged
+ * residency. */
 #define PROBE_TRUTH 64u
 /* sluiceSampleDerivatives: red, green and blue of both derivatives go to footprint */
 #define PROBE_SLOPES 128u
 
 #define PROBE_PAGE_CHUNKS 64 /* descriptors of page images */
 
-/* The picture shader's; `first` is the frame there. */
+/* For the picture shader, where `first` is the frame. */
 #define PICTURE_SIZE 128u
 #define PICTURE_LATTICE 1u
 
-/* Of the array shaders, whose flags are the layer: each sample has another, from tableIndex on. */
+/* For the array shaders, where flags are the layer: each sample has another layer, from tableIndex
+ * on. */
 #define PROBE_ALL_LAYERS 0x80000000u
 
 struct ProbeInput {
@@ -46,7 +47,7 @@ struct ProbeOutput {
     uint nonResident; /* summed over the dispatches */
     uint wantedLevel;
     float lod;
-    uint footprint[6]; /* of samples: the bits of dx and dy that textureGrad gets */
+    uint footprint[6]; /* bits of dx and dy that textureGrad gets */
     float minLod;
 };
 SLUICE_SHARED_SIZE(struct ProbeOutput, 64)

@@ -1,4 +1,4 @@
-/* The same without ray tracing: every box for every ray. */
+/* Casts rays without ray tracing: tests every box for every ray. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

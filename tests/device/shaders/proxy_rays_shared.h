@@ -1,4 +1,4 @@
-/* What shaders that trace rays through proxy boxes are told and tell. */
+/* Inputs and outputs of shaders that cast rays through proxy boxes. */
 #ifndef TESTS_DEVICE_PROXY_RAYS_SHARED_H
 #define TESTS_DEVICE_PROXY_RAYS_SHARED_H
 

@@ -20,8 +20,8 @@
 #define RAY_SURFACES 2u
 
 struct RaySurface {
-    float center[3]; /* of a sphere, or the normal of a plane */
-    float offset;    /* of a plane along its normal */
+    float center[3]; /* center of a sphere, or normal of a plane */
+    float offset;    /* offset of a plane along its normal */
     float radius;    /* 0: a plane */
     float eta;
     uint event;

@@ -12,16 +12,16 @@ struct StochasticCall {
     float uv[2];
     float lod;
     float sigma;
-    float random[2]; /* that all draws have, without a grid or seed */
+    float random[2]; /* numbers of all draws, without grid or seed */
     uint width;
     uint height;
     uint levelCount;
     uint modeU;
     uint modeV;
     uint kernel;
-    uint seed; /* of draws: hashes; 0: see grid */
-    uint grid; /* draws are the middles of that many cells of one number; 0: random */
-    uint axis; /* which number the grid is of; the other one is random */
+    uint seed; /* seed of hashed draws; 0: see grid */
+    uint grid; /* draws are the middles of this many cells of one number; 0: random */
+    uint axis; /* number that the grid covers; the other one is random */
     uint padding;
 };
 SLUICE_SHARED_SIZE(struct StochasticCall, 64)
@@ -30,7 +30,7 @@ struct StochasticPick {
     int texel[2];
     uint level;
     uint border;
-    float random[2]; /* to be used again */
+    float random[2]; /* numbers for reuse */
 };
 SLUICE_SHARED_SIZE(struct StochasticPick, 24)
 

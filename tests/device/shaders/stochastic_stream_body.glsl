@@ -1,4 +1,4 @@
-/* What stochastic_stream.comp and .hlsl do at one input, after their bindings. */
+/* Shared by stochastic_stream.comp and .hlsl after their bindings: evaluates one input. */
 #include "sluice/sample_stochastic.glsl"
 
 void sampleStochastic(uint id)

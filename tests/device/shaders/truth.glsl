@@ -1,6 +1,6 @@
 /*
- * What the sampler itself reads: each channel of each layer is not 0 in one tile of one level alone,
- * so a channel that comes back as not 0 is a tile that was touched.
+ * Finds the texels that the sampler itself reads. Each channel of each layer is non-zero in one
+ * tile of one level only, so a non-zero channel identifies a touched tile.
  */
 #extension GL_GOOGLE_include_directive : require
 

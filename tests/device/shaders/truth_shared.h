@@ -1,4 +1,4 @@
-/* Which tiles a sampler touched: one bit each, for C and GLSL. */
+/* Tiles that a sampler touched: a bit each, for C and GLSL. */
 #ifndef TRUTH_SHARED_H
 #define TRUTH_SHARED_H
 
@@ -8,7 +8,7 @@
 #include "sluice/shared/types.h"
 #endif
 
-#define TRUTH_WORDS 4u /* of bits, per sample */
+#define TRUTH_WORDS 4u /* words of bits per sample */
 
 struct TruthParams {
     uint count;

@@ -1,4 +1,4 @@
-/* What the shaders that only write feedback are told, for C and GLSL. */
+/* Parameters of shaders that only write feedback, for C and GLSL. */
 #ifndef WRITER_SHARED_H
 #define WRITER_SHARED_H
 
@@ -23,7 +23,7 @@ struct WriterParams {
     uint first; /* input, or word */
     uint count;
     uint flags;
-    float coneAngle; /* of the ray tracer: radians per pixel */
+    float coneAngle; /* ray tracer: radians per pixel */
 };
 SLUICE_SHARED_SIZE(struct WriterParams, 16)
 
