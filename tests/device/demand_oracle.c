@@ -6,7 +6,7 @@
 
 #define STEP (1.0 / 256.0)
 #define NOWHERE INT32_MIN
-#define FLOAT_STEP (1.0 / 8388608.0) /* of numbers between 1 and 2 */
+#define FLOAT_STEP (1.0 / 8388608.0) /* for numbers between 1 and 2 */
 
 static bool all_finite(const float *values, int count)
 {
@@ -25,7 +25,7 @@ long double demand_oracle_lod(const float dx[2], const float dy[2], double aniso
     long double b = (long double)dx[0] * dy[0] + (long double)dx[1] * dy[1];
     long double det = (long double)dx[0] * dy[1] - (long double)dx[1] * dy[0];
     long double longer = sqrtl(fmaxl(a, c));
-    /* The singular values of the matrix of derivatives: their product is its determinant. */
+    /* Singular values of the matrix of derivatives: their product is its determinant. */
     long double wide = sqrtl((a + c + sqrtl((a - c) * (a - c) + 4 * b * b)) / 2);
     long double narrow = wide > 0 ? fabsl(det) / wide : 0;
     if (anisotropy <= 1)
@@ -43,7 +43,7 @@ struct split {
     const struct DemandInput *in;
     void (*visit)(void *user, const struct demand_tap *tap);
     void *user;
-    long double uv[2], axis[2]; ///< the row: in uv
+    long double uv[2], axis[2]; ///< row of samples, in uv
     double shown, wanted;       ///< LODs
     bool sure;
 };
@@ -54,7 +54,7 @@ double demand_oracle_share(const struct demand_tap *tap, double shown_lod)
     return !tap->spline ? 0 : tap->smart ? magnified : 1;
 }
 
-/* A row of `count`, at one level. */
+/* Visits a row of `count` samples at one level. */
 static void visit_row(const struct split *s, uint32_t level, double weight, uint32_t count,
                       bool sure)
 {
@@ -77,7 +77,7 @@ static void visit_row(const struct split *s, uint32_t level, double weight, uint
     }
 }
 
-/* Levels around `lod`, which is inside 0 to `last`. */
+/* Visits the levels around `lod`, which is between 0 and `last`. */
 static void visit_levels(const struct split *s, double lod, uint32_t last, uint32_t count)
 {
     bool nearest = s->texture->shape & SLUICE_DEMAND_NEAREST_LEVEL;
@@ -85,7 +85,7 @@ static void visit_levels(const struct split *s, double lod, uint32_t last, uint3
     for (uint32_t level = 0; level <= last; level++) {
         double distance = fabs(lod - level);
         double weight = nearest ? distance < 0.5 : fmax(1 - distance, 0);
-        double edge = nearest ? 0.5 - distance : 1 - distance; /* how far inside */
+        double edge = nearest ? 0.5 - distance : 1 - distance; /* distance to the filter's end */
         if (nearest && level > 0 && lod == level - 0.5)
             weight = 0; /* ceil(lod - 1/2) */
         if (nearest && lod == level + 0.5)
@@ -95,7 +95,8 @@ static void visit_levels(const struct split *s, double lod, uint32_t last, uint3
     }
 }
 
-/* Along the longer derivative; where float cannot tell, along either, and one more or less. */
+/* Visits a row along the longer derivative. If float cannot decide, visits both directions and
+ * neighboring counts. */
 static void visit_rows(struct split *s, double lod, uint32_t last, double bias, float d[2][2])
 {
     const struct DemandInput *in = s->in;
@@ -130,7 +131,7 @@ bool demand_oracle_taps(const struct SluiceDemandTexture *t, const struct Demand
         uint32_t mode = mode_of(t, i);
         bool periodic =
             mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
-        /* exact; so that half a texel counts beside 1e30 */
+        /* exact, so that half a texel counts even beside 1e30 */
         s.uv[i] = !finite ? 0 : periodic ? fmodl(in->uv[i], 2) : in->uv[i];
         d[0][i] = in->dx[i] * (float)(i ? t->height : t->width);
         d[1][i] = in->dy[i] * (float)(i ? t->height : t->width);
@@ -148,7 +149,7 @@ bool demand_oracle_taps(const struct SluiceDemandTexture *t, const struct Demand
     return s.sure && !(row && fabsl(lod + bias - last) < 1e-4L);
 }
 
-/* Vulkan's: from any number to a texel, -1 for the border. */
+/* Vulkan's wrapping: from any number to a texel; -1: border. */
 static int32_t wrap(uint32_t mode, long double i, uint32_t size)
 {
     long double n = size;
@@ -185,7 +186,7 @@ static double spline_slope(double x)
 
 struct axis_texels {
     int32_t at[8];
-    double weight[8], slope[8]; ///< slopes are per unit of the coordinate
+    double weight[8], slope[8]; ///< slopes per unit of the coordinate
     bool sure[8];
 };
 
@@ -195,19 +196,19 @@ static double axis_blur(const struct SluiceDemandTexture *t, int axis, const str
     uint32_t size = slc_mip_size(axis ? t->height : t->width, tap->level), mode = mode_of(t, axis);
     bool periodic =
         mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
-    /* Error of float: whole periods are exact, and the rest is rounded. */
+    /* Error of float: whole periods are exact, the rest is rounded. */
     double reach = periodic ? 4 : fmin(fabs((double)coordinate) + 2, 64);
     return (tap->nearest ? 1e-6 : STEP / 2) + reach * FLOAT_STEP * size;
 }
 
-/* Texels that the filter reaches along one axis, with their weights. */
+/* Finds the texels that the filter reaches along one axis, with their weights. */
 static struct axis_texels filter_axis(const struct SluiceDemandTexture *t, int axis,
                                       const struct demand_tap *tap, bool cubic)
 {
     uint32_t size = slc_mip_size(axis ? t->height : t->width, tap->level), mode = mode_of(t, axis);
     long double coordinate = axis ? tap->v : tap->u;
     double blur = axis_blur(t, axis, tap, coordinate);
-    /* beyond, all is edge or border; and neighbors must differ */
+    /* beyond, everything is edge or border; neighbors must differ */
     coordinate = fminl(fmaxl(coordinate, -1e9L), 1e9L);
     long double place = coordinate * size - 0.5L, low = floorl(place);
     struct axis_texels a;

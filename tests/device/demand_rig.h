@@ -1,4 +1,4 @@
-/** What tests of the passes of demand loading share: their device, and buffers that travel. */
+/** Shared by tests of the passes of demand loading: their device, and buffer copies. */
 #ifndef TESTS_DEVICE_DEMAND_RIG_H
 #define TESTS_DEVICE_DEMAND_RIG_H
 
@@ -8,22 +8,23 @@
 
 #include <stddef.h>
 
-/** The library's own functions and limits on the harness's device. */
+/** Initializes the library's own functions and limits on the harness's device. */
 void demand_rig_init(struct harness *h, struct slc_vk *vk, struct slc_caps *caps);
 
-/** From here on `vk` has memory for `count` allocations more; UINT32_MAX: for all. */
+/** Limits `vk` to `count` further allocations; UINT32_MAX: no limit. */
 void demand_rig_limit_memory(struct slc_vk *vk, uint32_t count);
 
-/** Zeroed; fails the test where there is none. Freed with free. */
+/** Returns zeroed memory, to be freed with free. Fails the test when out of memory. */
 void *demand_rig_allocate(size_t count, size_t size);
 
-/** Seeded with roll_seed, 30 bits. */
+/** Returns a random number of 30 bits, seeded with roll_seed. */
 uint32_t demand_rig_random(uint32_t limit);
 
-/** All of `from` to `to`, with barriers before and after. */
+/** Records a copy of all of `from` to `to`, with barriers before and after. */
 void demand_rig_record_upload(const struct slc_vk *vk, VkCommandBuffer commands,
                               const struct harness_buffer *from, const struct slc_buffer *to);
-/** All of `from` to `to`, and to the host. No barrier before: the passes promise one. */
+/** Records a copy of all of `from` to `to` and to the host. No barrier before, because the passes
+ * promise one. */
 void demand_rig_record_download(const struct slc_vk *vk, VkCommandBuffer commands,
                                 const struct slc_buffer *from, const struct harness_buffer *to);
 

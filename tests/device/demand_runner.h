@@ -1,4 +1,4 @@
-/** Launches that sample a list of places through a demand loader, and images to sample. */
+/** Launches that sample a list of positions through a demand loader, and images to sample. */
 #ifndef TESTS_DEVICE_DEMAND_RUNNER_H
 #define TESTS_DEVICE_DEMAND_RUNNER_H
 
@@ -21,9 +21,9 @@ struct runner {
     VkPipeline pipeline;
     VkDescriptorPool pool;
     VkDescriptorSet sets[RUNNER_LAUNCHES];
-    uint64_t generations[RUNNER_LAUNCHES];      ///< of the pages in each set
-    uint64_t byte_generations[RUNNER_LAUNCHES]; ///< of the chunks of byte pages
-    bool reads_bytes;                           ///< the shader reads byte pages
+    uint64_t generations[RUNNER_LAUNCHES];      ///< generation of the pages in each set
+    uint64_t byte_generations[RUNNER_LAUNCHES]; ///< generation of the chunks of byte pages
+    bool reads_bytes;                           ///< true: the shader reads byte pages
     struct harness_buffer inputs, outputs;
     uint32_t count; ///< samples
     SluiceDemandLaunch launch;
@@ -31,71 +31,72 @@ struct runner {
     SluiceDemandTicket ticket;
 };
 
-/** `info` is filled in with what the harness has, and may be NULL. */
+/** Fills in `info` with the harness's objects. `info` may be NULL. */
 void runner_init(struct runner *r, struct harness *h, const SluiceDemandLoaderCreateInfo *info);
-/** The same for a loader that is there, which it does not own... but destroys. */
+/** Initializes with an existing loader. runner_finish destroys the loader. */
 void runner_init_with(struct runner *r, struct harness *h, SluiceDemandLoader *loader);
-/** From now on RUNNER_LAYER_GRAD and those behind it are allowed; byte pages are not. */
+/** Allows RUNNER_LAYER_GRAD and later kinds from now on. Byte pages are not allowed then. */
 void runner_sample_grids(struct runner *r);
-/** From now on RUNNER_CUBE_GRAD is allowed; grids by themselves and byte pages are not. */
+/** Allows RUNNER_CUBE_GRAD from now on. Single grids and byte pages are not allowed then. */
 void runner_sample_cubes(struct runner *r);
-/** Like runner_sample_cubes or runner_sample_grids, with a shader in HLSL that knows nothing else.
- */
+/** Like runner_sample_cubes or runner_sample_grids, with a shader in HLSL that supports nothing
+ * else. */
 void runner_sample_in_hlsl(struct runner *r, bool cubes);
 void runner_finish(struct runner *r);
 void runner_fill(struct harness *h, SluiceDemandLoaderCreateInfo *info);
 
-/** The list of samples, empty; another one. */
+/** Empties the list of samples. */
 void runner_clear(struct runner *r);
 void runner_add(struct runner *r, struct RunnerInput input);
-/** The middle of a texel of a level: with a sampler that takes the nearest, that texel alone. */
+/** Samples the middle of a level's texel. A nearest sampler reads that texel only. */
 void runner_add_texel(struct runner *r, SluiceDemandTextureId id, uint32_t width, uint32_t height,
                       uint32_t level, uint32_t x, uint32_t y);
-/** Adds texel (7, 9) of each tile of 128 x 128 texels in `row_count` rows of tiles of level 0. Row
- *  `first` comes first. */
+/** Adds texel (7, 9) of each tile of 128 x 128 texels in `row_count` rows of tiles of level 0,
+ * beginning with row `first`. */
 void runner_add_tiles(struct runner *r, SluiceDemandTextureId id, uint32_t size, uint32_t first,
                       uint32_t row_count);
 void runner_add_page(struct runner *r, uint32_t page);
 
-/** Records and submits a launch, of which at most two may be under way; the answer of
- * sluiceBeginDemandLaunch if that is not SUCCESS. */
+/** Records and submits a launch. At most two may be in flight. Returns the result of
+ * sluiceBeginDemandLaunch if it is not SUCCESS. */
 SluiceResult runner_submit(struct runner *r);
-/** And processes it: `requests` and `ticket`. */
+/** Submits and processes a launch. Sets `requests` and `ticket`. */
 void runner_launch(struct runner *r);
-/** Launches and waits for the reads until nothing is missing; how many launches, or `limit`. */
+/** Launches and waits for the reads until nothing is missing. Returns the number of launches, or
+ * `limit`. */
 uint32_t runner_load(struct runner *r, uint32_t limit);
 
 struct RunnerOutput runner_output(const struct runner *r, uint32_t sample);
 bool runner_all_resident(const struct runner *r);
 SluiceDemandStatistics runner_statistics(const struct runner *r);
 
-/** An image whose texels are hashes of where they are; opened and read as often as it counts. */
+/** An image whose texels are hashes of their positions. Counts openings and reads. */
 struct runner_image {
     SluiceImageInfo info;
     uint32_t seed;
     SluiceImageSource *inner;
     struct fault_source source;
     atomic_uint opened, closed;
-    SluiceResult open_result; ///< of pfnOpen
-    uint64_t open_failures;   ///< so many times NOT_READY, before that
+    SluiceResult open_result; ///< result of pfnOpen
+    uint64_t open_failures;   ///< number of NOT_READY results before
     char name[32];
 };
 
 void runner_image_init(struct runner_image *image, SluiceFormat format, uint32_t width,
                        uint32_t height, uint32_t seed);
-/** With the address modes of `info`, too. */
+/** Initializes with all of `info`, address modes included. */
 void runner_image_init_as(struct runner_image *image, const SluiceImageInfo *info, uint32_t seed);
 void runner_image_finish(struct runner_image *image);
-/** Opened by callback. */
+/** Describes the image, opened by callback. */
 SluiceDemandImage runner_image_desc(struct runner_image *image);
-/** A texture of it that takes the nearest texel of the nearest level, and repeats. */
+/** Adds a texture of the image with nearest filters and REPEAT. */
 SluiceDemandTextureId runner_add_texture(struct runner *r, struct runner_image *image);
 extern const SluiceDemandSampler runner_nearest;
 
-/** What reading the image on the host gives: RGBA8 and RGBA16F. */
+/** Returns the image's texel on the host: RGBA8 and RGBA16F. */
 void runner_image_texel(struct runner_image *image, uint32_t level, uint32_t x, uint32_t y,
                         float rgba[4]);
-/** All samples, which runner_add_texel added, are resident, and what the image has there. */
+/** Checks that the samples of runner_add_texel are resident and have the image's color. */
 void runner_check_texel(const struct runner *r, uint32_t sample, struct runner_image *image,
                         uint32_t level, uint32_t x, uint32_t y);
 

@@ -1,23 +1,23 @@
-/** Samples that are hard: sizes, coordinates, derivatives and samplers at the ends of their ranges.
- */
+/** Difficult samples: extreme sizes, coordinates, derivatives and samplers. */
 #ifndef TESTS_DEVICE_DEMAND_SAMPLES_H
 #define TESTS_DEVICE_DEMAND_SAMPLES_H
 
 #include "device/demand_scene.h"
 
-/** 0 to 1, 1 excluded. */
+/** Returns a number from 0 to 1, excluding 1. */
 double demand_random(void);
 
-/** Any address modes, filters, anisotropy and bias, now and then. */
+/** Makes a texture with any address modes and filters; sometimes with anisotropy and bias. */
 struct demand_texture demand_random_texture(uint32_t width, uint32_t height);
 
-/** Coordinates from 0 over texel and tile borders to 1e6; with `wild` NaN and infinities, too. */
+/** Makes a coordinate from 0 over texel and tile borders to 1e6. `wild`: also NaN and
+ * infinities. */
 float demand_random_coordinate(uint32_t size, bool wild);
 
-/** Of any kind that samples; LODs from -10 to 40. */
 /** Gives one texture in three a bicubic filter, one a smart bicubic one. */
 void demand_randomize_filter(struct demand_texture *texture);
 
+/** Makes an input of any kind that samples, with LODs from -10 to 40. */
 struct DemandInput demand_random_input(uint32_t index, const struct demand_texture *texture,
                                        bool wild);
 

@@ -86,7 +86,7 @@ static VkPipeline probe_pipeline(struct demand_scene *s, enum demand_shader shad
         h, s->layout, conform_module(h, demand_probe_comp, sizeof demand_probe_comp), &special);
 }
 
-/* Drivers take seconds to compile one, so only those that are used. */
+/* Creates only the pipelines that are used: drivers take seconds to compile one. */
 static VkPipeline create_pipeline(struct demand_scene *s, enum demand_shader shader)
 {
     struct harness *h = s->h;
@@ -179,7 +179,7 @@ void demand_scene_clear(struct demand_scene *s)
     zero(&s->textures);
     zero(&s->levels);
     zero(&s->directory);
-    memset(s->blocks.mapped, 0xa5, s->blocks.size); /* what blocks were before */
+    memset(s->blocks.mapped, 0xa5, s->blocks.size); /* former content of blocks */
     memset(s->masks.mapped, 0xff, s->masks.size);
     zero(&s->requests);
     zero(&s->sections);

@@ -1,9 +1,9 @@
 /**
- * The buffers and array images of demand loading, laid out by hand: no loader, so that any texture
- * can be tried with any pages resident, and what one sample asks for is known to be its own.
+ * Buffers and array images of demand loading, laid out by hand. Without a loader, tests can use any
+ * texture with any resident pages, and every request belongs to a known sample.
  *
- * Texels have four bytes. Layers that hold no tile, and places in tiles that hold no texel, are NaN
- * or magenta.
+ * Texels have four bytes. Layers without a tile, and texels outside of the texture, are NaN or
+ * magenta.
  */
 #ifndef TESTS_DEVICE_DEMAND_SCENE_H
 #define TESTS_DEVICE_DEMAND_SCENE_H
@@ -14,30 +14,30 @@
 
 #include "demand_probe_shared.h"
 
-#define DEMAND_SAMPLES 2048u      ///< of one run; and textures at most
-#define DEMAND_PAGES (1u << 22)   ///< ids, those of opening first
-#define DEMAND_BLOCKS_MAX 1024u   ///< block 0 is nobody's
-#define DEMAND_LEVEL_WORDS 65536u ///< first those of the parameters
-#define DEMAND_LAYERS 128u        ///< of each array image
+#define DEMAND_SAMPLES 2048u      ///< samples per run; also the limit of textures
+#define DEMAND_PAGES (1u << 22)   ///< page ids; opening pages come first
+#define DEMAND_BLOCKS_MAX 1024u   ///< block 0 is unused
+#define DEMAND_LEVEL_WORDS 65536u ///< the first words are the parameters
+#define DEMAND_LAYERS 128u        ///< layers of each array image
 #define DEMAND_NO_PAGE UINT32_MAX
 
 struct demand_texture {
     uint32_t width, height;
     uint32_t mode_u, mode_v; ///< VkSamplerAddressMode
     bool nearest, nearest_level, blocks;
-    bool cubic, smart; ///< bicubic filter: always, or where it is magnified
+    bool cubic, smart; ///< bicubic filter: always, or where magnified
     float anisotropy, bias;
     float base_color[4], border_color[4];
 };
 
-/** Each of the functions that sample is called in one of them. */
+/** Shaders. Each sampling function is called in one of them. */
 enum demand_shader {
     DEMAND_SHADER_COMPUTE,
     DEMAND_SHADER_PREVIEW,
-    DEMAND_SHADER_CUBIC, ///< knows bicubic filters of textures
+    DEMAND_SHADER_CUBIC, ///< supports bicubic filters of textures
     DEMAND_SHADER_CUBIC_PREVIEW,
     DEMAND_SHADER_LOOP, ///< finds array images by a loop
-    DEMAND_SHADER_HLSL, ///< as DEMAND_SHADER_COMPUTE, but in HLSL and by a loop
+    DEMAND_SHADER_HLSL, ///< DEMAND_SHADER_COMPUTE in HLSL, with a loop
     DEMAND_SHADER_FRAGMENT,
     DEMAND_SHADERS,
 };
@@ -49,7 +49,7 @@ struct demand_scene {
     struct harness_buffer textures, levels, directory, blocks, masks, requests, sections, inputs,
         outputs, staging;
     uint32_t texture_count, level_count, page_end, block_count;
-    uint32_t layers[DEMAND_CHUNKS * DEMAND_LAYERS], layer_count; ///< shuffled, taken
+    uint32_t layers[DEMAND_CHUNKS * DEMAND_LAYERS], layer_count; ///< shuffled; number of used ones
     VkImage images[DEMAND_CHUNKS], plain;
     VkDeviceMemory memories[DEMAND_CHUNKS], plain_memory;
     VkImageView views[DEMAND_CHUNKS], plain_view;
@@ -63,28 +63,28 @@ struct demand_scene {
     VkFramebuffer framebuffer;
 };
 
-/** `tile_width_log2` and `tile_height_log2` up to 7. */
+/** `tile_width_log2` and `tile_height_log2`: at most 7. */
 void demand_scene_init(struct demand_scene *s, struct harness *h, VkFormat format,
                        uint32_t tile_width_log2, uint32_t tile_height_log2);
-/** As new, with other tiles. */
+/** Resets the scene, with other tiles. */
 void demand_scene_reshape(struct demand_scene *s, VkFormat format, uint32_t tile_width_log2,
                           uint32_t tile_height_log2);
 void demand_scene_finish(struct demand_scene *s);
-/** No textures, nothing resident, nothing asked for; and used bits are wanted. */
+/** Clears textures, resident pages and requests. Enables used bits. */
 void demand_scene_clear(struct demand_scene *s);
 
-/** An open texture, none of whose pages is resident; its index. */
+/** Adds an open texture without resident pages. Returns its index. */
 uint32_t demand_scene_add(struct demand_scene *s, const struct demand_texture *texture);
 struct SluiceDemandTexture *demand_scene_entry(struct demand_scene *s, uint32_t index);
-/** The page of a texel, DEMAND_NO_PAGE for the last level. */
+/** Returns the page of a texel, or DEMAND_NO_PAGE for the last level. */
 uint32_t demand_scene_page(struct demand_scene *s, uint32_t index, uint32_t level, uint32_t x,
                            uint32_t y);
 
-/** Makes a page resident, with words of any value; the block comes to be. */
+/** Makes a page resident with any words. Creates its block. */
 void demand_scene_set_page(struct demand_scene *s, uint32_t page, uint32_t low, uint32_t high);
 struct DemandInput *demand_inputs(struct demand_scene *s);
 const struct DemandOutput *demand_outputs(const struct demand_scene *s);
-/** Requests and used bits are added to those that are there. */
+/** Runs samples. Adds to the existing requests and used bits. */
 void demand_scene_run(struct demand_scene *s, enum demand_shader shader, uint32_t count);
 
 bool demand_resident(const struct demand_scene *s, uint32_t page);
@@ -92,7 +92,7 @@ bool demand_refused(const struct demand_scene *s, uint32_t page);
 bool demand_used(const struct demand_scene *s, uint32_t page);
 bool demand_has_block(const struct demand_scene *s, uint32_t page);
 bool demand_requested(const struct demand_scene *s, uint32_t page);
-/** Fails the test if the bit of a section is not set exactly where a page of it is asked for. */
+/** Fails the test unless the bit of a section is set exactly if a page of it is requested. */
 void demand_check_sections(const struct demand_scene *s);
 
 #endif /* TESTS_DEVICE_DEMAND_SCENE_H */

@@ -61,7 +61,7 @@ void scan_rig_set_bit(struct harness_buffer *buffer, uint32_t bit, bool value)
     *word = value ? *word | 1u << bit % 32 : *word & ~(1u << bit % 32);
 }
 
-/* As a shader does. */
+/* Requests a page like a shader. */
 void scan_rig_request(struct scan_rig *r, uint32_t page)
 {
     scan_rig_set_bit(&r->requests, page, true);
@@ -93,7 +93,7 @@ static void collect(struct scan_rig *r, uint32_t section)
     scan_rig_set_bit(&r->sections, section, false);
 }
 
-/* What the scan must do: to the list, and to requests, sections and ages. */
+/* Applies the expected scan to the list, and to requests, sections and ages. */
 static void scan_by_sorting(struct scan_rig *r)
 {
     r->expected = (struct SluiceDemandScanResult){0};
@@ -125,7 +125,7 @@ static void record_scan(void *user, VkCommandBuffer commands)
     r->clear = r->send_ranks = false;
     demand_rig_record_upload(&r->vk, commands, &r->requests, &r->scan.requests);
     demand_rig_record_upload(&r->vk, commands, &r->sections, &r->scan.sections);
-    /* by one workgroup or by several passes: nobody can tell */
+    /* Chooses one workgroup or several passes: results must be equal. */
     r->scan.section_count = 1;
     r->scan.one_group_sections = roll() % 2 ? UINT32_MAX : 0;
     slc_demand_scan_record(&r->scan, &r->vk, commands, r->slot, r->page_end, r->capacity);
@@ -146,14 +146,14 @@ static void check_list(struct scan_rig *r)
         if (pages[i] != r->wants[i].page)
             fail_msg("place %u of %u: page %u, expected %u", i, got.listedCount, pages[i],
                      r->wants[i].page);
-    /* only what is needed crosses the bus, and other slots are not touched */
+    /* only required words are copied; other slots are unchanged */
     const uint32_t *words = r->scan.readback.mapped, *end = words + r->scan.readback.size / 4;
     for (const uint32_t *word = words; word < end; word++)
         if (word < pages - 4 || word >= pages + got.listedCount)
             assert_int_equal(*word, GUARD);
 }
 
-/* The pages of a section that find room; returns how many do not. */
+/* Lists the pages of a section that find room. Returns the number of others. */
 static uint32_t list_section(struct scan_rig *r, uint32_t section)
 {
     uint32_t left = 0;
@@ -170,7 +170,8 @@ static uint32_t list_section(struct scan_rig *r, uint32_t section)
     return left;
 }
 
-/* The same by walking through all ages, ranks and sections: for more than can be sorted. */
+/* Computes the expected scan by walking all ages, ranks and sections, for more requests than can be
+ * sorted. */
 static void scan_by_walking(struct scan_rig *r)
 {
     uint8_t *left = demand_rig_allocate(r->section_count, 1);

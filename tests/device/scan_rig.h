@@ -1,4 +1,4 @@
-/** The scan of requests beside an oracle that sorts, and buffers for what goes in and comes out. */
+/** The scan of requests, an oracle that sorts, and buffers for input and output. */
 #ifndef TESTS_DEVICE_SCAN_RIG_H
 #define TESTS_DEVICE_SCAN_RIG_H
 
@@ -18,8 +18,8 @@ struct scan_rig {
     struct slc_caps caps;
     struct slc_demand_scan scan;
     uint32_t page_capacity, section_count, list_capacity;
-    struct harness_buffer requests, sections; /* what shaders write, and the oracle clears */
-    struct harness_buffer requests_after, sections_after; /* what the device left */
+    struct harness_buffer requests, sections; /* written by shaders, cleared by the oracle */
+    struct harness_buffer requests_after, sections_after; /* content left by the device */
     uint8_t *ranks, *old;                                 /* by section */
     struct scan_want *wants;
     uint32_t want_count, want_capacity;
@@ -28,22 +28,23 @@ struct scan_rig {
     bool clear, send_ranks;
 };
 
-/** Nothing is requested, all ranks are 0; page_end is all pages, capacity that of the list.
- *  `want_capacity`: of scan_rig_scan the most that is ever requested at once; of scan_rig_scan_many
- *  the most that is listed. */
+/** Initializes without requests, with ranks 0, page_end covering all pages, and the capacity of the
+ * list. `want_capacity`: for scan_rig_scan, most requests at once; for scan_rig_scan_many, most
+ * listed pages. */
 void scan_rig_init(struct scan_rig *r, struct harness *h, uint32_t section_count,
                    uint32_t list_capacity, uint32_t want_capacity);
 void scan_rig_finish(struct scan_rig *r);
 
 bool scan_rig_bit(const struct harness_buffer *buffer, uint32_t bit);
 void scan_rig_set_bit(struct harness_buffer *buffer, uint32_t bit, bool value);
-/** As a shader does. */
+/** Requests a page like a shader. */
 void scan_rig_request(struct scan_rig *r, uint32_t page);
 
-/** On the device, and on the host by sorting; fails the test if list, result, what stays or words
- *  around the list differ. */
+/** Scans on the device, and on the host by sorting. Fails the test if list, result, remaining
+ * requests, or words around the list differ. */
 void scan_rig_scan(struct scan_rig *r);
-/** The same by walking through all ages, ranks and sections: for more than can be sorted. */
+/** Scans like scan_rig_scan, with a host that walks all ages, ranks and sections, for more requests
+ * than can be sorted. */
 void scan_rig_scan_many(struct scan_rig *r);
 
 #endif /* TESTS_DEVICE_SCAN_RIG_H */
