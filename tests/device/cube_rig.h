@@ -20,41 +20,42 @@ struct cube_rig {
     SluiceImageSource *layers[CUBE_RIG_LAYERS], *source;
     SluiceVulkanTexture textures[CUBE_RIG_LAYERS];
     struct probe_texture sets[CUBE_RIG_CUBES];
-    VkPipeline pipeline; ///< the harness's
+    VkPipeline pipeline; ///< owned by the harness
     float anisotropy;
     uint32_t cube, first, count, flags; ///< of the next dispatch
 };
 
-/** False, and to be finished as well: refused, as is right in sparse mode without sparseCubes. */
+/** Returns false if refused, as is right in sparse mode without sparseCubes. Call cube_rig_finish
+ * in any case. */
 bool cube_rig_init(struct cube_rig *rig, struct harness *h, SluiceVulkanStreamerCreateInfo info,
                    uint32_t size, float anisotropy);
 void cube_rig_finish(struct cube_rig *rig);
 
-/** Samples in this form from here on; at first CUBE_FORM_CUBE. */
+/** Selects the form for the next samples. Default: CUBE_FORM_CUBE. */
 void cube_rig_use(struct cube_rig *rig, enum cube_form form);
 
-/** The texel of the sources. Red is (level + 1) / 16, so red 0 means not resident. */
+/** Returns a texel of the sources. Red is (level + 1) / 16, so red 0 means not resident. */
 void cube_rig_texel(uint32_t cube, uint32_t face, uint32_t level, uint32_t x, uint32_t y,
                     float rgba[4]);
 
 struct CubeInput *cube_rig_inputs(struct cube_rig *rig);
 const struct ProbeOutput *cube_rig_outputs(const struct cube_rig *rig);
 
-/** For harness_frame and harness_settle; user is the rig. */
+/** Callback of harness_frame and harness_settle; `user` is the rig. */
 void cube_rig_record(void *user, VkCommandBuffer commands);
-/** Frames with these flags, for `count` samples. */
+/** Runs frames with these flags, for `count` samples. */
 void cube_rig_settle(struct cube_rig *rig, uint32_t frame_count, uint32_t cube, uint32_t count,
                      uint32_t flags);
 
-/** A sample at a position on a face: `texels` of level 0 per pixel along both axes. The direction
- *  has a random length, which also changes from pixel to pixel. */
+/** Makes a sample at a position on a face, with `texels` of level 0 per pixel along both axes. The
+ * direction has a random length, which also varies by pixel. */
 struct CubeInput cube_rig_input(const struct cube_rig *rig, uint32_t face, double u, double v,
                                 double texels);
-/** Like cube_rig_input, with derivatives of (u, v) in texels. */
+/** Makes a sample like cube_rig_input, with derivatives of (u, v) in texels. */
 struct CubeInput cube_rig_input_with(const struct cube_rig *rig, uint32_t face, double u, double v,
                                      const double dx[2], const double dy[2]);
 
-/** The color at a LOD, filtered in double precision. */
+/** Computes the color at a LOD, filtered in double precision. */
 void cube_rig_expect(const struct cube_rig *rig, uint32_t cube, const struct CubeInput *input,
                      double lod, double rgba[4]);
 

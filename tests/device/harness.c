@@ -24,7 +24,7 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
     (void)types;
     if (severity < VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT)
         return VK_FALSE;
-    /* The loader warns of libraries of other drivers; only the layer judges this program. */
+    /* The loader warns about libraries of other drivers. Only messages of the layer count. */
     if (data->pMessageIdName && strcmp(data->pMessageIdName, "Loader Message") == 0)
         return VK_FALSE;
     struct harness *h = user;
@@ -66,8 +66,9 @@ static bool create_instance(struct harness *h, uint32_t layer_version)
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
                            VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        /* Not performance: the layer would rather not copy into VK_IMAGE_LAYOUT_GENERAL, but a
-         * streamed image is copied to in one place while it is sampled in another. */
+        /* Performance messages are excluded: the layer advises against copies into
+         * VK_IMAGE_LAYOUT_GENERAL, but a streamed image is sampled while other tiles of it are
+         * written. */
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT |
                        VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = on_message,
@@ -102,7 +103,7 @@ static bool create_instance(struct harness *h, uint32_t layer_version)
            create_messenger(h->instance, &messenger, NULL, &h->messenger) == VK_SUCCESS;
 }
 
-/* From SLUICE_RESIDENCY; false if that is no mode. */
+/* Reads SLUICE_RESIDENCY. Returns false if it is no mode. */
 static bool pick_mode(struct harness *h)
 {
     static const struct {
@@ -169,7 +170,7 @@ static uint32_t drawing_family(struct harness *h)
     return 0;
 }
 
-/* A family that copies and does not draw, or the drawing one. */
+/* Returns a family that copies and does not draw, or else the drawing family. */
 static uint32_t copying_family(struct harness *h)
 {
     VkQueueFamilyProperties families[MAX_FAMILIES];
@@ -182,7 +183,7 @@ static uint32_t copying_family(struct harness *h)
     return h->family;
 }
 
-/* A queue of each family, once. Returns how many. */
+/* Lists each family once. Returns the number of queues. */
 static uint32_t list_queues(struct harness *h, VkDeviceQueueCreateInfo queues[3])
 {
     static const float priority = 1.0f;
@@ -203,7 +204,7 @@ static uint32_t list_queues(struct harness *h, VkDeviceQueueCreateInfo queues[3]
     return count;
 }
 
-/* What a test asks for beyond the library's own needs. */
+/* Requirements of a test beyond the library's. */
 struct extras {
     const char *const *extensions;
     uint32_t extension_count;
@@ -236,7 +237,7 @@ static bool create_device(struct harness *h, const struct extras *extras)
     h->GetPhysicalDeviceFeatures2(h->physical_device, &there);
     features.features.shaderResourceResidency = there.features.shaderResourceResidency;
     features.features.shaderResourceMinLod = there.features.shaderResourceMinLod;
-    /* The test shaders sample pages in no other way, and are the same in all modes. */
+    /* The test shaders require it for pages, and are equal in all modes. */
     features.features.shaderSampledImageArrayDynamicIndexing = VK_TRUE;
     vulkan12.shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
     features.features.samplerAnisotropy = there.features.samplerAnisotropy;
@@ -290,7 +291,7 @@ static bool create_device(struct harness *h, const struct extras *extras)
     return h->AllocateCommandBuffers(h->device, &allocate, h->commands) == VK_SUCCESS;
 }
 
-/* TAP for "all skipped"; the status says the same to the build. */
+/* Prints TAP for "all skipped". The returned status tells the build. */
 static int no_device(struct harness *h, const char *why)
 {
     harness_finish(h, 77);
@@ -309,7 +310,7 @@ static int init(struct harness *h, const struct extras *extras)
     h->library = dlopen(LIBRARY, RTLD_NOW | RTLD_LOCAL);
     if (!h->library)
         return no_device(h, "there is no Vulkan loader (" LIBRARY ")");
-    *(void **)&h->get = dlsym(h->library, "vkGetInstanceProcAddr"); /* as dlopen(3) writes it */
+    *(void **)&h->get = dlsym(h->library, "vkGetInstanceProcAddr"); /* conversion as in dlopen(3) */
     if (!h->get || !create_instance(h, extras->newer ? extras->newer->layer_version : 0))
         return no_device(h, "no Vulkan 1.2 instance can be created");
     if (!pick_mode(h)) {
@@ -363,7 +364,8 @@ int harness_finish(struct harness *h, int status)
         h->DestroyInstance(h->instance, NULL);
     if (status == 0 && h->message_count)
         status = 1;
-    /* The loader stays: drivers keep threads and thread-local data that outlive an unload badly. */
+    /* The loader stays loaded: threads and thread-local data of drivers may outlive an unload and
+     * crash. */
     *h = (struct harness){0};
     return status;
 }
@@ -403,7 +405,7 @@ SluiceResult harness_set_context(struct harness *h, const SluiceVulkanContextCre
     return sluiceCreateVulkanContext(&info, &h->context);
 }
 
-/* Time stamps count frames here, and defaults in seconds would hide what tests look for. */
+/* Time stamps count frames here. Defaults in seconds would hide effects that tests look for. */
 static void fill_times(SluiceVulkanStreamerCreateInfo *info)
 {
     info->ticksPerSecond = 60;
@@ -441,7 +443,7 @@ void harness_buffer_init(struct harness *h, struct harness_buffer *buffer, uint6
         if (memory.memoryTypeBits >> i & 1 &&
             (h->memory.memoryTypes[i].propertyFlags & wanted) == wanted) {
             allocate.memoryTypeIndex = i;
-            /* results are read by the host, so cached memory is worth a look */
+            /* the host reads results, so cached memory is preferred */
             if (h->memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
                 break;
         }
@@ -485,7 +487,8 @@ bool harness_abandons(struct harness *h)
     return abandons;
 }
 
-/* After its begin, its commands or its end; the command buffer is begun again. */
+/* Abandons a frame after its begin, its commands or its end, and begins the command buffer
+ * again. */
 static void abandon_frame(struct harness *h, SluiceVulkanStreamer *streamer,
                           VkCommandBuffer commands,
                           void (*record)(void *user, VkCommandBuffer commands), void *user)

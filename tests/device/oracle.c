@@ -5,13 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-/* What docs/feedback.md promises not to exceed. */
+/* Limits that docs/feedback.md promises. */
 #define LOD_MARGIN 0.125
 #define LOD_MARGIN_ANISOTROPIC 0.1875
 #define LOD_MARGIN_COARSER 0.125
 #define TEXEL_MARGIN 0.0625
 #define FLOAT_ERROR 2e-3
-#define STEPS 33 /* along an anisotropic footprint */
+#define STEPS 33 /* samples along an anisotropic footprint */
 
 static uint32_t level_size(uint32_t size, uint32_t level)
 {
@@ -39,7 +39,7 @@ bool *oracle_tile(struct oracle_tiles *t, uint32_t level, uint32_t x, uint32_t y
     return &t->has[t->first[level] + y * t->width[level] + x];
 }
 
-/* Beyond it coordinates and derivatives count as infinite, as in texels they may be. */
+/* Larger coordinates and derivatives count as infinite, as they may be infinite in texels. */
 static bool is_finite(float x)
 {
     return fabsf(x) <= 1e33f;
@@ -67,7 +67,7 @@ static double lod_of(double major, double minor, double anisotropy, double bias)
     return log2(fmax(minor, major / anisotropy)) + bias;
 }
 
-/* In texels per pixel. */
+/* Derivatives in texels per pixel. */
 struct derivatives {
     double ax, ay, bx, by;
 };
@@ -79,7 +79,7 @@ static struct derivatives derivatives_of(const struct SluiceTextureEntry *e,
                                 (double)in->dy[0] * e->width, (double)in->dy[1] * e->height};
 }
 
-/* Singular values: their squares sum up to a2 + b2, their product is the determinant. */
+/* Singular values: their squares sum up to a2 + b2; their product is the determinant. */
 static double major_axis(struct derivatives d)
 {
     double sum = d.ax * d.ax + d.ay * d.ay + d.bx * d.bx + d.by * d.by;
@@ -114,7 +114,7 @@ static double clamp(double x, double low, double high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* -1: the border, which is no texel. */
+/* Returns -1 for the border, which is no texel. */
 static int64_t address(double texel, uint32_t size, uint32_t mode)
 {
     double n = size;
@@ -136,13 +136,13 @@ static bool repeats(uint32_t mode)
     return mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
 }
 
-/* The same place near 0, exactly, so that half a texel still counts beside it. */
+/* Moves a coordinate near 0 exactly, so that half a texel still counts beside it. */
 static double brought_near(double coordinate, uint32_t mode)
 {
     return repeats(mode) ? fmod(coordinate, 2) : coordinate;
 }
 
-/* Tiles along one axis under one tap; at most four. */
+/* Lists the tiles along one axis under one tap, at most four. */
 static uint32_t tap_tiles(double coordinate, uint32_t size, uint32_t tile, uint32_t mode,
                           struct oracle_filter filter, uint32_t out[4])
 {
@@ -175,7 +175,7 @@ static void require_tap(struct oracle_tiles *t, uint32_t level, double u, double
             *oracle_tile(t, level, xs[x], ys[y]) = true;
 }
 
-/* Along which an anisotropic footprint lies, in uv. */
+/* Axis of an anisotropic footprint, in uv. */
 static void footprint_axis(const struct SluiceTextureEntry *e, const struct ConformInput *in,
                            bool by_ellipse, double axis[2])
 {
@@ -216,7 +216,7 @@ void oracle_require(struct oracle_tiles *t, const struct ConformInput *in,
     struct oracle_lod lods = oracle_lod(&t->entry, in);
     double lod = filter.by_ellipse ? lods.ellipse : lods.lengths;
     if (isnan(lod))
-        return; /* a sample of nothing known needs nothing */
+        return; /* nothing is known, so nothing is required */
     lod = clamp(lod + filter.lod_offset, 0, last);
     uint32_t level = (uint32_t)lod;
     require_level(t, level, in, filter);
@@ -224,7 +224,7 @@ void oracle_require(struct oracle_tiles *t, const struct ConformInput *in,
         require_level(t, level + 1, in, filter);
 }
 
-/* Of the tile of level 0 that a region is, the one of the next level, and so on. */
+/* Returns the parent of a tile, starting at the level 0 tile of a region. */
 static uint32_t parent(uint32_t tile, uint32_t coarser_count)
 {
     return tile / 2 < coarser_count ? tile / 2 : coarser_count - 1;
@@ -269,13 +269,13 @@ static uint32_t region_of(double at, uint32_t mode, double regions_per_unit, uin
     return (uint32_t)clamp(floor(clamp(at, 0, 1) * regions_per_unit), 0, count - 1);
 }
 
-/* Regions within `below` before and `above` behind a coordinate, walked in small steps. */
+/* Marks regions from `below` before to `above` behind a coordinate, walked in small steps. */
 static void allow_axis(bool *regions, double coordinate, double below, double above, uint32_t mode,
                        double regions_per_unit, uint32_t count)
 {
     assert_true(count <= ORACLE_REGIONS);
     memset(regions, 0, count * sizeof regions[0]);
-    if (mode != SLUICE_ADDRESS_MODE_REPEAT) /* a mirrored image has its tiles at the other side */
+    if (mode != SLUICE_ADDRESS_MODE_REPEAT) /* a mirrored image has its tiles on the other side */
         below = above = fmax(below, above);
     coordinate = brought_near(coordinate, mode);
     double low = coordinate - below, high = coordinate + above;
@@ -284,7 +284,7 @@ static void allow_axis(bool *regions, double coordinate, double below, double ab
     uint32_t steps = (uint32_t)((high - low) * regions_per_unit * 4) + 1;
     for (uint32_t i = 0; i <= steps; i++)
         regions[region_of(low + (high - low) * i / steps, mode, regions_per_unit, count)] = true;
-    /* the last region may be narrow: it lies before each edge of the image */
+    /* the last region may be narrow: it is before each edge of the image */
     for (double edge = ceil(low); edge <= high && edge + 1 > edge; edge++) {
         regions[region_of(edge - 1e-9, mode, regions_per_unit, count)] = true;
         regions[region_of(edge, mode, regions_per_unit, count)] = true;
@@ -302,8 +302,8 @@ bool oracle_allows(const struct oracle_allowed *a, uint32_t level, uint32_t x, u
     return (a->x[x] && a->y[y]) || (level >= a->wide_level && a->wide_x[x] && a->wide_y[y]);
 }
 
-/* Around `uv` for levels up to `coarsest`; a tile may begin a texel before the regions it is over.
- */
+/* Allows regions around `uv` for levels up to `coarsest`. A tile may begin a texel before its
+ * regions. */
 static void allow_box(bool *xs, bool *ys, const struct SluiceTextureEntry *e,
                       const struct ConformInput *in, const double box[2], uint32_t coarsest)
 {
@@ -317,7 +317,7 @@ static void allow_box(bool *xs, bool *ys, const struct SluiceTextureEntry *e,
                (double)e->height / e->regionHeight, e->regionCountY);
 }
 
-/* The coarser of two levels that are read at this level of detail. */
+/* Returns the coarser of the two levels read at this LOD. */
 static uint32_t coarser_level(double lod, double last)
 {
     return (uint32_t)clamp(floor(clamp(lod, 0, last)) + 1, 0, last);

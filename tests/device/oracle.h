@@ -1,7 +1,7 @@
 /**
- * What one sample must mark and what it may mark, by brute force in double from the meaning of a
- * sample in Vulkan, not from the shaders. Sets of tiles of all levels: a mark of level m asks for
- * the tiles over its region of level m and of all coarser levels.
+ * Marks that a sample must and may write, by brute force in double. Follows the meaning of a sample
+ * in Vulkan, not the shaders. Sets hold tiles of all levels: a mark of level m requests the tiles
+ * over its region at level m and all coarser levels.
  */
 #ifndef TESTS_DEVICE_ORACLE_H
 #define TESTS_DEVICE_ORACLE_H
@@ -27,25 +27,25 @@ void oracle_tiles_init(struct oracle_tiles *t, const struct SluiceTextureEntry *
 bool *oracle_tile(struct oracle_tiles *t, uint32_t level, uint32_t x, uint32_t y);
 
 /**
- * Levels of detail that a device may choose: Vulkan's, by the lengths of the derivatives, or by the
- * axes of the ellipse that they span, which is narrower than either is short and longer than either
- * is long; and the finest and the coarsest that come of mixing both. -INFINITY for no derivatives,
- * NAN where an argument is not finite.
+ * Levels of detail that a device may choose. Vulkan's use the lengths of the derivatives, or the
+ * axes of the ellipse that they span: its minor axis is at most the shorter length, its major axis
+ * at least the longer one. Also the finest and the coarsest level of any mix of both. -INFINITY
+ * without derivatives, NAN for arguments that are not finite.
  */
 struct oracle_lod {
     double lengths, ellipse;
     double finest, coarsest;
-    double isotropic; ///< by the longer axis, whatever the anisotropy: the coarsest of all
+    double isotropic; ///< LOD of the longer axis, for any anisotropy: the coarsest of all
 };
 struct oracle_lod oracle_lod(const struct SluiceTextureEntry *entry, const struct ConformInput *in);
 
-/** How the sampler filters. */
+/** Filter of the sampler. */
 struct oracle_filter {
-    bool nearest;       ///< inside a level
-    double subtexel;    ///< texel coordinates may be off by so much
+    bool nearest;       ///< nearest filter inside a level
+    double subtexel;    ///< tolerance of texel coordinates
     double lod_offset;  ///< added to the level of detail
-    double lod_quantum; ///< a fraction below it shows no second level
-    bool bias_scales;   ///< a LOD bias makes an anisotropic footprint longer or shorter
+    double lod_quantum; ///< smaller fractions show no second level
+    bool bias_scales;   ///< a LOD bias scales the length of an anisotropic footprint
     bool by_ellipse;    ///< level and footprint follow the ellipse, not the lengths
 };
 
@@ -53,16 +53,15 @@ struct oracle_filter {
 void oracle_require(struct oracle_tiles *t, const struct ConformInput *in,
                     struct oracle_filter filter);
 
-/** The tiles that the marks of a map ask for. */
+/** Sets the tiles that the marks of a map request. */
 void oracle_decode(struct oracle_tiles *t, const uint32_t *map);
 
-/** Adds all coarser tiles over those that are there: a streamer loads no tile without them. */
+/** Adds all coarser tiles over the set's tiles: a streamer loads no tile without them. */
 void oracle_close(struct oracle_tiles *t);
 
 /**
- * Where marks may be; a level below `level` or one that does not exist is wrong anywhere. Marks
- * from `wide_level` on may also be where the coarser levels reach that some devices read with
- * anisotropy.
+ * Regions where marks are allowed. A level below `level`, or beyond the chain, is wrong anywhere.
+ * Marks from `wide_level` on may also be where some devices read coarser levels with anisotropy.
  */
 struct oracle_allowed {
     uint32_t level, wide_level;
