@@ -10,7 +10,7 @@ enum pattern_kind array_scene_kind(uint32_t layer)
     return kinds[layer % 3];
 }
 
-/* What the device itself says of the tails of an array. */
+/* Returns whether the device reports one mip tail for all layers of an array. */
 static bool layers_share_tail(struct harness *h, const SluiceImageInfo *info, uint32_t layer_count)
 {
     PFN_vkGetImageSparseMemoryRequirements get =

@@ -1,4 +1,4 @@
-/** Procedural textures whose texels say where they are. */
+/** Procedural textures whose texels identify their positions. */
 #ifndef TESTS_DEVICE_PATTERN_H
 #define TESTS_DEVICE_PATTERN_H
 
@@ -15,20 +15,19 @@ enum pattern_kind {
 struct SluiceImageSource *pattern_source(enum pattern_kind kind, uint32_t width, uint32_t height,
                                          SluiceFormat format);
 
-/** What the source gives for a texel, but for PATTERN_WAVES, before it is converted to the format.
- */
+/** Returns the source's texel before conversion to the format. Not for PATTERN_WAVES. */
 void pattern_texel(enum pattern_kind kind, uint32_t level, uint32_t x, uint32_t y, float rgba[4]);
 
-/** The level that a sample of PATTERN_LEVEL shows; -1 where it is not resident. */
+/** Returns the level that a sample of PATTERN_LEVEL shows; -1 if not resident. */
 static inline float pattern_level(const float color[4])
 {
     return color[0] * 16.0f - 1.0f;
 }
 
-/** Of pattern_level: eight bits are steps of 1/16 level, half of that off. */
+/** Tolerance of pattern_level: eight bits give steps of 1/16 level, and half of that. */
 #define PATTERN_LEVEL_ERROR 0.035f
 
-/** How far a fetched channel may be off. */
+/** Returns the tolerance of a fetched channel. */
 float pattern_tolerance(SluiceFormat format);
 uint32_t pattern_channel_count(SluiceFormat format);
 

@@ -87,7 +87,7 @@ static void create_page_sets(struct prober *p)
 void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBindPoint point)
 {
     struct harness *h = p->h;
-    uint32_t at = (h->frame_count + HARNESS_FRAMES - 1) % HARNESS_FRAMES; /* of this frame */
+    uint32_t at = (h->frame_count + HARNESS_FRAMES - 1) % HARNESS_FRAMES; /* slot of this frame */
     SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetVulkanPages(p->streamer, &pages);
     assert_in_range(pages.viewCount, 1, PROBE_PAGE_CHUNKS);
@@ -147,7 +147,7 @@ static VkPipeline create_pipeline(const struct prober *p)
     return conform_compute_pipeline(h, p->layout, module, prober_specialize(p, &specialization));
 }
 
-/* The layout that it was made with may be gone: that of each prober is defined alike. */
+/* The layout that created it may be destroyed: layouts of all probers are defined alike. */
 static VkPipeline shared_pipeline(const struct prober *p)
 {
     const struct harness *h = p->h;
@@ -294,7 +294,7 @@ struct probe_texture prober_cube(struct prober *p, const SluiceVulkanTexture *fa
     return create_set(p, face->tableIndex, images);
 }
 
-/* Under a key that no other sampler has. */
+/* Creates a sampler with a key that no other one has. */
 static VkSampler nearest_sampler(struct prober *p)
 {
     for (uint32_t i = 0; i < p->sampler_count; i++)

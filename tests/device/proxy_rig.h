@@ -1,7 +1,7 @@
 /**
- * Rays through the boxes of proxies, in launches of a demand loader: by the device's own ray
- * tracing, with intersection, any-hit and closest-hit programs, or by a compute shader. Both use
- * proxy.glsl and the descriptor set of the launch.
+ * Rays through the boxes of proxies, in launches of a demand loader. Uses the device's ray tracing,
+ * with intersection, any-hit and closest-hit programs, or a compute shader. Both use proxy.glsl and
+ * the descriptor set of the launch.
  */
 #ifndef TESTS_DEVICE_PROXY_RIG_H
 #define TESTS_DEVICE_PROXY_RIG_H
@@ -18,16 +18,16 @@
 
 struct proxy_rig {
     struct harness *h;
-    bool traces;              ///< has ray tracing; otherwise compute alone
+    bool traces;              ///< true: has ray tracing; false: compute only
     struct ray_device device; ///< traces
     SluiceDemandLoader *loader;
-    SluiceProxySet *geometry, *materials; ///< a material for each geometry, of the same index
+    SluiceProxySet *geometry, *materials; ///< a material per geometry, with the same index
     SluiceDemandResourceId resources[2];
     uint32_t first_pages[2]; ///< geometry, materials
     struct ray_buffer boxes; ///< with an address if it traces
     struct ray_buffer instances, table;
     struct harness_buffer plain_boxes, rays, hits;
-    uint64_t version; ///< of the boxes
+    uint64_t version; ///< version of the boxes
     struct ray_structure bottom, top;
     bool has_structures;
     VkDescriptorSetLayout set_layout;
@@ -40,20 +40,20 @@ struct proxy_rig {
     SluiceDemandRequests requests;
 };
 
-/** `traces`: `h` was made with ray_device_extensions. */
+/** `traces`: `h` was created with ray_device_extensions. */
 void proxy_rig_init(struct proxy_rig *rig, struct harness *h, bool traces);
 void proxy_rig_finish(struct proxy_rig *rig);
 
 /** Adds a geometry and its material. Returns the id of the geometry. */
 SluiceProxyId proxy_rig_add(struct proxy_rig *rig, const SluiceProxyBox *box);
-/** Removes both. */
+/** Removes a geometry and its material. */
 void proxy_rig_remove(struct proxy_rig *rig, SluiceProxyId id);
 
 struct ProxyRay *proxy_rig_rays(struct proxy_rig *rig);
 const struct ProxyHit *proxy_rig_hits(const struct proxy_rig *rig);
 
-/** Writes the changed boxes, builds the structures anew, launches and processes. `through`: rays
- *  request the materials of all boxes they enter, instead of the nearest geometry. */
+/** Writes changed boxes, rebuilds the structures, launches and processes. `through`: rays request
+ * the materials of all entered boxes instead of the nearest geometry. */
 void proxy_rig_launch(struct proxy_rig *rig, bool by_rays, bool through);
 
 #endif /* TESTS_DEVICE_PROXY_RIG_H */

@@ -110,7 +110,7 @@ void ray_structure_build(struct ray_device *device, struct ray_structure *struct
         device->CreateAccelerationStructureKHR(device->h->device, &info, NULL, &structure->handle),
         VK_SUCCESS);
     build.info.dstAccelerationStructure = structure->handle;
-    /* as aligned as any device asks for */
+    /* aligned for any device */
     build.info.scratchData.deviceAddress = (structure->scratch.address + 255) & ~(uint64_t)255;
     harness_run(device->h, record_build, &build);
 }

@@ -6,7 +6,7 @@
 
 #define RAY_DEVICE_EXTENSION_COUNT 3u
 extern const char *const ray_device_extensions[RAY_DEVICE_EXTENSION_COUNT];
-/** A chain for harness_init_with; static. */
+/** Returns a static feature chain for harness_init_with. */
 void *ray_device_features(void);
 
 /* clang-format off */
@@ -17,7 +17,7 @@ void *ray_device_features(void);
     X(GetBufferDeviceAddress) X(GetRayTracingShaderGroupHandlesKHR)
 /* clang-format on */
 
-/** Host visible, with an address. */
+/** A host visible buffer with an address. */
 struct ray_buffer {
     VkBuffer buffer;
     VkDeviceMemory memory;
@@ -37,14 +37,14 @@ struct ray_device {
 #undef RAY_DEVICE_MEMBER
 };
 
-/** `h` was made with the extensions and features above. */
+/** `h` was created with the extensions and features above. */
 void ray_device_init(struct ray_device *device, struct harness *h);
 
 void ray_buffer_init(struct ray_device *device, struct ray_buffer *buffer, uint64_t size,
                      VkBufferUsageFlags usage);
 void ray_buffer_finish(struct ray_device *device, struct ray_buffer *buffer);
 
-/** Of one geometry; waits until it is built. */
+/** Builds a structure of one geometry, and waits. */
 void ray_structure_build(struct ray_device *device, struct ray_structure *structure,
                          VkAccelerationStructureTypeKHR type,
                          const VkAccelerationStructureGeometryKHR *geometry, uint32_t count);

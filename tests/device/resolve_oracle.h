@@ -1,6 +1,6 @@
 /**
- * What a resolve must do, by brute force on the host: whole maps are scanned, one texture after the
- * other. Independent of the passes but for the layout of their results.
+ * Expected result of a resolve, by brute force on the host: scans whole maps, one texture after the
+ * other. Shares only the layout of results with the passes.
  */
 #ifndef TESTS_DEVICE_RESOLVE_ORACLE_H
 #define TESTS_DEVICE_RESOLVE_ORACLE_H
@@ -13,7 +13,7 @@
 
 struct oracle_texture {
     uint32_t first, count; ///< regions
-    uint8_t *written;      ///< levels since they were reported last
+    uint8_t *written;      ///< levels written since the last report
     uint8_t *reported;
 };
 
@@ -22,8 +22,8 @@ struct oracle_item {
     uint32_t flags;
 };
 
-/** Fills in `results` and at most `capacity` words of `data`; returns how many. Moves what is
- *  reported from `written` to `reported`. */
+/** Fills in `results` and at most `capacity` words of `data`. Returns the number of words. Moves
+ * reported levels from `written` to `reported`. */
 uint32_t oracle_resolve(const struct oracle_item *items, uint32_t item_count, uint32_t capacity,
                         struct SluiceResolveResult *results, uint32_t *data);
 

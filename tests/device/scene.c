@@ -35,7 +35,7 @@ static uint32_t find_place(struct scene *scene)
         index++;
     assert_true(index < SCENE_TEXTURES);
     struct scene_texture *texture = &scene->textures[index];
-    if (texture->owns) /* of a texture that was removed before */
+    if (texture->owns) /* a removed texture's source */
         CHECK_OK(sluiceWaitVulkanStreamerIdle(scene->streamer));
     if (texture->owns)
         sluiceDestroyImageSource(texture->source);

@@ -11,7 +11,7 @@
 enum writer_kind {
     WRITER_LEVELS,
     WRITER_MASKS,
-    WRITER_IN_TURNS, ///< levels, and asks whose turn it is
+    WRITER_IN_TURNS, ///< levels; asks whether it is the texture's turn
 };
 
 struct writer {
@@ -23,7 +23,7 @@ struct writer {
     VkPipeline pipeline;
     VkDescriptorPool pool;
     VkDescriptorSet set;
-    uint32_t count; ///< of samples to write
+    uint32_t count; ///< number of samples to write
 };
 
 void writer_init(struct writer *w, struct harness *h, SluiceVulkanStreamer *streamer,
@@ -31,9 +31,9 @@ void writer_init(struct writer *w, struct harness *h, SluiceVulkanStreamer *stre
 void writer_finish(struct writer *w);
 
 struct WriterInput *writer_inputs(struct writer *w);
-/** For harness_frame; user is the writer. */
+/** Callback of harness_frame; `user` is the writer. */
 void writer_record(void *user, VkCommandBuffer commands);
-/** Copies words of the feedback buffer; valid until the next call. Waits for the device. */
+/** Copies words of the feedback buffer. Valid until the next call. Waits for the device. */
 const uint32_t *writer_words(struct writer *w, uint32_t first, uint32_t count);
 
 #endif /* TESTS_DEVICE_WRITER_H */
