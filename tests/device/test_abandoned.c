@@ -1,4 +1,4 @@
-/* Frames that are begun and never submitted leave no trace in what is seen. */
+/* Frames that are begun and never submitted do not affect the picture. */
 #include "device/scene.h"
 
 #include "support/roll.h"
@@ -14,7 +14,7 @@ static const SluiceFormat formats[TEXTURES] = {SLUICE_FORMAT_R8G8B8A8_UNORM,
                                                SLUICE_FORMAT_R16G16B16A16_SFLOAT,
                                                SLUICE_FORMAT_R8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB};
 
-/* What was seen at the end of each leg, and which tiles were resident and wanted. */
+/* Samples at the end of each leg, and counts of resident and wanted tiles. */
 struct walk {
     struct ProbeOutput outputs[LEGS][TEXTURES][SAMPLES];
     uint32_t mapped[LEGS][TEXTURES];
@@ -43,7 +43,7 @@ static uint32_t count_mapped(const struct scene *scene, uint32_t i)
     return count;
 }
 
-/* Where each leg looks does not depend on how many frames there were. */
+/* The samples of a leg do not depend on the number of frames. */
 static void aim(struct scene *scene, uint32_t leg)
 {
     roll_seed(100 + leg);
@@ -113,7 +113,8 @@ static void a_walk_with_frames_given_up_ends_as_one_without(void **state)
     free(given_up);
 }
 
-/* As while a window is minimized: more frames than may be in flight, from the first one on. */
+/* Abandons more frames than may be in flight, from the first one on, as while a window is
+ * minimized. */
 static void any_number_of_frames_in_a_row_can_be_given_up(void **state)
 {
     struct harness *h = *state;
@@ -140,7 +141,7 @@ static void any_number_of_frames_in_a_row_can_be_given_up(void **state)
             assert_int_equal(h->EndCommandBuffer(commands), VK_SUCCESS);
             CHECK_OK(sluiceAbandonStreamingFrame(scene.streamer, &frame));
         }
-        /* packed levels were read and bound meanwhile, and are there at once */
+        /* packed levels were read and bound meanwhile, and are shown at once */
         scene_settle(&scene, 1);
         for (uint32_t s = 0; s < SAMPLES; s++)
             assert_true(scene_outputs(&scene, round)[s].level != SLUICE_MIP_UNTOUCHED);
@@ -187,7 +188,7 @@ int main(void)
         cmocka_unit_test(a_walk_with_frames_given_up_ends_as_one_without),
         cmocka_unit_test(any_number_of_frames_in_a_row_can_be_given_up),
         cmocka_unit_test(a_frame_is_given_up_once_and_not_after_it_was_submitted),
-        cmocka_unit_test(an_upload_queue_copied_tiles), /* after all others */
+        cmocka_unit_test(an_upload_queue_copied_tiles), /* after all other tests */
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;

@@ -86,7 +86,7 @@ static uint32_t count_mapped(struct array_scene *a, uint32_t layer)
     return count;
 }
 
-/* Each layer has feedback of its own; they go together, and others take their place. */
+/* Each layer has its own feedback. Layers are removed together, and others take their place. */
 static void layers_of_an_array_are_streamed_apart_and_removed_together(void **state)
 {
     static const uint32_t size[2] = {2048, 1024};
@@ -200,7 +200,8 @@ static void arrays_beyond_the_device_are_refused(void **state)
     CHECK_RESULT(sluiceAddVulkanTextureArray(scene.streamer, &info, count, textures),
                  SLUICE_ERROR_UNSUPPORTED);
     h->quiet = false;
-    scene_add(&scene, pattern_source(PATTERN_LEVEL, 256, 256, rgba8)); /* nothing was kept */
+    scene_add(&scene, pattern_source(PATTERN_LEVEL, 256, 256,
+                                     rgba8)); /* nothing of the refused array was kept */
     scene_settle(&scene, 3);
     scene_finish(&scene);
     sluiceDestroyImageSource(array);
@@ -211,7 +212,8 @@ static void arrays_beyond_the_device_are_refused(void **state)
 
 #define SAMPLES 256u
 
-/* The same samples of an array, or of as many textures, once all that they want is there. */
+/* Draws equal samples of an array, or of as many textures, once all requested tiles are
+ * resident. */
 static bool draw_layers(struct harness *h, SluiceResidencyMode mode, bool array,
                         const uint32_t size[2], const struct scene_aim *aim,
                         struct ProbeOutput out[ARRAY_LAYERS][SAMPLES])
@@ -255,7 +257,7 @@ static double psnr(const struct ProbeOutput *a, const struct ProbeOutput *b)
     return sum > 0 ? -10 * log10(sum / (SAMPLES * 4.0)) : 999;
 }
 
-/* In decibels, as in test_modes.c: samplers of GPUs come to another LOD than the formula. */
+/* In dB, as in test_modes.c: samplers of GPUs use another LOD than the formula. */
 static double least_psnr(const struct harness *h, bool magnified)
 {
     if (h->caps.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || magnified)

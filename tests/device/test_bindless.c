@@ -1,6 +1,6 @@
 /*
- * Shaders that choose a texture by a number that differs from pixel to pixel. The oracle samples
- * each texture by itself, as an ordinary sampler2D, in the same frame.
+ * Shaders that choose a texture by a number that varies by pixel. The oracle samples each texture
+ * by itself, as an ordinary sampler2D, in the same frame.
  */
 #include "device/harness.h"
 
@@ -27,17 +27,17 @@ struct picture {
     struct harness *h;
     SluiceVulkanStreamer *streamer;
     SluiceTextureArray array;
-    bool draws; ///< else computes
+    bool draws; ///< true: draws; false: computes
     bool anisotropic;
-    bool mixes;    ///< textures are sparse, paged and dense in turn
-    bool compares; ///< in this frame
+    bool mixes;    ///< true: textures are sparse, paged and dense in turn
+    bool compares; ///< true: compares in this frame
     SluiceImageSource *sources[TEXTURES];
     float shades[TEXTURES]; ///< red of all texels
     SluiceVulkanTexture textures[TEXTURES];
     struct harness_buffer outputs[KINDS], list;
     VkDescriptorSetLayout layout;
     VkDescriptorPool pool;
-    VkDescriptorSet sets[1 + TEXTURES]; ///< of bindless shaders; of each texture alone
+    VkDescriptorSet sets[1 + TEXTURES]; ///< set of bindless shaders; then a set per texture
     VkPipelineLayout pipeline_layout;
     VkPipeline pipelines[KINDS];
     VkRenderPass pass;
@@ -45,7 +45,7 @@ struct picture {
     struct BindlessParams params;
 };
 
-/* Red says which texture it is, green changes smoothly, blue says which level. */
+/* Red identifies the texture, green varies smoothly, blue identifies the level. */
 static void paint(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
 {
@@ -86,7 +86,7 @@ static void add_texture(struct picture *p, uint32_t i, uint32_t number)
                                                       p->anisotropic && number % 2 ? 4.0f : 0.0f};
     CHECK_OK(sluiceAddVulkanTexture(p->streamer, &create, &p->textures[i]));
     assert_float_equal(p->textures[i].maxAnisotropy, create.maxAnisotropy > 1 ? 4 : 1, 0);
-    /* With anisotropy, lavapipe takes the derivatives of one pixel for its quad. */
+    /* With anisotropy, lavapipe uses one pixel's derivatives for the whole quad. */
     const bool alike = p->anisotropic && harness_level_error(p->h) == 0;
     ((struct BindlessTexture *)p->list.mapped)[i] =
         (struct BindlessTexture){.tableIndex = p->textures[i].tableIndex,
@@ -230,7 +230,7 @@ static VkPipeline create_graphics(struct picture *p, const VkPipelineShaderStage
     return pipeline;
 }
 
-/* Nothing is attached: fragments only write to buffers. */
+/* Creates a target without attachments: fragments only write to buffers. */
 static void create_target(struct picture *p)
 {
     const VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS};
@@ -369,7 +369,7 @@ static void record(void *user, VkCommandBuffer commands)
     barrier(p, commands, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
 }
 
-/* Explicit derivatives give the result of implicit ones but for the device's rounding. */
+/* Explicit derivatives give the result of implicit ones, except for rounding by the device. */
 static void check_pixel(const struct picture *p, uint32_t i)
 {
     const struct BindlessOutput *found = (const struct BindlessOutput *)p->outputs[BINDLESS].mapped;
@@ -393,7 +393,8 @@ static void check_pixel(const struct picture *p, uint32_t i)
     }
 }
 
-/* A frame whose pixels choose alone, or in squares; how many pixels are not sharp yet. */
+/* Runs a frame whose pixels choose alone or in squares. Returns the number of pixels that are not
+ * sharp yet. */
 static uint32_t check_frame(struct picture *p, uint32_t seed)
 {
     p->params = (struct BindlessParams){.count = TEXTURES, .seed = seed, .shift = seed % 3};
@@ -420,10 +421,10 @@ static void check_all(struct harness *h, SluiceTextureArray array, bool draws, b
         missing = check_frame(p, frame);
         blurry += missing;
     }
-    assert_true(blurry > 0); /* they are streamed, and asked for by these pixels alone */
+    assert_true(blurry > 0); /* they are streamed, requested by these pixels only */
     assert_int_equal(missing, 0);
 
-    for (uint32_t i = 0; i < 3; i++) { /* others take their places in the array */
+    for (uint32_t i = 0; i < 3; i++) { /* others take their slots in the array */
         CHECK_OK(sluiceRemoveVulkanTexture(p->streamer, p->textures[i].textureId));
         CHECK_OK(sluiceWaitVulkanStreamerIdle(p->streamer));
         sluiceDestroyImageSource(p->sources[i]);

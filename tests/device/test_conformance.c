@@ -1,6 +1,6 @@
 /*
- * What a sample marks, case by case, against brute force: required, marked and allowed tiles lie in
- * each other. What is marked beyond what is required is printed, in tiles.
+ * Compares marks of samples with brute force: required tiles are marked, and marked tiles are
+ * allowed. Prints the number of marked tiles beyond the required ones.
  */
 #include "device/suite.h"
 
@@ -30,8 +30,8 @@ static const double offsets[] = {-4,
 #define OFFSETS (sizeof offsets / sizeof offsets[0])
 
 /*
- * Beside every border of every level, along both axes and in the corners; at this level alone, or,
- * with a step of a half, at this one and the finer one.
+ * Samples beside every border of every level, along both axes and in the corners. At this level
+ * only, or with a half step at this one and the next.
  */
 static void add_borders(struct suite *s, struct SluiceTextureEntry e, double step, bool anisotropic)
 {
@@ -80,7 +80,7 @@ static void linear_footprints_find_their_tiles_at_borders(void **state)
     suite_end(s, "linear_border");
 }
 
-/* Of sizes whose levels are rounded down again and again: tiles lie furthest from their regions. */
+/* Sizes whose levels are rounded down repeatedly: tiles are farthest from their regions. */
 static void linear_footprints_of_uneven_sizes_find_their_tiles_at_borders(void **state)
 {
     struct suite *s = suite_begin(*state);
@@ -104,7 +104,7 @@ static void anisotropic_footprints_find_their_tiles_at_borders(void **state)
     suite_end(s, "anisotropic_border");
 }
 
-/* The second level begins to show at a fraction of 1/256, on devices with 8 bits of it. */
+/* The second level appears at a fraction of 1/256, on devices with 8 bits of it. */
 static void levels_at_a_fraction_find_their_tiles(void **state)
 {
     const double fractions[] = {-1.0 / 256,    -0.5 / 256,    0,    0.5 / 256, 1.0 / 256, 1.5 / 256,
@@ -130,7 +130,7 @@ static void levels_at_a_fraction_find_their_tiles(void **state)
     suite_end(s, "fraction");
 }
 
-/* Samplers may come out finer than the formula: 0.12 levels is what was seen. */
+/* Samplers may choose finer levels than the formula: up to 0.12 levels was measured. */
 static void samplers_a_little_finer_find_their_tiles(void **state)
 {
     struct suite *s = suite_begin(*state);
@@ -187,7 +187,7 @@ static void add_biased(struct suite *s)
     }
 }
 
-/* The bias moves the level; the length of the footprint stays as it is on some devices. */
+/* The bias moves the level. On some devices the length of the footprint does not change. */
 static void anisotropic_footprints_with_a_bias_find_their_tiles(void **state)
 {
     struct suite *s = suite_begin(*state);
@@ -203,8 +203,8 @@ static void anisotropic_footprints_that_grow_with_a_bias_find_their_tiles(void *
     suite_end(s, "anisotropic_bias_scaled");
 }
 
-/* Derivatives that are nearly parallel: the ellipse is narrow and long, the lengths say it is wide.
- */
+/* Nearly parallel derivatives: the ellipse is narrow and long, but the lengths suggest a wide
+ * footprint. */
 static void add_skewed(struct suite *s)
 {
     roll_seed(71);
@@ -247,7 +247,7 @@ static void samplers_a_little_coarser_find_their_tiles_by_the_ellipse(void **sta
     suite_end(s, "skewed_coarser");
 }
 
-/* Without derivatives the sample is of level 0; with large ones of the last, which is one texel. */
+/* Without derivatives the sample is at level 0; with large ones at the last level of one texel. */
 static void levels_beyond_the_chain_are_its_ends(void **state)
 {
     struct suite *s = suite_begin(*state);
@@ -271,7 +271,7 @@ static void levels_beyond_the_chain_are_its_ends(void **state)
     suite_end(s, "chain_ends");
 }
 
-/* A grid that is no multiple of anything, at all levels. */
+/* An irregular grid at all levels. */
 static void add_grid(struct suite *s, struct SluiceTextureEntry e, uint32_t steps, double lod_step)
 {
     for (double lod = 0; lod <= e.mipLevelCount; lod += lod_step)
@@ -300,7 +300,7 @@ static void sizes_that_do_not_halve_evenly_find_their_tiles(void **state)
     suite_end(s, "uneven");
 }
 
-/* A tile of level 1 may lie over three regions in each direction. */
+/* A tile of level 1 may cover three regions in each direction. */
 static void level_1_of_odd_sizes_finds_its_tiles_at_every_border(void **state)
 {
     struct suite *s = suite_begin(*state);
@@ -328,7 +328,7 @@ static void textures_one_texel_wide_find_their_tiles(void **state)
     suite_end(s, "one_texel");
 }
 
-/* The levels of one tile are asked for by their own numbers, down to the last. */
+/* Levels of one tile are requested by their own numbers, down to the last. */
 static void tail_levels_are_marked_as_they_are(void **state)
 {
     struct suite *s = suite_begin(*state);
@@ -356,7 +356,7 @@ static void the_largest_textures_find_their_tiles(void **state)
     suite_end(s, "largest");
 }
 
-/* Places and levels as a picture has them, not those that are hard. */
+/* Positions and levels of ordinary pictures, not difficult ones. */
 static void add_ordinary(struct suite *s, float anisotropy)
 {
     roll_seed(73);

@@ -1,8 +1,8 @@
 /*
- * Whatever happens to be resident: no sample touches a texel that is not, and each is what a
- * texture shows that is resident as a whole, at the level that was used. What is not resident is
- * seen in three ways: by the shader's counter, by texels that are transparent there alone, and by
- * the difference from the whole texture, which the device samples with the same derivatives.
+ * For any resident tiles: no sample touches a texel that is not resident, and each sample equals
+ * the fully resident texture at the used level. Missing texels show in three ways: in the shader's
+ * counter, as transparent texels, and by the difference to the whole texture, sampled with equal
+ * derivatives.
  */
 #include "device/scene.h"
 
@@ -18,7 +18,7 @@
 #define ROUNDS 16u
 #define SAMPLES (ROUNDS * TEXTURES * SCENE_SAMPLES)
 
-/* A source some of whose tiles cannot be read, so that finer ones lie under holes. */
+/* A source some of whose tiles cannot be read, so that finer tiles are under holes. */
 struct holed_source {
     SluiceImageSource base;
     SluiceImageSource *inner;
@@ -32,7 +32,7 @@ struct kind {
     float anisotropy;
 };
 
-/* What was sampled in all rounds, to be sampled again where everything is resident. */
+/* Samples of all rounds, to be repeated with everything resident. */
 struct sample {
     struct ProbeInput in;
     struct ProbeOutput out;
@@ -49,10 +49,10 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
     return sluiceGetImageInfo(((struct holed_source *)base)->inner, info);
 }
 
-/* One in eight tiles; levels that may be packed are whole. */
+/* One in eight tiles is a hole. Levels that may be packed have none. */
 static bool is_hole(const struct holed_source *source, const SluiceImageRegion *region)
 {
-    SluiceImageInfo info = {.structSize = sizeof info}; /* in the loader's threads: no checks */
+    SluiceImageInfo info = {.structSize = sizeof info}; /* on the loader's threads: no checks */
     sluiceGetImageInfo(source->inner, &info);
     if (info.width >> region->mipLevel <= 128 && info.height >> region->mipLevel <= 128)
         return false;
@@ -73,7 +73,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
 
 static void destroy(SluiceImageSource *base)
 {
-    (void)base; /* one of the array */
+    (void)base; /* member of an array */
 }
 
 static const SluiceImageSourceInterface holed_interface = {sizeof holed_interface, get_info,
@@ -84,7 +84,7 @@ static double draw(void)
     return (double)roll() / ROLL_MAX;
 }
 
-/* No borders: their color would look like texels that are not resident. */
+/* Borders are excluded: their color would look like missing texels. */
 static VkSamplerAddressMode address_mode(const struct harness *h)
 {
     const VkSamplerAddressMode modes[] = {
@@ -106,8 +106,8 @@ static void make_kinds(struct harness *h)
                           address_mode(h), address_mode(h), h->anisotropy && i % 2 ? 16.0f : 1.0f};
 }
 
-/* Somewhere, or within two to sixteen texels of a corner of a tile of the level, in the image or
- * beside it. */
+/* Returns a random coordinate, or one within two to sixteen texels of a tile's corner at the level,
+ * in the image or beside it. */
 static float coordinate(uint32_t size, double texels)
 {
     if (roll() % 2)
@@ -118,7 +118,8 @@ static float coordinate(uint32_t size, double texels)
                    (roll() % 4 ? 0 : roll() % 3 - 1));
 }
 
-/* Magnified by up to 16 and up to the end of the chain; twice as long as anisotropy reaches. */
+/* Magnified by up to 16, up to the end of the chain, and up to twice as long as anisotropy
+ * allows. */
 static struct ProbeInput random_input(const struct kind *kind)
 {
     double texels = exp2(draw() * 10 - 4), angle = draw() * 6.2831853;
@@ -147,8 +148,8 @@ static void aim_anywhere(struct scene *scene, bool no_feedback)
     }
 }
 
-/* One tile of level 0 is asked for, in its middle, and looked at along its edges, so that what
- * reaches over them finds the coarsest levels there. */
+/* Requests one tile of level 0 in its middle, and samples along its edges, so that filters beyond
+ * the edges find the coarsest levels. */
 static void aim_at_islands(struct scene *scene, bool no_feedback)
 {
     static uint32_t column, row;
@@ -214,7 +215,8 @@ static void find_regular_levels(const struct scene *scene)
     }
 }
 
-/* Frames in which few samples ask for tiles, then one in which many look at what is there. */
+/* Runs frames in which few samples request tiles, then a frame in which many samples look at
+ * them. */
 static void draw_round(struct scene *scene, uint32_t round, aim_function *aim)
 {
     struct harness *h = scene->h;
@@ -229,7 +231,7 @@ static void draw_round(struct scene *scene, uint32_t round, aim_function *aim)
     assert_int_equal(scene_non_resident(scene), 0);
 }
 
-/* The samples again, of the whole texture, with the derivatives that were used. */
+/* Repeats the samples on the whole texture, with the used derivatives. */
 static void aim_at_truth(struct scene *scene, uint32_t round, bool paged)
 {
     for (uint32_t t = 0; t < TEXTURES; t++)
@@ -239,7 +241,7 @@ static void aim_at_truth(struct scene *scene, uint32_t round, bool paged)
             *in = s->in;
             memcpy(in->dx, &s->out.footprint[0], sizeof in->dx);
             memcpy(in->dy, &s->out.footprint[2], sizeof in->dy);
-            /* packed levels are sampled by the sampler in every mode */
+            /* packed levels use the sampler in every mode */
             bool row = paged && s->out.lod < (float)regular_levels[t];
             in->lodBias = row ? fmaxf(s->out.lod, 0) : -1 - s->out.minLod;
         }
@@ -253,7 +255,7 @@ static void record_truth(void *user, VkCommandBuffer commands)
                       SCENE_SAMPLES, PROBE_TRUTH);
 }
 
-/* Filter weights have eight bits, and devices may differ in the last one from mode to mode. */
+/* Filter weights have eight bits. Devices may differ in the last bit between modes. */
 static float tolerance(SluiceResidencyMode mode)
 {
     return mode == SLUICE_RESIDENCY_MODE_DENSE    ? 0
@@ -285,8 +287,8 @@ static void check_sample(const struct kind *k, const struct sample *s, const flo
 }
 
 /*
- * Packed levels of paged textures are an image of their own, from which no sampler takes the level
- * before, as devices that are off the formula do from the whole image.
+ * Packed levels of paged textures are a separate image. Samplers cannot read the level before from
+ * it, as devices that deviate from the formula do from the whole image.
  */
 static bool is_beside_packed(const struct scene *truth, uint32_t t, float lod)
 {

@@ -1,5 +1,5 @@
 /*
- * Cube maps that shaders choose by numbers, each invocation another: the streamer's array has a
+ * Cube maps that shaders choose by numbers that differ by invocation: the streamer's array has a
  * cube view per cube. Colors are compared with the oracle of test_cubes.c.
  */
 #include "device/conform.h"
@@ -21,8 +21,8 @@ enum { SAMPLES = 512, SIZE = 256, CUBES = 2 * CUBE_RIG_CUBES };
 
 struct numbers {
     struct cube_rig rig;
-    SluiceImageSource *flat;                       ///< of a texture that is no cube, between cubes
-    SluiceVulkanTexture textures[CUBE_RIG_LAYERS]; ///< two more cubes, of the rig's source
+    SluiceImageSource *flat; ///< source of a texture that is no cube, between cubes
+    SluiceVulkanTexture textures[CUBE_RIG_LAYERS]; ///< two more cubes of the rig's source
     struct conform_set set;
     VkPipelineLayout layout;
     VkPipeline pipeline;
@@ -61,7 +61,8 @@ static void add_cubes(struct numbers *n, SluiceVulkanTexture textures[CUBE_RIG_L
         sluiceAddVulkanTextureArray(n->rig.scene.streamer, &create, CUBE_RIG_LAYERS, textures));
 }
 
-/* False: the mode has no cubes here. The first face of the last two cubes has an odd index. */
+/* Returns false if the mode has no cubes here. The first face of the last two cubes has an odd
+ * index. */
 static bool numbers_init(struct numbers *n, struct harness *h, SluiceTextureArray array)
 {
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
@@ -118,7 +119,7 @@ static uint32_t number_of(const struct numbers *n, uint32_t cube)
     return textures[cube % CUBE_RIG_CUBES * CUBE_ORACLE_FACES].tableIndex;
 }
 
-/* Any cube from `first` on, next to an edge in every other sample, at whole LODs. */
+/* Draws any cube from `first` on at whole LODs. Every second sample is next to an edge. */
 static void draw_inputs(struct numbers *n, uint32_t cubes[SAMPLES], uint32_t first)
 {
     for (uint32_t i = 0; i < SAMPLES; i++) {

@@ -1,4 +1,4 @@
-/* Cube maps: texels, seams, residency and feedback across edges, against an oracle in doubles. */
+/* Cube maps: texels, seams, residency and feedback across edges, against an oracle in double. */
 #include "device/cube_rig.h"
 
 #include "base/checked.h"
@@ -16,7 +16,8 @@ static double draw(void)
     return (double)roll() / ROLL_MAX;
 }
 
-/* Anywhere, on an edge, within two texels of one, or of a corner; of a level with `size` texels. */
+/* Draws a position: anywhere, on an edge, or within two texels of an edge or corner, at a level
+ * with `size` texels. */
 static void draw_position(uint32_t index, uint32_t size, uint32_t *face, double uv[2])
 {
     *face = (uint32_t)roll() % CUBE_ORACLE_FACES;
@@ -37,7 +38,7 @@ static void draw_position(uint32_t index, uint32_t size, uint32_t *face, double 
     cube_oracle_position(direction, face, uv);
 }
 
-/* Integer LODs: only their bilinear filter counts. */
+/* Draws samples at whole LODs, where only the bilinear filter counts. */
 static void draw_inputs(struct cube_rig *rig, double lods[SAMPLES])
 {
     for (uint32_t i = 0; i < SAMPLES; i++) {
@@ -65,7 +66,7 @@ static void check_color(const struct cube_rig *rig, uint32_t cube, uint32_t samp
                      expected[c]);
 }
 
-/* NULL: at the LOD that the shader chose. */
+/* `lods` NULL: LODs that the shader chose. */
 static void check_colors(const struct cube_rig *rig, uint32_t cube, const double *lods,
                          double tolerance)
 {
@@ -101,10 +102,10 @@ static void samples_of_cubes_are_filtered_across_edges_and_corners(void **state)
                 static const enum cube_form forms[] = {CUBE_FORM_CUBE, CUBE_FORM_CUBE,
                                                        CUBE_FORM_ARRAY, CUBE_FORM_NUMBER};
                 uint32_t cube = i == 1 || i == 2;
-                if (s > 0 && i > 0) /* other forms are no other filters */
+                if (s > 0 && i > 0) /* other forms use the same filters */
                     continue;
                 if (forms[i] == (rig.scene.prober.paged ? CUBE_FORM_NUMBER : CUBE_FORM_ARRAY))
-                    continue; /* to compile one takes longer than all samples */
+                    continue; /* compiling takes longer than all samples */
                 if (forms[i] == CUBE_FORM_ARRAY && !rig.textures[0].cubeArrayView)
                     continue;
                 cube_rig_use(&rig, forms[i]);
@@ -117,7 +118,7 @@ static void samples_of_cubes_are_filtered_across_edges_and_corners(void **state)
     }
 }
 
-/* Each frame shows what is there by then, filtered across edges: never a texel that is not. */
+/* Each frame shows resident texels, filtered across edges, and never a missing one. */
 static void check_streaming(struct harness *h, uint32_t size, float anisotropy)
 {
     static double lods[SAMPLES];
@@ -147,7 +148,7 @@ static void cubes_show_only_what_is_resident_until_all_of_it_is(void **state)
     check_streaming(*state, 300, 1);
 }
 
-/* Footprints of all shapes: red tells the finest level that was read, 0 is not resident. */
+/* Footprints of all shapes. Red identifies the finest level read; 0 is not resident. */
 static void anisotropic_samples_touch_only_what_is_resident(void **state)
 {
     struct harness *h = *state;
@@ -185,7 +186,7 @@ static void anisotropic_samples_touch_only_what_is_resident(void **state)
     cube_rig_finish(&rig);
 }
 
-/* Only one face is asked for. Beside its edges, the other faces are coarse. */
+/* Requests only one face. Beside its edges, the other faces are coarse. */
 static void edges_between_sharp_and_coarse_faces_do_not_show(void **state)
 {
     struct cube_rig rig;
@@ -220,7 +221,7 @@ static void edges_between_sharp_and_coarse_faces_do_not_show(void **state)
 }
 
 /* Regions of all faces, in the order of the feedback buffer. */
-#define GRID 4u /* of 512 texels in tiles of 128 */
+#define GRID 4u /* 512 texels in tiles of 128 */
 #define REGIONS (GRID * GRID * CUBE_ORACLE_FACES)
 #define MARKED (PROBE_CAPACITY / REGIONS)
 
@@ -245,7 +246,7 @@ static void record_marks(void *user, VkCommandBuffer commands)
     cube_rig_record(rig, commands);
 }
 
-/* Whether a tile of a level is asked for; packed levels are one tile. */
+/* Returns whether a tile of a level is requested. Packed levels are one tile. */
 static bool is_marked(const struct ProbeOutput *words, uint32_t face, uint32_t level, uint32_t x,
                       uint32_t y)
 {
@@ -325,7 +326,7 @@ static void pixels_of_a_quad_share_the_feedback_of_all_faces(void **state)
     check_feedback(*state, CUBE_FEEDBACK_QUAD);
 }
 
-/* Outputs of one run in a language. */
+/* Runs in a language, and returns the outputs. */
 static void run_in(struct cube_rig *rig, enum cube_form form, uint32_t flags,
                    struct ProbeOutput outputs[PROBE_CAPACITY])
 {
@@ -340,9 +341,9 @@ static void run_in(struct cube_rig *rig, enum cube_form form, uint32_t flags,
     memcpy(outputs, cube_rig_outputs(rig), PROBE_CAPACITY * sizeof *outputs);
 }
 
-/* Compilers of GPUs contract the two languages' equal expressions in different ways. On an NVIDIA
- * H200 LODs differ by up to 1.2e-5, where gradients nearly cancel; samplers see steps of 2^-8. The
- * lavapipe of CI rounds both alike. */
+/* GPU compilers contract the languages' equal expressions differently. On an NVIDIA H200 LODs
+ * differ by up to 1.2e-5, where gradients nearly cancel; samplers use steps of 2^-8. CI's lavapipe
+ * rounds both alike. */
 static bool same_output(struct harness *h, const struct ProbeOutput *a, const struct ProbeOutput *b)
 {
     struct ProbeOutput near = *b;
@@ -376,7 +377,7 @@ static void hlsl_samples_and_marks_what_glsl_does(void **state)
     struct cube_rig rig;
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .feedbackTimeoutTicks = 1000};
     if (h->mode != SLUICE_RESIDENCY_MODE_PAGED)
-        return; /* a module for pages has the code of other modes, too */
+        return; /* a module for pages includes the code of other modes */
     roll_seed(34);
     assert_true(cube_rig_init(&rig, h, info, 512, h->anisotropy ? 4 : 1));
     for (uint32_t i = 0; i < SAMPLES; i++) {
