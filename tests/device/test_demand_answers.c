@@ -1,5 +1,5 @@
-/* Pages that the application answers: listed once and in order, answered late or never, taken back,
- * set before anybody misses them, pinned. */
+/* Pages that the application answers: listed once and in order, answered late or never, withdrawn,
+ * set before they are missed, and pinned. */
 #include "device/demand_runner.h"
 
 #include "support/test.h"
@@ -16,7 +16,7 @@ struct app {
     uint32_t first;
     uint64_t evicted[64];
     uint32_t evicted_count;
-    atomic_bool blocked; ///< fills say NOT_READY
+    atomic_bool blocked; ///< true: fills return NOT_READY
     atomic_uint fills;
 };
 
@@ -108,7 +108,7 @@ static void missed_pages_are_listed_once_and_in_order(void **state)
     memcpy(rest + 3, second_list, 3 * sizeof *rest);
     check_list(&r, &app, rest, 6);
     runner_launch(&r);
-    check_list(&r, &app, NULL, 0); /* awaited, and told */
+    check_list(&r, &app, NULL, 0); /* awaited, and already listed */
     assert_int_equal(r.requests.missingCount, 4);
     for (uint32_t i = 0; i < 4; i++)
         CHECK_OK(sluiceSetDemandPageValue(r.loader, app.id, second[i], 1000 + second[i], false));
@@ -117,7 +117,7 @@ static void missed_pages_are_listed_once_and_in_order(void **state)
     for (uint32_t i = 0; i < 4; i++)
         check_value(&r, i, 1000 + second[i]);
     runner_finish(&r);
-    assert_int_equal(app.evicted_count, 4); /* what was answered, and nothing else */
+    assert_int_equal(app.evicted_count, 4); /* only answered pages */
 }
 
 static void answers_are_taken_back_and_missed_again(void **state)
@@ -132,22 +132,22 @@ static void answers_are_taken_back_and_missed_again(void **state)
     runner_launch(&r);
     check_list(&r, &app, pages, 3);
     CHECK_OK(sluiceSetDemandPageValue(r.loader, app.id, 20, UINT64_MAX, false));
-    CHECK_OK(sluiceInvalidateDemandPages(r.loader, app.id, 30, 1)); /* no answer */
+    CHECK_OK(sluiceInvalidateDemandPages(r.loader, app.id, 30, 1)); /* without an answer */
     runner_launch(&r);
     check_value(&r, 1, UINT64_MAX);
     check_list(&r, &app, pages + 2, 1);
     CHECK_OK(sluiceInvalidateDemandPages(r.loader, app.id, 0, PAGES));
-    assert_int_equal(app.evicted_count, 0); /* a launch could have been under way */
+    assert_int_equal(app.evicted_count, 0); /* a launch could have been in flight */
     runner_launch(&r);
     assert_int_equal(app.evicted_count, 1);
     assert_true(app.evicted[0] == UINT64_MAX);
     check_list(&r, &app, pages, 3);
-    /* An entry that went before it was listed is not. */
+    /* A page withdrawn before it was listed is not listed. */
     CHECK_OK(sluiceInvalidateDemandPages(r.loader, app.id, 10, 11));
     runner_launch(&r);
     CHECK_OK(sluiceInvalidateDemandPages(r.loader, app.id, 10, 1));
     check_list(&r, &app, pages + 1, 1);
-    CHECK_OK(sluiceRemoveDemandResource(r.loader, app.id)); /* with pages that nobody answers */
+    CHECK_OK(sluiceRemoveDemandResource(r.loader, app.id)); /* with unanswered pages */
     CHECK_RESULT(sluiceSetDemandPageValue(r.loader, app.id, 20, 1, false),
                  SLUICE_ERROR_STALE_TEXTURE);
     runner_launch(&r);
@@ -171,7 +171,7 @@ static void values_are_there_before_anybody_misses_them(void **state)
         assert_int_equal(r.requests.missingCount, 0);
         for (uint32_t i = 0; i < 3; i++)
             check_value(&r, i, 7 + pages[i]);
-        CHECK_OK(sluiceSetDemandPageValue(r.loader, app.id, 50, 99, false)); /* another one */
+        CHECK_OK(sluiceSetDemandPageValue(r.loader, app.id, 50, 99, false)); /* another value */
         runner_launch(&r);
         check_value(&r, 1, 99);
         assert_int_equal(app.evicted_count, 1);
@@ -208,10 +208,10 @@ static void set_pages_are_evicted_unless_they_are_pinned(void **state)
     for (uint32_t i = 0; i < 20; i++)
         check_value(&r, i, i < 10 ? 5000 + i : i);
     assert_int_equal(app.fills, fills + 10);
-    CHECK_OK(sluiceInvalidateDemandPages(r.loader, app.id, 0, 1)); /* is pinned no more */
+    CHECK_OK(sluiceInvalidateDemandPages(r.loader, app.id, 0, 1)); /* no longer pinned */
     runner_load(&r, 9);
     check_value(&r, 0, 0);
-    /* 9 are pinned and 11 were used: 20 places, and no more. */
+    /* 9 is pinned and 11 was used: 20 places in total. */
     for (uint32_t i = 0; i <= 20; i++)
         CHECK_RESULT(sluiceSetDemandPageValue(r.loader, app.id, 1000 + i, 1, false),
                      i < 20 ? SLUICE_SUCCESS : SLUICE_NOT_READY);
@@ -233,7 +233,7 @@ static void a_page_that_is_being_filled_cannot_be_set(void **state)
     assert_int_equal(result, SLUICE_NOT_READY);
     CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
     runner_clear(&r);
-    runner_launch(&r); /* which sees that it is over */
+    runner_launch(&r); /* sees the end of the load */
     CHECK_OK(sluiceSetDemandPageValue(r.loader, app.id, page, 9, false));
     aim(&r, &app, &page, 1);
     runner_launch(&r);
@@ -334,7 +334,7 @@ static void wrong_answers_are_refused(void **state)
     CHECK_RESULT(sluiceSetDemandPageValue(r.loader, 77, 0, 1, false), SLUICE_ERROR_UNKNOWN_TEXTURE);
     CHECK_RESULT(sluiceGetMissedDemandPages(r.loader, 77, &n, &page), SLUICE_ERROR_UNKNOWN_TEXTURE);
     h.quiet = false;
-    /* Twice before a launch: the first has not left the staging memory. */
+    /* Sets twice before a launch: the first bytes are still in the staging memory. */
     CHECK_OK(sluiceSetDemandPageBytes(r.loader, bytes.id, 0, data, false));
     CHECK_RESULT(sluiceSetDemandPageBytes(r.loader, bytes.id, 0, data, false), SLUICE_NOT_READY);
     runner_finish(&r);

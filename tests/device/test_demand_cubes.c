@@ -1,6 +1,7 @@
 /*
- * Cube maps in demand loading: filtered across edges and corners, against an oracle in doubles that
- * finds neighbors by distance; and opened and requested on the faces that samples touch, no others.
+ * Cube maps in demand loading. Filters across edges and corners are compared with an oracle in
+ * double that finds neighbors by distance. Samples must open and request the faces they touch, and
+ * no others.
  */
 #include "device/cube_oracle.h"
 #include "device/demand_runner.h"
@@ -19,7 +20,7 @@ enum { FACES = CUBE_ORACLE_FACES, CUBES = 12 };
 #define TOLERANCE 0.012
 
 struct cubes {
-    uint32_t size, count; ///< of faces; of cubes
+    uint32_t size, count; ///< size of faces; number of cubes
     struct runner_image images[CUBES * FACES];
     SluiceDemandTextureId ids[CUBES * FACES], grid;
 };
@@ -29,7 +30,7 @@ static double draw(void)
     return (double)roll() / ROLL_MAX;
 }
 
-/* Made once: it takes longer than all samples. */
+/* Created once, because that takes longer than all samples. */
 static struct harness h;
 static struct runner r;
 static struct cubes sets[8];
@@ -53,7 +54,7 @@ static int end(void **state)
     return 0;
 }
 
-/* New textures of the images, and their grid. No samples. */
+/* Adds new textures of the images, and their grid. Clears the samples. */
 static void add_textures(struct cubes *c, float anisotropy)
 {
     const SluiceDemandSampler sampler = {.structSize = sizeof sampler, .maxAnisotropy = anisotropy};
@@ -85,7 +86,7 @@ static struct cubes *add_cubes(uint32_t size, uint32_t count, float anisotropy)
     return c;
 }
 
-/* A direction of any length; dx and dy are in texels along u and v. */
+/* Adds a sample with a direction of any length. dx and dy are in texels along u and v. */
 static void add_sample(const struct cubes *c, uint32_t cube, uint32_t face, double u, double v,
                        double dx, double dy)
 {
@@ -149,7 +150,8 @@ static void check_color(struct cubes *c, uint32_t sample, double lod)
                      (double)out.color[k], expected[k]);
 }
 
-/* Anywhere, on an edge, within two texels of one, or of a corner; of a level with `size` texels. */
+/* Draws a position: anywhere, on an edge, or within two texels of an edge or corner, at a level
+ * with `size` texels. */
 static void draw_position(uint32_t index, uint32_t size, uint32_t *face, double uv[2])
 {
     uint32_t along = index & 1;
@@ -192,10 +194,10 @@ static void samples_are_filtered_across_edges_and_corners(void **state)
     (void)state;
     roll_seed(50);
     check_filter(300); /* tiles of 128, and a mip tail */
-    check_filter(16);  /* a mip tail alone */
+    check_filter(16);  /* only a mip tail */
 }
 
-/* A cube for each sample, so that faces that are opened, and tiles that are read, are its own. */
+/* Each sample has a cube of its own, so that opened faces and read tiles belong to it. */
 static void faces_and_tiles_that_a_sample_touches_are_requested_and_no_others(void **state)
 {
     (void)state;
@@ -238,7 +240,8 @@ static void faces_and_tiles_that_a_sample_touches_are_requested_and_no_others(vo
     assert_int_equal(runner_statistics(&r).residentTileCount - before, tiles);
 }
 
-/* Rows of samples along an axis, many of them across an edge: the mean of isotropic ones. */
+/* Rows of samples along an axis, many of them across an edge, equal the mean of isotropic
+ * samples. */
 static void rows_of_anisotropic_samples_cross_edges(void **state)
 {
     (void)state;
@@ -280,7 +283,7 @@ static void faces_that_fail_and_empty_cells_show_their_colors(void **state)
         for (uint32_t k = 0; k < 3; k++)
             ((struct RunnerInput *)r.inputs.mapped)[2 + i].direction[k] = bad[i][k];
     }
-    add_sample(c, 9, 0, 0.5, 0.5, 1, 1); /* beyond the last cube: the last one */
+    add_sample(c, 9, 0, 0.5, 0.5, 1, 1); /* beyond the last cube: uses the last one */
     runner_load(&r, 20);
     float texel[4];
     runner_image_texel(&c->images[4], 0, 31, 0, texel);
@@ -301,7 +304,8 @@ static void faces_that_fail_and_empty_cells_show_their_colors(void **state)
 
 enum { COMPARED = 400, COMPARED_LAUNCHES = 8 };
 
-/* Outputs and misses of launches that load new textures of the images. The last face has none. */
+/* Runs launches that load new textures of the images. Records outputs and misses. The last face has
+ * none. */
 static void run_launches(struct cubes *c, struct RunnerOutput outputs[][COMPARED],
                          uint32_t missing[COMPARED_LAUNCHES])
 {
@@ -350,7 +354,7 @@ int main(void)
     if (status)
         return status;
     const struct CMUnitTest tests[] = {
-        /* Comes first: HLSL finds pages by a loop over the first two images. */
+        /* First, because HLSL finds pages by a loop over the first two images. */
         cmocka_unit_test(hlsl_samples_and_requests_what_glsl_does),
         cmocka_unit_test(samples_are_filtered_across_edges_and_corners),
         cmocka_unit_test(faces_and_tiles_that_a_sample_touches_are_requested_and_no_others),

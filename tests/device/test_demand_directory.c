@@ -1,4 +1,4 @@
-/* The page table on the device against a naive one, word by word. */
+/* Compares the page table on the device with a naive one, word by word. */
 #include "device/directory_rig.h"
 
 #include "demand_vulkan/scan.h"
@@ -17,7 +17,7 @@ static uint64_t random_value(void)
     return (uint64_t)demand_rig_random(1u << 30) << 34 ^ demand_rig_random(1u << 30);
 }
 
-/* Mostly near others; of the same few, so that blocks come and go. */
+/* Returns a page, mostly near others, from few blocks, so that blocks appear and disappear. */
 static uint32_t random_page(const struct directory_rig *r)
 {
     uint32_t kind = demand_rig_random(8);
@@ -105,7 +105,7 @@ static void used_bits_arrive_whoever_has_the_blocks_by_then(void **state)
     for (uint32_t round = 0; round < 80; round++) {
         r.slot = round % DIRECTORY_RIG_SLOTS;
         if (round >= DIRECTORY_RIG_SLOTS)
-            directory_rig_check_used(&r, r.slot); /* of three launches ago */
+            directory_rig_check_used(&r, r.slot); /* used bits of three launches ago */
         change_some(&r, 60);
         directory_rig_record(&r);
         for (uint32_t twice = 0; twice < round % 3; twice++) {
@@ -113,8 +113,8 @@ static void used_bits_arrive_whoever_has_the_blocks_by_then(void **state)
             directory_rig_launch(&r, false);
         }
         if (round % 5 == 0)
-            directory_rig_record(&r); /* used bits are there, and nothing changes them */
-        bool takes = round % 4 != 2;  /* else the bits stay, unless their block goes */
+            directory_rig_record(&r); /* used bits exist, and nothing changes them */
+        bool takes = round % 4 != 2;  /* otherwise the bits stay, unless their block disappears */
         if (takes && round % 4 == 0)
             change_some(&r, 60); /* not seen by this launch */
         fill_uses(&r);
@@ -142,11 +142,11 @@ static void nobody_inherits_the_used_bits_of_a_block(void **state)
     directory_rig_record(&r);
     launch_with(&r, 5, false);
     directory_rig_hide(&r, 5);
-    directory_rig_show(&r, 37, 3, false); /* the same bit of the same block */
+    directory_rig_show(&r, 37, 3, false); /* the same bit in the same block */
     directory_rig_record(&r);
     launch_with(&r, 37, false);
     directory_rig_hide(&r, 37);
-    directory_rig_record(&r); /* the block is nobody's */
+    directory_rig_record(&r); /* the block is unused */
     launch_with(&r, 100, true);
     assert_true(r.used[0][100]);
     directory_rig_check_used(&r, 0);
@@ -186,7 +186,7 @@ static void more_changes_than_a_slot_holds_make_it_grow_or_wait(void **state)
     r.caps.max_storage_buffer_range = UINT32_MAX;
     directory_rig_record(&r); /* all changes were kept */
     directory_rig_show(&r, 1, 2, false);
-    directory_rig_record(&r); /* and what is large enough stays */
+    directory_rig_record(&r); /* large buffers are kept */
     directory_rig_finish(&r);
 }
 
@@ -211,7 +211,7 @@ static void nothing_is_dispatched_where_nothing_changed(void **state)
     directory_rig_finish(&r);
 }
 
-/* A table that is too large for a naive one beside it. */
+/* A table that is too large for a naive one. */
 struct large {
     struct slc_vk vk;
     struct slc_page_directory dir;
@@ -313,7 +313,8 @@ static void a_block_that_is_kept_shows_nothing_and_stays(void **state)
     harness_check_silence(h);
 }
 
-/* All that allocates, with nothing changed where there is no memory; true: nothing failed. */
+/* Makes all allocating calls. Refused calls must change nothing. Returns true if none was
+ * refused. */
 static bool show_with_little_memory(struct directory_rig *r, uint64_t refuse_from)
 {
     struct failing_allocator allocator;
@@ -328,7 +329,7 @@ static bool show_with_little_memory(struct directory_rig *r, uint64_t refuse_fro
             result = slc_page_directory_show(&dir, shown * 64, shown, false);
         for (uint32_t i = 0; i < 200; i++)
             assert_int_equal(slc_page_directory_has(&dir, i * 64), i < shown);
-        for (uint32_t i = 0; i < shown; i++) /* which needs none */
+        for (uint32_t i = 0; i < shown; i++) /* hiding needs no memory */
             slc_page_directory_hide(&dir, i * 64);
         assert_false(slc_page_directory_has(&dir, 0));
     }

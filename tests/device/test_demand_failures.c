@@ -1,4 +1,4 @@
-/* What goes wrong with images: it ends, it is told, and textures show what is left. */
+/* Failing images: failures end, are reported, and textures show the remaining levels. */
 #include "device/demand_runner.h"
 
 #include "support/test.h"
@@ -10,7 +10,7 @@ static struct harness h;
 
 struct told {
     atomic_uint count, retried;
-    atomic_uint_least64_t value; ///< of the last
+    atomic_uint_least64_t value; ///< last value
 };
 
 static void note_failure(void *user, const SluiceTileReadFailure *failure)
@@ -61,7 +61,7 @@ static void an_image_that_cannot_be_opened_shows_its_failure_color(void **state)
         SluiceDemandStatistics statistics = runner_statistics(&r);
         assert_int_equal(statistics.texturesFailed, 1);
         assert_int_equal(statistics.texturesOpened, 0);
-        /* Until somebody says that it is better. */
+        /* Fails until the test clears the failure. */
         image.open_result = SLUICE_SUCCESS;
         runner_launch(&r);
         assert_int_equal(r.requests.missingCount, 0);
@@ -98,7 +98,7 @@ static void a_failure_names_the_image_that_was_never_open(void **state)
     h.quiet = false;
 }
 
-/* Its info is what the test says. */
+/* A source whose info is set by the test. */
 struct liar {
     SluiceImageSource base;
     SluiceImageInfo info;
@@ -208,7 +208,7 @@ static void without_its_coarse_levels_a_texture_fails(void **state)
     image.source.failure = SLUICE_ERROR_IO;
     h.quiet = true;
     runner_add_texel(&r, runner_add_texture(&r, &image), 512, 512, 0, 9, 9);
-    runner_load(&r, 20); /* level after level is given up, and at last the tail */
+    runner_load(&r, 20); /* level after level is given up, in the end the tail */
     check_failed(&r, 0);
     h.quiet = false;
     assert_int_equal(told.count, 4 * 3); /* levels 0 to 2 and the tail, three attempts each */
@@ -235,7 +235,7 @@ static void what_says_later_for_ever_stays_missing_and_hangs_nothing(void **stat
     assert_int_equal(r.requests.missingCount, 1);
     assert_false(runner_output(&r, 0).resident);
     runner_check_texel(&r, 1, &later, 0, 9, 9);
-    assert_in_range(never.opened, 3 * 19, 3 * 20); /* the last one is not waited for */
+    assert_in_range(never.opened, 3 * 19, 3 * 20); /* the last attempt is not waited for */
     runner_finish(&r);
     assert_int_equal(never.closed, 0);
     runner_image_finish(&never);
@@ -264,7 +264,7 @@ static void reads_of_textures_that_are_gone_change_nothing(void **state)
     CHECK_RESULT(sluiceWaitDemandTicket(r.loader, r.ticket, 1000, &status), SLUICE_NOT_READY);
     assert_int_equal(status.remainingCount, 8);
     SluiceDemandTicket ticket = r.ticket;
-    CHECK_OK(sluiceRemoveDemandTexture(r.loader, id)); /* and does not wait */
+    CHECK_OK(sluiceRemoveDemandTexture(r.loader, id)); /* must not wait */
     assert_int_equal(slow.closed, 0);
     runner_clear(&r);
     runner_add_texel(&r, runner_add_texture(&r, &other), 300, 300, 0, 9, 9);
@@ -273,7 +273,7 @@ static void reads_of_textures_that_are_gone_change_nothing(void **state)
     assert_int_equal(slow.closed, 0);
     fault_source_release(&slow.source);
     CHECK_OK(sluiceWaitDemandTicket(r.loader, ticket, UINT64_MAX, &status));
-    assert_int_equal(status.failedCount, 8 - 2); /* two were under way */
+    assert_int_equal(status.failedCount, 8 - 2); /* two were in flight */
     runner_launch(&r);
     assert_int_equal(slow.closed, 1);
     assert_int_equal(slow.source.read_count, 1 + 2);
@@ -304,7 +304,7 @@ static void a_source_may_go_as_soon_as_its_texture_is_destroyed(void **state)
         runner_launch(&r);
         CHECK_OK(sluiceRemoveDemandTexture(r.loader, id));
         assert_int_equal(image.source.running, 0);
-        runner_image_finish(&image); /* its memory may be another's now */
+        runner_image_finish(&image); /* its memory may be reused now */
     }
     runner_finish(&r);
 }

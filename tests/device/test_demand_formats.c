@@ -141,7 +141,7 @@ static void every_format_shows_what_is_in_the_image(void **state)
     assert_true(count >= 10);
 }
 
-/* 2 x 2 texels, whose two levels are the same block of random bits. */
+/* 2 x 2 texels, whose two levels are one block of random bits. */
 struct random_block {
     SluiceImageSource base;
     SluiceImageInfo info;
@@ -171,9 +171,9 @@ static void destroy_block(SluiceImageSource *source)
 }
 
 /*
- * What Direct3D allows between end points: a step, and 3 % of their distance, which is up to 2 with
- * a sign; there devices may interpolate from -128, too. Encoded colors are up to 2.3 times as far
- * apart when they are decoded.
+ * Tolerance that Direct3D allows between end points: a step, and 3 % of their distance. The
+ * distance is up to 2 for signed formats, where devices may interpolate from -128. Decoding sRGB
+ * enlarges differences up to 2.3 times.
  */
 static float decoding_slack(SluiceFormat format)
 {
@@ -226,7 +226,7 @@ static void the_color_of_a_block_is_what_the_device_decodes(void **state)
     }
 }
 
-/* By one texel of each block, as the library does it. */
+/* Decodes one texel of each block, as the library does. */
 static void mean_color(SluiceImageSource *source, SluiceFormat format, uint32_t level,
                        double mean[4])
 {

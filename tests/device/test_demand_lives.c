@@ -1,4 +1,4 @@
-/* Textures come, change and go at random while launches are under way: pictures stay right. */
+/* Adds, changes and removes textures at random during launches. Pictures must stay right. */
 #include "device/demand_runner.h"
 
 #include "support/test.h"
@@ -15,7 +15,7 @@ static uint32_t random_below(uint32_t limit)
     return (uint32_t)((uint64_t)(random_state >> 8) * limit >> 24);
 }
 
-/* A texture, or nothing; which image it shows, and what a launch samples of it. */
+/* A texture or nothing, with its image and the samples of a launch. */
 struct slot {
     SluiceDemandTextureId id, variant;
     uint32_t image;
@@ -118,7 +118,7 @@ static void launch(struct life *life)
     if (runner_submit(&life->r) == SLUICE_SUCCESS)
         life->launched++;
     if (random_below(2))
-        return; /* under way while more changes */
+        return; /* in flight while more changes */
     if (sluiceProcessDemandRequests(life->r.loader, &life->r.launch, UINT64_MAX, &life->r.requests,
                                     &life->r.ticket) == SLUICE_SUCCESS &&
         random_below(2))
@@ -182,7 +182,8 @@ static void pictures_stay_right_with_little_memory_and_few_reads(void **state)
     run(&info);
 }
 
-/* Opened for the first launch, replaced and opened again for the second, all between two others. */
+/* The image is opened for the first launch, replaced, and opened again for the second, between two
+ * other launches. */
 static void a_preload_ends_with_the_image_that_it_was_asked_for(void **state)
 {
     (void)state;
@@ -196,11 +197,11 @@ static void a_preload_ends_with_the_image_that_it_was_asked_for(void **state)
     runner_image_init(&images[1], SLUICE_FORMAT_R8G8B8A8_UNORM, 8, 8, 2);
     SluiceDemandTextureId id = runner_add_texture(&r, &images[0]);
     runner_add_texel(&r, id, 8, 8, 0, 2, 2);
-    CHECK_OK(runner_submit(&r)); /* asks for the texture */
+    CHECK_OK(runner_submit(&r)); /* requests the texture */
     const SluiceDemandLaunch asks = r.launch;
     CHECK_OK(sluicePreloadDemandTexture(r.loader, id, 0, &preload));
     CHECK_OK(sluiceWaitDemandTicket(r.loader, preload, UINT64_MAX, NULL));
-    CHECK_OK(runner_submit(&r)); /* as it is open, its tiles are being read */
+    CHECK_OK(runner_submit(&r)); /* its tiles are read, because it is open */
     const SluiceDemandImage other = runner_image_desc(&images[1]);
     CHECK_OK(sluiceReplaceDemandImage(r.loader, id, &other));
     CHECK_OK(sluiceProcessDemandRequests(r.loader, &asks, UINT64_MAX, &r.requests, &r.ticket));

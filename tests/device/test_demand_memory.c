@@ -1,4 +1,4 @@
-/* Memory: budgets that hold, pictures that come to rest, and tiles that come back unread. */
+/* Memory: budgets hold, pictures come to rest, and tiles are restored without a read. */
 #include "device/demand_runner.h"
 
 #include "support/failing_allocator.h"
@@ -13,18 +13,18 @@ static struct harness h;
 
 enum { SIZE = 4096, TILE = 128, TILES = SIZE / TILE };
 
-/* Of the finest level that is at least `bias` coarse: nearest level, and texel of it. */
+/* Checks the nearest texel of the finest level that is at least `bias` coarse. */
 static void check_blurred(struct runner *r, struct runner_image *image, uint32_t sample,
                           uint32_t level, uint32_t x, uint32_t y)
 {
     runner_check_texel(r, sample, image, level, x >> level, y >> level);
 }
 
-/* Strict mode. */
+/* Reports of strict mode. */
 static struct {
     uint32_t counts[SLUICE_DEMAND_MISUSE_SOURCE_IN_USE + 1]; ///< by kind
-    uint64_t values[SLUICE_DEMAND_MISUSE_SOURCE_IN_USE + 1]; ///< of the last
-    char text[400];                                          ///< of the last of all
+    uint64_t values[SLUICE_DEMAND_MISUSE_SOURCE_IN_USE + 1]; ///< last value by kind
+    char text[400];                                          ///< text of the last report
 } heard;
 
 static void listen(void *user, const SluiceDemandMisuse *misuse)
@@ -63,7 +63,7 @@ static void a_new_loader_takes_little_staging_memory_and_more_when_it_reads(void
     for (uint32_t i = 0; i < 110; i++)
         runner_launch(&r);
     assert_true(runner_statistics(&r).hostVisibleMemorySize == loaded.hostVisibleMemorySize);
-    for (uint32_t i = 0; i < 20; i++) /* 120 idle launches are over */
+    for (uint32_t i = 0; i < 20; i++) /* ends 120 idle launches */
         runner_launch(&r);
     assert_true(runner_statistics(&r).hostVisibleMemorySize < little + (1u << 20));
     runner_finish(&r);
@@ -184,7 +184,7 @@ static void without_a_bias_some_tiles_stay_away_and_coarser_ones_are_shown_there
         runner_image_texel(&image, 0, i % TILES * TILE + 7, i / TILES * TILE + 9, rgba);
         sharp += fabsf(out.color[0] - rgba[0]) < 1e-6f && fabsf(out.color[1] - rgba[1]) < 1e-6f;
     }
-    assert_in_range(sharp, 32, info.memoryBudget / 65536 + 4); /* few colors are twice there */
+    assert_in_range(sharp, 32, info.memoryBudget / 65536 + 4); /* few colors exist twice */
     runner_finish(&r);
     runner_image_finish(&image);
 }
@@ -200,12 +200,12 @@ static void tiles_that_nobody_uses_make_room_and_come_back_unread(void **state)
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
     listen_to(r.loader);
-    /* Six rows, then two others and the sixth: all that fits. */
+    /* Six rows, then two others and the sixth: as many as fit. */
     runner_add_tiles(&r, id, SIZE, 0, 6);
     runner_load(&r, 30);
     assert_true(runner_all_resident(&r));
     runner_clear(&r);
-    runner_add_tiles(&r, id, SIZE, 6, 4); /* of the first six rows two and more have to go */
+    runner_add_tiles(&r, id, SIZE, 6, 4); /* at least two of the first six rows are evicted */
     assert_in_range(runner_load(&r, 30), 2, 29);
     assert_true(runner_all_resident(&r));
     SluiceDemandStatistics statistics = runner_statistics(&r);
@@ -256,10 +256,10 @@ static void tiles_that_were_evicted_and_not_overwritten_need_no_read(void **stat
     runner_add_tiles(&r, id, SIZE, 0, 7);
     runner_load(&r, 30);
     uint64_t reads = image.source.read_count;
-    /* Tiles of another format make them go, and cannot have their places: not yet. */
+    /* Tiles of another format evict them, but cannot use their places yet. */
     runner_clear(&r);
     runner_add_tiles(&r, other_id, SIZE, 0, 1);
-    runner_load(&r, 2); /* the first one opens it */
+    runner_load(&r, 2); /* the first launch opens it */
     assert_true(runner_statistics(&r).evictedCount > 0);
     runner_clear(&r);
     runner_add_tiles(&r, id, SIZE, 0, 7);
@@ -273,8 +273,8 @@ static void tiles_that_were_evicted_and_not_overwritten_need_no_read(void **stat
     runner_image_finish(&other);
 }
 
-/* Texture 0 was not told of the change, and keeps old texels. Tiles of it that are restored must
- * not be found by texture 1. */
+/* Texture 0 was not told of the change and keeps old texels. Its restored tiles must not be shared
+ * with texture 1. */
 static void restored_tiles_are_not_shared_with_a_texture_that_changed(void **state)
 {
     (void)state;
@@ -364,7 +364,7 @@ static void formats_share_a_budget(void **state)
     for (uint32_t round = 0; round < 4; round++) {
         runner_clear(&r);
         runner_add_tiles(&r, ids[round % 2], SIZE, 0, 6);
-        /* Chunks of the other format have to run empty and go. */
+        /* Chunks of the other format must become empty first. */
         assert_in_range(runner_load(&r, 100), 1, 99);
         SluiceDemandStatistics statistics = runner_statistics(&r);
         assert_true(runner_all_resident(&r));
@@ -375,8 +375,8 @@ static void formats_share_a_budget(void **state)
         runner_image_finish(&images[i]);
 }
 
-/* As many images of pages as formats: that of the second one comes when one of the first, whose
- * tiles take all of them at first, has run empty. */
+/* As many images of pages as formats. The tiles of the first format occupy all images at first. The
+ * second format gets its image when one of them is empty. */
 static void formats_share_few_images_of_pages(void **state)
 {
     (void)state;
@@ -415,8 +415,8 @@ static void formats_share_few_images_of_pages(void **state)
     CHECK_OK(harness_set_context(&h, NULL));
 }
 
-/* Launches that miss nothing must not look like launches without samples. With few tiles in flight
- * shaders report what they use for strict mode alone. */
+/* Launches without misses must not look like launches without samples. With few tiles in flight,
+ * shaders report used tiles for strict mode only. */
 static void resident_tiles_that_are_sampled_are_no_misuse(void **state)
 {
     (void)state;
@@ -494,14 +494,14 @@ static void preloaded_levels_are_there_before_they_are_sampled(void **state)
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
     CHECK_OK(sluicePreloadDemandTexture(r.loader, id, 1, &ticket));
     uint32_t launches = 0;
-    do { /* more tiles than may be in flight: launches copy those that came */
+    do { /* more tiles than may be in flight: launches copy arrived tiles */
         CHECK_OK(sluiceWaitDemandTicket(r.loader, ticket, UINT64_MAX, &status));
         runner_launch(&r);
         assert_true(++launches < 50);
     } while (status.remainingCount);
     runner_launch(&r);
-    /* The opening; levels 1 to 4 of 64, 16, 4 and 1 tiles; and the tail, where 64 is half a tile.
-     */
+    /* The opening; levels 1 to 4 with 64, 16, 4 and 1 tiles; and the tail, where 64 is half a
+     * tile. */
     assert_int_equal(status.taskCount, 1 + 64 + 16 + 4 + 1 + 1);
     assert_int_equal(status.failedCount, 0);
     assert_int_equal(runner_statistics(&r).residentTileCount, status.taskCount - 1);
@@ -512,7 +512,7 @@ static void preloaded_levels_are_there_before_they_are_sampled(void **state)
     runner_launch(&r);
     assert_int_equal(r.requests.missingCount, 0);
     runner_check_texel(&r, 63, &image, 1, 7 * TILE, 7 * TILE);
-    /* Once more there is nothing to do. */
+    /* A second preload has nothing to do. */
     CHECK_OK(sluicePreloadDemandTexture(r.loader, id, 1, &ticket));
     CHECK_OK(sluiceWaitDemandTicket(r.loader, ticket, 0, &status));
     assert_int_equal(status.taskCount, 0);

@@ -1,5 +1,5 @@
-/* Proxies through launches of a demand loader: what is requested, when, and when indices come back.
- * Shaders miss pages as proxy.glsl does. */
+/* Proxies in launches of a demand loader: requests, their time, and reuse of indices. Shaders miss
+ * pages as in proxy.glsl. */
 #include "device/demand_runner.h"
 
 #include "support/failing_allocator.h"
@@ -114,7 +114,7 @@ static void requests_beyond_the_list_come_back_next_launch(void **state)
     launch(&app);
     assert_int_equal(app.r.requests.missingCount, COUNT);
     assert_int_equal(requested_count(&app), LIST);
-    /* Those of the list are built, and their launches do not hit them any more. */
+    /* Listed proxies are built, and later launches do not hit them. */
     hit(&app, 0, NULL);
     for (uint32_t at = LIST; at < COUNT; at += LIST) {
         launch(&app);
@@ -158,11 +158,11 @@ static void an_index_is_reused_when_no_launch_can_name_the_old_material(void **s
     hit(&app, 1, &one);
     CHECK_OK(runner_submit(&app.r));
     SluiceDemandLaunch first = app.r.launch;
-    CHECK_OK(runner_submit(&app.r)); /* both hit the old one */
+    CHECK_OK(runner_submit(&app.r)); /* both hit the old proxy */
     CHECK_OK(sluiceRemoveProxy(app.set, app.ids[1]));
     CHECK_OK(sluiceProcessDemandRequests(app.r.loader, &first, UINT64_MAX, &app.r.requests, NULL));
     process(&app);
-    assert_int_equal(add(&app), 3); /* the second launch is under way */
+    assert_int_equal(add(&app), 3); /* the second launch is in flight */
     CHECK_OK(sluiceProcessDemandRequests(app.r.loader, &app.r.launch, UINT64_MAX, &app.r.requests,
                                          NULL));
     process(&app);
@@ -263,7 +263,7 @@ static void geometry_describes_the_boxes_of_a_set(void **state)
 
 static const char path[] = "test_demand_proxies.trace";
 
-/* Launches that hit a moving window of proxies, of which some are removed and added. */
+/* Runs launches that hit a moving window of proxies. Some are removed and added. */
 static uint64_t run(struct app *app)
 {
     uint64_t hash = 14695981039346656037u;
@@ -348,7 +348,7 @@ static void without_host_memory_requests_come_with_a_later_launch(void **state)
                                                           &app.r.requests, NULL);
         done = allocator.calls <= before + refuse_from;
         if (result == SLUICE_SUCCESS)
-            process(&app); /* takes no memory */
+            process(&app); /* allocates nothing */
         allocator.refuse_from = UINT64_MAX;
         for (uint32_t i = 0; i < 3 && requested_count(&app) < COUNT; i++)
             launch(&app);

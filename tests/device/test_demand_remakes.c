@@ -1,5 +1,5 @@
-/* Content of produced textures and byte pages changes: it is made again in place, and the old one
- * is seen until then. The oracle is the function of texel and version that the shader computes. */
+/* Changing content of produced textures and byte pages is written again in place. The old content
+ * is visible until then. The oracle is the shader's function of texel and version. */
 #include "device/demand_maker.h"
 
 #include "base/checked.h"
@@ -27,8 +27,8 @@ static void close_made(struct runner *r, struct demand_maker *m)
     demand_maker_finish(m);
 }
 
-/* Bytes of tiles of 64 KiB have 128x128 texels: one sample in each tile of all levels but the
- * last, whose color the application gives. */
+/* A sample in each tile of all levels but the last, whose color the application provides. Tiles of
+ * 64 KiB have 128x128 texels. */
 struct probe {
     uint32_t level, x, y;
 };
@@ -81,7 +81,7 @@ static void only_tiles_that_changed_are_made_again(void **state)
     check_all(&m, probes, count, 0);
     uint32_t made = m.made_count;
     m.maker.version = 1;
-    /* texels 200 to 299 of 700: tiles 1 and 2; of level 1 (350) 100 to 149: tiles 0 and 1 */
+    /* texels 200 to 299 of 700: tiles 1 and 2; at level 1 (350) 100 to 149: tiles 0 and 1 */
     const SluiceImageRegion region = {0, 200, 130, 100, 20, 0};
     CHECK_OK(sluiceRemakeDemandTiles(r.loader, m.id, &region, 2));
     launch(&r, 3);
@@ -99,7 +99,7 @@ static void only_tiles_that_changed_are_made_again(void **state)
     close_made(&r, &m);
 }
 
-/* In each launch every sample is resident and of one of both versions. */
+/* In each launch every sample is resident and has one of both versions. */
 static void the_old_content_is_seen_until_the_new_one_is_there(void **state)
 {
     (void)state;
@@ -143,12 +143,12 @@ static void tiles_under_way_are_made_again(void **state)
         uint32_t count = add_probes(&m, probes);
         h.abandon_one_in = n >= 6 ? 2 : 0;
         launch(&r, n % 6);
-        CHECK_OK(runner_submit(&r)); /* which is not processed yet */
+        CHECK_OK(runner_submit(&r)); /* not processed yet */
         m.maker.version = 1;
         CHECK_OK(sluiceRemakeDemandTiles(r.loader, m.id, NULL, UINT32_MAX));
         CHECK_OK(sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests, NULL));
         CHECK_OK(runner_submit(&r));
-        m.maker.version = 2; /* again, perhaps of what is being made again */
+        m.maker.version = 2; /* again, perhaps while the last change is being made */
         CHECK_OK(sluiceRemakeDemandTiles(r.loader, m.id, NULL, UINT32_MAX));
         CHECK_OK(sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests, NULL));
         launch(&r, 8);
@@ -158,7 +158,7 @@ static void tiles_under_way_are_made_again(void **state)
     }
 }
 
-/* More tiles than memory has, so those that were seen first can only be restored. */
+/* More tiles than memory: tiles seen first can only be restored. */
 static void evicted_tiles_come_back_new(void **state)
 {
     (void)state;
@@ -220,7 +220,7 @@ static void a_remake_that_fails_leaves_the_old_content_and_is_reported(void **st
     }
 }
 
-/* There are four jobs, of which a texture takes some with it if they are lost. */
+/* There are four jobs. A removed texture may take some with it. */
 static void textures_removed_while_they_are_made_again_lose_no_job(void **state)
 {
     (void)state;
@@ -259,7 +259,7 @@ static void textures_removed_while_they_are_made_again_lose_no_job(void **state)
     close_made(&r, &m);
 }
 
-/* Each byte page is filled with one word. */
+/* Byte pages filled with one word each. */
 struct words {
     uint32_t version, first, made_count;
     SluiceDemandResourceId id;
@@ -315,7 +315,7 @@ static void load_words(struct runner *r, const struct words *w, uint32_t first, 
     runner_load(r, LAUNCHES);
 }
 
-/* The limit evicts, and slots are left: pages are restored without being made. */
+/* The limit evicts although slots are free: pages are restored without being written. */
 static void evicted_pages_whose_slot_is_free_come_back_new(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Resources: a callback fills pages, shaders read the values, and each value goes once. */
+/* Resources: a callback fills pages, shaders read the values, and each value is released once. */
 #include "device/demand_runner.h"
 
 #include "support/test.h"
@@ -10,14 +10,14 @@ static struct harness h;
 
 enum { PAGES = 4000 };
 
-/* The values that it has given away and not got back. */
+/* Values that were handed out and not returned. */
 struct store {
     pthread_mutex_t mutex;
     uint64_t next;
-    uint64_t held[PAGES]; ///< 0: nobody has one
+    uint64_t held[PAGES]; ///< 0: not handed out
     uint32_t fills, evictions, wrong;
-    uint32_t later;        ///< so many NOT_READY first
-    uint32_t failing_page; ///< that has none
+    uint32_t later;        ///< number of NOT_READY results first
+    uint32_t failing_page; ///< page without a value
 };
 
 static void store_init(struct store *store)
@@ -102,7 +102,7 @@ static void shaders_get_what_the_callback_says(void **state)
         check_value(&r, &store, i, pages[i]);
     assert_int_equal(store.fills, 7);
     assert_int_equal(runner_statistics(&r).residentResourcePageCount, 7);
-    /* Some are not what they were. */
+    /* Some have changed. */
     CHECK_OK(sluiceInvalidateDemandPages(r.loader, id, 31, 2));
     CHECK_RESULT(sluiceInvalidateDemandPages(r.loader, id, PAGES - 1, 2),
                  SLUICE_ERROR_INVALID_ARGUMENT);
@@ -135,7 +135,7 @@ static void values_beyond_the_limit_go_once_and_when_no_launch_reads_them(void *
         for (uint32_t i = 0; i < LIMIT * 3 / 4; i++)
             check_value(&r, &store, i, (round * 37 + i * 3) % PAGES);
         assert_true(runner_statistics(&r).residentResourcePageCount <= LIMIT);
-        /* Those that a launch under way may see are not told yet; all others are. */
+        /* Values that a launch in flight may use are not released yet. All others are. */
         assert_true(store.fills - store.evictions <= 2 * LIMIT);
     }
     assert_true(store.evictions > 0);
@@ -195,12 +195,12 @@ static void later_is_asked_again_and_what_fails_is_told(void **state)
     const SluiceDemandResourceCreateInfo info = describe(&store, 0);
     CHECK_OK(sluiceAddDemandResource(r.loader, &info, &id, &first));
     runner_add_page(&r, first + 10);
-    assert_in_range(runner_load(&r, 20), 5, 5); /* 2 + 2 + 2 + 2 attempts, and a look */
+    assert_in_range(runner_load(&r, 20), 5, 5); /* 2 + 2 + 2 + 2 attempts, and a query */
     check_value(&r, &store, 0, 10);
     runner_clear(&r);
     runner_add_page(&r, first + 11);
     h.quiet = true;
-    assert_in_range(runner_load(&r, 9), 2, 3); /* or applications would launch for ever */
+    assert_in_range(runner_load(&r, 9), 2, 3); /* otherwise applications would launch forever */
     h.quiet = false;
     assert_false(runner_output(&r, 0).resident);
     assert_int_equal(r.requests.refusedCount, 1);
