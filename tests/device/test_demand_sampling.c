@@ -1,6 +1,6 @@
 /*
- * What samples do about residency: what they show, ask for and mark as used where some pages are
- * there, some are not, and some never will be. Memory that nobody may read is NaN.
+ * Residency in samples: shown levels, requests and used bits if some pages are resident, some are
+ * missing, and some are refused. Memory that must not be read holds NaN.
  */
 #include "device/demand_expect.h"
 #include "device/demand_images.h"
@@ -35,7 +35,7 @@ static void set_loader_bias(struct demand_scene *scene, float bias)
 struct chance {
     struct demand_scene *scene;
     double resident, refused;
-    bool filters; ///< some textures have bicubic ones
+    bool filters; ///< true: some textures have bicubic filters
 };
 
 static bool by_chance(void *user, uint32_t page)
@@ -73,7 +73,7 @@ static void expect(const struct DemandInput *in, uint8_t *pages)
     demand_expect(&expectation, in, pages);
 }
 
-/* One whose result is sure. */
+/* Makes an input whose result is certain. */
 static struct DemandInput sure_input(const struct demand_texture textures[SIZES], bool slopes)
 {
     for (;;) {
@@ -131,7 +131,7 @@ static void check_pages(struct demand_scene *scene, bool tracks)
     print_message("# %u pages asked for, %u used\n", asked, used);
 }
 
-/* Returns how many samples were resident. */
+/* Returns the number of resident samples. */
 static uint32_t try_residency(struct demand_scene *scene, enum demand_shader shader,
                               struct chance chance)
 {
@@ -180,7 +180,7 @@ static void coarser_levels_stand_in_for_what_is_refused_and_count_as_resident(vo
                                    (struct chance){.resident = 0.5, .refused = 0.5}),
                      DEMAND_SAMPLES);
     try_residency(*state, DEMAND_SHADER_COMPUTE, (struct chance){.resident = 0.4, .refused = 0.3});
-    /* not even tails: the base color is left */
+    /* not even tails: the base color remains */
     assert_int_equal(try_residency(*state, DEMAND_SHADER_COMPUTE, (struct chance){.refused = 1}),
                      DEMAND_SAMPLES);
 }
@@ -318,7 +318,7 @@ static void pages_of_resources_hold_64_bits(void **state)
     demand_check_sections(scene);
 }
 
-/* Also where bits are set already, of the same launch or left from the last. */
+/* Also if bits are already set, by this launch or left by the last one. */
 static void a_page_that_all_miss_is_asked_for_once(void **state)
 {
     struct demand_scene *scene = *state;

@@ -1,5 +1,4 @@
-/* What samples of resident textures look like: as filters of Vulkan do, and as a sampler shows it.
- */
+/* Colors of resident textures: as Vulkan's filters define, and as a sampler shows them. */
 #include "device/demand_expect.h"
 #include "device/demand_images.h"
 #include "device/demand_samples.h"
@@ -13,9 +12,9 @@
 #define STEP (1.0 / 255.0)
 
 static struct demand_expectation expectation;
-static bool knows_no_cubic; /* the shader */
+static bool knows_no_cubic; /* the shader does not support bicubic filters */
 
-/* Its last level is its base color. */
+/* Adds a fully resident texture. Its last level is its base color. */
 static uint32_t add_whole(struct demand_scene *scene, const struct demand_texture *texture)
 {
     uint32_t index = demand_scene_add(scene, texture);
@@ -26,7 +25,7 @@ static uint32_t add_whole(struct demand_scene *scene, const struct demand_textur
     return index;
 }
 
-/* Returns the largest difference of a channel where the expected color is sure. */
+/* Returns the largest difference of a channel among certain colors. */
 static double largest_difference(struct demand_scene *scene, uint32_t count, uint32_t *sure_count)
 {
     double worst = 0;
@@ -155,8 +154,8 @@ static void describe(const struct DemandInput *in, uint32_t mode, int channel, d
                   in->dy[1]);
 }
 
-/* Devices disagree about fractions of levels, and about levels of footprints that are no squares.
- */
+/* Devices disagree about fractions of levels, and about levels of footprints that are no
+ * squares. */
 static void make_whole(struct DemandInput *in, const struct demand_texture *t)
 {
     double side = exp2(roll() % 8);
@@ -205,7 +204,7 @@ static void isotropic_samples_are_those_of_a_sampler(void **state)
     assert_true(worst < 2 * STEP);
 }
 
-/* Sure of what a texture in a grid is: itself, clamped, at what is left of uv. */
+/* A texture in a grid is sampled by itself, clamped, at the fraction of uv. */
 static void check_grid_sample(struct demand_scene *scene, uint32_t grid, const uint32_t cells[6],
                               uint32_t i, double *worst, uint32_t *beyond)
 {

@@ -1,6 +1,6 @@
 /*
- * What samples ask for where nothing is resident: all that they are made of, and no more. Each
- * sample has a texture of its own, so it is known who asked.
+ * Requests of samples if nothing is resident: all their texels, and nothing else. Each sample has a
+ * texture of its own, which identifies it.
  */
 #include "device/demand_images.h"
 #include "device/demand_oracle.h"
@@ -19,14 +19,14 @@
 static const uint32_t sizes[][2] = {{2000, 1500}, {4095, 4095}, {16384, 1}, {1, 1},   {1, 16384},
                                     {1009, 2003}, {127, 131},   {64, 64},   {65, 64}, {300, 7}};
 #define SIZES (sizeof sizes / sizeof sizes[0])
-#define ROUNDS (SIZES + 5) /* the last ones with fragments */
+#define ROUNDS (SIZES + 5) /* the last ones use fragments */
 
 struct sets {
     struct demand_scene *scene;
-    uint32_t index, first; ///< first page
+    uint32_t index, first; ///< index of the first page
     const struct SluiceDemandTexture *entry;
     struct demand_tap tap;
-    uint8_t required[2048], may[2048], touched[2048]; ///< per page of the texture
+    uint8_t required[2048], may[2048], touched[2048]; ///< by page of the texture
 };
 
 static void add_touch(void *user, const struct demand_touch *touch)
@@ -55,7 +55,7 @@ struct totals {
     uint64_t samples, requested, touched, nothing;
 };
 
-/* Of one sample, whose requests are taken away. */
+/* Checks the requests of one sample, and clears them. */
 static void check_requests(struct sets *s, const struct DemandInput *in, uint32_t page_count,
                            struct totals *totals)
 {
@@ -127,7 +127,7 @@ static void samples_ask_for_all_that_they_touch_and_no_more(void **state)
         }
         const uint32_t *words = scene->requests.mapped;
         for (uint32_t i = 0; i < DEMAND_PAGES / 32; i++)
-            assert_int_equal(words[i], 0); /* of nobody */
+            assert_int_equal(words[i], 0); /* no other requests */
     }
     print_message("# %llu samples asked for %llu pages and touched %llu: %.4f; %llu for none\n",
                   (unsigned long long)totals.samples, (unsigned long long)totals.requested,
@@ -138,7 +138,7 @@ static void samples_ask_for_all_that_they_touch_and_no_more(void **state)
     assert_true(totals.nothing > totals.samples / 20 && totals.nothing < totals.samples / 2);
 }
 
-/* Magnitudes of 2^-40 to 2^40, one derivative up to 1e6 times as long as the other. */
+/* Magnitudes of 2^-40 to 2^40. One derivative is up to 1e6 times as long as the other. */
 static void lod_is_that_of_long_double(void **state)
 {
     struct demand_scene *scene = *state;
@@ -169,7 +169,7 @@ static void lod_is_that_of_long_double(void **state)
     assert_true(worst < 1e-4);
 }
 
-/* Marks the texels of all tails of a page, each as large as its cut allows. */
+/* Marks the texels of all tails in a page, each as large as its cut allows. */
 static void fill_page(const SluiceFormatInfo *info, const uint32_t tile[2], uint32_t width,
                       uint32_t height, uint32_t levels)
 {
@@ -192,7 +192,7 @@ static void fill_page(const SluiceFormatInfo *info, const uint32_t tile[2], uint
     }
 }
 
-/* Every format's tile, and sizes up to half a tile with full and with cut chains. */
+/* Every format's tile, and sizes up to half a tile with full and cut chains. */
 static void tails_fit_side_by_side(void **state)
 {
     (void)state;
@@ -234,7 +234,7 @@ static void three_tails_of_64x64_fill_a_page_of_128x128(void **state)
     }
 }
 
-/* Cuts and slots at random: probe i asks for one level. */
+/* Random cuts and slots: probe i tests one level. */
 static void shaders_find_the_same_places_in_a_tail(void **state)
 {
     struct demand_scene *scene = *state;

@@ -1,5 +1,4 @@
-/* Textures: what a launch shows of them, what is opened and read for it, and what becomes of ids.
- */
+/* Textures: shown levels, opened and read images, and ids. */
 #include "demand_vulkan/loader.h"
 #include "device/demand_runner.h"
 
@@ -21,7 +20,7 @@ static uint32_t level_size(uint32_t size, uint32_t level)
     return size >> level ? size >> level : 1;
 }
 
-/* Texels of a level, at its corners and in between; how many. */
+/* Lists texels of a level, at its corners and in between. Returns their number. */
 static uint32_t texels_of(uint32_t width, uint32_t height, uint32_t level, uint32_t (*at)[2])
 {
     uint32_t count = 0, w = level_size(width, level), x_of[3] = {0, w / 3, w - 1};
@@ -102,14 +101,14 @@ static void only_what_is_sampled_is_opened_and_only_its_tiles_are_read(void **st
     assert_true(runner_all_resident(&r));
     assert_int_equal(images[0].opened + images[2].opened, 0);
     assert_int_equal(images[0].source.info_count + images[2].source.info_count, 0);
-    assert_int_equal(images[1].source.read_count, 1 + 4); /* the color of the last level first */
+    assert_int_equal(images[1].source.read_count, 1 + 4); /* first the color of the last level */
     SluiceDemandStatistics statistics = runner_statistics(&r);
     assert_int_equal(statistics.residentTileCount, 4);
     assert_int_equal(statistics.texturesCreated, 3);
     assert_int_equal(statistics.texturesOpened, 1);
     assert_int_equal(statistics.bytesRead, 4 * 65536);
     assert_int_equal(statistics.bytesUploaded, 4 * 65536);
-    /* The same launch again costs nothing. */
+    /* An equal launch costs nothing. */
     runner_launch(&r);
     assert_int_equal(r.requests.missingCount, 0);
     assert_int_equal(r.launch.tileCount, 0);
@@ -146,7 +145,7 @@ static void tiles_and_misses_are_told(void **state)
     CHECK_OK(sluiceGetDemandMisses(r.loader, &(uint32_t){8}, misses));
     assert_true(misses[0].kind == SLUICE_DEMAND_MISS_OPENING && misses[0].id == id);
     CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
-    runner_launch(&r); /* sees that it is open */
+    runner_launch(&r); /* notices that it is open */
     for (uint32_t i = 0; i < 8 && (i == 0 || count < 3); i++, runner_launch(&r)) {
         CHECK_OK(sluiceGetDemandMisses(r.loader, (count = 8, &count), misses));
         if (count == 3)
@@ -175,7 +174,7 @@ static void tiles_and_misses_are_told(void **state)
     runner_image_finish(&image);
 }
 
-/* Entries of a tile; the last one of them. */
+/* Counts the entries of a tile. Returns the last one. */
 static uint32_t slots_of(const SluiceDemandSlot *slots, uint32_t count, uint32_t page,
                          SluiceDemandSlot *found)
 {
@@ -188,7 +187,7 @@ static uint32_t slots_of(const SluiceDemandSlot *slots, uint32_t count, uint32_t
     return entries;
 }
 
-/* All entries name tiles as sluiceGetDemandTileInfo has them, in slots of images that exist. */
+/* Checks that all entries name tiles as in sluiceGetDemandTileInfo, in slots of existing images. */
 static void check_slots(struct runner *r, SluiceDemandTextureId id, uint32_t size)
 {
     static SluiceDemandSlot slots[1024];
@@ -259,8 +258,8 @@ static void each_resident_tile_has_one_slot(void **state)
     runner_image_finish(&image);
 }
 
-/* A tile that stands by comes back into its slot, without a read: tiles of another format evict it,
- * and cannot have its slot yet. */
+/* A standby tile is restored to its slot without a read. Tiles of another format evict it, but
+ * cannot use its slot yet. */
 static void a_tile_that_stands_by_is_restored_to_its_slot(void **state)
 {
     (void)state;
@@ -347,7 +346,7 @@ static void a_variant_shares_tiles_and_not_the_sampler(void **state)
     runner_check_texel(&r, 1, &image, 0, 511, 0);
     assert_int_equal(image.source.read_count, reads);
     assert_int_equal(image.opened, 1);
-    /* With their base they go. */
+    /* Removed with their base. */
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, late));
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, id));
     CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, variant), SLUICE_ERROR_STALE_TEXTURE);
@@ -388,7 +387,7 @@ static void shaders_see_the_filter_before_and_after_a_texture_is_opened(void **s
     runner_image_finish(&image);
 }
 
-/* Zero in a sampler is the mode that the image records; REPEAT where it records none. */
+/* Zero in a sampler selects the mode that the image records, or else REPEAT. */
 static void address_modes_are_those_of_the_image_unless_they_are_explicit(void **state)
 {
     (void)state;
@@ -422,7 +421,7 @@ static void address_modes_are_those_of_the_image_unless_they_are_explicit(void *
     runner_check_texel(&r, 0, &clamped, 0, 511, 20);
     runner_check_texel(&r, 1, &plain, 0, 10, 20);
     runner_check_texel(&r, 2, &clamped, 0, 10, 20);
-    assert_int_equal(h.log_count[SLUICE_LOG_WARNING], told + 1); /* of the explicit one */
+    assert_int_equal(h.log_count[SLUICE_LOG_WARNING], told + 1); /* for the explicit one */
     runner_finish(&r);
     runner_image_finish(&clamped);
     runner_image_finish(&plain);
@@ -466,13 +465,13 @@ static void a_grid_shows_the_texture_of_each_cell(void **state)
     const SluiceDemandGridCreateInfo nested = {
         .structSize = sizeof nested, .columnCount = 1, .rowCount = 1, .pTextureIds = &grid};
     CHECK_RESULT(sluiceAddDemandGrid(r.loader, &nested, &cells[0]), SLUICE_ERROR_INVALID_ARGUMENT);
-    /* A texture that goes leaves a hole. */
+    /* A removed texture leaves a hole. */
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, cells[1]));
     runner_launch(&r);
     struct RunnerOutput out = runner_output(&r, 0);
     assert_memory_equal(out.color, missing, sizeof out.color);
     runner_check_texel(&r, 1, &images[1], 0, 300, 20);
-    /* And a grid that goes shows nothing else any more. */
+    /* After a removed grid nothing of it is shown. */
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, grid));
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, cells[5]));
     runner_launch(&r);
@@ -501,7 +500,7 @@ static void another_image_takes_a_textures_place_while_it_is_sampled(void **stat
         if (i > 0) {
             SluiceDemandImage desc = runner_image_desc(image);
             uint32_t opened = image->opened;
-            CHECK_OK(runner_submit(&r)); /* a launch with the old one is under way */
+            CHECK_OK(runner_submit(&r)); /* a launch with the old image is in flight */
             CHECK_OK(sluiceReplaceDemandImage(r.loader, id, &desc));
             assert_int_equal(image->opened, opened);
             CHECK_OK(
@@ -537,7 +536,7 @@ static void texels_that_changed_are_read_again(void **state)
     runner_load(&r, 9);
     runner_check_texel(&r, 0, &image, 0, 400, 400);
     runner_check_texel(&r, 1, &image, 5, 3, 3);
-    /* The color of the last level comes on its own. */
+    /* The color of the last level is loaded separately. */
     float rgba[4];
     runner_image_texel(&image, 8, 0, 0, rgba);
     for (uint32_t i = 0; i < 10000 && runner_output(&r, 2).color[0] != rgba[0]; i++) {
@@ -571,7 +570,7 @@ static void ids_of_destroyed_textures_are_refused_and_their_places_used_again(vo
     for (uint32_t i = 0; i < 5; i++) {
         runner_load(&r, 9);
         runner_check_texel(&r, 0, &images[0], 0, 9, 9);
-        CHECK_OK(runner_submit(&r)); /* which names the index */
+        CHECK_OK(runner_submit(&r)); /* a launch that names the index */
         CHECK_OK(sluiceRemoveDemandTexture(r.loader, ids[0]));
         CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, ids[0]), SLUICE_ERROR_STALE_TEXTURE);
         CHECK_RESULT(sluiceInvalidateDemandTexture(r.loader, ids[0]), SLUICE_ERROR_STALE_TEXTURE);
@@ -674,12 +673,12 @@ static void launches_are_processed_once_and_in_order(void **state)
     CHECK_OK(runner_submit(&r));
     CHECK_RESULT(runner_submit(&r), SLUICE_NOT_READY); /* two in flight */
     CHECK_OK(sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests, &r.ticket));
-    assert_int_equal(r.requests.missingCount, 2); /* of both */
+    assert_int_equal(r.requests.missingCount, 2); /* misses of both launches */
     assert_int_equal(r.requests.servedCount, 1);
     assert_int_equal(r.requests.pendingCount, 1);
     CHECK_RESULT(sluiceProcessDemandRequests(r.loader, &first, 0, &r.requests, NULL),
                  SLUICE_ERROR_INVALID_ARGUMENT);
-    /* Later tickets do not tell of what is pending now. */
+    /* Later tickets do not include pending requests. */
     CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
     runner_load(&r, 9);
     runner_check_texel(&r, 0, &image, 0, 2, 2);

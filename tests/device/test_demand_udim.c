@@ -1,6 +1,6 @@
 /*
  * UDIM sets in demand loading, compared with an oracle that lays the cells out as one large image
- * and filters that in double precision.
+ * and filters it in double precision.
  */
 #include "device/demand_runner.h"
 
@@ -21,7 +21,7 @@ static const float missing_color[4] = {0.25f, 0.5f, 0.75f, 1};
 static const float failure_color[4] = {1, 0, 1, 1};
 
 struct set {
-    struct runner_image images[CELLS]; ///< width 0: an empty cell
+    struct runner_image images[CELLS]; ///< width 0: empty cell
     struct runner_image base;
     SluiceDemandTextureId ids[CELLS], base_id, grid;
 };
@@ -50,7 +50,7 @@ static void add_grid(struct set *set, struct runner *r)
     CHECK_OK(sluiceAddDemandGrid(r->loader, &info, &set->grid));
 }
 
-/* `sizes`: of level 0 of each cell, both ways; 0: empty. */
+/* `sizes`: size of level 0 of each cell along both axes; 0: empty. */
 static void set_init(struct set *set, struct runner *r, const uint32_t sizes[CELLS],
                      uint32_t base_width)
 {
@@ -107,7 +107,7 @@ static struct runner_image *cell_at(struct set *set, int64_t column, int64_t row
     return opens ? image : NULL;
 }
 
-/* Texel (x, y) of a level of the large image, whose cells have n x n texels there. */
+/* Adds texel (x, y) of a level of the large image, whose cells have n x n texels. */
 static void add_texel(struct sum *sum, struct set *set, uint32_t level, int64_t n, int64_t x,
                       int64_t y, double weight)
 {
@@ -134,7 +134,7 @@ static void add_bilinear(struct sum *sum, struct set *set, uint32_t size, uint32
                   weight * (i % 2 ? right : 1 - right) * (i / 2 ? below : 1 - below));
 }
 
-/* Cells of one size. Derivatives are (dx, 0) and (0, dy), above 0. */
+/* Computes the color for cells of one size. Derivatives are (dx, 0) and (0, dy), above 0. */
 static void expect(struct set *set, uint32_t size, const struct RunnerInput *in, double color[4])
 {
     double u = (double)in->uv[0], v = (double)in->uv[1];
@@ -199,7 +199,7 @@ static double draw_unit(void)
     return draw() / 4294967296.0;
 }
 
-/* A coordinate, often near the edge of a cell, in texels of a level. */
+/* Draws a coordinate, often near the edge of a cell, in texels of a level. */
 static double draw_near_edge(uint32_t cells, uint32_t size, double lod)
 {
     double texel = exp2(fmax(lod, 0)) / size;
@@ -255,7 +255,7 @@ static void outside_and_in_empty_cells_is_the_missing_color(void **state)
     set_init(&set, &r, sizes, 0);
     for (uint32_t i = 0; i < 7; i++)
         add_sample(&r, &set, at[i][0], at[i][1], 0.01, 0.01);
-    add_sample(&r, &set, (double)NAN, 0.5, 0.01, 0.01); /* as at (0, 0) */
+    add_sample(&r, &set, (double)NAN, 0.5, 0.01, 0.01); /* like (0, 0) */
     add_sample(&r, &set, 0, 0, 0.01, 0.01);
     add_sample(&r, &set, 0.3, 0.3, (double)INFINITY, 0.01);
     add_sample(&r, &set, 0.5, 0.5, 100, 100);
@@ -272,7 +272,7 @@ static void outside_and_in_empty_cells_is_the_missing_color(void **state)
     set_finish(&set, &r);
 }
 
-/* Sizes from 1 texel to several tiles: the colors on both sides of an edge meet. */
+/* Sizes from 1 texel to several tiles: the colors on both sides of an edge must meet. */
 static void edges_between_cells_of_different_sizes_do_not_show(void **state)
 {
     (void)state;
@@ -282,7 +282,7 @@ static void edges_between_cells_of_different_sizes_do_not_show(void **state)
     const uint32_t sizes[CELLS] = {512, 64, 1, 256, 300, 16};
     set_init(&set, &r, sizes, 0);
     for (uint32_t i = 0; i < SAMPLES; i++) {
-        /* Away from corners: where four cells of different sizes meet, the edge may show. */
+        /* Corners are excluded: where four cells of different sizes meet, the edge may show. */
         double width = exp2(draw_unit() * 9 - 11), room = fmin(fmax(0.04, 2 * width), 0.45);
         bool across = draw() % 3 == 0;
         double edge = across ? 1 : 1 + (draw() % 2), along = draw() % (across ? COLUMNS : ROWS);
@@ -327,7 +327,7 @@ static void add_base_sample(struct runner *r, const struct set *set, double u, d
                             double width)
 {
     add_sample(r, set, u, v, width, width);
-    /* The base alone, between its edges. */
+    /* Only the base, between its edges. */
     runner_add(r, (struct RunnerInput){.kind = RUNNER_GRAD,
                                        .index = (uint32_t)set->base_id,
                                        .uv = {(float)(u / COLUMNS), (float)(v / ROWS)},
@@ -356,7 +356,7 @@ static void the_base_shows_where_it_is_sharp_enough_and_in_empty_cells(void **st
     }
     for (uint32_t i = 0; i < CELLS; i++)
         assert_int_equal(set.images[i].opened, 0);
-    /* A little finer, cells are read: only those of the sample. */
+    /* At a slightly finer level the sample's cells are read, and no others. */
     add_sample(&r, &set, 0.7, 0.6, 0.9 / 32, 0.9 / 32);
     runner_load(&r, 20);
     double color[4];
@@ -364,7 +364,7 @@ static void the_base_shows_where_it_is_sharp_enough_and_in_empty_cells(void **st
     check_color(&r, 8, color, TOLERANCE);
     assert_int_equal(set.images[0].opened, 1);
     assert_int_equal(set.images[1].opened, 0);
-    /* The grid loses its base, and is as if it never had one. */
+    /* The grid loses its base, and behaves as if it never had one. */
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, set.base_id));
     runner_load(&r, 20);
     expect(&set, 256, &((struct RunnerInput *)r.inputs.mapped)[0], color);
@@ -436,7 +436,8 @@ static void a_base_that_cannot_be_opened_is_as_none(void **state)
 
 enum { COMPARED = 600, COMPARED_LAUNCHES = 8 };
 
-/* Outputs and misses of launches in one language. Cells have two sizes, one is empty, one fails. */
+/* Runs launches in one language, and records outputs and misses. Cells have two sizes; one is
+ * empty, one fails. */
 static void run_launches(bool hlsl, struct RunnerOutput outputs[][COMPARED],
                          uint32_t missing[COMPARED_LAUNCHES])
 {

@@ -1,5 +1,5 @@
-/* Every block of device memory from an allocator of the application, which hands out parts of large
- * blocks at odd offsets and refuses now and then. */
+/* Every block of device memory comes from an allocator of the application. It hands out parts of
+ * large blocks at odd offsets, and sometimes refuses. */
 #include "device/demand_runner.h"
 #include "device/scene.h"
 
@@ -12,7 +12,7 @@
 
 enum { BLOCKS = 64, BLOCK_SIZE = 32 << 20 };
 
-/* VkDeviceMemory that parts are cut from, one behind the other; freed when all are given back. */
+/* VkDeviceMemory that is divided from front to back. Freed when all parts are returned. */
 struct big_block {
     VkDeviceMemory memory; ///< VK_NULL_HANDLE: free
     uint64_t size, end;
@@ -24,7 +24,7 @@ struct big_block {
 struct allocator {
     struct harness *h;
     struct big_block blocks[BLOCKS];
-    uint32_t refuse_one_in; ///< of tile memory; 0: none
+    uint32_t refuse_one_in; ///< one tile allocation in this many; 0: none
     uint32_t random;
     uint64_t live_bytes, bytes_by_purpose[6];
     uint32_t live_parts, parts, refused, at_odd_offsets;
@@ -36,7 +36,7 @@ static uint64_t random_below(struct allocator *a, uint64_t limit)
     return (a->random >> 8) % limit;
 }
 
-/* An odd multiple of the alignment, a few of them behind the end. */
+/* Returns an odd multiple of the alignment, slightly behind the end. */
 static uint64_t place_in(struct allocator *a, const struct big_block *b,
                          const SluiceDeviceMemoryRequest *r)
 {
@@ -152,7 +152,8 @@ static SluiceVulkanContextStatistics statistics(void)
 
 static const struct scene_aim fine = {0.05, 0.05, 0.9, 0.9, 0.2, 0.3, 0, 0};
 
-/* Until all is sharp; every level that is shown is right on the way. How many frames it took. */
+/* Streams until all is sharp, and checks every level shown meanwhile. Returns the number of
+ * frames. */
 static uint32_t stream(SluiceResidencyMode mode, uint32_t limit)
 {
     struct scene scene;
@@ -206,7 +207,7 @@ static void refusals_cost_time_and_nothing_else(void **state)
     (void)state;
     uint32_t refused = 0;
     h.quiet = true;
-    for (uint32_t i = 0; i < 2; i++) { /* dense images are there from the start or not at all */
+    for (uint32_t i = 0; i < 2; i++) { /* dense images are allocated at the start or not at all */
         if (modes[i].mode == SLUICE_RESIDENCY_MODE_SPARSE && !h.caps.sparse)
             continue;
         context_with(0, 0);
@@ -260,7 +261,7 @@ static void demand_loading_takes_memory_of_the_application(void **state)
     }
 }
 
-/* Of one budget: a streamer's tiles and a demand loader's pages. */
+/* One budget for a streamer's tiles and a demand loader's pages. */
 static void budgets_hold_for_both_front_ends_together(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
 /*
- * Blocks that encode_blocks.glsl makes, decoded in C: BC7 by support/bptc_decode.c, the others by
- * decoders below. The baseline is the plainest encoder: the corners of the texels' box as ends. The
- * baker's encoders search longer, and say how much these leave.
+ * Blocks made by encode_blocks.glsl, decoded in C: BC7 by support/bptc_decode.c, others by the
+ * decoders below. The baseline is the simplest encoder, with the corners of the texels' bounding
+ * box as end points. The baker's encoders search longer and show the remaining gap.
  */
 #include "device/conform.h"
 
@@ -68,7 +68,7 @@ static double draw(double from, double to)
     return from + (to - from) * roll() / ROLL_MAX;
 }
 
-/* Texels of a block, in bytes / 255. */
+/* Makes the texels of a block, in bytes / 255. */
 static void make_block(enum kind kind, float rgba[64])
 {
     double a[4], b[4], bend[4];
@@ -77,7 +77,7 @@ static void make_block(enum kind kind, float rgba[64])
         b[c] = kind == CLOUD ? a[c] + draw(-0.1, 0.1) : draw(0, 1);
         bend[c] = draw(-0.2, 0.2);
     }
-    const int apart = (int)(roll() % 4); /* varies downward alone, with the others to the right */
+    const int apart = (int)(roll() % 4); /* varies downward only; the others also to the right */
     for (int i = 0; i < 16; i++) {
         double t = kind == TWO_COLORS ? draw(0, 1) < 0.5 : (i % 4 + 2 * (i / 4)) / 9.0;
         for (int c = 0; c < 4; c++) {
@@ -160,7 +160,8 @@ static double squared_error(uint32_t format, const float *texels, const double *
     return sum;
 }
 
-/* Of the corners of the box, each quantized, with the best of the weights per texel. */
+/* Error with the corners of the bounding box as quantized end points, and the best weight per
+ * texel. */
 static double corner_error(uint32_t format, const float *texels)
 {
     static const double bc7[16] = {0, 4, 9, 13, 17, 21, 26, 30, 34, 38, 43, 47, 51, 55, 60, 64};
@@ -209,7 +210,7 @@ static double decoded_error(uint32_t format, const struct EncodeInput *inputs,
     return squares;
 }
 
-/* dB of the baker's blocks; NAN: this build has no such encoder. */
+/* Returns the dB of the baker's blocks. NAN: this build has no such encoder. */
 static double baked_psnr(uint32_t format, const struct EncodeInput *inputs)
 {
 #ifdef HAVE_BAKE
@@ -233,8 +234,8 @@ static double baked_psnr(uint32_t format, const struct EncodeInput *inputs)
 #endif
 }
 
-/* Prints dB of shader and baker, and fails below `least` or more than `most_less` below the baker.
- */
+/* Prints the dB of shader and baker. Fails below `least`, or more than `most_less` below the
+ * baker. */
 static void compare(struct rig *rig, uint32_t format, const char *name, double least,
                     double most_less)
 {
@@ -251,7 +252,7 @@ static void blocks_of_each_kind_beat_the_corners_of_their_box(void **state)
 {
     static const char *const names[KINDS] = {"solid", "two colors", "ramp", "curve",
                                              "cloud", "noise",      "apart"};
-    /* dB over BLOCKS blocks: about 0.3 below what was measured. */
+    /* dB over BLOCKS blocks: about 0.3 below the measured values. */
     static const double least[ENCODE_FORMATS][KINDS] = {{41.6, 41.6, 28.8, 26.9, 32.7, 13.5, 23.9},
                                                         {150, 150, 35.3, 36.4, 47.8, 29.7, 37.6},
                                                         {150, 150, 35.2, 36.3, 47.8, 29.7, 37.7},
@@ -275,7 +276,8 @@ static void blocks_of_each_kind_beat_the_corners_of_their_box(void **state)
     rig_finish(&rig);
 }
 
-/* Four of the planes of a material of 512 x 512 texels; -1: all 255. False: it is not there. */
+/* Loads four planes of a material of 512 x 512 texels; -1: all 255. Returns false if the file is
+ * missing. */
 static bool load_material(const char *name, const int planes[4], struct EncodeInput *inputs)
 {
     enum { SIZE = 512, PER_ROW = SIZE / 4 };
@@ -293,8 +295,7 @@ static bool load_material(const char *name, const int planes[4], struct EncodeIn
     assert_true(fread(bytes, SIZE * SIZE, 1, file) == 1);
     assert_true(fread(bytes + SIZE * SIZE, 1, sizeof bytes - SIZE * SIZE, file) > 0);
     fclose(file);
-    for (uint32_t i = 0; i < BLOCKS;
-         i++) /* every 16th block, in columns that change from row to row */
+    for (uint32_t i = 0; i < BLOCKS; i++) /* every 16th block, in columns that vary by row */
         for (uint32_t t = 0; t < 64; t++) {
             uint32_t block = 16 * i + i / (PER_ROW / 16) % 16;
             uint32_t x = block % PER_ROW * 4 + t / 4 % 4, y = block / PER_ROW * 4 + t / 16;
@@ -310,7 +311,7 @@ static void blocks_of_materials_are_near_to_the_bakers(void **state)
     static const struct {
         const char *name, *file;
         int planes[4];
-        double least[ENCODE_FORMATS]; ///< dB, about 0.3 below what was measured; 0: not compared
+        double least[ENCODE_FORMATS]; ///< dB, about 0.3 below the measured values; 0: not compared
     } materials[] = {
         {"bronze albedo", "bronze.u8", {0, 1, 2, -1}, {34.5, 43.2, 43.0, 42.6}},
         {"bronze albedo, height", "bronze.u8", {0, 1, 2, 3}, {0, 0, 0, 38.2}},

@@ -1,6 +1,6 @@
 /*
- * An image most of whose tiles are constant, in paged mode and in a demand loader: equal tiles are
- * read once and have one page, whoever shows, evicts and restores them, and in any order.
+ * An image with mostly constant tiles, in paged mode and in a demand loader. Equal tiles are read
+ * once and share one page, in any order of showing, evicting and restoring.
  */
 #include "device/demand_runner.h"
 #include "device/scene.h"
@@ -18,11 +18,11 @@
 #define SIZE 1024u
 #define TILE 128u
 #define LEVELS 3u
-#define TILES 84u /* of these levels; level 3 is packed in the streamer */
+#define TILES 84u /* in these levels; level 3 is packed in the streamer */
 #define CONTENTS 7u
-#define DISTINCT 8u /* contents of all levels together */
+#define DISTINCT 8u /* contents over all levels */
 
-/* 90 % of the tiles are content 0. The others have twins, too. */
+/* 90 % of the tiles have content 0. The others have equal tiles, too. */
 static uint32_t content_of(uint32_t level, uint32_t x, uint32_t y)
 {
     uint32_t number = (y * 37 + x * 11 + level * 5) % 40;
@@ -47,7 +47,7 @@ static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t w
 struct equal_source {
     SluiceImageSource base;
     SluiceImageSource *inner;
-    atomic_uint reads; ///< of the tiles that are counted
+    atomic_uint reads; ///< reads of the counted tiles
 };
 
 static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
@@ -142,7 +142,7 @@ static uint32_t held_pages(const struct stage *s)
     return s->scene.streamer->pages->held_count;
 }
 
-/* The middles of these tiles, one sample each. */
+/* Samples the middle of each tile once. */
 static void aim(struct stage *s, uint32_t one_in)
 {
     struct ProbeInput *inputs = scene_inputs(&s->scene, s->streamed);
@@ -175,7 +175,7 @@ static void check_color(const float color[4], const float expected[4], float tol
             fail_msg("channel %u is %g, not %g", i, (double)color[i], (double)expected[i]);
 }
 
-/* The color at a place that is not near the edge of a tile. */
+/* Color at a position that is not near a tile's edge. */
 static void color_at(const float uv[2], uint32_t level, float color[4])
 {
     float size = (float)(SIZE >> level);
@@ -184,7 +184,7 @@ static void color_at(const float uv[2], uint32_t level, float color[4])
              color);
 }
 
-/* Returns how many samples show the level that they ask for. */
+/* Returns the number of samples that show their requested level. */
 static uint32_t check_streamed(struct stage *s)
 {
     uint32_t right = 0;
@@ -206,7 +206,8 @@ static uint32_t check_streamed(struct stage *s)
     return right;
 }
 
-/* Under pressure the loader shows coarser levels. Returns how many samples show their own. */
+/* Under memory pressure the loader shows coarser levels. Returns the number of samples at their own
+ * level. */
 static uint32_t check_demand(struct stage *s)
 {
     uint32_t right = 0;
@@ -276,7 +277,7 @@ static void a_loader_alone_reads_equal_tiles_once(void **state)
     }
 }
 
-/* All sampled tiles come, whatever went before. */
+/* All sampled tiles become resident, in any history. */
 static void wander(struct stage *s, uint32_t rounds)
 {
     for (uint32_t i = 0; i < rounds; i++) {
@@ -293,7 +294,7 @@ static void wander(struct stage *s, uint32_t rounds)
     }
 }
 
-/* The loader has memory for 64 tiles, and the streamer drops what three frames did not sample. */
+/* The loader has memory for 64 tiles. The streamer drops tiles that three frames did not sample. */
 static void tiles_go_and_come_in_any_order(void **state)
 {
     static struct stage s;
