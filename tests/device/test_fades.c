@@ -1,7 +1,6 @@
 /*
- * Nothing pops: what becomes resident is shown step by step, at the rate that was asked for,
- * without a look at what is not there yet, and in the end it is the picture that is there without
- * fading.
+ * Fading: tiles that become resident appear step by step at the requested rate, without reading
+ * missing texels. The final picture equals the one without fading.
  */
 #include "device/scene.h"
 
@@ -36,7 +35,7 @@ static const struct kind kinds[TEXTURES] = {
 
 static struct ProbeOutput settled[TEXTURES][SCENE_SAMPLES], shown[TEXTURES][SCENE_SAMPLES];
 
-/* Textures are added once the streamer runs, so that all are loaded from nothing. */
+/* Adds textures to a running streamer, so that all are loaded from nothing. */
 static void begin(struct scene *scene, struct harness *h, uint64_t fade_time)
 {
     scene_init(
@@ -71,17 +70,17 @@ static uint32_t fading(const struct scene *scene)
     return stats.fadingTextures;
 }
 
-/* Where a footprint that was widened gets narrower it leaves a coarser neighbor behind: a few. */
+/* A widened footprint that gets narrower may leave a coarser neighbor: a few. */
 static uint32_t jumps;
 
-/* From what was shown to what is shown; true if it is another level. */
+/* Checks the step between two samples. Returns true if the level changed. */
 static bool check_step(const struct ProbeOutput *before, const struct ProbeOutput *now,
                        const struct kind *k, float error)
 {
-    assert_true(now->color[3] > 0.99f); /* transparent are texels that are not resident */
+    assert_true(now->color[3] > 0.99f); /* missing texels are transparent */
     if (before->level == SLUICE_MIP_UNTOUCHED)
         return false;
-    /* what a sampler shows ends with the chain and begins with level 0 */
+    /* samplers end with the chain and begin with level 0 */
     float step = fmaxf(before->lod, 0) - fmaxf(now->lod, 0);
     float seen = pattern_level(before->color) - pattern_level(now->color);
     if (!(step >= 0 && step <= STEP + 1e-5f)) {
@@ -147,7 +146,7 @@ static void what_arrives_is_shown_step_by_step_and_settles_exactly(void **state)
     scene_finish(&scene);
 }
 
-/* The frames of a fade, in which samplers clamp or derivatives do. */
+/* Draws the frames of a fade, in which samplers or derivatives clamp. */
 static struct ProbeOutput *draw_fade(struct harness *h, bool min_lod)
 {
     const size_t picture = sizeof shown / sizeof(struct ProbeOutput);
@@ -182,7 +181,7 @@ static void samplers_that_clamp_show_what_wider_derivatives_show(void **state)
         if (wide->level == SLUICE_MIP_UNTOUCHED)
             continue;
         assert_true(clamp->color[3] > 0.99f);
-        /* the footprints of anisotropic samples differ, and 8-bit textures tell 16 steps a level */
+        /* anisotropic footprints differ, and 8-bit textures resolve 16 steps per level */
         if (k->anisotropy > 1 || k->format == SLUICE_FORMAT_R8G8B8A8_UNORM)
             continue;
         assert_true(wide->lod == clamp->lod);
@@ -200,7 +199,7 @@ static void samplers_that_clamp_show_what_wider_derivatives_show(void **state)
     free(frames[1]);
 }
 
-/* A camera that looks elsewhere all the time, with memory for a part of it. */
+/* A camera that turns all the time, with memory for a part of the textures. */
 static void tiles_that_come_and_go_while_fading_are_not_missed(void **state)
 {
     struct harness *h = *state;
@@ -244,7 +243,7 @@ static void tiles_that_come_and_go_while_fading_are_not_missed(void **state)
     scene_finish(&scene);
 }
 
-/* Its regions and its place in the table go to another one, which begins with nothing. */
+/* Another texture gets its regions and table entry, and begins with nothing. */
 static void a_texture_that_goes_while_fading_takes_its_fade_along(void **state)
 {
     struct harness *h = *state;

@@ -1,4 +1,4 @@
-/* What shaders write down, against the C twins and against brute force on what must be marked. */
+/* Feedback of shaders against the C twins, and against brute force for required marks. */
 #include "device/scene.h"
 
 #include "base/checked.h"
@@ -23,7 +23,7 @@ static const float extremes[] = {0.0f,    -0.0f,    1e-45f,    1e-38f, 1e-20f,  
                                  3.4e38f, INFINITY, -INFINITY, NAN,    0.999999f, 0.5f};
 #define EXTREMES (sizeof extremes / sizeof extremes[0])
 
-/* The table entry as the streamer writes it, put together again from the public layout. */
+/* Builds the streamer's table entry again from the public layout. */
 static struct SluiceTextureEntry entry_of(struct scene *scene, uint32_t index)
 {
     const struct scene_texture *texture = &scene->textures[index];
@@ -101,7 +101,7 @@ static struct slc_twin_wants twin_of(const struct SluiceTextureEntry *e,
     return slc_twin_wants(e, uv, dx, dy, in->lodBias, in->maxAnisotropy);
 }
 
-/* Where rounding may decide: a level's border, or a region's. */
+/* Returns whether rounding may decide: at the border of a level or region. */
 static bool is_close_to_a_step(float x)
 {
     return fabsf(x - roundf(x)) < 1e-3f;
@@ -118,7 +118,7 @@ static void check_finite_twin(const struct SluiceTextureEntry *e, const struct P
         return;
     assert_int_equal(out->wantedLevel, wants.level);
     assert_int_equal(out->level, slc_twin_coarsest_level(lods.y, e->mipLevelCount));
-    /* an index may differ by one where an end of the box is on a border */
+    /* an index may differ by one if an end of the box is on a border */
     for (int i = 0; i < 2; i++) {
         *compared += out->footprint[i] == wants.regions.first[i];
         *compared += out->footprint[2 + i] == wants.regions.last[i];
@@ -163,7 +163,7 @@ static void glsl_and_c_twins_agree(void **state)
     scene_finish(&scene);
 }
 
-/* Not a number, infinities and denormals: inside the map, finite, and a level of the chain. */
+/* NaN, infinities and denormals: results are inside the map, finite, and a level of the chain. */
 static void extremes_stay_inside_the_map(void **state)
 {
     struct scene scene;
@@ -208,8 +208,8 @@ static void extremes_stay_inside_the_map(void **state)
     scene_finish(&scene);
 }
 
-/* Every region of a footprint: the shader may mark its corners, or one region in several, which of
- * them is not said. */
+/* Paints every region of a footprint: the shader may mark its corners, or any one of several
+ * regions. */
 static void paint(uint8_t *map, const struct SluiceTextureEntry *e,
                   const struct slc_twin_footprint *regions, uint32_t level)
 {
@@ -230,7 +230,7 @@ static void paint(uint8_t *map, const struct SluiceTextureEntry *e,
     }
 }
 
-/* Texel of one axis that a sample reads for certain; -1 for the border's. */
+/* Returns a texel of one axis that a sample certainly reads; -1: border. */
 static int64_t texel_of(double coordinate, uint32_t size, uint32_t mode)
 {
     int64_t n = size, t = (int64_t)floor(coordinate * size);
@@ -244,7 +244,7 @@ static int64_t texel_of(double coordinate, uint32_t size, uint32_t mode)
     }
 }
 
-/* The tile of `level` over a region along one axis, as the manager finds it. */
+/* Returns the tile of `level` over a region along one axis, as the manager finds it. */
 static uint32_t tile_over(uint32_t region, uint32_t size, uint32_t tile, uint32_t level)
 {
     for (uint32_t l = 1; l <= level; l++)
@@ -252,7 +252,7 @@ static uint32_t tile_over(uint32_t region, uint32_t size, uint32_t tile, uint32_
     return region;
 }
 
-/* A mark of level m in a region asks for the tiles over it of level m and of all coarser levels. */
+/* A mark of level m in a region requests the tiles over it at level m and all coarser levels. */
 static bool is_asked_for(const struct ProbeOutput *marked, const struct SluiceTextureEntry *e,
                          uint32_t level, uint32_t tile_x, uint32_t tile_y)
 {
@@ -265,7 +265,7 @@ static bool is_asked_for(const struct ProbeOutput *marked, const struct SluiceTe
     return false;
 }
 
-/* The texel in the middle, at the level that an exact sampler begins with. */
+/* Checks the middle texel at the level that an exact sampler begins with. */
 static void check_required(const struct ProbeOutput *marked, const struct SluiceTextureEntry *e,
                            const struct ProbeInput *in)
 {
@@ -293,7 +293,7 @@ static void check_map(struct scene *scene, uint32_t t, uint32_t count)
         const struct ProbeInput *in = &prober_inputs(&scene->prober)[i];
         struct slc_twin_vec2 lods;
         struct slc_twin_wants wants = twin_of(&e, in, &lods);
-        /* rounding may go one level or one texel further than the twin */
+        /* rounding may differ from the twin by one level or one texel */
         float margin = slc_twin_lod_margin(in->maxAnisotropy) + 2e-3f;
         wants.level = slc_twin_finest_level(lods.x, margin, e.mipLevelCount);
         float w = (float)e.width, h = (float)e.height;
@@ -381,7 +381,7 @@ static void resolve_hands_over_and_clears_only_the_maps_of_its_turn(void **state
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
     assert_int_equal(stats.feedbackMaps, 4);
     scene_settle(&scene, 6);
-    /* level 0 and 1 of the one region that each of them wants, and the packed levels */
+    /* levels 0 and 1 of the one region that each texture requests, and the packed levels */
     for (uint32_t t = 0; t < 3; t++) {
         uint8_t map[16];
         CHECK_OK(sluiceWriteMinMipData(manager_of(scene.streamer),

@@ -1,4 +1,5 @@
-/* Feedback of the level that the device itself names: enough for the picture, and no more tiles. */
+/* Feedback with the level that the device reports: sufficient for the picture, without extra
+ * tiles. */
 #include "device/painter.h"
 #include "device/scene.h"
 
@@ -12,13 +13,13 @@
 #define PIXELS (PICTURE_SIZE * PICTURE_SIZE)
 
 struct result {
-    float level[PIXELS]; ///< that is shown
+    float level[PIXELS]; ///< shown level
     uint64_t tiles;
 };
 
 enum way { EVERYTHING, COMPUTED, QUERIED, QUERIED_LATE };
 
-/* A floor, until each pixel had its turn to write. */
+/* Draws a floor until each pixel had its turn to write. */
 static void draw(struct harness *h, enum way way, uint32_t width, uint32_t height, float anisotropy,
                  float bias, struct result *result)
 {
@@ -51,9 +52,9 @@ static void draw(struct harness *h, enum way way, uint32_t width, uint32_t heigh
 }
 
 /*
- * A sample that has exactly the levels it touches is clamped where the computed level lies up to
- * its margin below the device's, so the picture may be that much coarser, and no finer than devices
- * are off the formula.
+ * A sample with exactly the levels it touches is clamped, because the computed level may be up to
+ * its margin finer than the device's. The picture may be that much coarser, but finer only by the
+ * device's deviation from the formula.
  */
 static void check(struct harness *h, uint32_t width, uint32_t height, float anisotropy, float bias,
                   enum way way)
@@ -85,7 +86,7 @@ static void queried_feedback_is_enough_for_a_trilinear_picture(void **state)
     check(*state, 1500, 1999, 1, -0.5f, QUERIED);
 }
 
-/* In uniform control flow all the same, so the device still has all of each quad. */
+/* The control flow is uniform, so the device still has all pixels of each quad. */
 static void a_query_behind_branches_is_enough_for_a_trilinear_picture(void **state)
 {
     check(*state, 2048, 2048, 1, 0, QUERIED_LATE);

@@ -1,4 +1,5 @@
-/* The ways to write feedback: as levels, as level bits, in turns. Same wishes, same decisions. */
+/* Ways to write feedback: as levels, as level bits, in turns. Equal requests must give equal
+ * decisions. */
 #include "device/pattern.h"
 #include "device/writer.h"
 
@@ -115,7 +116,7 @@ static void level_bits_lead_to_the_same_recording_as_levels(void **state)
     assert_memory_equal(levels.recording, masks.recording, masks.recording_size);
 }
 
-/* Words of the feedback buffer that are not as a resolve leaves them. */
+/* Counts words of the feedback buffer that a resolve has not reset. */
 static uint32_t marked_words(struct stage *stage)
 {
     const uint32_t *words = writer_words(&stage->writer, 0, TEXTURES * REGIONS);
@@ -139,13 +140,13 @@ static void only_those_whose_turn_it_is_write(void **state)
         for (uint32_t frame = 1; frame <= 12; frame++) {
             random_samples(&stage, 1000, 5);
             harness_frame(stage.h, stage.streamer, true, writer_record, &stage.writer);
-            /* what wrote was resolved at once; without turns the other four wait for theirs */
+            /* written maps are resolved at once; without turns the other four wait */
             uint32_t marked = marked_words(&stage);
             assert_true(in_turns ? marked == 0 : marked > 4 * REGIONS / 2);
         }
         SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
         sluiceGetVulkanStreamerStatistics(stage.streamer, &stats);
-        assert_int_equal(stats.feedbackMaps, 22); /* of 11 frames, the last is on its way */
+        assert_int_equal(stats.feedbackMaps, 22); /* maps of 11 frames; the last frame is pending */
         stage_finish(&stage);
     }
 }
@@ -174,7 +175,7 @@ static void turns_delay_but_settle_to_the_same(void **state)
     assert_true(fine > 20);
 }
 
-/* Between Begin and End, after the turns of the frame were published. */
+/* Runs between Begin and End, after the turns of the frame were published. */
 static void record_and_replace(void *user, VkCommandBuffer commands)
 {
     struct stage *stage = user;
@@ -208,7 +209,7 @@ static void textures_that_come_and_go_inside_a_frame_keep_the_turns(void **state
         min_mips(&stage, maps[replaced]);
         stage_finish(&stage);
     }
-    /* all that is wanted is there; some of what was wanted before is, too */
+    /* all wanted tiles are resident, and some formerly wanted ones */
     for (uint32_t i = 0; i < TEXTURES * REGIONS; i++)
         assert_true(maps[1][i / REGIONS][i % REGIONS] <= maps[0][i / REGIONS][i % REGIONS]);
 }

@@ -1,4 +1,4 @@
-/* Textures that nobody samples are forgotten, and come back when they are sampled. */
+/* Textures that are not sampled are forgotten, and return when they are sampled. */
 #include "device/crowd.h"
 
 #include "support/failing_allocator.h"
@@ -25,7 +25,7 @@ static SluiceVulkanStreamerCreateInfo settings(uint32_t count)
                                             .forgetTextures = true};
 }
 
-/* Some have regular levels, and tiles of them. */
+/* Adds textures. Some have regular levels and tiles of them. */
 static void add_many(struct crowd *c, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)
@@ -66,7 +66,7 @@ static uint64_t sparse_budget(struct harness *h)
     return harness_is_software(h) ? 24u << 20 : 4u << 20;
 }
 
-/* What holds about 150 of the small ones. Pages come in images of several MiB. */
+/* Budget for about 150 of the small textures. Pages come in images of several MiB. */
 static uint64_t budget_of(struct harness *h)
 {
     return h->mode == SLUICE_RESIDENCY_MODE_SPARSE  ? sparse_budget(h)
@@ -110,7 +110,7 @@ static void those_in_view_stay_while_others_come_and_go(void **state)
     const uint64_t before = crowd_statistics(&c).texturesForgotten;
     for (uint32_t first = 10; first + 30 <= 400; first += 30) {
         c.ranges[1] = (struct crowd_range){first, 30};
-        for (uint32_t i = 0; i < 12; i++) { /* outputs of the first range come first */
+        for (uint32_t i = 0; i < 12; i++) { /* the outputs of the first range come first */
             crowd_frame(&c);
             for (uint32_t k = 0; k < 10; k++)
                 assert_int_equal(((const struct CrowdOutput *)c.outputs.mapped)[k].missing, 0);
@@ -132,7 +132,7 @@ static void age_forgets_while_there_is_memory(void **state)
     assert_int_equal(crowd_sharpen(&c, 30), 0);
     const uint64_t read = crowd_statistics(&c).bytesRead;
     assert_int_equal(crowd_statistics(&c).absentTextureCount, 0);
-    c.ranges[0] = (struct crowd_range){0, 5}; /* the others are not sampled any more */
+    c.ranges[0] = (struct crowd_range){0, 5}; /* the others are no longer sampled */
     for (uint32_t i = 0; i < 7; i++)
         assert_int_equal(crowd_frame(&c), 0);
     assert_int_equal(crowd_statistics(&c).absentTextureCount, 0);
@@ -159,7 +159,7 @@ static void without_age_and_with_memory_all_stay(void **state)
     crowd_finish(&c);
 }
 
-/* In every phase: forgotten, waiting for its image to go, waiting for its texels. */
+/* In every phase: forgotten, waiting for its image to be destroyed, waiting for its texels. */
 static void they_can_be_removed_at_any_time(void **state)
 {
     SluiceVulkanStreamerCreateInfo info = settings(8);
@@ -180,7 +180,7 @@ static void they_can_be_removed_at_any_time(void **state)
         crowd_rest(&c, 8);
         assert_int_equal(crowd_statistics(&c).textureCount, 0);
         SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create};
-        for (uint32_t i = 0; i < 8; i++) { /* in their places */
+        for (uint32_t i = 0; i < 8; i++) { /* in their place */
             create.source = c.members[i].source;
             CHECK_OK(sluiceAddVulkanTexture(c.streamer, &create, &c.members[i].texture));
             assert_int_equal(c.members[i].texture.tableIndex, i);
@@ -242,7 +242,7 @@ static void host_memory_that_fails_loses_none(void **state)
     }
     for (uint32_t n = 0; n < 12; n++) {
         c.ranges[0] = (struct crowd_range){0, 16};
-        for (uint32_t i = 0; i < 4; i++) { /* they come while memory fails */
+        for (uint32_t i = 0; i < 4; i++) { /* they return while memory fails */
             a.refuse_from = a.calls + n;
             crowd_frame(&c);
         }
@@ -291,7 +291,7 @@ static void textures_of_sets_stay(void **state)
     CHECK_OK(sluiceAddVulkanTexture(c.streamer, &create, &c.members[1].texture));
     c.count = 2;
     assert_true(c.members[1].texture.imageView != VK_NULL_HANDLE);
-    c.ranges[0] = (struct crowd_range){0, 1}; /* feedback of the first is that of both */
+    c.ranges[0] = (struct crowd_range){0, 1}; /* feedback of the first counts for both */
     assert_int_equal(crowd_sharpen(&c, 30), 0);
     c.ranges[0].count = 2;
     assert_int_equal(crowd_sharpen(&c, 30), 0);

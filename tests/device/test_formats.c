@@ -1,4 +1,4 @@
-/* Every format, from its source through staging memory and bindings to what a shader fetches. */
+/* Every format, from its source through staging memory and bindings to a shader's fetch. */
 #include "device/blocks.h"
 #include "device/cut_source.h"
 #include "device/scene.h"
@@ -25,7 +25,7 @@ static void record_fetch(void *user, VkCommandBuffer commands)
                   fetch->count, PROBE_FETCH);
 }
 
-/* What the texels in memory mean; their conversions have tests of their own. */
+/* Reads the texel from the source. Conversions have tests of their own. */
 static void texel_of_source(const struct scene_texture *texture, const SluiceImageRegion *region,
                             float rgba[4])
 {
@@ -76,7 +76,7 @@ static void fetch_and_check(struct fetch *fetch)
     fetch->count = 0;
 }
 
-/* The last texel of every level, and others here and there. */
+/* Fetches the last texel of every level, and some others. */
 static void fetch_some(struct scene *scene, uint32_t index, uint32_t per_level)
 {
     const SluiceImageInfo *info = &scene->textures[index].info;
@@ -104,7 +104,7 @@ static bool is_sampled(struct harness *h, SluiceFormat format)
     return caps.sampled;
 }
 
-/* Blocks of ETC2 and ASTC have no decoder here to compare with; test_integers has integers. */
+/* ETC2 and ASTC have no decoder here. test_integers compares integers. */
 static bool is_compared(struct harness *h, SluiceFormat format)
 {
     bool is_decoded = format < SLUICE_FORMAT_ETC2_R8G8B8_UNORM_BLOCK ||
@@ -127,7 +127,7 @@ static void add_format(struct scene *scene, SluiceFormat format, const uint32_t 
                              : block_source(sizes[s][0], sizes[s][1], format));
 }
 
-/* Of every format textures of some sizes, as many at once as fit into a scene. */
+/* Checks textures of every format in some sizes, as many at once as fit into a scene. */
 static void check_formats(struct harness *h, const uint32_t (*even)[2], const uint32_t (*odd)[2],
                           uint32_t size_count, uint32_t per_level)
 {
@@ -165,7 +165,7 @@ static void texels_of_every_format_are_as_in_the_source(void **state)
     check_formats(*state, sizes, sizes, sizeof sizes / sizeof sizes[0], 100);
 }
 
-/* Where a driver has a tail it may be the whole of such an image. */
+/* A driver's mip tail may be the whole of such an image. */
 static void texels_of_every_elongated_format_are_as_in_the_source(void **state)
 {
     static const uint32_t wide[][2] = {{16384, 128}, {16380, 5}, {1, 16384}};
@@ -200,7 +200,7 @@ static void formats_that_the_device_lacks_are_refused(void **state)
     scene_finish(&scene);
 }
 
-/* The loop works for tiles that are not square and cut at the edge, not only when all is mapped. */
+/* Feedback works for tiles that are not square and cut at the edge, not only if all is mapped. */
 static void compressed_textures_are_streamed_by_feedback(void **state)
 {
     struct scene scene;
@@ -240,7 +240,7 @@ static void cut_init(struct cut_source *cut, const struct short_chain *chain)
                     chain->level_count);
 }
 
-/* Levels beyond the last are asked for, too. */
+/* Also requests levels beyond the last. */
 static void chains_may_end_with_any_level_that_fits_into_a_tile(void **state)
 {
     static const struct short_chain chains[] = {

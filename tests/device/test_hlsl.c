@@ -1,4 +1,5 @@
-/* Shaders in HLSL against the same shaders in GLSL: the same bits, whatever is resident. */
+/* Compares shaders in HLSL with the same shaders in GLSL: results are bit-identical for any
+ * resident tiles. */
 #include "device/scene.h"
 
 #include "support/roll.h"
@@ -11,7 +12,7 @@ enum { TEXTURES = 4, WORDS = 256 };
 struct session {
     struct scene scene;
     uint32_t flags;
-    bool words; ///< those of the feedback, after it was written
+    bool words; ///< true: compare the words of written feedback
 };
 
 static void record(void *user, VkCommandBuffer commands)
@@ -26,7 +27,7 @@ static void record(void *user, VkCommandBuffer commands)
     }
 }
 
-/* The outputs of one frame, by shaders in one language. */
+/* Runs one frame with shaders in one language. Returns its outputs. */
 static void run(struct session *s, bool hlsl, struct ProbeOutput outputs[PROBE_CAPACITY])
 {
     struct harness *h = s->scene.h;
@@ -77,7 +78,7 @@ static void add_textures(struct scene *scene)
     }
 }
 
-/* Feedback of few samples leaves most of the textures coarse. */
+/* Writes feedback for few samples, so most of the textures stay coarse. */
 static void stream_a_part(struct session *s)
 {
     for (uint32_t t = 0; t < TEXTURES; t++)

@@ -1,4 +1,4 @@
-/* Integer textures: a sample is one texel of the source, of the level nearest to its LOD. */
+/* Integer textures: a sample is one texel of the source, at the level nearest to its LOD. */
 #include "device/conform.h"
 #include "device/scene.h"
 
@@ -18,7 +18,8 @@
 
 #define SAMPLES 256u
 
-/* Numbers that name their level, layer and place; any bits, so SINT formats hold negative ones. */
+/* Numbers that identify level, layer and position. They use all bits, so SINT formats hold negative
+ * ones. */
 struct numbers {
     SluiceImageSource base;
     SluiceImageInfo info;
@@ -93,7 +94,7 @@ static bool is_streamed(struct harness *h, SluiceFormat format)
                                                     : false;
 }
 
-/* The modules are kept by the harness with its pipelines. */
+/* The harness keeps the modules with its pipelines. */
 static VkPipeline pipeline_of(const struct prober *p, bool is_signed, bool hlsl)
 {
     struct harness *h = p->h;
@@ -114,7 +115,7 @@ static VkPipeline pipeline_of(const struct prober *p, bool is_signed, bool hlsl)
     return *pipeline;
 }
 
-/* False where the mode refuses the format, as is right. */
+/* Returns false if the mode refuses the format, as is right. */
 static bool rig_init(struct rig *rig, struct harness *h, SluiceFormat format, uint32_t width,
                      uint32_t height, bool everything)
 {
@@ -153,7 +154,7 @@ static void settle(struct rig *rig, uint32_t frame_count)
     assert_int_equal(rig->scene.h->DeviceWaitIdle(rig->scene.h->device), VK_SUCCESS);
 }
 
-/* Inside texels of the level that is nearest to the LOD, so that rounding does not matter. */
+/* Samples inside texels of the level nearest to the LOD, so that rounding does not matter. */
 static void draw_samples(struct rig *rig, double span)
 {
     const SluiceImageInfo *info = &rig->numbers.info;
@@ -188,7 +189,7 @@ static void check_sample(const struct rig *rig, uint32_t i, uint32_t level)
     uint32_t x = (uint32_t)((double)in->uv[0] * slc_mip_size(n->info.width, level));
     uint32_t y = (uint32_t)((double)in->uv[1] * slc_mip_size(n->info.height, level));
     for (uint32_t c = 0; c < 4; c++) {
-        uint32_t expected = c == 3; /* of channels that the format lacks */
+        uint32_t expected = c == 3; /* value of channels that the format lacks */
         if (c < info.channelCount) {
             expected = number_at(n, level, x, y, c) << unused;
             expected = slc_format_is_sint(n->info.format) ? (uint32_t)((int32_t)expected >> unused)
@@ -238,7 +239,7 @@ static void samples_are_texels_of_the_level_nearest_to_their_lod(void **state)
     assert_true(h->mode == SLUICE_RESIDENCY_MODE_PAGED ? count == 0 : count >= 9);
 }
 
-/* From the packed levels to the finest: whatever is shown meanwhile is a texel of its level. */
+/* Streams from the packed levels to the finest. Every shown value must be a texel of its level. */
 static void integers_are_streamed_by_feedback(void **state)
 {
     struct rig rig;

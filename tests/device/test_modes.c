@@ -1,7 +1,6 @@
 /*
- * Pictures of the mode under test against pictures of dense residency, where a driver's sampler
- * does everything: over tile borders, wrapped, mirrored, clamped, magnified, with half of it
- * resident.
+ * Compares pictures of the tested mode with pictures of dense residency, where a driver's sampler
+ * does everything: over tile borders, wrapped, mirrored, clamped, magnified, and partly resident.
  */
 #include "device/scene.h"
 
@@ -15,14 +14,14 @@
 #define SIDE 128u
 #define PIXELS (SIDE * SIDE)
 
-/* A plane seen through a window: uv is affine in the pixel, and further away with each row. */
+/* A plane seen through a window: uv is affine in the pixel, and farther away with each row. */
 struct look {
     const char *name;
     double left, top;          /* uv of the first pixel */
     double across, down;       /* uv per pixel */
-    double skew;               /* of u per row */
-    double farther;            /* growth of `across` from the first row to the last, 0: none */
-    double texels_x, texels_y; /* instead of across and down: texels of level 0 per pixel */
+    double skew;               /* change of u per row */
+    double farther;            /* growth of `across` from the first row to the last; 0: none */
+    double texels_x, texels_y; /* texels of level 0 per pixel, instead of across and down */
     bool magnified, skewed;
 };
 
@@ -36,7 +35,7 @@ struct picture_case {
 struct session {
     struct scene scene;
     uint32_t texture;
-    uint32_t feedback_count; /* of the first pixels */
+    uint32_t feedback_count; /* number of leading pixels that write feedback */
 };
 
 static void record(void *user, VkCommandBuffer commands)
@@ -69,10 +68,10 @@ static void aim(struct session *s, const struct picture_case *c, const struct lo
 
 struct pictures {
     struct ProbeOutput pixels[MAX_LOOKS * PIXELS];
-    uint32_t packed_level; ///< this level and all coarser ones are always resident
+    uint32_t packed_level; ///< this level and coarser ones are always resident
 };
 
-/* All of the looks in turn, each into a picture. The first pixels of each write feedback. */
+/* Draws all looks in turn, each into a picture. The first pixels of each write feedback. */
 static void draw_in(struct harness *h, SluiceResidencyMode mode, const struct picture_case *c,
                     enum pattern_kind kind, const struct look *looks, uint32_t look_count,
                     uint32_t feedback_count, struct pictures *out)
@@ -103,8 +102,8 @@ static void draw_in(struct harness *h, SluiceResidencyMode mode, const struct pi
 }
 
 /*
- * The same is resident, but for packed levels, which are always: a driver's mip tail may begin
- * with a finer level than dense residency packs.
+ * Returns whether equal levels are resident. Packed levels always are: a driver's mip tail may
+ * begin with a finer level than dense residency packs.
  */
 static bool is_comparable(const struct ProbeOutput *a, uint32_t a_packed,
                           const struct ProbeOutput *b, uint32_t b_packed)
@@ -167,8 +166,7 @@ static const struct picture_case cases[] = {
     {600, 500, SLUICE_FORMAT_R32G32B32A32_SFLOAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
      VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, 1},
 };
-/* Drivers filter these each in its own way, one by the finer level alone: only what is altogether
- * wrong is found. */
+/* Drivers filter these cases differently, one by the finer level only. Finds gross errors only. */
 static const struct picture_case anisotropic_cases[] = {
     {1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM, VK_SAMPLER_ADDRESS_MODE_REPEAT,
      VK_SAMPLER_ADDRESS_MODE_REPEAT, 8},
@@ -178,7 +176,7 @@ static const struct picture_case anisotropic_cases[] = {
 
 #define CASES (sizeof cases / sizeof cases[0])
 
-/* Returns how many pixels are coarser than they should be. */
+/* Returns the number of pixels that are coarser than they should be. */
 static uint32_t compare(struct harness *h, const struct picture_case *c, enum pattern_kind kind,
                         const struct look *look, uint32_t look_count, uint32_t feedback_count,
                         const double *at_least)
@@ -211,10 +209,10 @@ static bool is_cpu(struct harness *h)
 }
 
 /*
- * In decibels. A GPU samples sparse images as others; lavapipe with floats in place of 8 bits.
- * Pages are sampled at the formula's level, from which a GPU's own is up to 0.12 off, as noise
- * shows, and up to half a level coarser where the derivatives are not at right angles
- * (docs/drivers.md). No shader but a fragment shader can ask for it.
+ * In dB. A GPU samples sparse images like others; lavapipe uses floats instead of 8 bits. Pages are
+ * sampled at the formula's level. A GPU's own level deviates by up to 0.12, which noise shows. It
+ * is up to half a level coarser if the derivatives are not at right angles (docs/drivers.md). Only
+ * a fragment shader can query it.
  */
 static double least_psnr(struct harness *h, enum pattern_kind kind, const struct look *look)
 {
