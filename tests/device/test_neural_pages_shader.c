@@ -1,4 +1,5 @@
-/* Texels of sets whose latents are pages of a demand loader: what a shader decodes, against C. */
+/* Texels of sets whose latents are pages of a demand loader: compares a shader's decoding with
+ * C. */
 #include "device/conform.h"
 #include "neural/decoded.h"
 #include "neural/neural_files.h"
@@ -29,7 +30,7 @@ struct rig {
     SluiceDemandLoader *loader;
     SluiceDemandResourceId resource;
     uint32_t first_page;
-    struct harness_buffer buffers[4]; ///< as the shader binds them
+    struct harness_buffer buffers[4]; ///< buffers as bound by the shader
     struct conform_set own;           ///< set 1
     VkPipelineLayout layout;
     VkPipeline pipeline;
@@ -41,7 +42,7 @@ static SluiceResult read_page(void *user, uint32_t page, uint32_t size, void *by
 {
     struct rig *rig = user;
     assert_int_equal(size, rig->pages.pageSize);
-    rig->pages_read++; /* one thread reads */
+    rig->pages_read++; /* only one thread reads */
     return sluiceReadNeuralPage(rig->set, &rig->pages, page, bytes);
 }
 
@@ -88,7 +89,7 @@ static void create_pipeline(struct rig *rig)
         &h, rig->layout, conform_module(&h, neural_pages_comp, sizeof neural_pages_comp), NULL);
 }
 
-/* Leaves the test where there are no addresses. */
+/* Skips the test if there are no buffer addresses. */
 static void rig_init(struct rig *rig, const char *sample, uint32_t page_size)
 {
     char path[512];
@@ -129,7 +130,7 @@ static void add(struct rig *rig, uint32_t mip, uint32_t x, uint32_t y)
     inputs[rig->count++] = (struct NeuralPageInput){(int32_t)x, (int32_t)y, mip};
 }
 
-/* Returns how many pages were missing, and waits until they are read. */
+/* Returns the number of missing pages, and waits until they are read. */
 static uint32_t launch(struct rig *rig)
 {
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
@@ -164,8 +165,8 @@ static uint32_t launch(struct rig *rig)
     return requests.missingCount;
 }
 
-/* Every result is the decoder's of the mip that it says; with `sharp`, of the mip that was asked.
- */
+/* Checks that every result equals the decoder's at the reported mip; with `sharp`, at the requested
+ * mip. */
 static void check(const struct rig *rig, bool sharp)
 {
     const struct NeuralPageInput *inputs = rig->buffers[2].mapped;

@@ -1,8 +1,8 @@
 /*
- * The faster decode paths of neural.glsl and neural_matrix.glsl against sluiceDecodeNeuralTexels:
- * bit by bit where sums are exact, otherwise with a least PSNR. Prints a table of errors per path
- * and mip, also against other decoders and the originals. Paths that the device does not list are
- * named and left out.
+ * Compares the faster decode paths of neural.glsl and neural_matrix.glsl with
+ * sluiceDecodeNeuralTexels: bit by bit if sums are exact, otherwise by a minimum PSNR. Prints a
+ * table of errors per path and mip, also against other decoders and the originals. Names and skips
+ * paths that the device does not list.
  */
 #include "device/conform.h"
 
@@ -32,8 +32,8 @@ enum path { FP8, HALF, VECTOR_INT8, VECTOR_FP8, MATRIX, PATHS };
 
 static const struct {
     const char *name;
-    SluiceNeuralWeightKind reference; ///< of the host's decode
-    double least;                     ///< dB to it; 0: the same bits
+    SluiceNeuralWeightKind reference; ///< weights of the host's decode
+    double least;                     ///< minimum dB to the host's decode; 0: equal bits
     uint32_t schema;                  ///< 0: all
 } paths[PATHS] = {
     [FP8] = {"fp8", SLUICE_NEURAL_WEIGHTS_FP8, 0, 0},
@@ -49,7 +49,7 @@ struct rig {
     SluiceNeuralPathFeatures features;
     struct harness_buffer sets, latents, weights, outputs;
     struct conform_set set;
-    VkPipeline pipelines[PATHS]; ///< of paths that are there
+    VkPipeline pipelines[PATHS]; ///< pipelines of supported paths
 };
 
 static void prepare(struct harness *h, VkDeviceCreateInfo *info,
@@ -120,7 +120,7 @@ static void rig_finish(struct rig *rig)
     harness_buffer_finish(rig->h, &rig->outputs);
 }
 
-/* Weights as the shader of a path reads them. */
+/* Uploads weights in the layout of a path's shader. */
 static void upload_weights(struct rig *rig, enum path path, const SluiceNeuralSet *set,
                            const struct decodable *d)
 {
@@ -156,7 +156,7 @@ static const struct NeuralOutput *run(struct rig *rig, enum path path, uint32_t 
     return rig->outputs.mapped;
 }
 
-/* dB to the floats of NAME.KIND.mipNN.f32. NaN: there is no such file. */
+/* Returns the dB to the floats of NAME.KIND.mipNN.f32. NaN: there is no such file. */
 static double psnr_to_file(const char *name, const char *kind, uint32_t mip, const float *texels,
                            size_t count)
 {
@@ -172,7 +172,8 @@ static double psnr_to_file(const char *name, const char *kind, uint32_t mip, con
     return psnr;
 }
 
-/* One mip by one path. Channels of no texture are garbage and count here as well: bits are bits. */
+/* Compares one mip by one path. Channels without a texture hold garbage, and must have equal bits,
+ * too. */
 static void compare(struct rig *rig, enum path path, const char *name, const struct decodable *d,
                     uint32_t mip)
 {
@@ -256,7 +257,7 @@ static void every_refused_allocation_is_survived(void **state)
     assert_true(allowed > 1);
 }
 
-/* A driver whose layout is the source with all bits inverted, and three bytes behind. */
+/* A driver whose layout is the source with all bits inverted, followed by three bytes. */
 static VKAPI_ATTR VkResult VKAPI_CALL fake_convert(VkDevice device,
                                                    const struct slc_convert_info *info)
 {
@@ -327,7 +328,7 @@ int main(void)
 {
     struct harness h;
     struct rig rig = {.h = &h};
-    /* the first whose SPIR-V validation knows cooperative vectors */
+    /* first version whose SPIR-V validation supports cooperative vectors */
     const struct harness_newer newer = {prepare, &rig, VK_MAKE_API_VERSION(0, 1, 4, 309)};
     int status = harness_init_newer(&h, &newer);
     if (status)

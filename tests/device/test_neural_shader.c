@@ -1,5 +1,5 @@
 /*
- * Texels that neural.glsl decodes against sluiceDecodeNeuralTexels, bit by bit: sets of random
+ * Compares texels decoded by neural.glsl with sluiceDecodeNeuralTexels, bit by bit: sets of random
  * numbers of every network and latent shape, slices of them, and files.
  */
 #include "device/conform.h"
@@ -29,12 +29,12 @@ struct rig {
     struct harness *h;
     struct harness_buffer sets, latents, weights, outputs;
     struct conform_set set;
-    VkPipeline pipelines[VARIANTS]; ///< not all on all devices
+    VkPipeline pipelines[VARIANTS]; ///< some devices lack some
 };
 
 static bool has_dot; /* set once in main, before any test */
 
-/* Once for all tests: pipelines take long to compile. */
+/* Creates the rig once for all tests, because pipelines take long to compile. */
 static struct rig *rig_init(struct rig *rig)
 {
     struct harness *h = rig->h;
@@ -78,7 +78,7 @@ static void rig_finish(struct rig *rig)
 static void upload(struct rig *rig, const struct decodable *d)
 {
     assert_true(d->latent_size <= LATENT_SIZE && d->weight_size <= WEIGHT_SIZE);
-    memset(rig->sets.mapped, 0xEE, sizeof d->constants); /* set 0 is another one */
+    memset(rig->sets.mapped, 0xEE, sizeof d->constants); /* set 0 is another set */
     memcpy((uint8_t *)rig->sets.mapped + sizeof d->constants, &d->constants, sizeof d->constants);
     memcpy(rig->latents.mapped, d->latents, (size_t)d->latent_size);
     memcpy(rig->weights.mapped, d->weights, (size_t)d->weight_size);
@@ -99,7 +99,7 @@ static const struct NeuralOutput *decode(struct rig *rig, enum variant variant,
     return rig->outputs.mapped;
 }
 
-/* All texels of a rectangle. Returns how many are there. */
+/* Compares all texels of a rectangle. Returns the number of resident ones. */
 static uint32_t compare(struct rig *rig, const struct decodable *d, struct NeuralParams params)
 {
     static float expected[TEXELS][16];
@@ -155,7 +155,7 @@ static uint32_t pick(uint32_t from, uint32_t to)
     return from + (uint32_t)roll() % (to - from + 1);
 }
 
-/* Words of the weights: bytes, then scales and biases by which sums become about -3 to 3. */
+/* Makes weights: bytes, then scales and biases that bring sums to about -3 to 3. */
 static uint32_t make_weights(uint8_t *bytes, uint32_t schema, uint32_t inputs)
 {
     const uint32_t ones[5] = {inputs, 64, 64, 64, 16}, threes[5] = {48, 64, 48, 32, 16};
@@ -177,7 +177,7 @@ static uint32_t make_weights(uint8_t *bytes, uint32_t schema, uint32_t inputs)
     return at;
 }
 
-/* A slice of a grid, whole in every second one. */
+/* Makes a slice of a grid; every second one is whole. */
 static void make_slice(SluiceNeuralSlice *slice, uint32_t offset, bool whole, bool wraps)
 {
     uint32_t width = pick(1, 40), height = pick(1, 40), w = whole ? width : pick(1, width);
@@ -215,7 +215,7 @@ static void make_set(struct decodable *d, uint32_t i)
                                                     m == 2 ? 0.1875f : (float)pick(1, 999) / 700};
     k->slices[15].sliceSize = 0;
     if (i % 8 == 7)
-        k->mips[1].firstSlice = 14; /* whose second slice is not there */
+        k->mips[1].firstSlice = 14; /* its second slice is missing */
     d->latent_size = 1 << 21;
     for (uint32_t b = 0; b < d->latent_size; b++)
         d->latents[b] = (uint8_t)roll();
@@ -299,7 +299,7 @@ static void compare_set(struct rig *rig, const SluiceNeuralSet *set)
                                       .width = request.width,
                                       .height = request.height};
         assert_int_equal(compare(rig, &d, params), request.width * request.height);
-        params.x = params.y = 0; /* most of which is not there */
+        params.x = params.y = 0; /* mostly missing */
         params.width = slc_min_u32(width, 48);
         params.height = slc_min_u32(height, 48);
         compare(rig, &d, params);
@@ -337,7 +337,7 @@ static void files_decode_to_the_same_bits(void **state)
     }
 }
 
-/* Of the 16 channels of a texel that decodes to noise. */
+/* Converts the 16 channels of a texel that decodes to noise. */
 static void channels_become_linear(void **state)
 {
     struct decodable d = {.latents = malloc(1 << 21), .weights = malloc(WEIGHT_ROOM)};

@@ -1,4 +1,4 @@
-/* Tiles that the GPU decodes from neural sets, against the decoder in C. */
+/* Tiles that the GPU decodes from neural sets, compared with the decoder in C. */
 #include "device/scene.h"
 #include "neural/decoded.h"
 #include "neural/neural_files.h"
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SMALL "v9_64_g.ntc" /* the mip tail alone */
+#define SMALL "v9_64_g.ntc" /* mip tail only */
 #define LARGE "v9_300x200.ntc"
 #define OLD "v7_64_g.ntc" /* schema 1 */
 #define TILE 128u         /* texels of LARGE along a side, in RGBA8 */
@@ -26,8 +26,8 @@ struct rig {
     SluiceVulkanNeuralDecoder *decoder;
     uint32_t texture;
     SluiceVulkanNeuralOutput output;
-    bool hlg;      ///< values are codes of HLG, and are stored linear
-    bool requests; ///< the application requests all tiles
+    bool hlg;      ///< true: values are codes of HLG, stored as linear values
+    bool requests; ///< true: the application requests all tiles
     SluiceTextureRequestId request;
 };
 
@@ -60,7 +60,7 @@ static void close_set(struct rig *rig)
     sluiceDestroyNeuralSet(rig->set);
 }
 
-/* With decoders, which facts share: their pipelines take long to compile. */
+/* Rigs with decoders that tests share, because pipelines take long to compile. */
 static struct rig small_rig, large_rig;
 
 static void rig_init(struct rig *rig, struct harness *h, const char *sample)
@@ -73,7 +73,7 @@ static void rig_init(struct rig *rig, struct harness *h, const char *sample)
     CHECK_OK(sluiceCreateVulkanNeuralDecoder(&info, &rig->decoder));
 }
 
-/* All tiles are wanted, and no shader says so. */
+/* Requests all tiles, without feedback from shaders. */
 static void request_all(struct rig *rig)
 {
     const SluiceVulkanTextureRequest all = {.structSize = sizeof all, .until = UINT64_MAX};
@@ -82,7 +82,7 @@ static void request_all(struct rig *rig)
                                         &rig->request));
 }
 
-/* Values are stored as the network gives them. Of LARGE one corner is looked at. */
+/* Shows a set. Values are stored as the network gives them. One corner of LARGE is visible. */
 static void show(struct rig *rig, struct harness *h, SluiceFormat format, uint32_t first,
                  uint32_t count)
 {
@@ -106,7 +106,7 @@ static void show(struct rig *rig, struct harness *h, SluiceFormat format, uint32
     scene_settle(&rig->scene, 60);
 }
 
-/* The decoder is not used any more. */
+/* Destroys the streamer, so the decoder is unused. */
 static void hide(struct rig *rig)
 {
     struct harness *h = rig->scene.h;
@@ -124,7 +124,7 @@ static void rig_finish(struct rig *rig)
 struct fetch {
     struct rig *rig;
     uint32_t count, texel_count;
-    const float *texels; ///< of the level
+    const float *texels; ///< texels of the level
     uint32_t level;
     double squares, worst, largest;
 };
@@ -163,7 +163,7 @@ static void flush(struct fetch *f)
     f->count = 0;
 }
 
-/* The last tile of levels 0 and 1, and all levels from 2 on. */
+/* Compares the last tile of levels 0 and 1, and all levels from 2 on. */
 static struct fetch compare(struct rig *rig)
 {
     struct fetch f = {.rig = rig};
@@ -208,7 +208,7 @@ static void texels_of_schema_1_are_those_of_the_decoder_in_C(void **state)
     rig_finish(&rig);
 }
 
-/* The numbers of the sample are taken for codes of HLG. */
+/* Treats the numbers of the sample as codes of HLG. */
 static void codes_of_hlg_become_linear_floats(void **state)
 {
     struct rig *rig = &small_rig;
@@ -223,7 +223,7 @@ static void codes_of_hlg_become_linear_floats(void **state)
     rig->hlg = false;
 }
 
-/* Inference on load: before anything is drawn. */
+/* Decodes on load, before anything is drawn. */
 static void a_whole_texture_becomes_blocks_when_it_is_requested(void **state)
 {
     struct rig *rig = &large_rig;
@@ -295,8 +295,8 @@ static void wrong_decoders_are_refused(void **state)
     close_set(&rig);
 }
 
-/* What the decoder in C refuses. In a shader it would be memory beside the latents or the inputs.
- */
+/* Constants that the decoder in C refuses. A shader would access memory outside the latents or
+ * inputs. */
 static void constants_that_contradict_themselves_are_refused(void **state)
 {
     struct harness *h = *state;

@@ -1,5 +1,5 @@
-/* Training on a device: gradients against a reference in double, what 32 x 32 texels become, and
- * that the same input makes the same bits. */
+/* Training on a device: gradients against a reference in double, the result of 32 x 32 texels, and
+ * equal bits from equal input. */
 #include "device/harness.h"
 #include "neural_train/neural_compressor.h"
 #include "neural_train/naive_texel.h"
@@ -24,7 +24,7 @@ struct set {
     SluiceNeuralCompressorCreateInfo info;
 };
 
-/* Waves and a disk, the last channel a mask that is 1 in the disk. */
+/* Waves and a disk. The last channel is a mask that is 1 in the disk. */
 static float texel_of(uint32_t size, uint32_t channels, uint32_t x, uint32_t y, uint32_t c)
 {
     double u = (x + 0.5) / size, v = (y + 0.5) / size, r = hypot(u - 0.5, v - 0.5);
@@ -83,7 +83,7 @@ static void record_readback(void *user, VkCommandBuffer commands)
     CHECK_OK(sluiceRecordNeuralReadback(r->compressor, commands));
 }
 
-/* Trains until `step` and reads back. */
+/* Trains until `step`, and reads back. */
 static void train(struct harness *h, SluiceNeuralCompressor *compressor,
                   uint32_t per_command_buffer, uint32_t step)
 {
@@ -131,7 +131,7 @@ static void bits_are_the_same_again_and_when_resumed(void **state)
     assert_memory_equal(first, resumed, size);
     free(resumed);
     free(half);
-    /* also from where only the network learns, and where the FP8 network does */
+    /* also from stages where only the network learns, and where the FP8 network does */
     set.info.pCheckpoint = NULL;
     half = checkpoint_after(h, &set.info, 64, 41, &half_size);
     set.info.pCheckpoint = half;
@@ -153,8 +153,8 @@ static double psnr(double squares, double count)
     return -10.0 * log10(squares / count);
 }
 
-/* What the int8 decoder makes of mip 0: PSNR after clamping, and how many texels of the mask that
- * are 0 or 1 are so exactly. */
+/* Decodes mip 0 with the int8 network. Returns the PSNR after clamping. `*exact`: share of the
+ * mask's 0s and 1s that are exact. */
 static double decode(const struct set *set, const SluiceNeuralTrainedSet *trained, double *exact)
 {
     double squares = 0.0, certain = 0.0, right = 0.0;
@@ -199,7 +199,7 @@ static void the_int8_decoder_shows_what_was_trained(void **state)
     print_message("# %.2f dB decoded, %.2f dB in training, %.3f of the mask exact\n", decoded,
                   during, exact);
     assert_true(decoded > 26.5);
-    /* The margin of the mask counts in training alone; mips are in it. */
+    /* The margin of the mask counts during training only, and includes mips. */
     assert_true(fabs(decoded - during) < 3.0);
     assert_true(exact > 0.98);
     sluiceDestroyNeuralCompressor(compressor);
@@ -274,7 +274,7 @@ static void fill_inputs(const struct gradients *g, uint32_t mip, uint32_t x, uin
     inputs[46] = inputs[47] = 0.0;
 }
 
-/* The squared error of a texel times `times`, and its gradient: by hand, layer after layer. */
+/* Adds a texel's squared error times `times`, and its gradient, computed layer by layer. */
 static void add_texel(struct gradients *g, const float *wanted, uint32_t mip, uint32_t x,
                       uint32_t y, double times)
 {
@@ -313,7 +313,7 @@ static void add_texel(struct gradients *g, const float *wanted, uint32_t mip, ui
     }
 }
 
-/* Each texel of a mip as often as a step has it. */
+/* Computes each texel of a mip as often as a step samples it. */
 static void compute(struct gradients *g, const struct set *set)
 {
     memset(g->network, 0, sizeof g->network);
@@ -380,7 +380,7 @@ static void check_gradients(const struct gradients *g, const SluiceNeuralCompres
         all += g->network[i] * g->network[i];
     }
     print_message("# network's gradient: relative error %.2e\n", sqrt(off / all));
-    assert_true(sqrt(off / all) < 2e-3); /* references and latents are of half precision */
+    assert_true(sqrt(off / all) < 2e-3); /* references and latents have half precision */
     off = all = 0.0;
     for (uint32_t i = 0; i < slc_train_latent_count(g->plan); i++) {
         double value = latents[i] / (double)slc_train_latent_unit(g->plan);
@@ -391,7 +391,7 @@ static void check_gradients(const struct gradients *g, const SluiceNeuralCompres
     assert_true(sqrt(off / all) < 2e-3);
 }
 
-/* The reference itself against differences of its loss. */
+/* Compares the reference with differences of its loss. */
 static void check_reference(struct gradients *g, const struct set *set, float *values, uint32_t at,
                             double gradient)
 {
@@ -414,7 +414,7 @@ static void gradients_are_those_of_the_reference(void **state)
     set_init(&set, 16, 3, 3);
     for (uint32_t c = 0; c < 3; c++)
         set.meaning[c] = (SluiceNeuralTrainingChannel){0};
-    set.info.batchSize = 256 + 64 + 32; /* each texel of 16, 8 and 4, the last twice */
+    set.info.batchSize = 256 + 64 + 32; /* each texel of 16, 8 and 4; those of 4 twice */
     SluiceNeuralCompressor *c;
     CHECK_OK(sluiceCreateNeuralCompressor(h->context, &set.info, &c));
     train(h, c, 0, 1); /* no step: initial values */
@@ -484,8 +484,8 @@ static void damaged_checkpoints_are_refused(void **state)
     set_finish(&set);
 }
 
-/* Everything with the allocator refusing from call `refuse_from` on. False if a call was refused.
- */
+/* Makes all calls with an allocator that refuses from call `refuse_from` on. Returns false if a
+ * call was refused. */
 static bool live(struct harness *h, struct failing_allocator *allocator, const struct set *set,
                  uint64_t refuse_from)
 {
@@ -525,7 +525,7 @@ static void every_refused_allocation_is_survived(void **state)
         refused++;
     }
     assert_int_equal(allocator.live_bytes, before);
-    assert_int_equal(refused, 2); /* the compressor, the texels of its result */
+    assert_int_equal(refused, 2); /* the compressor, and the texels of its result */
     allocator.refuse_from = UINT64_MAX;
     CHECK_OK(harness_set_context(h, NULL));
     set_finish(&set);

@@ -1,4 +1,5 @@
-/* What only paged residency has: images of pages that come and go, and what finds pages in them. */
+/* Features of paged residency only: images of pages that are created and destroyed, and the page
+ * table. */
 #include "device/scene.h"
 
 #include "support/roll.h"
@@ -23,7 +24,7 @@ static uint64_t generation(const struct scene *scene)
     return pages.generation;
 }
 
-/* While another texture is drawn in frames that nobody waits for. */
+/* Another texture is drawn meanwhile, in frames that are not waited for. */
 static void memory_comes_back_when_no_tile_needs_it(void **state)
 {
     struct scene scene;
@@ -56,7 +57,7 @@ static void memory_comes_back_when_no_tile_needs_it(void **state)
     scene_finish(&scene);
 }
 
-/* 64 pages where 256 are wanted, and none at all of a second format. */
+/* 64 pages, of which 256 are requested, and none for a second format. */
 static void pages_that_run_out_leave_coarse_pictures_and_room_for_packed_levels(void **state)
 {
     struct harness *h = *state;
@@ -123,14 +124,15 @@ static void pages_found_by_a_loop_are_those_found_by_an_index(void **state)
     assert_memory_equal(outputs[0], outputs[1], sizeof outputs[0]);
 }
 
-/* Tiles of one format that nobody wants hold all pages: their image goes, and another one comes. */
+/* Unwanted tiles of one format occupy all pages: their image is destroyed, and another one
+ * created. */
 static void standby_tiles_make_room_for_those_of_another_format(void **state)
 {
     struct harness *h = *state;
     struct scene scene;
     const struct scene_aim fine = {0, 0, 0.6, 0.6, 0.1, 0.2, 0, 0};
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
-    h->quiet = true; /* that pages are short */
+    h->quiet = true; /* the shortage of pages is expected */
     CHECK_OK(harness_set_context(h, &(SluiceVulkanContextCreateInfo){.maxPageChunkCount = 2}));
     scene_init(
         &scene, h,

@@ -1,5 +1,5 @@
-/* Rays that hit proxy boxes on the device request what a caster on the host hits: by ray tracing,
- * if the device has it, and by a compute shader. */
+/* Rays that hit proxy boxes on the device request the boxes that a caster on the host hits. Uses
+ * ray tracing, if the device has it, and a compute shader. */
 #include "device/proxy_rig.h"
 
 #include "support/test.h"
@@ -13,18 +13,18 @@
 static struct harness h;
 static bool traces;
 
-/* The boxes of a set, and what rays hit by the formula, in doubles. */
+/* The boxes of a set, and the hits of rays by the formula in double. */
 struct scene {
     struct proxy_rig rig;
     SluiceProxyId ids[PROXY_RIG_BOXES];
-    uint32_t index_count; ///< of ids
+    uint32_t index_count; ///< number of indices in `ids`
     uint64_t seed;
     bool nearest[PROXY_RIG_BOXES], entered[PROXY_RIG_BOXES];
     struct ProxyHit expected[PROXY_RIG_RAYS];
 };
 
-/* A ray's way through a box. `margin` is how far it is from missing it, relative to the distance;
- * negative: it misses. `doubt`: rounding could choose another face. */
+/* A ray's path through a box. `margin`: distance from missing the box, relative to the ray's
+ * length; negative: misses. `doubt`: rounding could choose another face. */
 struct crossing {
     double t, margin;
     uint32_t face;
@@ -64,7 +64,7 @@ static struct crossing cross(const SluiceProxyBox *box, const struct ProxyRay *r
     return crossing;
 }
 
-/* What the ray does, or false if rounding could decide something. */
+/* Computes a ray's hits. Returns false if rounding could decide the result. */
 static bool cast(struct scene *scene, const struct ProxyRay *ray, struct ProxyHit *hit,
                  uint32_t *entered, uint32_t *entered_count)
 {
@@ -79,7 +79,7 @@ static bool cast(struct scene *scene, const struct ProxyRay *ray, struct ProxyHi
         struct crossing crossing = cross(&box, ray);
         if (crossing.margin < -1e-5)
             continue;
-        if (crossing.margin < 0) /* boxes are never missed, but may be hit from beside */
+        if (crossing.margin < 0) /* boxes are never missed, but rays beside them may hit */
             return false;
         if (crossing.doubt)
             return false;
@@ -108,7 +108,7 @@ static void add(struct scene *scene, const SluiceProxyBox *box)
         scene->index_count = index + 1;
 }
 
-/* In [-10, 10]; one in three has no thickness along an axis. */
+/* Adds boxes in [-10, 10]. One in three has zero thickness along an axis. */
 static void add_random(struct scene *scene, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -123,7 +123,8 @@ static void add_random(struct scene *scene, uint32_t count)
     }
 }
 
-/* From anywhere around, also from within boxes and along axes; half of them at a box. */
+/* Returns a ray from anywhere, sometimes inside boxes or along axes. Half of the rays aim at a
+ * box. */
 static struct ProxyRay random_ray(struct scene *scene)
 {
     struct ProxyRay ray = {.tMax = number(scene, 1, 60)};
@@ -227,7 +228,7 @@ static void scene_free(struct scene *scene)
     free(scene);
 }
 
-/* Boxes come and go, and indices are used again. */
+/* Boxes are added and removed, and indices reused. */
 static void compare(bool by_rays)
 {
     enum { ROUNDS = 3 };
@@ -262,7 +263,7 @@ static void a_compute_shader_requests_the_boxes_that_a_host_caster_hits(void **s
     compare(false);
 }
 
-/* Squares without thickness, far from the origin, too; rays onto their middles and from within. */
+/* Squares of zero thickness, also far from the origin. Rays hit their middles, also from within. */
 static void boxes_of_zero_thickness_are_hit(void **state)
 {
     (void)state;
@@ -289,7 +290,7 @@ static void boxes_of_zero_thickness_are_hit(void **state)
         scene->entered[i] = true;
     for (uint32_t by_rays = 0; by_rays <= traces; by_rays++) {
         clear(scene);
-        proxy_rig_launch(&scene->rig, by_rays, true); /* each is entered, if not the nearest */
+        proxy_rig_launch(&scene->rig, by_rays, true); /* each is entered even if not the nearest */
         check_requested(scene, scene->rig.materials, scene->entered);
     }
     scene_free(scene);
@@ -303,7 +304,7 @@ static void a_set_without_boxes_is_hit_by_nothing(void **state)
     aim(scene, 64);
     for (uint32_t by_rays = 0; by_rays <= traces; by_rays++) {
         check_launches(scene, by_rays);
-        add(scene, &unit); /* and one whose only box was removed */
+        add(scene, &unit); /* and a structure whose only box was removed */
         proxy_rig_launch(&scene->rig, by_rays, false);
         proxy_rig_remove(&scene->rig, scene->ids[0]);
         scene->ids[0] = SLUICE_NO_PROXY;

@@ -1,4 +1,4 @@
-/* The resolve passes against brute force on the host, word by word. */
+/* Compares the resolve passes with brute force on the host, word by word. */
 #include "device/harness.h"
 #include "device/resolve_oracle.h"
 
@@ -17,18 +17,18 @@ struct rig {
     struct harness *h;
     struct slc_vk vk;
     struct slc_resolve resolve;
-    struct harness_buffer feedback; ///< what the host sees of it, before and after each run
-    struct slc_buffer gpu_feedback; ///< in the GPU's own memory, as a streamer has it
+    struct harness_buffer feedback; ///< the host's copy, before and after each run
+    struct slc_buffer gpu_feedback; ///< in the GPU's own memory, as in a streamer
     struct harness_buffer readback;
     uint32_t encoding, region_capacity, max_items, max_data;
     struct oracle_texture *textures;
     uint32_t texture_count;
-    uint8_t *written, *reported; ///< of all textures, by region
+    uint8_t *written, *reported; ///< all textures, by region
     struct oracle_item *items;
     uint32_t item_count, capacity, slot, data_count;
     struct SluiceResolveResult *results; ///< expected
     uint32_t *data;                      ///< expected
-    const struct oracle_texture *fresh;  ///< whose record_new comes before the resolve
+    const struct oracle_texture *fresh;  ///< texture whose record_new precedes the resolve
 };
 
 static void *allocate(size_t count, size_t size)
@@ -49,7 +49,7 @@ static void init_buffers(struct rig *r, const struct slc_caps *caps)
                              copied | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, SLC_BUFFER_DEVICE));
     uint64_t slot = 4ull * r->max_items + r->max_data;
     harness_buffer_init(r->h, &r->readback, SLOTS * slot * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    memset(r->feedback.mapped, 0x5A, words * 4); /* new textures begin clean, whatever was there */
+    memset(r->feedback.mapped, 0x5A, words * 4); /* new textures begin clean after any content */
 }
 
 static void rig_init(struct rig *r, struct harness *h, uint32_t encoding, uint32_t region_capacity,
@@ -96,7 +96,7 @@ static void rig_finish(struct rig *r)
     harness_check_silence(r->h);
 }
 
-/* As a shader writes: the finest of all levels counts. */
+/* Marks a region like a shader: the finest of all levels counts. */
 static void mark(struct rig *r, struct oracle_texture *t, uint32_t region, uint8_t level)
 {
     uint32_t *words = r->feedback.mapped, at = t->first + region;
@@ -204,7 +204,7 @@ static void check_words(struct rig *r)
     }
 }
 
-/* Resolves r->items on the device and by brute force, and compares all of it. */
+/* Resolves r->items on the device and by brute force, and compares everything. */
 static void resolve_and_compare(struct rig *r)
 {
     r->slot = (r->slot + 1) % SLOTS;
@@ -227,7 +227,7 @@ static void resolve_and_compare(struct rig *r)
     const uint32_t *data = words + 4 * r->max_items;
     assert_memory_equal(data, r->data, r->data_count * 4ull);
     for (uint32_t i = r->data_count; i < r->max_data; i++)
-        assert_int_equal(data[i], 0xA5A5A5A5u); /* only what is needed crosses the bus */
+        assert_int_equal(data[i], 0xA5A5A5A5u); /* only required words are copied */
     check_words(r);
 }
 
@@ -253,7 +253,7 @@ static void take_some(struct rig *r)
     }
 }
 
-/* Few changes, many, or none; often the same levels as last time. */
+/* Makes few changes, many, or none; often the last levels again. */
 static void mark_some(struct rig *r)
 {
     for (uint32_t i = 0; i < r->texture_count; i++) {
@@ -286,7 +286,7 @@ static void changes_are_those_of_a_full_scan(struct harness *h, uint32_t encodin
     rig_init(&r, h, encoding, 1u << 18, 300);
     add_textures(&r, 250);
     take_all(&r, 0);
-    resolve_and_compare(&r); /* nothing was written, nothing changes */
+    resolve_and_compare(&r); /* nothing was written, so nothing changes */
     assert_int_equal(r.data_count, 0);
     uint32_t states[3] = {0};
     for (uint32_t round = 0; round < 24; round++) {
@@ -324,9 +324,9 @@ static void what_has_no_room_stays_and_comes_later(void **state)
     for (uint32_t round = 0; round < 40; round++) {
         if (round < 20)
             mark_some(&r);
-        r.capacity = round < 20 ? (uint32_t)roll() % 20000 : 16384; /* in the end any one fits */
+        r.capacity = round < 20 ? (uint32_t)roll() % 20000 : 16384; /* in the end any item fits */
         take_all(&r, 0);
-        if (round >= 20) /* as the streamer does: those that waited go first */
+        if (round >= 20) /* as in the streamer: waiting ones go first */
             for (uint32_t i = 0, at = left; i < r.texture_count; i++, at++)
                 r.items[i].texture = &r.textures[at % r.texture_count];
         resolve_and_compare(&r);
@@ -380,7 +380,7 @@ static void segments_fill_more_than_one_row_of_workgroups(void **state)
     rig_finish(&r);
 }
 
-/* The stop watch of a queue; the harness needs none of it otherwise. */
+/* Timer of a queue, which the harness has no other use for. */
 struct watch {
     PFN_vkCreateQueryPool CreateQueryPool;
     PFN_vkDestroyQueryPool DestroyQueryPool;
@@ -418,7 +418,7 @@ static void record_timed(void *user, VkCommandBuffer commands)
     const VkPipelineStageFlagBits after_all = VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT;
     w->CmdResetQueryPool(commands, w->pool, 0, 2);
     record_upload(w->rig, commands);
-    w->CmdWriteTimestamp(commands, after_all, w->pool, 0); /* not before the upload is over */
+    w->CmdWriteTimestamp(commands, after_all, w->pool, 0); /* starts after the upload */
     record_resolve(w->rig, commands);
     w->CmdWriteTimestamp(commands, after_all, w->pool, 1);
     record_download(w->rig, commands);
@@ -432,7 +432,8 @@ static int compare_doubles(const void *a, const void *b)
 
 enum { TIMED = 21 };
 
-/* Median of the GPU's time to resolve all textures after `marks` random marks, in microseconds. */
+/* Returns the median GPU time to resolve all textures after `marks` random marks, in
+ * microseconds. */
 static double time_resolve(struct watch *w, uint32_t marks)
 {
     struct rig *r = w->rig;
