@@ -1,4 +1,4 @@
-/* One sampler2DArray for all layers shows what each layer's own view shows, to the bit. */
+/* One sampler2DArray for all layers gives the same bits as each layer's own view. */
 #include "device/array_scene.h"
 #include "device/conform.h"
 #include "device/painter.h"
@@ -19,7 +19,7 @@ struct array_probe {
     struct array_scene a;
     struct probe_texture sets[ARRAY_LAYERS];
     VkPipeline pipeline, own; ///< `own` is the prober's
-    uint32_t layer;           ///< that is sampled, or PROBE_ALL_LAYERS with their number
+    uint32_t layer;           ///< sampled layer, or PROBE_ALL_LAYERS with their number
 };
 
 static VkShaderModule create_module(const struct prober *p)
@@ -77,7 +77,7 @@ static void record(void *user, VkCommandBuffer commands)
     p->a.scene.prober.pipeline = p->own;
 }
 
-/* Between texels of level 0 and the coarsest, wrapped, at all angles. */
+/* Draws samples between texels of level 0 and the coarsest level, wrapped, at all angles. */
 static void draw_inputs(struct array_probe *p, const uint32_t size[2], float anisotropy)
 {
     struct ProbeInput *inputs = prober_inputs(&p->a.scene.prober);
@@ -94,7 +94,8 @@ static void draw_inputs(struct array_probe *p, const uint32_t size[2], float ani
     }
 }
 
-/* Both samples of each output; how many of them are coarser than wanted. */
+/* Compares both samples of each output. Returns the number of samples that are coarser than
+ * requested. */
 static uint32_t check_equal(const struct ProbeOutput *outputs, uint32_t count)
 {
     uint32_t missing = 0;
@@ -120,7 +121,8 @@ static void check_explicit(struct harness *h, const uint32_t size[2], SluiceForm
     draw_inputs(&p, size, anisotropy);
     const struct ProbeOutput *outputs = prober_outputs(&p.a.scene.prober);
     for (p.layer = 0; p.layer < ARRAY_LAYERS; p.layer++)
-        for (uint32_t frame = 0; frame < 7; frame++) { /* nothing, parts, what was asked for */
+        for (uint32_t frame = 0; frame < 7;
+             frame++) { /* first nothing is resident, then parts, then all requested tiles */
             harness_settle(h, p.a.scene.streamer, 1, record, &p);
             assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
             uint32_t missing = check_equal(outputs, SAMPLES);

@@ -1,4 +1,4 @@
-/* A streamer and a demand loader of one context that show the same textures. */
+/* A streamer and a demand loader of one context show the same textures. */
 #include "device/demand_runner.h"
 #include "device/scene.h"
 
@@ -10,8 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Tiles of 128 x 128 texels: 64, 16 and 4 of the levels that have tiles in both front ends. Level 3
- * is a tile of the demand loader and packed in the streamer; the rest is packed or tail in both. */
+/* Tiles of 128 x 128 texels: 64, 16 and 4 in the levels with tiles in both front ends. Level 3 is a
+ * tile of the demand loader and packed in the streamer. Coarser levels are packed or tail in
+ * both. */
 #define SIZE 1024u
 #define TILE 128u
 #define LEVELS 3u
@@ -23,7 +24,7 @@ struct counter {
     SluiceImageSource *inner;
     atomic_uint reads[LEVELS][SIZE / TILE][SIZE / TILE];
     atomic_uint succeeded, failed;
-    atomic_uint failures_left; ///< of reads of tiles
+    atomic_uint failures_left; ///< reads of tiles that still fail
 };
 
 static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
@@ -82,8 +83,8 @@ struct stage {
     struct runner runner;
     struct counter counter;
     bool launches_first;
-    uint32_t streamed;            ///< the texture in the scene
-    SluiceDemandTextureId demand; ///< the same in the demand loader
+    uint32_t streamed;            ///< index in the scene
+    SluiceDemandTextureId demand; ///< texture of the same source in the demand loader
 };
 
 static void stream(struct stage *s)
@@ -177,7 +178,7 @@ static void check_demand(const struct stage *s)
             }
 }
 
-/* A frame and a launch in turns, until both show everything. */
+/* Runs frames and launches in turns until both show everything. */
 static void run_both(struct stage *s, uint32_t limit)
 {
     for (uint32_t i = 0; i < limit; i++) {
@@ -244,7 +245,7 @@ static void both_at_once_read_each_tile_once(void **state)
     }
 }
 
-/* One in two frames and launches is recorded, given up and recorded again. */
+/* One in two frames and launches is recorded, abandoned and recorded again. */
 static void abandoned_frames_never_show_a_page_that_was_not_written(void **state)
 {
     static struct stage s;
@@ -273,7 +274,7 @@ static void a_read_that_fails_for_one_is_tried_by_the_other(void **state)
     (void)state;
     h.quiet = true;
     init(&s, 0);
-    scene_settle(&s.scene, 5); /* what has no tiles is there */
+    scene_settle(&s.scene, 5); /* levels without tiles are resident */
     s.counter.failures_left = 30;
     for (int i = 0; i < 40; i++) {
         scene_settle(&s.scene, 1);
@@ -384,7 +385,7 @@ static void changed_texels_are_read_again_by_the_one_that_was_told(void **state)
     finish(&s);
 }
 
-/* The streamer has begun to read, and then no frame comes for a long time. */
+/* The streamer has begun to read, and then runs no frame for a long time. */
 static void an_idle_front_end_is_not_waited_for(void **state)
 {
     static struct stage s;
@@ -429,7 +430,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL wait_alone(VkDevice device)
     return result;
 }
 
-/* The harness of another thread: the same device, command buffers of its own. */
+/* Returns a harness for another thread: same device, separate command buffers. */
 static struct harness harness_of_thread(void)
 {
     struct harness other = h;
@@ -447,13 +448,13 @@ static struct harness harness_of_thread(void)
     return other;
 }
 
-/* The level that a color of PATTERN_LEVEL shows. */
+/* Returns the level that a color of PATTERN_LEVEL shows. */
 static uint32_t shown_level(const float color[4])
 {
     return (uint32_t)lroundf(color[0] * 16) - 1;
 }
 
-/* Samples show coarser levels if there is no memory for their tiles. */
+/* Allows coarser levels if there is no memory for the samples' tiles. */
 static void check_resident(const struct stage *s)
 {
     uint32_t sample = 0;
@@ -479,7 +480,7 @@ struct tracing {
     uint32_t launches;
 };
 
-/* Its texture comes and goes; there is memory for 64 of its tiles. */
+/* Adds and removes its texture. There is memory for 64 of its tiles. */
 static void *trace(void *user)
 {
     struct tracing *t = user;
@@ -496,12 +497,11 @@ static void *trace(void *user)
     return NULL;
 }
 
-/* The loader stands still. Tiles whose pages it took and never filled are read by the streamer
- * after eight frames without a launch (page_sharing.c): 12 frames in all, or more if reads are
- * late. */
+/* The loader stops. The streamer reads tiles whose pages the loader took and never filled after
+ * eight frames without a launch (page_sharing.c): 12 frames in all, or more if reads are late. */
 static void settle_until_sharp(struct stage *s)
 {
-    uint32_t frames = 2; /* until feedback is there */
+    uint32_t frames = 2; /* until feedback arrives */
     scene_settle(&s->scene, frames);
     for (; scene_missing(&s->scene) > 0 && frames < 60; frames++)
         scene_settle(&s->scene, 1);
@@ -529,7 +529,7 @@ static void front_ends_may_be_on_two_threads(void **state)
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, trace, &tracing), 0);
     for (uint32_t i = 0; i < 240; i++) {
-        bool looks = i / 40 % 2 == 0; /* looks away until empty images are freed */
+        bool looks = i / 40 % 2 == 0; /* stops sampling until empty images are freed */
         s.scene.textures[s.streamed].sample_count = looks ? SCENE_SAMPLES : 0;
         scene_settle(&s.scene, 1);
         scene_check_levels(&s.scene);

@@ -4,7 +4,8 @@
 #include "support/roll.h"
 #include "support/test.h"
 
-/* A corner and the opposite one, so that first and last tiles of the finest levels come. */
+/* Samples a corner and the opposite one, so that first and last tiles of the finest levels are
+ * loaded. */
 static void aim_at_corners(struct scene *scene, uint32_t t, const SluiceImageInfo *info)
 {
     struct ProbeInput *inputs = scene_inputs(scene, t);
@@ -105,7 +106,7 @@ static void images_beyond_the_limit_are_refused(void **state)
     scene_finish(&scene);
 }
 
-/* Of images only the packed levels are one. */
+/* Only the packed levels are an image of the texture. */
 static void pages_may_be_of_textures_beyond_the_limit_of_images(void **state)
 {
     struct harness *h = *state;

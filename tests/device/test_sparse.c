@@ -1,4 +1,4 @@
-/* What a device says of sparse images, and what it can bear of them. */
+/* Sparse images: the device's reports, and its limits. */
 #include "device/scene.h"
 
 #include "support/roll.h"
@@ -16,7 +16,7 @@ static SluiceVulkanStreamerCreateInfo sparse_info(void)
 
 static const SluiceFormat rgba8 = SLUICE_FORMAT_R8G8B8A8_UNORM;
 
-/* What the format says is what an image gets; and the arithmetic of tails holds everywhere. */
+/* An image has the layout that the format reports. The arithmetic of tails must always hold. */
 static void layouts_agree_with_formats(void **state)
 {
     struct harness *h = *state;
@@ -48,7 +48,8 @@ static void layouts_agree_with_formats(void **state)
                                  layout.mipLevelCount - layout.regularMipCount);
         }
     }
-    assert_true(sparse_count >= 6); /* what Vulkan demands of a device with sparse residency */
+    assert_true(sparse_count >=
+                6); /* minimum that Vulkan requires of a device with sparse residency */
     harness_check_silence(h);
 }
 
@@ -70,7 +71,7 @@ static void capabilities_make_sense(void **state)
     }
 }
 
-/* As many tiles as the device bears, and no more; the rest stays coarse, and nothing waits. */
+/* Maps as many tiles as the limit allows. The rest stays coarse, and nothing waits. */
 static void textures_stay_coarse_where_no_more_tiles_are_borne(void **state)
 {
     struct harness *h = *state;
@@ -106,7 +107,7 @@ static void textures_stay_coarse_where_no_more_tiles_are_borne(void **state)
     sluiceDestroyImageSource(source);
 }
 
-/* Unmapped tiles that come back, with nothing else in between, cost no unbind. */
+/* Unmapped tiles that return with no other change in between cost no unbind. */
 static void tiles_that_come_back_to_their_pages_need_no_unbind(void **state)
 {
     struct scene scene;
@@ -128,7 +129,7 @@ static void tiles_that_come_back_to_their_pages_need_no_unbind(void **state)
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
     assert_true(stats.tilesUnmapped > 40);
     assert_true(stats.unbindsSaved > 40);
-    assert_true(stats.tilesRestored > 40); /* their texels are there, too */
+    assert_true(stats.tilesRestored > 40); /* restored with their texels */
     assert_true(stats.unbinds + stats.unbindsSaved <= stats.tilesUnmapped);
     assert_int_equal(scene_non_resident(&scene), 0);
     scene_finish(&scene);

@@ -1,6 +1,6 @@
 /*
- * Texels that stochastic_filter.glsl draws: their counts against probabilities in double, of which
- * the filters are integrated over texels and folded by address modes as Vulkan states them.
+ * Texels drawn by stochastic_filter.glsl: compares their counts with probabilities in double.
+ * Filters are integrated over texels, and folded by address modes as Vulkan defines them.
  */
 #include "device/conform.h"
 
@@ -66,10 +66,9 @@ static double draw(double from, double to)
     return from + (to - from) * roll() / ROLL_MAX;
 }
 
-/* Integral of the filter up to a texel's far edge, `t` texels from the coordinate: so the
- * probability of a texel is a difference of two. LINEAR and CUBIC are B-splines, which are box
- * filters of narrower ones; their integrals over a texel are the values of the next wider spline.
- */
+/* Returns the integral of the filter up to a texel's far edge, `t` texels from the coordinate. A
+ * texel's probability is a difference of two. LINEAR and CUBIC are B-splines, which are box filters
+ * of narrower ones: their integrals over a texel are values of the next wider spline. */
 static double weigh(const struct StochasticCall *call, double middle)
 {
     double x = fabs(middle), sigma = (double)call->sigma;
@@ -83,7 +82,7 @@ static double weigh(const struct StochasticCall *call, double middle)
     return middle > -0.5 && middle <= 0.5;
 }
 
-/* Texel of an axis as Vulkan's tables of wrapping operations have it; n: the border. */
+/* Wraps a texel coordinate by Vulkan's tables of wrapping operations; n: border. */
 static int64_t wrap(int64_t i, int64_t n, uint32_t mode)
 {
     int64_t m = (i % (2 * n) + 2 * n) % (2 * n);
@@ -98,7 +97,7 @@ static int64_t wrap(int64_t i, int64_t n, uint32_t mode)
     return i < 0 ? 0 : i >= n ? n - 1 : i;
 }
 
-/* Probability of each texel, and of the border, along an axis of a level. */
+/* Computes the probability of each texel, and of the border, along an axis of a level. */
 static void find_axis(const struct StochasticCall *call, uint32_t axis, uint32_t level,
                       double probability[SIZE + 1])
 {
@@ -135,7 +134,8 @@ static struct StochasticCall random_call(uint32_t i)
     return call;
 }
 
-/* Chi-square of the counts of one call, and its degrees of freedom. Rare texels are one class. */
+/* Computes the chi-square of one call's counts, and its degrees of freedom. Rare texels form one
+ * class. */
 static double chi_square(const struct StochasticCall *call, const struct StochasticPick *picks,
                          double *freedom)
 {
@@ -179,7 +179,8 @@ static double chi_square(const struct StochasticCall *call, const struct Stochas
     return sum;
 }
 
-/* Standard deviations from the mean of a chi-square, by Wilson and Hilferty. */
+/* Returns the deviation of a chi-square from its mean, in standard deviations, by Wilson and
+ * Hilferty. */
 static double deviations(double sum, double freedom)
 {
     double spread = 2 / (9 * freedom);
@@ -214,8 +215,8 @@ static void counts_of_texels_are_those_of_the_filter(void **state)
     rig_finish(&rig);
 }
 
-/* Numbers that are spread evenly give counts that are off by less than one for each end of a run:
- * no draw of chance hides a bias. The other number is fixed, so its texel is. */
+/* Evenly spread numbers give counts that are off by less than one per end of a run, so no
+ * randomness hides a bias. The other number is fixed, and so is its texel. */
 static void even_numbers_give_even_counts(void **state)
 {
     struct rig rig;
@@ -235,7 +236,7 @@ static void even_numbers_give_even_counts(void **state)
         double probability[SIZE + 1];
         uint32_t counts[SIZE + 1] = {0}, axis = calls[i].axis;
         uint32_t *mode = axis ? &calls[i].modeV : &calls[i].modeU;
-        if (*mode == BORDER) /* beside it a pick has the texel at the edge */
+        if (*mode == BORDER) /* at the border a pick uses the edge's texel */
             *mode = CLAMP;
         find_axis(&calls[i], axis, 0, probability);
         for (uint32_t k = 0; k < DRAWS; k++)
@@ -248,7 +249,7 @@ static void even_numbers_give_even_counts(void **state)
     rig_finish(&rig);
 }
 
-/* What is left of both numbers is uniform and independent of the choice. */
+/* The remainders of both numbers are uniform, and independent of the choice. */
 static void used_numbers_are_uniform_again(void **state)
 {
     enum { CELLS = 8 };
@@ -299,7 +300,7 @@ static void sigma_zero_is_the_nearest_texel(void **state)
     rig_finish(&rig);
 }
 
-/* Ends of all arguments: every pick lies inside its level. */
+/* Extreme arguments: every pick is inside its level. */
 static void picks_lie_inside_whatever_the_arguments(void **state)
 {
     static const float ends[] = {0,       -0.0f,  1,     -1,  0.5f,     1e-38f,

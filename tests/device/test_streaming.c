@@ -1,4 +1,4 @@
-/* The loop from feedback to sharp texels: what shaders sample is what the source holds. */
+/* The loop from feedback to sharp texels: shaders sample the source's content. */
 #include "device/scene.h"
 
 #include "base/checked.h"
@@ -41,7 +41,7 @@ static void settled_sample_shows_the_level_that_was_wanted(void **state)
     scene_finish(&scene);
 }
 
-/* Before anything has come the fallback color, then coarse levels, and never a step back. */
+/* First the fallback color, then coarse levels, then finer ones, and never coarser ones again. */
 static void picture_gets_sharper_frame_by_frame(void **state)
 {
     struct scene scene;
@@ -111,7 +111,7 @@ static void fetch_and_check(struct fetch *fetch)
     fetch->count = 0;
 }
 
-/* All texels of small levels, every `stride`th of large ones, and all edges of tiles. */
+/* Fetches all texels of small levels, every `stride`th of large ones, and all edges of tiles. */
 static void fetch_all(struct scene *scene, uint32_t index, uint32_t stride)
 {
     const struct scene_texture *texture = &scene->textures[index];
@@ -156,7 +156,7 @@ static void every_texel_is_where_the_source_has_it(void **state)
     scene_finish(&scene);
 }
 
-/* The same samples with everything resident: the same bits. */
+/* Equal samples with everything resident give equal bits. */
 static void settled_colors_are_those_of_a_resident_texture(void **state)
 {
     static struct ProbeOutput truth[PROBE_CAPACITY];

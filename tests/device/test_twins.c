@@ -1,6 +1,6 @@
 /*
- * Every function of lod.glsl, footprint.glsl and stochastic.glsl against its C twin, on arguments
- * from all of the range of float, pairs of special values among them.
+ * Compares every function of lod.glsl, footprint.glsl and stochastic.glsl with its C twin, on
+ * arguments from the whole range of float, including pairs of special values.
  */
 #include "device/conform.h"
 
@@ -138,7 +138,7 @@ static void call_twin(uint32_t function, const uint32_t *a, uint32_t *out)
     }
 }
 
-/* All exponents alike, or somewhere near 1. */
+/* Returns a number: all exponents equally likely, or near 1. */
 static float random_float(void)
 {
     double mantissa = 1 + (double)roll() / ROLL_MAX;
@@ -157,9 +157,9 @@ static uint32_t random_count(void)
 }
 
 /*
- * Kinds of arguments: u any number, f any float, F any but NaN, P any that is positive or 0 or NaN,
- * t a count of levels, l a level, m an address mode, M a margin, S a texel of the MinMip buffer, s
- * a size, log2 of a region's and the last region, B a LOD bias that is quick, Q a square.
+ * Kinds of arguments: u any number; f any float; F any float but NaN; P positive, 0 or NaN; t count
+ * of levels; l level; m address mode; M margin; S texel of the MinMip buffer; s size, log2 of a
+ * region's size and the last region; B quick LOD bias; Q square.
  */
 static void random_argument(char kind, uint32_t *a)
 {
@@ -229,7 +229,7 @@ static const struct function functions[TWIN_COUNT] = {
     [TWIN_COMPUTE_FOOTPRINT] = {"compute_footprint", "ffPPl", "uuuu"},
 };
 
-/* Arguments that only make sense together. */
+/* Arguments that depend on each other. */
 static void dependent_arguments(uint32_t function, uint32_t *a)
 {
     uint32_t count = random_count();
@@ -250,7 +250,7 @@ static void dependent_arguments(uint32_t function, uint32_t *a)
     }
 }
 
-/* Call i of a function: pairs of special values first, all of them, then anything. */
+/* Call i of a function: first all pairs of special values, then random ones. */
 static void make_call(uint32_t function, uint32_t i, struct TwinCall *call)
 {
     const char *kinds = functions[function].arguments;
@@ -261,28 +261,28 @@ static void make_call(uint32_t function, uint32_t i, struct TwinCall *call)
         random_argument(kinds[k], &call->arguments[slot]);
     if (count && turn < 10) {
         uint32_t first = turn % count, second = (first + 1 + turn / count) % count;
-        /* slots are those of kinds, as sizes come last */
+        /* slots equal kinds, because sizes come last */
         special_argument(kinds[first], &call->arguments[first], pair % SPECIALS);
         special_argument(kinds[second], &call->arguments[second], (uint32_t)(pair / SPECIALS));
     }
     dependent_arguments(function, call->arguments);
 }
 
-/* In levels, of exact arithmetic: the bounds of docs/numerics.md, that test_numerics and
- * test_numerics_device keep. Two results may be as far apart as both bounds together. */
+/* Errors in levels against exact arithmetic: bounds of docs/numerics.md, which test_numerics and
+ * test_numerics_device check. Two results may differ by the sum of both bounds. */
 #define LOD_ERROR_C 7e-4
 #define LOD_ERROR_DEVICE 1e-3
 #define LOD_ERROR (LOD_ERROR_C + LOD_ERROR_DEVICE)
 
-/* Relative, of a length times exp2 of the bias, by the precision that Vulkan asks for. */
+/* Relative error of a length times exp2 of the bias, by Vulkan's precision. */
 static double length_error(const uint32_t *a)
 {
     double bias = (double)slc_twin_clamp_lod_bias(real(a, 4));
     return (8 + 2 * fmax(bias, 0)) * (double)FLT_EPSILON;
 }
 
-/* Of sluiceSquareLods: `widest` is half the sum plus a root of half^2 - area^2. Few bits of that
- * difference are left where derivatives span nearly a circle. */
+/* Error of sluiceSquareLods. `widest` is half the sum plus a root of half^2 - area^2. If
+ * derivatives span nearly a circle, the difference has few correct bits. */
 static double square_error(const uint32_t *twin)
 {
     double half = (double)real(twin, 3) / 2;
@@ -292,9 +292,9 @@ static double square_error(const uint32_t *twin)
 }
 
 static double largest_error[TWIN_COUNT];
-static uint32_t rounded_levels; ///< that differ by one: few, as rounding seldom decides
+static uint32_t rounded_levels; ///< levels that differ by one; few, because rounding seldom decides
 
-/* Squares of what is smaller or larger leave the range of float, on some devices sooner. */
+/* Squares of smaller or larger values leave the range of float, on some devices sooner. */
 static bool squares_are_ordinary(const uint32_t *a)
 {
     for (uint32_t i = 0; i < 4; i++)
@@ -316,7 +316,7 @@ static bool results_agree(uint32_t function, const struct TwinCall *call, const 
                 continue;
             error /= fmax((double)cpu, 1e-30);
             break;
-        case 'q': /* of nearly parallel derivatives little is left of the area between them */
+        case 'q': /* for nearly parallel derivatives the area between them has few correct bits */
             if (!squares_are_ordinary(call->arguments) || !(real(twin, 3) < SLC_TWIN_QUICK_SQUARES))
                 continue;
             if (!(error <= square_error(twin)))
@@ -327,7 +327,7 @@ static bool results_agree(uint32_t function, const struct TwinCall *call, const 
             if (call->results[i] + 1 - twin[i] > 2)
                 return false;
             continue;
-        case 'x': /* a denormal may be 0 */
+        case 'x': /* a denormal may be flushed to 0 */
             if (!(error < (double)FLT_MIN))
                 return false;
             continue;
@@ -353,7 +353,7 @@ static float nudged(float x, int by)
     return x * (1.0f + (float)by * 4 * FLT_EPSILON);
 }
 
-/* Whether a range agrees once reciprocals and products are off by a little more or less. */
+/* Returns whether a range agrees if reciprocals and products are slightly off. */
 static bool range_agrees_nearly(const struct SluiceTextureEntry *e, uint32_t axis, float at,
                                 const float sizes[2], const uint32_t range[2])
 {
@@ -398,19 +398,19 @@ static bool region_range_agrees_nearly(const struct TwinCall *call, const uint32
 }
 
 /*
- * A place that is NaN, or infinity minus infinity, is some region, as docs/feedback.md says: in
- * Vulkan a device may take NaN for any number, and each compiler orders min and max as it likes.
+ * A position that is NaN, or infinity minus infinity, is any region, as docs/feedback.md says. In
+ * Vulkan a device may replace NaN by any number, and compilers order min and max freely.
  */
 static bool place_is_unknown(float at, const float sizes[2], uint32_t mode)
 {
     bool wraps = mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
     if (isnan(at) || isnan(sizes[0]) || isnan(sizes[1]))
         return true;
-    /* in texels it may be infinite */
+    /* may be infinite in texels */
     return !(fabsf(at) <= 1e33f) && (wraps || isinf(sizes[0]) || isinf(sizes[1]));
 }
 
-/* Then only the range of the results is known. */
+/* Returns whether only the range of the results is known. */
 static bool is_unknown(uint32_t function, const uint32_t *a)
 {
     if (function == TWIN_REGION_RANGE)
@@ -447,7 +447,7 @@ static bool lod_is_in_range(float lod)
     return lod >= -SLC_TWIN_LOD_LIMIT && lod <= SLC_TWIN_LOD_LIMIT;
 }
 
-/* What holds for any arguments. */
+/* Checks properties that hold for any arguments. */
 static bool call_is_in_range(uint32_t function, const struct TwinCall *call)
 {
     const uint32_t *a = call->arguments, *r = call->results;
