@@ -201,7 +201,7 @@ SLUICE_SHARED_SIZE(struct PbrtProbe, 32)
 #define PBRT_LAUNCH_QUIET 128u    /* rays request nothing */
 
 /* Constants of the pipeline */
-#define PBRT_CONSTANT_PREVIEW 0 /* coarser texels replace missing finer ones; probes are written */
+#define PBRT_CONSTANT_PREVIEW 0 /* coarser texels replace missing finer ones; writes probes */
 
 /* Push constants of one launch. */
 struct PbrtLaunch {

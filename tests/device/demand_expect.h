@@ -9,8 +9,7 @@
 #define DEMAND_TAP_PAGES 16u ///< 4x4 texels; 3x3 tiles where a texture repeats
 #define DEMAND_ASKED 1u
 #define DEMAND_USED 2u
-#define DEMAND_MARKED 4u /* counts as used if the page has a block: a tail that is not looked up   \
-                          */
+#define DEMAND_MARKED 4u /* used if the page has a block: a tail that is not looked up */
 
 struct demand_expectation {
     struct demand_scene *scene;
