@@ -1,4 +1,4 @@
-/* Tiles per second from nothing, with a source that costs nothing. */
+/* Tiles per second when filling from nothing, with a source that takes no time. */
 #include "rig.h"
 
 #include "../../tools/common/clock.h"
@@ -9,11 +9,11 @@
 #include <stdio.h>
 
 #define MAX_LAUNCHES 100000u
-#define MEMORY_AHEAD (UINT64_C(768) << 20) /* bytes, more than the tiles take */
+#define MEMORY_AHEAD (UINT64_C(768) << 20) /* bytes; more than the tiles take */
 
 struct fill_times {
     double seconds;
-    double begin, wait, process, gpu_prepare; ///< in all launches together
+    double begin, wait, process, gpu_prepare; ///< totals over all launches
     uint32_t launches;
 };
 
@@ -26,8 +26,8 @@ static void add_times(struct fill_times *times, const struct rig_outcome *outcom
     times->launches++;
 }
 
-/* As renderers do that never wait for reads: two launches are under way, until one misses nothing.
- */
+/* Fills like a renderer that never waits for reads: two launches in flight, until one misses
+ * nothing. */
 static bool fill(struct rig *rig, struct fill_times *times)
 {
     struct rig_outcome outcome;
@@ -53,7 +53,7 @@ static bool forget(struct rig *rig)
     return true;
 }
 
-/* Once from nothing, and once more into memory that the device has given by then. */
+/* Fills once from nothing, and again into memory that the device has allocated by then. */
 static bool fill_twice(const struct bench *bench, const SluiceDemandLoaderCreateInfo *info,
                        struct fill_times times[2], SluiceDemandStatistics *statistics)
 {
@@ -67,11 +67,11 @@ static bool fill_twice(const struct bench *bench, const SluiceDemandLoaderCreate
 }
 
 struct fill_rates {
-    double cold, again; ///< tiles per second, the best
+    double cold, again; ///< tiles per second; the best run
     double tiles;
 };
 
-/* Without tails, one of which the warming up has loaded. */
+/* Counts tiles except tails. Warming up has loaded one tail. */
 static double tile_count(const SluiceDemandStatistics *s)
 {
     return (double)(s->residentTileCount - s->texturesOpened);
@@ -88,7 +88,7 @@ static void report(const char *name, const struct fill_times *times, double rate
         figure(name, "gpu_copies", 100 * times->gpu_prepare / times->seconds, "% of the time");
 }
 
-/* The best of three, reported under `name`. */
+/* Reports the best of three runs under `name`. */
 static bool fill_with(const struct bench *bench, const SluiceDemandLoaderCreateInfo *info,
                       const char *name, struct fill_rates *rates)
 {

@@ -1,5 +1,5 @@
-/* What demand loading costs on a Vulkan device. run.sh builds this and makes a table of its lines.
- */
+/* Costs of demand loading on a Vulkan device. run.sh builds this and makes a table of its
+ * output. */
 #include "rig.h"
 
 #include "../../tools/common/chosen_names.h"
@@ -44,7 +44,7 @@ static int measure(const struct arguments *arguments)
         return unsupported ? 77 : 1;
     const SluiceVulkanDeviceCapabilities *caps = &bench.gpu.capabilities;
     bench.wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || !(caps->timestampPeriod > 0);
-    /* 4.2 million samples of 16 textures of 8192 x 8192, or what a CPU can hold */
+    /* 4.2 million samples of 16 textures of 8192 x 8192, or as much as a CPU can hold */
     bench.edge = options.quick ? 256 : bench.wall ? 512 : 2048;
     bench.texture_size = options.quick || bench.wall ? 4096 : 8192;
     bench.columns = options.quick ? 2 : 4;

@@ -1,4 +1,4 @@
-/* What demand loading is compared with: ordinary images that hold everything. */
+/* Baseline of demand loading: ordinary images that hold all texels. */
 #include "rig.h"
 
 #include <string.h>
@@ -29,7 +29,7 @@ static void to_layout(VkCommandBuffer commands, VkImage image, VkImageLayout fro
                          &barrier);
 }
 
-/* The same texels as the source's, in strips as large as the buffer. */
+/* Fills an image with the source's texels, in strips of the buffer's size. */
 static void record_fill(const struct rig *rig, VkCommandBuffer commands, VkImage image,
                         const struct gpu_buffer *texels)
 {

@@ -1,5 +1,5 @@
 /**
- * A demand loader with some textures of one free source, and launches of samples.comp around it.
+ * A demand loader with textures of one source that takes no time, and launches of samples.comp.
  */
 #ifndef BENCH_DEMAND_RIG_H
 #define BENCH_DEMAND_RIG_H
@@ -14,17 +14,18 @@
 
 struct bench {
     struct gpu gpu;
-    uint32_t edge;             ///< samples of a launch: edge x edge
+    uint32_t edge;             ///< samples per launch: edge x edge
     uint32_t texture_size;     ///< texels
     uint32_t columns;          ///< columns x columns textures
-    SluiceDemandFilter filter; ///< of textures
-    uint32_t threads;          ///< that load; 0: as the library does
+    SluiceDemandFilter filter; ///< filter of the textures
+    uint32_t threads;          ///< loader threads; 0: the library's default
     uint64_t min_staging_size, min_tile_memory_size;
-    const SluiceAllocationCallbacks *allocator; ///< of the context; NULL: malloc
-    bool wall;                                  ///< measures wall time: time stamps are unusable
+    const SluiceAllocationCallbacks *allocator; ///< allocator of the context; NULL: malloc
+    bool wall; ///< measure wall time, because time stamps are unusable
 };
 
-/** Says on stderr what it is about, and returns false unless `result` is a success or news. */
+/** Returns whether `result` is SLUICE_SUCCESS or a positive code. Otherwise reports it on
+ * stderr. */
 bool check(SluiceResult result, const char *what);
 
 #define RIG_SLOTS 3u
@@ -42,11 +43,11 @@ struct rig {
     const struct bench *bench;
     SluiceVulkanContext *context;
     SluiceDemandLoader *loader;
-    struct free_source sources[DEMAND_BENCH_TEXTURES + 1]; ///< of the textures; of rig_warm_up
+    struct free_source sources[DEMAND_BENCH_TEXTURES + 1]; ///< by texture; last: of rig_warm_up
     SluiceDemandTextureId ids[DEMAND_BENCH_TEXTURES];
     uint32_t texture_count;
     struct gpu_buffer outputs, picture;
-    struct gpu_image plain[DEMAND_BENCH_TEXTURES]; ///< empty unless asked for
+    struct gpu_image plain[DEMAND_BENCH_TEXTURES]; ///< empty unless requested
     VkSampler sampler;
     VkDescriptorSetLayout set_layouts[2];
     VkPipelineLayout layout;
@@ -57,12 +58,12 @@ struct rig {
     VkQueryPool queries;
     struct rig_slot slots[RIG_SLOTS];
     uint64_t begun, ended; ///< launches
-    bool timed;            ///< time stamps in every launch
+    bool timed;            ///< true: time stamps in every launch
     struct DemandBenchParams params;
 };
 
-/** `info`: of what is not zero; the context is filled in. `plain`: with ordinary images, too. A rig
- *  that was not created can be destroyed. */
+/** Creates a rig. Fields of `info` that are 0 keep their defaults; the context is filled in.
+ * `plain`: also creates ordinary images. rig_destroy accepts a failed rig. */
 bool rig_create(struct rig *rig, const struct bench *bench,
                 const SluiceDemandLoaderCreateInfo *info, bool plain);
 void rig_destroy(struct rig *rig);
@@ -77,27 +78,27 @@ VkPipeline rig_pipeline(struct rig *rig, uint32_t kind);
 bool rig_create_plain(struct rig *rig);
 void rig_destroy_plain(struct rig *rig);
 
-/** What a launch came to. */
+/** Result of a launch. */
 struct rig_outcome {
     SluiceDemandRequests requests;
     SluiceDemandTicket ticket;
-    double gpu_seconds;   ///< of the dispatch
-    double gpu_parts[2];  ///< of prepare and of end
-    double host_parts[3]; ///< from prepare to submission; wait; process
-    uint32_t missing;     ///< samples; only while params.counting
+    double gpu_seconds;   ///< GPU time of the dispatch
+    double gpu_parts[2];  ///< GPU time of prepare and of end
+    double host_parts[3]; ///< host time from prepare to submission, of the wait, and of process
+    uint32_t missing;     ///< samples; only if params.counting
 };
 
-/** A launch from prepare to submission; RIG_SLOTS of them may be under way. DEMAND_BENCH_NOTHING
- *  dispatches nothing at all. */
+/** Runs a launch from prepare to submission. At most RIG_SLOTS may be in flight.
+ * DEMAND_BENCH_NOTHING dispatches nothing. */
 bool rig_begin(struct rig *rig, uint32_t kind);
-/** The rest of the oldest one. */
+/** Ends the oldest launch. */
 bool rig_end(struct rig *rig, struct rig_outcome *outcome);
-/** Both. */
+/** Begins and ends a launch. */
 bool rig_launch(struct rig *rig, uint32_t kind, struct rig_outcome *outcome);
-/** Some samples of a texture of its own: drivers compile what is first run. */
+/** Samples a separate texture, so that drivers compile the shaders. */
 bool rig_warm_up(struct rig *rig);
-/** Launches until nothing is missing, at most `limit` times; how many it took, 0: it did not end.
- */
+/** Launches until nothing is missing, at most `limit` times. Returns the number of launches; 0: not
+ * complete. */
 uint32_t rig_load(struct rig *rig, uint32_t limit);
 
 typedef bool measurement(const struct bench *bench);

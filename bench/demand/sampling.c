@@ -1,8 +1,8 @@
-/* Samples per second when everything is resident, against textureGrad of ordinary images. */
+/* Samples per second with everything resident, compared with textureGrad of ordinary images. */
 #include "rig.h"
 
 #define LAUNCHES 40u
-#define TURNS 8u /* of each, one after the other: clocks drift */
+#define TURNS 8u /* turns of each, alternating, because clocks drift */
 
 static bool add_times(struct rig *rig, uint32_t kind, struct samples *samples)
 {
@@ -10,7 +10,7 @@ static bool add_times(struct rig *rig, uint32_t kind, struct samples *samples)
         struct rig_outcome outcome;
         if (!rig_launch(rig, kind, &outcome))
             return false;
-        if (i > 0) /* the first is cold */
+        if (i > 0) /* the first one is cold */
             samples_add(samples, outcome.gpu_seconds * 1e9);
     }
     return true;
@@ -28,7 +28,7 @@ static bool measure(const struct bench *bench, bool tracking, uint32_t kind, dou
     rig.timed = true;
     for (uint32_t i = 0; done && i < repetitions(TURNS); i++)
         done = add_times(&rig, DEMAND_BENCH_PLAIN, &times[0]) && add_times(&rig, kind, &times[1]);
-    double share = bench->wall ? 0.0 : 0.5; /* what disturbs wall times only makes them longer */
+    double share = bench->wall ? 0.0 : 0.5; /* disturbances only lengthen wall times */
     if (done) {
         *plain = samples_quantile(&times[0], share);
         *sampled = samples_quantile(&times[1], share);
@@ -39,7 +39,7 @@ static bool measure(const struct bench *bench, bool tracking, uint32_t kind, dou
     return done;
 }
 
-/* None of the samples is magnified, so smart ones are trilinear. */
+/* No sample is magnified, so smart filters are trilinear. */
 static bool measure_filters(const struct bench *bench)
 {
     static const struct {

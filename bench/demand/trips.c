@@ -1,4 +1,4 @@
-/* What a launch costs that misses nothing: prepare, end, submit, wait, process. */
+/* Cost of a launch without misses: prepare, end, submit, wait, process. */
 #include "rig.h"
 
 #include "../../tools/common/clock.h"
@@ -6,10 +6,10 @@
 #include <stdio.h>
 
 #define TRIPS 400u
-/* Bytes that what is resident nearly fills, so that shaders say what they use. */
+/* Bytes that resident tiles nearly fill, so that shaders report used pages. */
 #define TIGHT (UINT64_C(1) << 29)
 
-/* What the driver alone takes for an empty command buffer and the wait for its semaphore. */
+/* Measures the driver's time for an empty command buffer and the wait for its semaphore. */
 static bool empty_submissions(struct rig *rig, struct samples *times)
 {
     const struct gpu *gpu = &rig->bench->gpu;
@@ -64,7 +64,7 @@ static bool trips(struct rig *rig, struct samples *times)
     return true;
 }
 
-/* On the device: what is in the way of the shaders before and after. */
+/* Reports device time before and after the shaders. */
 static bool report_parts(struct rig *rig, const char *name)
 {
     struct samples parts[2];

@@ -1,13 +1,13 @@
 /*
- * How many tile stores can be in use under a limit of file descriptors, and how fast they are read,
- * with a pool of open files and without.
+ * Measures how many tile stores can be open under a limit of file descriptors, and how fast they
+ * are read, with and without a pool of open files.
  *
  *     file_figures [--json] [--quick] [--stores N] [--limit N] [--rows N] [--picture FILE] FOLDER
  *
- * FOLDER takes copies of a store of 64 x 64 texels, one per store, which are removed at the end.
- * The files are in the page cache. One thread. With --picture also how long a picture that is no
- * tile store takes from opening to its preview and to its store. A catalogue with --rows rows names
- * the first store again and again.
+ * FOLDER receives copies of a store of 64 x 64 texels, which are removed at the end. The files are
+ * in the page cache. Uses one thread. --picture: also measures the time from opening a picture that
+ * is no tile store to its preview and to its store. --rows: rows of a catalogue, which all name the
+ * first store.
  */
 #define _XOPEN_SOURCE 700
 
@@ -76,7 +76,7 @@ static void write_first(void)
     sluiceDestroyStoreWriter(writer);
 }
 
-/* Not the library's writer, which waits for the disk each time. */
+/* Copies files directly: the library's writer waits for the disk each time. */
 static void copy_stores(void)
 {
     static char bytes[1 << 18];
@@ -114,7 +114,7 @@ static void set_limit(uint64_t limit)
         fail("setrlimit");
 }
 
-/* The number that could be opened. */
+/* Returns the number of opened stores. */
 static uint32_t open_stores(SluiceFilePool *pool)
 {
     uint32_t count = 0;
@@ -138,13 +138,13 @@ static void close_stores(uint32_t count)
         sluiceDestroyImageSource(run.sources[i]);
 }
 
-/* Reads of level 0, of `count` stores in an order that visits all before one comes again. */
+/* Reads level 0 of `count` stores in rounds over all stores. Returns reads per second. */
 static double reads_per_second(uint32_t count)
 {
     static unsigned char texels[SIZE * SIZE * 4];
     SluiceImageRegion region = {0, 0, 0, SIZE, SIZE, 0};
     uint64_t reads = 0, most = run.quick ? 2000 : 100000;
-    for (uint32_t i = 0; i < count; i++) /* the index is read once */
+    for (uint32_t i = 0; i < count; i++) /* reads the index once */
         if (sluiceReadImageRegion(run.sources[i], &region, texels, 4 * SIZE))
             fail("reading a store");
     double start = clock_seconds();
@@ -189,7 +189,7 @@ static void measure_without_pool(void)
     close_stores(count);
 }
 
-/* Bytes that are allocated. One thread. */
+/* Counts allocated bytes. One thread only. */
 static void *count_allocation(void *user, size_t size, size_t alignment)
 {
     (void)alignment;
@@ -216,7 +216,7 @@ static uint64_t hash_of_first(void)
     return hash;
 }
 
-/* As in docs/cluster.md. */
+/* Writes a catalogue as in docs/cluster.md. */
 static void write_catalogue(const char *path)
 {
     FILE *file = fopen(path, "wb");
@@ -244,8 +244,7 @@ static void open_row(SluiceImageOpener *opener, const char *catalogue, uint32_t 
     sluiceDestroyImageSource(source);
 }
 
-/* The store is opened before, so that a name costs the catalogue's part and a look at both files.
- */
+/* The store is already open, so a name costs only the catalogue and a check of both files. */
 static void measure_catalogue(void)
 {
     char path[512], store[512];
@@ -286,7 +285,7 @@ static void wait_for(SluiceImageSource *source, bool preview)
     } while (!(preview ? info.previewReady : info.ready));
 }
 
-/* With an empty cache, which goes at the end. */
+/* Begins with an empty cache, which is removed at the end. */
 static void measure_picture(void)
 {
     SluiceImageOpener *opener;

@@ -1,4 +1,4 @@
-/* What the host and samples.comp share. */
+/* Shared by the host and samples.comp. */
 #ifndef DEMAND_BENCH_SHARED_H
 #define DEMAND_BENCH_SHARED_H
 
@@ -15,7 +15,7 @@
 #define DEMAND_BENCH_SAMPLED 1 /* through the demand loader */
 #define DEMAND_BENCH_PLAIN 2   /* textureGrad of an ordinary image */
 #define DEMAND_BENCH_BYTES 3   /* looks up byte pages, one per invocation */
-#define DEMAND_BENCH_CUBIC 4   /* as _SAMPLED, by a shader that knows bicubic filters */
+#define DEMAND_BENCH_CUBIC 4   /* DEMAND_BENCH_SAMPLED in a shader with bicubic filters */
 #define DEMAND_BENCH_SLOPES 5  /* with derivatives of the texture */
 #define DEMAND_BENCH_KINDS 6
 
@@ -23,18 +23,18 @@
 #define DEMAND_BENCH_MISSING 0 /* samples that were not resident */
 #define DEMAND_BENCH_WORDS 1
 
-/* The samples are a square of edge x edge, cut into columns x columns fields of one texture each.
- */
+/* Samples form a square of edge x edge, divided into columns x columns fields of one texture
+ * each. */
 struct DemandBenchParams {
     uint edge;
     uint columns;
     uint textures[DEMAND_BENCH_TEXTURES]; /* indices */
     float textureSize;                    /* texels */
-    float lod;                            /* of most samples */
-    float fineLod;                        /* of those in the patch around the origin */
-    float fineEdge;                       /* of the patch, in uv */
+    float lod;                            /* LOD of most samples */
+    float fineLod;                        /* LOD of samples in the patch around the origin */
+    float fineEdge;                       /* edge of the patch in uv */
     uint firstPage, pageCount;            /* byte pages */
-    uint counting;                        /* 1: samples that are missing are counted */
+    uint counting;                        /* 1: count missing samples */
 };
 
 #endif
