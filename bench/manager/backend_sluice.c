@@ -1,16 +1,16 @@
 /**
- * Sluice's manager behind the functions that the feedback-replay harness (backend.h) asks for. In
- * the harness's folder, with Sluice installed:
+ * Sluice's manager behind the functions of the feedback-replay harness (backend.h). In the
+ * harness's folder, with Sluice installed:
  *
  *     cc -std=c11 -O2 -I. replay.c SLUICE/bench/manager/backend_sluice.c \
  *         $(pkg-config --cflags --libs sluice) -lpthread -o replay
  *
- * run.sh does that and more. Public API only. Lists are fetched once per frame for all textures, in
- * `allocate`, and then handed to the harness texture by texture. At most IN_FLIGHT tiles are out at
- * a time: what waits in the manager is still ordered by need and can still be dropped, what waits
- * in a queue is not.
+ * run.sh does that and more. Uses the public API only. `allocate` fetches the lists once per frame
+ * for all textures; they are then handed to the harness by texture. At most IN_FLIGHT tiles are
+ * handed out at a time: tiles that wait in the manager are still reordered and dropped, tiles in a
+ * queue are not.
  *
- * Environment: SLUICE_PREFETCH_LEVELS   prefetchLevels of the manager's configuration, instead of 0
+ * Environment: SLUICE_PREFETCH_LEVELS   prefetchLevels of the manager's configuration. Default: 0.
  */
 #include "backend.h"
 
@@ -22,7 +22,7 @@
 
 enum { IN_FLIGHT = 768, UNMAP_ROOM = 65536 };
 
-/** What the manager listed this frame, and the same tile indices grouped by texture. */
+/** Tiles that the manager listed in this frame, and their indices grouped by texture. */
 struct tile_list {
     SluiceTile *tiles;
     uint32_t *grouped;
@@ -30,7 +30,7 @@ struct tile_list {
 };
 
 struct group {
-    uint32_t first, count; ///< in tile_list.grouped
+    uint32_t first, count; ///< range in tile_list.grouped
 };
 
 struct per_texture {
@@ -46,11 +46,11 @@ struct bench_manager {
     SluiceStreamedTextureManager *manager;
     struct per_texture *textures;
     uint32_t texture_count, texture_room;
-    uint32_t *spare_heaps; ///< added by the harness, not yet taken by the manager
+    uint32_t *spare_heaps; ///< added by the harness, not used by the manager yet
     uint32_t spare_count, spare_room;
     uint32_t heap_tiles, in_flight;
     struct tile_list map, unmap;
-    uint32_t *changed; ///< textures with tiles in map or unmap, the neediest first
+    uint32_t *changed; ///< textures with tiles in map or unmap, most urgent first
     uint32_t changed_count;
 };
 
@@ -177,10 +177,10 @@ static uint32_t add_texture(void *backend_manager, const slt_texture *t)
     if (t->regularMips > 0)
         slt_mip_tiles(t, 0, &texture->min_mip_width, &texture->min_mip_height);
     check(sluiceAddStreamedTexture(m->manager, &desc, &texture->id), "add");
-    /* ids of the harness are places in the trace, as is its `primary` */
+    /* the harness's ids and its `primary` are indices in the trace */
     if (t->primary < m->texture_count)
         check(sluiceSetPrimaryTexture(m->manager, texture->id, m->textures[t->primary].id), "set");
-    return m->texture_count++; /* ids are dense from 0 as long as nothing is removed */
+    return m->texture_count++; /* ids count up from 0 while nothing is removed */
 }
 
 static void feedback(void *backend_manager, uint32_t id, uint8_t *map, double seconds,
@@ -197,7 +197,7 @@ static void feedback(void *backend_manager, uint32_t id, uint8_t *map, double se
           "feedback");
 }
 
-/** Nothing: textures of a set follow their primary without being asked to. */
+/** Does nothing: followers follow their primary automatically. */
 static void follow(void *backend_manager, uint32_t primary, uint32_t follower, double seconds,
                    double timeout)
 {
@@ -236,7 +236,7 @@ static struct per_texture *note_changed(struct bench_manager *m, const SluiceTil
     return texture;
 }
 
-/** Leaves each group empty, with its place found; `put` fills it. */
+/** Sets a group's position, and empties it. `put` fills it. */
 static uint32_t place(struct group *group, uint32_t first)
 {
     uint32_t next = first + group->count;
@@ -249,7 +249,7 @@ static void put(struct tile_list *list, struct group *group, uint32_t tile_index
     list->grouped[group->first + group->count++] = tile_index;
 }
 
-/** Keeps the manager's order, coarse levels first, within each texture. */
+/** Groups tiles by texture, and keeps the manager's order, coarse levels first. */
 static void group_by_texture(struct bench_manager *m)
 {
     for (uint32_t i = 0; i < m->map.count; i++)
@@ -327,8 +327,8 @@ static void minmip(void *backend_manager, uint32_t id, uint8_t *out, uint32_t *w
     *height = t->min_mip_height;
     size_t size = (size_t)*width * *height;
     check(sluiceWriteMinMipData(m->manager, t->id, *width, size, out), "minmip");
-    /* The harness counts levels: nothing there is one more. With packed tiles a map says so
-     * everywhere or nowhere. */
+    /* The harness counts levels: no level at all is one more. With packed tiles a map has this
+     * value everywhere or nowhere. */
     uint8_t nothing = (uint8_t)(t->regular_mips + 1);
     if (t->has_packed_tiles && out[0] == SLUICE_MIP_UNTOUCHED)
         memset(out, nothing, size);

@@ -1,4 +1,4 @@
-/** Feedback calls on a texture of 16384 x 16384 texels in tiles of 256 x 256: 4096 regions. */
+/** Feedback calls for a texture of 16384 x 16384 texels in tiles of 256 x 256: 4096 regions. */
 #include "micro.h"
 
 #include "figures.h"
@@ -12,7 +12,7 @@ enum { SIZE = 16384, TILE = 256, MAPS = 64, PLENTY = 1u << 16, ROOM = 8192 };
 static const SluiceStreamedTextureManagerConfig keep_everything = {
     .structSize = sizeof keep_everything,
     .numExtraStandbyTiles = PLENTY,
-    .missesToExpire = 1, ///< maps that alternate would be learned and held
+    .missesToExpire = 1, ///< otherwise alternating maps would be learned and held
 };
 
 static uint32_t next_random(uint32_t *state)
@@ -22,8 +22,8 @@ static uint32_t next_random(uint32_t *state)
 }
 
 /**
- * The middle quarter of the map, level 0 in front to level 2 at the back; `drop` of 1000 regions
- * are missing.
+ * Draws the middle quarter of the map, from level 0 in front to level 2 at the back. `drop` of 1000
+ * regions are missing.
  */
 static void draw_window(const SluiceStreamedTextureDesc *desc, uint8_t *map, uint32_t drop,
                         uint32_t *random)
@@ -63,7 +63,7 @@ static void time_untouched(void)
     rig_finish(&rig);
 }
 
-/** The same map again and again, a window or level 0 everywhere, everything in it mapped. */
+/** Repeats one map: a window, or level 0 everywhere. All its tiles are mapped. */
 static void time_unchanged(const char *name, bool everywhere)
 {
     enum { BATCH = 16 };
@@ -94,7 +94,7 @@ static void time_unchanged(const char *name, bool everywhere)
     rig_finish(&rig);
 }
 
-/** Each map lacks another 30 % of the window's regions; six maps are held at a time. */
+/** Each map lacks another 30 % of the window's regions. Six maps are held at a time. */
 static void time_stochastic(void)
 {
     struct rig rig;
@@ -125,7 +125,7 @@ static void time_stochastic(void)
     rig_finish(&rig);
 }
 
-/** A new texture whose first map wants everything: each tile becomes requested. */
+/** A new texture's first map requests everything: each tile becomes requested. */
 static void time_all_first(void)
 {
     struct rig rig;
@@ -153,9 +153,9 @@ static void time_all_first(void)
 }
 
 /**
- * Maps of level 0 and of level 1 everywhere in turn, everything mapped. Within the timeout the
- * texture goes on wanting level 0; with one that is over at the next map all of level 0 changes
- * between MAPPED and STANDBY.
+ * Alternates maps of level 0 and of level 1 everywhere, with everything mapped. Within the timeout
+ * the texture continues to want level 0. If the timeout ends before the next map, all of level 0
+ * changes between MAPPED and STANDBY.
  */
 static void time_all_alternating(uint64_t timeout, const char *to_fine, const char *to_coarse)
 {
@@ -200,14 +200,14 @@ void bench_feedback(void)
 
 struct pair {
     struct rig rig;
-    SluiceStreamedTextureDesc desc; ///< of the primary
+    SluiceStreamedTextureDesc desc; ///< description of the primary
     SluiceTextureId primary, follower;
     uint8_t *maps;
     SluiceFeedbackDesc feedback[MAPS];
     uint32_t map_count;
 };
 
-/** The primary gets its `i`th map. */
+/** Feeds the primary its `i`th map. */
 static void lead(struct pair *pair, uint32_t i)
 {
     rig_feedback(&pair->rig, pair->primary, &pair->feedback[i % pair->map_count], STEP, TIMEOUT);
@@ -220,7 +220,7 @@ static void match(struct pair *pair)
          "match");
 }
 
-/** Both textures have had the window for a while and are mapped. */
+/** Both textures have seen the window for a while, and are mapped. */
 static void pair_init(struct pair *pair, const SluiceStreamedTextureDesc *follower, uint32_t drop)
 {
     uint32_t random = 1;
@@ -247,7 +247,7 @@ static void pair_finish(struct pair *pair)
     rig_finish(&pair->rig);
 }
 
-/** Only the follower's call is timed. */
+/** Times only the follower's call. */
 static void time_match(const char *name, const SluiceStreamedTextureDesc *follower, uint32_t drop)
 {
     struct pair pair;
@@ -265,7 +265,7 @@ static void time_match(const char *name, const SluiceStreamedTextureDesc *follow
     pair_finish(&pair);
 }
 
-/** The primary's call with the follower in it, less the same call without: batches in turn. */
+/** Measures the primary's call with a follower minus the call without, in alternating batches. */
 static void time_permanent_follower(void)
 {
     enum { BATCH = 16 };

@@ -1,4 +1,4 @@
-/** What many textures, many tiles and many heaps cost. */
+/** Costs of many textures, many tiles and many heaps. */
 #include "micro.h"
 
 #include "figures.h"
@@ -10,7 +10,7 @@
 
 static const SluiceStreamedTextureManagerConfig no_standby = {.structSize = sizeof no_standby};
 
-/** The calls of a frame in which nothing happens. */
+/** Makes the calls of a frame in which nothing happens. */
 static void idle_frame(struct rig *rig, SluiceMinMipRect *rects, uint64_t frame)
 {
     uint32_t canceled = rig->room, unmapped = rig->room, mapped = rig->room, changed = rig->room;
@@ -57,8 +57,7 @@ void bench_idle(void)
 }
 
 /**
- * A stall that the machine caused does not come at the same place every time, so of several runs
- * the one whose worst call is least is shown.
+ * Stalls of the machine vary between runs, so shows the run whose worst call is fastest.
  */
 void bench_add(void)
 {

@@ -1,4 +1,5 @@
-/** What needs the harness's textures and maps: a camera cut, and the floor under a trace. */
+/** Measurements with the harness's textures and maps: a camera cut, and the minimum time of a
+ * trace. */
 #include "micro.h"
 
 #include "figures.h"
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The ring takes 50 s: in this many frames the camera is on its other side. */
+/* A full turn takes 50 s. After this many frames the camera is on the other side. */
 enum { HALF_A_TURN = 1500, FRAME = 16667, ROOM = 1u << 19 };
 
 static const slt_params cut_scene = {.seed = 1,
@@ -27,7 +28,7 @@ struct seen {
     SluiceTextureId id;
     SluiceStreamedTextureDesc desc;
     uint32_t primary;
-    SluiceFeedbackDesc map[2]; ///< of primaries: before and after the cut
+    SluiceFeedbackDesc map[2]; ///< primaries: maps before and after the cut
 };
 
 struct cut {
@@ -114,7 +115,7 @@ static void bring_followers(struct cut *cut)
     }
 }
 
-/** Everything that is listed, however much; the tiles to map stay in rig.tiles. */
+/** Reads all lists completely. Tiles to map stay in rig.tiles. */
 static void read_lists(struct cut *cut)
 {
     struct rig *rig = &cut->rig;
@@ -139,7 +140,7 @@ static void write_min_mips(struct cut *cut)
              "MinMip");
 }
 
-/** A frame with a map of every primary. */
+/** Runs a frame with a map of every primary. */
 static struct parts frame(struct cut *cut, uint32_t side, uint64_t step)
 {
     cut->rig.time += step;
@@ -162,7 +163,7 @@ static int by_texture(const void *a, const void *b)
     return x->textureId < y->textureId ? -1 : x->textureId > y->textureId;
 }
 
-/** The tiles of the last frame arrive, one call per texture, and show in the MinMip maps. */
+/** Maps the tiles of the last frame, one call per texture, and updates the MinMip maps. */
 static double arrive(struct cut *cut)
 {
     qsort(cut->rig.tiles, cut->listed, sizeof *cut->rig.tiles, by_texture);
@@ -172,7 +173,7 @@ static double arrive(struct cut *cut)
     return (double)(now_ns() - start);
 }
 
-/** The same view until the former one has lapsed and been unmapped. */
+/** Repeats the view until the former one has expired and been unmapped. */
 static void settle(struct cut *cut, uint32_t side)
 {
     for (uint32_t i = 0; i < 6; i++) {
@@ -182,8 +183,8 @@ static void settle(struct cut *cut, uint32_t side)
 }
 
 /**
- * Cuts there and back, `step` microseconds after the last map: after one frame the old view is
- * still held, after more than the timeout it is dropped in the same frame.
+ * Cuts there and back, `step` microseconds after the last map. After one frame the old view is
+ * still held; after more than the timeout it is dropped in the same frame.
  */
 static void time_cut(struct cut *cut, const char *name, uint64_t step)
 {
@@ -223,7 +224,7 @@ void bench_cut(void)
     cut_finish(&cut);
 }
 
-/** Each map at a place of its own, as in the harness. */
+/** Copies each map to a position of its own, as in the harness. */
 static double copy_frame(const uint8_t *from, uint8_t *to, const size_t *sizes, uint32_t count)
 {
     uint64_t start = now_ns();

@@ -8,11 +8,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The image has the material this many times along either side, so that a batch is large. */
+/* Copies of the material along each axis of the image, for large batches. */
 #define COPIES 4u
 #define MAX_SIDE 4096u
 
-/* Tiles have 64 KiB, as those of sparse images. */
+/* Tiles have 64 KiB, as in sparse images. */
 static const struct format {
     const char *name;
     SluiceFormat format;
@@ -33,21 +33,21 @@ struct tiles {
     const struct material *material;
     const struct stopwatch *stopwatch;
     uint32_t repeats;
-    uint32_t width, height; ///< of the images
+    uint32_t width, height; ///< size of the images
     SluiceVulkanContext *context;
     SluiceVulkanNeuralDecoder *decoder;
     struct gpu_buffer host, device; ///< RGBA8 texels of one image
     double copy_rate;               ///< texels per second, from device memory
 };
 
-/* The commands of one run, and the objects that they use. */
+/* Commands of one run, and their objects. */
 struct job {
     const struct format *format;
     const SluiceTileProducer *producer; ///< NULL: a copy
-    VkBuffer from;                      ///< of a copy
+    VkBuffer from;                      ///< source of a copy
     VkImage image;
     SluiceTileTarget *targets;
-    uint32_t width, height, count; ///< of tiles
+    uint32_t width, height, count; ///< size and number of tiles
 };
 
 static bool check(SluiceResult result, const char *what)
@@ -89,7 +89,7 @@ static bool create(struct tiles *t)
            gpu_create_device_buffer(t->gpu, size, usage, &t->device);
 }
 
-/* The material's tiles, over and over. */
+/* Places the material's tiles repeatedly. */
 static bool place_targets(const struct tiles *t, struct job *job)
 {
     const uint32_t width = t->material->constants.width, height = t->material->constants.height;
@@ -161,7 +161,7 @@ static void to_general(VkCommandBuffer commands, VkImage image)
                          VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
-/* Median seconds of all tiles. The first run warms up. */
+/* Measures the median time of all tiles. The first run warms up. */
 static bool measure(const struct tiles *t, const struct job *job, double *seconds)
 {
     struct samples samples;
@@ -186,7 +186,7 @@ static bool measure(const struct tiles *t, const struct job *job, double *second
     return done;
 }
 
-/* Texels per second. */
+/* Returns texels per second in `*rate`. */
 static bool run(const struct tiles *t, const char *name, struct job *job, double *rate)
 {
     struct gpu_image image = {0};

@@ -1,13 +1,13 @@
 /*
- * How fast tiles come out of a store, beside what it is made of: zstd alone, reads alone, and
- * OpenEXR with the same picture. One thread, files in the page cache, so that the disk is not what
- * is measured.
+ * Measures tiles per second from a store, compared with zstd only, reads only, and OpenEXR files of
+ * the same picture. Uses one thread, with files in the page cache, so that the disk is not
+ * measured.
  *
  *     store_figures [--json] [--quick] FOLDER PICTURE...
  *
- * FOLDER takes the files that are written; a PICTURE is a PPM or an OpenEXR file. All ratios are of
- * times in this run, taken in turns: each way reads all tiles once, then the next way does, and
- * again; of each tile the shortest time of each way counts.
+ * FOLDER receives the written files. A PICTURE is a PPM or an OpenEXR file. All ratios compare
+ * times of one run. Ways alternate: each reads all tiles once per round. The shortest time of each
+ * tile and way counts.
  */
 #define _XOPEN_SOURCE 700
 #define _FILE_OFFSET_BITS 64
@@ -27,8 +27,8 @@
 #include <unistd.h>
 #include <zstd.h>
 
-/* Texels go to as many places in turn as a staging buffer has, so that they are not in the cache.
- */
+/* Texels go to as many positions in turn as a staging buffer has, so that they are not in the
+ * cache. */
 enum { TILE = 65536, PLACES = 256 };
 
 static struct {
@@ -52,14 +52,14 @@ static void figure(const char *name, double value, const char *unit)
         printf("%s %.6g %s\n", name, value, unit);
 }
 
-/* Whole tiles of all pictures, and the ways to get at them. */
+/* All whole tiles of a picture, and the ways to read them. */
 struct picture {
     SluiceImageSource *store;
     SluiceImageSource *other; ///< NULL, OpenEXR, or the store with alwaysCheckRawTiles
     SluiceImageRegion *tiles;
     size_t tile_count;
-    int file;              ///< of the store
-    unsigned char *frames; ///< the same texels, compressed by zstd alone, one after the other
+    int file;              ///< file of the store
+    unsigned char *frames; ///< the tiles, compressed by zstd only, one after the other
     size_t *frame_ends;
 };
 
@@ -95,7 +95,7 @@ static void decompress(const struct picture *p, size_t i)
         fail("decompressing");
 }
 
-/* 64 KiB at a time, from where tiles may lie in a file of them. */
+/* Reads 64 KiB, from a tile's position in a file of tiles. */
 static void read_block(const struct picture *p, size_t i)
 {
     if (pread(p->file, place_of(i), TILE, (off_t)(8192 + i * TILE)) != TILE)
@@ -104,7 +104,7 @@ static void read_block(const struct picture *p, size_t i)
 
 typedef void way(const struct picture *picture, size_t tile);
 
-/* The least that each way took for a tile, of all rounds, and of all tiles the sum. */
+/* Finds the shortest time of each way and tile over all rounds, and sums it over the tiles. */
 static void race_picture(const struct picture *p, way *const *ways, unsigned way_count,
                          double *seconds)
 {
@@ -126,7 +126,7 @@ static void race_picture(const struct picture *p, way *const *ways, unsigned way
     free(best);
 }
 
-/* Seconds that each way takes for all tiles of all pictures. */
+/* Measures the time of each way for all tiles of all pictures. */
 static void race(const struct picture *pictures, size_t count, way *const *ways, unsigned way_count,
                  double *seconds)
 {
@@ -204,7 +204,7 @@ static double size_of(const char *path)
     return stat(path, &status) == 0 ? (double)status.st_size : 0;
 }
 
-/* Compressed with level 3, and the time that writing takes. */
+/* Measures compression at level 3, and the time of writing. */
 static void measure_compressed(const char *folder, SluiceImageSource **sources, size_t count)
 {
     struct picture *pictures = calloc(count, sizeof *pictures);
@@ -254,7 +254,7 @@ static void measure_uncompressed(const char *folder, SluiceImageSource **sources
     free(pictures);
 }
 
-/* The same half texels in both kinds of file, in tiles of the same shape. */
+/* Compares equal half texels in both kinds of file, with tiles of one shape. */
 static void measure_half(const char *folder, SluiceImageSource **sources, size_t count)
 {
     struct picture *pictures = calloc(count, sizeof *pictures);
@@ -305,7 +305,7 @@ static void figure_of_times(double times[OPENINGS], const char *name)
     figure(whole, times[0], "us");
 }
 
-/* From nothing to the texels of a tile. */
+/* Measures the time from opening to the texels of a tile. */
 static void time_opening(const struct picture *p, const char *path, SluiceStoreReadPool *pool,
                          const char *name)
 {
@@ -321,8 +321,7 @@ static void time_opening(const struct picture *p, const char *path, SluiceStoreR
     figure_of_times(times, name);
 }
 
-/* The same tiles, from memory: what of it is zstd's, its context included, which each makes anew.
- */
+/* Decompresses the tiles from memory: zstd's part, including a new context each time. */
 static void time_zstd_alone(const struct picture *p)
 {
     static double times[OPENINGS];

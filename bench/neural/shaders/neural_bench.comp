@@ -1,6 +1,6 @@
 /*
- * A screen over one material of eight channels: decoded from latents at one random texel per pixel, or
- * sampled trilinearly from two textures of four channels (NEURAL_BENCH_TEXTURES).
+ * A screen over one material of eight channels: decoded from latents at one random texel per pixel,
+ * or sampled trilinearly from two textures of four channels (NEURAL_BENCH_TEXTURES).
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -51,7 +51,7 @@ void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     bool exists = pixel.x < params.width && pixel.y < params.height;
-#ifndef NEURAL_MATRIX /* whose subgroups stay together */
+#ifndef NEURAL_MATRIX /* its subgroups must stay complete */
     if (!exists)
         return;
 #endif

@@ -12,7 +12,7 @@
 #define NEURAL_BENCH_WEIGHT_ROOM 65536 /* bytes of a storage buffer */
 
 struct NeuralBenchParams {
-    uint width; /* of the picture, in pixels */
+    uint width; /* width and height of the picture in pixels */
     uint height;
     uint frame;
     float lod;
