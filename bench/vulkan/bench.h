@@ -1,4 +1,4 @@
-/** What the measurements share: the device, the settings, and one line of output per figure. */
+/** Shared by the measurements: the device, the settings, and one line of output per figure. */
 #ifndef BENCH_VULKAN_BENCH_H
 #define BENCH_VULKAN_BENCH_H
 
@@ -9,25 +9,26 @@ struct bench {
     struct gpu gpu;
     SluiceResidencyMode mode;
     const char *mode_name;
-    uint32_t size[2];      ///< of pictures, in pixels
-    uint32_t texture_size; ///< of what scenes show, in texels; square
-    uint32_t threads;      ///< that load; 0: as the library does
-    bool wall;             ///< time stamps are no use: wall time, and one submission per part
+    uint32_t size[2];      ///< picture size in pixels
+    uint32_t texture_size; ///< size of the scenes' square texture in texels
+    uint32_t threads;      ///< loader threads; 0: the library's default
+    bool wall;             ///< time stamps are unusable: wall time, with one submission per part
 };
 
-/** Prints "mode.name value unit"; the name is printf-like. */
+/** Prints "mode.name value unit". The name takes printf arguments. */
 __attribute__((format(printf, 4, 5))) void report(const struct bench *bench, double value,
                                                   const char *unit, const char *name, ...);
 
-/** Prints to stderr what it is about, and returns false unless `result` is a success or news. */
+/** Returns whether `result` is SLUICE_SUCCESS or a positive code. Otherwise reports it on
+ * stderr. */
 bool check(SluiceResult result, const char *what);
 
-/** The first allowed memory type in device memory. */
+/** Returns the first allowed memory type in device memory. */
 uint32_t device_local_type(const struct gpu *gpu, uint32_t allowed);
 
-/** Median in the unit of the samples; NaN if there are none. */
+/** Returns the median in the unit of the samples; NaN without samples. */
 double median(struct samples *samples);
-/** The same, but of wall times the least: what disturbs them only makes them longer. */
+/** Returns the median, or the minimum of wall times, which disturbances only lengthen. */
 double typical(const struct bench *bench, struct samples *samples);
 
 typedef bool measurement(const struct bench *bench);

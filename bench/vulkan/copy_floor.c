@@ -8,13 +8,13 @@
 
 #define TILE_BYTES 65536u
 #define TILE_SIZE 128u /* texels of RGBA8 */
-#define BATCH 256u     /* tiles in a command */
+#define BATCH 256u     /* tiles per command */
 
 struct copies {
     const struct gpu *gpu;
     struct gpu_buffer staging; ///< BATCH tiles
     struct gpu_image image;
-    uint32_t columns, rows; ///< of tiles
+    uint32_t columns, rows; ///< tiles per row; rows of tiles
     VkCommandBuffer commands;
 };
 
@@ -58,7 +58,7 @@ static void record_copies(const struct copies *c, uint32_t tile_count)
     for (uint32_t done = 0; done < tile_count; done += BATCH) {
         VkBufferImageCopy copies[BATCH];
         uint32_t count = tile_count - done < BATCH ? tile_count - done : BATCH;
-        if (done % (c->columns * c->rows) == 0 && done) { /* the image once more */
+        if (done % (c->columns * c->rows) == 0 && done) { /* fills the image again */
             VkMemoryBarrier again = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                      .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
                                      .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT};
@@ -99,7 +99,8 @@ static bool run_copies(const struct copies *c, uint32_t tile_count, double *seco
     return true;
 }
 
-/* The best of several buffers: how fast a device reads host memory depends on where that lies. */
+/* Measures several buffers and returns the best: a device's speed depends on the location of host
+ * memory. */
 bool measure_copy_floor(const struct gpu *gpu, uint32_t tile_count, double *rate)
 {
     bool done = true;

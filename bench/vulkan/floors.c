@@ -9,7 +9,7 @@
 
 #define TILE_BYTES 65536u
 #define TILE_SIZE 128u /* texels of RGBA8 */
-#define BATCH 256u     /* tiles in a batch of bindings */
+#define BATCH 256u     /* tiles per batch of bindings */
 #define RUN 16u        /* tiles of a row that are bound as one */
 
 struct binds {
@@ -17,7 +17,7 @@ struct binds {
     VkImage image;
     VkDeviceMemory memory;
     VkFence fence;
-    uint32_t columns, tile_count; ///< of the image's level 0, that have memory
+    uint32_t columns, tile_count; ///< tiles of level 0 per row; tiles with memory
 };
 
 static bool create_binds(struct binds *b, const struct bench *bench, uint32_t tile_count)
@@ -59,8 +59,7 @@ static void destroy_binds(struct binds *b)
     vkFreeMemory(device, b->memory, NULL);
 }
 
-/* One batch for each BATCH tiles, in runs of `run` tiles, all submitted before the first is over.
- */
+/* Submits a batch per BATCH tiles, in runs of `run` tiles, all before the first has completed. */
 static bool run_binds(const struct binds *b, uint32_t run, double *seconds)
 {
     const struct gpu *gpu = &b->bench->gpu;
@@ -94,7 +93,7 @@ static bool run_binds(const struct binds *b, uint32_t run, double *seconds)
     return true;
 }
 
-/* A new image each time: what was bound before would be unbound first. */
+/* Uses a new image each time: otherwise earlier bindings would be replaced. */
 static bool measure_binds(const struct bench *bench, uint32_t tile_count, uint32_t run,
                           double *rate)
 {

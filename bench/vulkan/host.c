@@ -1,4 +1,4 @@
-/* The library's own time on the host per frame: 1 000 textures, a camera that walks or stands. */
+/* The library's host time per frame: 1 000 textures, with a walking or resting camera. */
 #include "driver_calls.h"
 #include "rig.h"
 
@@ -9,12 +9,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define WARM_FRAMES 240u /* longer than the timeout, so that tiles go as well as come */
+#define WARM_FRAMES 240u /* longer than the timeout, so that tiles are loaded and dropped */
 #define FRAMES 400u
 #define REHEARSALS 2u
-#define TIMEOUT 60u        /* frames: a second */
+#define TIMEOUT 60u        /* frames, one second */
 #define STEP 0.025f        /* meters per frame: a walk of 1.5 m/s */
-#define TURN_FRAMES 300.0f /* of a look to the left, to the right and back */
+#define TURN_FRAMES 300.0f /* period of looking left, right and back */
 #define TURN 0.3f          /* radians to each side */
 #define DEFAULT_SHARE 10u
 
@@ -22,7 +22,7 @@ static void *count_allocation(void *user, size_t size, size_t alignment)
 {
     atomic_fetch_add((atomic_uint *)user, 1);
     if (alignment <= alignof(max_align_t))
-        return malloc(size); /* faster */
+        return malloc(size); /* malloc is faster */
     return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
 }
 
@@ -37,7 +37,7 @@ struct walk {
     struct rig_wants wants;
     atomic_uint allocations;
     SluiceAllocationCallbacks allocator;
-    double overhead; ///< ns that a timed driver call adds to the library's time
+    double overhead; ///< ns that timing a driver call adds to the library's time
     uint32_t steps;
 };
 
@@ -54,7 +54,7 @@ struct host_times {
     double calls;
 };
 
-/* The device is waited for where it is the host itself. */
+/* Waits for the device if it is the host's CPU. */
 static bool walk_frame(struct walk *walk, bool moves, struct host_times *times)
 {
     struct rig *rig = &walk->rig;
@@ -76,8 +76,8 @@ static bool walk_frame(struct walk *walk, bool moves, struct host_times *times)
     return true;
 }
 
-/* The way before it counts: what is remembered of textures grows for some turns of each of them,
- * and who jumps back to the start has the end in sight for a while. */
+/* Repeats the walk before measuring: the history of textures grows for some turns each, and a
+ * camera that jumps back to the start has the end in view for a while. */
 static bool rehearse(struct walk *walk, uint32_t frames)
 {
     uint32_t steps = walk->steps;

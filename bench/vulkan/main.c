@@ -1,4 +1,4 @@
-/* What streaming costs on a Vulkan device. run.sh builds this and makes a table of its lines. */
+/* Costs of streaming on a Vulkan device. run.sh builds this and makes a table of its output. */
 #include "bench.h"
 
 #include "../../tools/common/chosen_names.h"
@@ -63,13 +63,13 @@ double typical(const struct bench *bench, struct samples *samples)
 
 struct arguments {
     const char *device, *only;
-    int residency; ///< index in mode_names; "all" is 0
+    int residency; ///< index in mode_names; 0 is "all"
     int clock;     ///< auto, device, host
     uint32_t size[2], texture_size, threads;
     bool json, quick, list, validation;
 };
 
-/* What was not asked for: 1080p over a texture of more than a GiB, or what a CPU can hold. */
+/* Defaults: 1080p over a texture of more than a GiB, or as much as a CPU can hold. */
 static void fill_in_sizes(struct bench *bench)
 {
     static const uint32_t sizes[3][2] = {{1920, 1080}, {640, 360}, {160, 90}};
@@ -81,7 +81,7 @@ static void fill_in_sizes(struct bench *bench)
         bench->texture_size = textures[which];
 }
 
-/* 0; 1 if something failed; 77 if the device lacks the mode. */
+/* Returns 0; 1 if a measurement failed; 77 if the device lacks the mode. */
 static int measure_mode(const struct arguments *arguments, SluiceResidencyMode mode)
 {
     struct bench bench = {.mode = mode,

@@ -1,16 +1,16 @@
-/* The resolve of all feedback maps of 1 000 textures in one frame, and its way to the host. */
+/* Time to resolve all feedback maps of 1 000 textures in one frame, and to read them back. */
 #include "rig.h"
 
 #include <stdio.h>
 
 #define FRAMES 101u
-/* Of the packed levels, so that no tile is wanted and nothing streams beside it. */
+/* A packed level, so that no tile is requested and nothing is loaded meanwhile. */
 #define PACKED_LEVEL 6u
 
 struct pattern {
     const char *name;
-    bool alternates;   ///< every region changes in every frame
-    float probability; ///< of a level more, drawn anew in every frame
+    bool alternates;   ///< true: every region changes in every frame
+    float probability; ///< probability of one level more, drawn in every frame
 };
 
 static bool run_pattern(struct rig *rig, VkPipeline pipeline, const struct pattern *pattern)
@@ -62,7 +62,7 @@ static bool run_patterns(struct rig *rig)
     return pipeline != VK_NULL_HANDLE;
 }
 
-/* So that all packed levels are there, and nothing but feedback is under way. */
+/* Loads all packed levels, so that only feedback is pending. */
 static bool load_packed(struct rig *rig)
 {
     return rig_load(rig, NULL);

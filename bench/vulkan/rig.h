@@ -1,6 +1,6 @@
 /**
- * A streamer with some textures of one free source, and a loop of frames around it that can be
- * timed. What a frame does between begin and end is up to the measurement.
+ * A streamer with textures of one source that takes no time, and a loop of timed frames.
+ * Measurements define the work between begin and end.
  */
 #ifndef BENCH_VULKAN_RIG_H
 #define BENCH_VULKAN_RIG_H
@@ -15,21 +15,21 @@
 
 struct rig_info {
     const struct bench *bench;
-    /** Handles are filled in, and pfnGetInstanceProcAddr if it is NULL. */
+    /** Handles are filled in; pfnGetInstanceProcAddr, too, if NULL. */
     SluiceVulkanContextCreateInfo context;
-    /** Set fields that shall differ from their defaults. The rig sets `context`. */
+    /** Set fields that differ from their defaults. The rig sets `context`. */
     SluiceVulkanStreamerCreateInfo streamer;
-    bool chooses_modes; ///< the streamer does: it has AUTO instead of the bench's mode
+    bool chooses_modes; ///< true: AUTO instead of the bench's mode
     SluiceFormat format;
     uint32_t texture_size, texture_count;
-    uint32_t output_words;              ///< of a buffer that shaders write to and the host reads
-    uint32_t picture_words;             ///< of a buffer that they write to, in device memory
-    float anisotropy;                   ///< of the samplers; 1: none
-    const SluiceTileProducer *producer; ///< makes the tiles of all textures; NULL: they are read
-    VkImageView plain_view;             ///< VK_NULL_HANDLE: that of the first texture
+    uint32_t output_words;              ///< words of a buffer that shaders write and the host reads
+    uint32_t picture_words;             ///< words of a buffer in device memory that shaders write
+    float anisotropy;                   ///< anisotropy of the samplers; 1: none
+    const SluiceTileProducer *producer; ///< writes the tiles of all textures; NULL: tiles are read
+    VkImageView plain_view;             ///< VK_NULL_HANDLE: the view of the first texture
 };
 
-/** Seconds, in a frame's three parts. Any may be NULL: then nothing is timed. */
+/** Seconds of a frame's three parts. NULL: not timed. */
 struct rig_samples {
     struct samples *begin, *work, *end;
 };
@@ -51,9 +51,9 @@ struct rig {
     SluiceVulkanTexture *textures;         ///< owned
     uint32_t texture_count;
     uint32_t map_width, map_height; ///< feedback regions of each texture
-    uint64_t frame;                 ///< the last one
-    double host_seconds;            ///< of begin and end in the last frame, on the host
-    double host_cpu_seconds;        ///< the same, of the thread alone
+    uint64_t frame;                 ///< last frame
+    double host_seconds;            ///< host time of begin and end in the last frame
+    double host_cpu_seconds;        ///< processor time of the thread in begin and end
 
     struct gpu_buffer outputs, indices, picture;
     VkSampler sampler;
@@ -71,13 +71,13 @@ struct rig {
 typedef void rig_record(struct rig *rig, VkCommandBuffer commands, void *user);
 
 struct rig_work {
-    rig_record *warm_up; ///< untimed, before; may be NULL
+    rig_record *warm_up; ///< runs before, untimed; may be NULL
     rig_record *record;
     void *user;
     struct rig_samples samples;
 };
 
-/** Says on stderr what failed. A rig that was not created can be destroyed. */
+/** Creates a rig. Reports errors on stderr. rig_destroy accepts a failed rig. */
 bool rig_create(struct rig *rig, const struct rig_info *info);
 void rig_destroy(struct rig *rig);
 
@@ -86,29 +86,29 @@ bool rig_create_descriptors(struct rig *rig, const struct rig_info *info);
 void rig_destroy_descriptors(struct rig *rig);
 void rig_write_pages(struct rig *rig, struct rig_slot *slot);
 
-/** Values of the constants of bench_shared.h, in their order; bits of floats. */
+/** Values of the constants in bench_shared.h, in their order; floats as bits. */
 struct rig_constants {
     uint32_t values[BENCH_CONSTANT_COUNT];
 };
 
-/** VK_NULL_HANDLE on failure. */
+/** Returns VK_NULL_HANDLE on failure. */
 VkPipeline rig_compute_pipeline(struct rig *rig, const uint32_t *words, size_t size,
                                 const struct rig_constants *constants);
 VkPipeline rig_screen_pipeline(struct rig *rig, const uint32_t *words, size_t size,
                                const struct rig_constants *constants, VkRenderPass pass);
 
-/** Binds a pipeline, descriptors and parameters for the work of a frame. */
+/** Binds pipeline, descriptors and parameters for a frame's work. */
 void rig_bind(struct rig *rig, VkCommandBuffer commands, VkPipelineBindPoint point,
               VkPipeline pipeline, const struct BenchParams *params);
 
-/** A frame; up to RIG_FRAMES are under way. Samples are added when it is over. */
+/** Runs a frame. At most RIG_FRAMES are in flight. Adds samples when it has completed. */
 bool rig_frame(struct rig *rig, const struct rig_work *work);
 /** Waits for all frames, and adds their samples. */
 bool rig_finish(struct rig *rig);
-/** Waits for frames, reads and bindings as well. */
+/** Waits for frames, reads and bindings. */
 bool rig_settle(struct rig *rig);
 
-/** A dispatch of wants.comp for all textures; `user` of rig_work is a struct rig_wants. */
+/** A dispatch of wants.comp for all textures. `user` of rig_work is a struct rig_wants. */
 struct rig_wants {
     VkPipeline pipeline;
     struct BenchParams params; ///< width, height and textureCount are filled in
@@ -116,7 +116,7 @@ struct rig_wants {
 rig_record rig_record_wants;
 VkPipeline rig_wants_pipeline(struct rig *rig);
 
-/** Frames that want what `wants` says until all of it is mapped. */
+/** Runs frames with the requests of `wants` until all their tiles are mapped. */
 bool rig_load(struct rig *rig, struct rig_wants *wants);
 
 SluiceVulkanStreamerStatistics rig_statistics(const struct rig *rig);

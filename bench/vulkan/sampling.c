@@ -1,4 +1,5 @@
-/* What a sample of a streamed texture costs beside texture(), and what feedback adds to it. */
+/* Costs of sampling a streamed texture compared with texture(), and the additional cost of
+ * feedback. */
 #include "scene.h"
 
 #include "../../tools/common/clock.h"
@@ -9,7 +10,7 @@
 #define MAX_VARIANTS 8u
 #define FRAMES 101u
 #define LEAST_FRAMES 5u
-#define GROUP_SECONDS 5.0 /* software devices draw no more frames than this lasts */
+#define GROUP_SECONDS 5.0 /* limit for software devices, s */
 
 static const char *const scene_names[3] = {"floor", "close_up", "noise"};
 static const char *const stage_names[2] = {"compute", "fragment"};
@@ -39,7 +40,7 @@ static bool prepare(struct scene *scene, struct variant *variants, uint32_t coun
     return true;
 }
 
-/* In turns, so that clocks and neighbors do the same to all of them. */
+/* Alternates the variants, so that clock changes and other load affect all alike. */
 static bool run(struct scene *scene, struct variant *variants, uint32_t count)
 {
     uint32_t frames = options.quick ? LEAST_FRAMES : FRAMES;
@@ -50,7 +51,7 @@ static bool run(struct scene *scene, struct variant *variants, uint32_t count)
                                     .record = scene_record,
                                     .user = &variants[i].draw,
                                     .samples = {.work = &variants[i].samples}};
-            if (frame == 0) /* compiles */
+            if (frame == 0) /* compiles shaders */
                 work.samples.work = NULL;
             if (!rig_frame(&scene->rig, &work))
                 return false;
@@ -92,7 +93,7 @@ static bool sample_scene(struct scene *scene, bool fragment, uint32_t which, flo
     return done;
 }
 
-/* What is in each of the times: stamps, and waiting for all before. */
+/* Measures the part that all times include: time stamps, and the wait for earlier work. */
 static bool measure_nothing(struct scene *scene)
 {
     struct samples samples;
@@ -144,7 +145,7 @@ static bool feed_scene(struct scene *scene, bool fragment, uint32_t which)
         {.name = "blocks_16", .constants = {.feedback = BENCH_FEEDBACK_BLOCKS}},
         {.name = "lattice_64", .constants = {.feedback = BENCH_FEEDBACK_LATTICE}},
     };
-    /* Lavapipe compiles each for seconds. */
+    /* Lavapipe takes seconds to compile each. */
     const uint32_t count = options.quick ? 4 : 7;
     for (uint32_t i = 0; i < count; i++) {
         variants[i].constants.fragment = fragment;

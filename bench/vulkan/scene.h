@@ -1,4 +1,4 @@
-/** The scenes, drawn by compute and by fragment shaders, over a texture that is resident. */
+/** The scenes, drawn by compute and by fragment shaders, with a resident texture. */
 #ifndef BENCH_VULKAN_SCENE_H
 #define BENCH_VULKAN_SCENE_H
 
@@ -8,7 +8,7 @@
 
 struct scene {
     struct rig rig;
-    struct rig plain; ///< the same texture, dense: what texture() is measured on
+    struct rig plain; ///< the texture in dense mode, for texture()
     struct target target;
     bool has_target;
 };
@@ -26,14 +26,14 @@ struct scene_constants {
     float anisotropy;
 };
 
-/** With `everything`, all of the texture is resident afterwards, and there is a plain one. */
+/** Creates a scene. `everything`: makes all of the texture resident, and creates a plain one. */
 bool scene_create(struct scene *scene, const struct bench *bench, float anisotropy,
                   bool everything);
 void scene_destroy(struct scene *scene);
 
 VkPipeline scene_pipeline(struct scene *scene, const struct scene_constants *constants);
 
-/** For rig_work.record and .warm_up; `user` is a struct scene_draw. */
+/** Callbacks for rig_work.record and .warm_up. `user` is a struct scene_draw. */
 rig_record scene_record, scene_record_warm_up;
 
 struct BenchParams scene_params(const struct scene *scene);

@@ -4,7 +4,7 @@
 
 #define NOISE_SIZE 65536u
 
-/* The same bytes for every tile; random ones, because devices compress and elide what is even. */
+/* Bytes of every tile. Random, because devices compress and elide uniform data. */
 static unsigned char noise[NOISE_SIZE];
 
 static void fill_noise(void)
@@ -30,7 +30,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     sluiceGetFormatInfo(source->info.format, &format);
     size_t row = (size_t)sluiceGetFormatRegionSize(source->info.format, region->width, 1);
     uint32_t rows = (region->height + format.blockHeight - 1) / format.blockHeight;
-    if (row == row_pitch) { /* tightly packed, as tiles are */
+    if (row == row_pitch) { /* tiles are tightly packed */
         row *= rows;
         rows = 1;
     }
