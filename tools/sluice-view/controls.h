@@ -13,8 +13,9 @@
 
 enum control_flags {
     CONTROL_LOGARITHMIC = 1,
-    CONTROL_REOPENS = 2, ///< takes effect when the scene is opened again
+    CONTROL_REOPENS = 2, ///< the scene is opened again when it changes
     CONTROL_PASSING = 4, ///< not kept in files of settings
+    CONTROL_STARTS = 8,  ///< takes effect when the program begins
     CONTROL_OF_BOTH = 64 ///< A and B of a comparison share it, though streaming depends on it
 };
 
@@ -26,7 +27,7 @@ struct control {
     unsigned flags;
 };
 
-#define CONTROLS_MAX 48
+#define CONTROLS_MAX 80
 
 const struct control *controls_get(uint32_t *count);
 /** NULL: there is none of this name. */

@@ -71,7 +71,6 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
          .help = "pass over the settings that were kept from the last time"},
         {OPTION_TEXT, "cache", "DIR", "($XDG_CACHE_HOME/sluice, ~/.cache/sluice)", &o->cache,
          "folder for generated pictures and tile stores"},
-        option_threads(&o->threads),
         option_validation(&o->validation),
         {OPTION_SECTION, .help = "Device"},
         option_device(&o->device),

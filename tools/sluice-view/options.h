@@ -12,7 +12,6 @@ struct view_options {
     struct option_list words; ///< scenes
     bool room, headless, deterministic, fresh, json, validation, list_devices, still;
     uint32_t frames; ///< 0: until the script ends, or the window is closed
-    uint32_t threads;
     const char *script, *screenshot, *csv, *play, *cache, *device, *record;
     const char *camera; ///< as view_camera_read takes it; NULL: the scene's
 };

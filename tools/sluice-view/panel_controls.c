@@ -23,6 +23,8 @@ static double slider_most(const struct control *control)
     } limits[] = {{"standby", 16384},
                   {"timeout", 60},
                   {"textures-per-frame", 1024},
+                  {"misses-to-forget", 64},
+                  {"threads", 32},
                   {"fade", 2},
                   {"predict", 2},
                   {"source-latency", 1000},
@@ -173,8 +175,9 @@ static void draw_control(struct view_app *app, const struct control *control)
     draw_widget(app, control, control->label);
     ui_end_disabled();
     ui_hint("%s.%s\nDouble click: %s. --%s", control->option.help,
-            control->flags & CONTROL_REOPENS ? " Takes effect when the scene is opened again (F5)."
-                                             : "",
+            control->flags & CONTROL_REOPENS  ? " The scene is opened again."
+            : control->flags & CONTROL_STARTS ? " Takes effect when the program begins."
+                                              : "",
             control->option.initial, control->option.name);
     if (ui_double_clicked() && control->option.kind != OPTION_CHOICE)
         control_reset(control, &app->settings);

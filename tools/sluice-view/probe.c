@@ -76,8 +76,11 @@ void probe_pixel(const float texels[4], const struct view_settings *settings,
     if (!(sum > 0))
         return;
     const double shorter = sqrt(fmax(0, (sum - sqrt(fmax(0, sum * sum - 4 * area * area))) / 2));
-    const double longer = fmax(right, down), most = settings->anisotropy;
+    const double longer = fmax(right, down),
+                 most = settings->filter == VIEW_NEAREST ? 1 : settings->anisotropy;
     probe->density = fmin(right, down);
     probe->lod = log2(most > 1 ? fmax(shorter, longer / most) : longer) + settings->lod_bias;
     probe->camera_level = floor(probe->lod - (most > 1 ? 0.1875 : 0.125)); /* sluiceLodMargin */
+    if (probe->camera_level < settings->finest_level && settings->finest_level > 0)
+        probe->lod = probe->camera_level = settings->finest_level;
 }

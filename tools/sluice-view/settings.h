@@ -10,6 +10,8 @@ enum view_load { VIEW_LOAD_WANTED, VIEW_LOAD_EVERYTHING };
 enum view_feedback { VIEW_FEEDBACK_ON, VIEW_FEEDBACK_OFF };
 /** Pixels that write feedback. shaders/scene_push.glsl has the same numbers. */
 enum view_feedback_by { VIEW_BY_QUADS, VIEW_BY_LATTICE, VIEW_BY_EVERY_PIXEL, VIEW_BY_TURNS };
+enum view_switch { VIEW_ON, VIEW_OFF }; ///< of choices "on|off"
+enum view_filter { VIEW_LINEAR, VIEW_NEAREST };
 enum view_motion { VIEW_WALK, VIEW_FLY, VIEW_ORBIT };
 enum view_compare { VIEW_COMPARE_OFF, VIEW_DIVIDER, VIEW_DIFFERENCE, VIEW_FLICKER };
 enum view_render_mode { VIEW_PRIMARY, VIEW_NEAR, VIEW_DISTANT, VIEW_PATHS }; ///< PBRT_MODE_...
@@ -43,10 +45,16 @@ struct view_settings {
     uint32_t tiles_per_frame, loads_in_flight;
     double timeout; ///< seconds
     uint32_t standby;
-    double fade;   ///< seconds
-    int residency; ///< enum view_residency
-    int load;      ///< enum view_load
+    uint32_t misses, prefetch_levels; ///< SluiceVulkanStreamerSettings
+    double fade;                      ///< seconds
+    int residency;                    ///< enum view_residency
+    int load;                         ///< enum view_load
     uint32_t anisotropy;
+    int texture_sets;                        ///< enum view_switch
+    int filter;                              ///< enum view_filter
+    uint32_t finest_level;                   ///< that may be sampled or requested
+    int alpha_test;                          ///< enum view_switch
+    uint32_t threads;                        ///< of the loader; 0: by the number of processors
     double source_latency, source_bandwidth; ///< milliseconds, MB/s
     uint32_t source_fails;                   ///< reads of one region in so many fail; 0: none
     int pause, freeze_wants;

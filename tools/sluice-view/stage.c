@@ -32,6 +32,7 @@ struct stage {
     uint32_t *table_indices;
     struct tile_marks marks;
     uint32_t baking_count, heap_tiles;
+    uint32_t finest_level;      ///< of the controls of all textures
     SluiceImageSource **slow;   ///< around the scene's sources; NULL without a slow line
     SluiceImageSource **faulty; ///< around all these
     atomic_uint source_fails;
@@ -168,6 +169,11 @@ static const char *format_name(SluiceFormat format)
     }
 }
 
+static uint32_t primary_of(const struct stage *s, uint32_t i)
+{
+    return s->settings.texture_sets == VIEW_ON ? s->scene.images[i].primary : STAGE_NO_TEXTURE;
+}
+
 static bool describe_texture(struct stage *s, uint32_t i, const SluiceVulkanTexture *texture)
 {
     const struct scene_image *image = &s->scene.images[i];
@@ -185,7 +191,7 @@ static bool describe_texture(struct stage *s, uint32_t i, const SluiceVulkanText
                                             texture->width,
                                             texture->height,
                                             texture->mipLevelCount,
-                                            image->primary,
+                                            primary_of(s, i),
                                             format_name(about.format),
                                             (uint64_t)layout.tileCount * SLUICE_DEFAULT_TILE_SIZE};
     return true;
@@ -218,7 +224,7 @@ static SluiceResult wrap_replaced(struct stage *s, uint32_t i)
 static bool add_texture(struct stage *s, uint32_t i)
 {
     const struct scene_image *image = &s->scene.images[i];
-    const bool follows = image->primary != SCENE_NO_IMAGE;
+    const bool follows = primary_of(s, i) != STAGE_NO_TEXTURE;
     SluiceVulkanTexture texture;
     SluiceVulkanTextureCreateInfo info = {
         .structSize = sizeof info,
@@ -334,6 +340,38 @@ void stage_destroy(struct stage *s)
     free(s);
 }
 
+/* Textures that leave their set write feedback of their own from the next frame on. */
+static void apply_sets(struct stage *s)
+{
+    for (uint32_t i = 0; i < s->scene.image_count; i++) {
+        const uint32_t primary = primary_of(s, i);
+        if (s->scene.images[i].primary == SCENE_NO_IMAGE)
+            continue;
+        s->textures[i].primary = primary;
+        check(sluiceSetVulkanPrimaryTexture(s->streamer, s->textures[i].id,
+                                            primary == STAGE_NO_TEXTURE ? SLUICE_NO_TEXTURE
+                                                                        : s->textures[primary].id),
+              "sluiceSetVulkanPrimaryTexture");
+    }
+}
+
+/* Tiles of finer levels leave; shaders sample none of them at once. */
+static void apply_finest_level(struct stage *s)
+{
+    s->finest_level = s->settings.finest_level;
+    for (uint32_t i = 0; i < s->scene.image_count; i++) {
+        SluiceVulkanTextureControl control = {.structSize = sizeof control};
+        if (s->textures[i].primary != STAGE_NO_TEXTURE)
+            continue;
+        if (sluiceGetVulkanTextureControl(s->streamer, s->textures[i].id, &control) !=
+            SLUICE_SUCCESS)
+            continue;
+        control.finestLevel = s->finest_level;
+        check(sluiceSetVulkanTextureControl(s->streamer, s->textures[i].id, &control),
+              "sluiceSetVulkanTextureControl");
+    }
+}
+
 void stage_apply(struct stage *s, const struct view_settings *settings)
 {
     SluiceVulkanStreamerSettings now = {.structSize = sizeof now};
@@ -355,8 +393,16 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
                    STAGE_TICKS_PER_SECOND);
     now.residencyFadeTicks = (uint64_t)(settings->fade * STAGE_TICKS_PER_SECOND);
     now.holdLoads = settings->pause != 0;
+    now.missesToExpire = settings->misses;
+    now.prefetchLevels = settings->prefetch_levels;
     check(sluiceSetVulkanStreamerSettings(s->streamer, &now), "sluiceSetVulkanStreamerSettings");
+    const bool other_sets = settings->texture_sets != s->settings.texture_sets;
+    const bool other_finest = settings->finest_level != s->finest_level;
     s->settings = *settings;
+    if (other_sets)
+        apply_sets(s);
+    if (other_sets || other_finest)
+        apply_finest_level(s);
     atomic_store(&s->source_fails, settings->source_fails);
 }
 

@@ -225,7 +225,9 @@ static uint32_t flags_of(const struct view_settings *s)
     const uint32_t borders = s->borders == VIEW_NUMBERED_BORDERS ? 3u
                              : s->borders == VIEW_BORDERS        ? 1u
                                                                  : 0u;
-    return borders | (uint32_t)s->feedback_by << 8;
+    return borders | (s->filter == VIEW_NEAREST ? 4u : 0u) | (s->alpha_test == VIEW_OFF ? 8u : 0u) |
+           (s->texture_sets == VIEW_OFF ? 16u : 0u) | (uint32_t)s->feedback_by << 8 |
+           s->finest_level << 12;
 }
 
 /* Of the pixels that the kind of feedback selects; 0: none writes. */
@@ -246,7 +248,7 @@ static struct push push_of(const struct scene_data *scene, const struct stage_dr
                          .seed = (uint32_t)draw->number,
                          .probability = probability_of(s),
                          .lod_bias = (float)s->lod_bias,
-                         .anisotropy = (float)s->anisotropy,
+                         .anisotropy = s->filter == VIEW_NEAREST ? 1.0f : (float)s->anisotropy,
                          .tint = (float)s->tint,
                          .flags = flags_of(s)};
 }

@@ -4,6 +4,7 @@
 
 #define SLOT_SECOND_UV 1u
 #define SLOT_WRITES 2u
+#define SLOT_WRITES_ALONE 4u
 #define SLOT_IMAGE_SHIFT 8
 #define MATERIAL_MISSING 1u
 
@@ -20,16 +21,14 @@ struct gpu_material {
 };
 _Static_assert(sizeof(struct gpu_material) == 224, "as in scene_material.glsl");
 
-/* Followers and slots that are sampled like an earlier one write no feedback. */
-static bool writes(const struct scene_data *scene, const struct scene_material *material, int k)
+/* Slots that are sampled like an earlier one write no feedback; followers without sets alone. */
+static uint32_t writes(const struct scene_data *scene, const struct scene_material *material, int k)
 {
     const struct scene_slot *slot = &material->slots[k];
-    if (scene->images[slot->image].primary != SCENE_NO_IMAGE)
-        return false;
     for (int i = 0; i < k; i++)
         if (memcmp(&material->slots[i], slot, sizeof *slot) == 0)
-            return false;
-    return true;
+            return 0;
+    return scene->images[slot->image].primary != SCENE_NO_IMAGE ? SLOT_WRITES_ALONE : SLOT_WRITES;
 }
 
 static struct gpu_material pack(const struct scene_data *scene,
@@ -53,8 +52,7 @@ static struct gpu_material pack(const struct scene_data *scene,
         if (slot->image == SCENE_NO_IMAGE)
             continue;
         to.slots[k].table_index = tables[slot->image];
-        to.slots[k].flags = (slot->uv_set ? SLOT_SECOND_UV : 0u) |
-                            (writes(scene, material, k) ? SLOT_WRITES : 0u) |
+        to.slots[k].flags = (slot->uv_set ? SLOT_SECOND_UV : 0u) | writes(scene, material, k) |
                             slot->image << SLOT_IMAGE_SHIFT;
     }
     return to;

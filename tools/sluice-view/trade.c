@@ -79,7 +79,8 @@ static void add_bases(const struct view_settings *settings, struct text_list *li
     const struct control *controls = controls_get(&count);
     for (uint32_t i = 0; i < count; i++) {
         if (!control_is_of_sets(&controls[i]) || controls[i].flags & CONTROL_PASSING ||
-            control_is_default(&controls[i], settings))
+            control_is_default(&controls[i], settings) ||
+            strcmp(controls[i].option.name, "threads") == 0) /* an argument of the runs */
             continue; /* sizes and views are the sweep's own */
         char *base = memory_text("%s=%s", controls[i].option.name,
                                  control_write(&controls[i], settings, value, sizeof value));

@@ -131,8 +131,9 @@ void ui_item_width(float width);
 /** About the widget before. */
 bool ui_hovered(void);
 bool ui_double_clicked(void);
-bool ui_active(void);   ///< being dragged, or typed into
-bool ui_released(void); ///< released in this frame, after its value changed
+bool ui_active(void);     ///< being dragged, or typed into
+bool ui_any_active(void); ///< any widget
+bool ui_released(void);   ///< released in this frame, after its value changed
 void ui_hint(const char *format, ...) UI_PRINTF(1, 2); ///< shown while the widget is hovered
 void ui_show_hint(const char *text);                   ///< shown at the mouse now
 

@@ -211,6 +211,11 @@ bool ui_active(void)
     return ImGui::IsItemActive();
 }
 
+bool ui_any_active(void)
+{
+    return ImGui::IsAnyItemActive();
+}
+
 bool ui_released(void)
 {
     return ImGui::IsItemDeactivatedAfterEdit();

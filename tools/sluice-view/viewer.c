@@ -168,6 +168,7 @@ static void answer_requests(struct viewer *v)
         stage_restart(v->stage);
     else if (app->restart) /* what is made of a scene of pbrt goes with its loader */
         app->reload = true;
+    viewer_reopen_if_needed(v);
     if (app->reload)
         viewer_reopen(v, NULL);
     viewer_open_chosen(v);

@@ -35,6 +35,8 @@ struct viewer {
     struct ui_input input;
     struct view_settings applied;   ///< what the streamer has
     struct view_settings applied_b; ///< what that of B has
+    struct view_settings reopened;  ///< with which the scene was to be opened again
+    bool asked;                     ///< `reopened` is known: if that failed, it is not tried again
     struct file_list paths;         ///< owned; of the scene; none: the room
     struct scene_load *load;        ///< of the next scene; NULL: none
     struct scene_load *canceled;    ///< canceled loads whose threads have not ended
@@ -65,6 +67,8 @@ void viewer_close_scene(struct viewer *viewer);
 /** Opens other paths, and may take them; NULL: the same scene with other settings. With a window,
  *  other paths are opened on a thread. The old scene stays until the new one can be shown. */
 void viewer_reopen(struct viewer *viewer, struct file_list *paths);
+/** Asks for the scene to be opened again if settings changed that are fixed while it is open. */
+void viewer_reopen_if_needed(struct viewer *viewer);
 /** Shows a scene that a thread has opened, and says before how far it is. False if there is nothing
  *  to show. */
 bool viewer_watch_load(struct viewer *viewer);

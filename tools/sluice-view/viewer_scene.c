@@ -2,6 +2,7 @@
 
 #include "controls.h"
 #include "recent.h"
+#include "sets.h"
 #include "settings_file.h"
 #include "shader_files.h"
 
@@ -13,7 +14,7 @@ struct stage *viewer_create_stage(struct viewer *v, const struct view_settings *
                                   struct scene_data *scene)
 {
     const struct stage_request request = {.gpu = &v->gpu,
-                                          .threads = v->options->threads,
+                                          .threads = settings->threads,
                                           .waits = v->options->deterministic,
                                           .code = v->code[0].words ? v->code : NULL};
     return stage_create(&request, settings, scene);
@@ -151,12 +152,39 @@ static void note_file(struct viewer *v, const struct file_list *paths, bool open
         app_set_panel(&v->app, PANEL_FILE, true);
 }
 
+/** What stays when a scene is opened again. */
+struct kept_place {
+    struct view_camera camera;
+    struct vec3 center;
+    enum app_follow follow;
+    double follow_seconds;
+    bool touched;
+    uint32_t selected;
+    struct stage_pick inspect;
+};
+
+static struct kept_place keep_place(const struct view_app *app)
+{
+    return (struct kept_place){app->camera,  app->center,   app->follow, app->follow_seconds,
+                               app->touched, app->selected, app->inspect};
+}
+
+static void restore_place(struct view_app *app, const struct kept_place *place)
+{
+    app->camera = place->camera;
+    app->center = place->center;
+    app->follow = place->follow;
+    app->follow_seconds = place->follow_seconds;
+    app->touched = place->touched;
+    app->selected = place->selected;
+    app->inspect = place->inspect;
+}
+
 /* Shows a scene instead of the one that is shown, which stays if this fails. `paths`, if there are
  * any, are exchanged with those of the scene before. */
 static bool show(struct viewer *v, struct scene_data *scene, struct file_list *paths)
 {
     const bool first = !v->stage;
-    const struct view_camera camera = v->app.camera;
     struct kept_settings kept;
     if (!first && paths)
         change_settings(v, paths, &kept);
@@ -166,9 +194,11 @@ static bool show(struct viewer *v, struct scene_data *scene, struct file_list *p
             restore_settings(v, &kept);
         return false;
     }
+    const struct kept_place place = keep_place(&v->app);
     viewer_close_scene(v);
     v->stage = stage;
     v->applied = v->app.settings;
+    v->asked = false;
     if (paths) {
         const struct file_list before = v->paths;
         v->paths = *paths;
@@ -187,7 +217,7 @@ static bool show(struct viewer *v, struct scene_data *scene, struct file_list *p
         app_say(&v->app, "Opened %s", stage_name(stage));
         note_file(v, &v->paths, true);
     } else {
-        v->app.camera = camera;
+        restore_place(&v->app, &place);
     }
     return true;
 }
@@ -249,6 +279,17 @@ void viewer_open_chosen(struct viewer *v)
     if (!path[0] || files_add(path, &paths))
         viewer_reopen(v, &paths);
     files_finish(&paths);
+}
+
+void viewer_reopen_if_needed(struct viewer *v)
+{
+    const struct view_settings *now = &v->app.settings;
+    if (!v->stage || v->load || ui_any_active() || !sets_must_reopen(stage_opened(v->stage), now) ||
+        (stage_traced(v->stage) && stage_opened(v->stage)->threads == now->threads) ||
+        (v->asked && !sets_must_reopen(&v->reopened, now)))
+        return;
+    v->asked = v->app.reload = true;
+    v->reopened = *now;
 }
 
 static bool end_load(struct viewer *v)

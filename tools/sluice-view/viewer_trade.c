@@ -11,7 +11,7 @@ void viewer_follow_trade(struct viewer *v)
                                           .paths = &v->paths,
                                           .cache = v->options->cache,
                                           .device = v->options->device,
-                                          .threads = v->options->threads};
+                                          .threads = app->settings.threads};
     if (app->trade_toggle && v->trade.state == TRADE_RUNS)
         trade_cancel(&v->trade);
     else if (app->trade_toggle && v->stage)

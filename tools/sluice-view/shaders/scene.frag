@@ -66,6 +66,30 @@ vec2 turnBySlot(Slot slot, vec4 sets)
     return vec2(dot(slot.turn.xy, uv), dot(slot.turn.zw, uv));
 }
 
+/* LOD bias of a sample: no finer level than the finest allowed one, whatever the sampler rounds. */
+float biasOf(uint tableIndex, vec2 dx, vec2 dy)
+{
+    uint finest = push.flags >> FINEST_SHIFT & FINEST_MASK;
+    if (finest == 0u)
+        return push.lodBias;
+    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+    float lod = sluiceComputeLod(dx * size, dy * size, 0.0, push.anisotropy);
+    return max(push.lodBias, float(finest) - lod + sluiceLodMargin(push.anisotropy) + 1.0 / 64.0);
+}
+
+/* One texel of one level: the middle of it, where a bilinear sample has no part of others. */
+vec4 sampleNearest(uint tableIndex, vec2 uv, float bias, out uint missing)
+{
+    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dFdx(uv), dFdy(uv), bias, 1.0);
+    missing = sluiceMissingLevels(s);
+    if (s.level == SLUICE_MIP_UNTOUCHED)
+        return SLUICE_FALLBACK_COLOR;
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    uint level = min(max(uint(max(s.lod + 0.5, 0.0)), s.level), entry.mipLevelCount - 1u);
+    vec2 size = vec2(max(uvec2(entry.sizeX, entry.sizeY) >> level, uvec2(1u)));
+    return sluiceSampleAtLevel(tableIndex, tableIndex, level, (floor(s.uv * size) + 0.5) / size);
+}
+
 /* In loops, since compilers need long for what a sample is made of. */
 void sampleSlots()
 {
@@ -74,8 +98,11 @@ void sampleSlots()
         uint missing;
         if (slot.tableIndex == NO_TEXTURE)
             continue;
-        texels[i] = sluiceSample(slot.tableIndex, slot.tableIndex, turnBySlot(slot, uvs) + slot.offset,
-                                 push.lodBias, push.anisotropy, missing);
+        vec2 uv = turnBySlot(slot, uvs) + slot.offset;
+        float bias = biasOf(slot.tableIndex, turnBySlot(slot, uvsDx), turnBySlot(slot, uvsDy));
+        texels[i] = (push.flags & FLAG_NEAREST) != 0u
+                        ? sampleNearest(slot.tableIndex, uv, bias, missing)
+                        : sluiceSample(slot.tableIndex, slot.tableIndex, uv, bias, push.anisotropy, missing);
         if (missing > missingLevels) {
             missingLevels = missing;
             missingSlot = i;
@@ -94,7 +121,8 @@ bool isSelected()
 
 bool slotWrites(Slot slot)
 {
-    return slot.tableIndex != NO_TEXTURE && (slot.flags & SLOT_WRITES) != 0u && sluiceTakesPart(slot.tableIndex);
+    uint writing = (push.flags & FLAG_NO_SETS) != 0u ? SLOT_WRITES | SLOT_WRITES_ALONE : SLOT_WRITES;
+    return slot.tableIndex != NO_TEXTURE && (slot.flags & writing) != 0u && sluiceTakesPart(slot.tableIndex);
 }
 
 bool anySlotWrites()
@@ -112,13 +140,13 @@ void writeSlots()
         Slot slot = materials[push.material].slots[i];
         if (!slotWrites(slot))
             continue;
+        vec2 uv = turnBySlot(slot, uvs) + slot.offset, dx = turnBySlot(slot, uvsDx), dy = turnBySlot(slot, uvsDy);
+        float bias = biasOf(slot.tableIndex, dx, dy);
         if (feedbackBy() != BY_QUADS)
-            sluiceWriteFeedback(slot.tableIndex, turnBySlot(slot, uvs) + slot.offset, turnBySlot(slot, uvsDx),
-                                turnBySlot(slot, uvsDy), push.lodBias, push.anisotropy);
+            sluiceWriteFeedback(slot.tableIndex, uv, dx, dy, bias, push.anisotropy);
         else
-            sluiceWriteQuadFeedback(slot.tableIndex, turnBySlot(slot, uvs) + slot.offset, turnBySlot(slot, uvsDx),
-                                    turnBySlot(slot, uvsDy), push.lodBias, push.anisotropy,
-                                    uvec2(gl_FragCoord.xy), push.seed);
+            sluiceWriteQuadFeedback(slot.tableIndex, uv, dx, dy, bias, push.anisotropy, uvec2(gl_FragCoord.xy),
+                                    push.seed);
     }
 }
 
@@ -262,7 +290,8 @@ vec3 show(vec3 picture, Slot slot, bool wrote)
     if (push.view <= 1u)
         return bordered(picture, vec3(1.0, 0.85, 0.2), slot, at, 0.0);
     SluiceSampling wanted =
-        sluiceResolveSampling(slot.tableIndex, at.uv, at.dx, at.dy, push.lodBias, push.anisotropy);
+        sluiceResolveSampling(slot.tableIndex, at.uv, at.dx, at.dy, biasOf(slot.tableIndex, at.dx, at.dy),
+                              push.anisotropy);
     SluiceSampling here =
         sluiceResolveSampling(slot.tableIndex, at.uv, at.dx * 1e-5, at.dy * 1e-5, 0.0, 1.0);
     if (push.view == VIEW_WANTED)
@@ -283,8 +312,9 @@ void main()
     if (push.view > 1u || (push.flags & FLAG_BORDERS) != 0u)
         picture = decode(show(encode(picture), materials[push.material].slots[SLOT_COLOR], writes && anySlotWrites()));
 #ifdef MASKED
-    if (base.a < materials[push.material].emissive.w)
+    if (base.a < materials[push.material].emissive.w && (push.flags & FLAG_NO_ALPHA_TEST) == 0u)
         discard;
+    base.a = 1.0;
 #endif
     outColor = vec4(clamp(picture, 0.0, 1.0), base.a);
     if (writes)

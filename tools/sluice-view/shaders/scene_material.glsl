@@ -2,7 +2,8 @@
 const uint NO_TEXTURE = 0xFFFFFFFFu;
 const uint SLOT_COLOR = 0, SLOT_ROUGHNESS = 1, SLOT_NORMAL = 2, SLOT_OCCLUSION = 3, SLOT_EMISSIVE = 4,
            SLOT_COUNT = 5;
-const uint SLOT_SECOND_UV = 1, SLOT_WRITES = 2, SLOT_IMAGE_SHIFT = 8; // flags of slots
+// Flags of slots. SLOT_WRITES_ALONE: writes feedback if there are no sets of textures.
+const uint SLOT_SECOND_UV = 1, SLOT_WRITES = 2, SLOT_WRITES_ALONE = 4, SLOT_IMAGE_SHIFT = 8;
 const uint MATERIAL_MISSING = 1;
 
 struct Slot {
