@@ -29,36 +29,16 @@ const char *panel_traced_refuses(const char *chord)
 
 bool panel_traced_takes(const char *control)
 {
-    static const char *const names[] = {"standby",
-                                        "timeout",
-                                        "residency",
-                                        "load",
-                                        "feedback",
-                                        "feedback-by",
-                                        "texture-sets",
-                                        "misses-to-forget",
-                                        "prefetch-levels",
-                                        "filter",
-                                        "finest-level",
-                                        "alpha-test",
-                                        "probability",
-                                        "tiles-per-frame",
-                                        "loads-in-flight",
-                                        "fade",
-                                        "borders",
-                                        "textures-per-frame",
-                                        "source-latency",
-                                        "source-bandwidth",
-                                        "source-fails",
-                                        "compare-as",
-                                        "compare-to",
-                                        "divider",
-                                        "gain",
-                                        "predict",
-                                        "difference-as",
-                                        "wireframe",
-                                        "event-reason",
-                                        "events-of"};
+    static const char *const names[] = {"standby",        "timeout",          "residency",
+                                        "load",           "feedback",         "feedback-by",
+                                        "texture-sets",   "misses-to-forget", "prefetch-levels",
+                                        "filter",         "finest-level",     "alpha-test",
+                                        "probability",    "tiles-per-frame",  "loads-in-flight",
+                                        "fade",           "borders",          "textures-per-frame",
+                                        "source-latency", "source-bandwidth", "source-fails",
+                                        "compare-as",     "compare-to",       "divider",
+                                        "gain",           "predict",          "difference-as",
+                                        "wireframe",      "event-reason",     "events-of"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(names[i], control) == 0)
             return false;
