@@ -3,7 +3,7 @@
  *
  * Buffers ("chunks") are cut into slabs of 2 MiB. The slots of a slab have one stride: the size of
  * a page, rounded up to 16 bytes. A slab without pages may get another stride. Chunks are made when
- * no slab is left, each as large as all before it, and destroyed when they were empty for a while.
+ * no slab is left, each as large as all chunks before it, and destroyed after being empty a while.
  *
  * A slot that was given back can be taken at once, because launches run in the order of their
  * submission: the copy into the slot runs after all shaders that read it. A free slot keeps its
@@ -25,8 +25,8 @@
 #define SLC_BYTE_KINDS 256u /* strides; recordings allow no more */
 
 struct slc_byte_slot {
-    uint32_t previous, next; ///< free: in the ring
-    uint32_t owner;          ///< free: page whose bytes it has; SLC_NO_PAGE: none
+    uint32_t previous, next; ///< free: neighbors in the ring
+    uint32_t owner;          ///< free: page whose bytes are in the slot; SLC_NO_PAGE: none
     bool held;
 };
 
@@ -49,12 +49,12 @@ struct slc_byte_chunk {
     VkDeviceAddress address;     ///< 0 without addresses
     struct slc_byte_slab *slabs; ///< owned
     uint32_t slab_count, held_count;
-    uint64_t tick;   ///< LIVE: the last tick in which it was not empty
-    uint64_t launch; ///< RETIRING: the last launch that may see it
+    uint64_t tick;   ///< LIVE: last tick in which the chunk was not empty
+    uint64_t launch; ///< RETIRING: last launch that may see the chunk
 };
 
 struct slc_byte_memory {
-    const struct slc_vk *vk; ///< borrowed, as the next one
+    const struct slc_vk *vk; ///< borrowed, like the next field
     const struct slc_caps *caps;
     SluiceAllocationCallbacks cb;
     PFN_vkGetBufferDeviceAddress get_address; ///< NULL: values are not addresses
@@ -64,23 +64,23 @@ struct slc_byte_memory {
     uint64_t budget; ///< bytes, hard limit of `size`
     uint64_t size;   ///< bytes of all chunks
     uint32_t chunk_count;
-    uint64_t generation;   ///< of the buffers that shaders see, from 1 on
+    uint64_t generation;   ///< generation of the buffers that shaders see, from 1 on
     uint32_t last;         ///< slab that a slot was taken from last
     uint64_t held_size;    ///< bytes of slots that are held
-    uint64_t tick;         ///< launches that were begun, abandoned ones included
+    uint64_t tick;         ///< launches begun, including abandoned ones
     uint64_t refused_tick; ///< 1 + the tick in which the device refused a chunk; 0: not refused
     uint64_t evicted_count;
     bool short_of; ///< a request found no slot since the last launch
 };
 
-/** `addresses`: the device has bufferDeviceAddress enabled. Nothing is allocated. */
+/** Initializes without allocating. `addresses`: the device has bufferDeviceAddress enabled. */
 void slc_byte_memory_init(struct slc_byte_memory *memory, const struct slc_vk *vk,
                           const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                           uint64_t budget, bool addresses);
-/** No commands in progress use the memory. It may be zeroed. */
+/** Frees all chunks. No commands in progress may use them. `memory` may be zeroed. */
 void slc_byte_memory_finish(struct slc_byte_memory *memory);
 
-/** Bytes from one page of this size to the next. */
+/** Returns the bytes from one page of this size to the next. */
 static inline uint32_t slc_byte_stride(uint32_t page_size)
 {
     return (page_size + SLC_BYTE_ALIGNMENT - 1) / SLC_BYTE_ALIGNMENT * SLC_BYTE_ALIGNMENT;
@@ -89,21 +89,21 @@ static inline uint32_t slc_byte_stride(uint32_t page_size)
 /** Gets the kind of pages of a stride; it never changes. Returns false if all kinds are taken. */
 bool slc_byte_memory_kind(struct slc_byte_memory *memory, uint32_t stride, uint32_t *kind);
 
-/** For slc_residency_set_class. */
+/** Returns the functions for slc_residency_set_class. */
 struct slc_page_memory slc_byte_memory_interface(struct slc_byte_memory *memory);
 
 /** Gets buffer and byte offset of a place. */
 void slc_byte_place(uint32_t place, uint32_t stride, uint32_t *chunk, uint64_t *offset);
-/** Value of a place for shaders: its address, or chunk << 32 | byte offset. */
+/** Returns the value of a place for shaders: its address, or chunk << 32 | byte offset. */
 uint64_t slc_byte_value(const struct slc_byte_memory *memory, uint32_t place, uint32_t stride,
                         bool address);
 
-/** Frees chunks that have been empty for a while, under `pressure` sooner. `launch` begins, and
- *  launches up to `processed` are over. */
+/** Frees chunks that have been empty for a while, under `pressure` sooner. Call it when `launch`
+ *  begins. Launches up to `processed` are complete. */
 void slc_byte_memory_begin(struct slc_byte_memory *memory, uint64_t launch, uint64_t processed,
                            bool pressure);
 
-/** True if pages may soon be evicted: shaders should then report the pages that they use. */
+/** Whether pages may soon be evicted, so that shaders should report the pages that they use. */
 bool slc_byte_memory_is_filling(const struct slc_byte_memory *memory);
 
 #endif /* SLC_DEMAND_VULKAN_BYTE_MEMORY_H */

@@ -1,4 +1,4 @@
-/** Which texture, level and tile a page is. */
+/** Description of pages for queries: texture, level and tile. */
 #ifndef SLC_DEMAND_VULKAN_QUERIES_H
 #define SLC_DEMAND_VULKAN_QUERIES_H
 
@@ -6,7 +6,7 @@
 
 #include <sluice/demand_query.h>
 
-/** The page, as sluiceGetDemandMisses tells it. */
+/** Returns the description of a page for sluiceGetDemandMisses. */
 SluiceDemandMiss slc_demand_miss_of(const SluiceDemandLoader *loader, uint32_t page);
 
 #endif /* SLC_DEMAND_VULKAN_QUERIES_H */
