@@ -1,7 +1,7 @@
 /**
- * Pages that mip tails share, and which slots of them are free. A page has slots of one cut (see
- * demand/tail_place.h) for tails of one format. It comes from the pool with its first tail and goes
- * back with the last.
+ * Pages that mip tails share, and their free slots. A page has slots of one cut (see
+ * demand/tail_place.h) for tails of one format. It is taken from the pool for the first tail, and
+ * given back with the last one.
  */
 #ifndef SLC_DEMAND_VULKAN_TAIL_PAGES_H
 #define SLC_DEMAND_VULKAN_TAIL_PAGES_H
@@ -12,7 +12,7 @@
 
 #include <sluice/image.h>
 
-#define SLC_TAIL_CUTS 8u /* of a format: 4 cells, each of 2 or 3 slots */
+#define SLC_TAIL_CUTS 8u /* cuts per format: 4 cell sizes, 2 or 3 slots per cell */
 
 struct slc_tail_page;
 
@@ -20,7 +20,7 @@ struct slc_tail_pages {
     const SluiceAllocationCallbacks *cb; ///< borrowed
     struct slc_tail_page *pages;         ///< owned
     uint32_t capacity, high, free;
-    struct slc_map index;                            ///< page -> its element of `pages`
+    struct slc_map index;                            ///< page -> element of `pages`
     uint32_t open[SLC_PAGE_FORMATS * SLC_TAIL_CUTS]; ///< first page with free slots
     uint32_t page_count, tail_count;
 };
