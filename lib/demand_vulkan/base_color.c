@@ -55,7 +55,7 @@ static float bc4_texel(const uint8_t block[8], bool is_signed)
     return (a * (float)(6 - index) + b * (float)(index - 1)) / 5;
 }
 
-/* False for formats that take more than this. */
+/* Gets the color of a block. False for formats that take a full decoder. */
 static bool block_color(SluiceFormat format, const uint8_t *block, float rgba[4])
 {
     switch (format) {

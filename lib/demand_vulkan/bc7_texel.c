@@ -29,7 +29,7 @@ static uint32_t take(struct bits *bits, uint32_t count)
     return value;
 }
 
-/* The two of the first subset, widened to 8 bits. */
+/* Reads both endpoints of the first subset, widened to 8 bits. */
 static void read_endpoints(struct bits *bits, const struct mode *mode, uint32_t ends[2][4])
 {
     uint32_t p[2] = {0, 0}, has_p = mode->endpoint_p || mode->shared_p;
@@ -55,7 +55,7 @@ static void read_endpoints(struct bits *bits, const struct mode *mode, uint32_t 
         }
 }
 
-/* Of 64. */
+/* Returns the weight of an index, in 64ths. */
 static uint32_t weight(uint32_t bit_count, uint32_t index)
 {
     static const uint8_t two[] = {0, 21, 43, 64}, three[] = {0, 9, 18, 27, 37, 46, 55, 64};

@@ -9,8 +9,8 @@
 #define SLOT_MASK ((1u << SLOT_SHIFT) - 1)
 #define CHUNK_SHIFT 9u /* a slab's number is chunk << CHUNK_SHIFT | index in the chunk */
 #define MAX_SLABS (1u << CHUNK_SHIFT)
-#define IDLE_TICKS 60u    /* for which an empty chunk is kept */
-#define REFUSED_TICKS 60u /* until the device is asked for memory again */
+#define IDLE_TICKS 60u    /* ticks for which an empty chunk is kept */
+#define REFUSED_TICKS 60u /* ticks until the device is asked for memory again */
 
 static struct slc_byte_slab *slab_at(struct slc_byte_memory *m, uint32_t index)
 {
@@ -258,7 +258,7 @@ static bool retake(void *user, uint32_t place, uint32_t page)
     struct slc_byte_memory *m = user;
     const struct slc_byte_slab *slab = slab_at(m, place >> SLOT_SHIFT);
     uint32_t slot = place & SLOT_MASK;
-    /* another chunk or stride may be there by now */
+    /* the index may belong to another chunk or stride by now */
     if (!slab || !slab->slots || slot >= slab->slot_count || slab->slots[slot].held ||
         slab->slots[slot].owner != page)
         return false;

@@ -10,7 +10,7 @@
 
 _Static_assert(SLUICE_DEMAND_BYTE_CHUNKS <= SLC_DESCRIPTOR_ARRAY, "chunks fit");
 
-#define SPARE_BUFFERS 16u /* storage buffers of a stage that are left to the application */
+#define SPARE_BUFFERS 16u /* storage buffers per stage that are left to the application */
 
 static void list_buffers(SluiceDemandLoader *loader)
 {
@@ -126,7 +126,8 @@ uint64_t slc_byte_pages_value(const SluiceDemandLoader *loader, uint32_t page, u
     return slc_byte_value(&loader->bytes, (uint32_t)value, resource->stride, resource->addresses);
 }
 
-/* Byte pages have their share of the budget from the first resource to the last chunk. */
+/* Divides the budget. Byte pages have a share from the first resource until the last chunk is
+ * freed. */
 static void share_budget(SluiceDemandLoader *loader)
 {
     bool shared = loader->byte_resource_count || loader->bytes.size;
@@ -136,7 +137,7 @@ static void share_budget(SluiceDemandLoader *loader)
     uint64_t rest = loader->info.memoryBudget - reserve;
     loader->byte_reserve = reserve;
     slc_tile_memory_set_budget(&loader->tiles, rest);
-    /* 0 would be no limit */
+    /* 0 would mean no limit */
     slc_page_pool_set_max_size(loader->pages, loader->page_user, rest ? rest : 1);
 }
 

@@ -11,7 +11,7 @@
 
 #define DEFAULT_LAUNCHES 600
 #define DEFAULT_UNSIGNALED UINT64_C(5000000000)
-#define PROBES 8u /* launches without requests that report what they use, in each period */
+#define PROBES 8u /* launches per period that report their uses although they request nothing */
 
 typedef unsigned long long number;
 
@@ -55,7 +55,7 @@ void slc_demand_strict_not_begun(SluiceDemandLoader *loader)
                (number)loader->launch);
 }
 
-/* The time of a launch begins with the first call that waits for it. */
+/* Notes a wait. The time of a launch begins with the first call that waits for it. */
 static void note_wait(SluiceDemandLoader *loader, uint64_t launch, uint64_t now)
 {
     struct slc_demand_strict *strict = &loader->strict;

@@ -2,9 +2,9 @@
  * Textures that nobody samples are forgotten: their pages are evicted and their images closed, as
  * if they had never been opened. docs/decisions/0067-textures-without-use-are-forgotten.md.
  *
- * Open images are in the order of their last use: those whose mip tail has a place in one order,
- * all others in another. Only launches that told what they used change it. A sample that needs no
- * page, but only the color of the last level, marks the tail as used; so its block of the page
+ * Open images are sorted by last use: images whose mip tail has a place in one order, all others in
+ * another. Only launches that reported their uses change the orders. A sample that needs only the
+ * color of the last level, and no page, marks the tail as used. So the tail's block of the page
  * table stays while the image is open.
  */
 #include "demand_vulkan/loader.h"
@@ -12,7 +12,7 @@
 
 #include <sluice/shared/demand.h>
 
-/* Images that are forgotten for one page, and after one launch, at most. */
+/* Most images that are forgotten for one page, and after one launch. */
 #define MOST_PER_PAGE 64u
 #define MOST_PER_LAUNCH 4096u
 
@@ -57,7 +57,8 @@ static void change_order(SluiceDemandLoader *loader, struct slc_demand_image *im
 /* If the page table has no block for the tail, only lookups and misses of pages count as use. */
 void slc_image_enter_order(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
-    image->last_use = loader->launch + loader->info.launchesInFlight; /* it is to be used yet */
+    image->last_use =
+        loader->launch + loader->info.launchesInFlight; /* later launches will use it */
     image->has_tail = false;
     append(loader, image);
     (void)slc_page_directory_keep(&loader->directory, image->tail_page);
@@ -101,7 +102,7 @@ void slc_image_touch_page(SluiceDemandLoader *loader, uint32_t page, uint64_t la
         slc_image_touch(loader, loader->images[index], launch);
 }
 
-/* The image that was used longest ago, if it is idle. Others are in use, as by the last launch. */
+/* Returns the least recently used image if it is idle; the last launch may have used it. */
 static struct slc_demand_image *find_oldest(SluiceDemandLoader *loader,
                                             const struct slc_image_order *order)
 {
@@ -123,7 +124,7 @@ static bool has_place(const SluiceDemandLoader *loader)
     return counts.resident + counts.loading < loader->tile_limit;
 }
 
-/* Only tails are freed by this and by nothing else: tiles that were used no later are evicted. */
+/* Frees tails, which no eviction frees. Tiles used before them are evicted instead. */
 void slc_images_make_room(SluiceDemandLoader *loader, uint32_t page)
 {
     if (!loader->knows_use || loader->info.noEviction || has_place(loader) ||
@@ -134,7 +135,7 @@ void slc_images_make_room(SluiceDemandLoader *loader, uint32_t page)
         struct slc_demand_image *image = find_oldest(loader, &loader->orders[1]);
         if (!image || image->last_use > oldest_tile)
             return;
-        if (slc_residency_is_absent(loader->residency, image->tail_page)) { /* not any more */
+        if (slc_residency_is_absent(loader->residency, image->tail_page)) { /* lost its place */
             change_order(loader, image, false);
             continue;
         }
@@ -151,7 +152,7 @@ static uint32_t forget_old(SluiceDemandLoader *loader, const struct slc_image_or
         struct slc_demand_image *image = find_oldest(loader, order);
         if (!image || loader->processed - image->last_use < loader->info.forgetAfterLaunches)
             break;
-        if (image->retry_group) { /* tiles that failed would be read again before their time */
+        if (image->retry_group) { /* failed tiles would be read again too early */
             slc_image_touch(loader, image, loader->processed);
             continue;
         }

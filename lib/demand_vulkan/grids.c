@@ -14,7 +14,8 @@ static uint32_t *grid_words(SluiceDemandLoader *loader, uint32_t element)
     return ((struct slc_mirror_element *)slc_table_mirror_change(&loader->grids, element))->words;
 }
 
-/* The cells of a grid begin at an element of the part of the buffer that grids have. */
+/* Writes a cell. `first_element`: first element of the grid's cells in the grids' part of the
+ * buffer. */
 static void write_cell(SluiceDemandLoader *loader, uint32_t first_element, uint32_t cell,
                        uint32_t value)
 {
@@ -142,7 +143,7 @@ static uint32_t read_base(const SluiceDemandLoader *loader, uint32_t index)
     return entry->tailPage;
 }
 
-/* The texture leaves the cells of a grid, and may be its base. */
+/* Removes the texture from a grid's cells, and as its base. */
 static void leave_grid(SluiceDemandLoader *loader, uint32_t index, uint32_t at)
 {
     const struct slc_demand_texture *grid = &loader->textures[at];

@@ -1,5 +1,4 @@
-/* The pages of an image: those of its levels come and go with it, that of its tail with the slot.
- */
+/* Pages of an image. Pages of levels are taken per image, the page of the tail per slot. */
 #include "demand_vulkan/pages.h"
 
 #include "base/alloc.h"

@@ -1,4 +1,4 @@
-/* Images from the request that opens one to the launch after which nothing names its pages. */
+/* Images, from the request that opens them until no launch names their pages. */
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
@@ -116,7 +116,7 @@ static void note_opened(SluiceDemandLoader *loader, const struct slc_demand_imag
     slc_log(&loader->vk.log, SLUICE_LOG_INFO, "%s: can be opened again.", slc_image_name(image));
 }
 
-/* Pages and what shaders see. */
+/* Takes pages for an image, and fills in the words for shaders. */
 static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     SluiceFormatInfo format = {.structSize = sizeof format};
@@ -147,7 +147,7 @@ static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image 
     return SLUICE_SUCCESS;
 }
 
-/* No read of it is under way. */
+/* Closes the source of an image without reads in progress. */
 static void close_source(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     if (!image->source)
@@ -175,12 +175,12 @@ static void fail(SluiceDemandLoader *loader, struct slc_demand_image *image, Slu
     texture->told = true;
     texture->failed = slc_retries_add_opening(loader, image->texture);
     if (!texture->failed)
-        return; /* it stays unknown, so shaders ask again */
+        return; /* the texture stays unknown, so shaders request it again */
     loader->counts.texturesFailed++;
     slc_texture_show_failed(loader, image->texture);
 }
 
-/* It was not opened, or cannot be used: as if nobody had asked, but for the failure. */
+/* Gives up an image that cannot be opened or used. Only the failure of its texture remains. */
 static void give_up(SluiceDemandLoader *loader, struct slc_demand_image *image, SluiceResult result)
 {
     if (!slc_result_may_pass(result))
@@ -190,7 +190,7 @@ static void give_up(SluiceDemandLoader *loader, struct slc_demand_image *image, 
     free_slot(loader, image);
 }
 
-/* All that is to be known of it is there, so that no read opens it. */
+/* Opens a produced image. All facts are known, so no read is necessary. */
 static enum slc_request_answer open_made(SluiceDemandLoader *loader, uint32_t texture,
                                          SluiceResult *result)
 {
@@ -288,7 +288,7 @@ void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *imag
 static void drop_jobs(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     if (image->job_count == 0 && loader->copied.first == SLC_NONE)
-        return; /* what is copied may be copied again */
+        return; /* copied jobs count: an abandoned launch repeats them */
     slc_jobs_drop(loader, slc_tile_job_kind(image), image->slot, 0, UINT64_MAX);
     slc_jobs_drop(loader, SLC_JOB_OPEN, image->slot, 0, UINT64_MAX);
 }
@@ -308,7 +308,7 @@ static void leave_refresh_list(SluiceDemandLoader *loader, struct slc_demand_ima
     loader->images[at]->next = image->next;
 }
 
-/* The image is no texture's any more, and has no pages. */
+/* Ends the use of an image that has no texture and no pages any more. */
 static void end_use(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     slc_image_forget(loader, image);
@@ -325,7 +325,8 @@ void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image
     slc_retries_all(loader, &image->retry_group);
     slc_preloads_detach(loader, image->texture);
     drop_jobs(loader, image);
-    if (image->origin.source && image->job_count) { /* which the application may destroy next */
+    if (image->origin.source &&
+        image->job_count) { /* the application may destroy the source next */
         slc_jobs_wait(loader, SLC_JOB_TILE, image->slot);
         slc_jobs_wait(loader, SLC_JOB_OPEN, image->slot);
     }
@@ -343,8 +344,8 @@ bool slc_image_is_idle(const SluiceDemandLoader *loader, const struct slc_demand
            image->last_use < loader->processed;
 }
 
-/* No copy of its tiles is under way: last_use is the launch of the last one, or later. What shaders
- * left behind of requests loads at worst a page that nobody asked for. */
+/* No copy of the image's tiles is in progress, because last_use is the launch of the last copy or
+ * later. Requests that shaders left behind load an unnecessary page at worst. */
 void slc_image_forget_texture(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     assert(slc_image_is_idle(loader, image));
@@ -368,13 +369,13 @@ void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image)
     if (failed)
         slc_texture_show_failed(loader, texture);
     else
-        slc_texture_show_unknown(loader, texture); /* shaders ask again */
+        slc_texture_show_unknown(loader, texture); /* shaders request it again */
 }
 
 void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     if (image->state != SLC_IMAGE_OPEN)
-        return; /* what is read now is as good as what is read next */
+        return; /* the read in progress delivers the new texels */
     drop_jobs(loader, image);
     slc_loader_drop_texels(loader->reader, image->source);
     if (image->source)

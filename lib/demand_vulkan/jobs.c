@@ -1,6 +1,6 @@
 /*
- * Everything that is done on other threads is a read of the tile loader: of a tile, of the texel
- * that opens an image, of the value of a page. Here begins and ends each of them.
+ * Jobs: all work on other threads is a read of the tile loader, of a tile, of the texel that opens
+ * an image, or of the value of a page. This file begins and ends all reads.
  */
 #include "demand_vulkan/loader.h"
 
@@ -16,7 +16,7 @@
 #include <assert.h>
 
 #define BATCH 256u
-#define LEAST_LARGE 4u /* jobs for large byte pages */
+#define LEAST_LARGE 4u /* least jobs for large byte pages */
 
 void slc_job_list_append(SluiceDemandLoader *loader, struct slc_job_list *list,
                          struct slc_demand_job *job)
@@ -39,7 +39,7 @@ struct slc_demand_job *slc_job_list_pop(SluiceDemandLoader *loader, struct slc_j
     return job;
 }
 
-/* Called with the tile loader's lock held: so nothing here may be done with ours and then its. */
+/* Called with the tile loader's lock held. So no code may take that lock while holding this one. */
 static void on_end(void *user, uint64_t index, SluiceResult result)
 {
     SluiceDemandLoader *loader = user;
@@ -57,7 +57,7 @@ static void on_end(void *user, uint64_t index, SluiceResult result)
     slc_mutex_unlock(&tickets->mutex);
 }
 
-/* What the reader calls source and value are things of ours; the application knows its own. */
+/* Translates the reader's source and value, which are internal, to those of the application. */
 static void on_failure(void *user, const SluiceTileReadFailure *failure)
 {
     const SluiceDemandLoader *loader = user;
@@ -80,7 +80,7 @@ static SluiceResult create_reader(SluiceDemandLoader *loader)
         create.failure = (SluiceTileReadFailureCallback){loader, on_failure};
     SluiceResult result =
         slc_create_shared_loader(&loader->context->shared, &create, &loader->reader);
-    if (result == SLUICE_SUCCESS) { /* before the first read */
+    if (result == SLUICE_SUCCESS) { /* done before the first read */
         loader->reader->direct[0] = loader->opener.pInterface;
         loader->reader->direct[1] = slc_resource_interface();
         if (slc_shares_jobs(&loader->context->shared))
@@ -89,7 +89,7 @@ static SluiceResult create_reader(SluiceDemandLoader *loader)
     return result;
 }
 
-/* The free jobs of a kind. */
+/* Returns the list of free jobs of a kind. */
 static struct slc_job_list *free_list(SluiceDemandLoader *loader, enum slc_job_kind kind,
                                       uint32_t **count)
 {
@@ -103,7 +103,7 @@ static struct slc_job_list *free_list(SluiceDemandLoader *loader, enum slc_job_k
     }
 }
 
-/* The staging memory of a job; NULL: it has none. */
+/* Returns the staging memory of a job; NULL: none. */
 static struct slc_staging *staging_of(SluiceDemandLoader *loader, uint32_t index)
 {
     if (index >= loader->first_produce)
@@ -113,7 +113,7 @@ static struct slc_staging *staging_of(SluiceDemandLoader *loader, uint32_t index
     return index < loader->info.maxTilesInFlight ? &loader->staging : NULL;
 }
 
-/* First slot of a job in its staging memory. */
+/* Returns the first slot of a job in its staging memory. */
 static uint32_t slot_of(const SluiceDemandLoader *loader, uint32_t index)
 {
     return index < loader->first_large ? index : (index - loader->first_large) * SLC_LARGE_SLOTS;
@@ -165,7 +165,7 @@ static void push_front(SluiceDemandLoader *loader, struct slc_job_list *list,
     list->first = slc_job_index(loader, job);
 }
 
-/* Makes a free job with staging memory the first of all. False: there is none. */
+/* Moves a free job with staging memory to the front. False: there is none. */
 static bool find_staged(SluiceDemandLoader *loader, struct slc_job_list *list)
 {
     for (uint32_t before = list->first; before != SLC_NONE; before = loader->jobs[before].next) {
@@ -201,7 +201,7 @@ struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kin
     if (!job)
         return NULL;
     assert(job->kind == SLC_JOB_FREE);
-    job->kind = kind; /* what the lock guards stays as it is: nothing is running */
+    job->kind = kind; /* fields that the lock guards are not touched: the job is not running */
     job->stale = job->counted = job->remakes = false;
     job->image = NULL;
     uint32_t index = slc_job_index(loader, job);
@@ -238,7 +238,7 @@ VkBuffer slc_job_buffer(SluiceDemandLoader *loader, const struct slc_demand_job 
     return slc_staging_buffer(staging_of(loader, index), slot_of(loader, index));
 }
 
-/* With the lock held. */
+/* Begins a task of a ticket. The caller holds the lock. */
 static void begin_task(SluiceDemandLoader *loader, struct slc_demand_job *job,
                        SluiceDemandTicket ticket)
 {
@@ -389,7 +389,7 @@ void slc_jobs_drop(SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t 
             continue;
         job->stale = true;
         if (i < loader->first_produce)
-            sluiceCancelTileRead(loader->reader, job->read); /* of one that is over: ignored */
+            sluiceCancelTileRead(loader->reader, job->read); /* ignored if the read has ended */
     }
 }
 
@@ -413,7 +413,7 @@ void slc_jobs_wait(SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t 
     slc_mutex_unlock(&tickets->mutex);
 }
 
-/* Those of a ticket, or of all for 0. */
+/* Cancels the jobs of a ticket; 0: all jobs. */
 static void cancel_jobs(SluiceDemandLoader *loader, SluiceDemandTicket ticket)
 {
     for (uint32_t next = 0; next < loader->job_count;) {

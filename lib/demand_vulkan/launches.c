@@ -1,6 +1,6 @@
 /*
- * Before a launch: what arrived is copied and shown. After it: its requests are scanned. When it is
- * over: they become reads.
+ * Launches. Before a launch, arrived pages are copied and shown. After it, its requests are
+ * scanned. When it is complete, requests become reads.
  */
 #include "base/checked.h"
 #include "base/log.h"
@@ -46,7 +46,7 @@ static void complete_forgotten(SluiceDemandLoader *loader)
     loader->forgotten_count -= over;
 }
 
-/* What launches up to `processed` named is free. */
+/* Frees everything that only launches up to `processed` named. */
 static void end_retired(SluiceDemandLoader *loader)
 {
     slc_page_space_complete(loader->space, loader->processed);
@@ -61,8 +61,8 @@ static void end_retired(SluiceDemandLoader *loader)
 }
 
 /*
- * Whether shaders are to say what they use: as soon as the tiles that may be loaded until a launch
- * that says so is over could fill the memory.
+ * Whether shaders must report the pages that they use: as soon as memory could be full before a
+ * launch that reports them is complete.
  */
 static bool wants_used(SluiceDemandLoader *loader)
 {
@@ -90,7 +90,7 @@ static void set_parameter(SluiceDemandLoader *loader, uint32_t index, uint32_t v
         value;
 }
 
-/* What workers have finished, and what that makes of pages and textures. */
+/* Collects finished jobs, and updates pages and textures. */
 static void gather(SluiceDemandLoader *loader, uint64_t launch, bool tracking)
 {
     slc_jobs_collect(loader);
@@ -112,7 +112,7 @@ static int compare_runs(const void *a, const void *b)
     return (x->first > y->first) - (x->first < y->first);
 }
 
-/* How many runs are still to be cleared. They come last. */
+/* Counts the runs whose requests are not cleared yet. They are last in the list. */
 static uint32_t count_forgotten(const SluiceDemandLoader *loader)
 {
     uint32_t count = 0;
@@ -122,7 +122,7 @@ static uint32_t count_forgotten(const SluiceDemandLoader *loader)
     return count;
 }
 
-/* Whole words of requests, each once. */
+/* Records the clearing of requests: whole words, each once. */
 static void record_forgotten(SluiceDemandLoader *loader, VkCommandBuffer commands)
 {
     const uint64_t unit = SLUICE_DEMAND_BLOCK_PAGES;
@@ -178,7 +178,7 @@ static bool has_transfers(const SluiceDemandLoader *loader)
            slc_table_mirror_has_changes(&loader->grids);
 }
 
-/* Everything but the page table; how many tiles. Where nothing has changed there is no barrier. */
+/* Records all transfers except the page table; returns the tiles. No barrier without changes. */
 static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer commands)
 {
     slc_page_pool_record(loader->pages, loader->page_user, loader->launch, loader->processed,
@@ -205,7 +205,8 @@ static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer com
     return tiles;
 }
 
-/* Pages beyond their share must go, too: byte pages may have taken their part of the budget. */
+/* Adds the pages beyond their share to the pressure: byte pages may have taken part of the budget.
+ */
 static void note_pressure(SluiceDemandLoader *loader)
 {
     struct slc_memory_pressure *pressure = &loader->memory_pressure;
@@ -246,7 +247,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     end_retired(loader);
     slc_byte_pages_begin(loader, launch);
     slc_relieve_memory(loader);
-    slc_staging_trim(&loader->staging); /* it counts launches */
+    slc_staging_trim(&loader->staging); /* counts launches */
     if (loader->large.blocks)
         slc_staging_trim(&loader->large);
     gather(loader, launch, tracking || probing);
@@ -300,7 +301,8 @@ static void put_ranks_back(SluiceDemandLoader *loader, uint64_t launch)
     loader->space_changed = true;
 }
 
-/* Only the page table may lack memory for it; what of it is put back then does no harm. */
+/* Restores the state before a launch. Only the page table can fail, and partly restored it is
+ * valid. */
 static SluiceResult put_back(SluiceDemandLoader *loader, uint64_t launch)
 {
     for (uint64_t i = launch; i <= loader->launch; i++) {

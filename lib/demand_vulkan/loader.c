@@ -1,4 +1,4 @@
-/* The loader as a whole: made, taken apart, and looked at. */
+/* Creation and destruction of a demand loader, and queries of it. */
 #include "demand_vulkan/loader.h"
 
 #include "base/alloc.h"
@@ -22,7 +22,7 @@
 #define MAX_REQUESTS (1u << 20)
 #define MAX_TILES_IN_FLIGHT (1u << 16)
 #define MIN_BUDGET (UINT64_C(4) << 20)
-#define MAX_GRIDS (1u << 16) /* ranges of cells apart from each other */
+#define MAX_GRIDS (1u << 16) /* separate ranges of cells */
 
 static uint32_t or_default(uint32_t value, uint32_t otherwise)
 {
@@ -111,11 +111,11 @@ static SluiceResult create_buffer(SluiceDemandLoader *loader, struct slc_buffer 
                            SLC_BUFFER_DEVICE);
 }
 
-/* Shaders read what no texture has written yet only through ids that are none. */
+/* Creates the tables. Elements without a texture are read only through invalid ids. */
 static SluiceResult create_tables(SluiceDemandLoader *loader)
 {
     uint32_t textures = loader->info.maxTextureCount;
-    loader->max_image_count = textures + textures / 8 + 64; /* some are on their way out */
+    loader->max_image_count = textures + textures / 8 + 64; /* includes images being closed */
     uint32_t grids = textures / 4 + 1024, images = 1 + loader->max_image_count;
     SluiceResult result = create_buffer(loader, &loader->table_buffer, (uint64_t)textures + 1);
     if (result == SLUICE_SUCCESS)
@@ -138,13 +138,13 @@ static SluiceResult create_tables(SluiceDemandLoader *loader)
     if (result != SLUICE_SUCCESS)
         return result;
     struct SluiceDemandTexture *none = slc_table_mirror_change(&loader->table, 0);
-    none->state = SLUICE_DEMAND_TEXTURE_FAILED; /* what a shader gets that names no texture */
+    none->state = SLUICE_DEMAND_TEXTURE_FAILED; /* for shaders that name no texture */
     slc_table_mirror_change(&loader->levels, 0);
     return SLUICE_SUCCESS;
 }
 
-/* At worst every tile that is resident has a block of the page table to itself. Pages of resources
- * and those that are refused lie together. */
+/* Returns the blocks of the page table. At worst every resident tile has a block of its own. Pages
+ * of resources and refused pages are close together. */
 static uint32_t block_capacity(const SluiceDemandLoader *loader)
 {
     uint64_t blocks = loader->info.pageCapacity / SLUICE_DEMAND_BLOCK_PAGES;
@@ -170,7 +170,7 @@ static SluiceResult create_page_table(SluiceDemandLoader *loader)
     return result;
 }
 
-/* The first ids open textures: page i the one at index i. */
+/* Creates page ids. The first ids open textures: page i opens the texture at index i. */
 static SluiceResult create_pages(SluiceDemandLoader *loader)
 {
     uint32_t first, count = loader->info.maxTextureCount + 1;
@@ -258,7 +258,7 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     SluiceDemandLoader *loader = slc_calloc(&context->cb, 1, sizeof *loader);
     if (!loader)
         return NULL;
-    loader->tile_limit = UINT64_MAX; /* none is set yet, and the first one may be 0 */
+    loader->tile_limit = UINT64_MAX; /* no limit is set yet, and the first one may be 0 */
     loader->context = context;
     loader->cb = context->cb;
     loader->vk = context->vk;
@@ -267,7 +267,7 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     loader->caps = context->caps;
     loader->info = *info;
     loader->page_user = SLC_MAX_PAGE_USERS;
-    loader->texture_high = 1; /* 0 is no texture's */
+    loader->texture_high = 1; /* index 0 is not used */
     loader->free_texture = loader->first_retired_texture = SLC_NONE;
     loader->free_image = loader->first_retired_image = loader->first_refresh = SLC_NONE;
     loader->orders[0] = loader->orders[1] = (struct slc_image_order){SLC_NONE, SLC_NONE};
@@ -318,7 +318,7 @@ SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreat
     return SLUICE_SUCCESS;
 }
 
-/* Workers first: they write into staging memory, and what they bring is still to be given back. */
+/* Stops the workers first: they write into staging memory, and hold jobs. */
 static void stop_workers(SluiceDemandLoader *loader)
 {
     if (!loader->reader)

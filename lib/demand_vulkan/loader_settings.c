@@ -1,4 +1,4 @@
-/* What a running application changes. */
+/* Settings that can change while a loader runs. */
 #include "demand_vulkan/loader.h"
 
 #include "base/struct_size.h"
