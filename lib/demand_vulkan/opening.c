@@ -1,6 +1,7 @@
 /*
- * On worker threads: the image source "opener" is read at one texel, which is the base color of
- * the image that the texel's memory is part of. So opening is a read like others.
+ * Opening of images on worker threads. An image is opened by a read of one texel of the image
+ * source "opener": the texel is the image's base color, and its memory is part of the image. So
+ * opening is a read like others.
  */
 #include "demand_vulkan/opening.h"
 
@@ -49,7 +50,7 @@ const char *slc_image_trouble(const SluiceDemandLoader *loader, const SluiceImag
                      "again with all levels"
                    : "mipLevelCount ends before a level fits into half a tile; build the others "
                      "with sluiceCreateCompleteChainSource";
-    if (format.blockWidth > 4) /* levels of a mip tail lie at multiples of 4 texels */
+    if (format.blockWidth > 4) /* levels of a mip tail begin at multiples of 4 texels */
         return "its format has blocks larger than 4x4, which demand loading does not read";
     return NULL;
 }
@@ -74,7 +75,8 @@ static SluiceResult open_source(struct slc_demand_image *image)
     return image->trouble ? SLUICE_ERROR_UNSUPPORTED : SLUICE_SUCCESS;
 }
 
-/* The mean of the last level, by one texel of each block. A full chain has one texel there. */
+/* Computes the mean of the last level, from one texel per block. Full chains have one texel there.
+ */
 static void find_base_color(const SluiceImageInfo *info, const uint8_t *texels, uint32_t count,
                             float rgba[4])
 {
@@ -90,7 +92,7 @@ static void find_base_color(const SluiceImageInfo *info, const uint8_t *texels, 
         rgba[c] = (float)(sum[c] / count);
 }
 
-/* The last level fits into half a tile in both directions. */
+/* Last level of an image. It fits into half a tile in both directions. */
 struct last_level {
     SluiceImageRegion region;
     size_t pitch, size; ///< bytes
@@ -123,7 +125,7 @@ static SluiceResult read_base_color(struct slc_demand_image *image)
     return result;
 }
 
-/* A cancel, on any thread, names a read by its ticket alone. */
+/* Notes the ticket of a started read, by which a cancel on any thread finds it. */
 static void note_started(struct slc_demand_image *image, uint64_t ticket)
 {
     SluiceDemandLoader *loader = image->loader;
@@ -154,12 +156,13 @@ static void drop_last_level(struct slc_demand_image *image)
     image->last_level = NULL;
 }
 
-/* The source completes the read of the opener: the token is passed on. */
+/* Starts the read of the last level. Its token is the opener's, so the source completes that read.
+ */
 static SluiceResult start_base_color(struct slc_demand_image *image,
                                      const SluiceImageReadToken *token)
 {
     const struct last_level last = last_level_of(image);
-    if (!image->last_level) { /* else of an attempt before, with the same ticket */
+    if (!image->last_level) { /* else left by an earlier attempt with an equal ticket */
         image->last_level = slc_alloc(&image->loader->cb, last.size, 1);
         if (!image->last_level)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -196,7 +199,7 @@ static SluiceResult read_region(SluiceImageSource *source, const SluiceImageRegi
     return result == SLUICE_SUCCESS ? read_base_color(image) : result;
 }
 
-/* UNSUPPORTED: read_region is called next. */
+/* Starts a read. UNSUPPORTED: the caller uses read_region instead. */
 static SluiceResult start_read(SluiceImageSource *source, const SluiceImageRegion *region,
                                void *texels, size_t row_pitch, const SluiceImageReadToken *token)
 {
@@ -210,7 +213,7 @@ static SluiceResult start_read(SluiceImageSource *source, const SluiceImageRegio
                                            : SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* The image stays until the read is collected, which is not before this returns. */
+/* Cancels a read. The image stays until the read is collected, which is after this call. */
 static void cancel_read(SluiceImageSource *source, const SluiceImageRegion *region,
                         const SluiceImageReadToken *token)
 {

@@ -1,4 +1,4 @@
-/* Pages that the application answers, after shaders missed them or before. */
+/* Answers of the application for pages, before or after shaders missed them. */
 #include "base/log.h"
 #include "demand/page_observer.h"
 #include "demand_vulkan/loader.h"
@@ -65,8 +65,7 @@ static SluiceResult find(SluiceDemandLoader *loader, SluiceDemandResourceId id, 
                            info->pageSize, bytes ? "values" : "bytes");
 }
 
-/* Makes the page loading, without a reader: a missed page as it is, any other after it is
- * forgotten. */
+/* Makes the page loading, without a reader. Pages that were not missed are forgotten first. */
 static SluiceResult begin(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
                           uint32_t page, bool pinned)
 {
@@ -80,7 +79,7 @@ static SluiceResult begin(SluiceDemandLoader *loader, struct slc_demand_resource
     }
     if (slc_residency_is_loading(loader->residency, page))
         return SLUICE_NOT_READY;
-    if (resource->stride) /* bytes may be on their way to the slot */
+    if (resource->stride) /* jobs may be copying bytes to the slot */
         slc_resource_drop_jobs(loader, resource, page, 1);
     slc_residency_forget(loader->residency, page, 1);
     slc_evicted_take(loader);

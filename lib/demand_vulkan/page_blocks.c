@@ -7,7 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-#define FIRST_ROOM 64u /* a multiple of the bits of a word, as all rooms but the last are */
+#define FIRST_ROOM 64u /* multiple of the bits of a word, like every room except the largest */
 
 static uint32_t bit_words(uint32_t room)
 {
@@ -24,7 +24,7 @@ static void clear_bit(uint64_t *bits, uint32_t at)
     bits[at / 64] &= ~((uint64_t)1 << at % 64);
 }
 
-/* The first bit from `from` on that is set, or `end`. */
+/* Returns the first set bit from `from` on, or `end`. */
 static uint32_t next_bit(const uint64_t *bits, uint32_t from, uint32_t end)
 {
     for (uint32_t word = from / 64; word < bit_words(end); word++) {
@@ -65,7 +65,7 @@ static bool allocate(struct slc_page_blocks *b)
     return b->table && b->free && b->changed && b->owners && b->used_owners;
 }
 
-/* What is in `old` becomes the beginning of `b`. */
+/* Copies all blocks of `old` to the beginning of `b`. */
 static void copy(struct slc_page_blocks *b, const struct slc_page_blocks *old)
 {
     if (old->room) {

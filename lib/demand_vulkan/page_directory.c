@@ -8,14 +8,14 @@
 #include "demand_patch_comp.h"
 #include "demand_take_used_comp.h"
 
-#define FIRST_LIST 64u /* changed entries */
+#define FIRST_LIST 64u /* initial room for changed entries */
 
 static uint32_t entry_count(const struct slc_page_directory *d)
 {
     return (uint32_t)(d->page_capacity / SLUICE_DEMAND_BLOCK_PAGES);
 }
 
-/* Block 0, which is nobody's, included. */
+/* Returns the bytes of all blocks, including the unused block 0. */
 static uint64_t blocks_size(uint32_t block_capacity)
 {
     return ((uint64_t)block_capacity + 1) * SLUICE_DEMAND_BLOCK_WORDS * 4;
@@ -228,7 +228,7 @@ bool slc_page_directory_shows_wide(const struct slc_page_directory *dir, uint32_
                (uint32_t)(value >> 32);
 }
 
-/* Nothing is in it, and nobody keeps it. */
+/* Gives the block of an entry back if it has no shown, refused or kept pages. */
 static void give_if_empty(struct slc_page_directory *d, uint32_t entry)
 {
     uint32_t index = d->entries[entry];

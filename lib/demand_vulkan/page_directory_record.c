@@ -1,4 +1,4 @@
-/* What changed in the page table goes to the device, and what shaders used of it comes back. */
+/* Recording of page table changes, and readback of the pages that shaders used. */
 #include "demand_vulkan/page_directory.h"
 
 #include "base/bits.h"
@@ -7,9 +7,9 @@
 #include <assert.h>
 #include <string.h>
 
-#define FIRST_UPLOAD 8192u /* patches */
+#define FIRST_UPLOAD 8192u /* initial room for patches */
 
-/* Nothing is known of what the device has of a fresh block. */
+/* Whether the mask must be written. The device's mask of a fresh block is unknown. */
 static bool mask_changed(const struct slc_page_block *block)
 {
     return block->fresh || block->resident != block->device_resident;
@@ -69,7 +69,7 @@ static struct SluiceDemandPatch *put_words(struct SluiceDemandPatch *at, uint32_
     return at;
 }
 
-/* What the device lacks of a block in use; from now on it lacks nothing. */
+/* Writes patches for all words of a block that the device does not have, and clears the marks. */
 static struct SluiceDemandPatch *put_block(struct SluiceDemandPatch *at, uint32_t index,
                                            struct slc_page_block *block)
 {
@@ -78,7 +78,7 @@ static struct SluiceDemandPatch *put_block(struct SluiceDemandPatch *at, uint32_
     at = put_words(at, first + pages, block->words + pages, block->changed_wide);
     if (mask_changed(block))
         at = put(at, SLUICE_PATCH_MASKS, 2 * index, block->resident);
-    if (block->fresh) /* what the last owner's launch left */
+    if (block->fresh) /* clears bits that launches of the last owner left */
         at = put(at, SLUICE_PATCH_MASKS, 2 * index + 1, 0);
     block->device_resident = block->resident;
     block->changed = block->changed_wide = 0;
@@ -109,7 +109,7 @@ static struct SluiceDemandPatch *put_entries(struct slc_page_directory *d,
     for (uint32_t i = 0; i < d->entry_list_count; i++) {
         uint32_t entry = d->entry_list[i];
         at = put(at, SLUICE_PATCH_DIRECTORY, entry, d->entries[entry]);
-        d->changed_entries[entry / 64] = 0; /* all of them are in the list */
+        d->changed_entries[entry / 64] = 0; /* all set bits are in the list */
     }
     d->entry_list_count = 0;
     return at;
@@ -170,8 +170,8 @@ SluiceResult slc_page_directory_record(struct slc_page_directory *dir, VkCommand
     return SLUICE_SUCCESS;
 }
 
-/* A word of a block that is in use, which the device may not have. Those of free ones do not
- * matter: who takes them writes all that counts. */
+/* Marks a word that the device may not have as changed, if its block is in use. Words of free
+ * blocks do not matter: the next owner writes all words that count. */
 static void change_again(struct slc_page_directory *d, uint32_t buffer, uint32_t word)
 {
     const uint32_t pages = SLUICE_DEMAND_BLOCK_PAGES;

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#define OWNER_SHIFT 29u /* of the kind; below is the index */
+#define OWNER_SHIFT 29u /* bit position of the kind; the index is below */
 #define OWNER_INDEX ((1u << OWNER_SHIFT) - 1)
 
 static uint32_t block_count(uint64_t page_count)
@@ -43,7 +43,7 @@ SluiceResult slc_pages_take(SluiceDemandLoader *loader, uint32_t rank, uint64_t 
         slc_page_space_free(loader->space, *first, count, loader->processed);
         return result;
     }
-    loader->space_changed = true; /* its sections may have another rank now */
+    loader->space_changed = true; /* sections of the range may have another rank now */
     for (uint32_t i = 0; i < block_count(count); i++)
         loader->owners[block + i] = (uint32_t)owner << OWNER_SHIFT | index;
     return SLUICE_SUCCESS;
@@ -75,7 +75,7 @@ void slc_pages_forget_requests(SluiceDemandLoader *loader, uint32_t first, uint6
         struct slc_page_run *runs = slc_regrow(&loader->cb, loader->forgotten,
                                                loader->forgotten_capacity, capacity, sizeof *runs);
         if (!runs)
-            return; /* at worst a page is loaded that nobody asked for */
+            return; /* at worst an unnecessary page is loaded */
         loader->forgotten = runs;
         loader->forgotten_capacity = capacity;
     }

@@ -1,4 +1,5 @@
-/* Levels that are loaded because the application says so, a few at a time: coarse ones first. */
+/* Preloads: levels that the application requests, loaded a few tiles at a time, coarse ones first.
+ */
 #include "base/alloc.h"
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/refused_arguments.h"
@@ -68,7 +69,7 @@ static SluiceResult begin(SluiceDemandLoader *loader, const char *function,
         result = slc_ticket_open(&loader->tickets, &ticket);
     if (result != SLUICE_SUCCESS)
         return result;
-    slc_ticket_add(&loader->tickets, ticket, 1); /* until it is known how many there are */
+    slc_ticket_add(&loader->tickets, ticket, 1); /* placeholder until the number is known */
     loader->preloads[loader->preload_count++] =
         (struct slc_preload){.texture = slc_texture_id(loader, index),
                              .ticket = ticket,
@@ -101,7 +102,7 @@ SluiceResult sluicePreloadDemandRegion(SluiceDemandLoader *loader, SluiceDemandT
     return begin(loader, __func__, textureId, pRegion, pTicket);
 }
 
-/* NULL: there is nothing to load, or not yet; `*over`: nor will there be. */
+/* Finds the open image of a preload. NULL: nothing to load now; `*over`: and never will be. */
 static struct slc_demand_image *find_image(SluiceDemandLoader *loader, struct slc_preload *preload,
                                            bool *over)
 {
@@ -117,7 +118,7 @@ static struct slc_demand_image *find_image(SluiceDemandLoader *loader, struct sl
         return loader->images[texture->image];
     if (texture->image != SLC_NONE)
         return NULL;
-    *over = preload->opening; /* and could not be */
+    *over = preload->opening; /* the opening has failed */
     if (*over)
         return NULL;
     preload->opening =
@@ -131,7 +132,7 @@ static void drop_planned(SluiceDemandLoader *loader, struct slc_preload *preload
     preload->planned_count -= count;
 }
 
-/* False: the image has no such region. */
+/* Plans the tiles of a preload. False: the image has no such region. */
 static bool plan(SluiceDemandLoader *loader, struct slc_preload *preload,
                  const struct slc_demand_image *image)
 {
@@ -149,7 +150,7 @@ static bool plan(SluiceDemandLoader *loader, struct slc_preload *preload,
     return true;
 }
 
-/* True: there is another page, which is `*page`. */
+/* Gets the next page of a preload. False: there is none. */
 static bool next_page(struct slc_preload *preload, const struct slc_demand_image *image,
                       uint32_t *page)
 {
@@ -173,7 +174,7 @@ static bool next_page(struct slc_preload *preload, const struct slc_demand_image
     return true;
 }
 
-/* What is there is not evicted for what nobody has asked for. */
+/* Whether there is room without evictions: preloads never evict. */
 static bool has_room(SluiceDemandLoader *loader)
 {
     struct slc_residency_counts counts;
@@ -181,7 +182,7 @@ static bool has_room(SluiceDemandLoader *loader)
     return counts.resident + counts.loading < slc_tile_memory_limit(&loader->tiles);
 }
 
-/* True: it is done. */
+/* Advances a preload. Returns true when it is done. */
 static bool advance(SluiceDemandLoader *loader, struct slc_preload *preload)
 {
     bool over;
@@ -190,7 +191,7 @@ static bool advance(SluiceDemandLoader *loader, struct slc_preload *preload)
         return over;
     if (!preload->planned && !plan(loader, preload, image))
         return true;
-    /* It is in use: the next launch counts as one that samples it. */
+    /* Counts as used: the next launch may sample the image. */
     slc_image_touch(loader, loader->images[image->slot], loader->launch + 1);
     while (slc_job_is_ready(loader, slc_tile_job_kind(image))) {
         uint32_t page;
@@ -201,7 +202,7 @@ static bool advance(SluiceDemandLoader *loader, struct slc_preload *preload)
             slc_tile_request(loader, loader->images[image->slot], page, preload->ticket, &result);
         if (answer == SLC_REQUEST_POSTPONED && loader->tiles.awaits) {
             preload->next_page--;
-            return false; /* an equal tile is on its way */
+            return false; /* waits for an equal tile that is being loaded */
         }
         if (preload->planned_count)
             drop_planned(loader, preload, 1);

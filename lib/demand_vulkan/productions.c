@@ -8,7 +8,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#define TAIL_TARGET 0xFFFFu /* no chunk of pages: a mip tail is a batch of its own */
+#define TAIL_TARGET 0xFFFFu /* in place of a chunk: a mip tail is a batch of its own */
 
 static_assert(SLC_TILE_MAX_PARTS <= SLC_PRODUCER_BATCH, "a tail is one batch");
 
@@ -80,7 +80,8 @@ static void end(SluiceDemandLoader *loader, struct slc_demand_job *job)
         slc_resource_release(loader, owner);
 }
 
-/* The page stays as it is. Once for a texture or resource, until one can be made again. */
+/* Fails a remake: the page keeps its content. Logs once per texture or resource until one succeeds.
+ */
 static void fail_remake(SluiceDemandLoader *loader, struct slc_demand_job *job)
 {
     struct slc_demand_resource *resource = job->image ? NULL : loader->resources[job->owner];
@@ -96,7 +97,7 @@ static void fail_remake(SluiceDemandLoader *loader, struct slc_demand_job *job)
     end(loader, job);
 }
 
-/* Ends a job whose page is not to be shown. `failed`: by its producer. */
+/* Ends a job whose page must not be shown. `failed`: its producer failed. */
 static void fail(SluiceDemandLoader *loader, struct slc_demand_job *job, bool failed)
 {
     if (job->remakes) {
@@ -154,7 +155,8 @@ static bool is_tail(const struct slc_demand_job *job)
     return job->image && job->page == job->image->tail_page;
 }
 
-/* Pages of one texture or resource in one image or buffer make a batch. */
+/* Returns the batch key: pages of one texture or resource in one image or buffer have equal keys.
+ */
 static uint64_t key_of(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
     uint32_t target = TAIL_TARGET;
@@ -174,14 +176,14 @@ static int compare(const void *a, const void *b)
     return (x->page > y->page) - (x->page < y->page);
 }
 
-/* Half of the jobs are kept for pages that can be made at once. */
+/* Whether a job may wait. Half of the jobs are kept for pages that can be made at once. */
 static bool can_wait(const SluiceDemandLoader *loader)
 {
     return 2 * loader->free_produce_count >= loader->info.maxTilesInFlight;
 }
 
-/* Moves a job on as its answer says. A mip tail that failed keeps its place until the launch is
- * over, because some of its levels may be recorded. True: the page is written. */
+/* Applies the answer to a job. A mip tail that failed keeps its place until the launch is complete,
+ * because some of its levels may be recorded. True: the page is written. */
 static bool answered(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult answer,
                      uint32_t timeout)
 {
@@ -209,7 +211,7 @@ static struct slc_demand_job *job_of(SluiceDemandLoader *loader, uint32_t at)
     return &loader->jobs[loader->productions[at].job];
 }
 
-/* The answers of the parts of a page are one: the first that is not SLUICE_SUCCESS. */
+/* Joins the answers of a page's parts: the first one that is not SLUICE_SUCCESS. */
 static SluiceResult join(const SluiceResult *answers, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)
@@ -289,8 +291,8 @@ static uint32_t ask_for_bytes(SluiceDemandLoader *loader, struct slc_producer_ca
     return written;
 }
 
-/* False: the page that was to be made again is not resident any more. If it was evicted, it must
- * not come back as it was. If it is being made anew, that is enough. */
+/* Whether a page to be made again is still resident. If it was evicted, its old content must not be
+ * restored. If it is being made anew, no remake is necessary. */
 static bool is_there(SluiceDemandLoader *loader, struct slc_demand_job *job)
 {
     if (!job->remakes || slc_residency_is_resident(loader->residency, job->page, &job->place))
@@ -300,7 +302,7 @@ static bool is_there(SluiceDemandLoader *loader, struct slc_demand_job *job)
     return false;
 }
 
-/* Ends a job that its producer was not asked for, because its owner is gone. */
+/* Ends a job without calling the producer, because its owner is gone. */
 static void drop(SluiceDemandLoader *loader, struct slc_demand_job *job)
 {
     if (job->remakes)
@@ -332,7 +334,7 @@ uint32_t slc_productions_ask(SluiceDemandLoader *loader, VkCommandBuffer command
     uint32_t count = take(loader), written = 0;
     for (uint32_t i = 0, next; i < count; i = next) {
         next = i + 1;
-        if (job_of(loader, i)->stale) { /* by a callback of this launch */
+        if (job_of(loader, i)->stale) { /* set by a callback of this launch */
             drop(loader, job_of(loader, i));
             continue;
         }
@@ -352,7 +354,7 @@ void slc_productions_ask_again(SluiceDemandLoader *loader, uint64_t launch)
         bool stays = job->launch < launch;
         if (!stays && job->remakes &&
             (job->stale || !slc_remakes_retake(&loader->remakes, job->page)))
-            end(loader, job); /* it is gone, or is to be made again anyway */
+            end(loader, job); /* the page is gone, or will be made again anyway */
         else
             slc_job_list_append(loader, stays ? &kept : &again, job);
     }

@@ -1,4 +1,4 @@
-/* Proxies are pages that shaders miss and nobody answers. */
+/* Proxies: pages that shaders miss and that are never answered. */
 #include "base/log.h"
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
@@ -71,7 +71,7 @@ SluiceResult sluiceProcessDemandProxies(SluiceDemandLoader *loader,
             indices[i] -= resource->first_page;
         result = sluiceAddProxyRequests(set, &requests);
     } while (requests.indexCount == BATCH && result == SLUICE_SUCCESS);
-    /* The set knows them: nothing is awaited, and launches that miss them list them again. */
+    /* The set has the requests. No answer is due, and later launches list missed pages again. */
     slc_answers_forget(loader, resource, resource->first_page, resource->info.pageCount);
     return result;
 }

@@ -1,4 +1,4 @@
-/* Which page a texel has, whether it is resident, and what launches missed. */
+/* Queries: page of a texel, residency, and pages that launches missed. */
 #include "base/checked.h"
 #include "base/struct_size.h"
 #include "demand_vulkan/opening.h"

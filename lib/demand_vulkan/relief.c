@@ -11,7 +11,7 @@
 /* Pages of the loader on one image. */
 struct chunk_use {
     uint32_t held, in_use;
-    bool stays; ///< some are pinned, are being loaded, or new
+    bool stays; ///< some pages are pinned, being loaded, or new
 };
 
 struct survey {
@@ -42,7 +42,7 @@ static void list_page(void *user, const struct slc_placed_page *page)
         survey->pages[survey->count++] = page->page;
 }
 
-/* Skips images with pages that others hold, or that are going: `held` counts only own pages. */
+/* Chooses an image. Skips images with pages of other users: `held` counts only own pages. */
 static uint32_t choose_chunk(const struct survey *survey, bool unused_only)
 {
     struct slc_page_pool *pool = survey->loader->pages;
@@ -73,15 +73,15 @@ static void empty_chunk(struct survey *survey, uint32_t chunk)
     survey->chunks[chunk] = (struct chunk_use){0};
 }
 
-/* True if the last launch reported the pages that it used. */
+/* Whether the last launch reported the pages that it used. */
 static bool knows_use(const SluiceDemandLoader *loader)
 {
     return loader->processed > 0 &&
            loader->tracked[loader->processed % loader->info.launchesInFlight];
 }
 
-/* Resets the LOD bias if the limit has risen: it remembers what did not fit, and would stay in a
- * view that does not change. */
+/* Resets the LOD bias if the limit has risen. The bias remembers failures, and would not fall in a
+ * still view. */
 static void note_limit(SluiceDemandLoader *loader)
 {
     uint64_t limit = slc_memory_budget_limit(&loader->context->budget);

@@ -1,4 +1,4 @@
-/* Pages that commands made and whose content has changed: which of them are to be made again. */
+/* Remaking of produced pages whose content has changed. */
 #include "base/log.h"
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/pages.h"
@@ -9,7 +9,7 @@
 
 #include <inttypes.h>
 
-/* Pages that a call names: tiles of an image, or byte pages. */
+/* Pages of a call: tiles of an image, or byte pages. */
 struct changed {
     SluiceDemandLoader *loader;
     const struct slc_demand_image *image; ///< NULL: pages
@@ -33,7 +33,8 @@ static bool is_changed(const struct changed *c, uint32_t page)
     return x >= t.x && x < t.end_x && y >= t.y && y < t.end_y;
 }
 
-/* Resident pages are made again. Evicted ones must not come back as they were. */
+/* Queues a resident page to be made again. An evicted page must not be restored with old content.
+ */
 static void change(void *user, uint32_t page)
 {
     struct changed *c = user;
@@ -61,7 +62,8 @@ static void change_tiles(struct changed *c)
     }
 }
 
-/* Pages that a launch under way wrote. Pages that wait for their producer come new anyway. */
+/* Queues pages that launches in progress wrote. Pages that wait for their producer get new content.
+ */
 static void change_written(struct changed *c)
 {
     SluiceDemandLoader *loader = c->loader;
@@ -156,7 +158,7 @@ static void start(SluiceDemandLoader *loader, uint32_t page)
     slc_remake_begin(loader, loader->images[index], NULL, page);
 }
 
-/* Most jobs stay free for pages that are missing. Pages that are still loading wait. */
+/* Most jobs stay free for missing pages. Remakes of pages that are still loading wait. */
 void slc_remakes_start(SluiceDemandLoader *loader)
 {
     uint32_t kept = loader->info.maxTilesInFlight / 4 * 3;

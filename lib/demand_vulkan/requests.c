@@ -1,4 +1,4 @@
-/* What a launch asked for becomes reads; what the residency decided becomes the page table. */
+/* Requests of launches become reads, and decisions of the residency become page table entries. */
 #include "base/log.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
@@ -14,7 +14,7 @@ enum slc_request_answer slc_page_request_any(SluiceDemandLoader *loader, uint32_
     uint32_t index;
     switch (slc_pages_find(loader, page, &index)) {
     case SLC_OWNER_OPENING:
-        loader->unasked_count++; /* takes no tile */
+        loader->unasked_count++; /* not a request for a tile */
         return slc_image_request(loader, index, ticket, result);
     case SLC_OWNER_TAIL: index = SLUICE_DEMAND_BLOCK_PAGES * index + page % 32u; break;
     case SLC_OWNER_LEVEL: break;
@@ -39,14 +39,14 @@ static void count(SluiceDemandRequests *requests, enum slc_request_answer answer
     }
 }
 
-/* Shaders cannot be told that a value will not come: they ask for it whenever they miss it. */
+/* Whether the page is of a resource. Shaders request its missing values in every launch. */
 static bool is_resource(const SluiceDemandLoader *loader, uint32_t page)
 {
     uint32_t index;
     return slc_pages_find(loader, page, &index) == SLC_OWNER_RESOURCE;
 }
 
-/* True if there are any. */
+/* Passes the used pages of a launch to the residency. True if there are any. */
 static bool feed_used(SluiceDemandLoader *loader, uint32_t slot)
 {
     struct slc_page_used_iterator iterator = {0};
@@ -60,7 +60,7 @@ static bool feed_used(SluiceDemandLoader *loader, uint32_t slot)
     return any;
 }
 
-/* Strict mode asks for it, which must not change what is evicted. */
+/* Whether a launch used pages. For strict mode, which must not influence evictions. */
 static bool has_used(const SluiceDemandLoader *loader, uint32_t slot)
 {
     struct slc_page_used_iterator iterator = {0};
@@ -105,7 +105,7 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
         loader->misses[i] = pages[i];
     slc_jobs_begin_batch(loader);
     for (uint32_t i = 0; i < scan.listedCount; i++) {
-        SluiceResult result; /* without host memory it is one of those that are postponed */
+        SluiceResult result; /* ignored: without host memory the page is postponed */
         enum slc_request_answer answer = slc_page_request_any(loader, pages[i], ticket, &result);
         count(&now, answer);
         now.missingCount -= answer == SLC_REQUEST_REFUSED && is_resource(loader, pages[i]);
@@ -128,7 +128,7 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     requests->postponedCount += now.postponedCount;
 }
 
-/* A block may be lacking: the page is as if it had never been loaded. */
+/* Applies a change. If the page table has no free block, the page is forgotten. */
 static void apply(SluiceDemandLoader *loader, const struct slc_page_change *change)
 {
     SluiceResult result = SLUICE_SUCCESS;
@@ -158,7 +158,7 @@ void slc_changes_apply(SluiceDemandLoader *loader)
     uint32_t taken = BATCH;
     while (taken == BATCH) {
         taken = slc_residency_take_changes(loader->residency, changes, BATCH);
-        /* first those that go: their blocks may be free then */
+        /* hides pages first, which may free their blocks */
         for (uint32_t i = 0; i < taken; i++)
             if (changes[i].shown == SLC_SHOW_ABSENT)
                 apply(loader, &changes[i]);

@@ -1,4 +1,4 @@
-/* Pages of the application: a callback says what shaders get for each, a value or bytes. */
+/* Resources: pages whose values or bytes a callback of the application delivers. */
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
@@ -256,8 +256,8 @@ static void tell_evicted(const struct slc_demand_resource *resource, uint32_t pa
         resource->info.pfnEvict(resource->info.pUserData, page, value);
 }
 
-/* A destroyed one goes in pieces: its pages when no fill is under way, its slot when all values
- * are gone, too. */
+/* Frees a destroyed resource step by step: its pages when no fill is in progress, its slot when all
+ * values are evicted, too. */
 static void check_gone(SluiceDemandLoader *loader, struct slc_demand_resource *resource)
 {
     if (resource->state != SLC_RESOURCE_DESTROYED || resource->job_count ||
@@ -271,7 +271,7 @@ static void check_gone(SluiceDemandLoader *loader, struct slc_demand_resource *r
         slc_byte_pages_remove_resource(loader);
     resource->state = SLC_RESOURCE_FREE;
     if (resource->generation == UINT32_MAX)
-        return; /* its ids are used up */
+        return; /* all generations of the index are used up */
     resource->next_free = loader->free_resource;
     loader->free_resource = resource->index;
 }
@@ -332,7 +332,7 @@ void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *jo
         slc_residency_loaded(loader->residency, job->page, job->value);
         slc_resource_note_success(loader, resource, job->page);
     } else {
-        if (filled) /* which no launch has seen */
+        if (filled) /* no launch has seen the value */
             tell_evicted(resource, job->page - resource->first_page, job->value);
         slc_resource_fail(loader, resource, job, result,
                           result != SLUICE_SUCCESS && !job->stale && !slc_result_may_pass(result));
@@ -378,12 +378,12 @@ void slc_resource_drop_jobs(SluiceDemandLoader *loader, const struct slc_demand_
     slc_remakes_forget(loader, first, count);
 }
 
-/* What they are, and what is being found out about them. */
+/* Forgets pages, and the results of their jobs. */
 static void forget(SluiceDemandLoader *loader, struct slc_demand_resource *resource, uint32_t first,
                    uint32_t count)
 {
     slc_retries_all(loader, &resource->retry_group);
-    if (resource->job_count || resource->stride) /* bytes may be on their way to their slots */
+    if (resource->job_count || resource->stride) /* jobs may be copying bytes to the slots */
         slc_resource_drop_jobs(loader, resource, first, count);
     slc_residency_forget(loader->residency, first, count);
     slc_answers_forget(loader, resource, first, count);

@@ -1,10 +1,10 @@
 /*
- * What failed is tried again: docs/decisions/0039-given-up-tiles-are-probed.md.
+ * Retries of failures: docs/decisions/0039-given-up-tiles-are-probed.md.
  *
- * Tiles of an image, and pages of a resource, are a group. It rests for failureRetryDelayNs, then a
- * few of its pages stop being refused, so that shaders ask for them. When one of these comes, the
- * others follow. Textures that could not be opened each rest by themselves: their files have
- * nothing in common that is known here.
+ * The failed tiles of an image, or pages of a resource, are a group. The group rests for
+ * failureRetryDelayNs. Then a few of its pages are no longer refused, so that shaders request them.
+ * When one of them is loaded, all others follow. Textures that could not be opened rest one by one,
+ * because their files may be unrelated.
  */
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
@@ -16,7 +16,7 @@
 
 #define GROUPS_PER_LAUNCH 16u
 #define OPENINGS_PER_LAUNCH 64u
-#define EARLY_PART 8u /* of the delay, after which a success counts as a sign */
+#define EARLY_PART 8u /* delay / time after which a success starts a probe */
 
 static uint64_t rested(const struct slc_retries *r, uint64_t since)
 {
@@ -85,7 +85,7 @@ static bool reserve_group(SluiceDemandLoader *loader)
     return true;
 }
 
-/* At the end of those that rest: it begins to. */
+/* Begins the rest of a group: appends it to the list. */
 static void enqueue(struct slc_retries *r, uint32_t index)
 {
     struct slc_retry_group *group = &r->groups[index];
@@ -121,7 +121,8 @@ static void free_group(struct slc_retries *r, uint32_t index)
     r->free_group = index;
 }
 
-/* Pages that were forgotten meanwhile, and may be others' now, are at worst asked for early. */
+/* Lets the next page of a group be requested. Ids forgotten meanwhile may have new owners:
+ * harmless. */
 static uint32_t retry_next(SluiceDemandLoader *loader, struct slc_retry_group *group)
 {
     uint32_t page = pop_page(&loader->retries, &group->pages);
@@ -219,7 +220,7 @@ static void retry_opening(SluiceDemandLoader *loader)
         loader->counts.retriedCount++;
 }
 
-/* It has rested, or another one could be opened that had failed. */
+/* Whether the next opening has rested, or another failed texture could be opened since. */
 static bool opening_is_due(const struct slc_retries *r, uint64_t delay)
 {
     if (r->openings.first == 0)

@@ -13,18 +13,18 @@
 
 enum { COMPACT, COUNT, PLACE, LIST, WHOLE, PASSES };
 
-/* Sections up to which one workgroup is quicker than four passes that wait for each other. */
+/* Most sections for which one workgroup is faster than four passes that wait for each other. */
 #define ONE_GROUP_SECTIONS 256u
 
 #define RESULT_WORDS 4u
-#define UPDATE_SIZE 4096u /* bytes */
+#define UPDATE_SIZE 4096u /* bytes per vkCmdUpdateBuffer */
 
 static uint32_t section_capacity(uint64_t page_capacity)
 {
     return (uint32_t)(page_capacity / SLUICE_DEMAND_SECTION_PAGES);
 }
 
-/* Whole uvec4, which is how shaders read them. */
+/* Returns the bytes of section flags, rounded up to uvec4, which shaders read. */
 static uint64_t flags_size(uint64_t page_capacity)
 {
     return slc_div_up_u32(section_capacity(page_capacity), 128) * (uint64_t)16;
@@ -113,7 +113,7 @@ static SluiceResult create_passes(struct slc_demand_scan *s, const struct slc_vk
     return SLUICE_SUCCESS;
 }
 
-/* A processor has few threads, and takes each workgroup in hand. */
+/* Returns the workgroups of a pass. Software devices have few threads, so few workgroups. */
 static uint32_t workgroup_count(const struct slc_caps *caps)
 {
     bool software = caps->public.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
@@ -162,7 +162,7 @@ void slc_demand_scan_record_clear(const struct slc_demand_scan *scan, const stru
                         VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
 }
 
-/* Whole words; the last one of all may lack sections that do not exist. */
+/* Records updates of ranks in whole words. The last word may have fewer sections. */
 static void update_ranks(const struct slc_demand_scan *s, const struct slc_vk *vk,
                          VkCommandBuffer commands, const uint8_t *ranks, uint32_t first,
                          uint32_t count)

@@ -1,11 +1,11 @@
-/* Which slots of memory tiles have. */
+/* Queries of the memory slots of tiles. */
 #include "base/checked.h"
 #include "demand_vulkan/queries.h"
 #include "vulkan/page_slots.h"
 
 #include <sluice/shared/demand.h>
 
-/* A list that is written as far as there is room. */
+/* List of slots. Entries beyond its capacity are only counted. */
 struct slot_list {
     const SluiceDemandLoader *loader;
     SluiceDemandSlot *slots;

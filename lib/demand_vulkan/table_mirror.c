@@ -6,8 +6,8 @@
 #include <assert.h>
 #include <string.h>
 
-#define MAX_RUN 1024u /* elements: what vkCmdUpdateBuffer takes at most */
-#define MAX_GAP 8u    /* elements that did not change go along sooner than another command */
+#define MAX_RUN 1024u /* most elements of vkCmdUpdateBuffer */
+#define MAX_GAP 8u    /* most unchanged elements that are cheaper than another command */
 
 void slc_table_mirror_init(struct slc_table_mirror *mirror, const SluiceAllocationCallbacks *cb,
                            VkBuffer buffer, uint64_t offset, uint32_t max_count)

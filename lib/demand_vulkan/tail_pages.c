@@ -9,10 +9,10 @@
 
 #define FIRST_PAGES 16u
 #define MASK_BITS 64u
-#define MASKS 2u /* 32 cells of 3 slots are the most */
+#define MASKS 2u /* 128 bits, for at most 32 cells of 3 slots */
 
 struct slc_tail_page {
-    uint64_t free[MASKS]; ///< bit per slot
+    uint64_t free[MASKS]; ///< one bit per free slot
     struct slc_tail_cut cut;
     uint32_t page, list;
     uint32_t previous, next; ///< in the list, while slots are free; free elements by next

@@ -1,4 +1,4 @@
-/* Textures by id: what the application creates, and what shaders see of it in the table. */
+/* Textures by id: creation and removal, and their elements of the table for shaders. */
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
@@ -17,7 +17,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of the shape: what the sampler says, not the image. */
+/* Bits of the shape that depend on the sampler, not on the image. */
 #define SAMPLER_BITS                                                                               \
     (7u << SLUICE_DEMAND_MODE_U_SHIFT | 7u << SLUICE_DEMAND_MODE_V_SHIFT | SLUICE_DEMAND_NEAREST | \
      SLUICE_DEMAND_NEAREST_LEVEL | SLUICE_DEMAND_SPLINE | SLUICE_DEMAND_SMART)
@@ -141,7 +141,7 @@ SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index)
     return SLUICE_SUCCESS;
 }
 
-/* What an image needs that is opened later, to which nobody can say no any more. */
+/* Checks a produced image at creation, because opening it later must not fail. */
 static SluiceResult check_made(SluiceDemandLoader *loader, const SluiceImageInfo *image)
 {
     SluiceResult result = slc_image_info_check(image, SLC_LEVELS_TO_TAIL, &loader->vk.log);
@@ -153,7 +153,7 @@ static SluiceResult check_made(SluiceDemandLoader *loader, const SluiceImageInfo
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* The source of a texture, or its producer: `*made`, which the caller owns. */
+/* Reads the source of a texture, or its producer: `*made`, which the caller owns. */
 static SluiceResult read_image(SluiceDemandLoader *loader, const char *function,
                                const SluiceDemandTextureCreateInfo *info,
                                struct slc_made_image **made)
@@ -243,7 +243,7 @@ static void show_failed(SluiceDemandLoader *loader, uint32_t index, const float 
     memcpy(entry->baseColor, color, sizeof entry->baseColor);
 }
 
-/* Those of the sampler, or what the image records. */
+/* Chooses the address modes: the sampler's, or those that the image records. */
 static uint32_t choose_modes(SluiceDemandLoader *loader, uint32_t index,
                              const SluiceImageInfo *info)
 {
@@ -260,7 +260,8 @@ static uint32_t choose_modes(SluiceDemandLoader *loader, uint32_t index,
     return mode_bits(u, v);
 }
 
-/* Shaders answer the last level with the base color. Behind a short chain comes a level for it. */
+/* Returns the level count for shaders, which use the base color as last level. Short chains get
+ * one. */
 static uint32_t shown_level_count(const SluiceImageInfo *info)
 {
     uint32_t full = slc_mip_count(slc_max_u32(info->width, info->height));
@@ -379,7 +380,7 @@ void slc_textures_end_retired(SluiceDemandLoader *loader)
         texture->cell_count = 0;
         texture->kind = SLC_TEXTURE_FREE;
         if (texture->generation == UINT32_MAX)
-            continue; /* its ids are used up */
+            continue; /* all generations of the index are used up */
         texture->next = loader->free_texture;
         loader->free_texture = index;
     }

@@ -9,9 +9,9 @@
 
 #define NONE UINT32_MAX
 #define A_WHILE 1000000 /* ns */
-#define KEPT 1024u      /* tickets that are over and can still be asked how it went */
+#define KEPT 1024u      /* most done tickets whose status can still be queried */
 
-/* The time `timeout` ns from now. UINT64_MAX: never. */
+/* Returns the time `timeout` ns from now. UINT64_MAX: never. */
 static uint64_t find_deadline(uint64_t timeout)
 {
     uint64_t now = slc_monotonic_time();
@@ -21,7 +21,7 @@ static uint64_t find_deadline(uint64_t timeout)
 SluiceResult slc_tickets_init(struct slc_tickets *tickets, const SluiceAllocationCallbacks *cb)
 {
     *tickets = (struct slc_tickets){.cb = *cb, .first_done = NONE, .last_done = NONE};
-    /* Taken for a moment, often, and by workers while they hold the tile loader's. */
+    /* The lock is held often and briefly, by workers while they hold the tile loader's lock. */
     if (!slc_mutex_init_spinning(&tickets->mutex))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (!slc_condition_init(&tickets->changed)) {
@@ -94,7 +94,7 @@ static struct slc_ticket *find(struct slc_tickets *tickets, SluiceDemandTicket t
     return slc_ticket_find(tickets, ticket, &known);
 }
 
-/* Its slot may be used again once that of others, which were done before, have been. */
+/* Queues a done ticket. Slots are reused in the order in which their tickets were done. */
 static void check_done(struct slc_tickets *tickets, struct slc_ticket *ticket)
 {
     uint32_t slot = (uint32_t)(ticket - tickets->slots);
@@ -216,7 +216,7 @@ SluiceResult slc_ticket_get_status(struct slc_tickets *tickets, SluiceDemandTick
     return known ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
 }
 
-/* With the lock held. NOT_READY: not yet. */
+/* Gets the status of a ticket, with the lock held. NOT_READY: not done. */
 static SluiceResult look(struct slc_tickets *tickets, SluiceDemandTicket ticket,
                          SluiceDemandTicketStatus *status)
 {
@@ -230,7 +230,7 @@ static SluiceResult look(struct slc_tickets *tickets, SluiceDemandTicket ticket,
     return found && found->running ? SLUICE_NOT_READY : SLUICE_SUCCESS;
 }
 
-/* Jobs that are refused, and retries that are due, change nothing that is waited for. */
+/* Runs jobs while waiting. Refused jobs and due retries do not change the awaited tickets. */
 static void help_jobs(struct slc_tickets *tickets, uint64_t until)
 {
     slc_mutex_unlock(&tickets->mutex);

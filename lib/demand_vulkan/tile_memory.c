@@ -33,7 +33,7 @@ static uint32_t take_page(struct slc_tile_memory *memory, uint32_t kind)
         return place;
     memory->short_of = true;
     memory->wanted = kind;
-    slc_page_pool_hurry(memory->pool); /* what is empty may go to another format */
+    slc_page_pool_hurry(memory->pool); /* other formats may have the memory of empty chunks */
     return SLC_NO_PLACE;
 }
 
@@ -78,7 +78,7 @@ static bool retake(void *user, uint32_t place, uint32_t page)
 {
     struct slc_tile_memory *memory = user;
     if (memory->offered || slc_is_tail_word(place))
-        return false; /* one copy of a tile is enough; slots of tails are not kept */
+        return false; /* an equal tile is resident, or a tail, whose slots are not kept */
     if (!slc_page_pool_retake(memory->pool, memory->user, place, page))
         return false;
     memory->retaken = place;

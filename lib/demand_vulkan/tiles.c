@@ -1,4 +1,4 @@
-/* Tiles and tails: which texels a page is, and their reads. */
+/* Tiles and tails: their texels and reads. */
 #include "demand_vulkan/tiles.h"
 
 #include "base/log.h"
@@ -7,7 +7,7 @@
 
 #include <assert.h>
 
-#define STAGING_ALIGNMENT 16u /* texels of any format and blocks begin at multiples of this */
+#define STAGING_ALIGNMENT 16u /* bytes: multiple of every texel and block size */
 
 uint32_t slc_tile_level(const struct slc_demand_image *image, uint32_t page, uint32_t *index)
 {
@@ -91,7 +91,7 @@ static SluiceResult submit(SluiceDemandLoader *loader, struct slc_demand_image *
     return slc_job_submit(loader, job, &read, ticket);
 }
 
-/* The page has a place. */
+/* Begins the read of a page that has a place. */
 static SluiceResult begin_read(SluiceDemandLoader *loader, struct slc_demand_image *image,
                                const struct slc_page_request *request, SluiceDemandTicket ticket)
 {
@@ -111,7 +111,7 @@ static SluiceResult begin_read(SluiceDemandLoader *loader, struct slc_demand_ima
     return result;
 }
 
-/* A page that has the texels already, if there is a key. */
+/* Requests a page that can share the texels of an equal tile, if there is a key. */
 static enum slc_request_answer request_shared(SluiceDemandLoader *loader,
                                               const struct slc_page_request *request,
                                               const struct slc_tile_key *key, SluiceResult *result)
@@ -131,7 +131,7 @@ static enum slc_request_answer request_shared(SluiceDemandLoader *loader,
     return SLC_REQUEST_RESTORED;
 }
 
-/* `key`: of tiles that may be on a page; or NULL. */
+/* Requests a page. `key`: key of a tile that can be shared; or NULL. */
 static enum slc_request_answer request_page(SluiceDemandLoader *loader,
                                             struct slc_demand_image *image,
                                             const struct slc_page_request *request,
@@ -177,7 +177,7 @@ void slc_tiles_limit(SluiceDemandLoader *loader)
     slc_residency_set_class(loader->residency, SLC_CLASS_TILES, limit, &loader->tile_interface);
 }
 
-/* Streamers keep their packed levels in images of their own, so tails are not shared. */
+/* Requests a tail. Tails are not shared: streamers have packed levels in images of their own. */
 static enum slc_request_answer request_tail(SluiceDemandLoader *loader,
                                             struct slc_demand_image *image,
                                             const struct slc_page_request *request,
@@ -203,13 +203,13 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     *result = SLUICE_SUCCESS;
     loader->tiles.awaits = false;
     if (image->state != SLC_IMAGE_OPEN)
-        return SLC_REQUEST_RESIDENT; /* what it was asked for is gone */
+        return SLC_REQUEST_RESIDENT; /* the requested owner is gone */
     if (!slc_job_is_ready(loader, slc_tile_job_kind(image)))
         return SLC_REQUEST_POSTPONED;
     bool tail = page == image->tail_page;
     uint32_t index, level = slc_tile_level(image, page, &index);
     if (level == image->regular_count && !tail)
-        return SLC_REQUEST_RESIDENT; /* rounded up to whole blocks of ids */
+        return SLC_REQUEST_RESIDENT; /* an unused id: ranges are whole blocks of ids */
     const struct slc_page_request request = {
         .page = page,
         .class_index = SLC_CLASS_TILES,
@@ -225,7 +225,7 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     return request_page(loader, image, &request, &key, ticket, result);
 }
 
-/* Once for a file, until it is well again: the statistics count the rest. */
+/* Logs a failure once per image until a read succeeds again. Statistics count all failures. */
 static void log_failure(const SluiceDemandLoader *loader, struct slc_demand_image *image,
                         uint32_t page, SluiceResult result)
 {
@@ -251,7 +251,7 @@ static void log_failure(const SluiceDemandLoader *loader, struct slc_demand_imag
         image->told = true;
 }
 
-/* A texture whose tail comes is well, and so is an image with a tile that could not be read. */
+/* A tail that is loaded ends its texture's trouble; a tile that had failed ends its image's. */
 void slc_tile_note_success(SluiceDemandLoader *loader, struct slc_demand_image *image,
                            uint32_t page)
 {

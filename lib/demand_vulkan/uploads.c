@@ -14,7 +14,7 @@ struct copies {
     VkCommandBuffer commands;
     VkImage target, block_targets[MOST_TARGETS];
     uint32_t block_target_count;
-    bool blocks; ///< of `target`
+    bool blocks; ///< `target` has compressed blocks
     VkBuffer source;
     uint32_t count;
     VkBufferImageCopy list[COPY_BATCH];
@@ -28,7 +28,7 @@ struct byte_copies {
     VkBufferCopy list[COPY_BATCH];
 };
 
-/* Takes the job off the count of its owner. */
+/* Removes the job from the count of its owner. */
 static void release(SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
     if (job->image)
@@ -38,9 +38,9 @@ static void release(SluiceDemandLoader *loader, const struct slc_demand_job *job
 }
 
 /*
- * While reads are under way a launch copies only its share of the staging memory: one part is
- * copied, another waits for the end of its launch, and the rest is being read into. Whoever waited
- * for all reads gets all.
+ * Returns how many tiles a launch copies. While reads are in progress, it copies only a share of
+ * the staging memory: other parts wait for launches to end, or are being read into. Without reads
+ * in progress, it copies all tiles.
  */
 static uint32_t most_tiles(const SluiceDemandLoader *loader)
 {
@@ -67,7 +67,7 @@ void slc_uploads_admit(SluiceDemandLoader *loader)
 }
 
 /* Copies are disjoint and need no barrier. But synchronization validation (1.3.239) takes
- * block-compressed texels for rows of texels, and reports disjoint copies of two commands to an
+ * block-compressed texels as rows of texels, and reports disjoint copies of two commands to an
  * image as overlapping. */
 static void separate(struct copies *c)
 {
@@ -111,7 +111,7 @@ static void add(struct copies *c, const struct slc_demand_job *job,
     c->target = target;
     c->blocks = block > 1;
     c->source = source;
-    /* A level may end inside the page, where only whole blocks may end. */
+    /* A level may end inside the page, and must end with a whole block there. */
     c->list[c->count++] =
         (VkBufferImageCopy){.bufferOffset = offset + part->offset,
                             .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, place & 0xFFFFu, 1},
@@ -148,8 +148,8 @@ static void record_bytes(struct byte_copies *c, const struct slc_demand_job *job
         loader->counts.bytesUploaded += copy.size;
 }
 
-/* False: forgotten since it was admitted: because the page table had no room, because its launch
- * was abandoned, or because its launch could not begin. Then even its place may be another's. */
+/* Whether an admitted job is still wanted. It was forgotten if the page table had no room, or its
+ * launch was abandoned or could not begin. Then even its place may belong to another page. */
 static bool is_wanted(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
     if (job->image)
@@ -206,7 +206,7 @@ void slc_uploads_abandon(SluiceDemandLoader *loader, uint64_t launch)
     for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->copied));) {
         if (job->launch < launch) {
             slc_job_list_append(loader, &kept, job);
-        } else if (job->stale) { /* its image may be another's by now */
+        } else if (job->stale) { /* its image slot may belong to another image by now */
             slc_job_free(loader, job);
         } else {
             *(job->image ? &job->image->job_count : &loader->resources[job->owner]->job_count) += 1;

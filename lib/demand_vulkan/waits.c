@@ -1,4 +1,4 @@
-/* Waiting for tiles: who has the next step, the reads or a launch. */
+/* Waits for tiles: for reads, or until a launch has work. */
 #include "base/struct_size.h"
 #include "demand/page_observer.h"
 #include "demand_vulkan/opening.h"
@@ -37,7 +37,7 @@ static void count_pages(const SluiceDemandLoader *loader, const struct slc_deman
     progress->ready = progress->residentTileCount == progress->tileCount;
 }
 
-/* `*index`: of the texture that has the image. */
+/* Gets the progress of a region. `*index`: texture that has the image. */
 static SluiceResult get_progress(SluiceDemandLoader *loader, const char *function,
                                  SluiceDemandTextureId id, const SluiceImageRegion *region,
                                  uint32_t *index, SluiceDemandRegionProgress *progress)
@@ -92,8 +92,8 @@ static bool is_opening(const SluiceDemandLoader *loader, uint32_t index)
     return slot != SLC_NONE && loader->images[slot]->state == SLC_IMAGE_OPENING;
 }
 
-/* A launch has to take, make or start something before any read ends. `all_pending`: all that is
- * waited for is being loaded, so that no request matters. */
+/* Whether a launch must take, make or start something before any read ends. `all_pending`: all
+ * awaited tiles are being loaded, so that requests do not matter. */
 static bool launch_has_work(const SluiceDemandLoader *loader, bool all_pending)
 {
     return loader->arrived.first != SLC_NONE || loader->unproduced.first != SLC_NONE ||
