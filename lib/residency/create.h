@@ -1,12 +1,12 @@
-/** A machine is made and ends. */
+/** Creation and destruction of a residency machine. */
 #ifndef SLC_RESIDENCY_CREATE_H
 #define SLC_RESIDENCY_CREATE_H
 
 #include "residency/machine.h"
 
 /**
- * Makes a machine of a zeroed struct. Limits are the caller's to set. After an error
- * slc_machine_finish is still to be called. Errors: OUT_OF_HOST_MEMORY.
+ * Makes a machine from a zeroed struct. The caller sets the limits. Call slc_machine_finish after
+ * an error, too. Errors: OUT_OF_HOST_MEMORY.
  */
 SluiceResult slc_machine_init(struct slc_machine *r, const SluiceAllocationCallbacks *cb,
                               const struct slc_machine_user *user, const SluiceHeapAllocator *heaps,

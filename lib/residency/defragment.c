@@ -1,6 +1,6 @@
 /*
- * Copies that empty the least used heaps. A move goes from a heap to one that is at least as full,
- * so the sum of the squares of their fill grows with each and calls without changes in between end.
+ * Moves that empty the least used heaps. A move goes from a heap to one that is at least as full.
+ * So each move raises the sum of squares of live tiles, and repeated calls end.
  */
 #include "residency/defragment.h"
 
@@ -53,34 +53,34 @@ static bool has_only_evictable_tiles(const struct slc_machine *r, uint32_t heap)
 
 enum standing {
     STANDING_EMPTY = 0, ///< without tiles from the start, or emptied
-    STANDING_QUEUED,    ///< not looked at yet, or not since it took a tile
+    STANDING_QUEUED,    ///< not examined yet, or not since it took a tile
     STANDING_STAYS      ///< cannot be emptied
 };
 
 /**
- * Heaps are looked at from the least used one on. A heap that stays is not looked at again unless
- * it takes tiles: what other heaps can take only shrinks, and its own tiles do not change.
+ * Survey of heaps, from the least used one on. A heap that cannot be emptied is examined again only
+ * if it takes tiles: the room of other heaps only shrinks, and its own tiles do not change.
  */
 struct survey {
     uint64_t *queue;        ///< QUEUED heaps: a min-heap of source_key, some too small
-    uint64_t *destinations; ///< heaps with free slots in the order of destination_key
+    uint64_t *destinations; ///< heaps with free slots, sorted by destination_key
     uint8_t *standing;      ///< [heaps.end]
     uint32_t queued, destination_count;
     uint32_t full;      ///< destinations before this one have no free slot left
-    uint32_t level;     ///< live tiles of the heaps that are looked at now
-    uint64_t room;      ///< free slots of heaps with at least so many live tiles
-    uint64_t peer_room; ///< of these in heaps that stay and have no more
-    bool evicts;        ///< tiles are to be evicted: packed ones stay
-    bool risen;         ///< a heap with fewer live tiles has come up to the level
+    uint32_t level;     ///< live tiles of the heaps examined now
+    uint64_t room;      ///< free slots of heaps with at least `level` live tiles
+    uint64_t peer_room; ///< free slots of heaps that stay and have exactly `level` live tiles
+    bool evicts;        ///< evict tiles instead of moving them; packed tiles stay
+    bool risen;         ///< a heap with fewer live tiles has reached the level
 };
 
-/** Fewer live tiles first, of equals the greater number. */
+/** Sort key of sources: fewest live tiles first, then the higher index. */
 static uint64_t source_key(const struct slc_machine *r, uint32_t heap)
 {
     return (uint64_t)live_slots(r, heap) << 32 | (UINT32_MAX - heap);
 }
 
-/** Fewer free slots first, of equals the lower number. */
+/** Sort key of destinations: fewest free slots first, then the lower index. */
 static uint64_t destination_key(const struct slc_machine *r, uint32_t heap)
 {
     return (uint64_t)r->heaps.heaps[heap].free_count << 32 | heap;
@@ -125,7 +125,7 @@ static size_t survey_size(const struct slc_machine *r)
     return r->heaps.end * (2 * sizeof(uint64_t) + 1);
 }
 
-/** Looks at all heaps anew. `memory` has survey_size bytes. */
+/** Begins a survey of all heaps. `memory` has survey_size bytes. */
 static struct survey begin_survey(struct slc_machine *r, void *memory)
 {
     struct survey s = {.queue = memory};
@@ -154,8 +154,8 @@ static void sort_destinations(const struct slc_machine *r, struct survey *s)
 }
 
 /**
- * The least used heap that can be emptied, of equals the last one; SLC_NONE if there is none. It is
- * no longer in the survey.
+ * Takes the least used heap that can be emptied from the survey; the last one of equals. SLC_NONE
+ * if there is none.
  */
 static uint32_t next_source(struct slc_machine *r, struct survey *s)
 {
@@ -172,7 +172,7 @@ static uint32_t next_source(struct slc_machine *r, struct survey *s)
             s->level = live;
         }
         if (s->room < live)
-            return SLC_NONE; /* fuller heaps need more and have less */
+            return SLC_NONE; /* fuller heaps need more room and find less */
         pop(r, s);
         uint32_t own = r->heaps.heaps[heap].free_count;
         bool leaves =
@@ -189,7 +189,8 @@ static uint32_t next_source(struct slc_machine *r, struct survey *s)
     return SLC_NONE;
 }
 
-/** Where the fullest heap with room that is at least as full as the source stands in the survey. */
+/** Finds the fullest heap with room that is at least as full as the source, as an index of
+ * `destinations`. */
 static uint32_t find_destination(struct slc_machine *r, const struct survey *s, uint32_t source)
 {
     for (uint32_t i = s->full; i < s->destination_count; i++, r->steps++) {
@@ -201,7 +202,7 @@ static uint32_t find_destination(struct slc_machine *r, const struct survey *s, 
     return SLC_NONE;
 }
 
-/** The heap that stands there is about to take a tile. Returns the heap. */
+/** Takes a slot of a destination. Returns its heap. */
 static uint32_t take_destination(struct slc_machine *r, struct survey *s, uint32_t at)
 {
     uint64_t key = s->destinations[at] - (UINT64_C(1) << 32);
@@ -233,7 +234,7 @@ static void leave_slot(struct slc_machine *r, uint32_t heap, uint32_t slot, uint
         slc_node_retire_slot(r, heap, slot, retire_value);
 }
 
-/** Where moves are told. */
+/** Receiver of moves. */
 struct moves {
     uint32_t count, room;
     uint64_t retire_value;
@@ -285,8 +286,8 @@ SluiceResult slc_defragment(struct slc_machine *r, uint64_t retire_value, uint32
                             const struct slc_move_listener *listener)
 {
     struct moves moves = {.room = room, .retire_value = retire_value, .listener = listener};
-    /* One node per move stays behind. A heap that was emptied is not filled again in the same call,
-     * so no tile moves more often than there are heaps. */
+    /* One node per move stays for the old slot. An emptied heap is not filled again in the same
+     * call, so a tile moves at most once per heap. */
     uint64_t movable = (uint64_t)r->state_counts[SLUICE_TILE_STATE_MAPPED] +
                        r->state_counts[SLUICE_TILE_STATE_STANDBY];
     uint64_t most = movable * r->heaps.live_count;
@@ -304,7 +305,7 @@ SluiceResult slc_defragment(struct slc_machine *r, uint64_t retire_value, uint32
 
 /* Evictions --------------------------------------------------------------------------------- */
 
-/** False if it is evicted already, or leaves by itself. */
+/** Evicts a tile. False if it is evicted already, or its slot retires. */
 static bool evict(struct slc_machine *r, uint32_t node)
 {
     struct slc_node *n = slc_node_at(r, node);

@@ -1,4 +1,4 @@
-/** Copies, or evictions, that empty the least used heaps. */
+/** Emptying of the least used heaps, by moves or evictions. */
 #ifndef SLC_RESIDENCY_DEFRAGMENT_H
 #define SLC_RESIDENCY_DEFRAGMENT_H
 
@@ -6,13 +6,13 @@
 
 struct slc_move_listener {
     void *user;
-    /** The node has another slot; it was in this one of the heap with this id. */
+    /** Reports a moved node, which has its new slot. `heap_id` and `slot`: its old slot. */
     void (*moved)(void *user, const struct slc_node *node, uint32_t heap_id, uint32_t slot);
 };
 
 /**
- * Evicts at most `room` regular tiles of the least used heap that can be emptied: one that has no
- * packed tile and no tile that is being loaded, while fuller heaps have room for its tiles.
+ * Evicts at most `room` regular tiles of the least used heap that can be emptied: it has no packed
+ * tile and no tile that is being loaded, and fuller heaps have room for its tiles.
  * Errors: OUT_OF_HOST_MEMORY, with nothing changed.
  */
 SluiceResult slc_evacuate(struct slc_machine *r, uint32_t room);

@@ -1,11 +1,11 @@
 /*
- * FAILED tiles in order of due time, of equal times in order of failure: a treap, so that a failure
- * costs the logarithm of how many there are, whatever is due before or after it. A node's `prev`
- * and `next` are its children and `slot` is its parent; a FAILED tile has no slot.
+ * FAILED tiles sorted by due time, then by order of failure: a treap, so that a failure costs
+ * logarithmic time. A node's `prev` and `next` are its children, and `slot` is its parent: a FAILED
+ * tile has no slot.
  */
 #include "residency/due.h"
 
-/** A fixed shuffle of node numbers: greater ones are nearer to the root. */
+/** Priority in the treap: a fixed shuffle of node numbers. Higher nodes are nearer to the root. */
 static uint32_t rank(uint32_t node)
 {
     node = (node ^ node >> 16) * 0x7FEB352Du;
@@ -21,7 +21,7 @@ static uint32_t *link_to(struct slc_machine *r, uint32_t parent, uint32_t child)
     return p->prev == child ? &p->prev : &p->next;
 }
 
-/** The node takes the place of its parent, which becomes its child on the other side. */
+/** Rotates a node up: its parent becomes its child. */
 static void rotate_up(struct slc_machine *r, uint32_t node)
 {
     struct slc_node *n = slc_node_at(r, node);

@@ -1,4 +1,4 @@
-/** FAILED tiles; `order` is when they are due. */
+/** FAILED tiles by due time, which is in `order`. */
 #ifndef SLC_RESIDENCY_DUE_H
 #define SLC_RESIDENCY_DUE_H
 
@@ -6,10 +6,10 @@
 
 void slc_due_insert(struct slc_machine *r, uint32_t node);
 void slc_due_remove(struct slc_machine *r, uint32_t node);
-/** The tile that is due first, and the one after a tile; 0: there is none. */
+/** Return the tile that is due first, and the tile due after another one; 0: there is none. */
 uint32_t slc_due_first(const struct slc_machine *r);
 uint32_t slc_due_next(const struct slc_machine *r, uint32_t node);
-/** NULL, or what is wrong. */
+/** Returns NULL, or the broken invariant. */
 const char *slc_due_check(const struct slc_machine *r);
 
 #endif /* SLC_RESIDENCY_DUE_H */

@@ -2,8 +2,8 @@
  * The residency machine: tiles of owners and the slots of heaps that hold them. It keeps the state
  * of each tile, the order in which tiles are loaded and evicted, retries and retire values.
  *
- * It does not know why a tile is wanted, nor how residency is published. Its user produces the
- * wants and is told what becomes resident. The manager's owners are textures
+ * It knows neither why a tile is wanted nor how residency is published. Its user sets wanted tiles,
+ * and is notified when tiles become resident. The manager's owners are textures
  * (lib/core/texture_tiles.c).
  *
  * A tile that is not FREE has a node. docs/manager-specification.md has the states and the rules.
@@ -19,25 +19,25 @@
 #include <assert.h>
 
 enum slc_node_flags {
-    SLC_NODE_LISTED = 1, ///< CANCELED: handed out as such; STANDBY: evicted
+    SLC_NODE_LISTED = 1, ///< CANCELED: listed for the application; STANDBY: evicted
     SLC_NODE_WANTED = 2, ///< CANCELED and handed out: wanted again; STANDBY and evicted: wanted
 };
 
-/** A slot whose tile was unmapped and that the GPU may still read; beside SluiceTileState. */
+/** State besides SluiceTileState: slot of an unmapped tile that the GPU may still read. */
 #define SLC_NODE_RETIRING 255
 
-/** One per tile that is not FREE, and per retiring slot. Index 0 stands for none. */
+/** Node: one per tile that is not FREE, and per retiring slot. Index 0 means none. */
 struct slc_node {
-    uint32_t owner;      ///< index of who has the tile; SLC_NONE for retiring slots
-    uint32_t tile;       ///< of the owner
-    uint32_t prev, next; ///< in the list of its state
-    uint32_t heap, slot; ///< heap is an index, SLC_NONE without memory
+    uint32_t owner;      ///< index of the tile's owner; SLC_NONE for retiring slots
+    uint32_t tile;       ///< tile of the owner
+    uint32_t prev, next; ///< neighbors in the list of the state
+    uint32_t heap, slot; ///< index of the heap, or SLC_NONE without memory; slot in it
     uint32_t failures;
     uint8_t state;
     uint8_t level; ///< 0 is the finest; SLC_PACKED_CLASS, SLC_OUTSIDE_CLASS
-    uint8_t need;  ///< log2 of the tiles of level 0 that want it, and the owner's weight
+    uint8_t need;  ///< log2 of the tiles of level 0 that request it, plus the owner's weight
     uint8_t flags;
-    /** REQUESTED: sequence; FAILED: due; GIVEN_UP: the user's; retiring: retire value. */
+    /** REQUESTED: sequence number; FAILED: due time; GIVEN_UP: for the user; retiring: value. */
     uint64_t order;
 };
 
@@ -46,12 +46,12 @@ struct slc_list {
     uint32_t count;
 };
 
-#define SLC_REQUEST_CLASSES (SLUICE_MAX_MIP_LEVELS + 2) ///< a class per level and two for packed
-/** Loaded before all levels, and not evicted while wanted: packed mips. */
+#define SLC_REQUEST_CLASSES (SLUICE_MAX_MIP_LEVELS + 2) ///< one per level, two for packed tiles
+/** Class of packed tiles: loaded before all levels, and not evicted while wanted. */
 #define SLC_PACKED_CLASS SLUICE_MAX_MIP_LEVELS
-/** Packed tiles without slots. Their requests come first, because they never wait for a slot. */
+/** Class of packed tiles without slots. Loaded first of all, because they never wait for a slot. */
 #define SLC_OUTSIDE_CLASS (SLUICE_MAX_MIP_LEVELS + 1)
-/** What a tile of level 0 to 20 can be needed by is 2^0 to 2^40 tiles of level 0, 2^30 at most. */
+/** Values of `need`: a tile of level 0 to 20 is requested by 2^0 to 2^30 tiles of level 0. */
 #define SLC_REQUEST_NEEDS 31
 
 /** REQUESTED tiles by class and need. */
@@ -71,30 +71,30 @@ struct slc_due_tree {
 };
 
 #define SLC_NODES_PER_CHUNK 1024
-/** Indices of nodes are below this, so that whoever keeps one has a bit to spare. */
+/** Limit of node indices, so that a cell with an index has a spare bit. */
 #define SLC_MAX_NODES 0x80000000u
 
-/** Told within the calls that change a node. */
+/** Callbacks within calls that change a node. */
 struct slc_machine_user {
     void *user;
-    /** A tile of the owner became REQUESTED, or stops to be. */
+    /** A tile of the owner became REQUESTED, or is about to leave that state. */
     void (*requested)(void *user, uint32_t owner, bool now);
-    /** The tile became resident (MAPPED or STANDBY), or stopped to be. */
+    /** The tile became resident (MAPPED or STANDBY), or ceased to be. */
     void (*resident)(void *user, const struct slc_node *node, bool now);
-    /** The tile became GIVEN_UP, or is going to be something else. */
+    /** The tile became GIVEN_UP, or is about to leave that state. */
     void (*given_up)(void *user, uint32_t node, bool now);
-    /** The tile is FREE: it has no node any more. */
+    /** The tile became FREE: it has no node any more. */
     void (*released)(void *user, const struct slc_node *node);
-    /** The tile changed its state. NULL: nobody asks. */
+    /** The tile changed its state. May be NULL. */
     void (*changed)(void *user, const struct slc_node *node, uint8_t from, uint8_t to);
-    /** Added to the need of the owner's requests. NULL: 0 for all. */
+    /** Returns a value that is added to `need` of the owner's requests. NULL: 0 for all. */
     int32_t (*weight)(void *user, uint32_t owner);
 };
 
 struct slc_machine_limits {
-    uint32_t standby; ///< tiles on standby, and as many outside; the oldest of more are evicted
+    uint32_t standby; ///< most STANDBY tiles with slots, and most without; the oldest are evicted
     uint32_t load_attempts; ///< failures after which a tile is GIVEN_UP
-    uint64_t retry_delay;   ///< after the first failure; doubles with each
+    uint64_t retry_delay;   ///< delay after the first failure; doubles with each failure
 };
 
 struct slc_machine {
@@ -106,19 +106,19 @@ struct slc_machine {
     uint32_t node_chunk_count, node_chunk_room;
     uint32_t node_end, free_node, free_node_count;
     uint32_t state_counts[8];   ///< nodes by SluiceTileState
-    uint32_t outside_counts[8]; ///< those of them that take no slots
+    uint32_t outside_counts[8]; ///< by state, nodes that take no slots
     struct slc_requests requests;
-    struct slc_list standby; ///< tiles that take slots
+    struct slc_list standby; ///< STANDBY tiles that take slots
     struct slc_list standby_outside, evicted, canceled, given_up, retiring;
     struct slc_due_tree failed;
-    /** MAPPED tiles by level, oldest first. Packed ones are in none. */
+    /** MAPPED tiles by level, oldest first. Packed tiles are in no list. */
     struct slc_list mapped[SLUICE_MAX_MIP_LEVELS];
     uint32_t evicted_wanted; ///< evicted tiles that are wanted
 
     struct slc_tile_heaps heaps;
     uint64_t completed_retire;
     uint64_t restored_total; ///< from STANDBY to MAPPED
-    uint64_t steps;          ///< of searches whose length tests bound
+    uint64_t steps;          ///< steps of searches, whose number tests limit
 };
 
 static inline bool slc_is_packed_class(uint32_t level)
@@ -126,13 +126,14 @@ static inline bool slc_is_packed_class(uint32_t level)
     return level >= SLC_PACKED_CLASS;
 }
 
-/** Tiles in a state, without those that take no slots. */
+/** Returns the tiles in a state that take slots. */
 static inline uint32_t slc_count_with_slots(const struct slc_machine *r, SluiceTileState state)
 {
     return r->state_counts[state] - r->outside_counts[state];
 }
 
-/** Slots that come back by themselves: of evicted tiles, and those that retire. */
+/** Returns the slots that become free without further evictions: evicted tiles and retiring slots.
+ */
 static inline uint64_t slc_coming_slots(const struct slc_machine *r)
 {
     uint32_t evicted_outside =

@@ -8,7 +8,7 @@
 
 /* Lists ------------------------------------------------------------------------------------- */
 
-/** Packed tiles are not evicted while they are wanted, so no list has them. */
+/** Whether a tile is regular. Wanted packed tiles are never evicted, so no list has them. */
 static bool is_regular(const struct slc_node *n)
 {
     return !slc_is_packed_class(n->level);
@@ -26,7 +26,7 @@ static void leave_given_up(struct slc_machine *r, uint32_t node)
     r->user.given_up(r->user.user, node, false);
 }
 
-/** Takes the node out of the list that its state keeps it in, if any. */
+/** Removes the node from the list of its state, if there is one. */
 static void leave_list(struct slc_machine *r, uint32_t node)
 {
     struct slc_node *n = slc_node_at(r, node);
@@ -70,7 +70,7 @@ static void enter_list(struct slc_machine *r, uint32_t node)
     }
 }
 
-/** Ends what ties a node to its tile; list and slot stay as they are. */
+/** Detaches a node from its tile. List and slot stay. */
 static void detach_node(struct slc_machine *r, uint32_t node)
 {
     r->user.released(r->user.user, slc_node_at(r, node));
@@ -134,7 +134,7 @@ void slc_node_set_state(struct slc_machine *r, uint32_t node, SluiceTileState st
 
 void slc_node_request_again(struct slc_machine *r, uint32_t node)
 {
-    leave_list(r, node); /* before the need changes: a REQUESTED one is listed by it */
+    leave_list(r, node); /* before `need` changes, by which REQUESTED nodes are listed */
     count_move(r, slc_node_at(r, node), SLUICE_TILE_STATE_REQUESTED);
     slc_node_at(r, node)->need = 0;
     enter_list(r, node);
@@ -166,11 +166,11 @@ bool slc_node_unmap_wanted(struct slc_machine *r, uint32_t node, uint64_t retire
     return true;
 }
 
-/* What wants do to a tile ------------------------------------------------------------------- */
+/* Wanted and unwanted tiles ----------------------------------------------------------------- */
 
 /*
- * The moves below are those that a map makes by the thousand, so they do by themselves what
- * slc_node_set_state would do, and not more.
+ * A map makes thousands of the following changes. So they do the work of slc_node_set_state
+ * themselves, without its general cases.
  */
 
 static void restore(struct slc_machine *r, uint32_t node)
@@ -184,7 +184,7 @@ static void restore(struct slc_machine *r, uint32_t node)
     r->restored_total++;
 }
 
-/** A packed tile: others go in runs. */
+/** Makes a packed tile STANDBY. Regular tiles change in runs. */
 static void to_standby(struct slc_machine *r, uint32_t node)
 {
     struct slc_node *n = slc_node_at(r, node);
@@ -273,7 +273,7 @@ void slc_node_fail(struct slc_machine *r, uint32_t node, uint64_t time)
         slc_node_set_state(r, node, SLUICE_TILE_STATE_GIVEN_UP);
         return;
     }
-    leave_list(r, node); /* the due time is where the node will stand, so it is set in between */
+    leave_list(r, node); /* before the due time changes, which sorts FAILED nodes */
     count_move(r, n, SLUICE_TILE_STATE_FAILED);
     n->order = time + delay;
     enter_list(r, node);
@@ -321,7 +321,7 @@ void slc_node_retire_slot(struct slc_machine *r, uint32_t heap, uint32_t slot,
 
 void slc_collect_retired(struct slc_machine *r)
 {
-    /* Values never decrease, so the list is in their order. */
+    /* Retire values never decrease, so the list is sorted. */
     while (r->retiring.head && slc_node_at(r, r->retiring.head)->order <= r->completed_retire) {
         uint32_t node = r->retiring.head;
         slc_list_remove(r, &r->retiring, node);

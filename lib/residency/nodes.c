@@ -30,7 +30,7 @@ bool slc_reserve_nodes(struct slc_machine *r, uint64_t count)
                        (r->node_chunk_count * SLC_NODES_PER_CHUNK - r->node_end)) {
         if (add_node_chunk(r))
             continue;
-        /* what was too much once may be so for good */
+        /* keeps no chunks of a reservation that failed */
         while (r->node_chunk_count > before)
             slc_free(r->cb, r->node_chunks[--r->node_chunk_count], SLC_NODES_PER_CHUNK,
                      sizeof(struct slc_node));

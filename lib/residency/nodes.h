@@ -6,9 +6,9 @@
 
 /** Frees all nodes. */
 void slc_nodes_finish(struct slc_machine *r);
-/** Makes sure that `count` nodes can be taken. */
+/** Reserves `count` nodes. False without memory. */
 bool slc_reserve_nodes(struct slc_machine *r, uint64_t count);
-/** One that was reserved. */
+/** Takes a reserved node. */
 uint32_t slc_nodes_take(struct slc_machine *r);
 void slc_nodes_give(struct slc_machine *r, uint32_t node);
 

@@ -4,12 +4,12 @@
 
 #include "residency/machine.h"
 
-/** Changes neither state nor counts by state. */
+/** Adds or removes a request. Changes neither state nor counts by state. */
 void slc_request_append(struct slc_machine *r, uint32_t node);
 void slc_request_remove(struct slc_machine *r, uint32_t node);
-/** The most useful REQUESTED tile, 0 if there is none. */
+/** Returns the REQUESTED tile to load first; 0 if there is none. */
 uint32_t slc_first_request(const struct slc_machine *r);
-/** The one after it, 0 at the end. */
+/** Returns the REQUESTED tile after another one; 0 at the end. */
 uint32_t slc_next_request(const struct slc_machine *r, uint32_t node);
 
 #endif /* SLC_RESIDENCY_REQUEST_QUEUES_H */

@@ -43,7 +43,7 @@ static void clear_bit(struct slc_tile_heaps *h, uint32_t bit)
     }
 }
 
-/** Lowest set bit above 0, UINT32_MAX if there is none. Bit 0 stands for full heaps. */
+/** Finds the lowest set bit above 0; UINT32_MAX if there is none. Bit 0 means full heaps. */
 static uint32_t find_bit_above_zero(const struct slc_tile_heaps *h)
 {
     uint32_t offsets[BIT_LEVELS + 1];
@@ -51,7 +51,7 @@ static uint32_t find_bit_above_zero(const struct slc_tile_heaps *h)
     uint64_t low = h->bits[0] & ~UINT64_C(1);
     if (low)
         return slc_lowest_bit64(low);
-    /* the rest of what summary word 0 stands for, then summary by summary */
+    /* the rest of the words under summary word 0, then summary by summary */
     for (uint32_t word = 1; word < 64 && offsets[0] + word < offsets[1]; word++)
         if (h->bits[word])
             return word * 64 + slc_lowest_bit64(h->bits[word]);
@@ -155,13 +155,13 @@ static SluiceResult grow_table(struct slc_tile_heaps *h)
     return SLUICE_SUCCESS;
 }
 
-/** Room for one more heap in the table: a dead entry or room behind the end. */
+/** Makes room for one more heap: a dead entry, or an entry at the end. */
 static SluiceResult reserve_entry(struct slc_tile_heaps *h)
 {
     return h->live_count < h->room ? SLUICE_SUCCESS : grow_table(h);
 }
 
-/** The first one that is dead, or one more. */
+/** Returns the first dead entry, or a new one at the end. */
 static uint32_t unused_entry(struct slc_tile_heaps *h)
 {
     if (h->live_count == h->end)
@@ -171,7 +171,8 @@ static uint32_t unused_entry(struct slc_tile_heaps *h)
     return h->dead_from;
 }
 
-/** A heap whose slots are all free. False, with nothing allocated, without memory. */
+/** Makes the records of a heap whose slots are all free. False, with nothing allocated, without
+ * memory. */
 static bool make_books(const struct slc_tile_heaps *h, struct slc_tile_heap *heap)
 {
     *heap = (struct slc_tile_heap){.free_count = h->capacity};
@@ -226,7 +227,7 @@ static void add_loose(struct slc_tile_heaps *h, uint32_t index)
     h->loose = index;
 }
 
-/** Takes the heap out of its bucket until the buckets are looked at again. */
+/** Removes the heap from its bucket until heaps are sorted again. */
 static void loosen(struct slc_tile_heaps *h, uint32_t index)
 {
     const struct slc_tile_heap *heap = &h->heaps[index];
@@ -265,7 +266,7 @@ static void take_slot(struct slc_tile_heaps *h, struct slc_tile_heap *heap, uint
     h->packed_free -= heap->packed;
 }
 
-/** The index of a heap with the fewest free slots but not none. There is one. */
+/** Returns a heap with the fewest free slots, at least one. Such a heap must exist. */
 static uint32_t fullest(struct slc_tile_heaps *h)
 {
     if (h->open != UINT32_MAX && h->heaps[h->open].free_count > 0)
@@ -278,7 +279,7 @@ static uint32_t fullest(struct slc_tile_heaps *h)
     return h->open = found;
 }
 
-/** The first heap for packed tiles that has a free slot. There is one. */
+/** Returns the first heap for packed tiles with a free slot. Such a heap must exist. */
 static uint32_t first_packed(struct slc_tile_heaps *h)
 {
     const struct slc_tile_heap *heaps = h->heaps;
@@ -287,7 +288,7 @@ static uint32_t first_packed(struct slc_tile_heaps *h)
     return h->packed_from;
 }
 
-/** Makes an empty heap one for packed tiles. There is one. */
+/** Makes an empty heap a heap for packed tiles. An empty heap must exist. */
 static void separate(struct slc_tile_heaps *h)
 {
     put_loose_back(h);
@@ -331,7 +332,7 @@ uint32_t slc_tile_heaps_take_from(struct slc_tile_heaps *h, uint32_t heap_index,
     struct slc_tile_heap *heap = &h->heaps[heap_index];
     assert(heap->free_count != SLC_HEAP_DEAD && heap->free_count > 0);
     loosen(h, heap_index);
-    h->open = UINT32_MAX; /* this one may become the fullest */
+    h->open = UINT32_MAX; /* the heap may become the fullest */
     uint32_t slot = lowest_free(heap);
     take_slot(h, heap, slot, node);
     return slot;
@@ -341,7 +342,7 @@ void slc_tile_heaps_give(struct slc_tile_heaps *h, uint32_t heap_index, uint32_t
 {
     struct slc_tile_heap *heap = &h->heaps[heap_index];
     assert(heap->free_count < h->capacity && heap->nodes[slot] != 0);
-    /* others may be fuller now, or this one, if it was full */
+    /* another heap may be fuller now, or this heap if it was full */
     if (heap_index == h->open || heap->free_count == 0)
         h->open = UINT32_MAX;
     loosen(h, heap_index);
@@ -391,7 +392,7 @@ uint32_t slc_tile_heaps_reserved(const struct slc_tile_heaps *h)
 
 /* Snapshots --------------------------------------------------------------------------------- */
 
-/** `prev` of a heap that is neither in a bucket nor loose. */
+/** Value of `prev` of a heap that is neither in a bucket nor loose. */
 #define UNLINKED (UINT32_MAX - 1)
 
 SluiceResult slc_tile_heaps_restore_dead(struct slc_tile_heaps *h)

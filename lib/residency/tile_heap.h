@@ -8,15 +8,15 @@
 #include "base/map.h"
 
 struct slc_tile_heap {
-    uint32_t id;         ///< the application's
+    uint32_t id;         ///< id of the application
     uint32_t free_count; ///< SLC_HEAP_DEAD: this entry is unused
     uint32_t retiring_count;
-    uint32_t prev, next; ///< among heaps with equally many free slots, UINT32_MAX ends
-    bool loose;          ///< in no bucket until one has to be found
-    bool packed;         ///< for packed tiles, in no bucket; until it is empty
-    uint32_t low;        ///< in words below this one no slot is free
-    uint64_t *free;      ///< owned, a bit per slot
-    uint32_t *nodes;     ///< owned, [capacity]: who lives in the slot, 0: nobody
+    uint32_t prev, next; ///< heaps of the same bucket; UINT32_MAX ends
+    bool loose;          ///< in no bucket until heaps are sorted
+    bool packed;         ///< for packed tiles, until empty; in no bucket
+    uint32_t low;        ///< words of `free` below this one are 0
+    uint64_t *free;      ///< owned; one bit per free slot
+    uint32_t *nodes;     ///< owned, [capacity]: node in each slot; 0: none
 };
 
 #define SLC_HEAP_DEAD UINT32_MAX
@@ -29,15 +29,16 @@ struct slc_tile_heaps {
     struct slc_tile_heap *heaps; ///< owned, [end], dead ones in between
     uint32_t end, room, live_count;
     uint32_t dead_from; ///< no entry before this one is dead
-    struct slc_map ids; ///< the application's ids of living heaps to entries; room for `room`
+    struct slc_map ids; ///< id of the application -> entry of a live heap; capacity `room`
     uint32_t loose;     ///< heaps in no bucket, linked by `next`
-    uint32_t open; ///< slots are taken from it while no other has fewer; loose; UINT32_MAX: none
-    uint32_t *buckets; ///< owned, [capacity + 1]: first heap with that many free slots
-    uint64_t *bits;    ///< owned: which buckets are not empty, and words over words of that
+    uint32_t
+        open; ///< loose heap that slots are taken from while no heap is fuller; UINT32_MAX: none
+    uint32_t *buckets; ///< owned, [capacity + 1]: first heap by number of free slots
+    uint64_t *bits;    ///< owned; one bit per bucket that is not empty, and summary words of them
     uint32_t bit_words;
     uint64_t free_total;
     uint64_t packed_free; ///< free slots of heaps for packed tiles
-    uint32_t packed_from; ///< no heap for packed tiles before this one has a free slot
+    uint32_t packed_from; ///< heaps for packed tiles before this one are full
     uint32_t empty_count; ///< heaps with all slots free
 };
 
@@ -48,8 +49,8 @@ SluiceResult slc_tile_heaps_init(struct slc_tile_heaps *h, const SluiceAllocatio
 void slc_tile_heaps_finish(struct slc_tile_heaps *h);
 
 /**
- * Asks the allocator for a heap. `*answer` is what it said, `*heap_id` its id. OUT_OF_HOST_MEMORY
- * without asking if there is no memory for the books.
+ * Adds a heap from the allocator. `*answer`: the allocator's result, `*heap_id`: its id.
+ * OUT_OF_HOST_MEMORY, without calling the allocator, if there is no memory for the heap's records.
  */
 SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, uint32_t *heap_id);
 
@@ -71,15 +72,15 @@ bool slc_tile_heaps_take_packed(struct slc_tile_heaps *h, uint32_t node, uint32_
  * sorted, so a call that can still fail must not sort them.
  */
 void slc_tile_heaps_settle(struct slc_tile_heaps *h);
-/** The lowest slot of this heap, which has one. */
+/** Takes the lowest free slot of this heap, which must have one. */
 uint32_t slc_tile_heaps_take_from(struct slc_tile_heaps *h, uint32_t heap, uint32_t node);
-/** Slots that only packed tiles may take: one in 16, at most 64. */
+/** Returns the slots that only packed tiles may take: one in 16, at most 64. */
 uint32_t slc_tile_heaps_reserved(const struct slc_tile_heaps *h);
 void slc_tile_heaps_give(struct slc_tile_heaps *h, uint32_t heap, uint32_t slot);
 
-/** Index of the living heap that the application calls `id`, or UINT32_MAX. */
+/** Returns the index of the live heap with the application's `id`, or UINT32_MAX. */
 uint32_t slc_tile_heaps_find(const struct slc_tile_heaps *h, uint32_t id);
-/** The heap must be empty. */
+/** Releases an empty heap. */
 void slc_tile_heaps_release(struct slc_tile_heaps *h, uint32_t heap);
 
 /*

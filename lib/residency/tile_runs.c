@@ -1,6 +1,6 @@
 /*
- * Runs: neighbors in one list that go to the end of another one are moved as a piece. An owner
- * that comes into view or leaves it makes long ones.
+ * Runs: neighbors in one list that go to the end of another list are moved together. An owner that
+ * enters or leaves the view makes long runs.
  */
 #include "residency/tile_runs.h"
 
@@ -49,7 +49,7 @@ void slc_run_end(struct slc_machine *r, struct slc_run *run)
         slc_evict_standby(r, r->limits.standby);
 }
 
-/** Whether it is in the list that runs are taken from. */
+/** Whether a node is in the list from which runs are taken. */
 static bool fits_run(const struct slc_node *n, bool wanted)
 {
     if (wanted)
@@ -63,7 +63,7 @@ bool slc_run_add(struct slc_machine *r, struct slc_run *run, uint32_t node, uint
     struct slc_node *n = slc_node_at(r, node);
     if (run->count &&
         !(run->next == node && run->wanted == wanted && run->level == level && fits_run(n, wanted)))
-        slc_run_end(r, run); /* which may list this tile for unmapping */
+        slc_run_end(r, run); /* may list this tile for unmapping */
     if (!fits_run(n, wanted))
         return false;
     if (run->count == 0)
