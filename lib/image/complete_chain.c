@@ -15,14 +15,14 @@
 
 #include <stdatomic.h>
 
-/* Texels that are filtered at once: memory stays bounded whatever is read. */
+/* Size of blocks that are filtered at once, which bounds the memory of any read. */
 #define BLOCK_WIDTH 256u
 #define BLOCK_HEIGHT 64u
 
 /* Coarse levels of an array layer. */
 struct layer {
     struct slc_mip_chain kept; ///< its level 0 is `first_kept` of the image
-    uint32_t row_count;        ///< of its level 0 that are there
+    uint32_t row_count;        ///< rows of its level 0 that are built
     atomic_bool is_built;      ///< `kept` is constant from then on
 };
 
@@ -32,8 +32,8 @@ struct complete_source {
     SluiceLogCallback log;
     SluiceImageSource *inner;
     uint64_t max_memory;
-    struct slc_mutex mutex; ///< around opening and building
-    atomic_bool is_open;    ///< the next four are constant from then on
+    struct slc_mutex mutex; ///< guards opening and building
+    atomic_bool is_open;    ///< the next four fields are constant once true
     SluiceImageInfo info;
     uint32_t inner_count; ///< levels of `inner`
     uint32_t first_kept;
@@ -41,7 +41,7 @@ struct complete_source {
     struct layer *layers; ///< owned
 };
 
-/* The first level that is kept in memory. */
+/* Chooses the first level that is kept in memory. */
 static uint32_t choose_kept(const struct complete_source *source)
 {
     const SluiceImageInfo *info = &source->info;
@@ -82,7 +82,7 @@ static SluiceResult describe(struct complete_source *source)
     return source->layers ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-/* A failure is not kept: files come and go. */
+/* Opens the source. A failure is not kept: the next read tries again. */
 static SluiceResult ensure_open(struct complete_source *source)
 {
     SluiceResult result = SLUICE_SUCCESS;
@@ -106,7 +106,7 @@ static struct slc_mip_part part_of_level(const struct complete_source *source, u
 static SluiceResult filter_region(struct complete_source *source, const SluiceImageRegion *region,
                                   char *texels, size_t pitch, SluiceImageFault *fault);
 
-/* One block of a level, from the next finer level, which is read or filtered in turn. */
+/* Filters one block of a level from the next finer level, which is read or filtered itself. */
 static SluiceResult filter_block(struct complete_source *source, const SluiceImageRegion *block,
                                  char *texels, size_t pitch, SluiceImageFault *fault)
 {
@@ -143,7 +143,7 @@ static SluiceResult filter_block(struct complete_source *source, const SluiceIma
     return result;
 }
 
-/* Recursive in levels: as deep as levels that the source lacks do not fit into memory. */
+/* Filters a region. Recurses once per missing level that is not kept in memory. */
 static SluiceResult filter_region(struct complete_source *source, const SluiceImageRegion *region,
                                   char *texels, size_t pitch, SluiceImageFault *fault)
 {
@@ -163,7 +163,8 @@ static SluiceResult filter_region(struct complete_source *source, const SluiceIm
     return SLUICE_SUCCESS;
 }
 
-/* Rows that are there stay when one fails, so a later try goes on behind them. */
+/* Builds the kept levels of a layer. Rows built before a failure stay, and a later try goes on
+ * there. */
 static SluiceResult build_layer(struct complete_source *source, uint32_t index,
                                 SluiceImageFault *fault)
 {
@@ -189,7 +190,7 @@ static SluiceResult build_layer(struct complete_source *source, uint32_t index,
     return result == SLUICE_SUCCESS ? slc_mip_chain_build(&layer->kept, cb) : result;
 }
 
-/* The first one builds while others wait. */
+/* Builds a layer once. The first thread builds, others wait. */
 static SluiceResult ensure_built(struct complete_source *source, uint32_t index,
                                  SluiceImageFault *fault)
 {
@@ -235,7 +236,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     return SLUICE_SUCCESS;
 }
 
-/* Levels that are built are read at once: they are in memory, or filtered here. */
+/* Starts a read. Levels that the source lacks are read at once: from memory, or by filtering. */
 static SluiceResult start_read(SluiceImageSource *base, const SluiceImageRegion *region,
                                void *texels, size_t row_pitch, const SluiceImageReadToken *token)
 {
@@ -280,7 +281,7 @@ static const SluiceImageSourceInterface complete_interface = {.structSize =
                                                               .pfnReadRegionLocated = read_region,
                                                               .pfnIdentifyRegion = identify};
 
-/* For sources that start reads. */
+/* Interface for sources that start reads. */
 static const SluiceImageSourceInterface starting_interface = {.structSize =
                                                                   sizeof starting_interface,
                                                               .pfnGetInfo = get_info,

@@ -175,7 +175,7 @@ void slc_texels_from_rgba(SluiceFormat format, const float *rgba, void *texels, 
     case SLUICE_FORMAT_R16G16B16A16_SNORM:
         snorm_from_rgba(channels, 2, rgba, texels, count);
         return;
-    default: assert(!"a format without texels"); /* sources refuse it */
+    default: assert(!"a format without texels"); /* sources refuse such formats */
     }
 }
 
@@ -227,7 +227,7 @@ static void rgba_from_unorm16(uint32_t channels, const char *in, float *rgba, si
     }
 }
 
-/* The least value, -128 or -32768, is -1 too. */
+/* The least value, -128 or -32768, also means -1. */
 static void rgba_from_snorm(uint32_t channels, uint32_t size, const char *in, float *rgba,
                             size_t count)
 {

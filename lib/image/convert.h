@@ -1,5 +1,5 @@
 /**
- * Texels of any format that is not compressed from and to linear RGBA floats.
+ * Conversion of texels of uncompressed formats from and to linear RGBA floats.
  *
  * Halves saturate at +-65504. UNORM is clamped to [0, 1] and SNORM to [-1, 1], and both are rounded
  * to nearest; sRGB formats encode R, G and B. small_float.h has the rules of small floats. NaN
@@ -11,10 +11,10 @@
 
 #include <sluice/image.h>
 
-/** Channels of a format: 1 to 4; 0 for UNDEFINED and compressed ones. */
+/** Returns the channels of a format: 1 to 4; 0 for UNDEFINED and compressed formats. */
 uint32_t slc_format_channel_count(SluiceFormat format);
 
-/** Nearest of the 256 steps; clamps to [0, 1], NaN becomes 0. */
+/** Returns the nearest of 256 steps; clamps to [0, 1], NaN becomes 0. */
 static inline uint8_t slc_unorm8_from_float(float value)
 {
     if (!(value > 0.0f))
@@ -23,7 +23,7 @@ static inline uint8_t slc_unorm8_from_float(float value)
     return value >= 1.0f ? 255 : (uint8_t)((double)value * 255.0 + 0.5);
 }
 
-/** Nearest of the 65536 steps; clamps to [0, 1], NaN becomes 0. */
+/** Returns the nearest of 65536 steps; clamps to [0, 1], NaN becomes 0. */
 static inline uint16_t slc_unorm16_from_float(float value)
 {
     if (!(value > 0.0f))
@@ -31,11 +31,10 @@ static inline uint16_t slc_unorm16_from_float(float value)
     return value >= 1.0f ? 65535 : (uint16_t)((double)value * 65535.0 + 0.5);
 }
 
-/** `count` texels of `format` from [count][4] floats; channels that the format lacks are dropped.
- */
+/** Converts [count][4] floats to `count` texels. Channels that the format lacks are dropped. */
 void slc_texels_from_rgba(SluiceFormat format, const float *rgba, void *texels, size_t count);
 
-/** [count][4] floats from `count` texels; missing G and B are 0, missing A is 1. */
+/** Converts `count` texels to [count][4] floats. Missing G and B are 0, missing A is 1. */
 void slc_texels_to_rgba(SluiceFormat format, const void *texels, float *rgba, size_t count);
 
 #endif /* SLC_IMAGE_CONVERT_H */

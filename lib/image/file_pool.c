@@ -11,7 +11,7 @@
 
 struct SluiceFilePool {
     SluiceAllocationCallbacks allocator;
-    struct slc_mutex mutex;       ///< around what follows, and around the files
+    struct slc_mutex mutex;       ///< guards the fields below, and the pool's files
     struct slc_condition changed; ///< a file was released, closed, or its opening has ended
     struct slc_pooled_file *newest, *oldest; ///< open files, by last use
     SluiceFilePoolStatistics statistics; ///< openFileCount counts files that are being opened, too
@@ -111,7 +111,7 @@ static void close_file(SluiceFilePool *pool, struct slc_pooled_file *file)
     pool->statistics.openFileCount--;
 }
 
-/* Closes the file that was read longest ago and that nobody reads now. False: there is none. */
+/* Closes the least recently read file that is not being read. False: there is none. */
 static bool make_room(SluiceFilePool *pool)
 {
     struct slc_pooled_file *file = pool->oldest;
@@ -124,8 +124,8 @@ static bool make_room(SluiceFilePool *pool)
     return true;
 }
 
-/* Opens and compares. Without the mutex: a file of a network may take long. Returns -1 and errno.
- */
+/* Opens a file and compares its identity. Without the mutex, because network files may take long.
+ * Returns -1 and sets errno after an error. */
 static int open_known(struct slc_pooled_file *file, const char *path)
 {
     struct slc_file_status status;
@@ -147,7 +147,7 @@ static int open_known(struct slc_pooled_file *file, const char *path)
     return -1;
 }
 
-/* One more file, with room for it. Returns 0, or errno. */
+/* Opens one more file, after making room. Returns 0, or errno. */
 static int open_file(SluiceFilePool *pool, struct slc_pooled_file *file, const char *path)
 {
     SluiceFilePoolStatistics *statistics = &pool->statistics;
@@ -173,7 +173,7 @@ static int open_file(SluiceFilePool *pool, struct slc_pooled_file *file, const c
     return 0;
 }
 
-/* With the mutex held. Returns 0 when the file is open, or errno. */
+/* Opens the file unless it is open, with the mutex held. Returns 0, or errno. */
 static int ensure_open(SluiceFilePool *pool, struct slc_pooled_file *file, const char *path)
 {
     while (file->descriptor < 0) {

@@ -6,10 +6,10 @@
 
 #include "platform/file.h"
 
-/** Tells a file from another one that took its name, and from itself with other contents. */
+/** Identity of a file. Differs for another file of the same name, and for changed contents. */
 struct slc_file_identity {
     uint64_t device, inode, size;
-    int64_t seconds, nanoseconds; ///< of the last change of contents; chmod and links change others
+    int64_t seconds, nanoseconds; ///< time of the last change of contents (not of attributes)
 };
 
 struct slc_file_identity slc_file_identity(const struct slc_file_status *status);
@@ -18,9 +18,9 @@ struct slc_file_identity slc_file_identity(const struct slc_file_status *status)
 struct slc_pooled_file {
     struct slc_pooled_file *newer, *older; ///< by last use; while it is open
     int descriptor;                        ///< -1: closed
-    uint32_t user_count;                   ///< reads under way
+    uint32_t user_count;                   ///< reads in progress
     bool is_opening;
-    bool is_known; ///< `identity` is that of the first opening
+    bool is_known; ///< `identity` was set by the first opening
     struct slc_file_identity identity;
 };
 
@@ -30,13 +30,13 @@ struct slc_pooled_file {
  * Returns the file's descriptor, open until slc_file_pool_release, or -1 with errno set. A thread
  * holds one file at a time, because it may wait for others to release theirs.
  *
- * errno: ESTALE if another file has taken its place; EMFILE or ENFILE if no descriptor is left
- * though no file of the pool could be closed; what open says. Any thread.
+ * errno: ESTALE if another file has replaced it; EMFILE or ENFILE if no descriptor is left and no
+ * file of the pool can be closed; errors of open. Any thread.
  */
 int slc_file_pool_acquire(SluiceFilePool *pool, struct slc_pooled_file *file, const char *path);
 void slc_file_pool_release(SluiceFilePool *pool, struct slc_pooled_file *file);
 
-/** Closes the file and forgets its identity. No read is under way. */
+/** Closes the file and forgets its identity. No read may be in progress. */
 void slc_file_pool_remove(SluiceFilePool *pool, struct slc_pooled_file *file);
 
 #endif /* SLC_IMAGE_FILE_POOL_H */

@@ -16,7 +16,7 @@ enum slc_file_signature {
     SLC_SIGNATURE_CATALOGUE ///< names stores
 };
 
-/** `bytes` are the first of the file, followed by zeros if it is shorter. */
+/** Returns the kind of a file. `bytes`: its first bytes, followed by zeros if it is shorter. */
 static inline enum slc_file_signature slc_file_signature(const char bytes[SLC_SIGNATURE_SIZE])
 {
     if (memcmp(bytes, "\x89SLS\r\n\x1A\n", 8) == 0)

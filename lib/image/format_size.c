@@ -125,7 +125,7 @@ bool slc_format_is_srgb(SluiceFormat format)
     return slc_format_has_srgb_twin(format) && slc_format_twin(format, true) == format;
 }
 
-/* UNDEFINED for what a newer or confused caller may give. */
+/* Finds a format. UNDEFINED for unknown values. */
 static const struct format *find(SluiceFormat format)
 {
     return &formats[(uint32_t)format < SLUICE_FORMAT_COUNT ? format : SLUICE_FORMAT_UNDEFINED];

@@ -1,4 +1,4 @@
-/** Sizes of rows and rectangles in any format, also compressed ones. */
+/** Sizes of rows and rectangles in any format, including compressed ones. */
 #ifndef SLC_IMAGE_FORMAT_SIZE_H
 #define SLC_IMAGE_FORMAT_SIZE_H
 
@@ -6,13 +6,13 @@
 
 #include "base/checked.h"
 
-/** Bytes of a row of `width` texels, or of the blocks that hold them. */
+/** Returns the bytes of a row of `width` texels, or of their blocks. */
 static inline uint64_t slc_format_row_size(const SluiceFormatInfo *format, uint32_t width)
 {
     return (uint64_t)slc_div_up_u32(width, format->blockWidth) * format->blockSize;
 }
 
-/** Rows of texels, or of the blocks that hold them. */
+/** Returns the rows of `height` rows of texels, or of their blocks. */
 static inline uint32_t slc_format_row_count(const SluiceFormatInfo *format, uint32_t height)
 {
     return slc_div_up_u32(height, format->blockHeight);
@@ -23,7 +23,7 @@ static inline bool slc_format_is_compressed(const SluiceFormatInfo *format)
     return format->blockWidth > 1 || format->blockHeight > 1;
 }
 
-/** Channels that are not a whole number of bytes, or share some. */
+/** Whether channels are not whole bytes, or share bits. */
 static inline bool slc_format_is_packed(SluiceFormat format)
 {
     return format == SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32 ||
@@ -38,7 +38,7 @@ static inline bool slc_format_is_unorm16(SluiceFormat format)
            format == SLUICE_FORMAT_R16G16B16A16_UNORM;
 }
 
-/** Whether channels are SNORM, of 8 or 16 bits. Blocks are not. */
+/** Whether channels are SNORM, of 8 or 16 bits. False for blocks. */
 static inline bool slc_format_is_snorm(SluiceFormat format)
 {
     return format >= SLUICE_FORMAT_R8_SNORM && format <= SLUICE_FORMAT_R16G16B16A16_SNORM;
@@ -63,8 +63,8 @@ static inline bool slc_format_is_half(SluiceFormat format)
 }
 
 /**
- * Bytes of the words that texels consist of: 1, 2 or 4. Words have the host's byte order in memory.
- * Compressed blocks are strings of bytes on every host: 1.
+ * Returns the bytes of the words of a texel: 1, 2 or 4. Words have the host's byte order in memory.
+ * 1 for compressed blocks, which are strings of bytes on every host.
  */
 uint32_t slc_format_word_size(SluiceFormat format);
 

@@ -17,7 +17,7 @@ static SluiceResult say(const struct slc_input_file *file, SluiceResult result, 
     return result;
 }
 
-/* Where does not matter: during an outage every read fails. */
+/* Logs a failed read without its offset: during an outage every read fails. */
 static SluiceResult fail_read(const struct slc_input_file *file, SluiceResult result,
                               uint64_t offset, size_t size, const char *why)
 {
@@ -107,7 +107,7 @@ static bool is_in_file(const struct slc_input_file *file)
     return file->input.size == 0;
 }
 
-/* Until returned: a descriptor, or -1 with errno set. */
+/* Borrows a descriptor until it is returned. -1 with errno set after an error. */
 static int borrow_descriptor(const struct slc_input_file *file)
 {
     return file->pool ? slc_file_pool_acquire(file->pool, file->pooled, file->path)

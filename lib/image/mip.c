@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Everything but the memory. False if it is more than a size_t holds. */
+/* Computes everything but the memory. False if the size exceeds size_t. */
 static bool plan(struct slc_mip_chain *chain, SluiceFormat format, uint32_t width, uint32_t height)
 {
     *chain = (struct slc_mip_chain){.format = format, .width = width, .height = height};
@@ -45,7 +45,7 @@ void slc_mip_chain_finish(struct slc_mip_chain *chain, const SluiceAllocationCal
     chain->texels = NULL;
 }
 
-/* The source texels that one texel covers along one axis, and how much of it each fills. */
+/* Source texels that one texel covers along one axis, and their weights. */
 struct taps {
     uint32_t first, count;
     double weights[3];
@@ -139,7 +139,7 @@ static uint32_t find_center(uint32_t size, uint32_t i)
     return 2 * i + (size % 2 == 1 || slc_mip_count(size) % 2 == 0);
 }
 
-/* Means of numbers that name things would name others. */
+/* Integers are picked, not averaged: the mean of two ids would be another id. */
 static void pick_texels(size_t texel_size, const struct slc_mip_part *fine,
                         const struct slc_mip_part *coarse)
 {

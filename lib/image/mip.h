@@ -1,4 +1,4 @@
-/** A full mip chain in memory, its levels made by an area-weighted box filter. */
+/** Full mip chain in memory. Levels are made by an area-weighted box filter. */
 #ifndef SLC_IMAGE_MIP_H
 #define SLC_IMAGE_MIP_H
 
@@ -6,20 +6,20 @@
 
 #define SLC_MAX_MIP_LEVELS 32
 
-/** Levels one after the other, finest first, rows tightly packed. */
+/** Mip chain: levels in sequence, finest first, with tightly packed rows. */
 struct slc_mip_chain {
     SluiceFormat format;
     uint32_t width, height;
     uint32_t level_count;
-    size_t offsets[SLC_MAX_MIP_LEVELS]; ///< of each level, in bytes
-    size_t size;                        ///< of all levels, in bytes
+    size_t offsets[SLC_MAX_MIP_LEVELS]; ///< byte offset of each level
+    size_t size;                        ///< bytes of all levels
     char *texels;
 };
 
-/** Bytes of all levels of a format that is not compressed; UINT64_MAX beyond 64 bits. */
+/** Returns the bytes of all levels, for uncompressed formats; UINT64_MAX beyond 64 bits. */
 uint64_t slc_mip_chain_size(SluiceFormat format, uint32_t width, uint32_t height);
 
-/** A rectangle of a level, in memory. */
+/** Rectangle of a level in memory. */
 struct slc_mip_part {
     uint32_t level_width, level_height; ///< texels of the whole level
     uint32_t x, y, width, height;       ///< texels
@@ -27,10 +27,10 @@ struct slc_mip_part {
     size_t pitch; ///< bytes
 };
 
-/** Sets the rectangle of `fine`, in the next finer level, to what `coarse` is made from. */
+/** Sets the rectangle of `fine` to the texels of the next finer level under `coarse`. */
 void slc_mip_part_cover(const struct slc_mip_part *coarse, struct slc_mip_part *fine);
 
-/** Rows of the finer level and of the one that is made, as [width][4]. */
+/** Scratch rows of both levels, [width][4]. */
 struct slc_mip_rows {
     float *source; ///< owned, like the next two
     double *sum;
@@ -38,24 +38,24 @@ struct slc_mip_rows {
     uint32_t width;
 };
 
-/** Bytes that rows of a width take, and slc_mip_chain_build meanwhile. */
+/** Returns the bytes of rows of a width, which slc_mip_chain_build also takes. */
 uint64_t slc_mip_rows_size(uint32_t width);
-/** Errors: OUT_OF_HOST_MEMORY. */
+/** Allocates rows. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_mip_rows_init(struct slc_mip_rows *rows, const SluiceAllocationCallbacks *cb,
                                uint32_t width);
 void slc_mip_rows_finish(struct slc_mip_rows *rows, const SluiceAllocationCallbacks *cb);
 
 /**
- * Makes `coarse` from `fine`, which slc_mip_part_cover has given its rectangle: each texel is the
- * mean of the area that it covers, in linear light for sRGB formats; NaN counts as 0. A texel of an
- * integer format is the fine texel at its center; of two, the right or lower one and the left or
- * upper one in turns of levels. `rows` are at least as wide as `fine`. The result does not depend
- * on how a level is cut into parts.
+ * Makes `coarse` from `fine`, whose rectangle slc_mip_part_cover has set. Each texel is the mean of
+ * the area that it covers, in linear light for sRGB formats; NaN counts as 0. A texel of an integer
+ * format is the fine texel at its center. If two are there, levels take the right or lower one and
+ * the left or upper one in turns. `rows` must be at least as wide as `fine`. The result does not
+ * depend on how a level is cut into parts.
  */
 void slc_mip_filter(SluiceFormat format, const struct slc_mip_part *fine,
                     const struct slc_mip_part *coarse, const struct slc_mip_rows *rows);
 
-/** Room for all levels; what it holds is undefined. Errors: OUT_OF_HOST_MEMORY. */
+/** Allocates all levels, with undefined texels. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_mip_chain_init(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb,
                                 SluiceFormat format, uint32_t width, uint32_t height);
 

@@ -3,7 +3,7 @@
 
 #include <assert.h>
 
-/* Two trees, either of them NULL, into one; roots have no siblings. */
+/* Melds two trees, of which either may be NULL. Roots have no siblings. */
 static struct slc_heap_node *meld(const struct slc_pairing_heap *heap, struct slc_heap_node *a,
                                   struct slc_heap_node *b)
 {
@@ -19,7 +19,7 @@ static struct slc_heap_node *meld(const struct slc_pairing_heap *heap, struct sl
     return first;
 }
 
-/* Siblings into one tree: in pairs from the left, then all from the right. */
+/* Melds siblings into one tree: in pairs from the left, then all from the right. */
 static struct slc_heap_node *meld_siblings(const struct slc_pairing_heap *heap,
                                            struct slc_heap_node *first)
 {

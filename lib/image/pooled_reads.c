@@ -34,7 +34,7 @@ enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_r
             shares->statistics.joinedCount++;
             return SLC_DELIVER_COPY;
         }
-        slc_shared_reads_release(shares, held); /* of another format: the source has changed */
+        slc_shared_reads_release(shares, held); /* another format: the source has changed */
     }
     if (!slc_reads_are_pooled(loader, source) || !slc_shared_reads_are_on(shares) ||
         !slc_region_is_valid(at, info) || size > loader->pool->load.max_running_size)
@@ -42,7 +42,7 @@ enum slc_delivery slc_pooled_region_claim(SluiceTileLoader *loader, struct slc_r
     return slc_shared_reads_claim(shares, read, at, size, shared);
 }
 
-/* Reads that wait go on: they hold texels, or `held` is NULL and they learn of a failure. */
+/* Resumes waiting reads. They hold the texels, or get the failure if `held` is NULL. */
 static void resume_waiting(SluiceTileLoader *loader, struct slc_read *waiting,
                            struct slc_shared_region *held, const struct slc_joined_failure *failed)
 {
@@ -80,7 +80,7 @@ void slc_pooled_region_end(SluiceTileLoader *loader, struct slc_read *read, uint
         pool->shares->statistics.readCount += is_read;
         pool->shares->statistics.readSize += is_read ? shared->size : 0;
         struct slc_joined_failure failed = {SLUICE_SUCCESS, {"", SLUICE_UNKNOWN_OFFSET}};
-        if (!is_read && result != SLUICE_ERROR_CANCELED) /* which is of the reader only */
+        if (!is_read && result != SLUICE_ERROR_CANCELED) /* a cancel concerns only the reader */
             failed = (struct slc_joined_failure){result, *fault};
         resume_waiting(loader, slc_shared_reads_end(pool->shares, shared, is_read),
                        is_read ? shared : NULL, &failed);
@@ -102,7 +102,7 @@ SluiceResult slc_read_shared_region(const struct slc_shared_region *shared,
                                         fault);
 }
 
-/* With the mutex held, which is given up meanwhile. */
+/* Delivers a region to a read. The mutex is held, and released in between. */
 static SluiceResult deliver(SluiceTileLoader *loader, struct slc_read *read,
                             const SluiceImageInfo *info, uint32_t region, SluiceImageFault *fault)
 {
@@ -161,7 +161,7 @@ bool slc_pooled_read_waits(SluiceTileLoader *loader, struct slc_read *read,
         read->wait_time = slc_monotonic_time();
         slc_shared_region_await(region, read);
         slc_read_queue_wait(&loader->queue, read);
-    } else { /* its reader has ended meanwhile, or a copy cannot be made */
+    } else { /* the region's reader has ended meanwhile, or a copy cannot be made */
         slc_read_queue_resume(&loader->queue, read);
     }
     return true;
