@@ -1,6 +1,8 @@
 """pbrt_scene.py make FOLDER: writes wall.pbrt and its picture. A wall of 16 x 12 units fills what the camera sees.
 pbrt_scene.py holes PICTURE ...: whether no pixel is black or magenta.
 pbrt_scene.py gray PICTURE: whether all pixels are gray.
+pbrt_scene.py differs A B D: whether D is 16 times the difference of A and B, but at edges, where the frustum of
+    frozen wants is.
 pbrt_scene.py near A B MOST: whether two PNG files differ by at most MOST in any value."""
 import os
 import struct
@@ -70,6 +72,17 @@ def near(a, b, most):
     return len(first) == len(second) and worst <= most
 
 
+def differs(a, b, d):
+    side = len(read(a)[0])
+    first, second, third = pixels(a), pixels(b), pixels(d)
+    worst = 0
+    for i, (p, q, r) in enumerate(zip(first, second, third)):
+        if min(i % side, i // side, side - 1 - i % side, side - 1 - i // side) >= 8:
+            worst = max(worst, *(abs(min(16 * abs(x - y), 255) - z) for x, y, z in zip(p, q, r)))
+    print(f"off by at most {worst}")
+    return worst <= 16
+
+
 if sys.argv[1] == "make":
     make(sys.argv[2])
     good = True
@@ -77,6 +90,8 @@ elif sys.argv[1] == "holes":
     good = holes(sys.argv[2:])
 elif sys.argv[1] == "gray":
     good = all(max(p) - min(p) < 3 for p in pixels(sys.argv[2]))
+elif sys.argv[1] == "differs":
+    good = differs(*sys.argv[2:5])
 else:
     good = near(sys.argv[2], sys.argv[3], int(sys.argv[4]))
 sys.exit(0 if good else 1)

@@ -65,6 +65,23 @@ view wall.pbrt --size 320x320 --most-samples 1 --speed 10 --script budgets --fra
     exit !(before > 6 && after <= 4.2 && after > 0) }' budgets.csv >>err && check holes short.png
 fact a_smaller_budget_takes_memory_at_once_and_leaves_a_complete_picture
 
+# Frozen wants leave coarse levels; the truth has all.
+cat >frozen <<'END'
+16 key l
+17 set lod-bias 0
+24 screenshot coarse.png
+25 key 8
+50 screenshot difference.png
+51 key l
+70 screenshot same.png
+71 key 1
+74 screenshot full.png
+END
+view wall.pbrt --most-samples 1 --lod-bias 3 --difference-as pixels --gain 16 --script frozen &&
+    check differs coarse.png truth.png difference.png && ! check differs truth.png truth.png difference.png &&
+    check differs truth.png truth.png same.png && check near full.png truth.png 1
+fact view_8_is_the_difference_to_the_picture_of_everything_loaded
+
 truth --render-mode path --samples 4 --file truth-path.png && view wall.pbrt --render-mode path --most-samples 4 \
     --frames 30 --screenshot path.png && check near path.png truth-path.png 1 && ! check near path.png sharp.png 8
 fact a_standing_camera_gathers_the_samples_of_paths
@@ -84,11 +101,11 @@ cat >panels <<'END'
 21 key g
 22 screenshot c.png
 23 key 5
-23 key v
 23 key l
 24 record run.trace
-24 set view 8
+24 set view 7
 25 hold s 5
+30 key l
 40 key Ctrl+R
 END
 for n in 1 2; do

@@ -106,7 +106,7 @@ static void exchange_facts(struct view_app *app)
 
 void panel_compare_begin_set(struct view_app *app, struct panel_compare_set *set)
 {
-    *set = (struct panel_compare_set){.is_b = app->edits_b && !stage_traced(app->stage)};
+    *set = (struct panel_compare_set){.is_b = app->edits_b};
     if (!set->is_b)
         return;
     set->a = app->settings;

@@ -193,8 +193,7 @@ void panel_controls(struct view_app *app)
     if (panel_begin(app, PANEL_CONTROLS, "Controls (U)", 380, 520)) {
         const struct control *controls = controls_get(&count);
         struct panel_compare_set set;
-        if (!stage_traced(app->stage))
-            panel_compare_choose(app);
+        panel_compare_choose(app);
         panel_compare_begin_set(app, &set);
         const char *group = "";
         bool open = false;
@@ -212,8 +211,8 @@ void panel_controls(struct view_app *app)
         panel_compare_end_set(app, &set);
         ui_space(4);
         if (stage_traced(app->stage))
-            ui_paragraph(UI_GRAY, "Controls of feedback, of sources and of comparisons are left "
-                                  "out: scenes of pbrt load on demand.");
+            ui_paragraph(UI_GRAY, "Controls of feedback and of sources are left out: scenes of "
+                                  "pbrt load on demand.");
         if (ui_button("Copy command line (C)", 0, 0, false))
             app_copy_command(app);
         ui_hint("Copies a command that opens the viewer with these settings.");

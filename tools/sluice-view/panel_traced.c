@@ -8,12 +8,7 @@
 static const struct {
     const char *chord, *why;
 } refused[] = {
-    {"8", "View 8 is not for scenes of pbrt: demand-pbrt --preload renders the truth"},
-    {"V", "There is nothing to compare with: scenes of pbrt have one loader"},
-    {"X", "There is nothing to swap: scenes of pbrt have one loader"},
     {"Shift+N", "Tiles are not stepped one by one: a launch loads all that its rays lack"},
-    {"Ctrl+T", "Scenes of pbrt are not swept: demand-pbrt --json has their figures"},
-    {"Shift+N", "Scenes of pbrt load what a launch asked for: N makes one launch"},
     {"Ctrl+T", "Sweeps are for streamed scenes: what they change does nothing here"},
 };
 
@@ -36,9 +31,8 @@ bool panel_traced_takes(const char *control)
                                         "probability",    "tiles-per-frame",  "loads-in-flight",
                                         "fade",           "borders",          "textures-per-frame",
                                         "source-latency", "source-bandwidth", "source-fails",
-                                        "compare-as",     "compare-to",       "divider",
-                                        "gain",           "predict",          "difference-as",
-                                        "wireframe",      "event-reason",     "events-of"};
+                                        "predict",        "wireframe",        "event-reason",
+                                        "events-of"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(names[i], control) == 0)
             return false;

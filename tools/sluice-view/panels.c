@@ -126,10 +126,6 @@ void panels_draw_picture(const struct view_app *app)
         ui_fill_behind(0, 0, app->width, app->height, UI_COLOR(38, 44, 52, 255));
         return;
     }
-    if (stage_traced(app->stage)) { /* there is no second picture */
-        ui_picture(UI_TEXTURE_PICTURE, UI_MODE_PLAIN, all, uv, UI_COLOR(255, 255, 255, 255));
-        return;
-    }
     if (app_shows_difference(app)) {
         draw_difference(app);
         return;

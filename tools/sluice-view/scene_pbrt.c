@@ -99,9 +99,22 @@ bool scene_pbrt_open(const char *path, const char *cache, struct scene_data *sce
     return true;
 }
 
+bool scene_pbrt_share(struct scene_pbrt *p, const struct scene_data *from, struct scene_data *scene)
+{
+    scene->name = malloc(strlen(from->name) + 1);
+    if (!scene->name)
+        return false;
+    strcpy(scene->name, from->name);
+    memcpy(scene->bounds, from->bounds, sizeof scene->bounds);
+    scene->camera = from->camera;
+    scene->pbrt = p;
+    p->share_count++;
+    return true;
+}
+
 void scene_pbrt_close(struct scene_pbrt *p)
 {
-    if (!p)
+    if (!p || p->share_count-- > 0)
         return;
     free(p->pictures);
     scene_finish(&p->scene);

@@ -19,12 +19,16 @@ struct scene_pbrt {
     char cache[4096];                    ///< folder for baked pictures
     struct scene_pbrt_picture *pictures; ///< owned
     uint32_t picture_count;
+    uint32_t share_count; ///< others that have it, too
 };
 
 bool scene_pbrt_takes(const char *path);
 /** Reads the text, and the boxes of all shapes; no picture. Sets name, camera and bounds of the
  *  scene. Says on stderr why it failed: file, line and cause. */
 bool scene_pbrt_open(const char *path, const char *cache, struct scene_data *scene);
+/** Fills a zeroed scene with what is read already. Each share is closed. False without memory. */
+bool scene_pbrt_share(struct scene_pbrt *pbrt, const struct scene_data *from,
+                      struct scene_data *scene);
 /** NULL is allowed. */
 void scene_pbrt_close(struct scene_pbrt *pbrt);
 /** The first picture in a value, or UINT32_MAX. */

@@ -417,12 +417,18 @@ static void look_at_bakes(struct stage *s)
         sluiceRetryVulkanSource(s->streamer, NULL);
 }
 
+bool stage_share_scene(const struct stage *s, struct scene_data *scene)
+{
+    *scene = (struct scene_data){0};
+    return s->traced && scene_pbrt_share(s->traced->pbrt, &s->scene, scene);
+}
+
 bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffer commands,
                   struct frames_end *end)
 {
     SluiceStreamingFrame frame = {.structSize = sizeof frame};
     if (s->traced)
-        return traced_record(s->traced, draw, end);
+        return traced_record(s->traced, draw, commands, end);
     atomic_store(&s->now, draw->time_stamp);
     look_at_bakes(s);
     if (!check(sluiceBeginStreamingFrame(s->streamer, commands, draw->time_stamp, &frame),

@@ -74,6 +74,9 @@ struct stage_request {
 struct stage *stage_create(const struct stage_request *request,
                            const struct view_settings *settings, struct scene_data *scene);
 void stage_destroy(struct stage *stage);
+/** Fills a scene for a second stage from one that is traced, whose files are not read again. False
+ *  without memory, and for others: open their files. */
+bool stage_share_scene(const struct stage *stage, struct scene_data *scene);
 /** Records the picture of a frame. Its views and signals go into `end`. */
 bool stage_record(struct stage *stage, const struct stage_draw *draw, VkCommandBuffer commands,
                   struct frames_end *end);

@@ -179,14 +179,16 @@ void traced_destroy(struct traced *t)
 /* What pictures are gathered with. */
 static bool changes_picture(const struct view_settings *a, const struct view_settings *b)
 {
-    return a->budget != b->budget || a->render_mode != b->render_mode || a->depth != b->depth;
+    return a->budget != b->budget || a->load != b->load || a->render_mode != b->render_mode ||
+           a->depth != b->depth;
 }
 
 void traced_apply(struct traced *t, const struct view_settings *settings)
 {
     SluiceDemandLoaderSettings now = {.structSize = sizeof now};
-    const uint64_t budget =
+    uint64_t budget =
         settings->budget && settings->budget < LEAST_BUDGET ? LEAST_BUDGET : settings->budget;
+    budget = settings->load == VIEW_LOAD_EVERYTHING ? 0 : budget;
     check(sluiceSetVulkanMemoryBudget(t->context, budget), "sluiceSetVulkanMemoryBudget");
     if (check(sluiceGetDemandLoaderSettings(t->loader, &now), "sluiceGetDemandLoaderSettings")) {
         /* The boxes and materials that rays asked for are pages, too: all must fit. */
@@ -195,6 +197,8 @@ void traced_apply(struct traced *t, const struct view_settings *settings)
     }
     t->restarts = t->restarts || changes_picture(&t->settings, settings);
     t->settings = *settings;
+    /* The truth does not depend on what was frozen before it was opened. */
+    t->settings.freeze_wants = settings->freeze_wants && settings->load == VIEW_LOAD_WANTED;
 }
 
 uint64_t traced_geometry_size(const struct traced *t)

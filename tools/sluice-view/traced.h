@@ -88,8 +88,9 @@ struct traced {
 struct traced *traced_create(const struct stage_request *request,
                              const struct view_settings *settings, struct scene_pbrt *pbrt);
 void traced_destroy(struct traced *traced);
-/** Traces, and waits for it. The view of the picture goes into `end`. */
-bool traced_record(struct traced *traced, const struct stage_draw *draw, struct frames_end *end);
+/** Traces, and waits for it. The view of the picture goes into `end`; a copy is recorded. */
+bool traced_record(struct traced *traced, const struct stage_draw *draw, VkCommandBuffer commands,
+                   struct frames_end *end);
 void traced_apply(struct traced *traced, const struct view_settings *settings);
 /** Constants of a launch for a camera of the viewer. */
 struct PbrtLaunch traced_constants(struct traced *traced, const struct view_camera *camera);

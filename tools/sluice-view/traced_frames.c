@@ -208,7 +208,8 @@ static bool show(struct traced *t, const struct stage_draw *draw)
            traced_show_draw(&t->show, &look);
 }
 
-bool traced_record(struct traced *t, const struct stage_draw *draw, struct frames_end *end)
+bool traced_record(struct traced *t, const struct stage_draw *draw, VkCommandBuffer commands,
+                   struct frames_end *end)
 {
     const struct view_settings *s = draw->settings;
     if (!fit_film(t, draw))
@@ -227,6 +228,8 @@ bool traced_record(struct traced *t, const struct stage_draw *draw, struct frame
     traced_tiles_look(&t->tiles, t->loader, &t->now, draw->number, t->time);
     if (!name_textures(t) || !show(t, draw))
         return false;
+    if (draw->copy)
+        traced_show_copy(&t->show, commands, draw->copy);
     end->views[UI_TEXTURE_PICTURE] = t->show.image.view;
     return true;
 }

@@ -158,7 +158,8 @@ bool traced_show_fit(struct traced_show *s, const struct film *film, const struc
     s->height = film->height;
     if (!gpu_create_image(s->gpu, VK_FORMAT_R8G8B8A8_UNORM, s->width, s->height,
                           VK_SAMPLE_COUNT_1_BIT,
-                          VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                          VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                              VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
                           VK_IMAGE_ASPECT_COLOR_BIT, &s->image))
         return false;
     s->sums = film->sums.buffer;
@@ -236,4 +237,39 @@ bool traced_show_draw(struct traced_show *s, const struct traced_look *look)
         return false;
     s->drawn = true;
     return true;
+}
+
+/* The user interface samples the picture behind it. */
+void traced_show_copy(const struct traced_show *s, VkCommandBuffer commands, VkBuffer buffer)
+{
+    VkImageMemoryBarrier image = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+                                  .dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT,
+                                  .oldLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                  .newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                  .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                  .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                  .image = s->image.image,
+                                  .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+    const VkBufferImageCopy region = {
+        .imageSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+        .imageExtent = {s->width, s->height, 1}};
+    const VkBufferMemoryBarrier to_host = {.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER,
+                                           .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                                           .dstAccessMask = VK_ACCESS_HOST_READ_BIT,
+                                           .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                           .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                           .buffer = buffer,
+                                           .size = VK_WHOLE_SIZE};
+    const VkPipelineStageFlags transfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    const VkPipelineStageFlags fragment = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+    vkCmdPipelineBarrier(commands, fragment, transfer, 0, 0, NULL, 0, NULL, 1, &image);
+    vkCmdCopyImageToBuffer(commands, s->image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer,
+                           1, &region);
+    image.srcAccessMask = 0;
+    image.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+    image.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    image.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    vkCmdPipelineBarrier(commands, transfer, fragment, 0, 0, NULL, 0, NULL, 1, &image);
+    vkCmdPipelineBarrier(commands, transfer, VK_PIPELINE_STAGE_HOST_BIT, 0, 0, NULL, 1, &to_host, 0,
+                         NULL);
 }

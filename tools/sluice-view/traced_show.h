@@ -47,5 +47,7 @@ uint32_t *traced_show_pictures(struct traced_show *show, uint32_t count);
 /** Draws the film, of which no launch is under way, and waits for it. Frames that read the picture
  *  may be under way. */
 bool traced_show_draw(struct traced_show *show, const struct traced_look *look);
+/** Records a copy of the picture, for the host. */
+void traced_show_copy(const struct traced_show *show, VkCommandBuffer commands, VkBuffer buffer);
 
 #endif /* SLUICE_VIEW_TRACED_SHOW_H */

@@ -33,7 +33,7 @@ static void forget_times(struct viewer *v)
 static bool open_other(struct viewer *v, const struct view_settings *settings)
 {
     struct scene_data scene;
-    if (!viewer_open_now(v, &v->paths, &scene))
+    if (!stage_share_scene(v->stage, &scene) && !viewer_open_now(v, &v->paths, &scene))
         return false;
     v->other = viewer_create_stage(v, settings, &scene);
     if (v->other && !facts_create(&v->app.facts_b, v->other)) {
@@ -54,7 +54,7 @@ static bool open_other(struct viewer *v, const struct view_settings *settings)
 bool viewer_fit_other(struct viewer *v)
 {
     struct view_app *app = &v->app;
-    if (!v->stage || stage_traced(v->stage))
+    if (!v->stage)
         return true;
     const bool wanted = app_has_second(app);
     const struct view_settings settings = viewer_second_settings(v);
