@@ -237,7 +237,7 @@ static void standby_is_evicted_oldest_first_as_many_as_needed(void **state)
     assert_int_equal(listed_for_unmapping(&f), 0);
     CHECK_RESULT(fixture_to_map_at_most(&f, id, 1), SLUICE_BUDGET_REACHED);
     assert_int_equal(listed_for_unmapping(&f),
-                     3); /* as many as there are waiting requests, whatever the list's room */
+                     3); /* one per waiting request, for any room of the list */
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
     assert_int_equal(listed_for_unmapping(&f), 3);
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);

@@ -46,7 +46,7 @@ static void a_canceled_load_is_never_mapped_and_its_memory_comes_back(void **sta
     for (uint32_t i = 0; i < 6; i++)
         CHECK_STATE(&f, id, i, CANCELED);
     CHECK_OK(fixture_to_cancel(&f, id));
-    /* of the level held each region drops its tile; the parent closes with the last; then packed */
+    /* each region drops its tile of the held level; the last one closes the parent; then packed */
     assert_true(LISTED(&f, id, 0, 1, 2, 3, 4, 5));
     CHECK_OK(fixture_to_cancel(&f, id));
     assert_int_equal(f.count, 0); /* each once */

@@ -93,7 +93,7 @@ static void short_lists_come_to_rest(void **state)
     for (uint64_t seed = 1; seed <= 300; seed++) {
         uint32_t limit =
             start(r, seed, &(struct setup){.kinds = 1, .in_flight = 1, .list_limit = 40});
-        /* as many launches more as it takes to ask for a budget of pages a few times */
+        /* enough launches to request a budget of pages a few times */
         uint32_t within = 40 + 4 * limit / 40;
         assert_in_range(last_unrest(r, 2 * within), 0, within);
         renderer_finish(r);

@@ -22,7 +22,7 @@ struct cube_rig {
     struct probe_texture sets[CUBE_RIG_CUBES];
     VkPipeline pipeline; ///< owned by the harness
     float anisotropy;
-    uint32_t cube, first, count, flags; ///< of the next dispatch
+    uint32_t cube, first, count, flags; ///< parameters of the next dispatch
 };
 
 /** Returns false if refused, as is right in sparse mode without sparseCubes. Call cube_rig_finish

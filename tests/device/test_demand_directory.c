@@ -142,7 +142,7 @@ static void nobody_inherits_the_used_bits_of_a_block(void **state)
     directory_rig_record(&r);
     launch_with(&r, 5, false);
     directory_rig_hide(&r, 5);
-    directory_rig_show(&r, 37, 3, false); /* the same bit in the same block */
+    directory_rig_show(&r, 37, 3, false); /* uses this bit of this block again */
     directory_rig_record(&r);
     launch_with(&r, 37, false);
     directory_rig_hide(&r, 37);

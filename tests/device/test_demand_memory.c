@@ -375,8 +375,8 @@ static void formats_share_a_budget(void **state)
         runner_image_finish(&images[i]);
 }
 
-/* As many images of pages as formats. The tiles of the first format occupy all images at first. The
- * second format gets its image when one of them is empty. */
+/* There is one image of pages per format. The tiles of the first format occupy all images at first.
+ * The second format gets its image when one of them is empty. */
 static void formats_share_few_images_of_pages(void **state)
 {
     (void)state;

@@ -326,7 +326,7 @@ static void what_has_no_room_stays_and_comes_later(void **state)
             mark_some(&r);
         r.capacity = round < 20 ? (uint32_t)roll() % 20000 : 16384; /* in the end any item fits */
         take_all(&r, 0);
-        if (round >= 20) /* as in the streamer: waiting ones go first */
+        if (round >= 20) /* waiting ones go first, as in the streamer */
             for (uint32_t i = 0, at = left; i < r.texture_count; i++, at++)
                 r.items[i].texture = &r.textures[at % r.texture_count];
         resolve_and_compare(&r);

@@ -43,7 +43,7 @@ static struct slc_train_plan plan_of(uint32_t width, uint32_t height, uint32_t s
     return plan;
 }
 
-/* As in LibNTC's files of these sizes. */
+/* Expected values are those of LibNTC's files of these sizes. */
 static void mips_use_the_latents_that_the_format_says(void **state)
 {
     (void)state;

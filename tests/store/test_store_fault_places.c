@@ -70,7 +70,7 @@ static void a_wrong_checksum_is_where_the_tile_is(void **state)
         check_damage(compression, 0, (SluiceImageRegion){.width = 128, .height = 128});
         check_damage(compression, 4,
                      (SluiceImageRegion){.x = 130, .y = 130, .width = 5, .height = 5});
-        /* of six tiles the last one */
+        /* the last of six tiles */
         check_damage(compression, 5, (SluiceImageRegion){.width = 300, .height = 140});
     }
 }

@@ -156,8 +156,7 @@ static uint64_t requested(void)
     return now.mappedTileCount;
 }
 
-/* What one pixel in 64 reports in a frame is less than what all report; in 64 frames it is as much.
- */
+/* One pixel in 64 reports less than all pixels in one frame, and as much in 64 frames. */
 static void all_kinds_request_the_same_tiles_in_the_end(void **state)
 {
     (void)state;

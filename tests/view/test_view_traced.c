@@ -120,7 +120,7 @@ static const struct TracedView *view_of(uint32_t x, uint32_t y)
 }
 
 struct model {
-    double u, v, lod, density; /* of the ray through a pixel's center */
+    double u, v, lod, density; /* hit of the ray through a pixel's center */
     bool hits;
 };
 

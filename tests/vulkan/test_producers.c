@@ -647,7 +647,7 @@ static void two_textures_with_producers_share_no_tiles(void **state)
             assert_true(f.calls[i].id == other.textureId);
         assert_int_equal(f.call_count, 2 * first);
         assert_int_equal(statistics(&f).tilesShared, 0);
-        /* what was evicted and is wanted again has its texels */
+        /* an evicted tile that is wanted again has its texels */
         f.wanted = 3;
         run_frames(&f, 8);
         f.wanted = 0;

@@ -421,7 +421,7 @@ static void configuration_of_the_manager_and_settings_are_one(void **state)
     assert_int_equal(settings.numExtraStandbyTiles, 21);
     assert_int_equal(settings.missesToExpire, 2);
     assert_int_equal(settings.prefetchLevels, 1);
-    SluiceVulkanStreamerSettings old = settings; /* as in a program that only knows holdLoads */
+    SluiceVulkanStreamerSettings old = settings; /* the program only knows holdLoads */
     old.structSize = offsetof(SluiceVulkanStreamerSettings, missesToExpire);
     old.missesToExpire = old.prefetchLevels = 0;
     CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &old));

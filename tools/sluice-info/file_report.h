@@ -1,4 +1,4 @@
-/** What files of textures say of themselves: sluice-info prints it, sluice-view shows it. */
+/** Reports of texture files, which sluice-info prints and sluice-view shows. */
 #ifndef TOOLS_SLUICE_INFO_FILE_REPORT_H
 #define TOOLS_SLUICE_INFO_FILE_REPORT_H
 

@@ -1,5 +1,5 @@
 /*
- * What happens to a pixel's light, one ray after the other:
+ * Light of a pixel, one ray after the other:
  *
  *     for (Path path = startPath(pixel); !path.done; chooseRay(path)) {
  *         trace the ray;
@@ -8,7 +8,7 @@
  *     }
  *     add path.skyWeight * the sky at path.skyDirection
  *
- * It depends on the pixel, the sample and what rays hit alone, not on what was there before.
+ * The result depends only on the pixel, the sample and the rays' hits, not on earlier launches.
  */
 #ifndef PBRT_PATH_GLSL
 #define PBRT_PATH_GLSL
