@@ -2,6 +2,7 @@
 
 #include "panel_open.h"
 #include "panel_traced.h"
+#include "played_app.h"
 
 #include <math.h>
 
@@ -287,6 +288,16 @@ static const struct action table[] = {
     {"Streaming", ",", NULL, "finer by 1/4 level", shift_bias, -1},
     {"Streaming", ".", NULL, "coarser by 1/4 level", shift_bias, 1},
 
+    {"Recordings", NULL, "N, right", "next frame", played_app_act, PLAYED_NEXT},
+    {"Recordings", NULL, "Shift+N, left", "frame before", played_app_act, PLAYED_BACK},
+    {"Recordings", NULL, "Home", "first frame", played_app_act, PLAYED_FIRST},
+    {"Recordings", NULL, "End", "last frame", played_app_act, PLAYED_LAST},
+    {"Recordings", NULL, "space, P", "play, or stop", played_app_act, PLAYED_PLAY},
+    {"Recordings", NULL, "F, Shift+F", "next failed read, last", played_app_act,
+     PLAYED_NEXT_FAILURE},
+    {"Recordings", NULL, "E, Shift+E", "next eviction, last", played_app_act, PLAYED_NEXT_LOSS},
+    {"Recordings", NULL, "L", "longest frame", played_app_act, PLAYED_SHOW_LONGEST},
+
     {"Panels", NULL, "right click", "inspect: why is this blurry?", NULL, 0},
     {"Panels", "U", NULL, "all controls", toggle_panel, PANEL_CONTROLS},
     {"Panels", "T", NULL, "textures", toggle_panel, PANEL_TEXTURES},
@@ -322,8 +333,23 @@ const struct action *actions_get(uint32_t *count)
     return table;
 }
 
+void actions_run(struct view_app *app, const struct action *action)
+{
+    const char *why = NULL;
+    if (app->stage && stage_traced(app->stage) && action->chord)
+        why = panel_traced_refuses(action->chord);
+    if (app->stage && stage_played(app->stage))
+        why = played_app_refuses(action);
+    if (why)
+        app_say(app, "%s", why);
+    else
+        action->act(app, action->argument);
+}
+
 bool actions_press(struct view_app *app, int key, unsigned modifiers)
 {
+    if (played_app_press(app, key, modifiers))
+        return true;
     if (key >= '1' && key <= '9' && (modifiers == VIEW_CONTROL || modifiers == VIEW_ALT)) {
         (modifiers == VIEW_CONTROL ? keep_bookmark : go_to_bookmark)(app, key - '0');
         return true;
@@ -334,13 +360,7 @@ bool actions_press(struct view_app *app, int key, unsigned modifiers)
         struct view_chord chord;
         if (table[i].chord && view_chord_read(table[i].chord, &chord) && chord.key == key &&
             chord.modifiers == modifiers) {
-            const char *why = app->stage && stage_traced(app->stage)
-                                  ? panel_traced_refuses(table[i].chord)
-                                  : NULL;
-            if (why)
-                app_say(app, "%s", why);
-            else
-                table[i].act(app, table[i].argument);
+            actions_run(app, &table[i]);
             return true;
         }
     }

@@ -14,6 +14,8 @@ struct action {
 };
 
 const struct action *actions_get(uint32_t *count);
+/** Acts, or says why the action does not apply to what is shown. */
+void actions_run(struct view_app *app, const struct action *action);
 /** Acts if the chord is in the table. */
 bool actions_press(struct view_app *app, int key, unsigned modifiers);
 

@@ -1,5 +1,6 @@
 #include "facts.h"
 
+#include "played_facts.h"
 #include "traced.h"
 
 #include <stdio.h>
@@ -52,6 +53,13 @@ static bool create_log(struct view_facts *f, const struct stage *stage)
 bool facts_create(struct view_facts *f, const struct stage *stage)
 {
     *f = (struct view_facts){.texture_count = stage_texture_count(stage)};
+    if (stage_played(stage)) {
+        if (played_facts_create(stage, f))
+            return true;
+        fprintf(stderr, "sluice-view: out of memory\n");
+        facts_destroy(f);
+        return false;
+    }
     f->textures = calloc(f->texture_count + 1, sizeof *f->textures);
     f->events = calloc(FACTS_EVENTS, sizeof *f->events);
     for (uint32_t i = 0; !stage_traced(stage) && i < f->texture_count; i++) {
@@ -73,9 +81,11 @@ bool facts_create(struct view_facts *f, const struct stage *stage)
 void facts_destroy(struct view_facts *f)
 {
     history_destroy(&f->history);
-    tile_log_destroy(&f->log);
+    if (!f->borrows) {
+        tile_log_destroy(&f->log);
+        free(f->events);
+    }
     free(f->textures);
-    free(f->events);
     free(f->maps);
     *f = (struct view_facts){0};
 }
@@ -106,11 +116,11 @@ static size_t compare_maps(struct view_facts *f, const SluiceStreamedTextureMana
     const size_t size = map_size_of(manager, id, &layout);
     const uint32_t width = layout.minMipWidth;
     uint8_t *resident = f->maps, *wanted = f->maps + f->map_size;
+    texture->finest_level = SLUICE_MIP_UNTOUCHED;
     if (size == 0 || size > f->map_size ||
         sluiceWriteMinMipData(manager, id, width, size, resident) != SLUICE_SUCCESS ||
         sluiceWriteRequestedLevels(manager, id, width, size, wanted) != SLUICE_SUCCESS)
         return 1;
-    texture->finest_level = SLUICE_MIP_UNTOUCHED;
     for (size_t i = 0; i < size; i++) {
         if (resident[i] < texture->finest_level)
             texture->finest_level = resident[i];
@@ -169,6 +179,16 @@ struct budget_need facts_budget_need(const struct view_facts *f, const struct st
                         layout.desc.regularMipCount, layout.desc.packedTileCount);
     }
     return need;
+}
+
+void facts_look_at_all(struct view_facts *f, const struct stage *stage)
+{
+    sum_textures(f, stage);
+    f->seen_count = f->sharp_count = 0;
+    for (uint32_t i = 0; i < f->texture_count; i++)
+        compare_maps(f, stage_manager(stage), stage_texture(stage, i)->id, &f->textures[i]);
+    f->sharp_known = f->seen_count > 0;
+    f->sharp = f->sharp_known ? (double)f->sharp_count / (double)f->seen_count : 0.0;
 }
 
 /* In turns: each takes a lock of the loader. */
@@ -237,6 +257,12 @@ static void look_at_streamer(struct view_facts *f, const struct stage *stage,
 void facts_update(struct view_facts *f, const struct stage *stage,
                   const struct view_settings *settings, double seconds)
 {
+    if (stage_played(stage)) {
+        played_facts_update(stage, f);
+        f->seconds += seconds;
+        f->frame++;
+        return;
+    }
     f->budget = settings->budget;
     f->context = (SluiceVulkanContextStatistics){.structSize = sizeof f->context};
     sluiceGetVulkanContextStatistics(stage_context(stage), &f->context);

@@ -74,6 +74,8 @@ struct view_facts {
     size_t map_size;
     uint32_t map_texture; ///< the next texture whose maps are looked at
     uint64_t sharp_count, seen_count;
+    bool borrows;          ///< log and events are those of a recording
+    uint32_t played_frame; ///< of the recording, that the figures are of; UINT32_MAX: none yet
 };
 
 /** False, with a line on stderr, without memory. */
@@ -82,6 +84,8 @@ void facts_destroy(struct view_facts *facts);
 /** Once per frame, after it was recorded. */
 void facts_update(struct view_facts *facts, const struct stage *stage,
                   const struct view_settings *settings, double seconds);
+/** Looks at all textures and maps of the stage's manager at once. */
+void facts_look_at_all(struct view_facts *facts, const struct stage *stage);
 /** Returns the memory that all requests need. Takes time in proportion to tiles of level 0. */
 struct budget_need facts_budget_need(const struct view_facts *facts, const struct stage *stage);
 const char *facts_series_name(enum facts_series series);

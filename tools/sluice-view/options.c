@@ -10,11 +10,12 @@
 #include <string.h>
 
 static const char usage[] =
-    "usage: sluice-view [OPTION ...] [SCENE | PICTURE ... | FOLDER ... | URL ...]\n\n"
+    "usage: sluice-view [OPTION ...] [SCENE | PICTURE ... | FOLDER ... | URL ... | RECORDING]\n\n"
     "Shows a scene whose textures are streamed, and why they look as they do. SCENE is a glTF,\n"
     "OBJ or pbrt file; without one, a hall that comes with this program. Pictures, those of\n"
     "folders, of URLs (http, https, s3: give 32 --threads then) and of catalogues (sluice-bake\n"
-    "--merge) hang in a room. Drop files onto the window to open them, or press Ctrl+O.\n";
+    "--merge) hang in a room. RECORDING is a file of --record: its decisions are shown frame by\n"
+    "frame, without the scene. Drop files onto the window to open them, or press Ctrl+O.\n";
 
 static const char notes[] =
     "Without a display, use --headless: it draws the same frames, with the panels, into pictures.\n"
@@ -49,7 +50,7 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
         {OPTION_TEXT, "script", "FILE", "(none)", &o->script,
          "events: \"40 key 3\", \"60 click 312 200\", \"80 set budget 16\", \"90 screenshot "
          "out.png\", \"120 quit\"; also hold, type, hover, double-click, drag, wheel, drop, do, "
-         "record and reset"},
+         "record, frame and reset"},
         {OPTION_UINT, "frames", "N", "0", &o->frames,
          "frames in all; 0: until the script or the visitor ends it, without either 120", 0,
          10000000},
@@ -65,6 +66,8 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
          "a camera path that the camera follows: lines of seconds, x, y, z, yaw, pitch, fov"},
         {OPTION_TEXT, "camera", "X,Y,Z,YAW,PITCH,FOV", "(the scene's)", &o->camera,
          "where the camera stands still at first: meters and radians, as C copies it"},
+        {OPTION_UINT, "cursor", "N", "0", &o->cursor,
+         "frame at which a recording is opened, as C copies it", 0, 4294967295.0},
         {OPTION_FLAG, "still", .value = &o->still,
          .help = "the camera stands still until somebody moves it"},
         {OPTION_FLAG, "fresh", .value = &o->fresh,

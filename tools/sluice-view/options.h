@@ -13,6 +13,7 @@ struct view_options {
     bool room, headless, deterministic, fresh, json, validation, list_devices, still;
     uint32_t frames; ///< 0: until the script ends, or the window is closed
     const char *script, *screenshot, *csv, *play, *cache, *device, *record;
+    uint32_t cursor;    ///< frame of a recording
     const char *camera; ///< as view_camera_read takes it; NULL: the scene's
 };
 

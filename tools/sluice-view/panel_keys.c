@@ -88,7 +88,7 @@ void panel_menu(struct view_app *app)
             if (!actions[i].act)
                 continue;
             if (ui_button(actions[i].words, 220 * ui_scale(), 0, false))
-                actions[i].act(app, actions[i].argument);
+                actions_run(app, &actions[i]);
             ui_same_line(0);
             ui_text(UI_GRAY, "%s", actions[i].shown ? actions[i].shown : actions[i].chord);
         }

@@ -126,20 +126,27 @@ static struct played_frame *add_frame(struct played *p, uint64_t first_call)
     return &p->frames[p->frame_count++];
 }
 
-/* A frame ends behind sluiceGetMinMipUpdates, or before a call with another time stamp. */
+/* A frame ends behind sluiceGetMinMipUpdates, or before feedback with another time stamp. */
 struct pass {
     struct played_frame *frame; ///< that is being played; NULL: none yet
-    bool timed;                 ///< a call of it has a time stamp
+    bool fed;                   ///< a call of it gave feedback, at the frame's time
     SluiceTraceCallKind before;
     SluiceStreamedTextureStatistics totals; ///< at the begin of the frame
     uint64_t calls, stale;
 };
 
+static bool is_feedback(const SluiceTraceCall *call)
+{
+    return call->kind == SLUICE_TRACE_CALL_UPDATE_FEEDBACK ||
+           call->kind == SLUICE_TRACE_CALL_MATCH_PRIMARY;
+}
+
+/* Failures of loads may be reported between frames, with the time of the frame before. */
 static bool begins_frame(const struct pass *pass, const SluiceTraceCall *call)
 {
     const bool updates = call->kind == SLUICE_TRACE_CALL_GET_MINMIP_UPDATES;
     return !pass->frame || (pass->before == SLUICE_TRACE_CALL_GET_MINMIP_UPDATES && !updates) ||
-           (call->hasTimeStamp && pass->timed && call->timeStamp != pass->frame->time);
+           (is_feedback(call) && pass->fed && call->timeStamp != pass->frame->time);
 }
 
 static uint32_t limit_of(uint32_t a, uint32_t b)
@@ -182,10 +189,9 @@ static void note_call(struct played *p, struct pass *pass, const SluiceTraceCall
 {
     uint32_t *f = pass->frame->figures;
     uint32_t texture, primary;
-    if (call->hasTimeStamp) {
-        pass->timed = true;
+    if (is_feedback(call) || (call->hasTimeStamp && !pass->fed))
         pass->frame->time = call->timeStamp;
-    }
+    pass->fed = pass->fed || is_feedback(call);
     f[PLAYED_REFUSED] += call->refusedHeapCount;
     if (call->kind == SLUICE_TRACE_CALL_UPDATE_FEEDBACK && call->result >= SLUICE_SUCCESS) {
         f[PLAYED_MAPS]++;
@@ -204,7 +210,7 @@ static bool begin_frame(struct played *p, struct pass *pass)
     end_frame(p, pass);
     const bool kept = p->frame_count % p->stride != 0 || played_point_add(p, p->frame_count);
     pass->frame = kept ? add_frame(p, pass->calls) : NULL;
-    pass->timed = false;
+    pass->fed = false;
     p->frame = p->frame_count > 0 ? p->frame_count - 1 : 0;
     return pass->frame;
 }
@@ -242,6 +248,18 @@ static void measure_times(struct played *p)
     }
 }
 
+static bool find_peaks(struct played *p)
+{
+    p->peaks =
+        calloc((size_t)(p->frame_count / PLAYED_BLOCK + 1) * PLAYED_FIGURES, sizeof *p->peaks);
+    for (uint32_t i = 0; p->peaks && i < p->frame_count; i++)
+        for (uint32_t k = 0; k < PLAYED_FIGURES; k++) {
+            uint32_t *peak = &p->peaks[(size_t)(i / PLAYED_BLOCK) * PLAYED_FIGURES + k];
+            *peak = p->frames[i].figures[k] > *peak ? p->frames[i].figures[k] : *peak;
+        }
+    return p->peaks;
+}
+
 static bool play_all(struct played *p, played_progress *progress, void *user)
 {
     struct pass pass = {.totals = {.structSize = sizeof pass.totals}};
@@ -263,6 +281,8 @@ static bool play_all(struct played *p, played_progress *progress, void *user)
         return out_of_memory(p);
     end_frame(p, &pass);
     measure_times(p);
+    if (!find_peaks(p))
+        return out_of_memory(p);
     p->end = (SluiceTracePlayerState){.structSize = sizeof p->end};
     sluiceGetTracePlayerState(p->player, &p->end);
     p->damaged = result != SLUICE_SUCCESS;
@@ -313,6 +333,7 @@ void played_close(struct played *p)
     tile_log_destroy(&p->log);
     free(p->events);
     free(p->frames);
+    free(p->peaks);
     free(p->textures);
     free(p->data);
     free(p);

@@ -11,6 +11,7 @@
 #include <sluice/replay.h>
 
 #define PLAYED_EVENTS 2048u
+#define PLAYED_BLOCK 64u ///< frames
 #define PLAYED_NO_TEXTURE UINT32_MAX
 #define PLAYED_TICKS_PER_SECOND 1000000u ///< traces do not tell the unit of time stamps
 
@@ -81,6 +82,7 @@ struct played {
 
     struct played_frame *frames; ///< owned
     uint32_t frame_count, frame_capacity;
+    uint32_t *peaks; ///< owned; [frames / PLAYED_BLOCK][PLAYED_FIGURES], largest of a block
     struct played_texture *textures; ///< owned
     uint32_t texture_count, texture_capacity;
     struct played_point *points; ///< owned; ascend
@@ -122,6 +124,9 @@ uint32_t played_find(const struct played *played, uint32_t from, enum played_fig
                      int direction);
 /** Returns the longest frame: the one with the most time until the next. */
 uint32_t played_longest(const struct played *played);
+/** Returns the largest value of frames `first` to `end` - 1. */
+uint32_t played_peak(const struct played *played, enum played_figure figure, uint32_t first,
+                     uint32_t end);
 /** Name for programs: "tiles_requested". */
 const char *played_figure_name(enum played_figure figure);
 /** Tiles that are wanted, resident or not. */

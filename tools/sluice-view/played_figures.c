@@ -45,6 +45,21 @@ uint32_t played_find(const struct played *p, uint32_t from, enum played_figure f
     return UINT32_MAX;
 }
 
+uint32_t played_peak(const struct played *p, enum played_figure figure, uint32_t first,
+                     uint32_t end)
+{
+    uint32_t peak = 0;
+    for (uint32_t i = first; i < end;) {
+        const bool block = i % PLAYED_BLOCK == 0 && end - i >= PLAYED_BLOCK;
+        const uint32_t value = block
+                                   ? p->peaks[(size_t)(i / PLAYED_BLOCK) * PLAYED_FIGURES + figure]
+                                   : p->frames[i].figures[figure];
+        peak = value > peak ? value : peak;
+        i += block ? PLAYED_BLOCK : 1;
+    }
+    return peak;
+}
+
 uint32_t played_longest(const struct played *p)
 {
     uint32_t longest = 0;

@@ -1,5 +1,6 @@
 #include "scene_data.h"
 
+#include "played.h"
 #include "scene_pbrt.h"
 
 #include "../common/text.h"
@@ -19,6 +20,11 @@ void scene_data_note(struct scene_data *scene, const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     text_say("sluice-view: %s", text);
+    scene_data_keep_note(scene, text);
+}
+
+void scene_data_keep_note(struct scene_data *scene, const char *text)
+{
     char *copy = scene->message_count < SCENE_MAX_MESSAGES ? malloc(strlen(text) + 1) : NULL;
     if (copy)
         scene->messages[scene->message_count++] = strcpy(copy, text);
@@ -38,6 +44,7 @@ void scene_data_finish(struct scene_data *scene)
     }
     sluiceDestroyImageOpener(scene->opener);
     scene_pbrt_close(scene->pbrt);
+    played_close(scene->played);
     remote_end(&scene->remote);
     free(scene->name);
     free(scene->vertices);

@@ -16,6 +16,7 @@
 
 #define SCENE_MAX_MESSAGES 64u
 
+struct played;
 struct scene_pbrt;
 
 struct scene_vertex {
@@ -49,6 +50,7 @@ struct scene_progress {
     atomic_uint done, total;         ///< images
     atomic_bool canceled;            ///< nothing more is opened
     atomic_uint_least64_t read_size; ///< bytes of the text of a scene of pbrt
+    atomic_uint percent;             ///< 1 + part of a recording that was played; 0: it is none
 };
 
 struct scene_data {
@@ -68,6 +70,7 @@ struct scene_data {
     SluiceImageOpener *opener;       ///< owned; of images from files
     struct remote_session remote;    ///< owned; of images from servers
     struct scene_pbrt *pbrt;         ///< owned; the scene is traced, and has no triangles here
+    struct played *played;           ///< owned; a recording, which has no scene
     struct scene_progress *progress; ///< borrowed while the scene is opened; NULL: none
 };
 
@@ -81,6 +84,8 @@ __attribute__((format(printf, 2, 3)))
 #endif
 void
 scene_data_note(struct scene_data *scene, const char *format, ...);
+/** Keeps a text for the panels that was said. */
+void scene_data_keep_note(struct scene_data *scene, const char *text);
 /** Finds the images that can follow the color image of their material (scene_sets.c). */
 void scene_data_find_sets(struct scene_data *scene);
 /** Whether nobody wants the scene any more. */

@@ -56,13 +56,17 @@ bool scene_load_done(const struct scene_load *load)
 void scene_load_describe(const struct scene_load *load, char *text, size_t size)
 {
     const unsigned total = atomic_load(&load->progress.total);
+    const unsigned percent = atomic_load(&load->progress.percent);
     unsigned done = atomic_load(&load->progress.done);
     const char *path = load->paths.count > 0 ? load->paths.paths[0] : "the room";
     const char *slash = strrchr(path, '/');
     const char *name = slash && slash[1] ? slash + 1 : path;
     const int length = (int)(remote_is_url(path) ? strcspn(name, "?#") : strlen(name));
     done = done < total ? done : total;
-    if (total > 0)
+    if (percent > 0)
+        snprintf(text, size, "Opening %.*s: %u %% was played; Esc cancels",
+                 length < 80 ? length : 80, name, percent - 1);
+    else if (total > 0)
         snprintf(text, size, "Opening %.*s: %u of %u images; Esc cancels",
                  length < 80 ? length : 80, name, done, total);
     else

@@ -3,6 +3,7 @@
 #include "fault_source.h"
 #include "scene_data.h"
 #include "scene_images.h"
+#include "scene_played.h"
 #include "stage_draw.h"
 #include "stage_pick.h"
 #include "traced.h"
@@ -25,6 +26,7 @@ struct stage {
     struct view_settings settings; ///< applied last
     struct view_settings opened;   ///< those that it was created with
     struct traced *traced; ///< scenes of pbrt: most of the rest is unused then; NULL: others
+    struct played *played; ///< a recording: all but textures is unused then; NULL: scenes
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     struct stage_drawing drawing;
@@ -304,6 +306,16 @@ struct stage *stage_create(const struct stage_request *request,
         stage_destroy(s);
         return NULL;
     }
+    if (s->scene.played) {
+        s->played = s->scene.played; /* freed with the scene */
+        s->heap_tiles = s->played->begin.heapTileCapacity;
+        s->textures = scene_played_textures(s->played);
+        if (s->textures)
+            return s;
+        text_say("sluice-view: out of memory");
+        stage_destroy(s);
+        return NULL;
+    }
     s->textures = calloc(s->scene.image_count + 1, sizeof *s->textures);
     s->table_indices = calloc(s->scene.image_count + 1, sizeof *s->table_indices);
     if (s->textures && s->table_indices && begin_slowness(s) && begin_faults(s) &&
@@ -379,6 +391,8 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
         traced_apply(s->traced, settings);
         return;
     }
+    if (s->played)
+        return;
     const uint64_t budget =
         settings->budget && settings->budget < LEAST_BUDGET ? LEAST_BUDGET : settings->budget;
     check(sluiceSetVulkanMemoryBudget(s->context, budget), "sluiceSetVulkanMemoryBudget");
@@ -429,6 +443,8 @@ bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffe
     SluiceStreamingFrame frame = {.structSize = sizeof frame};
     if (s->traced)
         return traced_record(s->traced, draw, commands, end);
+    if (s->played)
+        return true; /* panels draw it */
     atomic_store(&s->now, draw->time_stamp);
     look_at_bakes(s);
     if (!check(sluiceBeginStreamingFrame(s->streamer, commands, draw->time_stamp, &frame),
@@ -446,13 +462,13 @@ bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffe
 
 bool stage_settle(struct stage *s)
 {
-    return s->traced ||
+    return s->traced || s->played ||
            check(sluiceWaitVulkanStreamerIdle(s->streamer), "sluiceWaitVulkanStreamerIdle");
 }
 
 bool stage_prepare_shaders(struct stage *s, const struct shader_code *code)
 {
-    return !s->traced && stage_drawing_prepare(&s->drawing, &s->scene, code);
+    return s->streamer && stage_drawing_prepare(&s->drawing, &s->scene, code);
 }
 
 void stage_take_shaders(struct stage *s)
@@ -500,10 +516,15 @@ SluiceVulkanStreamer *stage_streamer(const struct stage *s)
 
 SluiceStreamedTextureManager *stage_manager(const struct stage *s)
 {
-    SluiceStreamedTextureManager *manager = NULL;
+    SluiceStreamedTextureManager *manager = s->played ? s->played->manager : NULL;
     if (s->streamer)
         sluiceGetVulkanStreamerManager(s->streamer, &manager);
     return manager;
+}
+
+struct played *stage_played(const struct stage *s)
+{
+    return s->played;
 }
 
 struct traced *stage_traced(const struct stage *s)
@@ -528,12 +549,14 @@ const char *stage_message(const struct stage *s, uint32_t index)
 
 uint32_t stage_texture_count(const struct stage *s)
 {
-    return s->traced ? s->traced->picture_count : s->scene.image_count;
+    return s->traced   ? s->traced->picture_count
+           : s->played ? s->played->texture_count
+                       : s->scene.image_count;
 }
 
 const SluiceImageSource *stage_source(const struct stage *s, uint32_t index)
 {
-    return s->traced ? NULL : s->faulty[index];
+    return s->streamer ? s->faulty[index] : NULL;
 }
 
 const struct stage_texture *stage_texture(const struct stage *s, uint32_t index)
@@ -588,5 +611,5 @@ uint32_t stage_triangle_count(const struct stage *s)
 
 uint64_t stage_now(const struct stage *s)
 {
-    return atomic_load(&s->now);
+    return s->played ? s->played->frames[s->played->frame].time : atomic_load(&s->now);
 }

@@ -17,6 +17,7 @@
 struct shader_code;
 struct stage;
 struct scene_data;
+struct played;
 struct traced;
 
 struct stage_texture {
@@ -98,12 +99,14 @@ uint32_t stage_baking_count(const struct stage *stage);
 /** Part of all tiles that is resident. */
 double stage_resident_part(const struct stage *stage);
 const char *stage_name(const struct stage *stage);
-/** NULL for scenes that are traced. */
+/** NULL for scenes that are traced, and for recordings. */
 SluiceVulkanStreamer *stage_streamer(const struct stage *stage);
 /** The manager that decides about the textures; NULL for scenes that are traced. */
 SluiceStreamedTextureManager *stage_manager(const struct stage *stage);
 /** The scene of pbrt, whose rays ask a demand loader; NULL for others. */
 struct traced *stage_traced(const struct stage *stage);
+/** The recording that is shown instead of a scene; NULL for scenes. */
+struct played *stage_played(const struct stage *stage);
 SluiceVulkanContext *stage_context(const struct stage *stage);
 /** Settings that the scene was opened with. */
 const struct view_settings *stage_opened(const struct stage *stage);

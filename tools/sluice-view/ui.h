@@ -82,7 +82,8 @@ enum ui_panel_flags {
     UI_PANEL_PLAIN = 1, ///< no title, cannot be moved
     UI_PANEL_FIT = 2,   ///< as large as its contents
     UI_PANEL_NO_INPUT = 4,
-    UI_PANEL_NO_KEYS = 8 ///< the keyboard moves no focus in it
+    UI_PANEL_NO_KEYS = 8, ///< the keyboard moves no focus in it
+    UI_PANEL_BEHIND = 16  ///< behind all others
 };
 /** `open` NULL: it has no button to close it. `placement`: x, y, width, height at first; with
  *  UI_PANEL_PLAIN always. `pivot`: which point of the panel is at x, y, 0 to 1. Always end it. */

@@ -20,6 +20,8 @@ bool ui_begin_panel(const char *title, bool *open, const float placement[4], con
         window |= ImGuiWindowFlags_NoInputs;
     if (flags & UI_PANEL_NO_KEYS)
         window |= ImGuiWindowFlags_NoNav;
+    if (flags & UI_PANEL_BEHIND)
+        window |= ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoBackground;
     const ImGuiCond when = flags & UI_PANEL_PLAIN ? ImGuiCond_Always : ImGuiCond_Appearing;
     ImGui::SetNextWindowPos(ImVec2(placement[0], placement[1]), when, ImVec2(pivot[0], pivot[1]));
     if (!(flags & UI_PANEL_FIT))
