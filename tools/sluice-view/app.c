@@ -4,6 +4,7 @@
 #include "controls.h"
 #include "panel_open.h"
 #include "panels.h"
+#include "played_app.h"
 #include "sets.h"
 
 #include <math.h>
@@ -126,13 +127,17 @@ void app_inspect(struct view_app *app, const struct stage_pick *pick)
 void app_write_command(const struct view_app *app, char *text, size_t size)
 {
     char options[4096], camera[160], b[2048] = "";
-    const bool stands = app->stage && app->follow == FOLLOW_NOTHING;
+    const bool played = app->facts.borrows; /* a recording */
+    const bool stands = app->stage && !played && app->follow == FOLLOW_NOTHING;
     controls_write_command(&app->settings, options, sizeof options);
     if (app->settings.compared == VIEW_WITH_B)
         sets_write(&app->settings, &app->b, b, sizeof b);
     snprintf(text, size, "%s%s%s%s%s%s", app->program, options, b[0] ? " --b " : "", b,
              stands ? " --camera " : "",
              stands ? view_camera_write(&app->camera, camera, sizeof camera) : "");
+    const size_t length = strlen(text);
+    if (played && app->facts.played_frame > 0)
+        snprintf(text + length, size - length, " --cursor %u", app->facts.played_frame);
 }
 
 void app_copy_command(struct view_app *app)
@@ -379,6 +384,7 @@ void app_move(struct view_app *app, double seconds)
         follow(app, seconds);
     if (app->demonstrating)
         demonstrate(app, seconds);
+    played_app_move(app);
     if (app->recording) {
         camera_path_add(&app->path, (float)app->follow_seconds, &app->camera);
         app->follow_seconds += seconds;

@@ -57,7 +57,7 @@ static void hover_tile(struct view_app *app, uint32_t texture, const SluiceTile 
     char text[256];
     describe_tile(app, tile, state, text, sizeof text);
     ui_show_hint(text);
-    if (ui_double_clicked())
+    if (ui_double_clicked() && !stage_played(app->stage))
         app_look_at_tile(app, texture, tile);
 }
 

@@ -4,6 +4,7 @@
 #include "feedback_words.h"
 #include "panel_compare.h"
 #include "panel_traced.h"
+#include "played_app.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -193,12 +194,15 @@ void panel_controls(struct view_app *app)
     if (panel_begin(app, PANEL_CONTROLS, "Controls (U)", 380, 520)) {
         const struct control *controls = controls_get(&count);
         struct panel_compare_set set;
-        panel_compare_choose(app);
+        if (!stage_played(app->stage))
+            panel_compare_choose(app);
         panel_compare_begin_set(app, &set);
         const char *group = "";
         bool open = false;
         for (uint32_t i = 0; i < count; i++) {
             if (stage_traced(app->stage) && !panel_traced_takes(controls[i].option.name))
+                continue;
+            if (stage_played(app->stage) && !played_app_takes(controls[i].option.name))
                 continue;
             if (set.is_b && !control_is_of_sets(&controls[i]))
                 continue;

@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "device_words.h"
+#include "panel_played.h"
 #include "panel_traced.h"
 
 #include <sluice/version.h>
@@ -83,9 +84,12 @@ void panel_device(struct view_app *app)
         ui_text(UI_GRAY, "%s %s", c->driverName, c->driverInfo);
         if (stage_traced(app->stage))
             panel_traced_device(app);
+        else if (stage_played(app->stage))
+            panel_played_device(app);
         else
             draw_mode(app);
-        draw_memory(app);
+        if (!stage_played(app->stage))
+            draw_memory(app);
         const unsigned messages = (unsigned)atomic_load(&app->gpu->validation_messages);
         ui_text(messages > 0 ? UI_RED : UI_GRAY, "validation messages: %u", messages);
         ui_text(UI_GRAY, "Sluice %u.%u.%u", SLUICE_VERSION_MAJOR, SLUICE_VERSION_MINOR,

@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "event_rows.h"
+#include "panel_played.h"
 #include "panel_traced.h"
 
 #include <stdio.h>
@@ -88,7 +89,7 @@ static void draw_filters(struct view_app *app)
         ui_text(UI_GRAY, "newest first");
 }
 
-static void draw_row(const struct view_app *app, const SluiceTileEvent *event, uint32_t row,
+static void draw_row(struct view_app *app, const SluiceTileEvent *event, uint32_t row,
                      float name_width)
 {
     char name[256];
@@ -96,8 +97,13 @@ static void draw_row(const struct view_app *app, const SluiceTileEvent *event, u
     uint32_t texture = 0;
     tile_log_index(&app->facts.log, event->textureId, &texture);
     sluiceGetTileState(stage_manager(app->stage), event->textureId, event->tileIndex, NULL, &tile);
-    ui_table_row((int)row, false);
-    ui_table_cell(UI_WHITE, "%llu", (unsigned long long)event->mark);
+    const bool played = stage_played(app->stage);
+    const bool now = played && event->mark == stage_played(app->stage)->frame;
+    if (ui_table_row((int)row, false) && played)
+        panel_played_jump(app, (uint32_t)event->mark);
+    ui_table_cell(now ? UI_BLUE : UI_WHITE, "%llu", (unsigned long long)event->mark);
+    if (played)
+        ui_hint("Click: go to the frame.");
     ui_table_cell(
         UI_WHITE, "%s",
         panel_shorten(stage_texture(app->stage, texture)->name, name_width, name, sizeof name));
@@ -115,7 +121,10 @@ static void draw_streamer(struct view_app *app)
     const bool one = app->settings.events_of == VIEW_EVENTS_OF_SELECTED &&
                      app->selected < app->facts.texture_count;
     const float name_width = ui_panel_width() / 4;
-    draw_failures(app);
+    if (stage_played(app->stage))
+        panel_played_failures(app);
+    else
+        draw_failures(app);
     draw_filters(app);
     const uint32_t count = event_rows_find(&app->facts, (uint32_t)app->settings.event_reason,
                                            one ? app->selected : STAGE_NO_TEXTURE, rows, MOST_ROWS);

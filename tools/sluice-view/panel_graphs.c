@@ -1,5 +1,7 @@
 #include "panels.h"
 
+#include "panel_played.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -189,6 +191,12 @@ void panel_graphs(struct view_app *app)
 {
     if (!app->open[PANEL_GRAPHS])
         return;
+    if (app->stage && stage_played(app->stage)) {
+        if (panel_begin(app, PANEL_GRAPHS, "Over time (G)", 480, 480))
+            panel_played_graphs(app);
+        ui_end_panel();
+        return;
+    }
     if (panel_begin(app, PANEL_GRAPHS, "Over time (G)", 480, 480)) {
         const enum history_span span = (enum history_span)app->settings.graph_span;
         draw_spans(app);

@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "inspector_parts.h"
+#include "panel_played.h"
 #include "panel_traced.h"
 #include "texture_actions.h"
 
@@ -80,16 +81,22 @@ static void draw_streamer(struct view_app *app, const struct stage_texture *text
 {
     const SluiceTextureStatistics *s = &app->facts.textures[app->selected].statistics;
     char resident[32], all[32];
-    draw_reason(app, texture);
+    const bool played = stage_played(app->stage);
+    if (played)
+        panel_played_reason(app);
+    else
+        draw_reason(app, texture);
     ui_line();
     ui_text(UI_WHITE, "%s of %s resident, %u tiles wanted",
             panel_size(s->residentSize, resident, sizeof resident),
             panel_size(texture->size, all, sizeof all), s->wantedTileCount);
     ui_text(UI_GRAY, "%u loads, %u evictions, %u failures", s->mappedTotal, s->unmappedTotal,
             s->failedTotal);
-    draw_failure(app, texture);
-    inspector_draw_tile(app, app->selected);
-    draw_buttons(app);
+    if (!played) {
+        draw_failure(app, texture);
+        inspector_draw_tile(app, app->selected);
+        draw_buttons(app);
+    }
     inspector_draw_levels(app, app->selected);
     inspector_draw_maps(app, app->selected);
     if (texture->path[0])
@@ -100,8 +107,8 @@ static void draw_texture(struct view_app *app)
 {
     const struct stage_texture *texture = stage_texture(app->stage, app->selected);
     ui_text(UI_BLUE, "%s", texture->name);
-    ui_text(UI_GRAY, "%u x %u, %u levels, %s", texture->width, texture->height,
-            texture->level_count, texture->format);
+    ui_text(UI_GRAY, "%u x %u, %u levels%s%s", texture->width, texture->height,
+            texture->level_count, texture->format[0] ? ", " : "", texture->format);
     if (stage_traced(app->stage)) {
         panel_traced_inspector(app);
         if (ui_button("Its file", 0, 0, false))

@@ -1,5 +1,6 @@
 #include "panels.h"
 
+#include "panel_played.h"
 #include "panel_traced.h"
 
 #include <stdio.h>
@@ -137,6 +138,8 @@ void panel_latency(struct view_app *app)
     if (panel_begin(app, PANEL_LATENCY, "Latency (Y)", 480, 520)) {
         if (stage_traced(app->stage))
             panel_traced_latency(app);
+        else if (stage_played(app->stage))
+            panel_played_latency(app);
         else
             draw_streamer(app);
     }

@@ -26,12 +26,12 @@ static void draw_hover(struct view_app *app, const struct memory_slot *slot)
         snprintf(age, sizeof age, "\nloaded %.1f s ago, %u load%s", slot->age, slot->loads,
                  slot->loads == 1 ? "" : "s");
     snprintf(text, sizeof text,
-             "%.120s: level %u, tile %u, %u\nheap %u, slot %u: %s%s\nClick: inspect; double click: "
-             "look at it",
+             "%.120s: level %u, tile %u, %u\nheap %u, slot %u: %s%s\nClick: inspect%s",
              stage_texture(app->stage, slot->texture)->name, tile->mipLevel, tile->x, tile->y,
-             tile->heapId, tile->slot, state_name(slot->state), age);
+             tile->heapId, tile->slot, state_name(slot->state), age,
+             stage_played(app->stage) ? "" : "; double click: look at it");
     ui_show_hint(text);
-    if (ui_double_clicked())
+    if (ui_double_clicked() && !stage_played(app->stage))
         app_look_at_tile(app, slot->texture, tile);
     else if (ui_mouse_clicked(0))
         app->selected = slot->texture;
@@ -176,7 +176,8 @@ static void draw_streamer(struct view_app *app)
 {
     const float cell = 12 * ui_scale();
     draw_sums(app);
-    draw_buttons(app);
+    if (!stage_played(app->stage))
+        draw_buttons(app);
     panel_memory_colors(app);
     for (uint32_t heap = 0, drawn = 0; heap < 4096 && drawn < app->facts.now.heapCount; heap++)
         drawn += draw_heap(app, heap, cell);

@@ -1,6 +1,7 @@
 #include "panels.h"
 
 #include "actions.h"
+#include "panel_played.h"
 #include "panel_traced.h"
 
 #include <math.h>
@@ -48,6 +49,11 @@ static void draw_line(struct view_app *app)
                  panel_size(app->facts.all_size, all, sizeof all),
                  panel_size(app->facts.resident_size, now, sizeof now),
                  sharp_words(&app->facts, sharp, sizeof sharp));
+    if (app->stage && stage_played(app->stage)) {
+        panel_played_line(app, line, sizeof line);
+        hints = "N, Shift+N step  ·  space play  ·  click: go there  ·  F failed read  ·  "
+                "E eviction  ·  L longest frame  ·  F1 all keys";
+    }
     if (app->said_seconds > 0)
         hints = app->said;
     app->line_width = 0;
@@ -107,7 +113,8 @@ static void draw_buttons(struct view_app *app)
 void panel_start(struct view_app *app)
 {
     draw_line(app);
-    if (app->stage && (!app->touched || app->seconds < BUTTON_SECONDS || app->demonstrating))
+    if (app->stage && !stage_played(app->stage) &&
+        (!app->touched || app->seconds < BUTTON_SECONDS || app->demonstrating))
         draw_buttons(app);
 }
 
@@ -157,6 +164,10 @@ void panel_now(struct view_app *app)
     char resident[32], whole[32], sharp[32];
     const float scale = ui_scale(), pivot[2] = {1, 0};
     const float placement[4] = {app->width - 12 * scale, 12 * scale, 0, 0};
+    if (stage_played(app->stage)) {
+        panel_played_now(app);
+        return;
+    }
     if (ui_begin_panel("now", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
         if (app->deterministic)
             ui_text(UI_WHITE, "frame %llu", (unsigned long long)f->frame);

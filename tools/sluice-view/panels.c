@@ -1,5 +1,7 @@
 #include "panels.h"
 
+#include "panel_played.h"
+
 #include "panel_compare.h"
 
 #include <stdio.h>
@@ -126,6 +128,8 @@ void panels_draw_picture(const struct view_app *app)
         ui_fill_behind(0, 0, app->width, app->height, UI_COLOR(38, 44, 52, 255));
         return;
     }
+    if (stage_played(app->stage))
+        return; /* panels_draw draws it */
     if (app_shows_difference(app)) {
         draw_difference(app);
         return;
@@ -142,8 +146,12 @@ void panels_draw_picture(const struct view_app *app)
 void panels_draw(struct view_app *app)
 {
     panels_draw_picture(app);
-    panel_ghost(app);
-    panel_path(app);
+    if (app->stage && stage_played(app->stage)) {
+        panel_played_picture(app);
+    } else {
+        panel_ghost(app);
+        panel_path(app);
+    }
     if (app->settings.panels != 0)
         return;
     if (app->open[PANEL_KEYS] && app->stage) {
@@ -158,8 +166,11 @@ void panels_draw(struct view_app *app)
     if (!app->stage)
         return;
     panel_now(app);
-    panel_probe_find(app);
-    panel_legend(app);
+    app->probe.known = false;
+    if (!stage_played(app->stage)) {
+        panel_probe_find(app);
+        panel_legend(app);
+    }
     panel_controls(app);
     panel_graphs(app);
     panel_latency(app);

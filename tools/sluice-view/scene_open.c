@@ -2,6 +2,7 @@
 
 #include "scene_import.h"
 #include "scene_pbrt.h"
+#include "scene_played.h"
 #include "scene_pictures.h"
 
 #include "../common/text.h"
@@ -22,6 +23,8 @@ static bool open_any(const struct scene_request *r, struct scene_data *scene)
         return scene_data_make_room(scene);
     if (!scene_open_takes(r->paths, r->path_count))
         return false;
+    if (played_takes(r->paths[0]))
+        return scene_played_open(r->paths[0], scene);
     if (scene_pbrt_takes(r->paths[0]))
         return scene_pbrt_open(r->paths[0], r->cache, scene);
     if (scene_pictures_takes(r->paths[0]))

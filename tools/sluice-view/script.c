@@ -194,6 +194,14 @@ static bool take_record(struct line *line)
     return line->count > 0 && add_text(line, SCRIPT_RECORD, line->rest, NULL);
 }
 
+static bool take_frame(struct line *line)
+{
+    float number;
+    return line->count == 1 && read_numbers(line, 1, &number) && number >= 0 &&
+           add(line, (struct script_step){.kind = SCRIPT_FRAME,
+                                          .number = (int)strtol(line->words[0], NULL, 10)});
+}
+
 static bool take_reset(struct line *line)
 {
     return line->count == 0 && add(line, (struct script_step){.kind = SCRIPT_RESET});
@@ -220,6 +228,7 @@ static const struct {
     {"set", "the name of an option and a value, and maybe b before them", take_set},
     {"do", "evict, pin, hide, retry or file", take_do},
     {"record", "a file", take_record},
+    {"frame", "the number of a frame of the recording", take_frame},
     {"screenshot", "a file", take_screenshot},
     {"reset", "nothing else", take_reset},
     {"quit", "nothing else", take_quit},

@@ -9,8 +9,8 @@
  *
  * Events are key CHORD, hold CHORD FRAMES, type TEXT, hover X Y, click X Y [left|right|middle],
  * double-click X Y, drag X Y X Y [FRAMES], wheel N, drop PATH, set NAME VALUE, set b NAME VALUE, do
- * ACTION,
- * record FILE, screenshot FILE, reset and quit. Empty lines and what follows '#' are passed over.
+ * ACTION, record FILE, frame NUMBER (of a recording), screenshot FILE, reset and quit. Empty lines
+ * and what follows '#' are passed over.
  */
 #ifndef SLUICE_VIEW_SCRIPT_H
 #define SLUICE_VIEW_SCRIPT_H
@@ -30,6 +30,7 @@ enum script_kind {
     SCRIPT_SET_B,  ///< text, value
     SCRIPT_DO,     ///< text: texture_actions.h
     SCRIPT_RECORD, ///< text: a file
+    SCRIPT_FRAME,  ///< number: of a recording that is shown
     SCRIPT_RESET,  ///< settings, panels and camera as at first
     SCRIPT_SCREENSHOT,
     SCRIPT_QUIT

@@ -98,6 +98,10 @@ bool texture_actions_do(struct view_app *app, const char *name)
         text_say("sluice-view: %s: no texture is selected", name);
         return false;
     }
+    if (stage_played(app->stage)) {
+        text_say("sluice-view: %s: not for recordings, which are played as they were", name);
+        return false;
+    }
     if (stage_traced(app->stage) && strcmp(name, "file") != 0) {
         text_say("sluice-view: %s: not for textures of pbrt scenes, which rays ask for", name);
         return false;

@@ -6,6 +6,8 @@
 #include "controls.h"
 #include "messages.h"
 #include "panels.h"
+#include "played_app.h"
+#include "played_facts.h"
 #include "recent.h"
 #include "scene_hall.h"
 #include "sets.h"
@@ -80,6 +82,14 @@ static void begin_b(struct viewer *v, bool kept)
         sets_read(&v->app.b, texts->items[i], "sluice-view: --b"); /* was read before */
 }
 
+static void go_to_frame(struct viewer *v, uint32_t frame)
+{
+    if (!v->stage || !stage_played(v->stage))
+        text_say("sluice-view: frame %u: no recording is shown", frame);
+    else
+        played_app_go(&v->app, frame);
+}
+
 static void take_script_step(struct viewer *v, const struct script_step *step)
 {
     struct ui_input *in = &v->input;
@@ -97,6 +107,7 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
     case SCRIPT_SET_B: app_set_b(&v->app, step->text, step->value); break;
     case SCRIPT_DO: texture_actions_do(&v->app, step->text); break;
     case SCRIPT_RECORD: viewer_begin_recording(v, step->text); break;
+    case SCRIPT_FRAME: go_to_frame(v, (uint32_t)step->number); break;
     case SCRIPT_SCREENSHOT: snprintf(v->screenshot, sizeof v->screenshot, "%s", step->text); break;
     case SCRIPT_RESET:
         app_reset(&v->app, &v->options->settings, v->stage && !v->options->still);
@@ -180,7 +191,7 @@ static void answer_requests(struct viewer *v)
         viewer_begin_recording(v, NULL);
     viewer_swap(v);
     viewer_apply(v);
-    if (v->stage && app->step_tile)
+    if (v->stage && app->step_tile && stage_streamer(v->stage))
         sluiceStepVulkanLoads(stage_streamer(v->stage), 1);
     if (v->window)
         window_set_full_screen(v->window, app->settings.full_screen != 0);
@@ -296,7 +307,7 @@ static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer com
                               .time_stamp = v->clock};
     draw.width = draw.width < 16 ? 16 : draw.width;
     draw.height = draw.height < 16 ? 16 : draw.height;
-    if (!v->stage)
+    if (!v->stage || stage_played(v->stage))
         return true;
     const bool copies = follow_flip(v, &draw, end, commands);
     if (v->app.open[PANEL_TEXTURES] && !stage_traced(v->stage))
@@ -369,6 +380,8 @@ static bool draw_frame(struct viewer *v, double step)
     ui_begin_frame(&v->input);
     app_input(&v->app, &v->input);
     app_move(&v->app, step);
+    if (v->stage && stage_played(v->stage)) /* the cursor has moved */
+        played_facts_update(v->stage, &v->app.facts);
     if (v->app.screenshot && v->app.screenshot_plain)
         v->app.settings.panels = 1;
     panels_draw(&v->app);
@@ -482,6 +495,10 @@ static void print_summary(struct viewer *v)
     const struct view_facts *f = &v->app.facts;
     if (!v->stage)
         return;
+    if (v->options->json && stage_played(v->stage)) {
+        played_print_json(v->stage, f);
+        return;
+    }
     if (v->options->json) {
         gpu_print_json(&v->gpu);
         printf("{\"name\": \"frames\", \"value\": %u, \"unit\": \"\"}\n"
@@ -507,6 +524,13 @@ static void print_summary(struct viewer *v)
         return;
     }
     char all[32], resident[32];
+    if (stage_played(v->stage)) {
+        const struct played *p = stage_played(v->stage);
+        printf("%s: frame %u of 0 to %u, %u textures, %s resident\n", stage_name(v->stage),
+               p->frame, p->frame_count - 1, p->texture_count,
+               panel_size(f->resident_size, resident, sizeof resident));
+        return;
+    }
     printf("%s: %u frames, %s of textures, %s in memory, %.0f %% sharp\n", stage_name(v->stage),
            v->frame, panel_size(f->all_size, all, sizeof all),
            panel_size(f->resident_size, resident, sizeof resident), 100.0 * f->sharp);

@@ -32,6 +32,10 @@ void viewer_begin_recording(struct viewer *v, const char *path)
     viewer_end_recording(v);
     if (!v->stage)
         return;
+    if (stage_played(v->stage)) {
+        text_say("sluice-view: a recording is not recorded again: sluice-replay --record does");
+        return;
+    }
     if (path)
         snprintf(v->recording, sizeof v->recording, "%s", path);
     else

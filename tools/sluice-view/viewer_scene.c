@@ -1,6 +1,7 @@
 #include "viewer.h"
 
 #include "controls.h"
+#include "played_app.h"
 #include "recent.h"
 #include "sets.h"
 #include "settings_file.h"
@@ -64,6 +65,10 @@ void viewer_close_scene(struct viewer *v)
 
 static void begin_walk(struct viewer *v)
 {
+    if (stage_played(v->stage)) {
+        played_app_go(&v->app, v->options->cursor);
+        return;
+    }
     if (v->options->camera && view_camera_read(v->options->camera, &v->app.camera)) {
         v->app.follow = FOLLOW_NOTHING;
         v->app.touched = true;
@@ -360,7 +365,7 @@ void viewer_reload_shaders(struct viewer *v)
     struct shader_code code[SCENE_SHADER_COUNT];
     const char *missing = shader_files_missing(text, sizeof text);
     v->app.reload_shaders = false;
-    if (missing || !v->stage || stage_traced(v->stage)) {
+    if (missing || !v->stage || !stage_streamer(v->stage)) {
         app_say(&v->app, "%s", missing ? missing : "This scene has no shaders to compile again");
         return;
     }

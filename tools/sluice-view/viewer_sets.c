@@ -54,7 +54,7 @@ static bool open_other(struct viewer *v, const struct view_settings *settings)
 bool viewer_fit_other(struct viewer *v)
 {
     struct view_app *app = &v->app;
-    if (!v->stage)
+    if (!v->stage || stage_played(v->stage))
         return true;
     const bool wanted = app_has_second(app);
     const struct view_settings settings = viewer_second_settings(v);
