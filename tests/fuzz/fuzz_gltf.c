@@ -1,6 +1,6 @@
 /*
  * Any bytes as a .gltf or .glb file of the viewer: refused with a message, or all of its materials,
- * textures and images can be read. With clang:
+ * textures, images and cameras with their paths can be read. With clang:
  *
  *     CC=clang meson setup BUILD -Db_sanitize=address,undefined -Db_lundef=false \
  *         -Dc_args=-fsanitize=fuzzer-no-link
@@ -9,8 +9,10 @@
  *
  * In the ordinary test run standalone.c plays the corpus.
  */
+#include "gltf_cameras.h"
 #include "gltf_materials.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -23,8 +25,37 @@ static void read_bytes(struct gltf_bytes bytes)
         touched += bytes.bytes[i];
 }
 
+static void note(void *user, const char *where, const char *problem)
+{
+    (void)user;
+    touched += (uint64_t)where[0] + (uint64_t)problem[0];
+}
+
+/* Cameras are finite, and times of paths do not fall. */
+static void read_cameras(struct gltf_file *file)
+{
+    struct file_cameras cameras;
+    if (!gltf_read_cameras(file, note, NULL, &cameras))
+        abort();
+    for (uint32_t i = 0; i < cameras.count; i++) {
+        const struct camera_path *path = &cameras.items[i].path;
+        float last = 0;
+        for (size_t k = 0; k < path->count; k++) {
+            const float *numbers = &path->points[k].camera.position.x;
+            for (size_t n = 0; n < sizeof path->points[k].camera / sizeof *numbers; n++)
+                if (!isfinite(numbers[n]))
+                    abort();
+            if (!(path->points[k].seconds >= last))
+                abort();
+            last = path->points[k].seconds;
+        }
+    }
+    file_cameras_finish(&cameras);
+}
+
 static void read_all(struct gltf_file *file)
 {
+    read_cameras(file);
     struct scene_material material;
     for (uint32_t i = 0; i < file->lists[GLTF_MATERIALS].count; i++)
         if (gltf_read_material(file, i, &material))

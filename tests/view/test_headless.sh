@@ -164,6 +164,20 @@ for scene in wall quads; do
         --screenshot "$scene.png" "$scene.gltf" && grep -q 'no such.png' err || break
 done && cmp wall.png quads.png
 fact masked_and_transparent_quads_are_not_seen_and_a_missing_image_is_named
+eyes='{"type":"perspective","perspective":{"yfov":0.6}},{"type":"orthographic","orthographic":{"xmag":2,"ymag":2,"znear":0,"zfar":9}}'
+nodes='{"camera":0,"translation":[0,0,4]},{"camera":1,"name":"the plan","translation":[0.5,0,4]}'
+sed "s/\"meshes\":/\"cameras\":[$eyes],&/; s/\"nodes\":\[{/\"nodes\":[$nodes,{/; s/\"nodes\":\[0,1\]/\"nodes\":[0,1,2,3]/" wall.gltf >eyes.gltf
+sees() { run "$1" --headless --deterministic --fresh --size 160x160 --panels off --cache . --frames 2 --screenshot eye.png "${@:2}" eyes.gltf; }
+sees 0 --camera 0 && mv eye.png first.png && sees 0 --camera 1 && mv eye.png plan.png && sees 0 --camera 'the plan' &&
+    cmp eye.png plan.png && ! cmp -s first.png plan.png && sees 0 --camera 0.5,0,4,0,0,1,0,2,1 && cmp eye.png plan.png &&
+    sees 1 --camera 'the map' && grep -q 'camera 1: the plan' err
+fact cameras_of_a_file_are_chosen_by_number_and_name
+printf '0 0 0 5 0 0 1\n0.2 2 0 5 0 0 1\n' >slide.path
+slides() { sees 0 --play slide.path --feedback off --frames 14 "$@"; }
+slides --path-loop off && mv eye.png ended.png && slides && mv eye.png again.png && ! cmp -s ended.png again.png &&
+    slides --path-loop off --path-speed 4 && cmp eye.png ended.png && slides --path-speed 0.5 && mv eye.png slow.png &&
+    slides --frames 7 && cmp eye.png slow.png
+fact paths_are_played_once_or_again_and_faster_or_slower
 mkdir beside && cp wall.gltf pictures/black.ppm beside && hang beside && grep -q '^black.ppm: ' out &&
     [ "$(cat err)" = 'sluice-view: wall.gltf is a scene: sluice-view beside/wall.gltf' ] &&
     cp wall.gltf beside/other.gltf && hang beside && [ ! -s err ]

@@ -157,7 +157,7 @@ static void broken_files_are_refused_with_file_and_cause(void **state)
          "requires KHR_draco_mesh_compression"},
         {"\"scene\":0", "\"skins\":[{\"joints\":[0,5]}]", "skins[0] names one of nodes"},
         {"\"scene\":0", "\"animations\":[{\"channels\":[{\"sampler\":0}],\"samplers\":[]}]",
-         "animations[0] has a channel without sampler"},
+         "animations[0].channels[0] has no sampler"},
         {"\"scene\":0", "\"textures\":[{\"source\":0}]", "textures[0].source is 0"},
         {"\"scene\":0", "\"textures\":[{\"extensions\":{\"MSFT_texture_dds\":{\"source\":7}}}]",
          "textures[0].source is 7"},

@@ -62,7 +62,8 @@ static void every_setting_and_the_camera_come_back_from_the_copied_command(void 
             fail_msg("--%s %s is the default", controls[i].option.name, value);
     }
     app.b = app.settings;
-    app.camera = (struct view_camera){{0.1f, -2.3f, 4e-5f}, 1.0f / 3, -0.7f, 1.2f};
+    app.camera = (struct view_camera){
+        .position = {0.1f, -2.3f, 4e-5f}, .yaw = 1.0f / 3, .pitch = -0.7f, .fov = 1.2f};
     app.stage = (struct stage *)(void *)&nothing; /* there is one */
     app_write_command(&app, line, sizeof line);
     assert_int_equal(read_command(line, &options), OPTIONS_RUN);

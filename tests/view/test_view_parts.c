@@ -211,7 +211,7 @@ static void a_camera_at_a_place_looks_at_its_target(void **state)
 static void walking_forward_keeps_the_height(void **state)
 {
     (void)state;
-    struct view_camera camera = {{0, 1.5f, 0}, 0, -0.7f, 1};
+    struct view_camera camera = {.position = {0, 1.5f, 0}, .pitch = -0.7f, .fov = 1};
     struct vec3 center = {0, 0, 0};
     const struct camera_wish wish = {.forward = 1, .factor = 2, .seconds = 0.5f};
     view_camera_move(&camera, &wish, VIEW_WALK, 3.0, &center);
@@ -238,7 +238,8 @@ static void paths_are_read_as_they_were_written(void **state)
     struct camera_path path = {0}, read;
     struct view_camera camera;
     path_in_folder("path", file);
-    const struct view_camera a = {{0, 1, 2}, 3.0f, 0.1f, 1}, b = {{4, 1, 2}, -3.0f, 0.3f, 1};
+    const struct view_camera a = {.position = {0, 1, 2}, .yaw = 3.0f, .pitch = 0.1f, .fov = 1};
+    const struct view_camera b = {.position = {4, 1, 2}, .yaw = -3.0f, .pitch = 0.3f, .fov = 1};
     assert_true(camera_path_add(&path, 0, &a));
     assert_true(camera_path_add(&path, 2, &b));
     assert_true(camera_path_write(file, &path));
@@ -271,7 +272,8 @@ static void settings_come_back_from_their_file(void **state)
     controls_set_defaults(&read->b);
     app->b.anisotropy = 2;
     app->b.source_fails = 3; /* passes */
-    app->bookmarks[2] = (struct view_camera){{1, 2, 3}, 0.5f, 0.25f, 1};
+    app->bookmarks[2] =
+        (struct view_camera){.position = {1, 2, 3}, .yaw = 0.5f, .pitch = 0.25f, .fov = 1};
     app->bookmark_set[2] = true;
     assert_true(settings_file_write(file, app));
     settings_file_read(file, read);

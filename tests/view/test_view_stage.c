@@ -208,6 +208,23 @@ static void levels_under_the_mouse_are_those_of_the_colors(void **state)
     assert_true(kinds >= 3); /* the room has near and far pictures */
 }
 
+/* A rolled camera of parallel rays: picks and shaders see one picture. */
+static void levels_of_parallel_rays_are_those_of_the_colors(void **state)
+{
+    (void)state;
+    struct view_app *app = &show->app;
+    uint32_t wanted[8] = {0};
+    const struct view_camera before = app->camera;
+    settle();
+    app->camera.span = 1.5f;
+    app->camera.aspect = 2; /* more than the picture's: it sees more above and below */
+    app->camera.roll = 0.4f;
+    for (int i = 0; i < 20; i++)
+        draw(-1, -1);
+    check_levels(VIEW_WANTED, wanted);
+    app->camera = before;
+}
+
 static void a_surface_without_a_resident_level_is_not_called_sharp(void **state)
 {
     (void)state;
@@ -658,6 +675,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(listed_events_are_those_of_their_reason_and_texture),
         cmocka_unit_test(levels_under_the_mouse_are_those_of_the_colors),
+        cmocka_unit_test(levels_of_parallel_rays_are_those_of_the_colors),
         cmocka_unit_test(a_surface_without_a_resident_level_is_not_called_sharp),
         cmocka_unit_test(long_names_are_shortened_in_the_middle),
         cmocka_unit_test(rows_of_textures_and_their_sum_count_all_tiles),

@@ -25,13 +25,13 @@ static void toggle_panel(struct view_app *app, int panel)
 static void play(struct view_app *app, int argument)
 {
     (void)argument;
-    if (app->follow != FOLLOW_NOTHING)
-        app->follow = FOLLOW_NOTHING;
-    else
-        app->follow = app->path.count > 0 ? FOLLOW_PATH : FOLLOW_TOUR;
-    app->follow_seconds = 0;
-    app_say(app, "%s",
-            app->follow == FOLLOW_NOTHING ? "The camera is yours" : "The camera follows a path");
+    app_play(app);
+}
+
+static void next_camera(struct view_app *app, int argument)
+{
+    (void)argument;
+    app_next_camera(app);
 }
 
 static void record(struct view_app *app, int argument)
@@ -259,6 +259,7 @@ static const struct action table[] = {
     {"Camera", "F", NULL, "go to what was inspected", frame_selection, 0},
     {"Camera", "Home", NULL, "whole scene", show_whole, 0},
     {"Camera", "space", NULL, "play the path, or stop", play, 0},
+    {"Camera", "Shift+C", NULL, "next camera of the file", next_camera, 0},
     {"Camera", "R", NULL, "record a path, or end it", record, 0},
     {"Camera", "Ctrl+1", "Ctrl+1 to 9", "keep a bookmark", keep_bookmark, 1},
     {"Camera", "Alt+1", "Alt+1 to 9", "go to a bookmark", go_to_bookmark, 1},

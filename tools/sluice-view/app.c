@@ -44,6 +44,7 @@ static void begin_scene(struct view_app *app, bool walks)
     stage_bounds(app->stage, bounds);
     app->center = vec3_mix(bounds[0], bounds[1], 0.5f);
     app->selected = STAGE_NO_TEXTURE;
+    app->file_camera = APP_NO_CAMERA;
     app->inspect = app->pick = (struct stage_pick){.texture = STAGE_NO_TEXTURE};
     app->follow = walks ? FOLLOW_TOUR : FOLLOW_NOTHING;
     app->touched = !walks;
@@ -333,16 +334,6 @@ void app_input(struct view_app *app, const struct ui_input *input)
     memcpy(app->buttons, input->buttons, sizeof app->buttons);
 }
 
-static void follow(struct view_app *app, double seconds)
-{
-    const struct camera_path *path =
-        app->follow == FOLLOW_PATH ? &app->path : stage_tour(app->stage);
-    const float length = camera_path_length(path);
-    app->follow_seconds += seconds;
-    if (length > 0)
-        camera_path_get(path, fmodf((float)app->follow_seconds, length), &app->camera);
-}
-
 void app_end_demonstration(struct view_app *app)
 {
     if (app->demonstrating)
@@ -381,7 +372,7 @@ void app_move(struct view_app *app, double seconds)
     app->click_age += seconds;
     app->said_seconds -= seconds;
     if (app->stage && app->follow != FOLLOW_NOTHING)
-        follow(app, seconds);
+        app_follow(app, seconds);
     if (app->demonstrating)
         demonstrate(app, seconds);
     played_app_move(app);

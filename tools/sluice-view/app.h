@@ -36,7 +36,9 @@ enum app_panel {
     PANEL_COUNT
 };
 
-enum app_follow { FOLLOW_NOTHING, FOLLOW_TOUR, FOLLOW_PATH };
+enum app_follow { FOLLOW_NOTHING, FOLLOW_TOUR, FOLLOW_PATH, FOLLOW_CAMERA };
+
+#define APP_NO_CAMERA UINT32_MAX
 
 struct view_app {
     struct view_settings settings; ///< of A, and what A and B share
@@ -53,6 +55,7 @@ struct view_app {
     bool is_frozen;
     enum app_follow follow;
     double follow_seconds;
+    uint32_t file_camera;    ///< of the file, chosen last; APP_NO_CAMERA: none
     struct camera_path path; ///< owned
     bool recording;          ///< the path
     bool tracing;            ///< what the streamer decides, for sluice-replay
@@ -114,6 +117,18 @@ void app_reset(struct view_app *app, const struct view_settings *settings, bool 
 void app_input(struct view_app *app, const struct ui_input *input);
 /** Moves what moves by itself. */
 void app_move(struct view_app *app, double seconds);
+/** A camera of the file by its name or number; APP_NO_CAMERA if there is none. */
+uint32_t app_find_camera(const struct view_app *app, const char *text);
+/** Stands at a camera of the file. */
+void app_choose_camera(struct view_app *app, uint32_t index);
+void app_next_camera(struct view_app *app);
+/** The path that is followed: never NULL while a scene is open. */
+const struct camera_path *app_path(const struct view_app *app, enum app_follow follow);
+/** Plays the recorded path, that of the camera that was chosen, or the walk of the scene; or stops.
+ */
+void app_play(struct view_app *app);
+/** Moves the camera along the path that it follows. */
+void app_follow(struct view_app *app, double seconds);
 /** A line that is shown for some seconds. */
 void app_say(struct view_app *app, const char *format, ...) UI_PRINTF(2, 3);
 void app_set_view(struct view_app *app, uint32_t view);

@@ -12,14 +12,32 @@
 struct view_camera {
     struct vec3 position;
     float yaw, pitch;
-    float fov; ///< vertical
+    float fov;    ///< vertical; also of parallel cameras, for whoever draws lines with it
+    float roll;   ///< to the right, seen along the camera
+    float span;   ///< half of the height that parallel rays see; 0: perspective
+    float aspect; ///< width / height that stays in view in narrower pictures; 0: any
 };
 
 struct vec3 view_camera_forward(const struct view_camera *camera);
 struct vec3 view_camera_right(const struct view_camera *camera);
+/** Half of what a picture of this aspect sees of a plane: at distance 1, or of any for parallel
+ *  rays. */
+struct view_extent {
+    float x, y;
+} view_camera_extent(const struct view_camera *camera, float aspect);
+/** Rows of the matrix from the world to the camera, which looks along -z, as columns:
+ * m[column][row].
+ */
+void view_camera_matrix(const struct view_camera *camera, float m[4][4]);
+/** The camera of a rigid matrix as view_camera_matrix writes it, with the lens of `lens`. */
+struct view_camera view_camera_of_matrix(const float m[16], const struct view_camera *lens);
+/** A camera at `eye` whose axes are these; they need not be of length 1. */
+struct view_camera view_camera_of_axes(struct vec3 eye, struct vec3 forward, struct vec3 up,
+                                       const struct view_camera *lens);
 /** A camera at `eye` that looks at `target`. */
 struct view_camera view_camera_at(struct vec3 eye, struct vec3 target, float fov);
-/** "x,y,z,yaw,pitch,fov", also with blanks between. False for anything else. */
+/** "x,y,z,yaw,pitch,fov", or these with ",roll,span,aspect" behind; also with blanks between. False
+ *  for anything else. */
 bool view_camera_read(const char *text, struct view_camera *camera);
 /** As view_camera_read takes it, with commas. Returns `text`. */
 const char *view_camera_write(const struct view_camera *camera, char *text, size_t size);
@@ -50,12 +68,20 @@ struct camera_path {
     size_t count, capacity;
 };
 
+/** A camera of a file, and the path along which an animation moves it. */
+struct file_camera {
+    char *name; ///< owned
+    struct view_camera camera;
+    struct camera_path path; ///< empty: it stands
+};
+
 bool camera_path_add(struct camera_path *path, float seconds, const struct view_camera *camera);
 void camera_path_finish(struct camera_path *path);
 /** False if the path is empty. Stays at the last point after the end. */
 bool camera_path_get(const struct camera_path *path, float seconds, struct view_camera *camera);
 float camera_path_length(const struct camera_path *path);
-/** Text files: a line "seconds x y z yaw pitch fov" per point. Say on stderr what is wrong. */
+/** Text files: a line "seconds x y z yaw pitch fov" per point, or this with "roll span aspect"
+ *  behind. Say on stderr what is wrong. */
 bool camera_path_read(const char *file, struct camera_path *path);
 bool camera_path_write(const char *file, const struct camera_path *path);
 

@@ -1,4 +1,4 @@
-#include "gltf_file.h"
+#include "gltf_accessor.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,12 +6,6 @@
 
 #define MAX_BYTES ((uint64_t)4 << 30)
 #define WHERE_SIZE 64
-
-struct accessor {
-    uint64_t count, component_type, offset, stride, element;
-    uint32_t view, components;
-    bool sparse;
-};
 
 static const char *place(enum gltf_kind kind, uint32_t i, char where[WHERE_SIZE])
 {
@@ -129,7 +123,7 @@ static uint64_t read_index(const uint8_t *at, uint64_t type)
 }
 
 static bool check_sparse(struct gltf_file *file, const cJSON *sparse, const char *where,
-                         const struct accessor *a)
+                         const struct gltf_accessor *a)
 {
     const cJSON *indices = member(sparse, "indices"), *values = member(sparse, "values");
     uint64_t count = 0, type = 0, index_at = 0, value_at = 0, last = 0;
@@ -160,11 +154,12 @@ static bool check_sparse(struct gltf_file *file, const cJSON *sparse, const char
     return true;
 }
 
-static bool read_accessor(struct gltf_file *file, uint32_t i, struct accessor *a)
+bool gltf_read_accessor(struct gltf_file *file, uint32_t i, struct gltf_accessor *a)
 {
     char where[WHERE_SIZE];
     const cJSON *item = file->lists[GLTF_ACCESSORS].items[i];
-    *a = (struct accessor){.sparse = member(item, "sparse") != NULL};
+    *a = (struct gltf_accessor){.sparse = member(item, "sparse") != NULL,
+                                .normalized = cJSON_IsTrue(member(item, "normalized"))};
     place(GLTF_ACCESSORS, i, where);
     if (!gltf_get_whole(file, item, where, "count", 1, MAX_BYTES, &a->count) ||
         !gltf_get_whole(file, item, where, "componentType", 5120, 5126, &a->component_type) ||
@@ -183,9 +178,9 @@ static bool read_accessor(struct gltf_file *file, uint32_t i, struct accessor *a
 static bool check_accessor(struct gltf_file *file, uint32_t i)
 {
     char where[WHERE_SIZE];
-    struct accessor a;
+    struct gltf_accessor a;
     place(GLTF_ACCESSORS, i, where);
-    if (!read_accessor(file, i, &a))
+    if (!gltf_read_accessor(file, i, &a))
         return false;
     if (a.stride < a.element)
         return gltf_fail(file, "%s: its elements overlap", where);
@@ -199,7 +194,7 @@ static bool check_accessor(struct gltf_file *file, uint32_t i)
 }
 
 /* Components that can be; 0: any. */
-static bool fits(const char *attribute, const struct accessor *a)
+static bool fits(const char *attribute, const struct gltf_accessor *a)
 {
     static const struct {
         const char *begin;
@@ -217,18 +212,18 @@ static bool check_attributes(struct gltf_file *file, const cJSON *primitive, con
                              uint64_t *vertices)
 {
     const cJSON *attributes = member(primitive, "attributes");
-    struct accessor a;
+    struct gltf_accessor a;
     uint32_t index;
     if (!gltf_get_index(file, attributes, where, "POSITION", GLTF_ACCESSORS, &index))
         return false;
     if (index == GLTF_NONE)
         return gltf_fail(file, "%s has no POSITION", where);
-    if (!read_accessor(file, index, &a))
+    if (!gltf_read_accessor(file, index, &a))
         return false;
     *vertices = a.count;
     for (const cJSON *item = attributes->child; item; item = item->next) {
         if (!gltf_get_index(file, attributes, where, item->string, GLTF_ACCESSORS, &index) ||
-            index == GLTF_NONE || !read_accessor(file, index, &a))
+            index == GLTF_NONE || !gltf_read_accessor(file, index, &a))
             return gltf_fail(file, "%s has an attribute twice", where);
         if (a.count != *vertices || !fits(item->string, &a))
             return gltf_fail(file, "%s.%.40s: accessors[%u] has %llu elements of %u components",
@@ -240,13 +235,13 @@ static bool check_attributes(struct gltf_file *file, const cJSON *primitive, con
 static bool check_indices(struct gltf_file *file, const cJSON *primitive, const char *where,
                           uint64_t vertices)
 {
-    struct accessor a;
+    struct gltf_accessor a;
     uint32_t index;
     if (!gltf_get_index(file, primitive, where, "indices", GLTF_ACCESSORS, &index))
         return false;
     if (index == GLTF_NONE)
         return true;
-    if (!read_accessor(file, index, &a))
+    if (!gltf_read_accessor(file, index, &a))
         return false;
     if (a.components != 1 || a.sparse || a.view == GLTF_NONE ||
         (a.component_type != 5121 && a.component_type != 5123 && a.component_type != 5125))
@@ -264,13 +259,13 @@ static bool check_targets(struct gltf_file *file, const cJSON *primitive, const 
                           uint64_t vertices)
 {
     const cJSON *targets = member(primitive, "targets");
-    struct accessor a;
+    struct gltf_accessor a;
     uint32_t index;
     for (const cJSON *target = targets ? targets->child : NULL; target; target = target->next)
         for (const cJSON *item = target->child; item; item = item->next)
             if (!item->string ||
                 !gltf_get_index(file, target, where, item->string, GLTF_ACCESSORS, &index) ||
-                index == GLTF_NONE || !read_accessor(file, index, &a) || a.count != vertices)
+                index == GLTF_NONE || !gltf_read_accessor(file, index, &a) || a.count != vertices)
                 return gltf_fail(file, "%s has a target that does not fit", where);
     return true;
 }
@@ -371,7 +366,7 @@ static bool check_skin(struct gltf_file *file, uint32_t i)
 {
     char where[WHERE_SIZE];
     const cJSON *skin = file->lists[GLTF_SKINS].items[i], *joints = member(skin, "joints");
-    struct accessor a;
+    struct gltf_accessor a;
     uint32_t matrices, skeleton;
     place(GLTF_SKINS, i, where);
     if (!check_numbers(file, joints, where, GLTF_NODES) ||
@@ -379,53 +374,9 @@ static bool check_skin(struct gltf_file *file, uint32_t i)
         !gltf_get_index(file, skin, where, "inverseBindMatrices", GLTF_ACCESSORS, &matrices))
         return false;
     return matrices == GLTF_NONE ||
-           (read_accessor(file, matrices, &a) && a.components == 16 && a.component_type == 5126 &&
-            a.count >= (uint64_t)cJSON_GetArraySize(joints)) ||
+           (gltf_read_accessor(file, matrices, &a) && a.components == 16 &&
+            a.component_type == 5126 && a.count >= (uint64_t)cJSON_GetArraySize(joints)) ||
            gltf_fail(file, "%s has fewer matrices than joints", where);
-}
-
-static bool check_sampler(struct gltf_file *file, const cJSON *sampler, const char *where)
-{
-    struct accessor times, values;
-    uint32_t input, output;
-    if (!gltf_get_index(file, sampler, where, "input", GLTF_ACCESSORS, &input) ||
-        !gltf_get_index(file, sampler, where, "output", GLTF_ACCESSORS, &output))
-        return false;
-    return (input != GLTF_NONE && output != GLTF_NONE && read_accessor(file, input, &times) &&
-            read_accessor(file, output, &values) && times.components == 1 &&
-            times.component_type == 5126 && values.count >= times.count) ||
-           gltf_fail(file, "%s has a sampler without times or values", where);
-}
-
-static bool check_channel(struct gltf_file *file, const cJSON *channel, const char *where,
-                          uint64_t samplers)
-{
-    const cJSON *target = member(channel, "target");
-    const char *path = cJSON_GetStringValue(member(target, "path"));
-    uint64_t sampler = UINT64_MAX;
-    uint32_t node;
-    if (!gltf_get_whole(file, channel, where, "sampler", 0, GLTF_MAX_ITEMS, &sampler) ||
-        !gltf_get_index(file, target, where, "node", GLTF_NODES, &node))
-        return false;
-    return (sampler < samplers && path) ||
-           gltf_fail(file, "%s has a channel without sampler or path", where);
-}
-
-static bool check_animation(struct gltf_file *file, uint32_t i)
-{
-    char where[WHERE_SIZE];
-    const cJSON *animation = file->lists[GLTF_ANIMATIONS].items[i];
-    const cJSON *samplers = member(animation, "samplers");
-    const cJSON *channels = member(animation, "channels");
-    uint64_t count = 0;
-    place(GLTF_ANIMATIONS, i, where);
-    for (const cJSON *s = samplers ? samplers->child : NULL; s; s = s->next, count++)
-        if (!check_sampler(file, s, where))
-            return false;
-    for (const cJSON *c = channels ? channels->child : NULL; c; c = c->next)
-        if (!check_channel(file, c, where, count))
-            return false;
-    return true;
 }
 
 static bool check_image(struct gltf_file *file, uint32_t i)
@@ -477,11 +428,15 @@ static bool check_extensions(struct gltf_file *file)
 bool gltf_check(struct gltf_file *file)
 {
     static bool (*const checks[GLTF_KIND_COUNT])(struct gltf_file *, uint32_t) = {
-        [GLTF_BUFFERS] = check_buffer,      [GLTF_BUFFER_VIEWS] = check_view,
-        [GLTF_ACCESSORS] = check_accessor,  [GLTF_MESHES] = check_mesh,
-        [GLTF_SCENES] = check_scene,        [GLTF_TEXTURES] = check_texture,
-        [GLTF_IMAGES] = check_image,        [GLTF_SKINS] = check_skin,
-        [GLTF_ANIMATIONS] = check_animation};
+        [GLTF_BUFFERS] = check_buffer,
+        [GLTF_BUFFER_VIEWS] = check_view,
+        [GLTF_ACCESSORS] = check_accessor,
+        [GLTF_MESHES] = check_mesh,
+        [GLTF_SCENES] = check_scene,
+        [GLTF_TEXTURES] = check_texture,
+        [GLTF_IMAGES] = check_image,
+        [GLTF_SKINS] = check_skin,
+        [GLTF_ANIMATIONS] = gltf_check_animation};
     const cJSON *asset = member(file->json, "asset");
     const char *version = cJSON_GetStringValue(member(asset, "version"));
     uint32_t scene;

@@ -46,6 +46,7 @@ struct gltf_file {
     struct gltf_bytes *buffers; ///< one per item of GLTF_BUFFERS
     struct gltf_bytes whole;    ///< the file
     struct gltf_bytes chunk;    ///< binary chunk of a .glb; no bytes: none
+    uint64_t animated_count;    ///< numbers of animations that were checked
     char error[512];            ///< file and cause, after a failure
 };
 

@@ -138,9 +138,8 @@ static bool add_numbered(cJSON *root, const struct gltf_file *file)
 
 static char *write_geometry(const struct gltf_file *file)
 {
-    static const char *const members[] = {"asset",  "scene",       "scenes",  "nodes",
-                                          "meshes", "bufferViews", "cameras", "animations",
-                                          "skins",  "accessors"};
+    static const char *const members[] = {"asset",       "scene",   "scenes", "nodes",    "meshes",
+                                          "bufferViews", "cameras", "skins",  "accessors"};
     cJSON *root = cJSON_CreateObject();
     bool made = root && add_numbered(root, file);
     for (size_t i = 0; made && i < sizeof members / sizeof *members; i++) {

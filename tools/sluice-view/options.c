@@ -33,6 +33,12 @@ static bool read_b(const struct view_options *o)
     return true;
 }
 
+/* Several numbers are a place. */
+static bool names_camera(const char *text)
+{
+    return text[0] && (!strchr(text, ',') || text[strspn(text, "0123456789+-.eE, ")]);
+}
+
 enum option_outcome options_read(int argc, char **argv, struct view_options *o)
 {
     const struct option own[] = {
@@ -64,8 +70,9 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
         option_json(&o->json),
         {OPTION_TEXT, "play", "FILE", "(none)", &o->play,
          "a camera path that the camera follows: lines of seconds, x, y, z, yaw, pitch, fov"},
-        {OPTION_TEXT, "camera", "X,Y,Z,YAW,PITCH,FOV", "(the scene's)", &o->camera,
-         "where the camera stands still at first: meters and radians, as C copies it"},
+        {OPTION_TEXT, "camera", "NUMBERS|N|NAME", "(the scene's)", &o->camera,
+         "where the camera stands at first: x,y,z,yaw,pitch,fov in meters and radians, as C copies "
+         "it, or a camera of the file by its number or name"},
         {OPTION_UINT, "cursor", "N", "0", &o->cursor,
          "frame at which a recording is opened, as C copies it", 0, 4294967295.0},
         {OPTION_FLAG, "still", .value = &o->still,
@@ -87,8 +94,12 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
     const struct option_table table = {"sluice-view", usage, notes, all, count};
     const enum option_outcome outcome = options_parse(&table, argc, argv);
     struct view_camera camera;
-    if (outcome == OPTIONS_RUN && o->camera && !view_camera_read(o->camera, &camera)) {
-        options_refuse(&table, "--camera %s: wants six numbers: x,y,z,yaw,pitch,fov", o->camera);
+    if (outcome == OPTIONS_RUN && o->camera && !view_camera_read(o->camera, &camera) &&
+        !names_camera(o->camera)) {
+        options_refuse(&table,
+                       "--camera %s: wants six numbers: x,y,z,yaw,pitch,fov, or these and "
+                       "roll,span,aspect, or a camera of the file",
+                       o->camera);
         return OPTIONS_ERROR;
     }
     if (outcome == OPTIONS_RUN && !controls_budget_fits(&o->settings)) {

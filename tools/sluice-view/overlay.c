@@ -16,9 +16,10 @@ static struct vec3 before_camera(const struct view_camera *camera, struct vec3 p
 /* Pixels of a point before the camera. */
 static void project(const struct view_app *app, struct vec3 point, float xy[2])
 {
-    const float size = app->height / 2 / tanf(app->camera.fov / 2);
-    xy[0] = app->width / 2 + point.x / point.z * size;
-    xy[1] = app->height / 2 - point.y / point.z * size;
+    const struct view_extent extent = view_camera_extent(&app->camera, app->width / app->height);
+    const float distance = app->camera.span > 0 ? 1.0f : point.z;
+    xy[0] = app->width / 2 * (1 + point.x / distance / extent.x);
+    xy[1] = app->height / 2 * (1 - point.y / distance / extent.y);
 }
 
 void overlay_edge(const struct view_app *app, struct vec3 a, struct vec3 b, uint32_t color)
@@ -60,7 +61,9 @@ static void find_corners(const struct view_app *app, const struct view_camera *c
 {
     const struct vec3 forward = view_camera_forward(camera), right = view_camera_right(camera);
     const struct vec3 up = vec3_cross(right, forward);
-    const float y = distance * tanf(camera->fov / 2), x = y * app->width / app->height;
+    const struct view_extent extent = view_camera_extent(camera, app->width / app->height);
+    const float scale = camera->span > 0 ? 1.0f : distance;
+    const float x = extent.x * scale, y = extent.y * scale;
     const struct vec3 center = vec3_add(camera->position, vec3_scale(forward, distance));
     for (int i = 0; i < 4; i++)
         corners[i] = vec3_add(center, vec3_add(vec3_scale(right, i == 0 || i == 3 ? -x : x),

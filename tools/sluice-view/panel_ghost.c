@@ -35,7 +35,7 @@ void panel_path(const struct view_app *app)
     char text[4];
     if (!app->settings.show_path || !app->stage || app->height <= 0)
         return;
-    draw_path(app, app->path.count > 0 ? &app->path : stage_tour(app->stage));
+    draw_path(app, app_path(app, app->path.count > 0 ? FOLLOW_PATH : FOLLOW_CAMERA));
     for (int i = 0; i < APP_BOOKMARKS; i++) {
         if (!app->bookmark_set[i])
             continue;

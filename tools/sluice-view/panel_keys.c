@@ -58,12 +58,31 @@ void panel_keys(struct view_app *app)
     ui_end_panel();
 }
 
+static void draw_cameras(struct view_app *app)
+{
+    char name[240];
+    const uint32_t count = app->stage ? stage_camera_count(app->stage) : 0;
+    if (count == 0 || !ui_begin_group("Cameras of the file", false))
+        return;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct file_camera *camera = stage_file_camera(app->stage, i);
+        snprintf(name, sizeof name, "%s##camera%u", camera->name, i);
+        if (ui_button(name, 220 * ui_scale(), 0, app->file_camera == i))
+            app_choose_camera(app, i);
+        ui_hint("%s. --camera %u", camera->camera.span > 0 ? "Parallel rays" : "Perspective", i);
+        if (camera_path_length(&camera->path) > 0) {
+            ui_same_line(0);
+            ui_text(UI_GRAY, "%.1f s", (double)camera_path_length(&camera->path));
+        }
+    }
+}
+
 static void draw_recent(struct view_app *app)
 {
     char name[160];
     const struct file_list *recent = &app->browser.recent;
-    if (recent->count > 0)
-        ui_text(UI_BLUE, "Recent files");
+    if (recent->count == 0 || !ui_begin_group("Recent files", false))
+        return;
     for (size_t i = 0; i < recent->count; i++) {
         const char *path = recent->paths[i], *slash = strrchr(path, '/');
         snprintf(name, sizeof name, "%.100s##recent%zu", slash && slash[1] ? slash + 1 : path, i);
@@ -81,6 +100,8 @@ void panel_menu(struct view_app *app)
         return;
     if (panel_begin(app, PANEL_MENU, "Menu (F10)", 340, 560)) {
         const char *group = "";
+        draw_recent(app);
+        draw_cameras(app);
         for (uint32_t i = 0; i < count; i++) {
             if (strcmp(group, actions[i].group) != 0)
                 ui_text(UI_BLUE, "%s", actions[i].group);
@@ -92,7 +113,6 @@ void panel_menu(struct view_app *app)
             ui_same_line(0);
             ui_text(UI_GRAY, "%s", actions[i].shown ? actions[i].shown : actions[i].chord);
         }
-        draw_recent(app);
     }
     ui_end_panel();
 }

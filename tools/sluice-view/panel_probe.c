@@ -4,16 +4,15 @@
 #include "sets.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* A ray meets all triangles. While the camera moves, large scenes have no time for that. */
 #define MOST_TRIANGLES 300000u
 
 static bool camera_moves(struct view_app *app)
 {
-    const struct view_camera *now = &app->camera, *then = &app->probed_camera;
-    const bool moves = now->position.x != then->position.x || now->position.y != then->position.y ||
-                       now->position.z != then->position.z || now->yaw != then->yaw ||
-                       now->pitch != then->pitch;
+    const struct view_camera *now = &app->camera;
+    const bool moves = memcmp(now, &app->probed_camera, sizeof *now) != 0;
     app->probed_camera = *now;
     return moves;
 }

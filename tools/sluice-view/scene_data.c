@@ -56,6 +56,11 @@ void scene_data_finish(struct scene_data *scene)
     for (uint32_t i = 0; i < scene->message_count; i++)
         free(scene->messages[i]);
     camera_path_finish(&scene->tour);
+    for (uint32_t i = 0; i < scene->camera_count; i++) {
+        free(scene->cameras[i].name);
+        camera_path_finish(&scene->cameras[i].path);
+    }
+    free(scene->cameras);
     *scene = (struct scene_data){0};
 }
 

@@ -66,6 +66,8 @@ struct scene_data {
     struct vec3 bounds[2];
     struct view_camera camera;
     struct camera_path tour;
+    struct file_camera *cameras; ///< owned
+    uint32_t camera_count;
     void *paints;                    ///< of computed images
     SluiceImageOpener *opener;       ///< owned; of images from files
     struct remote_session remote;    ///< owned; of images from servers

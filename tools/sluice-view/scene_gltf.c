@@ -1,5 +1,6 @@
 #include "scene_gltf.h"
 
+#include "gltf_cameras.h"
 #include "gltf_materials.h"
 #include "scene_images.h"
 
@@ -147,5 +148,34 @@ bool scene_gltf_materials(struct gltf_file *file, const char *cache, struct scen
     free(opening.images);
     if (!read && file->error[0])
         text_say("sluice-view: %s", file->error);
+    return read;
+}
+
+struct camera_notes {
+    const struct gltf_file *file;
+    struct scene_data *scene;
+};
+
+static void note_camera(void *user, const char *where, const char *problem)
+{
+    struct camera_notes *notes = user;
+    scene_data_note(notes->scene, "%s: %.100s: %s", notes->file->path, where, problem);
+}
+
+bool scene_gltf_cameras(struct gltf_file *file, struct scene_data *scene)
+{
+    struct camera_notes notes = {file, scene};
+    struct file_cameras cameras;
+    bool read = gltf_read_cameras(file, note_camera, &notes, &cameras);
+    scene->cameras = cameras.items;
+    scene->camera_count = cameras.count;
+    if (cameras.count > 0)
+        scene->camera = cameras.items[0].camera;
+    for (uint32_t i = 0; read && i < cameras.count && scene->tour.count == 0; i++)
+        for (size_t k = 0; read && k < cameras.items[i].path.count; k++)
+            read = camera_path_add(&scene->tour, cameras.items[i].path.points[k].seconds,
+                                   &cameras.items[i].path.points[k].camera);
+    if (!read)
+        text_say("sluice-view: %s: out of memory", file->path);
     return read;
 }

@@ -9,4 +9,8 @@
  *  images. False with a line on stderr. */
 bool scene_gltf_materials(struct gltf_file *file, const char *cache, struct scene_data *scene);
 
+/** Adds the cameras of the file, and the path of the first that moves as the tour. False, with a
+ *  line on stderr, without memory. */
+bool scene_gltf_cameras(struct gltf_file *file, struct scene_data *scene);
+
 #endif /* SLUICE_VIEW_SCENE_GLTF_H */

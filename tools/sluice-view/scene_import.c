@@ -363,7 +363,10 @@ static bool take_scene(struct import *import)
         return false;
     }
     visit_all(import, &sums);
-    take_camera(import);
+    if (!import->is_gltf)
+        take_camera(import);
+    else if (!scene_gltf_cameras(&import->gltf, import->scene))
+        return false;
     if (import->scene->index_count > 0)
         return true;
     text_say("sluice-view: %s: has no triangles", import->path);

@@ -190,7 +190,10 @@ static bool add_tour(struct scene_data *scene)
         {22, -22.0f, 0, -0.05f}, {25, -22.5f, -1.57f, 0},      {28, -20.0f, -3.14159f, 0},
         {40, 2.2f, -3.3f, 0},    {43, 2.6f, -6.28318f, -0.02f}};
     for (size_t i = 0; i < sizeof stops / sizeof *stops; i++) {
-        const struct view_camera camera = {{0, 1.5f, stops[i][1]}, stops[i][2], stops[i][3], 1.0f};
+        const struct view_camera camera = {.position = {0, 1.5f, stops[i][1]},
+                                           .yaw = stops[i][2],
+                                           .pitch = stops[i][3],
+                                           .fov = 1.0f};
         if (!camera_path_add(&scene->tour, stops[i][0], &camera))
             return false;
     }

@@ -12,6 +12,7 @@ enum view_feedback { VIEW_FEEDBACK_ON, VIEW_FEEDBACK_OFF };
 enum view_feedback_by { VIEW_BY_QUADS, VIEW_BY_LATTICE, VIEW_BY_EVERY_PIXEL, VIEW_BY_TURNS };
 enum view_switch { VIEW_ON, VIEW_OFF }; ///< of choices "on|off"
 enum view_filter { VIEW_LINEAR, VIEW_NEAREST };
+enum view_path_loop { VIEW_LOOP, VIEW_ONCE };
 enum view_motion { VIEW_WALK, VIEW_FLY, VIEW_ORBIT };
 enum view_compare { VIEW_COMPARE_OFF, VIEW_DIVIDER, VIEW_DIFFERENCE, VIEW_FLICKER };
 enum view_render_mode { VIEW_PRIMARY, VIEW_NEAR, VIEW_DISTANT, VIEW_PATHS }; ///< PBRT_MODE_...
@@ -77,6 +78,8 @@ struct view_settings {
 
     int motion; ///< enum view_motion
     double speed;
+    int path_loop; ///< enum view_path_loop
+    double path_speed;
 
     uint32_t size[2];
     int full_screen;

@@ -575,6 +575,16 @@ void stage_bounds(const struct stage *s, struct vec3 bounds[2])
     bounds[1] = s->scene.bounds[1];
 }
 
+uint32_t stage_camera_count(const struct stage *s)
+{
+    return s->scene.camera_count;
+}
+
+const struct file_camera *stage_file_camera(const struct stage *s, uint32_t index)
+{
+    return &s->scene.cameras[index];
+}
+
 const struct camera_path *stage_tour(const struct stage *s)
 {
     return &s->scene.tour;

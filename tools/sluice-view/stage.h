@@ -136,6 +136,9 @@ const SluiceImageSource *stage_source(const struct stage *stage, uint32_t index)
 /** A place to begin, and the box around everything. */
 struct view_camera stage_camera(const struct stage *stage);
 void stage_bounds(const struct stage *stage, struct vec3 bounds[2]);
+/** Cameras of the file. */
+uint32_t stage_camera_count(const struct stage *stage);
+const struct file_camera *stage_file_camera(const struct stage *stage, uint32_t index);
 /** The path that the camera walks before anybody touches it. */
 const struct camera_path *stage_tour(const struct stage *stage);
 

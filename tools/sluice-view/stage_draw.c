@@ -201,6 +201,13 @@ static bool fit_target(struct stage_drawing *d, struct target *target, uint32_t 
     return target_create_encoding(d->gpu, width, height, target);
 }
 
+/* Depth 0 at the camera. */
+static struct mat4 parallel_projection(const struct view_extent *extent, float far)
+{
+    return (struct mat4){
+        {{1 / extent->x, 0, 0, 0}, {0, -1 / extent->y, 0, 0}, {0, 0, -1 / far, 0}, {0, 0, 0, 1}}};
+}
+
 static struct mat4 matrix_of(const struct scene_data *scene, const struct view_camera *camera,
                              float aspect)
 {
@@ -208,9 +215,12 @@ static struct mat4 matrix_of(const struct scene_data *scene, const struct view_c
     const float size = sqrtf(vec3_dot(box, box));
     const float near = size < 20 ? NEAR_PLANE * fmaxf(size, 1e-3f) / 20 : NEAR_PLANE;
     const float far = fmaxf(FAR_PLANE * near / NEAR_PLANE, 8 * size);
-    const struct mat4 view =
-        mat4_look_at(camera->position, vec3_add(camera->position, view_camera_forward(camera)));
-    const struct mat4 projection = mat4_perspective(camera->fov, aspect, near, far);
+    struct mat4 view;
+    view_camera_matrix(camera, view.m);
+    const struct view_extent extent = view_camera_extent(camera, aspect);
+    const struct mat4 projection = camera->span > 0
+                                       ? parallel_projection(&extent, far)
+                                       : mat4_perspective(2 * atanf(extent.y), aspect, near, far);
     return mat4_multiply(&projection, &view);
 }
 

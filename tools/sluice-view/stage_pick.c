@@ -83,23 +83,30 @@ static void try_part(const struct scene_data *scene, const struct scene_part *pa
     }
 }
 
-static struct vec3 ray_at(const struct view_camera *camera, float aspect, float x, float y)
+struct ray {
+    struct vec3 from, along;
+};
+
+static struct ray ray_at(const struct view_camera *camera, float aspect, float x, float y)
 {
-    const float tangent = tanf(camera->fov / 2);
+    const struct view_extent extent = view_camera_extent(camera, aspect);
     const struct vec3 forward = view_camera_forward(camera), right = view_camera_right(camera);
     const struct vec3 up = vec3_cross(right, forward);
-    return vec3_add(forward, vec3_add(vec3_scale(right, (2 * x - 1) * tangent * aspect),
-                                      vec3_scale(up, (1 - 2 * y) * tangent)));
+    const struct vec3 aside =
+        vec3_add(vec3_scale(right, (2 * x - 1) * extent.x), vec3_scale(up, (1 - 2 * y) * extent.y));
+    if (camera->span > 0)
+        return (struct ray){vec3_add(camera->position, aside), forward};
+    return (struct ray){camera->position, vec3_add(forward, aside)};
 }
 
 struct stage_pick scene_pick(const struct scene_data *scene, const struct view_camera *camera,
                              float aspect, float x, float y)
 {
     struct stage_pick pick = {.texture = STAGE_NO_TEXTURE};
-    const struct vec3 ray = ray_at(camera, aspect, x, y);
+    const struct ray ray = ray_at(camera, aspect, x, y);
     float nearest = INFINITY;
     for (uint32_t i = 0; i < scene->part_count; i++)
-        try_part(scene, &scene->parts[i], camera->position, ray, &nearest, &pick);
+        try_part(scene, &scene->parts[i], ray.from, ray.along, &nearest, &pick);
     return pick;
 }
 
@@ -108,7 +115,7 @@ bool scene_pick_pixel(const struct scene_data *scene, const struct stage_pick *p
 {
     const struct view_camera *camera = &pixel->camera;
     const float aspect = (float)pixel->width / (float)pixel->height;
-    const struct vec3 rays[3] = {
+    const struct ray rays[3] = {
         ray_at(camera, aspect, pixel->x, pixel->y),
         ray_at(camera, aspect, pixel->x + 1.0f / (float)pixel->width, pixel->y),
         ray_at(camera, aspect, pixel->x, pixel->y + 1.0f / (float)pixel->height)};
@@ -119,7 +126,7 @@ bool scene_pick_pixel(const struct scene_data *scene, const struct stage_pick *p
     corners_of(scene, pick->first_index, corners);
     for (int i = 0; i < 3; i++) {
         float t, b, c;
-        if (!meets_plane(camera->position, rays[i], corners, &t, &b, &c) || !(t > 0))
+        if (!meets_plane(rays[i].from, rays[i].along, corners, &t, &b, &c) || !(t > 0))
             return false;
         uv_at(slot_of(scene, pick->material), corners, b, c, uv[i]);
     }

@@ -215,23 +215,13 @@ static bool follow_flip(struct viewer *v, const struct stage_draw *draw, struct 
     return copies;
 }
 
-static struct view_camera camera_of(const float m[16], float fov)
-{
-    const struct vec3 back = {m[2], m[6], m[10]};
-    const struct vec3 eye = {-(m[0] * m[12] + m[1] * m[13] + m[2] * m[14]),
-                             -(m[4] * m[12] + m[5] * m[13] + m[6] * m[14]),
-                             -(m[8] * m[12] + m[9] * m[13] + m[10] * m[14])};
-    return view_camera_at(eye, vec3_sub(eye, back), fov);
-}
-
 /* Settings may change in any frame, so the motion is known in all. */
 static void note_motion(struct viewer *v)
 {
     const struct view_camera *camera = &v->app.camera;
-    const struct mat4 look =
-        mat4_look_at(camera->position, vec3_add(camera->position, view_camera_forward(camera)));
-    (void)sluiceAddCameraFrame(&v->motion, &look.m[0][0],
-                               v->app.seconds); /* a bad one: no motion */
+    float look[4][4];
+    view_camera_matrix(camera, look);
+    (void)sluiceAddCameraFrame(&v->motion, &look[0][0], v->app.seconds); /* a bad one: no motion */
 }
 
 static struct stage_ahead look_ahead(struct viewer *v, const struct stage_draw *draw)
@@ -244,8 +234,8 @@ static struct stage_ahead look_ahead(struct viewer *v, const struct stage_draw *
     SluiceLookAhead ahead = {.structSize = sizeof ahead};
     if (sluicePredictCamera(&v->motion, &info, &ahead) != SLUICE_SUCCESS || !ahead.draw)
         return (struct stage_ahead){.draw = false};
-    return (struct stage_ahead){true, camera_of(ahead.viewMatrix, draw->camera.fov), ahead.width,
-                                ahead.height, ahead.lodBias};
+    return (struct stage_ahead){true, view_camera_of_matrix(ahead.viewMatrix, &draw->camera),
+                                ahead.width, ahead.height, ahead.lodBias};
 }
 
 /* Half 0 is A. Time stamps are written while both are drawn. */

@@ -7,6 +7,8 @@
 #include "settings_file.h"
 #include "shader_files.h"
 
+#include "../common/text.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,15 +65,35 @@ void viewer_close_scene(struct viewer *v)
     v->stage = NULL;
 }
 
-static void begin_walk(struct viewer *v)
+/* Without a window nobody would see that it is another camera. */
+static bool choose_camera(struct viewer *v)
 {
+    const char *wanted = v->options->camera;
+    const uint32_t camera = app_find_camera(&v->app, wanted);
+    if (camera != APP_NO_CAMERA) {
+        app_choose_camera(&v->app, camera);
+        return true;
+    }
+    text_say("sluice-view: --camera %s: the file has no such camera; it has %u", wanted,
+             stage_camera_count(v->stage));
+    for (uint32_t i = 0; i < stage_camera_count(v->stage); i++)
+        text_say("sluice-view: camera %u: %s", i, stage_file_camera(v->stage, i)->name);
+    app_set_panel(&v->app, PANEL_FILE, true);
+    return v->window != NULL;
+}
+
+static bool begin_walk(struct viewer *v)
+{
+    bool found = true;
     if (stage_played(v->stage)) {
         played_app_go(&v->app, v->options->cursor);
-        return;
+        return true;
     }
     if (v->options->camera && view_camera_read(v->options->camera, &v->app.camera)) {
         v->app.follow = FOLLOW_NOTHING;
         v->app.touched = true;
+    } else if (v->options->camera) {
+        found = choose_camera(v);
     }
     if (v->options->play)
         v->app.follow = FOLLOW_PATH;
@@ -80,6 +102,7 @@ static void begin_walk(struct viewer *v)
         app_say(&v->app,
                 "Drawn by the CPU: the picture has %s the window's resolution (--render-scale)",
                 stage_traced(v->stage) ? "a quarter of" : "half");
+    return found;
 }
 
 /** What files of settings hold, while another scene is tried. */
@@ -164,14 +187,14 @@ struct kept_place {
     enum app_follow follow;
     double follow_seconds;
     bool touched;
-    uint32_t selected;
+    uint32_t selected, file_camera;
     struct stage_pick inspect;
 };
 
 static struct kept_place keep_place(const struct view_app *app)
 {
-    return (struct kept_place){app->camera,  app->center,   app->follow, app->follow_seconds,
-                               app->touched, app->selected, app->inspect};
+    return (struct kept_place){app->camera,  app->center,   app->follow,      app->follow_seconds,
+                               app->touched, app->selected, app->file_camera, app->inspect};
 }
 
 static void restore_place(struct view_app *app, const struct kept_place *place)
@@ -182,6 +205,7 @@ static void restore_place(struct view_app *app, const struct kept_place *place)
     app->follow_seconds = place->follow_seconds;
     app->touched = place->touched;
     app->selected = place->selected;
+    app->file_camera = place->file_camera;
     app->inspect = place->inspect;
 }
 
@@ -216,9 +240,9 @@ static bool show(struct viewer *v, struct scene_data *scene, struct file_list *p
         return false;
     if (first && v->options->record)
         viewer_begin_recording(v, v->options->record);
-    if (first) {
-        begin_walk(v);
-    } else if (paths) {
+    if (first)
+        return begin_walk(v);
+    if (paths) {
         app_say(&v->app, "Opened %s", stage_name(stage));
         note_file(v, &v->paths, true);
     } else {

@@ -5,8 +5,8 @@ void viewer_follow_trade(struct viewer *v)
     struct view_app *app = &v->app;
     const struct trade_request request = {.settings = &app->settings,
                                           .path = app->path.count > 0 ? &app->path
-                                                  : v->stage          ? stage_tour(v->stage)
-                                                                      : NULL,
+                                                  : v->stage ? app_path(&v->app, FOLLOW_CAMERA)
+                                                             : NULL,
                                           .camera = &app->camera,
                                           .paths = &v->paths,
                                           .cache = v->options->cache,
