@@ -27,14 +27,14 @@ struct slc_read_jobs {
     uint64_t submitter;     ///< slc_thread_id()
 };
 
-/** True if the pool reads in jobs. */
+/** Whether the pool reads in jobs. */
 bool slc_uses_jobs(const struct slc_read_pool *pool);
 
 /* All with the mutex held, for pools that read in jobs. */
 
 /** Notes that a job is needed if a read can be started now. */
 void slc_read_jobs_want(struct slc_read_pool *pool);
-/** Submits the jobs that are needed. The mutex is given up meanwhile. */
+/** Submits the jobs that are needed. Releases the mutex in between. */
 void slc_read_jobs_submit(struct slc_read_pool *pool);
 /** Reads once if no job runs. False, at once, if there is nothing to read. */
 bool slc_read_jobs_help(struct slc_read_pool *pool);

@@ -72,8 +72,8 @@ static void read_regions(const SluiceTileLoader *loader, struct slc_read *read,
     }
 }
 
-/* With the mutex held, which is given up meanwhile. Before the read is over, because the source
- * need not live longer. */
+/* Reports a failure. The mutex is held, and released in between. Called before the read ends,
+ * because the source need not live longer. */
 static void report_failure(const SluiceTileLoader *loader, const struct slc_read *read,
                            const struct slc_read_outcome *outcome, bool will_retry, uint64_t delay)
 {
@@ -137,7 +137,7 @@ void slc_loader_settle_read(SluiceTileLoader *loader, struct slc_read *read,
     slc_loader_signal_if_idle(loader);
 }
 
-/* With the mutex held, which is given up meanwhile. */
+/* Runs a read. The mutex is held, and released in between. */
 static void run(SluiceTileLoader *loader, struct slc_read *read)
 {
     struct slc_mutex *mutex = &loader->pool->mutex;
@@ -148,7 +148,7 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
         slc_loader_settle_read(loader, read, &outcome);
         return;
     }
-    slc_read_pool_unlock(loader->pool); /* submits the job that reads meanwhile */
+    slc_read_pool_unlock(loader->pool); /* submits the next job, which reads meanwhile */
     uint64_t start = slc_monotonic_time();
     outcome.result = sluiceGetImageInfo(source, &info);
     bool is_known = outcome.result == SLUICE_SUCCESS;
@@ -182,7 +182,7 @@ uint64_t slc_read_pool_next_due(const struct slc_read_pool *pool)
     return due;
 }
 
-/* Until something is said, or until the first delayed read is due. */
+/* Waits for a signal, or until the first delayed read is due. */
 static void wait_for_work(struct slc_read_pool *pool)
 {
     uint64_t due = slc_read_pool_next_due(pool);
@@ -206,8 +206,8 @@ void slc_read_pool_wait(struct slc_read_pool *pool, uint64_t until)
 }
 
 /*
- * One thread at a time, which will wake the next one if there is more: where reads are quick, few
- * threads that are awake do them sooner than many that wait for each other.
+ * Wakes one thread at a time, which wakes the next one if there is more work: few running threads
+ * finish quick reads sooner than many that wait for each other.
  */
 void slc_read_pool_signal(struct slc_read_pool *pool)
 {
@@ -243,7 +243,7 @@ bool slc_read_pool_has_work(const struct slc_read_pool *pool)
     return false;
 }
 
-/* Copies of any loader, which are short, and wait for nothing. */
+/* Starts a copy of any loader. Copies are short, and wait for nothing. */
 static struct slc_read *start_copy(struct slc_read_pool *pool, uint64_t now,
                                    SluiceTileLoader **loader)
 {
@@ -255,8 +255,8 @@ static struct slc_read *start_copy(struct slc_read_pool *pool, uint64_t now,
     return read;
 }
 
-/* The loaders take turns. A read that waits until fewer bytes are being read keeps its turn: the
- * small reads of other loaders would otherwise hold it up for ever. */
+/* Starts a read. Loaders take turns. A read that waits until fewer bytes are being read keeps its
+ * turn: otherwise small reads of other loaders could delay it forever. */
 static struct slc_read *start(struct slc_read_pool *pool, SluiceTileLoader **loader)
 {
     SluiceTileLoader *first = pool->turn ? pool->turn : pool->loaders, *at = first;
@@ -282,7 +282,7 @@ bool slc_read_pool_read(struct slc_read_pool *pool)
     struct slc_read *read = start(pool, &loader);
     if (!read)
         return false;
-    /* This thread may be gone for long: another one looks after what else there is. */
+    /* This thread may be busy for long: another one takes the remaining work. */
     if (slc_read_pool_has_work(pool))
         slc_read_pool_signal(pool);
     run(loader, read);
@@ -304,14 +304,15 @@ static void *worker_main(void *argument)
     return NULL;
 }
 
-/* At least two, or one source that stalls would stop all. */
+/* Returns the default number of threads. At least two, so that one stalling source does not stop
+ * all. */
 static uint32_t default_thread_count(void)
 {
     uint32_t processors = slc_get_processor_count();
     return processors > 3 ? processors - 1 : 2;
 }
 
-/* `wanted`: threads that there is room for. */
+/* Stops the pool. `wanted`: number of threads that were allocated. */
 static void stop(struct slc_read_pool *pool, uint32_t wanted)
 {
     slc_mutex_lock(&pool->mutex);

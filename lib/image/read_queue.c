@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* No format has more bytes per texel or per 4 x 4 of them. */
+/* Most bytes per texel or block of any format. */
 #define LARGEST_BLOCK 16
 
 static const struct slc_read *read_of(const struct slc_heap_node *node)
@@ -74,13 +74,13 @@ void slc_read_queue_share(struct slc_read_queue *queue, struct slc_read_load *lo
         slc_read_sources_share(&queue->sources, &peer->sources);
 }
 
-/* Slot and generation in one number that is never 0. */
+/* Makes a ticket of slot and generation, never 0. */
 static uint64_t make_ticket(const struct slc_read_queue *queue, uint32_t slot)
 {
     return queue->reads[slot].generation * queue->capacity + slot + 1;
 }
 
-/* Reads of a source that run, of all queues that share limits. */
+/* Counts the running reads of a source, of all queues that share limits. */
 static uint32_t running_count(const struct slc_read_source *source)
 {
     uint32_t count = source->running_count;
@@ -89,7 +89,7 @@ static uint32_t running_count(const struct slc_read_source *source)
     return count;
 }
 
-/* Around every change of a source's queue. */
+/* Removes a source from `startable` before its queue changes. */
 static void source_leave(struct slc_read_queue *queue, struct slc_read_source *source)
 {
     if (slc_heap_node_is_in(&source->node))
@@ -112,7 +112,7 @@ struct slc_read_queue *slc_read_queue_of(const struct slc_read *read)
     return queue_of(read->source);
 }
 
-/* After a change of how many reads of the source run: other queues may start one now, or not. */
+/* Updates the source in other queues after its number of running reads has changed. */
 static void update_twins(struct slc_read_source *source)
 {
     for (struct slc_read_source *twin = source->twin; twin != source; twin = twin->twin) {
@@ -121,7 +121,8 @@ static void update_twins(struct slc_read_source *source)
     }
 }
 
-/* The pool has texels that are left of it, or all of them, or knows that it has failed. */
+/* Whether a read needs no source: the pool has remaining texels, or knows that the read has failed.
+ */
 static bool is_copy(const struct slc_read_queue *queue, const struct slc_read *read)
 {
     bool copies = true;
@@ -211,7 +212,7 @@ bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *g
     return true;
 }
 
-/* Bytes of the regions that are left; too many rather than too few while the format is unknown. */
+/* Returns the bytes of the remaining regions; an upper bound while the format is unknown. */
 static uint64_t size_of(const struct slc_read *read)
 {
     uint64_t size = 0;
