@@ -39,7 +39,7 @@ SluiceResult slc_read_sources_init(struct slc_read_sources *sources,
     return SLUICE_SUCCESS;
 }
 
-/* Where it is, or the free place where it would be. */
+/* Finds a source's place, or the free place where it would be. */
 static uint32_t place_of(const struct slc_read_sources *sources, const SluiceImageSource *source)
 {
     uint64_t hash = (uint64_t)(uintptr_t)source * 0x9E3779B97F4A7C15u >> 32;
@@ -60,7 +60,7 @@ static void remove_place(struct slc_read_sources *sources, const struct slc_read
     uint32_t mask = sources->place_count - 1, at = place_of(sources, source->source);
     assert(sources->places[at] == source);
     sources->places[at] = NULL;
-    /* Those behind it may have wished to be nearer. */
+    /* Moves later records back whose preferred place is at or before the gap. */
     for (at = (at + 1) & mask; sources->places[at]; at = (at + 1) & mask) {
         struct slc_read_source *moved = sources->places[at];
         sources->places[at] = NULL;
@@ -122,7 +122,7 @@ static void forget(struct slc_read_sources *sources, struct slc_read_source *rec
     remove_place(sources, record);
 }
 
-/* A record out of the idle ones, its former source forgotten. */
+/* Reuses the record of an idle source, which is forgotten. */
 static struct slc_read_source *recycle(struct slc_read_sources *sources, SluiceImageSource *source)
 {
     struct slc_read_source *record = sources->idle.next;

@@ -1,7 +1,7 @@
 /**
- * The sources that a loader has been given reads of, found by their address: a fixed number, of
- * which those without reads give way to new ones, the one longest without first. Tables that are
- * shared find each other's records of a source. Not synchronized.
+ * Table of the sources that a loader reads, by address. Its size is fixed: new sources replace
+ * those without reads, longest idle first. Shared tables find each other's records of a source. Not
+ * synchronized.
  */
 #ifndef SLC_IMAGE_READ_SOURCES_H
 #define SLC_IMAGE_READ_SOURCES_H
@@ -11,14 +11,14 @@
 
 struct slc_read_source {
     SluiceImageSource *source;               ///< NULL: free
-    struct slc_read_source *previous, *next; ///< among those without reads
-    struct slc_read_sources *sources;        ///< the table that it is in
+    struct slc_read_source *previous, *next; ///< ring of sources without reads
+    struct slc_read_sources *sources;        ///< table of the record
     struct slc_read_source *twin;            ///< ring of the source's records in shared tables
-    uint32_t read_count;                     ///< not collected
+    uint32_t read_count;                     ///< reads that are not collected
     uint32_t running_count;
-    struct slc_heap_node node;      ///< among the sources that could start a read
-    struct slc_pairing_heap queued; ///< its reads, the most urgent first
-    SluiceFormat format;            ///< UNDEFINED until a read has found out
+    struct slc_heap_node node;      ///< in the queue's `startable`
+    struct slc_pairing_heap queued; ///< queued reads, the most urgent first
+    SluiceFormat format;            ///< UNDEFINED until a read knows it
     struct slc_read_statistics statistics;
 };
 
@@ -27,34 +27,34 @@ struct slc_read_sources {
     bool has_recycled;             ///< some source was forgotten to make room
     struct slc_read_sources *peer; ///< ring of tables that are shared
     struct slc_read_source *records;
-    struct slc_read_source idle; ///< head of a ring of those without reads, the oldest next to it
+    struct slc_read_source idle; ///< head of the ring of sources without reads, longest idle first
     uint32_t place_count;        ///< a power of two
     struct slc_read_source **places; ///< by address; NULL: free
 };
 
-/** `count` > 0. Errors: OUT_OF_HOST_MEMORY; nothing to finish then. Must not be moved afterwards.
- */
+/** Makes a table, which must not be moved. `count` > 0. Errors: OUT_OF_HOST_MEMORY; nothing to
+ * finish then. */
 SluiceResult slc_read_sources_init(struct slc_read_sources *sources,
                                    const SluiceAllocationCallbacks *cb, uint32_t count);
 void slc_read_sources_finish(struct slc_read_sources *sources, const SluiceAllocationCallbacks *cb);
 
-/** Records of a source in both tables, and in those that `peer` is shared with, become twins. Both
- *  tables stay where they are; `sources` is still empty. */
+/** Shares tables: records of a source in both tables, and in tables shared with `peer`, become
+ * twins. `sources` must be empty. */
 void slc_read_sources_share(struct slc_read_sources *sources, struct slc_read_sources *peer);
 
-/** NULL if it is not known. */
+/** Finds the record of a source. NULL if there is none. */
 struct slc_read_source *slc_read_sources_find(const struct slc_read_sources *sources,
                                               const SluiceImageSource *source);
 
-/** The one that is known, or a new one, zeroed but for its source, with a read more. Fewer sources
- *  than there is room for may have reads. */
+/** Adds a read to the record of a source. Makes a record, zeroed except for the source, if there is
+ *  none. At least one record must be without reads. */
 struct slc_read_source *slc_read_sources_add_read(struct slc_read_sources *sources,
                                                   SluiceImageSource *source);
 
-/** A read of it was collected. */
+/** Removes a read that was collected. */
 void slc_read_sources_remove_read(struct slc_read_sources *sources, struct slc_read_source *source);
 
-/** It must have no reads. */
+/** Forgets a source without reads. */
 void slc_read_sources_forget(struct slc_read_sources *sources, struct slc_read_source *source);
 
 #endif /* SLC_IMAGE_READ_SOURCES_H */

@@ -43,7 +43,7 @@ void slc_read_statistics_add_end(struct slc_read_statistics *statistics, SluiceR
     }
 }
 
-/* The least upper edge of a bucket below which at least `percent` of all attempts are. */
+/* Returns the lowest bucket edge below which at least `percent` of all attempts are. */
 static uint64_t percentile(const struct slc_read_statistics *statistics, uint32_t percent)
 {
     uint64_t all = statistics->counts.attemptCount, below = 0;

@@ -17,7 +17,7 @@ bool slc_retry_is_due(const SluiceTileRetryPolicy *policy, const struct slc_atte
 {
     bool is_temporary = result == SLUICE_ERROR_IO || result == SLUICE_NOT_READY ||
                         result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    /* Damage stays. What was written while it was read is whole the next time. */
+    /* Damage is permanent, but data read while being written is complete the next time. */
     bool may_be_torn = result == SLUICE_ERROR_CORRUPT_DATA && attempts->corrupt_count == 1;
     if (attempts->count >= policy->maxAttempts || (!is_temporary && !may_be_torn))
         return false;

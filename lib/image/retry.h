@@ -1,16 +1,16 @@
-/** Which reads are tried again, and when. */
+/** Retry policy of reads. */
 #ifndef SLC_IMAGE_RETRY_H
 #define SLC_IMAGE_RETRY_H
 
 #include <sluice/loader.h>
 
-/** What has been tried of a read. */
+/** Attempts at a read. */
 struct slc_attempts {
-    uint32_t count;         ///< that ended
-    uint32_t corrupt_count; ///< those with CORRUPT_DATA
+    uint32_t count;         ///< attempts that have ended
+    uint32_t corrupt_count; ///< attempts that ended with CORRUPT_DATA
 };
 
-/** The defaults put in for zeros. */
+/** Returns a policy with defaults in place of zeros. */
 SluiceTileRetryPolicy slc_retry_policy(const SluiceTileRetryPolicy *given);
 
 /** Whether a read whose last attempt, counted already, ended with `result` is tried again after

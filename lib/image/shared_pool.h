@@ -1,4 +1,4 @@
-/** The read pool that several contexts and tile loaders use: SluiceReadPool. */
+/** SluiceReadPool: the read pool of several contexts and tile loaders. */
 #ifndef SLC_IMAGE_SHARED_POOL_H
 #define SLC_IMAGE_SHARED_POOL_H
 
@@ -9,10 +9,10 @@ struct SluiceReadPool {
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;
     struct slc_read_pool *threads;
-    struct slc_shared_reads shares; ///< the mutex of `threads` is around it
+    struct slc_shared_reads shares; ///< guarded by the mutex of `threads`
 };
 
-/** A context or tile loader uses the pool from here to slc_read_pool_remove_member. */
+/** Adds a context or tile loader to the pool's users, until slc_read_pool_remove_member. */
 void slc_read_pool_add_member(SluiceReadPool *pool);
 void slc_read_pool_remove_member(SluiceReadPool *pool);
 

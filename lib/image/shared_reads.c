@@ -7,7 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* The texels follow the struct, where sources may use wide instructions. */
+/* Bytes. Alignment of the texels behind the struct, so that sources may use wide instructions. */
 #define ALIGNMENT 64u
 #define HEADER_SIZE ((sizeof(struct slc_shared_region) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT)
 #define LEAST_BUCKETS 256u
@@ -131,7 +131,7 @@ static void put(struct slc_shared_reads *shares, struct slc_shared_region *regio
     *bucket = region;
 }
 
-/* Tables that cannot grow stay as they are: chains become longer. False: there are none. */
+/* Grows the tables. Without memory, chains become longer. False: there are no tables. */
 static bool ensure_tables(struct slc_shared_reads *shares)
 {
     uint32_t old_count = shares->bucket_count;
@@ -189,7 +189,7 @@ static bool is_kept(const struct slc_shared_region *region)
     return region->is_listed && region->holder_count == 0;
 }
 
-/* True if the region was kept: its memory is not needed any more. */
+/* Unlists a region. True if it was kept, so that its memory can be freed. */
 static bool unlist(struct slc_shared_reads *shares, struct slc_shared_region *region)
 {
     struct slc_shared_region **link = region_bucket(shares, region->source, &region->region);
@@ -221,7 +221,7 @@ static void evict(struct slc_shared_reads *shares)
     }
 }
 
-/* Memory of the oldest region, which leaves to make room, if it has the size. */
+/* Evicts the oldest region, and reuses its memory if it has the size. */
 static struct slc_shared_region *reuse(struct slc_shared_reads *shares, size_t size)
 {
     struct slc_shared_region *region = shares->oldest;
@@ -229,13 +229,13 @@ static struct slc_shared_region *reuse(struct slc_shared_reads *shares, size_t s
         size <= shares->limit - shares->size)
         return NULL;
     unkeep(shares, region);
-    region->holder_count = 1; /* its memory stays */
+    region->holder_count = 1; /* keeps the memory */
     slc_shared_reads_hide(shares, region);
     shares->statistics.evictedCount++;
     return region;
 }
 
-/* Nothing is evicted before there is memory, or for a region that does not fit. */
+/* Allocates a region. Evicts nothing without memory, or for a region that does not fit. */
 static struct slc_shared_region *allocate(struct slc_shared_reads *shares, size_t size)
 {
     if (size > SIZE_MAX - HEADER_SIZE)
@@ -289,7 +289,7 @@ enum slc_delivery slc_shared_reads_claim(struct slc_shared_reads *shares, struct
         shares->statistics.cachedCount++;
         return SLC_DELIVER_COPY;
     }
-    if (region) /* of another format: the source has changed */
+    if (region) /* has another format: the source has changed */
         slc_shared_reads_hide(shares, region);
     *out = NULL;
     if (read->is_copy)
@@ -320,7 +320,7 @@ void slc_shared_reads_release(struct slc_shared_reads *shares, struct slc_shared
         return;
     if (region->is_listed && region->size > shares->limit) {
         shares->statistics.evictedCount++;
-        region->holder_count = 1; /* not among the kept ones yet */
+        region->holder_count = 1; /* not a kept region yet */
         slc_shared_reads_hide(shares, region);
         region->holder_count = 0;
     }

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* The constants of the specification: mantissa bits, exponent bias, largest exponent. */
+/* Constants of the specification: mantissa bits, exponent bias, largest exponent. */
 enum { N = 9, B = 15, E_MAX = 31 };
 
 static double clamp(float value)
@@ -13,12 +13,12 @@ static double clamp(float value)
     return value < max ? value : max;
 }
 
-/* In double all of this is exact, but for the roundings that are meant. */
+/* In double all operations are exact, except the intended roundings. */
 uint32_t slc_e5b9g9r9_from_float(const float rgb[3])
 {
     double clamped[3] = {clamp(rgb[0]), clamp(rgb[1]), clamp(rgb[2])};
     double largest = fmax(clamped[0], fmax(clamped[1], clamped[2]));
-    int exponent = 0; /* of 2 in frexp's way: largest = [0.5, 1) * 2^exponent */
+    int exponent = 0; /* power of 2 as in frexp: largest = [0.5, 1) * 2^exponent */
     frexp(largest, &exponent);
     int shared = largest > 0.0 && exponent > -B ? exponent + B : 0;
     if (floor(ldexp(largest, B + N - shared) + 0.5) >= 1 << N)

@@ -7,11 +7,11 @@
 /** 5 bits of exponent above `mantissa_bits` (6 or 5) of mantissa; exact, infinity and NaN too. */
 static inline float slc_float_from_ufloat(uint32_t ufloat, uint32_t mantissa_bits)
 {
-    /* They are halves without sign whose mantissa lacks its low bits. */
+    /* Small floats are halves without sign, whose mantissa lacks its low bits. */
     return slc_float_from_half((uint16_t)(ufloat << (10 - mantissa_bits)));
 }
 
-/** Nearest, ties to even; from the largest finite value on that; 0 for negative values and NaN. */
+/** Rounds to nearest even, saturates at the largest finite value; 0 for negative values and NaN. */
 static inline uint32_t slc_ufloat_from_float(float value, uint32_t mantissa_bits)
 {
     uint32_t dropped = 23 - mantissa_bits;
@@ -32,7 +32,7 @@ static inline uint32_t slc_ufloat_from_float(float value, uint32_t mantissa_bits
 /** Bits 0, 9 and 18: mantissas of R, G and B; bit 27: exponent. NaN and below 0 become 0. */
 uint32_t slc_e5b9g9r9_from_float(const float rgb[3]);
 
-/** Exact. */
+/** Decodes a texel exactly. */
 void slc_float_from_e5b9g9r9(uint32_t texel, float rgb[3]);
 
 #endif /* SLC_IMAGE_SMALL_FLOAT_H */

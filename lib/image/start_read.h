@@ -4,14 +4,14 @@
 
 #include <sluice/image.h>
 
-/** `source` has an interface. */
+/** Whether the source can start reads. It must have an interface. */
 bool slc_starts_reads(const SluiceImageSource *source);
 
 /** Checks the region and starts a read. Errors: UNSUPPORTED if the source reads at once only. */
 SluiceResult slc_start_read(SluiceImageSource *source, const SluiceImageInfo *info,
                             const SluiceImageRegion *region, void *texels, size_t row_pitch,
                             const SluiceImageReadToken *token);
-/** Tells a source that can be told. */
+/** Tells a source of a cancel, if it has pfnCancelRead. */
 void slc_cancel_read(SluiceImageSource *source, const SluiceImageRegion *region,
                      const SluiceImageReadToken *token);
 

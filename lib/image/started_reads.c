@@ -15,8 +15,8 @@ static bool is_pending(const struct slc_read *read, uint32_t region)
     return read->started.pending >> region & 1;
 }
 
-/* With the mutex held, which is given up while texels of the pool are copied. `fault` NULL: the
- * source's name, and no offset. */
+/* Completes a region. The mutex is held, and released while texels of the pool are copied. `fault`
+ * NULL: the source's name, and no offset. */
 static void complete_region(SluiceTileLoader *loader, struct slc_read *read, uint32_t region,
                             SluiceResult result, const SluiceImageFault *fault)
 {
@@ -61,7 +61,7 @@ static void settle_if_over(SluiceTileLoader *loader, struct slc_read *read)
         slc_read_pool_signal(loader->pool);
 }
 
-/* With the mutex held, which is given up meanwhile. */
+/* Starts a region. The mutex is held, and released in between. */
 static void start_region(SluiceTileLoader *loader, struct slc_read *read,
                          const SluiceImageInfo *info, uint32_t region)
 {
@@ -125,7 +125,7 @@ void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const Sl
         settle_if_over(loader, read);
 }
 
-/* The source shall be told of the cancel. */
+/* Whether the source must be told of the cancel. */
 static bool is_unwanted(const SluiceTileLoader *loader, const struct slc_read *read,
                         uint32_t region)
 {
@@ -175,7 +175,7 @@ SluiceResult sluiceCompleteImageRead(const SluiceImageReadToken *pToken, SluiceR
 {
     if (!pToken || !pToken->pReader)
         return SLUICE_ERROR_NULL_POINTER;
-    const SluiceImageReadToken token = *pToken; /* its memory may go with the read */
+    const SluiceImageReadToken token = *pToken; /* copied, because it may be freed with the read */
     SluiceTileLoader *loader = token.pReader;
     struct slc_read_pool *pool = loader->pool;
     slc_mutex_lock(&pool->mutex);
