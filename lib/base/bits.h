@@ -1,17 +1,17 @@
-/** Bits of words, and prefetching: what compilers have under names of their own. */
+/** Bits of words, and prefetching: wrappers of compiler builtins, with plain C for others. */
 #ifndef SLC_BASE_BITS_H
 #define SLC_BASE_BITS_H
 
 #include <stdint.h>
 
-/* Tests define it to get what other compilers get. */
+/* Tests define SLC_PLAIN_C to get the code for other compilers. */
 #if defined(__GNUC__) && !defined(SLC_PLAIN_C)
 #define SLC_PREFETCH(address) __builtin_prefetch(address)
 #else
 #define SLC_PREFETCH(address) ((void)(address))
 #endif
 
-/** Number of the lowest set bit. `bits` is not 0. */
+/** Returns the index of the lowest set bit. `bits` must not be 0. */
 static inline uint32_t slc_lowest_bit64(uint64_t bits)
 {
 #if defined(__GNUC__) && !defined(SLC_PLAIN_C)
@@ -27,7 +27,7 @@ static inline uint32_t slc_lowest_bit64(uint64_t bits)
 #endif
 }
 
-/** Number of the lowest set bit. `bits` is not 0. */
+/** Returns the index of the lowest set bit. `bits` must not be 0. */
 static inline uint32_t slc_lowest_bit(uint32_t bits)
 {
 #if defined(__GNUC__) && !defined(SLC_PLAIN_C)
@@ -37,7 +37,7 @@ static inline uint32_t slc_lowest_bit(uint32_t bits)
 #endif
 }
 
-/** Number of the highest set bit. `bits` is not 0. */
+/** Returns the index of the highest set bit. `bits` must not be 0. */
 static inline uint32_t slc_highest_bit(uint32_t bits)
 {
 #if defined(__GNUC__) && !defined(SLC_PLAIN_C)
@@ -53,7 +53,7 @@ static inline uint32_t slc_highest_bit(uint32_t bits)
 #endif
 }
 
-/** Number of set bits. */
+/** Returns the number of set bits. */
 static inline uint32_t slc_count_ones(uint32_t bits)
 {
 #if defined(__GNUC__) && !defined(SLC_PLAIN_C)

@@ -1,4 +1,4 @@
-/** Sixteen bytes at a time. Arrays that are walked this way are padded to whole blocks. */
+/** Blocks of sixteen bytes. Arrays that are processed in blocks are padded to whole blocks. */
 #ifndef SLC_BASE_BYTES_H
 #define SLC_BASE_BYTES_H
 
@@ -15,10 +15,10 @@
 
 #define SLC_BLOCK 16
 
-/** Element by element; comparisons give 255 where they hold. */
+/** Block. Operations are element by element; comparisons give 255 for true. */
 typedef uint8_t slc_block __attribute__((vector_size(SLC_BLOCK)));
 
-/** Bytes of an array of `count` with the padding. */
+/** Returns the bytes of an array of `count` bytes, with padding. */
 static inline size_t slc_padded(size_t count)
 {
     return (count + SLC_BLOCK - 1) / SLC_BLOCK * SLC_BLOCK;
@@ -88,13 +88,13 @@ static inline uint32_t slc_block_difference(slc_block a, slc_block b)
 #endif
 }
 
-/** Where to stop adding up: a byte of a sum holds the ones of 255 blocks. */
+/** Returns where a batch of sums must end: a byte of a sum can count at most 255 blocks. */
 static inline size_t slc_batch_end(size_t i, size_t padded)
 {
     return i + 255 * SLC_BLOCK < padded ? i + 255 * SLC_BLOCK : padded;
 }
 
-/** Set bits of a block's difference; no instruction for it is taken for granted. */
+/** Counts the set bits of a block's difference, without a population count instruction. */
 static inline uint32_t slc_count_bits(uint32_t bits)
 {
     bits -= bits >> 1 & 0x5555;
@@ -103,7 +103,7 @@ static inline uint32_t slc_count_bits(uint32_t bits)
     return (bits + (bits >> 8)) & 31;
 }
 
-/** Sum of the bytes. */
+/** Returns the sum of the bytes. */
 static inline uint32_t slc_block_sum(slc_block b)
 {
 #if defined(__SSE2__)
@@ -133,7 +133,7 @@ static inline void slc_halve_bytes(const uint8_t *in, uint32_t count, uint8_t *o
 #endif
 }
 
-/** memset for short rows, where the call would be most of the work. */
+/** Fills short rows, for which a call of memset would be most of the work. */
 static inline void slc_fill_bytes(uint8_t *bytes, uint8_t value, size_t count)
 {
     uint64_t word = UINT64_C(0x0101010101010101) * value;
@@ -148,7 +148,7 @@ static inline void slc_fill_bytes(uint8_t *bytes, uint8_t value, size_t count)
         memcpy(bytes + count - 4, &word, 4);
     } else {
         for (size_t i = 0; i < count; i++)
-            ((volatile uint8_t *)bytes)[i] = value; /* or it is a call after all */
+            ((volatile uint8_t *)bytes)[i] = value; /* keeps compilers from calling memset */
     }
 }
 

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#define SECONDS_UNTIL_LEFT (24 * 3600) /* files that nobody has written for so long were left */
+#define SECONDS_UNTIL_LEFT (24 * 3600) /* age from which on unfinished files are abandoned */
 
 struct entries {
     struct slc_cache_entry *items;
@@ -87,7 +87,7 @@ static bool remove_entry(const char *path, struct slc_folder *folder,
     return slc_folder_remove(folder, entry->name);
 }
 
-/* Files that were read longest ago come first. */
+/* Removes files until enough room is free, least recently read first. */
 static void remove_entries(const char *path, struct slc_folder *folder,
                            const struct slc_cache_rules *rules, struct entries *entries,
                            const SluiceAllocationCallbacks *cb)

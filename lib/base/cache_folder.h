@@ -1,6 +1,6 @@
 /**
- * Folders that keep files which can be made again. Processes share a folder and end at any time, so
- * the folder alone says how much it holds.
+ * Cache folders of files that can be made again. Processes share a folder and end at any time, so
+ * its size is known only from the folder itself.
  */
 #ifndef SLC_BASE_CACHE_FOLDER_H
 #define SLC_BASE_CACHE_FOLDER_H
@@ -22,11 +22,11 @@ struct slc_cache_entry {
 };
 
 struct slc_cache_rules {
-    uint64_t max_size;       ///< bytes from which on room is made
-    uint64_t remaining_size; ///< bytes that are left then; at most max_size
+    uint64_t max_size;       ///< bytes beyond which files are removed
+    uint64_t remaining_size; ///< bytes that are left after a removal; at most max_size
     /** Sets `kind` from `name`. False if the cache does not make such names; the file stays. */
     bool (*find_kind)(struct slc_cache_entry *entry);
-    /** NULL: no file is kept. */
+    /** Whether a file must be kept. NULL: no file is. */
     bool (*is_kept)(void *user, const struct slc_cache_entry *entry);
     /** Removes an unfinished file unless it is being written. NULL: as other files. */
     bool (*remove_unfinished)(const char *folder, const struct slc_cache_entry *entry,
@@ -34,13 +34,13 @@ struct slc_cache_rules {
     void *user; ///< for is_kept
 };
 
-/** Makes the folder unless it is there. Errors: SLUICE_ERROR_IO, logged. */
+/** Makes the folder unless it exists. Errors: SLUICE_ERROR_IO, logged. */
 SluiceResult slc_cache_folder_make(const char *folder, const SluiceLogCallback *log);
 
 /**
- * Removes what was read longest ago where the folder holds too much, and what processes left
- * unfinished. Returns the bytes of the cache's files that stay in `*size`, which may be NULL. False
- * if the folder cannot be listed or there is no memory: nothing is removed, `*size` stays.
+ * Removes the least recently read files if the folder is too large, and files that processes left
+ * unfinished. `*size` becomes the bytes of the remaining files; it may be NULL. False, with nothing
+ * removed and `*size` unchanged, if the folder cannot be listed or there is no memory.
  */
 bool slc_cache_folder_trim(const char *folder, const struct slc_cache_rules *rules,
                            const SluiceAllocationCallbacks *cb, uint64_t *size);

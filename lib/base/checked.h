@@ -1,4 +1,4 @@
-/** Arithmetic that says when it does not fit. */
+/** Arithmetic with overflow checks. */
 #ifndef SLC_BASE_CHECKED_H
 #define SLC_BASE_CHECKED_H
 

@@ -80,7 +80,7 @@ void slc_map_remove(struct slc_map *map, uint64_t key)
     if (map->values[hole] == SLC_MAP_NONE)
         return;
     map->count--;
-    /* Close the gap: move back whoever would no longer be found past it. */
+    /* Close the gap: move back keys that would not be found behind it. */
     for (uint32_t at = (hole + 1) & mask; map->values[at] != SLC_MAP_NONE; at = (at + 1) & mask) {
         uint32_t distance = (at - home(map, map->keys[at])) & mask;
         if (distance >= ((at - hole) & mask)) {

@@ -1,5 +1,4 @@
-/** A hash map from 64-bit keys to numbers; open addressing, no allocation after init but in
- * reserve. */
+/** Hash map from 64-bit keys to numbers. Open addressing; only init and reserve allocate. */
 #ifndef SLC_BASE_MAP_H
 #define SLC_BASE_MAP_H
 
@@ -9,17 +8,17 @@
 
 struct slc_map {
     uint64_t *keys;   ///< owned
-    uint32_t *values; ///< owned; SLC_MAP_NONE: free place
+    uint32_t *values; ///< owned; SLC_MAP_NONE: free
     uint32_t place_count;
     uint32_t count, capacity;
 };
 
-/** 0 < `capacity` < 2^30, here and below. */
+/** Makes a map for `capacity` keys. 0 < `capacity` < 2^30, also in slc_map_reserve. */
 SluiceResult slc_map_init(struct slc_map *map, const SluiceAllocationCallbacks *cb,
                           uint32_t capacity);
 void slc_map_finish(struct slc_map *map, const SluiceAllocationCallbacks *cb);
 
-/** Room for `capacity` keys at least. OUT_OF_HOST_MEMORY: the map is as it was. */
+/** Reserves room for `capacity` keys. OUT_OF_HOST_MEMORY, with the map unchanged. */
 SluiceResult slc_map_reserve(struct slc_map *map, const SluiceAllocationCallbacks *cb,
                              uint32_t capacity);
 
@@ -28,11 +27,11 @@ static inline uint64_t slc_pair_key(uint32_t a, uint32_t b)
     return (uint64_t)a << 32 | b;
 }
 
-/** The key must not be there, the map not full, the value not SLC_MAP_NONE. */
+/** Adds a key that is not in the map. The map must not be full, the value not SLC_MAP_NONE. */
 void slc_map_add(struct slc_map *map, uint64_t key, uint32_t value);
-/** SLC_MAP_NONE if it is not there. */
+/** Returns the value of a key, or SLC_MAP_NONE. */
 uint32_t slc_map_get(const struct slc_map *map, uint64_t key);
-/** Nothing happens if it is not there. */
+/** Removes a key, if it is in the map. */
 void slc_map_remove(struct slc_map *map, uint64_t key);
 
 #endif /* SLC_BASE_MAP_H */

@@ -20,7 +20,7 @@ static SluiceResult fail_system(const struct slc_part_file *part, const char *wh
     return SLUICE_ERROR_IO;
 }
 
-/* As fail_system, with a result that says whether to try again. */
+/* Fails like fail_system, with NOT_READY if opening may succeed later. */
 static SluiceResult fail_open(const struct slc_part_file *part, const char *what)
 {
     SluiceResult result = slc_system_result(errno);
@@ -59,7 +59,7 @@ static SluiceResult lock(const struct slc_part_file *part)
     return SLUICE_ERROR_BUSY;
 }
 
-/* `*is_gone`: what was opened was finished or removed by its writer before the lock was ours. */
+/* `*is_gone`: the writer of the opened file finished or removed it before it was locked here. */
 static SluiceResult check_part(struct slc_part_file *part, bool *is_gone)
 {
     struct slc_file_status status;
@@ -76,7 +76,8 @@ static SluiceResult check_part(struct slc_part_file *part, bool *is_gone)
     return SLUICE_SUCCESS;
 }
 
-/* Private files stay private, also while they are written. */
+/* Returns the permissions: those of the target, so that private files stay private while written.
+ */
 static uint32_t wanted_mode(const struct slc_part_file *part, uint32_t without_target)
 {
     struct slc_file_status status;
@@ -84,14 +85,14 @@ static uint32_t wanted_mode(const struct slc_part_file *part, uint32_t without_t
     return is_there ? status.permissions : without_target;
 }
 
-/* 0: as the system's mask says. */
+/* Sets permissions. 0: those of the process's mask. */
 static void set_mode(const struct slc_part_file *part, uint32_t mode)
 {
     if (mode != 0)
         slc_file_set_permissions(part->descriptor, mode);
 }
 
-/* A descriptor is left only after a success, so that nothing else is ever taken for ours. */
+/* Keeps the descriptor only after a success, so that no file of another writer is used. */
 static SluiceResult open_and_lock(struct slc_part_file *part, bool *is_gone)
 {
     *is_gone = false;
@@ -127,13 +128,13 @@ static SluiceResult open_folder(struct slc_part_file *part)
     return result;
 }
 
-/* Root may write to files that are read-only: the mode says what their owner wants. */
+/* Whether the mode forbids writing, which root could do all the same. */
 static bool is_read_only(const char *path, const struct slc_file_status *status)
 {
     return (status->permissions & 0222) == 0 || (!slc_path_is_writable(path) && errno == EACCES);
 }
 
-/* A file at the target is replaced; whatever else is there stays, and the call is refused. */
+/* Checks the target: a regular file may be replaced, anything else is refused. */
 static SluiceResult check_target(const struct slc_part_file *part)
 {
     struct slc_file_status status;
@@ -158,7 +159,7 @@ static bool find_stream(const struct slc_part_file *part)
     return slc_path_get_status(part->target, &status) && status.kind == SLC_NODE_STREAM;
 }
 
-/* Nothing is created and nothing cut: it may have become another file since it was looked at. */
+/* Opens a stream. Neither creates nor truncates: the path may name another file by now. */
 static SluiceResult open_direct(struct slc_part_file *part)
 {
     struct slc_file_status status;
@@ -187,7 +188,7 @@ static SluiceResult open_beside(struct slc_part_file *part, bool resume)
     if (is_gone)
         return fail(part, part->path, "others keep removing it");
     uint32_t mode = wanted_mode(part, 0);
-    if (result == SLUICE_SUCCESS && mode != 0) /* which the next writer can open, too */
+    if (result == SLUICE_SUCCESS && mode != 0) /* permissions with which later writers can open */
         set_mode(part, mode | 0600);
     if (result == SLUICE_SUCCESS && !resume && part->size > 0) {
         part->size = 0;
@@ -257,18 +258,19 @@ SluiceResult slc_part_file_reserve(const struct slc_part_file *part, uint64_t si
 {
     if (slc_file_reserve(part->descriptor, size))
         return SLUICE_SUCCESS;
-    if (errno == EOPNOTSUPP || errno == EINVAL) /* of the file system: without a promise, then */
+    if (errno == EOPNOTSUPP || errno == EINVAL) /* the file system cannot reserve room */
         return slc_part_file_cut(part, size);
     return fail_system(part, "make room for the index");
 }
 
-/* So that the new name outlives a crash of the system. */
+/* Syncs the folder, so that the new name survives a crash of the system. */
 static SluiceResult sync_folder(const struct slc_part_file *part)
 {
     return slc_folder_sync(part->folder) ? SLUICE_SUCCESS : fail_system(part, "sync the folder");
 }
 
-/* A NAME.sluice-part that was removed meanwhile may be half a file of the next writer by now. */
+/* Checks that NAME.sluice-part is still this file: after a removal the next writer may have made
+ * one. */
 static SluiceResult check_ours(const struct slc_part_file *part)
 {
     struct slc_file_status status;
@@ -284,11 +286,11 @@ SluiceResult slc_part_file_publish(struct slc_part_file *part)
     set_mode(part, wanted_mode(part, 0));
     if (!part->is_unsynced && !slc_file_sync(part->descriptor)) {
         SluiceResult result = fail_system(part, "sync");
-        /* what was not written may be taken as written by the next sync: nothing here is resumed */
+        /* the next sync may succeed without the lost data, so the file must not be resumed */
         (void)!slc_file_set_size(part->descriptor, 0);
         return result;
     }
-    /* Once more: a device that has come since the start would be replaced. */
+    /* Checked again, so that a device made since the start is not replaced. */
     SluiceResult result = check_target(part);
     if (result == SLUICE_SUCCESS)
         result = check_ours(part);

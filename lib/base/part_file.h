@@ -1,10 +1,10 @@
 /**
- * The file that a writer fills beside the name it is to have. One writer at a time; complete before
- * it takes the name. Every file that Sluice's libraries and programs write goes through here.
+ * Part file: the file that a writer fills beside its final name. It has one writer at a time, and
+ * gets the name when complete. All files that Sluice's libraries and programs write use it.
  *
- * The file is written as NAME.sluice-part, locked with flock, and renamed when it is whole and on
- * the disk. Until then NAME stays as it was, and after a failure too. A NAME.sluice-part that
- * nobody has locked was left by a killed writer and is taken over.
+ * The file is written as NAME.sluice-part, locked with flock, and renamed when it is complete and
+ * on the disk. Until then, and after a failure, NAME is unchanged. An unlocked NAME.sluice-part was
+ * left by a killed writer, and is taken over.
  *
  * Refused, with a message, and left as they are: a folder, a block device or a socket at NAME, a
  * symbolic link at NAME (neither followed nor replaced), a read-only file at NAME, and a

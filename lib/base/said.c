@@ -22,7 +22,7 @@ enum slc_say slc_said_note(struct slc_said *said, uint64_t key)
         uint64_t there = atomic_load_explicit(&said->keys[i], memory_order_relaxed);
         if (there == 0 && atomic_compare_exchange_strong(&said->keys[i], &there, key))
             return i + 1 < SLC_SAID_MAX ? SLC_SAY_IT : SLC_SAY_IT_LAST;
-        if (there == key) /* of another thread perhaps, which was faster */
+        if (there == key) /* another thread may have added it */
             return SLC_SAY_NOTHING;
     }
     return SLC_SAY_NOTHING;

@@ -1,9 +1,8 @@
 /**
- * The state of an object as numbers and bytes. docs/replay.md lists every field.
+ * Snapshot of an object's state as numbers and bytes. docs/replay.md lists every field.
  *
- * A function goes through a part of the state. It hands every field out or, while reading, takes
- * it in, so that a field cannot be written in one order and read in another. What follows from the
- * rest is not handed out.
+ * One function writes and reads each part of the state, so that fields are read in the order in
+ * which they were written. Fields that follow from others are left out.
  */
 #ifndef SLC_BASE_SNAPSHOT_IO_H
 #define SLC_BASE_SNAPSHOT_IO_H
@@ -12,22 +11,22 @@
 
 #include <stdbool.h>
 
-/** Once `result` is an error, numbers and bytes are of no use. */
+/** Stream of a snapshot. After an error in `result`, numbers and bytes are meaningless. */
 struct slc_snapshot_io {
     void *user;
     const SluiceAllocationCallbacks *cb;
     bool reading;
-    /** Writes the value and returns it, or returns what was read. */
+    /** Writes the value and returns it, or returns the value that was read. */
     uint64_t (*number)(void *user, uint64_t value);
     /** Writes the bytes or fills them. */
     void (*bytes)(void *user, uint8_t *bytes, size_t size);
-    /** A part of the state ends. Memory for what was written may be given back. */
+    /** Ends a part of the state. Memory of written parts may be freed. */
     void (*part)(void *user);
     SluiceResult result; ///< OUT_OF_HOST_MEMORY; CORRUPT_DATA: `why`
     const char *why;
 };
 
-/** Refuses what was read. */
+/** Refuses the snapshot that is being read. */
 static inline void slc_snapshot_fail(struct slc_snapshot_io *io, const char *why)
 {
     if (io->result != SLUICE_SUCCESS)

@@ -1,4 +1,4 @@
-/** What the operating system answers, in the words of this library. */
+/** Errors of the operating system as results, and opening of input files. */
 #ifndef SLC_BASE_SYSTEM_H
 #define SLC_BASE_SYSTEM_H
 
@@ -8,8 +8,8 @@
 #define SLC_RESERVED_DESCRIPTORS 16
 
 /**
- * The result for a value of errno. NOT_READY: try again later (EMFILE, ENFILE, EAGAIN, EINTR).
- * OUT_OF_HOST_MEMORY: ENOMEM. FILE_NOT_FOUND: ENOENT, ENOTDIR. IO: everything else.
+ * Returns the result for a value of errno. NOT_READY: try again later (EMFILE, ENFILE, EAGAIN,
+ * EINTR). OUT_OF_HOST_MEMORY: ENOMEM. FILE_NOT_FOUND: ENOENT, ENOTDIR. IO: everything else.
  */
 SluiceResult slc_system_result(int error);
 
