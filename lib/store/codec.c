@@ -11,7 +11,8 @@
 #include <stdalign.h>
 #include <string.h>
 
-/* Ours is told the size of what is freed, zstd does not know it. */
+/* Allocations for zstd store their size in front: the allocator is told sizes on free, zstd has
+ * none. */
 enum { PREFIX = alignof(max_align_t) };
 _Static_assert(PREFIX >= sizeof(size_t), "the size fits in front");
 

@@ -20,7 +20,7 @@ static int compare_numbers(const void *a, const void *b)
     return (x->number > y->number) - (x->number < y->number);
 }
 
-/* All chunks of sound blocks. Returns the sum of their sizes. */
+/* Lists all chunks of undamaged blocks. Returns the sum of their sizes. */
 static uint64_t list_chunks(struct slc_store_equal_chunks *chunks,
                             const struct slc_store_header *header, const unsigned char *index)
 {
@@ -42,7 +42,7 @@ static uint64_t list_chunks(struct slc_store_equal_chunks *chunks,
     return sum;
 }
 
-/* Keeps the chunks whose bytes other chunks have, too. */
+/* Keeps the chunks that share their bytes with other chunks. */
 static void keep_equal(struct slc_store_equal_chunks *chunks)
 {
     struct slc_store_equal_chunk *at = chunks->at;
@@ -69,7 +69,7 @@ static void shrink(struct slc_store_equal_chunks *chunks, const SluiceAllocation
     chunks->capacity = chunks->count;
 }
 
-/* Failures are not logged: tiles show whether the index matters. */
+/* Reads the index. Failures are not logged here, but when a tile needs the index. */
 static bool read_index(const struct slc_input_file *file, unsigned char *index, size_t size)
 {
     return slc_input_file_read_some(file, slc_store_block_offset(0), index, size) == (int64_t)size;
@@ -87,7 +87,7 @@ void slc_store_equal_chunks_find(struct slc_store_equal_chunks *chunks,
     unsigned char *index = slc_alloc(cb, size, 1);
     chunks->capacity = (uint32_t)header->grid.chunk_count;
     chunks->at = slc_alloc(cb, chunks->capacity, sizeof *chunks->at);
-    /* An index with no equal chunks names no more bytes than there are. */
+    /* Without equal chunks the sizes in the index do not exceed the file. */
     if (index && chunks->at && read_index(file, index, size) &&
         list_chunks(chunks, header, index) > header->file_size - header->data_offset)
         keep_equal(chunks);

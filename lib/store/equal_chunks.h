@@ -1,6 +1,6 @@
 /**
- * Chunks of a compressed store that share their stored bytes, found once in the index. Constant
- * after slc_store_equal_chunks_find: any thread may look up chunks.
+ * Chunks of a compressed store that share stored bytes, found once in the index. Constant after
+ * slc_store_equal_chunks_find: any thread may look up chunks.
  */
 #ifndef SLC_STORE_EQUAL_CHUNKS_H
 #define SLC_STORE_EQUAL_CHUNKS_H
@@ -12,9 +12,9 @@
 #define SLC_STORE_MAX_COMPARED_BLOCKS 1024u
 
 struct slc_store_equal_chunk {
-    uint64_t offset; ///< of the bytes in the file
+    uint64_t offset; ///< offset of the bytes in the file
     uint32_t size;   ///< bytes
-    uint32_t number; ///< of the chunk
+    uint32_t number; ///< number of the chunk
 };
 
 struct slc_store_equal_chunks {
@@ -30,7 +30,7 @@ void slc_store_equal_chunks_find(struct slc_store_equal_chunks *chunks,
 void slc_store_equal_chunks_finish(struct slc_store_equal_chunks *chunks,
                                    const SluiceAllocationCallbacks *cb);
 
-/** The offset of the chunk's bytes, if other chunks have the same; 0 if none has. */
+/** Returns the offset of the chunk's bytes if other chunks share them, else 0. */
 uint64_t slc_store_equal_chunks_get(const struct slc_store_equal_chunks *chunks, uint64_t number);
 
 #endif /* SLC_STORE_EQUAL_CHUNKS_H */

@@ -89,7 +89,7 @@ SluiceResult slc_store_grid_init(struct slc_store_grid *grid, uint32_t width, ui
     result = sluiceGetFormatInfo(format, &grid->format);
     if (result != SLUICE_SUCCESS)
         return result;
-    /* At most 2^14 x 2^14 tiles of 2^16 bytes in level 0, so nothing here leaves 63 bits. */
+    /* At most 2^14 x 2^14 tiles of 2^16 bytes in level 0, so all sums fit into 63 bits. */
     grid->chunk_count = grid->layout.tileCount * layer_count;
     for (uint32_t level = 0; level < grid->layout.tailFirstLevel; level++) {
         struct slc_store_place end = {0, level, 0, grid->layout.levelHeightInTiles[level]};

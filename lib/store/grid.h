@@ -1,20 +1,20 @@
 /**
- * How a texture is cut into chunks, what a chunk holds, and how chunks are counted: layer by layer,
- * in a layer level by level, in a level row by row, the tail last. Pure arithmetic.
+ * Chunks of a texture: their texels and their numbers. Chunks are numbered layer by layer, level by
+ * level, row by row, with the tail of a layer last. Pure arithmetic.
  */
 #ifndef SLC_STORE_GRID_H
 #define SLC_STORE_GRID_H
 
 #include <sluice/store.h>
 
-/** Bytes of the texels of a whole tile. */
+/** Bytes of a whole tile. */
 #define SLC_STORE_TILE_SIZE 65536u
-/** No tail has as many bytes: its first level is less than a tile, the others less than that. */
+/** Limit of a tail's bytes: its first level is less than a tile, all others together less again. */
 #define SLC_STORE_MAX_CHUNK_SIZE 131072u
-/** Where chunks of uncompressed files begin is a multiple of it. */
+/** Alignment of chunks of uncompressed files, in bytes. */
 #define SLC_STORE_ALIGNMENT 4096u
 
-/** A tile, or with level = tailFirstLevel and x = y = 0 a tail. */
+/** Position of a chunk: a tile, or, with level = tailFirstLevel and x = y = 0, the tail. */
 struct slc_store_place {
     uint32_t layer, level, x, y;
 };
@@ -23,17 +23,18 @@ struct slc_store_grid {
     SluiceStoreLayout layout;
     SluiceFormatInfo format;
     uint32_t layer_count;
-    uint64_t chunk_count;                              ///< of all layers
-    uint64_t first_chunk[SLUICE_STORE_MAX_MIP_LEVELS]; ///< of a level, up to the tail, in a layer
-    uint64_t first_byte[SLUICE_STORE_MAX_MIP_LEVELS];  ///< the same in an uncompressed layer
+    uint64_t chunk_count;                              ///< chunks of all layers
+    uint64_t first_chunk[SLUICE_STORE_MAX_MIP_LEVELS]; ///< by level up to the tail, in a layer
+    uint64_t first_byte[SLUICE_STORE_MAX_MIP_LEVELS];  ///< by level, in an uncompressed layer
     uint64_t layer_size;                               ///< bytes of an uncompressed layer
 };
 
-/** Errors: as sluiceGetStoreLayout; INVALID_ARGUMENT for no layers or too many. */
+/** Computes the grid. Errors: as sluiceGetStoreLayout; INVALID_ARGUMENT for no layers or too many.
+ */
 SluiceResult slc_store_grid_init(struct slc_store_grid *grid, uint32_t width, uint32_t height,
                                  SluiceFormat format, uint32_t layer_count);
 
-/** The chunk that a tile is, or a level of the tail lies in; false if there is no such tile. */
+/** Finds the chunk of a tile or of a level of the tail. False if there is no such tile. */
 bool slc_store_grid_find(const struct slc_store_grid *grid, uint32_t layer, uint32_t level,
                          uint32_t x, uint32_t y, struct slc_store_place *place);
 
@@ -47,18 +48,18 @@ static inline bool slc_store_is_tail(const struct slc_store_grid *grid,
     return place->level == grid->layout.tailFirstLevel;
 }
 
-/** Bytes of the texels of a chunk, 1 to SLC_STORE_MAX_CHUNK_SIZE. */
+/** Returns the bytes of a chunk's texels, 1 to SLC_STORE_MAX_CHUNK_SIZE. */
 uint32_t slc_store_chunk_size(const struct slc_store_grid *grid,
                               const struct slc_store_place *place);
 
-/** Where a chunk of an uncompressed file begins, from where its first one begins. */
+/** Returns the offset of a chunk of an uncompressed file, counted from the first chunk. */
 uint64_t slc_store_chunk_offset(const struct slc_store_grid *grid,
                                 const struct slc_store_place *place);
 
-/** Where a level begins in the texels of the tail. */
+/** Returns the offset of a level in the texels of the tail. */
 uint32_t slc_store_tail_offset(const struct slc_store_grid *grid, uint32_t level);
 
-/** The texels of a chunk that is not a tail. */
+/** Returns the texels of a chunk other than a tail. */
 SluiceImageRegion slc_store_chunk_region(const struct slc_store_grid *grid,
                                          const struct slc_store_place *place);
 

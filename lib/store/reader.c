@@ -83,7 +83,7 @@ static bool find_in_kept(struct slc_store_reader *reader, uint64_t block,
     return is_kept;
 }
 
-/* Without memory it is not kept, and read again the next time. */
+/* Keeps a block. Without memory, the block is read again the next time. */
 static void keep_block(struct slc_store_reader *reader, uint64_t block, const unsigned char *bytes)
 {
     uint32_t i = (uint32_t)(block % SLC_STORE_KEPT_BLOCKS);

@@ -1,7 +1,7 @@
 /**
- * Chunks of a compressed store that were written lately, by their stored bytes: a chunk with the
- * same bytes is not written again, and both entries of the index name the same place. Constant and
- * repeated tiles are the usual case. Not thread-safe: the writer locks.
+ * Recently written chunks of a compressed store, by their stored bytes. A chunk with equal bytes is
+ * not written again: both entries of the index name one place. The usual case is constant and
+ * repeated tiles. Not thread-safe: the writer locks.
  */
 #ifndef SLC_STORE_REPEATS_H
 #define SLC_STORE_REPEATS_H
@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-#define SLC_STORE_REPEATS 4096u /* places; a newer chunk takes the place of an older one */
+#define SLC_STORE_REPEATS 4096u /* table entries; a newer chunk replaces an older one */
 
 struct slc_store_repeat {
     uint64_t hash, offset;
@@ -22,13 +22,13 @@ struct slc_store_repeats {
 };
 
 uint64_t slc_store_repeat_hash(const void *bytes, size_t size);
-/** A chunk that may have the same bytes: NULL if there is none. */
+/** Returns a chunk that may have equal bytes; NULL: there is none. */
 const struct slc_store_repeat *slc_store_repeats_find(const struct slc_store_repeats *repeats,
                                                       uint64_t hash, size_t size);
-/** The bytes are in the file. */
+/** Adds a chunk whose bytes are in the file. */
 void slc_store_repeats_add(struct slc_store_repeats *repeats,
                            const struct slc_store_repeat *repeat);
-/** Whether the file has these bytes there. False if it cannot be read. */
+/** Whether the file has these bytes at the chunk's place. False if it cannot be read. */
 bool slc_store_repeat_is_equal(const struct slc_store_file *file,
                                const struct slc_store_repeat *repeat, const void *bytes);
 

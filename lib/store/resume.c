@@ -31,8 +31,8 @@ static SluiceResult check_chunk(const struct resume *resume, uint64_t number,
     return result;
 }
 
-/* The chunk is in resume->chunk. Chunks come by number, not in the order of writing; where two have
- * one place of the table, the one that lies behind was written last. */
+/* Adds the chunk in resume->chunk to the table. Chunks come by number, not in the order of writing:
+ * of two chunks for one table entry, the one with the higher offset was written last. */
 static void remember(const struct resume *resume, const struct slc_store_entry *entry)
 {
     struct slc_store_repeats *repeats = resume->resumed->repeats;
@@ -45,7 +45,7 @@ static void remember(const struct resume *resume, const struct slc_store_entry *
         slc_store_repeats_add(repeats, &repeat);
 }
 
-/* An entry of a chunk that does not exist is wrong as well. */
+/* Checks an entry. An entry of a chunk that does not exist is wrong, too. */
 static SluiceResult check_entry(const struct resume *resume, uint64_t number, unsigned char *bytes,
                                 bool *has_changed)
 {

@@ -1,4 +1,4 @@
-/** A store that is being written: whole reads and writes, whatever the system does in between. */
+/** File of a store that is being written: complete reads and writes. */
 #ifndef SLC_STORE_STORE_FILE_H
 #define SLC_STORE_STORE_FILE_H
 
@@ -10,14 +10,14 @@ struct slc_store_file {
     SluiceLogCallback log;
     const char *path;
     int descriptor;
-    uint64_t size; ///< when it was opened
+    uint64_t size; ///< bytes when the file was opened
 };
 
 /** Reads all of `size` bytes. Returns SLUICE_NOT_READY if the system says "try again". Errors: IO,
  *  also beyond the end; OUT_OF_HOST_MEMORY. Logs every failure. Any thread. */
 SluiceResult slc_store_file_read(const struct slc_store_file *file, uint64_t offset, void *bytes,
                                  size_t size);
-/** All of `size` bytes. Errors: IO, logged; any number of the bytes may be written then. */
+/** Writes all of `size` bytes. Errors: IO, logged; some of the bytes may be written then. */
 SluiceResult slc_store_file_write(const struct slc_store_file *file, uint64_t offset,
                                   const void *bytes, size_t size);
 

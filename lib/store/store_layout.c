@@ -6,7 +6,7 @@
 #include <string.h>
 #include <xxhash.h>
 
-/* Where the fields of a header are; docs/store.md has the same table. */
+/* Offsets of the header's fields. docs/store.md has this table, too. */
 enum {
     AT_MAGIC = 0,
     AT_MAJOR = 8,
@@ -32,15 +32,15 @@ enum {
     AT_DATA_OFFSET = 104,
     AT_CUBE = 112,
     AT_NAME = SLC_STORE_NAME_OFFSET,
-    AT_IDENTITY = 4064, /* of everything before it */
+    AT_IDENTITY = 4064, /* hash of all bytes before it */
     AT_FILE_SIZE = 4072,
-    AT_CHECKSUM = 4088 /* of everything before it, in blocks of the index too */
+    AT_CHECKSUM = 4088 /* checksum of all bytes before it, also in blocks of the index */
 };
 
 _Static_assert(AT_NAME + SLUICE_STORE_MAX_SOURCE_NAME <= AT_IDENTITY, "names fit");
 _Static_assert(SLC_STORE_BLOCK_ENTRIES *SLC_STORE_ENTRY_SIZE <= AT_CHECKSUM, "entries fit");
 
-/* As PNG's: what transfers as text would change is damaged at once. */
+/* Magic number like PNG's: transfers in text mode damage it. */
 static const unsigned char magic[8] = {0x89, 'S', 'L', 'S', '\r', '\n', 0x1A, '\n'};
 
 static uint64_t count_blocks(const struct slc_store_grid *grid)
@@ -91,7 +91,7 @@ bool slc_store_header_matches(const unsigned char a[SLC_STORE_HEADER_SIZE],
     return memcmp(a, b, AT_FILE_SIZE) == 0;
 }
 
-/* What decides whether anything else can be understood. */
+/* Checks magic number, version and checksum, before any other field. */
 static SluiceResult check_frame(const unsigned char *bytes, uint32_t *offset, const char **message)
 {
     *offset = AT_MAGIC;
@@ -137,7 +137,7 @@ static SluiceResult read_grid(struct slc_store_header *header, const unsigned ch
     return SLUICE_SUCCESS;
 }
 
-/* What follows from the size and the format, but is in the file for those who read it otherwise. */
+/* Checks fields that follow from size and format. They are stored for other readers. */
 static SluiceResult check_consequences(const struct slc_store_header *header,
                                        const unsigned char *bytes, uint32_t *offset,
                                        const char **message)
@@ -161,7 +161,8 @@ static SluiceResult check_consequences(const struct slc_store_header *header,
     return SLUICE_SUCCESS;
 }
 
-/* Values that a newer minor version added mean what says least; in others they are damage. */
+/* Reads enums. Unknown values of a newer minor version become the neutral value; else they are
+ * damage. */
 static SluiceResult read_choices(struct slc_store_header *header, const unsigned char *bytes,
                                  uint32_t *offset, const char **message)
 {

@@ -5,7 +5,7 @@
 
 struct SluiceStoreReadPool {
     SluiceAllocationCallbacks allocator;
-    struct slc_mutex mutex; ///< around what follows
+    struct slc_mutex mutex; ///< guards the fields below
     struct slc_store_read_bench *idle;
 };
 

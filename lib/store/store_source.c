@@ -10,10 +10,10 @@
 struct store_source {
     SluiceImageSource base;
     struct slc_store_reader reader;
-    char name[SLUICE_STORE_MAX_SOURCE_NAME + 1]; ///< the image's own source
+    char name[SLUICE_STORE_MAX_SOURCE_NAME + 1]; ///< name of the source that was baked
 };
 
-/* Both are VkSamplerAddressMode's values, one of them plus 1. */
+/* Converts an address mode. Both enums have VkSamplerAddressMode's values, one of them plus 1. */
 static SluiceImageAddressMode image_mode(SluiceStoreAddressMode mode)
 {
     return (SluiceImageAddressMode)((int)mode + SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
@@ -38,13 +38,13 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
     return SLUICE_SUCCESS;
 }
 
-/* Texels of a chunk, or of a level of the tail, and which of the level they are. */
+/* Texels of a chunk or of a level of the tail, with their region of the level. */
 struct patch {
     const unsigned char *texels; ///< tightly packed
     uint32_t x, y, width, height;
 };
 
-/* What the patch and the region share. */
+/* Copies the intersection of patch and region. */
 static void copy_patch(const SluiceFormatInfo *format, const struct patch *patch,
                        const SluiceImageRegion *region, char *texels, size_t row_pitch)
 {
@@ -78,7 +78,8 @@ static SluiceResult read_from_tail(struct slc_store_reader *reader, const Sluice
     return SLUICE_SUCCESS;
 }
 
-/* All tiles that the region touches; each is read whole, because its checksum is. */
+/* Reads all tiles that the region touches. Tiles are read whole, because checksums are of whole
+ * tiles. */
 static SluiceResult read_from_tiles(struct slc_store_reader *reader,
                                     const SluiceImageRegion *region,
                                     struct slc_store_read_bench *bench, char *texels,
@@ -112,7 +113,7 @@ static bool covers_tile(const struct slc_store_grid *grid, const SluiceImageRegi
            whole.height == region->height;
 }
 
-/* Whether the caller's memory can take a tile as it is. */
+/* Whether the region is one whole tile in tight rows, which is read directly. */
 static bool is_one_tile(const struct slc_store_grid *grid, const SluiceImageRegion *region,
                         size_t row_pitch, struct slc_store_place *place)
 {
@@ -239,7 +240,7 @@ SluiceResult sluiceHashStore(SluiceImageSource *source, uint64_t *pHash)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     struct slc_store_reader *reader = &((struct store_source *)source)->reader;
     const struct slc_store_grid *grid = &reader->header.grid;
-    unsigned char bytes[16] = {0}; /* the hash of all before, the checksum of this one */
+    unsigned char bytes[16] = {0}; /* hash of all chunks before, checksum of this chunk */
     SluiceResult result = SLUICE_SUCCESS;
     uint64_t hash = 0;
     for (uint64_t number = 0; number < grid->chunk_count && result == SLUICE_SUCCESS; number++) {

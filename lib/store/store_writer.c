@@ -66,7 +66,7 @@ static SluiceResult describe(const SluiceStoreCreateInfo *info, struct slc_store
                            info->mipLevelCount, levels);
 }
 
-/* Whether what is there is of the same create-info. */
+/* Whether the unfinished file was begun with an equal create-info. */
 static SluiceResult find_match(const SluiceStoreWriter *writer, bool *matches)
 {
     unsigned char bytes[SLC_STORE_HEADER_SIZE];
@@ -105,7 +105,7 @@ static SluiceResult go_on(SluiceStoreWriter *writer)
             writer->file.path, (unsigned long long)resumed.chunk_count,
             (unsigned long long)writer->header.grid.chunk_count);
     result = slc_part_file_cut(&writer->part, writer->end);
-    if (result == SLUICE_SUCCESS) /* a finished one is not any more */
+    if (result == SLUICE_SUCCESS) /* marks a finished file as unfinished */
         result = slc_store_file_write(&writer->file, 0, writer->header_bytes,
                                       sizeof writer->header_bytes);
     return result;
@@ -163,7 +163,7 @@ SluiceResult sluiceCreateStoreWriter(const SluiceStoreCreateInfo *pInfo,
     writer->header = header;
     writer->may_resume = (info.flags & SLUICE_STORE_WRITER_RESUME) != 0;
     slc_store_header_write(&writer->header, writer->header_bytes);
-    writer->header.name = NULL; /* the caller's, from here on only in the bytes */
+    writer->header.name = NULL; /* the caller's string; from here on only in the bytes */
     result = begin(writer, &info);
     if (result != SLUICE_SUCCESS) {
         sluiceDestroyStoreWriter(writer);
@@ -247,7 +247,7 @@ SluiceResult sluiceIsStoreTileWritten(SluiceStoreWriter *writer, uint32_t arrayL
     return result;
 }
 
-/* Names the first chunk that is not there. */
+/* Logs the first missing chunk. */
 static SluiceResult refuse_unfinished(const SluiceStoreWriter *writer, uint64_t missing)
 {
     const struct slc_store_grid *grid = &writer->header.grid;
@@ -303,7 +303,7 @@ SluiceResult sluiceFinishStore(SluiceStoreWriter *writer)
     if (result != SLUICE_SUCCESS)
         return result;
     result = seal_and_publish(writer);
-    /* After an error of the disk nobody knows what is on it; only reading it again will tell. */
+    /* After a disk error the contents are unknown until they are read again. */
     writer->state = result == SLUICE_SUCCESS ? SLC_STORE_FINISHED : SLC_STORE_BROKEN;
     return result;
 }

@@ -1,4 +1,4 @@
-/** A store that is being written: what creation, writing and finishing share. */
+/** Writer of a store: parts that creation, writing and finishing share. */
 #ifndef SLC_STORE_STORE_WRITER_H
 #define SLC_STORE_STORE_WRITER_H
 
@@ -9,12 +9,12 @@
 #include "store/store_layout.h"
 #include "platform/thread.h"
 
-/** What one call needs to make a chunk; as many as there were calls at a time. */
+/** Buffers of one call that makes a chunk. One per concurrent call. */
 struct slc_store_bench {
     struct slc_store_bench *next;
-    uint64_t turn; ///< while it waits
+    uint64_t turn; ///< turn while the chunk waits
     struct slc_store_place place;
-    const void *bytes; ///< of the chunk as they are stored: in `texels` or `stored`
+    const void *bytes; ///< stored bytes of the chunk: in `texels` or `stored`
     size_t size;
     struct slc_store_compressor *compressor; ///< NULL: nothing is compressed
     unsigned char texels[SLC_STORE_MAX_CHUNK_SIZE];
@@ -23,24 +23,24 @@ struct slc_store_bench {
 
 enum slc_store_state {
     SLC_STORE_WRITING,
-    SLC_STORE_BROKEN,  ///< nobody knows what the file holds; to be resumed
-    SLC_STORE_FINISHED ///< has its name
+    SLC_STORE_BROKEN,  ///< contents unknown after an error; must be resumed
+    SLC_STORE_FINISHED ///< complete, with its final name
 };
 
 struct SluiceStoreWriter {
     SluiceAllocationCallbacks allocator;
     struct slc_part_file part;
-    struct slc_store_file file; ///< Borrowed from `part`: how its bytes are read and written.
+    struct slc_store_file file; ///< Borrowed from `part`, for reading and writing its bytes.
     struct slc_store_header header;
     unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
     bool may_resume;
-    bool has_mutex;         ///< and the condition
-    struct slc_mutex mutex; ///< around what follows
+    bool has_mutex;         ///< mutex and condition exist
+    struct slc_mutex mutex; ///< guards the fields below
     enum slc_store_state state;
-    uint64_t end; ///< where the next compressed chunk goes
+    uint64_t end; ///< offset of the next compressed chunk
     uint64_t written_count;
     struct slc_store_bench *idle;
-    uint64_t turn;                   ///< the earliest that has not ended
+    uint64_t turn;                   ///< earliest turn that has not ended
     struct slc_store_bench *waiting; ///< chunks of later turns, by turn
     uint32_t waiting_count;
     struct slc_condition turn_changed;
@@ -51,11 +51,11 @@ struct SluiceStoreWriter {
 SluiceResult slc_store_writer_find(const SluiceStoreWriter *writer, uint32_t layer, uint32_t level,
                                    uint32_t x, uint32_t y, struct slc_store_place *place);
 
-/** The entry of a chunk as it is in the file now. Errors: IO, logged. */
+/** Reads the present entry of a chunk from the file. Errors: IO, logged. */
 SluiceResult slc_store_writer_entry(const SluiceStoreWriter *writer, uint64_t number,
                                     struct slc_store_entry *entry);
 
-/** Chunks that are not there have no bytes. */
+/** Whether a chunk is written. Entries of missing chunks have size 0. */
 static inline bool slc_store_entry_is_written(const struct slc_store_entry *entry)
 {
     return entry->size > 0;
@@ -69,7 +69,7 @@ void slc_store_writer_give_bench(SluiceStoreWriter *writer, struct slc_store_ben
 SluiceResult slc_store_writer_check_tile(SluiceStoreWriter *writer, uint32_t layer, uint32_t level,
                                          uint32_t x, uint32_t y, size_t row_pitch,
                                          struct slc_store_place *place);
-/** Compresses a tile: place, bytes and size of the bench, which may point to `texels`. */
+/** Compresses a tile to place, bytes and size of the bench. `bytes` may point to `texels`. */
 SluiceResult slc_store_writer_compress(SluiceStoreWriter *writer,
                                        const struct slc_store_place *place, const void *texels,
                                        size_t row_pitch, struct slc_store_bench *bench);
@@ -79,8 +79,8 @@ SluiceResult slc_store_writer_write(SluiceStoreWriter *writer, const struct slc_
 /** Gives back what sluiceWriteStoreTile keeps between calls. */
 void slc_store_writer_free_benches(SluiceStoreWriter *writer);
 
-/** The entries of a block have all been written; `missing` is the first chunk that is not, else
- *  the number of chunks. Seals the block then. Errors: IO, logged. */
+/** Seals a block if all of its entries are written. `missing`: the first chunk that is not written,
+ *  else the number of chunks. Errors: IO, logged. */
 SluiceResult slc_store_writer_seal(const SluiceStoreWriter *writer, uint64_t block,
                                    uint64_t *missing);
 

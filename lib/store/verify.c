@@ -6,7 +6,7 @@ struct verifier {
     const SluiceStoreVerifyInfo *info;
     struct slc_store_reader reader;
     SluiceStoreReport report;
-    SluiceResult result; ///< of the first defect
+    SluiceResult result; ///< result for the first defect
 };
 
 static void note_defect(struct verifier *verifier, const struct slc_store_find *find,
@@ -26,7 +26,7 @@ static void note_defect(struct verifier *verifier, const struct slc_store_find *
         verifier->info->pfnDefect(verifier->info->pUserData, &defect);
 }
 
-/* Errors: OUT_OF_HOST_MEMORY; whatever the file is at fault for is noted. */
+/* Verifies a chunk, and notes defects of the file. Errors: OUT_OF_HOST_MEMORY. */
 static SluiceResult verify_chunk(struct verifier *verifier, uint64_t number,
                                  struct slc_store_read_bench *bench)
 {

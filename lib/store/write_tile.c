@@ -65,7 +65,8 @@ void slc_store_writer_free_benches(SluiceStoreWriter *writer)
     free_list(writer, &writer->waiting);
 }
 
-/* With the lock held. Makes them if the file is compressed. Returns false without host memory. */
+/* Makes `repeats` if the file is compressed, with the lock held. Returns false without host memory.
+ */
 static bool has_repeats(SluiceStoreWriter *writer)
 {
     if (writer->header.compression_level && !writer->repeats)
@@ -107,7 +108,7 @@ void slc_store_writer_give_bench(SluiceStoreWriter *writer, struct slc_store_ben
     slc_mutex_unlock(&writer->mutex);
 }
 
-/* A place in the file that is nobody else's. Errors: as state says. */
+/* Takes an unused place in the file. Errors: those of the writer's state. */
 static SluiceResult take_place(SluiceStoreWriter *writer, const struct slc_store_place *place,
                                struct slc_store_entry *entry)
 {
@@ -124,7 +125,7 @@ static SluiceResult take_place(SluiceStoreWriter *writer, const struct slc_store
     return result;
 }
 
-/* Unless others have taken the room behind it, it is free again. */
+/* Gives a place back, unless another chunk was placed behind it. */
 static void return_place(SluiceStoreWriter *writer, const struct slc_store_entry *entry)
 {
     slc_mutex_lock(&writer->mutex);
@@ -133,8 +134,8 @@ static void return_place(SluiceStoreWriter *writer, const struct slc_store_entry
     slc_mutex_unlock(&writer->mutex);
 }
 
-/* The index has had its room on the disk from the start. If this fails all the same, what is there
- * now may be half an entry, and only reading everything again finds out. */
+/* Writes an entry. The room of the index was reserved at the start. If the write still fails, half
+ * an entry may be written, which only a complete read finds out. */
 static SluiceResult write_entry(SluiceStoreWriter *writer, uint64_t number,
                                 const struct slc_store_entry *entry)
 {
@@ -151,8 +152,8 @@ static SluiceResult write_entry(SluiceStoreWriter *writer, uint64_t number,
     return result;
 }
 
-/* Whether an earlier chunk has the same bytes: `entry` then has their place. Chunks of uncompressed
- * files have places of their own. */
+/* Whether an earlier chunk has equal bytes; `entry` then has their place. False for uncompressed
+ * files, whose chunks have fixed places. */
 static bool find_repeat(SluiceStoreWriter *writer, uint64_t hash, const void *bytes,
                         struct slc_store_entry *entry)
 {
@@ -202,7 +203,7 @@ SluiceResult slc_store_writer_write(SluiceStoreWriter *writer, const struct slc_
     return write_entry(writer, number, &entry);
 }
 
-/* Texels as the file has them: `texels`, or bench->texels, which `texels` may be. */
+/* Returns texels in the file's byte order: `texels` itself, or a copy in bench->texels. */
 static const void *in_file_order(SluiceFormat format, struct slc_store_bench *bench,
                                  const void *texels, size_t size)
 {
@@ -214,7 +215,7 @@ static const void *in_file_order(SluiceFormat format, struct slc_store_bench *be
     return bench->texels;
 }
 
-/* `texels`: the whole chunk, rows tight. */
+/* Compresses a chunk. `texels`: the whole chunk, in tight rows. */
 static SluiceResult compress_chunk(SluiceStoreWriter *writer, const struct slc_store_place *place,
                                    const void *texels, struct slc_store_bench *bench)
 {
@@ -235,7 +236,7 @@ static SluiceResult compress_chunk(SluiceStoreWriter *writer, const struct slc_s
     return result;
 }
 
-/* `size` bytes of each of `rows` rows, from `row_pitch` apart to none apart. */
+/* Copies `size` bytes of each of `rows` rows, `row_pitch` bytes apart, to tight rows. */
 static void pack_rows(const void *texels, size_t row_pitch, size_t size, uint32_t rows,
                       unsigned char *packed)
 {
@@ -314,7 +315,7 @@ SluiceResult sluiceWriteStoreTile(SluiceStoreWriter *writer, uint32_t arrayLayer
     return result;
 }
 
-/* What a level of the tail needs to be packed behind those before it. */
+/* Rows of a level of the tail, in the memory of the caller. */
 struct tail_level {
     size_t row_size, pitch;
     uint32_t rows;

@@ -1,4 +1,4 @@
-/* Tiles that several threads write in the order of one. */
+/* Writing in turns: several threads write tiles in the order of a single thread. */
 #include "store/store_writer.h"
 
 #include "base/log.h"
@@ -7,7 +7,7 @@
 
 #define MAX_WAITING 16u /* chunks of later turns in memory, 128 KiB each */
 
-/* With the lock held. */
+/* Inserts a waiting chunk, with the lock held. */
 static void insert_waiting(SluiceStoreWriter *writer, struct slc_store_bench *bench)
 {
     struct slc_store_bench **at = &writer->waiting;
@@ -18,7 +18,7 @@ static void insert_waiting(SluiceStoreWriter *writer, struct slc_store_bench *be
     writer->waiting_count++;
 }
 
-/* With the lock held. Returns the chunk of the earliest turn if it waits. */
+/* Takes the waiting chunk of the earliest turn, if there is one. With the lock held. */
 static struct slc_store_bench *take_waiting(SluiceStoreWriter *writer)
 {
     struct slc_store_bench *bench = writer->waiting;
@@ -29,8 +29,8 @@ static struct slc_store_bench *take_waiting(SluiceStoreWriter *writer)
     return bench;
 }
 
-/* The turn of `bench`, or one without a tile if it is NULL, is the earliest. Writes the chunk and
- * all that wait behind it without a gap. Only the thread that has the earliest turn is here. */
+/* Ends the earliest turn: writes the chunk of `bench` (NULL: a turn without a tile), and all
+ * waiting chunks that follow without a gap. Only the thread with the earliest turn calls it. */
 static SluiceResult end_turns(SluiceStoreWriter *writer, struct slc_store_bench *bench,
                               SluiceResult result)
 {
@@ -40,7 +40,7 @@ static SluiceResult end_turns(SluiceStoreWriter *writer, struct slc_store_bench 
             slc_store_writer_give_bench(writer, bench);
         slc_mutex_lock(&writer->mutex);
         if (written != SLUICE_SUCCESS && writer->state == SLC_STORE_WRITING)
-            writer->state = SLC_STORE_BROKEN; /* the call that brought the tile may have returned */
+            writer->state = SLC_STORE_BROKEN; /* the call of a waiting tile may have returned */
         writer->turn++;
         bench = take_waiting(writer);
         slc_condition_broadcast(&writer->turn_changed);
@@ -65,7 +65,7 @@ static SluiceResult end_turn(SluiceStoreWriter *writer, uint64_t turn,
     return waits ? result : end_turns(writer, bench, result);
 }
 
-/* Bytes of the caller's stay valid for the call only. */
+/* Copies bytes of the caller, which are valid during the call only. */
 static void keep_bytes(struct slc_store_bench *bench)
 {
     if (bench->bytes == bench->texels || bench->bytes == bench->stored)
