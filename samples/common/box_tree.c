@@ -11,7 +11,7 @@ struct item {
     uint32_t index;
 };
 
-/** Items `first` to `first` + `count` become `node`. */
+/** Input of a node: items `first` to `first` + `count`. */
 struct range {
     uint32_t node, first, count, depth;
 };
@@ -39,7 +39,7 @@ struct box_tree_box box_tree_empty_box(void)
     return (struct box_tree_box){{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
 }
 
-/* Comparisons are false for NaN, which is so left out. */
+/* NaN is left out, because comparisons with it are false. */
 static void grow(struct box_tree_box *box, const float low[3], const float high[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -111,8 +111,8 @@ static void fill_bins(const struct split *split, const struct item *items, uint3
     }
 }
 
-/** The first bin of the right side, where areas times counts are least. `most` may lie on a side;
- *  0: no plane divides them so. */
+/** Finds the first bin of the right side with the least sum of areas times counts. Neither side may
+ * have more than `most` items. Returns 0 if no plane meets that. */
 static int choose_bin(const struct bins *bins, uint32_t count, uint64_t most)
 {
     float right_cost[BINS];
@@ -151,7 +151,7 @@ static uint32_t partition(const struct split *split, int bin, struct item *items
     return left;
 }
 
-/** In the order of the numbers, whatever they are. */
+/** Maps a float, NaN included, to an integer that sorts in the same order. */
 static uint32_t sortable(float value)
 {
     uint32_t bits;
@@ -180,7 +180,7 @@ static int compare_z(const void *a, const void *b)
     return compare_middles(a, b, 2);
 }
 
-/** Sorts items to two sides, each of which fits below the depth; returns how many are left. */
+/** Sorts items to two sides, each of which fits below the depth. Returns the number on the left. */
 static uint32_t divide(const struct build *build, const struct split *split,
                        const struct range *range)
 {
@@ -201,7 +201,7 @@ static uint32_t divide(const struct build *build, const struct split *split,
     return range->count / 2;
 }
 
-/* False when it was canceled. */
+/* Returns false if the build was canceled. */
 static bool build_nodes(const struct build *build, uint32_t count)
 {
     struct box_tree *tree = build->tree;

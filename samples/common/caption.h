@@ -7,13 +7,14 @@
 #define CAPTION_WIDTH 4u  ///< dots of a letter with the gap after it
 #define CAPTION_HEIGHT 5u ///< dots
 
-/** Where to draw: [height][width] RGBA bytes. */
+/** Target of drawing: [height][width] RGBA bytes. */
 struct canvas {
     uint8_t *rgba; ///< borrowed
     uint32_t width, height;
 };
 
-/** White, `scale` pixels per dot, from (x, y) on, cut at the edges. Other characters are blanks. */
+/** Draws white letters, `scale` pixels per dot, from (x, y) on, cut at the edges. Other characters
+ * become blanks. */
 void caption_draw(const struct canvas *canvas, uint32_t x, uint32_t y, uint32_t scale,
                   const char *text);
 

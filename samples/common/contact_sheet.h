@@ -16,15 +16,15 @@ struct contact_sheet {
     uint8_t *cells[CONTACT_SHEET_CELLS]; ///< owned; RGBA, with the caption below
 };
 
-/** Whether there is room for one more besides the last picture. */
+/** Returns whether there is room for one more small picture besides the last. */
 bool contact_sheet_has_room(const struct contact_sheet *sheet);
 /**
- * Adds a small picture. Where there is no room it takes the place of
- * the last one. Says on stderr if memory is short.
+ * Adds a small picture. If there is no room, it replaces the last one. Reports on stderr when out
+ * of memory.
  */
 bool contact_sheet_add(struct contact_sheet *sheet, const struct picture *picture, double exposure,
                        const char *caption);
-/** Says on stderr why it failed. */
+/** Reports errors on stderr. */
 bool contact_sheet_write(const struct contact_sheet *sheet, const char *path);
 void contact_sheet_finish(struct contact_sheet *sheet);
 

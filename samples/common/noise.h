@@ -59,7 +59,7 @@ static inline float noise_value(float x, float y, uint32_t seed, float *dx, floa
     return 2.0f * (a + (b - a) * u + (c - a) * v + k * u * v) - 1.0f;
 }
 
-/** How much of a wave of `frequency` is left when it is seen through a texel of `footprint`. */
+/** Returns the visible share, 0 to 1, of a wave of `frequency` under a texel of `footprint`. */
 static inline float noise_visible(float frequency, float footprint)
 {
     return 1.0f - noise_smoothstep(0.2f, 0.6f, frequency * footprint);

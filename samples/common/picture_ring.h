@@ -1,4 +1,4 @@
-/** Pictures that are written by other threads while the next ones are traced. */
+/** Ring of pictures: other threads write them while the next ones are traced. */
 #ifndef SAMPLES_COMMON_PICTURE_RING_H
 #define SAMPLES_COMMON_PICTURE_RING_H
 
@@ -6,7 +6,7 @@
 
 #include "picture.h"
 
-/** Writes a picture of a sequence. False: says on stderr why it failed. */
+/** Writes a picture of a sequence. Reports errors on stderr and returns false. */
 typedef bool (*picture_writer)(void *user_data, const struct picture *picture, uint32_t index);
 
 /** A picture, and the thread that writes it. */
@@ -26,18 +26,18 @@ struct picture_ring {
     bool failed;
 };
 
-/** Each of `count` pictures has the size; `plain` as in struct picture. Says on stderr why it
- *  failed. */
+/** Creates `count` pictures of a size. `plain`: see struct picture. Reports errors on stderr. */
 bool picture_ring_create(uint32_t count, const uint32_t size[2], bool plain, picture_writer write,
                          void *user_data, struct picture_ring *ring);
-/** Waits, and frees the pictures. */
+/** Waits for all writers, then frees the pictures. */
 void picture_ring_destroy(struct picture_ring *ring);
 
-/** The picture to fill next. Waits until it is written, if it was filled before. */
+/** Returns the next picture to fill. Waits until its earlier contents are written. */
 struct picture *picture_ring_next(struct picture_ring *ring);
-/** Writes the picture that picture_ring_next returned. False: an earlier one was not written. */
+/** Writes the picture that picture_ring_next returned. Returns false if an earlier one was not
+ * written. */
 bool picture_ring_write(struct picture_ring *ring, uint32_t index);
-/** Waits for all. False: one was not written. */
+/** Waits for all writers. Returns false if a picture was not written. */
 bool picture_ring_wait(struct picture_ring *ring);
 
 #endif /* SAMPLES_COMMON_PICTURE_RING_H */

@@ -36,7 +36,7 @@ static VkPhysicalDeviceRayTracingPipelinePropertiesKHR get_properties(const stru
     return rays;
 }
 
-/** One group after the other, each as aligned as the device wants groups to be. */
+/** Writes the groups one after the other, with the device's alignment of groups. */
 static void write_table(const struct gpu *gpu, const uint8_t *handles, uint32_t handle_size,
                         uint32_t group_count, uint32_t alignment, struct ray_table *table)
 {

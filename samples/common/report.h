@@ -12,7 +12,7 @@ struct report {
     FILE *file;                 ///< file of `output`
 };
 
-/** One line of a plot. Values that are not finite leave a gap; +infinity reaches the top. */
+/** Line of a plot. Non-finite values leave a gap; +infinity reaches the top. */
 struct report_series {
     const char *name;
     const double *values; ///< one per frame

@@ -4,11 +4,11 @@
 
 #define FORGOTTEN_AFTER 1000000u ///< microseconds
 
-/** A region that was asked for. */
+/** Requested region. */
 struct wanted {
     SluiceImageRegion region;
     double due;
-    uint64_t asked; ///< the last time
+    uint64_t asked; ///< time of the last request
 };
 
 struct slow_source {
@@ -68,7 +68,7 @@ static struct wanted *add(struct slow_source *source, const SluiceImageRegion *r
     return added;
 }
 
-/** When `size` bytes that are asked for now are there. */
+/** Queues `size` bytes on the line. Returns the time at which they arrive. */
 static double send(struct slow_line *line, double now, uint64_t size)
 {
     double time = line->info.bandwidth > 0 ? (double)size / line->info.bandwidth : 0;
@@ -76,7 +76,7 @@ static double send(struct slow_line *line, double now, uint64_t size)
     return line->free_at + line->info.latency;
 }
 
-/** Puts a region on its way at `now`. */
+/** Requests a region at time `now`. */
 static bool request(struct slow_source *source, const SluiceImageInfo *info,
                     const SluiceImageRegion *region, uint64_t now)
 {
@@ -95,7 +95,8 @@ static SluiceImageRegion whole_level(const SluiceImageInfo *info, uint32_t level
     return (SluiceImageRegion){level, 0, 0, width ? width : 1, height ? height : 1, layer};
 }
 
-/** With the coarser levels, if it is a whole one: they lie together, and are wanted together. */
+/** Requests a region. A whole level brings the coarser levels, which lie beside it in the file and
+ * are wanted together. */
 static SluiceResult request_all(struct slow_source *source, const SluiceImageRegion *region,
                                 uint64_t now)
 {
@@ -111,12 +112,13 @@ static SluiceResult request_all(struct slow_source *source, const SluiceImageReg
     for (uint32_t level = region->mipLevel + 1; level < info.mipLevelCount; level++) {
         whole = whole_level(&info, level, region->arrayLayer);
         if (!find(source, &whole) && !request(source, &info, &whole, now))
-            break; /* it is asked for later */
+            break; /* a later read requests it */
     }
     return SLUICE_SUCCESS;
 }
 
-/** Asks for the region; SUCCESS once it has come. The line is locked. */
+/** Requests the region on the first call. Returns NOT_READY until it has arrived. The line must be
+ * locked. */
 static SluiceResult ask(struct slow_source *source, const SluiceImageRegion *region)
 {
     uint64_t now = source->line->info.clock(source->line->info.user_data);

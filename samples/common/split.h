@@ -1,4 +1,4 @@
-/** How several devices share work: the value of --split. */
+/** Division of work among devices: the value of --split. */
 #ifndef SAMPLES_COMMON_SPLIT_H
 #define SAMPLES_COMMON_SPLIT_H
 

@@ -54,7 +54,7 @@ static bool submit(const struct gpu *gpu, struct structures *s, struct build_bat
            gpu_check(vkQueueSubmit(gpu->build_queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit");
 }
 
-/** Whether the commands have ended. */
+/** Sets `ready` if the commands have ended. */
 static bool is_ready(const struct gpu *gpu, struct structures *s, const struct build_batch *b,
                      bool waits, bool *ready)
 {

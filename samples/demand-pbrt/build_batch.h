@@ -7,7 +7,7 @@
 
 enum batch_stage { BATCH_IDLE, BATCH_BUILDS, BATCH_COPIES };
 
-/** One batch at a time. Zeroed is empty. */
+/** Batch of builds. Only one may run at a time. Zeroed is empty. */
 struct build_batch {
     enum batch_stage stage;
     struct structure_build *builds; ///< owned

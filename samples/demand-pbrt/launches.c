@@ -8,11 +8,11 @@
 #include "../../tools/common/text.h"
 #include "budget.h"
 
-/* Launches in a row that complete no pixel and make nothing: more will not help. */
+/* Limit of launches in a row without a completed pixel or a new mesh, surface or picture. */
 #define MOST_VAIN_LAUNCHES 200u
-/* Launches that complete no pixel after which a budget grows. */
+/* Launches in a row that complete no pixel, after which the budgets grow. */
 #define STUCK_LAUNCHES 32u
-#define NO_LEVEL UINT32_MAX ///< finer than no level: opens a picture, and loads its mip tail
+#define NO_LEVEL UINT32_MAX ///< coarser than all levels: opens a picture and loads its mip tail
 
 static bool check(SluiceResult result, const char *what)
 {
@@ -125,7 +125,7 @@ static bool launch_once(struct launches *l, bool traces, uint32_t sample,
         l->look(l->user_data, l->commands, launch.descriptorSet);
     if (!check(sluiceEndDemandLaunch(l->loader, l->commands), "a launch cannot be ended") ||
         !submit(l, &launch)) {
-        sluiceAbandonDemandLaunch(l->loader, &launch); /* the next one copies what it had */
+        sluiceAbandonDemandLaunch(l->loader, &launch); /* the next launch copies its tiles */
         return false;
     }
     return check(sluiceProcessDemandRequests(l->loader, &launch, UINT64_MAX, requests, ticket),
@@ -148,8 +148,8 @@ static bool wait_for(struct launches *l, SluiceDemandTicket ticket,
 }
 
 /**
- * The level that rays want of a picture, if it fits into one tile: rays will miss that tile, so it
- * comes at once. Of larger levels nobody knows which tiles they will miss.
+ * Returns the level that rays want of a picture if it fits into one tile. Rays will miss that tile,
+ * so it is loaded in advance. Otherwise returns NO_LEVEL, because the missed tiles are unknown.
  */
 static uint32_t choose_level(const struct wanted_picture *picture)
 {
@@ -167,7 +167,7 @@ static uint32_t choose_level(const struct wanted_picture *picture)
     return fits ? level : NO_LEVEL;
 }
 
-/** All are begun before one is waited for. */
+/** Begins to load all pictures. Waits for none. */
 static bool begin_pictures(struct launches *l, bool are_open)
 {
     struct surfaces *s = l->surfaces;
@@ -191,9 +191,9 @@ static bool wait_for_pictures(struct launches *l)
     return true;
 }
 
-/** Opens the pictures of surfaces that were just made, so that the next launch misses only tiles.
- *  The launch without rays starts to read the mip tails of those that are open: the next tickets do
- *  not wait for them. */
+/** Opens the pictures of new surfaces, so that the next launch misses only tiles. The launch
+ * without rays starts to read the mip tails of open pictures; the tickets after it do not wait for
+ * them. */
 static bool open_pictures(struct launches *l)
 {
     if (!begin_pictures(l, false) || !wait_for_pictures(l) || !launches_idle(l) ||
@@ -351,7 +351,8 @@ bool launches_repeat(struct launches *l, uint32_t times)
     return true;
 }
 
-/* Opened pictures go on to their tiles, and tiles are copied, by launches. */
+/* Waits for a ticket. Launches without rays request the tiles of opened pictures and copy loaded
+ * ones. */
 static bool finish_ticket(struct launches *l, SluiceDemandTicket ticket)
 {
     SluiceDemandTicketStatus status;

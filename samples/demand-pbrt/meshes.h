@@ -32,7 +32,7 @@ struct mesh_list {
     uint32_t count, room, build_count;
 };
 
-/** How a device reads its meshes. */
+/** Settings with which a device reads its meshes. */
 struct mesh_reading {
     struct mesh_cache *cache; ///< shared by all devices
     uint32_t device, thread_count;

@@ -1,13 +1,13 @@
-/** Pictures as files, by the ending of their name. */
+/** Picture files. The name's extension chooses the format. */
 #ifndef DEMAND_PBRT_PICTURE_OUTPUT_H
 #define DEMAND_PBRT_PICTURE_OUTPUT_H
 
 #include "../common/picture.h"
 
-/** Says on stderr if the name ends in none of .png, .exr and .pfm. */
+/** Returns whether the name ends in .png, .exr or .pfm. If not, reports it on stderr. */
 bool picture_output_is_known(const char *path);
-/** PNG: times 2^exposure, in sRGB. EXR: halves. PFM: floats as they are. Says on stderr why it
- *  failed. */
+/** Writes a picture. PNG: times 2^exposure, in sRGB. EXR: halves. PFM: unchanged floats. Reports
+ * errors on stderr. */
 bool picture_output_write(const struct picture *picture, double exposure, const char *path);
 
 #endif /* DEMAND_PBRT_PICTURE_OUTPUT_H */

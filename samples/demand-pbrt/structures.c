@@ -193,7 +193,8 @@ bool structures_build(const struct gpu *gpu, struct structures *s, struct struct
     struct batch batch = {gpu, s, builds, count};
     if (!gpu->ray_tracing || count == 0)
         return true;
-    /* This queue and later launches read structures that another queue has built: wait for it. */
+    /* Waits for structures that another queue has built, because this queue and later launches read
+     * them. */
     const bool done = structures_prepare(gpu, s, builds, count, &s->scratch) &&
                       one_time_run_after(gpu, s->ready, s->ready_value, record_batch, &batch);
     for (uint32_t i = 0; i < count && !done; i++)

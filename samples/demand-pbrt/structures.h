@@ -1,5 +1,5 @@
-/** Acceleration structures: built in batches. Where rays are traced by a
- *  compute shader there are none, and these functions do nothing. */
+/** Acceleration structures, built in batches. If a compute shader traces the rays, there are no
+ * structures and these functions do nothing. */
 #ifndef DEMAND_PBRT_STRUCTURES_H
 #define DEMAND_PBRT_STRUCTURES_H
 
@@ -17,8 +17,8 @@ struct structures {
     struct arena arena;
     struct gpu_buffer scratch;
     VkDeviceSize scratch_alignment;
-    VkSemaphore ready;    ///< build_batch.c signals it
-    uint64_t ready_value; ///< after the last commands that have ended
+    VkSemaphore ready;    ///< build_batch.c signals this semaphore
+    uint64_t ready_value; ///< value after the last commands that have ended
     PFN_vkCreateAccelerationStructureKHR create;
     PFN_vkDestroyAccelerationStructureKHR destroy;
     PFN_vkGetAccelerationStructureBuildSizesKHR get_sizes;
@@ -30,35 +30,35 @@ struct structure_build {
     VkAccelerationStructureTypeKHR type;
     VkAccelerationStructureGeometryKHR geometry;
     uint32_t primitive_count;
-    bool compact;              ///< build_batch.c copies it; all of a batch or none
-    struct structure *target;  ///< zeroed; filled
+    bool compact; ///< build_batch.c makes a compact copy; equal for all builds of a batch
+    struct structure *target;  ///< zeroed before, filled by the build
     VkDeviceSize scratch_size; ///< private
     VkDeviceSize scratch_at;   ///< private
 };
 
-/** Says on stderr why it failed. */
+/** Reports errors on stderr. */
 bool structures_create(const struct gpu *gpu, struct structures *structures);
 void structures_finish(const struct gpu *gpu, struct structures *structures);
 
-/** Makes a structure without contents. Says on stderr why it failed. */
+/** Makes an empty structure. Reports errors on stderr. */
 bool structures_take(const struct gpu *gpu, struct structures *structures,
                      VkAccelerationStructureTypeKHR type, VkDeviceSize size,
                      struct structure *structure);
-/** Makes targets, and room for all builds in `scratch`. Says on stderr why it failed. */
+/** Makes the targets, and room for all builds in `scratch`. Reports errors on stderr. */
 bool structures_prepare(const struct gpu *gpu, struct structures *structures,
                         struct structure_build *builds, uint32_t count, struct gpu_buffer *scratch);
-/** Commands that build what was prepared; what follows them reads it. */
+/** Records the prepared builds. Later commands may read the structures. */
 void structures_record(const struct gpu *gpu, const struct structures *structures,
                        const struct structure_build *builds, uint32_t count,
                        const struct gpu_buffer *scratch, VkCommandBuffer commands);
-/** Builds them all, or none, while the host waits. Says on stderr why it failed. */
+/** Builds all structures or none, and waits for them. Reports errors on stderr. */
 bool structures_build(const struct gpu *gpu, struct structures *structures,
                       struct structure_build *builds, uint32_t count);
-/** No launch that uses it is under way. A zeroed one is fine. */
+/** Destroys a structure. Call only while no launch uses it. A zeroed one is allowed. */
 void structures_give(const struct gpu *gpu, struct structures *structures,
                      struct structure *structure);
 
-/** Usage of buffers that builds read, and shaders. */
+/** Usage of buffers that builds and shaders read. */
 static inline VkBufferUsageFlags structures_input_usage(const struct gpu *gpu)
 {
     return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |

@@ -10,12 +10,12 @@
 /** A picture of a loader. */
 struct picture_image {
     struct picture_file *file; ///< shared by all loaders
-    SluiceDemandTextureId id;  ///< texture with the sampler that came first
+    SluiceDemandTextureId id;  ///< texture with the first sampler
     SluiceImageInfo info;      ///< width 0: not opened yet
     SluiceImageFileKind kind;
 };
 
-/** How a picture is sampled. */
+/** A picture with a sampler. */
 struct picture_use {
     struct picture_image *image;
     SluicePbrtWrap wrap;

@@ -1,4 +1,4 @@
-/** Transforms of three rows and four columns, as sluice/pbrt.h has them. */
+/** Transforms of three rows and four columns, as in sluice/pbrt.h. */
 #ifndef DEMAND_PBRT_TRANSFORM_H
 #define DEMAND_PBRT_TRANSFORM_H
 
@@ -24,7 +24,7 @@ static inline void transform_vector(const float m[12], const float v[3], float o
     memcpy(out, result, sizeof result);
 }
 
-/** out = a * b; `out` may be one of them. */
+/** out = a * b. `out` may be `a` or `b`. */
 static inline void transform_multiply(const float a[12], const float b[12], float out[12])
 {
     float result[12];
@@ -45,7 +45,7 @@ static inline double transform_determinant(const float m[12])
            (double)m[2] * ((double)m[4] * m[9] - (double)m[5] * m[8]);
 }
 
-/** False, and `out` is unchanged, if there is no inverse. */
+/** Returns false, and leaves `out` unchanged, if there is no inverse. */
 static inline bool transform_invert(const float m[12], float out[12])
 {
     const double d = transform_determinant(m);
@@ -85,7 +85,7 @@ static inline void bounds_add(SluicePbrtBounds *box, const SluicePbrtBounds *oth
     bounds_add_point(box, other->most);
 }
 
-/** The box of the eight transformed corners. */
+/** Returns the box around the eight transformed corners. */
 static inline SluicePbrtBounds transform_bounds(const float m[12], const SluicePbrtBounds *box)
 {
     SluicePbrtBounds result = bounds_none();

@@ -22,7 +22,7 @@ struct bindings_request {
     VkAccelerationStructureKHR scene;         ///< VK_NULL_HANDLE: for compute shaders
 };
 
-/** Says on stderr why it failed. */
+/** Reports errors on stderr. */
 bool bindings_create(const struct gpu *gpu, const struct bindings_request *request,
                      struct bindings *bindings);
 void bindings_destroy(const struct gpu *gpu, struct bindings *bindings);

@@ -6,7 +6,7 @@
 #include "../../tools/common/progress.h"
 #include "../../tools/common/text.h"
 
-/* Nanoseconds: how long a preview waits for tiles before it shows what is there. */
+/* Nanoseconds that a preview waits for tiles before it shows the picture without them. */
 #define PATIENCE 20000000u
 
 static bool check(SluiceResult result, const char *what)
@@ -32,7 +32,7 @@ static bool submit(struct launches *l, const SluiceDemandLaunch *launch)
            gpu_check(vkQueueSubmit(l->gpu->queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit");
 }
 
-/** One launch from preparation to requests; what is traced is up to the film. */
+/** Runs one launch, from preparation to requests. The film chooses the traced pixels. */
 static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequests *requests,
                         SluiceDemandTicket *ticket)
 {
@@ -48,7 +48,7 @@ static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequest
         renderer_record(l->renderer, launch.descriptorSet, l->film, sample, l->commands);
     if (!check(sluiceEndDemandLaunch(l->loader, l->commands), "a launch cannot be ended") ||
         !submit(l, &launch)) {
-        sluiceAbandonDemandLaunch(l->loader, &launch); /* the next one copies what it had */
+        sluiceAbandonDemandLaunch(l->loader, &launch); /* the next launch copies its tiles */
         return false;
     }
     requests->structSize = sizeof *requests;
@@ -56,7 +56,7 @@ static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequest
                  "requests cannot be served");
 }
 
-/** Success and NOT_READY alike are fine. */
+/** Waits at most `patience` nanoseconds. Returns true also if the time runs out. */
 static bool wait_for_tiles(struct launches *l, SluiceDemandTicket ticket, uint64_t patience)
 {
     SluiceResult result = sluiceWaitDemandTicket(l->loader, ticket, patience, NULL);
@@ -122,7 +122,7 @@ bool launches_run(struct launches *l)
     return true;
 }
 
-/* Opened textures are gone on with, and texels copied, by launches: they go on, tracing nothing. */
+/* Waits for a ticket. Launches that trace nothing open textures further and copy loaded texels. */
 static bool finish_ticket(struct launches *l, SluiceDemandTicket ticket)
 {
     SluiceDemandRequests requests = {.structSize = sizeof requests};

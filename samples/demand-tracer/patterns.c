@@ -19,7 +19,7 @@ static void scale(float rgb[3], float factor)
         rgb[i] = noise_clamp(rgb[i] * factor, 0.0f, 1.0f);
 }
 
-/** Mixes in a field's mean color, as seen from afar; the three colors are chosen evenly. */
+/** Mixes in a field's mean color: half the first color, and a quarter of each of the others. */
 static void mix_mean(const struct pattern *p, float rgb[3], float share)
 {
     for (int i = 0; i < 3; i++) {
@@ -32,7 +32,7 @@ static void mix_mean(const struct pattern *p, float rgb[3], float share)
 static const uint16_t digit_dots[10] = {075557, 026227, 071747, 071717, 055711,
                                         074717, 074757, 071222, 075757, 075717};
 
-/** Whether (x, y) in [0, 1)^2, y down, is ink of four decimal digits. */
+/** Tests whether (x, y) in [0, 1)^2, y down, is ink of four decimal digits. */
 static bool is_ink(uint32_t number, float x, float y)
 {
     int column = (int)(x * 16.0f), row = (int)(y * 5.0f);
@@ -43,7 +43,8 @@ static bool is_ink(uint32_t number, float x, float y)
     return digit_dots[number % 10] >> (3 * (4 - row) + (2 - column % 4)) & 1;
 }
 
-/* Glazed tiles with a diamond or a ring each, which have numbers, and numbered tiles inside. */
+/* Glazed tiles with a diamond or a ring each. Each tile has a number and smaller numbered tiles
+ * inside. */
 static void tiles(const struct pattern *p, float u, float v, float footprint, float rgb[3])
 {
     static const float ink[3] = {0.02f, 0.022f, 0.03f};
@@ -100,15 +101,15 @@ static void wood(const struct pattern *p, float u, float v, float footprint, flo
     scale(rgb, (1.0f + 0.16f * grain) * (1.0f - 0.25f * noise_smoothstep(0.2f, 1.0f, pores)));
 }
 
-/** How much of a stripe of a tartan covers x. */
+/** Returns how much of a texel at x a stripe of a tartan covers. */
 static float stripe(float x, float at, float half_width, float footprint)
 {
-    footprint = fminf(footprint, 1.0f); /* beyond, it is the same everywhere */
+    footprint = fminf(footprint, 1.0f); /* wider texels all see the same mean */
     float distance = fabsf(x - floorf(x) - at);
     return noise_line(fminf(distance, 1.0f - distance), half_width, footprint);
 }
 
-/* A tartan of threads over and under each other, each of them of fibers. */
+/* Tartan cloth of threads that cross over and under each other, each made of fibers. */
 static void cloth(const struct pattern *p, float u, float v, float footprint, float rgb[3])
 {
     const float threads = 384.0f;
@@ -152,7 +153,7 @@ static void mosaic(const struct pattern *p, float u, float v, float footprint, f
     float tone = noise_unit(cell.id * 0x9e3779b1u), pick = noise_unit(cell.id * 0x85ebca77u);
     memcpy(rgb, p->colors[0], 3 * sizeof *rgb);
     mix_into(rgb, p->colors[1 + (cell.id & 1)], pick);
-    float apart = noise_visible(0.7f, size); /* panes are smaller than texels otherwise */
+    float apart = noise_visible(0.7f, size); /* 0 where panes are smaller than texels */
     mix_mean(p, rgb, 1.0f - apart);
     tone = noise_mix(0.5f, tone, apart);
     float streaks = periodic_octaves(u, v, 64, 32, 8, 0.62f, footprint, p->seed + cell.id % 8);
@@ -183,7 +184,7 @@ static void soil(const struct pattern *p, float u, float v, float footprint, flo
     scale(rgb, 1.0f + 0.24f * fine);
 }
 
-/** A leaf from its stalk at v = 0 to its tip at v = 1; outside alpha is 0. */
+/** A leaf from its stalk at v = 0 to its tip at v = 1. Alpha is 0 outside. */
 static void leaf(const struct pattern *p, float u, float v, float footprint, float rgba[4])
 {
     float x = u - 0.5f, notch = sinf(NOISE_TAU * 14.0f * v) * noise_visible(28.0f, footprint);

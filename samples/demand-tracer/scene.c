@@ -11,7 +11,7 @@
 #define SITE_SPACING 1.25f ///< meters
 #define GOLDEN_ANGLE 2.3999632f
 
-/** Where an instance stands: scaled, then turned around y, then moved. */
+/** Placement of an instance: scaled, then turned around y, then moved. */
 struct placement {
     struct vec3 at, scale;
     float turn; ///< radians
@@ -45,7 +45,8 @@ static void add_instance(struct scene *scene, enum shape_kind kind, uint32_t tex
     scene->kinds[scene->instance_count++] = kind;
 }
 
-/** The i-th seed of a sunflower, moved a little; y on the ground. */
+/** Returns the place of the i-th site, arranged like the seeds of a sunflower, moved a little. y is
+ * on the ground. */
 static struct vec3 site(uint32_t i, float spacing, uint32_t seed)
 {
     uint32_t hash = noise_hash((int32_t)i, 17, seed);
@@ -55,7 +56,7 @@ static struct vec3 site(uint32_t i, float spacing, uint32_t seed)
     return (struct vec3){x, ground_height(x, z), z};
 }
 
-/** Nothing stands in the camera's way. */
+/** Tests for sites that would block the camera's view. */
 static bool is_near_camera(struct vec3 at, float clearance)
 {
     struct scene_camera camera = scene_default_camera();
@@ -70,7 +71,7 @@ static enum shape_kind choose_thing(uint32_t hash)
     return kinds[hash >> 13 & 7];
 }
 
-/** A thing whose lowest point is at `foot`. */
+/** Adds a thing whose lowest point is at `foot`. */
 static void add_thing(struct scene *scene, uint32_t hash, uint32_t texture, float size,
                       struct vec3 foot)
 {
@@ -81,7 +82,8 @@ static void add_thing(struct scene *scene, uint32_t hash, uint32_t texture, floa
     add_instance(scene, kind, texture, hash & 1 || kind == SHAPE_VASE ? TRACER_GLOSSY : 0u, &place);
 }
 
-/** A pedestal and what stands on it, where there are two textures left; returns how many. */
+/** Adds a thing, which may stand on a pedestal if two textures are left. Returns the number of
+ * textures used. */
 static uint32_t add_site(struct scene *scene, uint32_t hash, uint32_t texture, uint32_t left,
                          struct vec3 at)
 {

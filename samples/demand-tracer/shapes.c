@@ -32,7 +32,8 @@ static bool reserve(void **items, size_t item_size, size_t count, size_t *capaci
     return true;
 }
 
-/** Across the surface; at a pole, where it has no width, away from the origin. */
+/** Normal of the surface. At a pole, where the patch has no width, it points away from the
+ * origin. */
 static struct vec3 patch_normal(const struct patch *patch, float u, float v)
 {
     const float step = NORMAL_STEP;
@@ -92,7 +93,8 @@ static struct vec3 ground_point(float u, float v, int part)
     return (struct vec3){x, ground_height(x, z), z};
 }
 
-/** From the south pole up; u eastwards, so that u, v and the outside are a right-handed system. */
+/** Direction from the south pole (v = 0) up. u goes eastwards, so that u, v and the outside are a
+ * right-handed system. */
 static struct vec3 direction_at(float u, float v)
 {
     float longitude = NOISE_TAU * u, latitude = 0.5f * NOISE_TAU * (v - 0.5f);
@@ -124,7 +126,7 @@ static struct vec3 pebble_point(float u, float v, int part)
     return vec3_scale((struct vec3){at.x, 0.72f * at.y, 0.88f * at.z}, 0.92f + dents);
 }
 
-/** One of six faces; points are denser where the edges are round. */
+/** Point on one of six faces. Points are denser where the edges are round. */
 static struct vec3 box_point(float u, float v, int face)
 {
     const float radius = 0.13f, inner = 1.0f - radius;
@@ -139,7 +141,8 @@ static struct vec3 box_point(float u, float v, int face)
     return vec3_add(core, vec3_scale(vec3_normalize(vec3_sub(at, core)), radius));
 }
 
-/** Up the outside and over the lip; the belly is at a third of the height. */
+/** Point on the outside, from the foot up and over the lip. The belly is at a third of the
+ * height. */
 static struct vec3 vase_point(float u, float v, int part)
 {
     (void)part;
@@ -151,13 +154,13 @@ static struct vec3 vase_point(float u, float v, int part)
     return (struct vec3){radius * sinf(NOISE_TAU * u), y, radius * cosf(NOISE_TAU * u)};
 }
 
-/** Leaf number `leaf`: u across it, v from its stalk to its tip. */
+/** Point of a leaf: u across it, v from its stalk to its tip. */
 static struct vec3 leaf_point(float u, float v, uint32_t hash, float lean, float width)
 {
     float turn = NOISE_TAU * noise_unit(hash),
           length = 0.75f + 0.5f * noise_unit(hash * 0x9e3779b1u);
     float angle = lean * (0.5f + noise_unit(hash * 0x85ebca77u));
-    float bend = angle + (0.3f + 1.3f * angle) * v; /* from the upright */
+    float bend = angle + (0.3f + 1.3f * angle) * v; /* angle from the upright */
     float out = length * (0.08f + 0.85f * v * sinf(0.5f * (angle + bend)));
     float up = length * v * cosf(0.5f * (angle + bend));
     float across = width * (u - 0.5f), fold = 0.25f * fabsf(across);

@@ -37,7 +37,7 @@ static void create_instance(struct gpu *gpu)
     check_vulkan(result, "vkCreateInstance");
 }
 
-/* One that draws and computes, or VK_QUEUE_FAMILY_IGNORED. */
+/* Returns a queue family that draws and computes, or VK_QUEUE_FAMILY_IGNORED. */
 static uint32_t find_drawing_family(VkPhysicalDevice physical_device)
 {
     const VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;

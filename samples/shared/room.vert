@@ -1,4 +1,4 @@
-/* One surface of the room. */
+/* Draws one surface of the room. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,4 +1,4 @@
-/** Where the gallery keeps what it made: its own pictures, and stores of those it was given. */
+/** Cache of the gallery: its own pictures, and stores made of pictures it was given. */
 #ifndef SAMPLES_STREAMING_CACHE_H
 #define SAMPLES_STREAMING_CACHE_H
 
@@ -8,18 +8,18 @@
 #include <stddef.h>
 
 /**
- * "cache/name"; for a cache of NULL the user's, $XDG_CACHE_HOME/sluice or ~/.cache/sluice. Makes
- * nothing. False if it does not fit into `size` bytes.
+ * Makes the path "cache/name". If `cache` is NULL, the user's cache is $XDG_CACHE_HOME/sluice or
+ * ~/.cache/sluice. Creates no folder. Returns false if the path does not fit into `size` bytes.
  */
 bool cache_path(const char *cache, const char *name, char *path, size_t size);
 
-/** Writes bytes into "cache/folder/HASH-SIZE-name", unless it is there; an empty name is left
- *  out. `path` receives its path. False with a line on stderr. */
+/** Writes bytes to "cache/folder/HASH-SIZE-name", unless the file exists. Leaves out an empty name.
+ * `path` receives the path. Reports errors on stderr. */
 bool cache_keep(const char *cache, const char *folder, const char *name, const void *bytes,
                 size_t size, char *path, size_t path_size);
 
-/** Keeps all bytes of an input in "cache/fetched": what reads files alone can read it there. `name`
- *  is the end of the file's name. False with a line on stderr. */
+/** Copies an input to "cache/fetched", for readers that only read files. `name`: the end of the
+ * file's name. Reports errors on stderr. */
 bool cache_keep_input(const char *cache, const char *name, const SluiceInput *input, char *path,
                       size_t path_size);
 

@@ -1,4 +1,4 @@
-/** Where the gallery is looked at from. */
+/** Camera of the gallery. */
 #ifndef SAMPLES_STREAMING_CAMERA_H
 #define SAMPLES_STREAMING_CAMERA_H
 

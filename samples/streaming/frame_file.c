@@ -53,7 +53,7 @@ bool frame_file_create_scratch(const char *folder, size_t frame_size, struct fra
 
 bool frame_file_open(const char *path, size_t frame_size, uint32_t count, struct frame_file *file)
 {
-    struct stat status; /* not blocking, so that the name of a pipe cannot stop the program */
+    struct stat status; /* opening a pipe must not block, so O_NONBLOCK */
     if (!take_descriptor(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK), frame_size, file))
         return false;
     if (fstat(file->descriptor, &status) == 0 && S_ISREG(status.st_mode) &&

@@ -1,4 +1,4 @@
-/** Frames of one size in a file, one after another, RGBA bytes as they are. */
+/** Frames of one size in a file, one after another, as RGBA bytes. */
 #ifndef SAMPLES_STREAMING_FRAME_FILE_H
 #define SAMPLES_STREAMING_FRAME_FILE_H
 
@@ -10,24 +10,26 @@ struct frame_file {
     bool is_open;
     int descriptor;
     size_t frame_size;          ///< bytes
-    struct output_file *output; ///< Owned. NULL but in a file that is being made.
+    struct output_file *output; ///< owned; NULL except while a file is being created
 };
 
-/** Made anew; the file gets its name in frame_file_keep. Says on stderr why it failed. */
+/** Creates a file, which gets its name in frame_file_keep. Reports errors on stderr. */
 bool frame_file_create(const char *path, size_t frame_size, struct frame_file *file);
-/** In a folder, without a name: gone when it is closed. Says on stderr why it failed. */
+/** Creates a file without a name in a folder. Closing deletes it. Reports errors on stderr. */
 bool frame_file_create_scratch(const char *folder, size_t frame_size, struct frame_file *file);
-/** To be read. False if it cannot be, or if it does not have the size of `count` frames. */
+/** Opens a file for reading. Returns false if that fails, or if its size is not that of `count`
+ * frames. */
 bool frame_file_open(const char *path, size_t frame_size, uint32_t count, struct frame_file *file);
-/** Closes a file that was created and gives it its name. False, and nothing is left of it, if that
- *  failed; stderr says why. */
+/** Closes a created file and gives it its name. On error removes the file, reports on stderr and
+ * returns false. */
 bool frame_file_keep(struct frame_file *file);
-/** A file that is being made is removed. A zeroed struct is fine. */
+/** Closes a file. Removes it if it was created and not kept. A zeroed struct is allowed. */
 void frame_file_close(struct frame_file *file);
 
-/** Frames may be left out: they take no space. Says on stderr why it failed. Any thread. */
+/** Writes a frame. Frames that are never written occupy no disk space. Reports errors on stderr.
+ * Any thread. */
 bool frame_file_write(const struct frame_file *file, uint32_t frame, const uint8_t *pixels);
-/** Says on stderr why it failed. Any thread. */
+/** Reads a frame. Reports errors on stderr. Any thread. */
 bool frame_file_read(const struct frame_file *file, uint32_t frame, uint8_t *pixels);
 
 #endif /* SAMPLES_STREAMING_FRAME_FILE_H */

@@ -153,14 +153,14 @@ static double figure_value(const struct figure *figures, uint32_t count, const c
     return NAN;
 }
 
-/** "12.5 MiB, 6.3 % of all" */
+/** Formats like "12.5 MiB, 6.3 % of all". */
 static const char *share_text(double bytes, double all, char text[64])
 {
     snprintf(text, 64, "%.1f MiB, %.1f %% of all", bytes / 1048576.0, 100.0 * bytes / all);
     return text;
 }
 
-/** Whether only what the walk required was loaded. */
+/** Compares loaded bytes with those that the walk required. */
 static void add_required(struct report *report, const struct figure *figures, uint32_t count)
 {
     double all = figure_value(figures, count, "virtual_bytes");
@@ -210,7 +210,7 @@ static void add_figures(struct report *report, const struct measure *measure)
     report_end_table(report);
 }
 
-/** "frame 12, 34.5 dB, SSIM 0.9876", of what is known. */
+/** Writes the known parts of "frame 12, 34.5 dB, SSIM 0.9876". */
 static void write_caption(const struct gallery_report_info *info, const struct measure *measure,
                           uint32_t frame, char *caption, size_t size)
 {
@@ -233,7 +233,7 @@ static void add_picture(struct report *report, const struct gallery_report_info 
     report_picture(report, path, caption);
 }
 
-/** The frame, its truth and its error in a row. */
+/** Shows the frame, its truth and its error in a row. */
 static void add_comparison(struct report *report, const struct gallery_report_info *info,
                            const struct measure *measure, uint32_t frame)
 {

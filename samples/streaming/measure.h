@@ -38,7 +38,7 @@ struct measure {
     uint64_t truth_bytes;      ///< memory of the fully resident pictures; 0 without a comparison
 };
 
-/** One named figure. */
+/** A figure of the walk. */
 struct figure {
     const char *name;
     double value; ///< NaN: absent

@@ -76,7 +76,7 @@ void needs_pass_record(const struct needs_pass *pass, const struct target *targe
     const struct renderer_sets sets = {streamer_set, slot->frame_set};
     static const float black[4] = {0, 0, 0, 0};
     slot->word_count = pass->word_count;
-    /* The frame before has copied what is cleared now. */
+    /* Order the clears after the copies of the previous frame. */
     gpu_barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, VK_PIPELINE_STAGE_TRANSFER_BIT,
                 VK_ACCESS_TRANSFER_WRITE_BIT);
     vkCmdFillBuffer(commands, pass->feedback.buffer, 0,
@@ -88,12 +88,12 @@ void needs_pass_record(const struct needs_pass *pass, const struct target *targe
     target_begin(target, commands, black);
     renderer_draw(pass->renderer, commands, &sets, surfaces, RENDERER_NEEDS);
     target_end(target, commands);
-    /* The streamer has copied to its buffers. */
+    /* Wait for the streamer's copies to its buffers. */
     gpu_barrier(commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
                 VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
                 VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
     record_copies(pass, slot, commands);
-    /* All that follows waits, so that the next frame's time begins when this pass is over. */
+    /* Make all later commands wait, so that the next frame's time begins after this pass. */
     gpu_barrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                 VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT,
                 VK_ACCESS_HOST_READ_BIT);

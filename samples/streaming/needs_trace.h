@@ -10,19 +10,20 @@
 #include "needs.h"
 
 struct needs_trace {
-    struct output_file *output; ///< Owned. NULL: nothing is written.
-    FILE *file;                 ///< Of `output`.
+    struct output_file *output; ///< owned; NULL: no trace is written
+    FILE *file;                 ///< stream of `output`
     uint8_t *runs;              ///< owned; room for an encoded map
 };
 
-/** Says on stderr what is wrong, as does needs_trace_end. `frame_count` frames have to follow. */
+/** Begins a trace. The caller must add `frame_count` frames. Reports errors on stderr, like
+ * needs_trace_end. */
 bool needs_trace_begin(struct needs_trace *trace, const char *path, const struct needs *needs,
                        uint32_t frame_count, uint32_t frame_microseconds);
-/** The maps of the frame that was added to `needs` last. */
+/** Writes the maps of the newest frame in `needs`. */
 void needs_trace_add_frame(struct needs_trace *trace, const struct needs *needs,
                            uint64_t microseconds);
-/** The trace gets its name only now, if `keep` and all of it is written; otherwise it is removed.
- *  False if something was not written or not kept. A zeroed struct is fine. */
+/** Ends the trace. It gets its name if `keep` is set and all of it was written; otherwise it is
+ * removed. Returns false if it was not written or not kept. A zeroed struct is allowed. */
 bool needs_trace_end(struct needs_trace *trace, bool keep);
 
 #endif /* SAMPLES_STREAMING_NEEDS_TRACE_H */

@@ -1,4 +1,4 @@
-/** How the shader that samples a neural set runs its network: SPIR-V, and weights that fit it. */
+/** Program with which the shader samples a neural set: SPIR-V, and weights that fit it. */
 #ifndef SAMPLES_STREAMING_NEURAL_PATH_H
 #define SAMPLES_STREAMING_NEURAL_PATH_H
 
@@ -14,10 +14,10 @@ struct neural_program {
     uint64_t weight_size;
 };
 
-/** Chooses as --neural-path says. Says on stderr why a path is not possible. */
+/** Chooses a program for a path. Reports on stderr why a path is not possible. */
 bool neural_program_create(const struct gpu *gpu, const SluiceNeuralSet *set, enum neural_path path,
                            struct neural_program *program);
-/** A zeroed struct is fine. */
+/** A zeroed struct is allowed. */
 void neural_program_destroy(struct neural_program *program);
 
 #endif /* SAMPLES_STREAMING_NEURAL_PATH_H */

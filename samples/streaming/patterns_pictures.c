@@ -100,7 +100,7 @@ void pattern_mandelbrot(float u, float v, float footprint, float rgb[3])
 static const uint16_t digit_dots[10] = {075557, 026227, 071747, 071717, 055711,
                                         074717, 074757, 071222, 075757, 075717};
 
-/** Whether (x, y) in [0, 1)^2 is ink of a text of `count` decimal digits. */
+/** Tests whether (x, y) in [0, 1)^2 is ink of a text of `count` decimal digits. */
 static int digits_ink(uint32_t number, int count, float x, float y)
 {
     int column = (int)(x * (float)(4 * count)), row = (int)(y * 5.0f);
@@ -113,8 +113,8 @@ static int digits_ink(uint32_t number, int count, float x, float y)
 }
 
 /*
- * A test chart that has more to tell the nearer one comes: each field is framed and numbered, and
- * is cut into 4 x 4 fields that are framed and numbered again, six times over.
+ * Test chart with detail at every scale: each field is framed and numbered, and is cut into 4 x 4
+ * fields that are framed and numbered again, six times over.
  */
 void pattern_chart(float u, float v, float footprint, float rgb[3])
 {
@@ -198,7 +198,7 @@ void pattern_glass(float u, float v, float footprint, float rgb[3])
     mix_into(rgb, lead, noise_line(ring, 0.2f, footprint * 26.0f));
 }
 
-/** One layer of stars, at most one per cell. */
+/** Light of one layer of stars, at most one per cell. */
 static float star_light(float u, float v, float frequency, float footprint, uint32_t seed)
 {
     float x = u * frequency, y = v * frequency;

@@ -1,4 +1,4 @@
-/** One file of a picture: its kind, and the source that reads it in place. */
+/** Kind of a picture's file, and sources that read the file in place. */
 #ifndef SAMPLES_STREAMING_PICTURE_FILE_H
 #define SAMPLES_STREAMING_PICTURE_FILE_H
 

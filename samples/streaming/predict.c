@@ -42,7 +42,7 @@ static bool create_slot(const struct predict *predict, struct predict_slot *slot
         !gpu_create_buffer(renderer->gpu, sizeof(struct GalleryFrame),
                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &slot->frame))
         return false;
-    /* Nothing is counted: any buffer will do. */
+    /* Bind any buffer for the counters, because this pass counts nothing. */
     renderer_write_frame_set(renderer, slot->set, slot->frame.buffer, slot->frame.buffer,
                              slot->frame.buffer);
     return true;

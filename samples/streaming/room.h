@@ -15,7 +15,7 @@ struct room_vertex {
 
 enum room_surface { ROOM_PLAIN, ROOM_FLOOR, ROOM_WALL, ROOM_PICTURE };
 
-/** One draw call. */
+/** A draw call. */
 struct room_part {
     enum room_surface surface;
     uint32_t picture; ///< index for ROOM_PICTURE

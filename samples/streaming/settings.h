@@ -13,7 +13,7 @@ enum three_way { THREE_WAY_AUTO, THREE_WAY_ON, THREE_WAY_OFF };
 enum residency { RESIDENCY_AUTO, RESIDENCY_SPARSE, RESIDENCY_PAGED, RESIDENCY_DENSE };
 enum on_off { SETTING_ON, SETTING_OFF };
 
-/** How a texture of a neural set is streamed. */
+/** Ways to stream a texture of a neural set. */
 enum neural_mode {
     NEURAL_RAW,      ///< BC7 blocks, from a tile store
     NEURAL_BC7,      ///< blocks, from a tile store
@@ -23,7 +23,7 @@ enum neural_mode {
     NEURAL_MODE_COUNT
 };
 
-/** How the shader of NEURAL_SAMPLE runs the network. */
+/** Ways to run the network in the shader of NEURAL_SAMPLE. */
 enum neural_path {
     NEURAL_PATH_AUTO,
     NEURAL_PATH_PLAIN,
@@ -94,7 +94,7 @@ struct settings {
 
 enum option_outcome settings_parse(int argc, char **argv, struct settings *settings);
 
-/** "OUTPUT/frames.csv", or "OUTPUT/frames-24-47.csv" of a range. */
+/** Makes the path "OUTPUT/frames.csv", or "OUTPUT/frames-24-47.csv" of a range. */
 void settings_report_path(const struct settings *settings, const char *name, const char *ending,
                           char *path, size_t size);
 

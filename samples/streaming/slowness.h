@@ -8,21 +8,24 @@
 #include "../common/slow_source.h"
 #include "settings.h"
 
-/** Its clock is the time stamp of the newest frame, so that a slow machine streams the same way. */
+/** Slow line of a view. Its clock is the time stamp of the newest frame, so that slow machines
+ * stream in the same way. */
 struct slowness {
     bool on;
     struct slow_line line;
     atomic_uint_least64_t now;   ///< microseconds
-    SluiceImageSource **sources; ///< owned, and so are they
+    SluiceImageSource **sources; ///< owned, with its elements
     uint32_t count, capacity;
 };
 
-/** Stays off if the settings ask for none. False if out of memory. Must not be moved afterwards. */
+/** Stays off if the settings want no delay. Returns false when out of memory. The struct must not
+ * move afterwards. */
 bool slowness_begin(struct slowness *slowness, const struct settings *settings, uint32_t capacity);
-/** `source` itself where there is none; NULL if out of memory. Lives until slowness_finish. */
+/** Returns a slow source that reads `source`, or `source` itself if the line is off. NULL: out of
+ * memory. Lives until slowness_finish. */
 SluiceImageSource *slowness_wrap(struct slowness *slowness, SluiceImageSource *source);
 void slowness_set_time(struct slowness *slowness, uint64_t now);
-/** No source is used any more; a zeroed struct is fine. */
+/** Call when no source is used any more. A zeroed struct is allowed. */
 void slowness_finish(struct slowness *slowness);
 
 #endif /* SAMPLES_STREAMING_SLOWNESS_H */

@@ -1,4 +1,4 @@
-/* Where alpha cuts out. */
+/* Cut-outs by alpha. */
 #ifndef PBRT_ALPHA_GLSL
 #define PBRT_ALPHA_GLSL
 
@@ -9,7 +9,7 @@ uint hashWord(uint x)
     return x ^ (x >> 16);
 }
 
-/** A number of [0, 1) that depends on the ray alone. */
+/** Returns a number in [0, 1) that depends only on the ray. */
 float hashRay(vec3 origin, vec3 direction)
 {
     uvec3 o = floatBitsToUint(origin), d = floatBitsToUint(direction);
@@ -22,7 +22,8 @@ float hashRay(vec3 origin, vec3 direction)
     return float(h >> 8) / 16777216.0;
 }
 
-/** pbrt-v3 cuts out where alpha is exactly 0; pbrt-v4 keeps rays with probability alpha. */
+/** Returns whether alpha lets the ray through. pbrt-v3 does so where alpha is exactly 0; pbrt-v4
+ * stops rays with probability alpha. */
 bool cutsOut(float alpha, vec3 origin, vec3 direction)
 {
     if ((launch.flags & PBRT_LAUNCH_VERSION_4) == 0u)

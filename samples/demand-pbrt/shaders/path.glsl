@@ -27,7 +27,7 @@ struct Path {
     float skySpread;
     uint depth, lamp; /* next lamp to test */
     float chance;     /* density of the ray's direction per solid angle; 0: no lamp was sampled */
-    /* The surface that was hit. */
+    /* Surface hit last. */
     vec3 at, normal, face, albedo;
     float distance;
     vec3 pending;     /* light of the lamp, or weight of the sky, added if the shadow ray is free */
@@ -129,7 +129,7 @@ void meetEmitter(inout Path path, Payload s)
     path.light += path.share * s.emission * weight;
 }
 
-/** True for the last ray, which only collects emitted light. */
+/** Returns whether this is the last ray, which only collects emitted light. */
 bool isLast(Path path)
 {
     return launch.mode == PBRT_MODE_PATH && path.depth > launch.bounces;

@@ -1,4 +1,4 @@
-/* A path for each pixel of the list, without ray tracing of the device. */
+/* Traces a path for each pixel of the list, without the device's ray tracing. */
 #version 460
 #extension GL_EXT_nonuniform_qualifier : require
 #extension GL_GOOGLE_include_directive : require
@@ -19,7 +19,8 @@ Walk startRay(Path path)
     return startWalk(path.origin, path.direction, FAR, path.toSun, sceneRoot);
 }
 
-/** Whether the ray goes on. Counts what is not there yet as solid. */
+/** Returns whether the ray continues. A texel that is missing counts as opaque, except in a
+ * preview. */
 bool passHole(inout Walk walk, inout Path path, Hit hit, Surface s)
 {
     path.complete = path.complete && s.complete;
