@@ -4,10 +4,10 @@
 
 #include <stdbool.h>
 
-/** Whether `list`, names with commas between them, has `name`. NULL has every name. */
+/** Returns whether `list`, comma-separated names, has `name`. A list of NULL has every name. */
 bool names_have(const char *list, const char *name);
 
-/** Whether `known` has every name of `list`. If not, says on stderr which one it lacks. */
+/** Returns whether `known` has every name of `list`. Reports the first unknown name on stderr. */
 bool names_are_known(const char *list, const char *known);
 
 #endif /* TOOLS_COMMON_CHOSEN_NAMES_H */

@@ -24,7 +24,7 @@ static bool make_folder(const char *path)
     return false;
 }
 
-/* All folders of the first `length` bytes of a path. */
+/* Makes all folders of the first `length` bytes of a path. */
 static bool make_folders(const char *path, size_t length)
 {
     char *part = strndup(path, length);
@@ -100,7 +100,7 @@ static bool unreadable(const char *path, struct file_list *list)
 
 static bool collect_folder(const char *folder, const char *suffixes, struct file_list *list);
 
-/* Links to folders may lead in circles; pipes and the like are no pictures. */
+/* Skips links to folders, which may form cycles, and special files such as pipes. */
 static bool collect_entry(const char *folder, const char *name, const char *suffixes,
                           struct file_list *list)
 {

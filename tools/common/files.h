@@ -6,33 +6,33 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Makes a folder and those above it. Says on stderr why it failed. */
+/** Makes a folder and those above it. Reports errors on stderr. */
 bool files_make_folders(const char *path);
 
-/** Makes the folders above a file. errno says why it failed. */
+/** Makes the folders above a file. Sets errno on failure. */
 bool files_make_folders_of(const char *path);
 
-/** Bytes of a file; 0 if there is none. */
+/** Returns the size of a file in bytes. 0: there is no such file. */
 uint64_t files_size(const char *path);
 
 /** A growing list of paths. Zeroed is empty. */
 struct file_list {
     char **paths; ///< owned
     size_t count, capacity;
-    size_t unreadable_count; ///< files and folders that were named or found and are not in the list
-    const char *speaker;     ///< stands in front of messages; NULL: ""
+    size_t unreadable_count; ///< files and folders, named or found, that are missing from the list
+    const char *speaker;     ///< prefix of messages; NULL: ""
 };
 
-/** Whether a file's name ends in one of `suffixes`, which are separated by '|'; in any case. */
+/** Returns whether a file's name ends in one of `suffixes`, separated by '|'. Ignores case. */
 bool files_has_suffix(const char *path, const char *suffixes);
 
 /**
  * Adds a file as it is, or all files with one of the suffixes in a folder and those below it,
- * sorted by name; links to folders are not followed there. Says on stderr what cannot be read and
- * counts it in `unreadable_count`; false only when out of memory.
+ * sorted by name. Links to folders are not followed there. Reports on stderr what cannot be read,
+ * and counts it in `unreadable_count`. Returns false only when out of memory.
  */
 bool files_collect(const char *path, const char *suffixes, struct file_list *list);
-/** Adds a file without looking at it. False when out of memory. */
+/** Adds a file without opening it. Returns false when out of memory. */
 bool files_add(const char *path, struct file_list *list);
 void files_finish(struct file_list *list);
 

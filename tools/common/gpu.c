@@ -59,7 +59,7 @@ static VkDebugUtilsMessengerCreateInfoEXT messenger_info(struct gpu *gpu)
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
                            VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        /* Not the hints on speed: streamed images stay in the GENERAL layout on purpose. */
+        /* Leave out hints on speed: streamed images stay in the GENERAL layout on purpose. */
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = note_validation_message,
         .pUserData = gpu,

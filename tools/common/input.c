@@ -11,7 +11,7 @@
 #define NO_REGULAR_FILE ENOTSUP ///< no call here fails so by itself
 #define FIRST_CAPACITY 65536u
 
-/* Takes the descriptor. */
+/* Takes over the descriptor. */
 static FILE *take(int descriptor, bool any_kind)
 {
     struct stat status;
@@ -34,11 +34,11 @@ static FILE *take(int descriptor, bool any_kind)
 
 FILE *input_open(const char *path)
 {
-    /* Not blocking: nobody may ever write to a pipe. Regular files know no difference. */
+    /* Do not block: a pipe may have no writer. The flag changes nothing for regular files. */
     return take(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY), false);
 }
 
-/* The number behind /dev/fd/, or -1. */
+/* Returns the number behind /dev/fd/, or -1. */
 static int descriptor_of(const char *path)
 {
     static const char folder[] = "/dev/fd/";
@@ -70,7 +70,8 @@ const char *input_reason(int error)
     return error == NO_REGULAR_FILE ? "is not a regular file" : strerror(error);
 }
 
-/* Room for one byte more than is there, so that passing the limit shows, and for the NUL. */
+/* Makes room for one byte more than the input so far, to detect that it exceeds the limit, and for
+ * the NUL. */
 static bool grow(char **data, size_t *capacity, size_t size, uint64_t limit)
 {
     if (size + 1 < *capacity)

@@ -11,7 +11,7 @@
 
 #define MAX_FILES 256u      ///< the last entry stands for all others
 #define MESSAGE_SLOTS 4096u ///< a power of two
-#define MAX_MESSAGES 3072u  ///< more are taken for repeats
+#define MAX_MESSAGES 3072u  ///< later messages count as repeats
 
 struct file {
     char *name; ///< owned; NULL: files that have no entry of their own
@@ -21,7 +21,7 @@ struct file {
     uint64_t counted;
 };
 
-/* One log for the program: callbacks of all streamers and sources end here. */
+/* State of the program's log, shared by the callbacks of all streamers and sources. */
 static struct {
     pthread_mutex_t lock;
     struct file files[MAX_FILES];
@@ -38,7 +38,7 @@ static uint64_t hash_of(const char *bytes, size_t size)
     return hash ? hash : 1;
 }
 
-/* The number of bytes before ": ", where a file's name ends. */
+/* Returns the number of bytes before ": ", where a file's name ends. */
 static size_t name_length(const char *message)
 {
     const char *end = strstr(message, ": ");
@@ -62,7 +62,7 @@ static struct file *find_file(const char *speaker, const char *message)
     return &table.files[table.file_count - 1];
 }
 
-/* Notes the message. False if it was said before, or there is no room to know. */
+/* Notes a message. Returns false if it was printed before, or if the table is full. */
 static bool is_new(const char *message)
 {
     uint64_t hash = hash_of(message, strlen(message));

@@ -10,14 +10,14 @@
 #define LOG_LINES_PER_FILE 32u
 
 /**
- * A SluiceLogCallback's pfnLog. `user_data` is a string to stand in front of each line, which
- * lasts, or NULL. Leaves out infos and what was said before. The first LOG_LINES_PER_FILE messages
- * about a file are said, the others counted; a message is about the file that its words up to ": "
- * name. Control characters are written as text_write has them. Thread safety: any thread.
+ * pfnLog of a SluiceLogCallback. `user_data`: prefix of each line, which must stay valid, or NULL.
+ * Leaves out infos and repeated messages. Prints the first LOG_LINES_PER_FILE messages about a file
+ * and counts the others. The words before ": " name the file. Writes control characters like
+ * text_write. Any thread.
  */
 void log_say(void *user_data, SluiceLogSeverity severity, const char *message);
 
-/** Says how many messages were only counted, for each file, and begins anew. */
+/** Prints for each file how many messages were only counted, and resets the counts. */
 void log_finish(void);
 
 #endif /* TOOLS_COMMON_LOG_H */

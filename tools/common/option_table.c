@@ -11,12 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the parser is. */
+/* Position of the parser. */
 struct command_line {
     const struct option_table *table;
-    int argc, index; ///< index: the argument that is looked at
+    int argc, index; ///< `index`: current argument
     char **argv;
-    int word_count;  ///< OPTION_WORDS; they are at the front of argv
+    int word_count;  ///< words of OPTION_WORDS, which are at the front of argv
     size_t next_row; ///< OPTION_WORD: rows before this one are filled
 };
 

@@ -83,7 +83,7 @@ enum option_outcome { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_ERROR };
  */
 enum option_outcome options_parse(const struct option_table *table, int argc, char **argv);
 
-/** Says on stderr, after the program's name, what is wrong. Returns false. */
+/** Reports an error on stderr, after the program's name. Returns false. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif

@@ -13,49 +13,50 @@
 
 struct output_file;
 
-/** Text in front of every message of this file, as "sluice-info: ". Borrowed. Default: "". */
+/** Sets the prefix of every message of this file, such as "sluice-info: ". Borrowed. Default:
+ * "". */
 void output_set_speaker(const char *speaker);
 
 /**
- * Remembers a file that is read, by device and inode, so that no name of it is written. Files that
- * do not exist and what is no regular file are passed over. False when out of memory, which stderr
- * says. Outputs that have begun are not checked again. Any thread.
+ * Remembers an input, by device and inode, so that no output replaces it under any name. Ignores
+ * missing and special files. Outputs that have begun are not checked again. Returns false, with a
+ * message on stderr, when out of memory. Any thread.
  */
 bool output_add_input(const char *path);
-/** False, which stderr says, if writing `path` would replace an input. Any thread. */
+/** Returns whether `path` replaces no input. If it would, reports it on stderr. Any thread. */
 bool output_spares_inputs(const char *path);
 
 /**
- * Tells whether a file can be written, replaces no input, and has a name that no other output of
- * this run has: to be asked once, before the work whose result is written there. Leaves nothing
- * behind. Says on stderr why not.
+ * Checks that a file can be written, replaces no input, and has a name of no other output of this
+ * run. Call once per output, before the work that makes its contents. Leaves nothing behind.
+ * Reports errors on stderr.
  */
 bool output_can_write(const char *path);
 
 /**
- * Keeps a name for a file that a library writes. False, which stderr says, if it would replace an
- * input or if another output of this run has the name. Any thread.
+ * Keeps a name for a file that a library writes. Returns false, with a message on stderr, if the
+ * name would replace an input or belongs to another output of the run. Any thread.
  */
 bool output_claim(const char *path);
 
 /**
- * Begins a file. `path` with ".sluice-part" added is written, or `path` itself if it is a pipe or a
- * character device. NULL if that fails, would replace an input, or has a name that
- * was claimed; stderr says why. Any thread.
+ * Begins a file. Writes `path` with ".sluice-part" added, or `path` itself if it is a pipe or a
+ * character device. Returns NULL, with a message on stderr, if that fails, would replace an input,
+ * or the name was claimed. Any thread.
  */
 struct output_file *output_file_begin(const char *path);
-/** Begins a file without waiting for the disk at its end, which takes tens of milliseconds: after a
- *  power cut it may be empty. For the many pictures of a run. */
+/** Begins a file that does not wait for the disk at its end, which takes tens of milliseconds.
+ * After a power cut the file may be empty. For the many pictures of a run. */
 struct output_file *output_file_begin_quickly(const char *path);
-/** To write to; belongs to the file. */
+/** Returns the stream to write to, which belongs to the file. */
 FILE *output_file_stream(struct output_file *file);
 /**
- * Ends a file: gives it its name if `keep` and all of it could be written, removes it otherwise.
- * False if not all of it could be written, which stderr says, or not `keep`. NULL: false.
+ * Ends a file. Gives it its name if `keep` is set and all of it was written; otherwise removes it.
+ * Returns whether it got its name. Reports write errors on stderr. NULL: returns false.
  */
 bool output_file_end(struct output_file *file, bool keep);
 
-/** Writes a whole file: a text that printf makes. False if it failed, and stderr says why. */
+/** Writes a whole file with printf. Reports errors on stderr and returns false. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif

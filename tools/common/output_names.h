@@ -17,7 +17,7 @@ enum output_name_answer { OUTPUT_NAME_FREE, OUTPUT_NAME_TAKEN, OUTPUT_NAME_NO_ME
  */
 enum output_name_answer output_name_take(const char *path, enum output_name_owner owner);
 
-/** Whether a name is kept for a file that a library writes. */
+/** Returns whether a name is kept for a file that a library writes. */
 bool output_name_is_of_library(const char *path);
 
 #endif /* TOOLS_COMMON_OUTPUT_NAMES_H */

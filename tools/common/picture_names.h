@@ -1,4 +1,4 @@
-/** How names of pictures end, for those who look for them in folders. */
+/** Suffixes of pictures, for searches in folders. */
 #ifndef TOOLS_COMMON_PICTURE_NAMES_H
 #define TOOLS_COMMON_PICTURE_NAMES_H
 

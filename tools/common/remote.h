@@ -19,14 +19,14 @@ struct remote_file {
     SluiceInput input; ///< for the source that reads the file
 };
 
-/** True if a name is a URL of http, https or s3. */
+/** Returns whether a name is a URL of http, https or s3. */
 static inline bool remote_is_url(const char *name)
 {
     return strncmp(name, "http://", 7) == 0 || strncmp(name, "https://", 8) == 0 ||
            strncmp(name, "s3://", 5) == 0;
 }
 
-/** The last part of a URL's path, without a query, which may hold keys. */
+/** Copies the last part of a URL's path, without the query, which may hold keys. */
 static inline void remote_name(const char *url, char *name, size_t size)
 {
     size_t length = strcspn(url, "?#"), first = length;

@@ -33,7 +33,7 @@ static uint32_t next_character(const unsigned char *text, size_t *size)
     return character;
 }
 
-/* Controls, what separates lines, and what turns the direction of writing. */
+/* Tests for controls, separators of lines, and controls of the writing direction. */
 static bool is_active(uint32_t c)
 {
     return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x061C || c == 0x200E || c == 0x200F ||
@@ -56,7 +56,7 @@ void text_write(FILE *out, const char *text)
     }
 }
 
-/* One for the program, as stderr is. */
+/* Listener of the program's messages. There is only one, like stderr. */
 static struct {
     void (*listen)(void *user_data, const char *line);
     void *user_data;

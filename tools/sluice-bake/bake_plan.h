@@ -26,22 +26,24 @@ struct plan {
     size_t count, capacity;
 };
 
-/** Adds a picture and takes both names, which may be NULL for want of memory. False: none. */
+/** Adds a picture and takes over both names. A name may be NULL after a failed allocation. Returns
+ * false, with a message on stderr, when out of memory. */
 bool plan_add(struct plan *plan, const struct plan_picture *picture);
 
 /** Estimates seconds on one processor. `texels`: of level 0, all layers. */
 double plan_cost(const SluiceBakeSettings *settings, SluiceFormat format, double texels,
                  uint64_t input_size);
 
-/** False if it cannot be written, which stderr says. */
+/** Writes a plan. Reports errors on stderr. */
 bool plan_write(const struct plan *plan, const char *path);
-/** False, with file, line and cause on stderr, if it cannot be read or is no plan. */
+/** Reads a plan. Reports errors on stderr, with file and line. */
 bool plan_read(struct plan *plan, const char *path);
 void plan_finish(struct plan *plan);
 
 /**
- * Computes the shard of each picture, from 0: the costliest picture first, each to the shard that
- * has least. `shards`: one number per picture. False without memory.
+ * Assigns each picture to a shard, counted from 0. The costliest picture comes first; each goes to
+ * the shard with the least cost. `shards`: one number per picture. Returns false when out of
+ * memory.
  */
 bool plan_balance(const struct plan *plan, uint32_t shard_count, uint32_t *shards);
 

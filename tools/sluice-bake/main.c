@@ -1,4 +1,4 @@
-/* Makes tile stores of pictures. */
+/* Makes tile stores from pictures. */
 #define _XOPEN_SOURCE 700
 
 #include "../common/clock.h"
@@ -41,7 +41,7 @@ static struct bake_conditions conditions_of(const struct options *options)
                                     .speaker = "sluice-bake: "};
 }
 
-/* One store, whose layers are the inputs. */
+/* Bakes one store, whose layers are the inputs. */
 static int bake_layers(const struct options *options)
 {
     struct bake_conditions conditions = conditions_of(options);

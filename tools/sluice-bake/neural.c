@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* From few bits per texel to many: 5 * features / scale^2 of mip 0. */
+/* From few bits per texel to many. Bits: 5 * features / scale^2 of mip 0. */
 static const struct {
     uint32_t scale, features;
 } sizes[] = {{4, 4}, {4, 8}, {4, 16}, {2, 8}, {2, 16}};
@@ -22,7 +22,7 @@ static const struct {
 
 static char speaker[] = "sluice-bake: ";
 
-/* Level 0 of a picture as the baker understands it. */
+/* Level 0 of a picture, decoded. */
 struct picture {
     uint32_t width, height, channels;
     SluiceFormat format;
@@ -93,7 +93,8 @@ static bool read_level0(SluiceImageSource *source, const char *path, struct pict
     return is_read;
 }
 
-/* Through a store beside the output, so that all that the baker reads is read in the same way. */
+/* Bakes the picture to a temporary store beside the output and reads that, so that all formats of
+ * the baker are read. */
 static bool read_picture(SluiceBaker *baker, const char *path, const struct options *options,
                          struct picture *picture)
 {
@@ -139,7 +140,7 @@ static void drop_opaque_alpha(struct picture *picture)
     picture->channels = 3;
 }
 
-/* The file's name without folder and extension. */
+/* Copies the file's name without folder and extension. */
 static void name_of(const char *path, char name[TRAINING_SET_NAME])
 {
     const char *slash = strrchr(path, '/');
@@ -173,7 +174,7 @@ static bool add_picture(struct training_set *set, const char *path, struct pictu
     return training_set_add(set, &added);
 }
 
-/* NAME=W, with commas between. */
+/* Parses "NAME=W,NAME=W". */
 static bool weigh(struct training_set *set, const char *text)
 {
     while (text && *text) {
@@ -240,7 +241,7 @@ static void print_run(const struct options *options, const struct training_run *
            bits, run->file_size, run->psnr, run->fp8_psnr, run->steps_run, run->seconds);
 }
 
-/* One size, or from small to large until the quality is reached. */
+/* Trains one size, or all from small to large until one reaches the quality. */
 static bool compress(const struct options *options, const struct gpu *gpu,
                      const struct training_set *set)
 {

@@ -4,7 +4,7 @@
 
 #include "options.h"
 
-/** False, which stderr says. */
+/** Reports errors on stderr and returns false. */
 bool neural_bake(const struct options *options);
 
 #endif /* TOOLS_SLUICE_BAKE_NEURAL_H */

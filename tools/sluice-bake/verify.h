@@ -1,10 +1,10 @@
-/** Stores read tile by tile, to see whether they are what they were. */
+/** Verification of stores, tile by tile. */
 #ifndef TOOLS_SLUICE_BAKE_VERIFY_H
 #define TOOLS_SLUICE_BAKE_VERIFY_H
 
 #include "../common/option_table.h"
 
-/** Says of each file whether it is whole. False if one is not. */
+/** Prints for each file whether it is whole. Returns false if a file is not. */
 bool verify_files(const struct option_list *paths, bool json);
 
 #endif /* TOOLS_SLUICE_BAKE_VERIFY_H */

@@ -1,4 +1,4 @@
-/** How a device streams each format. Uses only the public functions and structs. */
+/** Streaming modes of a device by format. Uses only the public functions and structs. */
 #ifndef TOOLS_SLUICE_INFO_FORMAT_MODES_H
 #define TOOLS_SLUICE_INFO_FORMAT_MODES_H
 
@@ -15,18 +15,18 @@ enum format_mode {
 
 extern const char *const format_mode_names[FORMAT_MODES];
 
-/** The mode whose features a device must have; demand loading needs those of paged mode. */
+/** Returns the mode whose features a device must have. Demand loading needs those of paged mode. */
 SluiceResidencyMode format_mode_residency(enum format_mode mode);
 
 /**
- * "yes", "nearest only" (streamed, without linear filters), or why the format is refused.
+ * Returns "yes", "nearest only" (streamed, without linear filters), or why the format is refused.
  *
- * `has_mode`: sluiceRequireVulkanFeatures succeeds for format_mode_residency(mode).
+ * `has_mode`: whether sluiceRequireVulkanFeatures succeeds for format_mode_residency(mode).
  */
 const char *format_mode_answer(enum format_mode mode, bool has_mode, SluiceFormat format,
                                const SluiceVulkanFormatCapabilities *caps);
 
-/** True for "yes" and "nearest only". */
+/** Returns true for "yes" and "nearest only". */
 bool format_mode_is_streamed(const char *answer);
 
 #endif /* TOOLS_SLUICE_INFO_FORMAT_MODES_H */

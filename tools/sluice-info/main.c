@@ -1,5 +1,4 @@
-/* Says what is in files of textures, and what the Vulkan devices of this machine can do for Sluice.
- */
+/* Reports on texture files, and on the Vulkan devices of this machine. */
 #include "show.h"
 
 #include "file_report.h"

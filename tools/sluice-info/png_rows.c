@@ -28,7 +28,7 @@ static void on_warning(png_structp png, png_const_charp message)
     (void)png, (void)message;
 }
 
-/* False if libpng gave up. Nothing of this function is used after the jump. */
+/* Returns false on an error of libpng, which jumps back to setjmp. */
 static bool write_header(struct png_rows *rows, FILE *out, uint32_t height)
 {
     if (setjmp(png_jmpbuf(rows->png)))

@@ -1,12 +1,12 @@
-/** Where the tests of a self-test report: lines with tabs between fields. */
+/** Machine-readable results of a self-test: lines with tabs between fields. */
 #ifndef TOOLS_SLUICE_INFO_SELF_TEST_CHECKS_H
 #define TOOLS_SLUICE_INFO_SELF_TEST_CHECKS_H
 
 #include <stdio.h>
 
 /**
- * Reports from here on: "begin NAME", then "end NAME RESULT SECONDS REASON". RESULT is pass, fail
- * or skip. The reason is empty for pass.
+ * Sets where tests report: "begin NAME", then "end NAME RESULT SECONDS REASON". RESULT is pass,
+ * fail or skip. The reason is empty for pass.
  */
 void self_test_report_to(FILE *out);
 

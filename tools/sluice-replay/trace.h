@@ -1,4 +1,4 @@
-/** The trace that is played. */
+/** Reader of the trace to play. */
 #ifndef TOOLS_SLUICE_REPLAY_TRACE_H
 #define TOOLS_SLUICE_REPLAY_TRACE_H
 
@@ -6,14 +6,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Says on stderr why an input could not be read: an errno of input_read_rest, asked for `memory`
- *  bytes at most. */
+/** Reports on stderr why an input could not be read. `error`: errno of input_read_rest, called with
+ * a limit of `memory` bytes. */
 void say_unread(const char *path, int error, uint64_t memory);
 
 /**
- * Reads a trace of at most `memory` bytes from a file or a stream, see input_open_stream. Looks
- * at the first bytes before it reads the rest. On failure says why on stderr. `*data` is to be
- * freed.
+ * Reads a trace of at most `memory` bytes from a file or a stream (input_open_stream). Checks the
+ * first bytes before it reads the rest. Reports errors on stderr. Free `*data`.
  */
 bool read_trace(const char *path, uint64_t memory, char **data, size_t *size);
 

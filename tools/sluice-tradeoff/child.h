@@ -1,4 +1,4 @@
-/** A program that runs beside this one, whose output goes to files. */
+/** A child process whose output goes to files. */
 #ifndef SLUICE_TRADEOFF_CHILD_H
 #define SLUICE_TRADEOFF_CHILD_H
 
@@ -15,31 +15,33 @@ struct child_info {
 
 struct child {
     pid_t pid;              ///< 0: none
-    struct child_info info; ///< borrowed until it has ended
+    struct child_info info; ///< borrowed until the child has ended
     double started;         ///< clock_seconds()
-    const char *killed;     ///< why it was, or NULL
+    const char *killed;     ///< reason why the child was killed, or NULL
 };
 
 enum child_state { CHILD_RUNS, CHILD_DONE, CHILD_FAILED };
 
 /**
- * Starts it in a process group of its own that dies with this process. False with errno if it
- * cannot be forked or the files cannot be written; a program that is not there is a failed child.
+ * Starts a child in its own process group, which dies with this process. Returns false with errno
+ * if fork fails or the files cannot be written. A program that does not exist is a child that
+ * fails.
  */
 bool child_begin(const struct child_info *info, struct child *child);
-/** Starts it in a session of its own, where it outlives this process. Nothing watches or ends it:
- *  `limit` is ignored. False with errno if it cannot be forked or the files cannot be written. */
+/** Starts a child in its own session, where it outlives this process. Nothing watches or ends it:
+ * `limit` is ignored. Returns false with errno if fork fails or the files cannot be written. */
 bool child_begin_detached(const struct child_info *info);
-/** Looks after it: time limit and the size of its output. */
+/** Checks the time limit and the size of the output. */
 enum child_state child_poll(struct child *child, int *status);
-/** Ends it and what it started, and waits for that. */
+/** Kills the child and its descendants, and waits for them. */
 void child_kill(struct child *child);
-/** Until it has ended, but not after an interruption. */
+/** Waits until the child has ended or the program is interrupted. */
 enum child_state child_wait(struct child *child, int *status);
-/** Why it failed: "exit status 2: the last line of standard error"; to be freed. */
+/** Returns why the child failed: "exit status 2: the last line of standard error". Free the
+ * result. */
 char *child_reason(const struct child *child, int status);
 
-/** Interruptions (SIGINT, SIGTERM, SIGHUP) are taken note of from now on. */
+/** Begins to note interruptions (SIGINT, SIGTERM, SIGHUP). */
 void child_watch_interruptions(void);
 bool child_is_interrupted(void);
 

@@ -1,19 +1,20 @@
-/** How long the tile manager takes by itself. */
+/** Time that the tile manager takes by itself. */
 #ifndef SLUICE_TRADEOFF_CORE_TIME_H
 #define SLUICE_TRADEOFF_CORE_TIME_H
 
 #include <stddef.h>
 
 /**
- * Frames of a recording: as many as there are calls that say which are over, or that ask which
- * tiles to map, if those are more; a frame whose loads are all under way asks nothing. 0 if it
- * cannot be played to its end.
+ * Returns the number of frames of a recording: that of complete-retire calls or that of
+ * get-tiles-to-map calls, whichever is larger, because a frame need not make both. Returns 0 if the
+ * recording cannot be played to its end.
  */
 double core_time_count_frames(const char *data, size_t size);
 
 /**
- * Plays a recording several times and returns the microseconds per frame of the fastest, decoding
- * and hashing included. NaN if there is no file, no frame in it, or it cannot be played to its end.
+ * Plays a recording several times. Returns the microseconds per frame of the fastest run, with
+ * decoding and hashing. NaN if there is no file or no frame, or the recording cannot be played to
+ * its end.
  */
 double core_time_per_frame(const char *trace_path);
 

@@ -34,7 +34,8 @@ static size_t put_character(unsigned code, char *out)
     return 3;
 }
 
-/* \uXXXX; a half of a pair, and what would end the text, become U+FFFD. NULL: it is none. */
+/* Parses the XXXX of \uXXXX. Half of a surrogate pair, and 0000, become U+FFFD. NULL: not a
+ * code. */
 static const char *take_code(const char *at, char **out)
 {
     unsigned code = 0;
@@ -48,7 +49,7 @@ static const char *take_code(const char *at, char **out)
     return at;
 }
 
-/* A string with its quotes. NULL: there is none. */
+/* Parses a quoted string. NULL: there is none. */
 static const char *take_string(const char *at, char **text)
 {
     static const char escaped[] = "\"\\/bfnrt", meant[] = "\"\\/\b\f\n\r\t";
@@ -73,7 +74,7 @@ static const char *take_string(const char *at, char **text)
     return NULL;
 }
 
-/* A number, or a word that stands for none. */
+/* Parses a number, or null (NaN), true (1) or false (0). */
 static const char *take_number(const char *at, double *value)
 {
     static const char *const words[] = {"null", "true", "false"};
@@ -89,7 +90,7 @@ static const char *take_number(const char *at, double *value)
     return length > 0 && *at != '+' && end == at + length ? end : NULL;
 }
 
-/* One member of the object; keeps it if it is of interest. */
+/* Parses a member of the object. Keeps a name, a unit and a value. */
 static const char *take_member(const char *at, struct figure *figure, bool *has_value)
 {
     char *key = NULL, *text = NULL;

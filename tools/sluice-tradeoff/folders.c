@@ -100,7 +100,8 @@ bool folders_may_forget(const char *path)
     return false;
 }
 
-/* All but the folder itself and its mark: what is interrupted can be gone on with. */
+/* Removes an entry, except the folder itself and its mark. With the mark, an interrupted removal
+ * can be repeated. */
 static int forget_entry(const char *path, const struct stat *info, int kind, struct FTW *place)
 {
     (void)info;
@@ -145,11 +146,11 @@ bool folders_lock(const char *folder)
     struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     int file = open(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     free(path);
-    if (file >= 0 && file <= STDERR_FILENO) { /* where messages go */
+    if (file >= 0 && file <= STDERR_FILENO) { /* messages go to descriptors 0 to 2 */
         int standard = file;
         file = fcntl(standard, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
         close(standard);
     }
-    /* Stays open: the lock ends with the process. */
+    /* Keep the file open: the lock ends with the process. */
     return file >= 0 && fcntl(file, F_SETLK, &whole) == 0;
 }

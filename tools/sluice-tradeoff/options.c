@@ -57,7 +57,7 @@ static bool refuse_scene(const struct option_table *table, const char *word)
         nearest_question(&nearest, "", question, sizeof question));
 }
 
-/* Better said once, before anything is run. */
+/* Checks a file before anything runs, so that the error comes early and once. */
 static bool is_readable(const struct option_table *table, const char *path)
 {
     FILE *file = input_open(path);
@@ -161,7 +161,7 @@ enum option_outcome options_parse_sweep(int argc, char **argv, struct options *o
     return OPTIONS_ERROR;
 }
 
-/* All of them are options with one value. */
+/* Adds the scene's options. Each has one value. */
 void options_add_scene(const struct options *o, struct text_list *arguments)
 {
     const char *scene = o->full ? o->scene->full_arguments : o->scene->quick_arguments;

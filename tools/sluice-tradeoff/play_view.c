@@ -112,7 +112,8 @@ static void need_tile(struct view *v, struct view_texture *t, uint32_t tile, uin
     t->needed[tile] = frame + 1;
 }
 
-/** All levels from the wanted one on, and the packed ones. */
+/** Marks the tiles of a region as needed: all levels from the wanted one on, and the packed
+ * ones. */
 static void need_region(struct view *v, struct view_texture *t,
                         const SluiceStreamedTextureLayout *l, struct tiles tiles, uint32_t want,
                         uint32_t frame)
@@ -128,8 +129,8 @@ static void need_region(struct view *v, struct view_texture *t,
     need_tile(v, t, l->regularTileCount, l->desc.packedTileCount, frame);
 }
 
-/** The level that is there in all of a region: as the harness counts, one more than the packed
- * levels' if not even they are. */
+/** Returns the finest level that is resident in all of a region. Like the harness, returns one more
+ * than the packed levels' number if even they are missing. */
 static uint32_t level_of_region(const struct view *v, const SluiceStreamedTextureLayout *l,
                                 struct tiles tiles)
 {
@@ -154,7 +155,7 @@ static void end_wait(struct view *v, struct view_texture *t, uint32_t region, ui
     t->sharp_in[region] = 0;
 }
 
-/** A region that is in view at `want`, with `have` there. */
+/** Notes that a region in view wants level `want` and has level `have`. */
 static void see_region(struct view *v, struct view_texture *t, uint32_t region, uint32_t want,
                        uint32_t have, uint32_t frame)
 {

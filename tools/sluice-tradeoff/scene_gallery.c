@@ -126,8 +126,8 @@ static void add_path(const struct program *program, const char *option, const ch
     free(path);
 }
 
-/* One truth for all points, the best that the program can draw, so that filters are compared too,
- * and in one residency, so that it is drawn once. */
+/* Compares all points with one truth, the best that the program can draw, so that filters are
+ * compared, too. Its residency mode is fixed, so that it is drawn once. */
 static void add_repeat_arguments(const struct program *program, uint32_t repeat,
                                  struct text_list *arguments)
 {

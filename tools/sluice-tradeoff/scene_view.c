@@ -1,7 +1,7 @@
 /* Any scene and camera path of the viewer: tools/sluice-view. */
 #include "scenes.h"
 
-/* Nothing is compared with a truth, so what asks for coarser levels is no setting. */
+/* Settings that request coarser levels are left out, because no truth is compared. */
 static const struct scene_setting settings[] = {
     {{"probability", "that a pixel quad writes feedback", ""}, NULL, "1/64", "1,1/4,1/64,1/256"},
     {{"textures-per-frame", "feedback maps read back per frame", "maps"}, NULL, "1", "1,2,5,20"},

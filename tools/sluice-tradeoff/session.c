@@ -10,7 +10,7 @@
 #include "../sluice-replay/file.h"
 #include "plan.h"
 
-/* The scene's program, or this tool itself where it plays. */
+/* Finds the scene's program. A scene without one uses this tool, which plays traces. */
 static bool find_program(struct session *s, const char *own_path, bool recall)
 {
     const struct scene *scene = s->options.scene;
@@ -80,7 +80,7 @@ static void finish_point(const struct sweep *sweep, struct sweep_point *point)
     free(point->measured);
 }
 
-/* The session made them and lends them as constant. */
+/* Frees a block that the session owns and lends as constant. */
 static void free_const(const void *block)
 {
     free((void *)(uintptr_t)block);
@@ -113,7 +113,7 @@ void session_close(struct session *s)
     *s = (struct session){0};
 }
 
-/* Each word ends with a NUL, which no word holds. */
+/* Writes the words of the command line, each ended by a NUL. */
 bool session_remember(const char *results, int argc, char *const *argv)
 {
     char *path = memory_text("%s/sweep.words", results);

@@ -38,7 +38,7 @@ struct sweep_estimate {
 
 enum sweep_state { SWEEP_PENDING, SWEEP_DONE, SWEEP_FAILED };
 
-/** One combination of settings. Strings are owned. */
+/** A combination of settings. Owns its strings. */
 struct sweep_point {
     char **values;      ///< by setting, as on the command line: "1/16"
     char *label;        ///< differences from the base settings: "probability 1/64, budget 16"

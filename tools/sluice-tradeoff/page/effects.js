@@ -92,7 +92,7 @@ function drawEffect(place, setting, metric, range) {
   place.append(root);
 }
 
-/* One each of memory, picture, time and traffic. */
+/* Metrics in groups of memory, picture, time and traffic; the first known one of each group. */
 const effectGroups = [['resident_bytes_peak', 'device_memory_peak'], ['flip_mean', 'psnr_mean_db', 'psnr_lowest_db', 'levels_too_coarse'],
   ['gpu_ms_median', 'frame_ms_median', 'time', 'core_us_per_frame'], ['bytes_read', 'loaded_bytes', 'frames_until_sharp_p99']].map(firstOf).filter(m => m !== undefined);
 const effectMetrics = new Set(effectGroups.length > 0 ? effectGroups : tellingMetrics(4));

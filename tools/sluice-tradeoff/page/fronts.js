@@ -95,7 +95,7 @@ function tipLines(index, metrics) {
   return [pointName(index), ...[...new Set([...metrics, ...tellingMetrics(4)])].map(m => `${metricName(m)}: ${estimateText(index, m)}`)];
 }
 
-/** One mark, with the listeners that make it answer. */
+/** Draws a mark, with the listeners that make it interactive. */
 function drawMark(index, at, radius, onFront, metrics) {
   const group = groupOf(index);
   const classes = ['mark', onFront ? 'best' : 'behind', hushed(index) ? 'hushed' : ''].join(' ');

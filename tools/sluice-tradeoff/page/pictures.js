@@ -94,7 +94,7 @@ function drawPictures() {
   byId('picture-body').replaceChildren(sides, html('p', {class: 'muted small'}, `${pointName(set.point)}, frame ${set.frame}${qualityText(set) ? `: ${qualityText(set)}` : ''}`), frame, slider, drawThree(set));
 }
 
-/** Says how many runs have pictures, and lists the frames that were left out. */
+/** Shows how many runs have pictures, and lists the frames that were left out. */
 function showMissingPictures() {
   const there = new Set(album.sets.map(set => set.point)), rest = done.filter(i => !there.has(i)).length;
   const lines = album.left_out.map(gone => html('li', {}, `${pointName(gone.point)}, frame ${gone.frame}: ${gone.why}`));

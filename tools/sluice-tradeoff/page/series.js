@@ -42,7 +42,7 @@ function columnUnit(name) {
   return kind ? kind[1] : name.startsWith('bytes') ? 'bytes' : name.endsWith('_ms') ? 'ms' : '';
 }
 
-/** Where the camera stands still, if the run says so. */
+/** Marks the frames with a camera at rest, if the run has that column. */
 function drawRest(point, along, box) {
   const rest = columnOf(runs.get(point), 'at_rest');
   const first = rest ? rest.most.findIndex(v => v > 0) : -1;

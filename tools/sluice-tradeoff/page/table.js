@@ -1,5 +1,5 @@
 'use strict';
-/* All points as a table that can be sorted, and as CSV. */
+/* Table of all points, which can be sorted, and its CSV. */
 
 const table = {by: null, down: false};
 
