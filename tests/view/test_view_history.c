@@ -36,10 +36,13 @@ static void points_of_all_spans_have_the_largest_of_their_frames(void **state)
         const double step = history.rings[span].step, now = (FRAMES - 1) * FRAME_SECONDS;
         const uint32_t count = history_count(&history, (enum history_span)span);
         assert_true(count > HISTORY_POINTS / 2 && count <= HISTORY_POINTS);
+        float values[HISTORY_POINTS];
+        assert_int_equal(history_read(&history, (enum history_span)span, 0, values), count);
         for (uint32_t age = 0; age < count; age++) {
             const double begin = (floor(now / step + 1e-9) - age) * step;
             const double is = (double)history_value(&history, (enum history_span)span, 0, age);
             assert_float_equal(is, largest(FRAMES, begin - 1e-9, begin + step - 1e-9), 0);
+            assert_float_equal(values[age], is, 0);
             assert_float_equal(history_value(&history, (enum history_span)span, 1, age), 1, 0);
         }
     }

@@ -40,6 +40,13 @@ enum app_follow { FOLLOW_NOTHING, FOLLOW_TOUR, FOLLOW_PATH, FOLLOW_CAMERA };
 
 #define APP_NO_CAMERA UINT32_MAX
 
+/** Quantiles of frame times, kept between frames. */
+struct app_quantiles {
+    enum history_span span;
+    double next; ///< seconds of the viewer's life when they are found again
+    double seconds[2];
+};
+
 struct view_app {
     struct view_settings settings; ///< of A, and what A and B share
     struct view_settings b;        ///< sets.h
@@ -65,6 +72,7 @@ struct view_app {
     struct file_facts file;
     bool edits_b;            ///< controls change B
     struct browser browser;  ///< of PANEL_OPEN
+    struct app_quantiles quantiles;
     char texture_filter[64]; ///< words of the table of textures
     bool touched;            ///< the visitor has the camera
     bool dragging;           ///< the mouse turns the camera

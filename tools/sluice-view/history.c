@@ -96,6 +96,18 @@ float history_value(const struct history *h, enum history_span span, uint32_t se
     return age < ring->count ? point_at(h, ring, ring->last - age)[series] : 0.0f;
 }
 
+uint32_t history_read(const struct history *h, enum history_span span, uint32_t series,
+                      float *values)
+{
+    const struct history_ring *ring = &h->rings[span];
+    uint32_t slot = (uint32_t)(ring->last % HISTORY_POINTS);
+    for (uint32_t age = 0; age < ring->count; age++) {
+        values[age] = ring->values[(size_t)slot * h->series_count + series];
+        slot = slot > 0 ? slot - 1 : HISTORY_POINTS - 1;
+    }
+    return ring->count;
+}
+
 static int compare(const void *left, const void *right)
 {
     const float *a = left, *b = right;

@@ -38,6 +38,10 @@ uint32_t history_count(const struct history *history, enum history_span span);
 /** A value `age` points ago. */
 float history_value(const struct history *history, enum history_span span, uint32_t series,
                     uint32_t age);
+/** Writes all values of a series in a span, newest first. Returns how many: HISTORY_POINTS at most.
+ */
+uint32_t history_read(const struct history *history, enum history_span span, uint32_t series,
+                      float *values);
 /** Writes quantiles of the seconds per frame within a span, of the last HISTORY_FRAMES frames at
  *  most. `parts`: 0.5 for the median. */
 void history_frame_times(struct history *history, enum history_span span, const double *parts,

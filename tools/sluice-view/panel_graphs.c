@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#define QUANTILE_SECONDS 0.25
+
 struct curve {
     enum facts_series series;
     uint32_t color;
@@ -134,44 +136,69 @@ static void draw_title(const struct view_facts *f, const struct graph *graph)
     ui_text(UI_GRAY, "%s", graph->unit);
 }
 
-static void draw_curve(const struct view_facts *f, const struct curve *curve,
-                       enum history_span span, const float r[4], double top)
+/* Points between equal neighbors are left out: the line is the same without them. */
+static void draw_curve(const float *values, uint32_t count, const float r[4], double top,
+                       uint32_t color)
 {
     float xy[2 * HISTORY_POINTS];
-    const uint32_t count = history_count(&f->history, span);
+    uint32_t points = 0;
+    const float per_value = r[3] * 0.96f / (float)top, per_age = r[2] / (HISTORY_POINTS - 1);
     for (uint32_t age = 0; age < count; age++) {
-        const double value = (double)history_value(&f->history, span, curve->series, age);
-        xy[2 * age] = r[0] + r[2] * (1.0f - (float)age / (HISTORY_POINTS - 1));
-        xy[2 * age + 1] = r[1] + r[3] * (float)(1.0 - 0.96 * value / top);
+        if (age > 0 && age + 1 < count && values[age] == values[age - 1] &&
+            values[age] == values[age + 1])
+            continue;
+        xy[2 * points] = r[0] + r[2] - (float)age * per_age;
+        xy[2 * points++ + 1] = r[1] + r[3] - values[age] * per_value;
     }
-    ui_polyline(xy, count, curve->color, 1.5f * ui_scale());
+    /* Whole pixels: other widths take twice the vertices. */
+    ui_polyline(xy, points, color, floorf(1.5f * ui_scale() + 0.5f));
+}
+
+static void draw_curves(const struct view_facts *f, const struct graph *graph,
+                        enum history_span span, const float r[4])
+{
+    float values[4][HISTORY_POINTS];
+    uint32_t count = 0;
+    float top = (float)graph->least_top;
+    for (uint32_t i = 0; i < graph->curve_count; i++) {
+        count = history_read(&f->history, span, graph->curves[i].series, values[i]);
+        for (uint32_t age = 0; age < count; age++)
+            top = values[i][age] > top ? values[i][age] : top;
+    }
+    ui_fill(r[0], r[1], r[2], r[3], UI_COLOR(30, 34, 40, 255));
+    for (uint32_t i = 0; i < graph->curve_count; i++)
+        if (is_drawn(f, &graph->curves[i]))
+            draw_curve(values[i], count, r, (double)top, graph->curves[i].color);
 }
 
 static void draw_graph(const struct view_facts *f, const struct graph *graph,
                        enum history_span span)
 {
+    const float height = 46 * ui_scale();
     float r[4];
-    double top = graph->least_top;
-    for (uint32_t i = 0; i < graph->curve_count; i++)
-        for (uint32_t age = 0; age < history_count(&f->history, span); age++)
-            top = fmax(top, (double)history_value(&f->history, span, graph->curves[i].series, age));
+    if (!ui_in_sight(ui_line_height() + height)) {
+        ui_space(ui_line_height() + height);
+        return;
+    }
     draw_title(f, graph);
-    ui_canvas(0, 46 * ui_scale(), r);
-    ui_fill(r[0], r[1], r[2], r[3], UI_COLOR(30, 34, 40, 255));
-    for (uint32_t i = 0; i < graph->curve_count; i++)
-        if (is_drawn(f, &graph->curves[i]))
-            draw_curve(f, &graph->curves[i], span, r, top);
+    ui_canvas(0, height, r);
+    draw_curves(f, graph, span, r);
     draw_hover(f, graph, r, span);
 }
 
-/* The last 3600 frames at most: what was before is in the curves. */
-static void draw_quantiles(struct view_facts *f, enum history_span span, bool by_number)
+/* The last 3600 frames at most: what was before is in the curves. They are sorted some times per
+ * second. */
+static void draw_quantiles(struct view_app *app, enum history_span span)
 {
     static const double parts[] = {0.5, 0.99};
-    double seconds[2];
-    history_frame_times(&f->history, span, parts, 2, seconds);
+    struct app_quantiles *q = &app->quantiles;
+    if (app->seconds >= q->next || app->seconds < q->next - QUANTILE_SECONDS || q->span != span) {
+        history_frame_times(&app->facts.history, span, parts, 2, q->seconds);
+        q->next = app->seconds + QUANTILE_SECONDS;
+        q->span = span;
+    }
     ui_text(UI_WHITE, "Frames%s: half within %.1f ms (p50), 99 %% within %.1f ms (p99)",
-            by_number ? ", time by number" : "", 1e3 * seconds[0], 1e3 * seconds[1]);
+            app->headless ? ", time by number" : "", 1e3 * q->seconds[0], 1e3 * q->seconds[1]);
     ui_hint("Of the span that is shown, at most the last %u frames.", HISTORY_FRAMES);
 }
 
@@ -201,7 +228,7 @@ void panel_graphs(struct view_app *app)
         const enum history_span span = (enum history_span)app->settings.graph_span;
         draw_spans(app);
         if (!app->deterministic)
-            draw_quantiles(&app->facts, span, app->headless);
+            draw_quantiles(app, span);
         for (size_t i = 0; i < sizeof graphs / sizeof *graphs; i++)
             if (!(app->deterministic && graphs[i].times))
                 draw_graph(&app->facts, &graphs[i], span);

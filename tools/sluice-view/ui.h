@@ -115,6 +115,8 @@ void ui_end_large(void);
 void ui_paragraph(uint32_t color, const char *text);
 void ui_same_line(float x); ///< x: from the left of the panel; 0: behind the last widget
 void ui_space(float height);
+/** Whether a widget of this height would be seen here, or is scrolled away. */
+bool ui_in_sight(float height);
 void ui_line(void);
 bool ui_button(const char *label, float width, float height, bool pressed);
 /** Widgets between are gray and cannot be used if `disabled`. */

@@ -135,6 +135,11 @@ void ui_space(float height)
     ImGui::Dummy(ImVec2(0.0f, height));
 }
 
+bool ui_in_sight(float height)
+{
+    return ImGui::IsRectVisible(ImVec2(1.0f, height));
+}
+
 void ui_line(void)
 {
     ImGui::Separator();
