@@ -88,6 +88,7 @@ void app_close(struct view_app *app)
 {
     if (app->stage)
         facts_destroy(&app->facts);
+    texture_table_finish(&app->table);
     app->stage = NULL;
 }
 

@@ -12,6 +12,7 @@
 #include "probe.h"
 #include "settings.h"
 #include "stage.h"
+#include "texture_table.h"
 #include "ui.h"
 
 struct thumbs;
@@ -73,9 +74,10 @@ struct view_app {
     bool edits_b;            ///< controls change B
     struct browser browser;  ///< of PANEL_OPEN
     struct app_quantiles quantiles;
-    char texture_filter[64]; ///< words of the table of textures
-    bool touched;            ///< the visitor has the camera
-    bool dragging;           ///< the mouse turns the camera
+    struct texture_table table;
+    char texture_filter[TEXTURE_TABLE_FILTER]; ///< words of the table of textures
+    bool touched;                              ///< the visitor has the camera
+    bool dragging;                             ///< the mouse turns the camera
     bool dragging_divider;
     float mouse_x, mouse_y; ///< of the frame before
     float press_x, press_y;

@@ -89,49 +89,62 @@ static void draw_filters(struct view_app *app)
         ui_text(UI_GRAY, "newest first");
 }
 
-static void draw_row(struct view_app *app, const SluiceTileEvent *event, uint32_t row,
-                     float name_width)
+struct event_list {
+    struct view_app *app;
+    const SluiceTileEvent *rows[MOST_ROWS];
+    float name_width;
+};
+
+/* The reason is far to the left, so that narrow panels show it. */
+static void draw_row(void *user_data, uint32_t row)
 {
-    char name[256];
+    const struct event_list *list = user_data;
+    struct view_app *app = list->app;
+    const SluiceTileEvent *event = list->rows[row];
+    char shortened[256];
     SluiceTile tile = {0};
     uint32_t texture = 0;
     tile_log_index(&app->facts.log, event->textureId, &texture);
     sluiceGetTileState(stage_manager(app->stage), event->textureId, event->tileIndex, NULL, &tile);
+    const char *name = stage_texture(app->stage, texture)->name;
+    const char *from = state_names[event->from], *to = state_names[event->to];
+    const char *reason = reason_names[event->reason];
     const bool played = stage_played(app->stage);
     const bool now = played && event->mark == stage_played(app->stage)->frame;
     if (ui_table_row((int)row, false) && played)
         panel_played_jump(app, (uint32_t)event->mark);
+    ui_hint("Frame %llu: %.200s\nlevel %u, tile %u, %u: was %s, is %s\nreason: %s%s",
+            (unsigned long long)event->mark, name, tile.mipLevel, tile.x, tile.y, from, to, reason,
+            played ? "\nClick: go to the frame" : "");
     ui_table_cell(now ? UI_BLUE : UI_WHITE, "%llu", (unsigned long long)event->mark);
-    if (played)
-        ui_hint("Click: go to the frame.");
-    ui_table_cell(
-        UI_WHITE, "%s",
-        panel_shorten(stage_texture(app->stage, texture)->name, name_width, name, sizeof name));
+    ui_table_cell(UI_WHITE, "%s",
+                  panel_shorten(name, list->name_width, shortened, sizeof shortened));
+    ui_table_cell(UI_GRAY, "%s", reason);
+    ui_table_cell(UI_GRAY, "%s", from);
+    ui_table_cell(event->to >= SLUICE_TILE_STATE_FAILED ? UI_RED : UI_WHITE, "%s", to);
     ui_table_cell(UI_WHITE, "%u", tile.mipLevel);
     ui_table_cell(UI_WHITE, "%u, %u", tile.x, tile.y);
-    ui_table_cell(UI_GRAY, "%s", state_names[event->from]);
-    ui_table_cell(event->to >= SLUICE_TILE_STATE_FAILED ? UI_RED : UI_WHITE, "%s",
-                  state_names[event->to]);
-    ui_table_cell(UI_GRAY, "%s", reason_names[event->reason]);
 }
 
 static void draw_streamer(struct view_app *app)
 {
-    const SluiceTileEvent *rows[MOST_ROWS];
+    struct event_list list = {.app = app, .name_width = ui_panel_width() / 4};
     const bool one = app->settings.events_of == VIEW_EVENTS_OF_SELECTED &&
                      app->selected < app->facts.texture_count;
-    const float name_width = ui_panel_width() / 4;
     if (stage_played(app->stage))
         panel_played_failures(app);
     else
         draw_failures(app);
     draw_filters(app);
-    const uint32_t count = event_rows_find(&app->facts, (uint32_t)app->settings.event_reason,
-                                           one ? app->selected : STAGE_NO_TEXTURE, rows, MOST_ROWS);
-    if (!ui_begin_table("events", "Frame|Texture|Level|Tile|From|To|Reason", 0, false))
+    const uint32_t count =
+        event_rows_find(&app->facts, (uint32_t)app->settings.event_reason,
+                        one ? app->selected : STAGE_NO_TEXTURE, list.rows, MOST_ROWS);
+    if (!ui_begin_table("events",
+                        "Frame=99999|Texture|Reason=prefetched|From=requested|To=requested|Level|"
+                        "Tile=99, 99",
+                        0, false))
         return;
-    for (uint32_t i = 0; i < count; i++)
-        draw_row(app, rows[i], i, name_width);
+    ui_table_rows(count, draw_row, &list);
     ui_end_table();
 }
 

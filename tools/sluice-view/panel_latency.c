@@ -111,7 +111,9 @@ static void draw_sources(const struct view_app *app)
 {
     const float name_width = ui_panel_width() / 4;
     ui_text(UI_GRAY, "Reads by source: milliseconds per read");
-    if (!ui_begin_table("sources", "Source|Reads|p50|p99|Longest|MB|Failed", 0, false))
+    if (!ui_begin_table("sources",
+                        "Source|Reads=99999|p50=99.99|p99=999.99|Longest=999.99|MB=9999.9|Failed",
+                        0, false))
         return;
     draw_reads(&app->facts.reads, "all", 0, name_width);
     for (uint32_t i = 0; i < app->facts.texture_count; i++)

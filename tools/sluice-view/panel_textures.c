@@ -1,11 +1,8 @@
 #include "panels.h"
 
-#include "texture_rows.h"
 #include "thumbs.h"
 
 #include "../common/output_file.h"
-
-#include <stdlib.h>
 
 #define CSV_FILE "sluice-view-textures.csv"
 
@@ -43,8 +40,11 @@ static void draw_figures(const struct texture_row *r, uint32_t color)
     ui_table_cell(r->failures ? UI_RED : color, "%llu", (unsigned long long)r->failures);
 }
 
-static void draw_row(struct view_app *app, const struct texture_row *r, float name_width)
+static void draw_row(void *user_data, uint32_t row)
 {
+    struct view_app *app = user_data;
+    const struct texture_row *r = &app->table.rows[row];
+    const float name_width = ui_panel_width() / 3;
     char name[256];
     const bool wanted = app->facts.textures[r->texture].statistics.wanted;
     const uint32_t color = wanted ? UI_WHITE : UI_GRAY;
@@ -55,7 +55,7 @@ static void draw_row(struct view_app *app, const struct texture_row *r, float na
     }
     float uv[4];
     if (app->thumbs && thumbs_find(app->thumbs, r->texture, uv))
-        ui_table_image(UI_TEXTURE_THUMBS, ui_line_height() - 4 * ui_scale(), uv);
+        ui_table_image(UI_TEXTURE_THUMBS, ui_text_height(), uv);
     ui_table_cell(color, "%s", panel_shorten(r->name, name_width, name, sizeof name));
     ui_hint("%s", r->name);
     draw_figures(r, color);
@@ -73,44 +73,33 @@ static void draw_sum(const struct texture_row *sum, uint32_t count)
     draw_figures(sum, UI_BLUE);
 }
 
-/* Returns how many rows the filter leaves. */
-static uint32_t gather(const struct view_app *app, struct texture_row *rows)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < app->facts.texture_count; i++) {
-        rows[count] = texture_row_of(app->stage, &app->facts, i);
-        count += texture_row_matches(&rows[count], app->texture_filter);
-    }
-    return count;
-}
-
-static void write_csv(struct view_app *app, const struct texture_row *rows, uint32_t count)
+static void write_csv(struct view_app *app)
 {
     struct output_file *output = output_file_begin(CSV_FILE);
     if (!output)
         return;
-    const bool good = texture_rows_write(output_file_stream(output), rows, count);
+    app->table.next = 0; /* not the rows of a moment ago */
+    texture_table_update(&app->table, app->stage, &app->facts, app->texture_filter, NULL,
+                         app->seconds);
+    const bool good =
+        texture_rows_write(output_file_stream(output), app->table.rows, app->table.count);
     if (output_file_end(output, good))
         app_say(app, "Wrote %s", CSV_FILE);
 }
 
-static void draw_table(struct view_app *app, struct texture_row *rows, uint32_t count)
+static void draw_table(struct view_app *app)
 {
-    uint32_t column = COLUMN_NAME;
-    bool descending = false;
-    const float name_width = ui_panel_width() / 3;
+    struct texture_order order = app->table.order;
     if (!ui_begin_table("textures",
-                        "Name|Loads/"
-                        "tile|Loads|Resident|Wanted|All|Memory|Finest|Seen|Evicted|Failed|Size|"
-                        "Format|Levels|Set|Source",
+                        "Name|Loads/tile|Loads=99999|Resident|Wanted|All|Memory=9 999 MB|Finest|"
+                        "Seen=99.9 s ago|Evicted|Failed|Size|Format|Levels|Set|Source",
                         0, true))
         return;
-    ui_table_sort(&column, &descending);
-    texture_rows_sort(rows, count, (enum texture_column)column, descending);
-    const struct texture_row sum = texture_rows_sum(rows, count);
-    draw_sum(&sum, count);
-    for (uint32_t i = 0; i < count; i++)
-        draw_row(app, &rows[i], name_width);
+    ui_table_sort(&order.column, &order.descending);
+    texture_table_update(&app->table, app->stage, &app->facts, app->texture_filter, &order,
+                         app->seconds);
+    draw_sum(&app->table.sum, app->table.count);
+    ui_table_rows(app->table.count, draw_row, app);
     ui_end_table();
 }
 
@@ -118,8 +107,7 @@ void panel_textures(struct view_app *app)
 {
     if (!app->open[PANEL_TEXTURES])
         return;
-    struct texture_row *rows = calloc(app->facts.texture_count + 1, sizeof *rows);
-    if (panel_begin(app, PANEL_TEXTURES, "Textures (T)", 660, 360) && rows) {
+    if (panel_begin(app, PANEL_TEXTURES, "Textures (T)", 660, 360)) {
         char resident[32], all[32];
         ui_text(UI_WHITE, "%u textures, %s of %s resident", app->facts.texture_count,
                 panel_size(app->facts.resident_size, resident, sizeof resident),
@@ -131,11 +119,9 @@ void panel_textures(struct view_app *app)
         ui_item_width(150 * ui_scale());
         ui_type_text("##filter", "filter", app->texture_filter, sizeof app->texture_filter);
         ui_hint("Words that must be in the name, format, set or source of a texture.");
-        const uint32_t count = gather(app, rows);
         if (writes)
-            write_csv(app, rows, count);
-        draw_table(app, rows, count);
+            write_csv(app);
+        draw_table(app);
     }
     ui_end_panel();
-    free(rows);
 }

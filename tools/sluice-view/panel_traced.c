@@ -88,7 +88,7 @@ void panel_traced_events(struct view_app *app)
         ui_text(UI_RED, "%u reads failed; the terminal says where", app->facts.now.failedTileCount);
     ui_text(UI_GRAY, "What rays missed first, newest on top. %s",
             all ? "All textures." : "The selected texture.");
-    if (!ui_begin_table("events", "Launch|Texture|Missed|Level|Tile", 0, false))
+    if (!ui_begin_table("events", "Launch=99999|Texture|Missed|Level|Tile=99, 99", 0, false))
         return;
     for (uint32_t age = 0; age < t->event_count && shown < 200; age++) {
         const struct traced_event *event =

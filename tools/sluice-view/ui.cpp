@@ -343,6 +343,11 @@ float ui_line_height(void)
     return ImGui::GetTextLineHeightWithSpacing();
 }
 
+float ui_text_height(void)
+{
+    return ImGui::GetTextLineHeight();
+}
+
 float ui_text_width(const char *text)
 {
     return ImGui::CalcTextSize(text).x;

@@ -74,6 +74,7 @@ bool ui_owns_key(int key);
 float ui_scale(void);
 /** Height of a line of text, and of a line of widgets. */
 float ui_line_height(void);
+float ui_text_height(void); ///< of a line without the space below
 float ui_text_width(const char *text);
 
 /* Panels. */
@@ -142,10 +143,13 @@ void ui_show_hint(const char *text);                   ///< shown at the mouse n
 
 /* Tables. */
 
-/** `columns`: titles separated by '|'. Widths follow the contents of each frame. */
+/** `columns`: titles separated by '|', each with "=" and its widest text, if that changes:
+ *  "Name|Loads=9999". Widths are those of the first rows, and can be dragged. */
 bool ui_begin_table(const char *id, const char *columns, float height, bool sortable);
 /** The column to sort by. False if the order is that of the frame before. */
 bool ui_table_sort(uint32_t *column, bool *descending);
+/** Draws those of `count` rows that are in sight, each begun by ui_table_row. */
+void ui_table_rows(uint32_t count, void (*draw)(void *user_data, uint32_t row), void *user_data);
 /** Begins a row; returns whether it was clicked. */
 bool ui_table_row(int id, bool selected);
 /** A square in the cell of the next ui_table_cell, before its text. */

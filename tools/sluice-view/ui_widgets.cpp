@@ -7,6 +7,12 @@
 #include <stdio.h>
 #include <string.h>
 
+/* All rows are drawn in so many frames, for widths of columns that fit. */
+#define FITTING_FRAMES 4
+
+/* Whether the next cell of the row is in sight. */
+static bool cell_shown;
+
 bool ui_begin_panel(const char *title, bool *open, const float placement[4], const float pivot[2],
                     unsigned flags)
 {
@@ -254,6 +260,25 @@ void ui_hint(const char *format, ...)
     ui_show_hint(text);
 }
 
+/* Columns are at least as wide as the sample behind the '=' of their title. */
+static void set_up_columns(const char *columns, int count)
+{
+    char title[64], sample[64];
+    const float padding = 2.0f * ImGui::GetStyle().CellPadding.x;
+    for (const char *c = columns; count > 0; count--) {
+        const size_t length = strcspn(c, "|"), words = strcspn(c, "=|");
+        snprintf(title, sizeof title, "%.*s", (int)words, c);
+        snprintf(sample, sizeof sample, "%.*s", words < length ? (int)(length - words - 1) : 0,
+                 c + words + 1);
+        const float width = ImGui::CalcTextSize(sample).x, own = ImGui::CalcTextSize(title).x;
+        ImGui::TableSetupColumn(title,
+                                ImGuiTableColumnFlags_WidthFixed |
+                                    (c == columns ? 0 : ImGuiTableColumnFlags_PreferSortDescending),
+                                sample[0] ? (width > own ? width : own) + padding : 0.0f);
+        c += length + 1;
+    }
+}
+
 bool ui_begin_table(const char *id, const char *columns, float height, bool sortable)
 {
     int count = 1;
@@ -261,18 +286,12 @@ bool ui_begin_table(const char *id, const char *columns, float height, bool sort
         count += *c == '|';
     const ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
                                   ImGuiTableFlags_ScrollX | ImGuiTableFlags_SizingFixedFit |
+                                  ImGuiTableFlags_Resizable | ImGuiTableFlags_NoSavedSettings |
                                   (sortable ? ImGuiTableFlags_Sortable : 0);
     if (!ImGui::BeginTable(id, count, flags, ImVec2(0.0f, height)))
         return false;
     ImGui::TableSetupScrollFreeze(1, 1);
-    char title[64];
-    for (const char *c = columns; count > 0; count--) {
-        const size_t length = strcspn(c, "|");
-        snprintf(title, sizeof title, "%.*s", (int)length, c);
-        ImGui::TableSetupColumn(title,
-                                c == columns ? 0 : ImGuiTableColumnFlags_PreferSortDescending);
-        c += length + 1;
-    }
+    set_up_columns(columns, count);
     ImGui::TableHeadersRow();
     return true;
 }
@@ -289,10 +308,22 @@ bool ui_table_sort(uint32_t *column, bool *descending)
     return dirty;
 }
 
+void ui_table_rows(uint32_t count, void (*draw)(void *user_data, uint32_t row), void *user_data)
+{
+    ImGuiListClipper clipper;
+    int *frames = ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("frames"));
+    clipper.Begin((int)count);
+    if (*frames < FITTING_FRAMES && ++*frames && count > 0)
+        clipper.ForceDisplayRangeByIndices(0, (int)count);
+    while (clipper.Step())
+        for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; row++)
+            draw(user_data, (uint32_t)row);
+}
+
 bool ui_table_row(int id, bool selected)
 {
     ImGui::TableNextRow();
-    ImGui::TableNextColumn();
+    cell_shown = ImGui::TableNextColumn();
     ImGui::PushID(id);
     const bool clicked = ImGui::Selectable("##row", selected, ImGuiSelectableFlags_SpanAllColumns);
     ImGui::PopID();
@@ -307,15 +338,24 @@ void ui_table_image(uint32_t texture, float size, const float uv[4])
     ImGui::SameLine();
 }
 
+/* Texts that the column cuts are shown whole while they are hovered. */
 void ui_table_cell(uint32_t color, const char *format, ...)
 {
+    char text[512];
     va_list arguments;
-    va_start(arguments, format);
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::TextV(format, arguments);
-    ImGui::PopStyleColor();
-    va_end(arguments);
-    ImGui::TableNextColumn();
+    if (cell_shown) {
+        va_start(arguments, format);
+        vsnprintf(text, sizeof text, format, arguments);
+        va_end(arguments);
+        const float room = ImGui::GetContentRegionAvail().x;
+        ImGui::PushStyleColor(ImGuiCol_Text, color);
+        ImGui::TextUnformatted(text);
+        ImGui::PopStyleColor();
+        if (ImGui::GetItemRectSize().x > room + 0.5f && ImGui::IsItemHovered())
+            ui_show_hint(text);
+    }
+    if (ImGui::TableGetColumnIndex() + 1 < ImGui::TableGetColumnCount())
+        cell_shown = ImGui::TableNextColumn();
 }
 
 void ui_end_table(void)
