@@ -89,6 +89,8 @@ void app_close(struct view_app *app)
     if (app->stage)
         facts_destroy(&app->facts);
     texture_table_finish(&app->table);
+    memory_map_finish(&app->memory);
+    inspector_maps_finish(&app->maps);
     app->stage = NULL;
 }
 

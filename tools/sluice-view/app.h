@@ -8,7 +8,9 @@
 #include "file_facts.h"
 #include "flip_map.h"
 #include "half_times.h"
+#include "inspector_maps.h"
 #include "keys.h"
+#include "memory_map.h"
 #include "probe.h"
 #include "settings.h"
 #include "stage.h"
@@ -71,10 +73,12 @@ struct view_app {
     bool bookmark_set[APP_BOOKMARKS];
     bool open[PANEL_COUNT];
     struct file_facts file;
-    bool edits_b;            ///< controls change B
-    struct browser browser;  ///< of PANEL_OPEN
+    bool edits_b;           ///< controls change B
+    struct browser browser; ///< of PANEL_OPEN
     struct app_quantiles quantiles;
     struct texture_table table;
+    struct memory_map memory;
+    struct inspector_maps maps;
     char texture_filter[TEXTURE_TABLE_FILTER]; ///< words of the table of textures
     bool touched;                              ///< the visitor has the camera
     bool dragging;                             ///< the mouse turns the camera

@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #define MAP_WIDTH 82.0f
 #define MOST_SQUARES 64u /* along a side; of more tiles, some are shown */
@@ -61,54 +60,93 @@ static void hover_tile(struct view_app *app, uint32_t texture, const SluiceTile 
         app_look_at_tile(app, texture, tile);
 }
 
+/* Squares side by side become one rectangle if they have one color and no gap between. */
+struct run {
+    float left, top, right, bottom;
+    uint32_t color;
+};
+
+static void end_run(struct run *run)
+{
+    if (run->right > run->left)
+        ui_fill(run->left, run->top, run->right - run->left, run->bottom - run->top, run->color);
+    run->right = run->left;
+}
+
+static void add_square(struct run *run, const float r[4], float gap, uint32_t color)
+{
+    if (gap > 0) {
+        ui_fill(r[0], r[1], fmaxf(r[2] - gap, 1), fmaxf(r[3] - gap, 1), color);
+        return;
+    }
+    if (run->right > run->left && (run->color != color || run->top != r[1]))
+        end_run(run);
+    if (!(run->right > run->left))
+        *run = (struct run){r[0], r[1], r[0], r[1] + r[3], color};
+    run->right = r[0] + r[2];
+}
+
+/* The state is that of now, not of a moment ago. */
+static void hover_level(struct view_app *app, uint32_t texture,
+                        const SluiceStreamedTextureLayout *layout, uint32_t level, float column,
+                        float row)
+{
+    SluiceTileState state = SLUICE_TILE_STATE_FREE;
+    SluiceTile tile = {0};
+    const uint32_t columns = layout->levelWidthInTiles[level];
+    if (!(column >= 0 && row >= 0) || column >= (float)columns ||
+        row >= (float)layout->levelHeightInTiles[level])
+        return;
+    const uint32_t index =
+        layout->levelFirstTile[level] + (uint32_t)row * columns + (uint32_t)column;
+    if (sluiceGetTileState(stage_manager(app->stage), stage_texture(app->stage, texture)->id, index,
+                           &state, &tile) == SLUICE_SUCCESS)
+        hover_tile(app, texture, &tile, state);
+}
+
 /* `r`: of the level; `over`: the mouse is over the canvas. */
-static void draw_level(struct view_app *app, uint32_t texture,
-                       const SluiceStreamedTextureLayout *layout, uint32_t level, const float r[4],
+static void draw_level(struct view_app *app, uint32_t texture, uint32_t level, const float r[4],
                        bool over)
 {
     float x, y;
+    const SluiceStreamedTextureLayout *layout = &app->maps.layout;
     const uint32_t columns = layout->levelWidthInTiles[level];
     const uint32_t rows = layout->levelHeightInTiles[level];
     const uint32_t step = 1 + (larger(columns, rows) - 1) / MOST_SQUARES;
     const float width = r[2] / (float)columns, height = r[3] / (float)rows;
     const float gap = width * (float)step >= 4 ? 1 : 0;
-    ui_mouse(&x, &y);
+    struct run run = {0};
     for (uint32_t row = 0; row < rows; row += step)
         for (uint32_t column = 0; column < columns; column += step) {
             const uint32_t index = layout->levelFirstTile[level] + row * columns + column;
-            const float left = r[0] + (float)column * width, top = r[1] + (float)row * height;
-            const float wide = fmaxf(width * (float)step, 1), high = fmaxf(height * (float)step, 1);
-            SluiceTileState state = SLUICE_TILE_STATE_FREE;
-            SluiceTile tile = {0};
-            if (sluiceGetTileState(stage_manager(app->stage),
-                                   stage_texture(app->stage, texture)->id, index, &state,
-                                   &tile) != SLUICE_SUCCESS)
-                continue;
-            ui_fill(left, top, fmaxf(wide - gap, 1), fmaxf(high - gap, 1), color_of(state));
-            if (over && x >= left && x < left + wide && y >= top && y < top + high)
-                hover_tile(app, texture, &tile, state);
+            const float square[4] = {r[0] + (float)column * width, r[1] + (float)row * height,
+                                     fmaxf(width * (float)step, 1), fmaxf(height * (float)step, 1)};
+            add_square(&run, square, gap, color_of((SluiceTileState)app->maps.states[index]));
         }
+    end_run(&run);
+    ui_mouse(&x, &y);
+    if (over)
+        hover_level(app, texture, layout, level, (x - r[0]) / width, (y - r[1]) / height);
 }
 
 /* Level 0 to the left, the others in half the size each beside it, as mip chains are drawn. */
 void inspector_draw_levels(struct view_app *app, uint32_t texture)
 {
-    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    if (sluiceGetTextureLayout(stage_manager(app->stage), stage_texture(app->stage, texture)->id,
-                               &layout) != SLUICE_SUCCESS ||
-        layout.desc.regularMipCount == 0)
+    if (!inspector_maps_update(&app->maps, app->stage, texture, app->seconds) ||
+        app->maps.layout.desc.regularMipCount == 0)
         return;
-    const uint32_t columns = layout.levelWidthInTiles[0], rows = layout.levelHeightInTiles[0];
+    const SluiceStreamedTextureLayout *layout = &app->maps.layout;
+    const uint32_t columns = layout->levelWidthInTiles[0], rows = layout->levelHeightInTiles[0];
     const float side = 220 * ui_scale() / (float)larger(columns, rows);
     float r[4], level_r[4] = {0, 0, side * (float)columns, side * (float)rows};
     ui_text(UI_GRAY, "Its levels, a square per tile; dark: not in memory");
     const float gap = 4 * ui_scale();
-    ui_canvas(1.5f * level_r[2] + gap, level_r[3] + gap * (float)layout.desc.regularMipCount, r);
+    ui_canvas(1.5f * level_r[2] + gap, level_r[3] + gap * (float)layout->desc.regularMipCount, r);
     const bool over = ui_hovered();
     level_r[0] = r[0];
     level_r[1] = r[1];
-    for (uint32_t level = 0; level < layout.desc.regularMipCount; level++) {
-        draw_level(app, texture, &layout, level, level_r, over);
+    for (uint32_t level = 0; level < layout->desc.regularMipCount; level++) {
+        draw_level(app, texture, level, level_r, over);
         if (level == 0)
             level_r[0] += level_r[2] + gap;
         else
@@ -181,45 +219,39 @@ static uint32_t map_color(const struct view_app *app, SluiceTextureId id,
     }
 }
 
-static void draw_map(const struct view_app *app, SluiceTextureId id,
-                     const SluiceStreamedTextureLayout *layout, enum map_kind kind,
-                     const uint8_t *resident, const uint8_t *wanted)
+static void draw_map(const struct view_app *app, enum map_kind kind)
 {
     float r[4];
-    const uint32_t columns = layout->minMipWidth, rows = layout->minMipHeight;
+    const struct inspector_maps *m = &app->maps;
+    const uint32_t columns = m->layout.minMipWidth, rows = m->layout.minMipHeight;
     const uint32_t step = 1 + (larger(columns, rows) - 1) / MOST_SQUARES;
     const float width = MAP_WIDTH * ui_scale(), cell = width / (float)larger(columns, rows);
+    struct run run = {0};
     ui_canvas(width, (float)rows * cell + ui_line_height(), r);
     ui_hint("%s", map_words[kind].hint);
     ui_label(r[0], r[1], UI_GRAY, map_words[kind].title);
     for (uint32_t y = 0; y < rows; y += step)
         for (uint32_t x = 0; x < columns; x += step) {
             const size_t at = (size_t)y * columns + x;
-            ui_fill(r[0] + (float)x * cell, r[1] + ui_line_height() + (float)y * cell,
-                    cell * (float)step, cell * (float)step,
-                    map_color(app, id, layout, kind, resident[at], wanted[at], x, y));
+            const float square[4] = {r[0] + (float)x * cell,
+                                     r[1] + ui_line_height() + (float)y * cell, cell * (float)step,
+                                     cell * (float)step};
+            add_square(
+                &run, square, 0,
+                map_color(app, m->id, &m->layout, kind, m->resident[at], m->requested[at], x, y));
         }
+    end_run(&run);
 }
 
-void inspector_draw_maps(const struct view_app *app, uint32_t texture)
+void inspector_draw_maps(struct view_app *app, uint32_t texture)
 {
-    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    const SluiceTextureId id = stage_texture(app->stage, texture)->id;
-    if (sluiceGetTextureLayout(stage_manager(app->stage), id, &layout) != SLUICE_SUCCESS)
+    if (!inspector_maps_update(&app->maps, app->stage, texture, app->seconds))
         return;
-    const size_t size = (size_t)layout.minMipWidth * layout.minMipHeight;
-    uint8_t *maps = malloc(2 * size);
-    if (maps &&
-        sluiceWriteMinMipData(stage_manager(app->stage), id, layout.minMipWidth, size, maps) ==
-            SLUICE_SUCCESS &&
-        sluiceWriteRequestedLevels(stage_manager(app->stage), id, layout.minMipWidth, size,
-                                   maps + size) == SLUICE_SUCCESS)
-        for (int kind = 0; kind < MAP_COUNT; kind++) {
-            if (kind > 0)
-                ui_same_line(0);
-            draw_map(app, id, &layout, (enum map_kind)kind, maps, maps + size);
-        }
-    free(maps);
+    for (int kind = 0; kind < MAP_COUNT; kind++) {
+        if (kind > 0)
+            ui_same_line(0);
+        draw_map(app, (enum map_kind)kind);
+    }
 }
 
 void inspector_draw_tile(const struct view_app *app, uint32_t texture)

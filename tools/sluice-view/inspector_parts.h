@@ -8,7 +8,7 @@
 void inspector_draw_levels(struct view_app *app, uint32_t texture);
 /** Resident and wanted levels, missing ones, and how often tiles were loaded: maps of squares per
  *  tile of level 0. */
-void inspector_draw_maps(const struct view_app *app, uint32_t texture);
+void inspector_draw_maps(struct view_app *app, uint32_t texture);
 /** The tile under the mouse, or else at the point that was inspected, if it is of this texture. */
 void inspector_draw_tile(const struct view_app *app, uint32_t texture);
 

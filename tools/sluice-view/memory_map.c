@@ -3,6 +3,9 @@
 #include "panels.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+#define SECONDS 0.1
 
 bool memory_slot_get(const struct stage *stage, const struct view_facts *facts, uint32_t heap,
                      uint32_t slot, struct memory_slot *to)
@@ -69,6 +72,51 @@ uint32_t memory_slot_color(const struct stage *stage, const struct memory_slot *
     case MEMORY_BY_AGE: return memory_age_color(slot->age);
     default: return memory_state_color(slot->state);
     }
+}
+
+static bool fit_heap(struct memory_map *map, uint32_t heap, uint32_t tiles)
+{
+    if (heap < map->heap_count)
+        return true;
+    struct memory_shown *slots = realloc(map->slots, (heap + 1u) * (size_t)tiles * sizeof *slots);
+    map->slots = slots ? slots : map->slots;
+    double *next = realloc(map->next, (heap + 1u) * sizeof *next);
+    map->next = next ? next : map->next;
+    if (!slots || !next)
+        return false;
+    for (; map->heap_count <= heap; map->heap_count++)
+        next[map->heap_count] = 0;
+    return true;
+}
+
+const struct memory_shown *memory_map_heap(struct memory_map *map, const struct stage *stage,
+                                           const struct view_facts *facts, uint32_t heap,
+                                           enum memory_colors by, double seconds)
+{
+    const uint32_t tiles = stage_heap_tiles(stage);
+    if (!fit_heap(map, heap, tiles))
+        return NULL;
+    for (uint32_t i = 0; map->by != by && i < map->heap_count; i++)
+        map->next[i] = 0;
+    map->by = by;
+    struct memory_shown *slots = map->slots + (size_t)heap * tiles;
+    if (seconds < map->next[heap] && !stage_played(stage))
+        return slots;
+    map->next[heap] = seconds + SECONDS;
+    for (uint32_t i = 0; i < tiles; i++) {
+        struct memory_slot slot;
+        const bool used = memory_slot_get(stage, facts, heap, i, &slot);
+        slots[i] = (struct memory_shown){used ? memory_slot_color(stage, &slot, by) : 0,
+                                         used ? slot.texture : STAGE_NO_TEXTURE};
+    }
+    return slots;
+}
+
+void memory_map_finish(struct memory_map *map)
+{
+    free(map->slots);
+    free(map->next);
+    *map = (struct memory_map){0};
 }
 
 struct memory_sums memory_sums_of(const struct stage *stage)

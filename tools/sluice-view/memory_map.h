@@ -22,6 +22,27 @@ struct memory_sums {
     double fragmentation; ///< spare heaps over heaps, 0 to 1
 };
 
+/** How a slot is drawn. */
+struct memory_shown {
+    uint32_t color;   ///< 0: the slot is free
+    uint32_t texture; ///< STAGE_NO_TEXTURE: none
+};
+
+/** Slots as they were a moment ago. */
+struct memory_map {
+    struct memory_shown *slots; ///< owned; stage_heap_tiles per heap
+    double *next;               ///< owned; by heap: seconds when it is looked at again
+    uint32_t heap_count;
+    enum memory_colors by;
+};
+
+/** Returns the slots of a heap, which it looks at 10 times per second, or at once for other colors;
+ * a recording in each frame. NULL without memory. `seconds`: of the viewer's life. */
+const struct memory_shown *memory_map_heap(struct memory_map *map, const struct stage *stage,
+                                           const struct view_facts *facts, uint32_t heap,
+                                           enum memory_colors by, double seconds);
+/** A zeroed struct is fine. */
+void memory_map_finish(struct memory_map *map);
 /** False if the slot is free, or its texture is none of the scene. */
 bool memory_slot_get(const struct stage *stage, const struct view_facts *facts, uint32_t heap,
                      uint32_t slot, struct memory_slot *to);

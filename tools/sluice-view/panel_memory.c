@@ -37,34 +37,54 @@ static void draw_hover(struct view_app *app, const struct memory_slot *slot)
         app->selected = slot->texture;
 }
 
+static void draw_slots(const struct view_app *app, const struct memory_shown *slots,
+                       const float r[4], float cell)
+{
+    for (uint32_t i = 0; i < stage_heap_tiles(app->stage); i++) {
+        const float left = r[0] + (float)(i % COLUMNS) * cell;
+        const float top = r[1] + (float)(i / COLUMNS) * cell;
+        if (slots[i].color == 0)
+            continue;
+        ui_fill(left, top, cell - 1, cell - 1, slots[i].color);
+        if (slots[i].texture == app->selected)
+            ui_frame(left, top, cell - 1, cell - 1, UI_WHITE);
+    }
+}
+
+static void hover_heap(struct view_app *app, uint32_t heap, const float r[4], float cell)
+{
+    float x, y;
+    struct memory_slot slot;
+    ui_mouse(&x, &y);
+    const uint32_t column = (uint32_t)((x - r[0]) / cell), row = (uint32_t)((y - r[1]) / cell);
+    const uint32_t index = row * COLUMNS + column;
+    if (column < COLUMNS && index < stage_heap_tiles(app->stage) &&
+        memory_slot_get(app->stage, &app->facts, heap, index, &slot))
+        draw_hover(app, &slot);
+}
+
 /* Returns whether the heap exists. */
 static bool draw_heap(struct view_app *app, uint32_t heap, float cell)
 {
-    float r[4], x, y;
+    float r[4];
     SluiceTile tile;
-    struct memory_slot slot;
     if (sluiceGetSlotTile(stage_manager(app->stage), heap, 0, &tile) != SLUICE_SUCCESS)
         return false;
-    const uint32_t tiles = stage_heap_tiles(app->stage), rows = (tiles + COLUMNS - 1) / COLUMNS;
-    ui_canvas((float)COLUMNS * cell, (float)rows * cell + 6 * ui_scale(), r);
-    const bool hovered = ui_hovered();
-    if (r[1] > app->height || r[1] + r[3] < 0) /* scrolled away */
+    const uint32_t rows = (stage_heap_tiles(app->stage) + COLUMNS - 1) / COLUMNS;
+    const float height = (float)rows * cell + 6 * ui_scale();
+    const bool shown = ui_in_sight(height);
+    ui_canvas((float)COLUMNS * cell, height, r);
+    if (!shown)
         return true;
-    ui_mouse(&x, &y);
+    const bool hovered = ui_hovered();
+    const struct memory_shown *slots =
+        memory_map_heap(&app->memory, app->stage, &app->facts, heap,
+                        (enum memory_colors)app->settings.memory_colors, app->seconds);
     ui_fill(r[0], r[1], (float)COLUMNS * cell, (float)rows * cell, UI_COLOR(30, 34, 40, 255));
-    for (uint32_t i = 0; i < tiles; i++) {
-        const float left = r[0] + (float)(i % COLUMNS) * cell;
-        const float top = r[1] + (float)(i / COLUMNS) * cell;
-        if (!memory_slot_get(app->stage, &app->facts, heap, i, &slot))
-            continue;
-        ui_fill(
-            left, top, cell - 1, cell - 1,
-            memory_slot_color(app->stage, &slot, (enum memory_colors)app->settings.memory_colors));
-        if (slot.texture == app->selected)
-            ui_frame(left, top, cell - 1, cell - 1, UI_WHITE);
-        if (hovered && x >= left && x < left + cell && y >= top && y < top + cell)
-            draw_hover(app, &slot);
-    }
+    if (slots)
+        draw_slots(app, slots, r, cell);
+    if (hovered)
+        hover_heap(app, heap, r, cell);
     return true;
 }
 

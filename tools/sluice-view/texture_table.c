@@ -19,7 +19,7 @@ void texture_table_update(struct texture_table *t, const struct stage *stage,
                           const struct view_facts *facts, const char *filter,
                           const struct texture_order *order, double seconds)
 {
-    if (is_current(t, filter, order, seconds))
+    if (!stage_played(stage) && is_current(t, filter, order, seconds))
         return;
     if (!t->rows)
         t->rows = calloc(facts->texture_count + 1u, sizeof *t->rows);
