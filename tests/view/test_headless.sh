@@ -206,6 +206,17 @@ run 0 --headless --deterministic --fresh --still $validation --size 160x160 --re
     cmp a.png again.png && value=$("$flip" a.png b.png) && [[ $value == 0.0[1-9]* ]] &&
     grep -q "\"FLIP\", \"value\": $value," out
 fact flip_of_a_comparison_is_that_of_its_two_pictures
+printf '8 key Ctrl+F12\n' >larger && rm -f sluice-view-*.png
+# shellcheck disable=SC2086
+run 0 --headless --deterministic --fresh --still $validation --size 200x160 --render-scale 0.5 --cache . --feedback off \
+    --script larger --frames 10 fine.ppm &&
+    run 0 --headless --deterministic --fresh --still --size 400x320 --render-scale 1 --panels off --cache . --feedback off \
+        --frames 10 --screenshot large.png fine.ppm && cmp sluice-view-01.png large.png
+fact ctrl_f12_draws_the_picture_at_twice_the_resolution_of_the_window
+shots() { run 0 --room --headless --deterministic --fresh --size 320x240 --residency paged --frames 24 --csv "$1" "${@:2}"; }
+rm -f sluice-view-*.png && shots without.csv && shots with.csv --script larger && [ -s sluice-view-01.png ] &&
+    cmp <(cut -d , -f 1-5,8-11,13 without.csv) <(cut -d , -f 1-5,8-11,13 with.csv)
+fact a_picture_at_twice_the_resolution_changes_no_figure_of_streaming
 printf '4 key N\n12 key Shift+N\n20 key Shift+N\n28 quit\n' >steps
 run 0 --headless --deterministic --fresh --still --size 160x160 --render-scale 1 --panels off --cache . --pause on \
     --probability 1 --script steps --csv steps.csv fine.ppm

@@ -57,6 +57,8 @@ validation=--validation
 # shellcheck disable=SC2086 # nothing, or a word
 open_viewer $validation && sleep 1 && picture first.png && [ "$(png_size first.png)" = 480x270 ]
 fact a_window_opens_and_f12_writes_its_picture
+xdotool key ctrl+F12 && until_true 20 mv_picture large.png && [ "$(png_size large.png)" = 960x540 ]
+fact ctrl_f12_writes_a_picture_of_twice_the_size
 xdotool mousedown 1 && sleep 0.2 && xdotool mousemove_relative 60 10 && sleep 0.2 && xdotool mouseup 1 &&
     picture dragged.png && ! cmp -s first.png dragged.png
 fact a_drag_turns_the_camera

@@ -220,6 +220,15 @@ static void take_screenshot(struct view_app *app, int with_panels)
     app->screenshot_plain = !with_panels;
 }
 
+static void take_large(struct view_app *app, int argument)
+{
+    (void)argument;
+    if (app->stage && stage_streamer(app->stage))
+        app->screenshot_large = true;
+    else
+        app_say(app, "Pictures at twice the resolution are of streamed scenes alone");
+}
+
 static void hide_panels(struct view_app *app, int argument)
 {
     (void)argument;
@@ -322,6 +331,7 @@ static const struct action table[] = {
     {"Program", "F11", NULL, "full screen", full_screen, 0},
     {"Program", "F12", NULL, "screenshot of the picture", take_screenshot, 0},
     {"Program", "Shift+F12", NULL, "screenshot with panels", take_screenshot, 1},
+    {"Program", "Ctrl+F12", NULL, "picture at twice the resolution", take_large, 0},
     {"Program", NULL, "drop a file", "open it", NULL, 0},
     {"Program", "Ctrl+Q", NULL, "quit", quit, 0},
 };

@@ -113,7 +113,8 @@ struct view_app {
     const struct trade *trade; ///< borrowed
     struct thumbs *thumbs;     ///< borrowed
     /* Requests to the loop, which resets them. */
-    bool quit, reload, step, step_tile, restart, screenshot, screenshot_plain, trace;
+    bool quit, reload, step, step_tile, restart, screenshot, screenshot_plain, screenshot_large,
+        trace;
     bool trade_toggle, trade_page, reload_shaders, swap;
 };
 

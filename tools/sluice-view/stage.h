@@ -57,10 +57,12 @@ struct stage_draw {
     const struct view_settings *settings;
     struct view_camera camera;
     struct stage_ahead ahead;
-    uint32_t width, height; ///< of the picture
-    uint64_t number;        ///< of the frame
-    uint64_t time_stamp;    ///< microseconds
-    VkBuffer copy;          ///< gets the picture, too; VK_NULL_HANDLE: none
+    uint32_t width, height;     ///< of the picture
+    uint64_t number;            ///< of the frame
+    uint64_t time_stamp;        ///< microseconds
+    VkBuffer copy;              ///< gets the picture, too; VK_NULL_HANDLE: none
+    const struct target *large; ///< the picture is drawn into it once more; NULL: no
+    VkBuffer large_copy;        ///< gets that picture
 };
 
 /** Options that are fixed while a scene is open. */

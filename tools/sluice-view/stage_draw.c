@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const float sky[4] = {0.0220f, 0.0272f, 0.0363f, 1}; /* linear: (41, 46, 54) in sRGB */
+
 #define NEAR_PLANE 0.05f /* meters, if the scene is about as large as a room */
 #define FAR_PLANE 500.0f
 #define BOTH_SIDES 3u
@@ -378,11 +380,30 @@ static bool record_ahead(struct stage_drawing *d, const struct scene_data *scene
     return true;
 }
 
+/* Pixels of this picture write no feedback: streaming goes on as if there were none. */
+static bool record_large(struct stage_drawing *d, const struct scene_data *scene,
+                         const struct stage_draw *draw, VkCommandBuffer commands)
+{
+    struct view_settings settings = *draw->settings;
+    struct stage_draw large = *draw;
+    if (!draw->large)
+        return true;
+    settings.feedback = VIEW_FEEDBACK_OFF;
+    large.settings = &settings;
+    large.width = draw->large->width;
+    large.height = draw->large->height;
+    target_begin(draw->large, commands, sky);
+    draw_parts(d, scene, &large, commands);
+    const bool drawn = draw_lines(d, scene, &large, commands);
+    target_end(draw->large, commands);
+    target_copy_out(draw->large, commands, draw->large_copy);
+    return drawn;
+}
+
 VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_data *scene,
                                  const struct stage_draw *draw, VkDescriptorSet set, uint32_t slot,
                                  VkCommandBuffer commands)
 {
-    static const float sky[4] = {0.0220f, 0.0272f, 0.0363f, 1}; /* linear: (41, 46, 54) in sRGB */
     const VkDeviceSize offset = 0;
     struct target *target = &d->targets[slot];
     if (!fit_target(d, target, draw->width, draw->height))
@@ -397,7 +418,8 @@ VkImageView stage_drawing_record(struct stage_drawing *d, const struct scene_dat
     draw_parts(d, scene, draw, commands);
     const bool drawn = draw_lines(d, scene, draw, commands);
     target_end(target, commands);
-    if (!drawn || !record_ahead(d, scene, draw, slot, commands))
+    if (!drawn || !record_ahead(d, scene, draw, slot, commands) ||
+        !record_large(d, scene, draw, commands))
         return VK_NULL_HANDLE;
     if (draw->copy)
         target_copy_out(target, commands, draw->copy);

@@ -164,12 +164,20 @@ static double next_step(struct viewer *v)
     return step > MAX_STEP ? MAX_STEP : step > 1e-4 ? step : 1e-4;
 }
 
-static void name_screenshot(struct viewer *v)
+static void name_screenshot(struct viewer *v, char *path, size_t size)
 {
     do
-        snprintf(v->screenshot, sizeof v->screenshot, "sluice-view-%02u.png",
-                 ++v->screenshot_number);
-    while (access(v->screenshot, F_OK) == 0 && v->screenshot_number < 1000);
+        snprintf(path, size, "sluice-view-%02u.png", ++v->screenshot_number);
+    while (access(path, F_OK) == 0 && v->screenshot_number < 1000);
+}
+
+static void begin_large(struct viewer *v)
+{
+    char path[64];
+    name_screenshot(v, path, sizeof path);
+    if (!large_picture_begin(&v->gpu, 2 * v->frames.target.width, 2 * v->frames.target.height, path,
+                             &v->large))
+        app_say(&v->app, "No picture at twice the resolution: Shift+I says why");
 }
 
 static void answer_requests(struct viewer *v)
@@ -184,7 +192,10 @@ static void answer_requests(struct viewer *v)
         viewer_reopen(v, NULL);
     viewer_open_chosen(v);
     if (app->screenshot)
-        name_screenshot(v);
+        name_screenshot(v, v->screenshot, sizeof v->screenshot);
+    if (app->screenshot_large && v->stage && stage_streamer(v->stage))
+        begin_large(v);
+    app->screenshot_large = false;
     if (app->trace && v->recorder)
         viewer_end_recording(v);
     else if (app->trace)
@@ -272,6 +283,10 @@ static bool record_halves(struct viewer *v, const struct stage_draw *draw, bool 
         if (half == 1 && !v->other)
             continue;
         own.settings = &settings[half];
+        if (half == 0 && v->large.path[0]) {
+            own.large = &v->large.target;
+            own.large_copy = v->large.pixels.buffer;
+        }
         settings[half].pause = settings[half].pause && !v->app.step;
         if (!record_half(v, half, &own, copies ? v->flip.pictures[half].buffer : VK_NULL_HANDLE,
                          end, commands))
@@ -403,13 +418,27 @@ static bool draw_frame(struct viewer *v, double step)
     return true;
 }
 
+/* Without a window a picture that is missing is a failure. */
+static bool note_picture(struct viewer *v, const char *path, bool written)
+{
+    if (written)
+        app_say(&v->app, "Wrote %s", path);
+    else
+        app_say(&v->app, "Cannot write %s: Shift+I says why", path);
+    return written || v->window;
+}
+
 static bool finish_frame(struct viewer *v)
 {
     bool good = write_figures(v);
     if (v->screenshot[0]) {
-        good = frames_write(&v->frames, v->screenshot) && good;
-        app_say(&v->app, "Wrote %s", v->screenshot);
+        good = note_picture(v, v->screenshot, frames_write(&v->frames, v->screenshot)) && good;
         v->screenshot[0] = '\0';
+    }
+    if (v->large.path[0]) {
+        char path[sizeof v->large.path];
+        memcpy(path, v->large.path, sizeof path);
+        good = note_picture(v, path, large_picture_end(&v->frames, &v->large)) && good;
     }
     if (v->options->deterministic && v->stage)
         good = frames_wait(&v->frames) && stage_settle(v->stage) &&
@@ -601,6 +630,7 @@ static void finish(struct viewer *v)
     shader_files_finish(v->code);
     frames_wait(&v->frames);
     flip_map_destroy(&v->flip);
+    large_picture_drop(&v->gpu, &v->large);
     frames_destroy(&v->frames);
     app_finish(&v->app);
     swapchain_destroy(&v->swapchain);

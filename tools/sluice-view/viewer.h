@@ -5,6 +5,7 @@
 #include "app.h"
 #include "flip_map.h"
 #include "frames.h"
+#include "large_picture.h"
 #include "options.h"
 #include "scene_load.h"
 #include "script.h"
@@ -44,6 +45,7 @@ struct viewer {
     char settings_path[4096];       ///< "": none are kept
     char recent_path[4096];         ///< of the list of recent files; "": it is not kept
     char screenshot[4096];          ///< to write after this frame; "": none
+    struct large_picture large;     ///< that this frame draws
     struct summary summary;
     struct trade trade;
     struct thumbs thumbs;     ///< of `stage`, once the table of textures was open
