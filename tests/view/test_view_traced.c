@@ -6,7 +6,7 @@
 #include "support/test.h"
 
 #include "controls.h"
-#include "scene_open.h"
+#include "scene_load.h"
 #include "stage.h"
 #include "traced.h"
 
@@ -240,7 +240,7 @@ static void dots_are_the_pixels_whose_rays_requested_something(void **state)
         const struct traced *t = show.traced;
         uint32_t dots = 0;
         draw();
-        const struct PbrtProbe *probes = t->view.probes.mapped;
+        const struct PbrtProbe *probes = t->parts->view.probes.mapped;
         for (uint32_t k = 0; k < SIZE * SIZE; k++)
             dots += t->rays > 0 && probes[k].launch == t->rays;
         assert_int_equal(dots, t->rays > 0 && t->sample == 0 ? t->missing : 0);
@@ -328,6 +328,41 @@ static void the_map_of_memory_has_each_resident_tile(void **state)
     close_scene();
 }
 
+/* The window's thread takes what the thread that opens the scene has compiled. */
+static void programs_are_compiled_by_the_thread_that_opens_the_scene(void **state)
+{
+    (void)state;
+    if (!show.gpu.device)
+        SKIP_TEST("no device that loads on demand");
+    char path[128], cache[128];
+    struct scene_data scene;
+    struct file_list paths = {0};
+    snprintf(path, sizeof path, "%s/scene.pbrt", folder);
+    snprintf(cache, sizeof cache, "%s/cache", folder);
+    assert_true(files_add(path, &paths));
+    for (uint32_t threads = 1; threads <= 2; threads++) {
+        const struct scene_request how = {.cache = cache, .gpu = &show.gpu, .threads = threads};
+        const struct stage_request request = {.gpu = &show.gpu, .threads = 1, .waits = true};
+        struct scene_load *load = scene_load_begin(&paths, &how);
+        assert_non_null(load);
+        assert_true(scene_load_end(load, &scene, &paths));
+        const struct traced_parts *parts = scene.pbrt->parts;
+        assert_true(parts && (parts->tracing.compute || parts->tracing.rays.pipeline));
+        controls_set_defaults(&show.settings);
+        show.stage = stage_create(&request, &show.settings, &scene);
+        assert_non_null(show.stage);
+        assert_int_equal(stage_traced(show.stage)->parts == parts, threads == 1);
+        close_scene();
+    }
+    struct scene_load *canceled = NULL;
+    const struct scene_request how = {.cache = cache, .gpu = &show.gpu, .threads = 1};
+    struct scene_load *load = scene_load_begin(&paths, &how);
+    assert_non_null(load);
+    scene_load_keep_canceled(load, &canceled);
+    scene_load_drop_canceled(&canceled, true);
+    assert_null(canceled);
+}
+
 static int begin(void **state)
 {
     (void)state;
@@ -369,6 +404,7 @@ int main(void)
         cmocka_unit_test(ages_begin_when_the_loader_says_resident),
         cmocka_unit_test(frozen_wants_request_nothing_while_the_camera_moves),
         cmocka_unit_test(the_map_of_memory_has_each_resident_tile),
+        cmocka_unit_test(programs_are_compiled_by_the_thread_that_opens_the_scene),
     };
     return cmocka_run_group_tests(tests, begin, end);
 }

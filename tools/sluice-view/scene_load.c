@@ -10,8 +10,8 @@
 struct scene_load {
     pthread_t thread;
     struct file_list paths;
-    const char *cache;
-    bool wait, opened;
+    struct scene_request request;
+    bool opened;
     struct scene_data scene;
     struct scene_progress progress;
     atomic_bool done;
@@ -21,23 +21,20 @@ struct scene_load {
 static void *open_scene(void *user)
 {
     struct scene_load *load = user;
-    const struct scene_request request = {.paths = (const char *const *)load->paths.paths,
-                                          .path_count = (uint32_t)load->paths.count,
-                                          .cache = load->cache,
-                                          .wait = load->wait,
-                                          .progress = &load->progress};
-    load->opened = scene_open_paths(&request, &load->scene);
+    load->request.paths = (const char *const *)load->paths.paths;
+    load->request.path_count = (uint32_t)load->paths.count;
+    load->request.progress = &load->progress;
+    load->opened = scene_open_paths(&load->request, &load->scene);
     atomic_store(&load->done, true);
     return NULL;
 }
 
-struct scene_load *scene_load_begin(struct file_list *paths, const char *cache, bool wait)
+struct scene_load *scene_load_begin(struct file_list *paths, const struct scene_request *how)
 {
     struct scene_load *load = calloc(1, sizeof *load);
     if (load) {
         load->paths = *paths;
-        load->cache = cache;
-        load->wait = wait;
+        load->request = *how;
         if (pthread_create(&load->thread, NULL, open_scene, load) == 0) {
             *paths = (struct file_list){0};
             return load;

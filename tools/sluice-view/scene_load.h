@@ -9,7 +9,8 @@
 struct scene_load;
 
 /** Moves the paths out of the list. NULL, with a line on stderr, without memory or a thread. */
-struct scene_load *scene_load_begin(struct file_list *paths, const char *cache, bool wait);
+/** `how` has all but paths and progress. */
+struct scene_load *scene_load_begin(struct file_list *paths, const struct scene_request *how);
 /** Whether scene_load_end does not wait. */
 bool scene_load_done(const struct scene_load *load);
 /** Writes "Opening hall.gltf: 3 of 45 images". */

@@ -4,6 +4,7 @@
 #include "scene_pbrt.h"
 #include "scene_played.h"
 #include "scene_pictures.h"
+#include "traced_parts.h"
 
 #include "../common/text.h"
 
@@ -17,6 +18,13 @@ bool scene_open_takes(const char *const *paths, uint32_t count)
     return true;
 }
 
+static bool prepare_device(const struct scene_request *r, struct scene_data *scene)
+{
+    if (r->gpu && !scene_data_canceled(scene))
+        scene->pbrt->parts = traced_parts_create(r->gpu, r->threads);
+    return !r->gpu || scene->pbrt->parts;
+}
+
 static bool open_any(const struct scene_request *r, struct scene_data *scene)
 {
     if (r->path_count == 0)
@@ -26,7 +34,7 @@ static bool open_any(const struct scene_request *r, struct scene_data *scene)
     if (played_takes(r->paths[0]))
         return scene_played_open(r->paths[0], scene);
     if (scene_pbrt_takes(r->paths[0]))
-        return scene_pbrt_open(r->paths[0], r->cache, scene);
+        return scene_pbrt_open(r->paths[0], r->cache, scene) && prepare_device(r, scene);
     if (scene_pictures_takes(r->paths[0]))
         return scene_pictures(r->paths, r->path_count, r->cache, r->wait, scene);
     return scene_import(r->paths[0], r->cache, r->wait, scene);

@@ -4,12 +4,17 @@
 
 #include "scene_data.h"
 
+struct gpu;
+
 struct scene_request {
     const char *const *paths; ///< pictures and folders, or one file of a scene; none: the room
     uint32_t path_count;
     const char *cache;               ///< folder for baked pictures
     bool wait;                       ///< until all pictures are baked
     struct scene_progress *progress; ///< NULL: nobody watches
+    /** Programs of scenes of pbrt are compiled for it. NULL: when they are shown. */
+    const struct gpu *gpu;
+    uint32_t threads; ///< of loaders; 0: as many as the library chooses
 };
 
 /** Says on stderr what is wrong, and which images cannot be shown. False, with nothing left in

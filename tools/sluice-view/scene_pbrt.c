@@ -1,5 +1,7 @@
 #include "scene_pbrt.h"
 
+#include "traced_parts.h"
+
 #include "../../samples/streaming/cache.h"
 #include "../common/files.h"
 #include "../common/text.h"
@@ -116,6 +118,7 @@ void scene_pbrt_close(struct scene_pbrt *p)
 {
     if (!p || p->share_count-- > 0)
         return;
+    traced_parts_destroy(p->parts);
     free(p->pictures);
     scene_finish(&p->scene);
     free(p);

@@ -7,6 +7,8 @@
 
 #include "../../samples/demand-pbrt/scene.h"
 
+struct traced_parts;
+
 /** A picture file that textures and skies name. */
 struct scene_pbrt_picture {
     const char *path; ///< of the scene
@@ -19,7 +21,8 @@ struct scene_pbrt {
     char cache[4096];                    ///< folder for baked pictures
     struct scene_pbrt_picture *pictures; ///< owned
     uint32_t picture_count;
-    uint32_t share_count; ///< others that have it, too
+    struct traced_parts *parts; ///< owned; made ahead by the thread that opens the scene; or NULL
+    uint32_t share_count;       ///< others that have it, too
 };
 
 bool scene_pbrt_takes(const char *path);

@@ -3,7 +3,6 @@
 #include "../../samples/demand-pbrt/emitters.h"
 #include "../../samples/demand-pbrt/lights.h"
 #include "../common/clock.h"
-#include "../common/log.h"
 #include "../common/text.h"
 
 #include <stdlib.h>
@@ -21,38 +20,6 @@ static double read_clock(void *user_data)
 {
     (void)user_data;
     return clock_seconds();
-}
-
-static void note_failure(void *user_data, const SluiceTileReadFailure *failure)
-{
-    struct traced *t = user_data;
-    if (!failure->willRetry)
-        atomic_fetch_add(&t->failed_reads, 1);
-}
-
-static bool create_loader(struct traced *t, uint32_t threads)
-{
-    const struct gpu *gpu = t->gpu;
-    const SluiceVulkanContextCreateInfo context = {
-        .structSize = sizeof context,
-        .queueFamilyIndex = gpu->family,
-        .instance = gpu->instance,
-        .physicalDevice = gpu->physical_device,
-        .device = gpu->device,
-        .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-        .log = {.pfnLog = log_say},
-        .loaderThreadCount = threads,
-    };
-    if (!check(sluiceCreateVulkanContext(&context, &t->context), "sluiceCreateVulkanContext"))
-        return false;
-    const SluiceDemandLoaderCreateInfo info = {
-        .structSize = sizeof info,
-        .context = t->context,
-        .pageCapacity = PBRT_PAGE_CAPACITY,
-        .maxRequestsPerLaunch = PBRT_MOST_REQUESTS,
-        .failure = {t, note_failure},
-    };
-    return check(sluiceCreateDemandLoader(&info, &t->loader), "sluiceCreateDemandLoader");
 }
 
 static bool create_pictures(struct traced *t)
@@ -87,15 +54,15 @@ static bool create_scene(struct traced *t)
            emitters_create(t->gpu, scene, true, &t->lights, &t->emitters) &&
            proxies_create(t->loader, scene, &t->proxies) &&
            world_create(t->gpu, scene, &t->surfaces, &t->proxies, false, &reading, &t->world) &&
-           world_begin(&t->world) && tracing_create(t->gpu, t->loader, true, &t->tracing);
+           world_begin(&t->world);
 }
 
 static void record_look(void *user_data, VkCommandBuffer commands, VkDescriptorSet demand_set)
 {
     struct traced *t = user_data;
-    t->looked = t->looks && t->view.count > 0;
+    t->looked = t->looks && t->parts->view.count > 0;
     if (t->looked)
-        traced_view_record(&t->view, commands, demand_set);
+        traced_view_record(&t->parts->view, commands, demand_set);
 }
 
 static bool begin_launches(struct traced *t)
@@ -104,7 +71,7 @@ static bool begin_launches(struct traced *t)
                                     .options = &t->options,
                                     .scene = &t->pbrt->scene,
                                     .loader = t->loader,
-                                    .tracing = &t->tracing,
+                                    .tracing = &t->parts->tracing,
                                     .world = &t->world,
                                     .surfaces = &t->surfaces,
                                     .textures = &t->textures,
@@ -116,6 +83,17 @@ static bool begin_launches(struct traced *t)
                                     .look = record_look};
     t->flight = (struct flight){.budget = {.seconds = TRACED_FRAME_SECONDS, .now = read_clock}};
     return launches_create(&t->launches);
+}
+
+/* Those that a thread has made, if settings have not changed since. */
+static struct traced_parts *take_parts(struct scene_pbrt *pbrt, const struct stage_request *request)
+{
+    struct traced_parts *parts = pbrt->parts;
+    pbrt->parts = NULL;
+    if (parts && parts->threads == request->threads)
+        return parts;
+    traced_parts_destroy(parts);
+    return traced_parts_create(request->gpu, request->threads);
 }
 
 struct traced *traced_create(const struct stage_request *request,
@@ -133,13 +111,12 @@ struct traced *traced_create(const struct stage_request *request,
                                        .warmup = UINT32_MAX,
                                        .anisotropy = settings->anisotropy,
                                        .threads = request->threads};
-    if (!t->gpu->buffer_addresses || !t->gpu->byte_pages)
-        text_say("sluice-view: %s cannot load on demand: scenes of pbrt need paged mode and "
-                 "addresses of buffers",
-                 t->gpu->properties.deviceName);
-    else if (create_loader(t, request->threads) && create_pictures(t) && create_scene(t) &&
-             begin_launches(t) && traced_view_create(t->gpu, t->loader, &t->view) &&
-             traced_show_create(t->gpu, &t->show)) {
+    t->parts = take_parts(pbrt, request);
+    if (t->parts) {
+        t->context = t->parts->context;
+        t->loader = t->parts->loader;
+    }
+    if (t->parts && create_pictures(t) && create_scene(t) && begin_launches(t)) {
         traced_apply(t, settings);
         return t;
     }
@@ -152,13 +129,10 @@ void traced_destroy(struct traced *t)
     if (!t)
         return;
     vkDeviceWaitIdle(t->gpu->device);
-    traced_show_destroy(&t->show);
-    traced_view_destroy(&t->view);
     traced_tiles_finish(&t->tiles);
     if (t->launches.commands)
         vkFreeCommandBuffers(t->gpu->device, t->gpu->command_pool, 1, &t->launches.commands);
     launches_finish(&t->launches);
-    tracing_destroy(t->gpu, &t->tracing);
     film_destroy(t->gpu, &t->film);
     proxies_finish(t->gpu, &t->world.structures, &t->proxies);
     if (t->world.gpu)
@@ -166,10 +140,11 @@ void traced_destroy(struct traced *t)
     surfaces_finish(t->gpu, &t->surfaces);
     table_finish(t->gpu, &t->lights);
     table_finish(t->gpu, &t->emitters);
-    sluiceDestroyDemandLoader(t->loader);
-    sluiceDestroyVulkanContext(t->context);
+    if (t->parts)
+        traced_parts_destroy_loader(t->parts);
     textures_finish(&t->textures);
     picture_files_finish(&t->files);
+    traced_parts_destroy(t->parts);
     mesh_cache_destroy(t->meshes);
     free(t->pictures);
     scene_pbrt_close(t->pbrt);

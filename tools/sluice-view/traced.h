@@ -4,13 +4,11 @@
 
 #include "scene_pbrt.h"
 #include "stage.h"
-#include "traced_show.h"
+#include "traced_parts.h"
 
 #include "../../samples/demand-pbrt/flight.h"
 
 #include <sluice/demand_query.h>
-
-#include <stdatomic.h>
 
 #define TRACED_FRAME_SECONDS 0.03 ///< of a frame of a window, for what rays asked for
 #define TRACED_EVENTS 1024u
@@ -41,7 +39,8 @@ struct traced {
     struct pbrt_options options;
     struct view_settings settings; ///< applied last
     bool waits;                    ///< for all work of a frame
-    SluiceVulkanContext *context;
+    struct traced_parts *parts;    ///< owned
+    SluiceVulkanContext *context;  ///< of `parts`, as the loader
     SluiceDemandLoader *loader;
     struct mesh_cache *meshes;
     struct picture_files files;
@@ -52,17 +51,14 @@ struct traced {
     struct proxies proxies;
     struct world world;
     struct film film;
-    struct tracing tracing;
     struct launches launches;
     struct flight flight;
-    struct traced_show show;
-    struct traced_view view;
     struct traced_tiles tiles;
     bool looks;                  ///< launches find out what pixels have and want
     bool looked;                 ///< the last launch did
     uint32_t rays;               ///< number of the last launch with rays of this frame; 0: none
     uint64_t time;               ///< microseconds, of the last frame
-    uint32_t use_count;          ///< uses of pictures that `show.pictures` has
+    uint32_t use_count;          ///< uses of pictures that `parts->show.pictures` has
     uint32_t most_texture_index; ///< of these
     struct PbrtLaunch constants; ///< of the picture that is gathered
     uint32_t sample;             ///< that is traced: so many are complete
@@ -80,7 +76,6 @@ struct traced {
     uint32_t pages[TRACED_MISSES]; ///< of these; ascend
     struct traced_event events[TRACED_EVENTS];
     uint32_t event_count, event_next;
-    atomic_uint failed_reads;
     char picked[256]; ///< what traced_pick found, in words
 };
 

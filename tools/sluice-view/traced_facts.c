@@ -188,7 +188,7 @@ static void write_streamer(const struct traced *t, const SluiceDemandStatistics 
                                           .tilesUnmapped = d->evictedCount,
                                           .tilesCanceled = d->canceledCount,
                                           .tilesFailed = d->failedCount,
-                                          .failedTileCount = atomic_load(&t->failed_reads),
+                                          .failedTileCount = atomic_load(&t->parts->failed_reads),
                                           .deviceMemorySize = d->deviceMemorySize,
                                           .tileMemorySize = d->tileMemorySize,
                                           .hostVisibleMemorySize = d->hostVisibleMemorySize,

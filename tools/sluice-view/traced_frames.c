@@ -67,9 +67,10 @@ static bool fit_film(struct traced *t, const struct stage_draw *draw)
     t->launches.probes = VK_NULL_HANDLE;
     t->looked = false;
     if (!film_create(t->gpu, draw->width, draw->height, (struct film_share){0}, &t->film) ||
-        !traced_view_fit(&t->view, &t->film) || !traced_show_fit(&t->show, &t->film, &t->view))
+        !traced_view_fit(&t->parts->view, &t->film) ||
+        !traced_show_fit(&t->parts->show, &t->film, &t->parts->view))
         return false;
-    t->launches.probes = t->view.probes.buffer;
+    t->launches.probes = t->parts->view.probes.buffer;
     return true;
 }
 
@@ -162,7 +163,7 @@ static bool name_textures(struct traced *t)
     for (; t->use_count < t->textures.use_count; t->use_count++) {
         const struct picture_use *use = t->textures.uses[t->use_count];
         const uint32_t index = (uint32_t)use->id;
-        uint32_t *words = traced_show_pictures(&t->show, index + 1), picture = 0;
+        uint32_t *words = traced_show_pictures(&t->parts->show, index + 1), picture = 0;
         if (!words)
             return false;
         while (picture < t->picture_count &&
@@ -172,7 +173,7 @@ static bool name_textures(struct traced *t)
             words[index] = (1 + picture) << 1;
         t->most_texture_index = index > t->most_texture_index ? index : t->most_texture_index;
     }
-    uint32_t *words = t->show.pictures.mapped;
+    uint32_t *words = t->parts->show.pictures.mapped;
     for (uint32_t i = 0; i <= t->most_texture_index; i++)
         words[i] = words[i] ? (words[i] & ~1u) | sides_of(t, (words[i] >> 1) - 1) : 0;
     return true;
@@ -180,7 +181,7 @@ static bool name_textures(struct traced *t)
 
 uint32_t traced_picture_of(const struct traced *t, uint32_t texture)
 {
-    const uint32_t *words = t->show.pictures.mapped;
+    const uint32_t *words = t->parts->show.pictures.mapped;
     return texture <= t->most_texture_index && words[texture] ? (words[texture] >> 1) - 1
                                                               : UINT32_MAX;
 }
@@ -191,7 +192,7 @@ const struct TracedView *traced_view_at(const struct traced *t, float x, float y
         return NULL;
     const size_t pixel =
         (size_t)(y * (float)t->film.height) * t->film.width + (size_t)(x * (float)t->film.width);
-    const struct TracedView *view = (const struct TracedView *)t->view.views.mapped + pixel;
+    const struct TracedView *view = (const struct TracedView *)t->parts->view.views.mapped + pixel;
     return view->texture == PBRT_NONE ? NULL : view;
 }
 
@@ -204,8 +205,8 @@ static bool show(struct traced *t, const struct stage_draw *draw)
                                      .launch = t->rays,
                                      .is_short = t->now.lodBias > 0,
                                      .picture_count = t->most_texture_index + 1};
-    return (s->view != VIEW_AGE || traced_show_keep_tiles(&t->show, &t->tiles, t->time)) &&
-           traced_show_draw(&t->show, &look);
+    return (s->view != VIEW_AGE || traced_show_keep_tiles(&t->parts->show, &t->tiles, t->time)) &&
+           traced_show_draw(&t->parts->show, &look);
 }
 
 bool traced_record(struct traced *t, const struct stage_draw *draw, VkCommandBuffer commands,
@@ -219,9 +220,9 @@ bool traced_record(struct traced *t, const struct stage_draw *draw, VkCommandBuf
     t->time = draw->time_stamp;
     const struct PbrtLaunch constants = traced_constants(t, &draw->camera);
     const bool moved = memcmp(&constants, &t->constants, sizeof constants) != 0;
-    if ((moved || t->restarts) && (!s->pause || !t->show.drawn))
+    if ((moved || t->restarts) && (!s->pause || !t->parts->show.drawn))
         restart(t, &constants);
-    if ((!s->pause || !t->show.drawn) && !launch_some(t))
+    if ((!s->pause || !t->parts->show.drawn) && !launch_some(t))
         return false;
     if (t->looks && !t->looked && !launches_idle(&t->launches)) /* a view was chosen in a pause */
         return false;
@@ -229,8 +230,8 @@ bool traced_record(struct traced *t, const struct stage_draw *draw, VkCommandBuf
     if (!name_textures(t) || !show(t, draw))
         return false;
     if (draw->copy)
-        traced_show_copy(&t->show, commands, draw->copy);
-    end->views[UI_TEXTURE_PICTURE] = t->show.image.view;
+        traced_show_copy(&t->parts->show, commands, draw->copy);
+    end->views[UI_TEXTURE_PICTURE] = t->parts->show.image.view;
     return true;
 }
 

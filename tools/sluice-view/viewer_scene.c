@@ -271,7 +271,11 @@ static bool begin_load(struct viewer *v, struct file_list *paths)
 {
     park_load(v);
     file_facts_begin(&v->app.file);
-    v->load = scene_load_begin(paths, v->options->cache, v->options->deterministic);
+    const struct scene_request how = {.cache = v->options->cache,
+                                      .wait = v->options->deterministic,
+                                      .gpu = &v->gpu,
+                                      .threads = v->app.settings.threads};
+    v->load = scene_load_begin(paths, &how);
     return v->load != NULL;
 }
 
