@@ -5,6 +5,7 @@
 #include "scene_played.h"
 #include "scene_pictures.h"
 #include "traced_parts.h"
+#include "traced_rehearsal.h"
 
 #include "../common/text.h"
 
@@ -20,9 +21,12 @@ bool scene_open_takes(const char *const *paths, uint32_t count)
 
 static bool prepare_device(const struct scene_request *r, struct scene_data *scene)
 {
-    if (r->gpu && !scene_data_canceled(scene))
+    if (!r->gpu)
+        return true;
+    traced_rehearse(r->gpu, scene);
+    if (!scene_data_canceled(scene))
         scene->pbrt->parts = traced_parts_create(r->gpu, r->threads);
-    return !r->gpu || scene->pbrt->parts;
+    return scene->pbrt->parts;
 }
 
 static bool open_any(const struct scene_request *r, struct scene_data *scene)

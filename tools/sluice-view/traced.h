@@ -86,6 +86,8 @@ void traced_destroy(struct traced *traced);
 /** Traces, and waits for it. The view of the picture goes into `end`; a copy is recorded. */
 bool traced_record(struct traced *traced, const struct stage_draw *draw, VkCommandBuffer commands,
                    struct frames_end *end);
+/** Traces and shows a picture once, and makes nothing that rays ask for: to compile programs. */
+bool traced_trace_once(struct traced *traced, const struct stage_draw *draw);
 void traced_apply(struct traced *traced, const struct view_settings *settings);
 /** Constants of a launch for a camera of the viewer. */
 struct PbrtLaunch traced_constants(struct traced *traced, const struct view_camera *camera);

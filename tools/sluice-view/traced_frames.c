@@ -235,6 +235,16 @@ bool traced_record(struct traced *t, const struct stage_draw *draw, VkCommandBuf
     return true;
 }
 
+bool traced_trace_once(struct traced *t, const struct stage_draw *draw)
+{
+    t->looks = true;
+    if (!fit_film(t, draw))
+        return false;
+    const struct PbrtLaunch constants = traced_constants(t, &draw->camera);
+    restart(t, &constants);
+    return trace(t) && name_textures(t) && show(t, draw);
+}
+
 double traced_complete(const struct traced *t)
 {
     const double all = (double)t->film.width * t->film.height;
