@@ -6,6 +6,7 @@
 #include "budget_need.h"
 #include "camera.h"
 #include "controls.h"
+#include "half_times.h"
 #include "keys.h"
 #include "mark_words.h"
 #include "pbrt_frame.h"
@@ -365,6 +366,26 @@ static void view_8_compares_with_everything_whatever_b_is(void **state)
     assert_int_equal(second.anisotropy, a.anisotropy);
 }
 
+/* 1,100 frames of 1 ms and more each: the ring keeps the last 1,024. */
+static void medians_are_those_of_the_last_frames(void **state)
+{
+    (void)state;
+    struct half_series *series = calloc(1, sizeof *series);
+    assert_true(half_series_median(series, 64) < 0);
+    half_series_add(series, 5e-3);
+    assert_float_equal(half_series_median(series, 64), 5, 1e-4);
+    half_series_add(series, 1e-3);
+    assert_float_equal(half_series_median(series, 64), 3, 1e-4);
+    assert_int_equal(half_series_count(series, 64), 2);
+    series->count = 0;
+    for (int i = 1; i <= 1100; i++)
+        half_series_add(series, i / 1e3);
+    assert_int_equal(half_series_count(series, UINT32_MAX), HALF_TIMES_MOST);
+    assert_float_equal(half_series_median(series, 3), 1099, 1e-1);
+    assert_float_equal(half_series_median(series, HALF_TIMES_MOST), 1100 - 1023.0 / 2, 1e-1);
+    free(series);
+}
+
 static void scripts_set_a_and_b(void **state)
 {
     (void)state;
@@ -591,6 +612,7 @@ int main(void)
         cmocka_unit_test(sets_share_nothing_but_what_is_of_both),
         cmocka_unit_test(sets_that_are_swapped_twice_are_as_before),
         cmocka_unit_test(view_8_compares_with_everything_whatever_b_is),
+        cmocka_unit_test(medians_are_those_of_the_last_frames),
         cmocka_unit_test(scripts_set_a_and_b),
         cmocka_unit_test(a_damaged_file_of_settings_is_set_aside),
         cmocka_unit_test(a_scenes_camera_comes_back_as_it_was),

@@ -14,11 +14,16 @@ static int compare_values(const void *left, const void *right)
     return a < b ? -1 : a > b;
 }
 
+uint32_t half_series_count(const struct half_series *s, uint32_t most)
+{
+    const uint32_t kept = s->count < HALF_TIMES_MOST ? (uint32_t)s->count : HALF_TIMES_MOST;
+    return kept < most ? kept : most;
+}
+
 double half_series_median(const struct half_series *s, uint32_t most)
 {
     float sorted[HALF_TIMES_MOST];
-    uint32_t count = s->count < HALF_TIMES_MOST ? (uint32_t)s->count : HALF_TIMES_MOST;
-    count = count < most ? count : most;
+    const uint32_t count = half_series_count(s, most);
     if (count == 0)
         return -1;
     for (uint32_t i = 0; i < count; i++)

@@ -18,6 +18,8 @@ struct half_times {
 };
 
 void half_series_add(struct half_series *series, double seconds);
+/** Returns how many of the last `most` frames are known. */
+uint32_t half_series_count(const struct half_series *series, uint32_t most);
 /** Returns the median of the last `most` frames in milliseconds. Negative: none is known. */
 double half_series_median(const struct half_series *series, uint32_t most);
 

@@ -20,14 +20,15 @@ static void draw_times(const struct half_series *a, const struct half_series *b,
 {
     const double left = half_series_median(a, HALF_TIMES_SHOWN);
     const double right = half_series_median(b, HALF_TIMES_SHOWN);
+    const uint32_t count = half_series_count(b, HALF_TIMES_SHOWN);
     if (left < 0 || right < 0)
         ui_text(UI_GRAY, "A ... ms, B ... ms %s", where);
     else
         ui_text(UI_WHITE, "A %.2f ms, B %.2f ms %s: %.2f ms %s", left, right, where,
                 fabs(right - left), right < left ? "less" : "more");
-    ui_hint("Medians of %u frames at most. A and B are drawn one after the other, each over the "
-            "whole picture. Binds of a sparse queue and the panels are not in these times.",
-            HALF_TIMES_SHOWN);
+    ui_hint("Medians of %u frame%s. A and B are drawn one after the other, each over the whole "
+            "picture. Binds of a sparse queue and the panels are not in these times.",
+            count, count == 1 ? "" : "s");
 }
 
 static const char *sharp_words(const struct view_facts *f, char *text, size_t size)

@@ -504,8 +504,10 @@ static void print_halves(const struct view_app *app)
                "{\"name\": \"host_ms_median_%c\", \"value\": %.4f, \"unit\": \"ms\"}\n",
                names[i], half_series_median(&app->times[i].gpu, HALF_TIMES_MOST), names[i],
                half_series_median(&app->times[i].host, HALF_TIMES_MOST));
-    printf("{\"name\": \"resident_b\", \"value\": %llu, \"unit\": \"B\"}\n"
+    printf("{\"name\": \"frames_compared\", \"value\": %u, \"unit\": \"\"}\n"
+           "{\"name\": \"resident_b\", \"value\": %llu, \"unit\": \"B\"}\n"
            "{\"name\": \"sharp_b\", \"value\": %.4f, \"unit\": \"\"}\n",
+           half_series_count(&app->times[1].gpu, HALF_TIMES_MOST),
            (unsigned long long)app->facts_b.resident_size, app->facts_b.sharp);
 }
 
