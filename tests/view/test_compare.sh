@@ -58,6 +58,15 @@ fact a_small_budget_of_b_is_kept_while_a_has_more
     awk -v a="$(value gpu_ms_median_a)" -v b="$(value gpu_ms_median_b)" -v all="$(value gpu_ms_median)" \
         'BEGIN { exit !(a > 0 && b > 0 && a + b < 1.5 * all) }'
 fact times_of_both_pictures_are_measured_within_those_of_the_frame
+# "B", "own, as A now", then the slider of its budget to 8 MiB; at the end A again, and the slider one row higher.
+printf '3 key U\n5 click 174 125\n8 click 215 152\n11 drag 206 204 30 204 6\n' >panel
+edits() {
+    run 0 --room --still --headless --deterministic --fresh --size 1000x562 --render-scale 0.2 --residency sparse --probability 1 \
+        --compare-as divider --script panel --json --frames 40
+}
+edits && [ "$(value sharp)" = 1.0000 ] && [[ $(value sharp_b) == 0.* ]] && [ "$(value frames_compared)" -gt 15 ] &&
+    printf '22 click 123 125\n25 drag 206 178 30 178 6\n' >>panel && edits && [[ $(value sharp) == 0.* ]]
+fact the_panel_of_controls_edits_a_or_b
 printf '1 set b bugdet 16\n2 set b view 3\n3 set b budget 2\n' >wrong
 run 0 --room --headless --size 160x160 --frames 4 --script wrong && grep -q 'there is no setting bugdet' err &&
     grep -q 'B: view is shared by A and B' err && grep -q 'B: budget 2: wants 0' err
