@@ -320,6 +320,7 @@ static const struct action table[] = {
     {"Panels", "Shift+I", NULL, "file and messages", toggle_panel, PANEL_FILE},
     {"Panels", "Shift+T", NULL, "what settings cost here", toggle_panel, PANEL_TRADE},
     {"Panels", "Ctrl+T", NULL, "sweep settings, or cancel", sweep, 0},
+    {"Panels", NULL, "Ctrl+Tab", "arrows, Enter, Delete in a panel", NULL, 0},
     {"Panels", "H", "H or Esc", "hide all, and back", hide_panels, 0},
 
     {"Program", "F1", NULL, "all keys", toggle_panel, PANEL_KEYS},

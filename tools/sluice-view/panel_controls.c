@@ -103,9 +103,10 @@ static void draw_budget(struct view_app *app, const char *label)
     const double most = all > 2 * LEAST_MIB ? all : all > 0 ? 2 * LEAST_MIB : 4096.0;
     draw_budget_slider(app, label, most);
     if (!app->dragged_budget)
-        ui_hint("Most memory for tiles: the picture becomes coarser when it is short. Takes effect "
-                "when it is released.\nDouble click: no limit. --budget");
-    if (ui_double_clicked())
+        ui_hint(
+            "Most memory for tiles: the picture becomes coarser when it is short. Takes effect "
+            "when it is released.\nDouble click or Delete: no limit. Enter: type MiB. --budget");
+    if (ui_double_clicked() || ui_deleted())
         app->settings.budget = 0;
     panel_size(app->facts.wanted_size, wanted, sizeof wanted);
     draw_budget_ticks(app, most);
@@ -119,10 +120,12 @@ static void draw_budget(struct view_app *app, const char *label)
         snprintf(text, sizeof text, "%u", presets[i]);
         if (ui_button(text, 44 * ui_scale(), 0, app->settings.budget == presets[i] * 1048576ull))
             app->settings.budget = presets[i] * 1048576ull;
+        ui_hint("Most memory for tiles, in MiB. --budget %s", text);
         ui_same_line(0);
     }
     if (ui_button("all", 44 * ui_scale(), 0, app->settings.budget == 0))
         app->settings.budget = 0;
+    ui_hint("As much memory as the device has. --budget 0");
 }
 
 static void draw_widget(struct view_app *app, const struct control *control, const char *label)
@@ -135,11 +138,9 @@ static void draw_widget(struct view_app *app, const struct control *control, con
                         (uint32_t)slider_most(control), logarithmic);
         break;
     case OPTION_CHOICE: ui_choice(label, option.operand, option.value); break;
-    case OPTION_EXTENT: {
-        const uint32_t *extent = option.value;
-        ui_text(UI_GRAY, "%u x %u pixels", extent[0], extent[1]);
+    case OPTION_EXTENT:
+        ui_type_extent(label, option.value, (uint32_t)option.minimum, (uint32_t)option.maximum);
         break;
-    }
     default:
         ui_slider_real(label, option.value, option.minimum, slider_most(control), logarithmic,
                        control->format ? control->format : "%.2f");
@@ -163,6 +164,23 @@ static void draw_feedback_outlook(const struct view_app *app)
             "stay in view are evicted, because no map shows them within --timeout.");
 }
 
+static void draw_sizes(struct view_app *app)
+{
+    static const uint32_t sizes[][2] = {{960, 540}, {1280, 720}, {1920, 1080}};
+    uint32_t *now = app->settings.size;
+    for (int i = 0; i < 3; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "%ux%u", sizes[i][0], sizes[i][1]);
+        if (i > 0)
+            ui_same_line(0);
+        if (ui_button(text, 0, 0, now[0] == sizes[i][0] && now[1] == sizes[i][1])) {
+            now[0] = sizes[i][0];
+            now[1] = sizes[i][1];
+        }
+        ui_hint("Pixels of the window. --size %s", text);
+    }
+}
+
 static void draw_control(struct view_app *app, const struct control *control)
 {
     ui_item_width(SLIDER_WIDTH * ui_scale());
@@ -175,13 +193,15 @@ static void draw_control(struct view_app *app, const struct control *control)
     ui_begin_disabled(unused);
     draw_widget(app, control, control->label);
     ui_end_disabled();
-    ui_hint("%s.%s\nDouble click: %s. --%s", control->option.help,
+    ui_hint("%s.%s\nDouble click or Delete: %s. --%s", control->option.help,
             control->flags & CONTROL_REOPENS  ? " The scene is opened again."
             : control->flags & CONTROL_STARTS ? " Takes effect when the program begins."
                                               : "",
             control->option.initial, control->option.name);
-    if (ui_double_clicked() && control->option.kind != OPTION_CHOICE)
+    if (ui_double_clicked() || ui_deleted())
         control_reset(control, &app->settings);
+    if (control->option.kind == OPTION_EXTENT)
+        draw_sizes(app);
     if (control->offset == offsetof(struct view_settings, probability))
         draw_feedback_outlook(app);
 }

@@ -145,6 +145,7 @@ void panels_draw_picture(const struct view_app *app)
 
 void panels_draw(struct view_app *app)
 {
+    ui_set_theme(app->settings.theme);
     panels_draw_picture(app);
     if (app->stage && stage_played(app->stage)) {
         panel_played_picture(app);

@@ -11,6 +11,7 @@ enum view_feedback { VIEW_FEEDBACK_ON, VIEW_FEEDBACK_OFF };
 /** Pixels that write feedback. shaders/scene_push.glsl has the same numbers. */
 enum view_feedback_by { VIEW_BY_QUADS, VIEW_BY_LATTICE, VIEW_BY_EVERY_PIXEL, VIEW_BY_TURNS };
 enum view_switch { VIEW_ON, VIEW_OFF }; ///< of choices "on|off"
+enum view_vsync { VIEW_VSYNC_ON, VIEW_VSYNC_MAILBOX, VIEW_VSYNC_OFF };
 enum view_filter { VIEW_LINEAR, VIEW_NEAREST };
 enum view_path_loop { VIEW_LOOP, VIEW_ONCE };
 enum view_motion { VIEW_WALK, VIEW_FLY, VIEW_ORBIT };
@@ -85,6 +86,8 @@ struct view_settings {
     int full_screen;
     uint32_t frame_cap;
     double ui_scale;   ///< 0: the monitor's
+    int theme;         ///< enum ui_theme
+    int vsync;         ///< enum view_vsync
     int panels;        ///< 0: shown
     int graph_span;    ///< enum history_span
     int memory_colors; ///< enum memory_colors

@@ -1,6 +1,7 @@
 #include "ui.h"
 
 #include "keys.h"
+#include "ui_theme.h"
 
 #include <imgui.h>
 
@@ -101,22 +102,12 @@ void load_fonts()
 void choose_style()
 {
     ImGuiStyle &style = ImGui::GetStyle();
-    ImGui::StyleColorsDark();
+    ui_choose_theme(UI_DARK);
     style.WindowRounding = 6.0f;
     style.FrameRounding = 4.0f;
     style.GrabRounding = 4.0f;
-    style.WindowBorderSize = 0.0f;
     style.WindowPadding = ImVec2(12.0f, 10.0f);
     style.ItemSpacing = ImVec2(8.0f, 5.0f);
-    style.Colors[ImGuiCol_WindowBg] = ImVec4(0.07f, 0.08f, 0.10f, 0.93f);
-    style.Colors[ImGuiCol_ChildBg] = ImVec4(0.0f, 0.0f, 0.0f, 0.0f);
-    style.Colors[ImGuiCol_PopupBg] = ImVec4(0.07f, 0.08f, 0.10f, 0.96f);
-    style.Colors[ImGuiCol_TitleBg] = ImVec4(0.10f, 0.12f, 0.16f, 0.95f);
-    style.Colors[ImGuiCol_TitleBgActive] = ImVec4(0.13f, 0.20f, 0.30f, 0.95f);
-    style.Colors[ImGuiCol_FrameBg] = ImVec4(0.19f, 0.22f, 0.27f, 1.0f);
-    style.Colors[ImGuiCol_Button] = ImVec4(0.19f, 0.24f, 0.31f, 1.0f);
-    style.Colors[ImGuiCol_ButtonHovered] = ImVec4(0.24f, 0.38f, 0.56f, 1.0f);
-    style.Colors[ImGuiCol_TableHeaderBg] = ImVec4(0.13f, 0.16f, 0.21f, 1.0f);
     style.ScaleAllSizes(ui->scale);
 }
 

@@ -33,6 +33,8 @@ extern "C" {
 #define UI_BLUE UI_COLOR(105, 175, 255, 255)
 
 /** A key, or a character. */
+enum ui_theme { UI_DARK, UI_LIGHT, UI_CONTRAST };
+
 struct ui_key_event {
     int key; ///< enum view_key; VIEW_KEY_NONE: a character
     bool down;
@@ -64,6 +66,12 @@ const uint8_t *ui_font_pixels(uint32_t *width, uint32_t *height);
 /** Functions of the system's clipboard; NULL: one of the program's own. */
 void ui_set_clipboard(void (*set)(void *user_data, const char *text),
                       const char *(*get)(void *user_data), void *user_data);
+/** Colors of all panels from now on: enum ui_theme. */
+void ui_set_theme(int theme);
+/** What texts of UI_WHITE, UI_GRAY, UI_ORANGE, UI_RED and UI_BLUE are drawn in; others as given. */
+uint32_t ui_theme_color(int theme, uint32_t color);
+/** Behind them. */
+uint32_t ui_theme_background(int theme);
 void ui_begin_frame(const struct ui_input *input);
 /** The geometry is valid until the next ui_begin_frame. */
 void ui_end_frame(struct ui_geometry *geometry);
@@ -130,11 +138,14 @@ bool ui_slider_whole(const char *label, uint32_t *value, uint32_t minimum, uint3
                      bool logarithmic);
 /** `words`: separated by '|'. */
 bool ui_choice(const char *label, const char *words, int *value);
+/** Two numbers to type; they count when the keyboard leaves them, or Enter is pressed. */
+bool ui_type_extent(const char *label, uint32_t value[2], uint32_t minimum, uint32_t maximum);
 bool ui_type_text(const char *label, const char *hint, char *text, size_t size);
 void ui_item_width(float width);
 /** About the widget before. */
 bool ui_hovered(void);
 bool ui_double_clicked(void);
+bool ui_deleted(void);    ///< it has the keyboard, and Delete was pressed
 bool ui_active(void);     ///< being dragged, or typed into
 bool ui_any_active(void); ///< any widget
 bool ui_released(void);   ///< released in this frame, after its value changed

@@ -1,5 +1,6 @@
 /* Drawing of ui.h: lines, rectangles and pictures in panels and behind them. */
 #include "ui.h"
+#include "ui_theme.h"
 
 #include <imgui.h>
 
@@ -42,7 +43,7 @@ void ui_polyline(const float *xy, uint32_t count, uint32_t color, float thicknes
 
 void ui_label(float x, float y, uint32_t color, const char *text)
 {
-    panel_list()->AddText(ImVec2(x, y), color, text);
+    panel_list()->AddText(ImVec2(x, y), ui_themed(color), text);
 }
 void ui_picture(uint32_t texture, uint32_t mode, const float rectangle[4], const float uv[4],
                 uint32_t color)

@@ -1,5 +1,6 @@
 /* Panels, widgets and tables of ui.h. */
 #include "ui.h"
+#include "ui_theme.h"
 
 #include <imgui.h>
 
@@ -82,7 +83,7 @@ void ui_begin_list(const char *id, float width, float height, uint32_t count, ui
 int ui_list_line(int id, bool selected, uint32_t color, const char *text)
 {
     ImGui::PushID(id);
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushStyleColor(ImGuiCol_Text, ui_themed(color));
     const bool clicked =
         ImGui::Selectable("##line", selected, ImGuiSelectableFlags_AllowDoubleClick);
     ImGui::SameLine(0.0f, 0.0f);
@@ -116,7 +117,7 @@ void ui_text(uint32_t color, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushStyleColor(ImGuiCol_Text, ui_themed(color));
     ImGui::TextV(format, arguments);
     ImGui::PopStyleColor();
     va_end(arguments);
@@ -124,7 +125,7 @@ void ui_text(uint32_t color, const char *format, ...)
 
 void ui_paragraph(uint32_t color, const char *text)
 {
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushStyleColor(ImGuiCol_Text, ui_themed(color));
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextUnformatted(text);
     ImGui::PopTextWrapPos();
@@ -154,7 +155,7 @@ void ui_line(void)
 bool ui_button(const char *label, float width, float height, bool pressed)
 {
     if (pressed)
-        ImGui::PushStyleColor(ImGuiCol_Button, UI_COLOR(40, 105, 180, 255));
+        ImGui::PushStyleColor(ImGuiCol_Button, ui_pressed_color());
     const bool clicked = ImGui::Button(label, ImVec2(width, height));
     if (pressed)
         ImGui::PopStyleColor();
@@ -204,6 +205,23 @@ bool ui_choice(const char *label, const char *words, int *value)
     return ImGui::Combo(label, value, items);
 }
 
+bool ui_type_extent(const char *label, uint32_t value[2], uint32_t minimum, uint32_t maximum)
+{
+    static uint32_t typed[2]; /* there is one keyboard */
+    static ImGuiID owner;
+    const ImGuiID id = ImGui::GetID(label);
+    if (owner != id) {
+        typed[0] = value[0];
+        typed[1] = value[1];
+    }
+    ImGui::InputScalarN(label, ImGuiDataType_U32, typed, 2);
+    const bool left = ImGui::IsItemDeactivatedAfterEdit();
+    owner = ImGui::IsItemActive() ? id : 0;
+    for (int i = 0; left && i < 2; i++)
+        value[i] = typed[i] < minimum ? minimum : typed[i] > maximum ? maximum : typed[i];
+    return left;
+}
+
 bool ui_type_text(const char *label, const char *hint, char *text, size_t size)
 {
     return ImGui::InputTextWithHint(label, hint, text, size);
@@ -236,7 +254,23 @@ bool ui_released(void)
 
 bool ui_double_clicked(void)
 {
-    return ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0);
+    /* The list of a choice that the first click opened may be in the way: the second one closed it.
+     */
+    return ImGui::IsMouseDoubleClicked(0) &&
+           ImGui::IsMouseHoveringRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax()) &&
+           ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByPopup |
+                                  ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
+}
+
+bool ui_deleted(void)
+{
+#if IMGUI_VERSION_NUM >= 18700
+    const bool pressed = ImGui::IsKeyPressed(ImGuiKey_Delete, false);
+#else
+    const bool pressed = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Delete), false);
+#endif
+    return pressed && ImGui::IsItemFocused() && ImGui::GetIO().NavVisible &&
+           !ImGui::GetIO().WantTextInput;
 }
 
 void ui_show_hint(const char *text)
@@ -348,7 +382,7 @@ void ui_table_cell(uint32_t color, const char *format, ...)
         vsnprintf(text, sizeof text, format, arguments);
         va_end(arguments);
         const float room = ImGui::GetContentRegionAvail().x;
-        ImGui::PushStyleColor(ImGuiCol_Text, color);
+        ImGui::PushStyleColor(ImGuiCol_Text, ui_themed(color));
         ImGui::TextUnformatted(text);
         ImGui::PopStyleColor();
         if (ImGui::GetItemRectSize().x > room + 0.5f && ImGui::IsItemHovered())
