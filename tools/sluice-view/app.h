@@ -104,6 +104,7 @@ struct view_app {
     char said[256];
     double said_seconds;       ///< how long it is still shown
     float width, height;       ///< of the picture
+    const char *present_mode;  ///< of the window; NULL: there is none
     float line_width;          ///< of the line at the bottom; 0: it is not shown
     float legend_width;        ///< in the frame before; 0: it was not shown
     double seconds;            ///< of the viewer's life

@@ -88,6 +88,8 @@ void panel_device(struct view_app *app)
             panel_played_device(app);
         else
             draw_mode(app);
+        if (app->present_mode)
+            ui_text(UI_GRAY, "the window presents by %s", app->present_mode);
         if (!stage_played(app->stage))
             draw_memory(app);
         const unsigned messages = (unsigned)atomic_load(&app->gpu->validation_messages);

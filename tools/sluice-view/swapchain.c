@@ -61,6 +61,41 @@ static void destroy_semaphores(struct swapchain *s)
     memset(s->acquired, 0, sizeof s->acquired);
 }
 
+static bool is_offered(VkPresentModeKHR mode, const VkPresentModeKHR *offered, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (offered[i] == mode)
+            return true;
+    return false;
+}
+
+VkPresentModeKHR swapchain_choose_mode(VkPresentModeKHR wanted, const VkPresentModeKHR *offered,
+                                       uint32_t count)
+{
+    if (wanted == VK_PRESENT_MODE_IMMEDIATE_KHR && !is_offered(wanted, offered, count))
+        wanted = VK_PRESENT_MODE_MAILBOX_KHR;
+    return is_offered(wanted, offered, count) ? wanted : VK_PRESENT_MODE_FIFO_KHR;
+}
+
+const char *swapchain_mode_name(VkPresentModeKHR mode)
+{
+    return mode == VK_PRESENT_MODE_IMMEDIATE_KHR ? "IMMEDIATE"
+           : mode == VK_PRESENT_MODE_MAILBOX_KHR ? "MAILBOX"
+                                                 : "FIFO";
+}
+
+static bool find_mode(struct swapchain *s)
+{
+    VkPresentModeKHR modes[16];
+    uint32_t count = 16;
+    const VkResult result = vkGetPhysicalDeviceSurfacePresentModesKHR(s->gpu->physical_device,
+                                                                      s->surface, &count, modes);
+    if (result != VK_SUCCESS && result != VK_INCOMPLETE)
+        return gpu_check(result, "vkGetPhysicalDeviceSurfacePresentModesKHR");
+    s->mode = swapchain_choose_mode(s->wanted, modes, count);
+    return true;
+}
+
 enum swapchain_outcome swapchain_create(const struct gpu *gpu, VkSurfaceKHR surface, uint32_t width,
                                         uint32_t height, struct swapchain *s)
 {
@@ -72,7 +107,7 @@ enum swapchain_outcome swapchain_create(const struct gpu *gpu, VkSurfaceKHR surf
     if (!gpu_check(
             vkGetPhysicalDeviceSurfaceCapabilitiesKHR(gpu->physical_device, surface, &capabilities),
             "vkGetPhysicalDeviceSurfaceCapabilitiesKHR") ||
-        !choose_format(gpu, surface, &format))
+        !choose_format(gpu, surface, &format) || !find_mode(s))
         return SWAPCHAIN_FAILED;
     choose_extent(&capabilities, width, height, &extent);
     s->outdated = extent.width == 0 || extent.height == 0;
@@ -92,7 +127,7 @@ enum swapchain_outcome swapchain_create(const struct gpu *gpu, VkSurfaceKHR surf
         .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
         .preTransform = capabilities.currentTransform,
         .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
-        .presentMode = VK_PRESENT_MODE_FIFO_KHR,
+        .presentMode = s->mode,
         .clipped = VK_TRUE,
         .oldSwapchain = s->swapchain};
     VkSwapchainKHR created = VK_NULL_HANDLE;

@@ -16,11 +16,18 @@ struct swapchain {
     VkSemaphore presented[SWAPCHAIN_MAX_IMAGES]; ///< of an image: signaled when it may be presented
     VkSemaphore acquired[SWAPCHAIN_SLOTS];       ///< of a frame in flight
     uint32_t image_count, width, height;
-    bool outdated; ///< create it again before the next frame
+    VkPresentModeKHR wanted; ///< set before swapchain_create
+    VkPresentModeKHR mode;   ///< in use
+    bool outdated;           ///< create it again before the next frame
 };
 
 enum swapchain_outcome { SWAPCHAIN_GOOD, SWAPCHAIN_OUTDATED, SWAPCHAIN_FAILED };
 
+/** IMMEDIATE is replaced by MAILBOX, and MAILBOX by FIFO, which every window has. */
+VkPresentModeKHR swapchain_choose_mode(VkPresentModeKHR wanted, const VkPresentModeKHR *offered,
+                                       uint32_t count);
+/** "FIFO", "MAILBOX", "IMMEDIATE". */
+const char *swapchain_mode_name(VkPresentModeKHR mode);
 /** Creates it, or creates it again with another size; no frame may be in flight. SWAPCHAIN_OUTDATED
  *  while the window has no pixels. */
 enum swapchain_outcome swapchain_create(const struct gpu *gpu, VkSurfaceKHR surface, uint32_t width,

@@ -347,6 +347,7 @@ static enum swapchain_outcome acquire(struct viewer *v, struct frames_end *end)
     window_size(v->window, &width, &height);
     if (width == 0 || height == 0)
         return SWAPCHAIN_OUTDATED;
+    viewer_follow_vsync(v);
     if (v->swapchain.outdated || width != v->swapchain.width || height != v->swapchain.height) {
         if (!frames_wait(&v->frames))
             return SWAPCHAIN_FAILED;
@@ -355,6 +356,7 @@ static enum swapchain_outcome acquire(struct viewer *v, struct frames_end *end)
             swapchain_create(&v->gpu, window_surface(v->window), width, height, &v->swapchain);
         if (outcome != SWAPCHAIN_GOOD)
             return outcome;
+        viewer_say_vsync(v);
     }
     if ((v->frames.target.width != v->swapchain.width ||
          v->frames.target.height != v->swapchain.height) &&
@@ -368,6 +370,8 @@ static bool draw_frame(struct viewer *v, double step)
 {
     struct ui_geometry geometry;
     struct frames_end end = {.geometry = &geometry};
+    if (!viewer_follow_size(v))
+        return false;
     if (v->window) {
         enum swapchain_outcome outcome = acquire(v, &end);
         if (outcome != SWAPCHAIN_GOOD)
@@ -522,6 +526,9 @@ static void print_summary(struct viewer *v)
     }
     if (v->options->json) {
         gpu_print_json(&v->gpu);
+        if (v->app.present_mode)
+            printf("{\"name\": \"present mode\", \"value\": \"%s\", \"unit\": \"\"}\n",
+                   v->app.present_mode);
         printf("{\"name\": \"frames\", \"value\": %u, \"unit\": \"\"}\n"
                "{\"name\": \"textures\", \"value\": %llu, \"unit\": \"B\"}\n"
                "{\"name\": \"resident\", \"value\": %llu, \"unit\": \"B\"}\n"

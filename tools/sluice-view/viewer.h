@@ -30,6 +30,8 @@ struct viewer {
     struct shader_code code[SCENE_SHADER_COUNT]; ///< compiled last; empty: those of the build
     struct window *window;                       ///< NULL: headless
     struct swapchain swapchain;
+    uint32_t
+        sized[2]; ///< settings.size that the window or the headless picture has, or was asked for
     struct flip_map flip;
     SluiceCameraMotion motion; ///< of the last frames
     struct script script;
@@ -102,6 +104,13 @@ void viewer_begin_recording(struct viewer *viewer, const char *path);
 void viewer_end_recording(struct viewer *viewer);
 /** Compiles the shaders of the scene again, and says what came of it. */
 void viewer_reload_shaders(struct viewer *viewer);
+/** Gives the window the size of the settings, and the settings the size that somebody gave the
+ *  window. False if the device failed. */
+bool viewer_follow_size(struct viewer *viewer);
+/** Presents as the settings say from the next swapchain on. */
+void viewer_follow_vsync(struct viewer *viewer);
+/** Says what the window got instead. */
+void viewer_say_vsync(struct viewer *viewer);
 /** Begins and ends sweeps of settings, as the panel asks for them, and watches them. */
 void viewer_follow_trade(struct viewer *viewer);
 /** Returns the exit status: 0, 1, or 77 without a device. */

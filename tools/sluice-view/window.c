@@ -220,6 +220,18 @@ void window_size(const struct window *window, uint32_t *width, uint32_t *height)
     *height = h > 0 ? (uint32_t)h : 0;
 }
 
+/* From pixels to points of the screen. */
+void window_set_size(struct window *window, uint32_t width, uint32_t height)
+{
+    int points_x = 0, points_y = 0;
+    uint32_t x, y;
+    glfwGetWindowSize(window->glfw, &points_x, &points_y);
+    window_size(window, &x, &y);
+    if (!window->full && x > 0 && y > 0)
+        glfwSetWindowSize(window->glfw, (int)((double)width * points_x / x + 0.5),
+                          (int)((double)height * points_y / y + 0.5));
+}
+
 double window_scale(const struct window *window)
 {
     float x = 1, y = 1;

@@ -29,6 +29,8 @@ void window_poll(struct window *window, struct ui_input *input);
 bool window_closed(const struct window *window);
 /** Moves out the files that were dropped since the last call. False if there are none. */
 bool window_dropped(struct window *window, struct file_list *paths);
+/** Asks for so many pixels. */
+void window_set_size(struct window *window, uint32_t width, uint32_t height);
 void window_set_full_screen(struct window *window, bool full);
 /** Adds a key, and sets the modifiers by it. */
 void window_note_key(struct ui_input *input, int key, bool down);
