@@ -106,4 +106,17 @@ misses() {
 }
 few=$(misses 1) && many=$(misses 4096) && [ "$few" -gt 4 ] && [ "$many" -eq 0 ]
 fact tiles_that_few_maps_miss_stay_if_more_misses_are_wanted
+
+# The panel of controls by keyboard: its first slider is the budget.
+{ printf '2 key U\n4 key Ctrl+Tab\n6 key down\n8 key down\n10 key enter\n11 type 64\n13 key enter\n' &&
+    printf '20 key delete\n22 quit\n'; } >typing
+run 0 --room --still --headless --deterministic --fresh --size 640x400 --render-scale 0.2 --script typing --csv typed.csv &&
+    awk -F , '$1 == 18 { typed = $5 } END { exit !(typed > 67 && typed < 67.2 && $5 == 0) }' typed.csv
+fact a_budget_is_typed_and_reset_by_the_keyboard_alone
+png_size() { od -An -tu1 -j16 -N8 "$1" | awk '{print $3 * 256 + $4 "x" $7 * 256 + $8}'; }
+printf '2 set size 320x200\n4 screenshot smaller.png\n5 set size 480x270\n6 set theme light\n7 screenshot light.png\n' >sizes
+printf '8 set theme dark\n9 screenshot dark.png\n10 quit\n' >>sizes
+run 0 --room --still --headless --deterministic --fresh --size 480x270 --script sizes $validation &&
+    [ "$(png_size smaller.png)" = 320x200 ] && [ "$(png_size dark.png)" = 480x270 ] && ! cmp -s light.png dark.png
+fact size_and_theme_change_at_once
 end_facts

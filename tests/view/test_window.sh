@@ -141,6 +141,15 @@ python3 "$here/pbrt_scene.py" make . && open_viewer $validation --cache cache --
     picture home.png && python3 "$here/pbrt_scene.py" holes walked.png small.png home.png &&
     xdotool key ctrl+q && ended_well
 fact a_scene_of_pbrt_is_traced_in_a_window_with_silent_validation
+# Xvfb offers all modes; the size of the settings follows the window, and the window the settings.
+printf '5 set size 360x300\n40 set vsync off\n60 quit\n' >sizes
+# shellcheck disable=SC2086
+open_viewer $validation --vsync mailbox --json --script sizes && until_true 20 size_is 360x300 && ended_well && [ ! -s err ] &&
+    grep -q '"present mode", "value": "IMMEDIATE"' out
+fact the_window_follows_size_and_vsync_of_the_settings
+open_viewer --vsync mailbox --json && xdotool windowsize "$window" 500 300 && until_true 20 copies ' --size 500x300' &&
+    xdotool key ctrl+q && ended_well && grep -q '"present mode", "value": "MAILBOX"' out
+fact the_settings_follow_the_size_that_somebody_gave_the_window
 export LOSE_AFTER=20
 LD_PRELOAD=$lose_device open_viewer
 tries=600
