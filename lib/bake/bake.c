@@ -13,27 +13,27 @@
 
 #include <string.h>
 
-/* What zstd and the store's writer take per thread. */
+/* Bytes that zstd and the store's writer take per thread. */
 #define MEMORY_PER_THREAD ((uint64_t)3 << 20)
-/* Compressed tiles that wait for their turn: 16 of 128 KiB. */
+/* Bytes of compressed tiles that wait for their turn: 16 of 128 KiB. */
 #define MEMORY_OF_TURNS ((uint64_t)2 << 20)
 
-/* One call of sluiceBakeFile. */
+/* State of one call of sluiceBakeFile. */
 struct bake {
     SluiceBaker *baker;
     const SluiceBakeInfo *info;
-    SluiceBakeSettings settings; ///< of `info`
+    SluiceBakeSettings settings; ///< settings of `info`
     SluiceBakeReport report;
     struct slc_bake_inputs inputs;
     uint64_t settings_hash;
-    uint32_t index; ///< of the picture in `inputs`
+    uint32_t index; ///< index of the picture in `inputs`
     struct slc_picture *picture;
-    struct slc_plan plan; ///< of the picture
+    struct slc_plan plan; ///< plan of the picture
     SluiceStoreCreateInfo store;
-    SluiceImageInfo image; ///< of the first picture, as it is stored
-    uint64_t memory;       ///< bytes, for any of the pictures
+    SluiceImageInfo image; ///< info of the first picture, as stored
+    uint64_t memory;       ///< bytes that suffice for each picture
     SluiceStoreWriter *writer;
-    uint64_t next_turn; ///< of the writer
+    uint64_t next_turn; ///< next turn of the writer
 };
 
 static void report_image(struct bake *bake, const SluiceStoreLayout *layout, uint32_t layer_count)
@@ -45,7 +45,7 @@ static void report_image(struct bake *bake, const SluiceStoreLayout *layout, uin
     bake->report.arrayLayerCount = layer_count;
 }
 
-/* Whether a store is there that was made from the same input in the same way. */
+/* Whether a store exists that was made from equal input with equal settings. */
 static bool is_up_to_date(struct bake *bake)
 {
     SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info,
@@ -128,7 +128,7 @@ static void describe_store(struct bake *bake)
     };
 }
 
-/* By the channels alone: nobody says more. */
+/* Guesses the meaning from the channels, because levels of files do not record it. */
 static SluiceStoreMeaning meaning_of_levels(SluiceFormat format, bool normals)
 {
     SluiceFormatInfo info = {.structSize = sizeof info};
@@ -142,7 +142,7 @@ static SluiceStoreMeaning meaning_of_levels(SluiceFormat format, bool normals)
                                     : SLUICE_STORE_MEANING_COLOR_ALPHA;
 }
 
-/* Integers are numbers of things: no other format can hold them all. */
+/* Refuses other formats for integers, which must be stored exactly. */
 static SluiceResult check_integers(const struct bake *bake, const SluiceImageInfo *image)
 {
     SluiceFormat format = bake->settings.format;
@@ -155,7 +155,7 @@ static SluiceResult check_integers(const struct bake *bake, const SluiceImageInf
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* Many files of blocks do not know whether they hold sRGB; the settings may say so. */
+/* Describes stored levels. Files of blocks often do not record sRGB; the settings may set it. */
 static SluiceResult describe_levels(struct bake *bake, SluiceImageInfo *image)
 {
     const SluiceBakeSettings *settings = &bake->settings;
@@ -188,8 +188,8 @@ static SluiceResult describe_picture(struct bake *bake, SluiceImageInfo *image)
     return result;
 }
 
-/* The picture that says more of its colors decides: of five opaque faces and one with alpha, that
- * one. */
+/* Merges the meaning of a picture. The more specific one wins: of five opaque faces and one face
+ * with alpha, the one with alpha. */
 static void merge_meanings(struct bake *bake)
 {
     if (bake->store.meaning == SLUICE_STORE_MEANING_COLOR)
@@ -213,7 +213,7 @@ static SluiceResult check_cube(const struct bake *bake)
     return SLUICE_SUCCESS;
 }
 
-/* Whether the picture's layers can stand beside those of the first picture. */
+/* Checks that the picture's layers match those of the first picture. */
 static SluiceResult check_layers(const struct bake *bake, const SluiceImageInfo *image)
 {
     const SluiceImageInfo *first = &bake->image;
@@ -246,7 +246,7 @@ static SluiceResult begin_picture(struct bake *bake, uint32_t index)
     if (result != SLUICE_SUCCESS)
         return result;
     image.arrayLayerCount = bake->picture->layer_count;
-    if (bake->image.width > 0) /* not the first time */
+    if (bake->image.width > 0) /* the first picture was described */
         return check_layers(bake, &image);
     uint64_t layers = (uint64_t)image.arrayLayerCount * bake->inputs.count;
     if (layers > SLUICE_STORE_MAX_ARRAY_LAYERS)
@@ -307,7 +307,7 @@ static SluiceResult copy_levels(struct bake *bake, const SluiceStoreLayout *layo
     return result;
 }
 
-/* All layers of the picture. */
+/* Writes all layers of the picture. */
 static SluiceResult write_layers(struct bake *bake, const SluiceStoreLayout *layout)
 {
     struct slc_picture *picture = bake->picture;
@@ -339,7 +339,7 @@ static SluiceResult write_pictures(struct bake *bake, const SluiceStoreLayout *l
     return result;
 }
 
-/* Removes the half file of a broken picture, unless another writer has it by now. */
+/* Removes the unfinished file of a broken picture, unless another writer has it by now. */
 static void remove_part_file(struct bake *bake)
 {
     static const SluiceLogCallback silent;
@@ -364,7 +364,7 @@ static SluiceResult write_store(struct bake *bake, const SluiceStoreLayout *layo
     return result;
 }
 
-/* Bytes for the picture, with what is taken beside it. */
+/* Returns the bytes that baking the picture takes, with all buffers. */
 static uint64_t memory_for_picture(const struct bake *bake, const SluiceStoreLayout *layout)
 {
     const struct slc_bake_jobs *jobs = &bake->baker->jobs;
@@ -374,7 +374,8 @@ static uint64_t memory_for_picture(const struct bake *bake, const SluiceStoreLay
                                          : slc_baking_memory(bake->picture, &bake->plan, layout));
 }
 
-/* Begins all pictures, one after the other, before anything is written. A single one stays. */
+/* Opens and checks all pictures in turn, before anything is written. A single picture stays open.
+ */
 static SluiceResult look_at_pictures(struct bake *bake, SluiceStoreLayout *layout)
 {
     uint64_t memory = 0;
@@ -434,7 +435,7 @@ static SluiceResult bake_file(struct bake *bake)
     SluiceResult result = slc_bake_inputs_init(&bake->inputs, bake->info, &bake->baker->log);
     if (result != SLUICE_SUCCESS)
         return result;
-    /* A preview is no store of the picture. */
+    /* A preview must not count as a store of the picture. */
     bake->settings_hash = slc_hash_settings(&bake->settings) ^ bake->inputs.hash ^
                           bake->info->firstLevel * UINT64_C(0x9E3779B97F4A7C15);
     bake->report.inputSize = bake->inputs.size;

@@ -88,7 +88,8 @@ static bool fits(void *user)
     return reservation->size <= baker->max_memory - baker->used_memory;
 }
 
-/* Others may have come first when the lock is taken again, so it is asked until it fits. */
+/* Takes memory if it is free. Called again after each wait, because other bakes may have taken it.
+ */
 static bool take(struct reservation *reservation, SluiceBaker *baker)
 {
     slc_bake_jobs_lock(&baker->jobs);

@@ -11,14 +11,15 @@ struct SluiceBaker {
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;
     uint64_t max_memory;
-    uint64_t used_memory; ///< under the pool's mutex
+    uint64_t used_memory; ///< guarded by the pool's mutex
     struct slc_bake_jobs jobs;
     struct slc_astc_pool astc;
     float *decoded16; ///< 65536 values of sRGB codes
 };
 
-/** Waits until others have given back enough; calls the bake's progress callback meanwhile. Errors:
- *  LIMIT_EXCEEDED if all would not do; CANCELED. */
+/** Reserves memory. Waits until other bakes have given back enough, and calls the bake's progress
+ *  callback meanwhile. Errors: LIMIT_EXCEEDED if `size` exceeds the limit of the baker; CANCELED.
+ */
 SluiceResult slc_baker_reserve(SluiceBaker *baker, uint64_t size, const SluiceBakeInfo *info);
 void slc_baker_give_back(SluiceBaker *baker, uint64_t size);
 

@@ -167,8 +167,8 @@ static void pack(struct slc_bc7_block *block, uint8_t out[16])
     slc_store_bits(&bits, out);
 }
 
-/* One color, exact: in mode 5, every value of R, G and B is a third of the way between two ends of
- * 7 bits. */
+/* Encodes a block of one color exactly. In mode 5, every value of R, G and B is a third of the way
+ * between two ends of 7 bits. */
 static void make_plain(const uint8_t color[4], struct slc_bc7_block *block)
 {
     *block = (struct slc_bc7_block){.mode = 5};

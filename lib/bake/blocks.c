@@ -9,7 +9,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* Blocks that are encoded in one call. */
+/* Number of blocks that are encoded in one call. */
 #define RUN 64u
 
 enum encoder { NONE, SQUISH, BC7, BC6H, ASTC };

@@ -133,7 +133,7 @@ bool slc_row_is_finite(const float *row, uint32_t count)
     const texel *in = (const texel *)row;
     texel sum = {0};
     for (uint32_t i = 0; i < count; i++)
-        sum += in[i] * 0.0f; /* a NaN, for infinities too */
+        sum += in[i] * 0.0f; /* NaN for NaN and infinities */
     return sum[0] + sum[1] + sum[2] + sum[3] == 0.0f;
 }
 

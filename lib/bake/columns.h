@@ -7,30 +7,30 @@
 struct slc_columns {
     struct slc_axis axis;
     uint32_t tap_count;
-    uint32_t distinct; ///< texels with weights of their own: 1 where all have the same
+    uint32_t distinct; ///< texels with different weights; 1: all texels have equal weights
     float *weights;    ///< [distinct][tap_count]
     float *padded;     ///< the row with SLC_MAX_REACH texels on either side; NULL for box filters
 };
 
-/** Errors: OUT_OF_HOST_MEMORY; finish it then, too. */
+/** Allocates weights and rows. Errors: OUT_OF_HOST_MEMORY; finish it then, too. */
 SluiceResult slc_columns_init(struct slc_columns *columns, const SluiceAllocationCallbacks *cb,
                               const struct slc_axis *axis);
 void slc_columns_finish(struct slc_columns *columns, const SluiceAllocationCallbacks *cb);
 
-/** `row` is [axis.size][4], `below` [axis.below][4]; they do not overlap. */
+/** Filters a row. `row`: [axis.size][4], `below`: [axis.below][4]; they must not overlap. */
 void slc_columns_apply(struct slc_columns *columns, const float *row, float *below);
 
 /** Like slc_columns_apply, but sums in double and saturates at +-FLT_MAX. Slow. */
 void slc_columns_apply_wide(struct slc_columns *columns, const float *row, float *below);
 
-/** Whether none of `count` texels has a NaN or an infinity. */
+/** Whether all of `count` texels are finite. */
 bool slc_row_is_finite(const float *row, uint32_t count);
 
-/** sum[i] = weight * row[i], or += where it is not the first; `count` texels of four floats. */
+/** sum[i] = weight * row[i] (set), or += (add), for `count` texels of four floats. */
 void slc_row_set(const float *row, float weight, float *sum, uint32_t count);
 void slc_row_add(const float *row, float weight, float *sum, uint32_t count);
 
-/** Bytes that slc_columns_init allocates. */
+/** Returns the bytes that slc_columns_init allocates. */
 uint64_t slc_columns_memory(const struct slc_axis *axis);
 
 #endif /* SLC_BAKE_COLUMNS_H */

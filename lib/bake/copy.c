@@ -4,13 +4,13 @@
 
 #define TILE_SIZE 65536u
 
-/* A tile under way. */
+/* Tile that is being copied. */
 struct slot {
     struct slc_job base;
     struct run *run;
     uint32_t layer, level, x, y;
-    uint64_t turn; /* of the writer */
-    bool is_busy;  /* under the pool's mutex */
+    uint64_t turn; /* turn of the writer */
+    bool is_busy;  /* guarded by the pool's mutex */
     char texels[TILE_SIZE];
 };
 
@@ -18,7 +18,7 @@ struct run {
     struct slc_copy *copy;
     struct slot *slots;
     uint32_t slot_count;
-    SluiceResult result; /* the first failure; under the pool's mutex */
+    SluiceResult result; /* the first failure; guarded by the pool's mutex */
     uint64_t done, total;
 };
 
@@ -32,7 +32,7 @@ uint64_t slc_copy_memory(const SluiceStoreLayout *layout, uint32_t thread_count)
     return count_slots(thread_count) * (uint64_t)sizeof(struct slot) + layout->tailSize;
 }
 
-/* NULL texels pass the tile's turn. */
+/* Ends the tile's turn. `texels` NULL: without writing. */
 static SluiceResult end_turn(const struct slot *slot, const void *texels, size_t pitch)
 {
     const struct slc_copy *copy = slot->run->copy;
@@ -160,7 +160,7 @@ static SluiceResult copy_layer(struct run *run, uint32_t layer, char *tail)
                 result = start(run, layer, l, x, y);
     if (result != SLUICE_SUCCESS)
         return result;
-    slc_bake_jobs_help_until(run->copy->jobs, all_are_free, run); /* the tail comes behind them */
+    slc_bake_jobs_help_until(run->copy->jobs, all_are_free, run); /* before the tail */
     return copy_tail(run->copy, layer, tail);
 }
 

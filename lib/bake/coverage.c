@@ -26,7 +26,7 @@ uint64_t slc_coverage_memory(uint32_t level_count)
     return (uint64_t)level_count * STEPS * sizeof(uint64_t);
 }
 
-/* The step that holds alphas from step / STEPS on. */
+/* Returns the step of an alpha. Step s has alphas from s / STEPS on. */
 static uint32_t alpha_step(float alpha)
 {
     if (!(alpha > 0.0f))
@@ -50,7 +50,7 @@ static uint64_t count_from(const uint64_t *counts, uint32_t step)
     return count;
 }
 
-/* The first step all of which reaches the threshold; 1 is in the last. */
+/* Returns the first step whose alphas all reach the threshold. Alpha 1 is in the last step. */
 static uint32_t step_of(float threshold)
 {
     uint32_t step = (uint32_t)ceilf(threshold * (float)STEPS);
@@ -62,8 +62,8 @@ static uint32_t distance(uint32_t a, uint32_t b)
     return a > b ? a - b : b - a;
 }
 
-/* The step from which on the share of texels is nearest to `wanted`; of equal ones the one next to
- * `first`. From the last step down. */
+/* Finds the step from which on the share of texels is nearest to `wanted`, from the last step down.
+ * Of equal steps, the one nearest to `first`. */
 static uint32_t find_step(const uint64_t *counts, double wanted, uint32_t first)
 {
     double all = (double)count_from(counts, 0), least = INFINITY;

@@ -1,8 +1,9 @@
 /**
- * How much of each level of a cut-out is there, and by what its alpha is scaled so that this stays.
+ * Coverage of cut-outs: the share of visible texels per level, and the scale of alpha that
+ * preserves it in coarser levels.
  *
- * Alpha is counted in 65536 steps per level, half a MiB each, in a pass before the levels are
- * written; nothing of the levels themselves is kept.
+ * Alpha is counted in 65536 steps per level, 512 KiB per level, in a pass before the levels are
+ * written. Texels are not kept.
  */
 #ifndef SLC_BAKE_COVERAGE_H
 #define SLC_BAKE_COVERAGE_H
@@ -14,20 +15,20 @@ struct slc_coverage {
     uint64_t *counts; ///< [level_count][65536]
 };
 
-/** Errors: OUT_OF_HOST_MEMORY. */
+/** Allocates the counters. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_coverage_init(struct slc_coverage *coverage, const SluiceAllocationCallbacks *cb,
                                uint32_t level_count);
 void slc_coverage_finish(struct slc_coverage *coverage, const SluiceAllocationCallbacks *cb);
 uint64_t slc_coverage_memory(uint32_t level_count);
 
-/** Alpha of `count` texels of four floats, clamped to [0, 1]. */
+/** Counts the alpha of `count` texels of four floats, clamped to [0, 1]. */
 void slc_coverage_add(struct slc_coverage *coverage, uint32_t level, const float *rgba,
                       uint32_t count);
 
 /**
- * What alpha of `level` is multiplied by so that the share of texels that reach `threshold` is as
- * near as can be to that of level 0. 1 for level 0; at most 16, so that what is hardly there does
- * not become solid.
+ * Returns the scale of alpha for which the share of texels of `level` that reach `threshold` is
+ * nearest to the share of level 0. 1 for level 0. At most 16, so that faint texels do not become
+ * solid.
  */
 float slc_coverage_scale(const struct slc_coverage *coverage, uint32_t level, float threshold);
 

@@ -30,7 +30,7 @@ static double bessel(double x)
     return sum;
 }
 
-/* A sinc that a Kaiser window ends; `x` in texels of the level below. */
+/* Sinc with a Kaiser window; `x` in texels of the level below. */
 static double kaiser(double x)
 {
     double t = x / KAISER_RADIUS;
@@ -40,7 +40,7 @@ static double kaiser(double x)
     return sinc * bessel(KAISER_ALPHA * sqrt(1.0 - t * t)) / bessel(KAISER_ALPHA);
 }
 
-/* The sum of 16 samples inside the texel stands for its integral. */
+/* Integrates the filter over a texel, as a sum of 16 samples. */
 static double kaiser_over_texel(const struct slc_axis *axis, double center, int32_t texel)
 {
     double sum = 0.0;

@@ -1,9 +1,10 @@
 /**
- * What one texel takes from the level above it along one axis: polyphase weights for any size.
+ * Filter weights of one texel along one axis, over the level above it: polyphase weights for any
+ * size.
  *
- * A level of n texels has max(1, n / 2) below it, rounded down, and both cover the same area. Each
- * texel below covers n / max(1, n / 2) texels, between 2 and 3; the box filter is the mean of just
- * that, and wider filters are scaled to it. An axis of one texel is passed on as it is.
+ * The level below n texels has max(1, n / 2) texels, rounded down. Both levels cover the same area.
+ * Each texel below covers n / max(1, n / 2) texels, between 2 and 3. The box filter is their mean;
+ * wider filters are scaled accordingly. An axis of one texel is copied.
  */
 #ifndef SLC_BAKE_FILTER_H
 #define SLC_BAKE_FILTER_H
@@ -16,12 +17,12 @@
 #define SLC_MAX_REACH 12
 
 struct slc_axis {
-    uint32_t size, below; ///< texels of the level above and of the one that is made
+    uint32_t size, below; ///< texels of the level above, and of the level that is made
     SluiceBakeFilter filter;
     SluiceBakeWrap wrap;
 };
 
-/** `count` texels from `first` on, which may lie beyond either edge; the weights' sum is 1. */
+/** Weights of `count` texels from `first` on, which may be beyond either edge. Their sum is 1. */
 struct slc_taps {
     int32_t first;
     uint32_t count;
@@ -30,16 +31,16 @@ struct slc_taps {
 
 struct slc_axis slc_axis_make(uint32_t size, SluiceBakeFilter filter, SluiceBakeWrap wrap);
 
-/** Of texel `i` of the level below. */
+/** Computes the taps of texel `i` of the level below. */
 void slc_axis_taps(const struct slc_axis *axis, uint32_t i, struct slc_taps *taps);
 
-/** The first texel of `i`'s taps alone. */
+/** Returns only the first texel of the taps of `i`. */
 int32_t slc_axis_first(const struct slc_axis *axis, uint32_t i);
 
-/** No texel has more taps than this. */
+/** Returns the most taps of any texel. */
 uint32_t slc_axis_max_taps(const struct slc_axis *axis);
 
-/** The texel that stands at `index`, which may be beyond the edges by any number of sizes. */
+/** Returns the texel for `index`, which may be beyond the edges by any number of sizes. */
 uint32_t slc_wrap_index(SluiceBakeWrap wrap, int32_t index, uint32_t size);
 
 #endif /* SLC_BAKE_FILTER_H */

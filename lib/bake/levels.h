@@ -1,4 +1,4 @@
-/** One picture through the filter into the tiles of a store. */
+/** Baking of one picture: filters its levels, and writes them as tiles of a store. */
 #ifndef SLC_BAKE_LEVELS_H
 #define SLC_BAKE_LEVELS_H
 
@@ -12,22 +12,22 @@ struct slc_baking {
     struct slc_picture *picture;
     struct slc_astc_pool *astc;
     struct slc_plan plan;
-    uint32_t layer;       ///< of the store
-    uint64_t *next_turn;  ///< of the writer, for all layers of the store
-    uint32_t layer_count; ///< of the store, for the progress
+    uint32_t layer;       ///< layer of the store
+    uint64_t *next_turn;  ///< next turn of the writer, for all layers of the store
+    uint32_t layer_count; ///< layers of the store, for the progress
     struct slc_pyramid pyramid;
     struct slc_tiler tiler;
     struct slc_coverage coverage;
-    bool counts; ///< the pass that counts alpha, not the one that writes
+    bool counts; ///< in the pass that counts alpha, not in the one that writes
     float alpha_scales[SLC_MAX_LEVELS];
     float *row;                   ///< [width][4]
-    struct slc_replaced replaced; ///< of level 0
-    uint64_t done, total;         ///< texels of level 0, of all passes and layers
+    struct slc_replaced replaced; ///< counts for level 0
+    uint64_t done, total;         ///< texels of level 0, over all passes and layers
     void *user;
     bool (*progress)(void *user, uint64_t done, uint64_t total); ///< NULL: none
 };
 
-/** Bytes that baking takes, without reading. */
+/** Returns the bytes that baking takes, without reading. */
 uint64_t slc_baking_memory(const struct slc_picture *picture, const struct slc_plan *plan,
                            const SluiceStoreLayout *layout);
 

@@ -16,7 +16,8 @@
 #include <sluice/ktx2.h>
 #endif
 
-/* Fewer bytes if the file has no more. A pipe or a device is refused: libvips would wait for it. */
+/* Reads the first bytes, or the whole file if it is shorter. Refuses pipes and devices: libvips
+ * would wait. */
 static SluiceResult read_start(const struct slc_input_choice *choice,
                                const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
                                char *bytes, size_t size)
@@ -42,7 +43,7 @@ static SluiceResult look_inside(const struct slc_input_choice *choice,
     return result;
 }
 
-/* Level 0 alone, in strips, whatever its size. */
+/* Opens only level 0, read in strips, whatever its size. */
 static SluiceResult open_exr(const char *path, const struct slc_picture_opening *opening,
                              const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
                              SluiceImageSource **source)

@@ -1,4 +1,4 @@
-/** A picture that is read from top to bottom: through libvips, or from an image source. */
+/** Picture that is read from top to bottom, through libvips or from an image source. */
 #ifndef SLC_BAKE_PICTURE_H
 #define SLC_BAKE_PICTURE_H
 
@@ -7,10 +7,10 @@
 struct slc_picture;
 
 struct slc_picture_interface {
-    /** Row `y`, which follows the row read before or is 0 after (re)opening. Valid until the next
-     *  call. */
+    /** Reads row `y`: the row after the last one, or 0 after opening and rewind. `*samples` is
+     * valid until the next call. */
     SluiceResult (*row)(struct slc_picture *picture, uint32_t y, const void **samples);
-    /** Row 0 comes next. */
+    /** Rewinds to row 0. */
     SluiceResult (*rewind)(struct slc_picture *picture);
     void (*close)(struct slc_picture *picture);
 };
@@ -19,44 +19,44 @@ struct slc_picture {
     const struct slc_picture_interface *implementation;
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;
-    const char *name; ///< for messages; lives as long as the picture
+    const char *name; ///< name for messages; valid as long as the picture
     uint32_t width, height;
     uint32_t layer_count; ///< at least 1
-    uint32_t layer;       ///< whose rows are read; set it, then rewind
+    uint32_t layer;       ///< layer whose rows are read; set it, then rewind
     bool cube;            ///< the layers are faces of cube maps
     enum slc_sample sample;
-    SluiceFormat texels;    ///< of SLC_SAMPLE_TEXELS
+    SluiceFormat texels;    ///< SLC_SAMPLE_TEXELS: their format
     uint32_t channels;      ///< 1 to 4
     bool alpha;             ///< the last of 2 or 4 channels is alpha
-    bool premultiplied;     ///< where nobody says otherwise
-    bool srgb;              ///< where nobody says otherwise
-    bool halves_suffice;    ///< 32-bit floats that were made from shorter ones
-    uint64_t memory;        ///< bytes that reading takes, roughly
-    uint64_t unpacked_size; ///< of these, for a file that is unpacked as a whole
-    bool foreign_primaries; ///< colors are in other primaries than those of Rec. 709
-    /** Set for block-compressed data and for integers: all levels are read from here, and nothing
-     *  is filtered. */
+    bool premultiplied;     ///< default, unless the settings say otherwise
+    bool srgb;              ///< default, unless the settings say otherwise
+    bool halves_suffice;    ///< the 32-bit floats were converted from shorter numbers
+    uint64_t memory;        ///< approximate bytes that reading takes
+    uint64_t unpacked_size; ///< part of `memory` for a file that is unpacked as a whole
+    bool foreign_primaries; ///< colors have other primaries than Rec. 709
+    /** Source of all levels for block-compressed data and integers, which are not filtered. Else
+     *  NULL. */
     SluiceImageSource *levels;
 };
 
 struct slc_picture_opening {
-    uint64_t max_memory;      ///< bytes that reading may take at most
-    bool keep_primaries;      ///< of OpenEXR files
-    const SluiceInput *input; ///< NULL: the file; else the path is a name
-    uint32_t first_level;     ///< of pictures that libvips reads
+    uint64_t max_memory;      ///< most bytes that reading may take
+    bool keep_primaries;      ///< for OpenEXR files
+    const SluiceInput *input; ///< NULL: the file; else the path is only a name
+    uint32_t first_level;     ///< first level, for pictures that libvips reads
 };
 
 /**
- * Opens a file by what it begins with: OpenEXR, DDS and KTX2 where this build reads them, all else
- * with libvips. Errors: as sluiceBakeFile; logged.
+ * Opens a file by its first bytes: OpenEXR, DDS and KTX2 if this build reads them, all others with
+ * libvips. Errors: as sluiceBakeFile; logged.
  */
 SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening *opening,
                               const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
                               struct slc_picture **picture);
 
 /**
- * Level 0 of a source, or all levels if it is block-compressed or has integers. Levels of integers
- * that are missing are picked. `owned`: closing destroys the source.
+ * Makes a picture of a source: level 0, or all levels if it is block-compressed or has integers.
+ * Missing levels of integers are picked. `owned`: closing destroys the source.
  */
 SluiceResult slc_picture_of_source(SluiceImageSource *source, bool owned, const char *name,
                                    const SluiceAllocationCallbacks *cb,
