@@ -7,16 +7,16 @@
 #include "image/info.h"
 #include "image/mip.h"
 
-/* Rows that are read at once: a row of tiles of the files that are meant for this. */
+/* Rows of one read. Tiles of 128 rows are usual in files for textures. */
 #define STRIP 128u
-/* Bytes that picked levels of integers may take. Finer levels are picked while they are read. */
+/* Limit in bytes for levels of integers in memory. Finer levels are picked at each read. */
 #define PICKED_LEVELS_MEMORY ((uint64_t)64 << 20)
 
 struct source_picture {
     struct slc_picture base;
     SluiceImageSource *source;
     bool owned;
-    SluiceImageSource *chain; ///< owned; of integers: `source` with all levels
+    SluiceImageSource *chain; ///< owned; for integers: `source` with all levels
     SluiceFormat format;
     char *rows; ///< [STRIP][width]
     size_t pitch;
@@ -59,7 +59,7 @@ static void close_picture(struct slc_picture *base)
 
 static const struct slc_picture_interface source_interface = {row, rewind_picture, close_picture};
 
-/* Formats without samples of their own are read as whole texels. */
+/* Returns the sample type of a format. SLC_SAMPLE_TEXELS: the format is read as whole texels. */
 static enum slc_sample find_sample(SluiceFormat format)
 {
     if (slc_format_is_unorm16(format))
@@ -76,7 +76,7 @@ static enum slc_sample find_sample(SluiceFormat format)
     }
 }
 
-/* Bytes that picked levels take in memory. */
+/* Returns the bytes of all picked levels in memory. */
 static uint64_t picked_size(const SluiceImageInfo *info)
 {
     uint64_t size = slc_mip_chain_size(info->format, slc_mip_size(info->width, info->mipLevelCount),

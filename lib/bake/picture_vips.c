@@ -10,19 +10,19 @@
 
 #include <vips/vips.h>
 
-/* Rows that are asked for at once; libvips decodes ahead by about as many. */
+/* Rows of one request. libvips decodes about as many rows ahead. */
 #define STRIP 64u
 
 struct vips_picture {
     struct slc_picture base;
     char *path;
-    const void *bytes; ///< NULL: the file; borrowed, or `copy`
-    void *copy;        ///< owned; bytes that a callback read
+    const void *bytes; ///< borrowed, or `copy`; NULL: libvips reads the file
+    void *copy;        ///< owned; bytes from a callback
     size_t size;
     uint32_t first_level;
     VipsImage *image;
     uint64_t whole_size;  ///< bytes of the file's texels
-    uint64_t loaded_size; ///< of those that the loader delivers: fewer where it shrinks a JPEG
+    uint64_t loaded_size; ///< bytes from the loader; fewer if it shrinks a JPEG
     uint64_t loaded_pitch;
     VipsRegion *region;
     uint32_t first, count; ///< rows in the region
@@ -30,7 +30,7 @@ struct vips_picture {
     struct slc_vips_warnings warnings;
 };
 
-/* One line of what libvips says of the last failure; its buffer is the whole process's. */
+/* Logs one line of libvips's error buffer. The whole process shares this buffer. */
 static SluiceResult fail(const struct vips_picture *picture, SluiceResult result)
 {
     char *text = vips_error_buffer_copy();
@@ -49,8 +49,8 @@ static SluiceResult unsupported(const struct vips_picture *picture, const char *
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* Replaces an image by the one made from it. `made` is a pointer because the call in the argument
- * before sets it. */
+/* Replaces an image by its successor. `made` is a pointer because the call that yields `status`
+ * sets the successor. */
 static bool replace(VipsImage **image, int status, VipsImage *const *made)
 {
     if (status != 0)
@@ -91,7 +91,7 @@ static bool convert(VipsImage **image, bool *was_short)
     return is_kept || replace(image, vips_cast_float(*image, &made, NULL), &made);
 }
 
-/* The decoder of JPEG makes an eighth of the size in a part of the time; all else is read whole. */
+/* Returns loader options. The JPEG decoder delivers an eighth of the size faster than all of it. */
 static const char *loader_options(const struct vips_picture *picture)
 {
     static const char *const shrinks[] = {"", "[shrink=2]", "[shrink=4]", "[shrink=8]"};
@@ -120,7 +120,7 @@ static VipsImage *open_image(const struct vips_picture *picture, VipsAccess acce
                                     VIPS_FAIL_ON_TRUNCATED, NULL);
 }
 
-/* Makes the image as large as its level `first_level` is. `width` and `height` are level 0's. */
+/* Shrinks the image to the size of level `first_level`. `width` and `height`: size of level 0. */
 static bool shrink_image(struct vips_picture *picture, uint32_t width, uint32_t height)
 {
     VipsImage *made = NULL, *image = picture->image;
@@ -132,8 +132,8 @@ static bool shrink_image(struct vips_picture *picture, uint32_t width, uint32_t 
            vips_image_get_height(picture->image) == y;
 }
 
-/* Turns the picture as its EXIF tag says. It is opened again, because turning reads in any order.
- */
+/* Turns the picture as its EXIF tag says. Opens the picture again, because a turn reads rows in any
+ * order. */
 static bool turn(struct vips_picture *picture)
 {
     VipsImage *made = NULL;
@@ -145,7 +145,7 @@ static bool turn(struct vips_picture *picture)
            replace(&picture->image, vips_autorot(picture->image, &made, NULL), &made);
 }
 
-/* Size of the picture before it is shrunk, turned as it will be. Reads its header. */
+/* Finds the size of the picture after the turn and before it is shrunk. Reads the header. */
 static bool find_whole_size(const struct vips_picture *picture, uint32_t *width, uint32_t *height)
 {
     struct vips_picture whole = {
@@ -162,7 +162,7 @@ static bool find_whole_size(const struct vips_picture *picture, uint32_t *width,
     return true;
 }
 
-/* Before it is turned and shrunk. `width` and `height` are level 0's, for a preview. */
+/* Measures the picture before it is turned and shrunk. `width`, `height`: level 0, for previews. */
 static void measure(struct vips_picture *picture, uint32_t width, uint32_t height)
 {
     VipsImage *image = picture->image;
@@ -210,7 +210,7 @@ static SluiceResult load(struct vips_picture *picture)
     return result;
 }
 
-/* Warnings of JPEG come here. */
+/* Frees the image. libvips warns about a damaged JPEG at this point. */
 static void unload(struct vips_picture *picture)
 {
     slc_vips_warnings_enter(&picture->warnings);
@@ -270,8 +270,8 @@ static bool has_flag(VipsImage *image, const char *name)
 }
 
 /*
- * How often the picture fits into what libvips and the libraries behind it take for it at once,
- * where they cannot read it from top to bottom; 0 where they can. Measured with libvips 8.14,
+ * Returns the memory of libvips and its loaders in multiples of the unpacked picture. 0: the loader
+ * reads from top to bottom and keeps only some rows. Measured with libvips 8.14,
  * 12000 x 12000 texels: interlaced PNG 0.9, progressive JPEG 1.0 (up to 2 without subsampling),
  * WebP 2.6, GIF 1.0. Shrinking saves nothing: 8000 x 8000 texels of a progressive JPEG by 8, 1.1
  * (2.0 without subsampling).
@@ -313,7 +313,7 @@ static void describe(struct vips_picture *picture)
         base->sample != SLC_SAMPLE_F32 && base->channels > 1 && (base->channels > 2 || base->alpha);
     uint64_t pitch = (uint64_t)base->width * base->channels * slc_sample_size(base->sample);
     pitch = pitch > picture->loaded_pitch ? pitch : picture->loaded_pitch;
-    /* Two rows of the file's tiles, which are seldom higher than 512, and what is prepared. */
+    /* Two rows of tiles in the file (rarely higher than 512), a strip, and 16 MiB for libvips. */
     base->memory = pitch * (2 * 512 + STRIP) + ((uint64_t)16 << 20);
     base->unpacked_size = times_unpacked(image) * picture->whole_size;
     if (picture->orientation > 1)
@@ -321,7 +321,7 @@ static void describe(struct vips_picture *picture)
     base->memory += base->unpacked_size + (picture->copy ? picture->size : 0);
 }
 
-/* libvips reads bytes as they lie. Sluice has checked the input. */
+/* Gives the input's bytes to libvips. Sluice has checked the input. */
 static SluiceResult take_bytes(struct vips_picture *picture, const SluiceInput *input)
 {
     const struct slc_input_choice choice = {.path = picture->path, .input = input};

@@ -10,7 +10,7 @@
 #include <math.h>
 
 #define HALF_LIMIT 65504.0f
-#define FLOAT_INFINITY 0x1p120f /* a shader's filter may weigh a few of them and stays finite */
+#define FLOAT_INFINITY 0x1p120f /* a few of them sum to a finite float in a filter */
 
 SluiceResult slc_check_settings(const SluiceBakeSettings *s, const SluiceLogCallback *log)
 {
@@ -68,7 +68,7 @@ static SluiceFormat natural_format(const struct slc_picture *picture, bool norma
                      : SLUICE_FORMAT_R32G32B32A32_SFLOAT;
 }
 
-/* Returns the format of texels in memory: those of `format`, or those that blocks are made from. */
+/* Returns the format of texels in memory: `format`, or the encoder's input for blocks. */
 static SluiceFormat texel_format(SluiceFormat format, bool srgb)
 {
     SluiceFormatInfo info = {.structSize = sizeof info};
@@ -84,7 +84,8 @@ static bool is_float32(SluiceFormat format)
            format == SLUICE_FORMAT_R32G32B32A32_SFLOAT;
 }
 
-/* Signed numbers are data: their fourth channel is no coverage. */
+/* Tells whether samples are signed. Signed numbers are data; their fourth channel is not coverage.
+ */
 static bool is_signed(const struct slc_picture *picture)
 {
     return picture->sample == SLC_SAMPLE_TEXELS && slc_format_is_snorm(picture->texels);
@@ -134,7 +135,7 @@ static void find_meaning(const struct slc_picture *picture, struct slc_plan *pla
         plan->color_space = SLUICE_STORE_COLOR_SPACE_LINEAR_SRGB;
 }
 
-/* The alpha that rounds to one that reaches the cut-out's. */
+/* Returns the least alpha that reaches the cut-out's threshold after rounding. */
 static float find_threshold(const struct slc_plan *plan)
 {
     float cutout = plan->settings.cutout;

@@ -18,7 +18,7 @@ static size_t kept_count(const struct slc_halving *halving)
     return ((size_t)halving->head_count + halving->ring_count) * halving->columns.axis.below * 4;
 }
 
-/* Everything about a halving that does not need memory. */
+/* Fills all fields of a halving except its allocations. */
 static void plan_halving(struct slc_halving *halving, const struct slc_pyramid_info *info,
                          uint32_t level, uint32_t first)
 {
@@ -28,7 +28,7 @@ static void plan_halving(struct slc_halving *halving, const struct slc_pyramid_i
     };
     halving->columns.axis =
         slc_axis_make(slc_mip_size(info->width, level), info->filter, info->wrap_x);
-    /* Mirrored and clamped rows are no farther away than the taps are long. */
+    /* The distance to mirrored and clamped rows is at most the number of taps. */
     halving->ring_count = slc_min_u32(halving->rows.size, slc_axis_max_taps(&halving->rows) + 1);
     if (!reaches_around(&halving->rows))
         return;
@@ -36,7 +36,7 @@ static void plan_halving(struct slc_halving *halving, const struct slc_pyramid_i
     while (halving->first_below < halving->rows.below &&
            slc_axis_first(&halving->rows, halving->first_below) < (int32_t)first)
         halving->first_below++;
-    halving->first_below %= halving->rows.below; /* so few rows that all are kept */
+    halving->first_below %= halving->rows.below; /* with so few rows, all are kept */
 }
 
 static uint32_t row_below(const struct slc_halving *halving)
@@ -44,7 +44,7 @@ static uint32_t row_below(const struct slc_halving *halving)
     return (halving->first_below + halving->made) % halving->rows.below;
 }
 
-/* Even sizes have the same weights everywhere. */
+/* Finds the taps of the next row. Even sizes have the same weights in every row. */
 static void find_taps(struct slc_halving *halving)
 {
     if (halving->made == 0 || halving->rows.size % 2)
@@ -113,14 +113,14 @@ uint64_t slc_pyramid_memory(const struct slc_pyramid_info *info)
     return size;
 }
 
-/* Where the row that came `n`th is, or goes. */
+/* Returns the place in `kept` of the `n`th row received. */
 static float *kept_row(const struct slc_halving *halving, uint32_t n)
 {
     uint32_t slot = n < halving->head_count ? n : halving->head_count + n % halving->ring_count;
     return halving->kept + (size_t)slot * halving->columns.axis.below * 4;
 }
 
-/* The number, in the order of arrival, of the row that a tap reads. */
+/* Returns the position, in order of arrival, of a tap's row. */
 static uint32_t arrival(const struct slc_halving *halving, uint32_t tap)
 {
     const struct slc_axis *rows = &halving->rows;
@@ -138,7 +138,7 @@ static bool is_ready(const struct slc_halving *halving)
     return true;
 }
 
-/* Sums in double, which saturate at +-FLT_MAX. */
+/* Sums rows in double. Results saturate at +-FLT_MAX. */
 static void sum_rows_wide(struct slc_halving *halving)
 {
     const struct slc_taps *taps = &halving->taps;
@@ -164,7 +164,7 @@ static void make_row(struct slc_halving *halving, bool may_overflow)
         find_taps(halving);
 }
 
-/* As deep as there are levels. */
+/* Pushes a row into a level and its results into the next. Recursion depth: number of levels. */
 static SluiceResult push(struct slc_pyramid *pyramid, uint32_t level, const float *rgba)
 {
     if (level + 1 >= pyramid->level_count)

@@ -26,7 +26,7 @@ uint64_t slc_hash_settings(const SluiceBakeSettings *settings)
         settings->keepPrimaries,
         (uint32_t)settings->quality,
     };
-    uint8_t bytes[sizeof values]; /* the same on every machine */
+    uint8_t bytes[sizeof values]; /* little-endian on every machine */
     for (size_t i = 0; i < sizeof values; i++)
         bytes[i] = (uint8_t)(values[i / 4] >> (8 * (i % 4)));
     return XXH64(bytes, sizeof bytes, 0);

@@ -1,4 +1,4 @@
-/** What settings stand for. */
+/** Hash of the settings that determine a store's texels. */
 #ifndef SLC_BAKE_SETTINGS_H
 #define SLC_BAKE_SETTINGS_H
 

@@ -12,7 +12,7 @@
 
 /* Weight of colors with alpha 0. */
 #define LEAST_WEIGHT 0x1p-24f
-/* What is divided by at least where alpha may ring. */
+/* Least divisor if alpha may ring. */
 #define LEAST_RINGING 0x1p-10f
 #define CHUNK 256u
 
@@ -21,7 +21,7 @@ uint32_t slc_sample_size(enum slc_sample sample)
     return sample == SLC_SAMPLE_U8 ? 1 : sample == SLC_SAMPLE_F32 ? 4 : 2;
 }
 
-/* IEC 61966-2-1 */
+/* Decodes by the curve of IEC 61966-2-1. */
 void slc_decode_srgb16(float *values)
 {
     for (uint32_t i = 0; i < 65536; i++) {
@@ -42,7 +42,7 @@ static float sample_value(const struct slc_rules *rules, const char *sample)
     }
 }
 
-/* Decodes sRGB, beyond 1 too. */
+/* Decodes sRGB, also values above 1. */
 static float decode_float(float value)
 {
     if (value <= 0.04045f)
@@ -51,7 +51,7 @@ static float decode_float(float value)
     return isinf(decoded) && isfinite(value) ? FLT_MAX : decoded;
 }
 
-/* Of R, G or B. */
+/* Returns the decoded value of a sample of R, G or B. */
 static float color_value(const struct slc_rules *rules, const char *sample)
 {
     uint16_t word;
@@ -91,7 +91,7 @@ static void expand_texels(const struct slc_rules *rules, const void *texels, flo
     }
 }
 
-/* The usual picture, without a decision per sample. */
+/* Expands 8-bit sRGB, the usual picture, without a branch per sample. */
 static void expand_srgb8(const uint8_t *samples, uint32_t channels, float *rgba, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++, samples += channels, rgba += 4) {
@@ -101,7 +101,7 @@ static void expand_srgb8(const uint8_t *samples, uint32_t channels, float *rgba,
     }
 }
 
-/* Replaces NaN, infinities and values beyond the limit. True if a channel was changed. */
+/* Replaces NaN, infinities and values beyond the limit. Returns true if a channel was changed. */
 static bool replace_texel(const struct slc_rules *rules, float rgba[4],
                           struct slc_replaced *replaced)
 {
@@ -153,7 +153,7 @@ static bool is_unorm(SluiceFormat format)
            format == SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32 || slc_format_is_unorm16(format);
 }
 
-/* Whether samples of normal maps are (n + 1) / 2: numbers without sign. */
+/* Tells whether samples of normal maps are (n + 1) / 2: numbers without sign. */
 static bool has_encoded_normals(const struct slc_rules *rules)
 {
     return rules->sample == SLC_SAMPLE_U8 || rules->sample == SLC_SAMPLE_U16 ||
@@ -210,12 +210,12 @@ static void unweigh(const struct slc_rules *rules, float *rgba, uint32_t count)
 
 static void normalize(const struct slc_rules *rules, float *rgba, uint32_t count)
 {
-    /* Floats hold normals as the picture does. */
+    /* Float formats keep the picture's encoding of normals. */
     bool is_encoded = is_unorm(rules->format) ||
                       (has_encoded_normals(rules) && !slc_format_is_snorm(rules->format));
     for (uint32_t i = 0; i < count; i++, rgba += 4) {
         double x = (double)rgba[0], y = (double)rgba[1], z = (double)rgba[2];
-        double length = sqrt(x * x + y * y + z * z); /* squares of floats overflow no double */
+        double length = sqrt(x * x + y * y + z * z); /* no overflow in double */
         double factor = length > 1e-6 ? 1.0 / length : 0.0;
         for (uint32_t c = 0; c < 3; c++)
             rgba[c] = (float)((double)rgba[c] * factor);
@@ -237,7 +237,7 @@ static void scale_alpha(const struct slc_rules *rules, float scale, float *rgba,
     }
 }
 
-/* Dividing by alpha and scaling can leave the range by the last bit. */
+/* Clamps to finite floats. Division by alpha and scaling can exceed FLT_MAX by the last bit. */
 static void stay_finite(float *rgba, uint32_t count)
 {
     for (uint32_t i = 0; i < 4 * count; i++)

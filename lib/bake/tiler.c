@@ -97,7 +97,7 @@ void slc_tiler_finish(struct slc_tiler *tiler)
     tiler->jobs = NULL;
 }
 
-/* NULL texels pass the job's turn. */
+/* Writes the tile in the job's turn. With NULL texels, only ends the turn. */
 static SluiceResult end_turn(const struct slc_tile_job *job, const void *texels, size_t pitch)
 {
     const struct slc_tiler *tiler = job->band->tiler;
@@ -105,7 +105,7 @@ static SluiceResult end_turn(const struct slc_tile_job *job, const void *texels,
                                       job->x, job->band->y, texels, pitch);
 }
 
-/* Ends the turn unless it fails. */
+/* Writes an encoded tile. Ends the turn on success only. */
 static SluiceResult write_encoded(const struct slc_tile_job *job, const SluiceImageRegion *region,
                                   const char *texels, size_t pitch, bool *has_ended)
 {

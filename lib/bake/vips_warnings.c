@@ -9,7 +9,7 @@
 
 #include <vips/vips.h>
 
-static struct slc_mutex mutex = SLC_MUTEX_INITIALIZER; ///< around the next two
+static struct slc_mutex mutex = SLC_MUTEX_INITIALIZER; ///< guards the next two variables
 static uint32_t listener_count;
 static guint handler;
 
@@ -26,15 +26,15 @@ static void log_line(struct slc_vips_warnings *warnings, const char *line)
 }
 
 /*
- * A message of several lines is the error buffer of the whole process, which collects what the
- * decoder of JPEG says: a line may be of another picture that is read at the same time.
+ * Logs a warning of libvips. A message of several lines is the error buffer of the whole process:
+ * with two pictures at a time, a line may belong to the other picture.
  */
 static void on_warning(const gchar *domain, GLogLevelFlags level, const gchar *message,
                        gpointer user)
 {
     struct slc_vips_warnings *warnings = g_private_get(&current);
     (void)user;
-    if (!warnings) { /* of the application, or of a thread of libvips */
+    if (!warnings) { /* on a thread of the application or of libvips */
         g_log_default_handler(domain, level, message, NULL);
         return;
     }
@@ -74,7 +74,7 @@ void slc_vips_warnings_enter(struct slc_vips_warnings *warnings)
     g_private_set(&current, warnings);
 }
 
-/* Text that was logged leaves the buffer, or the next picture that fails would be told it. */
+/* Removes logged text from the buffer; otherwise the next failing picture would report it. */
 void slc_vips_warnings_leave(struct slc_vips_warnings *warnings)
 {
     g_private_set(&current, warnings->outer);

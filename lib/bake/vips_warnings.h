@@ -1,6 +1,6 @@
 /**
- * Warnings of libvips with the name of the picture. They come through GLib's log, which knows no
- * picture: the thread that calls libvips tells which one it is.
+ * Warnings of libvips with the name of the picture. GLib's log delivers warnings without a picture;
+ * the calling thread's entry names the picture.
  */
 #ifndef SLC_BAKE_VIPS_WARNINGS_H
 #define SLC_BAKE_VIPS_WARNINGS_H
@@ -12,15 +12,15 @@ struct slc_vips_warnings {
     const char *path;             ///< borrowed
     const SluiceLogCallback *log; ///< borrowed; NULL: none
     struct slc_said said;
-    bool was_buffered; ///< text of libvips's error buffer was logged
+    bool was_buffered; ///< text from libvips's error buffer was logged
     struct slc_vips_warnings *outer;
 };
 
-/** From the first baker to the end of the last one, warnings of libvips come here. Any thread. */
+/** Receives warnings of libvips from the first baker's start to the last one's end. Any thread. */
 void slc_vips_warnings_listen(void);
 void slc_vips_warnings_end(void);
 
-/** Between these two, warnings on this thread are of this picture. Calls may be nested. */
+/** Attributes this thread's warnings to this picture until the leave call. Calls may be nested. */
 void slc_vips_warnings_enter(struct slc_vips_warnings *warnings);
 void slc_vips_warnings_leave(struct slc_vips_warnings *warnings);
 
