@@ -33,7 +33,7 @@ uint64_t slc_layout_image_size(const struct slc_container_layout *layout, uint32
                                      slc_mip_size(layout->height, level));
 }
 
-/* One format of those that differ in how bytes are understood, not in which there are. */
+/* Returns the representative of all formats with the same bytes, for example UNORM for SRGB. */
 static SluiceFormat bytes_of(SluiceFormat format)
 {
     SluiceFormat linear = slc_format_twin(format, false);

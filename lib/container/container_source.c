@@ -14,8 +14,8 @@ struct container_source {
     struct slc_input_file file;
     SluiceFormat asked_format;
     SluiceResult (*read_header)(const struct slc_input_file *, struct slc_container_layout *);
-    struct slc_mutex mutex; ///< around opening
-    atomic_bool is_open;    ///< what follows is constant from then on
+    struct slc_mutex mutex; ///< held while opening
+    atomic_bool is_open;    ///< true: the fields below are constant
     struct slc_container_layout layout;
     SluiceImageInfo info;
     struct slc_level_cache cache;
@@ -25,7 +25,7 @@ struct container_source {
 struct level_bytes {
     const struct slc_input_file *file;
     const char *memory; ///< NULL: in the file
-    uint64_t start;     ///< of the level in it
+    uint64_t start;     ///< offset of the level in the file
 };
 
 static SluiceResult fetch(const struct level_bytes *from, uint64_t offset, void *bytes, size_t size)
@@ -48,7 +48,8 @@ static void change_texels(unsigned changes, const uint8_t *in, uint8_t *out, siz
     }
 }
 
-/* Piece by piece through memory of our own: the caller's may be slow to read. */
+/* Reads and changes texels piece by piece in a local buffer; the caller's memory may be slow to
+ * read. */
 static SluiceResult fetch_changed(const struct level_bytes *from, unsigned changes, uint64_t offset,
                                   uint8_t *texels, size_t size)
 {
@@ -64,7 +65,7 @@ static SluiceResult fetch_changed(const struct level_bytes *from, unsigned chang
     return SLUICE_SUCCESS;
 }
 
-/* `*failed` is where in the level the row begins that could not be read. */
+/* Reads a region. After a failure, `*failed` is the offset in the level of the failed row. */
 static SluiceResult fetch_region(const struct slc_container_layout *layout,
                                  const struct level_bytes *from, const SluiceImageRegion *region,
                                  char *texels, size_t row_pitch, uint64_t *failed)
@@ -78,7 +79,7 @@ static SluiceResult fetch_region(const struct slc_container_layout *layout,
     size_t size = (size_t)slc_format_row_size(&format, region->width);
     uint32_t rows = slc_format_row_count(&format, region->height);
     if (size == stride && size == row_pitch && size <= SIZE_MAX / rows) {
-        size *= rows; /* one after the other in both */
+        size *= rows; /* rows are contiguous in both */
         rows = 1;
     }
     SluiceResult result = SLUICE_SUCCESS;
@@ -118,7 +119,7 @@ static SluiceResult read_layout(struct container_source *source)
     return SLUICE_SUCCESS;
 }
 
-/* The first one opens while others wait. What failed is tried again: files come and go. */
+/* Opens the file in the first thread; others wait. Tries again after a failure. */
 static SluiceResult ensure_open(struct container_source *source)
 {
     if (atomic_load_explicit(&source->is_open, memory_order_acquire))
@@ -147,7 +148,7 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
     return result;
 }
 
-/* Out of a level that is decompressed as a whole. */
+/* Reads from a level that is decompressed as a whole. */
 static SluiceResult read_from_cache(struct container_source *source, struct level_bytes *from,
                                     const SluiceImageRegion *region, void *texels, size_t row_pitch)
 {

@@ -1,5 +1,5 @@
 /**
- * An image source over a file whose header says where the images are. Opened at the first question.
+ * Image source over a DDS or KTX2 file. The first use opens the file.
  */
 #ifndef SLC_CONTAINER_CONTAINER_SOURCE_H
 #define SLC_CONTAINER_CONTAINER_SOURCE_H
@@ -8,7 +8,7 @@
 
 struct slc_container_create_info {
     struct slc_input_choice choice;
-    SluiceFormat format; ///< asked for; UNDEFINED: the file's
+    SluiceFormat format; ///< requested; UNDEFINED: the file's
     const SluiceAllocationCallbacks *allocator;
     const SluiceLogCallback *log;
     uint64_t max_cache_size;
@@ -18,7 +18,7 @@ struct slc_container_create_info {
                                 struct slc_container_layout *layout);
 };
 
-/** Errors as sluiceCreateDdsImageSource has them. */
+/** Creates a source. Errors: the same as sluiceCreateDdsImageSource. */
 SluiceResult slc_container_source_create(const struct slc_container_create_info *info,
                                          SluiceImageSource **source);
 

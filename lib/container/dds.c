@@ -71,7 +71,7 @@ static SluiceResult refuse_format(const struct slc_input_file *file,
                           format->masks[3]);
 }
 
-/* Format and layers of a header without DX10. */
+/* Reads format and layers of a header without DX10. */
 static SluiceResult read_legacy(const struct slc_input_file *file, const uint8_t *header,
                                 struct slc_container_layout *layout)
 {
@@ -116,7 +116,7 @@ static SluiceResult read_dx10(const struct slc_input_file *file, const uint8_t *
     return SLUICE_SUCCESS;
 }
 
-/* Layer after layer, each with all of its levels. */
+/* Finds offsets. Layers follow each other, each with all its levels. */
 static SluiceResult place_images(const struct slc_input_file *file, uint64_t start,
                                  struct slc_container_layout *layout)
 {
@@ -167,7 +167,7 @@ static SluiceResult read_header(const struct slc_input_file *file,
     layout->height = slc_u32_at(header + AT_HEIGHT);
     layout->level_count = slc_u32_at(header + AT_LEVEL_COUNT);
     if (layout->level_count == 0)
-        layout->level_count = 1; /* as writers say that there is no chain */
+        layout->level_count = 1; /* some writers store 0 for a file without chain */
     result = slc_layout_check(layout, file);
     return result == SLUICE_SUCCESS ? place_images(file, is_dx10 ? DX10_END : HEADER_END, layout)
                                     : result;

@@ -16,7 +16,7 @@ static const struct four_cc four_ccs[] = {
     {"BC5S", SLUICE_FORMAT_BC5_SNORM_BLOCK},
 };
 
-/* Where a FourCC should be, a D3DFORMAT. */
+/* Returns the format of a D3DFORMAT number, which some files store instead of a FourCC. */
 static SluiceFormat d3d_format(uint32_t number)
 {
     switch (number) {
@@ -78,7 +78,7 @@ SluiceFormat slc_dds_format(const struct slc_dds_pixel_format *given, unsigned *
         if (!(given->flags & known->kind) || given->bit_count != known->bit_count ||
             given->masks[0] != known->masks[0] || alpha != known->masks[3])
             continue;
-        /* Gray has one mask; some writers give it three times. */
+        /* Gray has one mask; some writers repeat it for G and B. */
         if (known->kind == DDPF_RGB &&
             (given->masks[1] != known->masks[1] || given->masks[2] != known->masks[2]))
             continue;

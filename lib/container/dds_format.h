@@ -1,4 +1,4 @@
-/** What DDS headers call formats. */
+/** Formats of DDS headers. */
 #ifndef SLC_CONTAINER_DDS_FORMAT_H
 #define SLC_CONTAINER_DDS_FORMAT_H
 
@@ -9,10 +9,10 @@ struct slc_dds_pixel_format {
     uint32_t flags, four_cc, bit_count, masks[4]; ///< R, G, B, A
 };
 
-/** UNDEFINED if the format is none that is read. `*changes`: of enum slc_texel_change. */
+/** Returns the format, or UNDEFINED if unsupported. `*changes`: flags of enum slc_texel_change. */
 SluiceFormat slc_dds_format(const struct slc_dds_pixel_format *format, unsigned *changes);
 
-/** The same for a number of DXGI_FORMAT. */
+/** Returns the format of a DXGI_FORMAT number, or UNDEFINED. `*changes`: see slc_dds_format. */
 SluiceFormat slc_dxgi_format(uint32_t number, unsigned *changes);
 
 #endif /* SLC_CONTAINER_DDS_FORMAT_H */

@@ -26,7 +26,7 @@ enum { SCHEME_NONE = 0, SCHEME_BASIS_LZ = 1, SCHEME_ZSTD = 2, FACE_COUNT = 6 };
 static const uint8_t identifier[12] = {0xAB, 'K',  'T',  'X',  ' ',  '2',
                                        '0',  0xBB, '\r', '\n', 0x1A, '\n'};
 
-/* VkFormat's numbers of the same formats, and of two that are swapped. */
+/* Returns the format of a VkFormat number. Two formats need swapped channels. */
 static SluiceFormat vulkan_format(uint32_t number, unsigned *changes)
 {
     switch (number) {
@@ -144,7 +144,7 @@ static SluiceResult read_shape(const struct slc_input_file *file, const uint8_t 
     layout->height = slc_u32_at(header + AT_HEIGHT);
     layout->level_count = slc_u32_at(header + AT_LEVEL_COUNT);
     if (layout->level_count == 0)
-        layout->level_count = 1; /* whoever reads it should make the others */
+        layout->level_count = 1; /* 0 means: the reader generates the other levels */
     if (layers == 0)
         layers = 1; /* not an array */
     if (slc_u32_at(header + AT_DEPTH) != 0 || (layout->width != 0 && layout->height == 0))
@@ -158,7 +158,7 @@ static SluiceResult read_shape(const struct slc_input_file *file, const uint8_t 
     return slc_layout_check(layout, file);
 }
 
-/* Level after level, each with all of its layers. `entry`: what the file says of it. */
+/* Finds offset and size of a level from its index entry. A level holds all its layers. */
 static SluiceResult place_level(const struct slc_input_file *file, const uint8_t *entry,
                                 uint32_t index, struct slc_container_layout *layout)
 {

@@ -34,7 +34,7 @@ static SluiceResult check_level(const struct slc_level_cache *cache,
                                 const struct slc_level_layout *level, uint32_t index)
 {
     unsigned long long size = level->size, stored = level->stored_size;
-    /* The densest block of Zstandard makes 2^17 bytes of 4. */
+    /* Zstandard's strongest compression: a block of 4 bytes yields 2^17 bytes. */
     if (level->size / 65536 > level->stored_size || level->stored_size / 2 > level->size + 65536)
         return slc_input_fail(cache->file, SLUICE_ERROR_CORRUPT_DATA,
                               "level %u cannot have %llu bytes, compressed %llu", index, size,
@@ -94,7 +94,7 @@ static SluiceResult decompress(const struct slc_input_file *file,
 }
 #endif
 
-/* `*bytes` is NULL but after success. */
+/* Reads and decompresses a level. After an error, `*bytes` is NULL. */
 static SluiceResult load(const struct slc_input_file *file, const struct slc_level_layout *level,
                          uint32_t index, char **bytes)
 {
@@ -117,7 +117,7 @@ static SluiceResult load(const struct slc_input_file *file, const struct slc_lev
     return result;
 }
 
-/* Room for `size` more bytes, if what nobody uses goes, longest unused first. */
+/* Makes room for `size` more bytes: frees unused levels, least recently used first. */
 static bool make_room(struct slc_level_cache *cache, uint64_t size)
 {
     while (cache->size > cache->max_size - size) {
@@ -135,7 +135,7 @@ static bool make_room(struct slc_level_cache *cache, uint64_t size)
     return true;
 }
 
-/* With the mutex held, which is given up meanwhile. */
+/* Loads a level. Called with the mutex held; unlocks it during the load. */
 static SluiceResult load_unlocked(struct slc_level_cache *cache,
                                   const struct slc_level_layout *layout, uint32_t index)
 {

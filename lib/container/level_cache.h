@@ -1,6 +1,6 @@
 /**
- * Levels that are compressed as a whole, decompressed once and kept while there is room. Any
- * thread.
+ * Cache of decompressed levels, for levels that are compressed as a whole. Least recently used
+ * levels are freed. Thread safety: any thread.
  */
 #ifndef SLC_CONTAINER_LEVEL_CACHE_H
 #define SLC_CONTAINER_LEVEL_CACHE_H
@@ -9,18 +9,18 @@
 #include "platform/thread.h"
 
 struct slc_cached_level {
-    char *bytes; ///< owned; NULL: not there
+    char *bytes; ///< owned; NULL: not loaded
     uint64_t size;
-    uint64_t last_use; ///< number of the acquisition
+    uint64_t last_use; ///< number of the last acquisition
     uint32_t user_count;
     bool is_loading;
 };
 
 struct slc_level_cache {
     const struct slc_input_file *file;
-    uint64_t max_size; ///< bytes of all levels that are there or on their way
+    uint64_t max_size; ///< limit in bytes for levels that are loaded or loading
     struct slc_mutex mutex;
-    struct slc_condition changed; ///< a level came, or nobody uses it any more
+    struct slc_condition changed; ///< a level was loaded, or became unused
     uint64_t size;
     uint64_t acquisitions;
     struct slc_cached_level levels[SLC_MAX_MIP_LEVELS];
@@ -30,14 +30,14 @@ void slc_level_cache_init(struct slc_level_cache *cache, const struct slc_input_
                           uint64_t max_size);
 void slc_level_cache_finish(struct slc_level_cache *cache);
 
-/** Whether levels as these can be had, before any is. Errors: CORRUPT_DATA, UNSUPPORTED; logged. */
+/** Checks sizes of all levels before the first load. Errors, logged: CORRUPT_DATA, UNSUPPORTED. */
 SluiceResult slc_level_cache_check(const struct slc_level_cache *cache,
                                    const struct slc_container_layout *layout);
 
 /**
- * A level's decompressed bytes, until it is released; whoever asks for one that is on its way
- * waits, and so does who finds no room because others are in use: hold one at a time. Errors: IO,
- * CORRUPT_DATA, OUT_OF_HOST_MEMORY; logged.
+ * Acquires the decompressed bytes of a level, valid until the release. Waits for a level that
+ * another thread loads. Waits for room while other levels are in use, so a thread must hold at most
+ * one level. Errors, logged: IO, CORRUPT_DATA, OUT_OF_HOST_MEMORY.
  */
 SluiceResult slc_level_cache_acquire(struct slc_level_cache *cache,
                                      const struct slc_container_layout *layout, uint32_t level,
