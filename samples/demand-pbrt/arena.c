@@ -8,7 +8,7 @@
 #define ALIGNMENT ((VkDeviceSize)256)
 #define CHUNK_SIZE ((VkDeviceSize)16 << 20)
 
-/** A range that nobody has. They ascend, and no two touch. */
+/** Free range. Ranges are sorted, and no two touch. */
 struct hole {
     struct hole *next;
     VkDeviceSize offset, size;
@@ -60,7 +60,8 @@ static struct arena_chunk *add_chunk(const struct gpu *gpu, struct arena *arena,
     return chunk;
 }
 
-/* Buffers begin at multiples of ALIGNMENT in the address space: devices align them to more. */
+/* Takes a part of a hole. Offsets are multiples of ALIGNMENT, and so are addresses, because devices
+ * align buffers to more. */
 static bool take_hole(struct arena_chunk *chunk, VkDeviceSize size, struct arena_part *part)
 {
     for (struct hole **at = &chunk->holes; *at; at = &(*at)->next) {
@@ -139,7 +140,7 @@ void arena_give(const struct gpu *gpu, struct arena *arena, struct arena_part *p
     arena->used -= part->size;
     *part = (struct arena_part){0};
     if (!hole)
-        return; /* the range is lost until the arena ends */
+        return; /* without memory for the hole, the range is lost until the arena ends */
     *at = hole;
     join_with_next(hole);
     if (before)

@@ -1,4 +1,4 @@
-/** Parts of few large buffers: devices allow only some thousand allocations. */
+/** Parts of a few large buffers, because devices allow only some thousand allocations. */
 #ifndef DEMAND_PBRT_ARENA_H
 #define DEMAND_PBRT_ARENA_H
 
@@ -6,7 +6,7 @@
 
 struct arena_chunk;
 
-/** Zeroed but for `usage` and `mapped` is empty. */
+/** Zeroed, except `usage` and `mapped`, is empty. */
 struct arena {
     VkBufferUsageFlags usage;
     bool mapped; ///< the host writes to it
@@ -23,10 +23,10 @@ struct arena_part {
     void *mapped;
 };
 
-/** Takes `size` bytes at a multiple of 256. Says on stderr why it failed. */
+/** Takes `size` bytes at a multiple of 256. Reports errors on stderr. */
 bool arena_take(const struct gpu *gpu, struct arena *arena, VkDeviceSize size,
                 struct arena_part *part);
-/** Gives a part back; a zeroed one is fine. Chunks that become empty are freed. */
+/** Returns a part. A zeroed one is allowed. Frees chunks that become empty. */
 void arena_give(const struct gpu *gpu, struct arena *arena, struct arena_part *part);
 void arena_finish(const struct gpu *gpu, struct arena *arena);
 

@@ -15,7 +15,7 @@ static int compare(const void *a, const void *b)
     return x->index < y->index ? -1 : x->index > y->index;
 }
 
-/* Shaders note the last launch that hit a place. */
+/* Updates the last use of meshes. Shaders note the last launch that hit a place. */
 static void find_last_uses(struct world *w)
 {
     for (uint32_t i = 0; i < w->place_count; i++) {
@@ -69,7 +69,7 @@ static void note_use(const struct surfaces *s, uint32_t *used_at, uint32_t surfa
         used_at[surface] = launch;
 }
 
-/* Materials and alphas of places that were hit. */
+/* Updates the last use of materials and alphas from the places that were hit. */
 static void find_last_surfaces(const struct world *w, struct surfaces *s, uint32_t *used_at)
 {
     for (uint32_t i = 0; i < w->place_count; i++) {
@@ -83,10 +83,11 @@ static void find_last_surfaces(const struct world *w, struct surfaces *s, uint32
             s->made[i].used_at = used_at[s->made[i].index];
 }
 
-/** Marks surfaces until the others fit. Returns what is kept. */
+/** Marks the least recently used surfaces until the rest fits. Returns the size of the rest. */
 static uint64_t mark_surfaces(struct surfaces *s, uint32_t launch, struct candidate *list)
 {
-    const uint64_t goal = s->budget - s->budget / 8; /* so that not each new one moves all others */
+    const uint64_t goal =
+        s->budget - s->budget / 8; /* free an eighth, so that not every new surface evicts others */
     uint64_t kept = surfaces_size(s);
     uint32_t count = 0;
     for (uint32_t i = 0; i < s->made_count; i++)

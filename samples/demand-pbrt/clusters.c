@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-/* Levels that a tree may have more than one of halves. */
+/* Levels by which a tree may be deeper than one that is split in halves. */
 #define SPARE_DEPTH 2u
 
 bool clusters_create(const struct box_tree_box *boxes, const uint32_t *keys, uint32_t count,
@@ -17,7 +17,7 @@ bool clusters_create(const struct box_tree_box *boxes, const uint32_t *keys, uin
         return true;
     for (uint32_t i = 0; i < count; i++)
         c->tree.order[i] = keys[c->tree.order[i]];
-    /* There was room for leaves of one box each. */
+    /* Shrink the nodes, which had room for leaves of one box each. */
     void *fitting = realloc(c->tree.nodes, c->tree.node_count * sizeof *c->tree.nodes);
     if (fitting)
         c->tree.nodes = fitting;
@@ -51,7 +51,7 @@ void clusters_open(const struct clusters *c, uint32_t node, struct cluster_step 
     }
     step->nodes[0] = node;
     step->count = 1;
-    /* Breadth first: the next node becomes its two children, one in its place. */
+    /* Breadth first: replace each node by its two children, the first of them in its place. */
     for (uint32_t at = 0, end = 1; at < step->count && step->count < most;) {
         const struct box_tree_node *parent = &nodes[step->nodes[at]];
         if (parent->count == 0) {
@@ -59,7 +59,7 @@ void clusters_open(const struct clusters *c, uint32_t node, struct cluster_step 
             step->nodes[step->count++] = parent->first + 1;
         }
         at++;
-        if (at == end) { /* a level is done: go on with the next one, from the beginning */
+        if (at == end) { /* end of a level: continue with the next one from the start */
             const bool grew = step->count > end;
             end = step->count;
             at = grew ? 0 : step->count;

@@ -9,7 +9,7 @@ struct list {
     const struct gpu *gpu;
     const struct scene *scene;
     struct table *table;
-    double *weights; ///< owned; of each element
+    double *weights; ///< owned; weights of the elements
     uint32_t count;
     double total;
 };
@@ -19,8 +19,9 @@ static double mean_of(const float color[3])
     return ((double)color[0] + color[1] + color[2]) / 3.0;
 }
 
-/* Points where alpha cuts out emit nothing, and whoever chooses points does not look alpha up: such
- * shapes count where a ray hits them. */
+/* Returns whether paths sample points on the shape. Shapes with alpha are left out, because points
+ * that alpha cuts out emit nothing and sampling does not look alpha up. Their light counts where a
+ * ray hits them. */
 static bool is_listed(const struct scene *scene, const SluicePbrtShape *shape)
 {
     return shape->areaLight != SLUICE_PBRT_NONE && shape->alpha.texture == SLUICE_PBRT_NONE &&
@@ -32,7 +33,7 @@ uint32_t emitters_place_flags(const struct scene *scene, const SluicePbrtShape *
                               const float transform[12])
 {
     uint32_t flags = 0;
-    if (shape->reverseOrientation && scene->info.version == 4) /* pbrt-v3 keeps them */
+    if (shape->reverseOrientation && scene->info.version == 4) /* pbrt-v3 does not negate them */
         flags |= PBRT_PLACE_NEGATED;
     if (shape->reverseOrientation != (transform_determinant(transform) < 0.0))
         flags |= PBRT_PLACE_REVERSED;
@@ -54,7 +55,8 @@ static double dot(const float a[3], const float b[3])
     return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
 }
 
-/* The side that emits, as shaders/hit.glsl finds it: with normals the file's side counts. */
+/* Returns the side that emits, as in shaders/hit.glsl. If the file has normals, they choose the
+ * side. */
 static bool is_turned(const SluicePbrtMesh *mesh, const uint32_t corners[3], uint32_t flags,
                       const float inverse[12], const float face[3])
 {
@@ -65,7 +67,7 @@ static bool is_turned(const SluicePbrtMesh *mesh, const uint32_t corners[3], uin
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             n[j] += mesh->pNormals[3 * (size_t)corners[i] + j];
-    for (int i = 0; i < 3; i++) /* by the transposed inverse */
+    for (int i = 0; i < 3; i++) /* multiply by the transposed inverse */
         normal[i] = n[0] * inverse[i] + n[1] * inverse[4 + i] + n[2] * inverse[8 + i];
     double side = dot(normal, face) * (flags & PBRT_PLACE_NEGATED ? -1.0 : 1.0);
     return side == 0.0 ? reversed : side < 0.0;
@@ -109,7 +111,7 @@ static bool add_shape(struct list *list, uint32_t index)
     if (scene_box_is_empty(&list->scene->boxes[index]) || !is_listed(list->scene, &shape) ||
         !transform_invert(shape.transform, inverse) ||
         sluiceReadPbrtShape(list->scene->pbrt, index, &mesh) != SLUICE_SUCCESS)
-        return true; /* rays do not hit it, or the log has the line */
+        return true; /* no error: paths do not sample it, or the log has the cause */
     double *more =
         realloc(list->weights, ((size_t)list->count + mesh.triangleCount + 1) * sizeof *more);
     bool done = more != NULL;

@@ -1,4 +1,4 @@
-/** Triangles of shapes that emit, which paths choose points on. */
+/** Triangles of emitting shapes, on which paths sample points. */
 #ifndef DEMAND_PBRT_EMITTERS_H
 #define DEMAND_PBRT_EMITTERS_H
 
@@ -6,14 +6,14 @@
 #include "scene.h"
 #include "table.h"
 
-/** PbrtPlace.flags of a shape whose transform to the world is `transform`. */
+/** Returns PbrtPlace.flags of a shape with a transform to the world. */
 uint32_t emitters_place_flags(const struct scene *scene, const SluicePbrtShape *shape,
                               const float transform[12]);
 
 /**
- * Fills a table of struct PbrtEmitter in the order of the scene, whatever is built, and the
- * densities in `lights`. The meshes of shapes that emit are read; nothing is built. Without
- * `are_read` the table stays empty. Says on stderr why it failed.
+ * Fills a table of struct PbrtEmitter, in the order of the scene and independent of what is built,
+ * and the densities in `lights`. Reads the meshes of emitting shapes and builds nothing. Without
+ * `are_read` the table stays empty. Reports errors on stderr.
  */
 bool emitters_create(const struct gpu *gpu, const struct scene *scene, bool are_read,
                      struct table *lights, struct table *emitters);

@@ -5,38 +5,38 @@
 #include "frame_budget.h"
 #include "launches.h"
 
-/** Part of the frames. */
+/** Time of a part of the frames' work. */
 struct flight_phase {
     double sum, most; ///< seconds
 };
 
-/** Zeroed but for the first two is the beginning. */
+/** Zeroed, except `frame_count` and `budget`, is the start. */
 struct flight {
     uint32_t frame_count;
     struct frame_budget budget;
-    double *seconds; ///< owned; of each frame
-    double missing;  ///< pixels that showed boxes or had no material, of all frames
-    uint64_t resolved, most_resolved; ///< boxes, in all and in one frame
+    double *seconds; ///< owned; one per frame
+    double missing;  ///< pixels that showed boxes or had no material, summed over the frames
+    uint64_t resolved, most_resolved; ///< boxes, in total and at most in one frame
     struct flight_phase work, top_level, launch;
 };
 
-/** Moves the camera of the picture, which is in `constants`, to a share of the way; 1 leaves it. */
+/** Moves the picture's camera in `constants` to a share of the way. 1 leaves it. */
 void flight_place_camera(const struct scene *scene, const struct pbrt_options *options,
                          const uint32_t size[2], double share, struct PbrtLaunch *constants);
 
 /**
  * Flies once around the vertical axis through the middle of the scene, or from --fly-from, and ends
- * at the camera of the picture. Each frame resolves what the last one asked for, the nearest first,
- * until its time is spent, and traces all pixels once. Afterwards everything is ready for
- * launches_run. Says on stderr why it failed.
+ * at the picture's camera. Each frame resolves the requests of the previous one, nearest first,
+ * within its time budget, and traces all pixels once. Afterwards launches_run can be called.
+ * Reports errors on stderr.
  */
 bool flight_run(struct launches *launches, struct flight *flight);
-/** Makes what launches asked for, the nearest first, within the time of the frame, which
- *  frame_budget_begin began: work of threads is not waited for. Says on stderr why it failed. */
+/** Makes what launches requested, nearest first, within the time since frame_budget_begin. Does not
+ * wait for other threads. Reports errors on stderr. */
 bool flight_serve(struct launches *launches, struct flight *flight);
 void flight_finish(struct flight *flight);
 
-/** Prints figures, as summary_print does. */
+/** Prints figures, like summary_print. */
 void flight_print(const struct flight *flight, bool json);
 
 #endif /* DEMAND_PBRT_FLIGHT_H */

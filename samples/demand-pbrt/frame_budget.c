@@ -1,6 +1,6 @@
 #include "frame_budget.h"
 
-/* Shares of a maximum that are left after a frame. */
+/* Share of a maximum that is kept after each frame. */
 #define FORGET_ITEM 0.5
 #define FORGET_LAUNCH 0.7
 

@@ -17,7 +17,7 @@ static const char notes[] =
     "Exit status: 0 for a complete picture; 1 if something failed, or pixels are still missing\n"
     "after the last launch; 2 for a wrong option; 77 without a Vulkan device that fits.\n";
 
-/** "r/g/b" or "r,g,b", none negative. */
+/** Parses "r/g/b" or "r,g,b", none negative. */
 static bool parse_color(const char *text, void *value)
 {
     float *color = value;
@@ -33,7 +33,7 @@ static bool parse_color(const char *text, void *value)
     return (between[0] == '/' || between[0] == ',') && between[0] == between[1];
 }
 
-/** "x/y" */
+/** Parses "x/y". */
 static bool parse_pixel(const char *text, void *value)
 {
     uint32_t *pixel = value;
@@ -49,7 +49,7 @@ static bool is_straight(const float a[3], const float b[3])
     return !(longest > 0.0f);
 }
 
-/** "x/y/z/x/y/z" or "x/y/z/x/y/z/x/y/z": eye, point, up. */
+/** Parses "x/y/z/x/y/z" or "x/y/z/x/y/z/x/y/z": eye, point, up. */
 static bool parse_view(const char *text, void *value)
 {
     struct camera_view *view = value;

@@ -11,8 +11,8 @@
 
 #define POLL_SECONDS 0.002
 
-/* A preview differs from the store in a few texels, so pictures would depend on time: wait for the
- * store. */
+/* Waits for the baked store. A preview differs from it in a few texels, which would make pictures
+ * depend on time. */
 static SluiceResult wait_for_bake(SluiceImageSource *source)
 {
     for (;;) {
@@ -42,7 +42,7 @@ static SluiceResult open_source(struct picture_file *file, SluiceImageSource **s
     return result;
 }
 
-/* On a thread of a loader, and never twice at a time. */
+/* Called on a thread of a loader, never twice at the same time. */
 static SluiceResult open_file(void *user_data, SluiceImageSource **source)
 {
     struct picture_file *file = user_data;
@@ -103,7 +103,7 @@ static struct picture_file *create_file(const struct picture_files *f,
     return file;
 }
 
-/** The mutex is held. */
+/** Call with the mutex held. */
 static struct picture_file *add_file(struct picture_files *f, const SluicePbrtTexture *texture)
 {
     if (!output_add_input(texture->pImagePath))

@@ -29,7 +29,7 @@ static bool write_png(const struct picture *picture, double exposure, const char
     return done;
 }
 
-/* Rows from the bottom up; the negative scale says that the bytes are little-endian. */
+/* Writes rows from the bottom up. The negative scale marks little-endian bytes. */
 static bool write_pfm(const struct picture *picture, const char *path)
 {
     struct output_file *output = output_file_begin(path);

@@ -10,7 +10,7 @@ struct pipeline_rays {
     struct ray_table table;
 };
 
-/** `constants`: of all shaders. Says on stderr why it failed. */
+/** `constants`: specialization constants of all shaders. Reports errors on stderr. */
 bool pipeline_rays_create(const struct gpu *gpu, VkPipelineLayout layout,
                           const VkSpecializationInfo *constants, struct pipeline_rays *rays);
 void pipeline_rays_destroy(const struct gpu *gpu, struct pipeline_rays *rays);

@@ -19,7 +19,7 @@ static struct PbrtOp *push_op(struct program *p, uint32_t kind)
     return op;
 }
 
-/** For ops that leave one more value on the stack. */
+/** Pushes an op that leaves one more value on the stack. */
 static struct PbrtOp *push_value_op(struct program *p, uint32_t kind)
 {
     p->failed = p->failed || p->depth == PBRT_STACK;
@@ -47,7 +47,7 @@ static void set_mapping(const SluicePbrtTexture *t, struct PbrtOp *op)
     memcpy(op->worldToTexture, t->worldToTexture, sizeof op->worldToTexture);
 }
 
-/** For surfaces_finish_pictures. */
+/** Notes a picture for surfaces_finish_pictures. */
 static void note_picture(struct program *p, const struct picture_use *use,
                          const SluicePbrtTexture *t)
 {
@@ -93,7 +93,7 @@ static void push_checker(struct program *p, const SluicePbrtTexture *t)
     const uint32_t jump = p->surfaces->ops.count;
     if (!push_op(p, PBRT_OP_JUMP))
         return;
-    p->depth = depth; /* one of the two runs */
+    p->depth = depth; /* only one of the two branches runs */
     ((struct PbrtOp *)table_at(&p->surfaces->ops, checker))->target = p->surfaces->ops.count;
     push_value(p, &t->inputs[1]);
     ((struct PbrtOp *)table_at(&p->surfaces->ops, jump))->target = p->surfaces->ops.count;
@@ -128,7 +128,7 @@ static void push_texture(struct program *p, uint32_t index)
     push_constant(p, t.value, t.isFloat);
 }
 
-/* Every level of a tree adds ops, so MOST_OPS bounds the depth of these calls. */
+/* Every level of a tree adds ops, so MOST_OPS also limits the recursion. */
 static void push_value(struct program *p, const SluicePbrtValue *value)
 {
     if (p->failed)

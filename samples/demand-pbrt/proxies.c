@@ -10,14 +10,14 @@
 #include "../common/ray_table.h"
 #include "pbrt_shared.h"
 
-/* Boxes are computed from transformed boxes, and triangles are transformed by the device. A
- * transform mixes the axes, so errors follow the largest coordinate. */
+/* Rounding errors of boxes, relative to the largest coordinate, because transforms mix the axes.
+ * The host transforms boxes; the device transforms triangles. */
 #define ROUNDING 1.0e-5f
-#define RANK 0u /* before tiles */
+#define RANK 0u /* served before tiles */
 #define RANGE_COUNT 512u
 #define MOST_BOXES (PBRT_PAGE_CAPACITY / 2)
 
-/* Boxes that a frame of a flight looks at, the nearest ones: to sort 40 000 takes longer than a
+/* Limit of boxes that a frame of a flight lists, nearest first. Sorting 40 000 takes longer than a
  * frame. */
 #define MOST_LISTED 2048u
 
@@ -53,7 +53,7 @@ bool proxies_create(SluiceDemandLoader *loader, const struct scene *scene, struc
                     &p->surface_resource, &p->surface_page))
         return false;
     for (uint32_t i = 0; i < surface_count; i++) {
-        SluiceProxyId id; /* its index is i */
+        SluiceProxyId id; /* the id's index is i */
         if (!check(sluiceAddMaterialProxy(p->surfaces, &id), "a material"))
             return false;
     }
@@ -75,7 +75,7 @@ void proxies_finish(const struct gpu *gpu, struct structures *structures, struct
 static SluiceProxySetInfo get_info(const SluiceProxySet *set)
 {
     SluiceProxySetInfo info = {.structSize = sizeof info};
-    (void)sluiceGetProxySetInfo(set, &info); /* it has no other way to fail */
+    (void)sluiceGetProxySetInfo(set, &info); /* cannot fail otherwise */
     return info;
 }
 
@@ -118,7 +118,7 @@ bool proxies_add(struct proxies *p, struct scene_node node, const SluicePbrtBoun
 {
     SluiceProxyBox wide;
     SluiceProxyId id;
-    float more = 0x1p-90f; /* points and smaller shapes become boxes, too */
+    float more = 0x1p-90f; /* points and tiny shapes become boxes, too */
     for (int i = 0; i < 3; i++)
         more = fmaxf(more, ROUNDING * fmaxf(fabsf(box->least[i]), fabsf(box->most[i])));
     for (int i = 0; i < 3; i++) {
@@ -136,7 +136,7 @@ bool proxies_add(struct proxies *p, struct scene_node node, const SluicePbrtBoun
     return note_move(p, index, &wide);
 }
 
-/** Lists what is requested in a set, `most` at most. */
+/** Lists at most `most` requested proxies of a set. */
 static bool list(struct proxies *p, SluiceProxySet *set, SluiceDemandResourceId resource,
                  const SluiceProxyListInfo *info, uint32_t most, uint32_t *count)
 {
@@ -231,7 +231,7 @@ void proxy_requests_finish(struct proxy_requests *r)
     *r = (struct proxy_requests){0};
 }
 
-/** A larger buffer is written anew. */
+/** Replaces the buffer if it is too small. Then all boxes are written again. */
 static bool reserve_boxes(const struct gpu *gpu, struct proxies *p)
 {
     const VkDeviceSize size = (VkDeviceSize)p->box_count * sizeof(SluiceProxyBox);
@@ -242,7 +242,7 @@ static bool reserve_boxes(const struct gpu *gpu, struct proxies *p)
     return gpu_create_buffer(gpu, size + size / 4 + 1024, structures_input_usage(gpu), &p->buffer);
 }
 
-/** Brings the buffer up to date; it grows with the largest index. */
+/** Updates the buffer, whose size follows the largest index. */
 static bool write_boxes(const struct gpu *gpu, struct proxies *p)
 {
     p->box_count = get_info(p->boxes).indexCount;

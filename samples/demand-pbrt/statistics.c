@@ -22,12 +22,12 @@ static void write_geometry(FILE *f, const struct world *w)
             (count)w->resolved_count, (count)m->built_count);
 }
 
-/* A picture is one source, whatever it is used for. */
+/* Counts each picture as one source, whatever its use. */
 static void write_pictures(FILE *f, const struct launches *l)
 {
     static const char *const others[] = {"alphaSources", "diffuseSources", "skyboxSources"};
     SluiceDemandStatistics d = {.structSize = sizeof d};
-    (void)sluiceGetDemandStatistics(l->loader, &d); /* zeros if it fails */
+    (void)sluiceGetDemandStatistics(l->loader, &d); /* leaves zeros on failure */
     fprintf(f,
             "  \"imageSourceFactory\": {\n    \"fileSources\": {\"numImageSources\": %llu, "
             "\"totalTilesRead\": %llu, \"totalBytesRead\": %llu, \"totalReadTime\": null}",
@@ -54,7 +54,7 @@ static void write_boxes(FILE *f, const struct world *w)
             (count)created[BOX_INSTANCE_SHAPE], (count)created[BOX_GROUP], (count)all);
 }
 
-/** Shapes in the world whose material was made for another one. */
+/** Counts the shapes in the world that use another shape's material. */
 static uint64_t count_reused(const struct launches *l)
 {
     const struct world *w = l->world;

@@ -6,7 +6,7 @@
 
 #define LEAST_CAPACITY 64u
 
-/* From so many bytes on the device copies: the host reads the device's memory slowly. */
+/* Bytes from which on the device copies, because the host reads device memory slowly. */
 #define COPIED_BY_DEVICE ((VkDeviceSize)64 << 10)
 
 struct growth {
@@ -25,7 +25,7 @@ static void record_growth(void *user_data, VkCommandBuffer commands)
                     VK_ACCESS_HOST_WRITE_BIT);
 }
 
-/** The rest of a larger buffer is zero. */
+/** Copies the contents to a larger buffer and clears its rest. */
 static bool take_over(const struct gpu *gpu, const struct table *table,
                       const struct gpu_buffer *larger)
 {

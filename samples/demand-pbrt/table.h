@@ -4,16 +4,16 @@
 
 #include "../../tools/common/gpu.h"
 
-/** Zeroed but for `element` is empty. */
+/** Zeroed, except `element`, is empty. */
 struct table {
     uint32_t element; ///< bytes
     uint32_t count, capacity;
-    uint32_t generation; ///< differs after the buffer has changed
+    uint32_t generation; ///< changes with the buffer
     struct gpu_buffer buffer;
 };
 
-/** Makes room for `count` elements in all. New ones are zero. No launch is under way. Says on
- *  stderr why it failed. */
+/** Makes room for `count` elements in all. New ones are zero. Call only while no launch is running.
+ * Reports errors on stderr. */
 bool table_grow(const struct gpu *gpu, struct table *table, uint32_t count);
 void table_finish(const struct gpu *gpu, struct table *table);
 

@@ -7,7 +7,7 @@
 #include "../../tools/common/files.h"
 #include "../../tools/common/text.h"
 
-/* On a thread of the loader, and never twice at a time for one image. */
+/* Called on a thread of the loader, never twice at the same time for one image. */
 static SluiceResult open_image(void *user_data, SluiceImageSource **source)
 {
     struct picture_image *image = user_data;
@@ -129,7 +129,7 @@ static bool is_same_use(const struct picture_use *a, const struct picture_use *b
            a->anisotropy == b->anisotropy;
 }
 
-/* Callers keep the pointer. */
+/* Allocates each use by itself, because callers keep the pointer. */
 static const struct picture_use *add_use(struct textures *t, const SluicePbrtTexture *texture,
                                          struct picture_use *use)
 {

@@ -26,7 +26,7 @@ void top_tree_finish(const struct gpu *gpu, struct top_tree *t)
     *t = (struct top_tree){0};
 }
 
-/** Around the eight corners of a box, rounded outward. */
+/** Returns the box around the eight transformed corners, rounded outward. */
 static struct box_tree_box world_box(const float m[12], const struct box_tree_box *box)
 {
     struct box_tree_box world = box_tree_empty_box();
@@ -73,7 +73,7 @@ bool top_tree_set_box(struct top_tree *t, uint32_t index, uint32_t part, const S
     return world_tree_set(&t->tree, WORLD_TREE_BOX, index, part, &copy);
 }
 
-/** Nodes behind the end of the buffer are copied when that has grown. */
+/** Copies nodes that fit into the buffer. The others are copied after it has grown. */
 static void copy_nodes(void *user_data, uint32_t first, uint32_t count)
 {
     const struct top_tree *t = user_data;

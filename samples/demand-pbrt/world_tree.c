@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The root, whose children are the part of the rest and the first node of the clusters. */
+/* Children of the root: the part with the rest, and the first node of the clusters. */
 #define REST_NODE 1u
 #define CLUSTER_NODES 2u
 
@@ -121,7 +121,7 @@ static const struct world_tree_items *items_of(const struct world_tree *t, uint3
     return &t->items[number & t->box_bit ? WORLD_TREE_BOX : WORLD_TREE_PLACE];
 }
 
-/** Sorts the list, so that equal parts give equal trees, and leaves out what is not there. */
+/** Sorts the list, so that equal parts give equal trees. Removes items that have left the part. */
 static void tidy(const struct world_tree *t, uint32_t index)
 {
     struct world_tree_part *part = &t->parts[index];
@@ -137,7 +137,7 @@ static void tidy(const struct world_tree *t, uint32_t index)
     part->count = kept;
 }
 
-/** Room behind all nodes, with some to grow; what it had is lost. */
+/** Reserves room behind all nodes, with some to grow. The part's old nodes are lost. */
 static bool reserve_nodes(struct world_tree *t, struct world_tree_part *part, uint32_t count)
 {
     if (count <= part->node_room)
@@ -211,7 +211,7 @@ static bool build_part(struct world_tree *t, uint32_t index, world_tree_written 
     return done;
 }
 
-/** A node over two at `first`. */
+/** Returns a node over the two at `first`. */
 static struct box_tree_node node_over(const struct world_tree *t, uint32_t first)
 {
     const struct box_tree_node *children = &t->nodes[first];
@@ -230,7 +230,7 @@ static struct box_tree_node node_over(const struct world_tree *t, uint32_t first
     return node;
 }
 
-/* Children lie behind their parents. */
+/* Computes the upper nodes, from the end to the root, because children lie behind their parents. */
 static void fit(struct world_tree *t)
 {
     const struct box_tree *clusters = &t->clusters->tree;

@@ -1,4 +1,4 @@
-/* Boxes that stand for what is not built. Include demand.glsl and scene.glsl before. */
+/* Boxes in place of parts that are not built. Include demand.glsl and scene.glsl before. */
 #ifndef PBRT_BOX_GLSL
 #define PBRT_BOX_GLSL
 
@@ -6,10 +6,10 @@
 
 layout(std430, set = 1, binding = PBRT_BINDING_BOXES) readonly buffer Boxes
 {
-    float boxes[]; /* six of each: the least corner, the most */
+    float boxes[]; /* six numbers per box: the least corner, then the most */
 };
 
-/** A ray that begins in a box hits it there. */
+/** Intersects a box. A ray that begins inside hits it at distance 0. */
 bool intersectBox(uint box, vec3 origin, vec3 direction, float far, out float distance,
                   out uint face)
 {
@@ -18,16 +18,17 @@ bool intersectBox(uint box, vec3 origin, vec3 direction, float far, out float di
                                  vec3(boxes[at + 3u], boxes[at + 4u], boxes[at + 5u]), origin,
                                  direction, 0.0, far, distance, face))
         return false;
-    /* Whatever a ray hits that begins in a box, it has entered the box before. */
+    /* Request the box if the ray begins inside, because the ray enters it before it hits
+     * anything. */
     if (distance == 0.0)
         sluiceRequestGeometryProxy(launch.proxyPage, box);
     return true;
 }
 
-/** The nearest hit is a box: asks for what it stands for. */
+/** Shades a box that is the nearest hit, and requests the part that it stands for. */
 void meetBox(inout Payload payload, uint box, float distance, uint face)
 {
-    /* -x red, +x yellow, -y green, +y cyan, -z blue, +z magenta */
+    /* Colors of the faces: -x red, +x yellow, -y green, +y cyan, -z blue, +z magenta. */
     const vec3 colors[6] = vec3[6](vec3(0.8, 0.1, 0.1), vec3(0.8, 0.8, 0.1), vec3(0.1, 0.7, 0.1),
                                    vec3(0.1, 0.8, 0.8), vec3(0.1, 0.1, 0.8), vec3(0.8, 0.1, 0.8));
     sluiceRequestGeometryProxy(launch.proxyPage, box);

@@ -1,4 +1,4 @@
-/* A box is the nearest hit. */
+/* Runs if a box is the nearest hit. */
 #version 460
 #extension GL_EXT_ray_tracing : require
 #extension GL_EXT_nonuniform_qualifier : require

@@ -1,4 +1,4 @@
-/* The nearest surface. */
+/* Runs if a surface is the nearest hit. */
 #version 460
 #extension GL_EXT_ray_tracing : require
 #extension GL_EXT_nonuniform_qualifier : require

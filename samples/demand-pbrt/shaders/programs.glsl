@@ -1,4 +1,4 @@
-/* Computes trees of textures: see PbrtOp. Include demand.glsl before. */
+/* Programs that compute trees of textures: see PbrtOp. Include demand.glsl before. */
 #ifndef PBRT_PROGRAMS_GLSL
 #define PBRT_PROGRAMS_GLSL
 
@@ -11,7 +11,7 @@ vec3 applyRows(float m[12], vec3 p, float w)
                 dot(vec4(m[8], m[9], m[10], m[11]), vec4(p, w)));
 }
 
-/** Texture coordinates of a point, for mappings that depend on its position. */
+/** Returns texture coordinates of a point, for mappings that depend on its position. */
 vec2 mapPoint(uint at, uint mapping, vec3 world)
 {
     vec2 delta = vec2(ops[at].delta[0], ops[at].delta[1]);
@@ -28,14 +28,14 @@ vec2 mapPoint(uint at, uint mapping, vec3 world)
     return vec2(turn, p.z); /* cylindrical */
 }
 
-/** The shorter way around. */
+/** Wraps a step around the texture to the shorter way. */
 vec2 unwrap(vec2 step)
 {
     return step - vec2(step.x > 0.5 ? 1.0 : step.x < -0.5 ? -1.0 : 0.0,
                        step.y > 0.5 ? 1.0 : step.y < -0.5 ? -1.0 : 0.0);
 }
 
-/** Texture coordinates, and what the pixel covers in them. */
+/** Returns texture coordinates, and the steps in them to the neighboring pixels. */
 vec2 mapHit(uint at, Hit hit, out vec2 dx, out vec2 dy)
 {
     uint mapping = ops[at].flags >> PBRT_OP_MAPPING_SHIFT;
@@ -67,7 +67,7 @@ vec3 encodeSrgb(vec3 x)
                greaterThan(x, vec3(0.0031308)));
 }
 
-/** The value of a texel's color. */
+/** Converts a texel's color as the op wants it. */
 vec4 readTexel(uint at, vec4 color)
 {
     uint flags = ops[at].flags;
@@ -76,7 +76,7 @@ vec4 readTexel(uint at, vec4 color)
     if (components == 1u)
         color = vec4(color.rrr, 1.0);
     if (any(isnan(color)) || any(isinf(color)))
-        color = vec4(0.0, 0.0, 0.0, 1.0); /* files may hold anything */
+        color = vec4(0.0, 0.0, 0.0, 1.0); /* files may contain NaN and infinity */
     if ((flags & PBRT_OP_DECODE) != 0u)
         color.rgb = decodeSrgb(color.rgb);
     if ((flags & PBRT_OP_ENCODE) != 0u)
@@ -87,7 +87,7 @@ vec4 readTexel(uint at, vec4 color)
         color.rgb = 1.0 - color.rgb;
     color.rgb *= ops[at].factor;
     if ((flags & PBRT_OP_FLOAT) != 0u) {
-        /* pbrt-v4 takes the alpha of pictures that have it, and the mean of others. */
+        /* pbrt-v4 uses alpha if the picture has it, else the mean of the channels. */
         float value = dot(color.rgb, vec3(0.212671, 0.715160, 0.072169));
         if ((launch.flags & PBRT_LAUNCH_VERSION_4) != 0u)
             value = (flags & PBRT_OP_HAS_ALPHA) != 0u ? color.a * ops[at].factor
@@ -113,7 +113,7 @@ void writeProbe(uint texture, vec2 uv, vec2 dx, vec2 dy)
     probedPixel = PBRT_NONE;
 }
 
-/** `resident` becomes false where a picture is not there yet. */
+/** Runs a program. Sets `resident` to false if texels of a picture are missing. */
 vec3 runProgram(uint at, Hit hit, inout bool resident)
 {
     vec3 stack[PBRT_STACK];
@@ -127,14 +127,14 @@ vec3 runProgram(uint at, Hit hit, inout bool resident)
         } else if (op == PBRT_OP_IMAGE) {
             vec2 dx, dy, st = mapHit(at, hit, dx, dy);
             bool here;
-            st.y = 1.0 - st.y; /* row 0 of pictures is on top */
+            st.y = 1.0 - st.y; /* row 0 of a picture is on top */
             dx *= exp2(launch.lodBias) * vec2(1.0, -1.0);
             dy *= exp2(launch.lodBias) * vec2(1.0, -1.0);
             writeProbe(ops[at].texture, st, dx, dy);
             vec4 color = sluiceDemandGrad(ops[at].texture, st, dx, dy, here);
             resident = resident && here;
             if (preview && !here && color == vec4(0.0))
-                color = vec4(vec3(0.5), 1.0); /* it is not open */
+                color = vec4(vec3(0.5), 1.0); /* the picture is not open */
             stack[height++] = readTexel(at, color).rgb;
         } else if (op == PBRT_OP_SCALE) {
             height--;

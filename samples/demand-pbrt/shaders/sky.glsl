@@ -2,8 +2,8 @@
 #ifndef PBRT_SKY_GLSL
 #define PBRT_SKY_GLSL
 
-/** pbrt-v4, EqualAreaSphereToSquare: Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using
- *  SIMD", 2008. */
+/** Maps a direction to a square like pbrt-v4's EqualAreaSphereToSquare: Clarberg, "Fast Equal-Area
+ * Mapping of the (Hemi)Sphere using SIMD", 2008. */
 vec2 equalAreaSquare(vec3 d)
 {
     float x = abs(d.x), y = abs(d.y), z = abs(d.z);
@@ -27,8 +27,8 @@ vec2 skyCoordinates(uint light, vec3 direction)
     return vec2(atan(d.y, d.x) / (2.0 * PI), acos(clamp(d.z, -1.0, 1.0)) / PI);
 }
 
-/** Light from infinity. `spread` in radians; from 7 on the mean. `resident` becomes false where a
- *  picture is not there yet. */
+/** Returns the light from infinity. `spread`: cone angle in radians; from 7 on, the mean. Sets
+ * `resident` to false if texels of a picture are missing. */
 vec3 skyLight(vec3 direction, float spread, inout bool resident)
 {
     vec3 sum = toVector(launch.background);
