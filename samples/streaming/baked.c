@@ -13,11 +13,12 @@
 #include "../../tools/common/text.h"
 #include "cache.h"
 
-/* Somebody waits: a third of the time of the baker's own level, for files a sixth larger. */
+/* A third of the time of the baker's own level, for files a sixth larger, because the user
+ * waits. */
 #define COMPRESSION_LEVEL 3
 
-/* Halves of an OpenEXR file that --format makes bytes of would be linear bytes: too few for
- * shadows. They are read whole instead. */
+/* Returns whether to bake a store. An OpenEXR file read as bytes would have linear bytes, which are
+ * too few for shadows, so it is read whole instead. */
 static bool needs_store(const struct picture_path *picture, enum pixel_format pixels)
 {
     return !picture->refused &&
@@ -25,7 +26,7 @@ static bool needs_store(const struct picture_path *picture, enum pixel_format pi
             (picture->kind == PICTURE_EXR_LEVEL_ZERO && pixels != PIXEL_FORMAT_RGBA8));
 }
 
-/** "cache/baked/whole/path.png.store". */
+/** Makes "cache/baked/whole/path.png.store". */
 static char *store_path(const char *picture, const char *cache)
 {
     char folder[4096];
@@ -76,7 +77,7 @@ static const struct bake_job *find_job(const struct bake_job *jobs, size_t count
     return NULL;
 }
 
-/** Pictures that are one file have one job. What cannot even be begun is refused. */
+/** Makes one job per file. Refuses pictures whose jobs cannot begin. */
 static size_t make_jobs(struct picture_path *paths, size_t count, const char *cache,
                         enum pixel_format pixels, struct bake_job *jobs)
 {

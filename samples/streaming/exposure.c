@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define EXPOSURE_LEVEL_SIZE 64 ///< the level that is measured is no larger
+#define EXPOSURE_LEVEL_SIZE 64 ///< largest width and height of the measured level
 
 static float half_to_float(uint16_t half)
 {
@@ -19,7 +19,7 @@ static float luminance(float red, float green, float blue)
     return 0.2126f * red + 0.7152f * green + 0.0722f * blue;
 }
 
-/* sRGB is roughly decoded; NaN for other formats. */
+/* Decodes sRGB roughly. NaN for other formats. */
 static float texel_luminance(const uint8_t *texel, SluiceFormat format)
 {
     uint16_t half[4];
@@ -41,7 +41,8 @@ static float texel_luminance(const uint8_t *texel, SluiceFormat format)
     }
 }
 
-/** From the mean and the brightest tenth of a small level; 1 for pictures that are well exposed. */
+/** Computes the factor from the arithmetic and the geometric mean of the luminance. 1 for
+ * well-exposed pictures. */
 static float exposure_for(const uint8_t *texels, uint32_t count, SluiceFormat format)
 {
     uint32_t texel_size = sluiceGetFormatTexelSize(format);
@@ -57,7 +58,8 @@ static float exposure_for(const uint8_t *texels, uint32_t count, SluiceFormat fo
     }
     if (used == 0)
         return 1.0f;
-    /* The geometric mean alone makes a dark picture with a few lights far too bright. */
+    /* Average both means: the geometric one alone makes a dark picture with a few lights far too
+     * bright. */
     double mean = 0.5 * (sum / used) + 0.5 * exp2(log_sum / used);
     return mean > 0.34   ? (float)(0.34 / mean)
            : mean < 0.09 ? (float)fmin(0.09 / mean, 4096.0)

@@ -8,10 +8,11 @@
 #include "../../tools/common/progress.h"
 #include "../../tools/common/text.h"
 
-/* Recordings, traces, frames of the reference, and three for each worker of comparison.c. */
+/* Recordings, traces, frames of the reference, and three files per worker of comparison.c. */
 #define WRITTEN_AT_ONCE 210
 
-/* Long after a device that had no memory for pages was asked again. */
+/* Frames without a new tile after which the device is out of memory. It is retried more often than
+ * that. */
 #define FRAMES_IN_VAIN 240
 
 static bool open_surroundings(struct gallery *gallery)
@@ -34,7 +35,8 @@ static bool counts_residency(const struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
     SluiceResidencyMode mode = gallery->gpu.modes[0];
-    /* Sparse images have codes, and pages a table; everything is there in dense mode. */
+    /* Sparse images report residency and pages have a table. In dense mode everything is
+     * resident. */
     bool able =
         mode == SLUICE_RESIDENCY_MODE_PAGED ||
         (mode == SLUICE_RESIDENCY_MODE_SPARSE && gallery->gpu.capabilities.shaderResourceResidency);
@@ -69,7 +71,8 @@ bool gallery_fill(struct view *view, const struct room *room)
             fprintf(stderr, "%u tiles cannot be loaded\n", frame.statistics.givenUpTileCount);
             return false;
         }
-        /* Tiles without memory are not given up: they wait, for as long as there is none. */
+        /* Count frames without a new tile. Tiles for which there is no memory wait and are never
+         * given up. */
         in_vain = frame.statistics.mappedTileCount > count ? 0 : in_vain + 1;
         count = frame.statistics.mappedTileCount;
         if (in_vain > FRAMES_IN_VAIN) {
@@ -82,7 +85,7 @@ bool gallery_fill(struct view *view, const struct room *room)
     return true;
 }
 
-/* In whole rounds of the frames in flight: so the walk's first frame is the first slot's again. */
+/* Draws whole rounds of the frames in flight, so that the walk begins with the first slot again. */
 static bool warm_up(struct gallery *gallery)
 {
     struct view *view = &gallery->streamed;
@@ -141,7 +144,7 @@ static struct picture_limits device_limits(const struct gpu *gpu)
     };
 }
 
-/* Said before anything is drawn. */
+/* Checks outputs before anything is drawn. */
 static bool outputs_spare_inputs(const struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
@@ -173,7 +176,7 @@ enum gallery_outcome gallery_open(struct gallery *gallery)
     if (!gpu_create(&device, &gallery->gpu, &unsupported))
         return unsupported ? GALLERY_NO_DEVICE : GALLERY_FAILED;
     struct picture_limits limits = device_limits(&gallery->gpu);
-    /* Pictures stay open: what the walk writes must find descriptors when it comes to that. */
+    /* Keep descriptors for the outputs of the walk, because pictures stay open. */
     struct descriptors_kept kept;
     descriptors_keep(&kept, WRITTEN_AT_ONCE);
     bool hung = pictures_open(settings, &limits, &gallery->pictures);

@@ -1,6 +1,6 @@
 /*
- * Buffers of the gallery's shaders, and how its surfaces are lit. Included by the entry points. Set
- * 0 is the streamer's, set 1 has the textures of a surface.
+ * Buffers of the gallery's shaders, and lighting of its surfaces. Included by the entry points. Set
+ * 0 is the streamer's; set 1 has the textures of a surface.
  */
 #ifndef GALLERY_GLSL
 #define GALLERY_GLSL
@@ -70,7 +70,7 @@ vec3 lightSurface(vec3 albedo, vec3 position, vec3 normal, float shine)
     return albedo * diffuse + specular;
 }
 
-/** A film-like curve, and sRGB encoding. Whatever comes in, the result is a color. */
+/** Applies a film-like curve and sRGB encoding. Any input gives a valid color. */
 vec3 develop(vec3 color)
 {
     color = mix(color, vec3(0.0), isnan(color));

@@ -14,7 +14,7 @@
 #include "../../tools/common/text.h"
 #include "cache.h"
 
-/* In hanging order. About 105 million texels, 1.1 GB as half floats with all levels. */
+/* In the order on the walls. About 105 million texels, 1.1 GB as half floats with all levels. */
 static const struct pattern_image pictures[GENERATED_COUNT] = {
     {"coast", 8192, 3072, pattern_coast, 1},
     {"chart", 4096, 4096, pattern_chart, 1},
@@ -99,7 +99,8 @@ static bool write_picture(const struct pattern_image *image, const char *path,
     SluiceResult result = pattern_create_source(image, SLUICE_FORMAT_R16G16B16A16_SFLOAT, &source);
     SluiceExrWriteInfo info = {.structSize = sizeof info,
                                .pPath = path,
-                               .tileWidth = 128, /* the GPU's tile: each is read once */
+                               .tileWidth =
+                                   128, /* size of the GPU's tile, so that each is read once */
                                .tileHeight = 64,
                                .threadCount = thread_count,
                                .opaque = true,

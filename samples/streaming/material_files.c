@@ -31,7 +31,7 @@ static uint8_t to_byte(float linear, bool srgb)
     return (uint8_t)(value * 255.0f + 0.5f);
 }
 
-/** Mean over the samples of a texel, linear. */
+/** Computes the mean over the samples of a texel, linear. */
 static void sample_texel(pattern_fn pattern, uint32_t x, uint32_t y, uint32_t size, float mean[3])
 {
     const float step = 1.0f / (float)(size * SUPERSAMPLES);

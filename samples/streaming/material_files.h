@@ -1,4 +1,4 @@
-/** A material of our own as PNG files, to be compressed as a neural set: a mosaic. */
+/** PNG files of a material, a mosaic, to compress as a neural set. */
 #ifndef SAMPLES_STREAMING_MATERIAL_FILES_H
 #define SAMPLES_STREAMING_MATERIAL_FILES_H
 
@@ -6,8 +6,8 @@
 #include <stdint.h>
 
 /**
- * Writes albedo.png (sRGB), height.png and roughness.png (gray) of `size` x `size` texels into a
- * folder, which is made. Files that are there are written again. Says on stderr why it failed.
+ * Makes a folder and writes albedo.png (sRGB), height.png and roughness.png (gray) of `size` x
+ * `size` texels. Overwrites existing files. Reports errors on stderr.
  */
 bool material_files_write(const char *folder, uint32_t size);
 

@@ -52,14 +52,15 @@ static uint16_t shown_at(const struct needs_texture *texture, const uint32_t *mi
                          uint32_t y)
 {
     const SluiceStreamedTextureLayout *layout = &texture->layout;
-    if (x >= layout->minMipWidth) /* without regular levels one texel stands for all */
+    if (x >=
+        layout->minMipWidth) /* textures without regular levels have one texel for all regions */
         x = layout->minMipWidth - 1;
     if (y >= layout->minMipHeight)
         y = layout->minMipHeight - 1;
     return (uint16_t)(min_mip[y * layout->minMipWidth + x] & 0xFFFFu);
 }
 
-/* From the buffers' words to maps; packed levels are one. */
+/* Converts the buffers' words to maps. All packed levels become one. */
 static void read_maps(struct needs *needs, const struct needs_texture *texture,
                       const struct needs_words *words)
 {
@@ -91,7 +92,8 @@ static bool take_tile(struct needs *needs, struct needs_texture *texture, uint32
     return true;
 }
 
-/* The tiles over a region, which is the area of a tile of level 0, up to one that has been seen. */
+/* Marks the tiles over a region (the area of a tile of level 0), from `level` to the first that is
+ * marked already. */
 static void take_region(struct needs *needs, struct needs_texture *texture, uint32_t x, uint32_t y,
                         uint32_t level, struct needs_frame *frame)
 {

@@ -59,7 +59,8 @@ static bool begin_wait(struct needs_wait *wait, size_t region, uint8_t level)
     return true;
 }
 
-/* A region that needs a finer level yet still needs this one. */
+/* Ends waits that are met or no longer needed. A region that needs a finer level still needs this
+ * one. */
 static bool end_waits(struct needs_wait *wait, const uint8_t *levels, const uint16_t *shown)
 {
     size_t kept = 0;

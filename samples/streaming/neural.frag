@@ -1,13 +1,13 @@
 /*
- * Pictures of a neural set that are decoded where they are sampled: texels are chosen at random, decoded
- * and averaged. What was chosen is the feedback.
+ * Pictures of a neural set that are decoded while sampling. Texels are chosen at random, decoded
+ * and averaged. The chosen texels are the feedback.
  */
 #version 460
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_GOOGLE_include_directive : require
 
-/* Or else what is hidden would request pages, too. */
+/* Prevents hidden surfaces from requesting pages. */
 layout(early_fragment_tests) in;
 
 #include "gallery.glsl"
@@ -41,12 +41,12 @@ layout(location = 2) flat in vec3 normal;
 layout(location = 3) flat in vec3 tangent;
 layout(location = 0) out vec4 outColor;
 
-/** The channels of the picture, linear. */
+/** Returns the channels of the picture, linear. */
 vec3 colorOf(float channels[SLUICE_NEURAL_CHANNELS])
 {
     vec3 color = vec3(0.0);
     uint first = draw.colorTexture, count = (draw.flags & GALLERY_GRAY) != 0u ? 1u : 3u;
-    /* Textures of 16-bit floats would hold negative values, too, and filter them. */
+    /* 16-bit float textures also keep and filter negative values. */
     vec2 range = (draw.flags & GALLERY_HDR) != 0u ? vec2(-65504.0, 65504.0) : vec2(0.0, 1.0);
     for (uint c = 0u; c < count; c++)
         color[c] = clamp(sluiceNeuralToLinear(channels[first + c], draw.reliefTexture >> 2u * c & 3u), range.x, range.y);

@@ -38,7 +38,7 @@ static SluiceResult read_counted(void *user, uint64_t offset, void *bytes, size_
     return SLUICE_SUCCESS;
 }
 
-/** `file` must stay where it is. */
+/** `file` must not move afterwards. */
 static bool open_counted(const char *path, atomic_uint_least64_t *bytes_read,
                          struct neural_file *file)
 {
@@ -57,7 +57,7 @@ static bool open_counted(const char *path, atomic_uint_least64_t *bytes_read,
     return true;
 }
 
-/** "folder of the set/name.png"; NULL if there is no such file. For the caller to free. */
+/** Makes "folder of the set/name.png". NULL if there is no such file. Free the result. */
 static char *find_original(const char *set_path, const char *name)
 {
     static const char *const suffixes[] = {"png", "exr", "tif", "tiff", "jpg", "webp", "hdr"};
@@ -78,7 +78,7 @@ static char *find_original(const char *set_path, const char *name)
     return found ? path : NULL;
 }
 
-/** Formats of a texture: texels as they are, blocks, and what the GPU makes of latents. */
+/** Formats of a texture: raw texels, blocks, and texels decoded by the GPU. */
 struct formats {
     SluiceFormat raw, blocks, decoded;
 };
@@ -121,7 +121,7 @@ static bool is_hangable(const char *path, const SluiceNeuralTexture *texture)
     return false;
 }
 
-/* A picture before its sources are there. */
+/* Texture of the set before its sources are open. */
 struct hanging {
     SluiceNeuralTexture texture;
     char *original, *stores[2]; ///< owned; raw texels and blocks
@@ -207,7 +207,8 @@ static bool find_spaces(const struct neural_files *files, struct neural_picture 
     return true;
 }
 
-/** A texture in a mode. The picture is counted before it is complete, so that it is closed. */
+/** Adds a picture for a texture in a mode. Counts it before it is complete, so that it is closed
+ * after an error. */
 static bool hang(struct picture_list *list, const struct hanging *hanging, uint32_t texture,
                  enum neural_mode mode, bool takes_blocks)
 {
@@ -296,7 +297,8 @@ static bool hang_all(const struct settings *settings, const struct picture_limit
     bool takes_blocks = limits->takes_blocks && settings->format != PIXEL_FORMAT_RGBA8;
     uint32_t modes = settings->neural_mode_count, places = count * modes;
     for (uint32_t i = 0; hung && i < places; i++) {
-        /* Colors hang where the walk looks: before the last picture it rests, picture 0 is far. */
+        /* Colors hang where the walk looks: it rests before the last picture, and picture 0 is far
+         * away. */
         uint32_t at = modes == 1 ? places - 1 - i : (i + places - 1) % places;
         hung = hang(list, &hangings[at / modes], indices[at / modes],
                     settings->neural_modes[at % modes], takes_blocks);

@@ -13,7 +13,7 @@
 
 static const char *const names[] = {"auto", "plain", "dot", "vector", "vector-fp8"};
 
-/** NULL if the device and the set have the path; else what is missing. */
+/** Returns NULL if the device and the set support the path, otherwise the reason against it. */
 static const char *what_lacks(const struct gpu *gpu, const SluiceNeuralSetInfo *info,
                               enum neural_path path)
 {
@@ -36,7 +36,7 @@ static const char *what_lacks(const struct gpu *gpu, const SluiceNeuralSetInfo *
     }
 }
 
-/** The fastest path with the bits of the C decoder (docs/neural.md). */
+/** Returns the fastest path that gives the same bits as the C decoder (docs/neural.md). */
 static enum neural_path choose(const struct gpu *gpu, const SluiceNeuralSetInfo *info)
 {
     if (!what_lacks(gpu, info, NEURAL_PATH_VECTOR))
@@ -75,7 +75,7 @@ static SluiceResult read_weights(const SluiceNeuralSet *set, SluiceNeuralWeightK
                : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-/** Replaces the weights by those in the device's layout. */
+/** Converts the weights to the device's layout. */
 static SluiceResult convert_weights(const struct gpu *gpu, const SluiceNeuralSet *set,
                                     SluiceNeuralWeightKind kind, struct neural_program *program)
 {

@@ -8,8 +8,8 @@
 #include "gallery_shared.h"
 #include "neural_path.h"
 
-#define PAGE_SIZE 16384u          ///< most bytes of a page of latents
-#define SCRATCH_SIZE (256u << 10) ///< bytes for tiles while they are decoded
+#define PAGE_SIZE 16384u          ///< maximum bytes of a page of latents
+#define SCRATCH_SIZE (256u << 10) ///< bytes for tiles that are being decoded
 #define LOADER_MEMORY (64u << 20) ///< bytes, most of which are never allocated
 #define LOADER_PAGES 65536u
 
@@ -28,7 +28,7 @@ static bool hangs_as(const struct settings *settings, enum neural_mode mode)
     return false;
 }
 
-/** INT8 weights for the caller to free; NULL if it failed. */
+/** Reads INT8 weights. Free the result. NULL on error. */
 static void *read_weights(const SluiceNeuralSet *set, uint64_t *size)
 {
     void *weights = NULL;
@@ -100,7 +100,7 @@ static bool create_loader(struct neural_view *view, SluiceVulkanContext *context
                  "sluiceAddDemandResource");
 }
 
-/** The page of the coarsest mips is always there, so that there is always something to show. */
+/** Pins the page of the coarsest mips, so that there is always something to show. */
 static bool pin_last_page(struct neural_view *view)
 {
     uint32_t page = view->pages.groups[view->pages.groupCount - 1].firstPage;
@@ -160,7 +160,7 @@ static bool create_layout(struct neural_view *view)
                      "vkAllocateDescriptorSets");
 }
 
-/** The loader's buffers never change, so one set serves all frames. */
+/** Writes the only set, which serves all frames, because the loader's buffers never change. */
 static void write_set(const struct neural_view *view)
 {
     SluiceDemandBuffers buffers = {.structSize = sizeof buffers};
@@ -279,7 +279,7 @@ bool neural_view_process(struct neural_view *view, uint32_t slot, bool settle)
                                            &requests, &ticket),
                "sluiceProcessDemandRequests"))
         return false;
-    for (uint32_t i = 0; i < NEURAL_VIEW_SLOTS; i++) /* earlier launches are processed, too */
+    for (uint32_t i = 0; i < NEURAL_VIEW_SLOTS; i++) /* earlier launches are processed as well */
         if (view->launches[i].launchIndex <= view->launches[slot].launchIndex)
             view->under_way[i] = false;
     return !settle || check(sluiceWaitDemandTicket(view->loader, ticket, UINT64_MAX, NULL),

@@ -1,4 +1,4 @@
-/* In place of neural_view.c where sluice-neural is missing: no set is ever opened. */
+/* Replaces neural_view.c in builds without sluice-neural. No set is ever opened. */
 #include "neural_view.h"
 
 bool neural_view_create(const struct gpu *gpu, SluiceVulkanContext *context,

@@ -2,11 +2,10 @@
 
 #include "../common/noise.h"
 
-/* Stones of a mosaic: rows that are shifted against each other, each stone a little out of place.
- */
+/* A stone of a mosaic. Rows are shifted against each other, and each stone is moved a little. */
 struct stone {
     uint32_t id;
-    float edge;        ///< distance to the joint, in stones; negative in it
+    float edge;        ///< distance to the joint, in stones; negative inside the joint
     float row, column; ///< place in the stone, -0.5 to 0.5
 };
 
@@ -27,7 +26,7 @@ static struct stone stone_at(float u, float v)
     return stone;
 }
 
-/** 1 on a stone, 0 in a joint. */
+/** Returns 1 on a stone, 0 in a joint. */
 static float on_stone(const struct stone *stone, float footprint)
 {
     return noise_clamp(0.5f + stone->edge / (footprint * STONES + 0.03f), 0.0f, 1.0f);

@@ -80,7 +80,7 @@ static void close_picture(struct picture *picture)
     free(picture->path);
 }
 
-/* The patterns are at their final address only after the list is complete. */
+/* Call when the list is complete, because the patterns must not move afterwards. */
 static bool create_reliefs(struct picture_list *list)
 {
     for (uint32_t i = 0; i < list->count; i++) {
@@ -142,7 +142,7 @@ static bool create_pool(struct picture_list *list)
 #endif
 }
 
-/* Libraries of pictures read files alone. */
+/* Copies a picture to the cache, because image libraries read only files. */
 static SluiceResult copy_picture(const char *url, const char *cache, struct remote_session *session,
                                  char **copy)
 {
@@ -158,7 +158,7 @@ static SluiceResult copy_picture(const char *url, const char *cache, struct remo
     return *copy ? SLUICE_SUCCESS : SLUICE_ERROR_IO;
 }
 
-/* Tile stores on servers are read in place. */
+/* Finds the kind of a picture. Tile stores on servers are read in place. */
 static SluiceResult find_kind(struct picture_path *path, const char *cache,
                               struct remote_session *session)
 {
@@ -166,7 +166,7 @@ static SluiceResult find_kind(struct picture_path *path, const char *cache,
     if (!remote_is_url(path->path))
         return picture_file_kind(path->path, &path->kind);
     remote_name(path->path, name, sizeof name);
-    path->kind = PICTURE_STORE; /* whatever else is there is refused when it is opened */
+    path->kind = PICTURE_STORE; /* opening refuses other files */
     if (!files_has_suffix(name, PICTURE_SUFFIXES))
         return SLUICE_SUCCESS;
     SluiceResult result = copy_picture(path->path, cache, session, &path->copy);

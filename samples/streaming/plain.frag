@@ -1,4 +1,4 @@
-/* Frames, ceiling, benches: a color and light. */
+/* Shades frames, ceiling and benches, which have a color and no texture. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

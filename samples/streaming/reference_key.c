@@ -12,10 +12,10 @@
 #include "../../tools/common/output_file.h"
 #include "../../tools/common/text.h"
 
-#define MAX_SIZE (16u << 20) ///< bytes of a text file that is looked at
+#define MAX_SIZE (16u << 20) ///< maximum bytes of a text file that is read
 #define FIRST_WORDS "frames of the gallery with everything resident"
 
-/** Size and time, or nothing where there is no file. A line each, whatever the name. */
+/** Writes a line with the file's size and time, if there is one. */
 static void write_picture(FILE *out, const struct picture *picture)
 {
     struct stat status;
@@ -58,7 +58,7 @@ char *reference_key_create(const struct settings *settings, const struct gpu *gp
     return NULL;
 }
 
-/** The whole file as a string to free; NULL if it cannot be read. */
+/** Reads the whole file as a string. Free the result. NULL on error. */
 static char *read_text(const char *path)
 {
     FILE *file = input_open(path);
@@ -76,7 +76,7 @@ static char *read_text(const char *path)
     return text;
 }
 
-/** Names the first line in which the two differ. */
+/** Reports the first line in which the texts differ. */
 static void explain(const char *path, const char *text, const char *key)
 {
     while (*text && *key) {
@@ -92,7 +92,7 @@ static void explain(const char *path, const char *text, const char *key)
     text_say("%s: is cut off", path);
 }
 
-/** Or the beginning of one: a text of an older version may have been cut off. */
+/** Accepts also the beginning of such a text, which an older version may have cut off. */
 static bool is_of_this_program(const char *text)
 {
     size_t length = strlen(text), whole = strlen(FIRST_WORDS);

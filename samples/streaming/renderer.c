@@ -13,7 +13,7 @@
 #include "surface_frag.h"
 #include "surface_paged_frag.h"
 
-/** `count` descriptors of one type, at bindings 0, 1, ... */
+/** Creates a layout of `count` descriptors of one type, at bindings 0, 1, ... */
 static bool create_set_layout(const struct gpu *gpu, VkDescriptorType type, uint32_t count,
                               VkDescriptorSetLayout *layout)
 {
@@ -243,7 +243,7 @@ const struct renderer_surface *renderer_surface_of(const struct room_part *part,
     return NULL;
 }
 
-/** The surface of a part that the shader decodes; else NULL. */
+/** Returns the surface of a part that the shader decodes, or NULL. */
 static const struct renderer_surface *decoded_surface_of(const struct room_part *part,
                                                          const struct renderer_surface *surfaces)
 {
@@ -260,7 +260,7 @@ static struct GalleryDraw draw_of(const struct room_part *part,
                                .flags = part->glowing ? GALLERY_GLOWING : 0};
     memcpy(draw.lights, part->lights, sizeof draw.lights);
     memcpy(draw.color, part->color, sizeof draw.color);
-    for (int i = 1; i < GALLERY_LIGHTS_PER_DRAW; i++) /* each lamp once */
+    for (int i = 1; i < GALLERY_LIGHTS_PER_DRAW; i++) /* count each lamp once */
         if (part->lights[i] == part->lights[0])
             draw.lights[i] = GALLERY_NO_TEXTURE;
     if (!surface)

@@ -10,7 +10,7 @@
 #define PICTURE_WIDTH 3.7f
 #define PICTURE_HEIGHT 2.5f
 #define PICTURE_CENTER 1.78f
-#define PICTURE_DEPTH 0.035f ///< before the wall
+#define PICTURE_DEPTH 0.035f ///< distance from the wall
 #define FRAME_WIDTH 0.11f
 #define FRAME_DEPTH 0.075f
 #define LAMP_DISTANCE 1.9f
@@ -63,7 +63,7 @@ static void end_part(struct room *room)
     part->vertex_count = room->vertex_count - part->first_vertex;
 }
 
-/** Corners counter-clockwise as seen from the front, from the lower left; uv for each. */
+/** Adds a quad. Corners are counter-clockwise as seen from the front, from the lower left. */
 static void add_quad(struct room *room, const struct vec3 corners[4], const float uv[4][2])
 {
     static const int order[6] = {0, 1, 2, 0, 2, 3};
@@ -85,7 +85,7 @@ static void add_quad(struct room *room, const struct vec3 corners[4], const floa
 
 static const float no_uv[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 
-/** The six faces of a box between two corners. */
+/** Adds the six faces of a box between two corners. */
 static void add_box(struct room *room, struct vec3 low, struct vec3 high)
 {
     const struct vec3 c[8] = {
@@ -102,7 +102,7 @@ static void add_box(struct room *room, struct vec3 low, struct vec3 high)
     }
 }
 
-/** A point before a picture: x to the right, y up, z towards the viewer. */
+/** Returns a point in front of a picture: x to the right, y up, z towards the viewer. */
 static struct vec3 before(const struct room_place *place, float x, float y, float z)
 {
     struct vec3 p = vec3_add(place->center, vec3_scale(place->right, x));
@@ -125,7 +125,7 @@ static void add_canvas(struct room *room, uint32_t index)
     end_part(room);
 }
 
-/** Two mitred strips per profile step, swept around the picture. */
+/** Adds two mitred strips per step of the profile, around the picture. */
 static void add_frame(struct room *room, uint32_t index)
 {
     /* distance from the picture's edge, height over the wall */
@@ -153,7 +153,7 @@ static void add_frame(struct room *room, uint32_t index)
     end_part(room);
 }
 
-/** A small brass plate under the right corner, and the lamp at the ceiling. */
+/** Adds a small brass plate under the right corner, and the lamp at the ceiling. */
 static void add_fittings(struct room *room, uint32_t index)
 {
     const struct room_place *place = &room->places[index];
@@ -173,7 +173,7 @@ static void add_fittings(struct room *room, uint32_t index)
     end_part(room);
 }
 
-/** Picture 0 closes the room, the others hang left and right in turn. */
+/** Places picture 0 on the end wall, and the others left and right in turn. */
 static struct room_place place_picture(const struct room *room, const SluiceImageInfo *info,
                                        uint32_t index)
 {
@@ -213,7 +213,7 @@ static struct GalleryLight place_light(const struct room_place *place)
                                  cosf(angle * 0.92f)};
 }
 
-/** The lamps of a bay on one side and of its neighbors on the same wall. */
+/** Sets the lamps of a bay on one side, and those of its neighbors on the same wall. */
 static void set_wall_lights(const struct room *room, struct room_part *part, int32_t bay, bool left)
 {
     for (int32_t i = 0; i < GALLERY_LIGHTS_PER_DRAW; i++) {

@@ -1,8 +1,8 @@
-/* Floor, walls and pictures: what is streamed. Samples, and writes down which level it wanted. */
+/* Shades floor, walls and pictures, whose textures are streamed, and writes feedback. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-/* Or else what is hidden would write feedback too. */
+/* Prevents hidden surfaces from writing feedback. */
 layout(early_fragment_tests) in;
 
 #include "gallery.glsl"
@@ -27,7 +27,8 @@ bool selectedForFeedback()
                                           frame.feedbackProbability);
 }
 
-/* Pixels of the lattice are alone, random ones come in quads, which share the work. */
+/* Writes feedback: for single pixels of the lattice, or for random quads, whose pixels share the
+ * work. */
 void writeFeedback(uint tableIndex, vec2 dx, vec2 dy)
 {
     if (frame.latticeFrame != GALLERY_NO_TEXTURE)
@@ -37,7 +38,7 @@ void writeFeedback(uint tableIndex, vec2 dx, vec2 dy)
                                 uvec2(gl_FragCoord.xy), frame.feedbackSeed);
 }
 
-/** The normal as the relief bends it: its height changes along the surface. */
+/** Returns the normal, tilted by the relief's change of height along the surface. */
 vec3 bentNormal(float height)
 {
     vec3 bitangent = cross(normal, tangent);

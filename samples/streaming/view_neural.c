@@ -7,7 +7,7 @@ bool view_neural_create(struct view *view)
                                                      request->settings, &view->neural);
 }
 
-/* The truth has the texels before compression. */
+/* Creates a surface. The truth uses the texels before compression. */
 SluiceResult view_neural_create_surface(struct view *view, const struct picture *picture,
                                         struct renderer_surface *surface)
 {

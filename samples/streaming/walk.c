@@ -7,13 +7,14 @@ struct station {
     struct camera camera;
 };
 
-/** `index` if there is such a picture, else the last one. */
+/** Returns the picture's place, or that of the last one if there is no such picture. */
 static const struct room_place *place_of(const struct room *room, uint32_t index)
 {
     return &room->places[index < room->place_count ? index : room->place_count - 1];
 }
 
-/** Before a picture: x and y in units of its half size, z in meters from the wall. */
+/** Returns a point in front of a picture: x and y in units of its half size, z in meters from the
+ * wall. */
 static struct vec3 spot(const struct room_place *place, float x, float y, float z)
 {
     struct vec3 p = vec3_add(place->center, vec3_scale(place->right, 0.5f * x * place->width));
@@ -21,8 +22,9 @@ static struct vec3 spot(const struct room_place *place, float x, float y, float 
     return vec3_add(p, vec3_scale(place->normal, z));
 }
 
-/* Up to the first picture on the left until its finest level shows, past the next ones, up to one
- * on the right, and to rest beside the last but one on the left, seen along the wall. */
+/* Stations of the walk: to the first picture on the left until its finest level shows, past the
+ * next ones, to one on the right, and to rest beside the last but one on the left, seen along the
+ * wall. */
 static void make_stations(const struct room *room, struct station stations[STATION_COUNT])
 {
     const struct room_place *first = place_of(room, 1), *second = place_of(room, 2);
@@ -54,8 +56,7 @@ struct camera walk_camera(const struct room *room, float progress)
     const struct station *a = &stations[next - 1], *b = &stations[next];
     float t = (progress - a->at) / (b->at - a->at);
     t = t < 0.0f ? 0.0f : t > 1.0f ? 1.0f : t;
-    /* Comes gently to a halt at each station; stops short at the last, which is harder to follow.
-     */
+    /* Slows down smoothly at each station, but abruptly at the last, which is harder to follow. */
     t = next < STATION_COUNT - 1 ? t * t * t * (t * (6.0f * t - 15.0f) + 10.0f)
                                  : t * t * (2.0f - t);
     return (struct camera){vec3_mix(a->camera.eye, b->camera.eye, t),
