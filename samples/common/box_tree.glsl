@@ -1,10 +1,10 @@
-/* Rays and the boxes of trees that box_tree.c builds. */
+/* Ray tests against the boxes of trees that box_tree.c builds. */
 #ifndef SAMPLES_BOX_TREE_GLSL
 #define SAMPLES_BOX_TREE_GLSL
 
 #define BOX_TREE_MOST_DEPTH 30
 
-/** 1 / direction, and finite: products with it are no NaN. */
+/** Returns 1 / direction, but finite, so that products with it are never NaN. */
 vec3 boxTreeInverse(vec3 direction)
 {
     const float LEAST = 1.0e-37;
@@ -13,9 +13,9 @@ vec3 boxTreeInverse(vec3 direction)
 }
 
 /**
- * Whether a ray is in a box before `far`; `enter` is where, and at least 0. The box seems larger by
- * 1e-6 of the distance to its farthest corner: whatever a ray hits in it, rounding here and there
- * never makes the ray miss the box. Rays may begin in faces, and run in them.
+ * Returns whether a ray enters a box before `far`. `enter`: distance at which it does, at least 0.
+ * The box is enlarged by 1e-6 of the distance to its farthest corner, so that rounding never makes
+ * a ray miss the box of something that it hits. Rays may begin in faces and run along them.
  */
 bool boxTreeEnter(vec3 low, vec3 high, vec3 origin, vec3 inverse, float far, out float enter)
 {

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* The top row in the highest three of 15 bits. */
+/* Dots of each character; the top row is in the highest three of 15 bits. */
 static const uint16_t digits[10] = {075557, 026227, 071747, 071717, 055711,
                                     074717, 074757, 071222, 075757, 075717};
 static const uint16_t letters[26] = {025755, 065656, 034443, 065556, 074647, 074644, 034553,

@@ -7,7 +7,7 @@
 #include "png_file.h"
 #include "caption.h"
 
-#define CELL_WIDTH 400u  ///< pixels; smaller pictures are shown as they are
+#define CELL_WIDTH 400u  ///< pixels; smaller pictures keep their size
 #define CAPTION_SCALE 2u ///< pixels per dot
 #define CAPTION_BAR (CAPTION_HEIGHT * CAPTION_SCALE + 8)
 #define GAP 4u
@@ -15,7 +15,7 @@
 static const uint8_t magenta[3] = {255, 0, 200};
 static const uint8_t paper[3] = {24, 24, 26};
 
-/** The mean of the pixels under one of the small picture. */
+/** Writes the mean of the pixels under a pixel of the small picture. */
 static void shrink_pixel(const struct contact_sheet *sheet, const struct picture *picture,
                          const uint8_t *developed, uint32_t x, uint32_t y, uint8_t *pixel)
 {

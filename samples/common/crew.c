@@ -22,7 +22,8 @@ bool crew_run(uint32_t count, crew_work function, void *user_data)
 {
     struct member *members = calloc(count, sizeof *members);
     bool done = function != NULL;
-    for (uint32_t i = 0; i < count && !members; i++) /* out of memory: one after the other */
+    for (uint32_t i = 0; i < count && !members;
+         i++) /* out of memory: run the members one after the other */
         done = function(user_data, i) && done;
     for (uint32_t i = 0; i < count && members; i++) {
         members[i] = (struct member){.work = function, .user_data = user_data, .index = i};

@@ -1,4 +1,4 @@
-/** Frames of a sequence that one task renders, "24-47" on the command line. */
+/** Range of the frames that a task renders: "24-47" on the command line. */
 #ifndef SAMPLES_COMMON_FRAME_RANGE_H
 #define SAMPLES_COMMON_FRAME_RANGE_H
 
@@ -7,10 +7,10 @@
 
 struct frame_range {
     bool given;
-    uint32_t first, last; ///< both are rendered
+    uint32_t first, last; ///< inclusive
 };
 
-/** For OPTION_CUSTOM; `value` is a struct frame_range. */
+/** Parser for OPTION_CUSTOM. `value` is a struct frame_range. */
 bool frame_range_parse(const char *text, void *value);
 
 #endif /* SAMPLES_COMMON_FRAME_RANGE_H */

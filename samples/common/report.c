@@ -98,7 +98,7 @@ void report_end_table(struct report *report)
     fputs("</table>\n", report->file);
 }
 
-/** The next of 1, 2, 5, 10, ... that gives at most five steps. */
+/** Returns the smallest of 1, 2, 5, 10, ... that gives at most five steps. */
 static double axis_step(double maximum)
 {
     double step = pow(10.0, floor(log10(maximum / 5.0)));
@@ -147,7 +147,7 @@ static void put_axes(FILE *file, const struct report_plot *plot, double maximum)
                 plot_x(plot, frame), PLOT_HEIGHT - 7, frame);
 }
 
-/** Over the lines, with a rim that keeps the name readable. */
+/** Draws the mark over the lines, with a rim that keeps its name readable. */
 static void put_mark(FILE *file, const struct report_plot *plot)
 {
     if (plot->mark >= 0.0)

@@ -1,4 +1,4 @@
-/** The few vectors and matrices that a camera needs. Column-major, right-handed, depth 0 to 1. */
+/** Vectors and matrices for a camera. Column-major, right-handed, depth 0 to 1. */
 #ifndef SAMPLES_COMMON_VECMATH_H
 #define SAMPLES_COMMON_VECMATH_H
 
@@ -58,7 +58,7 @@ static inline struct mat4 mat4_multiply(const struct mat4 *a, const struct mat4 
     return product;
 }
 
-/** From world space to a camera at `eye` that looks at `target`, y up. */
+/** World space to the space of a camera at `eye` that looks at `target`, y up. */
 static inline struct mat4 mat4_look_at(struct vec3 eye, struct vec3 target)
 {
     struct vec3 back = vec3_normalize(vec3_sub(eye, target));
@@ -72,7 +72,8 @@ static inline struct mat4 mat4_look_at(struct vec3 eye, struct vec3 target)
     }};
 }
 
-/** Vulkan's clip space: y down, depth 0 at `near` and 1 at `far`. `fov` is vertical, in radians. */
+/** Projection to Vulkan's clip space: y down, depth 0 at `near` and 1 at `far`. `fov` is vertical,
+ * in radians. */
 static inline struct mat4 mat4_perspective(float fov, float aspect, float near, float far)
 {
     float f = 1.0f / tanf(fov / 2.0f);

@@ -1,4 +1,4 @@
-/** Shrinks pictures and puts them side by side into one: the frames of a rendering at a glance. */
+/** Puts shrunk pictures, such as the frames of a rendering, side by side into one. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +41,8 @@ static enum option_outcome parse(int argc, char **argv, struct sheet_options *o)
     return options_parse(&table, argc, argv);
 }
 
-/** The mean of a picture's pixels under one pixel of the cell; the nearest one in larger cells. */
+/** Computes the mean of a picture's pixels under one pixel of the cell, or takes the nearest one if
+ * the cell is larger. */
 static void shrink_pixel(const uint8_t *picture, const uint32_t size[2], const uint32_t cell[2],
                          uint32_t x, uint32_t y, uint8_t *pixel)
 {

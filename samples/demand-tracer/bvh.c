@@ -20,7 +20,7 @@ static bool reserve(struct bvh *bvh, size_t count)
     return true;
 }
 
-/** Behind the nodes that are there. */
+/** Appends the nodes of a tree. */
 static bool add_tree(struct bvh *bvh, const struct box_tree *tree, uint32_t *root)
 {
     if (!reserve(bvh, tree->node_count))
@@ -68,7 +68,7 @@ bool bvh_add_triangles(struct bvh *bvh, struct mesh *mesh, uint32_t first_index,
     return done;
 }
 
-/** Around the corners of the shape's box. */
+/** Returns the box around the transformed corners of the shape's box. */
 static struct box_tree_box instance_box(const struct bvh *bvh,
                                         const struct TracerInstance *instance)
 {

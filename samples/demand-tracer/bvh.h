@@ -1,6 +1,6 @@
 /**
- * Hierarchies of boxes for devices that trace no rays themselves: one for each shape, and one over
- * all instances. Shaders go down them, see shaders/bvh.glsl.
+ * Box hierarchies for devices without ray tracing: one per shape, and one over all instances.
+ * shaders/bvh.glsl walks through them.
  */
 #ifndef TRACER_BVH_H
 #define TRACER_BVH_H
@@ -15,12 +15,12 @@ struct bvh {
 };
 
 /**
- * Adds a hierarchy over triangles `first_index` / 3 and on, and sorts these in the mesh: `first` of
- * its leaves counts triangles from the shape's first one. False when out of memory.
+ * Adds a hierarchy over the triangles from `first_index` / 3 on, and sorts them in the mesh.
+ * `first` of its leaves counts from the shape's first triangle. Returns false when out of memory.
  */
 bool bvh_add_triangles(struct bvh *bvh, struct mesh *mesh, uint32_t first_index,
                        uint32_t index_count, uint32_t *root);
-/** Over instances, whose shapes were added before; leaves have one each. */
+/** Adds a hierarchy over instances of added shapes. Each leaf has one instance. */
 bool bvh_add_instances(struct bvh *bvh, const struct TracerInstance *instances, uint32_t count);
 void bvh_finish(struct bvh *bvh);
 

@@ -22,7 +22,7 @@ static const char notes[] =
 
 _Static_assert(SLUICE_EXR_DEFAULT_MEMORY_BUDGET == (uint64_t)1 << 30, "the default of --memory");
 
-/** "x,y,z,x,y,z": where the camera is, and what it looks at. */
+/** Parses "x,y,z,x,y,z": the camera's position and the point it looks at. */
 static bool parse_camera(const char *text, void *value)
 {
     struct scene_camera *camera = value;
@@ -120,14 +120,14 @@ enum option_outcome tracer_options_parse(int argc, char **argv, struct tracer_op
          "folder for picture.png, picture.exr and frames.csv, a row for each launch"},
         {OPTION_TEXT, "launch-pictures", "DIR", "(none)", &o->launch_pictures,
          "also write the picture after each launch here, as PNG and EXR"},
-        {OPTION_RENAMED, "frames", "launch-pictures"}, /* a number in the gallery */
+        {OPTION_RENAMED, "frames", "launch-pictures"}, /* this name is a number in the gallery */
         {OPTION_TEXT, "contact-sheet", "FILE", "(none)", &o->contact_sheet,
          "PNG of small pictures, one for each of the first launches; without --preview missing "
          "pixels are magenta"},
         {OPTION_TEXT, "reference", "FILE", "(none)", &o->reference,
          "print PSNR, SSIM and FLIP against a PNG picture of another run, write frame-N.png, "
          "truth-N.png and flip-N.png, N launches"},
-        {OPTION_RENAMED, "compare", "reference"}, /* a flag in the gallery */
+        {OPTION_RENAMED, "compare", "reference"}, /* this name is a flag in the gallery */
         {OPTION_CHOICE, "needs", "auto|on|off", "auto", &o->count_needs,
          "count the tiles that the finished picture needed; auto: on"},
         option_json(&o->json),

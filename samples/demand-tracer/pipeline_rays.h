@@ -1,4 +1,4 @@
-/** The device's own ray-tracing pipeline: paths begin, go on, and look at what they hit. */
+/** Ray-tracing pipeline of the device. */
 #ifndef TRACER_PIPELINE_RAYS_H
 #define TRACER_PIPELINE_RAYS_H
 
@@ -11,12 +11,12 @@ struct ray_pipeline {
     struct ray_table table;
 };
 
-/** `needs`: notes what complete paths sample. Says on stderr why it failed. */
+/** `needs`: record what complete paths sample. Reports errors on stderr. */
 bool ray_pipeline_create(const struct gpu *gpu, VkPipelineLayout layout, bool preview, bool needs,
                          struct ray_pipeline *pipeline);
 void ray_pipeline_destroy(const struct gpu *gpu, struct ray_pipeline *pipeline);
 
-/** Records a launch; the descriptor sets are bound. */
+/** Records a launch. Bind the descriptor sets before. */
 void ray_pipeline_record(const struct ray_pipeline *pipeline, VkCommandBuffer commands,
                          uint32_t pixel_count);
 

@@ -26,8 +26,8 @@ static SluiceResult open_file(const struct texture *texture, SluiceImageSource *
     return picture_file_open(path, kind, &opening, source, &info);
 }
 
-/* On a thread of a loader, one at a time, when a ray has hit the texture; again from time to time
- * if it failed. What no other attempt changes is not said again. */
+/* Called on a thread of a loader, one at a time, when a ray has hit the texture, and again later if
+ * it failed. A refusal that no retry changes is reported once. */
 static SluiceResult open_texture(void *user_data, SluiceImageSource **source)
 {
     struct texture *texture = user_data;
@@ -64,7 +64,8 @@ static uint64_t chain_size(uint32_t size)
     return sum;
 }
 
-/** Files go round; leaves need holes, so they are always computed. */
+/** Chooses the image of each texture: files in turn. Leaves are always computed, because they need
+ * holes. */
 static bool choose_images(const struct tracer_options *options, struct textures *t)
 {
     for (uint32_t i = 0; i < t->scene_count; i++) {

@@ -52,7 +52,7 @@ float eye_in_frame(const struct settings *settings, uint32_t frame)
     return 1.0f - 4.0f * (float)step / (float)settings->walk_frames;
 }
 
-/* 0 to 1, another one for each stone. */
+/* Returns 0 to 1, different for each stone. */
 static float shade_of(uint32_t column, uint32_t row)
 {
     uint32_t hash = column * 2654435761u ^ row * 2246822519u;
@@ -60,8 +60,8 @@ static float shade_of(uint32_t column, uint32_t row)
     return (float)(hash >> 8) / 16777216.0f;
 }
 
-/* Stones made of ever smaller stones, as far as the level can show them: edges are sharp at any
- * distance. Any thread calls this. */
+/* Paints stones made of ever smaller stones, as fine as the level can show, so that edges are sharp
+ * at any distance. Any thread. */
 static void paint(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
 {

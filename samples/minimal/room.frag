@@ -1,4 +1,5 @@
-/* Samples a streamed texture and asks for what is seen of it: one source for all residency modes. */
+/* Samples a streamed texture and writes feedback for what is visible. One source for all residency
+ * modes. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
@@ -17,7 +18,7 @@ layout(location = 0) out vec4 color;
 
 void main()
 {
-    vec2 dx = dFdx(uv), dy = dFdy(uv); /* before the branch: they need all of the quad */
+    vec2 dx = dFdx(uv), dy = dFdy(uv); /* before the branch: derivatives need the whole quad */
     uint missing;
     color = sluiceSample(draw.tableIndex, draw.tableIndex, uv, 0.0, 1.0, missing);
     if (sluiceSelectFragmentLattice(gl_FragCoord.xy, draw.frame))

@@ -1,4 +1,4 @@
-/* Samples a streamed texture and asks for what is seen of it. */
+/* Samples a streamed texture and writes feedback for what is visible. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 

@@ -7,7 +7,7 @@ layout(push_constant) uniform Draw { uint surface, tableIndex, width, height; ui
 const vec3 eye = vec3(0.0, 0.1, 1.0);
 const float zoom = 1.1;
 
-/* The direction of a pixel, in pixels from the left and the top. */
+/* Returns the direction of a pixel, counted from the upper left. */
 vec3 rayOf(vec2 pixel)
 {
     vec2 ndc = pixel / vec2(draw.width, draw.height) * 2.0 - 1.0;

@@ -4,7 +4,8 @@
 
 static const float sun[3] = {0.552f, 0.258f, -0.793f};
 
-/* The direction of a position on a face, in [0, 1] from its upper left, as Vulkan has it. */
+/* Computes the direction of a position on a face, in [0, 1] from its upper left, as Vulkan defines
+ * it. */
 static void direction_of(uint32_t face, float u, float v, float d[3])
 {
     float s = 2 * u - 1, t = 2 * v - 1;
@@ -23,8 +24,8 @@ static void blend(float rgb[3], float r, float g, float b, float share)
     rgb[2] = noise_mix(rgb[2], b, share);
 }
 
-/* Above the horizon: blue that fades to haze, the sun, clouds on a plane, and mountains. `texel`:
- * radians that a texel covers. */
+/* Paints directions above the horizon: blue that fades to haze, the sun, clouds on a plane, and
+ * mountains. `texel`: radians per texel. */
 static void paint_sky(const float d[3], float texel, float rgb[3])
 {
     float up = d[1] > 0 ? d[1] : 0, to_sun = d[0] * sun[0] + d[1] * sun[1] + d[2] * sun[2];
@@ -49,7 +50,8 @@ static void paint_sky(const float d[3], float texel, float rgb[3])
           noise_mix(shade + 0.08f, 0.93f, snow), rock * 0.9f);
 }
 
-/* Below it: a lake that reflects, with waves that get smaller with the distance. */
+/* Paints a texel. Below the horizon is a lake that reflects, with waves that get smaller with the
+ * distance. */
 static void paint(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
 {

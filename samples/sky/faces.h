@@ -1,4 +1,4 @@
-/** A sky over a lake with mountains, as the six faces of a cube map that are painted on demand. */
+/** Cube map of a sky over a lake with mountains. Its faces are painted on demand. */
 #ifndef SAMPLES_SKY_FACES_H
 #define SAMPLES_SKY_FACES_H
 

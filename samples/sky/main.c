@@ -1,6 +1,6 @@
 /*
- * A sky whose six faces stream as one cube map: the view turns, and only the tiles that it shows
- * are loaded. The faces are painted, or come from a store of `sluice-bake --cube`.
+ * Streams the six faces of a sky as one cube map. The view turns, and only visible tiles are
+ * loaded. The faces are painted, or come from a store of `sluice-bake --cube`.
  */
 #include "../../tools/common/log.h"
 #include "../../tools/common/shared_options.h"
@@ -30,7 +30,7 @@ struct settings {
     bool edges, everything;
 };
 
-/* Push constants, as in sky.glsl. */
+/* Push constants of sky.glsl. */
 struct view {
     float right[4], up[4], ahead[4];
     uint32_t table_index;
@@ -103,7 +103,7 @@ static bool create_streamer(struct app *app)
     return sluice(sluiceCreateVulkanStreamer(&info, &app->streamer), "streamer");
 }
 
-/* Stores of cube maps say that they are; an array of six sources does not. */
+/* Sets `cube` for an array of six sources. Stores declare it themselves. */
 static bool add_sky(struct app *app)
 {
     SluiceImageInfo image = {.structSize = sizeof image};
@@ -201,7 +201,7 @@ static bool create(struct app *app)
                      "commands");
 }
 
-/* The view turns by a quarter in the first half of the frames. It ends where three faces meet. */
+/* Turns the view by a quarter in the first half of the frames. It ends where three faces meet. */
 static struct view view_in_frame(const struct app *app, uint32_t frame)
 {
     const struct settings *s = &app->settings;

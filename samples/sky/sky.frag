@@ -1,4 +1,4 @@
-/* Samples a streamed cube map and asks for what is seen of it. */
+/* Samples a streamed cube map and writes feedback for what is visible. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 

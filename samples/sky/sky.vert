@@ -1,4 +1,4 @@
-/* A triangle over the whole picture, and the direction of each pixel. */
+/* Draws a triangle over the whole picture, with the direction of each pixel. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,6 +1,6 @@
 /*
- * The texture: how many steps a point of the plane takes to leave the Mandelbrot set. Computed in
- * integers, so that every device gives every texel the same byte.
+ * Contents of the texture: the number of steps in which a point of the plane leaves the Mandelbrot
+ * set. Computed in integers, so that every device gives every texel the same byte.
  */
 
 #define FRACTAL_ONE 28 /* bits behind the binary point: numbers are below 8 */

@@ -11,7 +11,7 @@
 #define FRACTAL_GROUP 8u
 #define FRACTAL_MOST_STEPS 255u /* a texel is a byte */
 
-/* A tile: its texels in the texture, and where to write them. */
+/* A tile to make: its texels in the texture, and the place to write them. */
 struct FractalTile {
     uint level;
     uint x, y;

@@ -1,6 +1,6 @@
 /*
- * Zooms into a texture of 2^20 x 2^20 texels without a file: a compute shader makes the tiles that
- * are looked at. At the end the program compares every texel shown with the function that makes it.
+ * Zooms into a texture of 2^20 x 2^20 texels without a file. A compute shader makes the visible
+ * tiles. At the end the program compares every texel shown with the function that makes it.
  */
 #include "../../tools/common/log.h"
 #include "../../tools/common/progress.h"
@@ -41,7 +41,7 @@ static bool sluice(SluiceResult result, const char *what)
     return result == SLUICE_SUCCESS;
 }
 
-/* The tables have an entry for each tile of level 0. */
+/* Creates the streamer. Its tables have an entry for each tile of level 0. */
 static bool create_streamer(struct app *app)
 {
     const uint32_t tile_count = 1u << 2 * (app->settings.size_log2 - TILE_LOG2);
@@ -69,7 +69,8 @@ static bool create_streamer(struct app *app)
     return sluice(sluiceCreateVulkanStreamer(&info, &app->streamer), "streamer");
 }
 
-/* The callback replaces a source: no file and no memory holds the whole texture. */
+/* Adds the texture. A callback replaces the source, because no file and no memory holds the whole
+ * texture. */
 static bool add_texture(struct app *app)
 {
     const SluiceImageInfo image = {.structSize = sizeof image,
@@ -184,7 +185,7 @@ static bool print_figures(const struct app *app)
     return true;
 }
 
-/* Draws frames until every pixel shows its requested level, at most SETTLE_FRAMES. */
+/* Draws frames until every pixel shows its requested level, but at most SETTLE_FRAMES. */
 static bool settle(struct app *app)
 {
     for (uint32_t i = 0; i < SETTLE_FRAMES; i++) {

@@ -97,7 +97,7 @@ SluiceResult maker_record_tiles(void *pUserData, const SluiceTileBatch *pBatch,
                                 SluiceResult *pResults)
 {
     struct maker *m = pUserData;
-    (void)pResults; /* all tiles of a batch have one answer */
+    (void)pResults; /* all tiles of a batch have the same result */
     if (!pBatch->imageView)
         return SLUICE_ERROR_UNSUPPORTED;
     if (m->set_count == MAKER_SETS || m->tile_count + pBatch->tileCount > MAKER_TILES)

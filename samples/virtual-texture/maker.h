@@ -1,4 +1,4 @@
-/** The producer of the texture: a compute shader writes the tiles that the streamer asks for. */
+/** Producer of the texture: a compute shader writes the tiles that the streamer requests. */
 #ifndef SAMPLES_VIRTUAL_TEXTURE_MAKER_H
 #define SAMPLES_VIRTUAL_TEXTURE_MAKER_H
 

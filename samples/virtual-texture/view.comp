@@ -1,4 +1,4 @@
-/* Shows a part of the texture, and reports what it sampled. Counts wrong texels if it is asked to. */
+/* Shows a part of the texture and writes feedback. Counts wrong texels on request. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 

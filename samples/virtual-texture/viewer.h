@@ -1,4 +1,4 @@
-/** The pass that looks at the texture, in a compute shader. */
+/** Pass that shows the texture, in a compute shader. */
 #ifndef SAMPLES_VIRTUAL_TEXTURE_VIEWER_H
 #define SAMPLES_VIRTUAL_TEXTURE_VIEWER_H
 

@@ -1,4 +1,4 @@
-/* Sampling on demand, with the library's descriptor set at 0. notes.glsl, for --needs alone, notes
+/* Sampling on demand, with the library's descriptor set at 0. notes.glsl, for --needs only, records
  * the words that sampling reads. */
 #ifndef TRACER_TEXTURES_GLSL
 #define TRACER_TEXTURES_GLSL

@@ -1,4 +1,4 @@
-/* Looks at the nearest surface: this is where textures are sampled. */
+/* Samples the textures of the nearest surface. */
 #version 460
 #extension GL_EXT_ray_tracing : require
 #extension GL_EXT_nonuniform_qualifier : require
