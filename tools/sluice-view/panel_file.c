@@ -36,24 +36,32 @@ static void draw_report(const struct file_facts *facts)
     }
 }
 
-/* Pictures without tiles have no report: the streamer knows their size. */
-static void draw_picture(const struct view_app *app)
+/* The texture of a file that was opened; STAGE_NO_TEXTURE: none is of this file. */
+static uint32_t find_texture(const struct view_app *app)
 {
-    const char *path = app->file.path;
-    ui_paragraph(UI_BLUE, path);
-    for (uint32_t i = 0; app->stage && i < stage_texture_count(app->stage); i++) {
-        const struct stage_texture *t = stage_texture(app->stage, i);
-        if (strcmp(t->path, path) != 0)
-            continue;
+    for (uint32_t i = 0; app->stage && i < stage_texture_count(app->stage); i++)
+        if (strcmp(stage_texture(app->stage, i)->path, app->file.path) == 0)
+            return i;
+    return STAGE_NO_TEXTURE;
+}
+
+/* Scenes and pictures without tiles have no report. */
+static void draw_opened(const struct view_app *app)
+{
+    const uint32_t texture = find_texture(app);
+    ui_paragraph(UI_BLUE, app->file.path);
+    if (texture != STAGE_NO_TEXTURE) {
+        const struct stage_texture *t = stage_texture(app->stage, texture);
         ui_text(UI_WHITE, "%u x %u texels, %u levels, %s", t->width, t->height, t->level_count,
                 t->format);
-        break;
+        ui_paragraph(UI_GRAY, remote_is_url(app->file.path)
+                                  ? "On a server: sluice-info URL has its report."
+                                  : "A picture without tiles. It is prepared once, and its tile "
+                                    "store is kept in the cache (--cache).");
+    } else if (app->stage && stage_streamer(app->stage)) {
+        ui_text(UI_WHITE, "%u triangles, %u textures, %u cameras", stage_triangle_count(app->stage),
+                stage_texture_count(app->stage), stage_camera_count(app->stage));
     }
-    if (remote_is_url(path))
-        ui_paragraph(UI_GRAY, "On a server: sluice-info URL has its report.");
-    else if (!app->file.failed[0])
-        ui_paragraph(UI_GRAY, "A file without tiles. Its pictures are prepared once, and their "
-                              "tile stores are kept in the cache (--cache).");
 }
 
 /* Advice that the next message has, too, stands below that one. */
@@ -102,7 +110,7 @@ void panel_file(struct view_app *app)
             if (facts->report)
                 draw_report(facts);
             else
-                draw_picture(app);
+                draw_opened(app);
         } else if (!said && !facts->failed[0]) {
             ui_paragraph(UI_GRAY, "Nothing was said since the scene was opened. Drop a file, or "
                                   "select a texture and press \"Its file\" in the inspector (I).");
