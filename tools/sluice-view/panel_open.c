@@ -125,6 +125,7 @@ static void draw_files(struct view_app *app, float width, float height)
         const int hit =
             ui_list_line((int)i, selected, entry->is_folder ? UI_BLUE : UI_WHITE,
                          panel_shorten(name, width - 110 * ui_scale(), shown, sizeof shown));
+        ui_hint("%s", entry->name);
         if (!entry->is_folder) {
             ui_same_line(width - 90 * ui_scale());
             ui_text(UI_GRAY, "%s", size_words(entry->size, size, sizeof size));
@@ -182,7 +183,7 @@ static void draw_buttons(struct view_app *app)
     if (ui_button("Folder above (Backspace)", 0, 0, false))
         browser_up(b);
     ui_same_line(0);
-    if (ui_button("Its pictures (Ctrl+Enter)", 0, 0, false))
+    if (ui_button("Hang its pictures (Ctrl+Enter)", 0, 0, false))
         choose_folder(app);
     ui_hint("Hangs all pictures of this folder and those below it in the room.");
     ui_same_line(0);

@@ -70,6 +70,8 @@ static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int modi
         key == GLFW_KEY_BACKSPACE || (key >= GLFW_KEY_RIGHT && key <= GLFW_KEY_PAGE_DOWN);
     if (action == GLFW_REPEAT && !repeats)
         return;
+    if (key == GLFW_KEY_KP_ENTER)
+        key = GLFW_KEY_ENTER;
     if (key == GLFW_KEY_RIGHT_SHIFT || key == GLFW_KEY_RIGHT_CONTROL || key == GLFW_KEY_RIGHT_ALT)
         key -= GLFW_KEY_RIGHT_SHIFT - GLFW_KEY_LEFT_SHIFT;
     if (key >= 0 && key < VIEW_KEY_COUNT)
