@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The channel names as far as they fit, for messages. */
+/* Lists the channel names for messages, as many as fit. */
 static void list_channels(const exr_attr_chlist_t *list, char *text, size_t size)
 {
     char name[64];
@@ -26,9 +26,8 @@ static bool has_channel(const exr_attr_chlist_t *list, const char *name)
 }
 
 /*
- * The letters of the channels that are read: "RGBA" if there is a color, else "YA" for gray. A file
- * may have any number of other channels beside them, such as depth or layers. NULL: nothing to
- * read.
+ * Returns the letters of the channels to read: "RGBA" for color, "YA" for gray, NULL for neither.
+ * A file may have any number of other channels, such as depth or layers.
  */
 static const char *choose_letters(const exr_attr_chlist_t *list)
 {
@@ -58,7 +57,7 @@ static SluiceResult check_channel(struct slc_exr_file *file, const exr_attr_chli
 {
     char name[64];
     slc_printable(entry->name.str, name, sizeof name);
-    /* Others than those that are read count, too: they lie between them in each line. */
+    /* Skipped channels must be checked, too: their data lies between the read ones in each line. */
     if (entry->x_sampling != 1 || entry->y_sampling != 1)
         return slc_input_fail(
             &file->input, SLUICE_ERROR_UNSUPPORTED,

@@ -21,7 +21,7 @@ static uint32_t tiles_along(struct slc_exr_file *file, int32_t level_x, int32_t 
                 : slc_div_up_u32((uint32_t)height, file->chunk_height);
 }
 
-/* All levels in x of level 0 in y, then those of level 1 in y and so on; row by row in each. */
+/* Returns the index of a chunk. Order: level in y, level in x, row, column. */
 static uint64_t find_rip_index(struct slc_exr_file *file, const exr_chunk_info_t *info)
 {
     uint64_t tiles_in_row = 0, index = 0;
@@ -36,8 +36,8 @@ static uint64_t find_rip_index(struct slc_exr_file *file, const exr_chunk_info_t
            (uint64_t)info->start_x;
 }
 
-/* Where OpenEXRCore itself has the offset and the leader right, exr_read_tile_chunk_info is used.
- */
+/* Reads the leader of a tile of a rip map. Other files use exr_read_tile_chunk_info, which has
+ * wrong offsets for rip maps only. */
 static SluiceResult read_rip_leader(struct slc_exr_file *file, exr_chunk_info_t *info)
 {
     uint64_t index = find_rip_index(file, info);
@@ -105,8 +105,8 @@ static SluiceResult find_with_library(struct slc_exr_file *file, struct slc_exr_
 }
 
 /*
- * Before OpenEXRCore allocates or reads anything for a chunk. It believes smaller sizes for
- * uncompressed data and then unpacks memory that nobody has written.
+ * Checks the sizes of a chunk before OpenEXRCore allocates or reads. OpenEXRCore accepts smaller
+ * sizes for uncompressed data and then unpacks uninitialized memory.
  */
 static SluiceResult check_chunk(struct slc_exr_file *file, const struct slc_exr_chunk *chunk)
 {

@@ -1,13 +1,13 @@
-/** Where in the file the chunks (tiles or blocks of lines) are. */
+/** Positions of the chunks (tiles or blocks of lines) in the file. */
 #ifndef SLC_EXR_CHUNK_H
 #define SLC_EXR_CHUNK_H
 
 #include "exr/exr_file.h"
 
-/** A chunk, and the texels of its level that it holds. */
+/** Chunk and the region of its level. */
 struct slc_exr_chunk {
     exr_chunk_info_t info;
-    SluiceImageRegion region; ///< in the file's level, which may be larger than Vulkan's
+    SluiceImageRegion region; ///< in the file's level; the file may round sizes up, Vulkan does not
 };
 
 /**

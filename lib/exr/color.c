@@ -9,7 +9,7 @@ static bool find_attribute(const struct slc_exr_file *file, const char *name,
            (*attribute)->type == type;
 }
 
-/* R, G and B are there, and are light rather than numbers of something. */
+/* Tells whether the file has R, G and B as light, not as data. */
 static bool has_color(const struct slc_exr_file *file)
 {
     for (int c = 0; c < 3; c++) {
@@ -29,7 +29,7 @@ static void tell_luminance(const struct slc_exr_file *file)
                 (double)attribute->f);
 }
 
-/* Files without the attribute are in Rec. 709, as the standard says. */
+/* Reads the attribute. By the standard, files without the attribute have Rec. 709 primaries. */
 static void read_chromaticities(struct slc_exr_file *file)
 {
     const exr_attribute_t *attribute;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BATCH = 64 }; /* texels that are converted at once */
+enum { BATCH = 64 }; /* texels of one conversion */
 
 SluiceFormat slc_exr_natural_format(const struct slc_exr_file *file)
 {
@@ -33,8 +33,8 @@ void slc_exr_decoder_finish(struct slc_exr_decoder *decoder)
 }
 
 /*
- * OpenEXRCore reads and decompresses; its unpacking is left out. It offers none that saturates,
- * clamps or encodes, and would unpack whole chunks where a region needs a corner of one.
+ * Reads and decompresses a chunk with OpenEXRCore, without unpacking. OpenEXRCore's unpacking does
+ * not saturate, clamp or encode, and unpacks whole chunks where a region needs only a corner.
  */
 static exr_result_t decompress(struct slc_exr_decoder *decoder, const exr_chunk_info_t *info)
 {
@@ -51,13 +51,13 @@ static exr_result_t decompress(struct slc_exr_decoder *decoder, const exr_chunk_
         pipeline->unpack_and_convert_fn = NULL;
         decoder->decompress = pipeline->decompress_fn;
     }
-    /* Chunks that would not shrink are stored as they are; 3.1 decodes them all the same in B44. */
+    /* Incompressible chunks are stored raw. OpenEXRCore 3.1 wrongly decodes these, too, for B44. */
     bool is_raw = info->packed_size == info->unpacked_size;
     pipeline->decompress_fn = is_raw ? NULL : decoder->decompress;
     return result == EXR_ERR_SUCCESS ? exr_decoding_run(context, 0, pipeline) : result;
 }
 
-/* One channel of `count` texels of a row, in the file's bytes. */
+/* Loads `count` values of one channel of a row from the file's bytes. */
 static void load_span(exr_pixel_type_t type, const unsigned char *source, float *values,
                       uint32_t count)
 {
@@ -74,7 +74,7 @@ static void load_span(exr_pixel_type_t type, const unsigned char *source, float 
     }
 }
 
-/* How a component is stored. ENCODE_WORD keeps the 32 bits of the file. */
+/* Encoding of a component in the target. ENCODE_WORD keeps the file's 32 bits. */
 enum encoding {
     ENCODE_FLOAT,
     ENCODE_HALF,
@@ -84,7 +84,7 @@ enum encoding {
     ENCODE_WORD
 };
 
-/* The encoding of component `c`. Alpha is linear in every format. */
+/* Returns the encoding of component `c`. Alpha is linear in every format. */
 static enum encoding encoding_of(SluiceFormat format, uint32_t c)
 {
     if (format == SLUICE_FORMAT_R8G8B8A8_SRGB)
@@ -126,7 +126,7 @@ static void store_span(enum encoding encoding, const float *values, char *result
     }
 }
 
-/* The common case, and the one in which infinities and NaN stay as they are. */
+/* Copies halves, the common case. Infinities and NaN keep their bits. */
 static void copy_half_span(const unsigned char *source, char *result, size_t stride, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++, result += stride) {
@@ -135,7 +135,7 @@ static void copy_half_span(const unsigned char *source, char *result, size_t str
     }
 }
 
-/* As they are: floats hold integers up to 2^24 only. */
+/* Copies 32-bit words. Conversion to float would lose integers above 2^24. */
 static void copy_word_span(const unsigned char *source, char *result, size_t stride, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++, source += 4, result += stride) {
@@ -145,7 +145,7 @@ static void copy_word_span(const unsigned char *source, char *result, size_t str
     }
 }
 
-/* How one component of the target is filled. */
+/* Source and encoding of one component of the target. */
 struct component {
     uint32_t size;
     enum encoding encoding;
@@ -183,13 +183,14 @@ static void fill_span(bool is_alpha, const struct component *component, char *re
         store_span(component->encoding, &value, result, component->stride, 1);
 }
 
-/* The channel that a component comes from, -1 for none. One to one, names do not matter. */
+/* Returns the channel of a component, or -1. With one channel and one component, names are ignored.
+ */
 static int32_t find_channel(const struct slc_exr_file *file, uint32_t component_count, uint32_t c)
 {
     return component_count == 1 && file->channel_count == 1 ? 0 : file->rgba[c];
 }
 
-/* R, G and B of part of a row, in the file's bytes, where they are converted to other primaries. */
+/* Loads R, G and B of a part of a row from the file's bytes, for conversion of primaries. */
 static void load_colors(const struct slc_exr_file *file, const unsigned char *row,
                         uint32_t chunk_width, uint32_t first, float *colors, uint32_t count)
 {
@@ -204,7 +205,7 @@ static void load_colors(const struct slc_exr_file *file, const unsigned char *ro
     }
 }
 
-/* Halves that were infinite or NaN in the file stay so. */
+/* Stores halves. Infinities and NaN of the file stay infinities and NaN. */
 static void store_kept_halves(const float *values, char *result, size_t stride, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++, result += stride) {
@@ -240,7 +241,7 @@ static void deliver_colors(struct slc_exr_file *file, const unsigned char *row,
     }
 }
 
-/* The part of a row that chunk and target share: every component from its channel. */
+/* Writes all components in the part of a row that chunk and target share. */
 static void deliver_row(struct slc_exr_file *file, const unsigned char *row,
                         const SluiceImageRegion *chunk, const SluiceImageRegion *shared,
                         const struct slc_exr_target *target, char *result)
@@ -275,8 +276,8 @@ static SluiceImageRegion intersect(const SluiceImageRegion *a, const SluiceImage
 }
 
 /*
- * Up to 3.1 OpenEXRCore's decompressors also answer OUT_OF_MEMORY for bytes that make no sense. It
- * is taken at its word only if what a chunk can need at most really cannot be had.
+ * Maps an error of a decompressor. Up to 3.1, OpenEXRCore also returns OUT_OF_MEMORY for corrupt
+ * bytes. So OUT_OF_HOST_MEMORY is returned only if a chunk's largest buffer cannot be allocated.
  */
 static SluiceResult explain(const struct slc_exr_file *file, const exr_chunk_info_t *info,
                             exr_result_t result)

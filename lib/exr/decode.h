@@ -1,10 +1,10 @@
-/** Decodes chunks and delivers the texels of a region in the format that is asked for. */
+/** Decoder of chunks: writes the texels of a region in the requested format. */
 #ifndef SLC_EXR_DECODE_H
 #define SLC_EXR_DECODE_H
 
 #include "exr/chunk.h"
 
-/** Buffers that are used again from chunk to chunk. One thread at a time. */
+/** Decoder with buffers, reused for every chunk. One thread at a time. */
 struct slc_exr_decoder {
     struct slc_exr_file *file;
     exr_decode_pipeline_t pipeline;
@@ -12,7 +12,7 @@ struct slc_exr_decoder {
     bool is_open;
 };
 
-/** Where texels go: a rectangle of a level, rows `pitch` bytes apart. */
+/** Target of texels: a rectangle of a level, rows `pitch` bytes apart. */
 struct slc_exr_target {
     SluiceFormat format;
     SluiceImageRegion region;
@@ -29,7 +29,7 @@ SluiceResult slc_exr_decode_chunk(struct slc_exr_decoder *decoder,
                                   const struct slc_exr_chunk *chunk,
                                   const struct slc_exr_target *target);
 
-/** The format that fits the file, where none is asked for. */
+/** Returns the default format for a file. */
 SluiceFormat slc_exr_natural_format(const struct slc_exr_file *file);
 
 #endif /* SLC_EXR_DECODE_H */

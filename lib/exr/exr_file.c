@@ -20,7 +20,7 @@ SluiceResult slc_exr_result(const struct slc_exr_file *file, exr_result_t result
     }
 }
 
-/* Our own stream, because OpenEXRCore's does not tell a damaged disk from a short file. */
+/* Reads for OpenEXRCore, whose own stream does not tell a damaged disk from a short file. */
 static int64_t on_read(exr_const_context_t context, void *user, void *buffer, uint64_t size,
                        uint64_t offset, exr_stream_error_func_ptr_t error)
 {
@@ -43,8 +43,8 @@ static int64_t on_query_size(exr_const_context_t context, void *user)
     return (int64_t)((struct slc_exr_file *)user)->input.size;
 }
 
-/* Warnings, because OpenEXRCore goes on after some of them; our own error follows if it does not.
- */
+/* Logs messages of OpenEXRCore as warnings, because decoding continues after some. Otherwise Sluice
+ * logs its own error. */
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
     void *user = NULL;
@@ -64,7 +64,7 @@ static SluiceResult open_context(struct slc_exr_file *file)
     init.user_data = file;
     init.read_fn = on_read;
     init.size_fn = on_query_size;
-    /* A table that was never completed is an error here, not something to search the file for. */
+    /* An incomplete chunk table is an error; do not search the file for chunks. */
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     exr_result_t result = exr_start_read(&file->context, file->input.path, &init);
     if (result == EXR_ERR_SUCCESS)

@@ -1,4 +1,4 @@
-/** Memory that several sources share for the levels that they build. */
+/** Memory budget for generated levels, shared by several sources. */
 #ifndef SLC_EXR_EXR_MEMORY_BUDGET_H
 #define SLC_EXR_EXR_MEMORY_BUDGET_H
 
@@ -12,10 +12,10 @@ struct SluiceExrMemoryBudget {
     _Atomic uint64_t used_size;
 };
 
-/** Takes `size` bytes, or none and returns false. Any thread. */
+/** Reserves `size` bytes; false, without effect, if the rest is smaller. Any thread. */
 bool slc_memory_budget_take(SluiceExrMemoryBudget *budget, uint64_t size);
 
-/** Gives back what was taken. Any thread. */
+/** Returns `size` reserved bytes to the budget. Any thread. */
 void slc_memory_budget_give_back(SluiceExrMemoryBudget *budget, uint64_t size);
 
 #endif /* SLC_EXR_EXR_MEMORY_BUDGET_H */

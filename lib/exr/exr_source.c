@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-/* Until a file that could not be decoded is decoded again though it seems unchanged. */
+/* Least time between attempts to decode an unchanged file that failed. */
 #define TIME_BETWEEN_BUILDS UINT64_C(10000000000) /* nanoseconds */
 
 struct exr_source {
@@ -21,13 +21,13 @@ struct exr_source {
     struct slc_exr_file file;
     SluiceImageInfo info;
     bool reads_chain;              ///< the file has no levels of its own
-    uint64_t chain_size;           ///< bytes that building takes and the chain then holds; 0: none
-    uint64_t read_size;            ///< bytes that a read takes
-    SluiceExrMemoryBudget *budget; ///< NULL, or chain_size was taken from it
-    struct slc_mutex mutex;        ///< around what follows
+    uint64_t chain_size;           ///< bytes of the chain, during and after the build; 0: no chain
+    uint64_t read_size;            ///< bytes that a read allocates
+    SluiceExrMemoryBudget *budget; ///< NULL, or chain_size is reserved in it
+    struct slc_mutex mutex;        ///< guards the fields below
     bool is_built;
-    SluiceResult failure;                ///< of building, if another attempt now would fail again
-    struct slc_file_stamp failure_stamp; ///< of the file then
+    SluiceResult failure;                ///< of the last build; a repeat now would fail, too
+    struct slc_file_stamp failure_stamp; ///< file stamp at the failure
     uint64_t failure_time;
     struct slc_mip_chain chain;
 };
@@ -38,7 +38,7 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
     return SLUICE_SUCCESS;
 }
 
-/* Every chunk that the target's rectangle touches, and no other. */
+/* Reads exactly the chunks that the target's rectangle touches. */
 static SluiceResult read_chunks(struct slc_exr_file *file, const struct slc_exr_target *target)
 {
     const SluiceImageRegion *region = &target->region;
@@ -82,7 +82,7 @@ static SluiceResult build_chain(struct exr_source *source)
     return result;
 }
 
-/* Decoding all of a file takes long, so it is not done for every tile that is asked for again. */
+/* Keeps a failure, so that repeated reads of tiles do not each decode the whole file. */
 static void note_failure(struct exr_source *source, SluiceResult result)
 {
     if (result != SLUICE_ERROR_CORRUPT_DATA && result != SLUICE_ERROR_UNSUPPORTED)
@@ -92,7 +92,7 @@ static void note_failure(struct exr_source *source, SluiceResult result)
     source->failure_time = slc_monotonic_time();
 }
 
-/* It was written again, or there may have been an outage. */
+/* Tells whether a retry may succeed: the file changed, or some time has passed. */
 static bool may_be_well(const struct exr_source *source)
 {
     struct slc_file_stamp stamp = slc_input_file_stamp(&source->file.input);
@@ -100,7 +100,7 @@ static bool may_be_well(const struct exr_source *source)
            slc_monotonic_time() - source->failure_time >= TIME_BETWEEN_BUILDS;
 }
 
-/* The first reader builds while the others wait; afterwards the chain never changes. */
+/* Builds the chain in the first reader; others wait. The finished chain is constant. */
 static SluiceResult ensure_chain(struct exr_source *source)
 {
     slc_mutex_lock(&source->mutex);
@@ -152,7 +152,7 @@ static const char *const storage_names[] = {
     [SLC_EXR_RIPMAP] = "tiles",
 };
 
-/* What OpenEXRCore takes for a chunk: its bytes, its texels, and as much to sort them. */
+/* Returns OpenEXRCore's memory for a chunk: packed bytes, texels, and as much again for sorting. */
 static uint64_t chunk_memory(const struct slc_exr_file *file)
 {
     return 3 * (uint64_t)slc_min_u32(file->chunk_width, file->width) *
@@ -175,7 +175,7 @@ static uint64_t to_mib(uint64_t size)
 static SluiceResult refuse_memory(const struct exr_source *source, uint64_t limit)
 {
     const struct slc_exr_file *file = &source->file;
-    /* The limit is rounded down and the need up, so that a message never says "1 MiB of 1". */
+    /* Rounds the limit down and the need up, so that the message shows need > limit. */
     unsigned long long mib = limit >> 20, chunk = to_mib(source->read_size),
                        chain = to_mib(source->chain_size + source->read_size);
     if (source->read_size > limit)
@@ -219,7 +219,8 @@ static SluiceResult reserve_memory(struct exr_source *source,
     return SLUICE_SUCCESS;
 }
 
-/* Integers are delivered bit by bit, so only channels of integers make them. */
+/* Checks that integer formats come from integer channels; integers are copied without conversion.
+ */
 static SluiceResult check_integers(const struct slc_exr_file *file, SluiceFormat format)
 {
     if (!slc_format_is_integer(format))

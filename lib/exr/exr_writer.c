@@ -13,11 +13,11 @@
 #include <openexr.h>
 #include <string.h>
 
-/* A tile, in the order in which tiles are taken and written: level by level, row by row. */
+/* Position of a tile. Tiles are made and written level by level, row by row. */
 struct tile {
     uint64_t index;
     SluiceImageRegion region;
-    uint32_t x, y; ///< among the tiles of its level
+    uint32_t x, y; ///< column and row among the tiles of its level
 };
 
 struct writer {
@@ -31,17 +31,17 @@ struct writer {
     bool write_failed; ///< And was logged.
     exr_context_t context;
 
-    struct slc_mutex mutex;    ///< around what follows and around every write
-    struct slc_condition turn; ///< another tile has been written, or writing has failed
-    struct tile next;          ///< to be taken
+    struct slc_mutex mutex;    ///< guards the fields below and every write
+    struct slc_condition turn; ///< a tile was written, or writing failed
+    struct tile next;          ///< next tile to make
     uint64_t written_count, written_texels;
     SluiceResult result; ///< the first failure
 };
 
-/* What one thread needs for one tile. */
+/* Buffers of one thread for one tile. */
 struct tile_buffers {
     char *texels; ///< in the source's format
-    char *packed; ///< as the file has them: per row each channel by itself, A, B, G, R
+    char *packed; ///< file layout: in each row channel by channel, A, B, G, R
     size_t texels_size, packed_size;
 };
 
@@ -74,7 +74,7 @@ static int64_t on_write(exr_const_context_t context, void *user, const void *buf
     return -1;
 }
 
-/* Results say enough, and the context may be locked where this is called. */
+/* Ignores messages: results suffice, and the context may be locked here. */
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
     (void)context;
@@ -82,7 +82,7 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
     (void)message;
 }
 
-/* Channels have to be added by name, and are stored so. */
+/* Returns the channel names in alphabetical order, which is the order in the file. */
 static const char *const *channel_names(uint32_t count)
 {
     static const char *const names[5][5] = {
@@ -90,7 +90,7 @@ static const char *const *channel_names(uint32_t count)
     return names[count];
 }
 
-/* Which component of RGBA the channel of a place in the file comes from. */
+/* Returns the RGBA component of a channel of the file. */
 static uint32_t channel_component(uint32_t channel_count, uint32_t channel)
 {
     return channel_count - 1 - channel;
@@ -122,7 +122,7 @@ static exr_result_t start_context(struct writer *writer)
     init.error_handler_fn = on_error;
     init.user_data = writer;
     init.write_fn = on_write;
-    init.zip_level = 4; /* twice as fast as 6 for files that are a few percent larger */
+    init.zip_level = 4; /* twice as fast as 6; files grow by a few percent */
     exr_result_t result =
         exr_start_write(&writer->context, writer->info.pPath, EXR_WRITE_FILE_DIRECTLY, &init);
     if (result != EXR_ERR_SUCCESS) {
@@ -132,7 +132,7 @@ static exr_result_t start_context(struct writer *writer)
     return define_image(writer);
 }
 
-/* Of half sources the bits, so that infinities and NaN survive; of others the nearest half. */
+/* Converts texels to halves. Half sources keep their bits, including infinities and NaN. */
 static void convert_texels(SluiceFormat format, const char *texels, uint16_t (*halves)[4],
                            uint32_t count)
 {
@@ -189,8 +189,8 @@ static SluiceResult make_tile(struct writer *writer, const struct tile *tile,
 
 static exr_chunk_info_t describe_chunk(const struct writer *writer, const struct tile *tile)
 {
-    /* By hand: up to 3.1, exr_write_tile_chunk_info gives the last tiles of NPOT levels below the
-     * first the full tile's size. */
+    /* Filled by hand: up to 3.1, exr_write_tile_chunk_info returns the full tile size for the last
+     * tiles of NPOT levels > 0. */
     return (exr_chunk_info_t){
         .idx = (int32_t)tile->index,
         .start_x = (int32_t)tile->x,
@@ -206,7 +206,7 @@ static exr_chunk_info_t describe_chunk(const struct writer *writer, const struct
     };
 }
 
-/* Runs the library's encoder up to compressed bytes; the writing comes when it is our turn. */
+/* Compresses a tile with the library's encoder. The tile is written later, in its turn. */
 static exr_result_t compress_tile(struct writer *writer, const struct tile *tile,
                                   const char *packed, exr_encode_pipeline_t *pipeline)
 {
@@ -244,7 +244,7 @@ static void advance(struct writer *writer, struct tile *tile)
     tile->region.mipLevel++;
 }
 
-/* Holding the mutex; false if there is nothing left to do. */
+/* Takes the next tile. The mutex is held. False: no tile is left. */
 static bool take_tile(struct writer *writer, struct tile *tile)
 {
     if (writer->result != SLUICE_SUCCESS || writer->next.index == writer->tile_count)
@@ -261,7 +261,7 @@ static bool take_tile(struct writer *writer, struct tile *tile)
     return true;
 }
 
-/* Holding the mutex. Tiles go to the file in order, so that readers find neighbors together. */
+/* Writes a tile in order, so that neighbors are close in the file. The mutex is held. */
 static SluiceResult put_tile(struct writer *writer, const struct tile *tile, const void *bytes,
                              uint64_t size)
 {
@@ -279,7 +279,7 @@ static SluiceResult put_tile(struct writer *writer, const struct tile *tile, con
     return SLUICE_SUCCESS;
 }
 
-/* Makes a tile without the mutex, then waits for its turn with it. */
+/* Makes a tile with the mutex unlocked, then locks it and waits for the tile's turn. */
 static void write_tile(struct writer *writer, const struct tile *tile,
                        const struct tile_buffers *buffers)
 {
@@ -345,7 +345,7 @@ static void *worker_main(void *argument)
     return NULL;
 }
 
-/* The calling thread works, too; threads that cannot be had are done without. */
+/* Runs the calling thread and as many others as can be started. */
 static SluiceResult run_workers(struct writer *writer)
 {
     uint32_t extra = writer->info.threadCount - 1, started = 0;

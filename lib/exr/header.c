@@ -97,7 +97,7 @@ static SluiceResult check_compression(struct slc_exr_file *file)
     return SLUICE_SUCCESS;
 }
 
-/* What any chunk needs in memory, and how much more the image is than its file could hold. */
+/* Checks the memory of a chunk, and the ratio of image size to file size. */
 static SluiceResult check_plausibility(struct slc_exr_file *file)
 {
     uint64_t texels = (uint64_t)slc_min_u32(file->chunk_width, file->width) *
@@ -107,7 +107,7 @@ static SluiceResult check_plausibility(struct slc_exr_file *file)
                               "has tiles of %u x %u texels, which need more than 1 GiB each; use "
                               "smaller ones",
                               file->chunk_width, file->chunk_height);
-    /* The strongest compression there is, DWA of a constant, stays well below 65536 : 1. */
+    /* The strongest compression, DWA of a constant, stays well below 65536 : 1. */
     uint64_t image = (uint64_t)file->width * file->height * file->texel_size;
     if (image / 65536 > file->input.size)
         return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
@@ -147,7 +147,7 @@ SluiceResult slc_exr_level_size(const struct slc_exr_file *file, uint32_t level,
     return SLUICE_SUCCESS;
 }
 
-/* Rounding down gives Vulkan's sizes, rounding up one more at times; less would be unreadable. */
+/* Checks that levels are no smaller than Vulkan's. Files that round up have one texel more. */
 static SluiceResult check_levels(struct slc_exr_file *file)
 {
     uint32_t level_count = 1;
@@ -165,10 +165,10 @@ static SluiceResult check_levels(struct slc_exr_file *file)
     return SLUICE_SUCCESS;
 }
 
-/* Moves *offset behind one attribute of a header; *last tells that there was no more. */
+/* Moves *offset behind one attribute of a header. *last: the header has ended. */
 static SluiceResult skip_attribute(struct slc_exr_file *file, uint64_t *offset, bool *last)
 {
-    /* name, type, both ended by a zero, and a size; names have at most 255 bytes */
+    /* name and type, each with a zero at the end, and a size; names have at most 255 bytes */
     unsigned char bytes[256 + 256 + 4] = {0};
     uint64_t rest = *offset < file->input.size ? file->input.size - *offset : 0;
     size_t size = rest < sizeof bytes ? (size_t)rest : sizeof bytes;
@@ -193,10 +193,10 @@ static SluiceResult skip_attribute(struct slc_exr_file *file, uint64_t *offset, 
 }
 
 /*
- * OpenEXRCore up to 3.1 counts the chunks of rip maps wrongly
- * (docs/decisions/0010-what-openexrcore-is-trusted-with.md), so that for them the table of chunks
- * is looked up here. It follows the headers: attributes up to an empty name, in multi-part files
- * one header after the other up to an empty one.
+ * Finds the chunk table of a rip map. OpenEXRCore up to 3.1 counts the chunks of rip maps wrongly
+ * (docs/decisions/0010-what-openexrcore-is-trusted-with.md). The table follows the headers. A
+ * header is a list of attributes up to an empty name. A multi-part file ends its list of headers
+ * with an empty header.
  */
 static SluiceResult find_chunk_table(struct slc_exr_file *file)
 {

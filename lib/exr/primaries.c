@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A matrix that differs by less is not applied: most halves would come back as they were. */
+/* Tolerance below which a matrix counts as identity: most halves would not change. */
 #define IDENTITY_TOLERANCE 0x1p-12
 /* Determinants of real primaries are 0.05 and more. */
 #define LEAST_DETERMINANT 1e-6
@@ -39,7 +39,7 @@ static double cofactor(double m[3][3], int i, int j)
     return m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1];
 }
 
-/* NaN fails every comparison, and so is refused here. */
+/* Inverts a matrix. False if singular or NaN: comparisons with NaN are false. */
 static bool invert(double matrix[3][3], double inverse[3][3])
 {
     double determinant = 0.0;
@@ -53,7 +53,7 @@ static bool invert(double matrix[3][3], double inverse[3][3])
     return true;
 }
 
-/* Tristimulus values of luminance 1. */
+/* Finds the tristimulus values for luminance 1. */
 static bool find_xyz(const double xy[2], double xyz[3])
 {
     if (!(xy[1] > 1e-3 && xy[1] <= 1.0 && xy[0] >= 0.0 && xy[0] <= 1.0))
@@ -64,7 +64,7 @@ static bool find_xyz(const double xy[2], double xyz[3])
     return true;
 }
 
-/* Primaries scaled so that their sum is the white. */
+/* Finds the matrix of primaries, scaled so that their sum is the white point. */
 static bool find_rgb_to_xyz(const struct slc_chromaticities *from, double matrix[3][3])
 {
     const double *const primaries[3] = {from->red, from->green, from->blue};
@@ -78,7 +78,7 @@ static bool find_rgb_to_xyz(const struct slc_chromaticities *from, double matrix
         return false;
     transform(inverse, white, scale);
     for (int j = 0; j < 3; j++) {
-        if (!(fabs(scale[j]) > 1e-6)) /* a primary that white has nothing of */
+        if (!(fabs(scale[j]) > 1e-6)) /* the white point contains nothing of this primary */
             return false;
         for (int i = 0; i < 3; i++)
             matrix[i][j] *= scale[j];
@@ -126,7 +126,7 @@ bool slc_primaries_to_rec709(const struct slc_chromaticities *from, const double
     multiply(adaptation, to_xyz, matrix);
     multiply(from_xyz, matrix, matrix);
     for (int i = 0; i < 9; i++)
-        if (!(fabs(matrix[i / 3][i % 3]) < 1e3)) /* beyond any colors that there are */
+        if (!(fabs(matrix[i / 3][i % 3]) < 1e3)) /* far beyond real colors */
             return false;
     return true;
 }

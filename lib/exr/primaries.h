@@ -1,4 +1,4 @@
-/** From the primaries that a file names to those of Rec. ITU-R BT.709. */
+/** Conversion from a file's primaries to Rec. ITU-R BT.709. */
 #ifndef SLC_EXR_PRIMARIES_H
 #define SLC_EXR_PRIMARIES_H
 
@@ -13,15 +13,14 @@ struct slc_chromaticities {
 extern const struct slc_chromaticities slc_rec709;
 
 /**
- * The matrix from linear RGB of `from` to linear RGB of Rec. 709, white at 1. What has the
- * chromaticities of `neutral` becomes R = G = B by Bradford's adaptation; NULL: the white of
- * `from`, or where `from` stands for CIE XYZ itself, D65, so that nothing is adapted. False if
- * these are no primaries.
+ * Finds the matrix from linear RGB of `from` to linear RGB of Rec. 709, white at 1. Bradford's
+ * adaptation maps the chromaticities of `neutral` to R = G = B. `neutral` NULL: the white of
+ * `from`, or D65 (no adaptation) if `from` is CIE XYZ. False if `from` are not valid primaries.
  */
 bool slc_primaries_to_rec709(const struct slc_chromaticities *from, const double neutral[2],
                              double matrix[3][3]);
 
-/** Whether the matrix changes no half by more than half a step. */
+/** Tells whether the matrix changes every half by at most half a step. */
 bool slc_matrix_is_identity(double matrix[3][3]);
 
 /**
