@@ -10,10 +10,10 @@
 #include <math.h>
 #include <string.h>
 
-/** What is kept of each row of a picture: one plane per filter along x. */
+/** Planes of each row of a picture: one per filter along x. */
 enum { PLANE_COUNT = SLC_FLIP_FILTER_COUNT };
 
-/** What is filtered along y to make a row of the result, for each picture. */
+/** Results of the filters along y, per row and picture. */
 enum { RED_GREEN = 1, NARROW, WIDE, EDGE_X, EDGE_Y, POINT_X, POINT_Y, RESULT_COUNT };
 
 struct flip {
@@ -117,7 +117,7 @@ static double result_at(const struct flip *flip, int picture, int result, uint32
     return flip->rows[(picture * RESULT_COUNT + result) * flip->padded + x];
 }
 
-/** How much the lengths of a gradient differ. */
+/** Returns the difference of the gradient lengths of both pictures. */
 static double feature_difference(const struct flip *flip, int along_x, int along_y, uint32_t x)
 {
     double lengths[2];
@@ -161,7 +161,7 @@ static double compare_row(struct flip *flip, uint32_t y)
 static double compare(struct flip *flip, const SluiceMetricMap *map)
 {
     const struct slc_window *window = &flip->windows[0];
-    int64_t last_different = INT64_MIN; /* of the rows that were read */
+    int64_t last_different = INT64_MIN; /* last read row that differs */
     double sum = 0;
     for (uint32_t y = 0, next = 0; y < window->height; y++) {
         for (; next <= slc_window_last_row(window, y); next++) {

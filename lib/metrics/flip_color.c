@@ -43,7 +43,7 @@ static void linear_from_opponents(const double opponents[3], double rgb[3])
         rgb[i] = rgb[i] > 0 ? rgb[i] < 1 ? rgb[i] : 1 : 0;
 }
 
-/** To 13 digits, of values from 1e-3 to 2; a third of the time of cbrt, which knows all numbers. */
+/** Cube root to 13 digits for 1e-3 to 2. Takes a third of the time of cbrt. */
 static double cube_root(double value)
 {
     uint64_t bits;
@@ -95,7 +95,7 @@ void slc_flip_curve_init(struct slc_flip_curve *curve)
     curve->knee_slope = log(knee_error / knee_at);
 }
 
-/** The logarithm of the error that belongs to a distance above 0. */
+/** Returns the logarithm of the error for a distance above 0. */
 static double compress(const struct slc_flip_curve *curve, double distance)
 {
     double share = exponent * log(distance) - curve->largest;

@@ -1,4 +1,4 @@
-/** Colors of FLIP: opponents, which are filtered, and how far two filtered ones are apart. */
+/** Colors of FLIP: opponent colors for the filters, and the distance of two filtered colors. */
 #ifndef SLC_METRICS_FLIP_COLOR_H
 #define SLC_METRICS_FLIP_COLOR_H
 
@@ -10,7 +10,7 @@ void slc_opponents_from_linear(const double rgb[3], double opponents[3]);
 
 /** The curve from distances to errors, as logarithms. */
 struct slc_flip_curve {
-    double largest;    ///< distance: that of blue and green, of which others are a share
+    double largest;    ///< distance of blue and green; shares are relative to it
     double knee;       ///< share where the curve bends
     double knee_slope; ///< error by share below it
 };

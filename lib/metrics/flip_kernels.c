@@ -6,13 +6,13 @@
 
 #define PI 3.14159265358979323846
 
-/* Contrast sensitivity in cycles per degree is a * exp(-b * f^2), of blue against yellow the sum of
- * two: table 1 of the paper. The height in space is a * sqrt(pi / b), the width goes with sqrt(b).
- */
+/* Contrast sensitivity at f cycles per degree is a * exp(-b * f^2). Blue-yellow is a sum of two
+ * such terms: table 1 of the paper. The height in space is a * sqrt(pi / b); the width scales with
+ * sqrt(b). */
 static const double luminance_b = 0.0047, red_green_b = 0.0053;
 static const double narrow_a = 13.5, narrow_b = 0.025, wide_a = 34.1, wide_b = 0.04;
 
-/** Standard deviation in degrees of the Gaussian whose transform is exp(-b * f^2). */
+/** Returns the standard deviation in degrees of the Gaussian with transform exp(-b * f^2). */
 static double deviation_of(double b)
 {
     return sqrt(b / 2) / PI;
@@ -66,7 +66,7 @@ static void fill_kernels(struct slc_flip_kernels *kernels, double *weights[], ui
         fill_gaussian(weights[SLC_FLIP_BLUE_YELLOW_NARROW], color, scale * deviation_of(narrow_b));
     double wide =
         fill_gaussian(weights[SLC_FLIP_BLUE_YELLOW_WIDE], color, scale * deviation_of(wide_b));
-    /* the sum of both is what has the sum 1 */
+    /* normalize the sum of both terms to 1 */
     narrow *= narrow * narrow_a * sqrt(PI / narrow_b);
     wide *= wide * wide_a * sqrt(PI / wide_b);
     kernels->share_narrow = narrow / (narrow + wide);

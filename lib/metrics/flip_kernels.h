@@ -17,9 +17,9 @@ enum slc_flip_filter {
 
 struct slc_flip_kernels {
     struct slc_kernel filters[SLC_FLIP_FILTER_COUNT];
-    double share_narrow; ///< of the narrow one in blue against yellow; the wide one has the rest
-    uint32_t radius;     ///< the largest
-    double *weights;     ///< of all filters
+    double share_narrow; ///< share of the narrow term in blue-yellow; the wide term has the rest
+    uint32_t radius;     ///< largest radius of all filters
+    double *weights;     ///< weights of all filters
     size_t count;
 };
 

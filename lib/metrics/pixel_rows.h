@@ -1,4 +1,4 @@
-/** Pictures as metrics read them: rows of luma or of linear RGB, in [0, 1]. */
+/** Rows of pictures for metrics: luma or linear RGB, in [0, 1]. */
 #ifndef SLC_METRICS_PIXEL_ROWS_H
 #define SLC_METRICS_PIXEL_ROWS_H
 
@@ -15,7 +15,7 @@ struct slc_metric_picture {
 };
 
 /**
- * Checks all that a caller gives. `map` and `allocator` may be NULL. Fills both pictures, and
+ * Checks all arguments of a caller. `map` and `allocator` may be NULL. Fills both pictures, and
  * `pair` with `given` in this version's size.
  */
 SluiceResult slc_picture_pair_init(struct slc_metric_picture pictures[2],
@@ -29,10 +29,10 @@ void slc_picture_read_luma(const struct slc_metric_picture *picture, uint32_t y,
 /** Linear light, [width][3]. */
 void slc_picture_read_rgb(const struct slc_metric_picture *picture, uint32_t y, double *rgb);
 
-/** Whether row y of both is the same, byte by byte. */
+/** Tells whether row y of both pictures has the same bytes. */
 bool slc_picture_row_is_equal(const struct slc_metric_picture pictures[2], uint32_t y);
 
-/** Writes row y, converted to float; a map that is NULL is left. */
+/** Writes row y, converted to float. Does nothing if the map is NULL. */
 void slc_metric_map_write(const SluiceMetricMap *map, uint32_t width, uint32_t y,
                           const double *values);
 

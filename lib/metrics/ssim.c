@@ -8,15 +8,15 @@
 
 enum { RADIUS = 5, TAP_COUNT = 2 * RADIUS + 1 };
 
-/** What is averaged over each window: both values, their squares and their product. */
+/** Moments that are averaged over each window: both values, their squares and their product. */
 enum { MEAN_A, MEAN_B, SQUARE_A, SQUARE_B, PRODUCT, MOMENT_COUNT };
 
 struct ssim {
     struct slc_metric_picture pictures[2];
     double weights[TAP_COUNT];
     struct slc_window window;
-    double *rows;    ///< [MOMENT_COUNT][padded], of one row before and after it is filtered along y
-    double *map_row; ///< behind them
+    double *rows;    ///< [MOMENT_COUNT][padded]: one row, before and after filtering along y
+    double *map_row; ///< behind `rows`, in the same allocation
     size_t padded, count;
 };
 
@@ -70,7 +70,7 @@ static void add_row(struct ssim *ssim, uint32_t y)
     }
 }
 
-/** How much of the window around `at` lies within [0, size). */
+/** Returns the weight of the window around `at` that lies within [0, size). */
 static double weight_inside(const double weights[TAP_COUNT], uint32_t at, uint32_t size)
 {
     if (at >= RADIUS && size - at > RADIUS)

@@ -49,7 +49,7 @@ void slc_pad_row(double *row, uint32_t width, uint32_t radius, enum slc_border b
     }
 }
 
-/** Rows that are summed at once, so that sums stay in registers. */
+/** Number of rows that are summed at once, so that sums stay in registers. */
 enum { BATCH = 32 };
 
 struct taps {
@@ -58,7 +58,7 @@ struct taps {
     uint32_t count;
 };
 
-/** Two values anywhere: the widest vector that every machine has. */
+/** Vector of two unaligned values: the widest vector on every machine. */
 typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
 
 /** Adds the weighted values from x on to the eight at `out`. */
