@@ -9,7 +9,7 @@
 #include <string.h>
 #include <time.h>
 
-/* Bodies of answers that are errors are read up to here, so that the connection lives on. */
+/* Most bytes to read of an error's body, so that the connection stays usable. */
 #define MAX_SWALLOWED ((uint64_t)64 << 10)
 #define MAX_REDIRECT_BODY ((uint64_t)1 << 20)
 #define MAX_RETRY_AFTER 86400 /* seconds */
@@ -19,9 +19,9 @@ struct attempt {
     const struct slc_http_request *request;
     struct slc_http_answer *answer;
     struct slc_http_header header;
-    uint64_t expected; ///< bytes of the body; valid once checked
+    uint64_t expected; ///< bytes of the body; valid if is_checked
     bool is_checked, is_accepted, is_stalled;
-    curl_off_t last_count; ///< bytes of the body when enough had last come
+    curl_off_t last_count; ///< bytes of the body at the last sufficient progress
     uint64_t last_time;
 };
 
@@ -54,7 +54,7 @@ static bool is_transient(uint32_t status)
            status == 503 || status == 504;
 }
 
-/* An answer that is neither 200 nor 206. */
+/* Handles a status other than 200 and 206. */
 static void check_status(struct attempt *attempt, uint32_t status)
 {
     bool is_missing = status == 404 || status == 410;
@@ -78,13 +78,13 @@ static void check_status(struct attempt *attempt, uint32_t status)
         end_as(attempt, SLC_HTTP_FAILED, SLUICE_ERROR_IO, "the server answers %u", status);
 }
 
-/* A redirect is no failure: whoever asked goes there. */
+/* Tells whether a status is a redirect. A redirect is no failure: the caller follows. */
 static bool is_redirect(uint32_t status)
 {
     return status == 301 || status == 302 || status == 303 || status == 307 || status == 308;
 }
 
-/* The version of an answer must be told as that of the opened file was. */
+/* Checks that an answer names the version in the same way as at opening. */
 static bool check_version(struct attempt *attempt)
 {
     const SluiceHttpFile *file = attempt->request->file;
@@ -134,7 +134,7 @@ static void check_range(struct attempt *attempt)
     attempt->is_accepted = true;
 }
 
-/* A small file may come whole when it is opened. */
+/* Checks an answer with the whole file, which a server may send for a small file at opening. */
 static void check_whole(struct attempt *attempt)
 {
     const struct slc_http_request *request = attempt->request;
@@ -154,7 +154,7 @@ static void check_whole(struct attempt *attempt)
     }
 }
 
-/* Decides about an answer once its header is there. */
+/* Judges an answer after its header. */
 static void check_header(struct attempt *attempt)
 {
     const struct slc_http_header *header = &attempt->header;
@@ -174,7 +174,7 @@ static void check_header(struct attempt *attempt)
         check_whole(attempt);
 }
 
-/* Copies bytes from `at` of the file on to the parts that want them. */
+/* Copies bytes, which begin at `at` in the file, to the parts that contain them. */
 static void scatter(const struct slc_http_request *request, uint64_t at, const char *bytes,
                     size_t size)
 {
@@ -189,8 +189,8 @@ static void scatter(const struct slc_http_request *request, uint64_t at, const c
     }
 }
 
-/* An answer that is not the range is read to its end, unless it is long. libcurl tells the place
- * of a redirect only when its body has ended. */
+/* Tells whether to read the body of an answer without the range: only if short. libcurl reports the
+ * location of a redirect only after its body. */
 static bool is_worth_reading(const struct attempt *attempt)
 {
     uint64_t most = is_redirect(attempt->header.status) ? MAX_REDIRECT_BODY : MAX_SWALLOWED;
@@ -222,19 +222,19 @@ static size_t write_body(char *bytes, size_t size, size_t count, void *user)
 static size_t write_header(char *line, size_t size, size_t count, void *user)
 {
     struct attempt *attempt = user;
-    if (!attempt->is_checked) /* else it is a trailer, behind the body */
+    if (!attempt->is_checked) /* otherwise the line is a trailer behind the body */
         slc_http_header_line(&attempt->header, line, size * count);
     return size * count;
 }
 
-/* Bytes that must come within the stall time-out. One alone would let a server drip for hours. */
+/* Returns the bytes that must arrive within the stall time-out. A limit of 1 would allow hours. */
 static curl_off_t least_count(const SluiceHttpClient *client)
 {
     curl_off_t count = (curl_off_t)client->settings.stall_timeout * MIN_SPEED / 1000;
     return count > 0 ? count : 1;
 }
 
-/* Called once a second at least. libcurl's own limit on speed looks at the mean of five seconds. */
+/* Checks progress at least once a second. libcurl's speed limit is a mean over five seconds. */
 static int progress(void *user, curl_off_t a, curl_off_t received, curl_off_t b, curl_off_t c)
 {
     struct attempt *attempt = user;
@@ -250,7 +250,7 @@ static int progress(void *user, curl_off_t a, curl_off_t received, curl_off_t b,
     return attempt->is_stalled || atomic_load(&client->is_cancelled);
 }
 
-/* Failures of libcurl that repeat themselves. */
+/* Tells whether a failure of libcurl would repeat. */
 static bool is_lasting(CURLcode code)
 {
     return code == CURLE_PEER_FAILED_VERIFICATION || code == CURLE_SSL_CACERT_BADFILE ||
@@ -288,7 +288,7 @@ static void check_failure(struct attempt *attempt, CURLcode code, const char *te
 static void check_end(struct attempt *attempt)
 {
     struct slc_http_answer *answer = attempt->answer;
-    check_header(attempt); /* of an answer without a body */
+    check_header(attempt); /* for an answer without a body */
     if (!attempt->is_accepted || answer->outcome != SLC_HTTP_OK)
         return;
     if (answer->received != attempt->expected)
@@ -296,7 +296,7 @@ static void check_end(struct attempt *attempt)
                (unsigned long long)answer->received, (unsigned long long)attempt->expected);
 }
 
-/* Dates have whole seconds. */
+/* Tells whether a version is too new to be identified by its date: dates have whole seconds. */
 static bool is_fresh(const struct slc_http_header *header)
 {
     time_t modified = header->modified[0] ? curl_getdate(header->modified, NULL) : -1;
@@ -313,7 +313,7 @@ static void take_version(struct attempt *attempt)
     version->is_fresh = !attempt->request->file && is_fresh(&attempt->header);
 }
 
-/* The condition under which the opened version is meant. Weak ETags never match. */
+/* Returns the header line that asks for the opened version only. Weak ETags never match. */
 static struct curl_slist *condition_header(const struct slc_http_request *request,
                                            struct curl_slist *list)
 {
@@ -346,8 +346,8 @@ static struct curl_slist *make_headers(const struct slc_http_request *request)
     return grown;
 }
 
-/* Where to ask, and for whom. Nothing is asked if one of these fails: a password could go out in
- * the open, or a certificate be trusted that should not. */
+/* Sets URL, credentials and certificates. The caller must not send after a failure: a password
+ * could be sent in clear text, or a wrong certificate be trusted. */
 static CURLcode set_target(CURL *easy, const struct slc_http_request *request, const char *range)
 {
     const SluiceHttpClient *client = request->client;
@@ -380,7 +380,7 @@ static CURLcode set_options(struct attempt *attempt, struct curl_slist *headers,
     curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1);
     curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
 #if LIBCURL_VERSION_NUM >= 0x075700
-    curl_easy_setopt(easy, CURLOPT_QUICK_EXIT, 1L); /* does not await a name that is looked up */
+    curl_easy_setopt(easy, CURLOPT_QUICK_EXIT, 1L); /* do not wait for a pending DNS lookup */
 #endif
     curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)client->settings.connect_timeout);
     curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, error);

@@ -1,4 +1,4 @@
-/** One request and its answer, which is not trusted. */
+/** One attempt: a request and its untrusted answer. */
 #ifndef SLC_HTTP_HTTP_ATTEMPT_H
 #define SLC_HTTP_HTTP_ATTEMPT_H
 
@@ -7,7 +7,7 @@
 enum slc_http_outcome {
     SLC_HTTP_OK,
     SLC_HTTP_AGAIN,  ///< another attempt may succeed
-    SLC_HTTP_FAILED, ///< none will
+    SLC_HTTP_FAILED, ///< no other attempt will succeed
     SLC_HTTP_CANCELLED
 };
 
@@ -16,31 +16,31 @@ struct slc_http_request {
     CURL *easy;
     const struct slc_http_url *url;
     const SluiceHttpFile *file; ///< the opened version; NULL: opens
-    bool is_own;                ///< to the host of the opened URL: headers and signature are sent
+    bool is_own;                ///< the host is the opened URL's: headers and signature are sent
     const struct slc_http_part *parts; ///< sorted by offset
     uint32_t part_count;
-    uint64_t offset, size; ///< from the first part to the end of the last
+    uint64_t offset, size; ///< range from the first part to the end of the last
 };
 
-/** The version that an answer is about. */
+/** Version of the file in an answer. */
 struct slc_http_version {
     uint64_t size;
     char etag[256], modified[64];
-    bool is_fresh; ///< when it is opened: so new that another one may get the same date, or an ETag
-                   ///< made of it
+    bool is_fresh; ///< at opening: so new that a later version may get the same date, or an ETag
+                   ///< derived from the same date
 };
 
 struct slc_http_answer {
     enum slc_http_outcome outcome;
-    SluiceResult result;  ///< of FAILED
+    SluiceResult result;  ///< reason of FAILED
     bool is_host_fault;   ///< the host does not answer, or is overloaded
-    bool is_changed;      ///< the file is another than the opened one
+    bool is_changed;      ///< the file is not the opened version
     bool is_refused;      ///< 401, 403, 404 or 410
-    uint64_t retry_after; ///< milliseconds that the server asks for; 0: none
-    uint64_t received;    ///< bytes of the body
+    uint64_t retry_after; ///< milliseconds, requested by the server; 0: none
+    uint64_t received;    ///< received bytes of the body
     struct slc_http_version version;
-    char *redirect; ///< of libcurl; valid until the handle's next request
-    char why[256];  ///< of AGAIN and FAILED
+    char *redirect; ///< owned by libcurl; valid until the handle's next request
+    char why[256];  ///< message of AGAIN and FAILED
 };
 
 /** Makes the request. Blocks. */

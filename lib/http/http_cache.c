@@ -27,7 +27,7 @@ struct slc_http_key slc_http_cache_key(const char *url, const char *name, const 
     return (struct slc_http_key){hash.low64, hash.high64, name, version};
 }
 
-/* The file: header, name, version, bytes. */
+/* Makes a file's header. File layout: header, name, version, bytes. */
 static void make_header(uint8_t header[HEADER_SIZE], struct slc_http_key key, const void *bytes,
                         size_t size)
 {
@@ -40,13 +40,13 @@ static void make_header(uint8_t header[HEADER_SIZE], struct slc_http_key key, co
     slc_put_u64(header + 48, XXH3_64bits_withSeed(bytes, size, key.low));
 }
 
-/* Bytes before those of the range. */
+/* Returns the file offset of the range's bytes. */
 static uint64_t start_of(struct slc_http_key key)
 {
     return HEADER_SIZE + strlen(key.name) + strlen(key.version);
 }
 
-/* False if it does not fit. */
+/* Makes the path of a range's file. False: too long. */
 static bool make_path(const struct slc_http_cache *cache, struct slc_http_key key, char *path,
                       size_t size)
 {
@@ -83,7 +83,7 @@ static bool write_all(int descriptor, uint64_t offset, const void *bytes, size_t
     return true;
 }
 
-/* Hashes can be made equal by whoever chooses URLs, and words cannot. */
+/* Compares a text with the file's. An attacker can make hashes of URLs equal, but not texts. */
 static bool has_text(int descriptor, uint64_t offset, const char *text)
 {
     char found[256];
@@ -122,7 +122,7 @@ bool slc_http_cache_read(struct slc_http_cache *cache, struct slc_http_key key, 
     return true;
 }
 
-/* False: the name is none of ours. */
+/* Finds the kind of a folder entry. False: the name does not belong to the cache. */
 static bool find_kind(struct slc_cache_entry *entry)
 {
     const char *name = entry->name;
@@ -135,7 +135,7 @@ static bool find_kind(struct slc_cache_entry *entry)
     return is_part || length == 0;
 }
 
-/* Counts what is there. Above the limit it makes room for a tenth more, so that this is rare. */
+/* Counts the folder's bytes. Above the limit, frees a tenth more than necessary, to run rarely. */
 static void trim(struct slc_http_cache *cache)
 {
     uint64_t size;
@@ -230,7 +230,7 @@ void slc_http_cache_write(struct slc_http_cache *cache, struct slc_http_key key,
     if (atomic_fetch_add(&cache->size, whole) + whole <= cache->max_size)
         return;
     slc_mutex_lock(&cache->trimming);
-    if (atomic_load(&cache->size) > cache->max_size) /* nobody else has just done it */
+    if (atomic_load(&cache->size) > cache->max_size) /* no other thread has trimmed meanwhile */
         trim(cache);
     slc_mutex_unlock(&cache->trimming);
 }

@@ -21,7 +21,7 @@ static bool copy_string(SluiceHttpClient *client, char **to, const char *from)
     return *to || !from;
 }
 
-/* Takes the default for 0 and checks the range. */
+/* Replaces 0 by the default and checks the range. */
 static SluiceResult take_setting(const SluiceHttpClient *client, const char *name, uint32_t *to,
                                  uint32_t value, uint32_t usual, uint32_t most)
 {
@@ -86,7 +86,7 @@ static SluiceResult take_headers(SluiceHttpClient *client, const SluiceHttpClien
     return SLUICE_SUCCESS;
 }
 
-/* A string in the caller's memory made of up to three. */
+/* Joins up to three strings in memory of the caller's allocator. */
 static char *join(SluiceHttpClient *client, const char *a, const char *b, const char *c)
 {
     size_t size = strlen(a) + strlen(b) + strlen(c) + 1;
@@ -110,7 +110,7 @@ static bool copy_s3(SluiceHttpClient *client, const SluiceS3Access *from)
     return is_copied && s3->endpoint && (client->signature || !from->pAccessKey);
 }
 
-/* Requests carry the hash of their body, which this text stands for. */
+/* Makes the headers of S3 requests. The text stands for the hash of an unsigned body. */
 static bool make_s3_headers(SluiceHttpClient *client)
 {
     if (!client->signature)
@@ -211,7 +211,7 @@ SluiceResult sluiceCreateHttpClient(const SluiceHttpClientCreateInfo *pInfo,
 static void free_hosts(SluiceHttpClient *client)
 {
     struct slc_pipe_signal pipes;
-    slc_pipe_signal_block(&pipes); /* OpenSSL says goodbye on connections that may be gone */
+    slc_pipe_signal_block(&pipes); /* OpenSSL writes to connections that may be closed */
     while (client->hosts) {
         struct slc_http_host *host = client->hosts;
         client->hosts = host->next;

@@ -22,7 +22,7 @@ static void fail(struct slc_http_answer *answer, SluiceResult result, const char
     snprintf(answer->why, sizeof answer->why, "%s", why);
 }
 
-/* Replaces `at` by the place that the answer names. */
+/* Replaces `at` by the location in the answer. */
 static bool follow(const struct slc_http_fetch *fetch, struct slc_http_url *at, bool was_secure,
                    struct slc_http_answer *answer)
 {
@@ -67,8 +67,8 @@ static struct slc_http_request make_request(const struct slc_http_fetch *fetch, 
     };
 }
 
-/* One attempt from `begin` on, along redirects. `landed` may be NULL, and is zeroed if there were
- * none. */
+/* Makes one attempt from `begin`, following redirects. `landed` (may be NULL) receives the final
+ * URL, zeroed if there was no redirect. */
 static void attempt_along(const struct slc_http_fetch *fetch, CURL *easy,
                           const struct slc_http_url *begin, struct slc_http_url *landed,
                           struct slc_http_answer *answer)
@@ -94,7 +94,7 @@ static void attempt_along(const struct slc_http_fetch *fetch, CURL *easy,
         slc_http_url_free(&at, &fetch->client->allocator);
 }
 
-/* A target that redirects led to may expire: then the opened URL is asked again. */
+/* Makes an attempt at the target. If a redirect's target has expired, tries the opened URL. */
 static void attempt(const struct slc_http_fetch *fetch, CURL *easy, struct slc_http_url *landed,
                     bool *is_moved, struct slc_http_answer *answer)
 {

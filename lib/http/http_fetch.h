@@ -1,25 +1,25 @@
-/** A request with its redirects and further attempts. */
+/** Fetch: a request with its redirects and repeated attempts. */
 #ifndef SLC_HTTP_HTTP_FETCH_H
 #define SLC_HTTP_HTTP_FETCH_H
 
 #include "http/http_attempt.h"
 
-/** Names the bytes of a fetch, and where they come from. */
+/** Bytes and URLs of a fetch. */
 struct slc_http_fetch {
     SluiceHttpClient *client;
     const SluiceHttpFile *file;        ///< NULL: opens `url`
-    const struct slc_http_url *url;    ///< as it was opened
-    const struct slc_http_url *target; ///< where to begin, or NULL: at `url`
-    const struct slc_http_part *parts; ///< sorted by offset, side by side
+    const struct slc_http_url *url;    ///< opened URL
+    const struct slc_http_url *target; ///< first URL to try; NULL: `url`
+    const struct slc_http_part *parts; ///< sorted by offset, adjacent
     uint32_t part_count;
     struct slc_said *said;
-    bool is_check; ///< it is no failure that the file was changed
+    bool is_check; ///< a changed file is no failure
 };
 
 /**
- * Fetches on a connection. Logs failures with URL and range. If this succeeds from the opened URL,
- * not from a target, `is_moved` becomes true, and `landed` is the URL that redirects led to, or
- * zeros. The caller frees it. `answer` is the last one.
+ * Fetches on a connection. Logs failures with URL and range. After success from the opened URL, not
+ * from a target, `is_moved` is true, and `landed` is the final URL of redirects, or zeros. The
+ * caller frees `landed`. `answer` is the last answer.
  * Errors: IO, FILE_NOT_FOUND, UNSUPPORTED, OUT_OF_HOST_MEMORY.
  */
 SluiceResult slc_http_fetch(const struct slc_http_fetch *fetch,
@@ -27,7 +27,7 @@ SluiceResult slc_http_fetch(const struct slc_http_fetch *fetch,
                             struct slc_http_url *landed, bool *is_moved,
                             struct slc_http_answer *answer);
 
-/** Judges the host by its last answer. */
+/** Returns the verdict on the host for its last answer. */
 enum slc_http_verdict slc_http_verdict_of(const struct slc_http_answer *answer);
 
 #endif /* SLC_HTTP_HTTP_FETCH_H */

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Fetches the first bytes on a connection, and notes where redirects led to. */
+/* Fetches the first bytes on a connection, and sets the target to the final URL of redirects. */
 static SluiceResult fetch_head(SluiceHttpFile *file, struct slc_http_connection *connection,
                                bool is_probe, unsigned char *head, struct slc_http_answer *answer)
 {
@@ -41,7 +41,7 @@ static SluiceResult keep_head(SluiceHttpFile *file, const unsigned char *head,
     return SLUICE_SUCCESS;
 }
 
-/* Gets a connection for an opening, which nobody takes along. */
+/* Gets a connection for an opening, which never shares a request. */
 static SluiceResult get_connection(SluiceHttpFile *file, struct slc_http_connection **connection,
                                    bool *is_probe)
 {
@@ -116,7 +116,7 @@ void sluiceDestroyHttpFile(SluiceHttpFile *file)
     slc_free(&cb, file, 1, sizeof *file);
 }
 
-/* Makes the request, and those of waiting reads beside it. */
+/* Makes one request for this read and for waiting adjacent reads. */
 static SluiceResult read_on(SluiceHttpFile *file, const struct slc_http_target *target,
                             const struct slc_http_part *part,
                             struct slc_http_connection *connection, bool is_probe, bool is_check)
@@ -140,12 +140,12 @@ static SluiceResult read_on(SluiceHttpFile *file, const struct slc_http_target *
         slc_http_fetch(&fetch, connection, is_probe ? 1 : client->settings.max_attempts, &landed,
                        &is_moved, &answer);
     if (is_moved && (fetch.target || landed.full))
-        (void)slc_http_target_move(file, &landed); /* without memory the old one stays */
+        (void)slc_http_target_move(file, &landed); /* out of memory: the old target stays */
     else
         slc_http_url_free(&landed, &client->allocator);
     if (answer.is_changed)
         atomic_store(&file->is_stale, true);
-    /* A file that was there when it was opened is not "not found". */
+    /* An opened file that is missing now is an IO error, not FILE_NOT_FOUND. */
     if (result == SLUICE_ERROR_FILE_NOT_FOUND || result == SLUICE_ERROR_UNSUPPORTED)
         result = SLUICE_ERROR_IO;
     slc_http_finish_joined(client, waits, count, result);
@@ -170,7 +170,7 @@ static SluiceResult read_far(SluiceHttpFile *file, const struct slc_http_part *p
     return result;
 }
 
-/* From the cache folder, or from the server into it. */
+/* Reads from the cache folder, or from the server and then writes the cache. */
 static SluiceResult read_through(SluiceHttpFile *file, const struct slc_http_part *part)
 {
     struct slc_http_cache *cache = &file->client->cache;

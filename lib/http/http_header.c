@@ -12,7 +12,7 @@ static char lower(char c)
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
-/* The value of a line with this name in lower case, without blanks around it. */
+/* Gets a line's value, trimmed, if the line has this name. `name` is in lower case. */
 static bool get_value(const char *line, size_t size, const char *name, const char **value,
                       size_t *value_size)
 {
@@ -54,7 +54,7 @@ static bool skip(const char **at, const char *end, char c)
     return true;
 }
 
-/* "bytes FIRST-LAST/TOTAL", where TOTAL may be "*". */
+/* Reads "bytes FIRST-LAST/TOTAL". TOTAL may be "*". */
 static void read_range(struct slc_http_header *header, const char *at, size_t size)
 {
     const char *end = at + size;
@@ -80,7 +80,8 @@ static void copy_value(char *to, size_t room, const char *value, size_t size)
 {
     to[0] = '\0';
     for (size_t i = 0; i < size; i++)
-        if ((unsigned char)value[i] < ' ' || value[i] == 0x7f) /* it is sent back */
+        if ((unsigned char)value[i] < ' ' ||
+            value[i] == 0x7f) /* the value is sent back to the server */
             return;
     if (size >= room)
         return;

@@ -1,4 +1,4 @@
-/* Who asks a host next, and whether it is asked at all. */
+/* Scheduling of requests per host, and back-off from hosts that are down. */
 #include "http/http_client.h"
 
 #include "base/alloc.h"
@@ -9,7 +9,7 @@
 
 #define NANOSECONDS_PER_MILLISECOND ((uint64_t)1000000)
 
-/* Scrambles time and count: what it is for is that clients do not ask in step. */
+/* Returns a pseudorandom number from time and count, so that clients do not retry in step. */
 static uint64_t roll(SluiceHttpClient *client)
 {
     uint64_t x = slc_monotonic_time() ^ (atomic_load(&client->counts.requests) << 32) ^
@@ -57,7 +57,7 @@ struct slc_http_host *slc_http_get_host(SluiceHttpClient *client, const char *or
     return host;
 }
 
-/* All of these are called with the mutex held. */
+/* The functions below are called with the mutex held. */
 
 static void push_wait(struct slc_http_host *host, struct slc_http_wait *wait)
 {
@@ -89,7 +89,7 @@ static void finish_wait(struct slc_http_wait *wait, SluiceResult result)
     slc_condition_signal(&wait->changed);
 }
 
-/* Reads that wait are told at once that the host is out of order. */
+/* Refuses all waiting reads at once, because the host is down. */
 static void refuse_waiting(SluiceHttpClient *client, struct slc_http_host *host)
 {
     while (host->first_wait) {
@@ -100,7 +100,7 @@ static void refuse_waiting(SluiceHttpClient *client, struct slc_http_host *host)
     }
 }
 
-/* A new handle, or NULL. */
+/* Creates a connection. NULL: failure. */
 static struct slc_http_connection *add_connection(SluiceHttpClient *client,
                                                   struct slc_http_host *host)
 {
@@ -179,7 +179,7 @@ enum slc_http_turn slc_http_acquire(SluiceHttpClient *client, struct slc_http_ho
     return turn;
 }
 
-/* The place of a part among parts that are sorted and lie side by side, or -1. */
+/* Returns the position for a part among sorted adjacent parts; -1: not adjacent. */
 static int64_t place_beside(const struct slc_http_part *parts, uint32_t count,
                             const struct slc_http_part *part, uint32_t max_size)
 {
@@ -245,12 +245,11 @@ void slc_http_finish_joined(SluiceHttpClient *client, struct slc_http_wait *cons
     slc_mutex_unlock(&client->mutex);
 }
 
-/* `least`: milliseconds that the server asked for. */
+/* Marks the host as down. `least`: milliseconds, requested by the server. */
 static void set_down(SluiceHttpClient *client, struct slc_http_host *host, uint64_t least)
 {
     uint64_t delay = client->settings.retry_delay;
-    if (slc_monotonic_time() <
-        host->down_until) { /* of requests that were under way: one failure */
+    if (slc_monotonic_time() < host->down_until) { /* concurrent requests count as one failure */
         refuse_waiting(client, host);
         return;
     }

@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 
-/* Ends a use of a target; with the client's mutex held. Returns it if it is to be freed. */
+/* Ends a use of a target, with the client's mutex held. Returns a target to free, or NULL. */
 static struct slc_http_target *leave(struct slc_http_target *target)
 {
     return target && --target->user_count == 0 ? target : NULL;

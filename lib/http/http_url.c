@@ -31,7 +31,7 @@ bool slc_http_is_secure(const struct slc_http_url *url)
     return strncmp(url->origin, "https:", 6) == 0;
 }
 
-/* A copy in the caller's memory of a string of libcurl, which is freed. */
+/* Copies a string of libcurl to the caller's memory, and frees the original. */
 static char *take_part(char *part, const SluiceAllocationCallbacks *cb)
 {
     char *copy = part ? slc_strdup(cb, part) : NULL;
@@ -45,7 +45,7 @@ static char *get_part(CURLU *parts, CURLUPart part, unsigned flags)
     return curl_url_get(parts, part, &text, flags) == CURLUE_OK ? text : NULL;
 }
 
-/* "SCHEME://HOST:PORT", allocated. */
+/* Returns "SCHEME://HOST:PORT", allocated. */
 static char *make_origin(CURLU *parts, const SluiceAllocationCallbacks *cb)
 {
     char *scheme = get_part(parts, CURLUPART_SCHEME, 0), *host = get_part(parts, CURLUPART_HOST, 0);
@@ -95,7 +95,7 @@ static bool is_plain_in_keys(unsigned char c)
            strchr("/-_.~", c);
 }
 
-/* Appends the name of an object, escaped as signatures want it. Every byte may take three. */
+/* Appends an object's name, escaped for signatures: up to three bytes per byte. */
 static void append_escaped(char *to, const char *key)
 {
     to += strlen(to);

@@ -1,25 +1,25 @@
-/** URLs: what is asked for, where, and how messages show it. */
+/** URLs: parsed form, origin, and text for messages. */
 #ifndef SLC_HTTP_HTTP_URL_H
 #define SLC_HTTP_HTTP_URL_H
 
 #include <sluice/http.h>
 
-/** Owned strings. Zeroed: none. */
+/** Parsed URL with owned strings. Zeroed: none. */
 struct slc_http_url {
     char *full;   ///< for libcurl: http or https, no fragment
     char *origin; ///< "SCHEME://HOST:PORT"
     char *shown;  ///< for messages: without user, password and query
-    bool is_s3;   ///< it was s3://; requests are signed if there are keys
+    bool is_s3;   ///< the scheme was s3; requests are signed if keys are set
 };
 
-/** Copied settings of an object store. `endpoint` NULL: there is none. */
+/** Copied settings of an object store. `endpoint` NULL: not set. */
 struct slc_s3_access {
     char *endpoint, *region, *access_key, *secret_key, *session_token;
 };
 
 /**
- * Takes an http, https or s3 URL apart. Errors, logged: INVALID_ARGUMENT. Not logged:
- * OUT_OF_HOST_MEMORY. Free it also after errors.
+ * Parses an http, https or s3 URL. Errors, logged: INVALID_ARGUMENT; not logged:
+ * OUT_OF_HOST_MEMORY. Free `url` also after errors.
  */
 SluiceResult slc_http_url_parse(struct slc_http_url *url, const char *text,
                                 const struct slc_s3_access *s3, const SluiceAllocationCallbacks *cb,
