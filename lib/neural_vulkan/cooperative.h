@@ -1,4 +1,4 @@
-/** Structs of cooperative matrices and vectors, for Vulkan headers that are older than these. */
+/** Structs of cooperative matrices and vectors, for Vulkan headers without them. */
 #ifndef SLC_NEURAL_COOPERATIVE_H
 #define SLC_NEURAL_COOPERATIVE_H
 
@@ -6,8 +6,7 @@
 
 #include <stddef.h>
 
-/* Numbers of Khronos' registry. Names of our own: headers that have them define types and macros.
- */
+/* Numbers of Khronos' registry, under Sluice's names: newer headers define the official names. */
 enum {
     SLC_VECTOR_FEATURES = 1000491000,
     SLC_VECTOR_PROPERTIES = 1000491001,
@@ -33,7 +32,7 @@ enum {
 #define SLC_VECTOR_EXTENSION "VK_NV_cooperative_vector"
 #define SLC_MATRIX_EXTENSION "VK_KHR_cooperative_matrix"
 
-/** Also of VkPhysicalDeviceCooperativeMatrixFeaturesKHR. */
+/** Layout of all these feature structs, and of VkPhysicalDeviceCooperativeMatrixFeaturesKHR. */
 struct slc_cooperative_features {
     VkStructureType sType;
     void *pNext;

@@ -7,7 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* Functions and chains of one device. */
+/* Query state: functions and struct chains of one device. */
 struct question {
     VkInstance instance;
     VkPhysicalDevice device;
@@ -42,7 +42,7 @@ static SluiceResult find_extensions(struct question *q)
     return SLUICE_SUCCESS;
 }
 
-/* Features that are there. Structs of extensions that are not stay out of the chain. */
+/* Queries features. The chain contains structs of available extensions only. */
 static void get_features(const struct question *q, SluiceNeuralPaths *paths)
 {
     VkPhysicalDeviceShaderIntegerDotProductFeaturesKHR dot = {
@@ -80,7 +80,7 @@ static void get_features(const struct question *q, SluiceNeuralPaths *paths)
                     control.computeFullSubgroups;
 }
 
-/* Whether compute shaders have what features say, and how large subgroups are. */
+/* Queries the stages that support the features, and the subgroup size. */
 static void get_properties(struct question *q, SluiceNeuralPaths *paths)
 {
     struct slc_vector_properties vector = {.sType = (VkStructureType)SLC_VECTOR_PROPERTIES};
@@ -144,8 +144,8 @@ static SluiceResult check_vectors(const struct question *q, SluiceNeuralPaths *p
     return SLUICE_SUCCESS;
 }
 
-/* Whether neural_matrix.glsl can use a shape: rows of weights are loaded as words, and layers have
- * a multiple of 16 outputs. */
+/* Tells whether neural_matrix.glsl can use a shape. Rows of weights are loaded as words, and layers
+ * have a multiple of 16 outputs. */
 static bool is_usable(const struct question *q, const struct slc_matrix_combination *c)
 {
     return c->aType == SLC_COMPONENT_SINT8 && c->bType == SLC_COMPONENT_SINT8 &&
@@ -154,7 +154,7 @@ static bool is_usable(const struct question *q, const struct slc_matrix_combinat
            c->k <= 32 && 16 % c->m == 0 && 32 % c->k == 0 && q->subgroup_size % c->n == 0;
 }
 
-/* Chooses the largest shape that is listed. Errors: OUT_OF_HOST_MEMORY. */
+/* Chooses the largest listed shape. Errors: OUT_OF_HOST_MEMORY. */
 static SluiceResult choose_matrix(const struct question *q, SluiceNeuralPaths *paths)
 {
     slc_get_matrix_combinations get = (slc_get_matrix_combinations)q->get(
@@ -224,7 +224,7 @@ SluiceResult sluiceGetNeuralPaths(VkInstance instance, VkPhysicalDevice physical
     return result;
 }
 
-/* What lies in SluiceNeuralPathFeatures.storage. */
+/* Contents of SluiceNeuralPathFeatures.storage. */
 struct feature_structs {
     VkPhysicalDeviceShaderIntegerDotProductFeaturesKHR dot;
     struct slc_cooperative_features vector, matrix;

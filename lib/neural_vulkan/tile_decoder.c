@@ -14,7 +14,7 @@
 #define MAX_SCRATCH (UINT64_C(256) << 20)
 #define MAX_SLICE (UINT64_C(1) << 29) /* bytes: shaders count bits in 32 bits */
 
-/* Bytes of weights, scales and biases of the network. 0: there is no such network. */
+/* Returns the bytes of weights, scales and biases. 0: no such network exists. */
 static uint64_t weight_size(const SluiceNeuralConstants *constants)
 {
     const uint32_t in = constants->inputCount;
@@ -28,7 +28,7 @@ static uint64_t weight_size(const SluiceNeuralConstants *constants)
     return size;
 }
 
-/* Shaders keep the inputs of a texel in an array that has room for these and no more. */
+/* Checks the number of inputs. Shaders hold a texel's inputs in an array of fixed size. */
 static bool inputs_are_right(const SluiceNeuralConstants *c)
 {
     if (c->schema == 3)
@@ -168,8 +168,8 @@ static SluiceResult create_buffers(SluiceVulkanNeuralDecoder *d,
     return result;
 }
 
-/* A shader of schema 3 alone is twice as fast as one of both; one of schema 1 gains nothing
- * (docs/neural.md). */
+/* Creates a pipeline. A shader for schema 3 alone is twice as fast as a shader for both; a shader
+ * for schema 1 alone gains nothing (docs/neural.md). */
 static SluiceResult create_pipeline(SluiceVulkanNeuralDecoder *d, uint32_t schema)
 {
     static const struct slc_compute_pass passes[2] = {

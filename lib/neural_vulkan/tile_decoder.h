@@ -1,4 +1,4 @@
-/** Decoders of neural sets on the GPU, and the textures that they make. */
+/** GPU decoders of neural sets, and their output textures. */
 #ifndef SLC_NEURAL_VULKAN_TILE_DECODER_H
 #define SLC_NEURAL_VULKAN_TILE_DECODER_H
 
@@ -17,7 +17,7 @@ enum slc_neural_buffer {
     SLC_NEURAL_BUFFER_COUNT,
 };
 
-/** A texture of the set. Lives as long as the decoder. */
+/** Output texture of the set. Lives as long as the decoder. */
 struct slc_neural_output {
     struct slc_neural_output *next;
     SluiceVulkanNeuralDecoder *decoder;
@@ -25,7 +25,7 @@ struct slc_neural_output {
     SluiceTileProducer producer;
     uint32_t store; ///< SLUICE_NEURAL_STORE_...
     uint32_t block; ///< texels along a side: 1 or 4
-    uint32_t words; ///< of 32 bits, per texel or block
+    uint32_t words; ///< 32-bit words per texel or block
     uint32_t first_channel, channel_count, spaces;
 };
 
@@ -38,7 +38,7 @@ struct SluiceVulkanNeuralDecoder {
     struct slc_neural_output *outputs;
 };
 
-/** SluiceTileProducer.pfnRecordTiles of a struct slc_neural_output. */
+/** Records tiles: SluiceTileProducer.pfnRecordTiles with a struct slc_neural_output. */
 SluiceResult slc_neural_record_tiles(void *output, const SluiceTileBatch *batch,
                                      SluiceResult *results);
 

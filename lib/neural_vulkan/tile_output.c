@@ -1,4 +1,4 @@
-/* Textures of a decoder. */
+/* Output textures of a decoder. */
 #include "neural_vulkan/tile_decoder.h"
 
 #include "base/alloc.h"

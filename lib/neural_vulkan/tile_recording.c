@@ -1,4 +1,4 @@
-/* Commands of a batch: decode tiles to the scratch buffer, then copy them into the image. */
+/* Recording of a batch: decode tiles to the scratch buffer, then copy to the image. */
 #include "neural_vulkan/tile_decoder.h"
 
 #include "base/checked.h"
@@ -13,7 +13,7 @@ struct recording {
     const SluiceTileBatch *batch;
     VkBufferImageCopy copies[MAX_COPIES];
     uint32_t copy_count;
-    uint64_t used; ///< bytes of the scratch buffer
+    uint64_t used; ///< used bytes of the scratch buffer
 };
 
 static uint64_t size_of(const struct slc_neural_output *output, const SluiceImageRegion *region)
@@ -22,7 +22,7 @@ static uint64_t size_of(const struct slc_neural_output *output, const SluiceImag
            slc_div_up_u32(region->height, output->block) * output->words * 4;
 }
 
-/* Commands of one queue run in order, so this serves the copies of earlier frames, too. */
+/* Records a barrier after copies. By submission order, earlier frames of the queue are covered. */
 static void wait_for_copies(const struct recording *r)
 {
     slc_compute_barrier(&r->output->decoder->context->vk, r->batch->commandBuffer,
@@ -44,7 +44,7 @@ static void copy_decoded(struct recording *r)
     r->used = 0;
 }
 
-/* Blocks end at a whole block, or at the edge of the image's level. */
+/* Returns the extent of a copy in texels: whole blocks, or up to the level's edge. */
 static uint32_t extent(uint32_t at, uint32_t size, uint32_t block, uint32_t level_size)
 {
     uint32_t whole = slc_div_up_u32(size, block) * block;

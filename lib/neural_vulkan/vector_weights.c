@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Four offsets of matrices, then scales and biases as they were: neural_vector.glsl. */
+/* Layout for neural_vector.glsl: four offsets of matrices, then unchanged scales and biases. */
 enum { HEAD = 64, ALIGNMENT = 64, LAST = SLUICE_NEURAL_LAYERS - 1 };
 
 struct conversion {
@@ -55,7 +55,7 @@ static VkResult convert_layer(const struct conversion *c, int layer, const uint8
     return c->convert(c->info->device, &info);
 }
 
-/* Writes everything, or its size alone where `bytes` is NULL. Errors: SIZE_MISMATCH; VULKAN. */
+/* Writes all data, or only the size if `bytes` is NULL. Errors: SIZE_MISMATCH; VULKAN. */
 static SluiceResult convert(const struct conversion *c, uint64_t *room, uint8_t *bytes)
 {
     const uint8_t *from = c->info->pWeights;
