@@ -18,7 +18,7 @@ struct worker {
 struct slc_background {
     SluiceAllocationCallbacks allocator;
     SluiceBaker *baker;
-    struct slc_mutex mutex; ///< around what follows, and around the jobs of streams
+    struct slc_mutex mutex; ///< guards the fields below and the jobs of streams
     struct slc_condition changed;
     bool is_ending;
     struct worker workers[SLC_JOB_KIND_COUNT];
@@ -49,14 +49,14 @@ static struct slc_picture_stream *take_first(struct worker *worker)
     return stream;
 }
 
-/* With the mutex held. Less if a stream is queued or canceled meanwhile. */
+/* Waits A_WHILE, or until a stream is queued or canceled. The mutex is held. */
 static void wait_a_while(struct slc_background *background)
 {
     slc_condition_wait_until(&background->changed, &background->mutex,
                              slc_monotonic_time() + A_WHILE);
 }
 
-/* With the mutex held. Whether a job can begin now; otherwise some time has passed. */
+/* Tells whether a job can begin now; otherwise waits a while first. The mutex is held. */
 static bool wait_for_job(struct worker *worker)
 {
     struct slc_background *background = worker->background;
@@ -73,7 +73,7 @@ static bool wait_for_job(struct worker *worker)
     return false;
 }
 
-/* False: try again later. */
+/* Runs the job of a stream. False: try again later. */
 static bool run(struct worker *worker, struct slc_picture_stream *stream)
 {
     if (worker->kind == SLC_JOB_BAKE)

@@ -21,7 +21,7 @@ struct row {
     const char *picture, *store;
 };
 
-/** A name by its last zero. A zero stands before each name, too. */
+/** Name, given by the position of its final zero. A zero precedes each name, too. */
 struct name_end {
     const char *end;
     uint32_t row;
@@ -31,7 +31,7 @@ struct slc_catalogue {
     char *names; ///< owned
     size_t names_size;
     struct row *rows;      ///< owned; in the file's order
-    struct name_end *ends; ///< owned; two of each row, sorted from the last byte to the first
+    struct name_end *ends; ///< owned; two per row, sorted by bytes from last to first
     uint32_t row_count;
 };
 
@@ -49,8 +49,8 @@ static SluiceResult read_file(void *user, uint64_t offset, void *bytes, size_t s
     return SLUICE_SUCCESS;
 }
 
-/* Ends with a zero. `*text` has `input->size` + 1 bytes, and is the caller's also after an error.
- */
+/* Reads the file and appends a zero. `*text` has `input->size` + 1 bytes; the caller frees it, also
+ * after an error. */
 static SluiceResult read_text(const struct slc_catalogue_place *p, const SluiceInput *input,
                               char **text)
 {
@@ -74,7 +74,7 @@ static SluiceResult read_text(const struct slc_catalogue_place *p, const SluiceI
     return result;
 }
 
-/* "\t", "\n", "\r" and "\\" become one character each. */
+/* Replaces "\t", "\n", "\r" and "\\" by one character each. */
 static void unescape(char *text)
 {
     char *out = text;
@@ -114,7 +114,7 @@ static bool is_absolute(const char *store)
            (store[0] && store[1] == ':');
 }
 
-/* As the path of a URL of the web. s3:// URLs have keys as they are. */
+/* Appends text, percent-encoded for http URLs. s3:// URLs keep keys unescaped. */
 static void append(char *out, const char *text, bool escapes)
 {
     static const char plain[] =
@@ -129,7 +129,7 @@ static void append(char *out, const char *text, bool escapes)
     *out = '\0';
 }
 
-/* Relative names begin in the catalogue's folder. */
+/* Makes the path of a store. Relative names start in the catalogue's folder. */
 static SluiceResult make_path(const struct slc_catalogue_place *p, const char *store, char **path)
 {
     const bool is_web = strncmp(p->path, "http", 4) == 0 && strstr(p->path, "://");
@@ -158,7 +158,7 @@ static SluiceResult make_path(const struct slc_catalogue_place *p, const char *s
     return *path ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-/* Orders names by their last byte, then by the one before. */
+/* Orders names by bytes from last to first. */
 static int compare_ends(const void *a, const void *b)
 {
     const char *x = ((const struct name_end *)a)->end, *y = ((const struct name_end *)b)->end;
@@ -225,7 +225,7 @@ static void sort_names(struct slc_catalogue *c)
         at = c->rows[i].store + strlen(c->rows[i].store);
         c->ends[2 * i + 1] = (struct name_end){at++, i};
     }
-    if (c->row_count > 0) /* without rows there is no array */
+    if (c->row_count > 0) /* the array is NULL without rows */
         qsort(c->ends, 2 * (size_t)c->row_count, sizeof *c->ends, compare_ends);
 }
 
@@ -303,8 +303,8 @@ void slc_catalogue_destroy(struct slc_catalogue *c, const SluiceAllocationCallba
     slc_free(cb, c, 1, sizeof *c);
 }
 
-/* Counts rows with a name that ends with the bytes from `begin` to `end`: 0, 1, or 2 for more. A
- * zero at `begin` stands for the begin of the name. */
+/* Counts rows whose name ends with the bytes from `begin` to `end`: 0, 1, or 2 for more. A zero at
+ * `begin` matches the start of a name. */
 static uint32_t count_rows(const struct slc_catalogue *c, const char *begin, const char *end,
                            uint32_t *row)
 {
@@ -326,7 +326,7 @@ static uint32_t count_rows(const struct slc_catalogue *c, const char *begin, con
     return count;
 }
 
-/* A whole name first, then one that ends with the name behind a slash. */
+/* Looks for the whole name first, then for names with "/name" at the end. */
 static SluiceResult count_named(const struct slc_catalogue *c, const char *name,
                                 const SluiceAllocationCallbacks *cb, uint32_t *count, uint32_t *row)
 {

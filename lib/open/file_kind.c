@@ -53,7 +53,7 @@ static SluiceImageFileKind kind_of(const char bytes[SLC_SIGNATURE_SIZE])
     return SLUICE_IMAGE_FILE_KIND_PICTURE;
 }
 
-/* Returns 0, or errno; EINVAL for what is no regular file. */
+/* Reads the first bytes and the identity. Returns 0, or errno; EINVAL: not a regular file. */
 static int look_at(int descriptor, char bytes[SLC_SIGNATURE_SIZE],
                    struct slc_file_identity *identity)
 {

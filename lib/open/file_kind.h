@@ -1,4 +1,4 @@
-/** Finds the kind of a file by its first bytes, and makes the source that reads it in place. */
+/** Kinds of files, found by the first bytes, and sources that read files in place. */
 #ifndef SLC_OPEN_FILE_KIND_H
 #define SLC_OPEN_FILE_KIND_H
 
@@ -8,7 +8,7 @@
 
 #include "image/file_pool.h"
 
-/** A file that names stores. No opened image is of this kind: one of the stores is opened. */
+/** Kind of catalogues. Opened images never have this kind, because a store of it is opened. */
 #define SLC_IMAGE_FILE_KIND_CATALOGUE ((SluiceImageFileKind)1000)
 
 /** Pools and budgets that all files of an opener share. NULL where the build lacks the kind. */
@@ -22,18 +22,18 @@ SluiceResult slc_shared_files_init(struct slc_shared_files *files, uint32_t max_
                                    const SluiceAllocationCallbacks *cb);
 void slc_shared_files_finish(struct slc_shared_files *files);
 
-/** Reads the first bytes, and tells which file it is. For that time the file is one of the pool's.
- *  Errors: IO, FILE_NOT_FOUND, OUT_OF_HOST_MEMORY; NOT_READY for want of descriptors. Logged. */
+/** Reads a file's first bytes and its identity. The file counts in the pool meanwhile. Errors,
+ *  logged: IO, FILE_NOT_FOUND, OUT_OF_HOST_MEMORY; NOT_READY: no free descriptor. */
 SluiceResult slc_file_kind_find(SluiceFilePool *pool, const char *path,
                                 const SluiceLogCallback *log, SluiceImageFileKind *kind,
                                 struct slc_file_identity *identity);
 
-/** Tells the kind of an input by its first bytes. Errors: those of its reads, logged. */
+/** Finds the kind of an input by its first bytes. Errors, logged: errors of the input's reads. */
 SluiceResult slc_input_kind_find(const SluiceInput *input, const char *path,
                                  const SluiceLogCallback *log, SluiceImageFileKind *kind);
 
-/** Opens any kind but PICTURE and NEURAL. `input` NULL: the file. Errors: as
- *  sluiceOpenImageSource, logged. */
+/** Opens any kind except PICTURE and NEURAL. `input` NULL: opens the file. Errors, logged: the same
+ *  as sluiceOpenImageSource. */
 SluiceResult slc_file_kind_open(SluiceImageFileKind kind, const char *path,
                                 const SluiceInput *input, const struct slc_shared_files *files,
                                 const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,

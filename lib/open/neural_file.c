@@ -11,7 +11,7 @@
 
 enum { LIST_SIZE = 512 };
 
-/* "albedo, height", as many as fit. */
+/* Lists texture names, "albedo, height", as many as fit. */
 static void list_names(const SluiceNeuralSet *set, uint32_t count, char list[LIST_SIZE])
 {
     size_t length = 0;
@@ -30,7 +30,7 @@ static void list_names(const SluiceNeuralSet *set, uint32_t count, char list[LIS
     }
 }
 
-/* The count of textures if there is none of that name. */
+/* Returns the index of a texture; the number of textures if no texture has the name. */
 static uint32_t find_texture(const SluiceNeuralSet *set, uint32_t count, const char *name)
 {
     uint32_t i = 0;

@@ -5,8 +5,8 @@
 #include <sluice/image.h>
 #include <sluice/input.h>
 
-/** Opens the texture of that name; NULL: the first one. `input` NULL: the file. Errors: as
- * sluiceOpenNamedImageSource, logged. */
+/** Opens the texture with a name; NULL: the first texture. `input` NULL: opens the file. Errors,
+ * logged: the same as sluiceOpenNamedImageSource. */
 SluiceResult slc_neural_file_open(const char *path, const SluiceInput *input, const char *texture,
                                   SluiceFilePool *pool, const SluiceAllocationCallbacks *cb,
                                   const SluiceLogCallback *log, SluiceImageSource **source);

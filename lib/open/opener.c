@@ -17,7 +17,8 @@
 
 #include <string.h>
 
-/* A store that is damaged or cannot be read is baked again. */
+/* Logs errors of cached stores as warnings, because a damaged or unreadable store is baked again.
+ */
 static void log_cached_store(void *user, SluiceLogSeverity severity, const char *message)
 {
     const SluiceImageOpener *opener = user;
@@ -126,7 +127,7 @@ static void free_image(struct slc_opened_image *image)
     slc_free(&cb, image, 1, sizeof *image);
 }
 
-/* Not of pictures. */
+/* Returns the source of an image that is not a picture. */
 static SluiceImageSource *source_to_read(const struct slc_opened_image *image)
 {
     return image->complete ? image->complete : image->source;
@@ -155,7 +156,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     return sluiceReadImageRegionLocated(source_to_read(image), region, texels, row_pitch, fault);
 }
 
-/* Tiles of pictures get other texels when the bake is done. */
+/* Identifies a tile. Tiles of pictures have no identity: the bake changes their texels. */
 static bool identify(SluiceImageSource *base, const SluiceImageRegion *region, uint64_t *identity)
 {
     struct slc_opened_image *image = (struct slc_opened_image *)base;
@@ -179,7 +180,7 @@ static void add_to_bucket(struct slc_opened_image *image)
     *bucket = image;
 }
 
-/* With the mutex held. Nothing if it is in none. */
+/* Removes an image from its bucket, if any. The mutex is held. */
 static void take_from_bucket(struct slc_opened_image *image)
 {
     struct slc_opened_image **link = find_bucket(image->opener, image->path);
@@ -189,7 +190,7 @@ static void take_from_bucket(struct slc_opened_image *image)
         *link = image->next;
 }
 
-/* With the mutex held. Whether it was the last one; then the image is in no bucket. */
+/* Drops a reference. True: the last one; the image then is in no bucket. The mutex is held. */
 static bool drop_reference(struct slc_opened_image *image)
 {
     bool is_last = --image->reference_count == 0;
@@ -229,14 +230,14 @@ static bool is_same_name(const char *a, const char *b)
     return a && b ? strcmp(a, b) == 0 : !a && !b;
 }
 
-/* With the mutex held, and the kind known. A catalogue is one whatever is asked of it. */
+/* Tells whether an image fits a request; any request fits a catalogue. The mutex is held. */
 static bool is_opened_as(const struct slc_opened_image *image, const struct slc_open_request *r)
 {
     return image->kind == SLC_IMAGE_FILE_KIND_CATALOGUE ||
            (is_same_name(image->texture, r->texture) && image->settings_hash == r->settings_hash);
 }
 
-/* With the mutex held. Also an image that may turn out to be a catalogue. */
+/* Finds an image, also one that may prove to be a catalogue. The mutex is held. */
 static struct slc_opened_image *find_image(SluiceImageOpener *opener,
                                            const struct slc_open_request *r)
 {
@@ -249,7 +250,7 @@ static struct slc_opened_image *find_image(SluiceImageOpener *opener,
     return image;
 }
 
-/* Compressed levels cannot be built; what a chain without them is good for, its user decides. */
+/* Adds missing levels. Compressed formats keep a partial chain, because levels cannot be made. */
 static SluiceResult complete_chain(struct slc_opened_image *image)
 {
     const SluiceImageOpener *opener = image->opener;
@@ -271,7 +272,7 @@ bool slc_opener_owns_path(const SluiceImageOpener *opener, const char *path)
     return opener->path_opener.pfnOpenPath && strstr(path, "://");
 }
 
-/* NULL: no memory. */
+/* Creates an image. NULL: out of memory. */
 static struct slc_opened_image *create_image(SluiceImageOpener *opener,
                                              const struct slc_open_request *r)
 {
@@ -300,7 +301,7 @@ static struct slc_opened_image *create_image(SluiceImageOpener *opener,
     return NULL;
 }
 
-/* Errors: of a path opener, of what it opened; UNSUPPORTED, logged. */
+/* Opens a path with the path opener. Errors: errors of opener and input; UNSUPPORTED, logged. */
 static SluiceResult open_path(struct slc_opened_image *image)
 {
     SluiceImageOpener *opener = image->opener;
@@ -319,7 +320,7 @@ static SluiceResult open_path(struct slc_opened_image *image)
     slc_mutex_lock(&opener->mutex);
     image->kind = kind;
     image->is_kind_known = true;
-    slc_condition_broadcast(&opener->opened); /* who wants another texture of it goes on */
+    slc_condition_broadcast(&opener->opened); /* wakes requests for other textures of the file */
     slc_mutex_unlock(&opener->mutex);
     if (image->kind != SLUICE_IMAGE_FILE_KIND_PICTURE)
         return result;
@@ -370,8 +371,8 @@ static SluiceResult open_image(struct slc_opened_image *image, const SluiceBakeS
     return result == SLUICE_SUCCESS ? complete_chain(image) : result;
 }
 
-/* With the mutex held, but not while the file is opened. Other threads that open it wait. Returns a
- * catalogue to release without the mutex, or NULL. */
+/* Opens an image for all waiting threads. The mutex is held, but unlocked while the file is opened.
+ * Returns NULL, or a catalogue to release without the mutex. */
 static struct slc_opened_image *open_for_all(struct slc_opened_image *image,
                                              const SluiceBakeSettings *settings)
 {
@@ -384,14 +385,14 @@ static struct slc_opened_image *open_for_all(struct slc_opened_image *image,
     image->result = result;
     image->is_opening = false;
     if (result != SLUICE_SUCCESS)
-        take_from_bucket(image); /* who opens it next tries again */
+        take_from_bucket(image); /* the next open call tries again */
     else if (image->catalogue)
         dropped = slc_opener_keep(image);
     slc_condition_broadcast(&opener->opened);
     return dropped;
 }
 
-/* With the mutex held, but not while it waits. Counts the image. False: it is another texture. */
+/* Counts a reference and waits for the opening. False: another texture. The mutex is held. */
 static bool wait_until_open(struct slc_opened_image *image, const struct slc_open_request *r)
 {
     image->reference_count++;
@@ -400,7 +401,7 @@ static bool wait_until_open(struct slc_opened_image *image, const struct slc_ope
     return is_opened_as(image, r);
 }
 
-/* An open image, counted. */
+/* Returns an open image with a counted reference. */
 static SluiceResult get_image(SluiceImageOpener *opener, const struct slc_open_request *r,
                               struct slc_opened_image **opened)
 {
@@ -425,7 +426,7 @@ static SluiceResult get_image(SluiceImageOpener *opener, const struct slc_open_r
     return result;
 }
 
-/* Settings that are no picture's make no other source. */
+/* Hashes the bake settings. Settings for files other than pictures are ignored. */
 static SluiceResult find_settings(struct slc_open_request *r)
 {
 #ifdef SLC_HAVE_BAKE
@@ -436,7 +437,7 @@ static SluiceResult find_settings(struct slc_open_request *r)
     return SLUICE_SUCCESS;
 }
 
-/* Kind and identity of a file. What a row names is never parsed or baked if it is no store. */
+/* Finds kind and identity of a file. A file named by a catalogue must be a store. */
 static SluiceResult look_at_file(SluiceImageOpener *opener, struct slc_open_request *r)
 {
     SluiceResult result =
@@ -452,8 +453,8 @@ static SluiceResult look_at_file(SluiceImageOpener *opener, struct slc_open_requ
     return SLUICE_ERROR_CORRUPT_DATA;
 }
 
-/* A catalogue on a server may have been looked at a moment ago. If it says something that is wrong
- * now, it is asked for again before the error is believed. */
+/* Opens an image. A catalogue of a server may be outdated. After an error that an outdated
+ * catalogue may cause, the catalogue is checked again before the error is returned. */
 SluiceResult slc_opener_open(SluiceImageOpener *opener, struct slc_open_request *r,
                              SluiceImageSource **source)
 {

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#define MAX_AGE ((uint64_t)1000000000) /* nanoseconds that pass between two checks of a server */
+#define MAX_AGE ((uint64_t)1000000000) /* nanoseconds between two checks at a server */
 
 static struct slc_catalogue_place place_of(const struct slc_opened_image *image)
 {
@@ -38,7 +38,7 @@ struct slc_opened_image *slc_opener_keep(struct slc_opened_image *image)
     return dropped;
 }
 
-/* With the mutex held. The catalogue that was used last stays longest. */
+/* Moves a catalogue to the front of the kept list. The mutex is held. */
 static void keep_longest(const struct slc_opened_image *image)
 {
     struct slc_opened_image **kept = image->opener->kept, *moved;
@@ -52,7 +52,7 @@ static void keep_longest(const struct slc_opened_image *image)
     kept[0] = moved;
 }
 
-/* With the mutex held. Takes one out that is not current any more. */
+/* Removes an outdated catalogue from bucket and kept list. False: not kept. The mutex is held. */
 static bool let_go(struct slc_opened_image *image)
 {
     struct slc_opened_image **kept = image->opener->kept;
@@ -68,7 +68,7 @@ static bool let_go(struct slc_opened_image *image)
     return true;
 }
 
-/* With the mutex held. Others that are not in doubt go on while one asks. */
+/* Begins a check. During a check, threads without doubt use the catalogue. The mutex is held. */
 static bool begin_check(struct slc_opened_image *image, uint64_t began, bool is_in_doubt)
 {
     const uint64_t age = slc_monotonic_time() - image->checked;
@@ -78,7 +78,7 @@ static bool begin_check(struct slc_opened_image *image, uint64_t began, bool is_
     return true;
 }
 
-/* A check that cannot tell is as good as none: in doubt the catalogue is read again. */
+/* Asks the server. If the check gives no answer, a catalogue in doubt counts as changed. */
 static bool is_unchanged(const struct slc_opened_image *image, bool is_in_doubt)
 {
     const SluiceImageOpener *opener = image->opener;
@@ -93,7 +93,7 @@ bool slc_opener_is_current(struct slc_opened_image *image, uint64_t began, bool 
     SluiceImageOpener *opener = image->opener;
     slc_mutex_lock(&opener->mutex);
     keep_longest(image);
-    if (!image->shown) { /* files are known by their identity */
+    if (!image->shown) { /* the identity of files was compared */
         slc_mutex_unlock(&opener->mutex);
         return true;
     }
@@ -127,7 +127,7 @@ static bool is_named_store(const struct slc_opened_image *image, uint64_t hash)
 #endif
 }
 
-/* Errors: CORRUPT_DATA if another file is there. */
+/* Opens a store and checks its hash. Errors: CORRUPT_DATA for another store. */
 static SluiceResult open_entry(SluiceImageOpener *opener, const struct slc_catalogue_entry *entry,
                                const SluiceLogCallback *log, SluiceImageSource **source)
 {
@@ -154,7 +154,7 @@ SluiceResult slc_opener_open_row(struct slc_opened_image *by, const struct slc_o
     struct slc_catalogue_place place = place_of(by);
     struct slc_catalogue_entry entry = {0};
     place.log = is_sure ? place.log : NULL;
-    if (r->is_entry) /* rows name no catalogues */
+    if (r->is_entry) /* catalogues cannot contain catalogues */
         return SLUICE_ERROR_CORRUPT_DATA;
     SluiceResult result = slc_catalogue_find(by->catalogue, &place, r->texture, &entry);
     if (result == SLUICE_SUCCESS)

@@ -24,7 +24,7 @@ static bool keep_going(void *user, uint64_t done, uint64_t total)
     return !atomic_load(&((struct slc_picture_stream *)user)->is_canceled);
 }
 
-/* Bytes of the file at `path`, which goes. NULL if they cannot be had. */
+/* Reads the file at `path` and deletes it. Returns NULL after a failure. */
 static void *take_file(const struct slc_picture_stream *stream, const char *path, size_t *size)
 {
     const SluiceAllocationCallbacks *cb = &stream->opener->allocator;
@@ -66,7 +66,7 @@ static bool is_unchanged(const struct slc_picture_stream *stream)
            now.nanoseconds == stream->identity.nanoseconds;
 }
 
-/* Shows it unless the store is there, or the file was replaced since it was described. */
+/* Shows the preview, unless the store is open or the picture's file has changed. */
 static void show_preview(struct slc_picture_stream *stream, void *bytes, size_t size)
 {
     SluiceImageOpener *opener = stream->opener;
@@ -97,7 +97,7 @@ static void show_preview(struct slc_picture_stream *stream, void *bytes, size_t 
     slc_free(&opener->allocator, bytes, size, 1);
 }
 
-/* Through a file of its own, because that is what a bake writes. Without one nothing is lost. */
+/* Makes the preview as a temporary store file, which is then read. Failures are harmless. */
 void slc_make_preview(struct slc_background *background, struct slc_picture_stream *stream)
 {
     char path[1024];
@@ -144,7 +144,7 @@ SluiceResult slc_open_picture_store(struct slc_picture_stream *stream, SluiceIma
     uint64_t hash = 0;
     struct slc_file_status status;
     *store = NULL;
-    /* Before it is opened: a file that takes its place in between is opened once more, no worse. */
+    /* Taken before the opening: a replacement in between only causes one more opening. */
     if (!slc_path_get_status(stream->store_path, &status))
         return SLUICE_ERROR_FILE_NOT_FOUND;
     *identity = slc_file_identity(&status);
@@ -173,7 +173,7 @@ static bool reads(const struct slc_opened_image *image, const struct slc_cache_e
            (image->identity.device == store->device && image->identity.inode == store->inode);
 }
 
-/* Whether the opener has a source that reads it. */
+/* Tells whether a source of the opener reads the store. */
 static bool is_in_use(void *user, const struct slc_cache_entry *store)
 {
     SluiceImageOpener *opener = user;
@@ -186,7 +186,7 @@ static bool is_in_use(void *user, const struct slc_cache_entry *store)
     return is_used;
 }
 
-/* NOT_READY: later. Another process may write the same store now; then its store is used. */
+/* Bakes the store. NOT_READY: try again later; another process may be writing the same store. */
 static SluiceResult bake_store(struct slc_background *background, struct slc_picture_stream *stream,
                                bool force)
 {
@@ -225,8 +225,8 @@ static SluiceResult open_baked(struct slc_picture_stream *stream, SluiceImageSou
 
 enum { MAX_OPEN_TRIES = 10 };
 
-/* Another process may delete the store before it is opened, and memory or descriptors may be short
- * for a moment. Then both are tried later; baking does nothing if the store is there. */
+/* Bakes and opens the store. Both are tried again later if another process deletes the store in
+ * between, or memory or descriptors are short. A repeated bake keeps an existing store. */
 static SluiceResult bake_and_open(struct slc_background *background,
                                   struct slc_picture_stream *stream, bool force,
                                   SluiceImageSource **store, struct slc_file_identity *identity)
@@ -262,7 +262,7 @@ bool slc_make_store(struct slc_background *background, struct slc_picture_stream
     SluiceImageSource *store = NULL;
     struct slc_file_identity identity = {0};
     bool is_there, is_damaged = stream->is_damaged;
-    /* Another opener or process may have replaced the damaged one meanwhile. */
+    /* Another opener or process may have replaced the damaged store meanwhile. */
     if (is_damaged)
         is_damaged =
             !slc_picture_store_is_replaced(stream, &stream->store_identity, &is_there) && is_there;
@@ -279,7 +279,7 @@ bool slc_make_store(struct slc_background *background, struct slc_picture_stream
         show_store(stream, store, &identity);
     else
         atomic_store(&stream->failure, result);
-    /* After a failure too: its part file takes room. */
+    /* Trim after a failure, too: the part file takes room. */
     slc_store_cache_trim(opener->cache_folder, opener->max_cache_size, &opener->allocator,
                          is_in_use, opener);
     return true;

@@ -30,7 +30,7 @@ static SluiceImageAddressMode address_mode(SluiceBakeWrap wrap)
                                              : SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE;
 }
 
-/* Size and format of a picture that is yet to be baked. */
+/* Finds size and format of a picture before its bake. */
 static SluiceResult describe(struct slc_picture_stream *stream)
 {
     SluiceBakeInfo info = {
@@ -64,12 +64,12 @@ static uint32_t find_preview_level(const SluiceImageInfo *info)
 static void queue_jobs(struct slc_picture_stream *stream)
 {
     struct slc_background *background = stream->background;
-    /* One after the other: a bake beside the preview would take its processors. */
+    /* The bake follows the preview; together they would compete for processors. */
     slc_background_queue(background, stream,
                          stream->preview_level > 0 ? SLC_JOB_PREVIEW : SLC_JOB_BAKE);
 }
 
-/* The first stream of an opener starts it. */
+/* Starts the background threads for the opener's first stream. */
 static SluiceResult need_background(struct slc_picture_stream *stream)
 {
     SluiceImageOpener *opener = stream->opener;
@@ -132,7 +132,7 @@ SluiceResult slc_picture_stream_create(SluiceImageOpener *opener, const char *pa
         slc_picture_stream_destroy(stream);
         return result;
     }
-    slc_mutex_lock(&opener->mutex); /* bakes of others look which stores are in use */
+    slc_mutex_lock(&opener->mutex); /* bakes of other streams check which stores are in use */
     *out = stream;
     slc_mutex_unlock(&opener->mutex);
     return SLUICE_SUCCESS;
@@ -153,15 +153,15 @@ void slc_picture_stream_destroy(struct slc_picture_stream *stream)
     slc_free(&cb, stream, 1, sizeof *stream);
 }
 
-/* Whether another bake may help. */
+/* Tells whether another bake may repair a failed read. */
 static bool is_lost(SluiceResult result)
 {
     return result == SLUICE_ERROR_CORRUPT_DATA || result == SLUICE_ERROR_FILE_NOT_FOUND ||
            result == SLUICE_ERROR_IO;
 }
 
-/* With the lock held for writing. Exchanges a store whose file was replaced for the new one, of
- * another opener or process. NOT_READY and OUT_OF_HOST_MEMORY: the next read tries again. */
+/* Opens the new file of a store that another opener or process replaced. The lock is held for
+ * writing. NOT_READY and OUT_OF_HOST_MEMORY: the next read tries again. */
 static SluiceResult take_replacement(struct slc_picture_stream *stream)
 {
     SluiceImageSource *store;
@@ -179,8 +179,7 @@ static SluiceResult take_replacement(struct slc_picture_stream *stream)
     return result;
 }
 
-/* With the lock held for writing. Whether a store that is there no more, or is damaged, may be
- * baked again. */
+/* Counts a rebuild of a missing or damaged store. False: too many. The lock is held for writing. */
 static bool count_rebuild(struct slc_picture_stream *stream, bool is_there)
 {
     bool is_allowed = is_there ? stream->damaged_count < SLC_MOST_REBUILDS
@@ -194,7 +193,7 @@ static bool count_rebuild(struct slc_picture_stream *stream, bool is_there)
 
 enum recovery { RECOVERY_LATER, RECOVERY_BAKE, RECOVERY_NONE };
 
-/* With the lock held for writing. The store is destroyed unless there is no recovery. */
+/* Chooses a recovery; destroys the store if there is one. The lock is held for writing. */
 static enum recovery recover(struct slc_picture_stream *stream)
 {
     bool is_there;
@@ -212,12 +211,12 @@ static enum recovery recover(struct slc_picture_stream *stream)
     return RECOVERY_BAKE;
 }
 
-/* Opens the store again or bakes it again. False if that was done often enough. */
+/* Opens or bakes the store again. False: too many attempts. */
 static bool rebuild(struct slc_picture_stream *stream, const SluiceImageSource *failed)
 {
     enum recovery recovery = RECOVERY_LATER;
     slc_rw_lock_write(&stream->lock);
-    if (stream->store == failed) /* otherwise another reader was here first */
+    if (stream->store == failed) /* otherwise another reader has recovered already */
         recovery = recover(stream);
     slc_rw_lock_end_write(&stream->lock);
     if (recovery != RECOVERY_BAKE)
@@ -244,7 +243,7 @@ SluiceResult slc_picture_stream_read(struct slc_picture_stream *stream,
     } else if (result == SLUICE_SUCCESS) {
         result = SLUICE_NOT_READY;
     }
-    fault->pName = stream->path; /* the inner source, which may be destroyed soon, set its own */
+    fault->pName = stream->path; /* replaces the name of the inner source, which may be destroyed */
     slc_rw_lock_end_read(&stream->lock);
     if (store && result == SLUICE_SUCCESS && atomic_load(&stream->vanished_count) > 0)
         atomic_store(&stream->vanished_count, 0);

@@ -49,13 +49,13 @@ bool slc_store_cache_is_busy(const char *store_path, const SluiceAllocationCallb
     static const SluiceLogCallback silent;
     struct slc_part_file part;
     SluiceResult result = slc_part_file_open(&part, store_path, SLC_PART_FILE_RESUME, cb, &silent);
-    if (result == SLUICE_SUCCESS && part.size == 0) /* it was not there */
+    if (result == SLUICE_SUCCESS && part.size == 0) /* the part file did not exist before */
         slc_part_file_remove(&part);
     slc_part_file_close(&part);
     return result == SLUICE_ERROR_BUSY;
 }
 
-/* Goes behind 1 to `max` hexadecimal digits as printf writes them. False: there are none. */
+/* Skips 1 to `max` lower-case hexadecimal digits. False: no digits. */
 static bool skip_digits(const char **text, size_t max)
 {
     size_t count = strspn(*text, "0123456789abcdef");
@@ -72,7 +72,7 @@ static bool skip_text(const char **text, const char *expected)
     return true;
 }
 
-/* False: the name is none that this file makes. */
+/* Finds the kind of a folder entry. False: the name does not belong to the cache. */
 static bool find_kind(struct slc_cache_entry *entry)
 {
     const char *name = entry->name;
@@ -92,7 +92,7 @@ static bool find_kind(struct slc_cache_entry *entry)
     return *name == '\0';
 }
 
-/* Under its lock: a bake may have begun to continue it. */
+/* Deletes a part file under its lock. False: a bake holds the lock. */
 static bool remove_part(const char *folder, const struct slc_cache_entry *part,
                         const SluiceAllocationCallbacks *cb)
 {

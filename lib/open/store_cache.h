@@ -1,4 +1,4 @@
-/** The folder that keeps stores of pictures: names in it, and how much it holds. */
+/** Cache folder for stores of pictures: names and size. */
 #ifndef SLC_OPEN_STORE_CACHE_H
 #define SLC_OPEN_STORE_CACHE_H
 
@@ -6,27 +6,26 @@
 
 #include "base/cache_folder.h"
 
-/** "FOLDER/HASH.store": the hash is that of the picture's path without links, exclusive or that of
- *  the settings, which is 0 for default ones. Errors: OUT_OF_HOST_MEMORY. Free with slc_free(cb, s,
- *  strlen(s) + 1, 1). */
+/** Makes "FOLDER/HASH.store". HASH: hash of the picture's path without links, XOR the hash of the
+ *  settings (0: default). Errors: OUT_OF_HOST_MEMORY. Free with slc_free(cb, s, strlen(s) + 1, 1).
+ */
 SluiceResult slc_store_cache_path(const char *folder, const char *picture, uint64_t settings_hash,
                                   const SluiceAllocationCallbacks *cb, char **path);
 
-/** Notes that a store was opened now. Its contents and their time stay as they are. */
+/** Records the time of use of a store. Contents and modification time stay unchanged. */
 void slc_store_cache_touch(const char *path);
 
-/** Writes "FOLDER/HASH-PROCESS-ID.preview" for the picture of that store; no other process uses it.
- *  `id` is the stream's. False if it does not fit. */
+/** Writes "FOLDER/HASH-PROCESS-ID.preview" for the store's picture. The name is unique to process
+ * and stream; `id` is the stream's. False: too long. */
 bool slc_store_cache_preview_path(const char *store_path, const void *id, char *path, size_t size);
 
-/** Whether somebody writes the store now. */
+/** Tells whether a process is writing the store. */
 bool slc_store_cache_is_busy(const char *store_path, const SluiceAllocationCallbacks *cb);
 
 /**
- * Deletes the stores that were touched longest ago until the others have at most `max_size` bytes.
- * Keeps the stores that `is_kept` says, stores that are being written, and files whose names
- * slc_store_cache_path did not make. Deletes previews that were left behind. Without memory it does
- * nothing.
+ * Deletes least recently used stores until the others have at most `max_size` bytes. Keeps stores
+ * for which `is_kept` is true, stores in writing, and files with names of other programs. Deletes
+ * abandoned previews. Does nothing if out of memory.
  */
 void slc_store_cache_trim(const char *folder, uint64_t max_size,
                           const SluiceAllocationCallbacks *cb,
