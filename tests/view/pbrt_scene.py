@@ -1,5 +1,6 @@
 """pbrt_scene.py make FOLDER: writes wall.pbrt and its picture. A wall of 16 x 12 units fills what the camera sees.
 pbrt_scene.py holes PICTURE ...: whether no pixel is black or magenta.
+pbrt_scene.py colored PICTURE: whether a pixel has a color.
 pbrt_scene.py gray PICTURE: whether all pixels are gray.
 pbrt_scene.py differs A B D: whether D is 16 times the difference of A and B, but at edges, where the frustum of
     frozen wants is.
@@ -88,6 +89,8 @@ if sys.argv[1] == "make":
     good = True
 elif sys.argv[1] == "holes":
     good = holes(sys.argv[2:])
+elif sys.argv[1] == "colored":
+    good = any(max(p) - min(p) > 40 for p in pixels(sys.argv[2]))
 elif sys.argv[1] == "gray":
     good = all(max(p) - min(p) < 3 for p in pixels(sys.argv[2]))
 elif sys.argv[1] == "differs":
