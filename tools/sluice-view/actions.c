@@ -92,9 +92,11 @@ static void freeze(struct view_app *app, int argument)
 {
     (void)argument;
     app->settings.freeze_wants = !app->settings.freeze_wants;
+    const bool traced = app->stage && stage_traced(app->stage);
     app_say(app, "%s",
-            app->settings.freeze_wants ? "Tiles are loaded for the camera as it was here"
-                                       : "Tiles are loaded for this camera");
+            !app->settings.freeze_wants ? "Tiles are loaded for this camera"
+            : traced                    ? "Rays request nothing: what is in memory stays"
+                                        : "Tiles are loaded for the camera as it was here");
 }
 
 static void demonstrate(struct view_app *app, int argument)

@@ -89,14 +89,10 @@ static void draw_buttons(struct view_app *app)
         return;
     if (ui_begin_panel("buttons", NULL, placement, pivot, UI_PANEL_PLAIN | UI_PANEL_FIT)) {
         const uint32_t view = app->settings.view;
-        const bool traced = stage_traced(app->stage);
-        if (traced && ui_button("What is in memory? (M)", width, height, app->open[PANEL_MEMORY]))
-            app_set_panel(app, PANEL_MEMORY, !app->open[PANEL_MEMORY]);
-        if (!traced && ui_button("What is in memory? (2)", width, height, view == VIEW_RESIDENT))
+        if (ui_button("What is in memory? (2)", width, height, view == VIEW_RESIDENT))
             app_set_view(app, view == VIEW_RESIDENT ? VIEW_PICTURE : VIEW_RESIDENT);
-        if (!traced)
-            ui_hint("Colors the picture by the level of detail that is in memory. Key 2; 1 comes "
-                    "back.");
+        ui_hint("Colors the picture by the level of detail that is in memory. Key 2; 1 comes "
+                "back.");
         ui_same_line(0);
         if (ui_button("Why is this blurry? (3)", width, height, view == VIEW_MISSING))
             app_set_view(app, view == VIEW_MISSING ? VIEW_PICTURE : VIEW_MISSING);

@@ -123,9 +123,9 @@ void panel_traced_memory(struct view_app *app)
             (unsigned long long)d->evictedCount, (unsigned long long)d->restoredCount);
     if (sums.slots > 0) {
         ui_text(sums.fragmentation > 0.25 ? UI_ORANGE : UI_GRAY,
-                "%u images, %u of %u slots used, %u stand by: fragmentation %.0f %%",
-                t->tiles.image_count, sums.used, sums.slots, sums.standby,
-                100.0 * sums.fragmentation);
+                "%u image%s, %u of %u slots used, %u stand by: fragmentation %.0f %%",
+                t->tiles.image_count, t->tiles.image_count == 1 ? "" : "s", sums.used, sums.slots,
+                sums.standby, 100.0 * sums.fragmentation);
         ui_hint("Part of the slots in images that would be empty if tiles moved together. Demand "
                 "loaders move no tiles: short of memory, they evict the tiles of an image.");
     }

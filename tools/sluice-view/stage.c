@@ -559,6 +559,18 @@ const SluiceImageSource *stage_source(const struct stage *s, uint32_t index)
     return s->streamer ? s->faulty[index] : NULL;
 }
 
+SluiceImageSource *stage_borrow_source(const struct stage *s, uint32_t index)
+{
+    return s->traced ? traced_borrow_source(s->traced, index)
+                     : (SluiceImageSource *)stage_source(s, index);
+}
+
+void stage_return_source(const struct stage *s, uint32_t index, SluiceImageSource *source)
+{
+    if (s->traced)
+        traced_return_source(s->traced, index, source);
+}
+
 const struct stage_texture *stage_texture(const struct stage *s, uint32_t index)
 {
     return s->traced ? &s->traced->pictures[index].texture : &s->textures[index];

@@ -133,6 +133,10 @@ bool stage_find_texel(const struct stage *stage, uint32_t texture, float u, floa
 uint32_t stage_triangle_count(const struct stage *stage);
 /** Time stamp of the last frame that was recorded. */
 uint64_t stage_now(const struct stage *stage);
+/** A source for other readers, from any thread: of a traced scene, if rays have opened its picture.
+ *  NULL: none. Return it before the stage is destroyed. */
+SluiceImageSource *stage_borrow_source(const struct stage *stage, uint32_t index);
+void stage_return_source(const struct stage *stage, uint32_t index, SluiceImageSource *source);
 /** The source that the streamer reads. */
 const SluiceImageSource *stage_source(const struct stage *stage, uint32_t index);
 /** A place to begin, and the box around everything. */

@@ -44,14 +44,11 @@ static void shrink(const uint8_t *texels, uint32_t width, uint32_t height, uint3
         }
 }
 
-/* False if the source cannot be shown, or is not ready. */
-static bool read_cell(const struct stage *stage, uint32_t texture,
-                      uint8_t cell[THUMBS_CELL][THUMBS_CELL][4])
+static bool read_source(SluiceImageSource *source, uint8_t cell[THUMBS_CELL][THUMBS_CELL][4])
 {
     SluiceImageInfo info = {.structSize = sizeof info};
-    SluiceImageSource *source = (SluiceImageSource *)stage_source(stage, texture);
     uint32_t level = 0;
-    if (!source || sluiceGetImageInfo(source, &info) != SLUICE_SUCCESS)
+    if (sluiceGetImageInfo(source, &info) != SLUICE_SUCCESS)
         return false;
     while (level + 1 < info.mipLevelCount &&
            (side_of(info.width, level) > THUMBS_CELL || side_of(info.height, level) > THUMBS_CELL))
@@ -69,6 +66,17 @@ static bool read_cell(const struct stage *stage, uint32_t texture,
     if (read)
         shrink(texels, region.width, region.height, bytes, cell);
     free(texels);
+    return read;
+}
+
+/* False if the source cannot be shown, or is not ready. */
+static bool read_cell(const struct stage *stage, uint32_t texture,
+                      uint8_t cell[THUMBS_CELL][THUMBS_CELL][4])
+{
+    SluiceImageSource *source = stage_borrow_source(stage, texture);
+    const bool read = source && read_source(source, cell);
+    if (source)
+        stage_return_source(stage, texture, source);
     return read;
 }
 
@@ -103,7 +111,8 @@ static uint32_t read_all(struct thumbs *t)
 static void *run(void *user_data)
 {
     struct thumbs *t = user_data;
-    for (int i = 0; i < TRIES && read_all(t) > 0; i++) {
+    /* Rays may open pictures at any time. */
+    for (int i = 0; (i < TRIES || stage_traced(t->stage)) && read_all(t) > 0; i++) {
         const double until = clock_seconds() + TRY_SECONDS;
         while (!atomic_load(&t->stop) && clock_seconds() < until)
             clock_sleep_until(clock_seconds() + 0.02);
@@ -113,6 +122,8 @@ static void *run(void *user_data)
 
 void thumbs_begin(struct thumbs *t, const struct gpu *gpu, const struct stage *stage, bool wait)
 {
+    if (t->stage && wait && stage_traced(stage) && t->count > 0)
+        read_all(t);
     if (t->stage)
         return;
     const uint32_t all = stage_texture_count(stage);

@@ -31,6 +31,8 @@ struct traced_picture {
     uint32_t arrived, left; ///< tiles, as far as looks at them tell
     uint32_t asked;         ///< openings, tiles and tails that launches missed
     uint32_t finest;        ///< level of which tiles are resident; UINT32_MAX: none
+    /** Its file, once it is open: other threads may read it. */
+    _Atomic(struct picture_file *) file;
 };
 
 struct traced {
@@ -105,6 +107,10 @@ double traced_complete(const struct traced *traced);
 uint32_t traced_opening_count(const struct traced *traced);
 /** Bytes of device memory beside the loader's: meshes, their structures, materials. */
 uint64_t traced_geometry_size(const struct traced *traced);
+
+/** Of a picture that is open; NULL otherwise. Any thread. */
+SluiceImageSource *traced_borrow_source(const struct traced *traced, uint32_t picture);
+void traced_return_source(const struct traced *traced, uint32_t picture, SluiceImageSource *source);
 
 /** traced_facts.c: keeps what the last launch missed. */
 void traced_note_misses(struct traced *traced);

@@ -125,8 +125,10 @@ static uint32_t look_at(struct traced *t, struct traced_picture *p)
     p->id = image ? image->id : SLUICE_NO_DEMAND_TEXTURE;
     if (!image || !get_progress(t, p, 0, &progress))
         return 1;
-    if (progress.isOpen)
+    if (progress.isOpen) {
         describe(p, image);
+        atomic_store(&p->file, image->file);
+    }
     const uint32_t before = p->resident_count, now = progress.residentTileCount;
     p->arrived += now > before ? now - before : 0;
     p->left += before > now ? before - now : 0;
@@ -137,6 +139,18 @@ static uint32_t look_at(struct traced *t, struct traced_picture *p)
     p->texture.size = (uint64_t)p->tile_count * TILE_SIZE;
     p->finest = progress.isOpen ? find_finest(t, p) : UINT32_MAX;
     return 1 + 2 * p->tile_count;
+}
+
+SluiceImageSource *traced_borrow_source(const struct traced *t, uint32_t picture)
+{
+    struct picture_file *file = atomic_load(&t->pictures[picture].file);
+    SluiceImageSource *source = NULL;
+    return file && shared_source_open(&file->shared, &source) == SLUICE_SUCCESS ? source : NULL;
+}
+
+void traced_return_source(const struct traced *t, uint32_t picture, SluiceImageSource *source)
+{
+    shared_source_close(&atomic_load(&t->pictures[picture].file)->shared, source);
 }
 
 static void look_at_pictures(struct traced *t)

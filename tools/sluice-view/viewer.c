@@ -315,7 +315,7 @@ static bool record(struct viewer *v, struct frames_end *end, VkCommandBuffer com
     if (!v->stage || stage_played(v->stage))
         return true;
     const bool copies = follow_flip(v, &draw, end, commands);
-    if (v->app.open[PANEL_TEXTURES] && !stage_traced(v->stage))
+    if (v->app.open[PANEL_TEXTURES])
         thumbs_begin(&v->thumbs, &v->gpu, v->stage, v->options->deterministic);
     thumbs_record(&v->thumbs, v->frames.number, commands);
     if (v->thumbs.texels.filled)
