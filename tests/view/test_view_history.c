@@ -49,6 +49,35 @@ static void points_of_all_spans_have_the_largest_of_their_frames(void **state)
     history_destroy(&history);
 }
 
+/* As a click in a graph keeps it. */
+static void a_time_names_the_same_point_while_frames_pass(void **state)
+{
+    (void)state;
+    struct history history;
+    assert_true(history_create(SERIES, &history));
+    for (uint32_t i = 0; i < 200; i++)
+        history_add(&history, FRAME_SECONDS, (const float[SERIES]){(float)value_of(i), 1});
+    for (int span = 0; span < HISTORY_SPANS; span++) {
+        const enum history_span s = (enum history_span)span;
+        for (uint32_t age = 0; age < history_count(&history, s); age++)
+            assert_int_equal(history_age_of(&history, s, history_time_of(&history, s, age)), age);
+    }
+    const double time = history_time_of(&history, HISTORY_10_SECONDS, 40);
+    const float value = history_value(&history, HISTORY_10_SECONDS, 0, 40);
+    for (uint32_t i = 0; i < 100; i++) {
+        history_add(&history, FRAME_SECONDS, (const float[SERIES]){(float)i, 1});
+        const uint32_t age = history_age_of(&history, HISTORY_10_SECONDS, time);
+        assert_true(age > 40);
+        assert_float_equal(history_value(&history, HISTORY_10_SECONDS, 0, age), value, 0);
+    }
+    for (uint32_t i = 0; i < 100; i++)
+        history_add(&history, FRAME_SECONDS, (const float[SERIES]){1, 1});
+    assert_int_equal(history_age_of(&history, HISTORY_10_SECONDS, time), UINT32_MAX);
+    assert_int_equal(history_age_of(&history, HISTORY_10_SECONDS, 1e6), UINT32_MAX);
+    assert_true(history_age_of(&history, HISTORY_ALL, time) < HISTORY_POINTS);
+    history_destroy(&history);
+}
+
 static void a_frame_that_is_longer_than_a_point_fills_all_that_it_passes(void **state)
 {
     (void)state;
@@ -92,6 +121,7 @@ static void quantiles_of_frame_times_are_those_of_the_sorted_times(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_time_names_the_same_point_while_frames_pass),
         cmocka_unit_test(points_of_all_spans_have_the_largest_of_their_frames),
         cmocka_unit_test(a_frame_that_is_longer_than_a_point_fills_all_that_it_passes),
         cmocka_unit_test(quantiles_of_frame_times_are_those_of_the_sorted_times),

@@ -56,6 +56,7 @@ bool app_open(struct view_app *app, struct stage *stage, bool walks)
     if (!facts_create(&app->facts, stage))
         return false;
     app->stage = stage;
+    app->pinned = 0;
     begin_scene(app, walks);
     return true;
 }

@@ -75,6 +75,7 @@ struct view_app {
     struct file_facts file;
     bool edits_b;           ///< controls change B
     struct browser browser; ///< of PANEL_OPEN
+    double pinned;          ///< time of the graphs that they show values of; 0: now
     struct app_quantiles quantiles;
     struct texture_table table;
     struct memory_map memory;

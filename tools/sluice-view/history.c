@@ -108,6 +108,20 @@ uint32_t history_read(const struct history *h, enum history_span span, uint32_t 
     return ring->count;
 }
 
+uint32_t history_age_of(const struct history *h, enum history_span span, double seconds)
+{
+    const struct history_ring *ring = &h->rings[span];
+    const uint64_t number = (uint64_t)(seconds / ring->step);
+    const bool known = number <= ring->last && ring->last - number < ring->count;
+    return known ? (uint32_t)(ring->last - number) : UINT32_MAX;
+}
+
+double history_time_of(const struct history *h, enum history_span span, uint32_t age)
+{
+    const struct history_ring *ring = &h->rings[span];
+    return ((double)(ring->last - age) + 0.5) * ring->step;
+}
+
 static int compare(const void *left, const void *right)
 {
     const float *a = left, *b = right;

@@ -42,6 +42,11 @@ float history_value(const struct history *history, enum history_span span, uint3
  */
 uint32_t history_read(const struct history *history, enum history_span span, uint32_t series,
                       float *values);
+/** Returns how many points ago a time was, in seconds since the first frame; UINT32_MAX if the span
+ *  does not have it. */
+uint32_t history_age_of(const struct history *history, enum history_span span, double seconds);
+/** Returns the middle of the time of a point. */
+double history_time_of(const struct history *history, enum history_span span, uint32_t age);
 /** Writes quantiles of the seconds per frame within a span, of the last HISTORY_FRAMES frames at
  *  most. `parts`: 0.5 for the median. */
 void history_frame_times(struct history *history, enum history_span span, const double *parts,

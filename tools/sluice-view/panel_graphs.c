@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #define QUANTILE_SECONDS 0.25
+#define PIN_POINTS 6u
 
 struct curve {
     enum facts_series series;
@@ -100,11 +101,38 @@ static int digits_of(double value)
     return value > 0 && value < 10 ? 1 : 0;
 }
 
-static void draw_hover(const struct view_facts *f, const struct graph *graph, const float r[4],
+/* Points ago that values are shown of; 0: now. */
+static uint32_t shown_age(const struct view_app *app)
+{
+    const uint32_t age =
+        app->pinned > 0 ? history_age_of(&app->facts.history,
+                                         (enum history_span)app->settings.graph_span, app->pinned)
+                        : 0;
+    return age == UINT32_MAX ? 0 : age;
+}
+
+/* Another click near the line, which moves on, lets go. */
+static void pin(struct view_app *app, enum history_span span, uint32_t age)
+{
+    const uint32_t shown = shown_age(app);
+    const bool again = shown > 0 && (shown > age ? shown - age : age - shown) <= PIN_POINTS;
+    app->pinned = again ? 0 : history_time_of(&app->facts.history, span, age);
+}
+
+static float x_of(const float r[4], uint32_t age)
+{
+    return r[0] + r[2] * (1.0f - (float)age / (HISTORY_POINTS - 1));
+}
+
+static void draw_hover(struct view_app *app, const struct graph *graph, const float r[4],
                        enum history_span span)
 {
+    const struct view_facts *f = &app->facts;
     float x, y;
-    char text[256];
+    char text[320];
+    if (shown_age(app) > 0)
+        ui_stroke(x_of(r, shown_age(app)), r[1], x_of(r, shown_age(app)), r[1] + r[3], UI_WHITE,
+                  ui_scale());
     ui_mouse(&x, &y);
     if (!ui_hovered() || x < r[0] || x >= r[0] + r[2])
         return;
@@ -118,15 +146,25 @@ static void draw_hover(const struct view_facts *f, const struct graph *graph, co
             length += snprintf(text + length, sizeof text - (size_t)length, "\n%s %.*f %s",
                                graph->curves[i].name, digits_of(value), value, graph->unit);
     }
+    snprintf(text + length, sizeof text - (size_t)length, "\nClick: keep showing this frame");
     ui_stroke(x, r[1], x, r[1] + r[3], UI_GRAY, 1);
     ui_show_hint(text);
+    if (ui_mouse_clicked(0))
+        pin(app, span, age);
 }
 
-static void draw_title(const struct view_facts *f, const struct graph *graph)
+static void draw_title(const struct view_app *app, const struct graph *graph)
 {
+    const struct view_facts *f = &app->facts;
+    const uint32_t age = shown_age(app);
     ui_text(UI_WHITE, "%s", graph->title);
     for (uint32_t i = 0; i < graph->curve_count; i++) {
-        const double value = (double)f->latest[graph->curves[i].series];
+        const enum facts_series series = graph->curves[i].series;
+        const double value =
+            (double)(age > 0
+                         ? history_value(&f->history, (enum history_span)app->settings.graph_span,
+                                         series, age)
+                         : f->latest[series]);
         if (!is_drawn(f, &graph->curves[i]))
             continue;
         ui_same_line(0);
@@ -171,19 +209,19 @@ static void draw_curves(const struct view_facts *f, const struct graph *graph,
             draw_curve(values[i], count, r, (double)top, graph->curves[i].color);
 }
 
-static void draw_graph(const struct view_facts *f, const struct graph *graph,
-                       enum history_span span)
+static void draw_graph(struct view_app *app, const struct graph *graph, enum history_span span)
 {
+    const struct view_facts *f = &app->facts;
     const float height = 46 * ui_scale();
     float r[4];
     if (!ui_in_sight(ui_line_height() + height)) {
         ui_space(ui_line_height() + height);
         return;
     }
-    draw_title(f, graph);
+    draw_title(app, graph);
     ui_canvas(0, height, r);
     draw_curves(f, graph, span, r);
-    draw_hover(f, graph, r, span);
+    draw_hover(app, graph, r, span);
 }
 
 /* The last 3600 frames at most: what was before is in the curves. They are sorted some times per
@@ -211,7 +249,17 @@ static void draw_spans(struct view_app *app)
         ui_hint("Time that the graphs show. --graph-span");
         ui_same_line(0);
     }
-    ui_text(UI_GRAY, "a point: largest of its frames");
+    const uint32_t age = shown_age(app);
+    const double step = app->facts.history.rings[app->settings.graph_span].step;
+    if (age > 0 && ui_button("Now", 0, 0, false))
+        app->pinned = 0;
+    if (age > 0) {
+        ui_hint("Shows the values of now. So does a click on the white line.");
+        ui_same_line(0);
+        ui_text(UI_ORANGE, "values of %.1f s ago", age * step);
+    } else {
+        ui_text(UI_GRAY, "a point: largest of its frames; click: keep its values");
+    }
 }
 
 void panel_graphs(struct view_app *app)
@@ -231,7 +279,7 @@ void panel_graphs(struct view_app *app)
             draw_quantiles(app, span);
         for (size_t i = 0; i < sizeof graphs / sizeof *graphs; i++)
             if (!(app->deterministic && graphs[i].times))
-                draw_graph(&app->facts, &graphs[i], span);
+                draw_graph(app, &graphs[i], span);
     }
     ui_end_panel();
 }
