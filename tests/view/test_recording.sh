@@ -99,6 +99,13 @@ echo '2 record again.trace' >record
 show --script record run.trace && grep -q 'not recorded again' err && echo '2 frame 3' >record &&
     run 0 --room --headless --deterministic --fresh --cache . --size 160x160 --script record && grep -q 'no recording is shown' err
 fact events_that_do_not_apply_are_refused_by_words
+pin() {
+    printf '2 key G\n%b\n40 hover 5 5\n44 screenshot %s\n45 quit\n' "$1" "$2" >pins
+    run 0 --room --headless --deterministic --fresh --cache . --size 500x281 --ui-scale 0.5 --render-scale 0.2 --budget 8 --script pins
+}
+pin '30 click 420 72' plain.png && pin '30 click 477 108' pinned.png && pin '30 click 477 108\n33 click 477 108' again.png &&
+    ! cmp -s plain.png pinned.png && cmp plain.png again.png
+fact a_click_in_a_graph_of_a_scene_keeps_its_values_and_another_lets_go
 shown=0
 for trace in "$root"/tests/data/*.trace; do
     case $trace in *demand_*) continue ;; esac

@@ -160,9 +160,9 @@ const char *panel_played_line(const struct view_app *app, char *text, size_t siz
 {
     const struct played *p = played_of(app);
     const uint32_t *figures = p->frames[p->frame].figures;
-    snprintf(text, size, "frame %u  ·  %u tiles missing  ·  %u loaded, %u evicted, %u failed",
+    snprintf(text, size, "frame %u  ·  %u tiles missing  ·  %u loaded, %u lost, %u failed",
              p->frame, missing_of(&p->frames[p->frame]), figures[PLAYED_LOADED],
-             figures[PLAYED_EVICTED], figures[PLAYED_FAILED]);
+             figures[PLAYED_LOST], figures[PLAYED_FAILED]);
     return text;
 }
 

@@ -64,12 +64,15 @@ static void name_series(const struct played *p, struct view_facts *f)
                                          [SERIES_RESTORED] = figures[PLAYED_RESTORED],
                                          [SERIES_MISSING] = 100.0 - 100.0 * f->sharp};
     for (int i = 0; i < SERIES_COUNT; i++)
-        f->latest[i] = (float)values[i];
+        if (i != SERIES_HOST && i != SERIES_GPU)
+            f->latest[i] = (float)values[i];
 }
 
 void played_facts_update(const struct stage *stage, struct view_facts *f)
 {
     const struct played *p = stage_played(stage);
+    f->latest[SERIES_HOST] = (float)(1e3 * f->host_seconds);
+    f->latest[SERIES_GPU] = (float)(1e3 * f->gpu_seconds);
     if (f->played_frame == p->frame)
         return;
     const uint64_t heap_size = (uint64_t)p->begin.heapTileCapacity * p->begin.tileSize;

@@ -115,12 +115,14 @@ static void find_peaks(const struct played *p, enum played_figure figure, uint32
 static void draw_curve(const uint32_t *peaks, uint32_t columns, double factor, double top,
                        const float r[4], uint32_t color)
 {
-    float xy[2 * MOST_COLUMNS];
+    float xy[4 * MOST_COLUMNS]; /* steps: points of sharp peaks would leave the graph */
     for (uint32_t i = 0; i < columns; i++) {
-        xy[2 * i] = r[0] + r[2] * ((float)i + 0.5f) / (float)columns;
-        xy[2 * i + 1] = r[1] + r[3] * (float)(1.0 - 0.96 * factor * peaks[i] / top);
+        xy[4 * i] = r[0] + r[2] * (float)i / (float)columns;
+        xy[4 * i + 2] = r[0] + r[2] * (float)(i + 1) / (float)columns;
+        xy[4 * i + 1] = xy[4 * i + 3] =
+            r[1] + r[3] * (float)(0.99 - 0.96 * factor * peaks[i] / top);
     }
-    ui_polyline(xy, columns, color, 1.5f * ui_scale());
+    ui_polyline(xy, 2 * columns, color, 1.5f * ui_scale());
 }
 
 static float x_of(const float r[4], uint32_t first, uint32_t last, uint32_t frame)
