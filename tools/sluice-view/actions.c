@@ -1,8 +1,10 @@
 #include "actions.h"
 
 #include "panel_open.h"
+#include "memory_map.h"
 #include "panel_traced.h"
 #include "played_app.h"
+#include "texture_actions.h"
 
 #include <math.h>
 
@@ -86,6 +88,27 @@ static void restart(struct view_app *app, int argument)
     (void)argument;
     app->restart = true;
     app_say(app, "Everything was evicted");
+}
+
+static void evict_selected(struct view_app *app, int argument)
+{
+    (void)argument;
+    if (app->selected >= app->facts.texture_count)
+        app_say(app, "Click a surface first: its texture is evicted");
+    else if (texture_actions_do(app, "evict"))
+        app_say(app, "Evicted %s", stage_texture(app->stage, app->selected)->name);
+}
+
+static void trim(struct view_app *app, int argument)
+{
+    (void)argument;
+    memory_trim(app);
+}
+
+static void compact(struct view_app *app, int argument)
+{
+    (void)argument;
+    memory_compact(app);
 }
 
 static void freeze(struct view_app *app, int argument)
@@ -292,6 +315,9 @@ static const struct action table[] = {
     {"Streaming", "N", NULL, "step one frame", step, 0},
     {"Streaming", "Shift+N", NULL, "load one tile, while paused", step_tile, 0},
     {"Streaming", "Shift+R", NULL, "evict everything, watch it fill", restart, 0},
+    {"Streaming", "delete", "Delete", "evict the selected texture", evict_selected, 0},
+    {"Streaming", "Ctrl+M", NULL, "evict standby tiles", trim, 0},
+    {"Streaming", "Shift+M", NULL, "move tiles together", compact, 0},
     {"Streaming", "L", NULL, "freeze what is wanted", freeze, 0},
     {"Streaming", "Ctrl+R", NULL, "record for sluice-replay", trace, 0},
     {"Streaming", "B", NULL, "budget demonstration", demonstrate, 0},

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #define SECONDS 0.1
+#define COMPACTED_TILES 64u /* at a time: each is read again in sparse mode */
 
 bool memory_slot_get(const struct stage *stage, const struct view_facts *facts, uint32_t heap,
                      uint32_t slot, struct memory_slot *to)
@@ -131,4 +132,23 @@ struct memory_sums memory_sums_of(const struct stage *stage)
     sums.spare_heaps = sums.heaps - (sums.used + tiles - 1) / tiles;
     sums.fragmentation = (double)sums.spare_heaps / sums.heaps;
     return sums;
+}
+
+void memory_compact(struct view_app *app)
+{
+    uint32_t moved = 0;
+    const SluiceResult result =
+        sluiceCompactVulkanStreamer(stage_streamer(app->stage), COMPACTED_TILES, &moved);
+    if (result == SLUICE_SUCCESS)
+        app_say(app, moved ? "Moved %u tile%s together" : "No tile has to move", moved,
+                moved == 1 ? "" : "s");
+    else
+        app_say(app, "Tiles were not moved: %s", sluiceGetResultName(result));
+}
+
+void memory_trim(struct view_app *app)
+{
+    const uint32_t count = app->facts.now.standbyTileCount;
+    sluiceTrimStandbyTiles(stage_manager(app->stage), 0);
+    app_say(app, "Evicted %u standby tile%s", count, count == 1 ? "" : "s");
 }

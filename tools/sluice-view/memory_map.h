@@ -56,4 +56,10 @@ uint32_t memory_texture_color(const struct stage *stage, uint32_t texture);
 /** Sums over all heaps of the stage's manager. */
 struct memory_sums memory_sums_of(const struct stage *stage);
 
+struct view_app;
+/** Moves at most 64 tiles together, and says how many. */
+void memory_compact(struct view_app *app);
+/** Evicts all standby tiles, and says how many there were. */
+void memory_trim(struct view_app *app);
+
 #endif /* SLUICE_VIEW_MEMORY_MAP_H */

@@ -180,15 +180,12 @@ void panel_memory_colors(struct view_app *app)
 
 static void draw_buttons(struct view_app *app)
 {
-    uint32_t moved = 0;
-    if (ui_button("Compact", 0, 0, false)) {
-        sluiceCompactVulkanStreamer(stage_streamer(app->stage), 64, &moved);
-        app_say(app, "Moved %u tiles", moved);
-    }
+    if (ui_button("Compact (Shift+M)", 0, 0, false))
+        memory_compact(app);
     ui_hint("Moves at most 64 tiles together, so that heaps become empty and are freed.");
     ui_same_line(0);
-    if (ui_button("Trim standby", 0, 0, false))
-        sluiceTrimStandbyTiles(stage_manager(app->stage), 0);
+    if (ui_button("Trim standby (Ctrl+M)", 0, 0, false))
+        memory_trim(app);
     ui_hint("Evicts all tiles that nothing requests.");
 }
 

@@ -9,6 +9,9 @@ static const struct {
     const char *chord, *why;
 } refused[] = {
     {"Shift+N", "Tiles are not stepped one by one: a launch loads all that its rays lack"},
+    {"Ctrl+M", "Demand loaders keep no list of standby tiles to trim: the budget evicts"},
+    {"Shift+M", "Demand loaders move no tiles together: the budget gives memory back"},
+    {"delete", "Textures of pbrt scenes are not evicted one by one: Shift+R drops all"},
     {"Ctrl+T", "Sweeps are for streamed scenes: what they change does nothing here"},
 };
 

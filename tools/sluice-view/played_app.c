@@ -124,9 +124,9 @@ const char *played_app_refuses(const struct action *action)
 
 bool played_app_takes(const char *control)
 {
-    static const char *const names[] = {"graph-span", "memory-colors", "event-reason",
-                                        "events-of",  "size",          "full-screen",
-                                        "frame-cap",  "ui-scale",      "panels"};
+    static const char *const names[] = {"graph-span", "memory-colors", "event-reason", "events-of",
+                                        "size",       "full-screen",   "frame-cap",    "ui-scale",
+                                        "panels",     "theme",         "vsync"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(names[i], control) == 0)
             return true;

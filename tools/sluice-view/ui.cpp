@@ -320,7 +320,7 @@ bool ui_owns_key(int key)
     if (io.WantTextInput)
         return true;
     const bool moves = key == VIEW_KEY_TAB || key == VIEW_KEY_SPACE || key == VIEW_KEY_ENTER ||
-                       (key >= VIEW_KEY_RIGHT && key <= VIEW_KEY_UP);
+                       key == VIEW_KEY_DELETE || (key >= VIEW_KEY_RIGHT && key <= VIEW_KEY_UP);
     return io.NavVisible && io.WantCaptureKeyboard && moves;
 }
 

@@ -317,7 +317,8 @@ void viewer_open_chosen(struct viewer *v)
 void viewer_reopen_if_needed(struct viewer *v)
 {
     const struct view_settings *now = &v->app.settings;
-    if (!v->stage || v->load || ui_any_active() || !sets_must_reopen(stage_opened(v->stage), now) ||
+    if (!v->stage || stage_played(v->stage) || v->load || ui_any_active() ||
+        !sets_must_reopen(stage_opened(v->stage), now) ||
         (stage_traced(v->stage) && stage_opened(v->stage)->threads == now->threads) ||
         (v->asked && !sets_must_reopen(&v->reopened, now)))
         return;
