@@ -119,4 +119,15 @@ printf '8 set theme dark\n9 screenshot dark.png\n10 quit\n' >>sizes
 run 0 --room --still --headless --deterministic --fresh --size 480x270 --script sizes $validation &&
     [ "$(png_size smaller.png)" = 320x200 ] && [ "$(png_size dark.png)" = 480x270 ] && ! cmp -s light.png dark.png
 fact size_and_theme_change_at_once
+
+# Prints a column of figures in a frame.
+figure() { awk -F , -v name="$1" -v frame="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i } $1 == frame { print $c }' relief.csv; }
+# The camera steps back, so that fine tiles become standby tiles: of the wall that is clicked, and of others.
+{ printf '1 hold w 3\n10 hold s 6\n20 click 20 80\n26 key Delete\n30 key Ctrl+M\n34 key Shift+M\n35 key Shift+M\n' &&
+    printf '36 key Shift+M\n'; } >relief
+view --residency sparse --speed 42 --timeout 0.1 --frames 44 --csv relief.csv --script relief fine.ppm &&
+    awk -v before="$(figure standby_mb 25)" -v evicted="$(figure standby_mb 29)" -v trimmed="$(figure standby_mb 32)" \
+        -v full="$(figure resident_mb 33)" -v moving="$(figure resident_mb 34)" -v moved="$(figure resident_mb 43)" \
+        'BEGIN { exit !(before > evicted && evicted > 0 && trimmed == 0 && moving < full && moved == full) }'
+fact keys_evict_the_selected_texture_trim_standby_tiles_and_move_tiles_together
 end_facts

@@ -179,6 +179,46 @@ static void all_kinds_request_the_same_tiles_in_the_end(void **state)
     assert_true(tiles[VIEW_BY_QUADS] * 10 >= tiles[VIEW_BY_EVERY_PIXEL] * 9);
 }
 
+static uint32_t count_resident_below(uint32_t level)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < stage_texture_count(show_get()->stage); i++) {
+        SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+        const SluiceTextureId id = stage_texture(show_get()->stage, i)->id;
+        CHECK_OK(sluiceGetTextureLayout(show_manager(), id, &layout));
+        for (uint32_t tile = 0; tile < layout.tileCount; tile++) {
+            SluiceTileState state;
+            SluiceTile at;
+            CHECK_OK(sluiceGetTileState(show_manager(), id, tile, &state, &at));
+            count += at.mipLevel < level && at.mipLevel < layout.desc.regularMipCount &&
+                     (state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY);
+        }
+    }
+    return count;
+}
+
+static void no_tile_finer_than_the_finest_level_stays_or_comes(void **state)
+{
+    (void)state;
+    struct view_settings *s = &show_get()->app.settings;
+    const uint32_t standby = s->standby;
+    s->feedback_by = VIEW_BY_EVERY_PIXEL;
+    s->standby = 0;
+    for (int frame = 0; frame < 10; frame++)
+        show_draw();
+    assert_true(count_resident_below(4) > 10);
+    s->finest_level = 4;
+    for (int frame = 0; frame < 10; frame++)
+        show_draw();
+    assert_int_equal(count_resident_below(4), 0);
+    assert_true(requested() > 0);
+    s->finest_level = 0;
+    for (int frame = 0; frame < 10; frame++)
+        show_draw();
+    assert_true(count_resident_below(4) > 10);
+    s->standby = standby;
+}
+
 static void outlooks_are_those_of_the_chosen_kind(void **state)
 {
     (void)state;
@@ -215,6 +255,7 @@ int main(void)
         cmocka_unit_test(quads_write_together_and_as_often_as_their_probability_says),
         cmocka_unit_test(in_turns_all_pixels_write_in_as_many_frames_as_a_round_of_textures_has),
         cmocka_unit_test(without_feedback_no_pixel_writes),
+        cmocka_unit_test(no_tile_finer_than_the_finest_level_stays_or_comes),
         cmocka_unit_test(all_kinds_request_the_same_tiles_in_the_end),
     };
     return tap_filter_stdout(), cmocka_run_group_tests(tests, show_begin, show_end);
