@@ -1,27 +1,27 @@
 /*
- * Writes the ids of a group's requests to their places and clears them; those that have no place
- * stay, and flag their section for the next scan.
+ * Writes the ids of a group's requests to their places and clears the requests. Requests without a
+ * place stay set and flag their section for the next scan.
  */
 #extension GL_EXT_control_flow_attributes : require
 
 #include "requests.glsl"
 
-#define WINDOW 2048u /* ids that are written at once */
+#define WINDOW 2048u /* ids that are written together */
 #define PART_PAGES (SLUICE_DEMAND_SECTION_PAGES / SLUICE_SCAN_PARTS)
 
-shared uint places[SLUICE_SCAN_GROUP_SECTIONS];      /* of the section's first request, of all */
+shared uint places[SLUICE_SCAN_GROUP_SECTIONS];      /* place of the section's first request */
 shared uint listedCounts[SLUICE_SCAN_GROUP_SECTIONS];
 shared uint starts[SLUICE_SCAN_GROUP_SECTIONS + 1u]; /* sums of listedCounts */
 shared uint staged[WINDOW];                          /* section of the group << 10 | page of it */
 
-/* Bits of one part that are still to be listed, lowest first. */
+/* Bits of one part that remain to be listed, lowest first. */
 struct Cursor {
     uint words[8];
     uint left;
-    uint at; /* where the next one goes, among those of the group */
+    uint at; /* place of the next request, within the group */
 };
 
-/** Requests with this key in the first `end` sections of the group. */
+/** Returns the number of requests with this key in the first `end` sections of the group. */
 uint countKey(uint key, uint end)
 {
     uint sum = 0u;

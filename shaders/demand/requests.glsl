@@ -1,18 +1,18 @@
 /*
- * The requests of a group of sections, for the passes that look at them: four invocations have 256
- * pages of each section. In workgroups of SLUICE_SCAN_GROUP_SIZE.
+ * Requests of a group of sections. Four invocations share a section; each has 256 pages. Workgroups
+ * have SLUICE_SCAN_GROUP_SIZE invocations.
  */
 #ifndef SLUICE_DEMAND_REQUESTS_GLSL
 #define SLUICE_DEMAND_REQUESTS_GLSL
 
 #include "scan.glsl"
 
-#define SLUICE_SCAN_PARTS 4u /* of a section */
+#define SLUICE_SCAN_PARTS 4u /* parts of a section */
 #define SLUICE_SCAN_PART_QUADS 2u
 
-shared uint entries[SLUICE_SCAN_GROUP_SECTIONS]; /* as listed */
-shared uint counts[SLUICE_SCAN_GROUP_SIZE];      /* of parts */
-shared uint totals[SLUICE_SCAN_GROUP_SECTIONS];  /* of sections; 0 beyond the last */
+shared uint entries[SLUICE_SCAN_GROUP_SECTIONS]; /* entries of the section list */
+shared uint counts[SLUICE_SCAN_GROUP_SIZE];      /* requests of each part */
+shared uint totals[SLUICE_SCAN_GROUP_SECTIONS];  /* requests of each section; 0 beyond the last */
 
 uint sluiceCountBits(uvec4 words)
 {
@@ -20,7 +20,7 @@ uint sluiceCountBits(uvec4 words)
     return uint(counts.x + counts.y + counts.z + counts.w);
 }
 
-/** The first quad of this invocation's part of its section. */
+/** Returns the first quad of this invocation's part of its section. */
 uint sluicePartQuad(uint entry)
 {
     uint part = gl_LocalInvocationIndex % SLUICE_SCAN_PARTS;

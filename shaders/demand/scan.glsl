@@ -1,7 +1,7 @@
 /*
- * What the passes of a scan of requests share, see sluice/shared/demand_scan.h: compact.glsl,
- * count.glsl, place.glsl, list.glsl, in this order. Each is a program of its own, or whole.comp does
- * all of them in one workgroup, which is why buffers are coherent.
+ * Buffers of the passes that scan requests: compact.glsl, count.glsl, place.glsl, list.glsl, in this
+ * order (see sluice/shared/demand_scan.h). Each pass is a program, or whole.comp runs all passes in
+ * one workgroup. Buffers are coherent for whole.comp.
  */
 #ifndef SLUICE_DEMAND_SCAN_GLSL
 #define SLUICE_DEMAND_SCAN_GLSL

@@ -22,7 +22,7 @@ layout(std430, binding = 3) writeonly buffer Output { uint words[]; } stored;
 #include "sluice/neural.glsl"
 
 shared vec4 texels[SLUICE_NEURAL_GROUP * SLUICE_NEURAL_GROUP];
-/* Of BC7, by block and candidate. */
+/* Errors and blocks of BC7 candidates, by block and candidate. */
 shared float errors[SLUICE_NEURAL_GROUP * SLUICE_NEURAL_GROUP];
 shared uvec4 blocks[SLUICE_NEURAL_GROUP * SLUICE_NEURAL_GROUP];
 
@@ -47,7 +47,7 @@ vec4 decodeTexel(uvec2 at)
         float value = channels[tile.firstChannel + c];
         color[c] = from == to ? value : fromLinear(sluiceNeuralToLinear(value, from), to);
     }
-    const float most = 65504.0; /* of 16-bit floats */
+    const float most = 65504.0; /* largest 16-bit float */
     return tile.store == SLUICE_NEURAL_STORE_RGBA16F ? clamp(color, -most, most) : clamp(color, 0.0, 1.0);
 }
 

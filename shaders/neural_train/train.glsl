@@ -25,7 +25,7 @@ const uint ROW_X = 0u, ROW_1 = 48u, ROW_2 = 112u, ROW_3 = 160u, ROW_OUT = 192u;
 
 shared vec4 act[208 * 9];
 shared uint sample_texel[32];
-shared uvec4 sample_corner[64]; /* of both images: word of a corner, steps in x and y, fractions */
+shared uvec4 sample_corner[64]; /* per image: word of a corner, steps in x and y, fractions */
 
 uint mip_of_tile(uint tile)
 {
@@ -342,7 +342,7 @@ void main()
                 uvec4 corner = sample_corner[s];
                 uint k = s & 31u;
                 float g = act[((s >> 5) * 16u + feature) * STRIDE + (k >> 2)][k & 3u];
-                /* of a latent of 0..1: an input is 2 of it minus 1 */
+                /* gradient of a latent in 0..1; the input is 2 * latent - 1 */
                 g = clamp(2.0 * g, -8.0, 8.0) * push.latentUnit * (1.0 / 65536.0);
                 vec2 f = vec2(corner.w & 0xffffu, corner.w >> 16);
                 vec2 h = 256.0 - f;

@@ -4,8 +4,8 @@
 
 #include "train_layout.h"
 
-layout(constant_id = 0) const uint FEATURE_COUNT = 16; /* of a latent image: 4, 8, 12 or 16 */
-layout(constant_id = 1) const uint REFERENCE_WORDS = 8; /* of a texel: two channels each */
+layout(constant_id = 0) const uint FEATURE_COUNT = 16; /* features of a latent image: 4, 8, 12 or 16 */
+layout(constant_id = 1) const uint REFERENCE_WORDS = 8; /* words of a texel: two channels each */
 
 layout(push_constant) uniform Push
 {

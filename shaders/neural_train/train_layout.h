@@ -1,4 +1,4 @@
-/* What C and GLSL share: places in the buffers of training. Scalars of 32 bits only. */
+/* Layout of training buffers, shared by C and GLSL. Scalars have 32 bits. */
 #ifndef TRAIN_LAYOUT_H
 #define TRAIN_LAYOUT_H
 
@@ -19,8 +19,8 @@
 /* A partial sum: the gradients of all parameters, then the squared errors of the outputs. */
 #define TRAIN_PARTIAL 8368
 
-/* The network's buffer, in floats. `effective` is what the forward pass uses: rounded as the
- * decoder's weights are. */
+/* The network's buffer, in floats. The forward pass uses `effective` weights, rounded like the
+ * decoder's weights. */
 #define TRAIN_MASTER 0
 #define TRAIN_FIRST_MOMENT 8352
 #define TRAIN_SECOND_MOMENT 16704
@@ -41,8 +41,8 @@
 #define TRAIN_MIP_WIDTH 1
 #define TRAIN_MIP_HEIGHT 2
 #define TRAIN_MIP_FIRST_TILE 3
-#define TRAIN_MIP_STRATUM 4 /* texels of which one is drawn */
-#define TRAIN_MIP_FINE 5    /* of the finer latent image: first word, width, height */
+#define TRAIN_MIP_STRATUM 4 /* texels per sample */
+#define TRAIN_MIP_FINE 5    /* finer latent image: first word, width, height */
 #define TRAIN_MIP_COARSE 8
 #define TRAIN_MIP_POSITION_SCALE 11 /* float */
 #define TRAIN_MIP_LOD 12            /* float: the network's input */
@@ -55,18 +55,18 @@
 
 #define TRAIN_QUANTIZE_INPUTS 1u
 #define TRAIN_QUANTIZE_NETWORK 2u /* hidden values and weights */
-#define TRAIN_FP8 4u              /* as the FP8 network does, else as the int8 one */
+#define TRAIN_FP8 4u              /* quantize for the FP8 network, otherwise for int8 */
 #define TRAIN_LATENTS 8u          /* latents learn */
-#define TRAIN_ROUND_LATENTS 16u   /* to codes; else noise of one code is added */
-#define TRAIN_UPDATE 32u          /* else the effective values are made again alone */
-#define TRAIN_EXACT_LATENTS 64u   /* neither rounded nor noisy */
+#define TRAIN_ROUND_LATENTS 16u   /* round to codes; otherwise add noise of one code */
+#define TRAIN_UPDATE 32u          /* update parameters; otherwise only remake effective values */
+#define TRAIN_EXACT_LATENTS 64u   /* neither rounding nor noise */
 
 /* clang-format off */
 #define TRAIN_PUSH_FIELDS                                                                          \
-    uint step; /* of the sample positions */                                                       \
+    uint step; /* step of the sample positions */                                                  \
     uint seed;                                                                                     \
     uint flags;                                                                                    \
-    uint nextFlags; /* of the next step: how effective values are made */                          \
+    uint nextFlags; /* flags of the next step, for the effective values */                         \
     uint mipCount;                                                                                 \
     uint tileCount;                                                                                \
     uint tilesPerGroup;                                                                            \
@@ -74,9 +74,9 @@
     uint latentCount; /* features of all texels of all latent images */                            \
     uint lossSlot;                                                                                 \
     uint channelCount;                                                                             \
-    float networkRate; /* with the correction of the moments' start */                             \
+    float networkRate; /* includes the correction for moments that start at 0 */                   \
     float latentRate;                                                                              \
-    float latentUnit; /* of a latent's gradient in fixed point */                                  \
+    float latentUnit; /* unit of a latent's gradient in fixed point */                             \
     float decay1;                                                                                  \
     float decay2;
 /* clang-format on */

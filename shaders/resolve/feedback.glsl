@@ -7,12 +7,12 @@ layout(std430, binding = 0) buffer FeedbackMasks { uvec2 quads[]; } feedbackMask
 layout(std430, binding = 1) buffer Last { uint quads[]; } last;
 
 struct SluiceQuad {
-    uint index;  /* of four regions, in the buffers */
-    uint levels; /* packed, as written since the last resolve */
-    uint before; /* as resolved last */
+    uint index;  /* word of four regions in the buffers */
+    uint levels; /* packed levels, written since the last resolve */
+    uint before; /* packed levels of the last resolve */
 };
 
-/** Regions beyond the segment's count, and they alone, look unchanged. */
+/** Loads a quad. Regions beyond the segment's count are returned as unchanged. */
 SluiceQuad sluiceLoadQuad(SluiceResolveSegment segment, uint place)
 {
     SluiceQuad quad = SluiceQuad(segment.firstRegion / 4u + place, 0u, 0u);

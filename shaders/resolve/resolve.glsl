@@ -1,7 +1,7 @@
 /*
- * What the passes of a resolve share. count.comp counts the changes of each segment, scan.comp turns
- * the counts into places, write.comp writes the changes and clears what it has reported. Places come
- * from prefix sums, never from an atomic counter: the same feedback gives the same list every time.
+ * Buffers and functions of the passes of a resolve. count.comp counts the changes of each segment.
+ * scan.comp turns the counts into places. write.comp writes the changes and clears reported feedback.
+ * Places come from prefix sums, not from an atomic counter, so equal feedback gives equal lists.
  */
 #extension GL_GOOGLE_include_directive : require
 

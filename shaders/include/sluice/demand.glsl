@@ -289,9 +289,9 @@ float sluiceDemandComputeLod(vec2 dx, vec2 dy, float maxAnisotropy)
 }
 
 /* Filters of sluiceDemandSample within a level. */
-#define SLUICE_DEMAND_AS_TEXTURE 0u /* as the texture's sampler says */
-#define SLUICE_DEMAND_AS_SMART 1u   /* SLUICE_DEMAND_FILTER_SMART_CUBIC whatever it says */
-#define SLUICE_DEMAND_AS_SLOPES 2u  /* as the sampler says, with derivatives */
+#define SLUICE_DEMAND_AS_TEXTURE 0u /* filter of the texture's sampler */
+#define SLUICE_DEMAND_AS_SMART 1u   /* SLUICE_DEMAND_FILTER_SMART_CUBIC for any sampler */
+#define SLUICE_DEMAND_AS_SLOPES 2u  /* filter of the texture's sampler, with derivatives */
 
 /**
  * Samples in any way, at `lod`, or at the LOD of the derivatives: color, and derivatives by u and v.

@@ -158,7 +158,7 @@ struct SluiceDemandUdim {
     uint grid, index; /* index: of the base texture, or of the cell at the middle of the sample */
     bool base;
     vec2 cell;
-    float lod; /* of a texture of one texel */
+    float lod; /* LOD for a texture of one texel */
 };
 
 /**
@@ -176,7 +176,7 @@ SluiceDemandBeyond sluiceFindDemandNeighbors(SluiceDemandUdim u, uint home, vec2
         vec2 step = axis == 0u ? vec2(side.x, 0.0) : vec2(0.0, side.y);
         float distance = axis == 0u ? min(at.x, 1.0 - at.x) : min(at.y, 1.0 - at.y);
         vec2 extent = sluiceDemandExtent(home, taps, axis);
-        if (distance * extent.y >= 0.5) /* of the coarse level, whose texels are larger */
+        if (distance * extent.y >= 0.5) /* texels of the coarse level, which are larger */
             continue;
         uint next = sluiceDemandCell(u.grid, cell + step);
         if (sluiceIsDemandCellOpen(next, resident))

@@ -120,16 +120,19 @@ vec4 sluiceRotateBc7(vec4 texel, uint rotation)
                             : texel;
 }
 
-/* Of color and alpha. Mode 5 has 7 and 8 bits and 4 weights each; mode 4 has 5 and 6 bits, and 8 weights for one. */
+/*
+ * Bits and indices of color (x) and alpha (y). Mode 5: 7 and 8 bits, 4 weights each. Mode 4: 5 and 6 bits; color
+ * or alpha has 8 weights, the other 4.
+ */
 struct SluiceBc7Layout {
     uint mode, rotation;
     uvec2 bits;
-    uvec2 last; /* indices: 3 or 7 */
+    uvec2 last; /* last index: 3 or 7 */
 };
 
 struct SluiceBc7Split {
     uvec4 ends[2];
-    uint indices[16]; /* of color, 8 bits, and of alpha */
+    uint indices[16]; /* index of color in 8 bits, then index of alpha */
 };
 
 /* Picks indices for two ends; `line` becomes their fit. Returns the squared error. */

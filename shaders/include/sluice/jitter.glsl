@@ -34,7 +34,7 @@
 #define SLUICE_JITTER_TENT 1u
 #define SLUICE_JITTER_GAUSSIAN 2u
 
-/* Of GAUSSIAN, in texels. */
+/* Standard deviation of GAUSSIAN, in texels. */
 #define SLUICE_JITTER_DEVIATION 0.5
 /* Share of the Gaussian within 2.5 deviations. */
 #define SLUICE_JITTER_GAUSSIAN_SHARE 0.98758067

@@ -203,7 +203,7 @@ uvec2 sluiceGetNeuralSize(uint s, uint mip)
 
 /**
  * Decodes a texel of a mip. Channels are in their own color spaces and may lie a little outside of 0 to 1.
- * Those that belong to no texture of the set are garbage.
+ * Channels without a texture in the set are undefined.
  *
  * False, and all channels 0, if the latents of the texel are not among the slices, or if there is no such
  * texel: show a coarser mip then.

@@ -27,7 +27,7 @@
 struct SluiceNeuralCorners {
     uint first;    /* word of the latents where the slice begins */
     uvec4 texels;  /* numbers in the slice: (x0, y0), (x1, y0), (x0, y1), (x1, y1) */
-    uvec4 weights; /* of 65536 */
+    uvec4 weights; /* in units of 1 / 65536 */
 };
 
 /** Returns 256 times the place of a texel of a mip of `size` texels in a grid, from its first texel's center. */
@@ -153,7 +153,7 @@ bool sluiceNeuralInputs3(uint s, uvec2 texel, uint mip, uvec2 mipSize, out uint 
 bool sluiceNeuralInputs1(uint s, uvec2 texel, uint mip, uvec2 mipSize, out uint inputs[SLUICE_NEURAL_WORDS])
 {
     uint slice = SLUICE_NEURAL_CONSTANTS(s).mips[mip].firstSlice;
-    uint words = (SLUICE_NEURAL_INPUT_COUNT(s) - 32u) / 16u; /* of one corner */
+    uint words = (SLUICE_NEURAL_INPUT_COUNT(s) - 32u) / 16u; /* words of one corner */
     uint features = SLUICE_NEURAL_CONSTANTS(s).highFeatures, bits = SLUICE_NEURAL_CONSTANTS(s).highBits;
     SluiceNeuralCorners c;
     if (!sluiceNeuralFindCorners(s, slice, texel, mipSize, c))

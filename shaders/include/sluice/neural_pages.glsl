@@ -31,7 +31,7 @@ layout(std430, buffer_reference, buffer_reference_align = 16) readonly buffer Sl
     uint latents[];
 };
 
-/* Of the page that is decoded. */
+/* Address of the page to decode. */
 uvec2 sluiceNeuralAddress = uvec2(0u);
 
 #define SLUICE_NEURAL_CONSTANTS(s) SluiceNeuralPage(sluiceNeuralAddress).constants

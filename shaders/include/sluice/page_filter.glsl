@@ -29,7 +29,7 @@ vec4 sluiceBorder(SluiceTextureEntry entry)
 /** Axis of a bilinear sample, in texels of a level. */
 struct SluicePageAxis {
     int low, high; /* -1: beyond the border */
-    float weight;  /* of `high` */
+    float weight;  /* weight of `high` */
 };
 
 /**
@@ -144,9 +144,9 @@ vec2 sluiceTileShare(ivec2 shift)
 /** Bilinear samples of a trilinear or anisotropic sample: a row, each of two levels. */
 struct SluicePagedTaps {
     uint fine, coarse; /* levels */
-    float fraction;    /* of `coarse`: 0 to 1 */
+    float fraction;    /* weight of `coarse`: 0 to 1 */
     uint count;
-    vec2 axis; /* of the row, in uv */
+    vec2 axis; /* direction of the row of taps, in uv */
 };
 
 /**

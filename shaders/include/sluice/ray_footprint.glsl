@@ -48,7 +48,7 @@ struct SluiceRayDifferential {
 
 /** A triangle, ready for steps across its plane. */
 struct SluiceRayTriangle {
-    vec3 normal;           /* of length 1; the side from which the corners run counterclockwise */
+    vec3 normal;           /* unit vector; seen from its side, corners run counterclockwise */
     vec3 weight1, weight2; /* gradients of the barycentric weights of the second and third corner */
     vec2 uv1, uv2;         /* from the first corner to the second and third */
 };
@@ -136,7 +136,7 @@ SluiceRayCone sluiceRefractCone(SluiceRayCone cone, vec3 direction, vec3 normal,
     if (square <= 0.0)
         return sluiceReflectCone(cone, direction, normal, curvature);
     float after = max(sqrt(square), SLUICE_RAY_LEAST_COSINE);
-    float turn = curvature * cone.width / before; /* of the normal, across the cone */
+    float turn = curvature * cone.width / before; /* turn of the normal across the cone */
     return SluiceRayCone(cone.width * after / before,
                          eta * before / after * (cone.spread + turn) - turn);
 }

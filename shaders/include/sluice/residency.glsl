@@ -99,7 +99,7 @@ uint sluiceCountNonResident(SLUICE_SAMPLER_2D(nearestMipTex), uint tableIndex, v
                 continue;
             }
             vec2 texel = 1.0 / vec2(max(uvec2(entry.width, entry.height) >> uint(level), SLUICE_SPLAT(uvec2, 1u)));
-            for (uint corner = 0u; corner < 4u; corner++) { /* of 4x4 texels */
+            for (uint corner = 0u; corner < 4u; corner++) { /* corners of 4x4 texels */
                 vec2 off = texel * (vec2(corner & 1u, corner >> 1u) * 2.0 - 1.0);
                 count += sluiceProbeNonResident(SLUICE_PASS_SAMPLER(nearestMipTex), entry, at + off, level);
             }

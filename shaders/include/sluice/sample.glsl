@@ -77,7 +77,7 @@
 
 /** Resolved sample: what may be sampled. */
 struct SluiceSampling {
-    vec2 uv;            /* as given; 0 if not finite */
+    vec2 uv;            /* input uv; 0 if not finite */
     vec2 dx, dy;        /* for textureGrad: with LOD bias, coarsened if necessary */
     float lod;          /* approximately what the sampler will choose */
     uint wantedLevel;   /* the finest level touched if all were resident */
@@ -120,7 +120,7 @@ uint sluiceMaxMinMip(uint first, SluiceGrid grid, SluiceFootprint footprint, uin
         at = uvec2(footprint.first.x,
                    sluiceNextRegion(at.y, footprint.last.y, grid.last.y, step.y));
     }
-    /* of tiles that were passed over nothing is known: only packed levels are sure */
+    /* skipped tiles are unknown: only packed levels are certain */
     return max(step.x, step.y) > 1u << finestLevel ? sluiceMaxHalves(words, SLUICE_SHOWN_UNKNOWN) : words;
 }
 

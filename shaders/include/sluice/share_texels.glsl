@@ -51,9 +51,9 @@ struct SluiceSharing {
     bool exact;      /* the result is exact within pick.level */
     bool quad;       /* if it is not, texels of the quad count */
     uint key, kernel;
-    vec2 at;     /* of the sample, in texels of the level, from a corner that the subgroup shares */
-    ivec2 texel; /* the random texel, from there, not wrapped */
-    ivec2 low, size; /* of the box */
+    vec2 at;     /* sample position in texels of the level, relative to a corner that the subgroup shares */
+    ivec2 texel; /* random texel relative to the same corner, not wrapped */
+    ivec2 low, size; /* corner and size of the box */
 };
 
 /** Returns how many texels of a kernel lie side by side. */

@@ -14,7 +14,7 @@
 #define SLUICE_BINDING_BUFFER_COUNT 5
 #define SLUICE_BINDING_PAGES 5
 #define SLUICE_BINDING_TEXTURES 6 /* combined image samplers, or images */
-#define SLUICE_BINDING_SAMPLERS 7 /* of images */
+#define SLUICE_BINDING_SAMPLERS 7 /* samplers for images */
 #define SLUICE_BINDING_CUBES 8    /* cube views: combined image samplers, or images */
 
 /* SLUICE_TEXTURE_ARRAY, as SluiceTextureArray */

@@ -88,7 +88,7 @@ struct SluiceDemandTexture {
                       base texture; 0: none */
     float maxAnisotropy; /* 1 to 64 */
     float lodBias;
-    float baseColor[4]; /* of the last level, where a texture fits inside a pixel */
+    float baseColor[4]; /* color of the last level, for textures smaller than a pixel */
     float borderColor[4];
 };
 SLUICE_SHARED_SIZE(struct SluiceDemandTexture, 64)

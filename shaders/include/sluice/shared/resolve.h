@@ -38,7 +38,7 @@ struct SluiceResolveSegment {
     uint firstRegion; /* in the buffers, a multiple of 4 */
     uint regionCount;
     uint item;
-    uint offset; /* of the first region in its texture */
+    uint offset; /* index of the first region in its texture */
 };
 SLUICE_SHARED_SIZE(struct SluiceResolveSegment, 16)
 
@@ -54,8 +54,8 @@ SLUICE_SHARED_SIZE(struct SluiceResolveItem, 16)
 struct SluiceResolveResult {
     uint state;
     uint count;    /* words */
-    uint offset;   /* of the first, counted from the slot's first word behind the results */
-    uint checksum; /* of the whole map, see sluiceResolveWeight in resolve.glsl */
+    uint offset;   /* first word, counted from the slot's first word behind the results */
+    uint checksum; /* sum over the whole map, see sluiceResolveWeight in resolve.glsl */
 };
 SLUICE_SHARED_SIZE(struct SluiceResolveResult, 16)
 

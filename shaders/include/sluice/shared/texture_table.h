@@ -31,12 +31,12 @@
  * level up to 1.125 levels coarser than its LOD.
  */
 #define SLUICE_REACH 2.25
-#define SLUICE_REACH_SPLINE 4.5 /* of textures with a bicubic filter: 1.5625 texels */
+#define SLUICE_REACH_SPLINE 4.5 /* for textures with a bicubic filter: 1.5625 texels */
 /* Reach of "around" in regions, and for ragged regions. */
 #define SLUICE_AROUND 1
 #define SLUICE_AROUND_RAGGED 2
 
-/* As VkSamplerAddressMode. */
+/* Values of VkSamplerAddressMode. */
 #define SLUICE_ADDRESS_MODE_REPEAT 0
 #define SLUICE_ADDRESS_MODE_MIRRORED_REPEAT 1
 #define SLUICE_ADDRESS_MODE_CLAMP_TO_EDGE 2
@@ -67,19 +67,19 @@
 #define SLUICE_SHAPE_MODE_U_SHIFT 10
 #define SLUICE_SHAPE_MODE_V_SHIFT 13
 #define SLUICE_SHAPE_LAST_LEVEL_SHIFT 16
-#define SLUICE_SHAPE_UNEVEN 0x200000u  /* as SLUICE_TEXTURE_FLAG_UNEVEN */
+#define SLUICE_SHAPE_UNEVEN 0x200000u  /* SLUICE_TEXTURE_FLAG_UNEVEN */
 #define SLUICE_SHAPE_REPEATS 0x400000u /* along both axes */
 #define SLUICE_SHAPE_QUICK 0x800000u   /* powers of two that repeat or clamp along both axes */
-#define SLUICE_SHAPE_SPLINE 0x1000000u /* as SLUICE_TEXTURE_FLAG_SPLINE */
+#define SLUICE_SHAPE_SPLINE 0x1000000u /* SLUICE_TEXTURE_FLAG_SPLINE */
 #define SLUICE_SHAPE_SMART 0x2000000u
-#define SLUICE_SHAPE_PAGED 0x4000000u /* as SLUICE_TEXTURE_FLAG_PAGED */
+#define SLUICE_SHAPE_PAGED 0x4000000u /* SLUICE_TEXTURE_FLAG_PAGED */
 
 struct SluiceTextureEntry {
     /* Members that most samples read: */
     float sizeX; /* width */
     float sizeY;
     uint shape;
-    uint wholeShown;  /* the largest texel of its MinMip map: 0 while all of it may be shown */
+    uint wholeShown;  /* largest texel of the MinMip map; 0: all texels may be shown */
     uint regionLastX; /* regionCountX - 1 */
     uint regionLastY;
     uint minMipOffset;   /* first word in the MinMip buffer */
@@ -93,15 +93,15 @@ struct SluiceTextureEntry {
     uint regionHeight;
     uint regionCountX;
     uint regionCountY;
-    uint addressModeU; /* of the samplers that it is sampled with */
+    uint addressModeU; /* address modes of the samplers that shaders use */
     uint addressModeV;
     uint flags;
     uint pageTableOffset; /* paged: first word in the page table */
     uint tileShift;       /* log2 of a tile's width, and of its height << 8; paged */
-    float quickReach2; /* samples of a smaller sum of squared derivatives touch regions around alone
-                        */
-    float quickPacked2; /* samples of squared derivatives from there on touch packed levels alone */
-    uint samplerIndex;  /* in the array of samplers, if there is one (bindings.glsl) */
+    float quickReach2;    /* samples with a smaller sum of squared derivatives touch regions around
+                             only */
+    float quickPacked2;   /* samples with a sum from here on touch packed levels only */
+    uint samplerIndex;    /* in the array of samplers, if bound (bindings.glsl) */
 };
 SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 96)
 
