@@ -63,7 +63,7 @@ static uint32_t distance(uint32_t a, uint32_t b)
 }
 
 /* Finds the step from which on the share of texels is nearest to `wanted`, from the last step down.
- * Of equal steps, the one nearest to `first`. */
+ * Among equal steps, returns the step nearest to `first`. */
 static uint32_t find_step(const uint64_t *counts, double wanted, uint32_t first)
 {
     double all = (double)count_from(counts, 0), least = INFINITY;

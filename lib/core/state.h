@@ -185,7 +185,7 @@ struct slc_round {
     uint64_t began;  ///< next sequence number when the round began
     uint64_t waited; ///< requests before this one have waited for a whole round
     uint32_t count;
-    uint64_t began_long, waited_long; ///< as began and waited, for periods of several rounds
+    uint64_t began_long, waited_long; ///< like began and waited, for periods of several rounds
 };
 
 /** State changes of tiles. See tile_events.h. */

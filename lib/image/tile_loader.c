@@ -10,7 +10,7 @@
 #include "image/started_reads.h"
 #include "platform/time_now.h"
 
-/* Of reads, and of sources that are remembered. */
+/* Limit for the number of reads, and of remembered sources. */
 #define MAX_COUNT (1u << 29)
 
 static struct slc_read_queue_limits read_limits(const SluiceTileLoaderCreateInfo *info)
@@ -226,7 +226,7 @@ SluiceResult sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)
     struct slc_read *read = slc_read_queue_find(&loader->queue, ticket);
     if (read)
         drop_read(loader, read);
-    /* what stood behind it may fit into the bytes that are left */
+    /* reads behind the canceled read may fit into the freed bytes */
     if (slc_read_pool_has_startable(loader->pool))
         slc_read_pool_signal(loader->pool);
     slc_loader_signal_if_idle(loader);

@@ -15,7 +15,7 @@
 
 struct pattern {
     size_t folder;      ///< bytes up to and with the last slash; 0: none
-    const char *prefix; ///< of the file's name
+    const char *prefix; ///< file name before the pattern
     size_t prefix_length;
     const char *suffix;
     size_t suffix_length;

@@ -28,8 +28,8 @@ enum slc_page_chunk_state {
 struct slc_page_layer {
     uint16_t previous, next; ///< free: neighbors in the ring
     uint32_t owner;          ///< free: owner of its texels; SLC_NO_OWNER: none
-    uint64_t value; ///< free: the last frame of `user` that could read it; held: the last frame
-                    ///< that copies its texels; 0: none
+    uint64_t value; ///< free: the last frame of `user` that could read the layer; held: the
+                    ///< last frame with a copy of the texels; 0: none
     uint8_t user;   ///< user that holds it, or gave it back
     bool held;
     bool moved;      ///< the texels were written by a move, and the layer was not taken since

@@ -30,8 +30,8 @@ struct slc_page_moves {
     uint32_t count;
     uint32_t next_part; ///< part of the table at which the search for tiles continues
     uint32_t left;      ///< pages that may still be moved; UINT32_MAX: no limit
-    uint32_t to_of[SLC_PAGE_CHUNK_LAYERS]; ///< while a frame is recorded: by layer of the image
-                                           ///< that is emptied, 1 + the new page; 0: not moved
+    uint32_t to_of[SLC_PAGE_CHUNK_LAYERS]; ///< while a frame is recorded: 1 + the new page, by
+                                           ///< layer of the emptied image; 0: not moved
 };
 
 /** Gives back the old pages of moves whose frames are complete, up to `completed_frame`. */

@@ -44,7 +44,7 @@ void slc_remakes_drop(struct slc_remakes *remakes, bool (*drop)(void *user, uint
 /** Texels that have changed: a rectangle of a level, and the texels over it in coarser levels.
  */
 struct slc_remake_area {
-    uint32_t width, height; ///< of the texture
+    uint32_t width, height; ///< size of the texture
     SluiceImageRegion region;
     uint32_t end_level;
 };

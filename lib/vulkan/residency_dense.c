@@ -17,7 +17,7 @@
 struct dense_image {
     struct slc_plain_image own;
     VkImage image;
-    uint32_t layer_count; ///< of the first layer; 0 in all others
+    uint32_t layer_count; ///< layers of the array, in its first layer; 0 in others
 };
 
 struct dense_residency {

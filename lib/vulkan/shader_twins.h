@@ -267,7 +267,7 @@ static inline uint32_t slc_twin_shift(uint32_t power)
     return shift;
 }
 
-/* What is in the box around `uv`; half_box in texels. */
+/* Finds the regions in the box around `uv`; half_box in texels. */
 static inline struct slc_twin_footprint
 slc_twin_compute_footprint(const struct SluiceTextureEntry *entry, struct slc_twin_vec2 uv,
                            struct slc_twin_vec2 half_box, uint32_t coarsest_level)
@@ -363,7 +363,7 @@ static inline struct slc_twin_levels slc_twin_safe_levels(struct slc_twin_vec2 u
 struct slc_twin_wants {
     uint32_t level;
     struct slc_twin_footprint regions;
-    uint32_t wide_level; /* of wide_regions, UINT32_MAX where nothing more is marked */
+    uint32_t wide_level; /* level of wide_regions; UINT32_MAX: no wide regions */
     struct slc_twin_footprint wide_regions;
 };
 

@@ -392,7 +392,7 @@ void slc_feedback_record_new(SluiceVulkanStreamer *s, const struct slc_texture *
                              VkCommandBuffer commands);
 void slc_feedback_record_turns(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 uint64_t slc_feedback_size(const SluiceVulkanStreamer *s, uint32_t region_count); ///< bytes
-uint32_t slc_feedback_clear_value(const SluiceVulkanStreamer *s);                 ///< of each word
+uint32_t slc_feedback_clear_value(const SluiceVulkanStreamer *s); ///< value of each word
 SluiceResult slc_feedback_read(SluiceVulkanStreamer *s);
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 /** Abandons the readback of frames from `frame` on. Their textures have the next turn. */
