@@ -22,19 +22,19 @@ struct run {
     size_t count;
     SluiceBaker *baker;
     atomic_size_t next;
-    atomic_uint_least64_t done; ///< bytes of inputs, shares of those under way included
-    atomic_bool is_baking;      ///< something was not up to date
+    atomic_uint_least64_t done; ///< bytes of finished inputs, and the finished shares of others
+    atomic_bool is_baking;      ///< true: some picture is not up to date
     pthread_mutex_t mutex;
     pthread_cond_t ended;
     size_t ended_count;
-    pthread_mutex_t log_mutex; ///< around the messages of jobs
+    pthread_mutex_t log_mutex; ///< guards the messages of jobs
 };
 
-/** A picture on its thread. */
+/** Baking of one picture by a thread. */
 struct task {
     struct run *run;
     struct bake_job *job;
-    uint64_t counted; ///< bytes that are in `done`
+    uint64_t counted; ///< bytes already added to `done`
 };
 
 static bool is_of_file(const char *message, const char *path, const char *ending)
@@ -51,7 +51,8 @@ static bool is_of_layer(const struct bake_job *job, const char *message)
     return false;
 }
 
-/* Messages begin with a file's name. They come from any thread, because each helps all pictures. */
+/* Finds the job by the file's name at the start of a message. Messages come from any thread,
+ * because every thread helps all pictures. */
 static struct bake_job *job_of(const struct run *run, const char *message)
 {
     for (size_t i = 0; i < run->count; i++) {
@@ -63,7 +64,7 @@ static struct bake_job *job_of(const struct run *run, const char *message)
     return NULL;
 }
 
-/* A picture may be opened twice, which warns twice. */
+/* Adds a warning once. A picture may be opened twice and then warns twice. */
 static void add_warning(struct bake_job *job, const char *message)
 {
     size_t used = strlen(job->warnings), size = strlen(message) + 1;
@@ -161,7 +162,8 @@ static void wait_a_moment(struct run *run)
     pthread_cond_timedwait(&run->ended, &run->mutex, &until);
 }
 
-/* Until all pictures are done. What was up to date before the bar appears is no part of it. */
+/* Shows progress until all pictures are done. Pictures that are up to date before the bar appears
+ * are left out. */
 static void watch(struct run *run)
 {
     struct progress progress;

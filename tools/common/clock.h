@@ -2,7 +2,7 @@
 #ifndef TOOLS_COMMON_CLOCK_H
 #define TOOLS_COMMON_CLOCK_H
 
-/** Seconds from some fixed point in the past. */
+/** Returns seconds since a fixed point in the past. */
 double clock_seconds(void);
 /** Sleeps until clock_seconds() reaches `time`. */
 void clock_sleep_until(double time);

@@ -1,7 +1,7 @@
 #include "descriptors.h"
 
-/* Windows bounds no descriptors; its C library has 512 files at a time, which tools do not reach.
- */
+/* Windows does not limit descriptors. Its C library allows 512 open files, which tools do not
+ * reach. */
 void descriptors_raise(void) {}
 
 void descriptors_keep(struct descriptors_kept *kept, unsigned count)

@@ -5,7 +5,7 @@
 
 #define MOST_INDEX 9999u
 
-/** A number without a sign. Returns what stands behind it; NULL if there is none. */
+/** Parses an unsigned number. Returns the text behind it, or NULL. */
 static const char *parse_number(const char *text, uint32_t *number)
 {
     uint32_t value = 0;

@@ -1,6 +1,6 @@
 #include "gpu.h"
 
-/** The first type with all of `wanted`, else with all of `needed`. */
+/** Returns the first type with all flags of `wanted`, else the first with all of `needed`. */
 static uint32_t find_memory_type(const struct gpu *gpu, uint32_t allowed,
                                  VkMemoryPropertyFlags needed, VkMemoryPropertyFlags wanted)
 {
@@ -66,7 +66,8 @@ bool gpu_create_buffer(const struct gpu *gpu, VkDeviceSize size, VkBufferUsageFl
 {
     const VkMemoryPropertyFlags host =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    /* Read by the host: cached. Used by shaders, atomics among them: beside them if possible. */
+    /* Prefer cached memory for buffers that the host reads, and device-local memory for buffers
+     * that shaders use. */
     VkMemoryPropertyFlags wanted = 0;
     if (usage == VK_BUFFER_USAGE_TRANSFER_DST_BIT)
         wanted = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;

@@ -31,7 +31,7 @@ uint32_t gpu_queue_add_builder(struct gpu_queue_list *list, const VkQueueFamilyP
     for (uint32_t i = 0; i < family_count; i++) {
         if ((families[i].queueFlags & both) != VK_QUEUE_COMPUTE_BIT)
             continue;
-        /* The queue of sparse binds is never shared. */
+        /* Do not share the queue of sparse binds. */
         const bool is_new = !find(list, i);
         const uint32_t index = gpu_queue_add(list, families, i);
         if (!is_new && index == 0)

@@ -1,13 +1,13 @@
-/** Names of files in text files of one line per entry, with tabs between the columns. */
+/** File names in text files with one entry per line and tabs between columns. */
 #ifndef TOOLS_COMMON_NAMES_IN_LINES_H
 #define TOOLS_COMMON_NAMES_IN_LINES_H
 
 #include <stdbool.h>
 #include <stdio.h>
 
-/** Writes a name; \t, \n, \r and \\ stand for the characters that would end it. */
+/** Writes a name. Escapes tab, newline, carriage return and backslash as \t, \n, \r and \\. */
 void line_write_name(FILE *out, const char *name);
-/** Turns what line_write_name wrote back, in place. False if it is empty or no such name. */
+/** Decodes a name of line_write_name, in place. Returns false if it is empty or malformed. */
 bool line_read_name(char *name);
 
 #endif /* TOOLS_COMMON_NAMES_IN_LINES_H */

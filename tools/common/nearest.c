@@ -11,7 +11,8 @@ static unsigned least_of(unsigned a, unsigned b)
     return a < b ? a : b;
 }
 
-/* Insertions, deletions, replacements and swaps of neighbors that turn one word into the other. */
+/* Returns the number of insertions, deletions, replacements and swaps of neighbors that turn one
+ * word into the other. */
 static unsigned edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
 {
     unsigned cost[LONGEST + 1][LONGEST + 1];
@@ -29,7 +30,7 @@ static unsigned edit_distance(const char *a, size_t a_length, const char *b, siz
     return cost[a_length][b_length];
 }
 
-/* "threads" in "loader-threads": such a pair counts as two typing errors apart. */
+/* Matches "threads" in "loader-threads". Such a pair counts as two typing errors. */
 static bool begins_or_ends_with(const char *whole, size_t whole_length, const char *part,
                                 size_t part_length)
 {

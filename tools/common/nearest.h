@@ -1,10 +1,10 @@
-/** The known word that somebody may have meant. */
+/** Finds the known word that a user may have meant. */
 #ifndef TOOLS_COMMON_NEAREST_H
 #define TOOLS_COMMON_NEAREST_H
 
 #include <stddef.h>
 
-/** Best candidate so far. Initialize with the word that was typed and the rest zeroed. */
+/** Best candidate so far. Set the typed word, and zero the rest. */
 struct nearest {
     const char *word;
     size_t word_length;
@@ -13,11 +13,11 @@ struct nearest {
     unsigned distance;
 };
 
-/** Compares with one candidate. The first of several equally near ones is kept. */
+/** Compares with a candidate. The first of several equally near ones is kept. */
 void nearest_try(struct nearest *nearest, const char *candidate, size_t length);
 
 /**
- * Writes "; did you mean PREFIX and the best candidate?" or, without a candidate, an empty text.
+ * Writes "; did you mean PREFIX and the best candidate?", or an empty text without a candidate.
  * `text` has room for `size` bytes. Returns `text`.
  */
 const char *nearest_question(const struct nearest *nearest, const char *prefix, char *text,

@@ -5,7 +5,7 @@
 
 #define HELP_COLUMN 30
 #define LINE_LENGTH 96
-#define LONGEST_OPERAND 40 ///< longer lists of choices stand behind the help
+#define LONGEST_OPERAND 40 ///< longer lists of choices are printed behind the help
 
 static void print_words(FILE *out, const char *words, int *column)
 {
@@ -20,7 +20,7 @@ static void print_words(FILE *out, const char *words, int *column)
     }
 }
 
-/* "auto|r8" as "auto, r8" */
+/* Prints "auto|r8" as "auto, r8". */
 static void print_choices(FILE *out, const char *choices, int *column)
 {
     char word[64];

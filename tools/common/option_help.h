@@ -1,4 +1,4 @@
-/** The --help text of a table of options. */
+/** Help text of a table of options. */
 #ifndef TOOLS_COMMON_OPTION_HELP_H
 #define TOOLS_COMMON_OPTION_HELP_H
 

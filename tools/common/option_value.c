@@ -18,7 +18,7 @@ static const struct unit times[] = {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1}, {"min"
 static const struct unit sizes[] = {
     {"K", 1024}, {"M", 1048576}, {"G", 1073741824.0}, {"T", 1099511627776.0}, {NULL, 0}};
 
-/* `bare`: where there is no unit. */
+/* `bare`: factor of a number without a unit. */
 static bool read_unit(const struct unit *units, double bare, const char *text, double *factor)
 {
     *factor = bare;
@@ -37,7 +37,7 @@ static bool in_range(const struct option *option, double value)
     return value >= option->minimum && value <= option->maximum;
 }
 
-/* A decimal number; where `fraction`, also two with a slash between them. */
+/* Reads a decimal number. `fraction`: also two with a slash between them. */
 static bool read_real(const char *text, bool fraction, const char **end, double *value)
 {
     char *stop;
@@ -87,7 +87,7 @@ static bool read_int(const struct option *option, const char *text, int32_t *val
     return in_range(option, *value);
 }
 
-/* In the option's own unit, which is also that of its range. */
+/* Converts to the option's own unit, which is also that of its range. */
 static bool read_time(const struct option *option, const char *text, double unit, double *value)
 {
     double factor;
@@ -167,7 +167,7 @@ bool option_value_read(const struct option *option, const char *text)
     return false;
 }
 
-/* In the largest unit that leaves a whole number, or in the first. */
+/* Writes in the largest unit that gives a whole number, else in the base unit. */
 static void write_amount(const struct unit *units, double amount, const char *base, char *words,
                          size_t size)
 {

@@ -25,7 +25,7 @@ static const char *metric_prefix(double *value)
     return prefixes[i];
 }
 
-/* "42 ktexels/s  3 s left"; nothing before anything is done. */
+/* Writes "42 ktexels/s  3 s left", or nothing before the first progress. */
 static void write_estimate(const struct progress *progress, uint64_t done, double seconds,
                            char *text, size_t size)
 {

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* NULL if it is not set, or empty. */
+/* Returns NULL if the variable is not set or empty. */
 static const char *variable(const char *name)
 {
     const char *value = getenv(name);

@@ -20,8 +20,7 @@ static VkAttachmentDescription attachment(VkFormat format, VkSampleCountFlagBits
     };
 }
 
-/* The images are shared by the frames in flight, so a pass waits for the one before and its copy.
- */
+/* Order a pass after the previous one and its copy, because frames in flight share the images. */
 static const VkSubpassDependency dependencies[] = {
     {.srcSubpass = VK_SUBPASS_EXTERNAL,
      .dstSubpass = 0,
@@ -123,7 +122,7 @@ bool target_create(const struct gpu *gpu, uint32_t width, uint32_t height, uint3
 {
     VkSampleCountFlags supported = gpu->properties.limits.framebufferColorSampleCounts &
                                    gpu->properties.limits.framebufferDepthSampleCounts;
-    while (samples & (samples - 1)) /* down to a power of two */
+    while (samples & (samples - 1)) /* round down to a power of two */
         samples &= samples - 1;
     while (samples > 1 && !(supported & samples))
         samples /= 2;

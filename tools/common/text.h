@@ -1,6 +1,6 @@
 /**
- * Words that come from elsewhere, names of files among them, so that no terminal and no program
- * takes them for something else. Texts are UTF-8, or what claims to be.
+ * Output of texts from elsewhere, such as file names, so that no terminal and no program
+ * misinterprets them. Texts should be UTF-8 and may be anything.
  */
 #ifndef TOOLS_COMMON_TEXT_H
 #define TOOLS_COMMON_TEXT_H
@@ -9,35 +9,36 @@
 #include <stdio.h>
 
 /**
- * For people: \n, \t, \x1b and \u202e stand for characters that move the cursor, change colors or
- * turn the direction of writing, \xff for a byte that is no UTF-8. Nothing else is changed.
+ * Writes a text for people. Escapes characters that move the cursor, change colors or turn the
+ * direction of writing, as \n, \t, \x1b and \u202e, and bytes that are not UTF-8 as \xff. Writes
+ * all others as they are.
  */
 void text_write(FILE *out, const char *text);
 
 /**
- * Whether all that was printed on stdout got there, which a full disk or a closed pipe may prevent;
- * if not, says so on stderr with `speaker` in front. To be asked before a program ends with
- * success.
+ * Flushes stdout. Returns whether all output arrived, which a full disk or a closed pipe may
+ * prevent. If not, reports it on stderr with the prefix `speaker`. Call before the program ends
+ * with success.
  */
 bool text_flush(const char *speaker);
 
-/** Returns `status`, or EXIT_FAILURE instead of EXIT_SUCCESS if text_flush("") fails. */
+/** Returns `status`, but EXIT_FAILURE instead of EXIT_SUCCESS if text_flush("") fails. */
 int text_exit_status(int status);
 
-/** A line on stderr, as printf makes it, written as above; at most 8 KiB of it. */
+/** Formats a line like printf, at most 8 KiB, and writes it to stderr with text_write. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 1, 2)))
 #endif
 void
 text_say(const char *format, ...);
 
-/** Calls `listen` with each line of text_say, from any thread and without its '\n'; NULL: nobody.
- *  No other thread may say anything during the call. */
+/** Sets a function that gets each line of text_say, without its '\n', on any thread. NULL: none.
+ * Call while no other thread uses text_say. */
 void text_set_listener(void (*listen)(void *user_data, const char *line), void *user_data);
 
 /**
- * A JSON string with its quotes; U+FFFD stands for bytes that are no UTF-8. No '<' is in it, so
- * that it ends no element of a web page that it is put into.
+ * Writes a JSON string with its quotes. Replaces bytes that are not UTF-8 by U+FFFD. Escapes '<',
+ * so that the string cannot end an HTML element.
  */
 void text_write_json(FILE *out, const char *text);
 

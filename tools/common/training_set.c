@@ -6,7 +6,7 @@
 
 #define STRIDE SLUICE_NEURAL_MAX_CHANNELS
 
-/* Textures are opened by their names. */
+/* Returns whether a name is taken. Names must differ, because they open textures. */
 static bool has_name(const struct training_set *set, const char *name)
 {
     for (uint32_t i = 0; i < set->texture_count; i++)
@@ -98,7 +98,7 @@ static uint32_t mip_size(uint32_t size, uint32_t mip)
     return size >> mip ? size >> mip : 1;
 }
 
-/* Texels of mip 0 in linear light, of one channel at a time. */
+/* Computes a mip of a channel. `linear`: its texels of mip 0, in linear light. */
 static void fill_channel(const struct training_set *set, uint32_t mip, uint32_t channel,
                          const float *linear)
 {

@@ -1,4 +1,4 @@
-/** Opens DLLs with the calls of POSIX: Windows has no dlfcn.h. */
+/** dlfcn.h for Windows, which lacks it: opens DLLs. */
 #ifndef TOOLS_COMMON_WINDOWS_DLFCN_H
 #define TOOLS_COMMON_WINDOWS_DLFCN_H
 
