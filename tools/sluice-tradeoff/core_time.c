@@ -11,14 +11,14 @@
 #include "../sluice-replay/file.h"
 
 #define PLAYS 5
-#define LONG_ENOUGH 1.0 ///< seconds; no further play begins after them
+#define LONG_ENOUGH 1.0 ///< seconds after which no further play begins
 
-/** Calls that a frame makes once; it need not make each of them. */
+/** Counts of calls that a frame makes at most once. */
 struct calls {
     double retire, map;
 };
 
-/* "17 get-tiles-to-map ..." */
+/* Counts lines like "17 get-tiles-to-map ...". */
 static void count_call(void *user, const char *line)
 {
     static const char retire[] = " complete-retire", map[] = " get-tiles-to-map";

@@ -68,7 +68,7 @@ static double cell(const struct frames *frames, size_t row, int column)
     return column < 0 ? NAN : frames->values[row * frames->column_count + (size_t)column];
 }
 
-/* Over the frames that have the value. */
+/* Computes the mean over the frames that have the value. */
 static double mean_of(const struct frames *frames, const char *name)
 {
     int column = frames_column(frames, name);
@@ -81,7 +81,7 @@ static double mean_of(const struct frames *frames, const char *name)
     return sum / count;
 }
 
-/* Decibels do not add up, squared errors do; equal frames have none. */
+/* Averages squared errors, because decibels do not add up. Equal frames have an error of 0. */
 static double mean_psnr(const struct frames *frames)
 {
     int column = frames_column(frames, "psnr_db");

@@ -5,7 +5,7 @@
 
 #include "memory.h"
 
-/* The line "  --name ..." */
+/* Finds the line "  --name ...". */
 static const char *find_line(const char *help, const char *name)
 {
     size_t length = strlen(name);
@@ -20,7 +20,7 @@ static const char *find_line(const char *help, const char *name)
     return NULL;
 }
 
-/* Up to the next option, heading or empty line. */
+/* Returns the end of an entry: before the next option, heading or empty line. */
 static const char *entry_end(const char *at)
 {
     for (;;) {
@@ -34,7 +34,7 @@ static const char *entry_end(const char *at)
     }
 }
 
-/* Blanks and ends of lines become one space each. */
+/* Replaces each run of blanks and line ends by one space. */
 static char *one_line(const char *text, size_t length)
 {
     char *line = memory_take(length + 1, 1), *out = line;
@@ -50,8 +50,8 @@ static char *one_line(const char *text, size_t length)
     return line;
 }
 
-/* Moves what stands in brackets at the end of the meaning. Words in parentheses, which stand there
- * instead, are no value. */
+/* Moves the text in brackets at the end of the meaning to the default. Removes a text in
+ * parentheses, which is no value. */
 static void split_default(struct help_entry *entry)
 {
     size_t length = strlen(entry->meaning);
@@ -70,7 +70,8 @@ static void split_default(struct help_entry *entry)
     *open = '\0';
 }
 
-/* The operand is one space away and ends before two. Nothing: the option stands alone. */
+/* Finds the operand, which begins after one space and ends before two. Returns 0 for an option
+ * without an operand. */
 static size_t operand_length(const char *at, const char **start)
 {
     *start = at + (*at == '=' || *at == ' ');

@@ -1,4 +1,4 @@
-/* Sweeps the settings of a scene and shows what each costs: see --help and docs/trade-offs.md. */
+/* Sweeps the settings of a scene and shows the cost of each: see --help and docs/trade-offs.md. */
 #include "commands.h"
 #include "play.h"
 

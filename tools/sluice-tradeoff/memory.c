@@ -83,7 +83,7 @@ static bool is_plain(const char *text)
     return *text && text[strspn(text, plain)] == '\0';
 }
 
-/* 'it'\''s' */
+/* Quotes a word for the shell: 'it'\''s'. */
 static size_t quote(const char *text, char *out)
 {
     char *at = out;

@@ -11,9 +11,8 @@
 #include "page_template.h"
 #include "../common/text.h"
 
-#define SERIES_SIZE_MAX                                                                            \
-    ((size_t)3 << 19) /* bytes: a quarter of the page, pictures have the rest                      \
-                       */
+/* Bytes: a quarter of the page. Pictures have the rest. */
+#define SERIES_SIZE_MAX ((size_t)3 << 19)
 
 struct page {
     FILE *file;
@@ -22,14 +21,14 @@ struct page {
     uint32_t recommendation_count;
     struct page_choice *choices; ///< owned
     uint32_t choice_count, prominent_count;
-    size_t template_left; ///< bytes that are still to be put
+    size_t template_left; ///< bytes of the template that are not written yet
 };
 
 static size_t room_left(const struct page *page)
 {
     long written = ftell(page->file);
     size_t used = (written < 0 ? PAGE_SIZE_MAX : (size_t)written) + page->template_left;
-    used += 4096; /* brackets, and reasons for what is left out */
+    used += 4096; /* brackets, and reasons for parts that are left out */
     return used < PAGE_SIZE_MAX ? PAGE_SIZE_MAX - used : 0;
 }
 
@@ -50,7 +49,7 @@ static bool put_part(struct page *page, enum page_template_part part)
     return true;
 }
 
-/* The template's pieces stand around the parts. */
+/* Writes the pieces of the template, with a part after each. */
 static bool put_page(struct page *page)
 {
     page->template_left = sizeof page_template;

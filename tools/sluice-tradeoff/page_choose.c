@@ -18,7 +18,7 @@ static void add(struct list *list, uint32_t point, const char *role, const char 
     list->choices[list->count++] = (struct page_choice){point, role, metric};
 }
 
-/* Infinity is an extreme like any other; what is not known is none. */
+/* Adds the point with the extreme value, which may be infinite. Ignores unknown values. */
 static void add_extreme(struct list *list, const char *name, bool least)
 {
     int metric = sweep_find_metric(list->sweep, name);

@@ -62,7 +62,7 @@ enum page_read page_read_file(const char *folder, const char *name, uint8_t **by
     return result;
 }
 
-/* Cuts the text at the end of its first line. NULL after the last one. */
+/* Takes the first line from the text and cuts its end. Returns NULL after the last line. */
 static char *take_line(char **text)
 {
     char *line = *text;
@@ -95,7 +95,7 @@ static bool take_names(struct page_frames *frames, char *line, char reason[PAGE_
     return true;
 }
 
-/* A cell is a number or empty. */
+/* Parses a line of cells. Each is a number or empty. */
 static bool take_cells(double *cells, uint32_t count, const char *line)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -124,7 +124,7 @@ static size_t count_lines(const char *text)
 static enum page_read take_rows(struct page_frames *frames, char *text,
                                 char reason[PAGE_REASON_SIZE])
 {
-    /* The file's size bounds lines and columns: this fits. */
+    /* Does not overflow, because the file's size limits lines and columns. */
     frames->cells = malloc((count_lines(text) + 1) * frames->column_count * sizeof *frames->cells);
     if (!frames->cells) {
         snprintf(reason, PAGE_REASON_SIZE, "out of memory");

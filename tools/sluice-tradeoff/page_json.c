@@ -84,8 +84,8 @@ static const char *state_name(enum sweep_state state)
     return "failed";
 }
 
-/* [mean, half width, count]. Means keep enough digits for bytes to be exact: differences are made
- * from them. */
+/* Writes [mean, half width, count]. Means have enough digits for exact bytes, because differences
+ * are computed from them. */
 static void put_estimate(FILE *file, const struct sweep_estimate *estimate)
 {
     fputc('[', file);

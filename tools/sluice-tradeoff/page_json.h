@@ -1,4 +1,4 @@
-/** Pieces of JSON that may stand inside an HTML page's script element. */
+/** JSON for the script element of an HTML page. */
 #ifndef SLUICE_TRADEOFF_PAGE_JSON_H
 #define SLUICE_TRADEOFF_PAGE_JSON_H
 
@@ -6,13 +6,15 @@
 
 #include "sweep.h"
 
-/** A string with its quotes; no '<' is in it, so that it ends no element. NULL: null. */
+/** Writes a string with its quotes, or null. Escapes '<', so that the string cannot end the
+ * element. */
 void page_put_text(FILE *file, const char *text);
-/** Five digits at most `PAGE_NUMBER_SIZE` letters; null for NaN, "inf" and "-inf" with quotes. */
+/** Writes at most five digits in at most `PAGE_NUMBER_SIZE` characters. NaN becomes null;
+ * infinities become "inf" and "-inf". */
 void page_put_number(FILE *file, double value);
 #define PAGE_NUMBER_SIZE 12
 
-/** Settings, metrics, all points, recommendations: an object. */
+/** Writes an object of settings, metrics, points and recommendations. */
 void page_put_sweep(FILE *file, const struct sweep *sweep,
                     const struct sweep_recommendation *recommendations, uint32_t count);
 

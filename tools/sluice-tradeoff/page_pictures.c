@@ -10,8 +10,8 @@
 #include "page_shots.h"
 
 #define SIDE_MAX 16384      /* pixels */
-#define PICTURE_OVERHEAD 64 /* bytes of JSON around a picture, at most */
-#define SET_OVERHEAD 512    /* and around a set of them, with its role */
+#define PICTURE_OVERHEAD 64 /* maximum bytes of JSON around a picture */
+#define SET_OVERHEAD 512    /* maximum bytes around a set of them, with its role */
 #define NOTHING INT32_C(-1)
 
 struct picture {
@@ -20,11 +20,11 @@ struct picture {
     uint32_t width, height;
 };
 
-/* The pictures of one frame of one run. */
+/* Pictures of one frame of a run. */
 struct picture_set {
     uint32_t point, frame;
     const char *role, *metric;
-    int32_t streamed, truth, flip; ///< in the pool, or NOTHING
+    int32_t streamed, truth, flip; ///< indices in the pool, or NOTHING
 };
 
 struct album {
@@ -41,8 +41,7 @@ static uint32_t read_u32(const uint8_t *bytes)
     return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
-/* Looks at no more than the browser needs to be told: it decodes the picture and survives what is
- * wrong in it. */
+/* Reads only the size, because the browser decodes the picture and copes with errors in it. */
 static bool parse_png(struct picture *picture)
 {
     static const uint8_t signature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n',
@@ -68,7 +67,7 @@ static void leave_out(struct album *album, uint32_t point, uint32_t frame, const
     album->some_left_out = true;
 }
 
-/* Reads a picture behind the end of the pool, which has room for it. */
+/* Reads a picture to the end of the pool, which has room for it. */
 static enum page_read read_picture(struct album *album, const char *folder, const char *kind,
                                    uint32_t frame, char why[PAGE_REASON_SIZE])
 {
@@ -86,7 +85,8 @@ static enum page_read read_picture(struct album *album, const char *folder, cons
     return read;
 }
 
-/* The index of the picture that was read last, or of an equal one, which then stands for it. */
+/* Adds the picture read last to the pool, or frees it if the pool has an equal one. Returns the
+ * index. */
 static int32_t keep_picture(struct album *album)
 {
     struct picture *picture = &album->pool[album->picture_count];
@@ -101,7 +101,7 @@ static int32_t keep_picture(struct album *album)
     return (int32_t)album->picture_count++;
 }
 
-/* Gives back what was added since, and its room on the page. */
+/* Removes the pictures from index `picture_count` on. */
 static void forget_pictures(struct album *album, uint32_t picture_count)
 {
     while (album->picture_count > picture_count)
@@ -116,7 +116,8 @@ static size_t size_since(const struct album *album, uint32_t first)
     return size;
 }
 
-/* A frame without its truth or difference is of use too; without itself it is none. */
+/* Reads the pictures of a frame. Truth and difference may be missing, the frame itself must
+ * exist. */
 static enum page_read read_set(struct album *album, const char *folder, struct picture_set *set,
                                char why[PAGE_REASON_SIZE])
 {
@@ -165,7 +166,7 @@ static bool has_shot(const struct page_shots *shots, uint32_t frame)
     return false;
 }
 
-/* A round adds one frame of each run, so that room is shared out fairly. */
+/* Adds one frame of each run, so that all runs get equal room. */
 static bool add_round(struct album *album, const struct sweep *sweep,
                       const struct page_choice *choices, uint32_t choice_count,
                       const struct page_shots *base, int round)

@@ -16,7 +16,7 @@ static uint32_t bin_step(uint32_t rows)
     return (rows + PAGE_BINS_MAX - 1) / PAGE_BINS_MAX;
 }
 
-/* The extreme of the rows first .. first + step; NaN if nothing is known of them. */
+/* Returns the extreme of the rows first .. first + step. NaN if no row has a value. */
 static double extreme(const struct page_frames *frames, uint32_t column, uint32_t first,
                       uint32_t step, bool least)
 {
@@ -45,7 +45,7 @@ static bool is_shown(const struct page_frames *frames, uint32_t column)
            strlen(frames->names[column]) < NAME_SIZE_MAX;
 }
 
-/* Never too small: what is written is counted before it is. */
+/* Returns an upper bound, because a run's size is counted before it is written. */
 static size_t size_bound(const struct page_frames *frames)
 {
     size_t parts = bin_step(frames->row_count) > 1 ? 2 : 1;
@@ -81,7 +81,7 @@ static void put_left_out(FILE *file, bool *first, uint32_t point, const char *wh
     *first = false;
 }
 
-/* Reasons are gathered in memory, since they follow the runs. */
+/* Writes the runs. Collects reasons in memory, because they follow the runs. */
 static bool put_runs(FILE *file, FILE *reasons, const struct sweep *sweep,
                      const struct page_choice *choices, uint32_t choice_count, size_t size_max)
 {

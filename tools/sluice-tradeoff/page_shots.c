@@ -26,7 +26,7 @@ static int compare_shots(const void *a, const void *b)
     return left->frame < right->frame ? -1 : left->frame > right->frame;
 }
 
-/* "frame-0012.png", and nothing else; false for other names. */
+/* Parses "frame-0012.png". Returns false for other names. */
 static bool parse_name(const char *name, uint32_t *frame)
 {
     int end = 0;

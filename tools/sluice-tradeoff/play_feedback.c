@@ -31,7 +31,7 @@ void play_feedback_finish(struct play_feedback *f)
     *f = (struct play_feedback){0};
 }
 
-/** splitmix64's finalizer. */
+/** Finalizer of splitmix64. */
 static uint64_t mix(uint64_t x)
 {
     x += 0x9E3779B97F4A7C15u;
@@ -40,7 +40,7 @@ static uint64_t mix(uint64_t x)
     return x ^ (x >> 31);
 }
 
-/** A number of [0, 1) for each seed, frame, texture and region. */
+/** Returns a random number in [0, 1) for each seed, frame, texture and region. */
 static double draw(const struct play_feedback *f, uint32_t frame, uint32_t texture, uint32_t region)
 {
     uint64_t x = mix(mix((uint64_t)f->options->seed << 32 | frame) ^ texture);

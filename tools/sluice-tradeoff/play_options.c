@@ -20,7 +20,7 @@ static const char notes[] =
     "Exit status: 0; 1 for a trace that cannot be played, or a file that cannot be written; 2 for\n"
     "wrong usage.\n";
 
-/** Settings that say the same thing twice, and what follows from one of them. */
+/** Refuses conflicting settings, and derives settings from others. */
 static bool settle(const struct option_table *table, struct play_options *o)
 {
     if (o->drop > 0 && o->probability < 1)

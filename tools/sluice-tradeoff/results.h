@@ -1,4 +1,4 @@
-/** From runs to points: means, what is known of them, and where to look. */
+/** Results of a sweep: points computed from runs, and their files. */
 #ifndef SLUICE_TRADEOFF_RESULTS_H
 #define SLUICE_TRADEOFF_RESULTS_H
 
@@ -6,19 +6,17 @@
 
 /**
  * Fills the metrics that some run has, states, estimates, folders and command lines of all points,
- * and the machine. Times of first runs, which also write and count, do not count where there are
- * others.
+ * and the machine. Ignores times of first runs, which also write and count, if there are others.
  */
 void results_collect(const struct runs *runs, struct sweep *sweep);
 
-/** Keeps in RESULTS/machine.txt what runs were made on. False and a line on stderr if not. */
+/** Writes the machine of the runs to RESULTS/machine.txt. Reports errors on stderr. */
 bool results_remember_machine(const struct runs *runs);
 
-/** The first of `names`, which NULL ends, that was measured at the base; -1: none. */
+/** Returns the first of `names`, which ends with NULL, that was measured at the base. -1: none. */
 int results_pick(const struct sweep *sweep, const char *const *names);
 
-/** RESULTS/points.csv, a line per point, and RESULTS/runs.csv. False and a line on stderr if not.
- */
+/** Write RESULTS/points.csv, a line per point, and RESULTS/runs.csv. Report errors on stderr. */
 bool results_write_points(const struct sweep *sweep, const char *path);
 bool results_write_runs(const struct runs *runs, const char *path);
 

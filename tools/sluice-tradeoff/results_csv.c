@@ -7,7 +7,7 @@
 
 #include "../common/output_file.h"
 
-/* RFC 4180: quoted where need be, quotes doubled. */
+/* Writes a cell as in RFC 4180: quoted if necessary, with doubled quotes. */
 static void put_cell(FILE *file, const char *text)
 {
     if (text[strcspn(text, ",\"\r\n")] == '\0') {
@@ -23,7 +23,7 @@ static void put_cell(FILE *file, const char *text)
     fputc('"', file);
 }
 
-/* A comma, and nothing behind it for what is not known. */
+/* Writes a comma, and the number if it is known. */
 static void put_number(FILE *file, double value)
 {
     fputc(',', file);

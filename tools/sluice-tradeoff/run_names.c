@@ -1,4 +1,4 @@
-/* A line per run: "3 budget-16-r4-0123456789abcdef budget 16", the repeat from 0. */
+/* Run names, a line per run: "3 budget-16-r4-0123456789abcdef budget 16". Repeats count from 0. */
 #include "run_names.h"
 
 #include <stdio.h>

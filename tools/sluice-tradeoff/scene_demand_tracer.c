@@ -1,4 +1,4 @@
-/* A garden whose textures are loaded when rays hit them: samples/demand-tracer. */
+/* Scene: a garden whose textures are loaded when rays hit them (samples/demand-tracer). */
 #include "scenes.h"
 
 #include <stdlib.h>
@@ -58,7 +58,7 @@ static const char *const quality[] = {"flip_mean", "psnr", NULL};
 static const char *const memory[] = {"resident_bytes_peak", "resident_bytes", NULL};
 static const char *const times[] = {"time", NULL};
 
-/* The seed is the scene's too, so repeats keep it. */
+/* Repeats keep the seed, because it also makes the scene. */
 static void add_repeat_arguments(const struct program *program, uint32_t repeat,
                                  struct text_list *arguments)
 {
@@ -67,7 +67,7 @@ static void add_repeat_arguments(const struct program *program, uint32_t repeat,
     text_list_add(arguments, "--json");
 }
 
-/* A picture is complete whatever the budget, so that of the base is the truth. */
+/* Uses the base's picture as truth, because pictures are complete with any budget. */
 static void add_run_arguments(const struct program *program, const struct scene_run *run,
                               struct text_list *arguments)
 {
@@ -76,7 +76,7 @@ static void add_run_arguments(const struct program *program, const struct scene_
         text_list_add(arguments, "--reference");
         text_list_add(arguments, truth);
     }
-    if (program_has_option(program, "needs")) { /* takes time in each launch */
+    if (program_has_option(program, "needs")) { /* counting takes time in each launch */
         text_list_add(arguments, "--needs");
         text_list_add(arguments, run->repeat == 0 ? "on" : "off");
     }

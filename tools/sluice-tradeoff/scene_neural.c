@@ -1,4 +1,4 @@
-/* A walk past the textures of a neural set, streamed in five ways: samples/streaming. */
+/* Scene: a walk past the textures of a neural set, streamed in five ways (samples/streaming). */
 #include "scenes.h"
 
 static const struct scene_setting settings[] = {
@@ -43,8 +43,8 @@ static const char *const quality[] = {"flip_final", "psnr_final_db", NULL};
 static const char *const memory[] = {"texture_bytes_peak", NULL};
 static const char *const times[] = {"gpu_ms_median", NULL};
 
-/* The truth has the same filter, so that its error is that of compression. Loads end in each frame:
- * frames until something is there do not depend on the machine. */
+/* The truth has the same filter, so that the error is that of compression. Loads end in each frame,
+ * so that the number of frames until sharp does not depend on the machine. */
 static void add_repeat_arguments(const struct program *program, uint32_t repeat,
                                  struct text_list *arguments)
 {

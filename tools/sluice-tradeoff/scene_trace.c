@@ -1,4 +1,4 @@
-/* Recorded feedback, played against a manager without a device: this tool's own `play`. */
+/* Scene: recorded feedback that this tool's `play` plays to a manager without a device. */
 #include "scenes.h"
 static const struct scene_setting settings[] = {
     {{"budget", "memory for all heaps; 0: any amount", "MiB"},

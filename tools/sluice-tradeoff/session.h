@@ -1,4 +1,4 @@
-/** A sweep from its command line to its results, and what a results folder remembers of it. */
+/** Session: a sweep from its command line to its results, and its memory in the results folder. */
 #ifndef SLUICE_TRADEOFF_SESSION_H
 #define SLUICE_TRADEOFF_SESSION_H
 
@@ -13,16 +13,16 @@ struct session {
 };
 
 /**
- * Finds the program, plans, and looks which runs are there; `own_path` is this tool's executable.
- * With `recall` nothing is started or written: the program is as the results folder remembers it.
- * False if that cannot be done, said on stderr.
+ * Finds the program, plans the runs, and finds the existing ones. `own_path`: this tool's
+ * executable. `recall`: starts and writes nothing, and takes the program from the results folder.
+ * Reports errors on stderr.
  */
 bool session_open(struct session *session, const char *own_path, bool recall);
 void session_close(struct session *session);
 
-/** Keeps the words of a command line in a results folder. False and a line on stderr if not. */
+/** Writes the words of a command line to a results folder. Reports errors on stderr. */
 bool session_remember(const char *results, int argc, char *const *argv);
-/** Reads them back. False and a line on stderr if there are none. */
+/** Reads the words of session_remember. Reports errors on stderr. */
 bool session_recall(const char *results, struct text_list *arguments);
 
 #endif /* SLUICE_TRADEOFF_SESSION_H */

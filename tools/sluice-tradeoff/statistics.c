@@ -10,7 +10,7 @@
 #define EQUAL_DB 999.0
 #define DB_PER_RATIO 4.34294481903251827651 /* 10 / ln 10 */
 
-/* The chance that |t| is at most sqrt(degrees) * tan(angle). */
+/* Returns the probability that |t| is at most sqrt(degrees) * tan(angle). */
 static double student_chance(uint32_t degrees, double angle)
 {
     double s = sin(angle), c = cos(angle);
@@ -49,7 +49,7 @@ struct sweep_estimate statistics_estimate(const double *values, uint32_t count)
     }
     if (estimate.count == 0)
         return estimate;
-    /* Equal values have no spread, not that of rounding the sum. */
+    /* Equal values have no spread; the rounded sum would give one. */
     bool equal = estimate.least == estimate.most;
     estimate.mean = equal ? estimate.least : sum / estimate.count;
     for (uint32_t i = 0; i < count && !equal; i++)

@@ -9,7 +9,7 @@
 
 #define CELL 24
 
-/* Bytes as MiB, so that a column stays narrow. */
+/* Shows bytes as MiB, to keep columns narrow. */
 static double scale_of(const struct sweep_metric *metric)
 {
     return strcmp(metric->unit, "bytes") == 0 ? 1.0 / 1048576.0 : 1.0;
@@ -31,7 +31,7 @@ static void print_estimate(const struct sweep_metric *metric, const struct sweep
     printf(" %*s", CELL, text);
 }
 
-/* Shown columns: the three that decide, then others that say why. */
+/* Chooses the columns: quality, memory and time, then up to three that explain them. */
 static uint32_t choose_columns(const struct sweep *sweep, const struct recommend_metrics *metrics,
                                int columns[6])
 {
@@ -69,7 +69,7 @@ static void print_header(const struct sweep *sweep, const int *columns, uint32_t
     printf("\n");
 }
 
-/* Values come from the command line. */
+/* Escapes the label, whose values come from the command line. */
 static void print_label(const char *label, int width)
 {
     text_write(stdout, label);

@@ -1,5 +1,5 @@
 'use strict';
-/* The header, the recommended settings, and the panel of the chosen run. */
+/* Header, recommended settings, and panel of the chosen run. */
 
 function showHead() {
   document.title = `${sweep.title}: trade-offs`;
@@ -19,7 +19,7 @@ function showHead() {
       html('ul', {}, failed.map(point => html('li', {}, html('b', {}, point.label || 'base'), `: ${point.reason || 'no reason is known'}`)))));
 }
 
-/** Light or dark as the system is, until somebody says otherwise; paper is light. */
+/** Uses the system's theme until the user chooses one. Prints are light. */
 function showTheme() {
   const root = document.documentElement;
   let before;
@@ -46,7 +46,7 @@ function card(recommendation) {
     optionList(index), html('div', {class: 'foot'}, copyButton(points[index].command_line, 'copy command line', `copy the command line of ${recommendation.name}`), show));
 }
 
-/** Figures of the base and of what is recommended, beside each other. */
+/** Shows the figures of the base and of the recommended runs side by side. */
 function recommendationTable() {
   const shown = sweep.recommendations.filter(r => r.point >= 0 && points[r.point] && points[r.point].state === 'done');
   const columns = [...(base >= 0 ? [['base', base]] : []), ...shown.map(r => [r.name, r.point])];

@@ -1,5 +1,5 @@
 'use strict';
-/* A section that fails is named, and leaves the others alone. */
+/* Draws all sections. If one fails, the page names it and shows the others. */
 
 function attempt(section) {
   try {
@@ -11,7 +11,7 @@ function attempt(section) {
 
 [showTheme, showHead, showRecommendations, showChosen, showFronts, showEffects, showSeries, showPictures, showTable].forEach(attempt);
 
-/* The first choice is what most want to know: the balanced one, else what is recommended first. */
+/* Choose the balanced run first, or else the first recommended one. */
 const offered = sweep.recommendations.filter(r => done.includes(r.point) && r.point !== base);
 attempt(function firstChoice() {
   const first = offered.find(r => r.name === 'balanced') || offered[0];

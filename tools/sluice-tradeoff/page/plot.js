@@ -15,7 +15,7 @@ function linearTicks(low, high, count) {
   return ticks;
 }
 
-/** Powers of ten or two, with 2 and 5 between them where there is room. */
+/** Powers of ten or two, with multiples by 2 and 5 where there is room. */
 function logTicks(low, high, count, radix) {
   const ticks = [], every = radix === 2 ? [1] : [1, 2, 5];
   for (let k = Math.floor(Math.log(low) / Math.log(radix)); radix ** k <= high * 1.001; k++)
@@ -28,8 +28,8 @@ function logTicks(low, high, count, radix) {
 }
 
 /**
- * Maps values to pixels from..to. Infinite values have a place of their own at the end, NaN has none.
- * Logarithmic where all values are positive and span more than `logFrom` times.
+ * Maps values to pixels from..to. Infinity has its own place at the end; NaN has none. The scale is
+ * logarithmic if all values are positive and their ratio exceeds `logFrom`.
  */
 function makeScale(values, unit, from, to, {count = 5, logFrom = 30, zero = false} = {}) {
   const finite = values.filter(Number.isFinite);
@@ -73,12 +73,13 @@ function drawYAxis(scale, box, title) {
   return svg('g', {'aria-hidden': 'true'}, nodes, text);
 }
 
-/** "resident bytes peak, MiB, logarithmic" */
+/** Makes a title like "resident bytes peak, MiB, logarithmic". */
 function axisTitle(name, scale) {
   return [name, scale.unit, scale.log ? 'logarithmic' : ''].filter(Boolean).join(', ');
 }
 
-/** Means, and their intervals as far as they leave the means room: few repeats make them huge. */
+/** Extent of the means and their intervals. Limits the intervals, which are huge with few
+ * repeats. */
 function extentOf(estimates) {
   const means = estimates.map(e => e.mean).filter(v => !Number.isNaN(v)), finite = means.filter(Number.isFinite);
   const low = Math.min(...finite), high = Math.max(...finite), room = (high - low) * 0.2 || Math.abs(high) * 0.1;
@@ -87,7 +88,7 @@ function extentOf(estimates) {
   return [...means, ...ends.map(v => Math.min(Math.max(v, least), high + room))];
 }
 
-/** An empty picture as wide as its place. */
+/** Makes an empty picture as wide as its place. */
 function canvas(place, height, label) {
   const width = Math.max(Math.round(place.clientWidth - parseFloat(getComputedStyle(place).paddingLeft || 0) * 2), 160);
   return {width, height, root: svg('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': label})};
@@ -106,7 +107,7 @@ function path(points) {
   return text;
 }
 
-/** Shows lines of text beside a place on the screen; the first one is its heading. */
+/** Shows lines of text at a place on the screen. The first line is the heading. */
 function showTip(x, y, lines) {
   const tip = byId('tip');
   tip.replaceChildren(html('b', {}, lines[0]), ...lines.slice(1).map(line => html('div', {}, line)));
@@ -121,7 +122,7 @@ function hideTip() {
   byId('tip').hidden = true;
 }
 
-/** Calls again when the page has another width; prints have their own. */
+/** Functions that draw again when the page's width changes. Prints have their own width. */
 const redraws = [];
 function onResize(draw) {
   redraws.push(draw);
