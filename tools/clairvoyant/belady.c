@@ -1,8 +1,8 @@
 /**
- * The fewest uploads that leave no level too coarse. Without a cap that is every tile once. With
- * one it is Belady's rule: what a frame needs is fetched just before it, in place of the tiles
- * whose next use is farthest. All tiles are of one size, so that is optimal; prefetching cannot
- * lower the count, and neither budget nor latency is looked at. Tiles of a set count one by one.
+ * Fewest uploads that leave no level too coarse. Without a cap, every tile is uploaded once. With a
+ * cap, Belady's rule applies: the tiles of a frame are fetched just before it, and replace those
+ * whose next use is farthest. This is optimal, because all tiles have one size. Prefetching cannot
+ * lower the count. Budget and latency are ignored. Tiles of a set count one by one.
  */
 #include "clairvoyant.h"
 
@@ -11,7 +11,7 @@
 #define NO_USE UINT32_MAX
 
 struct entry {
-    uint32_t next, node; ///< next: frame of the next use, NO_USE for none
+    uint32_t next, node; ///< `next`: frame of the next use, or NO_USE
 };
 
 struct far_heap {
@@ -50,11 +50,12 @@ static void pop(struct far_heap *heap)
 struct cache {
     struct far_heap heap;
     uint32_t *next;    ///< per node: frame of its next use, to tell stale entries of the heap
-    uint32_t *present; ///< per node: tiles of it that are there
+    uint32_t *present; ///< per node: resident tiles of it
     uint64_t used;
 };
 
-/** Frees a slot whose tile is next used after `frame`; false if there is none. */
+/** Evicts the tile whose next use is farthest, if that is after `frame`. Returns false if there is
+ * none. */
 static bool evict_farthest(struct cache *c, uint32_t frame)
 {
     while (c->heap.count) {

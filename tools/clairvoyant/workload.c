@@ -1,6 +1,6 @@
 /**
- * From a trace to the uses of every tile that some map needs. Only touched tiles
- * are stored, beside a table of 4 bytes per tile of each set that was ever seen.
+ * Converts a trace to the uses of every tile that some map needs. Only touched tiles are stored,
+ * beside a table of 4 bytes per tile of each set.
  */
 #include "clairvoyant.h"
 
@@ -13,7 +13,7 @@ struct set_state {
     uint32_t texture, members;
     uint32_t last_visit, first_touch;
     uint32_t *nodes;        ///< per regular tile
-    uint32_t *region_touch; ///< per region: the frame of its first touch
+    uint32_t *region_touch; ///< per region: frame of its first touch
 };
 
 struct builder {
@@ -22,7 +22,7 @@ struct builder {
     uint32_t *set_of; ///< per texture
     uint32_t set_count, latency;
     struct node *nodes;
-    uint32_t *last_use, *first_frame; ///< per node; the former into `uses`
+    uint32_t *last_use, *first_frame; ///< per node; `last_use`: index into `uses`
     uint32_t node_count, node_room;
     struct frame_use *order;
     struct use *uses;
@@ -109,7 +109,7 @@ static bool find_sets(struct builder *b)
     return true;
 }
 
-/** Packed tiles come first. */
+/** Adds the nodes of packed tiles, which come first. */
 static void add_packed_nodes(struct builder *b)
 {
     for (uint32_t i = 0; i < b->set_count; i++) {
@@ -160,7 +160,7 @@ static uint32_t least(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-/** The node of the tile at (tx, ty) of level 0, at `level`. */
+/** Returns the node of the tile over (tx, ty) of level 0 at `level`. */
 static uint32_t node_at(struct builder *b, uint32_t set, uint32_t level, uint32_t parent,
                         uint32_t tx, uint32_t ty)
 {
@@ -206,7 +206,7 @@ static void add_region(struct builder *b, uint32_t set, uint32_t x, uint32_t y, 
         if (level < regular)
             node = node_at(b, set, level, node, tx, ty);
         add_use(b, node, frame, s->last_visit, level == want);
-        /* packed tiles need not be asked for */
+        /* packed tiles need no request */
         unseen += level < regular && frame - b->first_frame[node] <= b->latency;
         if (level == want)
             break;
@@ -264,7 +264,8 @@ static void index_visits(struct workload *w, const struct builder *b)
         w->visits[w->visit_first[b->visits[i].set + 1]++] = b->visits[i].frame;
 }
 
-/** Two counting sorts: by node, keeping the order of time, then by frame, keeping that of nodes. */
+/** Sorts twice by counting: by node, keeping the order of time, then by frame, keeping the order of
+ * nodes. */
 void clv_workload_index(struct workload *w, const struct frame_use *draft,
                         const struct use *draft_uses)
 {
@@ -299,7 +300,7 @@ static void take_over(struct workload *w, struct builder *b)
                            .use_count = b->use_count,
                            .regions = b->regions,
                            .reactive = b->reactive};
-    add_node(b, &(struct node){0}); /* only to end the uses of the one before it */
+    add_node(b, &(struct node){0}); /* end marker for the uses of the last node */
     w->nodes = b->nodes;
     w->set_texture = clv_alloc(b->set_count, sizeof *w->set_texture);
     for (uint32_t i = 0; i < b->set_count; i++) {

@@ -45,11 +45,11 @@ void plan_finish(struct plan *plan)
     *plan = (struct plan){0};
 }
 
-/* Seconds of an encoder per 10^6 texels, by quality: NORMAL, FAST, BEST. */
+/* Returns seconds of an encoder per 10^6 texels, by quality: NORMAL, FAST, BEST. */
 static double encoder_work(SluiceFormat format, SluiceBakeQuality quality)
 {
     static const struct {
-        const char *name; /* begins so */
+        const char *name; /* start of the format's name */
         double work[3];
     } encoders[] = {{"BC1", {1.4, 1.4, 1.4}}, {"BC3", {1.5, 1.5, 1.5}},  {"BC6H", {0.3, 0.2, 0.7}},
                     {"BC7", {0.2, 0.1, 0.5}}, {"ASTC", {2.4, 0.9, 8.0}}, {"BC", {0.1, 0.1, 0.1}},
@@ -61,7 +61,7 @@ static double encoder_work(SluiceFormat format, SluiceBakeQuality quality)
     return encoders[i].work[quality <= SLUICE_BAKE_QUALITY_BEST ? quality : 0];
 }
 
-/* Measured on one core with a JPEG of 2048 x 2048 (docs/cluster.md). Balances shards; nothing else
+/* Measured on one core with a JPEG of 2048 x 2048 (docs/cluster.md). Only the balance of shards
  * depends on it. */
 double plan_cost(const SluiceBakeSettings *settings, SluiceFormat format, double texels,
                  uint64_t input_size)
@@ -138,7 +138,7 @@ static bool read_settings(const char *line, struct plan *plan)
     return sluiceHashBakeSettings(s, &hash) == SLUICE_SUCCESS && hash == plan->settings_hash;
 }
 
-/* Names lie behind the numbers, with a tab between. The line is changed. */
+/* Parses a line: numbers, then names, separated by tabs. Changes the line. */
 static bool read_picture(char *line, struct plan_picture *p)
 {
     int format, end = 0;
@@ -173,7 +173,8 @@ static bool refuse(const struct reader *reader, const char *why)
     return false;
 }
 
-/* Without its end. False at the end of the file, and in the middle of a line. */
+/* Reads a line and removes its end. Returns false at the end of the file, also in the middle of a
+ * line. */
 static bool next_line(struct reader *reader)
 {
     ssize_t length = getline(&reader->line, &reader->size, reader->file);

@@ -1,4 +1,4 @@
-/* In place of neural.c where the Vulkan loader or zlib is missing. */
+/* Replaces neural.c in builds without the Vulkan loader or zlib. */
 #include "neural.h"
 
 #include <stdio.h>

@@ -66,7 +66,7 @@ static bool verify(const char *path, struct remote_session *session, bool json)
     return result == SLUICE_SUCCESS;
 }
 
-/* A file whatever its name, and of folders all stores. */
+/* Collects files under any name, and all stores in folders. */
 static bool collect(const struct option_list *paths, struct file_list *list)
 {
     struct stat status;

@@ -17,7 +17,7 @@ SluiceResidencyMode format_mode_residency(enum format_mode mode)
     return modes[mode];
 }
 
-/* NULL, or why sparse mode refuses the format. */
+/* Returns NULL, or the reason why sparse mode refuses the format. */
 static const char *refuse_sparse(const SluiceVulkanFormatCapabilities *caps)
 {
     if (!caps->tileWidth)
@@ -25,7 +25,8 @@ static const char *refuse_sparse(const SluiceVulkanFormatCapabilities *caps)
     return caps->sparse ? NULL : "tile not 64 KiB";
 }
 
-/* Demand loading places the levels of a mip tail at multiples of 4 texels. */
+/* Returns NULL, or the reason why demand loading refuses the format. It places the levels of a mip
+ * tail at multiples of 4 texels. */
 static const char *refuse_demand(SluiceFormat format)
 {
     SluiceFormatInfo info = {.structSize = sizeof info};

@@ -20,7 +20,7 @@
 #include <sluice/ktx2.h>
 #endif
 
-/* The library's words name the file. */
+/* Prints a message of the library, which names the file. */
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     struct texture_file *file = user;

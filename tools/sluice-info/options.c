@@ -41,7 +41,7 @@ static const char notes[] =
     "Exit status: 0 all is shown, and all checks passed; 1 a file cannot be read or written,\n"
     "there is no Vulkan, no device or none of that name, or a check failed; 2 wrong usage.\n";
 
-/* "column,row" */
+/* Parses "column,row". */
 static bool parse_tile(const char *text, void *value)
 {
     struct tile_choice *tile = value;

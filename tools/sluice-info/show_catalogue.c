@@ -9,12 +9,12 @@
 #include <stdio.h>
 #include <string.h>
 
-/* docs/cluster.md has the format. */
+/* Format: docs/cluster.md. */
 static const char first_line[] = "sluice catalogue 1\n";
 enum { BYTES = 5, COLUMNS = 8 };
 
 struct catalogue {
-    uint64_t store_count, size; ///< size: bytes of all stores
+    uint64_t store_count, size; ///< `size`: bytes of all stores
     uint64_t damaged;           ///< number of the first damaged line; 0: none
 };
 
@@ -31,7 +31,7 @@ bool is_catalogue(const char *path)
 
 static void count(FILE *file, struct catalogue *catalogue)
 {
-    enum { NAMES = 2 }; /* the line that names the columns */
+    enum { NAMES = 2 }; /* number of the line with the columns' names */
     uint64_t line = 1, size = 0;
     int column = 0, length = 0;
     bool good = true;
@@ -53,7 +53,7 @@ static void count(FILE *file, struct catalogue *catalogue)
         size = 0;
         column = length = 0;
     }
-    if ((length > 0 || line <= NAMES) && !catalogue->damaged) /* cut off */
+    if ((length > 0 || line <= NAMES) && !catalogue->damaged) /* line without an end */
         catalogue->damaged = line;
 }
 

@@ -150,7 +150,7 @@ static void print_exr(FILE *out, const SluiceExrInfo *e)
             mib(e->chainSize));
 }
 
-/* JSON has no words for what is no finite number. */
+/* Writes null for values that are not finite, because JSON has no numbers for them. */
 static void write_number(FILE *out, const char *before, float value)
 {
     if (isfinite(value))
@@ -235,7 +235,8 @@ static void print_file_json(FILE *out, const struct texture_file *file, const ch
 
 bool report_texture_file(const char *path, bool json, FILE *out)
 {
-    const struct texture_opening opening = {.memory = UINT64_MAX}; /* no texel is read */
+    const struct texture_opening opening = {
+        .memory = UINT64_MAX}; /* no limit, because no texel is read */
     struct texture_file file;
     if (!open_texture_file(&file, path, &opening))
         return false;

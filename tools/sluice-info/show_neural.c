@@ -14,7 +14,7 @@ static const char *const formats[] = {"UNKNOWN", "UNORM8",  "UNORM16",
                                       "FLOAT16", "FLOAT32", "UINT32"};
 static const char *const networks[] = {"small", "medium", "large", "xlarge", "schema 3"};
 
-/* The library's words name the file. */
+/* Prints a message of the library, which names the file. */
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     (void)user;
@@ -33,7 +33,7 @@ bool is_neural_file(const char *path)
     return memcmp(start, "NTEX", 4) == 0;
 }
 
-/* The library says why, but for these two. */
+/* Opens a file. The library reports all errors except these two. */
 SluiceNeuralSet *open_neural_file(const char *path)
 {
     SluiceNeuralSetCreateInfo info = {
@@ -73,7 +73,7 @@ static const char *channel_space(const SluiceNeuralSet *set, uint32_t channel)
     return spaces[space];
 }
 
-/* Bytes of an image in the file, and whether some are compressed. */
+/* Returns the bytes of an image in the file, and whether some are compressed. */
 static uint64_t stored_size(const SluiceNeuralSet *set, uint32_t image, uint32_t parts,
                             bool *is_compressed)
 {

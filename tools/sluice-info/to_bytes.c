@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* Bytes per channel: 1, 2 or 4; 0 if the format has no plain channels. */
+/* Returns the bytes per channel: 1, 2 or 4. 0 for formats without plain channels. */
 static uint32_t channel_size(SluiceFormat format)
 {
     switch (format) {
@@ -45,7 +45,8 @@ static uint8_t quantize(double value, bool encode)
     return value >= 1.0 ? 255 : (uint8_t)(255.0 * value + 0.5);
 }
 
-/* Large pictures have more texels than there are halves. [alpha or not][half] */
+/* Table of sRGB bytes by half and by alpha or not. Large pictures have more texels than there are
+ * halves. */
 struct half_bytes {
     bool is_filled;
     uint8_t bytes[2][65536];

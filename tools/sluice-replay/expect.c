@@ -16,7 +16,7 @@ static bool is_hash(const char *line)
     return strncmp(line, hash_prefix, sizeof hash_prefix - 1) == 0;
 }
 
-/* The next line that is not a comment, NUL-terminated; NULL at the end. */
+/* Returns the next line that is not a comment, NUL-terminated, or NULL at the end. */
 static char *next_line(struct expectation *e)
 {
     while (*e->next) {

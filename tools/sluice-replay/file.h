@@ -1,4 +1,4 @@
-/** A whole file in memory. */
+/** Reads a whole file to memory. */
 #ifndef TOOLS_SLUICE_REPLAY_FILE_H
 #define TOOLS_SLUICE_REPLAY_FILE_H
 
@@ -6,8 +6,8 @@
 #include <stddef.h>
 
 /**
- * Reads a regular file of at most 4 GiB. `*data` is to be freed, and ends with a NUL that is not
- * counted. On failure errno says why; input_reason (tools/common/input.h) has the words.
+ * Reads a regular file of at most 4 GiB. Free `*data`, which ends with a NUL that is not counted.
+ * On failure sets errno; input_reason (tools/common/input.h) has its text.
  */
 bool read_file(const char *path, char **data, size_t *size);
 

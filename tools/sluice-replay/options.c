@@ -32,7 +32,7 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         option_max_heaps(&o->max_heaps),
         option_standby(&o->standby),
         option_tiles_per_frame(&o->tiles_per_frame, UINT32_MAX),
-        {OPTION_RENAMED, "budget", "tiles-per-frame"}, /* a size in other programs */
+        {OPTION_RENAMED, "budget", "tiles-per-frame"}, /* this name is a size in other programs */
         option_latency(&o->latency),
         option_timeout(&o->timeout),
     };

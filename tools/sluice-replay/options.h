@@ -1,4 +1,4 @@
-/** The command line of sluice-replay. */
+/** Command line of sluice-replay. */
 #ifndef TOOLS_SLUICE_REPLAY_OPTIONS_H
 #define TOOLS_SLUICE_REPLAY_OPTIONS_H
 
@@ -6,15 +6,15 @@
 
 struct options {
     const char *trace;
-    const char *expect; ///< NULL: nothing is compared
-    const char *record; ///< NULL: nothing is recorded
+    const char *expect; ///< NULL: do not compare
+    const char *record; ///< NULL: do not record
     bool dump, json;
     uint32_t heap_tiles, max_heaps, standby, tiles_per_frame, latency;
     double timeout;  ///< seconds
     uint64_t memory; ///< bytes
 };
 
-/** Prints the help text if it was asked for. On failure says on standard error what is wrong. */
+/** Prints the help text on request. Reports errors on stderr. */
 enum option_outcome parse_options(struct options *options, int argc, char **argv);
 
 #endif /* TOOLS_SLUICE_REPLAY_OPTIONS_H */

@@ -25,7 +25,7 @@ void say_unread(const char *path, int error, uint64_t memory)
         text_say("sluice-replay: %s: %s", path, input_reason(error));
 }
 
-/* Before the rest is read: a device or a film of many gigabytes is no trace. */
+/* Reads and checks the first bytes, because a device or a film of many gigabytes is no trace. */
 static bool read_magic(FILE *stream, const char *path, char **data, size_t *size)
 {
     *data = malloc(MAGIC_SIZE);
