@@ -144,7 +144,7 @@ uint64_t slc_get_varint(struct slc_cursor *cursor)
     uint64_t value = 0;
     for (uint32_t shift = 0; !cursor->why; shift += 7) {
         uint8_t byte = slc_get_u8(cursor);
-        /* The tenth byte holds the one bit that is left of 64. */
+        /* The tenth byte holds only bit 63. */
         if (shift == 63 && byte > 1) {
             slc_cursor_fail(cursor, start, "a number does not fit 64 bits");
             return 0;

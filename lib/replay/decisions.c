@@ -84,7 +84,7 @@ SluiceResult slc_visit_minmip(const SluiceStreamedTextureManager *manager,
                               void *user)
 {
     uint8_t texels[PIECE];
-    /* Whole rows together where several fit, or a row in pieces: the order is the same. */
+    /* Visits several whole rows together, or a long row in pieces, always in row order. */
     uint32_t columns = slc_min_u32(rect->width, PIECE);
     uint32_t rows = columns ? PIECE / columns : 0;
     for (uint32_t y = 0; rows && y < rect->height; y += rows) {

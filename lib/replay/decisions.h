@@ -1,23 +1,23 @@
-/** The hash over what a manager decided; docs/replay.md defines it byte by byte. */
+/** Hash of a manager's decisions. docs/replay.md defines the hashed bytes. */
 #ifndef SLC_REPLAY_DECISIONS_H
 #define SLC_REPLAY_DECISIONS_H
 
 #include "core/observer.h"
 #include "replay/hash.h"
 
-/** Whether the call answers with a list: GET_... and DEFRAGMENT. */
+/** Tells whether the call returns a list: GET_... and DEFRAGMENT. */
 bool slc_call_lists(enum slc_call_kind kind);
-/** Whether it has written entries of that list. */
+/** Tells whether the call has written entries of its list. */
 bool slc_call_has_entries(const struct slc_call *call);
 
 /**
- * Goes on with `hash` over the outputs of one call, MinMip texels of the rectangles it handed out
- * included: those are read from the manager, so this comes right after the call.
+ * Extends `hash` by the outputs of one call, including MinMip texels of its rectangles. Call it
+ * right after the call, because the texels are read from the manager.
  */
 uint64_t slc_hash_decisions(uint64_t hash, const SluiceStreamedTextureManager *manager,
                             const struct slc_call *call);
 
-/** Hands the texels of a rectangle, row by row, to `visit` in pieces. */
+/** Calls `visit` for pieces of a rectangle's texels, row by row. */
 SluiceResult slc_visit_minmip(const SluiceStreamedTextureManager *manager,
                               const SluiceMinMipRect *rect,
                               void (*visit)(void *user, const uint8_t *texels, size_t count),

@@ -53,7 +53,7 @@ static uint32_t take(void *user, uint32_t kind)
     return answer ? answer->place : SLC_NO_PLACE;
 }
 
-/* Which places are free is known from the answers. */
+/* Ignores returned places: free places follow from the recorded answers. */
 static void give(void *user, uint32_t place, uint32_t page)
 {
     (void)user;
@@ -137,7 +137,7 @@ SluiceResult slc_demand_player_add_answer(struct slc_demand_player *player,
     return SLUICE_SUCCESS;
 }
 
-/* No more than there can be is allocated, whatever room there was. */
+/* Allocates room for a list, but never more than its possible entries. */
 static void *make_room(struct slc_demand_player *player, uint32_t room, size_t size)
 {
     uint32_t most = slc_residency_most_entries(player->residency);
@@ -154,7 +154,7 @@ static void *make_room(struct slc_demand_player *player, uint32_t room, size_t s
     return player->entries;
 }
 
-/* NULL if a user of the residency may make the call. */
+/* Returns the misuse in a call, or NULL for a call that users of the residency may make. */
 static const char *find_misuse(const struct slc_demand_player *player,
                                const struct slc_page_call *call)
 {
@@ -164,7 +164,7 @@ static const char *find_misuse(const struct slc_demand_player *player,
         if (call->class_index >= player->class_count)
             return "there is no such class";
         slc_residency_get_class(player->residency, call->class_index, &had_memory);
-        /* pages of the class hold places, or do not */
+        /* only an empty class may change between with and without memory */
         return had_memory != call->flag &&
                        !slc_residency_class_is_empty(player->residency, call->class_index)
                    ? "a class that has pages gets memory or loses it"

@@ -1,5 +1,4 @@
-/** A residency of demand loading of its own, the calls made on it, and the hash of its decisions.
- */
+/** Player of demand loading: owns a residency, makes calls on it, and hashes its decisions. */
 #ifndef SLC_REPLAY_DEMAND_PLAYER_H
 #define SLC_REPLAY_DEMAND_PLAYER_H
 
@@ -12,39 +11,39 @@
 struct slc_demand_player {
     SluiceAllocationCallbacks cb;
     struct slc_demand_residency *residency; ///< owned
-    struct slc_page_observer recorder;      ///< of what is played; zeroed if it is not recorded
+    struct slc_page_observer recorder;      ///< recorder of the played calls; zeroed: not recorded
     uint32_t class_count;
     uint64_t hash, event_count;
     uint64_t begun, prepared; ///< launches
     SluiceDemandReplayStatistics counts;
     struct slc_dump dump;
 
-    struct slc_page_call *answers; ///< owned; of memory, in the next request
+    struct slc_page_call *answers; ///< owned; answers of memory for the next request
     size_t answer_count, answer_capacity, answers_used;
-    bool answers_differ; ///< memory was asked something else than when it was recorded
+    bool answers_differ; ///< requests to memory differ from the recorded ones
 
-    void *entries; ///< owned; of the last list
+    void *entries; ///< owned; entries of the last list
     size_t entries_size;
 };
 
-/** `info->cb` is ignored. After an error there is nothing to finish. Errors: OUT_OF_HOST_MEMORY. */
+/** Initializes; ignores `info->cb`. Do not finish after an error. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_demand_player_init(struct slc_demand_player *player,
                                     const SluiceAllocationCallbacks *cb,
                                     const struct slc_page_residency_create_info *info);
 void slc_demand_player_finish(struct slc_demand_player *player);
-/** Gives the player, a struct slc_demand_player, the state of a snapshot, and dumps a line. */
+/** Restores `player`, a struct slc_demand_player, from a snapshot, and dumps a line. */
 void slc_demand_player_restore(void *player, struct slc_snapshot_io *io);
-/** From here on all that is played is hashed and dumped, and told to who records the residency. */
+/** Begins to hash and dump played calls, and to notify the recorder of the residency. */
 void slc_demand_player_begin(struct slc_demand_player *player);
 
-/** An answer of memory for the next request. Errors: OUT_OF_HOST_MEMORY. */
+/** Adds an answer of memory for the next request. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_demand_player_add_answer(struct slc_demand_player *player,
                                           const struct slc_page_call *answer);
 
 /**
- * Makes a call with the inputs of `call`, and writes what came out. A request that was recorded as
- * failed for want of host memory changed nothing: it is not made. `*why` says what is wrong with a
- * call that no user of page_residency.h may make. Errors: OUT_OF_HOST_MEMORY; CORRUPT_DATA.
+ * Makes a call with the inputs in `call`, and writes its outputs. Skips a request that was recorded
+ * as OUT_OF_HOST_MEMORY, because such a request changed nothing. Errors: OUT_OF_HOST_MEMORY;
+ * CORRUPT_DATA for a call that users of page_residency.h may not make, with the reason in `*why`.
  */
 SluiceResult slc_demand_player_call(struct slc_demand_player *player, struct slc_page_call *call,
                                     const char **why);

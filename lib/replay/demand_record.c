@@ -5,7 +5,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* What a record of some kind holds, in this order. */
+/* Fields of a record, in this order. */
 enum field {
     FIELD_PAGE = 1,
     FIELD_PLACE = 2,
@@ -98,7 +98,7 @@ static uint32_t get_page(struct slc_cursor *in, uint32_t *last_page)
 {
     size_t start = in->pos;
     int64_t step = slc_get_signed(in);
-    /* The step first, because the sum might not fit. */
+    /* Check the step first, because the sum might overflow. */
     if (step < -(int64_t)UINT32_MAX || step > UINT32_MAX || *last_page + step < 0 ||
         *last_page + step > UINT32_MAX) {
         slc_cursor_fail(in, start, "a page does not fit 32 bits");

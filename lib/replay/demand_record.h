@@ -1,4 +1,4 @@
-/** One call of demand loading as bytes of a "SLUICEDR" recording, and back; and its decisions. */
+/** Conversion of a demand-loading call to and from bytes of a "SLUICEDR" recording; its hash. */
 #ifndef SLC_REPLAY_DEMAND_RECORD_H
 #define SLC_REPLAY_DEMAND_RECORD_H
 
@@ -12,30 +12,29 @@
 #define SLC_DEMAND_FLAG_NO_EVICTION 1u
 #define SLC_DEMAND_FLAG_NO_LOD_BIAS 2u
 #define SLC_DEMAND_FLAGS 3u
-/** Kinds of pages are image formats. Each has a list of its own, so a recording may not name many.
- */
+/** Limit for kinds of pages in a recording. A kind is an image format and has its own list. */
 #define SLC_DEMAND_PAGE_KINDS 256u
 
 struct slc_demand_record {
     struct slc_page_call call; ///< without lists
-    uint64_t hash;             ///< if the kind has it: over all decisions up to this call
+    uint64_t hash;             ///< hash of all decisions up to this call, for kinds with hash
 };
 
-/** An answer of memory stands before the slc_residency_request that asked for it. */
+/** Tells whether a call is an answer of memory. Answers precede their slc_residency_request. */
 bool slc_page_call_is_answer(enum slc_page_call_kind kind);
-/** Whether records of this kind have the hash of all decisions. */
+/** Tells whether records of this kind have the hash of all decisions. */
 bool slc_page_call_has_hash(enum slc_page_call_kind kind);
 
 /**
- * Appends a call; GIVE is none: it follows from the others. `last_page` is kept from call to call,
- * 0 at first.
+ * Appends a call. GIVE is not recorded, because it follows from the other calls. `last_page` is
+ * kept between calls and starts at 0.
  */
 void slc_put_demand_record(struct slc_bytes *out, const struct slc_page_call *call, uint64_t hash,
                            uint32_t *last_page);
 void slc_get_demand_record(struct slc_cursor *in, struct slc_demand_record *record,
                            uint32_t *last_page);
 
-/** Goes on with `hash` over what came out of a call. */
+/** Extends `hash` by the outputs of a call. */
 uint64_t slc_hash_page_call(uint64_t hash, const struct slc_page_call *call);
 
 #endif /* SLC_REPLAY_DEMAND_RECORD_H */

@@ -27,7 +27,7 @@ static void stop(void *residency)
     slc_residency_set_observer(residency, (struct slc_page_observer){NULL, NULL});
 }
 
-/* A residency is made without limits and memory: its recording begins with what was set since. */
+/* Records limits and memory of the classes, which were set after the residency's creation. */
 static void write_classes(SluiceRecorder *recorder, const struct slc_demand_residency *residency,
                           uint32_t class_count)
 {

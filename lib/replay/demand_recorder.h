@@ -7,14 +7,14 @@
 #include <sluice/replay.h>
 
 /**
- * Records a residency that was not used before (slc_residency_is_used). sluiceEndRecording ends it.
- * Errors: OUT_OF_HOST_MEMORY; errors of the writer.
+ * Begins to record an unused residency (slc_residency_is_used). sluiceEndRecording ends the
+ * recording. Errors: OUT_OF_HOST_MEMORY; errors of the writer.
  */
 SluiceResult slc_begin_demand_recording(struct slc_demand_residency *residency,
                                         const SluiceRecordWriter *writer,
                                         const SluiceAllocationCallbacks *cb,
                                         SluiceRecorder **recorder);
-/** Into a file. Errors: as slc_begin_demand_recording; NOT_READY, BUSY, IO. */
+/** Begins to record to a file. Errors: slc_begin_demand_recording's; NOT_READY, BUSY, IO. */
 SluiceResult slc_begin_demand_file_recording(struct slc_demand_residency *residency,
                                              const SluiceFileRecordingInfo *info,
                                              SluiceRecorder **recorder);

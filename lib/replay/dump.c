@@ -6,7 +6,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-/* Where runs of texels go on in a new line. */
+/* Column after which runs of texels continue on a new line. */
 #define WRAP 96
 
 static const char *const call_names[] = {
@@ -79,7 +79,7 @@ static void add_id(struct slc_dump *dump, const char *name, SluiceTextureId id)
         add(dump, " %s=%" PRIu32 ".%" PRIu32, name, (uint32_t)id, (uint32_t)(id >> 32));
 }
 
-/* Texels as "value" or "valuexcount", wrapped; a run may go on from piece to piece. */
+/* Printer of texels as "value" or "valuexcount", wrapped. A run may span several pieces. */
 struct texel_runs {
     struct slc_dump *dump;
     const char *name;

@@ -7,7 +7,7 @@
 #define MAP_SIZE 8u
 #define TILE_BYTES 65536u
 
-/* Whatever the trace says twice must agree, so that damage is found where it is. */
+/* Checks that repeated values of the trace agree, to find damage early. */
 static const char *check_texture(const struct slc_trace_texture *texture, uint32_t mip_count,
                                  uint32_t packed_mips, uint32_t tile_bytes, uint32_t regular_tiles)
 {
@@ -76,7 +76,7 @@ SluiceResult slc_feedback_trace_open(struct slc_feedback_trace *trace,
     slc_get_bytes(&trace->in, 8);
     trace->texture_count = slc_get_u32(&trace->in);
     trace->frame_count = slc_get_u32(&trace->in);
-    slc_get_bytes(&trace->in, 48); /* how it was generated, and reserved */
+    slc_get_bytes(&trace->in, 48); /* information about the generator, and reserved */
     if (trace->in.why)
         return SLUICE_SUCCESS;
     size_t left = trace->in.end - trace->in.pos;

@@ -1,4 +1,4 @@
-/** Reads "SLTRACE1" traces: textures, and feedback maps frame by frame. docs/replay.md has the
+/** Reader of "SLTRACE1" traces: textures, and feedback maps frame by frame. docs/replay.md has the
  * format. */
 #ifndef SLC_REPLAY_FEEDBACK_TRACE_H
 #define SLC_REPLAY_FEEDBACK_TRACE_H
@@ -9,9 +9,9 @@
 
 struct slc_trace_texture {
     SluiceStreamedTextureDesc desc;
-    uint32_t primary; ///< its own index, or that of the texture whose feedback drives it
+    uint32_t primary; ///< index of the texture with its feedback; may be its own
     uint32_t feedback_width, feedback_height;
-    size_t offset; ///< of its record
+    size_t offset; ///< offset of its record
 };
 
 struct slc_feedback_trace {
@@ -21,18 +21,18 @@ struct slc_feedback_trace {
 };
 
 /**
- * Reads header and textures; `in` stands at the start. Returns OUT_OF_HOST_MEMORY, or SUCCESS, also
- * if trace->in has failed.
+ * Reads header and textures; `in` is at the start of the trace. Errors: OUT_OF_HOST_MEMORY. A
+ * damaged trace returns SUCCESS, with the error in trace->in.
  */
 SluiceResult slc_feedback_trace_open(struct slc_feedback_trace *trace,
                                      const SluiceAllocationCallbacks *cb, struct slc_cursor in);
 void slc_feedback_trace_close(struct slc_feedback_trace *trace,
                               const SluiceAllocationCallbacks *cb);
 
-/** The next frame's time and number of maps, each of which must be read before the next frame. */
+/** Reads the next frame's time and number of maps. Read all its maps before the next frame. */
 void slc_next_frame(struct slc_feedback_trace *trace, uint64_t *micros, uint32_t *map_count);
 
-/** Texture and encoded contents, for slc_get_run_pairs, of the next map. */
+/** Reads the next map: its texture, and its encoded contents for slc_get_run_pairs. */
 struct slc_cursor slc_next_map(struct slc_feedback_trace *trace, uint32_t *texture);
 
 #endif /* SLC_REPLAY_FEEDBACK_TRACE_H */

@@ -1,6 +1,6 @@
 /*
- * Plays "SLTRACE1" traces, which have feedback but no answers, in a frame loop of its own:
- * docs/replay.md describes it, because the decisions depend on it.
+ * Frame loop that plays "SLTRACE1" traces, which have feedback but no answers. docs/replay.md
+ * describes the loop, because decisions depend on it.
  */
 #include "base/alloc.h"
 #include "base/checked.h"
@@ -12,10 +12,10 @@
 
 #define DEFAULT_TILES_PER_FRAME 256
 #define DEFAULT_TIMEOUT 1000000
-/* Entries asked for at a time where all are taken. */
+/* Entries per call when a whole list is read. */
 #define LIST_ROOM 256
 
-/* A tile that was handed out and not answered yet. */
+/* A pending load: a tile without answer. */
 struct load {
     SluiceTextureId texture_id;
     uint32_t tile_index;
@@ -25,17 +25,17 @@ struct load {
 struct frame_loop {
     struct slc_replay *replay;
     struct slc_feedback_trace trace;
-    SluiceTextureId *ids; ///< owned; by the trace's index
-    struct load *loads;   ///< owned; first handed out first
+    SluiceTextureId *ids; ///< owned; indexed like the trace's textures
+    struct load *loads;   ///< owned; oldest first
     size_t load_count, load_capacity;
     uint32_t *batch; ///< owned; [tiles_per_frame or LIST_ROOM] indices of one answer
     size_t batch_capacity;
     uint32_t tiles_per_frame;
-    uint64_t frame; ///< from 1 on; also the retire value
+    uint64_t frame; ///< counts from 1; also the retire value
     uint64_t time;
 };
 
-/* The loop's own calls cannot be refused, unless something here is wrong; the hash shows it. */
+/* Makes a call of the loop. A refusal would be a bug of the loop, visible in the hash. */
 static SluiceResult make_call(struct frame_loop *loop, struct slc_call *call)
 {
     return slc_player_call(&loop->replay->player, call);
@@ -134,7 +134,7 @@ static SluiceResult take_feedback(struct frame_loop *loop)
     return result;
 }
 
-/* Stopped before they arrive. In flight are few frames' worth, so a search per tile is cheap. */
+/* Drops a canceled load. Linear search is cheap, because few frames of loads are pending. */
 static void drop_load(struct frame_loop *loop, SluiceTextureId texture_id, uint32_t tile_index)
 {
     for (size_t i = 0; i < loop->load_count; i++) {
@@ -164,7 +164,7 @@ static SluiceResult report_canceled(struct frame_loop *loop, const SluiceTile *t
     return SLUICE_SUCCESS;
 }
 
-/* Takes a list to its end. */
+/* Reads a list to its end. */
 static SluiceResult take_list(struct frame_loop *loop, enum slc_call_kind kind)
 {
     for (;;) {
@@ -182,7 +182,7 @@ static SluiceResult take_list(struct frame_loop *loop, enum slc_call_kind kind)
 
 static SluiceResult start_loads(struct frame_loop *loop)
 {
-    /* No more in flight than can be answered in time: better ones may be wanted by then. */
+    /* Limits pending loads to the answers within the latency; later requests may be better. */
     uint64_t room = (uint64_t)loop->tiles_per_frame * ((uint64_t)loop->replay->info->latency + 1);
     room = room > loop->load_count ? room - loop->load_count : 0;
     struct slc_call call = {.kind = SLC_CALL_GET_TILES_TO_MAP,
@@ -206,7 +206,7 @@ static SluiceResult start_loads(struct frame_loop *loop)
     return SLUICE_SUCCESS;
 }
 
-/* The loads that are due, oldest first; neighbors of one texture in one call. */
+/* Answers due loads, oldest first. One call answers consecutive loads of a texture. */
 static SluiceResult answer_loads(struct frame_loop *loop)
 {
     uint64_t latency = loop->replay->info->latency;

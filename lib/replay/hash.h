@@ -5,11 +5,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** The hash of nothing. */
+/** Hash of zero bytes. */
 #define SLC_HASH_EMPTY UINT64_C(0xCBF29CE484222325)
 
 uint64_t slc_hash_bytes(uint64_t hash, const void *data, size_t size);
-/** The value's bytes, low one first. */
+/** Extends a hash by the value's bytes, low byte first. */
 uint64_t slc_hash_u8(uint64_t hash, uint8_t value);
 uint64_t slc_hash_u32(uint64_t hash, uint32_t value);
 uint64_t slc_hash_u64(uint64_t hash, uint64_t value);

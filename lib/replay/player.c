@@ -34,7 +34,7 @@ static SluiceResult allocate_heap(void *user, uint64_t size, uint32_t *heap_id)
     return answer.result;
 }
 
-/* Which heaps there are is the manager's affair. */
+/* Does nothing: the manager tracks heaps. */
 static void release_heap(void *user, uint32_t heap_id)
 {
     (void)user;
@@ -81,7 +81,7 @@ void *slc_player_scratch(struct slc_player *player, size_t count, size_t size)
         return NULL;
     if (need <= player->scratch_size)
         return player->scratch;
-    /* Nothing in it is kept; twice as much, so that slow growth stays cheap. */
+    /* Contents are dropped. The size doubles, so that repeated growth stays cheap. */
     size_t twice;
     if (slc_mul_size(player->scratch_size, 2, &twice) && need < twice)
         need = twice;
@@ -99,7 +99,7 @@ static uint64_t most_prefetched(const struct slc_player *player,
     return standby < s->tileCount ? standby : s->tileCount;
 }
 
-/* How many entries a list can have at most: more is not allocated, whatever room there was. */
+/* Returns the most entries of a list, as a limit for allocations. */
 static uint64_t most_entries(const struct slc_player *player, enum slc_call_kind kind)
 {
     SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
@@ -109,9 +109,9 @@ static uint64_t most_entries(const struct slc_player *player, enum slc_call_kind
     case SLC_CALL_GET_TILES_TO_MAP: return s.requestedTileCount + most_prefetched(player, &s);
     case SLC_CALL_GET_TILES_TO_CANCEL: return s.canceledTileCount;
     case SLC_CALL_GET_TILES_TO_UNMAP: return s.standbyTileCount;
-    case SLC_CALL_GET_GIVEN_UP: return s.failedTotal; /* some may have been tried again since */
+    case SLC_CALL_GET_GIVEN_UP: return s.failedTotal; /* upper bound: tiles may be retried */
     case SLC_CALL_GET_MINMIP_UPDATES: return s.textureCount;
-    case SLC_CALL_DEFRAGMENT: /* a tile moves out of each heap once at most */
+    case SLC_CALL_DEFRAGMENT: /* each tile moves out of each heap at most once */
         return ((uint64_t)s.mappedTileCount + s.standbyTileCount) * s.heapCount;
     default: return 0;
     }
@@ -129,7 +129,7 @@ static SluiceResult make_list_call(struct slc_player *player, struct slc_call *c
     SluiceStreamedTextureManager *m = player->manager;
     uint64_t most = most_entries(player, call->kind);
     uint32_t count = call->room;
-    /* The array is never NULL on purpose: then the pointer to the count was. */
+    /* NULL_POINTER was recorded for a NULL count, because the array is never NULL. */
     uint32_t *room = call->result == SLUICE_ERROR_NULL_POINTER ? NULL : &count;
     void *entries = NULL;
     if (!call->query) {

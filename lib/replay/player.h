@@ -1,4 +1,4 @@
-/** A manager of its own, the calls made on it, and the hash over what it decides. */
+/** Player: owns a manager, makes calls on it, and hashes its decisions. */
 #ifndef SLC_REPLAY_PLAYER_H
 #define SLC_REPLAY_PLAYER_H
 
@@ -17,20 +17,20 @@ struct slc_player {
     uint64_t event_count;                  ///< calls made so far
     struct slc_dump dump;
 
-    /** Whether heaps are answered as recorded, or with 0, 1, 2, ... */
+    /** True: heap answers come from the recording. False: heaps get 0, 1, 2, ... */
     bool scripted;
-    struct slc_heap_answer *answers; ///< owned; of the next sluiceGetTilesToMap
+    struct slc_heap_answer *answers; ///< owned; for the next sluiceGetTilesToMap
     size_t answer_count, answer_capacity, answers_used;
-    bool answers_missing;  ///< more heaps were asked for than were answered
-    uint32_t next_heap_id; ///< unless scripted
+    bool answers_missing;  ///< the manager requested more heaps than recorded
+    uint32_t next_heap_id; ///< used if not scripted
 
     void *scratch; ///< owned; see slc_player_scratch
     size_t scratch_size;
 };
 
 /**
- * Makes the manager. `info` has capacity, tile size and flags; `player` must stay where it is until
- * slc_player_finish. After an error there is nothing to finish.
+ * Creates the manager. `info` has capacity, tile size and flags. `player` must not move until
+ * slc_player_finish. Do not finish after an error.
  */
 SluiceResult slc_player_init(struct slc_player *player, const SluiceAllocationCallbacks *cb,
                              const SluiceStreamedTextureManagerCreateInfo *info, bool scripted);
@@ -40,16 +40,17 @@ void slc_player_finish(struct slc_player *player);
 SluiceResult slc_player_add_answer(struct slc_player *player, SluiceResult result,
                                    uint32_t heap_id);
 
-/** Room for `count` elements of `size` bytes, at least 1, until the next call that lists. */
+/** Returns room for `count` (at least 1) elements of `size` bytes, valid until the next list call.
+ */
 void *slc_player_scratch(struct slc_player *player, size_t count, size_t size);
 
 /**
- * Makes one call, prints and hashes it. On entry `call` holds the inputs and, where it is known,
- * the result that the call had: one that failed for want of host memory changed nothing, so it is
- * not made and just hashed, and one refused for a NULL pointer gets that pointer again. On return
- * it holds the outputs, lists in scratch.
+ * Makes one call, prints and hashes it. On entry, `call` holds the inputs and the recorded result,
+ * if known. A call recorded as OUT_OF_HOST_MEMORY changed nothing, so it is only hashed. A call
+ * recorded as NULL_POINTER gets a NULL pointer again. On return, `call` holds the outputs, with
+ * lists in scratch.
  *
- * Errors: OUT_OF_HOST_MEMORY, if that was not the known result.
+ * Errors: OUT_OF_HOST_MEMORY, unless this was the recorded result.
  */
 SluiceResult slc_player_call(struct slc_player *player, struct slc_call *call);
 

@@ -38,8 +38,8 @@ uint32_t slc_call_fields(uint32_t kind)
     return kind < sizeof fields / sizeof *fields ? fields[kind] : 0;
 }
 
-/* Swaps SLUICE_ALL_TEXTURES and SLUICE_NO_TEXTURE in calls that take both, when writing and when
- * reading: recordings hold 0 for all textures, which SLUICE_ALL_TEXTURES was before. */
+/* Swaps SLUICE_ALL_TEXTURES and SLUICE_NO_TEXTURE in calls that take both, for writing and reading.
+ * Recordings store all textures as 0, the former value of SLUICE_ALL_TEXTURES. */
 static SluiceTextureId swap_all(uint32_t kind, SluiceTextureId id)
 {
     switch (kind) {
@@ -60,16 +60,17 @@ static void put_id(struct slc_bytes *out, SluiceTextureId id)
     slc_put_varint(out, id >> 32);
 }
 
-/** In place of SLC_INPUT_PRESENT: a configuration with the fields that came later. */
+/** Replaces SLC_INPUT_PRESENT for a configuration with newer fields. */
 #define CONFIG_WITH_MORE (SLC_INPUT_PRESENT + 1)
 #define CONFIG_WITH_RETRIES (SLC_INPUT_PRESENT + 2)
 #define CONFIG_WITH_SWITCHES (SLC_INPUT_PRESENT + 3)
-/** In place of SLC_INPUT_PRESENT: a texture whose packed tiles take no slots. */
+/** Replaces SLC_INPUT_PRESENT for a texture whose packed tiles take no slots. */
 #define DESC_WITH_TILES_OUTSIDE (SLC_INPUT_PRESENT + 1)
 
 enum { SWITCH_NO_EVICTION = 1, SWITCH_NO_MIP_BIAS = 2, SWITCH_SEPARATE_PACKED = 4 };
 
-/* What the managers did that could not be told: with no retryDelayTicks, 0 means the same. */
+/* Returns the retry setting for recordings without the field. If retryDelayTicks is 0, 0 means the
+ * same as UINT64_MAX. */
 static uint64_t untold_retries(const SluiceStreamedTextureManagerConfig *config)
 {
     return config->retryDelayTicks ? UINT64_MAX : 0;
@@ -137,7 +138,7 @@ static void put_feedback(struct slc_bytes *out, const struct slc_call *call)
     slc_put_varint(out, feedback->height);
     slc_put_signed(out, feedback->mipBias);
     slc_put_varint(out, feedback->streamedMipLevels);
-    /* A refused call may have come with any size, and with no map of that size behind it. */
+    /* A refused call may have any size without a map of this size. */
     bool kept = feedback->pMinMip && call->result >= SLUICE_SUCCESS;
     slc_put_u8(out, kept                ? SLC_INPUT_PRESENT
                     : feedback->pMinMip ? SLC_INPUT_ABSENT
@@ -146,7 +147,8 @@ static void put_feedback(struct slc_bytes *out, const struct slc_call *call)
         slc_put_map(out, feedback->pMinMip, (size_t)feedback->width * feedback->height);
 }
 
-/* A list for a texture that is not there may come with any count; else the manager looked at it. */
+/* Tells whether the manager read the list. The count of a list for an unknown texture is invalid.
+ */
 static bool indices_were_read(SluiceResult result)
 {
     return result != SLUICE_ERROR_UNKNOWN_TEXTURE && result != SLUICE_ERROR_STALE_TEXTURE &&
@@ -326,7 +328,7 @@ static void get_feedback(struct slc_cursor *in, struct slc_record *record)
     if (!slc_get_bytes(in, size))
         return;
     record->encoded = (struct slc_cursor){in->data, start, in->pos, NULL};
-    /* Checked here, so that later only the size can be one that the texture does not have. */
+    /* Check runs here; later, only the size can differ from the texture's. */
     struct slc_cursor runs = record->encoded;
     slc_get_runs(&runs, NULL, (size_t)feedback->width * feedback->height);
     if (runs.why)
@@ -344,7 +346,7 @@ static void get_indices(struct slc_cursor *in, struct slc_record *record)
     for (uint32_t i = 0; !in->why && i < record->call.count; i++) {
         size_t start = in->pos;
         int64_t step = slc_get_signed(in);
-        /* The step first, because the sum might not fit. */
+        /* Check the step first, because the sum might overflow. */
         if (step < -(int64_t)UINT32_MAX || step > UINT32_MAX || index + step < 0 ||
             index + step > UINT32_MAX)
             slc_cursor_fail(in, start, "a tile index does not fit 32 bits");

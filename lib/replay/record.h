@@ -1,4 +1,5 @@
-/** One call as bytes of a "SLUICERT" trace, and back. docs/replay.md lists every field. */
+/** Conversion of a call to and from bytes of a "SLUICERT" trace. docs/replay.md lists the fields.
+ */
 #ifndef SLC_REPLAY_RECORD_H
 #define SLC_REPLAY_RECORD_H
 
@@ -11,14 +12,14 @@
 #define SLC_TRACE_VERSION_SNAPSHOT 2u
 #define SLC_TRACE_FLAG_PACKED 1u
 
-/** What is written of an input that the caller gives by pointer. */
+/** Presence of an input that the caller gives by pointer. */
 enum slc_input {
     SLC_INPUT_NULL = 0,   ///< the pointer was NULL
-    SLC_INPUT_ABSENT = 1, ///< the call was refused before it could matter, and it is not kept
+    SLC_INPUT_ABSENT = 1, ///< not recorded: the call was refused before reading it
     SLC_INPUT_PRESENT = 2
 };
 
-/** What a record of some kind holds, in this order. */
+/** Fields of a record, in this order. */
 enum slc_field {
     SLC_FIELD_TEXTURE = 1,
     SLC_FIELD_PRIMARY = 2,
@@ -28,7 +29,7 @@ enum slc_field {
     SLC_FIELD_KEEP = 32,
     SLC_FIELD_HEAP = 64,
     SLC_FIELD_CONFIG = 128,
-    SLC_FIELD_DESC = 256, ///< and the id it got
+    SLC_FIELD_DESC = 256, ///< description of a texture, and the new id
     SLC_FIELD_FEEDBACK = 512,
     SLC_FIELD_INDICES = 1024,
     SLC_FIELD_LIST = 2048,
@@ -36,14 +37,14 @@ enum slc_field {
     SLC_FIELD_PRIORITY = 8192
 };
 
-/** The fields of a kind of call; 0 if there is no such kind. */
+/** Returns the fields of a kind of call; 0: unknown kind. */
 uint32_t slc_call_fields(uint32_t kind);
 
-/** A call with everything that it takes to make it again. */
+/** Recorded call with all inputs for a replay. */
 struct slc_record {
-    struct slc_call call;    ///< result and count as recorded
-    uint64_t hash;           ///< list calls: over all decisions up to and with this one
-    enum slc_input contents; ///< of the feedback map, or of the tile indices
+    struct slc_call call;    ///< with the recorded result and count
+    uint64_t hash;           ///< list calls: hash of all decisions up to and including this call
+    enum slc_input contents; ///< presence of the feedback map or tile indices
     SluiceStreamedTextureManagerConfig config;
     SluiceStreamedTextureDesc desc;
     SluiceFeedbackDesc feedback;
@@ -52,16 +53,16 @@ struct slc_record {
     struct slc_cursor encoded;
 };
 
-/** Appends a call that was just made; `hash` is over all decisions so far, this call's included. */
+/** Appends the last call. `hash` covers all decisions including this call's. */
 void slc_put_record(struct slc_bytes *bytes, const struct slc_call *call, uint64_t hash);
 
 /**
- * Reads one call. Its pointers point into `record` or, for arrays, are NULL: slc_get_runs and
- * slc_get_tile_indices decode them.
+ * Reads one call. Pointers of the call point into `record`. Array pointers are NULL: use
+ * slc_get_runs and slc_get_tile_indices to decode arrays.
  */
 void slc_get_record(struct slc_cursor *cursor, struct slc_record *record);
 
-/** Decodes call.count indices, which were checked by slc_get_record. */
+/** Decodes call.count indices. slc_get_record has checked them. */
 void slc_get_tile_indices(struct slc_record *record, uint32_t *indices);
 
 #endif /* SLC_REPLAY_RECORD_H */

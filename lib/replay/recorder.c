@@ -31,7 +31,7 @@ static void notify(void *user, const SluiceStreamedTextureManager *manager,
         slc_recorder_end_record(recorder);
 }
 
-/** A manager may have been configured before: its trace begins with that. */
+/** Writes the manager's earlier configuration, which begins the trace. */
 static void write_configuration(SluiceRecorder *recorder,
                                 const SluiceStreamedTextureManager *manager)
 {

@@ -1,4 +1,4 @@
-/* Plays "SLUICERT" recordings; docs/replay.md has the format. */
+/* Player of "SLUICERT" recordings (docs/replay.md). */
 #include "replay/recording_steps.h"
 
 #include "base/checked.h"
@@ -11,7 +11,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Only a size that the texture has is trusted; any other will be refused before the map is read. */
+/* Decodes a map of the texture's size. The manager refuses other sizes before reading the map. */
 static SluiceResult prepare_map(struct slc_replay *replay, struct slc_record *record)
 {
     static const uint8_t never_read = SLUICE_MIP_UNTOUCHED;
@@ -42,7 +42,8 @@ static SluiceResult prepare_indices(struct slc_replay *replay, struct slc_record
     if (record->contents == SLC_INPUT_NULL)
         return SLUICE_SUCCESS;
     if (record->contents == SLC_INPUT_ABSENT) {
-        /* Refused for its texture, so nobody reads the list; unless that texture lives by now. */
+        /* The recorded call was refused for its texture, and the list may be read only if it exists
+         * now. */
         SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
         if (sluiceGetTextureLayout(replay->player.manager, call->texture_id, &layout) ==
             SLUICE_SUCCESS)
@@ -103,7 +104,7 @@ static SluiceResult next_block(struct slc_replay *replay, struct slc_recording_s
     return slc_read_next_block(replay, &steps->checksum, &player, &steps->block_end, &steps->ended);
 }
 
-/* A heap's answer belongs to the call behind it. */
+/* Reads a record. Answers for heaps precede their call. */
 static SluiceResult read_record(struct slc_replay *replay, struct slc_recording_steps *steps)
 {
     struct slc_cursor in = {replay->in.data, replay->in.pos, steps->block_end, NULL};

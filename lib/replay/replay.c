@@ -10,7 +10,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#define DEFAULT_STANDBY_TILES 1024 /* as of streamers */
+#define DEFAULT_STANDBY_TILES 1024 /* the default of streamers */
 #define DEFAULT_LATENCY 2
 
 SluiceResult slc_replay_start(struct slc_replay *replay,
@@ -78,7 +78,7 @@ static SluiceResult finish_demand(struct slc_replay *replay, SluiceResult result
     return result == SLUICE_SUCCESS ? recorded : result;
 }
 
-/* Also after an error: what was decided up to there is of use, and so is a recording of it. */
+/* Finishes the result, also after an error: decisions and recording up to the error are useful. */
 static SluiceResult finish(struct slc_replay *replay, SluiceResult result)
 {
     struct slc_player *player = &replay->player;
@@ -98,7 +98,7 @@ static SluiceResult finish(struct slc_replay *replay, SluiceResult result)
     return result == SLUICE_SUCCESS ? recorded : result;
 }
 
-/* Settings of feedback traces for which zero is a value, too. */
+/* Fills in defaults for settings of feedback traces. */
 static SluiceResult fill_in(SluiceReplayInfo *info)
 {
     if (info->noStandbyTiles && info->numExtraStandbyTiles)

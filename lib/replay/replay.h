@@ -1,4 +1,4 @@
-/** What all kinds of traces are played with. */
+/** Replay state, shared by the players of all kinds of traces. */
 #ifndef SLC_REPLAY_REPLAY_H
 #define SLC_REPLAY_REPLAY_H
 
@@ -14,23 +14,23 @@ struct slc_replay {
     SluiceAllocationCallbacks cb;
     struct slc_cursor in; ///< the trace
     struct slc_player player;
-    bool playing; ///< the player is there
+    bool playing; ///< the player exists
     struct slc_demand_player demand;
-    bool playing_demand;      ///< that one is
+    bool playing_demand;      ///< the demand player exists
     uint32_t last_page;       ///< see slc_get_demand_record
-    SluiceRecorder *recorder; ///< owned; NULL unless the run is to be recorded
+    SluiceRecorder *recorder; ///< owned; NULL: do not record the run
 };
 
-/** Makes the player. */
+/** Creates the player. */
 SluiceResult slc_replay_start(struct slc_replay *replay,
                               const SluiceStreamedTextureManagerCreateInfo *info, bool scripted);
-/** Records the player from now on, if that was asked for. */
+/** Begins to record the player, if requested. */
 SluiceResult slc_replay_record(struct slc_replay *replay);
 
 /** Logs and returns CORRUPT_DATA, with the offset in the result. */
 SluiceResult slc_replay_corrupt(struct slc_replay *replay, uint64_t offset, const char *why);
 
-/** CORRUPT_DATA if the cursor has failed. */
+/** Returns CORRUPT_DATA if the cursor has failed. */
 SluiceResult slc_replay_check(struct slc_replay *replay, const struct slc_cursor *cursor);
 
 /** Plays a "SLUICERT" recording, from its header on. */

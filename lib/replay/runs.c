@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* A shorter run between literals would cost as much as it saves. */
+/* Shortest run. A shorter run between literals saves nothing. */
 #define MIN_RUN 3
 
 static size_t run_length(const uint8_t *map, size_t size)
@@ -15,7 +15,7 @@ static size_t run_length(const uint8_t *map, size_t size)
 
 void slc_put_runs(struct slc_bytes *bytes, const uint8_t *map, size_t size)
 {
-    size_t literal = 0; /* start of what is not written yet */
+    size_t literal = 0; /* start of unwritten bytes */
     for (size_t i = 0; i < size;) {
         size_t run = run_length(map + i, size - i);
         bool last = i + run == size;
@@ -36,7 +36,7 @@ void slc_put_runs(struct slc_bytes *bytes, const uint8_t *map, size_t size)
     }
 }
 
-/* The size of what follows is known only afterwards, so it is encoded apart first. */
+/* Encodes the runs in a separate buffer first, because their size precedes them. */
 void slc_put_map(struct slc_bytes *out, const uint8_t *map, size_t size)
 {
     struct slc_bytes runs;

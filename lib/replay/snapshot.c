@@ -1,6 +1,6 @@
 /*
- * A snapshot is blocks of numbers, which are varints, and of maps, which are coded as those of
- * feedback. No number or map is split between blocks.
+ * Snapshots. A snapshot is a sequence of blocks with numbers (varints) and maps (coded like
+ * feedback maps). Blocks do not split numbers or maps.
  */
 #include "replay/snapshot.h"
 
@@ -48,8 +48,8 @@ struct reader {
     struct slc_replay *replay;
     uint64_t *checksum;
     struct slc_cursor block;
-    size_t start; ///< of what was read last
-    bool ended;   ///< the mark behind the snapshot was read
+    size_t start; ///< start of the last read item
+    bool ended;   ///< the snapshot's end mark was read
     bool reported;
     struct slc_snapshot_io io;
 };
@@ -66,7 +66,7 @@ static void next_block(struct reader *reader)
         reader->block = (struct slc_cursor){in->data, in->pos, end, NULL};
 }
 
-/** Goes to the next block if this one is read. Returns false after an error. */
+/** Begins the next block if the current block is exhausted. False: error. */
 static bool begin_field(struct reader *reader)
 {
     if (reader->io.result == SLUICE_SUCCESS && reader->block.pos == reader->block.end &&
@@ -120,7 +120,7 @@ static void part_was_read(void *user)
     (void)user;
 }
 
-/** Nothing is left of the block, and the mark follows. */
+/** Checks that the block is exhausted, and reads the end mark. */
 static void read_end(struct reader *reader)
 {
     if (reader->io.result == SLUICE_SUCCESS && reader->block.pos == reader->block.end)

@@ -1,4 +1,4 @@
-/** The state of an object in a recording that began while the object was in use. */
+/** Snapshot: state of an object at the start of a recording that began during use. */
 #ifndef SLC_REPLAY_SNAPSHOT_H
 #define SLC_REPLAY_SNAPSHOT_H
 
@@ -6,13 +6,14 @@
 #include "replay/recorder.h"
 #include "replay/replay.h"
 
-/** Appends blocks with what `write` writes of `source`, and their end. An error is the recorder's.
+/** Appends blocks with the state of `source` from `write`, and the end mark. Errors: in the
+ * recorder.
  */
 void slc_write_snapshot(SluiceRecorder *recorder,
                         void (*write)(const void *source, struct slc_snapshot_io *io),
                         const void *source);
 
-/** Has `read` read into `target`. Errors: CORRUPT_DATA, logged; OUT_OF_HOST_MEMORY. */
+/** Reads a snapshot into `target` with `read`. Errors: CORRUPT_DATA, logged; OUT_OF_HOST_MEMORY. */
 SluiceResult slc_read_snapshot(struct slc_replay *replay, uint64_t *checksum,
                                void (*read)(void *target, struct slc_snapshot_io *io),
                                void *target);

@@ -1,4 +1,4 @@
-/* A recording that a program plays call by call, with checkpoints to come back to. */
+/* Player of a recording for programs: call by call, with checkpoints. */
 #include "base/alloc.h"
 #include "base/log.h"
 #include "base/struct_size.h"
@@ -13,21 +13,21 @@
 
 #include <string.h>
 
-/** A checkpoint is this, a header of a recording and a snapshot. */
+/** Magic number of checkpoints. A header of a recording and a snapshot follow. */
 #define CHECKPOINT_MAGIC "SLUICECP"
 #define CHECKPOINT_NUMBERS 8
 #define CHECKPOINT_HEAD_SIZE (8u + 8u * CHECKPOINT_NUMBERS)
 
-/** A manager and its position; another one takes its place at a checkpoint. */
+/** Session: a manager and its position. Restoring a checkpoint replaces the session. */
 struct session {
     struct slc_replay replay;
     struct slc_recording_steps steps;
     SluiceReplayResult out;
-    SluiceResult failed; ///< of the call that cannot be read or played
+    SluiceResult failed; ///< error of the call that cannot be read or played
 };
 
 struct SluiceTracePlayer {
-    SluiceReplayInfo info; ///< of all sessions
+    SluiceReplayInfo info; ///< info for all sessions
     SluiceAllocationCallbacks cb;
     uint32_t tile_event_capacity;
     uint32_t format_version, library_version;
@@ -43,7 +43,7 @@ static void destroy_session(SluiceTracePlayer *player, struct session *session)
     slc_free(&player->cb, session, 1, sizeof *session);
 }
 
-/* Plays nothing. `data` has a header, and a snapshot if its version says so. */
+/* Begins a session without playing. `data`: a header, and a snapshot in versions with snapshot. */
 static SluiceResult begin_session(SluiceTracePlayer *player, const void *data, size_t size,
                                   struct session **out)
 {
@@ -309,7 +309,7 @@ static void write_checkpoint(SluiceRecorder *recorder, const struct session *ses
     slc_write_snapshot(recorder, write_state, manager);
 }
 
-/* A call that was read and not played is read again: `in` goes back to its first answer. */
+/* Returns the position to read a pending call again: the offset of its first answer. */
 static size_t unread(struct session *session)
 {
     return session->steps.has_next || session->replay.player.answer_count > 0

@@ -38,7 +38,7 @@ void slc_note_divergence(struct slc_replay *replay, uint64_t event, size_t offse
                          const char *recorded, const char *got)
 {
     if (replay->out->divergedEvent)
-        return; /* what follows from the first may differ all over */
+        return; /* report only the first; later differences follow from it */
     replay->out->divergedEvent = event;
     replay->out->divergedOffset = offset;
     slc_log(&replay->info->log, SLUICE_LOG_WARNING,

@@ -1,4 +1,4 @@
-/** The outside of a recording: its header, the checksums of its blocks, its end mark. */
+/** Reader for the frame of a recording: header, blocks with checksums, end mark. */
 #ifndef SLC_REPLAY_TRACE_READER_H
 #define SLC_REPLAY_TRACE_READER_H
 
@@ -6,8 +6,8 @@
 #include "replay/replay.h"
 
 /**
- * Reads and checks the header; `words` are those of slc_recorder_write_header. Errors:
- * CORRUPT_DATA; UNSUPPORTED if the recording has a version that is not 1 to `newest`.
+ * Reads and checks the header. `words`: the words given to slc_recorder_write_header. Errors:
+ * CORRUPT_DATA; UNSUPPORTED for versions other than 1 to `newest`.
  */
 SluiceResult slc_read_trace_header(struct slc_replay *replay, uint32_t newest, uint32_t *version,
                                    uint64_t *checksum, uint32_t words[SLC_TRACE_WORDS]);
@@ -18,24 +18,23 @@ SluiceResult slc_read_trace_header(struct slc_replay *replay, uint32_t newest, u
  */
 SluiceResult slc_read_block(struct slc_replay *replay, uint64_t *checksum, size_t *end);
 
-/** Who plays the records. */
+/** Player of the records. */
 struct slc_trace_player {
-    /** Plays the records from replay->in up to `end`, whose checksum is right. Unused by
-     *  slc_read_next_block. */
+    /** Plays the checked records from replay->in up to `end`. Unused by slc_read_next_block. */
     SluiceResult (*play_block)(struct slc_replay *replay, size_t end);
-    const uint64_t *hash, *event_count; ///< over what was played so far
+    const uint64_t *hash, *event_count; ///< hash and number of the played calls
 };
 /**
- * Reads the head of the next block as slc_read_block does, or the end mark: `*ended`. Nothing may
- * follow the end mark. Errors: CORRUPT_DATA.
+ * Reads the head of the next block like slc_read_block, or the end mark: `*ended`. The end mark
+ * must be the end of the trace. Errors: CORRUPT_DATA.
  */
 SluiceResult slc_read_next_block(struct slc_replay *replay, uint64_t *checksum,
                                  const struct slc_trace_player *player, size_t *end, bool *ended);
-/** Plays block after block, up to and with the end mark. */
+/** Plays all blocks and reads the end mark. */
 SluiceResult slc_play_blocks(struct slc_replay *replay, uint64_t checksum,
                              const struct slc_trace_player *player);
 
-/** Says which call was the first to differ from the recording. */
+/** Records and logs the first call that differs from the recording. */
 void slc_note_divergence(struct slc_replay *replay, uint64_t event, size_t offset,
                          const char *recorded, const char *got);
 

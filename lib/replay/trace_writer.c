@@ -72,7 +72,7 @@ void slc_recorder_end_snapshot(SluiceRecorder *recorder)
 {
     if (recorder->block.failed || recorder->block.size > 0)
         write_block(recorder);
-    write_block(recorder); /* an empty one */
+    write_block(recorder); /* an empty block */
 }
 
 static void release(SluiceRecorder *recorder)
@@ -143,7 +143,7 @@ SluiceResult slc_recorder_begin(SluiceRecorder *recorder, SluiceRecorder **out)
     return SLUICE_SUCCESS;
 }
 
-/* The file, and why its recording is lost; a failed write has said so itself. */
+/* Logs why the recording's file is lost. A failed write has logged its error already. */
 static void log_loss(const SluiceRecorder *recorder)
 {
     if (recorder->file.is_open && recorder->result != SLUICE_ERROR_IO)
