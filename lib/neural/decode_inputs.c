@@ -13,7 +13,7 @@ static uint32_t high(uint32_t pair)
     return pair >> 16;
 }
 
-/* A grid texel becomes one of the slice. Texels outside of the slice become its nearest ones. */
+/* Converts a grid texel to a texel of the slice, clamped to the slice. */
 static uint32_t clamp_corner(int32_t corner, uint32_t grid, uint32_t origin, uint32_t size)
 {
     int32_t last = (int32_t)grid - 1;
@@ -56,7 +56,7 @@ void slc_neural_find_corners(const struct slc_neural_mip_view *view, uint32_t g,
     }
 }
 
-/* Three waves of four values, -1 to 1. */
+/* Computes three position waves of four values each, -1 to 1. */
 static void position_waves(const struct slc_neural_mip_view *view, uint32_t x, uint32_t y,
                            float waves[12])
 {
@@ -69,7 +69,7 @@ static void position_waves(const struct slc_neural_mip_view *view, uint32_t x, u
     }
 }
 
-/* Position and level, from input `at` on. */
+/* Writes the inputs for position and level, from input `at` on. */
 static void int8_tail(const struct slc_neural_mip_view *view, uint32_t x, uint32_t y,
                       int8_t *inputs)
 {
@@ -86,14 +86,14 @@ static void fp8_tail(const struct slc_neural_mip_view *view, uint32_t x, uint32_
     inputs[12] = inputs[13] = view->constants->mips[view->mip].positionLod;
 }
 
-/* A code of schema 1 in units of 1 / 127.5. */
+/* Returns a code of schema 1 in units of 1 / 127.5. */
 static int32_t code_value(uint32_t code, uint32_t bits)
 {
     int32_t c = (int32_t)code;
     return bits == 1 ? 85 * c : bits == 2 ? 51 * c - 51 : bits == 4 ? 15 * c - 105 : c - 126;
 }
 
-/* floor(a / 256) */
+/* Returns floor(a / 256). */
 static int32_t shift_down(int32_t a)
 {
     return (a - (a & 255)) / 256;
@@ -126,7 +126,7 @@ static void int8_inputs_1(const struct slc_neural_mip_view *view, uint32_t x, ui
     int8_tail(view, x, y, inputs + 4 * features + 16);
 }
 
-/* 65536 times the mean of the codes of a feature. */
+/* Returns 65536 times the mean of a feature's codes. */
 static uint32_t sum_codes(const struct slc_neural_mip_view *view, uint32_t g,
                           const struct slc_neural_corners *c, uint32_t feature)
 {

@@ -19,7 +19,7 @@ static SluiceResult refuse_span(const SluiceNeuralDecodeInfo *info, const char *
                            count, first, info->mip, limit);
 }
 
-/* Constants come from sluiceReadNeuralLatents, but perhaps by way of a file. */
+/* Checks the constants. sluiceReadNeuralLatents made them, but a file may have changed them. */
 static SluiceResult check_constants(const SluiceNeuralDecodeInfo *info,
                                     const SluiceNeuralConstants *k)
 {
@@ -59,7 +59,7 @@ static bool has_axis(uint32_t first, uint32_t last, uint32_t mip_size, uint32_t 
     return from >= (int32_t)origin && to < (int32_t)(origin + size);
 }
 
-/* Whether a slice is sound, and has what the rectangle takes. */
+/* Checks that a slice is valid and covers the rectangle. */
 static SluiceResult check_slice(const SluiceNeuralDecodeInfo *info,
                                 const struct slc_neural_mip_view *view, uint32_t g)
 {

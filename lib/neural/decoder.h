@@ -1,4 +1,4 @@
-/** Decodes texels on the host: what shaders do, to the bit with INT8 weights. */
+/** Decoder of texels on the host. With INT8 weights, results equal the shaders' bit by bit. */
 #ifndef SLC_NEURAL_DECODER_H
 #define SLC_NEURAL_DECODER_H
 
@@ -8,18 +8,18 @@
 
 enum { SLC_NEURAL_MAX_INPUTS = 96, SLC_NEURAL_MAX_NEURONS = 64 };
 
-/** A mip, its two grids, and where they lie. */
+/** View of a mip, its two grids, and the slices' codes. */
 struct slc_neural_mip_view {
     const SluiceNeuralConstants *constants;
     uint32_t mip, width, height;
     SluiceNeuralSlice slices[2];
-    const uint8_t *codes[2]; ///< of the slices
+    const uint8_t *codes[2]; ///< codes of both slices
 };
 
-/** Two grids, four texels around a place, and their weights. */
+/** Four grid texels around a place in a grid, and their weights. */
 struct slc_neural_corners {
     uint32_t texels[4];  ///< numbers in the slice: (x0, y0), (x1, y0), (x0, y1), (x1, y1)
-    uint32_t weights[4]; ///< of 65536
+    uint32_t weights[4]; ///< in units of 1 / 65536
 };
 
 /** Finds the two columns (axis 0) or rows (axis 1) of the slice `g` around the texel's, and 256
@@ -31,7 +31,7 @@ void slc_neural_find_axis(const struct slc_neural_mip_view *view, uint32_t g, ui
 void slc_neural_find_corners(const struct slc_neural_mip_view *view, uint32_t g, uint32_t x,
                              uint32_t y, struct slc_neural_corners *corners);
 
-/** A code of a slice. */
+/** Returns a code of a slice. */
 static inline uint32_t slc_neural_code(const uint8_t *codes, uint32_t features, uint32_t bits,
                                        uint32_t texel, uint32_t feature)
 {
@@ -39,7 +39,7 @@ static inline uint32_t slc_neural_code(const uint8_t *codes, uint32_t features, 
     return (uint32_t)codes[bit / 8] >> bit % 8 & ((1u << bits) - 1);
 }
 
-/** Waves 0, 2 .. 10 of a column, or 1, 3 .. 11 of a row: -1 to 1. */
+/** Computes waves 0, 2 .. 10 of a column, or 1, 3 .. 11 of a row: -1 to 1. */
 static inline void slc_neural_axis_waves(const struct slc_neural_mip_view *view, uint32_t texel,
                                          float waves[6])
 {
@@ -56,7 +56,7 @@ static inline void slc_neural_axis_waves(const struct slc_neural_mip_view *view,
     }
 }
 
-/** Inputs of the network for a texel; `inputs` has constants->inputCount. */
+/** Computes the network's inputs for a texel. `inputs` has constants->inputCount elements. */
 void slc_neural_int8_inputs(const struct slc_neural_mip_view *view, uint32_t x, uint32_t y,
                             int8_t *inputs);
 void slc_neural_fp8_inputs(const struct slc_neural_mip_view *view, uint32_t x, uint32_t y,
@@ -76,26 +76,26 @@ struct slc_neural_job {
     const struct slc_neural_shape *shape;
     SluiceNeuralWeightKind kind;
     const uint8_t *weights;
-    const struct slc_neural_fast *fast; ///< made of the weights; NULL: strips make it again
+    const struct slc_neural_fast *fast; ///< made from the weights; NULL: each strip makes its own
     uint32_t x, y, width, height;
     uint32_t first_channel, channel_count;
     float *texels;
     uint64_t pitch; ///< floats from row to row
 };
 
-/** Ways to decode, which give the same bits: texel by texel, four and eight at a time. */
+/** Decode function for 1, 4 or 8 texels at a time. All return the same bits. */
 typedef void slc_neural_way(const struct slc_neural_job *job);
 slc_neural_way slc_neural_decode_plainly, slc_neural_decode_strips, slc_neural_decode_strips_avx2;
 
-/** The fastest way of this processor. */
+/** Returns the fastest decode function for this processor. */
 slc_neural_way *slc_neural_fastest_way(void);
 
-/** sluiceDecodeNeuralTexels in one of the ways. */
+/** Implements sluiceDecodeNeuralTexels with a given decode function. */
 SluiceResult slc_neural_decode(const SluiceNeuralDecodeInfo *info, slc_neural_way *way);
 
-/** Eight bits with 4 of exponent and 3 of mantissa, without infinities. */
+/** Converts from E4M3: 4 bits of exponent, 3 of mantissa, no infinities. */
 float slc_float_from_e4m3(uint8_t bits);
-/** The nearest, ties to even, at most +-448. */
+/** Converts to the nearest E4M3, ties to even, at most +-448. */
 uint8_t slc_e4m3_from_float(float value);
 
 #endif /* SLC_NEURAL_DECODER_H */

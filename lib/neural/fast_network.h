@@ -1,4 +1,4 @@
-/** A network with its weights in the order in which strips use them: four outputs at a time. */
+/** Network with weights in the order of use by strips: four outputs at a time. */
 #ifndef SLC_NEURAL_FAST_NETWORK_H
 #define SLC_NEURAL_FAST_NETWORK_H
 
@@ -20,7 +20,7 @@ struct slc_neural_fast {
     _Alignas(16) float float_biases[4 * SLC_NEURAL_MAX_NEURONS];
 };
 
-/** About 100 KiB: not for the stack of a small thread. */
+/** Fills `fast` from the weights. The struct has about 100 KiB: too large for small stacks. */
 void slc_neural_fast_init(struct slc_neural_fast *fast, const struct slc_neural_shape *shape,
                           SluiceNeuralWeightKind kind, const uint8_t *blob);
 

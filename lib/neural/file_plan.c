@@ -105,7 +105,7 @@ static SluiceResult plan_textures(const SluiceNeuralWriteInfo *info, SluiceNeura
     return SLUICE_SUCCESS;
 }
 
-/* Texels of a grid of latent image n: fine, or coarse in schema 1. */
+/* Returns the texels of a grid of latent image n: fine, or coarse (schema 1). */
 static uint32_t grid_size(const SluiceNeuralWriteInfo *info, uint32_t size, uint32_t n,
                           bool is_coarse)
 {
@@ -113,7 +113,7 @@ static uint32_t grid_size(const SluiceNeuralWriteInfo *info, uint32_t size, uint
     return slc_max_u32(1, base >> (info->schema == 1 ? 2 * n : n));
 }
 
-/* As many as have more than one texel; in schema 3 an even number. */
+/* Returns the number of latent images with more than one texel; an even number in schema 3. */
 static uint32_t default_image_count(const SluiceNeuralWriteInfo *info)
 {
     uint32_t size = slc_max_u32(info->width, info->height), count = 0;
@@ -191,7 +191,7 @@ SluiceResult slc_neural_plan(const SluiceNeuralWriteInfo *info, struct SluiceNeu
     set->info.height = info->height;
     set->info.mipCount =
         info->mipCount ? info->mipCount : slc_mip_count(slc_max_u32(info->width, info->height));
-    set->info.channelCount = (info->channelCount + 1) & ~1u; /* as all writers do */
+    set->info.channelCount = (info->channelCount + 1) & ~1u; /* even, as in all writers */
     set->info.textureCount = info->textureCount;
     set->info.network = info->network;
     set->info.inputCount = set->shape.inputs[0];

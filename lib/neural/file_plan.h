@@ -1,13 +1,12 @@
-/** Plans a file by the rules of its writers: sizes of grids, and which mips use them. */
+/** Plan of a file by the rules of other writers: sizes of grids, and grids of mips. */
 #ifndef SLC_NEURAL_FILE_PLAN_H
 #define SLC_NEURAL_FILE_PLAN_H
 
 #include "neural/neural_set.h"
 
 /**
- * Checks everything of `info` but latents and weights, and fills `set` as reading the file would,
- * without file, names, views and weights. Errors, logged: INVALID_ARGUMENT; not logged:
- * NULL_POINTER.
+ * Checks `info` except latents and weights. Fills `set` like a reader of the finished file, except
+ * file, names, views and weights. Errors, logged: INVALID_ARGUMENT; not logged: NULL_POINTER.
  */
 SluiceResult slc_neural_plan(const SluiceNeuralWriteInfo *info, struct SluiceNeuralSet *set);
 

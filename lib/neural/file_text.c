@@ -46,7 +46,7 @@ put(struct slc_neural_text *text, const char *format, ...)
     put_bytes(text, line, (size_t)size);
 }
 
-/* Nine digits are enough for a float. The locale may have another point. */
+/* Appends a float with nine digits, which are exact. Replaces the locale's decimal point. */
 static void put_float(struct slc_neural_text *text, float value)
 {
     char line[32];
@@ -100,7 +100,7 @@ static void put_mlp(struct slc_neural_text *text, const SluiceNeuralSet *set, bo
     put(text, "],\"activation\":\"HGELUClamp\",\"weightLayout\":\"RowMajor\"}");
 }
 
-/* Schema 1 has its INT8 network apart. */
+/* Appends the networks. Schema 1 stores the INT8 network separately. */
 static void put_mlps(struct slc_neural_text *text, const SluiceNeuralSet *set,
                      const struct slc_neural_pieces *pieces)
 {

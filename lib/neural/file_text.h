@@ -1,10 +1,10 @@
-/** The description of a file that is written. */
+/** Description of a new file, as JSON text. */
 #ifndef SLC_NEURAL_FILE_TEXT_H
 #define SLC_NEURAL_FILE_TEXT_H
 
 #include "neural/neural_set.h"
 
-/** Bytes that become a view. */
+/** Bytes of a future view. */
 struct slc_neural_piece {
     const uint8_t *bytes; ///< borrowed
     uint64_t size;
@@ -22,7 +22,7 @@ struct slc_neural_pieces {
     bool has[2]; ///< networks, by SluiceNeuralWeightKind
 };
 
-/** Text that grows. Once memory ran out, `failed` stays set. */
+/** Growing text. Out of memory: `failed` is set. */
 struct slc_neural_text {
     SluiceAllocationCallbacks allocator;
     char *text; ///< owned

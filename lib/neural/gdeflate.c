@@ -6,7 +6,7 @@
 
 enum { LANES = 32, MAX_BITS = 15, LITERALS = 288, DISTANCES = 32, END_OF_BLOCK = 256 };
 
-/* A code by counts: symbols in the order of their codes. */
+/* Canonical Huffman code: counts per length, and symbols in the order of their codes. */
 struct code {
     uint16_t counts[MAX_BITS + 1];
     uint16_t symbols[LITERALS];
@@ -20,7 +20,7 @@ struct inflater {
     uint64_t bits[LANES];
     uint32_t bit_count[LANES];
     uint32_t lane;
-    uint32_t missing; /* words asked for behind the end of the input */
+    uint32_t missing; /* words read beyond the end of the input */
     size_t copy_at[LANES];
     uint32_t copy_size[LANES]; /* 0: no copy waits for its distance in this lane */
     bool is_bad;
@@ -36,7 +36,7 @@ static void refill(struct inflater *s)
         word = slc_get_u32(s->in + s->in_at);
         s->in_at += 4;
     } else if (++s->missing > LANES) {
-        s->is_bad = true; /* or zeros would be empty blocks for ever */
+        s->is_bad = true; /* otherwise zeros would be endless empty blocks */
     }
     s->bits[s->lane] |= (uint64_t)word << s->bit_count[s->lane];
     s->bit_count[s->lane] += 32;
@@ -48,7 +48,7 @@ static void advance(struct inflater *s)
     s->lane = (s->lane + 1) % LANES;
 }
 
-/* At most 31 bits between two refills: a code of 15 and 16 more. */
+/* Takes bits. At most 31 between two refills: a code of 15 bits and 16 extra bits. */
 static uint32_t take(struct inflater *s, uint32_t count)
 {
     uint32_t value = (uint32_t)(s->bits[s->lane] & (((uint64_t)1 << count) - 1));
@@ -57,7 +57,7 @@ static uint32_t take(struct inflater *s, uint32_t count)
     return value;
 }
 
-/* Over-subscribed codes are refused; a symbol that an incomplete one lacks is found by decode. */
+/* Makes a code. False: over-subscribed. In incomplete codes, decode detects missing symbols. */
 static bool make_code(struct code *code, const uint8_t *lengths, uint32_t count)
 {
     uint16_t offsets[MAX_BITS + 2] = {0};
@@ -106,7 +106,7 @@ static void make_fixed_codes(struct inflater *s)
     make_code(&s->distance, lengths, DISTANCES);
 }
 
-/* Writes a length, or the repeats of one. Returns how many. */
+/* Writes a length, or repeats of a length. Returns the number of lengths. */
 static uint32_t read_lengths(struct inflater *s, const struct code *code, uint8_t *lengths,
                              uint32_t at)
 {
@@ -151,7 +151,7 @@ static void read_dynamic_codes(struct inflater *s)
         s->is_bad = true;
 }
 
-/* The length of symbol 257 and up, with its extra bits. */
+/* Returns the copy length for symbols from 257 on, with extra bits. */
 static uint32_t read_length(struct inflater *s, uint32_t symbol)
 {
     uint32_t code = symbol - 257;
@@ -180,7 +180,7 @@ static uint32_t read_distance(struct inflater *s)
     return 1 + ((2 + code % 2) << extra) + take(s, extra);
 }
 
-/* Does the copy that waits in this lane. */
+/* Executes the lane's pending copy. */
 static void finish_copy(struct inflater *s)
 {
     size_t to = s->copy_at[s->lane];
@@ -203,7 +203,7 @@ static bool reserve(struct inflater *s, uint32_t size)
     return !s->is_bad;
 }
 
-/* A copy gets its distance when its lane is visited the next time. */
+/* Inflates symbols. A copy reads its distance at the next visit of its lane. */
 static void inflate_symbols(struct inflater *s)
 {
     uint32_t symbol = 0;

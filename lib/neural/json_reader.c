@@ -22,7 +22,7 @@ static void skip_blanks(struct slc_json *json)
         json->at++;
 }
 
-/* The text ends with a NUL, which is no character of JSON: nothing runs beyond it. */
+/* Takes a character. The text ends with NUL, which is invalid in JSON, so scans stop there. */
 static bool take(struct slc_json *json, char c)
 {
     if (json->trouble)
@@ -55,7 +55,7 @@ bool slc_json_enter_object(struct slc_json *json)
     return enter(json, '{', "an object is expected");
 }
 
-/* True before a value, false behind the last one. */
+/* Goes to the next value. False: no more values. */
 static bool next(struct slc_json *json, char close)
 {
     if (json->trouble)
@@ -82,7 +82,7 @@ bool slc_json_next_member(struct slc_json *json, const char **key)
            (take(json, ':') || slc_json_fail(json, "a colon is expected"));
 }
 
-/* Four hexadecimal digits. */
+/* Reads four hexadecimal digits. */
 static bool read_unit(const char *digits, uint32_t *unit)
 {
     *unit = 0;
@@ -99,7 +99,7 @@ static bool read_unit(const char *digits, uint32_t *unit)
     return true;
 }
 
-/* At most four bytes, never more than the escape has. Returns the end of what is written. */
+/* Writes up to four bytes, never more than the escape's length. Returns their end. */
 static char *write_utf8(char *out, uint32_t code)
 {
     if (code < 0x80) {
@@ -120,7 +120,7 @@ static char *write_utf8(char *out, uint32_t code)
     return out;
 }
 
-/* `*in` is behind "\u". A half of a surrogate pair, and NUL, are refused. */
+/* Decodes an escape; `*in` is behind "\u". False: lone surrogate, or NUL. */
 static bool decode_unicode(const char **in, char **out)
 {
     uint32_t high, low;
@@ -140,7 +140,7 @@ static bool decode_unicode(const char **in, char **out)
     return true;
 }
 
-/* `*in` is behind the backslash. */
+/* Decodes an escape; `*in` is behind the backslash. */
 static bool decode_escape(const char **in, char **out)
 {
     static const char NAMES[] = "\"\\/bfnrt", VALUES[] = "\"\\/\b\f\n\r\t";
@@ -186,7 +186,7 @@ static const char *skip_digits(const char *c)
     return c;
 }
 
-/* The end of a number of JSON at `c`, or NULL. */
+/* Returns the end of the JSON number at `c`, or NULL. */
 static const char *number_end(const char *c)
 {
     c += *c == '-';
@@ -267,7 +267,7 @@ static bool skip_scalar(struct slc_json *json)
     return skip_word(json);
 }
 
-/* Walks nested values with a bit for each open one: 1 is an object. */
+/* Walks nested values with one bit per open value; 1: object. */
 bool slc_json_skip(struct slc_json *json)
 {
     uint64_t objects = 0;

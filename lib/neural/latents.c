@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Fills in defaults and checks that the set has these texels. */
+/* Fills in defaults and checks that the set has the requested texels. */
 static SluiceResult check_request(const SluiceNeuralSet *set, const SluiceNeuralRequest *given,
                                   struct slc_neural_request *request)
 {
@@ -30,14 +30,14 @@ static SluiceResult check_request(const SluiceNeuralSet *set, const SluiceNeural
     return SLUICE_SUCCESS;
 }
 
-/* Rows of one part of a grid. One row is in memory, however many the file claims to have. */
+/* Rows of one part of a grid. Only one row is in memory, for any number of rows in the file. */
 struct rows {
     struct slc_neural_view_reader reader;
     uint8_t *bytes;
     size_t size;
 };
 
-/* `row_bits`: of the widest row. */
+/* Opens rows. `row_bits`: bits of the widest row. */
 static SluiceResult open_rows(struct rows *rows, const SluiceNeuralSet *set,
                               const struct slc_neural_view *view, uint64_t row_bits)
 {
@@ -47,7 +47,7 @@ static SluiceResult open_rows(struct rows *rows, const SluiceNeuralSet *set,
     return result == SLUICE_SUCCESS && !rows->bytes ? SLUICE_ERROR_OUT_OF_HOST_MEMORY : result;
 }
 
-/* `rows->bytes` gets bits from `bit` on; the first one is bit `bit` mod 8 of the first byte. */
+/* Reads bits from `bit` on to `rows->bytes`. The first is bit `bit` mod 8 of the first byte. */
 static SluiceResult read_row(struct rows *rows, uint64_t bit, uint64_t count)
 {
     uint64_t first = bit / 8, end = (bit + count + 7) / 8;
@@ -75,15 +75,15 @@ static void copy_bits(uint8_t *out, uint64_t to, const uint8_t *in, uint32_t fro
     }
 }
 
-/* A rectangle of a grid, as it lies in one run of rows and columns of the file. */
+/* Rectangle of a grid with contiguous rows and columns in the file. */
 struct block {
     const struct slc_neural_grid *grid;
-    uint32_t left, top, width, height; ///< in the grid
-    uint32_t to_x, to_y;               ///< in the slice
+    uint32_t left, top, width, height; ///< rectangle in the grid
+    uint32_t to_x, to_y;               ///< position in the slice
     uint32_t slice_width;
 };
 
-/* Schema 1: codes lie in the file as in the slice. */
+/* Copies a block of schema 1: codes have the same order in file and slice. */
 static SluiceResult copy_block_1(const SluiceNeuralSet *set, const struct block *b, uint8_t *out)
 {
     uint64_t bits = b->grid->features * b->grid->bits, pitch = b->grid->width * bits;
@@ -101,7 +101,7 @@ static SluiceResult copy_block_1(const SluiceNeuralSet *set, const struct block 
     return result;
 }
 
-/* Schema 3: a layer has 4 codes of each texel; in the slice those of a texel lie together. */
+/* Copies a layer of schema 3, with 4 codes per texel. Slices hold all codes of a texel together. */
 static SluiceResult copy_layer(const SluiceNeuralSet *set, const struct block *b, uint32_t layer,
                                uint8_t *out)
 {
@@ -136,7 +136,7 @@ static bool has_compressed_part(const struct slc_neural_grid *grid)
     return false;
 }
 
-/* The first read of a grid that is compressed or read as a whole compares its checksums. */
+/* Verifies checksums at a grid's first read, if compressed or read as a whole. */
 static SluiceResult verify_grid(const SluiceNeuralSet *set, uint32_t index, bool is_whole)
 {
     const struct slc_neural_grid *grid = &set->grids[index];
@@ -150,7 +150,7 @@ static SluiceResult verify_grid(const SluiceNeuralSet *set, uint32_t index, bool
     return result;
 }
 
-/* A slice that wraps has up to four blocks. */
+/* Reads a slice. A slice that wraps consists of up to four blocks. */
 static SluiceResult read_slice(const SluiceNeuralSet *set, uint32_t index,
                                const SluiceNeuralSlice *slice, uint8_t *out)
 {

@@ -7,7 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-#define EXCESS 4.0 /* cost of an excess of 1, beside the penalty */
+#define EXCESS 4.0 /* cost of an excess of 1, added to the penalty */
 
 struct slc_neural_mip_view slc_mask_view(const struct slc_mask_repair *r, uint32_t mip)
 {
@@ -120,7 +120,7 @@ SluiceResult slc_mask_init(struct slc_mask_repair *repair, const SluiceNeuralMas
         .info = info, .constants = *info->pConstants, .way = slc_neural_fastest_way()};
     SluiceResult result = allocate(r, &cb);
     for (uint32_t m = 0; m < r->constants.mipCount && result == SLUICE_SUCCESS; m++)
-        result = decode_mip(r, m); /* which checks constants, latents and weights */
+        result = decode_mip(r, m); /* checks constants, latents and weights, too */
     if (result != SLUICE_SUCCESS)
         return result;
     r->shape = slc_neural_shape_of(
@@ -145,7 +145,7 @@ void slc_mask_finish(struct slc_mask_repair *repair)
     }
 }
 
-/* Counts the runs of one mip: of both grids, columns and rows. */
+/* Counts the runs of one mip: both grids, columns and rows. */
 static size_t runs_per_mip(const struct slc_mask_group *group)
 {
     return 2 * ((size_t)group->grid_size[0][0] + group->grid_size[0][1] + group->grid_size[1][0] +
@@ -212,7 +212,7 @@ SluiceResult slc_mask_select(struct slc_mask_repair *repair, uint32_t first_mip)
     r->group = group;
     r->run_count = group.mip_count * runs_per_mip(&group);
     r->runs = slc_calloc(&cb, r->run_count, sizeof *r->runs);
-    size_t most = r->constants.width; /* of slc_mask_count_group */
+    size_t most = r->constants.width; /* texels for slc_mask_count_group */
     for (uint32_t i = 0; i < 2 * group.mip_count && r->runs; i++) {
         const uint32_t mip = first_mip + i / 2, grid = i % 2;
         find_runs(r, mip, grid, 0);
@@ -235,7 +235,7 @@ SluiceResult slc_mask_count_group(struct slc_mask_repair *repair)
     return result;
 }
 
-/* Byte and bit of a code. */
+/* Finds byte and bit of a code. */
 static uint8_t *find_code(const struct slc_mask_repair *r, const struct slc_mask_code *code,
                           uint32_t *bits, uint32_t *shift)
 {
@@ -265,7 +265,7 @@ void slc_mask_set_code(const struct slc_mask_repair *repair, const struct slc_ma
     *byte = (uint8_t)((*byte & ~mask) | value << shift);
 }
 
-/* Up to four rectangles of each mip. */
+/* Visits the texels of a code: up to four rectangles of each mip. */
 static double visit(const struct slc_mask_repair *r, const struct slc_mask_code *code, double limit,
                     bool keeps)
 {
@@ -296,7 +296,7 @@ static double visit(const struct slc_mask_repair *r, const struct slc_mask_code 
                     *texel = now;
             }
             if (pass && !keeps && more - before > limit)
-                return more - before; /* texels that follow only add to it */
+                return more - before; /* further texels can only increase the sum */
         }
     return more - before;
 }

@@ -1,5 +1,5 @@
-/* Codes of latents are changed one by one, or two at a time, until masks decode to exactly 0 and 1.
- */
+/* Repair of masks: changes one or two codes of latents at a time, until masks decode to exactly 0
+ * and 1. */
 #include "neural/mask_cost.h"
 
 #include "base/alloc.h"
@@ -11,27 +11,27 @@
 #include <string.h>
 
 #define PASSES 40
-#define FIRST_PENALTY 0.01 /* squared errors that an exact texel may cost; doubled in each pass */
+#define FIRST_PENALTY 0.01 /* most squared error for one more exact texel; doubles per pass */
 #define MOST_PENALTY 5.0
 #define PAIRS_FROM 3 /* first pass with changes of two codes */
-#define KICKS_FROM 9 /* from here on, in every third pass, changes make other texels wrong */
-#define MOVES 12     /* changes for one texel in a pass */
-#define SEEDS 6      /* first changes that a second one is looked for */
+#define KICKS_FROM 9 /* from here on, every third pass may make other texels inexact */
+#define MOVES 12     /* most changes for one texel in a pass */
+#define SEEDS 6      /* first changes of pairs to try */
 #define REACH 3      /* largest change of a code */
 
-/* A change of a code, and what it costs. */
+/* Change of a code, and its cost. */
 struct move {
     struct slc_mask_code code;
     uint32_t value;
     double cost;
 };
 
-/* The place that is repaired. */
+/* Texel to repair. */
 struct target {
     uint32_t mip, x, y;
 };
 
-/* The `SEEDS` cheapest, cheapest first. */
+/* The SEEDS cheapest changes, cheapest first. */
 struct best_moves {
     struct move moves[SEEDS];
     uint32_t count, limit;
@@ -52,7 +52,7 @@ static double worst(const struct best_moves *best)
     return best->count == best->limit ? best->moves[best->count - 1].cost : INFINITY;
 }
 
-/* One code in all its changes that bring the target nearer. */
+/* Tries all changes of a code that improve the target. */
 static void try_code(const struct slc_mask_repair *r, const struct target *target,
                      const struct slc_mask_code *code, float excess, struct best_moves *best)
 {
@@ -115,7 +115,7 @@ static bool apply_two(struct slc_mask_repair *r, const struct target *target,
     return false;
 }
 
-/* A change that costs less than nothing, or two that do so together. */
+/* Applies a change or a pair of changes with negative cost, or a kick. False: no change. */
 static bool improve(struct slc_mask_repair *r, const struct target *target, uint32_t pass)
 {
     struct best_moves best = {.limit = SEEDS};
@@ -126,7 +126,7 @@ static bool improve(struct slc_mask_repair *r, const struct target *target, uint
     for (uint32_t i = 0; i < best.count && !is_accepted && pass >= PAIRS_FROM; i++)
         if (apply_two(r, target, &best.moves[i]))
             return true;
-    /* Out of a dead end, of which others may know a way. */
+    /* A kick leaves a local optimum; repairs of other texels may then continue. */
     const bool is_kick = !is_accepted && pass >= KICKS_FROM && pass % 3 == 0;
     const struct move *move = &best.moves[is_kick ? pass / 3 % best.count : 0];
     if (is_accepted || is_kick)
@@ -158,8 +158,8 @@ static uint64_t count_wrong(const struct slc_mask_repair *r, uint32_t first, uin
     return wrong;
 }
 
-/* Cheap changes first: the penalty rises until they suffice. Kicks may end worse than they began,
- * so the best latents are kept. */
+/* Repairs a group, cheap changes first: the penalty rises with every pass. Kicks may increase the
+ * error, so the best latents are kept. */
 static SluiceResult repair_group(struct slc_mask_repair *r)
 {
     const struct slc_mask_group *group = &r->group;
@@ -200,7 +200,7 @@ static uint64_t count_certain(const SluiceNeuralMaskInfo *info)
     return certain;
 }
 
-/* Costs are compared, which NaN would make random. */
+/* Checks for finite values: NaN would make comparisons of costs arbitrary. */
 static SluiceResult check_values(const SluiceNeuralMaskInfo *info)
 {
     const SluiceNeuralConstants *k = info->pConstants;
@@ -220,7 +220,7 @@ static SluiceResult check_values(const SluiceNeuralMaskInfo *info)
     return SLUICE_SUCCESS;
 }
 
-/* Others than whole grids cannot be addressed by place. What is left is checked by decoding. */
+/* Checks that slices are whole grids, which codes are addressed in. Decoding checks the rest. */
 static SluiceResult check(const SluiceNeuralMaskInfo *info)
 {
     const SluiceNeuralConstants *k = info->pConstants;

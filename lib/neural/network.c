@@ -8,12 +8,12 @@
 #include <math.h>
 #include <string.h>
 
-/* Any sum times a scale below it is finite in 32 bits. */
+/* Limit of scales. The product of any sum and a smaller scale is a finite float. */
 #define MAX_SCALE 0x1p63f
 
 enum { LAST = SLUICE_NEURAL_LAYERS - 1, MAX_LAYER_SIZE = 96 * 64 };
 
-/* FP8, or made of it. */
+/* Tells whether a layer has FP8 weights, or HALF weights made from FP8. */
 static bool is_fp8(SluiceNeuralWeightKind kind, uint32_t layer)
 {
     return kind != SLUICE_NEURAL_WEIGHTS_INT8 && layer < LAST;
@@ -44,7 +44,7 @@ struct slc_neural_blob slc_neural_blob_of(const struct slc_neural_shape *shape,
     return blob;
 }
 
-/* Types as the layer has them, or those of version 0.5. */
+/* Returns the type of a layer's weights; version 0.5 stores the type per network. */
 static uint32_t weight_type(const struct slc_neural_mlp *mlp, uint32_t layer)
 {
     uint32_t type = mlp->layers[layer].weight_type;
@@ -71,7 +71,7 @@ static SluiceResult refuse_layer(const SluiceNeuralSet *set, uint32_t layer, con
                           what);
 }
 
-/* Hidden layers of schema 3 may be smaller than those of its network. */
+/* Checks the sizes of layers. Hidden layers of schema 3 may be smaller than the network's. */
 static SluiceResult check_layers(const SluiceNeuralSet *set, const struct slc_neural_mlp *mlp)
 {
     const struct slc_neural_shape *shape = &set->shape;
@@ -91,7 +91,7 @@ static SluiceResult check_layers(const SluiceNeuralSet *set, const struct slc_ne
     return SLUICE_SUCCESS;
 }
 
-/* One layer while it is read. */
+/* Bytes of one layer during the read. */
 struct layer_bytes {
     uint8_t weights[MAX_LAYER_SIZE];
     uint8_t scales[4 * 64];
@@ -111,7 +111,7 @@ static float float_at(const uint8_t *bytes)
     return slc_float_from_bits(slc_get_u32(bytes));
 }
 
-/* Biases of version 0.5 are floats; they become multiples of the scale. */
+/* Converts float biases of version 0.5 to multiples of the scale. */
 static bool convert_biases(struct layer_bytes *bytes, uint32_t outputs, uint32_t inputs)
 {
     for (uint32_t o = 0; o < outputs; o++) {
@@ -170,7 +170,7 @@ static SluiceResult read_layer(const SluiceNeuralSet *set, const struct slc_neur
     return read_numbers(set, d, layer->bias_view, 2 * (uint64_t)layer->outputs, bytes->biases);
 }
 
-/* Weights and biases beyond the file's are 0, scales 1: nothing reads what they make. */
+/* Places a layer in the blob. Padding has weights and biases 0 and scales 1, without effect. */
 static void place_layer(const SluiceNeuralSet *set, const struct slc_neural_blob *blob,
                         const struct slc_neural_layer *layer, uint32_t i, bool is_half,
                         const struct layer_bytes *bytes, uint8_t *out)

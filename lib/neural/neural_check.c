@@ -124,7 +124,7 @@ static SluiceResult check_grid_size(const struct SluiceNeuralSet *set, uint32_t 
                           SLUICE_NEURAL_MAX_SIZE);
 }
 
-/* A bit-packed grid of schema 1. */
+/* Adds a bit-packed grid of schema 1. */
 static SluiceResult add_grid(struct SluiceNeuralSet *set, const struct slc_neural_document *d,
                              const struct slc_neural_grid *shape, uint32_t bits_per_texel,
                              uint32_t view)
@@ -207,7 +207,8 @@ static SluiceResult check_latents(struct SluiceNeuralSet *set, const struct slc_
     return SLUICE_SUCCESS;
 }
 
-/* Files of version 0.5 do not say which latents a mip uses; the writer's rule does. */
+/* Returns a mip's latents by the writer's rule, for files of version 0.5, which do not store them.
+ */
 static struct slc_neural_document_mip missing_mip(const struct slc_neural_document *d,
                                                   uint32_t scale, uint32_t mip)
 {

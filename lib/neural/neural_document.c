@@ -11,10 +11,10 @@ typedef bool (*read_function)(struct slc_json *json, struct slc_neural_document 
 struct field {
     const char *key;
     read_function read;
-    size_t offset; ///< of the field in the struct that the object becomes
+    size_t offset; ///< offset of the field in the struct
 };
 
-/* Reads an object. Keys that no field has are skipped. */
+/* Reads an object. Skips unknown keys. */
 static bool read_fields(struct slc_json *json, struct slc_neural_document *document,
                         const struct field *fields, size_t count, void *to)
 {
@@ -58,7 +58,7 @@ static bool read_string(struct slc_json *json, struct slc_neural_document *docum
     return true;
 }
 
-/* The index of a name in a list that ends with NULL. */
+/* Reads a name and finds its index in a list that ends with NULL. */
 static bool read_name(struct slc_json *json, const char *const *names, const char *trouble,
                       uint32_t *to)
 {

@@ -1,5 +1,5 @@
-/** The description in a .ntc file as its text has it. Nothing is checked but kinds of values and
- *  the lengths of arrays. */
+/** Description in a .ntc file, as parsed. Only kinds of values and lengths of arrays are checked.
+ */
 #ifndef SLC_NEURAL_DOCUMENT_H
 #define SLC_NEURAL_DOCUMENT_H
 
@@ -12,9 +12,9 @@
 #define SLC_NEURAL_MAX_LAYER_VIEWS 4
 #define SLC_NEURAL_MAX_VIEWS 4096 ///< files have about 100
 
-/** Type of numbers in a view. */
+/** Type of the numbers in a view. */
 enum slc_neural_type {
-    SLC_NEURAL_TYPE_NONE, ///< the text does not say
+    SLC_NEURAL_TYPE_NONE, ///< missing in the text
     SLC_NEURAL_INT8,
     SLC_NEURAL_INT32,
     SLC_NEURAL_E4M3,
@@ -23,12 +23,12 @@ enum slc_neural_type {
     SLC_NEURAL_FLOAT
 };
 
-/** Bytes of the file. */
+/** Byte range of the file. */
 struct slc_neural_view {
     uint64_t offset; ///< from the start of the data chunk
     uint64_t stored_size;
-    uint64_t size; ///< uncompressed; 0: not said
-    uint32_t crc;  ///< 0: none
+    uint64_t size; ///< uncompressed bytes; 0: missing
+    uint32_t crc;  ///< 0: no checksum
     uint32_t is_compressed;
 };
 
@@ -37,7 +37,7 @@ struct slc_neural_layer {
     uint32_t inputs, outputs;
     uint32_t weight_view, scale_view, bias_view;
     uint32_t weight_type, scale_type, bias_type; ///< enum slc_neural_type
-    uint32_t scale_bias_type;                    ///< both, in files of version 0.5
+    uint32_t scale_bias_type;                    ///< type of scales and biases in version 0.5
 };
 
 struct slc_neural_mlp {
@@ -62,8 +62,8 @@ struct slc_neural_document_latents {
 };
 
 struct slc_neural_document_mip {
-    uint32_t width, height; ///< 0: not said
-    uint32_t latent_mip;    ///< SLC_NONE: not said
+    uint32_t width, height; ///< 0: missing
+    uint32_t latent_mip;    ///< SLC_NONE: missing
     double position_lod, position_scale;
     uint32_t has_position; ///< bit 0: lod, bit 1: scale
 };
@@ -73,7 +73,7 @@ struct slc_neural_document {
     uint32_t features;                 ///< schema 3
     uint32_t high_features, high_bits; ///< schema 1
     uint32_t low_features, low_bits;   ///< schema 1
-    struct slc_neural_mlp mlp;         ///< layer_count 0: none
+    struct slc_neural_mlp mlp;         ///< layer_count 0: no network
     struct slc_neural_mlp mlps[SLC_NEURAL_MAX_NETWORKS];
     uint32_t mlp_count;
     struct slc_neural_document_texture textures[SLUICE_NEURAL_MAX_CHANNELS];
@@ -91,12 +91,12 @@ struct slc_neural_document {
 };
 
 /**
- * Parses the text. Names point into it. `document` is zeroed but for its allocator; finish it in
- * any case. False if there is an error: `json->trouble` and `is_out_of_memory` say which.
+ * Parses the text. Names point into the text. `document` must be zero except its allocator; finish
+ * `document` in any case. False: error, see `json->trouble` and `is_out_of_memory`.
  */
 bool slc_neural_document_parse(struct slc_neural_document *document, struct slc_json *json);
 
-/** Frees. A zeroed struct is allowed. */
+/** Frees the document's memory. A zeroed struct is allowed. */
 void slc_neural_document_finish(struct slc_neural_document *document);
 
 #endif /* SLC_NEURAL_DOCUMENT_H */

@@ -1,4 +1,4 @@
-/* Pages: rectangles of the mips that share latent images. */
+/* Pages: rectangles of mips with the same latent images. */
 #include "neural/neural_set.h"
 
 #include "base/alloc.h"
@@ -28,7 +28,7 @@ static SluiceResult page_size(const SluiceNeuralSet *set, const SluiceNeuralPage
     return result;
 }
 
-/* The largest power of two that fits; a side that fits as a whole is not cut. */
+/* Finds the page size of a group: the largest power of two that fits, or a whole side. */
 static SluiceResult lay_out_group(const SluiceNeuralSet *set, uint32_t width, uint32_t height,
                                   uint32_t max_size, SluiceNeuralPageGroup *group, uint64_t *size)
 {

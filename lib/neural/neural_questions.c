@@ -57,7 +57,7 @@ SluiceResult sluiceGetNeuralChannel(const SluiceNeuralSet *set, uint32_t channel
     return SLUICE_SUCCESS;
 }
 
-/* Mips that use the grids of latent image `first_grid`, or the pair it begins. */
+/* Returns the number of mips that use grid `first_grid` and its partner. */
 static uint32_t mips_with(const SluiceNeuralSet *set, uint32_t first_grid, uint32_t *first)
 {
     uint32_t count = 0;

@@ -13,7 +13,7 @@
 #define MAGIC 0x5845544Eu /* NTEX */
 #define VERSION 0x100u
 
-/* Chunks end inside the file, but for padding that versions 0.9.0 and 0.9.1 left out. */
+/* Checks that chunks lie in the file. Versions 0.9.0 and 0.9.1 omit the final padding. */
 static SluiceResult check_header(SluiceNeuralSet *set, const unsigned char header[HEADER_SIZE],
                                  uint64_t *text_offset, uint64_t *text_size)
 {
@@ -59,7 +59,7 @@ static SluiceResult read_text(SluiceNeuralSet *set)
     return slc_input_file_read(&set->file, offset, set->text, (size_t)size);
 }
 
-/* The text ends with its first NUL: writers count it, and some have more. */
+/* Parses the text up to the first NUL. Its size counts one or more NULs. */
 static SluiceResult parse_text(SluiceNeuralSet *set, struct slc_neural_document *document)
 {
     struct slc_json json;
@@ -89,7 +89,7 @@ static SluiceResult read_set(SluiceNeuralSet *set, struct slc_neural_document *d
     return result;
 }
 
-/* The document is too large for the stack of a thread. */
+/* Opens a set. Allocates the document, which is too large for a thread's stack. */
 static SluiceResult open_set(SluiceNeuralSet *set)
 {
     struct slc_neural_document *document = slc_calloc(&set->allocator, 1, sizeof *document);

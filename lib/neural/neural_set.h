@@ -1,4 +1,4 @@
-/** A neural texture set: the description, checked, and where everything lies. */
+/** Neural texture set: the checked description, and positions in the file. */
 #ifndef SLC_NEURAL_NEURAL_SET_H
 #define SLC_NEURAL_NEURAL_SET_H
 
@@ -14,8 +14,8 @@
 #define SLC_NEURAL_MAX_PARTS SLC_NEURAL_MAX_LAYER_VIEWS
 
 /**
- * A grid of codes. Schema 1 has two for each latent image n: 2 n is fine, 2 n + 1 coarse. Schema 3
- * has one for each: n. So a mip uses two grids that follow one another in either schema.
+ * Grid of codes. In schema 1, latent image n has two grids: 2 n (fine) and 2 n + 1 (coarse). In
+ * schema 3, latent image n has grid n. In both schemas, a mip uses two consecutive grids.
  */
 struct slc_neural_grid {
     uint32_t width, height;
@@ -26,7 +26,7 @@ struct slc_neural_grid {
 
 struct slc_neural_mip {
     uint32_t width, height;
-    uint32_t first_grid; ///< of two
+    uint32_t first_grid; ///< first of two grids
     float position_lod, position_scale;
 };
 
@@ -50,26 +50,26 @@ struct SluiceNeuralSet {
     uint32_t grid_count;
     uint8_t *weights[2];           ///< owned, by SluiceNeuralWeightKind; NULL: not in the file
     atomic_bool *verified;         ///< owned, SLC_NEURAL_MAX_GRIDS: the checksums were compared
-    struct slc_neural_shape shape; ///< of the network, padded to the sizes of its kind
+    struct slc_neural_shape shape; ///< the network's, padded to the sizes of its kind
 };
 
-/** Neurons of a network of this kind. */
+/** Returns the neurons of a network of this kind. */
 struct slc_neural_shape slc_neural_shape_of(SluiceNeuralNetwork network);
 
 /**
- * Checks a document and fills everything of `set` but the weights. `set` has file and data chunk.
+ * Checks a document and fills `set` except weights. `set` must have file and data chunk.
  * Errors, logged: CORRUPT_DATA; UNSUPPORTED.
  */
 SluiceResult slc_neural_check(struct SluiceNeuralSet *set,
                               const struct slc_neural_document *document);
 
-/** Finds a view and makes its offset that of the file. `size`: bytes it must have, uncompressed.
- *  Errors, logged: CORRUPT_DATA. */
+/** Finds a view and converts its offset to an offset in the file. `size`: required uncompressed
+ *  bytes. Errors, logged: CORRUPT_DATA. */
 SluiceResult slc_neural_find_view(const struct SluiceNeuralSet *set,
                                   const struct slc_neural_document *document, uint32_t index,
                                   uint64_t size, struct slc_neural_view *view);
 
-/** Logs mips that the set does not have. Errors: INVALID_ARGUMENT. */
+/** Checks a range of mips. Errors, logged: INVALID_ARGUMENT. */
 SluiceResult slc_neural_check_mips(const SluiceNeuralSet *set, uint32_t first, uint32_t count);
 
 #endif /* SLC_NEURAL_NEURAL_SET_H */

@@ -1,4 +1,4 @@
-/* Image sources of the textures of a set. */
+/* Image sources for the textures of a set. */
 #include <sluice/neural_source.h>
 
 #include "base/alloc.h"
@@ -30,7 +30,7 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
     return SLUICE_SUCCESS;
 }
 
-/* Memory of a read: latents, then texels of a row as the network gives them and as RGBA. */
+/* Memory of a read: latents, then a row of the network's outputs, and the row as RGBA. */
 struct scratch {
     SluiceNeuralConstants constants;
     unsigned char *memory;
@@ -127,7 +127,7 @@ static void destroy(SluiceImageSource *base)
 static const SluiceImageSourceInterface neural_interface = {sizeof neural_interface, get_info,
                                                             read_region, destroy};
 
-/* sRGB formats encode RGB themselves, floats are linear. */
+/* Chooses the format. Integer formats with sRGB encode RGB; float formats are linear. */
 static void choose_format(struct neural_source *source)
 {
     static const SluiceFormat formats[3][3] = {

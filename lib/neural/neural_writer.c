@@ -29,10 +29,10 @@ static void put_code(uint8_t *bytes, uint64_t bit, uint32_t code)
     bytes[bit / 8] |= (uint8_t)(code << bit % 8);
 }
 
-/* Codes one by one: a byte each, or those of packed latents. */
+/* Reader of single codes, from bytes or from packed latents. */
 struct code_reader {
     const uint8_t *codes;  ///< NULL: `packed`
-    const uint8_t *packed; ///< of this grid
+    const uint8_t *packed; ///< packed latents of the grid
     uint32_t bits;
     bool is_out_of_range;
 };
@@ -104,7 +104,7 @@ static void add_network(struct slc_neural_pieces *pieces, const SluiceNeuralSet 
     pieces->has[kind] = true;
 }
 
-/* Checksums came with schema 3. */
+/* Adds the latents. Schema 1 has no checksums. */
 static void add_latents(struct slc_neural_pieces *pieces, const SluiceNeuralSet *set,
                         const uint8_t *bytes)
 {
@@ -119,7 +119,7 @@ static void add_latents(struct slc_neural_pieces *pieces, const SluiceNeuralSet 
     }
 }
 
-/* Where the file goes. */
+/* Destination of the file. */
 struct sink {
     const SluiceNeuralWriteInfo *info;
     struct slc_part_file part;
@@ -192,7 +192,7 @@ static SluiceResult check_weights(const SluiceNeuralWriteInfo *info, const Sluic
     return SLUICE_SUCCESS;
 }
 
-/* Names of textures may be too long for readers. */
+/* Writes the description. Long texture names may exceed readers' limit for the text. */
 static SluiceResult describe(const SluiceNeuralWriteInfo *info, const SluiceNeuralSet *set,
                              const struct slc_neural_pieces *pieces, struct slc_neural_text *text)
 {

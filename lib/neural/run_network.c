@@ -7,7 +7,7 @@
 
 enum { LAST = SLUICE_NEURAL_LAYERS - 1 };
 
-/* The activation: a cubic GELU, clamped to 3. Constants are part of the format. */
+/* Activation: a cubic GELU, clamped to 3. Constants are part of the format. */
 static float activate(float r)
 {
     float t = r * 0.333333f + 0.5f;
@@ -15,13 +15,14 @@ static float activate(float r)
     return (r < 3.0f ? r : 3.0f) * t;
 }
 
-/* Values of -0.1875 to 3 become -128 to 127. */
+/* Converts values in -0.1875..3 to codes -128..127. */
 static int8_t activation_code(float y)
 {
     return (int8_t)((int32_t)rintf(y * 80.0f) - 113);
 }
 
-/* Sums wrap, as those of shaders do: a hostile bias is no undefined behavior. */
+/* Computes an output. Sums wrap like shaders', so a hostile bias cannot cause undefined behavior.
+ */
 static float int8_output(const uint8_t *weights, const struct slc_neural_blob *at, uint32_t layer,
                          uint32_t output, uint32_t count, const int8_t *inputs)
 {

@@ -5,13 +5,13 @@
 /* One direction, x or y, of a request in one grid. */
 struct axis {
     uint32_t grid;         ///< texels of the grid
-    uint32_t origin, size; ///< of the request, in texels of its first mip
+    uint32_t origin, size; ///< range of the request, in texels of its first mip
     uint32_t first_size;   ///< texels of the first mip
     uint32_t last_size;    ///< texels of the coarsest mip of the request that uses the grid
-    uint32_t last_step;    ///< levels from the first mip to that one
+    uint32_t last_step;    ///< levels from the first mip to the coarsest
 };
 
-/* Grid texels first..last; may be outside of the grid. */
+/* Range of grid texels first..last; may extend beyond the grid. */
 struct range {
     int32_t first, last;
 };
@@ -27,8 +27,8 @@ static struct range unite(struct range a, struct range b)
 }
 
 /*
- * Texels of the coarsest mip, from edge to edge, so that all finer fused mips are served as well.
- * Float and truncated in schema 1, because compressors of version 0.7 cut their slices so.
+ * Returns the grid texels for the coarsest mip's texels from edge to edge, which cover all finer
+ * fused mips. Schema 1 computes in float and truncates, like compressors of version 0.7.
  */
 static struct range edge_range(const struct axis *a, bool is_clamped)
 {
@@ -46,9 +46,8 @@ static struct range edge_range(const struct axis *a, bool is_clamped)
 }
 
 /*
- * Finds the texels that decoding reads in a mip `step` levels coarser than the first one. Where
- * sizes are no powers of two, a texel of the first mip may lie over another one than its number
- * halved.
+ * Finds the grid texels for a mip `step` levels coarser than the first. With sizes other than
+ * powers of two, texel x of the first mip may not lie over texel x >> step.
  */
 static struct range texel_range(const struct axis *a, uint32_t mip_size, uint32_t step)
 {
@@ -84,7 +83,7 @@ static struct span wrap_range(struct range range, uint32_t grid)
                          (uint32_t)count};
 }
 
-/* Elements of an odd number of nibbles come in pairs, so that rows begin at bytes. */
+/* Extends a span to pairs if elements have an odd number of nibbles, so rows begin at bytes. */
 static struct span pair_up(struct span span, uint32_t grid, uint32_t bits)
 {
     if (!(bits & 4))
@@ -94,13 +93,13 @@ static struct span pair_up(struct span span, uint32_t grid, uint32_t bits)
     return (struct span){span.first, end - span.first};
 }
 
-/* The mips of a request that use one pair of grids. */
+/* Unit: the mips of a request that use one pair of grids. */
 struct unit {
     uint32_t first_grid;
     uint32_t first, last; ///< mips
 };
 
-/* The unit that begins at a mip. */
+/* Returns the unit that begins at a mip. */
 static struct unit unit_at(const SluiceNeuralSet *set, const struct slc_neural_request *request,
                            uint32_t mip)
 {
@@ -201,7 +200,7 @@ static uint64_t div_up(uint64_t a, uint64_t b)
     return a / b + (a % b != 0);
 }
 
-/* Where each mip is half of the one before, as compressors of version 0.7 have it. */
+/* Returns a bound if each mip is half of the finer mip, by the rule of version 0.7. */
 static uint64_t bound_even(const struct axis *a, uint32_t alignment)
 {
     uint64_t step = (uint64_t)1 << a->last_step, aligned = div_up(alignment, step);
@@ -211,7 +210,7 @@ static uint64_t bound_even(const struct axis *a, uint32_t alignment)
     return div_up((texels + !is_aligned) * a->grid, a->last_size) + 2;
 }
 
-/* Elsewhere a range is at most three texels of the coarsest mip wider than the rectangle. */
+/* Returns a bound for other sizes: the rectangle and three texels of the coarsest mip. */
 static uint64_t bound_odd(const struct axis *a)
 {
     return div_up((uint64_t)a->size * a->grid, a->first_size) +

@@ -1,4 +1,4 @@
-/** Which rectangle of a grid the texels of a request take. docs/neural.md has the rules. */
+/** Slices: rectangles of grids for the texels of a request. docs/neural.md has the rules. */
 #ifndef SLC_NEURAL_SLICES_H
 #define SLC_NEURAL_SLICES_H
 
@@ -6,18 +6,18 @@
 
 #include <math.h>
 
-/** Most bytes of latents at once: offsets of bits fit in 32 bits. */
+/** Most bytes of latents per request, so that bit offsets fit in 32 bits. */
 #define SLC_NEURAL_MAX_LATENTS ((uint64_t)1 << 29)
 
-/** A rectangle of texels of `first_mip`, and `mip_count` mips from there on. All are the set's. */
+/** Request: a rectangle in `first_mip`, and `mip_count` mips. All lie in the set. */
 struct slc_neural_request {
     uint32_t first_mip, mip_count;
     uint32_t origin[2], size[2]; ///< x and y
 };
 
 /**
- * 256 times the place of texel `x` of a mip of `size` texels in a grid of `grid` texels, measured
- * from the center of grid texel 0: bits 8 and up are the lower corner, the others the fraction.
+ * Returns 256 times the position of texel `x` of a mip of `size` texels in a grid of `grid` texels.
+ * The center of grid texel 0 is 0. Bits 8 and up are the lower corner, the others the fraction.
  * Sizes are at most 2^15.
  */
 static inline int32_t slc_neural_place(uint32_t x, uint32_t grid, uint32_t size)
@@ -26,13 +26,13 @@ static inline int32_t slc_neural_place(uint32_t x, uint32_t grid, uint32_t size)
     return (int32_t)(a / b * 256 + a % b * 256 / b) - 128;
 }
 
-/** floor(place / 256), without a shift of a negative number. */
+/** Returns floor(place / 256), without a shift of a negative number. */
 static inline int32_t slc_neural_corner(int32_t place)
 {
     return (place + 256) / 256 - 1;
 }
 
-/** Input of the network for a position wave or a level. Decision 86 says why the schemas differ. */
+/** Returns the network's input for a position wave or level. Decision 86: why schemas differ. */
 static inline int32_t slc_neural_wave_code(uint32_t schema, float value)
 {
     float code = schema == 1 ? value * 127.5f : floorf(value * 127.5f - 0.5f);
@@ -40,27 +40,27 @@ static inline int32_t slc_neural_wave_code(uint32_t schema, float value)
     return (int32_t)(code < least ? least : code > 127.0f ? 127.0f : code);
 }
 
-/** Bytes of a slice, padded to a multiple of 4. */
+/** Returns the bytes of a slice, padded to a multiple of 4. */
 uint64_t slc_neural_slice_bytes(uint32_t width, uint32_t height, uint32_t bits_per_texel);
 
 /**
- * Fills the slices that the request takes; dataOffset counts from 0. Slices of other latents stay.
- * Returns the bytes of all.
+ * Fills the slices for the request; dataOffset counts from 0. Other slices stay unchanged. Returns
+ * the bytes of all slices.
  */
 uint64_t slc_neural_make_slices(const SluiceNeuralSet *set,
                                 const struct slc_neural_request *request,
                                 SluiceNeuralSlice slices[SLC_NEURAL_MAX_GRIDS]);
 
-/** Fills the slices of all grids as a whole, also those that no mip uses. Returns their bytes. */
+/** Fills slices with all grids as a whole, also unused grids. Returns their bytes. */
 uint64_t slc_neural_whole_slices(const SluiceNeuralSet *set,
                                  SluiceNeuralSlice slices[SLC_NEURAL_MAX_GRIDS]);
 
-/** Fills everything but the slices. */
+/** Fills all constants except the slices. */
 void slc_neural_fill_constants(const SluiceNeuralSet *set, const struct slc_neural_request *request,
                                SluiceNeuralConstants *constants);
 
-/** Bytes that no rectangle of this size takes more of, whose origin is a multiple of `alignment`,
- *  a power of two. `request->origin` is not used. */
+/** Returns an upper bound for the bytes of a request of this size, whose origin is a multiple of
+ *  `alignment`, a power of two. Ignores `request->origin`. */
 uint64_t slc_neural_bound_slices(const SluiceNeuralSet *set,
                                  const struct slc_neural_request *request, uint32_t alignment);
 

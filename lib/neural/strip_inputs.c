@@ -26,7 +26,7 @@ void slc_strip_init(struct slc_neural_strip *strip, const struct slc_neural_mip_
     }
 }
 
-/* Four codes of 4 bits of two texels that lie beside each other, for each lane. */
+/* Loads, per lane, four 4-bit codes of each of two adjacent texels. */
 static slc_words load_codes(const struct slc_neural_strip *strip, uint32_t g, const uint8_t *row,
                             uint32_t size)
 {
@@ -42,7 +42,7 @@ static slc_words load_codes(const struct slc_neural_strip *strip, uint32_t g, co
     return codes;
 }
 
-/* 65536 times the mean of the codes of each feature. Schema 3. */
+/* Computes 65536 times the mean of each feature's codes. Schema 3. */
 static void sum_features(const struct slc_neural_strip *strip, uint32_t g, uint32_t y,
                          slc_words sums[16])
 {
@@ -95,7 +95,7 @@ static void int8_inputs_3(const struct slc_neural_strip *strip, uint32_t y, slc_
     pairs[22] = (slc_words){0} + ((lod & 0xFFFF) | lod << 16);
 }
 
-/* Texel by texel: four of the corners are inputs of their own. */
+/* Computes inputs of schema 1 texel by texel, because the four corners are separate inputs. */
 static void int8_inputs_1(const struct slc_neural_strip *strip, uint32_t y, slc_words *pairs)
 {
     for (uint32_t lane = 0; lane < SLC_STRIP_LANES; lane++) {

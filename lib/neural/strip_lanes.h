@@ -1,4 +1,4 @@
-/** Arithmetic of lanes for strips. */
+/** Vector arithmetic for strips. */
 #ifndef SLC_NEURAL_STRIP_LANES_H
 #define SLC_NEURAL_STRIP_LANES_H
 
@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-/* Products of the low and the high halves, which have signs, added. */
+/* Returns the sum of the products of the signed low and high halves. */
 static inline slc_words multiply_pairs(slc_words a, slc_words b)
 {
 #if defined(__AVX2__) && SLC_STRIP_LANES == 8
@@ -26,7 +26,7 @@ static inline slc_floats select_lanes(slc_ints mask, slc_floats yes, slc_floats 
     return (slc_floats)(((slc_ints)yes & mask) | ((slc_ints)no & ~mask));
 }
 
-/* As slc_half_from_float and back, but for numbers above 65504, which stay above. */
+/* Rounds to half like slc_half_from_float, except that numbers above 65504 do not overflow. */
 static inline slc_floats round_to_half(slc_floats value)
 {
     slc_words bits = (slc_words)value, sign = bits & 0x80000000u, size = bits ^ sign;
@@ -34,10 +34,10 @@ static inline slc_floats round_to_half(slc_floats value)
     slc_floats small = ((slc_floats)size + 0.5f) - 0.5f; /* multiples of 2^-24 */
     slc_floats rounded = select_lanes((slc_floats)size < 0x1p-14f, small, normal);
     rounded = (slc_floats)((slc_words)rounded | sign);
-    return select_lanes(value == value, rounded, (slc_floats){0}); /* no number: 0 */
+    return select_lanes(value == value, rounded, (slc_floats){0}); /* NaN: 0 */
 }
 
-/* As slc_e4m3_from_float and back. */
+/* Rounds to E4M3 like slc_e4m3_from_float. */
 static inline slc_floats round_to_e4m3(slc_floats value)
 {
     slc_words bits = (slc_words)value, sign = bits & 0x80000000u, size = bits ^ sign;
@@ -49,7 +49,7 @@ static inline slc_floats round_to_e4m3(slc_floats value)
     return (slc_floats)((slc_words)rounded | sign);
 }
 
-/* The activation of the format: a cubic GELU, clamped to 3. */
+/* Activation of the format: a cubic GELU, clamped to 3. */
 static inline slc_floats activate_lanes(slc_floats r)
 {
     const slc_floats zero = {0}, one = zero + 1.0f, three = zero + 3.0f;
@@ -58,7 +58,7 @@ static inline slc_floats activate_lanes(slc_floats r)
     return select_lanes(r < three, r, three) * t;
 }
 
-/* Codes of -0.1875 to 3. Adding 1.5 * 2^23 rounds to the nearest integer, ties to even. */
+/* Converts -0.1875..3 to codes. Adding 1.5 * 2^23 rounds to nearest, ties to even. */
 static inline slc_words codes_of(slc_floats y)
 {
     return (slc_words)(y * 80.0f + 12582912.0f) - (0x4B400000u + 113u);

@@ -9,7 +9,7 @@ static int32_t weight_pair(const int16_t *weights)
     return (int32_t)((uint32_t)(uint16_t)weights[0] | (uint32_t)weights[1] << 16);
 }
 
-/* Sums of four outputs, which wrap. */
+/* Computes the sums of four outputs. Sums wrap. */
 static inline void sum_four(const int16_t *weights, const int32_t *biases, const slc_words *pairs,
                             uint32_t count, slc_words sums[4])
 {
@@ -21,7 +21,7 @@ static inline void sum_four(const int16_t *weights, const int32_t *biases, const
             sums[k] += multiply_pairs(pairs[i], zero + (uint32_t)weight_pair(weights + 2 * k));
 }
 
-/* Values of the four outputs from `o` on, before the activation. */
+/* Computes four outputs from `o` on, before the activation. */
 static inline void int8_four(const struct slc_neural_fast *fast, uint32_t layer, uint32_t o,
                              const slc_words *pairs, slc_floats values[4])
 {
@@ -57,7 +57,7 @@ void slc_strip_run_int8(const struct slc_neural_fast *fast, slc_words *pairs, sl
     last_layer(fast, pairs, outputs);
 }
 
-/* Sums have the order of the inputs, behind the bias. */
+/* Computes four outputs. Sums start with the bias, then add inputs in order. */
 static inline void fp8_four(const struct slc_neural_fast *fast, uint32_t layer, uint32_t o,
                             const slc_floats *values, slc_floats made[4])
 {

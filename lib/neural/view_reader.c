@@ -8,7 +8,7 @@
 #include <string.h>
 #include <zlib.h>
 
-/* Stored blocks make a tile larger by a few bytes; no writer goes beyond. */
+/* Limit for a compressed tile. Stored blocks make a tile only a few bytes larger. */
 #define MAX_STORED_TILE (2 * SLC_GDEFLATE_TILE)
 
 static SluiceResult corrupt(const SluiceNeuralSet *set, const struct slc_neural_view *view,
@@ -17,8 +17,8 @@ static SluiceResult corrupt(const SluiceNeuralSet *set, const struct slc_neural_
     return slc_input_fail_at(&set->file, SLUICE_ERROR_CORRUPT_DATA, view->offset, what);
 }
 
-/* Where a tile lies in the file. Entry 0 of the table is the size of the last tile, or what writers
- * took for it: it is not used, the last tile ends with the view. */
+/* Finds a tile in the file. Entry 0 of the table, the last tile's size, is wrong in some files and
+ * therefore ignored: the last tile ends with the view. */
 static SluiceResult find_tile(const SluiceNeuralSet *set, const struct slc_neural_view *view,
                               uint32_t count, uint32_t tile, uint64_t *offset, uint64_t *size)
 {
@@ -29,7 +29,7 @@ static SluiceResult find_tile(const SluiceNeuralSet *set, const struct slc_neura
     uint64_t end = view->stored_size - table;
     bool is_first = tile == 0, is_last = tile + 1 == count;
     if (!is_first || !is_last) {
-        /* this tile's entry and the next one's, as far as there are any */
+        /* entries of this tile and the next, if present */
         uint32_t from = is_first ? 1 : tile, to = is_last ? tile : tile + 1;
         SluiceResult result =
             slc_input_file_read(&set->file, view->offset + SLC_GDEFLATE_HEADER + 4 * (uint64_t)from,

@@ -28,7 +28,7 @@ static SluiceResult check_outputs(const SluiceNeuralSet *set, const SluiceNeural
     return SLUICE_SUCCESS;
 }
 
-/* Rows of the last layer, in another order or made from constants. */
+/* Reorders the rows of the last layer, or makes rows from constants. */
 static void map_outputs(const SluiceNeuralSet *set, const struct slc_neural_blob *stored,
                         const struct slc_neural_blob *at, const uint8_t *from,
                         const SluiceNeuralOutput *outputs, uint8_t *to)
@@ -50,7 +50,7 @@ static void map_outputs(const SluiceNeuralSet *set, const struct slc_neural_blob
     }
 }
 
-/* E4M3 bytes become half, which has all their values. What follows them keeps its order. */
+/* Converts E4M3 weights to half, without loss. Scales and biases keep their order. */
 static void widen_weights(const struct slc_neural_blob *from, const struct slc_neural_blob *at,
                           const uint8_t *fp8, uint8_t *to)
 {
