@@ -455,6 +455,20 @@ static void a_narrow_picture_keeps_the_width_of_the_camera(void **state)
     assert_float_equal(view_camera_extent(&plan, 0.5f).y, 12, 1e-5f);
 }
 
+static void the_wheel_makes_the_view_of_parallel_rays_smaller(void **state)
+{
+    (void)state;
+    struct view_camera camera = {.fov = 1, .span = 2, .aspect = 1};
+    struct vec3 center = {0, 0, -1};
+    const struct camera_wish wish = {.dolly = 2, .factor = 1, .seconds = 0.1f};
+    view_camera_move(&camera, &wish, VIEW_WALK, 1.0, &center);
+    assert_float_equal(camera.span, 2 * 0.88f * 0.88f, 1e-6f);
+    assert_float_equal(camera.position.z, 0, 0);
+    camera.span = 0;
+    view_camera_move(&camera, &wish, VIEW_FLY, 1.0, &center);
+    assert_float_equal(camera.span, 0, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -466,6 +480,7 @@ int main(void)
         cmocka_unit_test(broken_animations_are_refused_with_their_place),
         cmocka_unit_test(cameras_keep_their_axes_and_come_back_from_text),
         cmocka_unit_test(a_narrow_picture_keeps_the_width_of_the_camera),
+        cmocka_unit_test(the_wheel_makes_the_view_of_parallel_rays_smaller),
     };
     return RUN_TESTS(tests);
 }

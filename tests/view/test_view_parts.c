@@ -240,12 +240,20 @@ static void paths_are_read_as_they_were_written(void **state)
     struct view_camera camera;
     path_in_folder("path", file);
     const struct view_camera a = {.position = {0, 1, 2}, .yaw = 3.0f, .pitch = 0.1f, .fov = 1};
-    const struct view_camera b = {.position = {4, 1, 2}, .yaw = -3.0f, .pitch = 0.3f, .fov = 1};
+    const struct view_camera b = {.position = {4, 1, 2},
+                                  .yaw = -3.0f,
+                                  .pitch = 0.3f,
+                                  .fov = 1,
+                                  .roll = 0.2f,
+                                  .span = 3,
+                                  .aspect = 1.5f};
     assert_true(camera_path_add(&path, 0, &a));
     assert_true(camera_path_add(&path, 2, &b));
     assert_true(camera_path_write(file, &path));
     assert_true(camera_path_read(file, &read));
     assert_int_equal(read.count, 2);
+    assert_memory_equal(&read.points[0].camera, &a, sizeof a);
+    assert_memory_equal(&read.points[1].camera, &b, sizeof b);
     assert_true(camera_path_get(&read, 1, &camera));
     assert_float_equal(camera.position.x, 2, 1e-6f);
     /* 3 to -3 radians is a turn of 0.28, not of 6 */

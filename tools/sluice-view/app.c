@@ -302,7 +302,9 @@ static void read_motion(struct view_app *app, const struct ui_input *input,
     if (input->wheel != 0 && !ui_owns_mouse()) {
         touch(app);
         wish->dolly = input->wheel;
-        if (app->settings.motion != VIEW_ORBIT) {
+        if (app->camera.span > 0) { /* parallel rays see the same from any distance */
+            app_say(app, "Height of the view: %.3g m", 2 * (double)app->camera.span);
+        } else if (app->settings.motion != VIEW_ORBIT) {
             app->settings.speed =
                 fmax(0.01, fmin(1000.0, app->settings.speed * pow(1.15, (double)input->wheel)));
             app_say(app, "Speed: %.2f m/s", app->settings.speed);

@@ -175,6 +175,7 @@ static void orbit(struct view_camera *camera, const struct camera_wish *wish, st
 void view_camera_move(struct view_camera *camera, const struct camera_wish *wish, int motion,
                       double speed, struct vec3 *center)
 {
+    camera->span *= powf(0.88f, wish->dolly);
     if (motion == VIEW_ORBIT) {
         orbit(camera, wish, center);
         return;

@@ -55,7 +55,8 @@ struct camera_wish {
     float seconds;
 };
 
-/** Moves the camera. `center` is what VIEW_ORBIT turns round, and moves with panning. */
+/** Moves the camera; `dolly` also makes the view of parallel rays lower. `center` is what
+ * VIEW_ORBIT turns round, and moves with panning. */
 void view_camera_move(struct view_camera *camera, const struct camera_wish *wish, int motion,
                       double speed, struct vec3 *center);
 
