@@ -39,6 +39,7 @@ void panel_keys(struct view_app *app)
     if (!app->open[PANEL_KEYS])
         return;
     const uint32_t lines = (count_lines(actions, count) + KEY_COLUMNS - 1) / KEY_COLUMNS + 1;
+    ui_begin_tight((float)lines * ui_line_height() > app->height - 60 * scale);
     float height = (float)lines * ui_line_height();
     float width = (app->width - 60 * scale) / KEY_COLUMNS;
     if (height > app->height - 60 * scale)
@@ -56,6 +57,7 @@ void panel_keys(struct view_app *app)
             ui_end_part();
         }
     ui_end_panel();
+    ui_end_tight();
 }
 
 static void draw_cameras(struct view_app *app)

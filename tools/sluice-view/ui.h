@@ -121,6 +121,9 @@ void ui_text(uint32_t color, const char *format, ...) UI_PRINTF(2, 3);
 /** Texts between are half as large again. */
 void ui_begin_large(void);
 void ui_end_large(void);
+/** Lines between stand closer, if `tight`. */
+void ui_begin_tight(bool tight);
+void ui_end_tight(void);
 void ui_paragraph(uint32_t color, const char *text);
 void ui_same_line(float x); ///< x: from the left of the panel; 0: behind the last widget
 void ui_space(float height);

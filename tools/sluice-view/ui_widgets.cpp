@@ -123,6 +123,18 @@ void ui_text(uint32_t color, const char *format, ...)
     va_end(arguments);
 }
 
+void ui_begin_tight(bool tight)
+{
+    const ImVec2 space = ImGui::GetStyle().ItemSpacing;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing,
+                        ImVec2(space.x, tight ? space.y / 5.0f : space.y));
+}
+
+void ui_end_tight(void)
+{
+    ImGui::PopStyleVar();
+}
+
 void ui_paragraph(uint32_t color, const char *text)
 {
     ImGui::PushStyleColor(ImGuiCol_Text, ui_themed(color));
