@@ -20,6 +20,6 @@ ln -sfn "$(realpath "${SLUICE_TEST_DATA:-$root/../shared/data}")/pbrt/bitterli/s
     --record stutter.trace
 "$viewer" --headless --deterministic --size 1000x562 --render-scale 1 --script "$root/docs/viewer/stutter.txt" stutter.trace
 for picture in hall blurry memory slider budget truth thrash unseen cut feedback feedback-cost file reproduce driver modes \
-    keys pbrt stutter stutter-panels; do
+    keys pbrt pbrt-memory stutter stutter-panels; do
     "$root/scripts/dev/palette_png.py" "$picture.png" "$root/docs/images/viewer-$picture.png"
 done
