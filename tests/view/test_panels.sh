@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# test_panels.sh FACTS SLUICE-VIEW: panels of the viewer, without a window, in TAP.
+# test_panels.sh FACTS SLUICE-VIEW LATE-SEMAPHORES: panels and figures of the viewer, without a window, in TAP.
 set -u
-facts=$(realpath "$1") tool=$(realpath "$2")
+facts=$(realpath "$1") tool=$(realpath "$2") late=$(realpath "$3")
 "$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
 # shellcheck source=/dev/null
 . "$facts"
@@ -13,4 +13,13 @@ printf '1 key t\n20 drag 611 194 690 300 4\n50 click 600 167\n60 hover 300 500\n
 printf '1 key t\n50 click 600 167\n60 hover 300 500\n64 screenshot as-before.png\n' >as-before
 view --script as-before && view --script dragged && ! cmp -s as-before.png dragged.png
 fact columns_are_dragged
+
+# All figures but times, with a first run that bakes, a second, and semaphores that are signaled late.
+{ printf 'P6 1000 1000 255\n' && yes 'some texels' | head -c 3000000; } >first.ppm
+{ printf 'P6 1000 900 255\n' && yes 'other texels' | head -c 2700000; } >second.ppm
+figures() { run 0 --headless --deterministic --fresh --size 240x160 --panels off --frames 6 --cache baked --csv run.csv \
+    first.ppm second.ppm && cut -d , -f 1-5,8-13,17-22 run.csv >"$1"; }
+figures baking && figures baked.csv && LD_PRELOAD=$late figures late && [ "$(wc -l <baking)" = 7 ] &&
+    awk -F , 'NR == 3 { exit !($3 > 1) }' baking && cmp baking baked.csv && cmp baking late
+fact a_first_run_that_bakes_has_the_figures_of_the_second_in_all_frames
 end_facts

@@ -34,6 +34,7 @@ struct stage {
     uint32_t *table_indices;
     struct tile_marks marks;
     uint32_t baking_count, heap_tiles;
+    struct frames_signal last;  ///< of the last frame that was recorded
     uint32_t finest_level;      ///< of the controls of all textures
     SluiceImageSource **slow;   ///< around the scene's sources; NULL without a slow line
     SluiceImageSource **faulty; ///< around all these
@@ -455,15 +456,29 @@ bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffe
     end->views[UI_TEXTURE_PICTURE] =
         stage_drawing_record(&s->drawing, &s->scene, draw, frame.descriptorSet,
                              (uint32_t)(draw->number % FRAMES_SLOTS), commands);
-    end->signals[end->signal_count++] = (struct frames_signal){frame.semaphore, frame.signalValue};
+    s->last = (struct frames_signal){frame.semaphore, frame.signalValue};
+    end->signals[end->signal_count++] = s->last;
     return end->views[UI_TEXTURE_PICTURE] &&
            check(sluiceEndStreamingFrame(s->streamer, commands), "sluiceEndStreamingFrame");
+}
+
+/* The streamer reads the feedback of frames whose semaphore is signaled. Drivers may signal the
+ * fence of a frame before its semaphore, so the fence alone does not tell that. */
+static bool wait_for_last(const struct stage *s)
+{
+    const VkSemaphoreWaitInfo wait = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                      .semaphoreCount = 1,
+                                      .pSemaphores = &s->last.semaphore,
+                                      .pValues = &s->last.value};
+    return !s->last.semaphore ||
+           gpu_check(vkWaitSemaphores(s->gpu->device, &wait, UINT64_MAX), "vkWaitSemaphores");
 }
 
 bool stage_settle(struct stage *s)
 {
     return s->traced || s->played ||
-           check(sluiceWaitVulkanStreamerIdle(s->streamer), "sluiceWaitVulkanStreamerIdle");
+           (wait_for_last(s) &&
+            check(sluiceWaitVulkanStreamerIdle(s->streamer), "sluiceWaitVulkanStreamerIdle"));
 }
 
 bool stage_prepare_shaders(struct stage *s, const struct shader_code *code)
