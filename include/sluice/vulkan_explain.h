@@ -66,6 +66,24 @@ SLUICE_API SluiceResult sluiceExplainVulkanTexture(const SluiceVulkanStreamer *s
                                                    const SluiceTextureRect *pRect,
                                                    SluiceVulkanExplanation *pExplanation);
 
+/**
+ * Writes the feedback of a texture as it was read back last: feedbackHeight rows of feedbackWidth
+ * bytes (SluiceStreamedTextureLayout), `rowPitch` bytes apart.
+ *
+ * A byte stands for a region. It is the finest level that shaders marked there between the last two
+ * turns of the texture, before limits, biases and requests of the application.
+ * SLUICE_MIP_UNTOUCHED: no mark. All are untouched before the first turn. Textures that are hidden
+ * or follow a primary texture have no turns, and keep the levels of their last one. For debugging
+ * views; sluiceWriteRequestedLevels (manager.h) has what the manager makes of it.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_SIZE_MISMATCH if `rowPitch` < feedbackWidth or `size`, in bytes, is below
+ *         (feedbackHeight - 1) * rowPitch + feedbackWidth.
+ */
+SLUICE_API SluiceResult sluiceWriteVulkanFeedback(const SluiceVulkanStreamer *streamer,
+                                                  SluiceTextureId textureId, size_t rowPitch,
+                                                  size_t size, uint8_t *pLevels);
+
 /** Stages of a tile's way from a mark of a shader to the picture. */
 typedef enum SluiceLoadStage {
     /** From the frame that reads a feedback map back to the frame whose begin takes it in. The turn

@@ -5,6 +5,7 @@
 #include "vulkan/texture_requests.h"
 
 #include <assert.h>
+#include <string.h>
 
 #define NO_LEVEL SLUICE_MIP_UNTOUCHED
 
@@ -305,5 +306,25 @@ SluiceResult sluiceExplainVulkanTexture(const SluiceVulkanStreamer *streamer,
     out.missingLevel = place.missing;
     slc_explain_in_words(s, &place, out.reason, out.sentence);
     slc_struct_write(type, pExplanation, &out);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceWriteVulkanFeedback(const SluiceVulkanStreamer *streamer,
+                                       SluiceTextureId textureId, size_t rowPitch, size_t size,
+                                       uint8_t *pLevels)
+{
+    if (!streamer || !pLevels)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_texture *texture;
+    SluiceResult result = slc_streamer_find(streamer, textureId, &texture);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    size_t rows, needed, width = texture->layout.feedbackWidth;
+    size_t height = texture->layout.feedbackHeight;
+    if (rowPitch < width || !slc_mul_size(height - 1, rowPitch, &rows) ||
+        !slc_add_size(rows, width, &needed) || size < needed)
+        return SLUICE_ERROR_SIZE_MISMATCH;
+    for (size_t y = 0; y < height; y++)
+        memcpy(pLevels + y * rowPitch, texture->feedback.levels + y * width, width);
     return SLUICE_SUCCESS;
 }

@@ -53,6 +53,7 @@ sluiceGetVulkanStreamerManager(f->streamer, &f->out.manager)
 sluiceGetVulkanTextureState(f->streamer, f->texture.textureId, ?NULL, &f->out.texture_state)
 sluiceExplainVulkanTexture(f->streamer, f->texture.textureId, ?NULL, &f->out.explanation)
 sluiceGetVulkanLoadStages(f->streamer, &f->out.stages)
+sluiceWriteVulkanFeedback(f->streamer, f->texture.textureId, 64, sizeof f->out.feedback, f->out.feedback)
 sluiceRequestVulkanTexture(f->streamer, f->texture.textureId, &f->request, ?&f->out.request)
 sluiceGetVulkanRequestProgress(f->streamer, f->request_id, &f->out.request_progress)
 sluiceWaitVulkanRequest(f->streamer, f->request_id, ?0, &f->out.wait)
@@ -206,6 +207,7 @@ struct fixture {
         SluiceDemandSlot slots[1];
         uint32_t miss_count, slot_count, image_count;
         SluiceVulkanLoadStages stages;
+        uint8_t feedback[4096];
         SluiceTextureRequestId request;
         SluiceVulkanTextureControl control;
         bool in_use;

@@ -278,3 +278,47 @@ void explanations_agree_with_the_state_of_each_tile(void **state)
         assert_true(told[often[i]] > 0);
     stage_finish(s);
 }
+
+static void check_feedback(const struct stage *s, uint32_t texture, const uint8_t *seen)
+{
+    uint8_t rows[TILES][TILES + 3];
+    const SluiceTextureId id = s->textures[texture].textureId;
+    const size_t pitch = sizeof rows[0], size = (TILES - 1) * pitch + TILES;
+    memset(rows, 77, sizeof rows);
+    CHECK_OK(sluiceWriteVulkanFeedback(s->streamer, id, pitch, size, rows[0]));
+    for (uint32_t y = 0; y < TILES; y++) {
+        assert_memory_equal(rows[y], seen + y * TILES, TILES);
+        assert_int_equal(rows[y][TILES], 77); /* between rows nothing is written */
+    }
+    CHECK_RESULT(sluiceWriteVulkanFeedback(s->streamer, id, pitch, size - 1, rows[0]),
+                 SLUICE_ERROR_SIZE_MISMATCH);
+    CHECK_RESULT(sluiceWriteVulkanFeedback(s->streamer, id, TILES - 1, sizeof rows, rows[0]),
+                 SLUICE_ERROR_SIZE_MISMATCH);
+    CHECK_RESULT(sluiceWriteVulkanFeedback(s->streamer, id, SIZE_MAX, SIZE_MAX, rows[0]),
+                 SLUICE_ERROR_SIZE_MISMATCH);
+}
+
+/* Controls and requests change what is loaded, and not what was marked. */
+void feedback_is_written_as_shaders_marked_it(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 2});
+    uint8_t nothing[TILES * TILES];
+    memset(nothing, SLUICE_MIP_UNTOUCHED, sizeof nothing);
+    check_feedback(s, 0, nothing);
+    set_control(s, 0, (SluiceVulkanTextureControl){.finestLevel = 2});
+    set_control(s, 1, (SluiceVulkanTextureControl){.mipBias = 1});
+    set_control(s, 2, (SluiceVulkanTextureControl){.hidden = true});
+    for (uint32_t turn = 0; turn < 5; turn++) {
+        for (uint32_t i = 0; i < sizeof s->seen; i++)
+            s->seen[i / sizeof s->seen[0]][i % sizeof s->seen[0]] =
+                (i * 7 + turn) % 5 == 4 ? SLUICE_MIP_UNTOUCHED : (uint8_t)((i * 7 + turn) % 5);
+        frames(s, 4); /* each of four textures has its turn, and is read back */
+        for (uint32_t i = 0; i < TEXTURES; i++)
+            check_feedback(s, i, i == 2 ? nothing : s->seen[i]); /* hidden: no turn */
+    }
+    memset(s->seen, SLUICE_MIP_UNTOUCHED, sizeof s->seen);
+    frames(s, 8); /* the manager forgets in 2 ticks */
+    check_feedback(s, 3, nothing);
+    stage_finish(s);
+}

@@ -44,6 +44,7 @@ void memory_that_is_short_is_told(void **state);
 void failed_loads_are_told(void **state);
 void fades_are_told(void **state);
 void followers_are_explained_by_their_primary(void **state);
+void feedback_is_written_as_shaders_marked_it(void **state);
 void stages_of_loads_are_counted_in_frames(void **state);
 void explanations_agree_with_the_state_of_each_tile(void **state);
 

@@ -586,6 +586,9 @@ static void questions_take_no_memory(void **state)
     CHECK_OK(sluiceGetVulkanLoadStages(s->streamer, &stages));
     SluiceVulkanExplanation why = {.structSize = sizeof why};
     CHECK_OK(sluiceExplainVulkanTexture(s->streamer, s->textures[0].textureId, NULL, &why));
+    uint8_t levels[TILES * TILES];
+    CHECK_OK(sluiceWriteVulkanFeedback(s->streamer, s->textures[0].textureId, TILES, sizeof levels,
+                                       levels));
     assert_int_equal(progress_of(s, id).tileCount, TAIL + 1);
     SluiceVulkanTextureControl control = {.structSize = sizeof control};
     CHECK_OK(sluiceGetVulkanTextureControl(s->streamer, s->textures[0].textureId, &control));
@@ -642,6 +645,7 @@ int main(void)
         cmocka_unit_test(failed_loads_are_told),
         cmocka_unit_test(fades_are_told),
         cmocka_unit_test(followers_are_explained_by_their_primary),
+        cmocka_unit_test(feedback_is_written_as_shaders_marked_it),
         cmocka_unit_test(stages_of_loads_are_counted_in_frames),
         cmocka_unit_test(explanations_agree_with_the_state_of_each_tile),
     };
