@@ -4,6 +4,32 @@
 
 #define SECONDS 0.1
 
+/* Textures that follow another have its feedback. */
+static SluiceTextureId id_of_feedback(const struct stage *stage, uint32_t texture)
+{
+    const uint32_t primary = stage_texture(stage, texture)->primary;
+    return stage_texture(stage, primary == STAGE_NO_TEXTURE ? texture : primary)->id;
+}
+
+/* Recordings have no marks of shaders. */
+static void look_at_feedback(struct inspector_maps *m, const struct stage *stage, uint32_t texture)
+{
+    const SluiceTextureId id = id_of_feedback(stage, texture);
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    m->feedback_known = false;
+    if (!stage_streamer(stage) ||
+        sluiceGetTextureLayout(stage_manager(stage), id, &layout) != SLUICE_SUCCESS)
+        return;
+    const size_t size = (size_t)layout.feedbackWidth * layout.feedbackHeight;
+    uint8_t *levels = realloc(m->feedback, size);
+    if (!levels)
+        return;
+    m->feedback = levels;
+    m->feedback_layout = layout;
+    m->feedback_known = sluiceWriteVulkanFeedback(stage_streamer(stage), id, layout.feedbackWidth,
+                                                  size, levels) == SLUICE_SUCCESS;
+}
+
 /* Makes room for another texture. */
 static bool fit(struct inspector_maps *m, const struct stage *stage, SluiceTextureId id)
 {
@@ -43,11 +69,13 @@ bool inspector_maps_update(struct inspector_maps *m, const struct stage *stage, 
         return m->known;
     m->next = seconds + SECONDS;
     m->known = look(m, stage_manager(stage));
+    look_at_feedback(m, stage, texture);
     return m->known;
 }
 
 void inspector_maps_finish(struct inspector_maps *m)
 {
     free(m->states);
+    free(m->feedback);
     *m = (struct inspector_maps){0};
 }

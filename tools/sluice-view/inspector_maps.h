@@ -14,6 +14,9 @@ struct inspector_maps {
     uint8_t *states;    ///< owned; SluiceTileState by tile
     uint8_t *resident;  ///< in `states`; levels, rows of minMipWidth
     uint8_t *requested; ///< likewise
+    bool feedback_known;
+    SluiceStreamedTextureLayout feedback_layout; ///< of the texture that has feedback
+    uint8_t *feedback; ///< owned; levels that shaders marked, rows of feedbackWidth
 };
 
 /** Looks at a texture 10 times per second, or at once at another one. A recording is looked

@@ -156,14 +156,19 @@ void inspector_draw_levels(struct view_app *app, uint32_t texture)
     }
 }
 
-enum map_kind { MAP_RESIDENT, MAP_WANTED, MAP_MISSING, MAP_LOADS, MAP_COUNT };
+/* Four stand side by side. */
+enum map_kind { MAP_FEEDBACK, MAP_WANTED, MAP_RESIDENT, MAP_MISSING, MAP_LOADS, MAP_COUNT };
 
 static const struct {
     const char *title, *hint;
 } map_words[MAP_COUNT] = {
-    {"resident", "A square per tile of level 0: the finest level that is resident. Red: level 0."},
+    {"feedback", "A square per region of feedback: the finest level that shaders marked there, as "
+                 "it was read back last. Red: level 0; dark: no mark. In turns of textures, so it "
+                 "flickers where few pixels write."},
     {"wanted", "A square per tile of level 0: the finest level that feedback requests, as the "
                "manager remembers it. Dark: none."},
+    {"resident", "A square per tile of level 0: the finest level that is resident (MinMip map). "
+                 "Red: level 0."},
     {"missing", "Levels that are requested and not resident. Yellow: 1; orange: 2; red: 3 or more. "
                 "Dark: nothing is missing."},
     {"loads", "How often the resident tile there was loaded. Dark: never; blue: once; yellow: "
@@ -201,6 +206,11 @@ static uint32_t loads_at(const struct view_app *app, SluiceTextureId id,
     return log ? log->loads : 0;
 }
 
+static uint32_t level_color(uint8_t level)
+{
+    return level == SLUICE_MIP_UNTOUCHED ? UI_COLOR(30, 34, 40, 255) : panel_level_color(level);
+}
+
 static uint32_t map_color(const struct view_app *app, SluiceTextureId id,
                           const SluiceStreamedTextureLayout *layout, enum map_kind kind,
                           uint8_t resident, uint8_t wanted, uint32_t x, uint32_t y)
@@ -214,8 +224,7 @@ static uint32_t map_color(const struct view_app *app, SluiceTextureId id,
     case MAP_LOADS:
         return loads_color(
             resident == SLUICE_MIP_UNTOUCHED ? 0 : loads_at(app, id, layout, x, y, resident));
-    default:
-        return level == SLUICE_MIP_UNTOUCHED ? UI_COLOR(30, 34, 40, 255) : panel_level_color(level);
+    default: return level_color(level);
     }
 }
 
@@ -223,7 +232,9 @@ static void draw_map(const struct view_app *app, enum map_kind kind)
 {
     float r[4];
     const struct inspector_maps *m = &app->maps;
-    const uint32_t columns = m->layout.minMipWidth, rows = m->layout.minMipHeight;
+    const bool marks = kind == MAP_FEEDBACK;
+    const uint32_t columns = marks ? m->feedback_layout.feedbackWidth : m->layout.minMipWidth;
+    const uint32_t rows = marks ? m->feedback_layout.feedbackHeight : m->layout.minMipHeight;
     const uint32_t step = 1 + (larger(columns, rows) - 1) / MOST_SQUARES;
     const float width = MAP_WIDTH * ui_scale(), cell = width / (float)larger(columns, rows);
     struct run run = {0};
@@ -236,9 +247,10 @@ static void draw_map(const struct view_app *app, enum map_kind kind)
             const float square[4] = {r[0] + (float)x * cell,
                                      r[1] + ui_line_height() + (float)y * cell, cell * (float)step,
                                      cell * (float)step};
-            add_square(
-                &run, square, 0,
-                map_color(app, m->id, &m->layout, kind, m->resident[at], m->requested[at], x, y));
+            add_square(&run, square, 0,
+                       marks ? level_color(m->feedback[at])
+                             : map_color(app, m->id, &m->layout, kind, m->resident[at],
+                                         m->requested[at], x, y));
         }
     end_run(&run);
 }
@@ -247,10 +259,11 @@ void inspector_draw_maps(struct view_app *app, uint32_t texture)
 {
     if (!inspector_maps_update(&app->maps, app->stage, texture, app->seconds))
         return;
-    for (int kind = 0; kind < MAP_COUNT; kind++) {
-        if (kind > 0)
-            ui_same_line(0);
+    for (int kind = app->maps.feedback_known ? MAP_FEEDBACK : MAP_WANTED; kind < MAP_COUNT;
+         kind++) {
         draw_map(app, (enum map_kind)kind);
+        if (kind != MAP_MISSING && kind + 1 < MAP_COUNT)
+            ui_same_line(0);
     }
 }
 

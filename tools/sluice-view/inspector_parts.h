@@ -6,8 +6,8 @@
 
 /** All levels side by side, a square per tile, with holes where nothing is resident. */
 void inspector_draw_levels(struct view_app *app, uint32_t texture);
-/** Resident and wanted levels, missing ones, and how often tiles were loaded: maps of squares per
- *  tile of level 0. */
+/** Feedback as it was read back, wanted and resident levels, missing ones, and how often tiles were
+ *  loaded: maps of squares per region or tile of level 0. */
 void inspector_draw_maps(struct view_app *app, uint32_t texture);
 /** The tile under the mouse, or else at the point that was inspected, if it is of this texture. */
 void inspector_draw_tile(const struct view_app *app, uint32_t texture);
