@@ -134,9 +134,20 @@ struct memory_sums memory_sums_of(const struct stage *stage)
     return sums;
 }
 
+/* No scene is open at first, and recordings are only shown. */
+static bool has_streamer(struct view_app *app)
+{
+    if (app->stage && stage_streamer(app->stage))
+        return true;
+    app_say(app, "No scene streams tiles here");
+    return false;
+}
+
 void memory_compact(struct view_app *app)
 {
     uint32_t moved = 0;
+    if (!has_streamer(app))
+        return;
     const SluiceResult result =
         sluiceCompactVulkanStreamer(stage_streamer(app->stage), COMPACTED_TILES, &moved);
     if (result == SLUICE_SUCCESS)
@@ -149,6 +160,8 @@ void memory_compact(struct view_app *app)
 void memory_trim(struct view_app *app)
 {
     const uint32_t count = app->facts.now.standbyTileCount;
+    if (!has_streamer(app))
+        return;
     sluiceTrimStandbyTiles(stage_manager(app->stage), 0);
     app_say(app, "Evicted %u standby tile%s", count, count == 1 ? "" : "s");
 }
