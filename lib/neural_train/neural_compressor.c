@@ -18,8 +18,8 @@
 #include "neural_train_train_network_comp.h"
 #include "neural_train_train_software_comp.h"
 
-/* Each writes 33 KB of partial sums per step. A multiple of 132, which are the multiprocessors of a
- * large device: rounds of workgroups are full there. */
+/* Most workgroups. Each writes 33 KB of partial sums per step. A multiple of 132, the number of
+ * multiprocessors of a large device, so that rounds of workgroups are full. */
 #define MAX_GROUPS 528u
 
 uint64_t slc_train_network_size(void)
@@ -121,7 +121,7 @@ static SluiceResult create_passes(SluiceNeuralCompressor *c)
     return SLUICE_SUCCESS;
 }
 
-/* Two channels to a word. Errors: INVALID_ARGUMENT for what is not finite. */
+/* Writes references, two channels per word. Errors: INVALID_ARGUMENT for values not finite. */
 static SluiceResult write_references(const struct slc_train_plan *plan, const float *const *mips,
                                      uint32_t *words, const SluiceLogCallback *log)
 {

@@ -1,4 +1,4 @@
-/** A compressor: buffers and passes on a device. */
+/** Compressor: buffers and passes on a device. */
 #ifndef SLC_NEURAL_TRAIN_COMPRESSOR_H
 #define SLC_NEURAL_TRAIN_COMPRESSOR_H
 
@@ -8,7 +8,7 @@
 
 #define SLC_TRAIN_MAX_STEPS_PER_RECORD 1024u
 
-/** Buffers by the binding of the shaders. */
+/** Buffers, numbered like the shaders' bindings. */
 enum slc_train_buffer {
     SLC_TRAIN_NETWORK,
     SLC_TRAIN_PARTIALS,
@@ -24,27 +24,27 @@ enum slc_train_buffer {
 struct SluiceNeuralCompressor {
     SluiceVulkanContext *context;
     struct slc_train_plan plan;
-    uint64_t fingerprint; ///< of the plan and the references
+    uint64_t fingerprint; ///< hash of plan and references
     struct slc_compute compute;
     struct slc_buffer buffers[SLC_TRAIN_BUFFER_COUNT]; ///< the last one is mapped
     struct slc_buffer upload;   ///< network, state, table, references; until they are copied
     struct slc_buffer readback; ///< network, state
     uint32_t tiles_per_group, group_count;
-    uint32_t step;           ///< the next to be recorded
+    uint32_t step;           ///< next step to record
     uint32_t recorded_count; ///< steps of the last recording
     uint32_t readback_step;
     uint16_t *texels; ///< trained_set.c; NULL before the first result
     char int8_blob[TRAIN_BIASES + 8 * TRAIN_ROWS];
     char fp8_blob[TRAIN_BIASES + 2 * (TRAIN_ROWS - TRAIN_OUTPUTS) + 8 * TRAIN_OUTPUTS];
-    bool is_started;   ///< what `upload` has was recorded
-    bool has_readback; ///< of readback_step
+    bool is_started;   ///< the copies from `upload` are recorded
+    bool has_readback; ///< `readback` holds readback_step
 };
 
-/** Bytes of the network's master values and moments, and of those of latents. */
+/** Returns the bytes of master values and moments: the network's, and the latents'. */
 uint64_t slc_train_network_size(void);
 uint64_t slc_train_state_size(const struct slc_train_plan *plan);
 
-/** In the memory of the last readback: latents of 0..1, and parameters of both networks. */
+/** Returns the last readback: latents in 0..1, and parameters of both networks. */
 const float *slc_train_read_latents(const SluiceNeuralCompressor *compressor);
 const float *slc_train_read_int8(const SluiceNeuralCompressor *compressor);
 const float *slc_train_read_fp8(const SluiceNeuralCompressor *compressor);

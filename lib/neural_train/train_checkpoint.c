@@ -1,4 +1,4 @@
-/* A checkpoint: a header, the network, the latents' state; for the same device and version only. */
+/* Checkpoint: header, network, and latents' state, for the same device and version only. */
 #include "neural_train/neural_compressor.h"
 
 #include "base/log.h"

@@ -9,7 +9,7 @@
 #define MAX_SIZE 16384u
 #define MAX_BATCH (1u << 20)
 #define MAX_STEPS 10000000u
-#define MAX_LATENTS (UINT64_C(1) << 30) /* of 4 bytes: no device has a larger range */
+#define MAX_LATENTS (UINT64_C(1) << 30) /* 4 bytes each: no device has a larger range */
 #define MASK_MARGIN 0.02f               /* five steps of 8 bits beyond 0 and 1 */
 
 static const uint32_t default_steps = 20000, default_batch = 65536;
@@ -68,7 +68,7 @@ static SluiceResult check_values(const SluiceNeuralCompressorCreateInfo *info,
     return SLUICE_SUCCESS;
 }
 
-/* NTC_FORMAT: pairs of images, each half as large as the one before. */
+/* Plans the latent images by NTC_FORMAT: pairs of images, each half as large as its predecessor. */
 static void plan_images(struct slc_train_plan *plan)
 {
     uint32_t width = slc_max_u32(plan->width / plan->scale, 1);
@@ -83,7 +83,7 @@ static void plan_images(struct slc_train_plan *plan)
     }
 }
 
-/* Shaders count latents in 32 bits. Errors: INVALID_ARGUMENT. */
+/* Checks the number of latents, which shaders count in 32 bits. Errors: INVALID_ARGUMENT. */
 static SluiceResult check_latents(const struct slc_train_plan *plan, const SluiceLogCallback *log)
 {
     uint64_t count = (uint64_t)plan->latent_texels * plan->feature_count;
@@ -96,7 +96,7 @@ static SluiceResult check_latents(const struct slc_train_plan *plan, const Sluic
                            (unsigned long long)count);
 }
 
-/* Mips have samples by their texels, and each has some. */
+/* Distributes samples to mips in proportion to texels; each mip has at least one tile. */
 static void plan_samples(struct slc_train_plan *plan)
 {
     double total = (double)plan->texel_count;
@@ -228,8 +228,8 @@ float slc_train_latent_unit(const struct slc_train_plan *plan)
     }
     for (uint32_t n = 0; n < plan->image_count; n++) {
         const struct slc_latent_image *image = &plan->images[n];
-        /* A sample has four corners. Strata spread samples over the image; 8 is far above what
-         * chance gathers at one texel. */
+        /* A sample has four corners. Strata spread samples over the image, so 8 is far above the
+         * number of samples at one texel. */
         double texels = (double)image->width * image->height;
         double mean = 4.0 * samples[n] / texels * 8.0;
         most = fmax(most, fmin(mean, 4.0 * samples[n]));

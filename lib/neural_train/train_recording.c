@@ -1,4 +1,4 @@
-/* Commands of training, and what they leave in mapped memory. */
+/* Commands of training, and their results in mapped memory. */
 #include "neural_train/neural_compressor.h"
 
 #include "base/checked.h"
@@ -52,7 +52,7 @@ static void bind(const SluiceNeuralCompressor *c, VkCommandBuffer commands,
     slc_compute_bind(&c->compute, &c->context->vk, commands, 0, push);
 }
 
-/* Fills the device's buffers, and makes the values that the first step uses. */
+/* Records copies to the device's buffers, and the effective values for the first step. */
 static void record_start(const SluiceNeuralCompressor *c, VkCommandBuffer commands)
 {
     const struct slc_buffer *b = c->buffers;
@@ -91,7 +91,7 @@ static void record_step(const SluiceNeuralCompressor *c, VkCommandBuffer command
     barrier_of_shaders(c, commands);
 }
 
-/* Training of the FP8 network begins: the int8 network stays beside it. */
+/* Records the begin of FP8 training: keeps a copy of the int8 network. */
 static void record_int8(const SluiceNeuralCompressor *c, VkCommandBuffer commands)
 {
     VkBuffer network = c->buffers[SLC_TRAIN_NETWORK].buffer;
@@ -115,11 +115,11 @@ SluiceResult sluiceRecordNeuralTraining(SluiceNeuralCompressor *compressor,
     uint32_t left = slc_train_total_steps(&c->plan) - c->step;
     uint32_t count = slc_min_u32(slc_min_u32(left, maxSteps), SLC_TRAIN_MAX_STEPS_PER_RECORD);
     if (c->is_started)
-        slc_buffer_finish(&c->upload, &c->context->vk); /* the commands before have ended */
+        slc_buffer_finish(&c->upload, &c->context->vk); /* earlier commands have ended */
     if (!c->is_started)
         record_start(c, commandBuffer);
     else if (count > 0)
-        /* After the commands before, of this queue or another. */
+        /* Waits for earlier commands of this or another queue. */
         barrier(c, commandBuffer, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                 VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
                 VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);

@@ -4,13 +4,13 @@
 
 #define PI 3.14159265358979323846
 
-/* Rates are cosines. The second moments have a short memory: with 0.999 for the network results
- * are 0.8 to 1.6 dB worse (decision 89 has the figures of all of these). */
+/* Decay of moments. Learning rates are cosines. Second moments decay fast: with 0.999 for the
+ * network, results are 0.8 to 1.6 dB worse (decision 89 has figures for all constants here). */
 #define DECAY1 0.9
 #define DECAY2 0.99
-#define RISE 0.02 /* of the steps: without it the network's rate of 0.02 is too much at first */
-#define QUANTIZE_FROM 0.5 /* of the steps: latents, hidden values and weights are rounded */
-#define FP8_RATE 0.2      /* of the network's rate, when the FP8 network begins */
+#define RISE 0.02 /* share of steps with a rising rate; a first rate of 0.02 would be too large */
+#define QUANTIZE_FROM 0.5 /* share of steps before rounding of latents, codes and weights */
+#define FP8_RATE 0.2      /* first rate of the FP8 network, as a share of the network's rate */
 
 uint32_t slc_train_total_steps(const struct slc_train_plan *plan)
 {
@@ -26,7 +26,7 @@ uint32_t slc_train_flags(const struct slc_train_plan *plan, uint32_t step)
     return flags;
 }
 
-/* From half to all in the first part of the steps, then down to 0. */
+/* Returns the rate's share: from half to all in the first part of the steps, then down to 0. */
 static double cosine(double done)
 {
     return 0.5 * fmin(done / RISE, 1.0) + 0.5 * cos(PI * fmin(done, 1.0));
@@ -36,12 +36,12 @@ static double network_rate(const struct slc_train_plan *plan, uint32_t step)
 {
     if (step < plan->step_count)
         return plan->network_rate * cosine((double)step / plan->step_count);
-    /* The FP8 network goes on from the int8 network. */
+    /* The FP8 network continues from the int8 network. */
     double done = (double)(step - plan->step_count) / plan->fp8_steps;
     return plan->network_rate * FP8_RATE * cosine(done);
 }
 
-/* Makes up for moments that start at 0. */
+/* Returns the correction for moments that start at 0. */
 static double correction(uint32_t step)
 {
     double t = (double)step + 1.0;

@@ -1,10 +1,10 @@
-/** What each step does: learning rates, and what is rounded. */
+/** Schedule of steps: learning rates and rounding. */
 #ifndef SLC_NEURAL_TRAIN_SCHEDULE_H
 #define SLC_NEURAL_TRAIN_SCHEDULE_H
 
 #include "neural_train/train_plan.h"
 
-/* What GLSL calls uint. */
+/* GLSL's uint. */
 typedef uint32_t slc_glsl_uint;
 #define uint slc_glsl_uint
 struct slc_train_push {
@@ -12,14 +12,14 @@ struct slc_train_push {
 };
 #undef uint
 
-/** Steps for both networks. */
+/** Returns the number of steps for both networks. */
 uint32_t slc_train_total_steps(const struct slc_train_plan *plan);
 
-/** TRAIN_ flags of a step. */
+/** Returns the TRAIN_ flags of a step. */
 uint32_t slc_train_flags(const struct slc_train_plan *plan, uint32_t step);
 
-/** Fills in all but tilesPerGroup, groupCount and lossSlot. `step` may be UINT32_MAX: only
- * effective values for step 0 are made, and for UINT32_MAX below that. */
+/** Fills all fields except tilesPerGroup, groupCount and lossSlot. `step` UINT32_MAX: only
+ * effective values for step 0 are made. */
 void slc_train_write_push(const struct slc_train_plan *plan, uint32_t step,
                           struct slc_train_push *push);
 

@@ -8,7 +8,7 @@
 #define CODE_STEP 80.0 /* hidden codes are y * 80 - 113 */
 #define CODE_OFFSET 113
 #define INPUT_STEP 127.5 /* codes of inputs are x * 127.5 */
-#define MAX_BIAS 1e9     /* leaves room for 64 products of codes */
+#define MAX_BIAS 1e9     /* largest bias that leaves room for 64 products of codes */
 
 static const struct layer {
     uint32_t inputs, outputs, weights, first_row;
@@ -44,13 +44,13 @@ void slc_network_init(float *parameters, uint32_t seed)
         parameters[TRAIN_BIASES + row] = 0.0f;
 }
 
-/* Training that ran away leaves NaN, which no integer is. */
+/* Replaces NaN, the result of diverged training, because integers have no NaN. */
 static float finite(float value)
 {
     return isfinite(value) ? value : 0.0f;
 }
 
-/* Bias and scale of one row whose inputs are (code + offset) / step. */
+/* Computes bias and scale of a row with inputs (code + offset) / step. */
 static void fold_row(const float *weights, uint32_t count, float bias, double step, int offset,
                      int8_t *codes, float *scale, int32_t *folded)
 {
@@ -58,7 +58,7 @@ static void fold_row(const float *weights, uint32_t count, float bias, double st
     for (uint32_t i = 0; i < count; i++)
         most = fmaxf(most, fabsf(finite(weights[i])));
     bias = finite(bias);
-    /* A bias far above all weights decides instead, so that it fits. */
+    /* A bias far above all weights determines the unit instead, so that the bias fits. */
     float unit = fmaxf(most / 127.0f, fabsf(bias) * (float)(step / MAX_BIAS));
     int sum = 0;
     for (uint32_t i = 0; i < count; i++) {

@@ -1,4 +1,4 @@
-/* What was trained, as a file holds it: latents as codes of 4 bits, both networks as blobs. */
+/* Training results in the file's format: latents as 4-bit codes, both networks as blobs. */
 #include "base/alloc.h"
 #include "base/log.h"
 #include "base/struct_size.h"
@@ -9,14 +9,14 @@
 #include <math.h>
 #include <string.h>
 
-#define FEATURES_PER_TEXEL 4u /* of a layer */
+#define FEATURES_PER_TEXEL 4u /* features of a texel in a layer */
 
 static uint32_t result_texels(const struct slc_train_plan *plan)
 {
     return plan->latent_texels * (plan->feature_count / FEATURES_PER_TEXEL);
 }
 
-/* Also of latents that are not a number, should training ever run away. */
+/* Returns a latent's code, also for NaN from diverged training. */
 static uint16_t code_of(float latent)
 {
     float code = rintf(latent * 15.0f);
