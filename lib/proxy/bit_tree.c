@@ -66,7 +66,7 @@ void slc_bits_add(struct slc_bit_tree *bits, uint32_t number)
         uint64_t *word = &bits->words[level][number / 64], old = *word;
         *word |= (uint64_t)1 << number % 64;
         if (old)
-            return; /* the levels above know */
+            return; /* bits above are set already */
     }
 }
 
@@ -106,7 +106,7 @@ static uint32_t highest(uint64_t word)
 uint32_t slc_bits_next(const struct slc_bit_tree *bits, uint32_t from)
 {
     uint32_t level = 0;
-    for (;; level++, from = from / 64 + 1) { /* up, until a word has a bit at `from` or behind */
+    for (;; level++, from = from / 64 + 1) { /* go up to a word with a bit at or behind `from` */
         if (level == SLC_BIT_LEVELS || from / 64 >= bits->word_counts[level])
             return SLC_BIT_NONE;
         uint64_t word = bits->words[level][from / 64] >> from % 64;

@@ -6,7 +6,7 @@
 
 #define LARGEST 0x1p100f
 #define SMALLEST 0x1p-100f
-#define THINNEST 0x1p-20f /* of the largest coordinate: 8 or more steps of a float */
+#define THINNEST 0x1p-20f /* least extent per largest coordinate: at least 8 float steps */
 
 static SluiceResult check_axis(const SluiceProxyBox *box, uint32_t axis,
                                const SluiceLogCallback *log)

@@ -9,7 +9,7 @@
 SluiceResult slc_proxy_box_widen(const SluiceProxyBox *from, SluiceProxyBox *to,
                                  const SluiceLogCallback *log);
 double slc_proxy_box_volume(const SluiceProxyBox *box);
-/** The square of the distance; 0 inside. */
+/** Returns the squared distance to a point; 0 inside. */
 double slc_proxy_box_distance(const SluiceProxyBox *box, const float point[3]);
 
 #endif /* SLC_PROXY_PROXY_BOX_H */

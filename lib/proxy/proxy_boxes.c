@@ -1,4 +1,4 @@
-/* Boxes as others see them: one, all together, and as primitives in memory of the caller. */
+/* Queries of boxes: one box, bounds of all, and primitives in the caller's memory. */
 #include "base/checked.h"
 #include "base/log.h"
 #include "base/struct_size.h"
@@ -43,7 +43,7 @@ SluiceResult sluiceGetProxyBounds(const SluiceProxySet *set, SluiceProxyBox *pBo
     return SLUICE_SUCCESS;
 }
 
-/* Joins groups that follow one another, and everything once the ranges are used up. */
+/* Adds a range. Joins adjacent groups; without free ranges, extends the last range. */
 static void add_range(const SluiceProxyBoxWrite *write, uint32_t *range_count, uint32_t first,
                       uint32_t end)
 {
@@ -54,8 +54,8 @@ static void add_range(const SluiceProxyBoxWrite *write, uint32_t *range_count, u
         write->pRanges[(*range_count)++] = (SluiceProxyRange){first, end - first};
 }
 
-/* A hole is a point, where its box was: drivers need not know of inactive primitives, and
- * structures may be updated. */
+/* Returns the box of an index. A removed proxy becomes a point at its former box, because inactive
+ * primitives are optional in drivers and prevent updates of structures. */
 static SluiceProxyBox box_of(const SluiceProxySet *set, uint32_t index)
 {
     SluiceProxyBox box = slc_proxy_at(set, index)->is.box;
@@ -84,7 +84,7 @@ SluiceResult sluiceWriteProxyBoxes(const SluiceProxySet *set, const SluiceProxyB
     if (result != SLUICE_SUCCESS)
         return result;
     uint32_t last = slc_bits_last(&set->live), count = last == SLC_BIT_NONE ? 0 : last + 1;
-    /* Also what is behind the last live proxy: a later one may make it a primitive again. */
+    /* Includes boxes behind the last live proxy, which a later proxy may make primitives again. */
     uint32_t end = slc_min_u32(set->index_count, write.capacity);
     if (!write.pRanges || (end && !write.pBoxes))
         return SLUICE_ERROR_NULL_POINTER;

@@ -1,4 +1,4 @@
-/* Which proxies are requested, and in which order they are listed. */
+/* Requests of proxies, and the order of their list. */
 #include "base/checked.h"
 #include "base/log.h"
 #include "base/struct_size.h"
@@ -45,7 +45,7 @@ SluiceResult sluiceClearProxyRequests(SluiceProxySet *set, SluiceProxyId proxyId
     return result;
 }
 
-/* A list that is a heap with the last in order at its root. */
+/* Heap of requests; the root is the last in order. */
 struct heap {
     const SluiceProxySet *set;
     const SluiceProxyListInfo *info;
@@ -67,7 +67,7 @@ static bool is_before(const struct heap *heap, SluiceProxyId a, SluiceProxyId b)
     return key_a != key_b ? key_a < key_b : (uint32_t)a < (uint32_t)b;
 }
 
-/* Puts `id` where the root was taken away. */
+/* Replaces the root by `id` and restores the heap. */
 static void sink(struct heap *heap, SluiceProxyId id)
 {
     uint32_t at = 0, child;
@@ -98,7 +98,7 @@ static void list_by_index(const SluiceProxySet *set, uint32_t count, SluiceProxy
         ids[i] = slc_proxy_id(set, index);
 }
 
-/* The first `capacity` in order, sorted. */
+/* Lists the first `capacity` requests in order, sorted. */
 static void list_by_key(struct heap *heap, uint32_t capacity)
 {
     const struct slc_bit_tree *requested = &heap->set->requested;

@@ -1,4 +1,4 @@
-/* Proxies come and go. */
+/* Adding and removing proxies. */
 #include "proxy/proxy_set.h"
 
 #include "base/alloc.h"
@@ -70,7 +70,7 @@ SluiceResult slc_proxy_require_boxes(const SluiceProxySet *set, const char *func
     return slc_log_refusal(&set->log, "%s: proxies of materials have no boxes", function);
 }
 
-/* Room for one chunk more in everything that has a size of its own. */
+/* Adds a chunk of slots, and grows all arrays per slot or group. */
 static bool add_chunk(SluiceProxySet *set)
 {
     uint32_t capacity = (set->chunk_count + 1) * SLC_PROXY_CHUNK; /* at most 2^31 */
@@ -104,16 +104,16 @@ static bool add_chunk(SluiceProxySet *set)
     return true;
 }
 
-/* Boxes up to a new last one become primitives. Those between may lie behind what fitted into the
- * caller's memory when they changed: they count as changed again. The indices between were removed
- * and are not free, so each is walked over at most once per removal. */
+/* Marks boxes up to a new last box as changed, because they become primitives. At their last
+ * change, they may not have fitted in the caller's memory. The indices between were removed and are
+ * not free, so each is visited at most once per removal. */
 static void note_growth(SluiceProxySet *set, uint32_t index)
 {
     uint32_t last = slc_bits_last(&set->live), first = last == SLC_BIT_NONE ? 0 : last + 1;
     if (set->kind != SLUICE_PROXY_KIND_GEOMETRY)
         return;
     for (uint32_t group = first / SLC_PROXY_GROUP; group < index / SLC_PROXY_GROUP; group++)
-        set->changed[group] = set->version + 1; /* the version that the new box makes */
+        set->changed[group] = set->version + 1; /* version of the new box */
 }
 
 static SluiceResult take_index(SluiceProxySet *set, uint32_t *index)
@@ -222,7 +222,7 @@ void slc_proxy_release(SluiceProxySet *set, uint64_t begun, uint64_t processed)
             return;
         set->first_removed = proxy->is.removed.next;
         set->removed_count--;
-        if (proxy->generation < UINT32_MAX) /* otherwise its ids are used up */
+        if (proxy->generation < UINT32_MAX) /* otherwise the slot has no more ids */
             slc_bits_add(&set->free, index);
     }
 }

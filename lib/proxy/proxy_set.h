@@ -1,9 +1,8 @@
 /**
- * A set of proxies: which indices are live, and what is kept of each. Knows no device, no clock and
- * no files.
+ * Proxy set: states of indices, and a slot per index. Independent of device, clock and files.
  *
- * An index is live, removed (launches may still name it), free (it was used before) or new. Slots
- * lie in chunks, so that growing moves none and wastes little.
+ * An index is live, removed (launches may still report the index), free (used before), or new.
+ * Slots lie in chunks: growth moves no slots and wastes little memory.
  */
 #ifndef SLC_PROXY_PROXY_SET_H
 #define SLC_PROXY_PROXY_SET_H
@@ -13,18 +12,18 @@
 #include <sluice/proxy.h>
 
 #define SLC_PROXY_CHUNK 1024u /* slots */
-#define SLC_PROXY_GROUP 64u   /* boxes that are written together */
+#define SLC_PROXY_GROUP 64u   /* boxes per unit of writing */
 #define SLC_NO_INDEX UINT32_MAX
 
-/** The 64 bits of a launch are two words: a slot has no padding. */
+/** Slot of a proxy. A launch's 64 bits are two words, to avoid padding. */
 struct slc_proxy {
     uint32_t generation;
     union {
         SluiceProxyBox box; ///< live, geometry
         struct {
-            float min[3];       ///< of its box
-            uint32_t next;      ///< removed later; SLC_NO_INDEX: none
-            uint32_t launch[2]; ///< the last that may name it: low, high; once it is noted
+            float min[3];       ///< corner of its former box
+            uint32_t next;      ///< next removed index; SLC_NO_INDEX: end of list
+            uint32_t launch[2]; ///< last launch that may report the index: low, high; set later
         } removed;
     } is;
 };
@@ -36,12 +35,12 @@ struct SluiceProxySet {
     uint32_t max_count;
     struct slc_proxy **chunks; ///< owned
     uint32_t chunk_count, chunk_capacity;
-    uint32_t index_count; ///< indices that were ever used
+    uint32_t index_count; ///< number of indices ever used
     struct slc_bit_tree live, requested, free;
-    /** Removed indices, oldest first. Those from first_fresh on wait for a launch to be noted. */
+    /** List of removed indices, oldest first. From first_fresh on, `launch` is not set yet. */
     uint32_t first_removed, last_removed, first_fresh, removed_count;
-    uint64_t version;  ///< of the last change of a box
-    uint64_t *changed; ///< owned; by group: the version of its last change
+    uint64_t version;  ///< version of the last change of a box
+    uint64_t *changed; ///< owned; [groups]: version of the last change
     uint32_t group_capacity;
 };
 
@@ -55,11 +54,11 @@ static inline SluiceProxyId slc_proxy_id(const SluiceProxySet *set, uint32_t ind
     return (uint64_t)slc_proxy_at(set, index)->generation << 32 | index;
 }
 
-/** Errors: UNKNOWN_TEXTURE, STALE_TEXTURE. */
+/** Finds the index of an id. Errors: UNKNOWN_TEXTURE, STALE_TEXTURE. */
 SluiceResult slc_proxy_find(const SluiceProxySet *set, SluiceProxyId id, uint32_t *index);
 
-/** Frees the indices of proxies that were removed before launches up to `processed` ended. Proxies
- *  removed since the last call may be named by launches up to `begun`. */
+/** Frees removed indices whose last launch is at most `processed`. Sets the last launch of proxies
+ *  removed since the last call to `begun`. */
 void slc_proxy_release(SluiceProxySet *set, uint64_t begun, uint64_t processed);
 
 /** Refuses a set of materials. Errors: INVALID_ARGUMENT, logged with the name of the function. */
