@@ -1,5 +1,5 @@
 /**
- * Files of the operating system, by descriptors as open() returns them. Paths are UTF-8.
+ * Files of the operating system, with descriptors like those of open(). Paths are UTF-8.
  *
  * Functions that return false, -1 or NULL set errno. Any thread.
  */
@@ -23,31 +23,31 @@ enum slc_node_kind {
     SLC_NODE_OTHER
 };
 
-/** Since 1970. */
+/** Time since 1970. */
 struct slc_file_time {
     int64_t seconds, nanoseconds;
 };
 
 struct slc_file_status {
     enum slc_node_kind kind;
-    uint32_t permissions; ///< 0777, as chmod takes them
+    uint32_t permissions; ///< bits 0777, the argument of chmod
     uint64_t device, inode, link_count, size;
-    struct slc_file_time read, modified, changed; ///< contents; contents; contents or name or mode
+    struct slc_file_time read, modified, changed; ///< changed: contents, name or mode
 };
 
-/** Opens for reading. Never waits for the writer of a pipe. Returns a descriptor or -1. */
+/** Opens a file for reading. Does not wait for the writer of a pipe. Returns a descriptor or -1. */
 int slc_file_open(const char *path);
-/** Opens or creates for reading and writing. Follows no symbolic link (ELOOP) and waits for nobody.
- *  Never returns 0 to 2. */
+/** Opens or creates a file for reading and writing. Fails for symbolic links (ELOOP). Does not
+ * wait. Never returns 0 to 2. */
 int slc_file_create(const char *path, uint32_t permissions);
 /** Opens a pipe or a character device for writing. Never returns 0 to 2. */
 int slc_file_open_stream(const char *path);
 void slc_file_close(int descriptor);
-/** Descriptors that this process may have open. UINT64_MAX: no limit. */
+/** Returns the process's limit of open descriptors. UINT64_MAX: no limit. */
 uint64_t slc_get_descriptor_limit(void);
 
 bool slc_file_get_status(int descriptor, struct slc_file_status *status);
-/** Follows links to the file that they name. */
+/** Describes a file. Follows links. */
 bool slc_path_get_status(const char *path, struct slc_file_status *status);
 /** Describes the link itself. */
 bool slc_path_get_link_status(const char *path, struct slc_file_status *status);
@@ -59,31 +59,31 @@ int64_t slc_file_write_at(int descriptor, uint64_t offset, const void *bytes, si
 /** Writes 1 to `size` bytes behind those of the last call. -1: EINTR, or an error. */
 int64_t slc_file_append(int descriptor, const void *bytes, size_t size);
 
-/** Locks the file against other descriptors until it is closed. EWOULDBLOCK: somebody has. */
+/** Locks the file against other descriptors until closed. EWOULDBLOCK: locked already. */
 bool slc_file_lock(int descriptor);
 bool slc_file_set_size(int descriptor, uint64_t size);
-/** Sets the size and takes room on the disk. EINVAL or EOPNOTSUPP: the file system promises none.
- */
+/** Sets the size and reserves room on the disk. EINVAL or EOPNOTSUPP: not supported by the file
+ * system. */
 bool slc_file_reserve(int descriptor, uint64_t size);
 /** Waits until contents are on the disk. */
 bool slc_file_sync(int descriptor);
-/** File systems without permissions refuse, and need not. */
+/** Sets permissions. Ignores errors, because some file systems have no permissions. */
 void slc_file_set_permissions(int descriptor, uint32_t permissions);
 
-/** The part of a path behind its last separator, which Windows writes / or \. */
+/** Returns the part of a path behind the last separator (Windows: / or \). */
 const char *slc_path_name(const char *path);
-/** False if this process may not write to it. */
+/** Tells whether this process may write to a path. */
 bool slc_path_is_writable(const char *path);
-/** Gives a file another name, in one step, in place of a file that has the name, also of one that
- * is open. Windows before 10 refuses that (EACCES). */
+/** Renames a file atomically. Replaces an existing file, even if open; Windows before 10 fails for
+ * an open file (EACCES). */
 bool slc_path_replace(const char *from, const char *to);
 bool slc_path_remove(const char *path);
-/** Notes that the file was read now. */
+/** Sets the time of reading to now. */
 void slc_path_touch(const char *path);
-/** The absolute path of what is there, without links, or NULL. Free it with free(). */
+/** Returns the absolute path of an existing file, without links, or NULL. Free with free(). */
 char *slc_path_resolve(const char *path);
 
-/** A number that no other process has now. */
+/** Returns a number, unique among running processes. */
 uint64_t slc_get_process_id(void);
 
 #endif /* SLC_PLATFORM_FILE_H */

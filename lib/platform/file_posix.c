@@ -30,7 +30,8 @@ int slc_file_open(const char *path)
     return descriptor;
 }
 
-/* A program that was started without its standard output prints to 1. */
+/* Moves a descriptor above 2. Otherwise, output of a process without standard output would go to
+ * it. */
 static int above_standard(int descriptor)
 {
     if (descriptor < 0 || descriptor > STDERR_FILENO)
@@ -153,7 +154,7 @@ bool slc_file_set_size(int descriptor, uint64_t size)
 bool slc_file_reserve(int descriptor, uint64_t size)
 {
 #ifdef __APPLE__
-    (void)descriptor, (void)size; /* has no posix_fallocate */
+    (void)descriptor, (void)size; /* this system has no posix_fallocate */
     errno = EOPNOTSUPP;
 #else
     do

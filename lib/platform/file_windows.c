@@ -9,9 +9,9 @@
 
 #define MAX_TRANSFER ((size_t)1 << 30)
 #define SHARE_ALL (FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE)
-#define DESCRIPTOR_LIMIT 2048 /* of the C library, msvcrt.dll */
+#define DESCRIPTOR_LIMIT 2048 /* limit of the C library, msvcrt.dll */
 
-/* FileRenameInfoEx and FILE_RENAME_INFO, which headers have for Windows 10 alone. */
+/* FileRenameInfoEx and FILE_RENAME_INFO, which headers declare for Windows 10 only. */
 #define RENAME_INFO_EX ((FILE_INFO_BY_HANDLE_CLASS)22)
 #define RENAME_REPLACE 1
 #define RENAME_POSIX 2
@@ -60,7 +60,7 @@ static const struct {
     {ERROR_PAGED_SYSTEM_RESOURCES, ENOMEM},
     {ERROR_WORKING_SET_QUOTA, ENOMEM},
     {ERROR_COMMITMENT_LIMIT, ENOMEM},
-    {ERROR_NOT_ENOUGH_QUOTA, ENOMEM}, /* of memory */
+    {ERROR_NOT_ENOUGH_QUOTA, ENOMEM}, /* memory quota */
     {ERROR_FILE_EXISTS, EEXIST},
     {ERROR_ALREADY_EXISTS, EEXIST},
     {ERROR_DISK_FULL, ENOSPC},
@@ -101,7 +101,7 @@ static HANDLE handle_of(int descriptor)
     return (HANDLE)_get_osfhandle(descriptor);
 }
 
-/* Returns the tag of a reparse point that was opened itself; 0 for all else. */
+/* Returns the tag of a reparse point, opened without following; 0: not a reparse point. */
 static DWORD reparse_tag(HANDLE handle)
 {
     FILE_ATTRIBUTE_TAG_INFO info;
@@ -111,7 +111,7 @@ static DWORD reparse_tag(HANDLE handle)
                : 0;
 }
 
-/* Folders need FILE_FLAG_BACKUP_SEMANTICS, which changes nothing for files. */
+/* Opens a handle. Folders need FILE_FLAG_BACKUP_SEMANTICS, without effect for files. */
 static HANDLE open_handle(const char *path, DWORD access, DWORD creation, DWORD flags)
 {
     WCHAR wide[SLC_WIDE_PATH];
@@ -157,7 +157,7 @@ int slc_file_create(const char *path, uint32_t permissions)
         return descriptor;
     slc_file_close(descriptor);
     if (!IsReparseTagNameSurrogate(tag))
-        return create(path, 0); /* by the driver that keeps the contents elsewhere */
+        return create(path, 0); /* opens through the driver that holds the contents */
     errno = ELOOP;
     return -1;
 }
@@ -177,7 +177,7 @@ uint64_t slc_get_descriptor_limit(void)
     return DESCRIPTOR_LIMIT;
 }
 
-/* 100 ns since 1601 */
+/* Converts from units of 100 ns since 1601. */
 static struct slc_file_time time_of(uint64_t time)
 {
     uint64_t since_1970 = time - UINT64_C(116444736000000000);
@@ -190,8 +190,8 @@ static uint64_t join(DWORD high, DWORD low)
     return (uint64_t)high << 32 | low;
 }
 
-/* Reparse points of OneDrive and of deduplication are files. Links and mounted folders stand for
- * another name. */
+/* Returns the kind of a node. Reparse points of OneDrive and of deduplication are files. Links and
+ * mounted folders refer to another name. */
 static enum slc_node_kind kind_of(HANDLE handle, DWORD attributes)
 {
     if ((attributes & FILE_ATTRIBUTE_REPARSE_POINT) &&
@@ -291,7 +291,7 @@ int64_t slc_file_append(int descriptor, const void *bytes, size_t size)
     return write_bytes(descriptor, bytes, size, NULL);
 }
 
-/* A byte that no file has: locks of Windows keep others from reading what is locked. */
+/* Locks a byte beyond all files, because locks on Windows block reads of the locked bytes. */
 bool slc_file_lock(int descriptor)
 {
     OVERLAPPED place = place_of(UINT64_C(0x7FFFFFFFFFFFFFF0));
@@ -316,7 +316,7 @@ bool slc_file_reserve(int descriptor, uint64_t size)
                                     sizeof room) &&
         GetLastError() == ERROR_DISK_FULL)
         return slc_fail_windows();
-    return slc_file_set_size(descriptor, size); /* some file systems promise no room */
+    return slc_file_set_size(descriptor, size); /* room is not guaranteed on all file systems */
 }
 
 bool slc_file_sync(int descriptor)
@@ -326,7 +326,7 @@ bool slc_file_sync(int descriptor)
 
 void slc_file_set_permissions(int descriptor, uint32_t permissions)
 {
-    (void)descriptor, (void)permissions; /* a new file inherits those of its folder */
+    (void)descriptor, (void)permissions; /* a new file inherits its folder's permissions */
 }
 
 const char *slc_path_name(const char *path)
@@ -347,7 +347,7 @@ bool slc_path_is_writable(const char *path)
     return (status.permissions & 0222) != 0;
 }
 
-/* Windows 10 1607 renames as POSIX does: who has the old file open keeps it.
+/* Renames with POSIX semantics (Windows 10 1607): open handles keep the old file.
  * FILE_FLAG_WRITE_THROUGH puts the name on the disk before the call returns. */
 static bool replace_open(const char *from, const WCHAR *to)
 {
@@ -365,7 +365,7 @@ static bool replace_open(const char *from, const WCHAR *to)
     return is_done;
 }
 
-/* The second way is for older systems, and for file systems that know no such renaming. */
+/* Replaces a file. The fallback is for older systems, and file systems without POSIX renames. */
 bool slc_path_replace(const char *from, const char *to)
 {
     WCHAR wide_from[SLC_WIDE_PATH], wide_to[SLC_WIDE_PATH];
@@ -395,7 +395,7 @@ void slc_path_touch(const char *path)
     CloseHandle(handle);
 }
 
-/* "\\?\C:\a" as "C:\a" and "\\?\UNC\server\a" as "\\server\a", in place. */
+/* Converts "\\?\C:\a" to "C:\a" and "\\?\UNC\server\a" to "\\server\a", in place. */
 static WCHAR *without_prefix(WCHAR *path)
 {
     if (wcsncmp(path, L"\\\\?\\", 4) != 0)

@@ -27,10 +27,10 @@ int slc_folder_open(const char *path)
 
 bool slc_folder_sync(int descriptor)
 {
-    return fsync(descriptor) == 0 || errno == EINVAL; /* some file systems cannot, and need not */
+    return fsync(descriptor) == 0 || errno == EINVAL; /* EINVAL: not supported and not needed */
 }
 
-/* struct slc_folder is what the system calls DIR. */
+/* Converts to DIR, the system's type behind struct slc_folder. */
 static DIR *native(struct slc_folder *folder)
 {
     return (DIR *)folder;

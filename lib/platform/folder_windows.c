@@ -12,7 +12,7 @@
 struct slc_folder {
     HANDLE search;
     WIN32_FIND_DATAW found;
-    bool is_first; ///< `found` is not yet handed out
+    bool is_first; ///< `found` was not returned yet
     char path[SLC_WIDE_PATH];
     char name[MAX_NAME];
 };
@@ -34,14 +34,14 @@ int slc_folder_open(const char *path)
     return slc_open_windows(path, FILE_LIST_DIRECTORY, OPEN_EXISTING, 0, _O_RDONLY);
 }
 
-/* Names are on the disk when slc_path_replace returns. */
+/* Does nothing: names are on the disk when slc_path_replace returns. */
 bool slc_folder_sync(int descriptor)
 {
     (void)descriptor;
     return true;
 }
 
-/* "FOLDER/NAME" in `path`. False: too long. */
+/* Makes "FOLDER/NAME" in `path`. False: too long. */
 static bool join(const struct slc_folder *folder, const char *name, char path[SLC_WIDE_PATH])
 {
     int length = snprintf(path, SLC_WIDE_PATH, "%s/%s", folder->path, name);

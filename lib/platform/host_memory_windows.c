@@ -2,7 +2,7 @@
 
 #include <malloc.h>
 
-/* free() must not get memory of _aligned_malloc, so all memory comes from that. */
+/* Allocates with _aligned_malloc for every alignment, because free() cannot free such memory. */
 void *slc_host_allocate(size_t size, size_t alignment)
 {
     size_t least = _Alignof(max_align_t);

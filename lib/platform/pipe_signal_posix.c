@@ -30,7 +30,7 @@ void slc_pipe_signal_restore(const struct slc_pipe_signal *signal)
     int number;
     sigemptyset(&pipe);
     sigaddset(&pipe, SIGPIPE);
-    /* The signal of a write is the writing thread's, so it is this thread's. */
+    /* SIGPIPE of a write is pending on the writing thread, so on this thread. */
     if (!signal->was_pending && is_pending())
         sigwait(&pipe, &number);
     if (signal->is_blocked)

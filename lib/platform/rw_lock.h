@@ -1,4 +1,4 @@
-/** A lock that any number of readers, or one writer, can hold. */
+/** Read-write lock, held by any number of readers or by one writer. */
 #ifndef SLC_PLATFORM_RW_LOCK_H
 #define SLC_PLATFORM_RW_LOCK_H
 
@@ -16,9 +16,9 @@ struct slc_rw_lock {
     slc_native_rw_lock native;
 };
 
-/** False for want of memory, which Linux and Windows never do. */
+/** Initializes. False: out of memory; does not happen on Linux and Windows. */
 bool slc_rw_lock_init(struct slc_rw_lock *lock);
-/** Nobody holds it. */
+/** Destroys the lock, which no thread may hold. */
 void slc_rw_lock_finish(struct slc_rw_lock *lock);
 void slc_rw_lock_read(struct slc_rw_lock *lock);
 void slc_rw_lock_end_read(struct slc_rw_lock *lock);

@@ -1,8 +1,8 @@
 /**
  * Threads, mutexes and conditions of the operating system.
  *
- * Embedded structs that do not move between init and finish. Init returns false for want of memory,
- * which Linux and Windows never do.
+ * Structs are embedded and must not move between init and finish. Init returns false if out of
+ * memory; this does not happen on Linux and Windows.
  */
 #ifndef SLC_PLATFORM_THREAD_H
 #define SLC_PLATFORM_THREAD_H
@@ -35,9 +35,9 @@ struct slc_mutex {
 };
 
 bool slc_mutex_init(struct slc_mutex *mutex);
-/** Spins before it sleeps if the system can. For mutexes that are held for a moment, often. */
+/** Initializes a mutex that spins before sleeping, if supported. For frequent short locks. */
 bool slc_mutex_init_spinning(struct slc_mutex *mutex);
-/** Nobody holds it. */
+/** Destroys the mutex, which no thread may hold. */
 void slc_mutex_finish(struct slc_mutex *mutex);
 void slc_mutex_lock(struct slc_mutex *mutex);
 void slc_mutex_unlock(struct slc_mutex *mutex);
@@ -47,34 +47,34 @@ struct slc_condition {
 };
 
 bool slc_condition_init(struct slc_condition *condition);
-/** Nobody waits. */
+/** Destroys the condition. No thread may wait. */
 void slc_condition_finish(struct slc_condition *condition);
-/** Waits with the mutex held, which is given up meanwhile. May return without a signal. */
+/** Unlocks the mutex, waits, and locks again. May return without a signal. */
 void slc_condition_wait(struct slc_condition *condition, struct slc_mutex *mutex);
-/** As slc_condition_wait, until slc_monotonic_time() is `time` at the latest. False: it is. */
+/** slc_condition_wait with a time limit for slc_monotonic_time(). False: the time has passed. */
 bool slc_condition_wait_until(struct slc_condition *condition, struct slc_mutex *mutex,
                               uint64_t time);
-/** Wakes one of the threads that wait. */
+/** Wakes one waiting thread. */
 void slc_condition_signal(struct slc_condition *condition);
-/** Wakes all threads that wait. */
+/** Wakes all waiting threads. */
 void slc_condition_broadcast(struct slc_condition *condition);
 
-/** Stays where it is until it is joined. */
+/** Thread. Must not move until joined. */
 struct slc_thread {
     slc_native_thread native;
     void *(*run)(void *argument);
     void *argument;
 };
 
-/** Starts a thread that calls `run`, whose result is not looked at. False: the system cannot. */
+/** Starts a thread that calls `run` and ignores its result. False: failure. */
 bool slc_thread_start(struct slc_thread *thread, void *(*run)(void *argument), void *argument);
 /** Waits until `run` has returned, and frees the thread. */
 void slc_thread_join(struct slc_thread *thread);
 
-/** A number that no other running thread has. */
+/** Returns a number, unique among running threads. */
 uint64_t slc_thread_id(void);
 
-/** Processors that run threads now, at least 1. */
+/** Returns the number of available processors, at least 1. */
 uint32_t slc_get_processor_count(void);
 
 #endif /* SLC_PLATFORM_THREAD_H */

@@ -52,7 +52,7 @@ void slc_mutex_unlock(struct slc_mutex *mutex)
     pthread_mutex_unlock(&mutex->native);
 }
 
-/* macOS has no clock of a condition. It waits for a duration instead. */
+/* macOS: conditions cannot select a clock, so waits use a duration. */
 #ifdef __APPLE__
 bool slc_condition_init(struct slc_condition *condition)
 {

@@ -35,7 +35,7 @@ bool slc_mutex_init(struct slc_mutex *mutex)
 
 bool slc_mutex_init_spinning(struct slc_mutex *mutex)
 {
-    return slc_mutex_init(mutex); /* which spins */
+    return slc_mutex_init(mutex); /* SRW locks spin */
 }
 
 void slc_mutex_finish(struct slc_mutex *mutex)
@@ -69,7 +69,7 @@ void slc_condition_wait(struct slc_condition *condition, struct slc_mutex *mutex
     SleepConditionVariableSRW(variable_of(condition), lock_of(mutex), INFINITE, 0);
 }
 
-/* Whole milliseconds, rounded up; a long wait is cut, which callers take as a wake without reason.
+/* Waits in whole milliseconds, rounded up. A long wait ends early, which counts as a spurious wake.
  */
 bool slc_condition_wait_until(struct slc_condition *condition, struct slc_mutex *mutex,
                               uint64_t time)

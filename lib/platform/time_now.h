@@ -1,11 +1,11 @@
-/** Time that runs at a steady rate. */
+/** Monotonic time. */
 #ifndef SLC_PLATFORM_TIME_NOW_H
 #define SLC_PLATFORM_TIME_NOW_H
 
 #include <stdint.h>
 
-/** Nanoseconds since some moment. Never decreases, also when somebody sets the clock. Any thread.
- */
+/** Returns nanoseconds since an arbitrary moment. Never decreases, even if the clock is set. Any
+ * thread. */
 uint64_t slc_monotonic_time(void);
 
 #endif /* SLC_PLATFORM_TIME_NOW_H */
