@@ -10,7 +10,7 @@
 
 #define MAGIC "sluice-pbrt-1"
 
-/* In front of each path, in the byte order of the machine: a cache for this machine alone. */
+/* Record before each path, in the machine's byte order: the cache is for this machine only. */
 struct record {
     uint64_t size, path_hash;
     int64_t seconds, nanoseconds;
@@ -30,7 +30,7 @@ static uint32_t order_of(const char *path)
     return (uint32_t)slc_pbrt_hash(path, strlen(path));
 }
 
-/* Files by the hash of their paths: [size] numbers of PLY files or NONE. */
+/* Makes a hash table of paths: [size] numbers of PLY files or NONE. */
 static uint32_t *make_table(const SluicePbrtScene *scene, size_t *size)
 {
     for (*size = 16; *size < 2 * scene->ply_count;)

@@ -17,11 +17,11 @@ struct slc_pbrt_inflater {
 #if SLC_HAVE_ZLIB
     SluiceAllocationCallbacks allocator;
     z_stream stream;
-    bool has_ended; ///< a gzip member; another one may follow
+    bool has_ended; ///< a gzip member has ended; another may follow
 #endif
 };
 
-/* The number of bytes; 0 at the end and after a failure, which is noted. */
+/* Returns the number of bytes read; 0 at the end and after a failure, which is recorded. */
 static size_t read_file(struct slc_pbrt_window *window, unsigned char *bytes, size_t size)
 {
     while (window->failure == SLUICE_SUCCESS) {
@@ -37,7 +37,7 @@ static size_t read_file(struct slc_pbrt_window *window, unsigned char *bytes, si
 }
 
 #if SLC_HAVE_ZLIB
-/* zlib frees without a size, so each block begins with its own. */
+/* Allocates for zlib. Blocks begin with their size, because zlib frees without a size. */
 static void *allocate(void *user, uInt count, uInt size)
 {
     struct slc_pbrt_inflater *inflater = user;
@@ -129,8 +129,8 @@ static size_t read_compressed(struct slc_pbrt_window *window, unsigned char *byt
 }
 #endif
 
-/* Compressed text may be a thousand times as large as its file, so it is stopped while it is read.
- */
+/* Checks the limit during the read, because text may be a thousand times as large as a compressed
+ * file. */
 static void check_limit(struct slc_pbrt_window *window)
 {
     if (window->base + window->end <= window->most || window->failure != SLUICE_SUCCESS)

@@ -15,7 +15,7 @@ enum slc_pbrt_token_kind {
     SLC_PBRT_TOKEN_WORD, ///< also numbers
     SLC_PBRT_TOKEN_OPEN_STRING,
     SLC_PBRT_TOKEN_TOO_LONG,
-    SLC_PBRT_TOKEN_FILE_END, ///< of an imported file; not from the lexer
+    SLC_PBRT_TOKEN_FILE_END, ///< end of an imported file; not from the lexer
 };
 
 struct slc_pbrt_token {
@@ -23,7 +23,7 @@ struct slc_pbrt_token {
     bool has_escape;  ///< a string with backslashes
     const char *text; ///< without quotes; valid until the next token; a byte follows it
     size_t length;    ///< in bytes
-    uint64_t offset;  ///< of its first byte, in the text
+    uint64_t offset;  ///< offset of the first byte in the text
     uint32_t file;    ///< set by the parser
     uint32_t line, column;
 };
@@ -31,10 +31,10 @@ struct slc_pbrt_token {
 struct slc_pbrt_lexer {
     struct slc_pbrt_window window;
     uint32_t line;
-    uint64_t line_start; ///< offset of its first byte
+    uint64_t line_start; ///< offset of the line's first byte
 };
 
-/** `watch` may be NULL. Errors: those of slc_pbrt_window_open_watched. */
+/** Opens a file. `watch` may be NULL. Errors: slc_pbrt_window_open_watched's. */
 SluiceResult slc_pbrt_lexer_open(struct slc_pbrt_lexer *lexer, const char *path,
                                  struct slc_pbrt_watch *watch, const SluiceAllocationCallbacks *cb);
 void slc_pbrt_lexer_finish(struct slc_pbrt_lexer *lexer);
@@ -44,7 +44,7 @@ void slc_pbrt_next_token(struct slc_pbrt_lexer *lexer, struct slc_pbrt_token *to
 /** Replaces escapes; `out` has room for the token's length. Returns the length. */
 size_t slc_pbrt_unescape(const struct slc_pbrt_token *token, char *out);
 
-/** Skips blanks and comments. The first byte of the next token, or 0 at the end. */
+/** Skips blanks and comments. Returns the first byte of the next token, or 0 at the end. */
 unsigned char slc_pbrt_skip_blanks(struct slc_pbrt_lexer *lexer);
 
 #endif /* SLC_PBRT_LEXER_H */

@@ -97,7 +97,7 @@ static bool join_twins(struct level *level, const uint32_t *order)
     return true;
 }
 
-/* Goes around a vertex from one of its half-edges on, to the end of a boundary or once around. */
+/* Goes around a vertex from a half-edge, to the end of a boundary or once around. */
 static uint32_t rewind_fan(const struct level *level, uint32_t edge)
 {
     for (uint32_t first = edge; level->twins[edge] != NONE;) {
@@ -175,7 +175,7 @@ struct ring {
     double sum[3];
 };
 
-/* Calls `visit` for the vertices around one: in order, from one end of a boundary to the other. */
+/* Calls `visit` for the vertices around a vertex, in order; at a boundary, from end to end. */
 static void walk(const struct level *level, uint32_t vertex,
                  void (*visit)(void *user_data, uint32_t number, const float *position),
                  void *user_data, struct ring *ring)
@@ -303,7 +303,7 @@ static bool subdivide(const SluiceAllocationCallbacks *cb, const struct level *l
 
 struct tangents {
     double s[3], t[3];
-    uint32_t count; ///< of the ring
+    uint32_t count; ///< vertices in the ring
     bool is_boundary;
 };
 

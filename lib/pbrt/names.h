@@ -1,4 +1,4 @@
-/** Strings of a scene, each kept once and known by a number. */
+/** Names: unique strings of a scene, identified by numbers. */
 #ifndef SLC_PBRT_NAMES_H
 #define SLC_PBRT_NAMES_H
 
@@ -13,17 +13,17 @@ struct slc_pbrt_names {
     size_t place_count;
 };
 
-/** The number of a string. False: out of memory, or 2^32 - 1 bytes of strings are exceeded. */
+/** Finds or adds a string. False: out of memory, or more than 2^32 - 1 bytes of strings. */
 bool slc_pbrt_names_add(struct slc_pbrt_names *names, const SluiceAllocationCallbacks *cb,
                         const char *string, size_t length, uint32_t *number);
-/** Valid until the next string is added. */
+/** Returns a string, valid until the next string is added. */
 static inline const char *slc_pbrt_name(const struct slc_pbrt_names *names, uint32_t number)
 {
     return names->chars + names->starts[number];
 }
 void slc_pbrt_names_finish(struct slc_pbrt_names *names, const SluiceAllocationCallbacks *cb);
 
-/** FNV-1a with a final mix; for tables. */
+/** Returns FNV-1a with a final mix, for hash tables. */
 uint64_t slc_pbrt_hash(const void *bytes, size_t size);
 
 #endif /* SLC_PBRT_NAMES_H */

@@ -1,4 +1,4 @@
-/** The parameters of one directive. */
+/** Parameters of one directive. */
 #ifndef SLC_PBRT_PARAMETERS_H
 #define SLC_PBRT_PARAMETERS_H
 
@@ -24,7 +24,7 @@ enum slc_pbrt_type {
 
 union slc_pbrt_cell {
     float number;
-    int32_t integer; ///< also of bool: 0 or 1
+    int32_t integer; ///< also bool: 0 or 1
     uint32_t string; ///< first byte in chars
 };
 
@@ -35,8 +35,8 @@ struct slc_pbrt_parameter {
     size_t first;     ///< in cells
     size_t count;
     struct slc_pbrt_place place;
-    uint32_t value_file;   ///< where the first value is
-    uint64_t value_offset; ///< in the text of that file
+    uint32_t value_file;   ///< file of the first value
+    uint64_t value_offset; ///< offset of the first value in the file's text
 };
 
 struct slc_pbrt_parameters {
@@ -54,20 +54,20 @@ static inline void slc_pbrt_parameters_clear(struct slc_pbrt_parameters *paramet
 }
 void slc_pbrt_parameters_finish(struct slc_pbrt_parameters *parameters);
 
-/** False: out of memory. */
+/** Adds a cell. False: out of memory. */
 bool slc_pbrt_add_cell(struct slc_pbrt_parameters *parameters, union slc_pbrt_cell cell);
-/** A string with a 0 behind it; bytes of 0 inside end it. */
+/** Adds a string and a final 0. A byte of 0 in the string ends it early. */
 bool slc_pbrt_add_string(struct slc_pbrt_parameters *parameters, const char *string, size_t length,
                          uint32_t *start);
-/** Puts all parameters of `from` in front of those of `to`. */
+/** Inserts all parameters of `from` before the parameters of `to`. */
 bool slc_pbrt_prepend(struct slc_pbrt_parameters *to, const struct slc_pbrt_parameters *from);
 
-/** The type of a word, or SLC_PBRT_TYPE_COUNT. */
+/** Returns the type of a word, or SLC_PBRT_TYPE_COUNT. */
 enum slc_pbrt_type slc_pbrt_type_of(const char *word, size_t length);
-/** Numbers of one element; 1 for strings. */
+/** Returns the numbers per element; 1 for strings. */
 uint32_t slc_pbrt_type_width(enum slc_pbrt_type type);
 
-/** The last parameter with this name and one of these types that has a value, or NULL. */
+/** Returns the last parameter with a value, this name and one of these types, or NULL. */
 const struct slc_pbrt_parameter *slc_pbrt_find(const struct slc_pbrt_parameters *parameters,
                                                uint32_t types, const char *name);
 static inline const union slc_pbrt_cell *
@@ -83,9 +83,9 @@ int32_t slc_pbrt_get_integer(const struct slc_pbrt_parameters *parameters, const
                              int32_t otherwise);
 bool slc_pbrt_get_bool(const struct slc_pbrt_parameters *parameters, const char *name,
                        bool otherwise);
-/** NULL if it is not there. Valid until a string is added. */
+/** Returns a string, valid until a string is added. NULL: missing. */
 const char *slc_pbrt_get_string(const struct slc_pbrt_parameters *parameters, const char *name);
-/** Leaves `point` as it is if it is not there. */
+/** Reads a point. If missing, `point` is unchanged. */
 bool slc_pbrt_get_point(const struct slc_pbrt_parameters *parameters, const char *name,
                         double point[3]);
 

@@ -1,4 +1,4 @@
-/** A scene as it lies in memory, and what is said about it. */
+/** Parsed scene in memory, and its messages. */
 #ifndef SLC_PBRT_PARSED_SCENE_H
 #define SLC_PBRT_PARSED_SCENE_H
 
@@ -19,17 +19,17 @@ struct slc_pbrt_file {
     struct slc_pbrt_stamp stamp;
 };
 
-/** A material; equal ones are one. */
+/** Material. Equal materials share an entry. */
 struct slc_pbrt_material_entry {
     SluicePbrtMaterial material; ///< pType is NULL
     uint32_t type;               ///< in names
-    uint32_t next;               ///< with the same hash, or SLUICE_PBRT_NONE
+    uint32_t next;               ///< next with the same hash, or SLUICE_PBRT_NONE
 };
 
 struct slc_pbrt_texture_entry {
     SluicePbrtTexture texture; ///< strings are NULL
     uint32_t name, image;      ///< in names; image may be SLUICE_PBRT_NONE
-    uint32_t depth;            ///< of the textures in it: 0 for none, 1 for those without any
+    uint32_t depth;            ///< nesting of input textures; 0: no inputs
     struct slc_pbrt_place place;
 };
 
@@ -39,7 +39,7 @@ struct slc_pbrt_light_entry {
     struct slc_pbrt_place place;
 };
 
-/** Place in a file at which the numbers of a shape begin. */
+/** Position in a file of a shape's numbers. */
 struct slc_pbrt_span {
     uint64_t offset;
     uint32_t file;
@@ -96,7 +96,7 @@ struct SluicePbrtScene {
     SluicePbrtSceneInfo info;
     uint32_t message_count;
     struct slc_pbrt_names names;
-    uint32_t folder; ///< in names: of the first file, with the slash; may be ""
+    uint32_t folder; ///< in names: folder of the first file, with the slash; may be ""
     /* All owned. */
     struct slc_pbrt_file *files;
     struct slc_pbrt_material_entry *materials;

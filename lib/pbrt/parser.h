@@ -1,6 +1,6 @@
 /**
- * Reads the text of a scene. One directive at a time; blocks and included files are on stacks of
- * their own, so that no input nests calls.
+ * Parser: reads the text of a scene, one directive at a time. Blocks and included files have their
+ * own stacks, so the input cannot cause deep recursion.
  */
 #ifndef SLC_PBRT_PARSER_H
 #define SLC_PBRT_PARSER_H
@@ -27,7 +27,7 @@ struct slc_pbrt_state {
 
 /** Parameters that an Attribute gives to all directives of a kind. */
 struct slc_pbrt_attribute {
-    struct slc_pbrt_parameters parameters; ///< with those of the blocks around it
+    struct slc_pbrt_parameters parameters; ///< includes parameters of outer blocks
 };
 
 enum slc_pbrt_block_kind {
@@ -44,12 +44,12 @@ struct slc_pbrt_block {
     size_t undo_count, attribute_count;
 };
 
-/** A file that is being read. */
+/** File in reading. */
 struct slc_pbrt_frame {
     struct slc_pbrt_lexer lexer;
     uint32_t file;
     bool is_import;
-    size_t block_count; ///< before it; an import has a block of its own
+    size_t block_count; ///< open blocks before the file; an import has its own block
 };
 
 /** Kind of a named object. */
@@ -65,8 +65,8 @@ enum slc_pbrt_meaning {
 };
 
 struct slc_pbrt_meanings {
-    uint32_t here[SLC_PBRT_MEANING_COUNT]; ///< in this block and those around it
-    uint32_t last[SLC_PBRT_MEANING_COUNT]; ///< the latest of the file
+    uint32_t here[SLC_PBRT_MEANING_COUNT]; ///< meaning in this block and outer blocks
+    uint32_t last[SLC_PBRT_MEANING_COUNT]; ///< last meaning in the file
 };
 
 struct slc_pbrt_undo {
@@ -75,30 +75,30 @@ struct slc_pbrt_undo {
     uint32_t index; ///< before
 };
 
-/** A named material that is used before it is made. */
+/** Forward reference to a named material. */
 struct slc_pbrt_forward {
-    uint32_t material; ///< stands for it meanwhile
-    uint32_t instead;  ///< if it is never made
+    uint32_t material; ///< placeholder
+    uint32_t instead;  ///< replacement if the material is never defined
     uint32_t name;
     struct slc_pbrt_place place;
 };
 
 struct slc_pbrt_parser {
     SluicePbrtScene *scene;
-    SluiceResult result; ///< why the parser stops
+    SluiceResult result; ///< reason why the parser stops
     struct slc_pbrt_watch watch;
     bool in_world, after_world, has_world_end;
-    bool has_token; ///< `token` is to be read again
+    bool has_token; ///< `token` must be read again
     bool ignores_transforms;
     bool said_comma, said_mirror;
-    uint32_t object;     ///< that is being defined, or NONE
-    size_t object_block; ///< its block
+    uint32_t object;     ///< object in definition, or NONE
+    size_t object_block; ///< block of `object`
     uint32_t include_count;
     uint32_t default_material;
     struct slc_pbrt_token token;
     struct slc_pbrt_state state;
-    struct slc_pbrt_parameters parameters; ///< of the directive
-    struct slc_pbrt_parameters camera;     ///< of the Camera
+    struct slc_pbrt_parameters parameters; ///< parameters of the directive
+    struct slc_pbrt_parameters camera;     ///< parameters of the Camera
     struct slc_pbrt_place camera_place;
     struct slc_pbrt_affine camera_to_world;
     /* Owned. */
@@ -116,7 +116,7 @@ struct slc_pbrt_parser {
         coordinate_capacity, attribute_capacity;
 };
 
-/* Parser. Functions that return bool: false stops the parser, and `result` says why. */
+/* Parser functions. False stops the parser, and `result` is the reason. */
 
 /** Stops the parser with an error. Returns false. */
 #if defined(__GNUC__)
@@ -126,38 +126,38 @@ bool slc_pbrt_stop(struct slc_pbrt_parser *parser, SluiceResult result,
                    const struct slc_pbrt_place *place, const char *format, ...);
 bool slc_pbrt_out_of_memory(struct slc_pbrt_parser *parser);
 
-/** The next token, over the ends of included files. */
+/** Reads the next token, across ends of included files. */
 bool slc_pbrt_take_token(struct slc_pbrt_parser *parser);
 struct slc_pbrt_place slc_pbrt_token_place(const struct slc_pbrt_token *token);
 struct slc_pbrt_lexer *slc_pbrt_top_lexer(struct slc_pbrt_parser *parser);
-/** Closes included files that have ended. False: an import or everything has ended. */
+/** Closes ended included files. False: an import or the scene has ended. */
 bool slc_pbrt_leave_file(struct slc_pbrt_parser *parser);
-/** Reads another file from here on. Messages, but no error, if it cannot be read. */
+/** Continues in another file. Logs and continues if the file cannot be read. */
 bool slc_pbrt_enter_file(struct slc_pbrt_parser *parser, const char *name, bool is_import,
                          const struct slc_pbrt_place *place);
 
 bool slc_pbrt_read_parameters(struct slc_pbrt_parser *parser);
-/** With those of Attribute in front. */
+/** Reads the parameters of a directive, and puts parameters of Attribute before them. */
 bool slc_pbrt_read_parameters_for(struct slc_pbrt_parser *parser, enum slc_pbrt_target target);
-/** `count` numbers, in brackets or not. */
+/** Reads `count` numbers, with or without brackets. */
 bool slc_read_numbers(struct slc_pbrt_parser *parser, double *numbers, int count,
                       const struct slc_pbrt_place *place);
-/** A string in quotes; *found says whether it was there. */
+/** Reads a quoted string, if present: *found. */
 bool slc_pbrt_read_name(struct slc_pbrt_parser *parser, const char *what, uint32_t *name,
                         bool *found);
 
 /* Names. */
 
 bool slc_pbrt_intern(struct slc_pbrt_parser *parser, const char *string, uint32_t *name);
-/** Meanings of a name. NULL: out of memory. Valid until the next call. */
+/** Returns the meanings of a name, valid until the next call. NULL: out of memory. */
 struct slc_pbrt_meanings *slc_pbrt_meanings_of(struct slc_pbrt_parser *parser, uint32_t name);
 /** Gives a name a meaning until the block ends, and in the file if no block gives it one. */
 bool slc_pbrt_define(struct slc_pbrt_parser *parser, uint32_t name, enum slc_pbrt_meaning meaning,
                      uint32_t index);
-/** The index, or NONE. */
+/** Finds the index of a name, or NONE. */
 bool slc_pbrt_look_up(struct slc_pbrt_parser *parser, uint32_t name, enum slc_pbrt_meaning meaning,
                       uint32_t *index);
-/** A path that the scene names, relative to the folder of the first file. */
+/** Adds a path to names, relative to the folder of the first file. */
 bool slc_pbrt_intern_path(struct slc_pbrt_parser *parser, const char *path, uint32_t *name);
 /** Warns, once for each key. */
 #if defined(__GNUC__)
@@ -166,7 +166,7 @@ __attribute__((format(printf, 4, 5)))
 bool slc_pbrt_warn_once(struct slc_pbrt_parser *parser, const char *key,
                         const struct slc_pbrt_place *place, const char *format, ...);
 
-/* Directives, by the files that have them. */
+/* Directives, by file. */
 
 typedef bool slc_pbrt_directive(struct slc_pbrt_parser *parser, const struct slc_pbrt_place *place);
 bool slc_pbrt_read_directive(struct slc_pbrt_parser *parser, const struct slc_pbrt_place *place);
@@ -188,20 +188,20 @@ bool slc_pbrt_push_block(struct slc_pbrt_parser *parser, enum slc_pbrt_block_kin
 void slc_pbrt_close_blocks(struct slc_pbrt_parser *parser, size_t count);
 /** Computes the camera once the film is known. */
 void slc_pbrt_finish_camera(struct slc_pbrt_parser *parser);
-/** Puts named materials where they were used before they were made. */
+/** Resolves forward references to named materials. */
 bool slc_pbrt_finish_materials(struct slc_pbrt_parser *parser);
-/** The material "matte" with defaults. */
+/** Adds the material "matte" with defaults. */
 bool slc_pbrt_add_default_material(struct slc_pbrt_parser *parser);
-/** `base` with the parameters that a shape has; *material is `base` if it has none. */
+/** Overrides parameters of `base` by the shape's. Without such parameters, *material is `base`. */
 bool slc_pbrt_override_material(struct slc_pbrt_parser *parser, uint32_t base, uint32_t *material);
 
 /**
- * A float or color parameter, constant or texture. *found says whether it is there; `value` stays
- * as it is otherwise. A texture that is not known is a warning, and not found.
+ * Reads a float or color parameter, constant or texture. If missing, *found is false and `value`
+ * unchanged. An unknown texture logs a warning and counts as missing.
  */
 bool slc_pbrt_read_value(struct slc_pbrt_parser *parser, const char *name, bool is_float,
                          SluicePbrtValue *value, bool *found);
-/** A color as rgb; false if the parameter is not there. Reading a spectrum may warn. */
+/** Reads a color as RGB. False: missing. Spectra may log warnings. */
 bool slc_pbrt_read_color(struct slc_pbrt_parser *parser, const char *name, float rgb[3],
                          bool is_light);
 

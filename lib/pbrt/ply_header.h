@@ -1,4 +1,4 @@
-/** The header of a PLY file, checked against what can follow. */
+/** Header of a PLY file, checked against the file's size. */
 #ifndef SLC_PBRT_PLY_HEADER_H
 #define SLC_PBRT_PLY_HEADER_H
 
@@ -36,7 +36,7 @@ enum slc_pbrt_ply_role {
 
 struct slc_pbrt_ply_property {
     enum slc_pbrt_ply_type type;
-    enum slc_pbrt_ply_type count_type; ///< of a list; NO_TYPE: no list
+    enum slc_pbrt_ply_type count_type; ///< type of a list's count; NO_TYPE: not a list
     enum slc_pbrt_ply_role role;
 };
 
@@ -52,14 +52,14 @@ struct slc_pbrt_ply_header {
     enum slc_pbrt_ply_format format;
     uint32_t element_count;
     uint32_t vertex_element, face_element;
-    uint32_t roles; ///< bits of roles that vertices have
+    uint32_t roles; ///< bits of roles of vertex properties
     struct slc_pbrt_ply_element elements[SLC_PBRT_PLY_MAX_ELEMENTS];
 };
 
-/** Bytes of one number in binary files. */
+/** Returns the bytes of a number in binary files. */
 uint32_t slc_pbrt_ply_size(enum slc_pbrt_ply_type type);
 
-/** Reads the header and goes behind it. NULL, or what is wrong with it. */
+/** Reads the header and goes to its end. Returns NULL, or the error's description. */
 const char *slc_pbrt_ply_read_header(struct slc_pbrt_window *window,
                                      struct slc_pbrt_ply_header *header);
 

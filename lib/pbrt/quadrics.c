@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#define SEGMENTS 64u /* of a whole turn */
+#define SEGMENTS 64u /* segments of a full turn */
 #define SPHERE_ROWS 32u
 #define TURN 6.283185307179586
 

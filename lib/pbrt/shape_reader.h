@@ -1,4 +1,4 @@
-/** Triangles of shapes that are no PLY files. */
+/** Triangles of shapes other than PLY files. */
 #ifndef SLC_PBRT_SHAPE_READER_H
 #define SLC_PBRT_SHAPE_READER_H
 
@@ -13,7 +13,7 @@ SluiceResult slc_pbrt_read_inline_mesh(const SluicePbrtScene *scene,
 /** A sphere, disk or cylinder as triangles. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_pbrt_build_quadric(const SluicePbrtScene *scene,
                                     const struct slc_pbrt_shape_entry *shape, SluicePbrtMesh *mesh);
-/** Its box before the transform. */
+/** Returns the box of a quadric before the transform. */
 SluicePbrtBounds slc_pbrt_quadric_bounds(const struct slc_pbrt_shape_entry *shape);
 
 #endif /* SLC_PBRT_SHAPE_READER_H */
