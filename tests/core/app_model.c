@@ -158,7 +158,7 @@ static void answer_tile(struct app_model *a, struct app_texture *t, uint32_t til
     }
 }
 
-/* Answers that nobody asked for. */
+/* Answers for a tile that the manager did not list. All answers are refused. */
 static void answer_wrongly(struct app_model *a, struct app_texture *t, uint32_t tile)
 {
     SluiceStreamedTextureManager *m = a->f.manager;

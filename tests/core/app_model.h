@@ -37,7 +37,7 @@ void app_open(struct app_model *a, uint64_t seed);
  * released. */
 void app_close(struct app_model *a);
 
-/** Each function makes one call, or one per tile, with random textures and tiles. */
+/** Make one call each, or one per tile, with random textures and tiles. */
 void app_feed(struct app_model *a);
 void app_read_map_list(struct app_model *a);
 void app_read_cancel_list(struct app_model *a);

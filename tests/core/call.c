@@ -68,7 +68,7 @@ static SluiceResult make_list_call(SluiceStreamedTextureManager *m, const struct
     }
 }
 
-/* In memory of exactly that size, so that reading beyond it is seen. */
+/* Copies to memory of exactly that size, so that a sanitizer sees reads beyond it. */
 static void *exact_copy(const void *data, size_t size)
 {
     void *copy = malloc(size ? size : 1);

@@ -68,7 +68,7 @@ struct call {
     size_t pitch, size;
     /** Number of allocations in this call that succeed; UINT64_MAX: all. */
     uint64_t refuse_after;
-    /* Not cleared between calls. */
+    /* Kept between calls. */
     uint8_t map[CALL_MAX_MAP];
     uint32_t indices[CALL_MAX_INDICES];
 };

@@ -153,8 +153,7 @@ static void fill_map(struct call_sequence *s, uint32_t regions, uint32_t levels,
         map[i] = kind == 6 ? (uint8_t)choice_below(c, 256) : random_texel(c, levels, untouched);
 }
 
-/* Writes what a resting camera sees of a texture. Each visible region is sampled with some
- * chance. */
+/* Writes the feedback of a resting camera. Each visible region is sampled with some probability. */
 static void look(struct call_sequence *s, const SluiceStreamedTextureLayout *l, uint64_t texture,
                  uint8_t *map)
 {

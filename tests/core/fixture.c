@@ -55,7 +55,7 @@ void fixture_open(struct fixture *f, uint32_t heap_capacity, bool always_map_pac
         .alwaysMapPackedTiles = always_map_packed,
     };
     CHECK_OK(sluiceCreateStreamedTextureManager(&info, &f->manager));
-    /* the timeout alone counts: what is learned from maps has facts of its own */
+    /* only the timeout expires tiles, because other tests cover learning from maps */
     fixture_configure(f, 0, 0, 0, 0);
 }
 

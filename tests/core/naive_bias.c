@@ -67,7 +67,7 @@ static bool may_lower_bias(struct naive_manager *n, uint64_t wanted, uint64_t li
     return limit > b->failed_limit || smaller;
 }
 
-/* Whether all that holds anything was merged with the present bias. */
+/* Returns whether all textures that hold a level were merged with the present bias. */
 static bool demand_is_known(const struct naive_manager *n)
 {
     for (uint32_t i = 0; i < n->texture_room; i++)

@@ -44,7 +44,7 @@ static void make_move(struct naive_manager *n, const struct call *call, const Sl
     n->totals.movedTotal++;
 }
 
-/* With room for all moves, every move must help to empty a heap. */
+/* Checks moves that had room for all: each must help to empty a heap. */
 static void check_sources_are_empty(struct naive_manager *n, const struct outcome *seen)
 {
     for (uint32_t i = 0; i < seen->count; i++) {

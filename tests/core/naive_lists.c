@@ -1,4 +1,4 @@
-/* The lists that are handed out, but for that of tiles to map. */
+/* Lists that the manager returns, except that of tiles to map. */
 #include "core/naive_manager.h"
 
 #include <stdlib.h>

@@ -142,7 +142,7 @@ void naive_statistics(const struct naive_manager *n, SluiceStreamedTextureStatis
     out->globalMipBias = n->bias.value;
 }
 
-/* Whether the manager may give this id: lowest free index, a generation never seen there. */
+/* Checks a new id: lowest free index, and a generation never seen there. */
 static void check_new_id(struct naive_manager *n, SluiceTextureId id)
 {
     uint32_t lowest = 0;

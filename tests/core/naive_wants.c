@@ -1,4 +1,5 @@
-/* From what regions hold to wanted tiles: "What is wanted", "Order within one feedback call". */
+/* Computes wanted tiles from the levels of regions: "What is wanted", "Order within one feedback
+ * call". */
 #include "core/naive_manager.h"
 
 #include <stdlib.h>
@@ -10,7 +11,7 @@ static uint64_t min_u64(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-/* Whether piece number `a` of one size and piece number `b` of another share a texel. */
+/* Returns whether piece number `a` of one size and piece number `b` of another share a texel. */
 static bool overlap(uint64_t a, uint32_t a_size, uint64_t b, uint32_t b_size, uint32_t texels)
 {
     return a * a_size < min_u64((b + 1) * b_size, texels) &&

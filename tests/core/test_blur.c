@@ -1,4 +1,4 @@
-/** Working sets larger than the budget, while the camera stands still: what is shown. */
+/** Picture with working sets larger than the budget, while the camera stands still. */
 #include "core/scene.h"
 
 /* 16 textures of 86 tiles, all in view. */

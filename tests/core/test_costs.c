@@ -26,7 +26,7 @@ static void check_growth(uint64_t once, uint64_t twice)
                  (unsigned long long)twice);
 }
 
-/* All heaps are three quarters empty, so each can be emptied. */
+/* Returns the steps for heaps that are three quarters empty, so that each can be emptied. */
 static uint64_t steps_of_defragmenting(uint32_t heaps, bool movable)
 {
     struct fixture f;
@@ -128,7 +128,7 @@ static void failed_tiles_come_back_in_the_order_in_which_they_are_due(void **sta
     fixture_close(&f);
 }
 
-/* Each texture has a given-up tile without requests. */
+/* Returns the steps for textures with one given-up tile each and no requests. */
 static uint64_t steps_of_removing_what_was_given_up(uint32_t count)
 {
     struct fixture f;

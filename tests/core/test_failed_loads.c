@@ -457,8 +457,8 @@ static void another_tile_that_comes_is_a_sign_that_the_source_is_well(void **sta
     fixture_close(&f);
 }
 
-/* 10 000 textures: a server that is gone is asked for 16 textures at a time, whatever the frames.
- */
+/* A server that does not answer gets requests for 16 of 10 000 textures at a time, at any frame
+ * rate. */
 static void probes_of_many_textures_are_bounded(void **state)
 {
     (void)state;

@@ -181,7 +181,7 @@ static void ends_of_the_probability_are_never_and_always(void **state)
     }
 }
 
-/* One corner of one pixel: one draw in four frames, in whole rounds. */
+/* One corner of one pixel is drawn once in four frames, in whole rounds. */
 static void shared_corners_need_rounds_of_four_frames(void **state)
 {
     (void)state;

@@ -46,7 +46,7 @@ static SluiceStreamedTextureDesc random_desc(uint64_t *random)
 
 enum { MOST_REGIONS = 2048, MOST_TILES = 8192 };
 
-/* A texture of the manager and what its last map asked for. */
+/* A texture of the manager, and the levels that its last map requested. */
 struct texture {
     SluiceTextureId id;
     SluiceStreamedTextureDesc desc; ///< region sizes filled in
@@ -113,7 +113,7 @@ static void random_pairs_match_as_texel_by_texel(void **state)
     }
 }
 
-/* One primary of a set, one that is matched by a call and the follower's own map. */
+/* The follower has one primary of a set, one that a call matches, and its own map. */
 static void a_follower_of_two_primaries_holds_the_union(void **state)
 {
     (void)state;

@@ -14,7 +14,7 @@ static void check_in_use(struct fixture *f, SluiceTextureId id, uint32_t heap)
     assert_int_equal(f->heaps.released, 0);
 }
 
-/* One held slot of 64 suffices, in every state. */
+/* A heap is in use if one of its 64 slots is held, in any state. */
 static void a_heap_is_in_use_in_every_state_that_holds_a_slot(void **state)
 {
     (void)state;

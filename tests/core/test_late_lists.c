@@ -1,6 +1,6 @@
 #include "core/app_model.h"
 
-/* How often an application reads its lists and answers: once in so many steps; 0: never. */
+/* Steps after which an application reads its lists and answers; 0: never. */
 struct habits {
     uint32_t map, cancel, unmap, answer, complete, replace, defragment, release;
 };
@@ -54,7 +54,7 @@ static void nothing_is_lost_however_late_the_lists_are_read(void **state)
             canceled += last.canceledTotal;
             failed += last.failedTotal;
         }
-        /* Else the runs would say little. */
+        /* Check that the runs had enough events to be meaningful. */
         assert_true(mapped > 100 && unmapped > 20 && canceled > 50 && failed > 50);
     }
 }

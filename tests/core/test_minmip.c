@@ -9,7 +9,8 @@ static bool is_resident(const struct fixture *f, SluiceTextureId id, uint32_t ti
     return s == SLUICE_TILE_STATE_MAPPED || s == SLUICE_TILE_STATE_STANDBY;
 }
 
-/* From the header's words: down the levels as long as the tile over the texel is there. */
+/* Computes a texel from the header's definition: goes to finer levels while the tile over the texel
+ * is resident. */
 static uint8_t expected_texel(const struct fixture *f, SluiceTextureId id,
                               const SluiceStreamedTextureLayout *layout, uint32_t x, uint32_t y)
 {

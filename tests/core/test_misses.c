@@ -1,4 +1,4 @@
-/** missesToExpire: how many maps have to miss what a region wanted before that expires. */
+/** missesToExpire: number of maps without a level after which a region's demand expires. */
 #include "core/fixture.h"
 
 enum { TIMEOUT = 100 };

@@ -55,7 +55,7 @@ static void the_coarse_levels_of_what_is_in_view_are_there(void **state)
             if (frame % 6 == 0)
                 pan(frame / 6);
             scene_run(&s, 1);
-            /* Before the next step; a map and a load after the last one. */
+            /* Count just before the next step, after a map and a load for the last one. */
             for (uint32_t k = 0; frame >= 60 && frame % 6 == 5 && k < TEXTURES; k++)
                 count_coarse(&s.textures[k], cases[i].level, &coarse, &all);
         }
@@ -74,7 +74,7 @@ static void nothing_in_view_ever_shows_nothing(void **state)
     (void)state;
     for (uint32_t i = 0; i < TIMES; i++) {
         open_scene(times[i], 2);
-        /* With few slots the first texture may have taken the last packed tile's place. */
+        /* Wait, because with few slots the first texture may hold the last packed tile's slot. */
         scene_run(&s, 2 * scene_round(&s) + s.timeout_frames + 2 * s.load_frames);
         for (uint32_t frame = 0; frame < 600; frame++) {
             if (frame % 6 == 0)
@@ -145,7 +145,7 @@ static void after_a_cut_the_new_view_shows_its_coarse_levels_first(void **state)
         scene_run(&s, 200);
         for (uint32_t k = 0; k < TEXTURES; k++)
             s.textures[k].window.x = s.textures[k].window.y = 20;
-        /* A round of maps until the old view is asked for by none, then its timeout. */
+        /* Run a round of maps without the old view, then its timeout. */
         scene_run(&s, scene_round(&s) + s.timeout_frames + 20);
         uint32_t coarse = 0, all = 0;
         for (uint32_t k = 0; k < TEXTURES; k++)
@@ -159,9 +159,9 @@ static void after_a_cut_the_new_view_shows_its_coarse_levels_first(void **state)
     }
 }
 
-/* All of a view fits, but for the tiles of the last views in STANDBY. Every 60 frames the camera
- * cuts, and all of the new view has to be there before the next cut, though a list holds 8 tiles.
- */
+/* The whole view fits, except the tiles of earlier views in STANDBY. Every 60 frames the camera
+ * cuts. The whole new view must be resident before the next cut, although a list holds only 8
+ * tiles. */
 static void slots_are_reclaimed_for_all_that_waits_however_short_the_list(void **state)
 {
     (void)state;

@@ -32,7 +32,7 @@ static SluiceStreamedTextureDesc shape(size_t index, uint32_t level_kind, size_t
     return desc;
 }
 
-/* One texture, and room for its map and for what it should make wanted. */
+/* A texture, its map, and the tiles that the map should request. */
 struct subject {
     struct fixture f;
     SluiceTextureId id;
@@ -99,7 +99,7 @@ static void everything_resident_is_mip_zero_on_every_grid(void **state)
     }
 }
 
-/* One region at a time: the last of each edge, where a parent may lie beyond the coarser grid. */
+/* Checks the last region of each edge alone, because a parent may lie beyond the coarser grid. */
 static void the_last_regions_want_parents_inside_every_grid(void **state)
 {
     (void)state;
@@ -131,7 +131,7 @@ static void random_maps_want_what_a_count_by_texels_finds(void **state)
             shape(i / kinds, i % LEVEL_KINDS, i / LEVEL_KINDS % REGION_KINDS);
         subject_open(&s, &desc);
         for (uint32_t round = 0; round < 4; round++) {
-            /* From nearly empty to half full. */
+            /* Fill the map from nearly empty to half full. */
             uint32_t rare = 2 + s.regions / (4u << 2 * round);
             for (uint32_t r = 0; r < s.regions; r++)
                 s.map[r] = next_random(&random) % rare ? SLUICE_MIP_UNTOUCHED
@@ -142,7 +142,7 @@ static void random_maps_want_what_a_count_by_texels_finds(void **state)
     }
 }
 
-/* Each value in some region of some map. */
+/* Uses each value in some region of some map. */
 static void check_every_value(struct subject *s, int32_t bias, uint32_t limit)
 {
     for (uint32_t first = 0; first < 256; first += s->regions) {

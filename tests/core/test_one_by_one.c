@@ -21,7 +21,8 @@ static void open_run(struct run *r, uint32_t heaps, uint32_t calls)
     r->calls = calls;
 }
 
-/* All is in view, some textures from farther away. Returns how many tiles were loaded. */
+/* Runs frames in which all textures are in view, some from farther away. Returns the number of
+ * loaded tiles. */
 static uint32_t run_frames(struct run *r, uint32_t frames)
 {
     uint32_t uploads = 0;

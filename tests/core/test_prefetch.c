@@ -170,7 +170,7 @@ static void what_comes_into_view_finds_its_coarse_levels(void **state)
     }
 }
 
-/* Without alwaysMapPackedTiles the packed tile is the only one that is still to be loaded. */
+/* Without alwaysMapPackedTiles the packed tile is the only one left to load. */
 static void one_load_is_enough_where_packed_tiles_come_and_go(void **state)
 {
     (void)state;

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Where the life of a tile may be when its texture goes. */
+/* State of a tile when its texture is removed. */
 enum stage {
     NEVER_SAMPLED,
     LAPSED, /* sampled once, FREE again */
@@ -139,7 +139,7 @@ static void check_nothing_listed(struct bench *b)
         assert_true(rects[i].textureId == b->bystander);
 }
 
-/* Every call that names a texture; none may do anything. `alive` are those that are looked at. */
+/* Makes every call that takes a texture. None may have an effect. `alive`: textures to check. */
 static void check_id_is_stale(struct bench *b, SluiceTextureId id, uint32_t count,
                               const SluiceTextureId *alive)
 {
@@ -190,7 +190,7 @@ static void remove_texture(struct bench *b, SluiceTextureId id)
                      0);
 }
 
-/* With everything over, only the bystander holds slots, and one heap is enough for it. */
+/* Completes everything. Then only the bystander holds slots, and one heap suffices for it. */
 static void complete_and_release(struct bench *b)
 {
     SOUND(&b->f, sluiceCompleteRetireValue(b->f.manager, b->retire));
@@ -219,7 +219,8 @@ static void removal_at_every_stage_leaves_nothing_behind(void **state)
     }
 }
 
-/* Each stage follows each: what an old texture left in an index would show in the next. */
+/* Runs each stage after each other one, so that remains of an old texture at an index would
+ * show. */
 static void the_next_texture_of_an_index_starts_from_nothing(void **state)
 {
     (void)state;
@@ -273,7 +274,7 @@ static void memory_is_back_after_everything_is_removed(void **state)
     fixture_close(&b.f);
 }
 
-/* Nothing of a removed primary's maps reaches its followers, and a new one is not their primary. */
+/* Maps of a removed primary do not reach its followers, and a new texture is not their primary. */
 static void removal_of_a_primary_in_flight_frees_its_followers(void **state)
 {
     (void)state;

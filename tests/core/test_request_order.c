@@ -100,8 +100,8 @@ static void check_places(struct fixture *f, const SluiceTextureId ids[3], const 
     }
 }
 
-/* Requests that wait get the priority of the primary that comes, and lose that of the one that
- * goes. A later change of the priority starts from what they have. */
+/* Waiting requests get the priority of a new primary, and lose that of a removed one. Later changes
+ * of the priority start from the present value. */
 static void waiting_requests_follow_the_priority_of_their_primary(void **state)
 {
     (void)state;

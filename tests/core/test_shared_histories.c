@@ -1,5 +1,5 @@
-/* Textures of a set share what their maps asked for, and nobody can tell: docs/manager.md, "Sets".
- */
+/* Textures of a set share the history of their maps. Sharing changes no result: docs/manager.md,
+ * "Sets". */
 #include "core/fixture.h"
 
 /* Heaps of 6 slots, one at most: too much is wanted from 22 tiles on. All happens at one time. */

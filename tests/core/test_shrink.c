@@ -34,8 +34,8 @@ static void release_empty_heaps(void)
         CHECK_OK(sluiceReleaseHeap(f.manager, heaps[i]));
 }
 
-/* A map, evictions, at most `evacuated` more, and what is to be loaded. Returns what was unmapped.
- */
+/* Runs a frame: a map, evictions, at most `evacuated` evacuations, and loads. Returns the number of
+ * unmapped tiles. */
 static uint32_t frame(SluiceTextureId id, uint32_t evacuated)
 {
     fixture_feed(&f, id, 0, ++now, 1000000);
@@ -214,7 +214,7 @@ static void packed_tiles_in_heaps_of_their_own_let_the_others_go(void **state)
     assert_int_equal(heaps_that_stay(true), 48 / CAPACITY);
 }
 
-/* Both kinds of tiles use the last slots: none stays free while a request waits. */
+/* Packed and other tiles both use the last slots. No slot stays free while a request waits. */
 static void tiles_take_slots_of_the_other_kind_before_they_wait(void **state)
 {
     (void)state;

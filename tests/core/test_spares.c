@@ -56,7 +56,7 @@ static void what_was_given_back_serves_others_of_about_that_size(void **state)
     slc_spares_give(&m, NULL, 1025);
 }
 
-/* In any order of use. All these sizes belong to one class with blocks of 512 bytes. */
+/* Uses blocks in random order. All sizes belong to one class with blocks of 512 bytes. */
 static void an_eighth_more_is_held_than_was_in_use_at_once(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/** Working sets larger than the budget, while the camera stands still: nothing goes on for ever. */
+/** Working sets larger than the budget, while the camera stands still. Loading must end. */
 #include "core/scene.h"
 
 enum { CAPACITY = 16 };
@@ -21,7 +21,7 @@ static void open_scene(uint32_t times, uint8_t rings, uint32_t maps_per_frame)
 static const uint32_t times[] = {15, 40, 100, 400};
 enum { TIMES = sizeof times / sizeof *times };
 
-/* No upload for 300 frames, and the bias rests. */
+/* Checks that nothing is uploaded for 300 frames and the bias does not change. */
 static void check_rest(uint32_t tenths)
 {
     uint64_t uploads = s.uploads, unmapped = s.unmapped;
@@ -56,7 +56,7 @@ static void uploads_end_some_round_robins_after_the_camera_stands_still(void **s
     }
 }
 
-/* On the way to rest too: a tile is loaded once, and again only where the bias overshot. */
+/* While the scene settles, a tile is loaded once, and again only where the bias overshot. */
 static void few_tiles_are_loaded_twice_while_it_settles(void **state)
 {
     (void)state;

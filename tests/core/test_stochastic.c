@@ -1,5 +1,4 @@
-/** Feedback that misses much of what is in view, at random: what is there stays, what leaves goes.
- */
+/** Feedback that randomly misses much of the view. Visible tiles stay, others are dropped. */
 #include "core/scene.h"
 
 enum { TEXTURES = 4 };
@@ -16,7 +15,7 @@ static void open_scene(uint32_t missing)
         scene_add(&s, 2048, (struct scene_window){0, 0, 16, 16, 0, 3});
 }
 
-/* So many maps of each texture, one in `interval` frames. */
+/* Feeds `maps` maps to each texture, one in `interval` frames. */
 static void run_maps(uint32_t maps, uint32_t interval)
 {
     for (uint32_t map = 0; map < maps; map++) {
@@ -32,9 +31,10 @@ static const uint32_t intervals[] = {1, 2, 4, 8, 15, 16, 24, 64};
 enum { INTERVALS = sizeof intervals / sizeof *intervals };
 
 /*
- * Uploads during `maps` maps of a settled texture. What is believed has a chance of 10^-6 per
- * region and map to be wrong, which is one of 1024 regions in 1000 maps. Where 99 of 100 are
- * missing the few hits leave doubt about how many: no more than all tiles again in 1000 maps.
+ * Limits the uploads during `maps` maps of a settled texture. An estimate is wrong with a
+ * probability of 10^-6 per region and map: one of 1024 regions in 1000 maps. If 99 of 100 samples
+ * are missing, few hits give a poor estimate of that share. Then all tiles may be loaded once more
+ * in 1000 maps.
  */
 static void check_settled(uint32_t maps, uint32_t interval)
 {
@@ -137,7 +137,7 @@ static void maps_that_begin_to_miss_more_are_learned_beyond_the_timeout(void **s
     check_change(50, 99, 8000, 16);
 }
 
-/* Maps until nothing but what is in view is MAPPED, at most `limit`. */
+/* Returns the number of maps until only visible tiles are MAPPED, at most `limit`. */
 static uint32_t maps_until_dropped(uint32_t limit, uint32_t interval)
 {
     uint32_t wanted = scene_working_set(&s), maps = 0;

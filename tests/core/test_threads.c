@@ -96,7 +96,7 @@ static void calls_on_a_const_manager_may_run_beside_each_other(void **state)
     fixture_close(&f);
 }
 
-/* One manager from start to end; a hash of its decisions. */
+/* Runs a manager from start to end. Returns a hash of its decisions. */
 static void *live_alone(void *user)
 {
     uint64_t *hash = user;

@@ -64,7 +64,7 @@ static void mark_region(const SluiceStreamedTextureDesc *d, uint32_t region, uin
             wanted[y * width + x] |= columns[x];
 }
 
-/* Parents of what is wanted at `level`; `wanted` and `above` are the flags of the two levels. */
+/* Marks the parents of wanted tiles at `level`. `wanted` and `above`: flags of the two levels. */
 static void mark_parents(const SluiceStreamedTextureDesc *d, uint32_t level, const bool *wanted,
                          bool *above)
 {
@@ -104,7 +104,7 @@ void wanted_tiles(const SluiceStreamedTextureDesc *desc, const uint8_t *asked, b
     free(rows);
 }
 
-/* Whether regions meet along one axis: [0, 1) is cut into one cell per pair of texels. */
+/* Returns which regions overlap along an axis. Cuts [0, 1) into one cell per pair of texels. */
 static bool *meetings(uint32_t from_size, uint32_t from_region, uint32_t to_size,
                       uint32_t to_region)
 {
@@ -117,7 +117,7 @@ static bool *meetings(uint32_t from_size, uint32_t from_region, uint32_t to_size
     return meet;
 }
 
-/* By trying: as long as the follower is still at least as large as the scaled primary. */
+/* Finds the shift by trial: the follower must stay at least as large as the scaled primary. */
 static int level_shift(const SluiceStreamedTextureDesc *from, const SluiceStreamedTextureDesc *to)
 {
     int shift = 0;

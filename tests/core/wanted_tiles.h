@@ -13,8 +13,8 @@ void asked_levels(const SluiceStreamedTextureDesc *desc, const SluiceFeedbackDes
 void wanted_tiles(const SluiceStreamedTextureDesc *desc, const uint8_t *asked, bool *wanted);
 
 /**
- * Merges requests of the primary's regions into those of the follower's, `to_asked`: the finer
- * level stays. Both descriptions must have their region sizes filled in.
+ * Merges requests of the primary's regions into those of the follower's, `to_asked`. The finer
+ * level wins. Both descriptions must have their region sizes set.
  */
 void follower_levels(const SluiceStreamedTextureDesc *from, const uint8_t *from_asked,
                      const SluiceStreamedTextureDesc *to, uint8_t *to_asked);
