@@ -15,16 +15,17 @@ struct array_scene {
 enum pattern_kind array_scene_kind(uint32_t layer);
 
 /**
- * Adds what is an array of `layer_count` layers. True, or false where it is refused, as is right if
- * and only if sparse images of the device have one tail for all layers.
+ * Adds an array of `layer_count` layers. Returns false if it is refused, which is correct only if
+ * sparse images of the device have one tail for all layers.
  */
 bool array_scene_add(struct scene *scene, SluiceImageSource *source, uint32_t layer_count,
                      SluiceVulkanTexture *textures);
 
-/** With the patterns of array_scene_kind, or all PATTERN_LEVEL. False: refused, as above. */
+/** Creates the scene with the patterns of array_scene_kind, or with PATTERN_LEVEL for all layers.
+ * Returns false if the array is refused, as above. */
 bool array_scene_init(struct array_scene *a, struct harness *h, SluiceVulkanStreamerCreateInfo info,
                       bool mixed, const uint32_t size[2], SluiceFormat format);
-/** Also of one that was refused. */
+/** Call also after array_scene_init returned false. */
 void array_scene_finish(struct array_scene *a);
 
 #endif /* TESTS_DEVICE_ARRAY_SCENE_H */

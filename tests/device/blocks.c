@@ -1,5 +1,5 @@
 /*
- * Both endpoints of a block are equal and all indices 0, so the color follows from the format's
+ * Blocks with equal endpoints and all indices 0, so that the color follows from the format's
  * definition without an encoder. Source: Khronos Data Format Specification, "S3TC", "RGTC", "BPTC".
  */
 #include "device/blocks.h"
@@ -15,7 +15,7 @@ struct block_source {
     SluiceImageInfo info;
 };
 
-/* 8 bits per channel, from which each format takes what it can hold. */
+/* Returns 8 bits per channel. Each format uses as many as it can hold. */
 static uint32_t seed_of(uint32_t level, uint32_t x, uint32_t y)
 {
     uint32_t h = (x / 4) * 0x9E3779B1u ^ (y / 4) * 0x85EBCA77u ^ (level + 1) * 0xC2B2AE3Du;

@@ -27,7 +27,8 @@ void cube_oracle_direction(uint32_t face, double u, double v, double direction[3
 void cube_oracle_derivative(uint32_t face, double du, double dv, double derivative[3]);
 void cube_oracle_position(const double direction[3], uint32_t *face, double uv[2]);
 
-/** For faces of size x size texels. Where three faces meet, three texels weigh the same more. */
+/** Returns the taps for faces of size x size texels. Where three faces meet, three texels have
+ * equal extra weight. */
 struct cube_taps cube_oracle_bilinear(uint32_t size, const double direction[3]);
 
 /** The distance of a direction's point on the cube, whose edges have length 2, to a rectangle of

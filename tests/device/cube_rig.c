@@ -48,7 +48,7 @@ static VkPipeline create_pipeline(const struct prober *p, enum cube_form form)
                                     prober_specialize(p, &specialization));
 }
 
-/* The harness's, as those of probers. */
+/* Chooses the pipeline of a form. The harness owns it, as it does those of probers. */
 void cube_rig_use(struct cube_rig *rig, enum cube_form form)
 {
     const struct prober *p = &rig->scene.prober;

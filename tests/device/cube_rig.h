@@ -11,7 +11,7 @@
 #define CUBE_RIG_LAYERS (CUBE_RIG_CUBES * CUBE_ORACLE_FACES)
 #define CUBE_RIG_CAPACITY (PROBE_CAPACITY / 2) ///< samples
 
-/** How the shader gets its texture. CUBE_FORM_HLSL: like CUBE_FORM_CUBE, in HLSL. */
+/** Ways to pass the texture to the shader. CUBE_FORM_HLSL: like CUBE_FORM_CUBE, in HLSL. */
 enum cube_form { CUBE_FORM_CUBE, CUBE_FORM_ARRAY, CUBE_FORM_NUMBER, CUBE_FORM_HLSL };
 
 struct cube_rig {

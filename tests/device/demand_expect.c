@@ -58,7 +58,7 @@ static void note(struct demand_expectation *e, uint32_t page, uint8_t what)
     e->notes[page] |= what;
 }
 
-/* One filter of one level: all of its pages are looked up. */
+/* Looks up all pages that a filter touches in a level. */
 static void look_up(struct demand_expectation *e)
 {
     memset(e->sum, 0, sizeof e->sum);

@@ -177,7 +177,7 @@ static double spline(double x)
     return x >= 1 ? (2 - x) * (2 - x) * (2 - x) / 6 : (3 * x * x * x - 6 * x * x + 4) / 6;
 }
 
-/* Its derivative. */
+/* Derivative of the spline. */
 static double spline_slope(double x)
 {
     double a = fabs(x), slope = a >= 2 ? 0 : a >= 1 ? -(2 - a) * (2 - a) / 2 : (3 * a - 4) * a / 2;

@@ -287,7 +287,8 @@ static void record_samples(struct runner *r, VkCommandBuffer commands, uint32_t 
                           &barrier, 0, NULL, 0, NULL);
 }
 
-/* After its preparation, its samples or its end. False: no launch can be prepared. */
+/* Abandons a launch after its preparation, its samples or its end. Returns false if no launch can
+ * be prepared. */
 static bool abandon_launch(struct runner *r, VkCommandBuffer commands, uint32_t at)
 {
     struct harness *h = r->h;

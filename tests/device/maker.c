@@ -96,7 +96,7 @@ static VkDescriptorSet write_set(struct maker *m, VkImageView view)
     return set;
 }
 
-/* One dispatch for the batch; tiles that are not made are left out. */
+/* Makes the batch with one dispatch. Leaves out tiles that are not made. */
 static void dispatch(struct maker *m, const SluiceTileBatch *batch, const SluiceResult *results)
 {
     struct harness *h = m->h;

@@ -20,13 +20,14 @@ struct maker {
     uint32_t next_set, next_tile;
     uint32_t tile_count, batch_count;
     uint32_t version; ///< texels are those of the pattern's level + version * MAKER_VERSION
-    /** One in so many tiles is not ready, or fails; 0: none. */
+    /** share of tiles that are not ready, or fail: one in so many; 0: none */
     uint32_t unready_one_in, failing_one_in, turn;
 };
 
-/** `source`: see struct maker. At most MAKER_SETS batches, MAKER_TILES tiles may be under way. */
+/** Creates a maker. `source`: see struct maker. At most MAKER_SETS batches and MAKER_TILES tiles
+ * may be in flight. */
 void maker_init(struct maker *maker, struct harness *h, SluiceImageSource *source);
-/** The device is idle. */
+/** Call only while the device is idle. */
 void maker_finish(struct maker *maker);
 
 SluiceTileProducer maker_producer(struct maker *maker, const SluiceImageInfo *image);

@@ -21,7 +21,7 @@ static VkShaderModule module(struct harness *h, const uint32_t *code, size_t siz
     return result;
 }
 
-/* Nothing is attached: fragments only write to buffers. */
+/* Creates a target without attachments, because fragments only write to buffers. */
 static void create_target(struct painter *p)
 {
     struct harness *h = p->prober->h;
@@ -112,8 +112,8 @@ static VkPipeline create_pipeline(const struct painter *p, enum painter_feedback
     return pipeline;
 }
 
-/* Layout and render pass that it was made with may be gone: those of each painter are defined
- * alike. */
+/* Returns a pipeline that painters share. It stays valid after the layout and render pass of its
+ * creation are gone, because those of all painters are compatible. */
 static VkPipeline shared_pipeline(const struct painter *p, enum painter_feedback feedback)
 {
     struct harness *h = p->prober->h;

@@ -15,7 +15,7 @@ struct painter {
     uint32_t layer; ///< PAINTER_LAYER: that is drawn
 };
 
-/** Where the feedback has its level from. */
+/** Source of the feedback's level. */
 enum painter_feedback {
     PAINTER_COMPUTE,    ///< the formula
     PAINTER_QUERY,      ///< textureQueryLod before all else

@@ -1,6 +1,6 @@
 /**
- * One conformance case: samples, each with a map of its own, written in compute and in fragment
- * shaders and compared with brute force: required, marked and allowed lie in each other.
+ * Conformance test of samples, each with its own map, written in compute and in fragment shaders.
+ * Brute force checks that the marked tiles include the required ones and that all are allowed.
  */
 #ifndef TESTS_DEVICE_SUITE_H
 #define TESTS_DEVICE_SUITE_H
@@ -33,8 +33,8 @@ void suite_add(struct suite *s, struct SluiceTextureEntry entry, struct ConformI
                double v);
 
 /**
- * Runs both stages and prints, as lines "name value unit", the number of samples, of tiles that
- * exact samplers need and of tiles that are asked for beyond those.
+ * Runs both stages. Prints lines "name value unit": the number of samples, of tiles that exact
+ * samplers need, and of tiles that are requested beyond those.
  */
 void suite_end(struct suite *s, const char *name);
 

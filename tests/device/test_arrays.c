@@ -257,7 +257,7 @@ static double psnr(const struct ProbeOutput *a, const struct ProbeOutput *b)
     return sum > 0 ? -10 * log10(sum / (SAMPLES * 4.0)) : 999;
 }
 
-/* In dB, as in test_modes.c: samplers of GPUs use another LOD than the formula. */
+/* In dB, as in test_modes.c. Samplers of GPUs use another LOD than the formula. */
 static double least_psnr(const struct harness *h, bool magnified)
 {
     if (h->caps.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || magnified)

@@ -86,7 +86,8 @@ static void add_texture(struct picture *p, uint32_t i, uint32_t number)
                                                       p->anisotropic && number % 2 ? 4.0f : 0.0f};
     CHECK_OK(sluiceAddVulkanTexture(p->streamer, &create, &p->textures[i]));
     assert_float_equal(p->textures[i].maxAnisotropy, create.maxAnisotropy > 1 ? 4 : 1, 0);
-    /* With anisotropy, lavapipe uses one pixel's derivatives for the whole quad. */
+    /* Scale all textures equally for lavapipe, which uses one pixel's derivatives for the whole
+     * quad with anisotropy. */
     const bool alike = p->anisotropic && harness_level_error(p->h) == 0;
     ((struct BindlessTexture *)p->list.mapped)[i] =
         (struct BindlessTexture){.tableIndex = p->textures[i].tableIndex,

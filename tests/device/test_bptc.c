@@ -22,7 +22,7 @@ static bool is_bc6h(SluiceFormat format)
     return format != SLUICE_FORMAT_BC7_UNORM_BLOCK;
 }
 
-/* Random bits after those of a mode that the decoder knows. */
+/* Makes a block of random bits after those of a mode that the decoder knows. */
 static void make_block(SluiceFormat format, uint32_t level, uint32_t x, uint32_t y,
                        uint8_t block[16])
 {

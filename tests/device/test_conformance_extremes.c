@@ -24,7 +24,7 @@ static struct SluiceTextureEntry entry_of(uint32_t i)
                  : conform_entry(300, 700, 64, 32, suite_modes[i / 2 % SUITE_MODES]);
 }
 
-/* Ordinary neighbors of what is special. */
+/* Adds ordinary samples beside the special one. */
 static void add_neighbors(struct suite *s, struct SluiceTextureEntry e, uint32_t count)
 {
     for (uint32_t i = 1; i < count; i++)
@@ -85,7 +85,7 @@ static void biases_anisotropies_and_levels_of_any_value_mark_inside_the_map(void
     suite_end(s, "special_bias");
 }
 
-/* Far outside the image floats are coarse; what they stand for is exact all the same. */
+/* Far outside the image floats are coarse. The coordinates that they represent are still exact. */
 static void coordinates_far_outside_wrap_exactly(void **state)
 {
     const double far[] = {2, 17, 255, 4096, 65536, 1e5, 999999, 1e6, 4194303, 8388607, 1e7};

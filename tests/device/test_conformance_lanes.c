@@ -1,7 +1,6 @@
 /*
- * Helper invocations write nothing: those beside the edge of a triangle, which exist for
- * derivatives alone, and those that a discard makes. An attachment shows which fragments there
- * really were.
+ * Helper invocations write nothing: neither those beside the edge of a triangle, which only serve
+ * derivatives, nor those after a discard. An attachment shows which fragments existed.
  */
 #include "device/conform.h"
 

@@ -1,6 +1,6 @@
 /*
- * No tile that this device's own sampler reads is left unmarked. What it reads is seen, not
- * computed: drivers differ in levels of detail and in the footprints of anisotropy.
+ * Every tile that this device's own sampler reads is marked. The reads are observed, not computed,
+ * because drivers differ in levels of detail and in the footprints of anisotropy.
  */
 #include "device/suite.h"
 #include "device/truth.h"

@@ -118,7 +118,7 @@ static void samples_of_cubes_are_filtered_across_edges_and_corners(void **state)
     }
 }
 
-/* Each frame shows resident texels, filtered across edges, and never a missing one. */
+/* Checks that each frame shows only resident texels, filtered across edges. */
 static void check_streaming(struct harness *h, uint32_t size, float anisotropy)
 {
     static double lods[SAMPLES];

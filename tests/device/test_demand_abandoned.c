@@ -14,7 +14,7 @@ struct loaded {
     struct RunnerOutput outputs[IMAGES * TEXELS];
 };
 
-/* All that is sampled is loaded, whatever launches are given up on the way. */
+/* Loads all sampled texels, although some launches are abandoned. */
 static void load(struct loaded *loaded, uint32_t abandon_one_in)
 {
     static struct runner_image images[IMAGES];

@@ -197,7 +197,7 @@ static void samples_are_filtered_across_edges_and_corners(void **state)
     check_filter(16);  /* only a mip tail */
 }
 
-/* Each sample has a cube of its own, so that opened faces and read tiles belong to it. */
+/* Each sample has its own cube, so that opened faces and read tiles belong to one sample. */
 static void faces_and_tiles_that_a_sample_touches_are_requested_and_no_others(void **state)
 {
     (void)state;

@@ -10,7 +10,7 @@ enum { SIZE = 1024, TILE = 128, TILES = SIZE / TILE };
 
 static struct harness h;
 
-/* At once, and never by itself. */
+/* Delays of retries: at once, and never without a call. */
 static const uint64_t soon = 1, never = UINT64_MAX;
 
 static SluiceDemandLoaderCreateInfo quick_retries(uint64_t delay)

@@ -160,7 +160,7 @@ static void a_tile_that_is_not_ready_comes_later(void **state)
     demand_maker_finish(&m);
 }
 
-/* Its levels lie in one page, of which some are recorded before one fails. */
+/* The levels lie in one page. Some are recorded before one fails. */
 static void a_mip_tail_that_fails_half_way_shows_the_failure_color(void **state)
 {
     (void)state;
@@ -306,7 +306,7 @@ static void words_sample(struct words *w, uint32_t page)
                          .kind = RUNNER_BYTES, .index = w->first + page, .dx = {(float)w->size}});
 }
 
-/* Whether a sample found the page's word in all its bytes. */
+/* Returns whether a sample found the page's word in all its bytes. */
 static bool words_show(const struct words *w, uint32_t sample, uint32_t page)
 {
     uint32_t sum = 2166136261u, word = word_of(w, page);

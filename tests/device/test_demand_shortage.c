@@ -10,8 +10,8 @@ static struct harness h;
 
 enum { SIZE = 4096, TILE = 128, TILES = SIZE / TILE };
 
-/* A device with less memory than it says: what the functions below share, and no test changes while
- * a loader uses them. */
+/* Device with less memory than it reports. Used by the functions below. Tests change it only while
+ * no loader calls them. */
 static struct {
     PFN_vkGetDeviceProcAddr get;
     PFN_vkAllocateMemory allocate;

@@ -322,7 +322,8 @@ static void nothing_is_forgotten_without_eviction(void **state)
     small_destroy(s);
 }
 
-/* Their colors are in the table of textures: no page is looked up, and none is ever resident. */
+/* The colors of these levels are in the table of textures, so that no page is looked up and none is
+ * resident. */
 static void textures_whose_last_level_is_sampled_are_in_use(void **state)
 {
     (void)state;

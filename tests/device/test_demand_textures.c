@@ -471,7 +471,7 @@ static void a_grid_shows_the_texture_of_each_cell(void **state)
     struct RunnerOutput out = runner_output(&r, 0);
     assert_memory_equal(out.color, missing, sizeof out.color);
     runner_check_texel(&r, 1, &images[1], 0, 300, 20);
-    /* After a removed grid nothing of it is shown. */
+    /* Check that nothing of a removed grid is shown. */
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, grid));
     CHECK_OK(sluiceRemoveDemandTexture(r.loader, cells[5]));
     runner_launch(&r);

@@ -11,7 +11,7 @@
 
 static struct harness h;
 
-/* A texture whose reads are held, opened, and eight of its tiles asked for. */
+/* An opened texture whose reads are held, with eight requested tiles. */
 struct held {
     struct runner r;
     struct runner_image image;

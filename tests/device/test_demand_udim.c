@@ -327,7 +327,7 @@ static void add_base_sample(struct runner *r, const struct set *set, double u, d
                             double width)
 {
     add_sample(r, set, u, v, width, width);
-    /* Only the base, between its edges. */
+    /* sample the base alone, between its edges */
     runner_add(r, (struct RunnerInput){.kind = RUNNER_GRAD,
                                        .index = (uint32_t)set->base_id,
                                        .uv = {(float)(u / COLUMNS), (float)(v / ROWS)},

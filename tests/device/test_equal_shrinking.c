@@ -292,7 +292,7 @@ static void unneeded_equal_tiles_give_way_to_a_loader(void **state)
     close_scene();
 }
 
-/* All tiles of the source are equal, if they are whole. */
+/* Gives all whole tiles of the source the same identity. */
 static bool identify_all(SluiceImageSource *base, const SluiceImageRegion *region,
                          uint64_t *identity)
 {

@@ -54,7 +54,7 @@ static void begin(struct scene *scene, struct harness *h)
         memcpy(expected[t], scene_outputs(scene, t), sizeof expected[t]);
 }
 
-/* In one argument or in many; of one lane in seven, or of all. */
+/* Replaces one argument or many, of one lane in seven or of all, by special values. */
 static bool make_special(struct ProbeInput *in, uint32_t lane, uint32_t round)
 {
     if (round % 2 == 0 && lane % 7 != round % 7)

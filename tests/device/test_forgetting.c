@@ -159,7 +159,8 @@ static void without_age_and_with_memory_all_stay(void **state)
     crowd_finish(&c);
 }
 
-/* In every phase: forgotten, waiting for its image to be destroyed, waiting for its texels. */
+/* Textures are removed in every phase: forgotten, waiting for the image to be destroyed, waiting
+ * for texels. */
 static void they_can_be_removed_at_any_time(void **state)
 {
     SluiceVulkanStreamerCreateInfo info = settings(8);

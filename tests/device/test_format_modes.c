@@ -149,7 +149,7 @@ static void demand_loaders_take_the_formats_that_the_table_says(void **state)
     assert_true(count >= 10);
 }
 
-/* Vulkan's own answers, asked for here again. */
+/* Compares with Vulkan's own answers. */
 static void answers_agree_with_the_format_properties_of_the_device(void **state)
 {
     (void)state;

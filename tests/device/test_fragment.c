@@ -117,7 +117,7 @@ static void settled_anisotropic_picture_is_that_of_a_resident_texture(void **sta
     compare_with_truth(h, 1500, 1999, 16, false, 60);
 }
 
-/* Each pixel is selected once in 64 frames, so a few more than that settle anything. */
+/* Each pixel is selected once in 64 frames, so that a few more frames settle everything. */
 static void lattice_settles_a_picture_in_seventy_frames(void **state)
 {
     compare_with_truth(*state, 2048, 2048, 1, true, 74);

@@ -213,7 +213,7 @@ static void check_all(const struct rig *rig)
     }
 }
 
-/* In GLSL, then in HLSL. */
+/* Runs in GLSL, then in HLSL. */
 static void samples_are_texels_of_the_level_nearest_to_their_lod(void **state)
 {
     static const uint32_t sizes[][2] = {{512, 256}, {301, 77}, {5, 3}};

@@ -96,7 +96,7 @@ static void record_fetch(void *user, VkCommandBuffer commands)
     prober_record(&scene.prober, commands, texture->probe, 0, SCENE_SAMPLES, PROBE_FETCH);
 }
 
-/* Texels of level 0: those of the pattern. */
+/* Checks that texels of level 0 are those of the pattern. */
 static void check_texels(enum pattern_kind kind, uint32_t index)
 {
     static struct ProbeInput kept[SCENE_SAMPLES];

@@ -85,8 +85,8 @@ static vec3 draw_vec3(double from, double to)
     return v;
 }
 
-/* False: the ray misses, or comes so flat, or so near to total reflection, that one step of a float
- * is not small. */
+/* Returns false if the ray misses, or comes so flat or so near to total reflection that one step of
+ * a float makes a large difference. */
 static bool meet(const RaySurface *s, struct ray *r)
 {
     double radius = (double)s->radius, eta = (double)s->eta, distance;
@@ -321,7 +321,7 @@ static void cones_cover_the_pixel_after_plane_mirrors(void **state)
     }
 }
 
-/* Differences across are those of the cone only where nothing bends. */
+/* Across the plane, differences equal those of the cone only where nothing bends. */
 static void cones_follow_curves_and_refraction_in_the_plane_of_incidence(void **state)
 {
     static struct RayCall calls[CALLS];

@@ -1,4 +1,4 @@
-/* Whatever is resident: no sample touches what is not, and what is shown is allowed. */
+/* Residency: for any resident tiles, no sample touches others, and the shown level is allowed. */
 #include "device/scene.h"
 
 #include "support/fault_source.h"

@@ -1,4 +1,4 @@
-/* Whether changes or whole maps come back, and through how little room: the decisions follow. */
+/* Resolve returns changes or whole maps, through little room or much. Decisions must be equal. */
 #include "device/scene.h"
 
 #include "support/roll.h"

@@ -89,8 +89,9 @@ static void counter_finish(struct counter *counter)
     sluiceDestroyImageSource(counter->inner);
 }
 
-/* All tiles were read at least `least` times, and no region more than `most` times. Only the texel
- * of the last level is: each opening of a demand loader reads it for itself. */
+/* Checks that all tiles were read at least `least` times, and no region more than `most` times. The
+ * single texel of the last level may be read more often, because each demand loader that opens it
+ * reads it. */
 static void check_reads(struct counter *counter, uint32_t least, uint32_t most)
 {
     uint32_t tiles = 0;
@@ -268,7 +269,7 @@ static void devices_that_come_later_copy(void **state)
     finish();
 }
 
-/* With its context. What it had begun to read, the others get. */
+/* A device and its context are destroyed. The others get the reads that it had begun. */
 static void a_device_may_go_halfway(void **state)
 {
     (void)state;

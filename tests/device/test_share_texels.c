@@ -26,7 +26,7 @@ struct rig {
     uint32_t subgroup_size;
 };
 
-/* False: the device lacks operations, and each sample is alone. */
+/* Returns false if the device lacks the operations, so that samples share nothing. */
 static bool shares(struct harness *h, uint32_t *size)
 {
     VkPhysicalDeviceSubgroupProperties subgroup = {

@@ -1,4 +1,4 @@
-/* Memory falls while textures are on view, and what is seen stays right. */
+/* The memory limit falls while textures are in view. The picture stays correct. */
 #include "device/scene.h"
 
 #include "base/checked.h"

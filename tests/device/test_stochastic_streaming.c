@@ -1,6 +1,6 @@
 /*
- * Streamed textures, sampled by one texel at random: the color is that texel, and the tiles that
- * are loaded are those of the chosen texels. Tiles are counted here from the texels alone.
+ * Streamed textures, sampled by one random texel. The color is that texel, and the loaded tiles are
+ * those of the chosen texels. The test counts tiles from the texels alone.
  */
 #include "device/conform.h"
 #include "device/scene.h"
@@ -164,7 +164,7 @@ static void chosen_texels_are_the_feedback(void **state)
            VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, 2);
 }
 
-/* In paged mode, where all of the shader is used. */
+/* Uses paged mode, in which all of the shader is used. */
 static void hlsl_picks_and_marks_what_glsl_does(void **state)
 {
     struct harness *h = *state;

@@ -95,7 +95,7 @@ static void load(struct udim *u)
     assert_int_equal(missing, 0);
 }
 
-/* All texels of a level of the cells, RGBA8, one after the other. */
+/* Texels of all cells, level after level, RGBA8. */
 static uint8_t texels[ARRAY_LAYERS][LEVELS][SIZE * SIZE * 4];
 
 static void read_texels(struct udim *u)

@@ -1,7 +1,6 @@
 /*
- * Each pixel samples a texture that it chooses at random, by number. With BINDLESS_ALONE one texture,
- * an ordinary sampler2D, is sampled by all pixels, and those that would have chosen it store the result:
- * the oracle.
+ * Each pixel samples a random texture by number. With BINDLESS_ALONE all pixels sample one texture,
+ * an ordinary sampler2D, and those that would have chosen it store the result: the oracle.
  */
 
 layout(constant_id = 0) const bool paged = false;

@@ -8,7 +8,7 @@
 #include "sluice/shared/types.h"
 #endif
 
-/* How a sample finds its level. */
+/* Ways to find the level of a sample. */
 #define CONFORM_GRAD 0u     /* dx, dy, lodBias, maxAnisotropy */
 #define CONFORM_LOD 1u      /* lod */
 #define CONFORM_IMPLICIT 2u /* fragments: dx and dy become those of the quad */

@@ -1,4 +1,4 @@
-/* One sample of a texture that is loaded on demand per invocation. */
+/* Takes one sample of a demand-loaded texture per invocation. */
 #version 450
 #extension GL_EXT_nonuniform_qualifier : require
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-/* Buffers of the demand loading probe, and what it does at one input. */
+/* Buffers of the demand loading probe, and its code for one input. */
 #include "sluice/shared/demand.h"
 #include "demand_probe_shared.h"
 
@@ -65,7 +65,7 @@ layout(push_constant) uniform Push { uint count; };
 #endif
 #include "sluice/demand.glsl"
 
-/* One call for all: each is compiled anew, and drivers take seconds for each. */
+/* Samples with one call in the source, because drivers take seconds to compile each call. */
 mat3x4 sampleDemand(uint at, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
     uint index = inputs[at].index;

@@ -1,4 +1,4 @@
-/* One sample of a texture that is loaded on demand per primitive: that closest-hit shaders can. */
+/* Takes one sample of a demand-loaded texture per primitive, in a closest-hit shader. */
 #version 460
 #extension GL_EXT_nonuniform_qualifier : require
 #extension GL_EXT_ray_tracing : require

@@ -1,4 +1,4 @@
-/* Samples what a test asks for, through the loader's own buffers. */
+/* Takes the samples that a test requests, through the loader's own buffers. */
 #version 450
 #extension GL_EXT_nonuniform_qualifier : require
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-/* Each fragment marks the region of its pixel, and the attachment shows which fragments there were. */
+/* Marks the region of each fragment's pixel. The attachment shows which fragments existed. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 

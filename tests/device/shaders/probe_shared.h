@@ -23,12 +23,12 @@
 
 #define PROBE_PAGE_CHUNKS 64 /* descriptors of page images */
 
-/* For the picture shader, where `first` is the frame. */
+/* Flags of the picture shader, whose `first` is the frame. */
 #define PICTURE_SIZE 128u
 #define PICTURE_LATTICE 1u
 
-/* For the array shaders, where flags are the layer: each sample has another layer, from tableIndex
- * on. */
+/* Flag of the array shaders, whose flags are the layer: each sample has its own layer, from
+ * tableIndex on. */
 #define PROBE_ALL_LAYERS 0x80000000u
 
 struct ProbeInput {

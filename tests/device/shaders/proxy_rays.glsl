@@ -1,4 +1,4 @@
-/* Rays through the boxes of a set of proxies: what the programs of proxy_rays.* share. */
+/* Rays through the boxes of a set of proxies. Shared by the programs of proxy_rays.*. */
 #include "sluice/demand_bindings.glsl"
 #include "sluice/proxy.glsl"
 

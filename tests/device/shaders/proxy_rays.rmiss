@@ -1,4 +1,4 @@
-/* No box. */
+/* Runs if the ray hits no box. */
 #version 460
 #extension GL_EXT_ray_tracing : require
 #extension GL_GOOGLE_include_directive : require

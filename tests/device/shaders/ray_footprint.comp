@@ -21,7 +21,7 @@ float distanceTo(RaySurface s, vec3 origin, vec3 direction)
     return s.far != 0u ? root - b : -root - b;
 }
 
-/* The ray goes on from the surface. */
+/* Moves the ray to the surface, and continues it in its new direction. */
 void meet(RaySurface s, inout vec3 at, inout vec3 direction, inout SluiceRayCone cone,
           inout SluiceRayDifferential ray)
 {

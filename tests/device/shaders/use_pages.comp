@@ -1,4 +1,4 @@
-/* Looks pages up, and says so of those that are there. */
+/* Looks pages up, and marks resident ones as used. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
