@@ -237,6 +237,7 @@ static void check_same_log(const struct played *a, const struct played *b)
             assert_memory_equal(tile_log_get(&a->log, a->textures[i].id, tile),
                                 tile_log_get(&b->log, a->textures[i].id, tile),
                                 sizeof(struct tile_log_tile));
+    assert_int_equal(a->timeout, b->timeout);
     assert_int_equal(a->event_count, b->event_count);
     for (uint32_t age = 1; age <= a->event_count; age++)
         assert_memory_equal(&a->events[(a->event_next + PLAYED_EVENTS - age) % PLAYED_EVENTS],
