@@ -7,6 +7,7 @@
 #include "texture_actions.h"
 
 #include <math.h>
+#include <string.h>
 
 static void show_view(struct view_app *app, int view)
 {
@@ -371,6 +372,14 @@ const struct action *actions_get(uint32_t *count)
 {
     *count = (uint32_t)COUNT;
     return table;
+}
+
+bool actions_lists(const struct view_app *app, const struct action *action)
+{
+    const bool of_recordings = strcmp(action->group, "Recordings") == 0;
+    if (app->stage && stage_played(app->stage))
+        return of_recordings || !played_app_refuses(action);
+    return !of_recordings;
 }
 
 void actions_run(struct view_app *app, const struct action *action)

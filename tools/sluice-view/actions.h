@@ -14,6 +14,9 @@ struct action {
 };
 
 const struct action *actions_get(uint32_t *count);
+/** Whether the action is listed: those of scenes are not while a recording is shown, and the other
+ *  way round. */
+bool actions_lists(const struct view_app *app, const struct action *action);
 /** Acts, or says why the action does not apply to what is shown. */
 void actions_run(struct view_app *app, const struct action *action);
 /** Acts if the chord is in the table. */

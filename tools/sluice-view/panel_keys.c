@@ -6,39 +6,64 @@
 #include <string.h>
 
 #define KEY_COLUMNS 3
+#define MOST_ROWS 160u
+
+/** The actions that apply to what is shown. */
+struct rows {
+    const struct action *actions[MOST_ROWS];
+    uint32_t count;
+};
+
+static void list_rows(const struct view_app *app, struct rows *rows)
+{
+    uint32_t count;
+    const struct action *actions = actions_get(&count);
+    rows->count = 0;
+    for (uint32_t i = 0; i < count && rows->count < MOST_ROWS; i++)
+        if (actions_lists(app, &actions[i]))
+            rows->actions[rows->count++] = &actions[i];
+}
+
+static bool begins_group(const struct rows *rows, uint32_t i)
+{
+    return i == 0 || strcmp(rows->actions[i]->group, rows->actions[i - 1]->group) != 0;
+}
+
+static const char *keys_of(const struct action *action)
+{
+    return action->shown ? action->shown : action->chord;
+}
 
 /* Lines of a group: its title and its keys. */
-static uint32_t draw_row(const struct action *actions, uint32_t i, float x)
+static uint32_t draw_row(const struct rows *rows, uint32_t i, float x)
 {
-    uint32_t lines = 1;
-    if (i == 0 || strcmp(actions[i].group, actions[i - 1].group) != 0) {
-        ui_text(UI_BLUE, "%s", actions[i].group);
-        lines++;
-    }
-    ui_text(UI_ORANGE, "%s", actions[i].shown ? actions[i].shown : actions[i].chord);
+    if (begins_group(rows, i))
+        ui_text(UI_BLUE, "%s", rows->actions[i]->group);
+    ui_text(UI_ORANGE, "%s", keys_of(rows->actions[i]));
     ui_same_line(x);
-    ui_text(UI_WHITE, "%s", actions[i].words);
-    return lines;
+    ui_text(UI_WHITE, "%s", rows->actions[i]->words);
+    return begins_group(rows, i) ? 2 : 1;
 }
 
-static uint32_t count_lines(const struct action *actions, uint32_t count)
+static uint32_t count_lines(const struct rows *rows)
 {
-    uint32_t lines = count;
-    for (uint32_t i = 0; i < count; i++)
-        lines += i == 0 || strcmp(actions[i].group, actions[i - 1].group) != 0;
+    uint32_t lines = rows->count;
+    for (uint32_t i = 0; i < rows->count; i++)
+        lines += begins_group(rows, i);
     return lines;
 }
 
-/* The one page that may be larger: it was asked for. All of the table, from column to column. */
+/* The one page that may be larger: it was asked for. From column to column. */
 void panel_keys(struct view_app *app)
 {
-    uint32_t count, next = 0;
-    const struct action *actions = actions_get(&count);
+    uint32_t next = 0;
+    struct rows rows;
     const float scale = ui_scale(), pivot[2] = {0.5f, 0.5f};
     const float placement[4] = {app->width / 2, app->height / 2, 0, 0};
     if (!app->open[PANEL_KEYS])
         return;
-    const uint32_t lines = (count_lines(actions, count) + KEY_COLUMNS - 1) / KEY_COLUMNS + 1;
+    list_rows(app, &rows);
+    const uint32_t lines = (count_lines(&rows) + KEY_COLUMNS - 1) / KEY_COLUMNS + 1;
     ui_begin_tight((float)lines * ui_line_height() > app->height - 60 * scale);
     float height = (float)lines * ui_line_height();
     float width = (app->width - 60 * scale) / KEY_COLUMNS;
@@ -52,8 +77,8 @@ void panel_keys(struct view_app *app)
             if (column > 0)
                 ui_same_line(0);
             ui_begin_part(ids[column], width, height);
-            for (uint32_t drawn = 0; next < count && drawn < lines; next++)
-                drawn += draw_row(actions, next, 100 * scale);
+            for (uint32_t drawn = 0; next < rows.count && drawn < lines; next++)
+                drawn += draw_row(&rows, next, 100 * scale);
             ui_end_part();
         }
     ui_end_panel();
@@ -96,24 +121,23 @@ static void draw_recent(struct view_app *app)
 
 void panel_menu(struct view_app *app)
 {
-    uint32_t count;
-    const struct action *actions = actions_get(&count);
+    struct rows rows;
     if (!app->open[PANEL_MENU])
         return;
     if (panel_begin(app, PANEL_MENU, "Menu (F10)", 340, 560)) {
-        const char *group = "";
+        list_rows(app, &rows);
         draw_recent(app);
         draw_cameras(app);
-        for (uint32_t i = 0; i < count; i++) {
-            if (strcmp(group, actions[i].group) != 0)
-                ui_text(UI_BLUE, "%s", actions[i].group);
-            group = actions[i].group;
-            if (!actions[i].act)
+        for (uint32_t i = 0; i < rows.count; i++) {
+            const struct action *action = rows.actions[i];
+            if (begins_group(&rows, i))
+                ui_text(UI_BLUE, "%s", action->group);
+            if (!action->act)
                 continue;
-            if (ui_button(actions[i].words, 220 * ui_scale(), 0, false))
-                actions_run(app, &actions[i]);
+            if (ui_button(action->words, 220 * ui_scale(), 0, false))
+                actions_run(app, action);
             ui_same_line(0);
-            ui_text(UI_GRAY, "%s", actions[i].shown ? actions[i].shown : actions[i].chord);
+            ui_text(UI_GRAY, "%s", keys_of(action));
         }
     }
     ui_end_panel();

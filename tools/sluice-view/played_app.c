@@ -117,8 +117,10 @@ const char *played_app_refuses(const struct action *action)
         return "A recording has no picture: it holds decisions, not the scene";
     if (strcmp(action->group, "Streaming") == 0)
         return "A recording is played as it was: nothing streams";
-    if (action->chord && strcmp(action->chord, "Ctrl+T") == 0)
-        return "Recordings are not swept: open the scene";
+    static const char *const chords[] = {"Ctrl+T", "Shift+T", "Ctrl+F5"};
+    for (int i = 0; action->chord && i < 3; i++)
+        if (strcmp(action->chord, chords[i]) == 0)
+            return "This is for scenes: a recording has no settings to sweep and no shaders";
     return NULL;
 }
 
