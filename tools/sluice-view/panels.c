@@ -129,7 +129,11 @@ void panels_draw_picture(const struct view_app *app)
         return;
     }
     if (stage_played(app->stage))
-        return; /* panels_draw draws it */
+        return;                               /* panels_draw draws it */
+    if (app_has_second(app) && !app->other) { /* it is being prepared */
+        ui_picture(UI_TEXTURE_PICTURE, UI_MODE_PLAIN, all, uv, UI_COLOR(255, 255, 255, 255));
+        return;
+    }
     if (app_shows_difference(app)) {
         draw_difference(app);
         return;

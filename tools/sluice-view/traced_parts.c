@@ -3,6 +3,7 @@
 #include "../common/log.h"
 #include "../common/text.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 
 static bool check(SluiceResult result, const char *what)
@@ -81,4 +82,46 @@ void traced_parts_destroy(struct traced_parts *p)
     tracing_destroy(p->gpu, &p->tracing);
     traced_parts_destroy_loader(p);
     free(p);
+}
+
+struct traced_parts_load {
+    pthread_t thread;
+    const struct gpu *gpu;
+    uint32_t threads;
+    struct traced_parts *parts;
+    atomic_bool done;
+};
+
+static void *create_parts(void *user_data)
+{
+    struct traced_parts_load *load = user_data;
+    load->parts = traced_parts_create(load->gpu, load->threads);
+    atomic_store(&load->done, true);
+    return NULL;
+}
+
+struct traced_parts_load *traced_parts_begin(const struct gpu *gpu, uint32_t threads)
+{
+    struct traced_parts_load *load = calloc(1, sizeof *load);
+    if (!load)
+        return NULL;
+    load->gpu = gpu;
+    load->threads = threads;
+    if (pthread_create(&load->thread, NULL, create_parts, load) == 0)
+        return load;
+    free(load);
+    return NULL;
+}
+
+bool traced_parts_done(const struct traced_parts_load *load)
+{
+    return atomic_load(&load->done);
+}
+
+struct traced_parts *traced_parts_end(struct traced_parts_load *load)
+{
+    pthread_join(load->thread, NULL);
+    struct traced_parts *parts = load->parts;
+    free(load);
+    return parts;
 }

@@ -30,4 +30,14 @@ struct traced_parts *traced_parts_create(const struct gpu *gpu, uint32_t threads
 void traced_parts_destroy(struct traced_parts *parts);
 void traced_parts_destroy_loader(struct traced_parts *parts);
 
+/** Creates parts on a thread of its own. */
+struct traced_parts_load;
+
+/** NULL without memory or a thread. */
+struct traced_parts_load *traced_parts_begin(const struct gpu *gpu, uint32_t threads);
+/** Whether traced_parts_end does not wait. */
+bool traced_parts_done(const struct traced_parts_load *load);
+/** Waits for the thread, and frees the load. Returns the parts; NULL on error. */
+struct traced_parts *traced_parts_end(struct traced_parts_load *load);
+
 #endif /* SLUICE_VIEW_TRACED_PARTS_H */

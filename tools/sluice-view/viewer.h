@@ -26,7 +26,8 @@ struct viewer {
     struct view_app app;
     struct frames frames;
     struct stage *stage;
-    struct stage *other;                         ///< of B; NULL: nothing is compared
+    struct stage *other;                   ///< of B; NULL: nothing is compared
+    struct traced_parts_load *other_parts; ///< for `other` of a traced scene; NULL: none are made
     struct shader_code code[SCENE_SHADER_COUNT]; ///< compiled last; empty: those of the build
     struct window *window;                       ///< NULL: headless
     struct swapchain swapchain;

@@ -6,6 +6,7 @@
 #include "sets.h"
 #include "settings_file.h"
 #include "shader_files.h"
+#include "traced_parts.h"
 
 #include "../common/text.h"
 
@@ -369,6 +370,9 @@ void viewer_end_load(struct viewer *v)
 {
     park_load(v);
     scene_load_drop_canceled(&v->canceled, true);
+    if (v->other_parts)
+        traced_parts_destroy(traced_parts_end(v->other_parts));
+    v->other_parts = NULL;
 }
 
 /* Either all streamers draw with the code, or none; scenes that are opened later, too. */

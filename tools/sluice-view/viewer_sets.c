@@ -1,7 +1,9 @@
 /* The two sets of settings of a comparison. Each has a streamer and facts of its own. */
 #include "viewer.h"
 
+#include "scene_pbrt.h"
 #include "sets.h"
+#include "traced_parts.h"
 
 #include <string.h>
 
@@ -33,8 +35,13 @@ static void forget_times(struct viewer *v)
 static bool open_other(struct viewer *v, const struct view_settings *settings)
 {
     struct scene_data scene;
-    if (!stage_share_scene(v->stage, &scene) && !viewer_open_now(v, &v->paths, &scene))
+    const bool shared = stage_share_scene(v->stage, &scene);
+    if (!shared && !viewer_open_now(v, &v->paths, &scene))
         return false;
+    if (shared && v->other_parts) {
+        scene.pbrt->parts = traced_parts_end(v->other_parts);
+        v->other_parts = NULL;
+    }
     v->other = viewer_create_stage(v, settings, &scene);
     if (v->other && !facts_create(&v->app.facts_b, v->other)) {
         stage_destroy(v->other);
@@ -47,6 +54,19 @@ static bool open_other(struct viewer *v, const struct view_settings *settings)
     v->applied_b = *settings;
     forget_times(v);
     return v->other != NULL;
+}
+
+/* A window draws the first picture while programs for rays of the second one are compiled. */
+static bool is_prepared(struct viewer *v, const struct view_settings *settings)
+{
+    if (!v->window || !stage_traced(v->stage))
+        return true;
+    if (!v->other_parts)
+        v->other_parts = traced_parts_begin(&v->gpu, settings->threads);
+    if (!v->other_parts || traced_parts_done(v->other_parts))
+        return true;
+    app_say(&v->app, "The second picture is being prepared");
+    return false;
 }
 
 /* The second streamer lives as long as its picture is wanted. Sliders that are held do not open it
@@ -64,7 +84,7 @@ bool viewer_fit_other(struct viewer *v)
             return false;
         viewer_close_other(v);
     }
-    if (!wanted || v->other || open_other(v, &settings))
+    if (!wanted || v->other || !is_prepared(v, &settings) || open_other(v, &settings))
         return true;
     app_say(app, "The second picture cannot be drawn: Shift+I says why");
     app->settings.compare = VIEW_COMPARE_OFF;
