@@ -79,7 +79,8 @@ static bool create_sampler(struct rig *rig)
                      "vkCreateSampler");
 }
 
-/* Without plain images their places show pages: no shader that is run looks at them. */
+/* Writes the set. Devices without plain images get pages in their place, which no shader reads
+ * then. */
 static void write_set(struct rig *rig)
 {
     SluiceDemandBuffers b = {.structSize = sizeof b};

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* 437 MB of tiles, as the figures of others: level 2 of 16 textures of 8192 x 8192, and what is
- * finer in a patch. */
+/* Level 2 of 16 textures of 8192 x 8192, and finer levels in a patch: 437 MB of tiles, as in the
+ * figures of others. */
 #define LOD 2.25f
 #define FINE_LOD 1.25f
 #define FINE_EDGE (9.5f / 32)

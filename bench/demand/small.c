@@ -1,6 +1,6 @@
 /*
- * Measures textures of 64 x 64 RGBA8: memory with all of them resident, and what it takes to sample
- * each once when only some fit.
+ * Measures textures of 64 x 64 RGBA8: memory with all of them resident, and time to sample each
+ * once when only some fit.
  */
 #include "rig.h"
 
@@ -126,7 +126,7 @@ static bool load_all(struct small *small)
     return true;
 }
 
-/* All resident at once. */
+/* Measures with all textures resident. */
 static bool measure_resident(const struct bench *bench, uint32_t count)
 {
     struct small small;
@@ -154,7 +154,7 @@ static bool measure_resident(const struct bench *bench, uint32_t count)
     return done;
 }
 
-/* Each sampled once, DEMAND_BENCH_TEXTURES at a time, in memory for some of them. */
+/* Samples each texture once, DEMAND_BENCH_TEXTURES at a time, in memory for some of them. */
 static bool measure_once(const struct bench *bench, uint32_t count, uint64_t budget)
 {
     struct small small;

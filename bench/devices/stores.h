@@ -5,7 +5,7 @@
 #include <sluice/store.h>
 
 /** Writes a store of zstd level 3: an RGBA8 picture of smooth shapes and some noise, whose tiles
- *  are about half as large as their texels. Says on stderr what failed. */
+ * are about half as large as their texels. Reports errors on stderr. */
 bool stores_write(const char *path, uint32_t size);
 /** Opens the store `count` times, each as a source of its own. NULL if that fails. */
 SluiceImageSource **stores_open(const char *path, uint32_t count);

@@ -14,7 +14,7 @@ uint64_t now_ns(void)
     return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
 }
 
-/* Not statm: the kernel may keep its counters back per thread and core. */
+/* Does not read statm, whose counts the kernel may keep back per thread and core. */
 uint64_t resident_size(void)
 {
     FILE *file = fopen("/proc/self/smaps_rollup", "r");
@@ -39,7 +39,7 @@ void samples_init(struct samples *samples, uint32_t room)
     *samples = (struct samples){.ns = malloc(room * sizeof *samples->ns), .room = room};
     if (!samples->ns)
         abort();
-    /* Touched now, so that no page of it is made within what is timed. */
+    /* Touch the memory now, so that no page fault falls into the timed part. */
     for (uint32_t i = 0; i < room; i++)
         samples->ns[i] = -1;
 }

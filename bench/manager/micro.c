@@ -57,7 +57,7 @@ static enum option_outcome parse(int argc, char **argv)
     return options_parse(&table, argc, argv);
 }
 
-/** True in the child, which runs a part and exits; the parent waits for it. */
+/** Returns true in the child, which runs a part and exits. The parent waits for the child. */
 static bool forked(const char *name, int *status)
 {
     fprintf(stderr, "micro: %s\n", name);

@@ -12,7 +12,7 @@ void bench_heaps(void);
 void bench_growth(void);
 void bench_copy(void);
 
-/* With the harness's sltrace.h only. */
+/* Needs the harness's sltrace.h. */
 void bench_cut(void);
 /** Copies the maps of a trace, frame by frame: what reading them costs at the very least. */
 void bench_floor(const char *trace);

@@ -94,7 +94,7 @@ static void time_unchanged(const char *name, bool everywhere)
     rig_finish(&rig);
 }
 
-/** Each map lacks another 30 % of the window's regions. Six maps are held at a time. */
+/** Each map lacks a different 30 % of the window's regions. Six maps are in use at a time. */
 static void time_stochastic(void)
 {
     struct rig rig;
@@ -220,7 +220,7 @@ static void match(struct pair *pair)
          "match");
 }
 
-/** Both textures have seen the window for a while, and are mapped. */
+/** Makes two textures that have seen the window for a while and are mapped. */
 static void pair_init(struct pair *pair, const SluiceStreamedTextureDesc *follower, uint32_t drop)
 {
     uint32_t random = 1;

@@ -12,7 +12,7 @@
 static const SluiceStreamedTextureManagerConfig plain = {.structSize = sizeof plain,
                                                          .missesToExpire = 1};
 
-/** One packed tile. */
+/** Describes a texture of one packed tile. */
 static SluiceStreamedTextureDesc one_tile(void)
 {
     return square_desc(64, 128);
@@ -102,7 +102,7 @@ static double followers(uint32_t n)
     return ns;
 }
 
-/** Removes `n` textures of which each has a tile that was given up and not asked for. */
+/** Removes `n` textures. Each has a given-up tile without requests. */
 static double reports(uint32_t n)
 {
     struct rig rig;

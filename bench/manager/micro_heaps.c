@@ -22,7 +22,8 @@ struct house {
     uint8_t *map;
 };
 
-/** Only level 0 is regular, so that a region is a tile and nothing comes with it. */
+/** Describes a texture with only level 0 regular, so that a region is a tile and requests no
+ * other. */
 static SluiceStreamedTextureDesc filler_desc(void)
 {
     SluiceStreamedTextureDesc desc = square_desc(16384, 256);

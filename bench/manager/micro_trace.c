@@ -173,7 +173,7 @@ static double arrive(struct cut *cut)
     return (double)(now_ns() - start);
 }
 
-/** Repeats the view until the former one has expired and been unmapped. */
+/** Repeats the view until the previous one has expired and been unmapped. */
 static void settle(struct cut *cut, uint32_t side)
 {
     for (uint32_t i = 0; i < 6; i++) {

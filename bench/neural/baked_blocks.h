@@ -11,12 +11,12 @@ struct chain {
     uint32_t width, height, level_count;
 };
 
-/** Whether this build has the encoder. */
+/** Returns whether this build has the encoder. */
 bool baked_blocks_exist(void);
 
 /**
- * Writes blocks of all levels, one level behind the other. Levels from 1 on are made of level 0, as
- * sluice-bake does. Says on stderr what failed.
+ * Writes the blocks of all levels, one level behind the other. Makes levels from 1 on from level 0,
+ * like sluice-bake. Reports errors on stderr.
  */
 bool baked_blocks_write(const struct chain *chain, uint8_t *blocks);
 

@@ -4,7 +4,7 @@
 
 #include "../../tools/common/gpu.h"
 
-/** Begins a new command buffer. Says on stderr what failed. */
+/** Begins a new command buffer. Reports errors on stderr. */
 bool commands_begin(const struct gpu *gpu, VkCommandBuffer *commands);
 /** Submits a command buffer, waits for it, and frees it. */
 bool commands_run(const struct gpu *gpu, VkCommandBuffer commands);

@@ -1,6 +1,6 @@
 /*
- * How long a screen of decoded texels takes: a material of eight channels, one decode per pixel,
- * beside the same material as trilinear textures in the same run.
+ * Measures a screen of decoded texels: a material of eight channels with one decode per pixel, and
+ * the same material as trilinear textures in the same run.
  */
 #include "commands.h"
 #include "material.h"
@@ -271,7 +271,7 @@ static bool measure_path(struct bench *b, size_t i, uint32_t frame)
     return true;
 }
 
-/* In turns, so that all paths see the same clock of the device. */
+/* Measures the paths in turns, so that all run at the same clock of the device. */
 static bool measure(struct bench *b)
 {
     for (uint32_t frame = 0; frame <= b->repeats; frame++)

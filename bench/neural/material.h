@@ -21,9 +21,9 @@ struct material {
 };
 
 /**
- * Reads a file, or makes a set of random numbers of `size` texels if `path` is NULL: how long a
- * decode takes does not depend on them. BC7 is what sluice-bake makes of the decoded texels;
- * without the baker there is none. Says on stderr what failed.
+ * Reads a file, or makes a set of random numbers of `size` texels if `path` is NULL. Decoding takes
+ * the same time for any numbers. The BC7 blocks are made from the decoded texels, like those of
+ * sluice-bake; without the baker there are none. Reports errors on stderr.
  */
 bool material_create(struct material *material, const struct gpu *gpu, const char *path,
                      uint32_t size);

@@ -1,4 +1,4 @@
-/** How long commands take: time stamps of the device, or the clock around the submission. */
+/** Times commands: with time stamps of the device, or with the clock around the submission. */
 #ifndef BENCH_NEURAL_STOPWATCH_H
 #define BENCH_NEURAL_STOPWATCH_H
 
@@ -12,7 +12,7 @@ struct stopwatch {
 bool stopwatch_create(const struct gpu *gpu, bool wall, struct stopwatch *stopwatch);
 void stopwatch_destroy(const struct gpu *gpu, struct stopwatch *stopwatch);
 
-/** Around what is measured, in one command buffer. */
+/** Call around the measured commands, in one command buffer. */
 void stopwatch_start(const struct stopwatch *stopwatch, VkCommandBuffer commands);
 void stopwatch_stop(const struct stopwatch *stopwatch, VkCommandBuffer commands);
 

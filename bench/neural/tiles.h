@@ -6,8 +6,8 @@
 #include "stopwatch.h"
 
 /**
- * Measures tiles of 64 KiB per second for each format, and RGBA8 tiles that are copied from device
- * memory and from host memory. Prints figures. Says on stderr what failed.
+ * Measures tiles of 64 KiB per second for each format, and for RGBA8 tiles that are copied from
+ * device memory and from host memory. Prints figures. Reports errors on stderr.
  */
 bool tiles_measure(const struct gpu *gpu, const struct material *material,
                    const struct stopwatch *stopwatch, uint32_t repeats);

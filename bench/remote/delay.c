@@ -37,7 +37,7 @@ struct packet {
     unsigned char bytes[PACKET_SIZE];
 };
 
-/** One direction: a ring that one thread fills and another empties. */
+/** A direction of the line: a ring that one thread fills and another empties. */
 struct direction {
     int from, to;
     int64_t delay; ///< nanoseconds

@@ -100,7 +100,7 @@ static void start_readers(struct phase *phase, struct reader *readers, uint32_t 
     pthread_attr_destroy(&attributes);
 }
 
-/* All threads of the process count. */
+/* Includes all threads of the process. */
 static double processor_seconds(void)
 {
     struct timespec t;
@@ -113,7 +113,7 @@ struct rate {
     double processor; ///< seconds per tile
 };
 
-/* Each reader counts between its first and its last tile, so that a slow line does not round the
+/* Measures from each reader's first tile to its last, so that a slow line does not round the
  * figure. */
 static struct rate measure_way(struct way *way, uint32_t count)
 {

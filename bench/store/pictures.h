@@ -1,4 +1,5 @@
-/** Pictures from files as image sources, and files made from them, to be read in what is timed. */
+/** Image sources of picture files, and files made from them, which are read while the clock
+ * runs. */
 #ifndef BENCH_STORE_PICTURES_H
 #define BENCH_STORE_PICTURES_H
 

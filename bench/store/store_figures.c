@@ -52,7 +52,7 @@ static void figure(const char *name, double value, const char *unit)
         printf("%s %.6g %s\n", name, value, unit);
 }
 
-/* All whole tiles of a picture, and the ways to read them. */
+/* Tiles of a picture, without cut ones, and the ways to read them. */
 struct picture {
     SluiceImageSource *store;
     SluiceImageSource *other; ///< NULL, OpenEXR, or the store with alwaysCheckRawTiles

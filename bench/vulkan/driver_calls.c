@@ -100,7 +100,7 @@ static void leave(uint64_t start)
     }
 CALLS(TIMED_VOID, TIMED_RESULT)
 
-/* Only at creation and destruction. */
+/* Returns whether a function is called only at creation and destruction. */
 static bool is_untimed(const char *name)
 {
     static const char *const prefixes[] = {"vkCreate",     "vkDestroy", "vkAllocate", "vkFree",

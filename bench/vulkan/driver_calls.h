@@ -1,6 +1,6 @@
 /**
- * Times what a streamer calls in the driver: give driver_calls_get to it in place of
- * vkGetInstanceProcAddr. One device at a time; calls are from one thread.
+ * Times a streamer's calls to the driver. Pass driver_calls_get to it instead of
+ * vkGetInstanceProcAddr. One device at a time, and calls from one thread.
  */
 #ifndef BENCH_VULKAN_DRIVER_CALLS_H
 #define BENCH_VULKAN_DRIVER_CALLS_H
@@ -20,7 +20,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL driver_calls_get(VkInstance instance, c
 /** Since the last time. */
 struct driver_calls driver_calls_take(void);
 
-/** Nanoseconds of a call that are outside of what was timed: reading the clock, and the detour. */
+/** Nanoseconds of a call that are not part of the timed part: reading the clock, and the detour. */
 double driver_calls_overhead(void);
 
 #endif /* BENCH_VULKAN_DRIVER_CALLS_H */

@@ -104,7 +104,8 @@ static bool fill_run(struct fill *fill, struct fill_times *times)
     return done;
 }
 
-/* Whichever is busy most of the time; neither: what is between them, so reads and bindings. */
+/* Returns the part that is busy most of the time. If neither is, reads and bindings between them
+ * take the time. */
 static const char *bound_of(const struct fill_times *times)
 {
     if (times->gpu_seconds > 0.7 * times->seconds)

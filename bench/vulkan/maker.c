@@ -210,7 +210,7 @@ static void order(VkCommandBuffer commands, VkImage image, bool first)
                          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
-/* From recording until the device is idle. */
+/* Measures from recording until the device is idle. */
 static bool run_floor(struct maker *m, const struct floor_image *f, uint32_t tile_count,
                       double *seconds)
 {

@@ -192,7 +192,7 @@ static bool reap(struct rig *rig, struct rig_slot *slot)
     return true;
 }
 
-/* All that came before is over when the stamp is taken. */
+/* Takes a time stamp after all earlier commands. */
 static void stamp(struct rig *rig, VkCommandBuffer commands, uint32_t query)
 {
     vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, rig->queries, query);
@@ -279,7 +279,7 @@ static bool submit(struct rig *rig, struct rig_slot *slot, uint32_t first, uint3
                      "vkQueueSubmit");
 }
 
-/* Each part by itself, from submission until the device is idle. */
+/* Submits each part by itself, and times it until the device is idle. */
 static bool submit_timed(struct rig *rig, struct rig_slot *slot)
 {
     struct samples *const samples[3] = {slot->samples.begin, slot->samples.work, slot->samples.end};

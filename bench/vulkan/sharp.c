@@ -1,5 +1,5 @@
-/* Frames from first seeing a texture until what is seen of it is sharp. The source has no latency.
- */
+/* Frames from the first sight of a texture until its visible part is sharp. The source has no
+ * latency. */
 #include "scene.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ static struct sharpness count_regions(const struct rig *rig)
     return s;
 }
 
-/* Each frame's reads and bindings are over before the next one begins. */
+/* Draws frames. Each frame's reads and bindings end before the next frame begins. */
 static bool watch(struct scene *scene, struct scene_draw *draw, const char *name)
 {
     const struct bench *bench = scene->rig.bench;

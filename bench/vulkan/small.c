@@ -27,7 +27,7 @@ static void release(void *user, void *memory, size_t size)
     free(memory);
 }
 
-/* All but the first, which the rig has. */
+/* Adds all textures except the first, which the rig has. */
 static bool add_textures(struct rig *rig, uint32_t count)
 {
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,

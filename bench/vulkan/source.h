@@ -9,8 +9,8 @@ struct free_source {
     SluiceImageInfo info;
 };
 
-/** No memory of its own. Square, of a full chain. Textures of one source share pages in paged mode
- *  and demand loading, so benches give each texture a source. */
+/** Creates a source without memory of its own: square, with a full chain. Give each texture its own
+ * source, because textures of one source share pages in paged mode and demand loading. */
 void free_source_init(struct free_source *source, SluiceFormat format, uint32_t size);
 
 #endif /* BENCH_VULKAN_SOURCE_H */

@@ -1,4 +1,4 @@
-/* Where each pixel samples. One texture, of params.textureSize texels. */
+/* Place that each pixel samples, in a texture of params.textureSize texels. */
 #include "bench.glsl"
 
 vec2 textureSizeInTexels()

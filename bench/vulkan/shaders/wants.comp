@@ -1,4 +1,4 @@
-/* Asks for levels region by region, as many textures at once as there are; and counts what is missing. */
+/* Requests levels region by region, in several textures at once, and counts missing ones. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
