@@ -11,7 +11,7 @@ struct nginx_server {
     pid_t process;
 };
 
-/** False: nginx is not installed. */
+/** Returns whether nginx is installed. */
 bool nginx_is_there(void);
 /** Makes the folder, writes the configuration and a certificate, and starts nginx. */
 void nginx_init(struct nginx_server *server);

@@ -262,7 +262,8 @@ static void a_changed_file_is_never_mixed_with_its_old_version(void **state)
     }
 }
 
-/* Each check makes a request, though the byte is in memory. A change logs no message. */
+/* Each check makes a request, although the byte is in memory. A change of the file logs no
+ * message. */
 static void a_check_says_whether_the_file_was_changed(void **state)
 {
     static const char *const paths[] = {"etag/checked?from=3", "size/checked?from=3",

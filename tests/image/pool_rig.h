@@ -36,7 +36,8 @@ void submit(struct pool_rig *r, uint32_t loader, struct fault_source *source, ui
 /** Waits, and expects `count` reads with the result. */
 void expect(struct pool_rig *r, uint32_t loader, uint32_t count, SluiceResult result);
 void expect_texel(const struct pool_rig *r, uint32_t loader, uint32_t x);
-/** With two threads and a read that is held: everything more urgent of the loader is put aside. */
+/** Waits until all more urgent reads of the loader are put aside. Needs two threads and a held
+ * read. */
 void settle(struct pool_rig *r, uint32_t loader);
 /** Loader 0 reads x and is held. Loader 1 has joined it: with both threads, a later read of another
  * source has ended. */

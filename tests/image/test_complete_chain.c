@@ -99,7 +99,7 @@ static void check_region(SluiceImageSource *whole, SluiceImageSource *source, Sl
     free(texels);
 }
 
-/* All levels in whole, and rectangles in them. */
+/* Compares all levels as a whole, and rectangles in them. */
 static void check_levels(SluiceImageSource *whole, SluiceImageSource *source)
 {
     SluiceImageInfo info = {.structSize = sizeof info}, expected = {.structSize = sizeof expected};
@@ -122,7 +122,7 @@ static void check_levels(SluiceImageSource *whole, SluiceImageSource *source)
     }
 }
 
-/* With all levels kept, only the coarsest kept, and none. */
+/* Runs with all levels kept, only the coarsest kept, and none. */
 static void built_levels_are_those_of_the_same_texels_in_memory(void **state)
 {
     (void)state;

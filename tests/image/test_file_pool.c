@@ -38,7 +38,7 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
     snprintf(f->last, sizeof f->last, "%s", message);
 }
 
-/* Each byte tells the file and the offset. */
+/* Returns a byte that identifies the file and the offset. */
 static uint8_t byte_at(uint32_t file, uint64_t offset)
 {
     return (uint8_t)(file * 31 + offset * 7);
@@ -89,7 +89,7 @@ static SluiceFilePoolStatistics statistics_of(struct fixture *f)
     return statistics;
 }
 
-/* The result; what was read is checked. */
+/* Reads a file, checks its bytes and returns the result. */
 static SluiceResult read_file(struct fixture *f, uint32_t file)
 {
     uint8_t bytes[8];

@@ -125,7 +125,7 @@ static void a_file_is_opened_closed_and_opened_again(void **state)
     teardown(&f);
 }
 
-/* No writer ever opens the pipe. A loader thread that waited for one would be lost. */
+/* The pipe has no writer. A loader thread that waits for one would wait forever. */
 static void pipes_and_devices_are_refused_without_waiting(void **state)
 {
     (void)state;

@@ -79,7 +79,8 @@ static void kept_texels_do_not_wait_for_reads_that_stall(void **state)
     }
 }
 
-/* The texels were kept when loader 1 asked for them, while the one thread reads something else. */
+/* Loader 1 requests texels while the only thread reads something else. They are kept, and dropped
+ * before they are copied. */
 static void texels_that_are_dropped_before_their_copy_are_read(void **state)
 {
     (void)state;

@@ -36,7 +36,7 @@ static void load(const struct slc_mip_chain *chain, uint32_t level, uint32_t x, 
     slc_texels_to_rgba(chain->format, texel, rgba, 1);
 }
 
-/* How much of the source texel `s` the texel `i` of the level below covers, as a share of it. */
+/* Returns the share of the source texel `s` that the texel `i` of the level below covers. */
 static long double overlap(uint32_t size, uint32_t below, uint32_t i, uint32_t s)
 {
     long double scale = (long double)size / below;
@@ -127,8 +127,8 @@ static void make_chain(struct slc_mip_chain *chain, SluiceFormat format, uint32_
         chain->texels[i] = (char)(next_random(&random) >> 24);
 }
 
-/* Each texel of `numbers` is the number of a texel of level 0. Returns how far the farthest one is
- * from the center of the area that it stands for, as a part of that area's width or height. */
+/* Each texel of `numbers` is the number of a texel of level 0. Returns the largest distance of one
+ * from the center of the area that it represents, relative to that area's width or height. */
 static double farthest(const struct slc_mip_chain *numbers, uint32_t width, uint32_t height)
 {
     double most = 0;
@@ -145,7 +145,7 @@ static double farthest(const struct slc_mip_chain *numbers, uint32_t width, uint
     return most;
 }
 
-/* All formats pick the same texels. */
+/* Checks that a format picks the same texels as all others. */
 static void check_picked(SluiceFormat format, const struct slc_mip_chain *numbers, uint32_t width,
                          uint32_t height)
 {

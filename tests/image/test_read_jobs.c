@@ -172,7 +172,7 @@ static void callers_that_only_collect_get_every_read(void **state)
     }
 }
 
-/* Each thread of the application's holds a read. */
+/* Each thread of the application holds a read. */
 static void as_many_jobs_run_as_threads_were_asked_for(void **state)
 {
     (void)state;

@@ -329,7 +329,7 @@ static void sources_never_read_from_memory_that_is_not_cached(void **state)
     assert_int_equal(read_picky(r.loaders[0], &source, 64, texels), SLUICE_ERROR_CORRUPT_DATA);
     for (uint32_t i = 0; i < sizeof texels; i++)
         assert_int_equal(texels[i], 7);
-    /* Only tiles are read through the cache. */
+    /* only tiles are read through the cache */
     source.answer = SLUICE_SUCCESS;
     CHECK_OK(read_picky(r.loaders[0], &source, 65, texels));
     assert_ptr_equal(source.texels, texels);

@@ -37,7 +37,7 @@ static void make_file(const char *name)
     close(file);
 }
 
-/* Files that patterns may take for cells; those that "a.<UDIM>.exr" finds are named last. */
+/* Files that a pattern could mistake for cells. Those that "a.<UDIM>.exr" matches come last. */
 static const char *const others[] = {
     "a.1000.exr",   "a.2000.exr",    "a.99.exr",       "a.100.exr",
     "a.10010.exr",  "a.0001.exr",    "a.1x01.exr",     "a..exr",

@@ -11,7 +11,7 @@ struct made_file {
     uint32_t writes, fail_at;
 };
 
-/** All parts of a file. Free the arrays with free_made_parts. */
+/** Parts of a file. Free the arrays with free_made_parts. */
 struct made_parts {
     SluiceNeuralWriteInfo info;
     SluiceNeuralTexture textures[2];

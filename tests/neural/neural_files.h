@@ -11,7 +11,8 @@ SluiceResult open_neural_bytes(const uint8_t *bytes, size_t size,
 /** Writes the path of a sample. False, for SKIP_TEST, if the file is not there. */
 bool find_neural_sample(const char *name, char *path, size_t size);
 
-/** For main: 0, or 77 and "all skipped" in TAP if a sample is not there. `names` ends with NULL. */
+/** Returns 0 if all samples exist, else prints "all skipped" in TAP and returns 77. Call in main.
+ * `names` ends with NULL. */
 int need_neural_samples(const char *const *names);
 
 /** Opens a sample that is there. */

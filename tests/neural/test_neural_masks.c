@@ -1,4 +1,5 @@
-/* Masks that damage left inexact are repaired; counted by decoding, not by what the repair says. */
+/* Repair of masks that damage left inexact. The test counts errors by decoding, not by the report
+ * of the repair. */
 #include "neural/decoded.h"
 #include "neural/made_file.h"
 #include "support/failing_allocator.h"
@@ -12,7 +13,7 @@
 
 enum { CHANNELS = 5, MASK = 3 };
 
-/* A set of random numbers, and what its texels should be: what they were. */
+/* A set of random numbers, and its expected texels: those before the damage. */
 struct masked {
     struct made_file file;
     SluiceNeuralSet *set;
@@ -94,7 +95,8 @@ static void close_masked(struct masked *m)
     free(m->file.bytes);
 }
 
-/* Texels whose mask should be 0 or 1 and is not; `*certain`: those that should. */
+/* Counts texels with a wrong mask among those whose mask must be 0 or 1. `*certain`: number of the
+ * latter. */
 static uint64_t count_wrong(const struct masked *m, uint64_t *certain)
 {
     uint64_t wrong = 0;
@@ -112,7 +114,7 @@ static uint64_t count_wrong(const struct masked *m, uint64_t *certain)
     return wrong;
 }
 
-/* One code in sixty moves by up to two. */
+/* Changes one code in sixty by up to two. */
 static void damage(struct masked *m)
 {
     roll_seed(3);

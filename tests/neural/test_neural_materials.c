@@ -52,7 +52,7 @@ static void check_material(const char *name, const char *original, uint32_t chan
     sluiceDestroyNeuralSet(set);
 }
 
-/* TARGETS.md of the samples has what the compressor prints. */
+/* The expected values, which the compressor printed, are in TARGETS.md of the samples. */
 static void materials_are_as_near_to_their_originals_as_printed(void **state)
 {
     (void)state;

@@ -52,7 +52,7 @@ struct rectangle {
     uint32_t mip, x, y, width, height;
 };
 
-/* To be freed. */
+/* Free the result. */
 static float *decode(const struct whole *w, const SluiceNeuralConstants *constants,
                      const void *latents, uint64_t latent_size, const struct rectangle *r)
 {

@@ -84,7 +84,7 @@ double naive_e4m3(uint8_t code)
     return code & 128 ? -size : size;
 }
 
-/* By looking at all of them. */
+/* Compares with all values. */
 static double nearest_e4m3(double x)
 {
     uint8_t best = 0;

@@ -22,7 +22,7 @@ static double gelu(double r)
     return fmin(r, 3.0) * fmax(fmin(r / 3.0 + 0.5, 1.0), 0.0);
 }
 
-/* Without rounding anything. */
+/* Evaluates the network without rounding. */
 static void evaluate(const double inputs[48], double outputs[16])
 {
     static const int ins[4] = {48, 64, 48, 32}, outs[4] = {64, 48, 32, 16};

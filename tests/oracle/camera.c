@@ -18,7 +18,8 @@ static uint32_t cropped(uint32_t pixels, float from, float to)
     return count < 1 ? 1 : (uint32_t)count;
 }
 
-/* With other proportions than the film's, a window that the scene does not name follows. */
+/* Adapts a window that the scene does not name to a picture with other proportions than the
+ * film. */
 static void follow(struct oracle_camera *camera, const SluicePbrtSceneInfo *info)
 {
     double usual[4];

@@ -1,4 +1,4 @@
-/** One interface to the C APIs of Embree 3 and 4. */
+/** Common interface to the C APIs of Embree 3 and 4. */
 #ifndef TESTS_ORACLE_EMBREE_H
 #define TESTS_ORACLE_EMBREE_H
 

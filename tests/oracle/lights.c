@@ -14,7 +14,7 @@ bool oracle_is_chosen(const struct oracle_scene *scene, size_t place)
            shape->alpha.value[0] >= 1;
 }
 
-/* The light's side is that of the geometric normal, as oracle_find_point turns it. */
+/* The light's side is that of the geometric normal, oriented as in oracle_find_point. */
 static struct oracle_emitter make_emitter(const struct oracle_scene *scene, size_t place,
                                           uint32_t triangle)
 {

@@ -1,4 +1,4 @@
-/** The command line of the oracle. Names are those of samples/demand-pbrt. */
+/** Command line of the oracle. Names are those of samples/demand-pbrt. */
 #ifndef TESTS_ORACLE_OPTIONS_H
 #define TESTS_ORACLE_OPTIONS_H
 

@@ -48,7 +48,7 @@ static struct vec scatter(struct vec n, uint64_t *seed)
                     add(scale(a, cos(turn) * sqrt(r2)), scale(b, sin(turn) * sqrt(r2)))));
 }
 
-/* Whether the path goes on. */
+/* Returns whether the path continues. */
 static bool leave_diffuse(const struct oracle_tracer *tracer, struct path *path,
                           const struct oracle_hit *hit, struct vec color)
 {

@@ -16,11 +16,11 @@ struct oracle_picture {
     float *values; ///< owned; 0 to 1 for integers; as the file has them
 };
 
-/** False, which stderr says, if the picture cannot be read. */
+/** Reads a picture. Reports errors on stderr. */
 bool oracle_picture_read(struct oracle_picture *picture, const char *path);
 void oracle_picture_finish(struct oracle_picture *picture);
 
-/** How texels become numbers. */
+/** Conversion of texels to numbers. */
 struct oracle_lookup {
     SluicePbrtWrap wrap;
     SluicePbrtEncoding encoding;

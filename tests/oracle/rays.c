@@ -116,7 +116,7 @@ static bool is_plain(const struct oracle_rays *rays, const SluicePbrtShape *shap
            opacity[2] >= 1 && material->kind != SLUICE_PBRT_MATERIAL_NONE;
 }
 
-/* Called for each candidate: rejects those that are cut out. Rays come one by one. */
+/* Rejects candidates that alpha cuts out. Rays come one at a time. */
 static void filter(const struct RTCFilterFunctionNArguments *arguments)
 {
     const struct context *context = (const struct context *)arguments->context;

@@ -27,15 +27,16 @@ struct oracle_rays;
 /** Fills the members that follow from place, triangle, b1 and b2. */
 void oracle_find_point(const struct oracle_scene *scene, struct oracle_hit *hit);
 
-/** NULL, which stderr says, if it failed. `values` must outlive the result. */
+/** Creates the rays' scene. `values` must outlive the result. Reports errors on stderr and returns
+ * NULL. */
 struct oracle_rays *oracle_rays_create(const struct oracle_scene *scene,
                                        struct oracle_values *values);
 void oracle_rays_destroy(struct oracle_rays *rays);
 
-/** False: the ray hits nothing. */
+/** Returns false if the ray hits nothing. */
 bool oracle_rays_trace(struct oracle_rays *rays, const struct oracle_ray *ray,
                        struct oracle_hit *hit);
-/** Whether something that is not cut out lies between the ray's ends. */
+/** Returns whether a surface that alpha does not cut out lies between the ray's ends. */
 bool oracle_rays_is_blocked(struct oracle_rays *rays, const struct oracle_ray *ray);
 
 #endif /* TESTS_ORACLE_RAYS_H */

@@ -85,7 +85,8 @@ static struct vec sample_input(struct oracle_values *values, bool is_float,
     return vec(x, x, x);
 }
 
-/* Color of a texture, and the alpha channel of its picture; *alpha is -1 if there is none. */
+/* Returns the color of a texture, and the alpha of its picture in `*alpha`, or -1 if it has
+ * none. */
 static struct vec sample(struct oracle_values *values, uint32_t index,
                          const struct oracle_point *point, double *alpha)
 {

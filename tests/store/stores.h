@@ -14,10 +14,10 @@ struct scratch {
 };
 
 void scratch_init(struct scratch *scratch);
-/** Removes what is in the folder, and the folder. */
+/** Removes the folder with its contents. */
 void scratch_finish(struct scratch *scratch);
 
-/** Counts what was logged and keeps the last error. */
+/** Counts logged messages and keeps the last error. */
 struct messages {
     int errors, others;
     char last[1200];
@@ -31,13 +31,13 @@ enum picture {
 };
 
 /**
- * The bytes of a rectangle by formula: whole blocks of it, rows `pitch` bytes apart; what is
- * between rows stays as it is.
+ * Writes the bytes of a rectangle by formula: whole blocks, in rows `pitch` bytes apart. Bytes
+ * between rows stay unchanged.
  */
 void paint(enum picture picture, SluiceFormat format, const SluiceImageRegion *region, void *texels,
            size_t pitch);
 
-/** Whether the bytes are those that paint gives. */
+/** Returns whether the bytes are those of paint. */
 bool is_painted(enum picture picture, SluiceFormat format, const SluiceImageRegion *region,
                 const void *texels, size_t pitch);
 
@@ -49,7 +49,7 @@ SluiceResult write_tiles(SluiceStoreWriter *writer, const SluiceStoreCreateInfo 
 /** A whole file. */
 SluiceResult write_store(const SluiceStoreCreateInfo *info, enum picture picture);
 
-/** One tile, or with level = tailFirstLevel a tail. */
+/** Writes one tile. With level = tailFirstLevel, writes a tail. */
 SluiceResult write_one(SluiceStoreWriter *writer, const SluiceStoreLayout *layout,
                        enum picture picture, uint32_t layer, uint32_t level, uint32_t x,
                        uint32_t y);
@@ -58,7 +58,7 @@ SluiceResult write_one(SluiceStoreWriter *writer, const SluiceStoreLayout *layou
  *  The first error. */
 SluiceResult read_store(const char *path, enum picture picture, struct messages *messages);
 
-/** All of a file; *size bytes from malloc. */
+/** Reads a whole file. Free the result, which has *size bytes. */
 unsigned char *read_bytes(const char *path, size_t *size);
 void write_bytes(const char *path, const void *bytes, size_t size);
 bool exists(const char *path);

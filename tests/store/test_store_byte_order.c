@@ -61,7 +61,7 @@ static void write_words(const SluiceStoreCreateInfo *info, uint32_t word_size)
     free(texels);
 }
 
-/* In the file the lowest byte of a word is first, in memory the host says which. */
+/* Words have their lowest byte first in the file, and the host's order in memory. */
 static void check_words(const SluiceStoreCreateInfo *info, uint32_t word_size)
 {
     struct naive_store file;

@@ -13,7 +13,7 @@ static bool is_an_error_of_the_file(SluiceResult result)
     return result == SLUICE_ERROR_CORRUPT_DATA || result == SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* Whether any chunk, or any place that says where one is, has this byte. */
+/* Returns whether readers use the byte: it belongs to the header, the index or a chunk. */
 static bool is_read(const struct naive_store *store, size_t at)
 {
     if (at < store->data)
@@ -222,7 +222,7 @@ static SluiceResult read_with_frame(struct victim *victim, const void *frame, si
 static void frames_of_another_size_than_the_texels_are_refused(void **state)
 {
     (void)state;
-    /* Each says a content size and is one run of the byte 7: RFC 8878, raw and RLE blocks. */
+    /* Frames with a content size, each one run of the byte 7: RFC 8878, raw and RLE blocks. */
     const struct {
         uint64_t claimed;
         uint32_t run;
@@ -315,7 +315,7 @@ static void tiles_that_are_swapped_are_noticed(void **state)
         unsigned char *chunks = malloc(store.size);
         memcpy(chunks, store.bytes, store.size);
         naive_store_reseal(store.bytes, store.size);
-        /* the entries' own checksums are as they were, those of the index are right */
+        /* keep the old checksums of the entries, with the right one of the index */
         memcpy(store.bytes + 4104, chunks + 4104, 8);
         memcpy(store.bytes + 4124, chunks + 4124, 8);
         free(chunks);

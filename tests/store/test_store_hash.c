@@ -28,7 +28,7 @@ static SluiceResult hash_of(const char *path, uint64_t *hash)
     return result;
 }
 
-/* Level 0 from its last tile to its first, then what is missing. */
+/* Writes level 0 from its last tile to its first, then the missing levels. */
 static void write_backwards(const SluiceStoreCreateInfo *info)
 {
     SluiceStoreWriter *writer;

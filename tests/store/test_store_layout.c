@@ -1,4 +1,4 @@
-/* How textures are cut, against what docs/store.md says, counted texel by texel. */
+/* Division of textures into tiles, compared with docs/store.md texel by texel. */
 #include <sluice/store.h>
 
 #include "base/checked.h"

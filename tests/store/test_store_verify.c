@@ -1,4 +1,4 @@
-/* Verifying finds what is wrong, all of it, and nothing else. */
+/* Verification finds every error, and no other. */
 #include "store/naive_store.h"
 #include "store/stores.h"
 #include "support/test.h"
@@ -50,7 +50,7 @@ static void write_picture(const struct scratch *scratch, enum picture picture, u
     CHECK_OK(write_store(&info, picture));
 }
 
-/* Whether an earlier chunk lies there: tiles with equal bytes share a place. */
+/* Returns whether an earlier chunk has the same place, because tiles with equal bytes share it. */
 static bool is_repeat(const struct naive_store *store, uint64_t number)
 {
     for (uint64_t i = 0; i < number; i++)

@@ -12,7 +12,7 @@ struct reader {
     int at;
 };
 
-/* One bit at a time, as the specification counts them. */
+/* Takes bits one at a time, in the order of the specification. */
 static int take(struct reader *reader, int count)
 {
     int value = 0;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In front of every block, so that a wrong size in free is seen. */
+/* Precedes every block, to detect a wrong size in free. */
 struct header {
     size_t size;
     void *base;

@@ -1,5 +1,5 @@
-/** An allocator that refuses after n calls, checks the sizes it gets back and counts what is left.
- */
+/** Allocator that fails after n calls, checks the sizes passed to free, and counts blocks that are
+ * left. */
 #ifndef TESTS_SUPPORT_FAILING_ALLOCATOR_H
 #define TESTS_SUPPORT_FAILING_ALLOCATOR_H
 

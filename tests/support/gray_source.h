@@ -11,7 +11,8 @@
 
 /** RGBA8, named "gray", with all levels. sluiceDestroyImageSource destroys it. */
 SluiceImageSource *gray_source(uint32_t width, uint32_t height);
-/** With the size, name and address modes of `info`; an uncompressed format of 8 bits. */
+/** Creates a source with the size, name and address modes of `info`. The format must be
+ * uncompressed, with 8 bits. */
 SluiceImageSource *gray_source_with(const SluiceImageInfo *info);
 
 #endif /* TEST_SUPPORT_GRAY_SOURCE_H */

@@ -6,7 +6,7 @@
 
 #include <time.h>
 
-/* With the mutex held, which is given up meanwhile. */
+/* Call with the mutex held. It is unlocked while the job runs. */
 static void run_first(struct job_system *system)
 {
     uint32_t at = system->first;

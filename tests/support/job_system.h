@@ -10,7 +10,7 @@
 
 enum { JOB_SYSTEM_THREADS = 8, JOB_SYSTEM_ROOM = 64 };
 
-/** How a job system behaves. Do not change it before job_system_finish. */
+/** Behavior of a job system. Do not change it before job_system_finish. */
 struct job_system_habits {
     uint32_t thread_count; ///< 0: a job runs inside pfnSubmitJob
     uint32_t refuse_after; ///< Jobs that are taken before the first one is refused.
@@ -34,7 +34,7 @@ struct job_system {
 };
 
 void job_system_init(struct job_system *system, struct job_system_habits habits);
-/** Runs what is left, and stops the threads. */
+/** Runs the remaining jobs, and stops the threads. */
 void job_system_finish(struct job_system *system);
 
 #endif /* TESTS_SUPPORT_JOB_SYSTEM_H */

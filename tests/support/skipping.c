@@ -1,4 +1,4 @@
-/* Not a test: prints what test_tap.sh looks at. */
+/* Helper of test_tap.sh, which checks its output. Not a test itself. */
 #include "support/test.h"
 
 static void passes(void **state)

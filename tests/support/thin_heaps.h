@@ -10,9 +10,9 @@
 #define THIN_HEAPS_MOVES 14
 
 /**
- * For a new manager with heaps of THIN_HEAPS_CAPACITY: 4 tiles in the first heap, the rest free; 1
- * tile and 12 slots that retire with value 5 in the next two; 1 tile in each of the other six. As
- * many requests wait as leave the manager room for THIN_HEAPS_TILES more records.
+ * Prepares a new manager with heaps of THIN_HEAPS_CAPACITY. The first heap has 4 tiles and free
+ * slots. The next two have 1 tile and 12 slots that retire with value 5. The other six have 1 tile
+ * each. So many requests wait that the manager has room for THIN_HEAPS_TILES more records.
  */
 void thin_heaps_make(SluiceStreamedTextureManager *manager);
 

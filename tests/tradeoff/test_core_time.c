@@ -1,4 +1,4 @@
-/* How many frames a recording has, by the lines of its dump in tests/data. */
+/* Number of frames of a recording, compared with the lines of its dump in tests/data. */
 #include "support/test.h"
 
 #include <math.h>

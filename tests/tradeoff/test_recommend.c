@@ -109,7 +109,7 @@ static void of_equals_the_cheaper_is_taken(void **state)
     recommend(&rig.sweep, &roles, rig.recommendations);
     assert_int_equal(rig.recommendations[0].point, 2);
     recommend_finish(rig.recommendations);
-    /* With repeats 2 % apart all three are equal, and so is the memory of the last two. */
+    /* With repeats 2 % apart all three figures are equal, and so is the memory of the last two. */
     for (uint32_t i = 0; i < 4; i++)
         set_point(&rig, i, means[i], 0.02);
     recommend(&rig.sweep, &roles, rig.recommendations);

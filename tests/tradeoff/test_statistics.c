@@ -34,8 +34,8 @@ static void student_t_is_that_of_tables(void **state)
     }
 }
 
-/* Its density is (1 + t^2 / n)^(-(n + 1) / 2), divided by sqrt(n pi) gamma(n/2) / gamma((n+1)/2).
- */
+/* Integrates the density (1 + t^2 / n)^(-(n + 1) / 2), divided by sqrt(n pi) gamma(n/2) /
+ * gamma((n+1)/2). */
 static double chance_within(double t, uint32_t degrees)
 {
     const int steps = 20000; /* Simpson's rule */

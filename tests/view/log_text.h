@@ -6,7 +6,7 @@
 extern "C" {
 #endif
 
-/** Behind ui_begin_frame: texts of widgets are written down, also of those out of sight. */
+/** Begins to record the texts of widgets, also of those out of sight. Call after ui_begin_frame. */
 void log_text_begin(void);
 /** Returns the texts, valid until the next call. */
 const char *log_text_end(void);

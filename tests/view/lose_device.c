@@ -1,6 +1,6 @@
 /* RTLD_NEXT */
 #define _GNU_SOURCE
-/* For LD_PRELOAD: a Vulkan device that is lost at submission LOSE_AFTER. */
+/* Library for LD_PRELOAD: the Vulkan device is lost at submission LOSE_AFTER. */
 #include <vulkan/vulkan.h>
 
 #include <dlfcn.h>
@@ -13,7 +13,7 @@ static atomic_int submissions;
 
 #define REAL(name) ((PFN_##name)find_real(#name))
 
-/* Through memory: ISO C has no conversion of dlsym's pointer to that of a function. */
+/* Copies through memory, because ISO C cannot convert dlsym's pointer to one of a function. */
 static PFN_vkVoidFunction find_real(const char *name)
 {
     void *found = dlsym(RTLD_NEXT, name);

@@ -12,7 +12,7 @@
 
 #define PIXELS (SHOW_WIDTH * SHOW_HEIGHT)
 
-/* Whether a surface with a texture is there, by rays of the CPU. */
+/* Pixels that show a surface with a texture, computed with rays on the CPU. */
 static bool textured[PIXELS];
 static uint32_t textured_count;
 

@@ -1,4 +1,4 @@
-/* Files that are opened: what is said of them. */
+/* Reports on opened files. */
 #define _XOPEN_SOURCE 700
 
 #include "support/test.h"

@@ -52,7 +52,7 @@ static const char *key_of(const struct action *action)
     return action->shown ? action->shown : action->chord;
 }
 
-/* Whether the key follows the words, or the end of their button. */
+/* Returns whether the key follows the words, or the end of their button. */
 static bool says(const char *text, const char *words, const char *key)
 {
     for (const char *at = text; (at = strstr(at, words)); at++) {

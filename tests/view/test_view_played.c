@@ -115,7 +115,7 @@ static void a_frame_has_the_state_of_a_player_that_never_jumped(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < 6; seed++) {
         struct trace_buffer trace = record_run(seed);
-        /* Without room for checkpoints only the first one stays. */
+        /* one checkpoint at most: only the first one stays */
         struct played *p = open_copy(trace.data, trace.size, seed % 3 == 2 ? 1 : 0);
         assert_non_null(p);
         assert_true(p->frame_count > 100);
@@ -170,7 +170,7 @@ static void figures_of_frames_add_up_to_the_statistics_of_the_replay(void **stat
     }
 }
 
-/* Counts what the dump says of each frame, whose calls are known by their numbers. */
+/* Counts of each frame in the dump, whose calls are known by their numbers. */
 struct dumped {
     const struct played *p;
     uint32_t *maps, *refused;

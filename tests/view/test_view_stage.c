@@ -164,8 +164,8 @@ static void check_tile(const struct view_probe *probe)
     assert_int_equal(probe->tile.y, (probe->texel[1] >> probe->resident) / layout.desc.tileHeight);
 }
 
-/* Whether the level that the legend would show at each of many places is that of the color there.
- * Places on the border of two levels may differ. */
+/* Checks at many places that the legend's level is that of the color. Places on the border of two
+ * levels may differ. */
 static void check_levels(uint32_t view, uint32_t places[8])
 {
     struct view_app *app = &show->app;

@@ -328,7 +328,7 @@ static void the_map_of_memory_has_each_resident_tile(void **state)
     close_scene();
 }
 
-/* The window's thread takes what the thread that opens the scene has compiled. */
+/* The window's thread uses programs that the thread that opens the scene has compiled. */
 static void programs_are_compiled_by_the_thread_that_opens_the_scene(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Colors of themes against the contrast of WCAG 2.1 and against eyes that lack a kind of cones,
- * present modes against those that a window offers, and widgets against input. */
+/* Colors of themes (contrast by WCAG 2.1, color blindness), present modes that a window offers, and
+ * input of widgets. */
 #include "support/test.h"
 
 #include "keys.h"

@@ -43,7 +43,7 @@ static void set_estimate(struct sweep_estimate *estimate, double mean)
     *estimate = (struct sweep_estimate){mean, half_width, mean - half_width, mean + half_width, 3};
 }
 
-/* All points have estimates when this is called. */
+/* Call after all points have estimates. */
 static void set_deltas(struct page_sweep *s, uint32_t i)
 {
     for (uint32_t k = 0; k < PAGE_SWEEP_METRICS; k++) {

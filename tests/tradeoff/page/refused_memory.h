@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-/** So many calls succeed, all later ones do not; UINT64_MAX: all do. Returns how many there were.
- */
+/** Lets so many calls succeed and refuses all later ones. UINT64_MAX: all succeed. Returns the
+ * number of calls so far. */
 uint64_t refuse_memory_after(uint64_t calls);
 
 #endif /* TESTS_TRADEOFF_REFUSED_MEMORY_H */
