@@ -19,7 +19,7 @@ extern "C" {
 
 #define SLUICE_CAMERA_FRAMES 5 ///< Frames that a prediction looks at.
 
-/** Where a camera was in its last frames. Zero-initialize; the fields are private. Never grows. */
+/** Motion of a camera: its last frames. Zero-initialize; fields are private. Never grows. */
 typedef struct SluiceCameraMotion {
     uint32_t count;
     float viewMatrix[16];
@@ -29,8 +29,8 @@ typedef struct SluiceCameraMotion {
 
 /**
  * Adds the camera of a frame. `pViewMatrix` is from world to camera: 16 floats in columns, a
- * rotation and a translation. Either sign of the viewing direction will do. World units are meters:
- * less than 4 mm of motion ahead counts as none.
+ * rotation and a translation. The viewing direction may be +z or -z. World units are meters: less
+ * than 4 mm of motion ahead counts as no motion.
  *
  * If `seconds` is not later than the frame before, or more than 0.25 s later, all earlier frames
  * are forgotten.
@@ -44,8 +44,8 @@ SLUICE_API SluiceResult sluiceAddCameraFrame(SluiceCameraMotion *pMotion, const 
 /** Settings of a prediction. */
 typedef struct SluiceLookAheadInfo {
     uint32_t structSize; ///< sizeof(SluiceLookAheadInfo).
-    /** How far to look ahead: about as long as a tile takes from a mark to the picture. The camera
-     * stays if it is not above 0. */
+    /** Time to look ahead: about the time from a mark to the tile's display. Values that are not
+     * above 0 predict no motion. */
     double seconds;
     uint64_t frameIndex; ///< Frames look ahead all the way and half of it, in turns.
     uint32_t pictureWidth, pictureHeight; ///< Pixels of the picture, above 0.

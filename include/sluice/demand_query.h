@@ -44,7 +44,7 @@ SLUICE_API SluiceResult sluiceGetDemandTileInfo(SluiceDemandLoader *loader,
                                                 uint32_t x, uint32_t y,
                                                 SluiceDemandTileInfo *pInfo);
 
-/** How far the tiles of a rectangle are. */
+/** Progress of the tiles of a rectangle. */
 typedef struct SluiceDemandRegionProgress {
     uint32_t structSize; ///< sizeof(SluiceDemandRegionProgress).
     bool isOpen;         ///< The texture is open. If not, all tile counts are 0.

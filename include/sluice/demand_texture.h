@@ -32,7 +32,7 @@ typedef enum SluiceDemandFilter {
     SLUICE_DEMAND_FILTER_SMART_CUBIC = 3
 } SluiceDemandFilter;
 
-/** How a texture is sampled. All zero: trilinear, with the source's address modes. */
+/** Sampler of a texture. All zero: trilinear, with the source's address modes. */
 typedef struct SluiceDemandSampler {
     uint32_t structSize; ///< sizeof(SluiceDemandSampler).
     /**

@@ -500,7 +500,7 @@ SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *ma
 SLUICE_API SluiceResult sluiceSetTexturePriority(SluiceStreamedTextureManager *manager,
                                                  SluiceTextureId textureId, int32_t priority);
 
-/** How a texture continues outside of UV 0 to 1. Values as VkSamplerAddressMode, but for borders.
+/** Wrap mode of a texture outside of UV 0 to 1. Values equal VkSamplerAddressMode, except borders.
  */
 typedef enum SluiceUvWrap {
     SLUICE_UV_WRAP_REPEAT = 0,
@@ -509,7 +509,7 @@ typedef enum SluiceUvWrap {
     SLUICE_UV_WRAP_MIRROR_CLAMP = 3 ///< Mirrored once, at 0; then clamped.
 } SluiceUvWrap;
 
-/** Where a follower is sampled: at UV * scale + offset, where UV is the primary's. Never grows. */
+/** UV of a follower: UV * scale + offset, where UV is the primary's. Never grows. */
 typedef struct SluiceUvTransform {
     float scaleU, scaleV;      ///< 1/4096 to 4096, or the negative of that.
     float offsetU, offsetV;    ///< -4096 to 4096.

@@ -91,7 +91,7 @@ SLUICE_API SluiceResult sluiceRecordNeuralTraining(SluiceNeuralCompressor *compr
                                                    VkCommandBuffer commandBuffer, uint32_t maxSteps,
                                                    uint32_t *pStepCount);
 
-/** How far training has come. */
+/** Progress of a training. */
 typedef struct SluiceNeuralProgress {
     uint32_t structSize; ///< sizeof(SluiceNeuralProgress).
     uint32_t step;       ///< Steps that have been recorded, of both networks.

@@ -191,7 +191,7 @@ typedef enum SluiceProxyOrder {
     SLUICE_PROXY_ORDER_DISTANCE = 2 ///< Nearest box first. Boxes around the point have distance 0.
 } SluiceProxyOrder;
 
-/** How requested proxies are listed. */
+/** Order of requested proxies in a list. */
 typedef struct SluiceProxyListInfo {
     uint32_t structSize; ///< sizeof(SluiceProxyListInfo).
     SluiceProxyOrder order;
@@ -228,7 +228,7 @@ typedef struct SluiceProxyRange {
     uint32_t first, count;
 } SluiceProxyRange;
 
-/** Where boxes are written. */
+/** Memory for boxes, and ranges of written boxes. */
 typedef struct SluiceProxyBoxWrite {
     uint32_t structSize;       ///< sizeof(SluiceProxyBoxWrite).
     uint32_t capacity;         ///< Boxes of pBoxes. At least indexCount.

@@ -103,7 +103,7 @@ SLUICE_API SluiceResult sluiceRequestVulkanTexture(SluiceVulkanStreamer *streame
 SLUICE_API SluiceResult sluiceWithdrawVulkanRequest(SluiceVulkanStreamer *streamer,
                                                     SluiceTextureRequestId requestId);
 
-/** How far a request is. */
+/** Progress of a request. */
 typedef struct SluiceVulkanRequestProgress {
     uint32_t structSize; ///< sizeof(SluiceVulkanRequestProgress).
     bool over;           ///< It is over. All other fields are then 0.

@@ -98,7 +98,7 @@ typedef enum SluiceLoadStage {
 #define SLUICE_LOAD_STAGE_COUNT 5
 #define SLUICE_STAGE_BUCKET_COUNT 12
 
-/** How many frames a stage takes. Never grows. */
+/** Histogram of the frames that a stage takes. Never grows. */
 typedef struct SluiceLoadStageCounts {
     uint64_t count;    ///< Maps or loads that left the stage. A mip tail can be several loads.
     uint64_t frameSum; ///< frameSum / count is the mean.

@@ -52,7 +52,7 @@ void sluiceShareChanges(SluiceQuad quad)
     barrier();
 }
 
-/** How many regions changed among the first `quads` four of the segment. */
+/** Returns the number of changed regions in the segment's first `quads` quads. */
 uint sluiceCountChangesBefore(uint quads)
 {
     uint word = quads / SLUICE_QUADS_PER_WORD, count = 0u;

@@ -34,7 +34,7 @@
 #include "language.glsl"
 #include "shared/texture_table.h"
 
-/* Whether the tiles of a texture are pages. `shape` is that of its table entry. */
+/* True if the tiles of a texture are pages. `shape`: from the texture's table entry. */
 #ifndef SLUICE_PAGED
 #define SLUICE_HAS_PAGES(shape) false
 #elif defined(SLUICE_PAGED_PER_TEXTURE)

@@ -249,7 +249,7 @@ mat3x4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, 
         done = sluiceSampleQuickDemand(s, taps, uv, color);
     if (done)
         return mat3x4(color, SLUICE_SPLAT(vec4, 0.0), SLUICE_SPLAT(vec4, 0.0));
-    if (taps.fine == last) /* it has no page */
+    if (taps.fine == last) /* the last level has no page */
         sluiceMarkDemandPage(s.tailPage);
     if (taps.count > 1u || any) /* steps of a row are small beside some coordinates */
         uv = vec2(sluiceNearCoordinate(uv.x, modes.x), sluiceNearCoordinate(uv.y, modes.y));

@@ -30,7 +30,7 @@
 #include "demand_pages.glsl"
 #include "shared/bindings.h"
 
-/** Where the bytes of a page are. */
+/** Position of a page's bytes. */
 struct SluiceDemandBytes {
     uint chunk;  /* index of the storage buffer */
     uint offset; /* bytes; a multiple of 16 */

@@ -64,7 +64,7 @@ vec4 sluiceFetchDemandCube(inout SluiceDemandCube c, uint home, uint face, uint 
     }
     SluiceDemandState s = sluiceOpenDemandCell(index);
     bool last = level == sluiceDemandLastLevel(s.shape);
-    if (last) /* it has no page */
+    if (last) /* the last level has no page */
         sluiceMarkDemandPage(s.tailPage);
     SluicePageAxis x, y;
     x.low = x.high = inside.x;
@@ -146,7 +146,7 @@ vec4 sluiceSumDemandCube(inout SluiceDemandCube c, uint face, vec2 uv, SluicePag
         if (!(share > 0.0))
             continue;
         uint level = min(i > 0u ? taps.coarse : taps.fine, last);
-        if (level == last) /* it has no page */
+        if (level == last) /* the last level has no page */
             sluiceMarkDemandPage(s.tailPage);
         sum += share * sluiceDemandCubeTexels(c, s, face, level, uv);
     }

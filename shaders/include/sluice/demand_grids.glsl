@@ -225,7 +225,7 @@ vec4 sluiceSumDemandCells(SluiceDemandUdim u, vec2 uv, inout bool resident)
             taps = sluiceDemandLevels(index, u.lod);
         }
         SluiceDemandState s = sluiceOpenDemandCell(index);
-        if (taps.fine == sluiceDemandLastLevel(s.shape)) /* it has no page */
+        if (taps.fine == sluiceDemandLastLevel(s.shape)) /* the last level has no page */
             sluiceMarkDemandPage(s.tailPage);
         SLUICE_DONT_UNROLL for (uint turn = 0u; turn < 2u; turn++) {
             vec2 weights = turn == 0u ? beyond.fine : beyond.coarse;

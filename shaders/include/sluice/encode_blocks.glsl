@@ -62,7 +62,7 @@ SluiceBlockLine sluiceFitBlockLine(vec4 texels[16], vec4 mask)
     return sluiceFitPartOfBlock(texels, 0xFFFFu, mask);
 }
 
-/* Where the texel is nearest to the line: 0..1. */
+/* Returns the point of the line nearest to the texel: 0..1. */
 float sluicePlaceOnLine(SluiceBlockLine line, vec4 texel, vec4 mask)
 {
     vec4 d = (line.end[1] - line.end[0]) * mask;

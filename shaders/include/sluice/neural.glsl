@@ -95,7 +95,7 @@ int sluiceDotBytes(uint a, uint b)
 }
 #endif
 
-/** Where the numbers of a layer lie in the weights, in words, and its size. */
+/** Layer of the network: offsets of its numbers in the weights, in words, and its size. */
 struct SluiceNeuralLayer {
     uint weights, scales, biases;
     uint inputWords; /* four inputs each */

@@ -93,11 +93,11 @@ SluicePageAxis sluiceNearestPageAxis(float coordinate, uint addressMode, int siz
     return axis;
 }
 
-/** Where the four texels of a bilinear sample lie among the tiles of a level. */
+/** Position of a bilinear sample's four texels in the tiles of a level. */
 struct SluicePagePlace {
     vec2 tile;   /* column and row */
     vec2 local;  /* coordinates in the tile, 0 to 1 */
-    bool inside; /* all four lie in this tile; else the other members mean nothing */
+    bool inside; /* all four texels lie in this tile; otherwise, other members are undefined */
 };
 
 /**

@@ -134,7 +134,7 @@ vec4 sluiceSampleArray(SLUICE_SAMPLER_2D_ARRAY(tex), uint tableIndex, uint layer
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;
 #ifndef SLUICE_MIN_LOD
-    if (!(maxAnisotropy > 1.0)) /* the same case as in sluiceSample */
+    if (!(maxAnisotropy > 1.0)) /* isotropic, like in sluiceSample */
         return SLUICE_TEXTURE_LOD(tex, SLUICE_SAMPLER_OF(tex), vec3(s.uv, float(layer)), s.lod);
 #endif
     return sluiceTextureArrayGrad(SLUICE_PASS_SAMPLER(tex), layer, s);

@@ -29,7 +29,7 @@ vec4 sluiceSampleCubePaged(SLUICE_CUBE_PARAMETERS, uint tableIndex, uint face, v
     vec4 sum = SLUICE_SPLAT(vec4, 0.0);
     SLUICE_DONT_UNROLL for (uint i = 0u; i < 2u; i++) {
         float share = i > 0u ? taps.fraction : 1.0 - taps.fraction;
-        if (share > 0.0) /* else the level may be infinite */
+        if (share > 0.0) /* otherwise the level may be infinite */
             sum += share * sluiceSampleCubeLevel(SLUICE_CUBE_ARGUMENTS, tableIndex, face,
                                                  i > 0u ? taps.coarse : taps.fine, uv);
     }

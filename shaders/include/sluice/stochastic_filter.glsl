@@ -51,7 +51,7 @@
 struct SluicePick {
     ivec2 texel; /* inside the level, also with `border` */
     uint level;
-    bool border; /* it is the border color instead (CLAMP_TO_BORDER) */
+    bool border; /* the texel has the border color (CLAMP_TO_BORDER) */
 };
 
 /** Returns two random numbers of a hash: uniform in 0 to 1, 1 excluded, multiples of 2^-24. */

@@ -11,7 +11,7 @@
 /* Texels of a workgroup along either side: four blocks. */
 #define SLUICE_NEURAL_GROUP 8u
 
-/* How texels are stored. */
+/* Storage format of texels. */
 #define SLUICE_NEURAL_STORE_RGBA8 0u
 #define SLUICE_NEURAL_STORE_BC1 1u
 #define SLUICE_NEURAL_STORE_BC4 2u
