@@ -45,7 +45,7 @@ static void report_image(struct bake *bake, const SluiceStoreLayout *layout, uin
     bake->report.arrayLayerCount = layer_count;
 }
 
-/* Whether a store exists that was made from equal input with equal settings. */
+/* True if the store exists and was made from equal input with equal settings. */
 static bool is_up_to_date(struct bake *bake)
 {
     SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info,

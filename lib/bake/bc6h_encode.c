@@ -14,7 +14,7 @@
 
 /* Work per quality. tests/bake/encoder_figures measures time and PSNR. */
 struct effort {
-    int rounds;     ///< how often the ends are improved
+    int rounds;     ///< number of refinements of the ends
     int tries;      ///< partitions whose two regions are fitted
     int64_t enough; ///< two regions are tried if one region has a larger error
     bool all_modes; ///< false: only the most precise mode that holds the ends

@@ -1,4 +1,4 @@
-/** How the 14 modes of BC6H store the ends of their regions. */
+/** Storage of region ends in the 14 modes of BC6H. */
 #ifndef SLC_BAKE_BC6H_MODES_H
 #define SLC_BAKE_BC6H_MODES_H
 

@@ -13,11 +13,11 @@
 /* Work per quality. tests/bake/encoder_figures measures time and PSNR. Errors are sums of squares
  * over a block. */
 struct effort {
-    int rounds;           ///< how often the ends of mode 6 are improved
+    int rounds;           ///< number of refinements of the ends of mode 6
     float enough;         ///< other modes are tried if mode 6 has a larger error
     int partitions;       ///< partitions of mode 1 that are ranked
     int tries;            ///< best ranked partitions that are fitted
-    int rounds_of_others; ///< how often the ends of modes 1, 4 and 5 are improved
+    int rounds_of_others; ///< number of refinements for modes 1, 4 and 5
     int rotations[2];     ///< rotations of modes 4 and 5, for blocks with alpha
     int opaque_rotations[2];
 };
@@ -212,8 +212,8 @@ static void try_mean(const uint8_t rgba[64], struct slc_bc7_block *block)
         make_plain(mean, block);
 }
 
-/* Whether to try modes other than 6. The p bits of mode 6 cannot store opaque black, nor alpha 0 or
- * 255 beside other alphas, exactly. */
+/* True if modes other than 6 should be tried. The p bits of mode 6 cannot store opaque black, nor
+ * alpha 0 or 255 beside other alphas, exactly. */
 static bool is_poor(const struct effort *effort, const uint8_t rgba[64], float error)
 {
     bool is_opaque = true, has_extreme = false, has_black = false;

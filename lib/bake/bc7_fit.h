@@ -9,7 +9,7 @@
 /** p bits: the lowest bit of all channels, per end (OWN) or of both ends (SHARED). */
 enum slc_p_bits { SLC_P_BITS_NONE, SLC_P_BITS_OWN, SLC_P_BITS_SHARED };
 
-/** How a mode stores ends and indices. */
+/** Precision of a mode's ends and indices. */
 struct slc_bc7_precision {
     int bits; ///< per channel of an end, p bit included
     enum slc_p_bits p_bits;

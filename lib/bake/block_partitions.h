@@ -1,4 +1,4 @@
-/** How blocks of BC6H and BC7 are split into two regions. */
+/** Partitions of BC6H and BC7 blocks into two regions. */
 #ifndef SLC_BAKE_BLOCK_PARTITIONS_H
 #define SLC_BAKE_BLOCK_PARTITIONS_H
 

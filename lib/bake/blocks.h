@@ -7,7 +7,7 @@
 
 #include "bake/astc_pool.h"
 
-/** Whether this build makes blocks of the format. */
+/** True if this build makes blocks of the format. */
 bool slc_can_encode_blocks(SluiceFormat format);
 
 /** Returns the end of a message that says which package this build lacks; "" for other formats. */

@@ -23,7 +23,7 @@ void slc_columns_apply(struct slc_columns *columns, const float *row, float *bel
 /** Like slc_columns_apply, but sums in double and saturates at +-FLT_MAX. Slow. */
 void slc_columns_apply_wide(struct slc_columns *columns, const float *row, float *below);
 
-/** Whether all of `count` texels are finite. */
+/** True if all of `count` texels are finite. */
 bool slc_row_is_finite(const float *row, uint32_t count);
 
 /** sum[i] = weight * row[i] (set), or += (add), for `count` texels of four floats. */

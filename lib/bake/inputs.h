@@ -22,7 +22,7 @@ SluiceResult slc_bake_inputs_init(struct slc_bake_inputs *inputs, const SluiceBa
 /** Returns the path of a picture; NULL for pInput without a name and for sources. */
 const char *slc_bake_input_path(const struct slc_bake_inputs *inputs, uint32_t index);
 
-/** Whether all pictures are files that are read with all levels. */
+/** True if all pictures are files that are read with all levels. */
 bool slc_bake_inputs_are_files(const struct slc_bake_inputs *inputs);
 
 /** Returns the name without folders, because stores are moved together with their pictures. */

@@ -8,7 +8,7 @@
 /** Returns the callbacks of `given`, or malloc and free for NULL. */
 SluiceAllocationCallbacks slc_allocator(const SluiceAllocationCallbacks *given);
 
-/** Whether callbacks are NULL, or have both functions. */
+/** True if callbacks are NULL, or have both functions. */
 bool slc_allocator_is_valid(const SluiceAllocationCallbacks *given);
 
 /** Allocates `count` elements of `size` bytes at `alignment`, uninitialized. NULL if the size is 0

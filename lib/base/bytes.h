@@ -152,7 +152,7 @@ static inline void slc_fill_bytes(uint8_t *bytes, uint8_t value, size_t count)
     }
 }
 
-/** Whether all `count` bytes, > 0, have this value. */
+/** True if all `count` bytes, > 0, have this value. */
 static inline bool slc_bytes_are(const uint8_t *bytes, size_t count, uint8_t value)
 {
     return bytes[0] == value && memcmp(bytes, bytes + 1, count - 1) == 0;

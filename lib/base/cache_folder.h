@@ -26,7 +26,7 @@ struct slc_cache_rules {
     uint64_t remaining_size; ///< bytes that are left after a removal; at most max_size
     /** Sets `kind` from `name`. False if the cache does not make such names; the file stays. */
     bool (*find_kind)(struct slc_cache_entry *entry);
-    /** Whether a file must be kept. NULL: no file is. */
+    /** True if a file must be kept. NULL: no file is. */
     bool (*is_kept)(void *user, const struct slc_cache_entry *entry);
     /** Removes an unfinished file unless it is being written. NULL: as other files. */
     bool (*remove_unfinished)(const char *folder, const struct slc_cache_entry *entry,

@@ -128,7 +128,7 @@ static SluiceResult open_folder(struct slc_part_file *part)
     return result;
 }
 
-/* Whether the mode forbids writing, which root could do all the same. */
+/* True if the mode forbids writing, which root could do all the same. */
 static bool is_read_only(const char *path, const struct slc_file_status *status)
 {
     return (status->permissions & 0222) == 0 || (!slc_path_is_writable(path) && errno == EACCES);

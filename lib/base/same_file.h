@@ -1,4 +1,4 @@
-/** Whether writing one file would destroy another that is read. */
+/** Detection of an output file that is also an input. */
 #ifndef SLC_BASE_SAME_FILE_H
 #define SLC_BASE_SAME_FILE_H
 

@@ -72,7 +72,7 @@ static struct vector eye_of(const float *m)
     return subtract(eye, scale(axis_of(m, 2), m[14]));
 }
 
-/* Whether a matrix is a rotation or reflection, and a translation. False for NaN. */
+/* True if a matrix is a rotation or reflection, and a translation. False for NaN. */
 static bool is_rigid(const float *m)
 {
     const double slack = 1e-3;
@@ -139,7 +139,7 @@ static void fit(const double points[FRAMES][3], const double times[FRAMES], stru
     *speed = add(new_speed, scale(*change, after / 2.0));
 }
 
-/* Whether one step is far longer than all others together. */
+/* True if one step is far longer than all others together. */
 static bool has_jump(const double points[FRAMES][3], double still)
 {
     double longest = 0.0, all = 0.0;

@@ -133,7 +133,7 @@ static bool is_resident(const struct slc_managed_texture *t, struct slc_place p)
     return t->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
 }
 
-/** Whether a coarser tile over a regular one, or a packed one, is not resident. */
+/** True if a coarser tile over a regular one, or a packed one, is not resident. */
 static bool is_hidden(const struct slc_managed_texture *t, uint32_t tile)
 {
     struct slc_place p = slc_tile_place(t, tile);

@@ -9,7 +9,7 @@ uint64_t slc_surplus_slots(const slc_manager *m);
 /** Returns the number of free slots that regular tiles must not take: slots reserved for packed
  * tiles, and surplus slots. */
 uint64_t slc_kept_slots(const slc_manager *m);
-/** Whether a regular tile has a slot of its kind: in a heap for regular tiles, or, while the number
+/** True if a regular tile has a slot of its kind: in a heap for regular tiles, or, while the number
  * of heaps shrinks, in a heap for packed tiles, because these heaps stay. */
 bool slc_has_own_slot(const slc_manager *m);
 /** Takes a slot as in slc_has_own_slot. Returns false if there is none. */

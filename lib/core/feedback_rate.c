@@ -98,7 +98,7 @@ static struct writers find_writers(const SluiceFeedbackRate *rate)
     return (struct writers){(double)rate->regionWidth * rate->regionHeight, CORNER_TURNS};
 }
 
-/** Whether a texture's turns meet all four corners. Otherwise some corners are never marked. */
+/** True if a texture's turns meet all four corners. Otherwise some corners are never marked. */
 static bool meets_all_corners(const SluiceFeedbackRate *rate, struct writers writers)
 {
     return writers.turns == CORNER_TURNS || !rate->inTurns || equal_turns(rate) % 2 == 1;

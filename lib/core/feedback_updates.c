@@ -136,7 +136,7 @@ static void commit(slc_manager *m, struct slc_managed_texture *t, uint64_t time,
     }
 }
 
-/** Whether neither earlier maps nor this one request anything. */
+/** True if neither earlier maps nor this one request anything. */
 static bool changes_nothing(const slc_manager *m, const struct slc_managed_texture *t,
                             const SluiceFeedbackDesc *feedback)
 {

@@ -36,7 +36,7 @@ static struct slc_grid region_grid(const struct slc_managed_texture *t)
                              t->shape->feedback_height};
 }
 
-/** Whether the regions of both textures are equal. */
+/** True if the regions of both textures are equal. */
 static bool has_same_regions(const struct slc_managed_texture *p,
                              const struct slc_managed_texture *f)
 {

@@ -14,7 +14,7 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_managed
 uint64_t slc_follower_scratch(const struct slc_managed_texture *primary,
                               const struct slc_managed_texture *follower);
 
-/** Whether tiles and regions of both textures are equal. */
+/** True if tiles and regions of both textures are equal. */
 bool slc_have_same_shape(const struct slc_managed_texture *a, const struct slc_managed_texture *b);
 
 #endif /* SLC_CORE_FOLLOWER_H */

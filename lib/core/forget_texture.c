@@ -14,7 +14,7 @@ static uint32_t first_tile(const struct slc_managed_texture *t)
     return t->nodes ? 0 : t->shape->regular_tile_count;
 }
 
-/* Whether all tiles are FREE or STANDBY: none is wanted, loading, or waiting for a retry. */
+/* True if all tiles are FREE or STANDBY: none is wanted, loading, or waiting for a retry. */
 static bool is_idle(const slc_manager *m, const struct slc_managed_texture *t)
 {
     if (t->held_regions > 0)

@@ -80,7 +80,7 @@ static SluiceResult take_slot(slc_manager *m, const struct slc_managed_texture *
     if (result == SLUICE_BUDGET_REACHED && may_take &&
         slc_tile_heaps_take(heaps, node, &n->heap, &n->slot))
         return SLUICE_SUCCESS;
-    /* Not before the answer: a call that fails leaves equal heaps in their order. */
+    /* Settle only after the answer, because a failed call must keep the order of equal heaps. */
     if (result == SLUICE_BUDGET_REACHED && packed)
         slc_tile_heaps_settle(heaps);
     return result;

@@ -413,7 +413,7 @@ static void regions_under(uint32_t tile, uint32_t level, bool last, uint32_t til
     *end = last || regions > region_count ? region_count : (uint32_t)regions;
 }
 
-/** Whether one of `count` bytes is at most `limit`; a block may be read over the end. */
+/** True if one of `count` bytes is at most `limit`; a block may be read over the end. */
 static bool any_at_most(const uint8_t *bytes, uint32_t count, uint32_t limit)
 {
     slc_block limits = slc_block_of((uint8_t)limit), none = slc_block_of(0);
@@ -427,7 +427,7 @@ static bool any_at_most(const uint8_t *bytes, uint32_t count, uint32_t limit)
     return false;
 }
 
-/** Whether the last map requests `level` or a finer one under the tiles `r` of that level. */
+/** True if the last map requests `level` or a finer one under the tiles `r` of that level. */
 static bool is_asked_in(const struct slc_managed_texture *t, uint32_t level,
                         struct slc_tile_range r)
 {

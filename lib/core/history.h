@@ -9,9 +9,9 @@ static inline size_t slc_region_count(const struct slc_managed_texture *t)
     return t->shape->region_count;
 }
 
-/** Whether the texture's last map requests the tile. True for packed tiles. */
+/** True if the texture's last map requests the tile. True for packed tiles. */
 bool slc_is_asked_for(const slc_manager *m, uint32_t node);
-/** Whether the last map requests a regular tile or a neighbor: chance rarely hides all of them. */
+/** True if the last map requests a regular tile or a neighbor: chance rarely hides all of them. */
 bool slc_is_seen(const slc_manager *m, uint32_t node);
 
 /** Destroys the state if the texture has no requests and no nodes of regular tiles. */

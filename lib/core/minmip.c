@@ -165,7 +165,7 @@ static void show(struct slc_managed_texture *t, struct slc_place p, struct slc_t
         show_children(t, p);
 }
 
-/** Whether a child of a tile that counts does, too: the map is finer at the child's first texel. */
+/** True if a child of a tile that counts does, too: the map is finer at the child's first texel. */
 static bool shows_children(const struct slc_managed_texture *t, struct slc_place p)
 {
     if (p.level == 0)

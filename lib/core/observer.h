@@ -10,10 +10,10 @@ void slc_manager_set_observer(SluiceStreamedTextureManager *manager, struct slc_
 /** Tells the observer, if there is one. */
 void slc_notify(SluiceStreamedTextureManager *manager, const struct slc_call *call);
 
-/** Whether a changing call other than sluiceSetConfig was made. */
+/** True if a changing call other than sluiceSetConfig was made. */
 bool slc_manager_is_used(const SluiceStreamedTextureManager *manager);
 
-/** Whether the manager has an observer. */
+/** True if the manager has an observer. */
 bool slc_manager_is_observed(const SluiceStreamedTextureManager *manager);
 
 /** Returns the create-info, with which a player makes an equal manager. */

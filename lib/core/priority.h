@@ -10,7 +10,7 @@ static inline int32_t slc_priority_of(const slc_manager *m, const struct slc_man
     return t->primary == SLC_NONE ? t->priority : slc_texture_at(m, t->primary)->priority;
 }
 
-/** Whether some texture has had a priority other than 0. */
+/** True if some texture has had a priority other than 0. */
 static inline bool slc_has_priorities(const slc_manager *m)
 {
     return m->residency.user.weight;

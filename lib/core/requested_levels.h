@@ -15,7 +15,7 @@ struct slc_requested_level {
 struct slc_requested_level slc_requested_level(const SluiceStreamedTextureManager *manager,
                                                SluiceTextureId id, uint32_t x, uint32_t y);
 
-/** Whether the last list of tiles to map ended early for lack of slots. */
+/** True if the last list of tiles to map ended early for lack of slots. */
 bool slc_manager_lacks_slots(const SluiceStreamedTextureManager *manager);
 
 #endif /* SLC_CORE_REQUESTED_LEVELS_H */

@@ -10,7 +10,7 @@ void slc_shape_give(slc_manager *m, struct slc_shape *shape);
 
 /** Bytes of two rows of tiles. */
 size_t slc_shape_rows_size(const struct slc_shape *s);
-/** Whether the regions are the tiles of level 0. */
+/** True if the regions are the tiles of level 0. */
 static inline bool slc_regions_are_tiles(const struct slc_shape *s)
 {
     return s->desc.feedbackRegionWidth == s->desc.tileWidth &&

@@ -249,7 +249,7 @@ struct SluiceStreamedTextureManager {
     uint64_t moved_total, given_up_retried_total;
 };
 
-/** Whether the owner has locked the manager: calls that hand out or answer tiles are refused. */
+/** True if the owner has locked the manager: calls that hand out or answer tiles are refused. */
 static inline bool slc_is_locked(const SluiceStreamedTextureManager *manager)
 {
     return manager->info.pLocked && *manager->info.pLocked;

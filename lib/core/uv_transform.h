@@ -23,9 +23,9 @@ struct slc_uv_transform {
 
 /** Reads a transform. Returns NULL, or the reason why it is refused. */
 const char *slc_uv_transform_read(struct slc_uv_transform *t, const SluiceUvTransform *from);
-/** Whether slc_uv_transform_read can have made the axis. */
+/** True if slc_uv_transform_read can have made the axis. */
 bool slc_uv_axis_is_valid(const struct slc_uv_axis *axis);
-/** Whether the transform is the identity: follower and primary match cell by cell. */
+/** True if the transform is the identity: follower and primary match cell by cell. */
 bool slc_uv_transform_is_none(const struct slc_uv_transform *t);
 
 /** The greatest d with w * |scale| >= W * 2^d in both axes; lower case is the follower. */

@@ -93,8 +93,8 @@ static void raise(struct slc_demand_bias *bias, uint32_t need, uint32_t room)
         change(bias, to);
 }
 
-/* Whether the next finer bias may fit if the present one needs *need. If so, sets *need to the need
- * of the finer one. Old statistics do not forbid a trial. */
+/* True if the next finer bias may fit. On entry, *need is the need of the present bias. If true,
+ * sets *need to the need of the finer bias. Old statistics do not forbid a trial. */
 static bool may_fit(const struct slc_demand_bias *bias, uint32_t finer, uint32_t room,
                     uint32_t *need)
 {

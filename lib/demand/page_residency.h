@@ -102,9 +102,9 @@ SluiceResult slc_residency_set_class(struct slc_demand_residency *residency, uin
 void slc_residency_set_switches(struct slc_demand_residency *residency, bool no_eviction,
                                 bool no_lod_bias);
 
-/** Whether the page is absent, so that a request would need a place. */
+/** True if the page is absent, so that a request would need a place. */
 bool slc_residency_is_absent(const struct slc_demand_residency *residency, uint32_t page);
-/** Whether the page is resident. `*place`: SLC_NO_PLACE if the page has none. */
+/** True if the page is resident. `*place`: SLC_NO_PLACE if the page has none. */
 bool slc_residency_is_resident(const struct slc_demand_residency *residency, uint32_t page,
                                uint32_t *place);
 /** Returns an upper bound of the pages that slc_residency_visit visits. */

@@ -103,7 +103,7 @@ uint64_t slc_byte_value(const struct slc_byte_memory *memory, uint32_t place, ui
 void slc_byte_memory_begin(struct slc_byte_memory *memory, uint64_t launch, uint64_t processed,
                            bool pressure);
 
-/** Whether pages may soon be evicted, so that shaders should report the pages that they use. */
+/** True if pages may soon be evicted, so that shaders should report the pages that they use. */
 bool slc_byte_memory_is_filling(const struct slc_byte_memory *memory);
 
 #endif /* SLC_DEMAND_VULKAN_BYTE_MEMORY_H */

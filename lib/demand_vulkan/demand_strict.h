@@ -11,7 +11,7 @@ void slc_demand_strict_not_begun(SluiceDemandLoader *loader);
 uint64_t slc_demand_strict_patience(SluiceDemandLoader *loader, uint64_t launch, uint64_t timeout);
 /** Notes a call that is not ready, or has waited as long as slc_demand_strict_patience allows. */
 void slc_demand_strict_not_ready(SluiceDemandLoader *loader, uint64_t launch);
-/** Whether shaders must report the pages that `launch` uses, for strict mode only. */
+/** True if shaders must report the pages that `launch` uses, for strict mode only. */
 bool slc_demand_strict_probes(const SluiceDemandLoader *loader, uint64_t launch);
 /** Checks a processed launch. `marked`: shaders requested or used pages. `turned_away`: pages of
  *  resources that found no memory. */

@@ -378,7 +378,7 @@ struct SluiceDemandLoader {
     SluiceDemandStatistics counts;
 };
 
-/** Whether a read with this result may succeed when shaders request the page again. */
+/** True if a read with this result may succeed when shaders request the page again. */
 static inline bool slc_result_may_pass(SluiceResult result)
 {
     return result == SLUICE_NOT_READY || result == SLUICE_ERROR_CANCELED ||
@@ -453,7 +453,7 @@ void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *imag
 void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image);
 /** Detaches an image from its texture: forgets its pages, and closes it when its reads end. */
 void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image);
-/** Whether the image is open, has no reads, and was not used by the last processed launch. Launches
+/** True if the image is open, has no reads, and was not used by the last processed launch. Launches
  *  in flight may use it. */
 bool slc_image_is_idle(const SluiceDemandLoader *loader, const struct slc_demand_image *image);
 /** Closes an idle image. Its texture becomes unopened, as if it had never been requested. */
@@ -540,7 +540,7 @@ void slc_byte_pages_count(const SluiceDemandLoader *loader, SluiceDemandStatisti
 /* jobs.c */
 SluiceResult slc_jobs_init(SluiceDemandLoader *loader);
 void slc_jobs_finish(SluiceDemandLoader *loader);
-/** Whether a job of the kind can be taken. Makes staging memory for it. */
+/** True if a job of the kind can be taken. Makes staging memory for it. */
 bool slc_job_is_ready(SluiceDemandLoader *loader, enum slc_job_kind kind);
 /** Takes a free job. NULL if there is none. For kinds with staging memory slc_job_is_ready must be
  *  true. */

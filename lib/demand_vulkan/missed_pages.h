@@ -24,7 +24,7 @@ bool slc_missed_pages_has(const struct slc_missed_pages *missed, uint32_t page);
 void slc_missed_pages_remove(struct slc_missed_pages *missed, uint32_t page);
 /** Lists up to `capacity` pages that were not listed yet. Returns how many. */
 uint32_t slc_missed_pages_take(struct slc_missed_pages *missed, uint32_t *pages, uint32_t capacity);
-/** Whether some pages were not listed yet. */
+/** True if some pages were not listed yet. */
 bool slc_missed_pages_has_more(const struct slc_missed_pages *missed);
 /** Removes the page of [first, first + count) that was missed first. Returns false if there is
  * none.

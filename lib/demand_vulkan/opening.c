@@ -162,7 +162,7 @@ static SluiceResult start_base_color(struct slc_demand_image *image,
                                      const SluiceImageReadToken *token)
 {
     const struct last_level last = last_level_of(image);
-    if (!image->last_level) { /* else left by an earlier attempt with an equal ticket */
+    if (!image->last_level) { /* otherwise kept from an earlier attempt with an equal ticket */
         image->last_level = slc_alloc(&image->loader->cb, last.size, 1);
         if (!image->last_level)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;

@@ -91,12 +91,12 @@ void slc_page_directory_hide(struct slc_page_directory *dir, uint32_t page);
 SluiceResult slc_page_directory_keep(struct slc_page_directory *dir, uint32_t page);
 /** Ends slc_page_directory_keep. Does nothing if the page is not kept. */
 void slc_page_directory_unkeep(struct slc_page_directory *dir, uint32_t page);
-/** Whether the page is shown with this value. Only the low 32 bits are compared. */
+/** True if the page is shown with this value. Only the low 32 bits are compared. */
 bool slc_page_directory_shows(const struct slc_page_directory *dir, uint32_t page, uint32_t value);
-/** Whether the page is shown with this 64-bit value. */
+/** True if the page is shown with this 64-bit value. */
 bool slc_page_directory_shows_wide(const struct slc_page_directory *dir, uint32_t page,
                                    uint64_t value);
-/** Whether the page is shown or refused. */
+/** True if the page is shown or refused. */
 bool slc_page_directory_has(const struct slc_page_directory *dir, uint32_t page);
 
 /**

@@ -9,7 +9,7 @@
 
 #define FIRST_UPLOAD 8192u /* initial room for patches */
 
-/* Whether the mask must be written. The device's mask of a fresh block is unknown. */
+/* True if the mask must be written. The device's mask of a fresh block is unknown. */
 static bool mask_changed(const struct slc_page_block *block)
 {
     return block->fresh || block->resident != block->device_resident;

@@ -174,7 +174,7 @@ static bool next_page(struct slc_preload *preload, const struct slc_demand_image
     return true;
 }
 
-/* Whether there is room without evictions: preloads never evict. */
+/* True if there is room without evictions: preloads never evict. */
 static bool has_room(SluiceDemandLoader *loader)
 {
     struct slc_residency_counts counts;

@@ -176,7 +176,7 @@ static int compare(const void *a, const void *b)
     return (x->page > y->page) - (x->page < y->page);
 }
 
-/* Whether a job may wait. Half of the jobs are kept for pages that can be made at once. */
+/* True if a job may wait. Half of the jobs are kept for pages that can be made at once. */
 static bool can_wait(const SluiceDemandLoader *loader)
 {
     return 2 * loader->free_produce_count >= loader->info.maxTilesInFlight;
@@ -291,7 +291,7 @@ static uint32_t ask_for_bytes(SluiceDemandLoader *loader, struct slc_producer_ca
     return written;
 }
 
-/* Whether a page to be made again is still resident. If it was evicted, its old content must not be
+/* True if a page to be made again is still resident. If it was evicted, its old content must not be
  * restored. If it is being made anew, no remake is necessary. */
 static bool is_there(SluiceDemandLoader *loader, struct slc_demand_job *job)
 {

@@ -20,7 +20,7 @@ void slc_remake_begin(SluiceDemandLoader *loader, struct slc_demand_image *image
 /** Makes pages resident that launches up to `processed` wrote. Call it before changes are applied.
  */
 void slc_productions_collect(SluiceDemandLoader *loader);
-/** Whether the launch will call producers. */
+/** True if the launch will call producers. */
 bool slc_productions_are_due(const SluiceDemandLoader *loader);
 /** Calls producers, after the copies of the launch. Returns how many pages are written. */
 uint32_t slc_productions_ask(SluiceDemandLoader *loader, VkCommandBuffer commands);

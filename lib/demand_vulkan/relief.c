@@ -73,7 +73,7 @@ static void empty_chunk(struct survey *survey, uint32_t chunk)
     survey->chunks[chunk] = (struct chunk_use){0};
 }
 
-/* Whether the last launch reported the pages that it used. */
+/* True if the last launch reported the pages that it used. */
 static bool knows_use(const SluiceDemandLoader *loader)
 {
     return loader->processed > 0 &&

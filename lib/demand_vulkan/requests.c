@@ -39,7 +39,7 @@ static void count(SluiceDemandRequests *requests, enum slc_request_answer answer
     }
 }
 
-/* Whether the page is of a resource. Shaders request its missing values in every launch. */
+/* True if the page is of a resource. Shaders request its missing values in every launch. */
 static bool is_resource(const SluiceDemandLoader *loader, uint32_t page)
 {
     uint32_t index;
@@ -60,7 +60,7 @@ static bool feed_used(SluiceDemandLoader *loader, uint32_t slot)
     return any;
 }
 
-/* Whether a launch used pages. For strict mode, which must not influence evictions. */
+/* True if a launch used pages. For strict mode, which must not influence evictions. */
 static bool has_used(const SluiceDemandLoader *loader, uint32_t slot)
 {
     struct slc_page_used_iterator iterator = {0};

@@ -220,7 +220,7 @@ static void retry_opening(SluiceDemandLoader *loader)
         loader->counts.retriedCount++;
 }
 
-/* Whether the next opening has rested, or another failed texture could be opened since. */
+/* True if the next opening has rested, or another failed texture could be opened since. */
 static bool opening_is_due(const struct slc_retries *r, uint64_t delay)
 {
     if (r->openings.first == 0)
@@ -230,7 +230,7 @@ static bool opening_is_due(const struct slc_retries *r, uint64_t delay)
            (r->has_opened && since < r->opened && r->opened - since >= delay / EARLY_PART);
 }
 
-/* All of it --------------------------------------------------------------------------------- */
+/* Public functions -------------------------------------------------------------------------- */
 
 void slc_retries_advance(SluiceDemandLoader *loader)
 {

@@ -32,7 +32,7 @@ void slc_tail_pages_finish(struct slc_tail_pages *tails);
 /** Takes a slot in a page that has tails. Returns the word of its page, or SLUICE_PAGE_NONE. */
 uint32_t slc_tail_pages_take(struct slc_tail_pages *tails, SluiceFormat format,
                              const struct slc_tail_cut *cut);
-/** Whether slc_tail_pages_take would find a slot. */
+/** True if slc_tail_pages_take would find a slot. */
 bool slc_tail_pages_has_room(const struct slc_tail_pages *tails, SluiceFormat format,
                              const struct slc_tail_cut *cut);
 /** Makes room for slc_tail_pages_add. Returns false without host memory. */

@@ -54,8 +54,7 @@ void slc_ticket_add(struct slc_tickets *tickets, SluiceDemandTicket ticket, uint
 void slc_ticket_drop(struct slc_tickets *tickets, SluiceDemandTicket ticket, uint32_t count);
 bool slc_ticket_is_canceled(struct slc_tickets *tickets, SluiceDemandTicket ticket);
 
-/** With the lock held: adds and begins a task; ends a task; takes back a task that did not begin.
- */
+/** Adds and begins a task; ends a task; withdraws a task that did not begin. The lock is held. */
 void slc_ticket_task_begins(struct slc_tickets *tickets, SluiceDemandTicket ticket);
 void slc_ticket_task_ends(struct slc_tickets *tickets, SluiceDemandTicket ticket, bool failed);
 void slc_ticket_task_withdraw(struct slc_tickets *tickets, SluiceDemandTicket ticket);

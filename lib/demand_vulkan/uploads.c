@@ -148,7 +148,7 @@ static void record_bytes(struct byte_copies *c, const struct slc_demand_job *job
         loader->counts.bytesUploaded += copy.size;
 }
 
-/* Whether an admitted job is still wanted. It was forgotten if the page table had no room, or its
+/* True if an admitted job is still wanted. It was forgotten if the page table had no room, or its
  * launch was abandoned or could not begin. Then even its place may belong to another page. */
 static bool is_wanted(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {

@@ -92,7 +92,7 @@ static bool is_opening(const SluiceDemandLoader *loader, uint32_t index)
     return slot != SLC_NONE && loader->images[slot]->state == SLC_IMAGE_OPENING;
 }
 
-/* Whether a launch must take, make or start something before any read ends. `all_pending`: all
+/* True if a launch must take, make or start something before any read ends. `all_pending`: all
  * awaited tiles are being loaded, so that requests do not matter. */
 static bool launch_has_work(const SluiceDemandLoader *loader, bool all_pending)
 {

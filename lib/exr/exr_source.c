@@ -26,7 +26,7 @@ struct exr_source {
     SluiceExrMemoryBudget *budget; ///< NULL, or chain_size is reserved in it
     struct slc_mutex mutex;        ///< guards the fields below
     bool is_built;
-    SluiceResult failure;                ///< of the last build; a repeat now would fail, too
+    SluiceResult failure; ///< result of the last build, if a repeat now would fail, too
     struct slc_file_stamp failure_stamp; ///< file stamp at the failure
     uint64_t failure_time;
     struct slc_mip_chain chain;

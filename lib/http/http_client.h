@@ -93,7 +93,7 @@ struct SluiceHttpFile {
     struct slc_http_url url;        ///< opened URL
     struct slc_http_target *target; ///< guarded by the client's mutex
     uint64_t size;
-    char etag[256], modified[64]; ///< of the opened version; empty: not sent by the server
+    char etag[256], modified[64]; ///< opened version; empty: not sent by the server
     char version[384];            ///< ETag, date and size, for the cache; empty: do not cache
     unsigned char *head;
     size_t head_size;

@@ -16,7 +16,7 @@
 /** Reverses every word of `word_size` bytes. `size` is a multiple of it. Any alignment. */
 void slc_reverse_words(void *bytes, size_t size, uint32_t word_size);
 
-/** Whether texels of the format differ between files and the memory of this host. */
+/** True if texels of the format differ between files and the memory of this host. */
 static inline bool slc_file_order_differs(SluiceFormat format)
 {
     return SLC_HOST_IS_BIG_ENDIAN && slc_format_word_size(format) > 1;

@@ -23,7 +23,7 @@ static inline bool slc_format_is_compressed(const SluiceFormatInfo *format)
     return format->blockWidth > 1 || format->blockHeight > 1;
 }
 
-/** Whether channels are not whole bytes, or share bits. */
+/** True if channels are not whole bytes, or share bits. */
 static inline bool slc_format_is_packed(SluiceFormat format)
 {
     return format == SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32 ||
@@ -31,20 +31,20 @@ static inline bool slc_format_is_packed(SluiceFormat format)
            format == SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32;
 }
 
-/** Whether channels are 16-bit UNORM. */
+/** True if channels are 16-bit UNORM. */
 static inline bool slc_format_is_unorm16(SluiceFormat format)
 {
     return format == SLUICE_FORMAT_R16_UNORM || format == SLUICE_FORMAT_R16G16_UNORM ||
            format == SLUICE_FORMAT_R16G16B16A16_UNORM;
 }
 
-/** Whether channels are SNORM, of 8 or 16 bits. False for blocks. */
+/** True if channels are SNORM, of 8 or 16 bits. False for blocks. */
 static inline bool slc_format_is_snorm(SluiceFormat format)
 {
     return format >= SLUICE_FORMAT_R8_SNORM && format <= SLUICE_FORMAT_R16G16B16A16_SNORM;
 }
 
-/** Whether channels are integers, UINT or SINT. */
+/** True if channels are integers, UINT or SINT. */
 static inline bool slc_format_is_integer(SluiceFormat format)
 {
     return format >= SLUICE_FORMAT_R8_UINT && format <= SLUICE_FORMAT_R32G32B32A32_SINT;
@@ -55,7 +55,7 @@ static inline bool slc_format_is_sint(SluiceFormat format)
     return format >= SLUICE_FORMAT_R8_SINT && format <= SLUICE_FORMAT_R32G32B32A32_SINT;
 }
 
-/** Whether channels are halves. */
+/** True if channels are halves. */
 static inline bool slc_format_is_half(SluiceFormat format)
 {
     return format == SLUICE_FORMAT_R16_SFLOAT || format == SLUICE_FORMAT_R16G16_SFLOAT ||

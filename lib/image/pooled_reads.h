@@ -5,7 +5,7 @@
 #include "image/read_pool.h"
 #include "image/shared_reads.h"
 
-/** Whether reads of the source use the pool's regions: the source is an image, and the pool shares.
+/** True if reads of the source use the pool's regions: the source is an image, and the pool shares.
  */
 bool slc_reads_are_pooled(const SluiceTileLoader *loader, const SluiceImageSource *source);
 
@@ -35,7 +35,7 @@ void slc_pooled_region_count(SluiceTileLoader *loader, const struct slc_read *re
 /** Lets a running read wait if other reads are reading its regions. Returns whether it waits. */
 bool slc_pooled_read_waits(SluiceTileLoader *loader, struct slc_read *read,
                            struct slc_read_outcome *outcome);
-/** Whether the read that a running read waited for has failed, which counts as an attempt of both.
+/** True if the read that a running read waited for has failed, which counts as an attempt of both.
  */
 bool slc_pooled_read_has_failed(struct slc_read *read, struct slc_read_outcome *outcome);
 /** Releases the region that an ending read holds or waits for. */

@@ -36,7 +36,7 @@ void slc_read_jobs_want(struct slc_read_pool *pool)
         jobs->wanted_count = 1;
 }
 
-/* Whether another thread will submit the wanted job, perhaps not soon. */
+/* True if another thread will submit the wanted job, perhaps not soon. */
 static bool others_submit(const struct slc_read_jobs *jobs)
 {
     return jobs->submitting && jobs->submitter != slc_thread_id();

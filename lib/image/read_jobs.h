@@ -27,7 +27,7 @@ struct slc_read_jobs {
     uint64_t submitter;     ///< slc_thread_id()
 };
 
-/** Whether the pool reads in jobs. */
+/** True if the pool reads in jobs. */
 bool slc_uses_jobs(const struct slc_read_pool *pool);
 
 /* All with the mutex held, for pools that read in jobs. */

@@ -85,7 +85,7 @@ bool slc_read_pool_read(struct slc_read_pool *pool);
 void slc_read_pool_wait(struct slc_read_pool *pool, uint64_t until);
 /** Returns when the first delayed read is due, with the mutex held. UINT64_MAX: none is delayed. */
 uint64_t slc_read_pool_next_due(const struct slc_read_pool *pool);
-/** Whether a read can be started or waits for a retry. With the mutex held. */
+/** True if a read can be started or waits for a retry. With the mutex held. */
 bool slc_read_pool_has_startable(const struct slc_read_pool *pool);
 bool slc_read_pool_has_work(const struct slc_read_pool *pool);
 /** Ends a read and notifies the loader's owner. With the mutex held. */
@@ -111,7 +111,7 @@ struct slc_read_outcome {
 SluiceResult slc_loader_read_region(const SluiceTileLoader *loader, const struct slc_read *read,
                                     const SluiceImageInfo *info, uint32_t region,
                                     SluiceImageFault *fault);
-/** Whether the read is not wanted any more. */
+/** True if the read is not wanted any more. */
 bool slc_read_is_dropped(const struct slc_read *read);
 /** Notes a delivered region. With the mutex held, or on the thread that runs the read. */
 void slc_read_region_done(struct slc_read *read, SluiceFormat format, uint32_t region);

@@ -121,7 +121,7 @@ static void update_twins(struct slc_read_source *source)
     }
 }
 
-/* Whether a read needs no source: the pool has remaining texels, or knows that the read has failed.
+/* True if a read needs no source: the pool has remaining texels, or knows that the read has failed.
  */
 static bool is_copy(const struct slc_read_queue *queue, const struct slc_read *read)
 {

@@ -161,7 +161,7 @@ struct slc_read *slc_read_queue_find(struct slc_read_queue *queue, uint64_t tick
  */
 bool slc_read_queue_collect(struct slc_read_queue *queue, SluiceTileReadResult *result);
 
-/** Whether nothing is queued, delayed, running or waiting. */
+/** True if nothing is queued, delayed, running or waiting. */
 bool slc_read_queue_is_idle(const struct slc_read_queue *queue);
 
 /** Forgets a source and its statistics. NOT_READY, with nothing changed, while it has reads that

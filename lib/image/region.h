@@ -4,7 +4,7 @@
 
 #include <sluice/image.h>
 
-/** Whether the image has the region, and its edges are edges of blocks or of the level. */
+/** True if the image has the region, and its edges are edges of blocks or of the level. */
 bool slc_region_is_valid(const SluiceImageRegion *region, const SluiceImageInfo *info);
 
 #endif /* SLC_IMAGE_REGION_H */

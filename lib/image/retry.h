@@ -13,7 +13,7 @@ struct slc_attempts {
 /** Returns a policy with defaults in place of zeros. */
 SluiceTileRetryPolicy slc_retry_policy(const SluiceTileRetryPolicy *given);
 
-/** Whether a read whose last attempt, counted already, ended with `result` is tried again after
+/** True if a read whose last attempt, counted already, ended with `result` is tried again after
  *  `*delay` ns. */
 bool slc_retry_is_due(const SluiceTileRetryPolicy *policy, const struct slc_attempts *attempts,
                       SluiceResult result, uint64_t *delay);

@@ -59,7 +59,7 @@ void slc_shared_reads_finish(struct slc_shared_reads *shares);
 void slc_shared_reads_add_member(struct slc_shared_reads *shares);
 void slc_shared_reads_remove_member(struct slc_shared_reads *shares,
                                     struct slc_shared_region **dropped);
-/** Whether there are members to share with. */
+/** True if there are members to share with. */
 bool slc_shared_reads_are_on(const struct slc_shared_reads *shares);
 
 /** Returns how `read` gets the texels of `at`, which have `size` bytes. `*region` is their region,
@@ -75,13 +75,13 @@ struct slc_read *slc_shared_reads_end(struct slc_shared_reads *shares,
 /** Releases a region that the caller holds. */
 void slc_shared_reads_release(struct slc_shared_reads *shares, struct slc_shared_region *region);
 
-/** Whether the region has this rectangle. */
+/** True if the region has this rectangle. */
 bool slc_shared_region_is_at(const struct slc_shared_region *region, const SluiceImageRegion *at);
 /** Returns the region if it is being read, or NULL. */
 struct slc_shared_region *slc_shared_reads_find_reading(const struct slc_shared_reads *shares,
                                                         const SluiceImageSource *source,
                                                         const SluiceImageRegion *at);
-/** Whether the texels of the region can be copied. */
+/** True if the texels of the region can be copied. */
 bool slc_shared_reads_keep(const struct slc_shared_reads *shares, const SluiceImageSource *source,
                            const SluiceImageRegion *at);
 /** Adds a read to the waiting reads of a region that is being read, and removes it. */

@@ -23,7 +23,7 @@ SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInf
     return result;
 }
 
-/* Whether a region has whole blocks. Only the right and lower edge of a level may cut a block. */
+/* True if a region has whole blocks. Only the right and lower edge of a level may cut a block. */
 static bool region_is_aligned(const SluiceImageRegion *region, const SluiceImageInfo *info,
                               const SluiceFormatInfo *format)
 {

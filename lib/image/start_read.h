@@ -4,7 +4,7 @@
 
 #include <sluice/image.h>
 
-/** Whether the source can start reads. It must have an interface. */
+/** True if the source can start reads. It must have an interface. */
 bool slc_starts_reads(const SluiceImageSource *source);
 
 /** Checks the region and starts a read. Errors: UNSUPPORTED if the source reads at once only. */

@@ -125,7 +125,7 @@ void slc_start_regions(SluiceTileLoader *loader, struct slc_read *read, const Sl
         settle_if_over(loader, read);
 }
 
-/* Whether the source must be told of the cancel. */
+/* True if the source must be told of the cancel. */
 static bool is_unwanted(const SluiceTileLoader *loader, const struct slc_read *read,
                         uint32_t region)
 {

@@ -112,7 +112,7 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
     return SLUICE_SUCCESS;
 }
 
-/* With the mutex held, which is given up while a source is told. */
+/* Drops a read. The mutex is held, but unlocked while a source is told. */
 static void drop_read(SluiceTileLoader *loader, struct slc_read *read)
 {
     const struct slc_shared_region *awaited = read->awaited;
@@ -127,7 +127,7 @@ static void drop_read(SluiceTileLoader *loader, struct slc_read *read)
     }
 }
 
-/* With the mutex held. The sources that the loader had may be destroyed from here on. */
+/* Drops shared texels of the loader's sources, which may now be destroyed. The mutex is held. */
 static void drop_its_texels(SluiceTileLoader *loader, struct slc_shared_region **dropped)
 {
     const struct slc_read_sources *sources = &loader->queue.sources;
@@ -139,7 +139,7 @@ static void drop_its_texels(SluiceTileLoader *loader, struct slc_shared_region *
             slc_shared_reads_drop(shares, sources->records[i].source, dropped);
 }
 
-/* With the mutex held. What waited behind its reads may start now. */
+/* Removes a loader from the pool. Reads behind its reads may then start. The mutex is held. */
 static void leave(SluiceTileLoader *loader, struct slc_shared_region **dropped)
 {
     struct slc_read_pool *pool = loader->pool;

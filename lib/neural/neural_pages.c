@@ -12,7 +12,7 @@
 
 #define LEAST_EDGE 8u
 #define MAX_GROUP_PAGES (1u << 20)
-#define ALIGNMENT 16u /* of byte pages */
+#define ALIGNMENT 16u /* alignment of byte pages */
 
 static SluiceResult page_size(const SluiceNeuralSet *set, const SluiceNeuralPageGroup *group,
                               uint64_t *size)

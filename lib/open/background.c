@@ -24,7 +24,7 @@ struct slc_background {
     struct worker workers[SLC_JOB_KIND_COUNT];
 };
 
-/* With the mutex held. */
+/* Appends a stream to the queue. The mutex is held. */
 static void append(struct worker *worker, struct slc_picture_stream *stream)
 {
     struct slc_stream_job *job = &stream->jobs[worker->kind];
@@ -37,7 +37,7 @@ static void append(struct worker *worker, struct slc_picture_stream *stream)
     worker->last = stream;
 }
 
-/* With the mutex held. */
+/* Takes the first stream from the queue. The mutex is held. */
 static struct slc_picture_stream *take_first(struct worker *worker)
 {
     struct slc_picture_stream *stream = worker->first;

@@ -172,7 +172,7 @@ static struct slc_opened_image **find_bucket(SluiceImageOpener *opener, const ch
     return &opener->buckets[slc_said_key(path) % SLC_OPENER_BUCKETS];
 }
 
-/* With the mutex held. */
+/* Adds an image to its bucket. The mutex is held. */
 static void add_to_bucket(struct slc_opened_image *image)
 {
     struct slc_opened_image **bucket = find_bucket(image->opener, image->path);

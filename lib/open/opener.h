@@ -74,7 +74,7 @@ struct slc_open_request {
 bool slc_opener_owns_path(const SluiceImageOpener *opener, const char *path);
 SluiceResult slc_opener_open(SluiceImageOpener *opener, struct slc_open_request *r,
                              SluiceImageSource **source);
-/** With the mutex held. */
+/** Removes an image from its bucket, so that later requests open again. The mutex is held. */
 void slc_opener_forget(struct slc_opened_image *image);
 /** Drops a counted reference. */
 void slc_opener_release(struct slc_opened_image *image);

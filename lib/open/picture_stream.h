@@ -46,7 +46,7 @@ struct slc_picture_stream {
     SluiceImageSource *preview; ///< owned; NULL: not yet, or not needed
     void *preview_bytes;        ///< owned
     size_t preview_size;
-    struct slc_file_identity store_identity; ///< of the store's file when it was opened
+    struct slc_file_identity store_identity; ///< identity of the opened store's file
     uint32_t damaged_count;                  ///< stores that were damaged
     bool is_damaged;     ///< the file with `store_identity` is damaged; replace it
     uint32_t open_tries; ///< failed openings after bakes; for the bake's thread only

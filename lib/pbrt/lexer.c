@@ -35,7 +35,7 @@ void slc_pbrt_lexer_finish(struct slc_pbrt_lexer *lexer)
     slc_pbrt_window_finish(&lexer->window);
 }
 
-/* Whether a byte of 0 at the cursor is only the end of the window. Reads on then. */
+/* True if a byte of 0 at the cursor is only the end of the window. Reads on then. */
 static bool read_on(struct slc_pbrt_window *window)
 {
     if (window->cursor < window->end || window->is_over)

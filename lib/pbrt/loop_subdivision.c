@@ -391,7 +391,7 @@ static SluiceResult make_mesh(const SluiceAllocationCallbacks *cb, struct level 
     return SLUICE_SUCCESS;
 }
 
-/* Whether the next level has no more bytes than allowed, and indices of 32 bits. */
+/* True if the next level has no more bytes than allowed, and indices of 32 bits. */
 static bool may_subdivide(const struct level *level, uint64_t max_size)
 {
     uint64_t vertices = (uint64_t)level->vertex_count + count_edges(level);

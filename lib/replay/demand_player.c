@@ -8,7 +8,7 @@
 
 #include <inttypes.h>
 
-/* What the residency did ------------------------------------------------------------------- */
+/* Statistics of the calls ------------------------------------------------------------------ */
 
 static void count_call(SluiceDemandReplayStatistics *counts, const struct slc_page_call *call)
 {

@@ -54,7 +54,7 @@ void slc_get_runs(struct slc_cursor *cursor, uint8_t *map, size_t size)
     while (!cursor->why && cursor->pos < cursor->end) {
         size_t start = cursor->pos;
         uint64_t code = slc_get_varint(cursor);
-        uint64_t count = code >> 1; /* one less than there are, which fits */
+        uint64_t count = code >> 1; /* count - 1, which fits */
         if (!cursor->why && count >= size - done) {
             slc_cursor_fail(cursor, start, "a map's runs exceed its size");
             return;

@@ -8,7 +8,7 @@
 
 /* Lists ------------------------------------------------------------------------------------- */
 
-/** Whether a tile is regular. Wanted packed tiles are never evicted, so no list has them. */
+/** True if a tile is regular. Wanted packed tiles are never evicted, so no list has them. */
 static bool is_regular(const struct slc_node *n)
 {
     return !slc_is_packed_class(n->level);

@@ -49,7 +49,7 @@ void slc_run_end(struct slc_machine *r, struct slc_run *run)
         slc_evict_standby(r, r->limits.standby);
 }
 
-/** Whether a node is in the list from which runs are taken. */
+/** True if a node is in the list from which runs are taken. */
 static bool fits_run(const struct slc_node *n, bool wanted)
 {
     if (wanted)

@@ -28,7 +28,7 @@ const struct slc_store_repeat *slc_store_repeats_find(const struct slc_store_rep
 /** Adds a chunk whose bytes are in the file. */
 void slc_store_repeats_add(struct slc_store_repeats *repeats,
                            const struct slc_store_repeat *repeat);
-/** Whether the file has these bytes at the chunk's place. False if it cannot be read. */
+/** True if the file has these bytes at the chunk's place. False if it cannot be read. */
 bool slc_store_repeat_is_equal(const struct slc_store_file *file,
                                const struct slc_store_repeat *repeat, const void *bytes);
 

@@ -41,7 +41,7 @@ struct slc_store_entry {
 void slc_store_header_write(struct slc_store_header *header,
                             unsigned char bytes[SLC_STORE_HEADER_SIZE]);
 
-/** Whether two headers describe the same file, apart from its size. */
+/** True if two headers describe the same file, apart from its size. */
 bool slc_store_header_matches(const unsigned char a[SLC_STORE_HEADER_SIZE],
                               const unsigned char b[SLC_STORE_HEADER_SIZE]);
 

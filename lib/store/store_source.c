@@ -113,7 +113,7 @@ static bool covers_tile(const struct slc_store_grid *grid, const SluiceImageRegi
            whole.height == region->height;
 }
 
-/* Whether the region is one whole tile in tight rows, which is read directly. */
+/* True if the region is one whole tile in tight rows, which is read directly. */
 static bool is_one_tile(const struct slc_store_grid *grid, const SluiceImageRegion *region,
                         size_t row_pitch, struct slc_store_place *place)
 {

@@ -66,7 +66,7 @@ static SluiceResult describe(const SluiceStoreCreateInfo *info, struct slc_store
                            info->mipLevelCount, levels);
 }
 
-/* Whether the unfinished file was begun with an equal create-info. */
+/* Finds out whether the unfinished file has an equal create-info. */
 static SluiceResult find_match(const SluiceStoreWriter *writer, bool *matches)
 {
     unsigned char bytes[SLC_STORE_HEADER_SIZE];

@@ -55,7 +55,7 @@ SluiceResult slc_store_writer_find(const SluiceStoreWriter *writer, uint32_t lay
 SluiceResult slc_store_writer_entry(const SluiceStoreWriter *writer, uint64_t number,
                                     struct slc_store_entry *entry);
 
-/** Whether a chunk is written. Entries of missing chunks have size 0. */
+/** True if a chunk is written. Entries of missing chunks have size 0. */
 static inline bool slc_store_entry_is_written(const struct slc_store_entry *entry)
 {
     return entry->size > 0;

@@ -152,7 +152,7 @@ static SluiceResult write_entry(SluiceStoreWriter *writer, uint64_t number,
     return result;
 }
 
-/* Whether an earlier chunk has equal bytes; `entry` then has their place. False for uncompressed
+/* True if an earlier chunk has equal bytes; `entry` then has their place. False for uncompressed
  * files, whose chunks have fixed places. */
 static bool find_repeat(SluiceStoreWriter *writer, uint64_t hash, const void *bytes,
                         struct slc_store_entry *entry)

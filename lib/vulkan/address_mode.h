@@ -23,7 +23,7 @@ static inline VkSamplerAddressMode slc_address_mode(VkSamplerAddressMode given, 
     return said ? given : slc_recorded_address_mode(recorded, given);
 }
 
-/** Whether the source records another mode than the one that is used. */
+/** True if the source records another mode than the one that is used. */
 static inline bool slc_address_mode_differs(VkSamplerAddressMode used,
                                             SluiceImageAddressMode recorded)
 {

@@ -150,7 +150,7 @@ void slc_buffer_set_name(const struct slc_buffer *buffer, const struct slc_vk *v
 void slc_buffer_finish(struct slc_buffer *buffer, const struct slc_vk *vk)
 {
     if (!buffer->buffer)
-        return; /* also where nothing was loaded yet */
+        return; /* also if nothing was loaded */
     vk->DestroyBuffer(vk->device, buffer->buffer, NULL);
     slc_memory_free(vk, &buffer->memory);
     *buffer = (struct slc_buffer){0};

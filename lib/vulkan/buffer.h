@@ -21,7 +21,7 @@ struct slc_buffer {
     VkDeviceAddress address; ///< 0: no address
 };
 
-/** Whether the host reads STAGING buffers slowly: they are device-local, and not cached. */
+/** True if the host reads STAGING buffers slowly: they are device-local, and not cached. */
 bool slc_staging_is_uncached(const struct slc_caps *caps);
 
 /** Creates a buffer. Storage buffers of kind DEVICE have an address if vk->GetBufferDeviceAddress

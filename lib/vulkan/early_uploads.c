@@ -6,7 +6,7 @@
 #include "vulkan/load_units.h"
 #include "vulkan/unit_copies.h"
 
-/* Whether a range of texels, along one axis of a level, starts and ends at multiples of `step`, or
+/* True if a range of texels, along one axis of a level, starts and ends at multiples of `step`, or
  * ends with the level. */
 static bool is_aligned(uint32_t first, uint32_t size, uint32_t step, uint32_t level_size)
 {
@@ -15,7 +15,7 @@ static bool is_aligned(uint32_t first, uint32_t size, uint32_t step, uint32_t le
     return step && first % step == 0 && (size % step == 0 || first + size == level_size);
 }
 
-/* Whether the family can copy this part of a level. Its granularity counts blocks of texels. */
+/* True if the family can copy this part of a level. Its granularity counts blocks of texels. */
 static bool may_copy(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
                      const SluiceImageRegion *region)
 {
@@ -66,7 +66,7 @@ bool slc_upload_is_early(const SluiceVulkanStreamer *s, const struct slc_unit *u
            may_copy_unit(s, texture, unit);
 }
 
-/* Whether no frame in progress can read the tile's memory. */
+/* True if no frame in progress can read the tile's memory. */
 static bool is_unread(const SluiceVulkanStreamer *s, const struct slc_unit *unit)
 {
     return slc_residency_of(s, unit->texture)->interface->maps_unread ||

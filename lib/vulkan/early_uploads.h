@@ -11,7 +11,7 @@
 
 #include "vulkan/streamer.h"
 
-/** Whether the upload queue copies the unit, now or later. */
+/** True if the upload queue copies the unit, now or later. */
 bool slc_upload_is_early(const SluiceVulkanStreamer *s, const struct slc_unit *unit);
 
 /** Submits the copies that can begin; moves their units from `binding` to `copying`. Uses

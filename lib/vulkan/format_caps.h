@@ -20,17 +20,17 @@ static inline VkImageCreateFlags slc_image_flags(const SluiceImageInfo *info)
 void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc_vk *vk,
                           SluiceFormat format);
 
-/** Whether the device can sample the format with LINEAR filters. */
+/** True if the device can sample the format with LINEAR filters. */
 bool slc_filters_linear(const struct slc_vk *vk, SluiceFormat format);
 
 /** Returns the width of the largest sparse cube map, in texels. 0: the device supports none. */
 uint32_t slc_max_sparse_cube_width(const struct slc_vk *vk, SluiceFormat format);
 
-/** Whether the device supports the image with `usage` added. */
+/** True if the device supports the image with `usage` added. */
 bool slc_image_is_supported(const struct slc_vk *vk, const VkImageCreateInfo *image,
                             VkImageUsageFlags usage);
 
-/** Whether the device supports the image with VK_IMAGE_USAGE_STORAGE_BIT added. */
+/** True if the device supports the image with VK_IMAGE_USAGE_STORAGE_BIT added. */
 bool slc_image_may_store(const struct slc_vk *vk, const VkImageCreateInfo *image);
 
 #endif /* SLC_VULKAN_FORMAT_CAPS_H */

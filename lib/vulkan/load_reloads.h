@@ -16,7 +16,7 @@ SluiceResult slc_reloads_reserve(SluiceVulkanStreamer *s, uint32_t tile_count);
 /** Queues a regular tile, or the mip tail, to be read again. Needs slc_reloads_reserve. */
 void slc_reload_tile(SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile);
 void slc_reload_tail(SluiceVulkanStreamer *s, uint32_t texture);
-/** Whether texels of the tile wait to be read again. */
+/** True if texels of the tile wait to be read again. */
 bool slc_reload_is_due(const SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile);
 /** Returns the tiles of the texture that show old texels. A mip tail counts as one. */
 uint32_t slc_reload_count(const SluiceVulkanStreamer *s, uint32_t texture);

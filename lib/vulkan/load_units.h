@@ -8,7 +8,7 @@ void slc_unit_list_append(SluiceVulkanStreamer *s, struct slc_unit_list *list, u
 /** Removes the first unit of a list; SLC_NONE if the list is empty. */
 uint32_t slc_unit_list_pop(SluiceVulkanStreamer *s, struct slc_unit_list *list);
 
-/** Whether `count` units can be taken. Allocates staging memory for them. If that fails, puts units
+/** True if `count` units can be taken. Allocates staging memory for them. If that fails, puts units
  *  with memory first. */
 bool slc_units_are_ready(SluiceVulkanStreamer *s, uint32_t count);
 /** Takes any free unit, without staging memory. */

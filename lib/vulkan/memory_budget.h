@@ -40,7 +40,7 @@ struct slc_memory_client {
     uint64_t refused, refused_before;
 };
 
-/** Whether memory of this purpose counts against the budget. */
+/** True if memory of this purpose counts against the budget. */
 bool slc_memory_is_for_tiles(SluiceDeviceMemoryPurpose purpose);
 
 /** Makes a budget without a limit. Errors: OUT_OF_HOST_MEMORY; finish it only after success. */

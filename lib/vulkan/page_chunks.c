@@ -135,7 +135,7 @@ static uint32_t find_free_chunk(const struct slc_page_chunks *chunks)
     return at;
 }
 
-/* Whether chunks exceed max_size. Drivers may require more memory than the texels take. */
+/* True if chunks exceed max_size. Drivers may require more memory than the texels take. */
 static bool is_beyond_cap(const struct slc_page_chunks *chunks)
 {
     return chunks->max_size && chunks->memory.total_size > chunks->max_size;

@@ -102,10 +102,10 @@ static inline struct slc_page_layer *slc_page_layer(const struct slc_page_chunks
 uint32_t slc_page_chunks_present(const struct slc_page_chunks *chunks);
 /** Returns the pages that further chunks can hold, by max_size and the number of chunks. */
 uint32_t slc_page_chunks_room(const struct slc_page_chunks *chunks, uint64_t tick);
-/** Whether the device refused memory for a chunk a short while ago. */
+/** True if the device refused memory for a chunk a short while ago. */
 bool slc_page_chunks_is_refused(const struct slc_page_chunks *chunks, uint64_t tick);
 
-/** Whether the user may use a chunk: only its maker may before the layout transition is complete.
+/** True if the user may use a chunk: only its maker may before the layout transition is complete.
  */
 bool slc_page_chunk_is_ready(const struct slc_page_chunk *chunk,
                              const struct slc_page_timelines *timelines, uint32_t user);
@@ -122,7 +122,7 @@ uint32_t slc_page_chunks_find(struct slc_page_chunks *chunks,
                               const struct slc_page_timelines *timelines, uint32_t user,
                               SluiceFormat format);
 
-/** Whether the limits allow another chunk, and the device did not refuse one a short while ago. */
+/** True if the limits allow another chunk, and the device did not refuse one a short while ago. */
 bool slc_page_chunks_can_grow(const struct slc_page_chunks *chunks, uint64_t tick);
 /** Makes a chunk for the user. It doubles the pages of the format, or has fewer pages if the device
  *  lacks memory. Returns false if the device has no memory, or all chunks are in use. */
@@ -135,7 +135,7 @@ void slc_page_chunks_prepare(struct slc_page_chunks *chunks, uint64_t tick, uint
                              SluiceFormat format);
 
 void slc_page_chunks_take(struct slc_page_chunks *chunks, uint32_t page, uint32_t user);
-/** Whether the page is free and still has the texels of this user's `owner`. */
+/** True if the page is free and still has the texels of this user's `owner`. */
 bool slc_page_chunks_is_left(const struct slc_page_chunks *chunks, uint32_t page, uint32_t user,
                              uint32_t owner);
 /** Frees a page. `value`: last frame of `user` that may read the page. `owner`: owner of its

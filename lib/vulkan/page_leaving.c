@@ -210,7 +210,7 @@ static struct slc_shared_tile *entry_of(struct slc_page_pool *pool, uint32_t pag
     return shared ? &pool->shared.entries[shared - 1] : NULL;
 }
 
-/* Whether only this user holds the page, and the copy of its texels is complete. If a frame with a
+/* True if only this user holds the page, and the copy of its texels is complete. If a frame with a
  * pending copy were abandoned, the copy would be repeated to the old page. */
 static bool can_move(const struct slc_page_pool *pool, uint32_t user, uint32_t page,
                      const struct slc_shared_tile *tile)
@@ -263,7 +263,7 @@ bool slc_page_pool_end_move(struct slc_page_pool *pool, uint32_t user, uint32_t 
     return over;
 }
 
-/* Whether the page still has tiles that a move put there. */
+/* True if the page still has tiles that a move put there. */
 static bool has_moved(const struct slc_page_pool *pool, uint32_t user, uint32_t page,
                       const struct slc_shared_tile *tile)
 {

@@ -96,10 +96,10 @@ uint64_t slc_page_pool_capacity(struct slc_page_pool *pool, uint32_t user);
  */
 uint32_t slc_page_pool_present(struct slc_page_pool *pool, uint32_t user);
 
-/** Whether the device refused memory for a chunk a short while ago. */
+/** True if the device refused memory for a chunk a short while ago. */
 bool slc_page_pool_is_refused(struct slc_page_pool *pool);
 
-/** Whether the device refused memory for the last chunk. */
+/** True if the device refused memory for the last chunk. */
 bool slc_page_pool_was_refused(struct slc_page_pool *pool);
 
 /** Returns the pages of the format that the user can take now. With a limit, pages of chunks that

@@ -42,7 +42,7 @@ void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t 
 void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
                           uint32_t page);
 
-/** Whether another tile is on the page, or another user has read it. */
+/** True if another tile is on the page, or another user has read it. */
 bool slc_page_is_shared(struct slc_page_pool *pool, uint32_t user, uint32_t page);
 
 /** Ends the use of a source by a texture of the user. Tiles of the source are not found any more,

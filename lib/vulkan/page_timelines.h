@@ -22,8 +22,8 @@ struct slc_page_timeline {
     uint64_t safe_tick;  ///< frames that were recorded up to this tick are complete
     uint64_t mark_frame; ///< safe_tick becomes mark_tick when this frame is complete; 0: none
     uint64_t mark_tick;
-    /** By other user: its progress when this user last looked, and for how many frames of this user
-     *  it has not changed. */
+    /** Last seen progress of each other user, and the number of this user's frames since the
+     * progress changed. */
     uint64_t seen[SLC_MAX_PAGE_USERS];
     uint32_t still[SLC_MAX_PAGE_USERS];
 };
@@ -56,10 +56,10 @@ static inline bool slc_page_timelines_reached(const struct slc_page_timelines *t
     return timelines->of[user].completed >= frame;
 }
 
-/** Whether all recorded frames of the users in the bit set are complete. `except` is ignored. */
+/** True if all recorded frames of the users in the bit set are complete. `except` is ignored. */
 bool slc_page_timelines_are_idle(const struct slc_page_timelines *timelines, uint32_t users,
                                  uint32_t except);
-/** Whether all frames that the users in the bit set recorded up to the tick are complete. `except`
+/** True if all frames that the users in the bit set recorded up to the tick are complete. `except`
  *  is ignored. */
 bool slc_page_timelines_passed(const struct slc_page_timelines *timelines, uint32_t users,
                                uint32_t except, uint64_t tick);

@@ -41,7 +41,7 @@ void slc_page_views_finish_copy(struct slc_page_views *copy, const SluiceAllocat
 /** Sets an element. `view` VK_NULL_HANDLE: empties it. Does nothing if the view is unchanged. */
 void slc_page_views_set(struct slc_page_views *views, uint32_t index, VkImageView view);
 
-/** Whether the element has an image of pages. */
+/** True if the element has an image of pages. */
 bool slc_page_views_has(const struct slc_page_views *views, uint32_t index);
 
 /** Creates a view of all layers of an image of one level. */

@@ -56,7 +56,7 @@ static void say_given_up(const SluiceVulkanStreamer *s, const struct slc_texture
                 seconds(s, s->info.givenUpRetryDelayTicks));
 }
 
-/* Whether enough time has passed since the last message about a source. */
+/* True if enough time has passed since the last message about a source. */
 static bool may_speak(const SluiceVulkanStreamer *s, const struct slc_read_trouble *trouble)
 {
     return trouble->said != SLC_READS_WELL || !trouble->has_spoken ||

@@ -60,7 +60,7 @@ struct slc_remake_tiles {
 };
 struct slc_remake_tiles slc_remake_tiles(const struct slc_remake_area *area, uint32_t level,
                                          uint32_t tile_width, uint32_t tile_height);
-/** Whether texels of a level from `first` on changed. */
+/** True if texels of a level from `first` on changed. */
 bool slc_remake_meets_tail(const struct slc_remake_area *area, uint32_t first);
 /** Number of tiles of levels below `regular_count`, and the mip tail. */
 uint64_t slc_remake_count(const struct slc_remake_area *area, uint32_t regular_count,

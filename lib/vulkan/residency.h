@@ -64,7 +64,7 @@ struct slc_residency_interface {
     /** Destroys an image. All frames that use it must be complete, and image_is_idle true. For an
      *  array: call it with the first layer. */
     void (*destroy_image)(struct slc_residency *residency, uint32_t index);
-    /** Whether no change of the image is pending or in progress. */
+    /** True if no change of the image is pending or in progress. */
     bool (*image_is_idle)(const struct slc_residency *residency, uint32_t index);
 
     /** Maps an unmapped tile again if its texels are still there, and returns true. This frame may
@@ -100,7 +100,7 @@ struct slc_residency_interface {
      *  reached. NULL: no limit. */
     bool (*reserve)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
 
-    /** Whether `reserve` would return true. NULL: always. */
+    /** True if `reserve` would return true. NULL: always. */
     bool (*may_reserve)(const struct slc_residency *residency, uint32_t index, uint32_t tile);
 
     /** Returns the pages that tiles of this image can get now; UINT32_MAX: no known limit. NULL:

@@ -293,7 +293,7 @@ slc_twin_compute_footprint(const struct SluiceTextureEntry *entry, struct slc_tw
     return footprint;
 }
 
-/* In texels, as the derivatives are. */
+/* Returns half the box in texels, the unit of the derivatives. */
 static inline struct slc_twin_vec2 slc_twin_half_box(struct slc_twin_vec2 dx,
                                                      struct slc_twin_vec2 dy, float lod_bias,
                                                      float max_anisotropy)

@@ -39,7 +39,7 @@ void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk 
 /** Makes a new context a member of its read pool, and ends the membership. */
 void slc_shared_parts_join(struct slc_shared_parts *shared);
 void slc_shared_parts_leave(struct slc_shared_parts *shared);
-/** Whether reads are jobs of the application. */
+/** True if reads are jobs of the application. */
 bool slc_shares_jobs(const struct slc_shared_parts *shared);
 /** Finishes the parts. There must be no front ends. */
 void slc_shared_parts_finish(struct slc_shared_parts *shared);

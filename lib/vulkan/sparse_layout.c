@@ -13,7 +13,7 @@ static uint32_t own_packed_level(const SluiceImageInfo *info, VkExtent3D tile)
     return level;
 }
 
-/* Whether no level is rounded down. Tiles of rounded levels begin behind the regions under them. */
+/* True if no level is rounded down. Tiles of rounded levels begin behind the regions under them. */
 static bool halves_evenly(uint32_t size, uint32_t level_count)
 {
     for (uint32_t level = 1; level < level_count; level++)

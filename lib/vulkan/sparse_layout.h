@@ -21,7 +21,7 @@ struct slc_sparse_layout {
 /** Returns the extent of a tile in texels, from a granularity that may count blocks. */
 VkExtent3D slc_sparse_tile_extent(const SluiceFormatInfo *format, VkExtent3D granularity);
 
-/** Whether all layers of an array share one mip tail, which cannot be bound layer by layer. */
+/** True if all layers of an array share one mip tail, which cannot be bound layer by layer. */
 bool slc_sparse_layers_share_tail(const SluiceImageInfo *info,
                                   const VkSparseImageMemoryRequirements *color);
 
@@ -45,7 +45,7 @@ SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout,
                                       const SluiceImageInfo *info);
 /** Makes the layout of an image that is loaded as a whole: all levels are packed. */
 SluiceResult slc_whole_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info);
-/** Whether level 0 is no larger than a tile of the standard shape. */
+/** True if level 0 is no larger than a tile of the standard shape. */
 bool slc_fits_into_tile(const SluiceImageInfo *info);
 
 /** Position of a tile: level and tile coordinates, or SLC_TAIL_LEVEL and page number in `x`. */

@@ -58,7 +58,7 @@ SluiceResult slc_staging_init(struct slc_staging *staging, struct slc_staging_gr
 /** Frees the blocks. Neither threads nor the GPU may use them any more. */
 void slc_staging_finish(struct slc_staging *staging);
 
-/** Whether a slot has memory. */
+/** True if a slot has memory. */
 bool slc_staging_is_there(const struct slc_staging *staging, uint32_t slot);
 /** Gives a slot memory; false if there is none now. */
 bool slc_staging_ensure(struct slc_staging *staging, uint32_t slot);

@@ -406,7 +406,7 @@ void slc_textures_abandon(SluiceVulkanStreamer *s, uint64_t frame);
  */
 uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit);
 void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index);
-/** Whether regions at the edge are narrower, or levels do not halve evenly. */
+/** True if regions at the edge are narrower, or levels do not halve evenly. */
 bool slc_texture_is_ragged(const struct slc_texture *texture);
 
 /* texture_control.c */

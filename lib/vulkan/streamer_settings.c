@@ -112,7 +112,7 @@ static SluiceResult check(const SluiceVulkanStreamer *s,
     return slc_check_limits(&s->vk.log, limits, sizeof limits / sizeof limits[0]);
 }
 
-/* Whether the struct has the fields of expiry. Older ones leave them to sluiceSetConfig. */
+/* True if the struct has the fields of expiry. Older ones leave them to sluiceSetConfig. */
 static bool has_expiry(uint32_t size)
 {
     return size >= offsetof(SluiceVulkanStreamerSettings, prefetchLevels) + sizeof(uint32_t);

@@ -69,7 +69,7 @@ void slc_strict_not_ready(SluiceVulkanStreamer *s, uint64_t frame)
                (unsigned long long)s->completed_frame, (unsigned long long)frame);
 }
 
-/* Whether some map that was read back last has marks. */
+/* True if some map that was read back last has marks. */
 static bool has_feedback(const SluiceVulkanStreamer *s)
 {
     for (uint32_t i = 0; i < s->primary_count; i++) {

@@ -10,7 +10,7 @@ static bool is_power_of_two(uint32_t size)
     return (size & (size - 1)) == 0;
 }
 
-/* Whether footprints clamp. Border texels need no tiles, and footprints treat them as edge texels.
+/* True if footprints clamp. Border texels need no tiles, and footprints treat them as edge texels.
  */
 static bool clamps_to_edge(uint32_t mode)
 {

@@ -211,7 +211,7 @@ bool slc_forgetting_wake(SluiceVulkanStreamer *s, uint32_t index)
 
 /* Forgetting --------------------------------------------------------------------------------- */
 
-/* Whether no load of the texture is in progress, and its first frame was recorded. */
+/* True if no load of the texture is in progress, and its first frame was recorded. */
 static bool is_at_rest(const struct slc_texture *texture)
 {
     return texture->unit_count == 0 && texture->packed_state == SLC_PACKED_COLLECTING &&

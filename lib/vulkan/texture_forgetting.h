@@ -13,7 +13,7 @@
 
 #include "vulkan/streamer.h"
 
-/** Whether a texture with this description can be forgotten. */
+/** True if a texture with this description can be forgotten. */
 bool slc_forgetting_allows(const SluiceVulkanStreamer *s, const SluiceVulkanTextureCreateInfo *info,
                            const SluiceImageInfo *image);
 /** Chooses residency and layout of a texture that can be forgotten. Makes no image. */

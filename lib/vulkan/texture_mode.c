@@ -17,7 +17,7 @@ SluiceResult slc_texture_check_mode(const SluiceVulkanStreamer *s, SluiceResiden
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* Whether a texture is an image with all levels: it is requested to be dense, or fits into a tile,
+/* True if a texture is an image with all levels: it is requested to be dense, or fits into a tile,
  * so that there is nothing to stream. */
 static bool is_plain(const SluiceVulkanStreamer *s, SluiceResidencyMode mode,
                      const SluiceImageInfo *image)
@@ -80,7 +80,7 @@ SluiceResult slc_texture_create_image(SluiceVulkanStreamer *s, uint32_t first,
     if (is_plain(s, mode, image)) {
         SluiceResult result = create(s->plain, first, image, use, NULL, residency, out);
         if (result != SLUICE_ERROR_OUT_OF_DEVICE_MEMORY || mode != SLUICE_RESIDENCY_MODE_AUTO)
-            return result; /* else tiles may fit: heaps may hold the whole budget */
+            return result; /* otherwise tiles may fit: heaps may hold the whole budget */
     }
     if (!s->paged)
         return create(s->residency, first, image, use, NULL, residency, out);

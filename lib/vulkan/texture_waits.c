@@ -19,7 +19,7 @@ static bool is_empty(const struct slc_unit_list *list)
     return list->first == SLC_NONE;
 }
 
-/* Whether a frame can start, bind, copy or show tiles before any read ends. */
+/* True if a frame can start, bind, copy or show tiles before any read ends. */
 static bool frame_has_work(const SluiceVulkanStreamer *s)
 {
     /* Outside of frames the manager is locked for calls of its interface. */

@@ -34,7 +34,7 @@ void slc_touched_tiles_finish(struct slc_touched_tiles *tiles, const SluiceAlloc
 bool slc_touched_tiles_touch(struct slc_touched_tiles *tiles, struct slc_touch_budget *budget,
                              uint32_t tile);
 
-/** Whether slc_touched_tiles_touch would return true. */
+/** True if slc_touched_tiles_touch would return true. */
 bool slc_touched_tiles_may_touch(const struct slc_touched_tiles *tiles,
                                  const struct slc_touch_budget *budget, uint32_t tile);
 

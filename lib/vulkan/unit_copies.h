@@ -12,7 +12,7 @@ uint32_t slc_unit_group(const SluiceVulkanStreamer *s, const uint32_t *units, ui
 void slc_record_group(SluiceVulkanStreamer *s, VkCommandBuffer commands, const uint32_t *units,
                       uint32_t count, uint32_t parts);
 
-/** Whether consecutive copy commands to the texture require a barrier between them. */
+/** True if consecutive copy commands to the texture require a barrier between them. */
 bool slc_copies_need_barriers(const SluiceVulkanStreamer *s, uint32_t texture);
 
 /** Sorts units by ascending key. */

@@ -28,7 +28,7 @@ SluiceResult slc_upload_queue_wait(struct slc_upload_queue *q, const struct slc_
 /** Waits for all batches before destruction; after 5 seconds without progress, for the device. */
 void slc_upload_queue_drain(const struct slc_upload_queue *q, const struct slc_vk *vk);
 
-/** Whether a batch can begin. */
+/** True if a batch can begin. */
 static inline bool slc_upload_queue_is_free(const struct slc_upload_queue *q)
 {
     return q->queue && q->submitted - q->completed < SLC_UPLOAD_BATCHES;
