@@ -70,14 +70,14 @@ typedef struct SluiceBakeSettings {
     uint32_t structSize; ///< sizeof(SluiceBakeSettings).
     /**
      * Format of the store: any but BC2, ETC2, EAC and the signed BC4 and BC5. Integer pictures
-     * (UINT, SINT) have their own format alone, and other pictures have no integer format. Of a
-     * format and its sRGB twin, `transfer` selects one, whichever you name. Formats without a twin
-     * hold linear light.
+     * (UINT, SINT) support only their own format, and other pictures no integer format. `transfer`
+     * selects between a format and its sRGB twin; you may name either. Formats without a twin hold
+     * linear light.
      *
      * Default (UNDEFINED): the format that fits the picture.
      * - 8-bit integers: R8 for one channel; R8G8 for two that are not gray and alpha; else
      *   R8G8B8A8. Normal maps: R8G8B8A8 UNORM.
-     * - 16-bit integers: R16, R16G16 or R16G16B16A16 UNORM, chosen like those of 8 bits. Colors
+     * - 16-bit integers: R16, R16G16 or R16G16B16A16 UNORM, chosen like 8-bit formats. Colors
      *   become linear light.
      * - 16- and 32-bit floats: same type, one or four channels.
      * - SNORM, packed and integer formats (DDS, KTX2, sources): the picture's format.

@@ -143,7 +143,7 @@ typedef struct SluiceJobSystem {
      * before pfnSubmitJob returns, on the same thread; then the caller of Sluice waits for it.
      *
      * Returns SLUICE_SUCCESS, or an error to refuse the job: then pfnRun must not be called. No
-     * work is lost: running jobs go on with it, and the next call of the object submits a job
+     * work is lost: running jobs take the work, and the next call of the object submits a job
      * again.
      *
      * Called on threads that call Sluice and inside jobs, several at the same time. No lock of

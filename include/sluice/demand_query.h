@@ -78,8 +78,8 @@ typedef enum SluiceDemandWaitStatus {
     /** The next step is a launch: begin, end, submit and process one, and wait again. */
     SLUICE_DEMAND_WAIT_LAUNCH = 2,
     SLUICE_DEMAND_WAIT_TIMEOUT = 3, ///< Reads are still under way, and a launch has nothing to do.
-    /** Some tiles are absent, nobody loads them, and no launch is under way: call
-     *  sluicePreloadDemandRegion, or sample them. */
+    /** Some tiles are absent and not loading, and no launch is in progress: call
+     *  sluicePreloadDemandRegion, or sample the tiles. */
     SLUICE_DEMAND_WAIT_NOT_REQUESTED = 4
 } SluiceDemandWaitStatus;
 
@@ -89,9 +89,9 @@ typedef enum SluiceDemandWaitStatus {
  *
  * Launches copy and show tiles that were read, and start reads beyond maxTilesInFlight. So this
  * function returns SLUICE_DEMAND_WAIT_LAUNCH at once when a launch has something to do, and sleeps
- * only while nothing but reads is under way. It requests nothing: call
- * sluicePreloadDemandRegion first. Threads of the context read meanwhile. If reads run on threads
- * of the application, these must not be the one that waits: pass 0 there.
+ * while only reads are in progress. The function requests no tiles: call sluicePreloadDemandRegion
+ * first. Threads of the context read meanwhile. On a thread of the application that runs reads,
+ * pass 0.
  *
  * Errors: as sluiceGetDemandRegionProgress; SLUICE_ERROR_CANCELED after sluiceAbortDemandLoader.
  */
@@ -175,9 +175,9 @@ typedef struct SluiceDemandSlot {
 } SluiceDemandSlot;
 
 /**
- * Lists the tiles and mip tails that have a slot, in no order, with those that were evicted and
- * whose slot nobody has taken yet. Mip tails that share a slot are listed each, and so are equal
- * tiles that share one. Takes time in proportion to the slots. Free slots are not listed.
+ * Lists the tiles and mip tails with a slot, in no order. Includes evicted tiles whose slot is not
+ * reused yet. Mip tails and equal tiles that share a slot are listed separately. Free slots are not
+ * listed. Time: proportional to the number of slots.
  *
  * Set `*pSlotCount` to the capacity of `pSlots`. The call sets it to the number written. Returns
  * SLUICE_INCOMPLETE if there are more. With `pSlots` NULL, writes the number of entries.

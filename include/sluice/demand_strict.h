@@ -21,7 +21,7 @@ typedef enum SluiceDemandMisuseKind {
     SLUICE_DEMAND_MISUSE_LAUNCH_NOT_BEGUN = 1, ///< A launch is ended that was not begun.
     SLUICE_DEMAND_MISUSE_LAUNCH_NOT_SIGNALED = 2, ///< Calls wait for a launch without end.
     SLUICE_DEMAND_MISUSE_LAUNCH_NOT_PROCESSED =
-        3,                                       ///< No begin is ready: nobody processes launches.
+        3,                                       ///< No begin is ready: launches are not processed.
     SLUICE_DEMAND_MISUSE_NO_REQUESTS = 4,        ///< No shader requests or uses anything.
     SLUICE_DEMAND_MISUSE_TILES_EXHAUSTED = 5,    ///< Tiles exceed memory: textures are coarser.
     SLUICE_DEMAND_MISUSE_PAGES_EXHAUSTED = 6,    ///< Pages of resources wait for memory.

@@ -4,9 +4,9 @@
  * The probability, the number of textures read back per frame, the frame rate and the timeout are
  * one parameter set. All functions are pure. The derivation and a table are in docs/trade-offs.md.
  *
- * The results are conservative. They hold wherever a region lies among the quads of the screen, in
- * whichever frame its texture has its turn, and for a manager that evicts by timeout alone
- * (missesToExpire 1). A manager that learns how reliable maps are keeps regions longer.
+ * The results are conservative. They hold for any position of a region among the quads of the
+ * screen, for any frame of its texture's turn, and for a manager that evicts only by timeout
+ * (missesToExpire 1). A manager that learns the reliability of maps keeps regions longer.
  *
  * Thread safety: any thread.
  */

@@ -79,13 +79,12 @@ typedef struct SluiceHttpClientCreateInfo {
     /** Failures, with URL and range. Passwords and queries of URLs are left out. Any thread. */
     SluiceLogCallback log;
     /**
-     * Folder where ranges that were read are kept, so that the next start does not ask for them.
-     * Made if its parent is there. Several processes may use it, and may be killed while they do.
-     * Ranges from it are checked; damaged ones are asked for again. Whoever may write in the folder
-     * can choose texels, so a folder that everybody may write in is refused. Files are not kept
-     * that have neither ETag nor date, or whose date is less than two seconds old at opening. The
-     * query of a URL is part of its name, so presigned URLs find nothing. Copied. Default: NULL,
-     * nothing is kept.
+     * Cache folder for ranges, so that the next start does not request them again. Created if its
+     * parent exists. Several processes may use the folder, and may be killed at any time. Ranges
+     * are checked; damaged ranges are requested again. A folder in which every user may write is an
+     * error, because its writers could choose texels. Files without ETag and date are not cached,
+     * nor files with a date less than two seconds old at opening. The query of a URL is part of its
+     * name, so presigned URLs never hit the cache. Copied. Default: NULL, no cache.
      */
     const char *pCacheFolder;
     /** Most bytes in the folder. Beyond, the least recently read ranges are removed. Default:

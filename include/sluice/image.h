@@ -289,9 +289,9 @@ typedef struct SluiceImageSourceInterface {
                                  void *pTexels, size_t rowPitch,
                                  const SluiceImageReadToken *pToken);
     /**
-     * Says that nobody needs a started read. May be NULL. The source must still complete it, now
-     * or later, for example with SLUICE_ERROR_CANCELED; it may do so before this call returns. May
-     * be called for a read that was completed a moment ago: ignore unknown tokens.
+     * Tells the source that a started read is not needed. May be NULL. The source must still
+     * complete the read, before or after this call returns, for example with SLUICE_ERROR_CANCELED.
+     * May be called for a read that was just completed: ignore unknown tokens.
      *
      * Thread safety: any thread, after pfnStartRead has returned. No lock of Sluice is held.
      */

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/** Paths of a device. The definitions are those of neural.glsl and neural_matrix.glsl. */
+/** Paths of a device. Names in capitals: definitions for neural.glsl and neural_matrix.glsl. */
 typedef struct SluiceNeuralPaths {
     uint32_t structSize; ///< sizeof(SluiceNeuralPaths).
     bool integerDot;     ///< SLUICE_NEURAL_INTEGER_DOT: VK_KHR_shader_integer_dot_product.
@@ -28,9 +28,9 @@ typedef struct SluiceNeuralPaths {
 } SluiceNeuralPaths;
 
 /**
- * Gets the paths of a device. Cooperative paths are those that compute shaders can use and whose
- * combination of types the device lists. Look at vectorStages before other stages use vectors;
- * neural_matrix.glsl has shared memory, so it is for compute shaders alone.
+ * Gets the paths of a device. A cooperative path requires support in compute shaders and a listed
+ * combination of types. Check vectorStages before other stages use vectors. neural_matrix.glsl is
+ * for compute shaders only, because of its shared memory.
  *
  * `pAllocator` may be NULL.
  *

@@ -53,8 +53,8 @@ typedef struct SluiceImageOpenerCreateInfo {
      * Folder for stores of pictures without tiles. The usual one is $XDG_CACHE_HOME/sluice; Sluice
      * reads no environment variables. Copied. Created with the first such picture, if its parent
      * folder exists. Several processes may use it. The folder belongs to Sluice: files in it with
-     * names such as "0123456789abcdef-2a.store" are replaced and deleted. Sluice leaves files of
-     * other names alone. Default: NULL, such pictures are refused with SLUICE_ERROR_UNSUPPORTED.
+     * names such as "0123456789abcdef-2a.store" are replaced and deleted. Sluice does not touch
+     * files with other names. Default: NULL, such pictures return SLUICE_ERROR_UNSUPPORTED.
      */
     const char *pCacheFolder;
     /**
@@ -70,20 +70,21 @@ typedef struct SluiceImageOpenerCreateInfo {
     SluiceLogCallback log; ///< Problems of files, with their names. Called from any thread.
     /**
      * Opens paths that contain "://", on any threads: set both functions, or none.
-     * sluiceOpenHttpPath and sluiceCloseHttpPath (http.h) open URLs. Tile stores, OpenEXR, DDS and
-     * KTX2 files and neural sets can be opened so; pictures without tiles are refused with
-     * SLUICE_ERROR_UNSUPPORTED. Default: none, such paths are files.
+     * sluiceOpenHttpPath and sluiceCloseHttpPath (http.h) open URLs. Supports tile stores, OpenEXR,
+     * DDS and KTX2 files, and neural sets. Pictures without tiles return SLUICE_ERROR_UNSUPPORTED.
+     * Default: NULL, such paths are files.
      */
     SluicePathOpener pathOpener;
     /**
-     * Returns SLUICE_SUCCESS if a path that pathOpener opened still has the contents it had then,
-     * SLUICE_ERROR_UNSUPPORTED if nobody can tell, any other result if it has others. Gets
-     * SluicePathOpener::pUserData. Set sluiceCheckHttpPath (http.h) for URLs.
+     * Checks whether a path of pathOpener still has the contents of its opening. Returns
+     * SLUICE_SUCCESS for the same contents, SLUICE_ERROR_UNSUPPORTED if unknown, and any other
+     * result for changed contents. Gets SluicePathOpener::pUserData. For URLs, set
+     * sluiceCheckHttpPath (http.h).
      *
-     * Catalogues of pathOpener stay in memory and are checked with it: at most once a second, and
-     * before a name or store is reported missing or wrong. A catalogue that was changed is read
-     * again. If nobody can tell, a catalogue is read again when a name or store is missing or
-     * wrong. Default: NULL, nobody can tell.
+     * Catalogues of pathOpener stay in memory. They are checked with this function at most once a
+     * second, and before a name or store is reported missing or wrong. A changed catalogue is read
+     * again. With an unknown result, a catalogue is read again when a name or store is missing or
+     * wrong. Default: NULL, the result is always unknown.
      */
     SluiceResult (*pfnCheckPath)(void *pUserData, void *pOpened);
 } SluiceImageOpenerCreateInfo;
@@ -130,7 +131,7 @@ SLUICE_API void sluiceDestroyImageOpener(SluiceImageOpener *opener);
  * demand loaders read again later, streamers at intervals that double. Call sluiceRetryVulkanSource
  * when the bake has ended to read at once. Texels of the preview differ slightly from those of the
  * store. If the bake fails, reads of missing levels return its error. Destroying the source cancels
- * the bake. The next bake of the same picture goes on where this one ended.
+ * the bake. The next bake of the same picture continues where the canceled bake ended.
  *
  * A store in the cache folder is used if it was made from a file with this path, size and time. If
  * another opener or process replaces the store, its store is opened. A store that is damaged is
@@ -154,19 +155,20 @@ SLUICE_API SluiceResult sluiceOpenImageSource(SluiceImageOpener *opener, const c
  * texture has its own source, which keeps the description and the weights of the set.
  *
  * Also opens a store that a catalogue names, which sluice-bake --merge writes (docs/cluster.md).
- * `texture` is then the path of the picture or of its store, as it is in the catalogue, or the end
- * of one behind a slash, if one row alone has it. sluiceOpenImageSource opens the first store.
- * Stores are relative to the catalogue's folder. The source is that of the store's own path, so
- * SluiceOpenedImageInfo::kind is STORE. Returns SLUICE_ERROR_CORRUPT_DATA if the store has another
- * hash than the catalogue says, SLUICE_ERROR_LIMIT_EXCEEDED for catalogues above 256 MiB.
+ * `texture` is then the path of the picture or of its store in the catalogue, or the end of such a
+ * path behind a slash, if only one row has this end. sluiceOpenImageSource opens the first store.
+ * Paths of stores are relative to the catalogue's folder. The source equals a source for the
+ * store's path, so SluiceOpenedImageInfo::kind is STORE. Returns SLUICE_ERROR_CORRUPT_DATA if the
+ * store's hash differs from the catalogue's, SLUICE_ERROR_LIMIT_EXCEEDED for catalogues above 256
+ * MiB.
  *
  * The opener reads a catalogue once and keeps the last eight in memory: 56 bytes per row and the
  * names. A file whose size, time or inode changed is read again; pfnCheckPath
  * notices changes elsewhere.
  *
  * Errors: as sluiceOpenImageSource; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the set
- *         has no texture `texture` (the message names those that it has), the catalogue has no such
- *         row or several, or the file is neither.
+ *         has no texture `texture` (the message lists its textures), the catalogue has no such row
+ *         or several, or the file is neither a neural set nor a catalogue.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceOpenNamedImageSource(SluiceImageOpener *opener, const char *path,

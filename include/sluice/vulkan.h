@@ -20,8 +20,8 @@
  * barriers for its own images and buffers; you need none for them. docs/frame-loop.md explains each
  * step; docs/examples/vulkan.c is a program, with its plain Vulkan in docs/examples/gpu.c.
  *
- * Only sluiceDestroyVulkanStreamer and sluiceWaitVulkanStreamerIdle wait for the GPU. Both wait for
- * work of the streamer alone.
+ * Only sluiceDestroyVulkanStreamer and sluiceWaitVulkanStreamerIdle wait for the GPU. Both wait
+ * only for work of the streamer.
  *
  * Thread safety, unless a function says otherwise: external on the streamer; during
  * sluiceBeginStreamingFrame also on the sparse queue.
@@ -193,9 +193,9 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      */
     bool pagedTextures;
     /**
-     * Forget textures that nothing samples, when memory is short: the one that was sampled longest
-     * ago first. Image, views, tiles and mip tail go. Shaders then show SLUICE_FALLBACK_COLOR, and
-     * feedback brings the texture back.
+     * Forget unsampled textures when memory is short, least recently sampled first. Image, views,
+     * tiles and mip tail are destroyed. Shaders then show SLUICE_FALLBACK_COLOR, and feedback loads
+     * the texture again.
      *
      * Textures have no image before they are sampled for the first time, so more can be added than
      * fit into memory. Requires textureArray, whose elements follow: SluiceVulkanTexture.image and
@@ -274,7 +274,7 @@ typedef struct SluiceVulkanStreamerSettings {
     uint64_t givenUpRetryDelayTicks; ///< 0: 120 times retryDelayTicks. UINT64_MAX: never.
     bool noEviction; ///< Requests wait for free memory instead of evicting resident tiles.
     bool noMipBias;  ///< Never request coarser levels because more is wanted than memory holds.
-    uint32_t framesPerRound; ///< 0: texturesPerFrame alone says how many maps are read back.
+    uint32_t framesPerRound; ///< 0: only texturesPerFrame limits the maps read back per frame.
     /**
      * Requested tiles wait, mip tails of new textures too: frames start no load until the setting
      * is false again, except by sluiceStepVulkanLoads. Tiles whose loads have

@@ -141,9 +141,9 @@ typedef enum SluiceVulkanWaitStatus {
  *
  * Frames give requests to the manager, take what was read, bind and copy it. So this function
  * returns SLUICE_VULKAN_WAIT_FRAME at once when a frame has something to do, and sleeps only while
- * nothing but reads is under way. While memory is short it asks for frames without end: give up
- * after a time of your own. Threads of the context read meanwhile. If reads run on threads of the
- * application, these must not be the one that waits: pass 0 there.
+ * only reads are in progress. While memory is short, SLUICE_VULKAN_WAIT_FRAME may be returned
+ * without end: use a time limit. Threads of the context read meanwhile. On a thread of the
+ * application that runs reads, pass 0.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for an id
  *         that no request had.
@@ -157,8 +157,8 @@ SLUICE_API SluiceResult sluiceWaitVulkanRequest(SluiceVulkanStreamer *streamer,
  *  visible. */
 typedef struct SluiceVulkanTextureControl {
     uint32_t structSize; ///< sizeof(SluiceVulkanTextureControl).
-    /** Finer levels are not loaded, whatever feedback and requests say. Above the last level:
-     * packed levels alone. */
+    /** Finest level to load, for all feedback and requests. Above the last level: only packed
+     * levels are loaded. */
     uint32_t finestLevel;
     /** Levels added to what feedback requests, not to requests of the application. -32 to 32. */
     int32_t mipBias;

@@ -4,7 +4,7 @@
  *
  * Latents and weights of the set are in GPU memory: 2 to 10 bits per texel for all channels.
  * Textures of the set are ordinary textures with a producer. They are drawn, filtered, budgeted and
- * evicted like others, and only tiles that are looked at are decoded.
+ * evicted like others. Only requested tiles are decoded.
  */
 #ifndef SLUICE_VULKAN_NEURAL_H
 #define SLUICE_VULKAN_NEURAL_H

@@ -39,8 +39,9 @@ typedef struct SluiceTileBatch {
     /** In VK_IMAGE_LAYOUT_GENERAL. In paged mode it holds pages of several textures. */
     VkImage image;
     /**
-     * 2D array, all layers of `mipLevel` alone. For storage image descriptors. VK_NULL_HANDLE if
-     * the device cannot store to images of the format (sRGB and compressed formats): use transfers.
+     * 2D array view: all layers of `mipLevel` only. For storage image descriptors. VK_NULL_HANDLE
+     * if the device cannot store to images of the format (sRGB and compressed formats): use
+     * transfers.
      */
     VkImageView imageView;
     uint32_t mipLevel; ///< Level of `image`. Not the level of the texture, which is in `region`.
@@ -217,8 +218,8 @@ typedef struct SluiceVulkanTexture {
 } SluiceVulkanTexture;
 
 /**
- * Adds a texture: creates the image of a source or producer and starts to stream it. The format
- * is that of the source, or of SluiceTileProducer.pImage.
+ * Adds a texture: creates the image of a source or producer and starts to stream it. The source, or
+ * SluiceTileProducer.pImage, determines the format.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for both a source and a
  *         producer, an unknown address mode or filter, a primary that follows another texture, or
