@@ -1,6 +1,6 @@
 /*
- * One workgroup: lists the sections that are flagged, by id, each with its key, and clears the flags.
- * Whoever finds that bits stay sets them again.
+ * Lists the flagged sections by id, each with its key, and clears the flags, in one workgroup. Later
+ * passes set flags again for remaining bits.
  */
 #include "prefix.glsl"
 #include "scan.glsl"

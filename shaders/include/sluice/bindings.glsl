@@ -76,7 +76,7 @@ layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray 
 
 #ifdef SLUICE_TEXTURE_ARRAY
 #if defined(SLUICE_HLSL)
-#ifdef SLUICE_TEXTURE_COUNT /* some compilers need one, at most that of the set */
+#ifdef SLUICE_TEXTURE_COUNT /* some compilers need a size, at most the set's */
 #define SLUICE_CUBE_COUNT (SLUICE_TEXTURE_COUNT + 5) / 6
 #else
 #define SLUICE_TEXTURE_COUNT

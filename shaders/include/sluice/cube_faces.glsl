@@ -1,14 +1,14 @@
 /*
- * Finds the face of a cube map that a direction hits, and the position on it. Order and orientation of
- * the faces are those of Vulkan ("Cube Map Face Selection"). A position on a face is uv, 0 to 1, or
- * beyond on the plane of the face. Pure functions: nothing has to be defined before.
+ * Finds the face of a cube map that a direction hits, and the position on the face. Faces have Vulkan's
+ * order and orientation ("Cube Map Face Selection"). A position is uv on the plane of the face, 0 to 1
+ * within the face. Pure functions: no definitions are necessary.
  */
 #ifndef SLUICE_CUBE_FACES_GLSL
 #define SLUICE_CUBE_FACES_GLSL
 
 #include "language.glsl"
 
-/** Sample of a face. Derivatives are those of uv per pixel. */
+/** Sample of a face. Derivatives: uv per pixel. */
 struct SluiceCubePoint {
     uint face;
     vec2 uv, dx, dy;

@@ -1,8 +1,7 @@
 /*
- * Samples textures that are loaded on demand. Returns a color, and whether everything that it is
- * made of was resident. Missing pages are requested, all of them in one invocation, and become
- * resident for a later launch. Never touches a texel that is not resident. C interface:
- * sluice/demand.h.
+ * Samples textures that are loaded on demand. Returns a color, and whether all its texels were
+ * resident. One invocation requests all missing pages, which become resident for a later launch.
+ * Never reads a texel that is not resident. C interface: sluice/demand.h.
  *
  *     bool resident;
  *     vec4 color = sluiceDemandGrad(index, uv, dx, dy, resident);
@@ -22,10 +21,10 @@
  *     uv not finite, or beyond 1e33         as at (0, 0)
  *     tile that will never be resident      the next coarser level, resident
  *
- * Grids: texture floor(uv) of the grid is sampled at uv - floor(uv), clamped to its edge whatever
- * its address modes are. Derivatives are those of uv, in units of one texture.
+ * Grids: texture floor(uv) of the grid is sampled at uv - floor(uv), clamped to its edge for any
+ * address mode. Derivatives of uv are in units of one texture.
  *
- * Macros to define before you include it, in addition to those of demand_pages.glsl:
+ * Macros to define before this file, in addition to the macros of demand_pages.glsl:
  *
  *     #define SLUICE_DEMAND_TEXTURE(i) textures.entries[i]     // SluiceDemandTexture, read
  *     #define SLUICE_DEMAND_PAGE_TEXTURE(i) pages[nonuniformEXT(i)] // sampler2DArray: sluiceGetDemandPages
@@ -163,7 +162,7 @@ mat3x4 sluiceSumKernels(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv
     return sum;
 }
 
-/** Finds the texture of a grid at `uv`. False if there is none. */
+/** Finds the texture of a grid at `uv`. False: no texture. */
 bool sluiceFindInGrid(inout uint index, inout vec2 uv)
 {
     uvec2 size = uvec2(SLUICE_DEMAND_TEXTURE(index).width, SLUICE_DEMAND_TEXTURE(index).height);

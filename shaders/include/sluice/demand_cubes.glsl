@@ -16,9 +16,9 @@
  *     direction that is 0, infinite or NaN  the last level of face 0 of the cube
  *     texture that is no grid               its base color, resident
  *
- * Faces must be square and of one size; else edges show. Anisotropy, LOD bias and filters are those of
- * the face that is hit. Bicubic filters are linear here; NEAREST does not cross edges. Cubes beyond the
- * last are the last one.
+ * Faces must be square and equal in size; otherwise edges are visible. Anisotropy, LOD bias and filters
+ * come from the face that is hit. Bicubic filters are linear here; NEAREST does not cross edges. Indices
+ * beyond the last cube select the last cube.
  *
  * Include it after the definitions of demand.glsl, which it includes.
  */
@@ -42,7 +42,7 @@ uint sluiceDemandCubeFace(SluiceDemandCube c, uint face)
 
 /**
  * Fetches a texel of a level of `size` texels; beyond an edge, from the face there. `home` is the
- * texture of `face`. If nobody has opened the other face, it is the texel at the edge.
+ * texture of `face`. If the other face is not open, returns the texel at the edge.
  */
 vec4 sluiceFetchDemandCube(inout SluiceDemandCube c, uint home, uint face, uint level, ivec2 texel,
                            int size, bool ask, out uint worst)

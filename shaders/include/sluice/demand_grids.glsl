@@ -1,11 +1,11 @@
 /*
  * Samples grids of textures that are loaded on demand (sluiceAddDemandGrid).
  *
- * Layers of an array: `index` is that of a grid of layerCount x 1 textures; add one texture per layer
- * (SluiceDemandImage.arrayLayer). The layer may differ between invocations. Layers beyond the last
- * are the last one, as in Vulkan. Samplers and special cases are those of the layer's texture
- * (demand.glsl). An empty cell returns the grid's missingColor, resident. A texture that is no grid is
- * an array of one layer.
+ * Layers of an array: `index` is the index of a grid of layerCount x 1 textures; add one texture per
+ * layer (SluiceDemandImage.arrayLayer). The layer may differ between invocations. Layers beyond the
+ * last select the last layer, as in Vulkan. The layer's texture determines the sampler and special
+ * cases (demand.glsl). An empty cell returns the grid's missingColor, resident. A texture that is not
+ * a grid counts as an array of one layer.
  *
  *     bool resident;
  *     vec4 color = sluiceDemandLayerGrad(index, layer, uv, dx, dy, resident);
@@ -15,7 +15,7 @@
  *
  *     vec4 color = sluiceDemandUdimGrad(index, uv, dx, dy, resident);
  *
- *     at the edge of two cells              each has the weight that it has in one large image
+ *     at the edge of two cells              each has the same weight as in one large image
  *     cells of different sizes              each at the level that has the sample's LOD; they blend
  *                                           within half a texel of the finer one
  *     LOD beyond a cell's last level        its last level, still blended with that of its neighbors
@@ -26,8 +26,8 @@
  *     outside the grid                      missingColor, resident
  *     texture that is no grid               its base color, resident
  *
- * The anisotropy and LOD bias are those of the cell at `uv`. Bicubic filters are linear here. Address
- * modes of cells are ignored.
+ * The cell at `uv` determines anisotropy and LOD bias. Bicubic filters are linear here. Address modes
+ * of cells are ignored.
  *
  * Include it after the definitions of demand.glsl, which it includes.
  */
@@ -45,7 +45,7 @@
 #define SLUICE_SELECT(a, b, condition) ((condition) ? (b) : (a))
 #endif
 
-/** Replaces the index of a grid by that of a layer's texture. False if there is none. */
+/** Replaces the index of a grid by the index of a layer's texture. False: no texture. */
 bool sluiceFindDemandLayer(inout uint index, uint layer)
 {
     if (SLUICE_DEMAND_TEXTURE(index).state != SLUICE_DEMAND_TEXTURE_GRID)
@@ -88,7 +88,7 @@ uint sluiceDemandCell(uint grid, vec2 cell)
 }
 
 /**
- * Returns whether a cell's texture is open. If nobody has opened it, requests that and sets
+ * Returns whether a cell's texture is open. If not yet opened, requests its opening and sets
  * `resident` to false.
  */
 bool sluiceIsDemandCellOpen(uint index, inout bool resident)

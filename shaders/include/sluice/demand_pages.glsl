@@ -2,8 +2,8 @@
  * Pages of demand loading: looks up a page, or requests it. demand.glsl includes this file for
  * textures; shaders that use only resources of their own need no other file.
  *
- * Macros to define before you include it. demand_bindings.glsl defines them for the descriptor set of
- * a launch; shaders with descriptors of their own define them:
+ * Macros to define before this file. demand_bindings.glsl defines them for the descriptor set of a
+ * launch. Shaders with other descriptors must define:
  *
  *     #define SLUICE_DEMAND_LEVEL_WORD(i) levels.words[i]         // uint, read
  *     #define SLUICE_DEMAND_DIRECTORY_WORD(i) directory.words[i]  // uint, read
@@ -14,9 +14,9 @@
  *
  *     #define SLUICE_DEMAND_QUIET true  // optional, a bool: nothing is requested while it is true
  *
- * The blocks are std430 storage buffers (SluiceDemandBuffers). Those that are only read may be
- * readonly. You may include "shared/demand.h" before you declare them. Any stage. Fragment shaders
- * require the feature fragmentStoresAndAtomics, earlier stages vertexPipelineStoresAndAtomics.
+ * The blocks are std430 storage buffers (SluiceDemandBuffers). Blocks without writes may be readonly.
+ * You may include "shared/demand.h" before their declaration. Any stage. Fragment shaders require the
+ * feature fragmentStoresAndAtomics, earlier stages vertexPipelineStoresAndAtomics.
  */
 #ifndef SLUICE_DEMAND_PAGES_GLSL
 #define SLUICE_DEMAND_PAGES_GLSL
@@ -41,7 +41,7 @@ void sluiceRequestDemandPage(uint page)
     uint before;
     SLUICE_ATOMIC_OR_READ(SLUICE_DEMAND_REQUEST_WORD(word), bit, before);
     if ((before & bit) != 0u)
-        return; /* whoever set it sets that of the section */
+        return; /* the invocation that set the page's bit sets the section's bit */
     uint section = page / SLUICE_DEMAND_SECTION_PAGES;
     bit = 1u << (section % 32u);
     if ((SLUICE_DEMAND_SECTION_WORD(section / 32u) & bit) == 0u)

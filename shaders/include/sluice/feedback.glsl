@@ -1,5 +1,5 @@
 /*
- * Records the level that a sample wants, whether it is resident or not.
+ * Records the level that a sample wants, resident or not.
  *
  * Select few pixels first (stochastic.glsl). Take derivatives before that branch, or inside it if
  * whole quads take the branch. sluiceWriteQuadFeedback then shares the work among the pixels of a
@@ -12,13 +12,13 @@
  * For a texture set, write once, with the primary's index. In compute and ray tracing shaders pass
  * your own derivatives, for instance of ray cones.
  *
- * Optional definitions before this file, in addition to those of buffers.glsl:
+ * Optional definitions before this file, in addition to the definitions of buffers.glsl:
  *
  *     #define SLUICE_FEEDBACK_ENCODING SLUICE_FEEDBACK_MASKS  // as the streamer's; default: LEVELS
  *     #define SLUICE_FEEDBACK_TURN_WORD(i) turns.words[i]     // uint, read; default: all take part
  *
- * The second one skips textures that are not resolved in this frame, at the cost of one load. See
- * SluiceVulkanStreamerCreateInfo.feedbackInTurns.
+ * SLUICE_FEEDBACK_TURN_WORD skips textures that are not resolved in this frame, at the cost of one
+ * load. See SluiceVulkanStreamerCreateInfo.feedbackInTurns.
  */
 #ifndef SLUICE_FEEDBACK_GLSL
 #define SLUICE_FEEDBACK_GLSL
@@ -303,7 +303,7 @@ float sluiceQueryLod(SLUICE_SAMPLER_2D(tex), vec2 uv)
 {
     float lod = SLUICE_QUERY_LOD(tex, SLUICE_SAMPLER_OF(tex), uv);
     float spread = abs(dFdxFine(lod)) + abs(dFdyFine(lod));
-    return spread > 0.0 ? lod - spread : lod; /* NaN stays what it is in this pixel alone */
+    return spread > 0.0 ? lod - spread : lod; /* NaN stays in its pixel and does not spread */
 }
 
 /**

@@ -1,9 +1,9 @@
 /*
  * Records the levels that jittered samples (jitter.glsl) of streamed textures want.
  *
- * Feedback of each sample where it is taken, by feedback.glsl, is enough if every sample writes it. If
- * few pixels write feedback, call the function below instead: it marks the tiles of all offsets at
- * once, so that which tiles are wanted does not depend on the random numbers.
+ * If every sample writes feedback, feedback.glsl at the jittered position suffices. If few pixels write
+ * feedback, call the function below instead: it marks the tiles of all offsets at once, so that the
+ * wanted tiles do not depend on random numbers.
  *
  * Include it after the definitions of buffers.glsl and feedback.glsl.
  */
@@ -14,8 +14,8 @@
 #include "jitter.glsl"
 
 /**
- * Marks every region that a sample at sluiceJitter touches, whatever its random numbers, with the
- * finest level that it may touch there. Arguments are those of sluiceWriteFeedback, not jittered.
+ * Marks every region that a sample at sluiceJitter touches for any random numbers, with the finest
+ * level touched there. Arguments: as for sluiceWriteFeedback, without jitter.
  */
 void sluiceWriteJitteredFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                                  float maxAnisotropy, uint kernel)

@@ -85,9 +85,8 @@ float sluiceJitterTexel(float lod, vec2 size)
 }
 
 /**
- * Returns where to take the sample instead of at `uv`. `dx` and `dy` are the derivatives of `uv` per
- * pixel; LOD bias and anisotropy (1: none) are those of the sample; `size` is that of level 0 in
- * texels.
+ * Returns the position to sample instead of `uv`. `dx` and `dy`: derivatives of `uv` per pixel.
+ * `lodBias` and `maxAnisotropy` (1: none): of the sample. `size`: texels of level 0.
  */
 vec2 sluiceJitter(vec2 uv, vec2 dx, vec2 dy, float lodBias, float maxAnisotropy, vec2 size, uint kernel,
                   vec2 random)

@@ -14,9 +14,9 @@
  *     #define SLUICE_NEURAL_LATENT_WORD(s, i) latents.words[first + i] // uint i of sluiceReadNeuralLatents
  *     #define SLUICE_NEURAL_WEIGHT_WORD(s, i) weights.words[first + i] // uint i of sluiceGetNeuralWeights (INT8)
  *
- * Constants, latents and weights are those that the calls of sluice/neural.h write, in std430 storage
- * buffers. Include "shared/neural.h" before to declare the first block. Latents may be all of a set or slices,
- * also in byte pages (demand_bytes.glsl).
+ * The calls of sluice/neural.h write constants, latents and weights; put them in std430 storage buffers. To
+ * declare the first block, include "shared/neural.h" before. Latents may be a whole set or slices, also in byte
+ * pages (demand_bytes.glsl).
  *
  * Optional definitions:
  *
@@ -31,7 +31,7 @@
  *     #define SLUICE_NEURAL_VECTOR_WEIGHTS(s) weights // for it: array of uint in a storage buffer that begins with
  *                                            // the weights of the set
  *
- * sluice/neural_paths.h says which of these a device has. neural_matrix.glsl decodes a subgroup's texels at once.
+ * sluice/neural_paths.h queries a device's support. neural_matrix.glsl decodes a subgroup's texels at once.
  *
  * Results with INT8 weights have the same bits on every device whose float multiplication rounds to nearest, except for
  * outputs below 2^-126.

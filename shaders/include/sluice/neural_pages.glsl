@@ -57,10 +57,10 @@ uint sluiceNeuralPageOf(uint s, uint group, uvec2 texel, uint mip)
 }
 
 /**
- * Decodes a texel, or the one over it in the finest mip of coarser pages that are resident; `shown` is its
- * mip. The page of the texel itself is requested if it is missing, and the coarsest page if all are.
+ * Decodes a texel, or the texel over it in the finest resident mip; `shown` is the decoded mip. Requests
+ * the texel's page if missing, and also the coarsest page if all are missing.
  *
- * False, and all channels 0, if nothing is resident, or if there is no such texel.
+ * False, and all channels 0, if no page is resident or the texel does not exist.
  */
 bool sluiceNeuralSampleOrRequest(uint s, ivec2 texel, uint mip, out uint shown,
                                  out float channels[SLUICE_NEURAL_CHANNELS])

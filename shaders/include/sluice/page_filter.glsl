@@ -81,7 +81,7 @@ SluicePageAxis sluicePageAxis(float coordinate, uint addressMode, int size)
                                 size);
 }
 
-/** Returns the axis of the nearest texel alone, for a folded coordinate. */
+/** Returns the axis of only the nearest texel, for a folded coordinate. */
 SluicePageAxis sluiceNearestPageAxis(float coordinate, uint addressMode, int size)
 {
     int at = int(floor(coordinate * float(size)));
@@ -101,11 +101,11 @@ struct SluicePagePlace {
 };
 
 /**
- * Places a bilinear sample of a level of `size` texels, with floats alone. `share` is 1 divided by the
- * width and height of tiles, powers of two.
+ * Places a bilinear sample of a level of `size` texels, with float arithmetic only. `share` is 1 divided
+ * by the width and height of tiles, powers of two.
  *
- * `uv` need not be folded, except that of REPEAT: coordinates outside the texture are not inside. All
- * steps after the first are exact, so the bits are those of SluicePageAxis.
+ * `uv` must be folded only for REPEAT. Coordinates outside the texture are not inside. All steps after
+ * the first are exact, so the results have the same bits as SluicePageAxis.
  */
 SluicePagePlace sluicePlaceInTile(vec2 uv, vec2 size, vec2 share)
 {

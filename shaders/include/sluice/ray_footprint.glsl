@@ -18,10 +18,10 @@
  *     color = sluiceDemandGrad(index, uv, dx, dy, resident);
  *     cone = sluiceReflectCone(cone, direction, normal, curvature);
  *
- * Lengths are in any unit of the scene, the same one everywhere. Angles are in radians. Directions
- * and normals have length 1 and the space of the positions. `eta` is as in GLSL's refract: the index
- * of refraction on the ray's side divided by the one beyond. Pure functions: nothing has to be
- * defined before. Limit: edges of triangles from 1e-8 to 1e8.
+ * All lengths have the same unit, which is arbitrary. Angles are in radians. Directions and normals
+ * have length 1 and the space of the positions. `eta` is as in GLSL's refract: the index of refraction
+ * on the ray's side divided by the index beyond. Pure functions: no definitions are necessary. Limit:
+ * edges of triangles from 1e-8 to 1e8.
  *
  * Sources: Akenine-Moeller et al., "Texture Level of Detail Strategies for Real-Time Ray Tracing",
  * Ray Tracing Gems, 2019; Akenine-Moeller et al., "Improved Shader and Texture Level of Detail Using
@@ -194,7 +194,7 @@ SluiceRayDifferential sluiceCameraDifferential(vec3 toward, vec3 right, vec3 dow
                                  scale * (down - dot(d, down) * d));
 }
 
-/** Returns the differential where the ray hits a surface. `normal` is that of the true surface. */
+/** Returns the differential at the ray's hit. `normal`: normal of the true surface. */
 SluiceRayDifferential sluiceTransferDifferential(SluiceRayDifferential ray, vec3 direction,
                                                  float distance, vec3 normal)
 {
@@ -213,9 +213,8 @@ vec3 sluiceReflectChange(vec3 change, vec3 direction, vec3 normal, vec3 normalCh
 }
 
 /**
- * Returns the differential after a mirror. `direction` is that of the ray before. `normalX` and
- * `normalY` are the changes of the normal along positionX and positionY: see sluiceNormalAlong; 0 on
- * planes.
+ * Returns the differential after a mirror. `direction`: direction of the incoming ray. `normalX` and
+ * `normalY`: changes of the normal along positionX and positionY (see sluiceNormalAlong); 0 on planes.
  */
 SluiceRayDifferential sluiceReflectDifferential(SluiceRayDifferential ray, vec3 direction,
                                                 vec3 normal, vec3 normalX, vec3 normalY)

@@ -57,7 +57,7 @@ SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
 
 /* SluiceDemandTexture.state */
 #define SLUICE_DEMAND_TEXTURE_UNKNOWN                                                              \
-    0 /* nobody has asked for it: request the page of its index                                    \
+    0 /* never requested: request the page of its index                                            \
        */
 #define SLUICE_DEMAND_TEXTURE_OPEN 1
 #define SLUICE_DEMAND_TEXTURE_FAILED 2 /* its samples are baseColor, and resident */
