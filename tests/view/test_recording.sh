@@ -80,6 +80,17 @@ fact a_recording_opens_at_a_frame
 } | grep -v 'comma\|period' >everything
 show --script everything run.trace
 fact no_key_of_scenes_harms_a_recording
+# The table of textures, the inspector of a row, its levels, slots of the map, the device and the controls.
+look() {
+    printf '1 key End\n2 key T\n7 click 275 132\n%b\n20 screenshot %s\n21 quit\n' "$1" "$2" >looks
+    show --script looks full.trace
+}
+run 0 --room --headless --deterministic --fresh --cache . --size 240x160 --residency sparse --budget 4 --frames 20 \
+    --record full.trace && look '14 hover 5 275' inspected.png && look '14 hover 40 160' hovered.png &&
+    ! cmp -s inspected.png hovered.png && look '10 key M\n11 set memory-colors age\n14 hover 283 138' slot.png &&
+    look '10 key M\n11 set memory-colors age\n14 hover 5 275' slots.png && ! cmp -s slot.png slots.png &&
+    look '10 key J\n11 key U\n14 hover 5 275' words.png
+fact tiles_and_slots_are_named_under_the_mouse
 : >empty.trace
 echo 'This is a text.' >text.trace
 head -c 20 run.trace >short.trace

@@ -251,10 +251,14 @@ void panel_played_reason(const struct view_app *app)
     const SluiceTextureStatistics *s = &app->facts.textures[app->selected].statistics;
     const uint32_t *f = played_of(app)->frames[played_of(app)->frame].figures;
     char text[256];
-    const bool good = s->requestedTileCount == 0;
+    const bool good = s->wantedTileCount <= s->residentTileCount && s->requestedTileCount == 0;
     ui_text(UI_GRAY, "Why no finer level?");
     if (good)
-        snprintf(text, sizeof text, "No tile of it waits in the queue.");
+        snprintf(text, sizeof text, "Nothing that was wanted is missing.");
+    else if (s->requestedTileCount == 0)
+        snprintf(text, sizeof text, "%u of %u wanted tiles are resident; %s.", s->residentTileCount,
+                 s->wantedTileCount,
+                 s->failedTotal > 0 ? "reads failed, or others are loading" : "others are loading");
     else
         snprintf(text, sizeof text,
                  "%u of its tiles wait in the queue, of %u in all; %u tiles are loading%s.",
