@@ -38,7 +38,8 @@ void extremes_add(struct extremes_row *row, double error, const char *format, ..
 void extremes_end(const struct extremes_row *row);
 
 #define EXTREMES_SPECIALS 26u
-/** Both zeros, denormals, FLT_MIN, values around 1, 1e6, 1e30, FLT_MAX, infinities and NaN. */
+/** Special values: both zeros, denormals, FLT_MIN, values around 1, 1e6, 1e30, FLT_MAX, infinities
+ * and NaN. */
 extern const float extremes_specials[EXTREMES_SPECIALS];
 
 /** Returns 32 bits of a hash of the number, equal on every machine. */

@@ -179,7 +179,7 @@ static void check_safe_levels(const uint32_t *a, const uint32_t *r, bool device,
     check_levels(&exact, numerics_real(a, 5), a[6], r, rows, a);
 }
 
-/* All exponents, and both sides of powers of four. */
+/* Makes arguments with all exponents, and on both sides of powers of four. */
 static void make_floor_log4(uint64_t i, uint32_t *a)
 {
     a[0] = extremes_bits_of(fabsf(extremes_float(i)));
@@ -240,7 +240,7 @@ static void check_ends(const uint32_t *a, const uint32_t *r, bool device, struct
     extremes_add(rows, (double)error, "LOD %.9g of %u", (double)lod, a[2]);
 }
 
-/* All texels of a MinMip buffer, with both margins. */
+/* Makes all texels of a MinMip buffer, with both margins. */
 static void make_shown(uint64_t i, uint32_t *a)
 {
     a[0] = (uint32_t)(i & 0xFFFF);

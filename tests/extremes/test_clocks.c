@@ -129,7 +129,7 @@ static void ten_thousand_days_are_the_same_in_every_unit(void **state)
     assert_int_equal(wrong, 0);
 }
 
-/* Without passing time, only timeout 0 expires tiles, and nothing is retried. Runs as long as
+/* If time stands still, only timeout 0 expires tiles, and nothing is retried. Runs as long as
  * allowed. */
 static void everything_in_one_instant_stays_sound_and_takes_no_more_memory(void **state)
 {

@@ -149,7 +149,8 @@ static SluiceResult destroy(struct life *l)
     return result;
 }
 
-/* Calls in the order of a loader's life. Launches between them use what was created and changed. */
+/* Calls in the order of a loader's life. Launches between them use the created and changed
+ * objects. */
 static SluiceResult (*const calls[])(struct life *) = {
     create_texture,  create_variant, create_grid, create_resource, create_bytes, create_large,
     create_answered, set_pages,      launch,      launch,          launch,       preload,

@@ -1,4 +1,4 @@
-/* The ends of what a manager can count: ids that are used up, one slot, none at all. */
+/* Limits of a manager's counters: all ids used up, one slot, no slot. */
 #include "core/sound.h"
 #include "extremes/note.h"
 
@@ -6,7 +6,7 @@
 
 enum { FRAMES = 400 };
 
-/* So many generations take 2^32 removals, so the count is moved there. */
+/* Sets the generation, because reaching it takes 2^32 removals. */
 static void set_generation(struct fixture *f, SluiceTextureId id, uint32_t generation)
 {
     slc_texture_at(f->manager, (uint32_t)id)->generation = generation;
@@ -82,7 +82,8 @@ static uint32_t stream(struct fixture *f, const SluiceTextureId *ids, uint64_t *
     return most;
 }
 
-/* One of the 18 tiles at a time, whatever is wanted; at last the one that alone is wanted. */
+/* One slot holds one of the 18 tiles at a time, for any requests. At the end it holds the only
+ * wanted tile. */
 static void one_slot_holds_one_tile(void **state)
 {
     (void)state;

@@ -1,6 +1,4 @@
-/* The thinnest, the longest and the oddest images: levels are means, stores give back what they
- * got.
- */
+/* Very thin, long and odd images. Levels are means, and stores return what was written. */
 #include "extremes/note.h"
 #include "store/stores.h"
 
@@ -14,7 +12,7 @@ static uint32_t mip(uint32_t size, uint32_t level)
     return size >> level ? size >> level : 1;
 }
 
-/* All of a level of a one-channel float source; from malloc. */
+/* Reads a level of a one-channel float source. Free the result. */
 static float *read_level(SluiceImageSource *source, const SluiceImageInfo *info, uint32_t level)
 {
     SluiceImageRegion region = {level, 0, 0, mip(info->width, level), mip(info->height, level), 0};
@@ -32,7 +30,7 @@ static double share(uint32_t from, uint32_t fine, uint32_t to, uint32_t coarse)
     return end > begin ? (end - begin) / scale : 0;
 }
 
-/* By the definition: the mean of the area in the level above. */
+/* Computes a texel by definition: the mean of the area in the level above. */
 static double mean(const float *fine, uint32_t fw, uint32_t fh, uint32_t x, uint32_t y, uint32_t cw,
                    uint32_t ch)
 {

@@ -1,4 +1,4 @@
-/* Calls that the list of allocations says take no memory: they are made when there is none. */
+/* Calls that the list of allocations declares free of allocations, made while none succeeds. */
 #include "core/sound.h"
 #include "extremes/note.h"
 

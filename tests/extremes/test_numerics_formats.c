@@ -181,7 +181,7 @@ static double ufloat_error(const float rgba[4], const float got[4])
     return worst;
 }
 
-/* All components share an exponent. The step is that of the largest. */
+/* Returns the error in steps. All components share an exponent; the step is that of the largest. */
 static double shared_error(const float rgba[4], const float got[4])
 {
     double wanted[3], largest = 0, worst = 0;

@@ -44,7 +44,7 @@ static void fill(float *picture, float value)
 static const float peaks[] = {0x1p-149f, FLT_MIN, 1e-20f, 1, 65504, 1e30f, FLT_MAX};
 #define PEAKS (sizeof peaks / sizeof peaks[0])
 
-/* All pairs of special values, and each with the peaks. */
+/* Tries all pairs of special values, and each with the peaks. */
 static void ssim_of_constants_is_that_of_the_formula(void **state)
 {
     (void)state;
@@ -119,7 +119,7 @@ static void light_of_any_scale_is_compared_alike(void **state)
     extremes_end(&row);
 }
 
-/* One step in one of n values, and maximum difference in all values. */
+/* Images with one step in one of n values, and with the maximum difference in all values. */
 static void psnr_of_any_size_is_that_of_the_formula(void **state)
 {
     (void)state;

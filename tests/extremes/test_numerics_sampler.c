@@ -38,7 +38,7 @@ static double draw(uint64_t number)
     return (double)extremes_random(number) / 4294967296.0;
 }
 
-/* At a whole level, or within 2^-1 to 2^-24 of it on either side. */
+/* Returns a whole level, or one within 2^-1 to 2^-24 of it on either side. */
 static double near_whole_level(uint64_t i, uint32_t count)
 {
     double away = exp2(-(double)(1 + extremes_random(i) % 24));

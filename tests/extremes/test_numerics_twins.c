@@ -35,7 +35,7 @@ static void regions_and_decisions_are_near_exact_ones(void **state)
         check_function(NUMERICS_LOD_COUNT + i);
 }
 
-/* Whether a region of the walk is over the same tile of the level. */
+/* Returns whether a region of the walk is over the same tile of the level. */
 static bool is_walked(const uint32_t *walked, uint32_t count, uint32_t region, uint32_t level)
 {
     for (uint32_t i = 0; i < count; i++)
@@ -44,7 +44,8 @@ static bool is_walked(const uint32_t *walked, uint32_t count, uint32_t region, u
     return false;
 }
 
-/* From the first to the last region, around the end where the last is before the first. */
+/* Checks a walk from the first to the last region. It passes the end if the last is before the
+ * first. */
 static void check_walk(uint32_t first, uint32_t last, uint32_t axis_last, uint32_t level,
                        struct extremes_row *row)
 {

@@ -1,4 +1,4 @@
-/* A week of a camera on its ways: memory stays what it was, and every invariant holds. */
+/* A week of a moving camera. The memory in use stays constant, and every invariant holds. */
 #include "core/sound.h"
 #include "extremes/note.h"
 
@@ -15,7 +15,7 @@ static const uint64_t week_frames = 10000000;
 
 static uint64_t frame_count = 300000;
 
-/* Until the slowest turn of the camera has met the others in most ways. */
+/* Frames until the slowest turn of the camera has met most positions of the others. */
 static const uint64_t warm_up = 100000;
 
 struct soak {
@@ -41,7 +41,8 @@ static void add_texture(struct soak *s, uint32_t texture)
         CHECK_OK(sluiceSetPrimaryTexture(s->f.manager, s->ids[texture], s->ids[texture - 1]));
 }
 
-/* Where the camera is along a row of pictures, and how near: three turns that never meet. */
+/* Returns a coordinate of the camera along a row of pictures: a sum of three periods without a
+ * common one. */
 static double position(uint64_t frame)
 {
     double t = (double)frame;
@@ -68,7 +69,8 @@ static void draw_map(struct soak *s, const SluiceStreamedTextureLayout *layout, 
                 s->map[y * w + x] = (uint8_t)(level + next_random(&s->random) % 2);
 }
 
-/* Two maps a frame, in turns, of those in view; those that just left it get an empty one. */
+/* Feeds two maps a frame, in turns, of the textures in view. Textures that just left the view get
+ * an empty map. */
 static void feed(struct soak *s)
 {
     double at = position(s->frame);
@@ -178,7 +180,7 @@ static uint64_t larger(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
-/* Else the memory of a camera that stands still would be looked at. */
+/* Checks that the camera moved enough to make the result meaningful. */
 static void check_activity(const struct fixture *f)
 {
     SluiceStreamedTextureStatistics s = fixture_statistics(f);

@@ -1,5 +1,5 @@
-/* Ten million launches of a ray tracer whose views move: the residency's memory stays what it was.
- */
+/* Ten million launches of a ray tracer whose views move. The memory of the residency stays
+ * constant. */
 #include "demand/random.h"
 #include "demand/renderer.h"
 #include "extremes/note.h"
@@ -12,10 +12,10 @@ enum { TEXTURES = 16, PLACES = 600, VIEWS = 6 };
 
 static uint64_t launch_count = 10000;
 
-/* After the first tenth of a run. */
+/* Maximum growth of the memory after the first tenth of a run. */
 static const double GROWTH = 1.02;
 
-/* Each view glides over its texture, nearer and farther, and changes to another now and then. */
+/* Moves each view over its texture, nearer and farther. Sometimes it changes to another texture. */
 static void move_views(struct renderer *r, uint64_t launch)
 {
     r->view_count = VIEWS;
@@ -30,7 +30,7 @@ static void move_views(struct renderer *r, uint64_t launch)
     }
 }
 
-/* A texture changes: all of its pages are forgotten, those that are being read among them. */
+/* Forgets all pages of a texture, also those that are being read. */
 static void forget_texture(struct renderer *r)
 {
     const struct pyramid *t = &r->textures[random_below(&r->random, r->texture_count)];

@@ -351,7 +351,7 @@ static void init_loader(struct fixture *f)
     CHECK_OK(sluiceAddDemandProxies(f->loader, f->set, 0, &f->proxies, &first));
 }
 
-/* One for all tests, of one texel: its passes take long to compile. */
+/* Shared by all tests, because its passes take long to compile. One texel. */
 static SluiceNeuralCompressor *compressor;
 
 static void init_compressor(struct fixture *f)
@@ -374,7 +374,7 @@ static void init_compressor(struct fixture *f)
     CHECK_OK(sluiceRecordNeuralReadback(f->compressor, f->commands));
 }
 
-/* One for all tests, of 4 x 4 texels, all of zeros. */
+/* Shared by all tests. 4 x 4 texels, all zero. */
 static SluiceVulkanNeuralDecoder *decoder;
 
 static void init_decoder(struct fixture *f)
@@ -434,7 +434,7 @@ static void fixture_init(struct fixture *f, void **state)
     init_compressor(f);
 }
 
-/* Nothing of what was recorded is submitted. */
+/* Submits nothing of the recorded commands. */
 static void fixture_finish(struct fixture *f)
 {
     assert_int_equal(h.ResetCommandBuffer(f->commands, 0), VK_SUCCESS);

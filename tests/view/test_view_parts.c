@@ -482,7 +482,7 @@ static void a_scenes_camera_comes_back_as_it_was(void **state)
     }
 }
 
-/* Whatever is up, and mirrored or not: the picture's right, and what it shows ahead. */
+/* With any up vector, mirrored or not, the camera moves to the picture's right and ahead. */
 static void steps_and_turns_go_where_the_picture_shows_them(void **state)
 {
     (void)state;

@@ -226,7 +226,7 @@ void stages_of_loads_are_counted_in_frames(void **state)
     assert_memory_equal(queue->buckets, buckets, sizeof buckets);
     const SluiceLoadStageCounts *feedback = &out.stages[SLUICE_LOAD_STAGE_FEEDBACK];
     check_stage(feedback, statistics(s).feedbackMaps, 1);
-    /* All stages behind feedback. A mip tail is two loads with one wait in the queue each. */
+    /* All stages follow feedback. A mip tail is two loads, each with one wait in the queue. */
     assert_int_equal(out.whole.count, loads);
     assert_int_equal(out.whole.frameSum, sum + tail_sum + loads + bind->frameSum + loads);
     assert_int_equal(out.whole.frameMax, queue->frameMax + 3);

@@ -52,7 +52,7 @@ static VKAPI_ATTR void VKAPI_CALL copy_image(VkCommandBuffer commands, VkImage f
     }
 }
 
-/* MinMip maps may only show what was copied before. */
+/* Notes the copy of MinMip maps, which may only show earlier copies. */
 static VKAPI_ATTR void VKAPI_CALL copy_buffer(VkCommandBuffer commands, VkBuffer from, VkBuffer to,
                                               uint32_t count, const VkBufferCopy *regions)
 {

@@ -8,7 +8,7 @@
 
 #include "vulkan/fake_vulkan.h"
 
-/** One function. Lists end with a NULL name. */
+/** A function. Lists end with a NULL name. */
 struct fake_function {
     const char *name; ///< Vulkan's name, such as vkCreateImage
     PFN_vkVoidFunction function;

@@ -39,7 +39,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL counter_value(VkDevice device, VkSemaphore
     return VK_SUCCESS;
 }
 
-/* Both timelines stand still unless the test moves them. */
+/* Records a wait. The timelines advance only if the test wants it. */
 static VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device,
                                                       const VkSemaphoreWaitInfo *info,
                                                       uint64_t timeout)
@@ -191,7 +191,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL end_commands(VkCommandBuffer commands)
     return VK_SUCCESS;
 }
 
-/* A batch of uploads waits only for what has happened: nothing of it can stall. */
+/* Checks that a batch of uploads waits only for past work, so that it cannot stall. */
 static VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, uint32_t count,
                                              const VkSubmitInfo *info, VkFence fence)
 {

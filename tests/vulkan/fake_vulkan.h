@@ -22,7 +22,7 @@
 #define FAKE_SPARSE_FAMILY 2u   ///< binds, but does not compute
 #define FAKE_COMPUTE_FAMILY 3u  ///< does not bind
 
-/** One bound page. Merged runs are split. */
+/** A bound page. Merged runs are split. */
 struct fake_bind {
     VkImage image;
     uint32_t level, x, y;  ///< in tiles; level FAKE_TAIL: page x of the tail
@@ -86,7 +86,7 @@ struct fake_vulkan {
     struct fake_object *general[FAKE_EVENTS]; ///< images that got their layout since
     uint32_t general_count;
 
-    /** Number, from 1, of the call to fail among those that may; 0: none. And its result. */
+    /** number, from 1, of the failing call among those that may fail, and its result; 0: none */
     uint64_t calls, failing_call;
     VkResult failure;
     bool fails_on;         ///< true: later calls fail too, including vkDeviceWaitIdle

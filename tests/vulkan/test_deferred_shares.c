@@ -124,7 +124,8 @@ static uint32_t copy_all(struct stage *s, bool gives)
     return count;
 }
 
-/* They take neither a page nor a staging slot, so nothing else bounds what a frame changes. */
+/* Shares need neither a page nor a staging slot, so that only the limit of shares bounds a frame's
+ * changes. */
 static void share_all(bool gives)
 {
     static struct stage s; /* large */

@@ -54,7 +54,7 @@ static SluiceDemandLoader *begin(uint64_t unsignaled)
     return loader;
 }
 
-/* All launches that were begun are complete then. */
+/* Completes all launches that were begun. */
 static void finish(SluiceDemandLoader *loader)
 {
     fake.frame_value = UINT32_MAX;

@@ -177,7 +177,7 @@ static SluiceResult stream(struct fake_vulkan *fake, SluiceVulkanStreamer *strea
  * later. */
 #define STAGING_CALLS (3u * 4u)
 
-/* After a failed frame, a streamer may only be destroyed. */
+/* Runs frames until one fails. After that, only destroying the streamer is allowed. */
 static void frames_survive(uint32_t packed_count, uint32_t binds_per_call, uint32_t harmless_calls)
 {
     uint32_t harmless = 0;

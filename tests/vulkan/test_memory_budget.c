@@ -1,4 +1,4 @@
-/* The budget of a context: what it refuses, and whom it presses to release memory. */
+/* Budget of a context: refused requests, and the clients that it asks to release memory. */
 #include "vulkan/memory_budget.h"
 
 #include "support/test.h"
@@ -43,7 +43,7 @@ static uint64_t tiles(struct stage *s)
     return statistics.tileMemorySize;
 }
 
-/* Both kinds of pressure at once. */
+/* Returns both kinds of pressure. */
 static uint64_t begin(struct slc_memory_client *client)
 {
     struct slc_memory_pressure pressure = slc_memory_client_begin(client);

@@ -39,7 +39,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     return SLUICE_SUCCESS;
 }
 
-/* Its memory stays, so that another source may be at the address. */
+/* Destroys a source but keeps its memory, so that another source may get the same address. */
 static void destroy(SluiceImageSource *base)
 {
     ((struct source *)base)->closed++;
@@ -216,7 +216,7 @@ static void launch(void)
     CHECK_OK(sluiceProcessDemandRequests(rig.demand, &launch, 0, &requests, NULL));
 }
 
-/* And nothing of it is being read. */
+/* Opens the texture and waits for its reads. */
 static void open_texture(void)
 {
     SluiceDemandTicket ticket;

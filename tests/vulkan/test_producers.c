@@ -15,7 +15,7 @@ static const SluiceResidencyMode modes[] = {
     SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_DENSE};
 enum { MODES = sizeof modes / sizeof *modes };
 
-/* One tile of a batch. */
+/* A tile of a batch. */
 struct call {
     SluiceTextureId id;
     VkImage image;

@@ -16,7 +16,7 @@ static uint32_t draw(uint32_t limit)
     return (seed >> 8) % limit;
 }
 
-/* Tiles in the order of their addition; textures in that of their turns. */
+/* Model of the lists: tiles in the order of addition, textures in the order of their turns. */
 struct model {
     uint32_t tiles[TEXTURES][TILES], counts[TEXTURES];
     bool waits[TEXTURES];
@@ -161,7 +161,7 @@ static void lists_are_those_of_a_model(void **state)
     assert_int_equal(memory.live_bytes, 0);
 }
 
-/* Each texture that waits must not be looked at: the first one due tells of all. */
+/* Waiting textures must not be examined one by one: the first one due decides for all. */
 static void textures_that_wait_come_when_they_are_due(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* The C twins against brute force: what a sample may touch is what it marks. */
+/* C twins of shader functions, compared with brute force: a sample marks the texels that it may
+ * touch. */
 #include "vulkan/shader_twins.h"
 
 #include "base/checked.h"
@@ -217,7 +218,8 @@ static struct columns columns_of(const struct slc_twin_footprint *f, int axis, u
     return c;
 }
 
-/* True if every tap of a linear filter at `u` is in a tile of `level` over one of the regions. */
+/* Returns whether every tap of a linear filter at `u` is in a tile of `level` over one of the
+ * regions. */
 static bool axis_is_covered(double u, uint32_t size, uint32_t tile, uint32_t level, uint32_t mode,
                             const struct columns *columns)
 {

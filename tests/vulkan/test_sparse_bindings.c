@@ -151,7 +151,7 @@ static void swapped_pages_are_two_binds(void **state)
     check_entry(f, 1, 1, 0, 0, 0);
 }
 
-/* Each is given the slot that the other had: the slots change places, and nothing is bound. */
+/* Each tile gets the slot that the other had. The slots are exchanged, and nothing is bound. */
 static void tiles_get_their_old_pages_back_whatever_slots_they_are_given(void **state)
 {
     struct fixture *f = *state;

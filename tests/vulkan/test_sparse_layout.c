@@ -105,7 +105,7 @@ static void without_a_tail_levels_within_one_tile_are_packed(void **state)
     }
 }
 
-/* With standard layouts, packed levels are an image of their own. */
+/* With standard layouts, packed levels have their own image. */
 static void standard_layouts_count_packed_levels_by_their_texels(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* One call of a shader function whose result exact arithmetic knows, for C and GLSL. */
+/* A call of a shader function whose exact result is known, for C and GLSL. */
 #ifndef NUMERICS_SHARED_H
 #define NUMERICS_SHARED_H
 
