@@ -44,37 +44,42 @@ static void shrink(const uint8_t *texels, uint32_t width, uint32_t height, uint3
         }
 }
 
-static bool read_source(SluiceImageSource *source, uint8_t cell[THUMBS_CELL][THUMBS_CELL][4])
+/* The first level that fits a cell, or the last. */
+static uint32_t level_of(const SluiceImageInfo *info)
+{
+    uint32_t level = 0;
+    while (level + 1 < info->mipLevelCount && (side_of(info->width, level) > THUMBS_CELL ||
+                                               side_of(info->height, level) > THUMBS_CELL))
+        level++;
+    return level;
+}
+
+static bool read_source(SluiceImageSource *source, struct thumb_texels *texels)
 {
     SluiceImageInfo info = {.structSize = sizeof info};
-    uint32_t level = 0;
     if (sluiceGetImageInfo(source, &info) != SLUICE_SUCCESS)
         return false;
-    while (level + 1 < info.mipLevelCount &&
-           (side_of(info.width, level) > THUMBS_CELL || side_of(info.height, level) > THUMBS_CELL))
-        level++;
+    const uint32_t level = level_of(&info);
     const SluiceImageRegion region = {.mipLevel = level,
                                       .width = side_of(info.width, level),
                                       .height = side_of(info.height, level)};
-    const uint32_t bytes = bytes_of(info.format);
-    if (bytes == 0 || region.width > MOST_SIDE || region.height > MOST_SIDE)
+    if (region.width > MOST_SIDE || region.height > MOST_SIDE)
         return false;
-    uint8_t *texels = malloc((size_t)region.width * region.height * bytes);
-    const bool read =
-        texels && sluiceReadImageRegion(source, &region, texels, (size_t)region.width * bytes) ==
-                      SLUICE_SUCCESS;
-    if (read)
-        shrink(texels, region.width, region.height, bytes, cell);
-    free(texels);
-    return read;
+    const uint64_t size = sluiceGetFormatRegionSize(info.format, region.width, region.height);
+    const uint64_t row = sluiceGetFormatRegionSize(info.format, region.width, 1);
+    *texels = (struct thumb_texels){info.format, region.width, region.height, malloc(size + 1)};
+    if (texels->bytes &&
+        sluiceReadImageRegion(source, &region, texels->bytes, (size_t)row) == SLUICE_SUCCESS)
+        return true;
+    thumb_texels_finish(texels);
+    return false;
 }
 
 /* False if the source cannot be shown, or is not ready. */
-static bool read_cell(const struct stage *stage, uint32_t texture,
-                      uint8_t cell[THUMBS_CELL][THUMBS_CELL][4])
+static bool read_texels(const struct stage *stage, uint32_t texture, struct thumb_texels *texels)
 {
     SluiceImageSource *source = stage_borrow_source(stage, texture);
-    const bool read = source && read_source(source, cell);
+    const bool read = source && read_source(source, texels);
     if (source)
         stage_return_source(stage, texture, source);
     return read;
@@ -92,20 +97,73 @@ static void keep(struct thumbs *t, uint32_t texture, uint8_t cell[THUMBS_CELL][T
     atomic_fetch_add(&t->changes, 1);
 }
 
+static bool is_read(struct thumbs *t, uint32_t texture)
+{
+    pthread_mutex_lock(&t->lock);
+    const bool read = t->known[texture] || t->raw[texture].bytes;
+    pthread_mutex_unlock(&t->lock);
+    return read;
+}
+
+/* Takes the texels. The device converts those of most formats, in thumbs_record. */
+static bool take(struct thumbs *t, uint32_t texture, struct thumb_texels *texels)
+{
+    uint8_t cell[THUMBS_CELL][THUMBS_CELL][4] = {{{0}}};
+    const uint32_t bytes = bytes_of(texels->format);
+    if (bytes == 0 && thumb_texels_fit(t->gpu, texels->format)) {
+        pthread_mutex_lock(&t->lock);
+        t->raw[texture] = *texels;
+        pthread_mutex_unlock(&t->lock);
+        return true;
+    }
+    if (bytes > 0) {
+        shrink(texels->bytes, texels->width, texels->height, bytes, cell);
+        keep(t, texture, cell);
+    }
+    thumb_texels_finish(texels);
+    return bytes > 0;
+}
+
 /* Returns how many are not there. */
 static uint32_t read_all(struct thumbs *t)
 {
-    uint8_t cell[THUMBS_CELL][THUMBS_CELL][4] = {{{0}}};
     uint32_t left = 0;
     for (uint32_t i = 0; i < t->count && !atomic_load(&t->stop); i++) {
-        if (t->known[i]) /* only this thread writes it */
+        struct thumb_texels texels;
+        if (is_read(t, i))
             continue;
-        if (read_cell(t->stage, i, cell))
-            keep(t, i, cell);
-        else
+        if (!read_texels(t->stage, i, &texels) || !take(t, i, &texels))
             left++;
     }
     return left;
+}
+
+/* Converts the texels of one texture. False if there are none. */
+static bool convert_next(struct thumbs *t)
+{
+    uint8_t cell[THUMBS_CELL][THUMBS_CELL][4];
+    struct thumb_texels texels = {0};
+    uint32_t texture = 0;
+    pthread_mutex_lock(&t->lock);
+    for (uint32_t i = 0; i < t->count && !texels.bytes; i++) {
+        texture = (t->next_raw + i) % t->count;
+        texels = t->raw[texture];
+        t->raw[texture] = (struct thumb_texels){0};
+    }
+    pthread_mutex_unlock(&t->lock);
+    t->next_raw = texture;
+    if (!texels.bytes)
+        return false;
+    if (thumb_texels_convert(t->gpu, &texels, cell))
+        keep(t, texture, cell);
+    thumb_texels_finish(&texels);
+    return true;
+}
+
+static void convert_all(struct thumbs *t)
+{
+    while (convert_next(t))
+        continue;
 }
 
 static void *run(void *user_data)
@@ -122,27 +180,33 @@ static void *run(void *user_data)
 
 void thumbs_begin(struct thumbs *t, const struct gpu *gpu, const struct stage *stage, bool wait)
 {
-    if (t->stage && wait && stage_traced(stage) && t->count > 0)
+    if (t->stage && wait && stage_traced(stage) && t->count > 0) {
         read_all(t);
+        convert_all(t);
+    }
     if (t->stage)
         return;
     const uint32_t all = stage_texture_count(stage);
-    *t = (struct thumbs){.stage = stage, .count = all < THUMBS_MOST ? all : THUMBS_MOST};
+    *t =
+        (struct thumbs){.gpu = gpu, .stage = stage, .count = all < THUMBS_MOST ? all : THUMBS_MOST};
     const uint32_t rows = (t->count + THUMBS_COLUMNS - 1) / THUMBS_COLUMNS;
     pthread_mutex_init(&t->lock, NULL);
     t->pixels = calloc((size_t)rows * THUMBS_CELL * ROW + 1, 4);
     t->known = calloc(t->count + 1u, sizeof *t->known);
-    if (!t->pixels || !t->known || rows == 0 ||
+    t->raw = calloc(t->count + 1u, sizeof *t->raw);
+    if (!t->pixels || !t->known || !t->raw || rows == 0 ||
         !ui_texels_fit(gpu, ROW, rows * THUMBS_CELL, &t->texels))
         t->count = 0;
     else if (wait)
-        read_all(t);
+        read_all(t), convert_all(t);
     else
         t->threaded = pthread_create(&t->thread, NULL, run, t) == 0;
 }
 
 void thumbs_record(struct thumbs *t, uint64_t frame, VkCommandBuffer commands)
 {
+    if (t->count > 0)
+        convert_next(t); /* one per frame, which it delays */
     const unsigned changes = atomic_load(&t->changes);
     if (t->count == 0 || changes == t->shown || frame < t->next)
         return;
@@ -164,8 +228,12 @@ void thumbs_end(struct thumbs *t)
         pthread_join(t->thread, NULL);
     ui_texels_destroy(&t->texels);
     pthread_mutex_destroy(&t->lock);
+    for (uint32_t i = 0; t->raw && i < t->count; i++)
+        thumb_texels_finish(&t->raw[i]);
     free(t->pixels);
     free(t->known);
+    free(t->raw);
+    t->raw = NULL;
     t->stage = NULL;
     t->pixels = NULL;
     t->known = NULL;

@@ -2,25 +2,28 @@
 #ifndef SLUICE_VIEW_THUMBS_H
 #define SLUICE_VIEW_THUMBS_H
 
+#include "thumb_texels.h"
 #include "ui_texels.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
 
-#define THUMBS_CELL 32u
 #define THUMBS_COLUMNS 32u
 #define THUMBS_MOST (THUMBS_COLUMNS * THUMBS_COLUMNS) ///< textures behind have none
 
 struct stage;
 
 struct thumbs {
+    const struct gpu *gpu;     ///< borrowed
     const struct stage *stage; ///< borrowed; NULL: nothing was begun
     uint32_t count;
-    uint8_t *pixels; ///< owned; RGBA8, cells in rows of THUMBS_COLUMNS
-    bool *known;     ///< owned; by texture
+    uint8_t *pixels;          ///< owned; RGBA8, cells in rows of THUMBS_COLUMNS
+    bool *known;              ///< owned; by texture
+    struct thumb_texels *raw; ///< owned; by texture: texels that the device has to convert
+    uint32_t next_raw;        ///< where to look for some first
     bool threaded;
     pthread_t thread;
-    pthread_mutex_t lock; ///< of pixels and known
+    pthread_mutex_t lock; ///< of pixels, known and raw
     atomic_bool stop;
     atomic_uint changes;
     unsigned shown; ///< changes that the image has
