@@ -65,6 +65,15 @@ static bool says(const char *text, const char *words, const char *key)
     return false;
 }
 
+/* Keys of recordings are listed where one is shown. */
+static bool is_listed(const struct action *action)
+{
+    static struct view_app app;
+    const bool listed = actions_lists(&app, action);
+    assert_true(listed || strcmp(action->group, "Recordings") == 0);
+    return listed;
+}
+
 static void the_menu_has_everything_with_a_key_and_shows_the_key(void **state)
 {
     uint32_t count;
@@ -72,7 +81,8 @@ static void the_menu_has_everything_with_a_key_and_shows_the_key(void **state)
     (void)state;
     assert_true(count > 50);
     for (uint32_t i = 0; i < count; i++)
-        if (actions[i].chord && !says(menu_text, actions[i].words, key_of(&actions[i])))
+        if (actions[i].chord && is_listed(&actions[i]) &&
+            !says(menu_text, actions[i].words, key_of(&actions[i])))
             fail_msg("%s (%s) is not in the menu:\n%s", actions[i].words, key_of(&actions[i]),
                      menu_text);
 }
@@ -83,7 +93,7 @@ static void the_page_of_keys_has_every_key(void **state)
     const struct action *actions = actions_get(&count);
     (void)state;
     for (uint32_t i = 0; i < count; i++)
-        if (!says(keys_text, key_of(&actions[i]), actions[i].words))
+        if (is_listed(&actions[i]) && !says(keys_text, key_of(&actions[i]), actions[i].words))
             fail_msg("%s (%s) is not on the page:\n%s", actions[i].words, key_of(&actions[i]),
                      keys_text);
 }
