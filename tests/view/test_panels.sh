@@ -14,6 +14,17 @@ printf '1 key t\n50 click 600 167\n60 hover 300 500\n64 screenshot as-before.png
 view --script as-before && view --script dragged && ! cmp -s as-before.png dragged.png
 fact columns_are_dragged
 
+# Buttons, figures and the line at the bottom say what they are; the sky, with nothing under the mouse, is silent.
+hovers() { printf '20 hover %d %d\n24 screenshot hover.png\n' "$1" "$2" >hover && view --script hover; }
+hovers -1 -1 && mv hover.png nothing.png
+silent=
+for at in '100 40' '300 40' '500 40' '800 30' '800 50' '850 69' '800 85' '500 510'; do
+    # shellcheck disable=SC2086 # two numbers
+    hovers $at && ! cmp -s hover.png nothing.png || silent="$silent $at;"
+done
+hovers 500 100 && cmp hover.png nothing.png && { [ -z "$silent" ] || { echo "nothing at$silent" >>err && false; }; }
+fact what_is_hovered_says_what_it_is
+
 # All figures but times, with a first run that bakes, a second, and semaphores that are signaled late.
 { printf 'P6 1000 1000 255\n' && yes 'some texels' | head -c 3000000; } >first.ppm
 { printf 'P6 1000 900 255\n' && yes 'other texels' | head -c 2700000; } >second.ppm

@@ -35,6 +35,22 @@ static const char *sharp_words(const struct view_facts *f, char *text, size_t si
     return text;
 }
 
+/* Clicks on the line go to the picture behind, so ImGui does not know of the mouse over it. */
+static void hint_line(const struct view_app *app, const float placement[4])
+{
+    const float left = placement[0] - placement[2] / 2, top = placement[1] - placement[3];
+    float x, y;
+    ui_mouse(&x, &y);
+    if (!app->stage || ui_owns_mouse() || app->dragging || x < left || x >= left + placement[2] ||
+        y < top || y >= placement[1])
+        return;
+    ui_show_hint(
+        stage_played(app->stage)
+            ? "The frame of the recording that is shown, and keys that move to others."
+            : "Size of all textures with all levels; how much of it is in memory; how much "
+              "of what is in view is as sharp as the camera asks for.");
+}
+
 /* The line that counts, and the line of hints below it. The panel's size is that of its texts now;
  * one that fits itself to them is late by a frame. */
 static void draw_line(struct view_app *app)
@@ -77,6 +93,7 @@ static void draw_line(struct view_app *app)
         ui_text(app->said_seconds > 0 ? UI_ORANGE : UI_GRAY, "%s", hints);
     }
     ui_end_panel();
+    hint_line(app, placement);
 }
 
 static void draw_buttons(struct view_app *app)
@@ -178,9 +195,14 @@ void panel_now(struct view_app *app)
                 "frame on the GPU.");
         ui_text(UI_WHITE, "%s of %s", panel_size(f->resident_size, resident, sizeof resident),
                 panel_size(f->budget ? f->budget : f->all_size, whole, sizeof whole));
+        ui_hint("Tiles that are in memory, of %s.",
+                f->budget ? "the budget (--budget)" : "all textures with all levels");
         draw_bar(app, 230 * scale, 10 * scale);
         ui_text(UI_GRAY, "%s   %u load%s in flight", sharp_words(f, sharp, sizeof sharp),
                 f->now.loadsInFlight, f->now.loadsInFlight == 1 ? "" : "s");
+        ui_hint(
+            "How much of what is in view is as sharp as the camera asks for, and tiles that are "
+            "being read.");
         const uint32_t baking = stage_baking_count(app->stage);
         if (baking > 0) {
             ui_text(UI_ORANGE, "%u pictures are being prepared", baking);
