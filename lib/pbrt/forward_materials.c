@@ -6,7 +6,7 @@
 
 #define MAX_MIXTURE_DEPTH 32u
 
-/* new_index[i]: what stands for material i from now on. Forward ones become what they name. */
+/* Fills new_index: the replacement of material i. Placeholders become their named material. */
 static bool resolve(struct slc_pbrt_parser *parser, uint32_t *new_index)
 {
     SluicePbrtScene *scene = parser->scene;
@@ -64,7 +64,7 @@ static bool deepen(const SluicePbrtScene *scene, uint32_t *depth)
     return changed;
 }
 
-/* Mixtures of themselves, and those that nest too deep, become gray. */
+/* Replaces mixtures that contain themselves or nest too deep by gray. */
 static void cut_mixtures(struct slc_pbrt_parser *parser, uint32_t *depth)
 {
     SluicePbrtScene *scene = parser->scene;

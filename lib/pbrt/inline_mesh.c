@@ -11,7 +11,7 @@
 
 #define NUMBER_REACH 64u
 
-/* One number of a list whose syntax was checked. False: the text has changed. */
+/* Reads a number of a list with checked syntax. False: the text has changed. */
 static bool read_one(struct slc_pbrt_lexer *lexer, double *number)
 {
     struct slc_pbrt_window *window = &lexer->window;
@@ -79,7 +79,7 @@ static SluiceResult read_floats(const SluicePbrtScene *scene, const struct slc_p
     return read_span(scene, span, (struct out){.floats = array}, bytes_read);
 }
 
-/* Corners as they stand, or 0, 1, 2, ... where the scene names none. */
+/* Reads the corners, or fills 0, 1, 2, ... if the scene has none. */
 static SluiceResult read_corners(const SluicePbrtScene *scene, const struct slc_pbrt_span *span,
                                  uint32_t count, uint32_t *corners, uint64_t *bytes_read)
 {
@@ -90,7 +90,7 @@ static SluiceResult read_corners(const SluicePbrtScene *scene, const struct slc_
     return SLUICE_SUCCESS;
 }
 
-/* A patch (0, 1, 2, 3) in rows becomes (0, 1, 2) and (1, 3, 2). */
+/* Splits patches (0, 1, 2, 3), in rows, into triangles (0, 1, 2) and (1, 3, 2). */
 static void split_patches(const uint32_t *corners, uint32_t patch_count, uint32_t *indices)
 {
     static const uint8_t ORDER[6] = {0, 1, 2, 1, 3, 2};

@@ -7,7 +7,7 @@ enum byte_class {
     BLANK,
     NEW_LINE,
     MARK, ///< [ ] and "
-    STOP  ///< 0: perhaps the end of the window
+    STOP  ///< 0: possibly the end of the window
 };
 
 static const unsigned char CLASSES[256] = {
@@ -35,7 +35,7 @@ void slc_pbrt_lexer_finish(struct slc_pbrt_lexer *lexer)
     slc_pbrt_window_finish(&lexer->window);
 }
 
-/* True if a byte of 0 at the cursor is only the end of the window. Reads on then. */
+/* True if a byte of 0 at the cursor is only the end of the window. Reads more bytes if so. */
 static bool read_on(struct slc_pbrt_window *window)
 {
     if (window->cursor < window->end || window->is_over)
@@ -44,7 +44,7 @@ static bool read_on(struct slc_pbrt_window *window)
     return true;
 }
 
-/* A comment ends at LF or CR; the next round sees that byte. */
+/* Skips a comment up to LF or CR, which the next round skips. */
 static void skip_comment(struct slc_pbrt_window *window)
 {
     for (;;) {
@@ -79,7 +79,7 @@ unsigned char slc_pbrt_skip_blanks(struct slc_pbrt_lexer *lexer)
     }
 }
 
-/* The window's bytes may move while a token is read, so it is known by its start. */
+/* Reads a word. Keeps its start as an offset, because the window's bytes may move. */
 static void read_word(struct slc_pbrt_window *window, struct slc_pbrt_token *token)
 {
     size_t start = window->cursor;

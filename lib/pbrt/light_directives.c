@@ -19,7 +19,7 @@ static bool add_light(struct slc_pbrt_parser *parser, const struct slc_pbrt_ligh
     return true;
 }
 
-/* The color of a parameter, times those that scale it. False: stop. */
+/* Reads a color parameter, times its scale parameters. False: stop. */
 static bool read_radiance(struct slc_pbrt_parser *parser, const char *name, float color[3])
 {
     float scale[3];
@@ -33,7 +33,7 @@ static bool read_radiance(struct slc_pbrt_parser *parser, const char *name, floa
     return parser->result == SLUICE_SUCCESS;
 }
 
-/* Unit vector from a to b after the transform; *direction stays if there is none. */
+/* Sets *direction to the transformed unit vector from a to b; unchanged if its length is 0. */
 static void set_direction(const struct slc_pbrt_affine *transform, const double a[3],
                           const double b[3], float direction[3])
 {

@@ -7,7 +7,7 @@
 
 #define MAX_MATERIALS ((size_t)1 << 24)
 
-/* Parameters that become the fields of a material; NULL: none. */
+/* Names of the parameters for a material's fields; NULL: no parameter. */
 struct reduction {
     const char *type;
     SluicePbrtMaterialKind kind;
@@ -99,7 +99,7 @@ static bool append_material(struct slc_pbrt_parser *parser,
     return true;
 }
 
-/* Gaps in the struct are 0 since it was made, so that equal ones have equal bytes. */
+/* Adds a material. Padding of the struct is 0, so that equal materials have equal bytes. */
 static bool add_material(struct slc_pbrt_parser *parser, struct slc_pbrt_material_entry *entry,
                          uint32_t *index)
 {
@@ -149,7 +149,7 @@ bool slc_pbrt_add_default_material(struct slc_pbrt_parser *parser)
     return true;
 }
 
-/* A named material. If it is not made yet, something that stands for it. */
+/* Finds a named material, or makes a placeholder for a later definition. */
 static bool find_named(struct slc_pbrt_parser *parser, uint32_t name, uint32_t instead,
                        const struct slc_pbrt_place *place, uint32_t *index)
 {
@@ -166,7 +166,7 @@ static bool find_named(struct slc_pbrt_parser *parser, uint32_t name, uint32_t i
     }
     struct slc_pbrt_material_entry entry;
     init_material(&entry);
-    entry.material.structSize = 0; /* no material of its own */
+    entry.material.structSize = 0; /* marks a placeholder */
     entry.type = name;
     if (!slc_pbrt_grow(&scene->allocator, &parser->forwards, &parser->forward_capacity,
                        parser->forward_count + 1, sizeof *parser->forwards))
@@ -263,7 +263,7 @@ static bool read_part(struct slc_pbrt_parser *parser, const char *text, uint32_t
     return true;
 }
 
-/* pbrt-v3 weighs the first material with amount, pbrt-v4 the second one. */
+/* Reads a mixture. `amount` weighs the first material in pbrt-v3, the second in pbrt-v4. */
 static bool read_mixture(struct slc_pbrt_parser *parser, SluicePbrtMaterial *material,
                          const struct slc_pbrt_place *place)
 {
@@ -281,7 +281,7 @@ static bool read_mixture(struct slc_pbrt_parser *parser, SluicePbrtMaterial *mat
            slc_pbrt_read_value(parser, "amount", p != NULL, &material->amount, &found);
 }
 
-/* A material of a type, from the parameters of the directive. */
+/* Makes a material of a type from the directive's parameters. */
 static bool make_material(struct slc_pbrt_parser *parser, uint32_t type,
                           const struct slc_pbrt_place *place, uint32_t *index)
 {

@@ -14,7 +14,7 @@ uint64_t slc_pbrt_hash(const void *bytes, size_t size)
     return hash * UINT64_C(0x9E3779B97F4A7C15) >> 16;
 }
 
-/* The place of a string, or the free place where it belongs. */
+/* Returns the place of a string, or the free place for a new string. */
 static size_t find_place(const struct slc_pbrt_names *names, const char *string, size_t length)
 {
     size_t mask = names->place_count - 1;

@@ -9,17 +9,17 @@
 
 #define MAX_CELLS ((size_t)1 << 31)
 
-/* Longest number that is read without being a token first. */
+/* Longest number to read directly, without a token. */
 #define NUMBER_REACH 64u
 
-/* Ends a number: blanks, brackets, quotes, and the 0 behind the window. */
+/* True if a byte ends a number: blanks, brackets, quotes, and the 0 behind the window. */
 static bool ends_word(unsigned char c)
 {
     return c <= ' ' ? c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == 0
                     : c == '[' || c == ']' || c == '"';
 }
 
-/* A number of the parameter's type. Returns the byte behind it, or `text` if there is none. */
+/* Reads a number of the parameter's type. Returns its end, or `text` if not a number. */
 static const unsigned char *read_cell(const unsigned char *text, enum slc_pbrt_type type,
                                       union slc_pbrt_cell *cell)
 {
@@ -62,8 +62,8 @@ static bool add_cell(struct slc_pbrt_parser *parser, union slc_pbrt_cell cell)
 }
 
 /*
- * Numbers that lie in the window as a whole, without tokens: nearly all of the text of a large
- * scene. Stops in front of whatever else there is. One number is expected at least to be there.
+ * Reads numbers directly from the window, without tokens, for the numbers that make up most of a
+ * large scene. Stops before anything else.
  */
 static bool read_run(struct slc_pbrt_parser *parser, struct slc_pbrt_parameter *parameter)
 {
@@ -91,7 +91,7 @@ static bool read_run(struct slc_pbrt_parser *parser, struct slc_pbrt_parameter *
     }
 }
 
-/* A number as a token, perhaps with a comma behind it. False: it is none. */
+/* Reads a token as a number, optionally with a comma behind. False: not a number. */
 static bool token_number(struct slc_pbrt_parser *parser, enum slc_pbrt_type type,
                          union slc_pbrt_cell *cell)
 {
@@ -116,7 +116,7 @@ static bool is_word(const struct slc_pbrt_token *token, const char *word)
     return token->length == strlen(word) && memcmp(token->text, word, token->length) == 0;
 }
 
-/* The token as a value. *good says whether it is one of the parameter's type. False: stop. */
+/* Reads the token as a value. *good: the value has the parameter's type. False: stop. */
 static bool read_token_value(struct slc_pbrt_parser *parser, struct slc_pbrt_parameter *parameter,
                              bool *good)
 {
@@ -177,7 +177,7 @@ static void say_bad_value(struct slc_pbrt_parser *parser,
                  parser->parameters.chars + parameter->name);
 }
 
-/* The values behind the name. *good: all are of the parameter's type. */
+/* Reads the values behind the name. *good: all have the parameter's type. */
 static bool read_values(struct slc_pbrt_parser *parser, struct slc_pbrt_parameter *parameter,
                         bool *good)
 {
@@ -227,7 +227,7 @@ static bool read_values(struct slc_pbrt_parser *parser, struct slc_pbrt_paramete
     }
 }
 
-/* Splits "type name". *good: both are there and known. */
+/* Splits "type name". *good: both are present and the type is known. */
 static bool read_declaration(struct slc_pbrt_parser *parser, struct slc_pbrt_parameter *parameter,
                              bool *good)
 {
@@ -264,7 +264,7 @@ static bool read_declaration(struct slc_pbrt_parser *parser, struct slc_pbrt_par
            slc_pbrt_out_of_memory(parser);
 }
 
-/* Values of a parameter that is not known: as strings or numbers, whatever comes. */
+/* Skips the values of an unknown parameter, strings or numbers. */
 static bool skip_values(struct slc_pbrt_parser *parser, const struct slc_pbrt_parameter *parameter)
 {
     bool in_brackets = false;

@@ -86,7 +86,7 @@ bool slc_pbrt_take_token(struct slc_pbrt_parser *parser)
         slc_pbrt_next_token(&frame->lexer, token);
         token->file = frame->file;
         struct slc_pbrt_place place = slc_pbrt_token_place(token);
-        if (frame->lexer.window.failure != SLUICE_SUCCESS) /* the token may be cut off */
+        if (frame->lexer.window.failure != SLUICE_SUCCESS) /* the token may be incomplete */
             return check_end_of_file(parser, frame);
         if (token->kind == SLC_PBRT_TOKEN_OPEN_STRING)
             return slc_pbrt_stop(parser, SLUICE_ERROR_CORRUPT_DATA, &place,
@@ -118,7 +118,7 @@ static bool is_open_already(const struct slc_pbrt_parser *parser,
     return false;
 }
 
-/* The number of a file in the scene; `path` is in names. */
+/* Adds a file to the scene. `path`: number in names. */
 static bool add_file(struct slc_pbrt_parser *parser, uint32_t path,
                      const struct slc_pbrt_stamp *stamp, uint32_t *file)
 {

@@ -40,7 +40,7 @@ static enum slc_pbrt_ply_role vertex_role(const char *word)
     return SLC_PBRT_PLY_NO_ROLE;
 }
 
-/* A line without its end. False: none, or too long. */
+/* Reads a line without its end. False: no line, or too long. */
 static bool read_line(struct slc_pbrt_window *window, char line[MAX_LINE])
 {
     size_t length = 0;
@@ -60,7 +60,7 @@ static bool read_line(struct slc_pbrt_window *window, char line[MAX_LINE])
     return false;
 }
 
-/* Cuts a line into words. Returns how many, at most `most`. */
+/* Splits a line into words. Returns their number, at most `most`. */
 static uint32_t split(char *line, char *words[], uint32_t most)
 {
     uint32_t count = 0;
@@ -135,7 +135,7 @@ static const char *add_property(struct slc_pbrt_ply_header *header, char *words[
     return NULL;
 }
 
-/* Fewest bytes of one element; the last line of a text file may lack its end. */
+/* Returns the fewest bytes of an element. A text file's last line may have no end. */
 static uint64_t least_size(const struct slc_pbrt_ply_header *header,
                            const struct slc_pbrt_ply_element *element)
 {

@@ -94,7 +94,7 @@ static double decode(const unsigned char *bytes, enum slc_pbrt_ply_type type, bo
     }
 }
 
-/* `size` bytes in the window, which may move; NULL: the file ends before. */
+/* Returns `size` bytes in the window, which may move. NULL: the file ends before. */
 static const unsigned char *take_bytes(struct slc_pbrt_window *window, uint32_t size)
 {
     while (window->end - window->cursor < size) {
@@ -158,7 +158,7 @@ static SluiceResult reserve(struct ply *ply, void *array_address, size_t *capaci
                : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-/* Elements that a plain file has bytes for; few of a compressed one, whose end is not known. */
+/* Returns the elements to allocate at first: all, or at most 65536 for compressed files. */
 static size_t expected(const struct ply *ply, const struct slc_pbrt_ply_element *element)
 {
     size_t most = ply->window.inflater ? 65536 : SIZE_MAX;
@@ -193,7 +193,7 @@ static SluiceResult add_vertex(struct ply *ply, const double values[SLC_PBRT_PLY
     return SLUICE_SUCCESS;
 }
 
-/* A polygon as a fan. Indices are checked when all vertices are known. */
+/* Reads a polygon as a fan. Indices are checked later, when all vertices are known. */
 static SluiceResult read_face(struct ply *ply, const struct slc_pbrt_ply_property *property)
 {
     uint32_t count, first = 0, before = 0;
@@ -265,7 +265,7 @@ static SluiceResult read_element(struct ply *ply, const struct slc_pbrt_ply_elem
     return SLUICE_SUCCESS;
 }
 
-/* Ignores normals and uvs of which a component is missing. */
+/* Ignores normals and uvs with a missing component. */
 static void drop_partial_roles(struct slc_pbrt_ply_header *header)
 {
     const uint32_t normals = 7u << SLC_PBRT_PLY_NX, uvs = 3u << SLC_PBRT_PLY_U;
@@ -332,7 +332,7 @@ static SluiceResult read_all(struct ply *ply)
     return SLUICE_SUCCESS;
 }
 
-/* Moves an array into room of exactly its size. */
+/* Moves an array to an allocation of exactly its size. */
 static bool fit(const SluiceAllocationCallbacks *cb, void *array_address, size_t *capacity,
                 size_t count)
 {

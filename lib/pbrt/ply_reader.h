@@ -6,18 +6,19 @@
 
 #include "pbrt/byte_window.h"
 
-/** Message about a file: after an error its cause, after a success an approximation or NULL. */
+/** Message about a file. After an error: its cause. After success: an approximation, or NULL. */
 struct slc_pbrt_ply_trouble {
     const char *text;
 };
 
-/** Reads the header and the vertices. Errors: those of opening; CORRUPT_DATA. */
+/** Reads header and vertices. Errors: slc_pbrt_window_open's; CORRUPT_DATA. */
 SluiceResult slc_pbrt_ply_read_bounds(const char *path, const SluiceAllocationCallbacks *cb,
                                       SluicePbrtBounds *bounds, struct slc_pbrt_stamp *stamp,
                                       struct slc_pbrt_ply_trouble *trouble);
 
-/** Reads all of it. The arrays have exactly the sizes that the counts say. Errors: those of
- *  opening; CORRUPT_DATA; LIMIT_EXCEEDED; *mesh is zeroed then, but for structSize. */
+/** Reads the whole file. Arrays have exactly the sizes of the counts. Errors:
+ * slc_pbrt_window_open's; CORRUPT_DATA; LIMIT_EXCEEDED. After an error, *mesh is zero except
+ * structSize. */
 SluiceResult slc_pbrt_ply_read_mesh(const char *path, const SluiceAllocationCallbacks *cb,
                                     uint64_t max_size, SluicePbrtMesh *mesh,
                                     struct slc_pbrt_ply_trouble *trouble);

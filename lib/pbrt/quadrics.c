@@ -9,13 +9,13 @@
 #define SPHERE_ROWS 32u
 #define TURN 6.283185307179586
 
-/* A grid of points: `columns` + 1 around, `rows` + 1 from v = 0 to v = 1. */
+/* Grid of points: `columns` + 1 around, `rows` + 1 from v = 0 to v = 1. */
 struct grid {
     const struct slc_pbrt_shape_entry *shape;
     uint32_t columns, rows;
 };
 
-/* Position, and normal where the surface is smooth: those of a sphere of any part. */
+/* Computes position and, for smooth surfaces, the normal of a grid point. */
 static void find_point(const struct grid *grid, uint32_t column, uint32_t row, float position[3],
                        float normal[3])
 {
@@ -57,7 +57,7 @@ static void fill_vertices(const struct grid *grid, float *positions, float *norm
         }
 }
 
-/* Turned so that the normal of a triangle points to the side of the vertices' normals. */
+/* Fills indices. Triangles' normals point to the side of the vertices' normals. */
 static void fill_indices(const struct grid *grid, uint32_t *indices)
 {
     bool is_disk = grid->shape->kind == SLUICE_PBRT_SHAPE_DISK;

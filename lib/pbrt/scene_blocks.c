@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Enough for every scene that is known; keeps memory in bounds. */
+/* Limit to bound memory; enough for all known scenes. */
 #define MAX_ATTRIBUTE_PARAMETERS 256u
 #define MAX_ATTRIBUTE_CELLS 4096u
 
@@ -61,7 +61,7 @@ void slc_pbrt_close_blocks(struct slc_pbrt_parser *parser, size_t count)
     }
 }
 
-/* Blocks of the file that imports are not to be ended by the imported one. */
+/* Returns the number of blocks that the file may not end: of importing files, and its own. */
 static size_t lowest_block(const struct slc_pbrt_parser *parser)
 {
     for (size_t i = parser->frame_count; i-- > 0;)
@@ -186,7 +186,7 @@ bool slc_pbrt_reverse_orientation(struct slc_pbrt_parser *parser,
     return true;
 }
 
-/* Room for parameters of this block: those of the blocks around it are copied once. */
+/* Makes this block's own parameters, once: a copy of the outer block's parameters. */
 static bool own_attribute(struct slc_pbrt_parser *parser, uint32_t *of_state)
 {
     size_t first =
@@ -219,7 +219,7 @@ bool slc_pbrt_attribute_directive(struct slc_pbrt_parser *parser,
             continue;
         if (!own_attribute(parser, &parser->state.attributes[i]))
             return false;
-        /* Later ones count, so the new ones go behind the old ones. */
+        /* Later parameters have precedence, so new ones are appended. */
         struct slc_pbrt_parameters *own =
             &parser->attributes[parser->state.attributes[i]].parameters;
         if (own->count + parser->parameters.count > MAX_ATTRIBUTE_PARAMETERS ||

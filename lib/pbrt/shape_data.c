@@ -26,7 +26,7 @@ static void warn_about_ply(const SluicePbrtScene *scene, const struct slc_pbrt_s
     slc_pbrt_warn(scene, &shape->place, text);
 }
 
-/* Reads the vertices of a PLY file that was not read before. */
+/* Reads the vertices of a PLY file, unless read before. */
 static SluiceResult find_ply_bounds(SluicePbrtScene *scene,
                                     const struct slc_pbrt_shape_entry *shape)
 {

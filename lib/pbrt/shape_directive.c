@@ -84,7 +84,7 @@ static const struct slc_pbrt_parameter *find_points(const struct slc_pbrt_parame
                          SLC_PBRT_TYPES(SLC_PBRT_POINT3) | SLC_PBRT_TYPES(SLC_PBRT_NORMAL), name);
 }
 
-/* Texture coordinates under any of their names and types; *width is 1 or 2 numbers per element. */
+/* Finds texture coordinates by all names and types. *width: numbers per element, 1 or 2. */
 static const struct slc_pbrt_parameter *find_uvs(const struct slc_pbrt_parameters *parameters)
 {
     static const char *const NAMES[] = {"uv", "st"};
@@ -115,7 +115,7 @@ static bool add_spans(struct slc_pbrt_parser *parser, const struct slc_pbrt_span
     return true;
 }
 
-/* The box around the transformed points. */
+/* Returns the box around the transformed points. */
 static SluicePbrtBounds bounds_of(const struct slc_pbrt_parser *parser,
                                   const struct slc_pbrt_parameter *points, size_t count)
 {
@@ -140,7 +140,7 @@ static bool indices_are_below(const union slc_pbrt_cell *cells, size_t count, si
     return true;
 }
 
-/* One attribute per vertex, or none, with a warning. */
+/* Returns an attribute if its count fits the vertices; otherwise warns and returns NULL. */
 static const struct slc_pbrt_parameter *with_count(struct slc_pbrt_parser *parser,
                                                    const struct slc_pbrt_parameter *p, size_t count,
                                                    const struct slc_pbrt_place *place,

@@ -96,7 +96,7 @@ static bool has_known_extension(const char *path)
     return false;
 }
 
-/* A picture, or a constant if there is none. */
+/* Reads a picture, or a constant if the picture is missing. */
 static bool read_image(struct slc_pbrt_parser *parser, struct slc_pbrt_texture_entry *entry,
                        const struct slc_pbrt_place *place)
 {
@@ -143,7 +143,7 @@ static bool read_scale(struct slc_pbrt_parser *parser, SluicePbrtTexture *textur
         !read_input(parser, texture, "tex2", &inputs[1]))
         return false;
     bool found;
-    /* A float texture in pbrt-v4, whatever is scaled. */
+    /* In pbrt-v4, the scale is a float texture for all types. */
     const struct slc_pbrt_parameter *p =
         slc_pbrt_find(&parser->parameters, SLC_PBRT_TYPES(SLC_PBRT_TEXTURE), "scale");
     if (!slc_pbrt_read_value(parser, "scale", p || texture->isFloat, &inputs[1], &found))
@@ -185,7 +185,7 @@ static bool read_checkerboard(struct slc_pbrt_parser *parser, SluicePbrtTexture 
     return true;
 }
 
-/* Kinds that become their mean, or a typical value. */
+/* Replaces textures of these kinds by their mean or a typical value. */
 static bool read_mean(struct slc_pbrt_parser *parser, SluicePbrtTexture *texture, const char *kind,
                       const struct slc_pbrt_place *place)
 {
@@ -237,7 +237,7 @@ static bool read_kind(struct slc_pbrt_parser *parser, struct slc_pbrt_texture_en
     return true;
 }
 
-/* Renderers walk from a texture to its inputs, so textures that nest deep become their mean. */
+/* Replaces deeply nested textures by their mean, because renderers recurse into inputs. */
 static bool limit_depth(struct slc_pbrt_parser *parser, struct slc_pbrt_texture_entry *entry,
                         const struct slc_pbrt_place *place)
 {

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Replaces the current transform, unless the result is no use. */
+/* Replaces the current transform, unless the result is invalid. */
 static bool set_transform(struct slc_pbrt_parser *parser, const struct slc_pbrt_affine *transform,
                           const struct slc_pbrt_place *place)
 {
@@ -84,7 +84,7 @@ bool slc_pbrt_look_at_directive(struct slc_pbrt_parser *parser, const struct slc
     return true;
 }
 
-/* 16 numbers, column by column. *usable: the bottom row is that of an affine transform. */
+/* Reads 16 numbers in columns. *usable: the bottom row is (0, 0, 0, s), s not 0. */
 static bool read_matrix(struct slc_pbrt_parser *parser, struct slc_pbrt_affine *matrix,
                         const struct slc_pbrt_place *place, bool *usable)
 {

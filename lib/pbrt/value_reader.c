@@ -87,7 +87,7 @@ bool slc_pbrt_read_value(struct slc_pbrt_parser *parser, const char *name, bool 
     *found = false;
     if (p && (!read_texture(parser, p, is_float, value, found) || *found))
         return *found;
-    /* A float for a color, too: pbrt-v4 has such parameters. */
+    /* Accept a float for a color, too, as pbrt-v4 does. */
     p = slc_pbrt_find(parameters, SLC_PBRT_TYPES(SLC_PBRT_FLOAT) | (is_float ? 0 : COLORS), name);
     if (!p)
         return true;
