@@ -18,7 +18,7 @@ struct slc_baking {
     struct slc_pyramid pyramid;
     struct slc_tiler tiler;
     struct slc_coverage coverage;
-    bool counts; ///< in the pass that counts alpha, not in the one that writes
+    bool counts; ///< true: counts alpha; false: writes
     float alpha_scales[SLC_MAX_LEVELS];
     float *row;                   ///< [width][4]
     struct slc_replaced replaced; ///< counts for level 0

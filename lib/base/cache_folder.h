@@ -14,8 +14,8 @@ struct slc_cache_entry {
     char name[112];
     enum {
         SLC_CACHE_COMPLETE,   ///< removed to make room
-        SLC_CACHE_UNFINISHED, ///< removed to make room if nobody has written it for a day
-        SLC_CACHE_TEMPORARY   ///< removed if nobody has written it for a day
+        SLC_CACHE_UNFINISHED, ///< removed to make room if not written for a day
+        SLC_CACHE_TEMPORARY   ///< removed if not written for a day
     } kind;
     uint64_t device, inode, size;
     struct slc_file_time read, modified;

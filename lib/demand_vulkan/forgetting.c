@@ -1,5 +1,5 @@
 /*
- * Textures that nobody samples are forgotten: their pages are evicted and their images closed, as
+ * Unsampled textures are forgotten: their pages are evicted and their images closed, as
  * if they had never been opened. docs/decisions/0067-textures-without-use-are-forgotten.md.
  *
  * Open images are sorted by last use: images whose mip tail has a place in one order, all others in

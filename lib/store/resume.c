@@ -32,7 +32,7 @@ static SluiceResult check_chunk(const struct resume *resume, uint64_t number,
 }
 
 /* Adds the chunk in resume->chunk to the table. Chunks come by number, not in the order of writing:
- * of two chunks for one table entry, the one with the higher offset was written last. */
+ * of two chunks for one table entry, the chunk with the higher offset was written last. */
 static void remember(const struct resume *resume, const struct slc_store_entry *entry)
 {
     struct slc_store_repeats *repeats = resume->resumed->repeats;

@@ -43,9 +43,10 @@ struct slc_page_chunk {
     VkImageView view;
     struct slc_page_layer *layers; ///< owned; layer_count, and the head of the ring of free ones
     uint32_t free_count, layer_count;
-    bool leaving;  ///< LIVE: runs empty; no page of it may be taken
-    bool fresh;    ///< its layout transition is not recorded yet
-    uint8_t maker; ///< user that records the transition; SLC_MAX_PAGE_USERS: whoever records next
+    bool leaving; ///< LIVE: runs empty; no page of it may be taken
+    bool fresh;   ///< its layout transition is not recorded yet
+    uint8_t
+        maker; ///< user that records the transition; SLC_MAX_PAGE_USERS: the next user to record
     uint64_t layout_frame; ///< the maker's frame with the transition; 0: none yet
     uint64_t tick;         ///< LIVE: last tick in which the chunk was not empty
     uint64_t retire_values[SLC_MAX_PAGE_USERS]; ///< RETIRING: by user, last frame that sees it

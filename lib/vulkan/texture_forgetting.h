@@ -1,5 +1,5 @@
 /**
- * Forgetting of textures that nobody samples: image, views and tiles are destroyed. A record on the
+ * Forgetting of unsampled textures: image, views and tiles are destroyed. A record on the
  * host stays, with its regions of feedback. The texture is made again when feedback requests it.
  *
  *     PRESENT     has an image
