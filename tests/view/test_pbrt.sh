@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# test_pbrt.sh FACTS SLUICE-VIEW DEMAND-PBRT SLUICE-REPLAY: scenes of pbrt in the viewer without a window, in TAP.
+# test_pbrt.sh FACTS SLUICE-VIEW DEMAND-PBRT SLUICE-REPLAY FLIP-OF-PICTURES: scenes of pbrt in the viewer without a window.
+# Prints TAP.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
-facts=$(realpath "$1") tool=$(realpath "$2") demand=$(realpath "$3") replay=$(realpath "$4")
+facts=$(realpath "$1") tool=$(realpath "$2") demand=$(realpath "$3") replay=$(realpath "$4") flip=$(realpath "$5")
 "$tool" --list-devices >/dev/null 2>&1 || { echo "1..0 # SKIP no Vulkan device"; exit 0; }
 # shellcheck source=/dev/null
 . "$facts"
@@ -81,6 +82,11 @@ view wall.pbrt --most-samples 1 --lod-bias 3 --difference-as pixels --gain 16 --
     check differs coarse.png truth.png difference.png && ! check differs truth.png truth.png difference.png &&
     check differs truth.png truth.png same.png && check near full.png truth.png 1
 fact view_8_is_the_difference_to_the_picture_of_everything_loaded
+printf '18 screenshot a.png\n19 set compare-as flicker\n24 screenshot b.png\n25 set compare-as difference\n45 quit\n' >sets
+view wall.pbrt --most-samples 1 --lod-bias 3 --compare-to b --b lod-bias=0 --difference-as flip --json --script sets &&
+    check near b.png truth.png 1 && ! check near a.png truth.png 1 && value=$("$flip" a.png b.png) &&
+    [[ $value == 0.[0-9]* ]] && grep -q "\"FLIP\", \"value\": $value," out
+fact b_has_a_loader_and_settings_of_its_own_and_flip_is_that_of_both_pictures
 
 truth --render-mode path --samples 4 --file truth-path.png && view wall.pbrt --render-mode path --most-samples 4 \
     --frames 30 --screenshot path.png && check near path.png truth-path.png 1 && ! check near path.png sharp.png 8
