@@ -46,7 +46,8 @@ enum option_outcome options_read(int argc, char **argv, struct view_options *o)
         {OPTION_SECTION, .help = "Compare with B"},
         {OPTION_REPEATED, "b", "NAME=VALUE,...", "(as A)", &o->b,
          "settings of B that differ from those of A: budget=16,probability=1/512. All of Memory, "
-         "Feedback, Loading and Sampling, but pause and freeze-wants. V shows both pictures"},
+         "Feedback, Loading and Sampling, but pause and freeze-wants. V shows both pictures. Makes "
+         "--compare-to b; may be given more than once"},
         {OPTION_SECTION, .help = "Scene"},
         {OPTION_FLAG, "room", .value = &o->room,
          .help = "without a scene: a room of computed pictures, which needs no file"},
