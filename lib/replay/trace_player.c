@@ -309,12 +309,15 @@ static void write_checkpoint(SluiceRecorder *recorder, const struct session *ses
     slc_write_snapshot(recorder, write_state, manager);
 }
 
-/* Returns the position to read a pending call again: the offset of its first answer. */
-static size_t unread(struct session *session)
+/* Returns the position to read a pending call or the end mark again. A call begins with its first
+ * answer. */
+static size_t unread(const struct session *session)
 {
-    return session->steps.has_next || session->replay.player.answer_count > 0
-               ? session->steps.first_offset
-               : session->replay.in.pos;
+    const struct slc_recording_steps *steps = &session->steps;
+    if (steps->ended)
+        return steps->block_end; /* the end mark follows the last block */
+    return steps->has_next || session->replay.player.answer_count > 0 ? steps->first_offset
+                                                                      : session->replay.in.pos;
 }
 
 SluiceResult sluiceWriteTraceCheckpoint(SluiceTracePlayer *player,
@@ -327,7 +330,7 @@ SluiceResult sluiceWriteTraceCheckpoint(SluiceTracePlayer *player,
         return session->failed;
     session->replay.in.pos = unread(session);
     session->replay.player.answer_count = 0;
-    session->steps.has_next = false;
+    session->steps.has_next = session->steps.ended = false;
     SluiceRecorder *recorder =
         slc_recorder_create(&player->cb, session->replay.player.manager, keep_observer);
     if (!recorder)

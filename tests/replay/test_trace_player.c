@@ -210,6 +210,28 @@ static void a_checkpoint_goes_on_as_the_first_pass_did(void **state)
     }
 }
 
+static void a_checkpoint_of_the_end_leads_back_to_the_end(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        struct trace_buffer trace = record_run(seed);
+        SluiceTracePlayer *player = open_player(&trace);
+        while (next_of(player).kind != SLUICE_TRACE_CALL_NONE)
+            CHECK_OK(sluicePlayTraceCall(player));
+        const SluiceTracePlayerState end = state_of(player);
+        struct trace_buffer kept = checkpoint_of(player);
+        assert_int_equal(next_of(player).kind, SLUICE_TRACE_CALL_NONE);
+        CHECK_OK(sluiceReadTraceCheckpoint(player, kept.data, kept.size));
+        assert_int_equal(next_of(player).kind, SLUICE_TRACE_CALL_NONE);
+        CHECK_OK(sluicePlayTraceCall(player));
+        const SluiceTracePlayerState again = state_of(player);
+        assert_memory_equal(&again, &end, sizeof end);
+        trace_buffer_free(&kept);
+        sluiceDestroyTracePlayer(player);
+        trace_buffer_free(&trace);
+    }
+}
+
 static void check_textures(SluiceTracePlayer *player)
 {
     SluiceStreamedTextureStatistics now = {.structSize = sizeof now};
@@ -420,6 +442,7 @@ int main(void)
         cmocka_unit_test(state_is_that_of_a_replay_that_is_cut_there),
         cmocka_unit_test(calls_are_those_of_the_dump),
         cmocka_unit_test(a_checkpoint_goes_on_as_the_first_pass_did),
+        cmocka_unit_test(a_checkpoint_of_the_end_leads_back_to_the_end),
         cmocka_unit_test(textures_are_listed_while_they_live),
         cmocka_unit_test(tile_events_are_kept_behind_a_checkpoint_too),
         cmocka_unit_test(what_is_no_recording_of_a_manager_is_refused_by_name),
