@@ -57,8 +57,9 @@ play '1 key E'
 first=$(value frame)
 [ "$first" -gt 0 ] && [ "$(value evicted_wanted)" -gt 0 ]
 fact e_finds_frames_in_which_wanted_tiles_were_evicted
-at '1 click 250 100' 45 && play '1 key G\n3 set graph-span all\n5 click 370 115' && [ "$(value frame)" -gt 0 ] &&
-    at '1 drag 250 100 400 100' 72
+# The graphs of the picture go from x = 8 to 492.
+at '1 click 250 100' $((242 * (last + 1) / 484)) && play '1 key G\n3 set graph-span all\n5 click 370 115' &&
+    [ "$(value frame)" -gt 0 ] && at '1 drag 250 100 400 100' $((392 * (last + 1) / 484))
 fact clicks_and_drags_go_to_the_frame_under_the_mouse
 quiet=0 # a frame behind some loads, without one of its own
 for frame in $(seq 20 "$last"); do
