@@ -1,14 +1,14 @@
-/** Contents of panels for recordings, and what stands in the place of the picture. */
+/** Panels for recordings, and the curves that replace the picture. */
 #ifndef SLUICE_VIEW_PANEL_PLAYED_H
 #define SLUICE_VIEW_PANEL_PLAYED_H
 
 #include "panels.h"
 #include "played.h"
 
-/** Curves of figures over frames. */
+/** A curve of a figure over frames. */
 struct played_curve {
     enum played_figure figure;
-    double factor; ///< of its values
+    double factor; ///< multiplies the values
     uint32_t color;
     const char *name;
 };
@@ -19,9 +19,9 @@ struct played_graph {
     const char *title, *unit, *hint;
     struct played_curve curves[PLAYED_CURVES];
     uint32_t curve_count;
-    double least_top; ///< the axis ends there or higher
-    bool heaps;       ///< factors are multiplied by the size of a heap, or else of a tile, in MB,
-    bool bytes;       ///< if these are bytes
+    double least_top; ///< smallest end of the axis
+    bool heaps;       ///< with `bytes`: values count heaps; otherwise they count tiles
+    bool bytes;       ///< values are shown in MB
 };
 
 const struct played_graph *played_graphs_get(uint32_t *count);
@@ -30,22 +30,22 @@ const struct played_graph *played_graphs_get(uint32_t *count);
 uint32_t played_graph_draw(const struct view_app *app, const struct played_graph *graph,
                            const float r[4], uint32_t first, uint32_t last, bool over);
 
-/** All of the recording, with its cursor, and buttons. */
+/** Draws curves of the whole recording, its cursor, and buttons. */
 void panel_played_picture(struct view_app *app);
-/** The corner. */
+/** Draws the figures in the corner. */
 void panel_played_now(struct view_app *app);
-/** Goes to a frame that was clicked. */
+/** Goes to a clicked frame. */
 void panel_played_jump(struct view_app *app, uint32_t frame);
-/** The line at the bottom. Returns `text`. */
+/** Writes the line at the bottom. Returns `text`. */
 const char *panel_played_line(const struct view_app *app, char *text, size_t size);
 
-/* Between panel_begin and ui_end_panel. */
+/* Contents of panels. Call between panel_begin and ui_end_panel. */
 void panel_played_graphs(struct view_app *app);
 void panel_played_latency(const struct view_app *app);
-/** Failures, above the events. */
+/** Draws the failures above the events. */
 void panel_played_failures(struct view_app *app);
 void panel_played_device(const struct view_app *app);
-/** Why the selected texture is not sharper. */
+/** Draws the reason why the selected texture is not sharper. */
 void panel_played_reason(const struct view_app *app);
 
 #endif /* SLUICE_VIEW_PANEL_PLAYED_H */
