@@ -10,7 +10,7 @@ enum view_load { VIEW_LOAD_WANTED, VIEW_LOAD_EVERYTHING };
 enum view_feedback { VIEW_FEEDBACK_ON, VIEW_FEEDBACK_OFF };
 /** Pixels that write feedback. shaders/scene_push.glsl has the same numbers. */
 enum view_feedback_by { VIEW_BY_QUADS, VIEW_BY_LATTICE, VIEW_BY_EVERY_PIXEL, VIEW_BY_TURNS };
-enum view_switch { VIEW_ON, VIEW_OFF }; ///< of choices "on|off"
+enum view_switch { VIEW_ON, VIEW_OFF }; ///< values of the choice "on|off"
 enum view_vsync { VIEW_VSYNC_ON, VIEW_VSYNC_MAILBOX, VIEW_VSYNC_OFF };
 enum view_filter { VIEW_LINEAR, VIEW_NEAREST };
 enum view_path_loop { VIEW_LOOP, VIEW_ONCE };
@@ -35,7 +35,7 @@ enum view_number {
     VIEW_CHECKS
 };
 
-/** Rows of controls.c. Choices are int, "off|on" among them. */
+/** Values of all controls (controls.c). Choices have type int, also choices "off|on". */
 struct view_settings {
     uint64_t budget; ///< bytes; 0: no limit
     double lod_bias;
@@ -52,16 +52,16 @@ struct view_settings {
     int residency;                    ///< enum view_residency
     int load;                         ///< enum view_load
     uint32_t anisotropy;
-    int texture_sets;                        ///< enum view_switch
-    int filter;                              ///< enum view_filter
-    uint32_t finest_level;                   ///< that may be sampled or requested
-    int alpha_test;                          ///< enum view_switch
-    uint32_t threads;                        ///< of the loader; 0: by the number of processors
+    int texture_sets;      ///< enum view_switch
+    int filter;            ///< enum view_filter
+    uint32_t finest_level; ///< finest level that may be sampled or requested
+    int alpha_test;        ///< enum view_switch
+    uint32_t threads;      ///< threads of the loader; 0: chosen by the number of processors
     double source_latency, source_bandwidth; ///< milliseconds, MB/s
-    uint32_t source_fails;                   ///< reads of one region in so many fail; 0: none
+    uint32_t source_fails; ///< reads fail in 1 of `source_fails` regions; 0: in none
     int pause, freeze_wants;
 
-    /* Of scenes of pbrt. */
+    /* Settings of pbrt scenes. */
     int render_mode; ///< enum view_render_mode
     uint32_t most_samples, depth;
     double exposure; ///< stops
@@ -71,11 +71,11 @@ struct view_settings {
     double tint;
     int borders; ///< enum view_borders
     int wireframe;
-    int show_path;         ///< the camera's, and bookmarks
+    int show_path;         ///< draws the camera path and the bookmarks
     int compare, compared; ///< enum view_compare, enum view_compared
     int difference;        ///< enum view_difference
     double divider;        ///< 0 to 1
-    double gain;           ///< of the difference
+    double gain;           ///< factor of the difference
 
     int motion; ///< enum view_motion
     double speed;
@@ -85,10 +85,10 @@ struct view_settings {
     uint32_t size[2];
     int full_screen;
     uint32_t frame_cap;
-    double ui_scale;   ///< 0: the monitor's
+    double ui_scale;   ///< 0: scale of the monitor
     int theme;         ///< enum ui_theme
     int vsync;         ///< enum view_vsync
-    int panels;        ///< 0: shown
+    int panels;        ///< 0: panels are shown
     int graph_span;    ///< enum history_span
     int memory_colors; ///< enum memory_colors
     int event_reason;  ///< EVENT_ANY_REASON, or 1 + SluiceTileEventReason
