@@ -1,4 +1,4 @@
-/* What the shaders of traced scenes and the host share. */
+/* Structures that the shaders of traced scenes and the host share. */
 #ifndef TRACED_SHARED_H
 #define TRACED_SHARED_H
 
@@ -11,15 +11,15 @@
 #define TRACED_OPEN 1u
 #define TRACED_FAILED 2u
 
-/* What a pixel has and wants of the first picture that its ray samples. */
+/* Resident and wanted level of a pixel, in the first picture that its ray samples. */
 struct TracedView {
-    uint texture; /* of the loader; 0xffffffff: none. The rest is undefined then */
+    uint texture; /* texture of the loader; 0xffffffff: none, other fields are undefined */
     uint state;
     float lod;     /* with all LOD biases but the loader's; undefined until the texture is open */
     float density; /* texels of level 0 per pixel, along the shorter side of the footprint */
     uint wanted;   /* finest level that `lod` samples */
     uint resident; /* finest level that is resident there; TRACED_NO_LEVEL: none */
-    uint page;     /* of the resident level; 0xffffffff: it has none */
+    uint page;     /* page with the resident level; 0xffffffff: none */
     uint levelCount;
     float uv[2]; /* 0 to 1 */
     uint reserved[2];

@@ -1,5 +1,4 @@
-/** Tiles of a demand loader: in which slots of memory they are, since when, and how often loaded.
- */
+/** Tiles of a demand loader: slots, load times and numbers of loads. */
 #ifndef SLUICE_VIEW_TRACED_TILES_H
 #define SLUICE_VIEW_TRACED_TILES_H
 
@@ -13,40 +12,41 @@
 #define TRACED_TILE_WINDOW 10000000u
 
 struct traced_tile {
-    SluiceDemandSlot slot; ///< as of the last look; its page is UINT32_MAX in entries without tile
-    bool here;             ///< it has a slot
-    uint64_t loaded[TRACED_TILE_THRASHES]; ///< last times, newest first; 0: never
+    SluiceDemandSlot slot; ///< slot at the last look; page UINT32_MAX: the entry has no tile
+    bool here;             ///< the tile has a slot
+    uint64_t
+        loaded[TRACED_TILE_THRASHES]; ///< last load times in microseconds, newest first; 0: never
     uint32_t loads;
 };
 
 /** Zeroed is empty. */
 struct traced_tiles {
     struct traced_tile *entries; ///< owned; hash map by page
-    uint32_t capacity, count;    ///< a power of two, at least twice the count; 0: nothing is known
-    SluiceDemandSlot *slots;     ///< owned; of the last look
+    uint32_t capacity, count;    ///< a power of two, at least 2 * count; 0: no look so far
+    SluiceDemandSlot *slots;     ///< owned; slots at the last look
     uint32_t slot_count, slot_room;
     SluiceDemandSlotImage *images; ///< owned, as the next two
-    uint32_t *first_slots;         ///< of each image, in `by_slot`
-    uint32_t *by_slot;             ///< 1 + element of `slots`; 0: free, or of others
+    uint32_t *first_slots;         ///< first slot of each image, in `by_slot`
+    uint32_t *by_slot;             ///< 1 + index into `slots`; 0: free, or not listed
     uint32_t image_count, by_slot_count;
-    uint64_t next_look; ///< frame
+    uint64_t next_look; ///< frame of the next look
     uint64_t seen[4];   ///< figures of the loader at the last look
-    bool is_cut;        ///< there are more tiles than are listed
+    bool is_cut;        ///< more tiles exist than are listed
 };
 
 void traced_tiles_finish(struct traced_tiles *tiles);
-/** Looks at the loader's slots if something has changed; rarely if there are many. `now`:
+/** Reads the loader's slots if its figures have changed. Reads many slots less often. `now`:
  *  microseconds. Without memory the last look stays. */
 void traced_tiles_look(struct traced_tiles *tiles, const SluiceDemandLoader *loader,
                        const SluiceDemandStatistics *statistics, uint64_t frame, uint64_t now);
-/** NULL: no look has seen the page, or long ago. */
+/** Finds a page. NULL: no recent look has seen it. */
 const struct traced_tile *traced_tiles_find(const struct traced_tiles *tiles, uint32_t page);
 bool traced_tile_thrashes(const struct traced_tile *tile, uint64_t now);
-/** The tile of a slot of an image; NULL: it is free, or of others. */
+/** Returns the tile in a slot of an image; NULL: free, or not listed. */
 const SluiceDemandSlot *traced_tiles_at(const struct traced_tiles *tiles, uint32_t image,
                                         uint32_t layer);
 struct traced_tile_sums {
-    uint32_t slots, used, standby, spare; ///< spare: in images that would be empty if tiles moved
+    uint32_t slots, used, standby, spare; ///< spare: slots of images that compaction would free
     double fragmentation;                 ///< spare over slots, 0 to 1
 };
 struct traced_tile_sums traced_tiles_sums(const struct traced_tiles *tiles);

@@ -1,4 +1,4 @@
-/** What each pixel of a traced scene has and wants of its picture: a pass behind the rays. */
+/** A pass after the rays that writes resident and wanted level of each pixel of a traced scene. */
 #ifndef SLUICE_VIEW_TRACED_VIEW_H
 #define SLUICE_VIEW_TRACED_VIEW_H
 
@@ -21,14 +21,13 @@ struct traced_view {
     uint32_t count;           ///< pixels
 };
 
-/** Reports errors on stderr. */
+/** False, with a line on stderr, on failure. */
 bool traced_view_create(const struct gpu *gpu, const SluiceDemandLoader *loader,
                         struct traced_view *view);
 void traced_view_destroy(struct traced_view *view);
-/** Buffers for a film. No launch is under way. */
+/** Creates buffers as large as a film. No launch may be in flight. */
 bool traced_view_fit(struct traced_view *view, const struct film *film);
-/** Records the pass into a launch, behind its rays. The host sees `views` when the launch is over.
- */
+/** Records the pass into a launch, after its rays. The host sees `views` when the launch ends. */
 void traced_view_record(const struct traced_view *view, VkCommandBuffer commands,
                         VkDescriptorSet demand_set);
 
