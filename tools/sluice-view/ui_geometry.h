@@ -1,10 +1,10 @@
-/** Triangles of the user interface, as ui.cpp makes them and ui_draw.c draws them. */
+/** Triangles of the user interface: ui.cpp makes them, ui_draw.c draws them. */
 #ifndef SLUICE_VIEW_UI_GEOMETRY_H
 #define SLUICE_VIEW_UI_GEOMETRY_H
 
 #include <stdint.h>
 
-/** Laid out as ImDrawVert. */
+/** A vertex with the layout of ImDrawVert. */
 struct ui_vertex {
     float x, y, u, v;
     uint32_t color; ///< 0xAABBGGRR, not linear
@@ -20,7 +20,7 @@ enum ui_texture {
     UI_TEXTURE_COUNT
 };
 
-/** How a picture is shown; added to a texture's number, shifted by UI_MODE_SHIFT. */
+/** Modes of drawing a picture. Shifted by UI_MODE_SHIFT and added to the number of a texture. */
 enum ui_mode {
     UI_MODE_PLAIN,
     UI_MODE_DIFFERENCE ///< |PICTURE - OTHER| times the color's alpha * 16
@@ -40,7 +40,7 @@ struct ui_geometry {
     const uint16_t *indices;
     const struct ui_draw *draws;
     uint32_t vertex_count, index_count, draw_count;
-    float width, height; ///< of the picture, in pixels
+    float width, height; ///< pixels of the picture
 };
 
 #endif /* SLUICE_VIEW_UI_GEOMETRY_H */
