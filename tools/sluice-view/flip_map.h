@@ -1,6 +1,6 @@
 /**
- * FLIP between the two pictures of a comparison: how large a viewer sees the differences. A thread
- * computes it from copies of the pictures, again and again, at most a quarter of the time.
+ * FLIP between the two pictures of a comparison: the difference that an observer perceives. A
+ * thread computes FLIP from copies of the pictures, repeatedly, for at most a quarter of the time.
  */
 #ifndef SLUICE_VIEW_FLIP_MAP_H
 #define SLUICE_VIEW_FLIP_MAP_H
@@ -13,40 +13,41 @@
 enum flip_state { FLIP_IDLE, FLIP_COPYING, FLIP_RUNNING, FLIP_FAILED };
 
 struct flip_map {
-    const struct gpu *gpu; ///< borrowed; NULL: nothing was created so far
+    const struct gpu *gpu; ///< borrowed; NULL: nothing was created yet
     enum flip_state state;
     struct gpu_buffer pictures[2]; ///< copies that a frame records
-    uint32_t width, height;        ///< of both
-    uint64_t frame;                ///< that the copies are of
-    uint64_t next_frame;           ///< the earliest that may be copied
+    uint32_t width, height;        ///< pixels of each picture
+    uint64_t frame;                ///< frame of the copies
+    uint64_t next_frame;           ///< first frame that may be copied again
     double next_seconds;
     pthread_t thread;
     atomic_bool done;
     bool good;
     float *values;  ///< owned; [height][width]
-    double mean;    ///< of `values`
-    double seconds; ///< that the thread took
+    double mean;    ///< mean of `values`
+    double seconds; ///< duration of the last computation
 
-    bool known; ///< the following are valid
+    bool known; ///< the fields below are valid
     struct ui_texels texels;
     float *shown; ///< owned; [height][width] of `texels`
     double shown_mean;
     uint64_t shown_frame;
 };
 
-/** Waits for the thread. A zeroed struct is fine. No frame may be in flight. */
+/** Waits for the thread, and frees the map. No frame may be in flight. A zeroed struct is allowed.
+ */
 void flip_map_destroy(struct flip_map *map);
 /**
- * Once per frame, after frames_begin: begins the thread when the copies are there, and takes the
- * map when it is done. True if this frame must copy its pictures, of this size, to `pictures`.
- * `wanted` false: what is known is forgotten.
+ * Begins the thread once the copies are complete, and takes the map once the thread is done. Call
+ * once per frame, after frames_begin. True if this frame must copy its pictures to `pictures`.
+ * `wanted` false: drops the map.
  */
 bool flip_map_begin_frame(struct flip_map *map, const struct gpu *gpu, uint64_t frame, bool wanted,
                           uint32_t width, uint32_t height);
-/** Computes at once what was copied, for pictures that are the same in every run. The frame must be
- *  complete. */
+/** Computes FLIP of the copies at once. Makes pictures equal in every run. The frame of the copies
+ *  must be complete. */
 void flip_map_settle(struct flip_map *map);
-/** The error at x, y, 0 to 1 from the left and the top. Negative if it is not known. */
+/** Returns FLIP at x, y, 0 to 1 from the left and the top. Negative if it is not known. */
 float flip_map_at(const struct flip_map *map, float x, float y);
 
 #endif /* SLUICE_VIEW_FLIP_MAP_H */

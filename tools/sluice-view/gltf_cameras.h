@@ -12,9 +12,9 @@ struct file_cameras {
     uint32_t count;
 };
 
-/** One camera for each node that has one, with the path of the first animation that moves it, and
- *  one more for each further animation; GLTF_MOST_CAMERAS at most. `note` hears of cameras that
- *  cannot be used. False without memory; finish them in any case. */
+/** Reads one camera per node with a camera, with the path of the first animation that moves it.
+ * Each further animation adds a camera. At most GLTF_MOST_CAMERAS. `note` is called for cameras
+ * that cannot be used. False without memory. Always call file_cameras_finish. */
 bool gltf_read_cameras(struct gltf_file *file,
                        void (*note)(void *user, const char *where, const char *problem), void *user,
                        struct file_cameras *cameras);
