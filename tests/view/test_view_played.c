@@ -349,6 +349,44 @@ static void files_of_the_fuzzer_are_shown_or_refused(void **state)
     assert_true(files > 100 && shown > 0 && shown < files);
 }
 
+/* Textures of 16384 x 16384 texels in tiles of 128 x 128. */
+static struct trace_buffer record_large_textures(uint32_t count)
+{
+    static const SluiceStreamedTextureDesc desc = {.width = 16384,
+                                                   .height = 16384,
+                                                   .mipLevelCount = 8,
+                                                   .regularMipCount = 8,
+                                                   .tileWidth = 128,
+                                                   .tileHeight = 128};
+    struct random_app app;
+    struct trace_buffer trace;
+    SluiceRecorder *recorder;
+    SluiceTextureId id;
+    const SluiceRecordWriter writer = trace_buffer_writer(&trace);
+    random_app_init(&app, 1, false);
+    CHECK_OK(sluiceBeginRecording(app.manager, &writer, NULL, &recorder));
+    for (uint32_t i = 0; i < count; i++)
+        CHECK_OK(sluiceAddStreamedTexture(app.manager, &desc, &id));
+    CHECK_OK(sluiceEndRecording(recorder));
+    random_app_finish(&app);
+    return trace;
+}
+
+static void a_small_file_of_very_many_tiles_is_refused(void **state)
+{
+    (void)state;
+    struct trace_buffer trace = record_large_textures(100);
+    struct played *p = open_copy(trace.data, trace.size, 0);
+    assert_non_null(p);
+    assert_int_equal(p->texture_count, 100);
+    played_close(p);
+    trace_buffer_free(&trace);
+    trace = record_large_textures(2500);
+    assert_true(trace.size < 100000);
+    assert_null(open_copy(trace.data, trace.size, 0));
+    trace_buffer_free(&trace);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -359,6 +397,7 @@ int main(void)
         cmocka_unit_test(a_search_finds_the_next_frame_that_has_some),
         cmocka_unit_test(a_cut_recording_shows_the_frames_before_the_cut),
         cmocka_unit_test(files_of_the_fuzzer_are_shown_or_refused),
+        cmocka_unit_test(a_small_file_of_very_many_tiles_is_refused),
     };
     return RUN_TESTS(tests);
 }

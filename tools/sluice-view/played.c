@@ -40,7 +40,8 @@ static void note_message(void *user, SluiceLogSeverity severity, const char *mes
 
 static bool out_of_memory(const struct played *p)
 {
-    text_say("sluice-view: %s: out of memory", p->name);
+    text_say("sluice-view: %s: out of memory; a recording may use %llu MiB", p->name,
+             MOST_MEMORY >> 20);
     return false;
 }
 
@@ -78,8 +79,11 @@ static bool add_texture(struct played *p, SluiceTextureId id)
         p->textures = textures;
         p->texture_capacity = capacity;
     }
-    if (!tile_log_add(&p->log, id, layout.tileCount))
+    /* The manager keeps no tiles of unused textures, but the log does. */
+    const uint64_t log_size = layout.tileCount * (uint64_t)TILE_LOG_TILE_SIZE;
+    if (log_size > p->memory_left || !tile_log_add(&p->log, id, layout.tileCount))
         return false;
+    p->memory_left -= log_size;
     struct played_texture *t = &p->textures[p->texture_count++];
     *t = (struct played_texture){.id = id,
                                  .desc = layout.desc,
@@ -318,7 +322,7 @@ struct played *played_open_bytes(const char *name, char *data, size_t size, size
     p->events = calloc(PLAYED_EVENTS, sizeof *p->events);
     const bool ready =
         (p->events && tile_log_keep_stages(&p->log) && add_first_textures(p)) || out_of_memory(p);
-    if (ready && play_all(p, progress, user) && played_go(p, 0))
+    if (ready && play_all(p, progress, user) && (played_go(p, 0) || out_of_memory(p)))
         return p;
     played_close(p);
     return NULL;

@@ -30,6 +30,9 @@ struct tile_log_stages {
     uint64_t queue[TILE_LOG_MOST_WAIT + 1], load[TILE_LOG_MOST_WAIT + 1];
 };
 
+/** Bytes per tile of a log with stages. */
+#define TILE_LOG_TILE_SIZE (sizeof(struct tile_log_tile) + sizeof(uint32_t))
+
 struct tile_log {
     struct tile_log_texture *textures; ///< owned, by id
     struct tile_log_tile *tiles;       ///< owned
