@@ -1,4 +1,4 @@
-/** From the camera of the viewer to that of a scene of pbrt. No device. */
+/** Conversion between cameras of the viewer and of pbrt scenes. Uses no device. */
 #ifndef SLUICE_VIEW_PBRT_FRAME_H
 #define SLUICE_VIEW_PBRT_FRAME_H
 
@@ -13,19 +13,20 @@
  */
 struct pbrt_frame {
     struct vec3 axes[3];      ///< x, y and z of the viewer in the world, of length 1, perpendicular
-    float unit;               ///< of the viewer, in units of the world
-    float scene_to_world[12]; ///< camera of the scene
-    struct view_camera camera; ///< ... as the viewer has it
+    float unit;               ///< one unit of the viewer, in units of the world
+    float scene_to_world[12]; ///< matrix of the scene's camera
+    struct view_camera camera; ///< the scene's camera as a camera of the viewer
 };
 
-/** `camera_to_world` as in SluicePbrtSceneInfo. The scene's diagonal becomes 20 units. `fov`:
- *  vertical, in radians. */
+/** Computes the frame of a scene. Its diagonal becomes 20 units. `camera_to_world`: as in
+ *  SluicePbrtSceneInfo. `fov`: vertical, in radians. */
 void pbrt_frame_init(const float camera_to_world[12], const SluicePbrtBounds *box, float fov,
                      struct pbrt_frame *frame);
-/** Camera to world, for camera_constants. The scene's own camera, while `camera` is it. */
+/** Writes the camera-to-world matrix for camera_constants. Writes the matrix of the scene unchanged
+ *  if `camera` is the scene's camera. */
 void pbrt_frame_matrix(const struct pbrt_frame *frame, const struct view_camera *camera,
                        float matrix[12]);
-/** A point of the world as the viewer has it. */
+/** Returns a point of the world in coordinates of the viewer. */
 struct vec3 pbrt_frame_position(const struct pbrt_frame *frame, const float world[3]);
 
 #endif /* SLUICE_VIEW_PBRT_FRAME_H */

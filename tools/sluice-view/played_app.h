@@ -1,4 +1,4 @@
-/** What keys, clicks and scripts do to a recording. */
+/** Actions of keys, clicks and scripts on a recording. */
 #ifndef SLUICE_VIEW_PLAYED_APP_H
 #define SLUICE_VIEW_PLAYED_APP_H
 
@@ -12,7 +12,7 @@ enum played_action {
     PLAYED_LAST,
     PLAYED_PLAY,
     PLAYED_NEXT_FAILURE,
-    PLAYED_LAST_FAILURE, ///< the one before
+    PLAYED_LAST_FAILURE, ///< the previous failure
     PLAYED_NEXT_LOSS,
     PLAYED_LAST_LOSS,
     PLAYED_SHOW_LONGEST,
@@ -20,17 +20,17 @@ enum played_action {
     PLAYED_REWIND
 };
 
-/** Goes to a frame, and says so if that failed. */
+/** Goes to a frame. Shows a message on failure. */
 void played_app_go(struct view_app *app, uint32_t frame);
-/** `action`: enum played_action. Says so if no recording is shown. */
+/** Runs an enum played_action. Shows a message if no recording is shown. */
 void played_app_act(struct view_app *app, int action);
-/** Acts if the chord means something to a recording that is shown. */
+/** Runs the action of a chord on the shown recording. False if there is none. */
 bool played_app_press(struct view_app *app, int key, unsigned modifiers);
-/** Why an action does not apply to recordings; NULL: it does. */
+/** Returns why an action does not apply to recordings; NULL: it does. */
 const char *played_app_refuses(const struct action *action);
-/** Whether a control does something for recordings, by its name. */
+/** Returns true if the control of this name applies to recordings. */
 bool played_app_takes(const char *control);
-/** Once per frame of the viewer: goes on if the recording plays, and follows the mouse. */
+/** Advances a recording that plays, and follows the mouse. Call once per frame of the viewer. */
 void played_app_move(struct view_app *app);
 
 #endif /* SLUICE_VIEW_PLAYED_APP_H */

@@ -1,4 +1,4 @@
-/** A scene as triangles with streamed textures, in memory of the host. */
+/** A scene in host memory: triangles with streamed textures. */
 #ifndef SLUICE_VIEW_SCENE_DATA_H
 #define SLUICE_VIEW_SCENE_DATA_H
 
@@ -39,18 +39,18 @@ struct scene_image {
     SluiceImageSource *source; ///< owned
     int wrap_u, wrap_v;        ///< VkSamplerAddressMode
     enum scene_content content;
-    /** Image whose feedback it follows; SCENE_NO_IMAGE: none. That one follows none. */
+    /** Image whose feedback this image follows; SCENE_NO_IMAGE: none. A primary follows none. */
     uint32_t primary;
-    bool transformed;            ///< not sampled where its primary is
-    SluiceUvTransform transform; ///< against the primary
+    bool transformed;            ///< UVs differ from those of the primary
+    SluiceUvTransform transform; ///< relative to the primary
 };
 
-/** Shared with the thread that opens a scene. */
+/** Progress of a load, shared with the thread that opens the scene. */
 struct scene_progress {
     atomic_uint done, total;         ///< images
-    atomic_bool canceled;            ///< nothing more is opened
-    atomic_uint_least64_t read_size; ///< bytes of the text of a scene of pbrt
-    atomic_uint percent;             ///< 1 + part of a recording that was played; 0: it is none
+    atomic_bool canceled;            ///< the thread opens no more images
+    atomic_uint_least64_t read_size; ///< bytes read of the text of a pbrt scene
+    atomic_uint percent;             ///< 1 + percent played of a recording; 0: no recording
 };
 
 struct scene_data {
@@ -68,31 +68,31 @@ struct scene_data {
     struct camera_path tour;
     struct file_camera *cameras; ///< owned
     uint32_t camera_count;
-    void *paints;                    ///< of computed images
-    SluiceImageOpener *opener;       ///< owned; of images from files
-    struct remote_session remote;    ///< owned; of images from servers
-    struct scene_pbrt *pbrt;         ///< owned; the scene is traced, and has no triangles here
-    struct played *played;           ///< owned; a recording, which has no scene
+    void *paints;                    ///< owned; data of computed images
+    SluiceImageOpener *opener;       ///< owned; opens images from files
+    struct remote_session remote;    ///< owned; reads images from servers
+    struct scene_pbrt *pbrt;         ///< owned; traced scene, without triangles here; or NULL
+    struct played *played;           ///< owned; recording, shown instead of a scene; or NULL
     struct scene_progress *progress; ///< borrowed while the scene is opened; NULL: none
 };
 
-/** Fills a zeroed scene with a room of computed pictures: needs no file. False without memory. */
+/** Fills a zeroed scene with a room of computed pictures. Reads no file. False without memory. */
 bool scene_data_make_room(struct scene_data *scene);
-/** A zeroed struct is fine. */
+/** Frees the scene. A zeroed struct is allowed. */
 void scene_data_finish(struct scene_data *scene);
-/** Says on stderr that something is missing, and keeps it for the panels. */
+/** Writes a message about the scene to stderr, and keeps it for the panels. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif
 void
 scene_data_note(struct scene_data *scene, const char *format, ...);
-/** Keeps a text for the panels that was said. */
+/** Keeps a message for the panels that stderr has already. */
 void scene_data_keep_note(struct scene_data *scene, const char *text);
-/** Finds the images that can follow the color image of their material (scene_sets.c). */
+/** Finds images that can follow the color image of their material (scene_sets.c). */
 void scene_data_find_sets(struct scene_data *scene);
-/** Whether nobody wants the scene any more. */
+/** Returns true if the load was canceled. */
 bool scene_data_canceled(const struct scene_data *scene);
-/** Bounds and centers; a camera and a tour around them, where there are none. */
+/** Computes bounds and centers. Adds a camera and a tour if the scene has none. */
 void scene_data_complete(struct scene_data *scene);
 
 #endif /* SLUICE_VIEW_SCENE_DATA_H */

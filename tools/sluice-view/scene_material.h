@@ -7,7 +7,7 @@
 
 #define SCENE_NO_IMAGE UINT32_MAX
 
-/** As in shaders/scene_material.glsl. */
+/** Slots of a material. shaders/scene_material.glsl has the same order. */
 enum scene_slot_kind {
     SLOT_COLOR,
     SLOT_ROUGHNESS, ///< green: roughness, blue: metalness
@@ -19,8 +19,8 @@ enum scene_slot_kind {
 
 enum scene_alpha { ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND };
 
-/** An image of the scene and where it is sampled: (u, v) to (m[0] u + m[1] v + m[4],
- *  m[2] u + m[3] v + m[5]). */
+/** An image of the scene, sampled at (m[0] u + m[1] v + m[4], m[2] u + m[3] v + m[5]) for a
+ * vertex's (u, v). */
 struct scene_slot {
     uint32_t image;  ///< SCENE_NO_IMAGE: none
     uint32_t uv_set; ///< 0 or 1
@@ -32,11 +32,11 @@ struct scene_material {
     float metalness, roughness, normal_scale, occlusion, cutoff;
     int alpha; ///< enum scene_alpha
     bool double_sided;
-    bool missing; ///< its color image is missing: shown by a checkerboard
+    bool missing; ///< the color image is missing; a checkerboard is shown
     struct scene_slot slots[SLOT_COUNT];
 };
 
-/** White, rough, without images. */
+/** Initializes a material: white, rough, without images. */
 void scene_material_init(struct scene_material *material);
 
 #endif /* SLUICE_VIEW_SCENE_MATERIAL_H */
