@@ -1,4 +1,4 @@
-/** Scenes of all kinds. */
+/** Opens scenes of all kinds. */
 #ifndef SLUICE_VIEW_SCENE_OPEN_H
 #define SLUICE_VIEW_SCENE_OPEN_H
 
@@ -10,17 +10,17 @@ struct scene_request {
     const char *const *paths; ///< pictures and folders, or one file of a scene; none: the room
     uint32_t path_count;
     const char *cache;               ///< folder for baked pictures
-    bool wait;                       ///< until all pictures are baked
-    struct scene_progress *progress; ///< NULL: nobody watches
-    /** Programs of scenes of pbrt are compiled for it. NULL: when they are shown. */
+    bool wait;                       ///< waits until all pictures are baked
+    struct scene_progress *progress; ///< NULL: progress is not reported
+    /** Device that programs of pbrt scenes are compiled for. NULL: compiles them when shown. */
     const struct gpu *gpu;
-    uint32_t threads; ///< of loaders; 0: as many as the library chooses
+    uint32_t threads; ///< threads of loaders; 0: chosen by the library
 };
 
-/** Says on stderr what is wrong, and which images cannot be shown. False, with nothing left in
- *  `scene`, if there is nothing to show or it was canceled. */
+/** Opens a scene. Reports faults, and images that cannot be shown, on stderr. False, with `scene`
+ *  empty, if there is nothing to show or the load was canceled. */
 bool scene_open_paths(const struct scene_request *request, struct scene_data *scene);
-/** False, with a line on stderr, for paths that are no scene together. */
+/** Returns true if the paths form a scene. Otherwise false, with a line on stderr. */
 bool scene_open_takes(const char *const *paths, uint32_t count);
 
 #endif /* SLUICE_VIEW_SCENE_OPEN_H */

@@ -122,7 +122,7 @@ const struct stage_texture *stage_texture(const struct stage *stage, uint32_t in
 /** Finds the surface that a camera sees at x, y, 0 to 1 from the left and the top. */
 struct stage_pick stage_pick(const struct stage *stage, const struct view_camera *camera,
                              float aspect, float x, float y);
-/** Writes the distance in texels of level 0, along u and v, from a pixel to the pixel on its right,
+/** Writes the offset in texels of level 0, along u and v, from a pixel to the pixel on its right,
  *  then to the pixel below. `pick` is the surface at this pixel. False if it has no texture. */
 bool stage_pick_pixel(const struct stage *stage, const struct stage_pick *pick,
                       const struct stage_pixel *pixel, float texels[4]);
