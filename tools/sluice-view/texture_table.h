@@ -1,5 +1,4 @@
-/** The table of textures as it is shown: rows that are gathered and sorted some times per second.
- */
+/** The shown texture table: rows that are gathered and sorted several times per second. */
 #ifndef SLUICE_VIEW_TEXTURE_TABLE_H
 #define SLUICE_VIEW_TEXTURE_TABLE_H
 
@@ -13,20 +12,22 @@ struct texture_order {
 };
 
 struct texture_table {
-    struct texture_row *rows; ///< owned; their texts are the stage's
-    uint32_t count;           ///< that the filter leaves
-    struct texture_row sum;   ///< of these
+    struct texture_row *rows; ///< owned; the stage owns their texts
+    uint32_t count;           ///< rows that match the filter
+    struct texture_row sum;   ///< sum of these rows
     struct texture_order order;
     char filter[TEXTURE_TABLE_FILTER];
     double next; ///< seconds when rows are gathered again
 };
 
-/** Gathers and sorts the rows, at once if filter or order have changed, else 4 times per second.
- *  `seconds`: of the viewer's life. `order` NULL: the last one. Without memory it has no rows. */
+/** Gathers and sorts the rows 4 times per second, and at once if filter or order changed.
+ * `seconds`: time since the viewer began. `order` NULL: the last order. Without memory the table
+ * has no rows.
+ */
 void texture_table_update(struct texture_table *table, const struct stage *stage,
                           const struct view_facts *facts, const char *filter,
                           const struct texture_order *order, double seconds);
-/** A zeroed struct is fine. Call it before the stage is destroyed. */
+/** Frees the rows. Call before the stage is destroyed. A zeroed struct is allowed. */
 void texture_table_finish(struct texture_table *table);
 
 #endif /* SLUICE_VIEW_TEXTURE_TABLE_H */

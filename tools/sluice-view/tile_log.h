@@ -1,4 +1,4 @@
-/** Log of tiles: how often and when each was loaded, and which loads nobody used. Fed by events. */
+/** Log of tiles, fed by events: number and time of loads, and loads that nothing used. */
 #ifndef SLUICE_VIEW_TILE_LOG_H
 #define SLUICE_VIEW_TILE_LOG_H
 
@@ -7,13 +7,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** Waits of more frames than that count as so many. */
+/** Longer waits count as this number of frames. */
 #define TILE_LOG_MOST_WAIT 4095u
 
-/** 16 bytes, since a scene can have millions. Counts stay at their largest value. */
+/** A tile: 16 bytes, since a scene can have millions. Counts stop at their largest value. */
 struct tile_log_tile {
-    uint64_t loaded_time; ///< time stamp of its last load; 0 with no load
-    uint32_t requested; ///< 1 + frame in which it was requested, modulo 2^32; 0: waits for no load
+    uint64_t loaded_time; ///< time stamp of the last load; 0: no load
+    uint32_t requested;   ///< 1 + frame of the request, modulo 2^32; 0: waits for no load
     uint16_t loads, failures;
 };
 
@@ -23,10 +23,9 @@ struct tile_log_texture {
     size_t first_tile;
 };
 
-/** The way of a load in two parts: in the queue, and from the hand-out to the answer. */
+/** Stages of a load: in the queue, and from the hand-out until the load is done. */
 struct tile_log_stages {
-    uint32_t
-        *listed; ///< owned; per tile 1 + frame in which it was handed out; 0: it is not loading
+    uint32_t *listed; ///< owned; per tile 1 + frame of its hand-out; 0: not loading
     uint64_t queue[TILE_LOG_MOST_WAIT + 1], load[TILE_LOG_MOST_WAIT + 1];
 };
 
@@ -40,35 +39,34 @@ struct tile_log {
     uint32_t texture_count, texture_capacity;
     size_t tile_count, tile_capacity;
     uint64_t loads;
-    uint64_t stale; ///< loads of tiles that nothing requested after they had arrived
+    uint64_t stale; ///< loads of tiles that nothing requested after the load
     /** Frames from the request of a tile until it is resident. */
     uint64_t waits[TILE_LOG_MOST_WAIT + 1];
     uint64_t wait_count;
 };
 
-/** Of textures with so many tiles. False without memory: the log is zeroed then. */
+/** Creates a log of `count` textures. False, with a zeroed log, without memory. */
 bool tile_log_create(const SluiceTextureId *ids, const uint32_t *tile_counts, uint32_t count,
                      struct tile_log *log);
-/** Keeps stages from now on. False without memory. */
+/** Begins to keep stages. False without memory. */
 bool tile_log_keep_stages(struct tile_log *log);
-/** Adds a texture with the next index, to a log that may be zeroed. False without memory. */
+/** Adds a texture with the next index. The log may be zeroed. False without memory. */
 bool tile_log_add(struct tile_log *log, SluiceTextureId id, uint32_t tile_count);
-/** A zeroed struct is fine. */
+/** Frees the log. A zeroed struct is allowed. */
 void tile_log_destroy(struct tile_log *log);
-/** Takes in the next event. A tile that expires within `timeout` ticks of its load was not seen
- *  after the load. */
+/** Adds the next event. A tile that expires within `timeout` ticks of its load counts as stale. */
 void tile_log_take(struct tile_log *log, const SluiceTileEvent *event, uint64_t timeout);
-/** NULL: unknown. */
+/** Finds a tile. NULL: unknown. */
 const struct tile_log_tile *tile_log_get(const struct tile_log *log, SluiceTextureId id,
                                          uint32_t tile);
-/** Writes which of the textures it is, as they were given. False: none. */
+/** Writes the index of a texture, in the order of creation. False if the texture is unknown. */
 bool tile_log_index(const struct tile_log *log, SluiceTextureId id, uint32_t *index);
-/** Frames that this part of all waits does not exceed. 0 with no wait. */
+/** Returns the quantile of all waits, in frames. `part`: 0 to 1. 0 without waits. */
 uint32_t tile_log_wait(const struct tile_log *log, double part);
-/** Returns the same of counts by frames, [TILE_LOG_MOST_WAIT + 1]. */
+/** Returns the quantile of counts by frames, [TILE_LOG_MOST_WAIT + 1]. 0 if all counts are 0. */
 uint32_t tile_log_wait_of(const uint64_t *counts, double part);
 
-/** What a log holds but for its textures: tiles and waits that are not 0. */
+/** Contents of a log without its textures: tiles and waits that are not 0. */
 struct tile_log_kept {
     void *bytes; ///< owned
     size_t size;
@@ -76,7 +74,7 @@ struct tile_log_kept {
 
 /** Keeps the contents of a log with stages. False without memory. */
 bool tile_log_keep(const struct tile_log *log, struct tile_log_kept *kept);
-/** Goes back to contents of this log. Textures that were added since stay, without loads. */
+/** Restores contents that this log had. Textures that were added since stay, without loads. */
 void tile_log_restore(struct tile_log *log, const struct tile_log_kept *kept);
 void tile_log_kept_finish(struct tile_log_kept *kept);
 

@@ -1,4 +1,4 @@
-/** Marks of tiles that shaders show: why no finer level is there, and how long what is there is. */
+/** Marks of tiles, for shaders: why finer levels are missing, and the age of resident tiles. */
 #ifndef SLUICE_VIEW_TILE_MARKS_H
 #define SLUICE_VIEW_TILE_MARKS_H
 
@@ -16,22 +16,22 @@ struct tile_marks {
     struct mark_texture *textures;  ///< owned, as all below
     struct mark_order *order;       ///< by id
     struct mark_tile *tiles;
-    uint32_t *words; ///< what shaders read
+    uint32_t *words; ///< marks in the layout that shaders read
     uint8_t *maps;   ///< scratch for two maps of the largest texture
     size_t map_size, word_count, tile_count;
     uint32_t texture_count, next_texture;
     uint64_t event_cursor;
 };
 
-/** False without memory. */
+/** Creates marks of textures. False without memory. */
 bool tile_marks_create(SluiceVulkanStreamer *streamer, const SluiceTextureId *ids, uint32_t count,
                        struct tile_marks *marks);
-/** A zeroed struct is fine. */
+/** Frees the marks. A zeroed struct is allowed. */
 void tile_marks_destroy(struct tile_marks *marks);
-/** Takes in events, once per frame; with `show` also writes the words of some textures. `now`:
- *  time stamp of the frame, in microseconds. */
+/** Adds new events. With `show`, also updates the words of some textures. Call once per frame.
+ * `now`: time stamp of the frame, in microseconds. */
 void tile_marks_update(struct tile_marks *marks, uint64_t now, bool show);
-/** Bytes of the words. */
+/** Size of the words in bytes. */
 size_t tile_marks_size(const struct tile_marks *marks);
 void tile_marks_copy(const struct tile_marks *marks, void *to);
 

@@ -4,13 +4,13 @@
 
 #include <stdint.h>
 
-#define HALL_FLOOR 40u            ///< number of the floor, behind those of the paintings
+#define HALL_FLOOR 40u            ///< number of the floor; paintings have smaller numbers
 #define HALL_WALL 2.56f           ///< half the distance between the long walls
-#define HALL_FRONT 5.0f           ///< z of the wall behind the camera's first place
+#define HALL_FRONT 5.0f           ///< z of the wall behind the first camera position
 #define HALL_BACK (-45.0f)        ///< z of the wall at the far end
-#define HALL_MOST_VERTICES 32768u ///< of a mesh
+#define HALL_MOST_VERTICES 32768u ///< vertices per mesh
 
-/** Meshes without pictures, by their material. */
+/** Materials of meshes without pictures. */
 enum hall_group { WALLS, CEILING, SKYLIGHTS, GOLD, WOOD, TRIM, GROUPS };
 
 struct hall_picture {
@@ -22,13 +22,13 @@ struct vertex {
     float position[3], normal[3], uv[2];
 };
 
-/** Quads: four vertices each. */
+/** A mesh of quads, with four vertices each. */
 struct mesh {
     struct vertex *vertices; ///< HALL_MOST_VERTICES
     uint32_t count;
 };
 
-/** Painting `number`, or HALL_FLOOR. */
+/** Returns painting `number`, or the floor for HALL_FLOOR. */
 struct hall_picture hall_picture(uint32_t number);
 
 /** Adds a quad. `corner` is its top left one, seen from its front. `right` and `down` lie along
