@@ -34,6 +34,25 @@ static SluiceTracePlayerState state_of(const SluiceTracePlayer *player)
     return state;
 }
 
+/* Field by field: padding is undefined. */
+static void check_same_state(const SluiceTracePlayerState *a, const SluiceTracePlayerState *b)
+{
+    assert_int_equal(a->formatVersion, b->formatVersion);
+    assert_int_equal(a->libraryVersion, b->libraryVersion);
+    assert_int_equal(a->heapTileCapacity, b->heapTileCapacity);
+    assert_int_equal(a->tileSize, b->tileSize);
+    assert_int_equal(a->alwaysMapPackedTiles, b->alwaysMapPackedTiles);
+    assert_int_equal(a->offset, b->offset);
+    assert_int_equal(a->eventCount, b->eventCount);
+    assert_true(a->decisionHash == b->decisionHash && a->recordedHash == b->recordedHash);
+    assert_int_equal(a->divergedEvent, b->divergedEvent);
+    assert_int_equal(a->divergedOffset, b->divergedOffset);
+    assert_int_equal(a->errorOffset, b->errorOffset);
+    assert_int_equal(a->maxHeapCount, b->maxHeapCount);
+    assert_int_equal(a->targetHeapCount, b->targetHeapCount);
+    assert_int_equal(a->numExtraStandbyTiles, b->numExtraStandbyTiles);
+}
+
 static SluiceTraceCall next_of(SluiceTracePlayer *player)
 {
     SluiceTraceCall call = {.structSize = sizeof call};
@@ -225,7 +244,7 @@ static void a_checkpoint_of_the_end_leads_back_to_the_end(void **state)
         assert_int_equal(next_of(player).kind, SLUICE_TRACE_CALL_NONE);
         CHECK_OK(sluicePlayTraceCall(player));
         const SluiceTracePlayerState again = state_of(player);
-        assert_memory_equal(&again, &end, sizeof end);
+        check_same_state(&again, &end);
         trace_buffer_free(&kept);
         sluiceDestroyTracePlayer(player);
         trace_buffer_free(&trace);
@@ -359,7 +378,7 @@ static void a_damaged_checkpoint_is_refused_and_changes_nothing(void **state)
     for (size_t cut = 0; cut + 28 < kept.size; cut++)
         CHECK_RESULT(sluiceReadTraceCheckpoint(player, kept.data, cut), SLUICE_ERROR_CORRUPT_DATA);
     const SluiceTracePlayerState after = state_of(player);
-    assert_memory_equal(&before, &after, sizeof before);
+    check_same_state(&before, &after);
     while (next_of(player).kind != SLUICE_TRACE_CALL_NONE)
         CHECK_OK(sluicePlayTraceCall(player));
     assert_true(state_of(player).decisionHash == state_of(player).recordedHash);

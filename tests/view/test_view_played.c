@@ -40,7 +40,19 @@ static uint64_t add_texture(uint64_t digest, const SluiceStreamedTextureManager 
     static uint8_t map[1 << 16];
     CHECK_OK(sluiceGetTextureLayout(manager, id, &layout));
     CHECK_OK(sluiceGetTextureStatistics(manager, id, &statistics));
-    digest = add_bytes(digest, &statistics, sizeof statistics);
+    const uint64_t fields[] = {/* not the struct: its padding is undefined */
+                               statistics.residentTileCount,
+                               statistics.requestedTileCount,
+                               statistics.mappedTotal,
+                               statistics.unmappedTotal,
+                               statistics.failedTotal,
+                               statistics.wanted,
+                               statistics.seen,
+                               statistics.seenTime,
+                               statistics.wantedTileCount,
+                               statistics.residentSize,
+                               statistics.wantedSize};
+    digest = add_bytes(digest, fields, sizeof fields);
     for (uint32_t tile = 0; tile < layout.tileCount; tile++) {
         SluiceTileState state;
         SluiceTile at;
