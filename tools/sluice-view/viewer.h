@@ -43,6 +43,7 @@ struct viewer {
     bool asked;                  ///< `reopened` is valid. An attempt that failed is not repeated.
     struct file_list paths;      ///< owned; paths of the scene; none: the room
     struct scene_load *load;     ///< load of the next scene; NULL: none
+    bool loads_again;            ///< `load` reads the scene that is shown
     struct scene_load *canceled; ///< canceled loads whose threads have not ended
     char command[4200];          ///< program and paths for "copy command line", without options
     char settings_path[4096];    ///< file of the settings; "": settings are not kept
@@ -71,7 +72,7 @@ bool viewer_open_scene(struct viewer *viewer);
 /** Waits for the frames in flight, and destroys both stages. */
 void viewer_close_scene(struct viewer *viewer);
 /** Opens other paths, and may move them out of `paths`. NULL: opens the present scene again with
- * its new settings. With a window, other paths are opened on a thread. The old scene stays until
+ * its new settings. With a window, files are read on a thread. The old scene stays until
  * the new one can be shown. */
 void viewer_reopen(struct viewer *viewer, struct file_list *paths);
 /** Requests that the scene is opened again, if a setting changed that is fixed while it is open. */
@@ -86,6 +87,13 @@ void viewer_open_chosen(struct viewer *viewer);
 void viewer_cancel_load(struct viewer *viewer);
 /** Cancels the load, and waits for all threads that open scenes. */
 void viewer_end_load(struct viewer *viewer);
+/** Begins to read a scene on a thread, and moves its paths out of the list. NULL, with a line on
+ *  stderr, without memory or a thread. */
+struct scene_load *viewer_begin_load(const struct viewer *viewer, struct file_list *paths,
+                                     uint32_t threads);
+/** Begins to read the scene that is shown. NULL as viewer_begin_load. */
+struct scene_load *viewer_begin_load_again(const struct viewer *viewer, uint32_t threads);
+/** Reads a scene at once. */
 bool viewer_open_now(const struct viewer *viewer, const struct file_list *paths,
                      struct scene_data *scene);
 struct stage *viewer_create_stage(struct viewer *viewer, const struct view_settings *settings,

@@ -34,6 +34,29 @@ bool viewer_open_now(const struct viewer *v, const struct file_list *paths,
     return scene_open_paths(&request, scene);
 }
 
+struct scene_load *viewer_begin_load(const struct viewer *v, struct file_list *paths,
+                                     uint32_t threads)
+{
+    const struct scene_request how = {.cache = v->options->cache,
+                                      .wait = v->options->deterministic,
+                                      .gpu = &v->gpu,
+                                      .threads = threads};
+    return scene_load_begin(paths, &how);
+}
+
+struct scene_load *viewer_begin_load_again(const struct viewer *v, uint32_t threads)
+{
+    struct file_list paths = {0};
+    struct scene_load *load = NULL;
+    bool copied = true;
+    for (size_t i = 0; copied && i < v->paths.count; i++)
+        copied = files_add(v->paths.paths[i], &paths);
+    if (copied)
+        load = viewer_begin_load(v, &paths, threads);
+    files_finish(&paths);
+    return load;
+}
+
 /* "sluice-view PATH ..."; paths that do not fit are left out. */
 static void name_command(struct viewer *v)
 {
@@ -272,11 +295,19 @@ static bool begin_load(struct viewer *v, struct file_list *paths)
 {
     park_load(v);
     file_facts_begin(&v->app.file);
-    const struct scene_request how = {.cache = v->options->cache,
-                                      .wait = v->options->deterministic,
-                                      .gpu = &v->gpu,
-                                      .threads = v->app.settings.threads};
-    v->load = scene_load_begin(paths, &how);
+    v->loads_again = false;
+    v->load = viewer_begin_load(v, paths, v->app.settings.threads);
+    return v->load != NULL;
+}
+
+/* The scene that is shown. What is being opened takes its place anyway. */
+static bool begin_load_again(struct viewer *v)
+{
+    if (v->load)
+        return true;
+    file_facts_begin(&v->app.file);
+    v->loads_again = true;
+    v->load = viewer_begin_load_again(v, v->app.settings.threads);
     return v->load != NULL;
 }
 
@@ -297,10 +328,12 @@ bool viewer_open_scene(struct viewer *v)
 void viewer_reopen(struct viewer *v, struct file_list *paths)
 {
     struct scene_data scene;
-    file_facts_begin(&v->app.file);
-    if (paths && v->window)
-        begin_load(v, paths);
-    else if (!viewer_open_now(v, paths ? paths : &v->paths, &scene) || !show(v, &scene, paths))
+    if (v->window && (paths ? begin_load(v, paths) : begin_load_again(v)))
+        return;
+    if (!v->window)
+        file_facts_begin(&v->app.file);
+    if (v->window || !viewer_open_now(v, paths ? paths : &v->paths, &scene) ||
+        !show(v, &scene, paths))
         say_failed(v, paths ? paths : &v->paths);
 }
 
@@ -335,7 +368,7 @@ static bool end_load(struct viewer *v)
     v->load = NULL;
     const bool opened = scene_load_end(load, &scene, &paths);
     v->app.said_seconds = 0;
-    if (!opened || !show(v, &scene, &paths))
+    if (!opened || !show(v, &scene, v->loads_again ? NULL : &paths))
         say_failed(v, &paths);
     files_finish(&paths);
     return v->stage != NULL;
