@@ -71,4 +71,9 @@ printf '1 set b bugdet 16\n2 set b view 3\n3 set b budget 2\n' >wrong
 run 0 --room --headless --size 160x160 --frames 4 --script wrong && grep -q 'there is no setting bugdet' err &&
     grep -q 'B: view is shared by A and B' err && grep -q 'B: budget 2: wants 0' err
 fact wrong_settings_of_b_are_named
+# The screenshot is one picture more of the folder, which is read again for B.
+mkdir shown && cp fine.ppm shown && printf '2 screenshot shown/new.png\n5 key V\n8 key X\n12 quit\n' >grows
+run 0 --still --headless --deterministic --fresh --size 160x160 --cache . --json --script grows shown &&
+    grep -q 'the files of the scene have changed: A has 3 textures, B would have 4' err && ! grep -q frames_compared out
+fact b_is_refused_once_files_have_changed_so_that_textures_differ
 end_facts

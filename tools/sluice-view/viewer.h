@@ -40,16 +40,17 @@ struct viewer {
     struct view_settings applied;   ///< settings that the streamer of `stage` has
     struct view_settings applied_b; ///< settings that the streamer of `other` has
     struct view_settings reopened;  ///< settings that the scene was last opened again for
-    bool asked;                  ///< `reopened` is valid. An attempt that failed is not repeated.
-    struct file_list paths;      ///< owned; paths of the scene; none: the room
-    struct scene_load *load;     ///< load of the next scene; NULL: none
-    bool loads_again;            ///< `load` reads the scene that is shown
-    struct scene_load *canceled; ///< canceled loads whose threads have not ended
-    char command[4200];          ///< program and paths for "copy command line", without options
-    char settings_path[4096];    ///< file of the settings; "": settings are not kept
-    char recent_path[4096];      ///< file of the list of recent files; "": the list is not kept
-    char screenshot[4096];       ///< file to write after this frame; "": none
-    struct large_picture large;  ///< large screenshot that this frame draws
+    bool asked;                    ///< `reopened` is valid. An attempt that failed is not repeated.
+    struct file_list paths;        ///< owned; paths of the scene; none: the room
+    struct scene_load *load;       ///< load of the next scene; NULL: none
+    bool loads_again;              ///< `load` reads the scene that is shown
+    struct scene_load *other_load; ///< load of the scene of B; NULL: none
+    struct scene_load *canceled;   ///< canceled loads whose threads have not ended
+    char command[4200];            ///< program and paths for "copy command line", without options
+    char settings_path[4096];      ///< file of the settings; "": settings are not kept
+    char recent_path[4096];        ///< file of the list of recent files; "": the list is not kept
+    char screenshot[4096];         ///< file to write after this frame; "": none
+    struct large_picture large;    ///< large screenshot that this frame draws
     struct summary summary;
     struct trade trade;
     struct thumbs
@@ -101,6 +102,8 @@ struct stage *viewer_create_stage(struct viewer *viewer, const struct view_setti
 /** Creates or destroys the second stage, as the settings of the comparison require. False if the
  *  device failed. */
 bool viewer_fit_other(struct viewer *viewer);
+/** Cancels the load of the scene of B without a wait. */
+void viewer_park_other(struct viewer *viewer);
 /** Destroys the second stage. No frame may be in flight. */
 void viewer_close_other(struct viewer *viewer);
 /** Returns all settings of the second picture. */

@@ -402,6 +402,7 @@ void viewer_cancel_load(struct viewer *v)
 void viewer_end_load(struct viewer *v)
 {
     park_load(v);
+    viewer_park_other(v);
     scene_load_drop_canceled(&v->canceled, true);
     if (v->other_parts)
         traced_parts_destroy(traced_parts_end(v->other_parts));

@@ -5,6 +5,8 @@
 #include "sets.h"
 #include "traced_parts.h"
 
+#include "../common/text.h"
+
 #include <string.h>
 
 /* Settings that wait for the scene of A to be opened again do not act on B either. */
@@ -16,7 +18,14 @@ struct view_settings viewer_second_settings(const struct viewer *v)
     return sets_of_second(&a, &v->app.b);
 }
 
-void viewer_close_other(struct viewer *v)
+void viewer_park_other(struct viewer *v)
+{
+    if (v->other_load)
+        scene_load_keep_canceled(v->other_load, &v->canceled);
+    v->other_load = NULL;
+}
+
+static void close_other(struct viewer *v)
 {
     if (!v->other)
         return;
@@ -27,50 +36,91 @@ void viewer_close_other(struct viewer *v)
     v->other = v->app.other = NULL;
 }
 
+void viewer_close_other(struct viewer *v)
+{
+    viewer_park_other(v);
+    close_other(v);
+}
+
 static void forget_times(struct viewer *v)
 {
     memset(v->app.times, 0, sizeof v->app.times);
 }
 
+/* A scene of pbrt is shared with A, with programs of its own. */
+static bool take_scene(struct viewer *v, struct scene_data *scene)
+{
+    struct file_list paths;
+    if (stage_share_scene(v->stage, scene)) {
+        if (v->other_parts)
+            scene->pbrt->parts = traced_parts_end(v->other_parts);
+        v->other_parts = NULL;
+        return true;
+    }
+    if (!v->other_load)
+        return !v->window && viewer_open_now(v, &v->paths, scene);
+    struct scene_load *load = v->other_load;
+    v->other_load = NULL;
+    const bool opened = scene_load_end(load, scene, &paths);
+    files_finish(&paths);
+    return opened;
+}
+
+/* Panels name textures of A and B by the same numbers. */
+static bool is_same_scene(const struct viewer *v)
+{
+    const uint32_t a = stage_texture_count(v->stage), b = stage_texture_count(v->other);
+    if (a != b)
+        text_say("sluice-view: the files of the scene have changed: A has %u textures, B would "
+                 "have %u; F5 opens the scene again",
+                 a, b);
+    return a == b;
+}
+
 static bool open_other(struct viewer *v, const struct view_settings *settings)
 {
     struct scene_data scene;
-    const bool shared = stage_share_scene(v->stage, &scene);
-    if (!shared && !viewer_open_now(v, &v->paths, &scene))
+    if (!take_scene(v, &scene))
         return false;
-    if (shared && v->other_parts) {
-        scene.pbrt->parts = traced_parts_end(v->other_parts);
-        v->other_parts = NULL;
-    }
     v->other = viewer_create_stage(v, settings, &scene);
-    if (v->other && !facts_create(&v->app.facts_b, v->other)) {
+    if (v->other && (!is_same_scene(v) || !facts_create(&v->app.facts_b, v->other))) {
         stage_destroy(v->other);
         v->other = NULL;
     }
+    if (!v->other)
+        return false;
     v->app.facts_b.frame = v->app.facts.frame;
     v->app.facts_b.seconds = v->app.facts.seconds;
     v->app.facts_b.frame_seconds = v->app.facts.frame_seconds;
     v->app.other = v->other;
     v->applied_b = *settings;
     forget_times(v);
-    return v->other != NULL;
+    return true;
 }
 
-/* A window draws the first picture while programs for rays of the second one are compiled. */
+/* A window draws the first picture while a thread reads the scene of the second one, or compiles
+ * its programs for rays. */
 static bool is_prepared(struct viewer *v, const struct view_settings *settings)
 {
-    if (!v->window || !stage_traced(v->stage))
+    bool done;
+    if (!v->window)
         return true;
-    if (!v->other_parts)
-        v->other_parts = traced_parts_begin(&v->gpu, settings->threads);
-    if (!v->other_parts || traced_parts_done(v->other_parts))
-        return true;
-    app_say(&v->app, "The second picture is being prepared");
-    return false;
+    if (stage_traced(v->stage)) {
+        if (!v->other_parts)
+            v->other_parts = traced_parts_begin(&v->gpu, settings->threads);
+        done = !v->other_parts || traced_parts_done(v->other_parts);
+    } else {
+        if (!v->other_load)
+            v->other_load = viewer_begin_load_again(v, settings->threads);
+        done = !v->other_load || scene_load_done(v->other_load);
+    }
+    if (!done)
+        app_say(&v->app, "The second picture is being prepared");
+    return done;
 }
 
-/* The second streamer lives as long as its picture is wanted. Sliders that are held do not open it
- * again and again. */
+/* The second streamer lives as long as its picture is wanted, and until the next one is prepared.
+ * Sliders that are held, and numbers that are typed, do not open it again and again. */
 bool viewer_fit_other(struct viewer *v)
 {
     struct view_app *app = &v->app;
@@ -78,13 +128,18 @@ bool viewer_fit_other(struct viewer *v)
         return true;
     const bool wanted = app_has_second(app);
     const struct view_settings settings = viewer_second_settings(v);
-    if (v->other && (!wanted || (!v->input.buttons[0] &&
-                                 sets_must_reopen(stage_opened(v->other), &settings)))) {
+    const bool held = v->input.buttons[0] || ui_any_active();
+    const bool needed =
+        wanted && (!v->other || sets_must_reopen(stage_opened(v->other), &settings));
+    const bool opens = needed && !(v->other && held) && is_prepared(v, &settings);
+    if (v->other && (opens || !wanted)) {
         if (!frames_wait(&v->frames))
             return false;
-        viewer_close_other(v);
+        close_other(v);
     }
-    if (!wanted || v->other || !is_prepared(v, &settings) || open_other(v, &settings))
+    if (!needed)
+        viewer_park_other(v);
+    if (!opens || open_other(v, &settings))
         return true;
     app_say(app, "The second picture cannot be drawn: Shift+I says why");
     app->settings.compare = VIEW_COMPARE_OFF;
