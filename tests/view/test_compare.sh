@@ -58,6 +58,10 @@ fact a_small_budget_of_b_is_kept_while_a_has_more
     awk -v a="$(value gpu_ms_median_a)" -v b="$(value gpu_ms_median_b)" -v all="$(value gpu_ms_median)" \
         'BEGIN { exit !(a > 0 && b > 0 && a + b < 1.5 * all) }'
 fact times_of_both_pictures_are_measured_within_those_of_the_frame
+# Two frames are in flight: at the end those of frames 30 to 37 are known.
+echo '30 set b lod-bias 2' >later
+compare --b anisotropy=1 --frames 40 --script later && [ "$(value frames_compared)" = 8 ]
+fact times_are_of_frames_with_the_present_settings_alone
 # "B", "own, as A now", then the slider of its budget to 8 MiB; at the end A again, and the slider one row higher.
 printf '3 key U\n5 click 174 125\n8 click 215 152\n11 drag 206 204 30 204 6\n' >panel
 edits() {

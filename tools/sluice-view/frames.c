@@ -143,6 +143,13 @@ void frames_swap_halves(struct frames *f)
             f->slots[i].swapped = !f->slots[i].swapped;
 }
 
+void frames_forget_halves(struct frames *f)
+{
+    f->halves_known = 0;
+    for (uint32_t i = 0; i < FRAMES_SLOTS; i++)
+        f->slots[i].halves = 0;
+}
+
 VkCommandBuffer frames_begin(struct frames *f)
 {
     const uint32_t number = frames_slot(f);

@@ -62,6 +62,8 @@ void frames_begin_half(struct frames *frames, uint32_t half);
 void frames_end_half(struct frames *frames, uint32_t half);
 /** Exchanges the halves of all frames in flight. Call before the halves of this frame. */
 void frames_swap_halves(struct frames *frames);
+/** Halves of the frames in flight are not read. Before halves of this frame. */
+void frames_forget_halves(struct frames *frames);
 bool frames_end(struct frames *frames, const struct frames_end *end);
 /** Writes the pixels of the last frame, whose `read` was set, as a PNG file. */
 bool frames_write(struct frames *frames, const char *path);

@@ -45,6 +45,7 @@ void viewer_close_other(struct viewer *v)
 static void forget_times(struct viewer *v)
 {
     memset(v->app.times, 0, sizeof v->app.times);
+    frames_forget_halves(&v->frames);
 }
 
 /* A scene of pbrt is shared with A, with programs of its own. */
