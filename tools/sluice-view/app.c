@@ -40,7 +40,7 @@ static void begin_scene(struct view_app *app, bool walks)
 {
     struct vec3 bounds[2];
     app->camera = stage_camera(app->stage);
-    app->is_frozen = false; /* wants of the scene before were frozen elsewhere */
+    app->is_frozen = false; /* requests of the previous scene were frozen at another camera */
     stage_bounds(app->stage, bounds);
     app->center = vec3_mix(bounds[0], bounds[1], 0.5f);
     app->selected = STAGE_NO_TEXTURE;
@@ -164,7 +164,7 @@ bool app_compares(const struct view_app *app)
     return app->other && app->settings.view != VIEW_TRUTH;
 }
 
-/* Flicker shows each four times a second, A first. */
+/* Flicker changes the picture 4 times per second, and begins with A. */
 bool app_shows_b(const struct view_app *app, float x)
 {
     const struct view_settings *s = &app->settings;
@@ -186,7 +186,7 @@ bool app_has_divider(const struct view_app *app)
                                      : app->settings.compare == VIEW_DIVIDER;
 }
 
-/* The first touch gives the camera to the visitor. */
+/* The first input that moves the camera ends its tour. */
 static void touch(struct view_app *app)
 {
     if (!app->touched)
@@ -194,7 +194,7 @@ static void touch(struct view_app *app)
     app->touched = true;
 }
 
-/* As they were at this event: a chord may begin and end between two frames. */
+/* Modifiers at the present key event. A chord may begin and end between two frames. */
 static unsigned modifiers_held(const struct view_app *app)
 {
     return (app->held[VIEW_KEY_SHIFT] ? VIEW_SHIFT : 0) |
@@ -302,7 +302,7 @@ static void read_motion(struct view_app *app, const struct ui_input *input,
     if (input->wheel != 0 && !ui_owns_mouse()) {
         touch(app);
         wish->dolly = input->wheel;
-        if (app->camera.span > 0) { /* parallel rays see the same from any distance */
+        if (app->camera.span > 0) { /* orthographic: distance does not matter */
             app_say(app, "Height of the view: %.3g m", 2 * (double)app->camera.span);
         } else if (app->settings.motion != VIEW_ORBIT) {
             app->settings.speed =
@@ -347,7 +347,7 @@ void app_end_demonstration(struct view_app *app)
     app->demonstrating = false;
 }
 
-/* Down to 16 MiB within a second, and back in the last one. */
+/* Lowers the budget to 16 MiB in the first second, and raises it in the last one. */
 static void demonstrate(struct view_app *app, double seconds)
 {
     const double least = 16.0 * 1048576.0;
@@ -355,14 +355,14 @@ static void demonstrate(struct view_app *app, double seconds)
     app->demonstration += seconds;
     const double at = app->demonstration;
     const double part =
-        fmin(1.0, fmin(at, DEMONSTRATION_SECONDS - at)); /* 0: as before, 1: 16 MiB */
+        fmin(1.0, fmin(at, DEMONSTRATION_SECONDS - at)); /* 0: budget from before, 1: 16 MiB */
     app->settings.budget = (uint64_t)(exp2(log2(most) + (log2(least) - log2(most)) * part));
     if (at < DEMONSTRATION_SECONDS)
         return;
     app_end_demonstration(app);
 }
 
-/* The setting may come from a key, a control, a script or a file. */
+/* Keeps the camera of a freeze. A key, a control, a script or a file may set the setting. */
 static void note_freeze(struct view_app *app)
 {
     const bool frozen = app->settings.freeze_wants != 0;

@@ -16,7 +16,7 @@
 
 #define SCENE_SUFFIXES ".gltf|.glb|.obj|.pbrt"
 #define MOST_BESIDE 32u
-#define MOST_ENTRIES 4096u /* that are looked at, in all folders */
+#define MOST_ENTRIES 4096u /* entries read, in all folders together */
 
 static bool is_listed(const struct browser *b, const char *path)
 {
@@ -32,13 +32,13 @@ static void add(struct browser *b, enum browser_place_kind kind, const char *pat
     if (places)
         b->places = places;
     char *copy = places ? strdup(path) : NULL;
-    if (!copy) /* a shorter list */
+    if (!copy) /* out of memory: the list stays shorter */
         return;
     b->places[b->place_count++] = (struct browser_place){
         kind, copy, path[0] && !remote_is_url(path) && access(path, F_OK) != 0};
 }
 
-/* Scenes of a folder, and those of the folders in it if `below`. */
+/* Finds scenes in a folder, and in its subfolders if `below`. */
 static void find_scenes(struct browser *b, const char *folder, bool below, uint32_t most,
                         uint32_t *looked)
 {
@@ -63,7 +63,7 @@ static void find_scenes(struct browser *b, const char *folder, bool below, uint3
     free(entries);
 }
 
-/* Scenes are often in folders of their own, beside each other. */
+/* Finds scenes beside the shown one. Scenes often have neighboring folders of their own. */
 static void find_beside(struct browser *b)
 {
     char folder[BROWSER_PATH];

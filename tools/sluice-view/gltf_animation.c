@@ -11,7 +11,7 @@ static const cJSON *member(const cJSON *object, const char *name)
     return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
-/* Checked already: whole, and below the count. */
+/* Returns a checked index: whole, and below the count. */
 static uint32_t index_of(const cJSON *object, const char *name)
 {
     const cJSON *item = member(object, name);
@@ -92,7 +92,7 @@ bool gltf_read_tracks(struct gltf_file *file, uint32_t animation, const struct g
         tracks->items = items;
         const bool read =
             read_sampler(file, cJSON_GetArrayItem(samplers, (int)index_of(c, "sampler")), &track);
-        tracks->items[tracks->count++] = track; /* which owns what was read */
+        tracks->items[tracks->count++] = track; /* owns its data even if reading failed */
         if (!read)
             return false;
     }
@@ -109,7 +109,7 @@ void gltf_tracks_finish(struct gltf_tracks *tracks)
     *tracks = (struct gltf_tracks){0};
 }
 
-/* The number of the last key at or before a time; `before`: before it. 0 at least. */
+/* Returns the last key at or before a time; `before`: the last key before it. At least 0. */
 static uint32_t find_key(const struct gltf_track *track, double seconds, bool before)
 {
     uint32_t low = 0, high = track->count;
@@ -130,7 +130,7 @@ static void normalize(double q[4])
         q[i] = length > 0 ? q[i] / length : i == 3;
 }
 
-/* The shorter way. */
+/* Interpolates quaternions along the shorter arc. */
 static void slerp(const double a[4], const double b[4], double part, double out[4])
 {
     double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
@@ -146,7 +146,7 @@ static void slerp(const double a[4], const double b[4], double part, double out[
         out[i] = first * a[i] + sign * second * b[i];
 }
 
-/* Hermite's spline of the specification, appendix C. */
+/* Cubic Hermite spline of glTF 2.0, appendix C. */
 static void cubic(const double *a, const double *b, uint32_t n, double time, double part,
                   double *out)
 {
@@ -202,7 +202,7 @@ static void write_trs(const double t[3], const double q[4], const double s[3], d
     m[15] = 1;
 }
 
-/* Checked already: numbers, as many as there are. */
+/* Reads checked numbers of a node's property. */
 static bool get(const cJSON *node, const char *name, int count, double *values)
 {
     const cJSON *item = member(node, name);

@@ -7,19 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_POINTS 20000u        /* of a path */
-#define MOST_WORK 20000000u       /* points times nodes times tracks */
-#define STEP_SECONDS (1.0 / 60.0) /* between points: paths are straight between them */
+#define MOST_POINTS 20000u        /* per path */
+#define MOST_WORK 20000000u       /* points * nodes * tracks */
+#define STEP_SECONDS (1.0 / 60.0) /* between points; paths are straight between points */
 
 struct reading {
     struct gltf_file *file;
     void (*note)(void *user, const char *where, const char *problem);
     void *user;
     struct file_cameras *cameras;
-    uint32_t *parents; ///< of nodes; GLTF_NONE: none
+    uint32_t *parents; ///< parent of each node; GLTF_NONE: none
 };
 
-/* A time of a path; `before`: as it is just before it. */
+/* A time of a path; `before`: just before it, where a step has not happened. */
 struct moment {
     double seconds;
     bool before;
@@ -40,7 +40,7 @@ void file_cameras_finish(struct file_cameras *cameras)
     *cameras = (struct file_cameras){0};
 }
 
-/* Of a member that must be a number in a range. */
+/* Reads a member that must be a number from `least` to `most`. */
 static bool get(const cJSON *object, const char *name, double least, double most, float *value)
 {
     const cJSON *item = member(object, name);
@@ -51,7 +51,7 @@ static bool get(const cJSON *object, const char *name, double least, double most
     return true;
 }
 
-/* Returns what is wrong with it; NULL: nothing. */
+/* Reads the lens of a camera. Returns a description of its fault; NULL: none. */
 static const char *read_lens(const cJSON *camera, struct view_camera *lens)
 {
     const char *type = cJSON_GetStringValue(member(camera, "type"));
@@ -81,7 +81,7 @@ static struct vec3 column_of(const double m[16], int column, double scale)
     return (struct vec3){(float)(scale * c[0]), (float)(scale * c[1]), (float)(scale * c[2])};
 }
 
-/* Scales do not count. False if axes have no direction. */
+/* Places a camera by a matrix, without its scale. False if an axis has no direction. */
 static bool place(const double m[16], const struct view_camera *lens, struct view_camera *camera)
 {
     double lengths[3];
@@ -109,7 +109,7 @@ static int compare(const void *left, const void *right)
     return a->before == b->before ? 0 : a->before ? -1 : 1;
 }
 
-/* Keys, if there are not too many, and times between them. */
+/* Chooses times of a path: keys, unless there are too many, and times between keys. */
 static struct moment *choose_moments(const struct gltf_tracks *tracks, uint32_t nodes,
                                      uint32_t *count)
 {
@@ -188,7 +188,7 @@ static bool add(struct reading *r, const char *name, uint32_t number, const char
     return true;
 }
 
-/* The first animation moves the camera itself; others move copies of it. */
+/* Adds the paths of animations. The first path goes to the camera, each further one to a copy. */
 static bool add_paths(struct reading *r, const struct gltf_chain *chain, const char *name,
                       uint32_t number, const struct view_camera *camera, struct file_camera *first)
 {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define WHERE_SIZE 96
-#define MOST_NUMBERS (1u << 28) /* of all animations: samplers may share accessors */
+#define MOST_NUMBERS (1u << 28) /* in all animations; shared accessors count for each sampler */
 
 static const cJSON *member(const cJSON *object, const char *name)
 {
@@ -57,7 +57,7 @@ static bool check_sampler(struct gltf_file *file, const cJSON *sampler, const ch
     return spend(file, where, times.count) && check_times(file, where, input, &times);
 }
 
-/* Values of the sampler must be those that the property wants: a whole number of them per key. */
+/* Checks that a sampler has a whole number of values per key, in the format of the property. */
 static bool check_values(struct gltf_file *file, const cJSON *sampler, const char *where,
                          enum gltf_track_path path)
 {
@@ -99,7 +99,7 @@ static bool check_finite(struct gltf_file *file, const cJSON *sampler, const cha
     return good;
 }
 
-/* Paths of extensions are passed over, as are weights of meshes. */
+/* Checks a channel. Ignores paths of extensions and weights of meshes. */
 static bool check_channel(struct gltf_file *file, const cJSON *channel, const char *where,
                           cJSON *const *samplers, uint64_t count)
 {

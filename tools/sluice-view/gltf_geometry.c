@@ -9,15 +9,15 @@
 #include <string.h>
 
 /*
- * Assimp numbers materials in the order in which it meets them, opens what images name, and lets
- * extensions change what it reads. So it gets a file of its own: the geometry, buffers by their
- * number, and materials whose names are their numbers.
+ * Assimp numbers materials in the order of their use, opens image files, and lets extensions change
+ * its input. So Assimp reads a generated file: the geometry, buffers named by number, and materials
+ * named by number.
  */
 #define SCENE_NAME "scene.gltf"
 
 struct memory_files {
     const struct gltf_file *gltf;
-    char *text; ///< of SCENE_NAME
+    char *text; ///< contents of SCENE_NAME
 };
 
 struct memory_file {
@@ -71,7 +71,7 @@ static void flush(struct aiFile *base)
     (void)base;
 }
 
-/* Names may come with a folder in front. */
+/* Finds the bytes of a name. Assimp may put a folder in front of the name. */
 static bool find_bytes(const struct memory_files *files, const char *path, struct gltf_bytes *bytes)
 {
     const char *slash = strrchr(path, '/');

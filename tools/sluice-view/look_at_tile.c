@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-#define DISTANCE 0.06f /* of the scene's diagonal */
+#define DISTANCE 0.06f /* part of the scene's diagonal */
 
-/* Middle of a tile, as parts of the texture. */
+/* Finds the UVs of a tile's center. */
 static bool middle_of(const struct view_app *app, const struct stage_texture *texture,
                       const SluiceTile *tile, float middle[2])
 {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #define SECONDS 0.1
-#define COMPACTED_TILES 64u /* at a time: each is read again in sparse mode */
+#define COMPACTED_TILES 64u /* per call; sparse mode reads each moved tile again */
 
 bool memory_slot_get(const struct stage *stage, const struct view_facts *facts, uint32_t heap,
                      uint32_t slot, struct memory_slot *to)
@@ -38,7 +38,7 @@ uint32_t memory_state_color(SluiceTileState state)
     }
 }
 
-/* As ageColor of shaders/view_colors.glsl. */
+/* Same colors as ageColor in shaders/view_colors.glsl. */
 uint32_t memory_age_color(double seconds)
 {
     return seconds < 0      ? UI_GRAY
@@ -49,7 +49,7 @@ uint32_t memory_age_color(double seconds)
                             : UI_COLOR(65, 68, 135, 255);
 }
 
-/* As identityColor of shaders/scene.frag. */
+/* Same colors as identityColor in shaders/view_colors.glsl. */
 uint32_t memory_texture_color(const struct stage *stage, uint32_t texture)
 {
     static const double offsets[3] = {0.0, 0.33, 0.67};
@@ -134,7 +134,8 @@ struct memory_sums memory_sums_of(const struct stage *stage)
     return sums;
 }
 
-/* No scene is open at first, and recordings are only shown. */
+/* Returns true if a streamer exists. Recordings have none, nor the viewer before its first scene.
+ */
 static bool has_streamer(struct view_app *app)
 {
     if (app->stage && stage_streamer(app->stage))

@@ -8,7 +8,7 @@
 
 #define LINE_SIZE 512u
 
-/* One for the program, as text_say's listener is. */
+/* The program has one list, since text_say has one listener. */
 static struct {
     pthread_mutex_t lock;
     char lines[MESSAGES_KEPT][LINE_SIZE]; ///< line n is at n % MESSAGES_KEPT
@@ -62,7 +62,7 @@ bool messages_get(uint32_t number, char *text, size_t size)
     return kept;
 }
 
-/* The first row counts whose words are in the line. */
+/* Advice by words of a line. The first row that matches is used. */
 static const struct {
     const char *words, *advice;
 } advices[] = {

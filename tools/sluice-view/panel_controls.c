@@ -15,7 +15,7 @@
 #define LEAST_MIB 8.0
 #define SLIDER_WIDTH 190.0f
 
-/* Sliders have no room for all that the command line takes. */
+/* Returns the end of a slider, which may be below the maximum of the command line. */
 static double slider_most(const struct control *control)
 {
     static const struct {
@@ -40,14 +40,14 @@ static double slider_most(const struct control *control)
     return control->option.maximum;
 }
 
-/* Where a size is on the slider, 0 to 1. */
+/* Position of a size on the slider, 0 to 1. */
 static float place_of(double mib, double most)
 {
     const double place = mib > LEAST_MIB ? log(mib / LEAST_MIB) / log(most / LEAST_MIB) : 0.0;
     return (float)(place < 1.0 ? place : 1.0);
 }
 
-/* Under the slider: what is wanted now, and everything. */
+/* Draws marks under the slider: memory wanted now, and memory of all tiles. */
 static void draw_budget_ticks(const struct view_app *app, double most)
 {
     float r[4];
@@ -61,7 +61,7 @@ static void draw_budget_ticks(const struct view_app *app, double most)
     ui_hint("White mark: wanted now. Gray mark: everything.");
 }
 
-/* Before the slider is released. */
+/* Draws the memory that requests need, while the slider is held. */
 static void draw_budget_ghost(struct view_app *app)
 {
     char size[32];
@@ -148,7 +148,7 @@ static void draw_widget(struct view_app *app, const struct control *control, con
     }
 }
 
-/* Says how soon a region of 8 x 8 pixels is noticed. */
+/* Draws the number of frames until feedback notices a region of 8 x 8 pixels. */
 static void draw_feedback_outlook(const struct view_app *app)
 {
     const uint32_t count = app->stage ? feedback_texture_count(app->stage) : 1;

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#define NEAR_PART 0.02f /* of the scene's diagonal */
+#define NEAR_PART 0.02f /* this and the next two: parts of the scene's diagonal */
 #define FAR_PART 0.25f
 #define BOOKMARK_PART 0.015f
 #define MOST_SEGMENTS 256u

@@ -12,8 +12,8 @@
 
 #define SWATCH_WIDTH 22.0f
 
-/* Strokes of a reason's pattern over a swatch, as markPattern in shaders/view_colors.glsl has it.
- */
+/* Draws the pattern of a reason over a swatch. Same pattern as markPattern in
+ * shaders/view_colors.glsl. */
 static void draw_pattern(enum mark_reason reason, const float r[4])
 {
     const uint32_t dark = UI_COLOR(10, 10, 10, 255);
@@ -121,7 +121,7 @@ static void draw_checks(void)
     draw_color(UI_COLOR(255, 0, 255, 255), "nothing is resident");
 }
 
-/* Its colors with a scale, its mean, and its value under the mouse. */
+/* Draws colors and scale of FLIP, its mean, and its value under the mouse. */
 static void draw_flip(const struct view_app *app)
 {
     enum { STEPS = 64 };
@@ -184,7 +184,7 @@ static void draw_traced_missing(void)
     draw_swatch(yellow, MARK_BUDGET, "memory is short");
 }
 
-/* Returns whether the view has a legend of its own in scenes that are traced. */
+/* Draws the legend of a view of traced scenes. False if the view has no legend of its own there. */
 static bool draw_traced(const struct view_app *app)
 {
     switch (app->settings.view) {
@@ -225,13 +225,14 @@ static bool side_is_open(const struct view_app *app, bool right)
     return false;
 }
 
-/* In the corner that no panel is above; between two panels there is room for its title alone. */
+/* Draws the legend in a lower corner, on a side without a panel. Between two panels only its title
+ * has room. */
 void panel_legend(struct view_app *app)
 {
     const float scale = ui_scale(), margin = 12 * scale;
     const bool left = side_is_open(app, false), right = side_is_open(app, true);
     const float pivot[2] = {left && !right ? 1 : 0, 1};
-    const float beside = (app->width - app->line_width) / 2 - margin; /* of the line */
+    const float beside = (app->width - app->line_width) / 2 - margin; /* room beside the line */
     const float bottom = app->line_width > 0 && app->legend_width > beside ? 86 * scale : margin;
     const float placement[4] = {left && !right ? app->width - margin : margin, app->height - bottom,
                                 0, 0};

@@ -14,11 +14,11 @@ void panel_open_toggle(struct view_app *app)
     app->open[PANEL_OPEN] = !app->open[PANEL_OPEN];
     if (!app->open[PANEL_OPEN])
         return;
-    app->settings.panels = 0; /* it takes the keys, so it is seen */
+    app->settings.panels = 0; /* shown, since it takes the keys */
     browser_begin(&app->browser);
 }
 
-/* Without its last character. */
+/* Removes the last character of the filter. */
 static void shorten_filter(struct browser *b)
 {
     char filter[sizeof b->filter];
@@ -89,7 +89,7 @@ void panel_open_type(struct view_app *app, const char *text)
         browser_set_filter(b, filter);
 }
 
-/* What the list does with a click on a line. */
+/* Handles clicks on a line of a list: one selects, two open. */
 static void take_click(struct view_app *app, enum browser_side side, uint32_t line, int clicks)
 {
     struct browser *b = &app->browser;

@@ -41,7 +41,7 @@ const char *panel_shorten(const char *text, float width, char *shortened, size_t
     return shortened;
 }
 
-/* From dark blue through green to yellow they differ in brightness, too; level 0 is red. */
+/* Level 0 is red. Dark blue, green and yellow differ in brightness, for color-blind people. */
 uint32_t panel_level_color(uint32_t level)
 {
     static const uint32_t colors[] = {UI_COLOR(214, 40, 40, 255),   UI_COLOR(247, 127, 0, 255),
@@ -58,7 +58,7 @@ bool panel_is_right(enum app_panel panel)
            panel == PANEL_DEVICE || panel == PANEL_TRADE || panel == PANEL_FILE;
 }
 
-/* One panel on each side, below what is always there, so that none covers another. */
+/* Places one panel on each side, below the fixed elements, so that no panel covers another. */
 bool panel_begin(struct view_app *app, enum app_panel panel, const char *title, float width,
                  float height)
 {
@@ -130,7 +130,7 @@ void panels_draw_picture(const struct view_app *app)
     }
     if (stage_played(app->stage))
         return;                               /* panels_draw draws it */
-    if (app_has_second(app) && !app->other) { /* it is being prepared */
+    if (app_has_second(app) && !app->other) { /* B is being prepared */
         ui_picture(UI_TEXTURE_PICTURE, UI_MODE_PLAIN, all, uv, UI_COLOR(255, 255, 255, 255));
         return;
     }
