@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define DIAGONAL 20.0f
-#define LEAST_UPRIGHT 0.3f /* of the picture's up vector along y or z */
+#define LEAST_UPRIGHT 0.3f /* smallest part of the picture's up vector along y or z */
 
 static struct vec3 column_of(const float m[12], int column)
 {
@@ -18,7 +18,7 @@ static struct vec3 unit_vector(int axis, float sign)
     return (struct vec3){axis == 0 ? sign : 0, axis == 1 ? sign : 0, axis == 2 ? sign : 0};
 }
 
-/* y or z, which is more upright in the picture; x only if neither is. */
+/* Returns the axis, y or z, that is more upright in the picture; x if neither is upright. */
 static int find_up(const float up[3])
 {
     const int axis = fabsf(up[2]) > fabsf(up[1]) ? 2 : 1;
@@ -72,7 +72,7 @@ struct vec3 pbrt_frame_position(const struct pbrt_frame *f, const float world[3]
     return vec3_scale(to_viewer(f, (struct vec3){world[0], world[1], world[2]}), 1 / f->unit);
 }
 
-/* The axes of a camera in the world: right, up and forward. */
+/* Writes the axes of a camera in the world: right, up and forward. */
 static void write_axes(const struct pbrt_frame *f, const struct view_camera *camera,
                        struct vec3 axes[3])
 {
@@ -88,7 +88,7 @@ static bool is_same(const struct view_camera *a, const struct view_camera *b)
            a->pitch == b->pitch;
 }
 
-/* The scene's camera, turned by what lies between its view and that of `camera`. */
+/* Turns the scene's camera by the rotation from its view to the view of `camera`. */
 void pbrt_frame_matrix(const struct pbrt_frame *f, const struct view_camera *camera,
                        float matrix[12])
 {

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_MEMORY (1ull << 30) /* a few bytes of a trace can ask for a billion tiles */
-#define EVENT_CAPACITY 65536u    /* of the player: the events of one call */
+#define MOST_MEMORY                                                                                \
+    (1ull << 30)              /* limit, since a few bytes of a trace can declare a billion tiles */
+#define EVENT_CAPACITY 65536u /* events of one call, in the player */
 #define PROGRESS_FRAMES 64u
 
 static void *allocate(void *user, size_t size, size_t alignment)
@@ -95,7 +96,7 @@ static bool add_texture(struct played *p, SluiceTextureId id)
     return true;
 }
 
-/* Those of a snapshot. */
+/* Adds the textures of the snapshot that the recording begins with. */
 static bool add_first_textures(struct played *p)
 {
     uint32_t count = 0;
@@ -130,10 +131,11 @@ static struct played_frame *add_frame(struct played *p, uint64_t first_call)
     return &p->frames[p->frame_count++];
 }
 
-/* A frame ends behind sluiceGetMinMipUpdates, or before feedback with another time stamp. */
+/* The first pass. A frame ends after sluiceGetMinMipUpdates, or before feedback with another time
+ * stamp. */
 struct pass {
-    struct played_frame *frame; ///< that is being played; NULL: none yet
-    bool fed;                   ///< a call of it gave feedback, at the frame's time
+    struct played_frame *frame; ///< frame that is being played; NULL: none yet
+    bool fed;                   ///< a call of the frame gave feedback, with the frame's time
     SluiceTraceCallKind before;
     SluiceStreamedTextureStatistics totals; ///< at the begin of the frame
     uint64_t calls, stale;
@@ -145,7 +147,8 @@ static bool is_feedback(const SluiceTraceCall *call)
            call->kind == SLUICE_TRACE_CALL_MATCH_PRIMARY;
 }
 
-/* Failures of loads may be reported between frames, with the time of the frame before. */
+/* Returns true if a call begins a frame. Failed loads may be reported between frames, with the time
+ * of the previous frame. */
 static bool begins_frame(const struct pass *pass, const SluiceTraceCall *call)
 {
     const bool updates = call->kind == SLUICE_TRACE_CALL_GET_MINMIP_UPDATES;
@@ -241,7 +244,7 @@ static SluiceResult play_next(struct played *p, struct pass *pass, bool *ended)
     return SLUICE_SUCCESS;
 }
 
-/* Of the last frame, nobody knows. */
+/* Measures the duration of each frame but the last, whose duration is unknown. */
 static void measure_times(struct played *p)
 {
     for (uint32_t i = 0; i + 1 < p->frame_count; i++) {

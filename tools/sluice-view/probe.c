@@ -13,7 +13,7 @@ static uint32_t smaller(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-/* The tile of a level over a texel of level 0. */
+/* Returns the tile of a level that covers a texel of level 0. */
 static uint32_t tile_over(const SluiceStreamedTextureLayout *layout, const uint32_t texel[2],
                           uint32_t level)
 {
@@ -64,8 +64,9 @@ void probe_point(const struct stage *stage, const struct view_facts *facts,
         look_at_tile(stage, facts, texture->id, probe);
 }
 
-/* As sluiceComputeLod of shaders has it: the shorter axis of the pixel's footprint, an ellipse, or
- * the longer one by the most samples. */
+/* Computes the level of detail like sluiceComputeLod of the shaders. The longer side of the pixel's
+ * footprint counts. With anisotropic filtering the footprint is an ellipse: its shorter axis
+ * counts, but at least the longer side divided by the anisotropy. */
 void probe_pixel(const float texels[4], const struct view_settings *settings,
                  struct view_probe *probe)
 {

@@ -17,7 +17,7 @@ struct opening {
     struct gltf_file *file;
     const char *cache;
     struct scene_data *scene;
-    uint32_t *images; ///< of the scene; CONTENT_COUNT per texture
+    uint32_t *images; ///< images of the scene; CONTENT_COUNT per texture
 };
 
 static void say_extension(void *user, const char *extension, bool required)
@@ -105,7 +105,7 @@ static bool read_material(struct opening *o, uint32_t index)
         if (k == SLOT_COLOR)
             material->missing = has_image && slot->image == SCENE_NO_IMAGE;
     }
-    /* Light of an image that is missing would be everywhere. */
+    /* Without its image, a material would emit light everywhere. */
     if (material->slots[SLOT_EMISSIVE].image == SCENE_NO_IMAGE &&
         cJSON_GetObjectItemCaseSensitive(o->file->lists[GLTF_MATERIALS].items[index],
                                          "emissiveTexture"))
@@ -113,7 +113,7 @@ static bool read_material(struct opening *o, uint32_t index)
     return true;
 }
 
-/* Textures that are read as colors and as numbers count once. */
+/* Counts textures. A texture that is read as colors and as numbers counts once. */
 static uint32_t count_images(const struct gltf_file *file)
 {
     return file->lists[GLTF_TEXTURES].count;

@@ -15,7 +15,7 @@ struct scene_load {
     struct scene_data scene;
     struct scene_progress progress;
     atomic_bool done;
-    struct scene_load *next; ///< of the list of canceled loads
+    struct scene_load *next; ///< next of the list of canceled loads
 };
 
 static void *open_scene(void *user)

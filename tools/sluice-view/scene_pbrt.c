@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CLUSTER_SIZE 1024u /* as demand-pbrt has it */
+#define CLUSTER_SIZE 1024u /* same value as in demand-pbrt */
 #define MAX_DEPTH 64u
 
 bool scene_pbrt_takes(const char *path)
@@ -47,8 +47,8 @@ static bool list_pictures(struct scene_pbrt *p)
     return p->pictures;
 }
 
-/* Vertical field of view, in radians. The scene's is that of the shorter side; the viewer only
- * draws lines with this one. */
+/* Returns the vertical field of view, in radians. The scene has the field of view of the shorter
+ * side. The viewer uses the vertical one for lines only. */
 static float vertical_fov(const SluicePbrtSceneInfo *info)
 {
     const float fov = info->fieldOfView * 3.14159265f / 180.0f;

@@ -12,10 +12,10 @@
 
 #define PANELS 24u
 #define STEP 2.4f /* meters from a panel to the next one on its side */
-#define SIDE 1.9f /* of panels, at most */
+#define SIDE 1.9f /* meters; longest side of a panel */
 #define TAU 6.2831853f
 
-/* A different picture for each seed. */
+/* Parameters of a computed picture. Each seed makes a different picture. */
 struct paint {
     float colors[3][3];
     float waves, turn;
@@ -33,8 +33,7 @@ static float hash(uint32_t i)
     return (float)((i ^ i >> 15) & 0xFFFFu) / 65535.0f;
 }
 
-/* Bands of waves and, at finer and finer scale, grids of lines: what is coarse shows fewer of them.
- */
+/* Paints bands of waves and grids of ever finer lines. A coarse level shows fewer lines. */
 static void paint_texel(void *user_data, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
                         uint32_t height, float rgba[4])
 {
@@ -79,8 +78,8 @@ static void choose_paint(uint32_t seed, struct paint *paint)
                 paint->colors[k][c] = (seed == PANELS ? 0.26f : 0.42f) + 0.03f * (float)k;
 }
 
-/* Paints `seed`, which is one of PANELS pictures, the floor or the walls, behind the images that
- * are there. Its source points to `paint`, which the scene frees behind it. */
+/* Adds picture `seed`: one of PANELS pictures, the floor or the walls. Its source points to
+ * `paint`, which the scene frees after the source. */
 static bool add_image(struct scene_data *scene, struct paint *paint, uint32_t seed)
 {
     char name[32];
@@ -105,7 +104,7 @@ static bool add_image(struct scene_data *scene, struct paint *paint, uint32_t se
            sluiceCreateProceduralImageSource(&image, &info, NULL, &added->source) == SLUICE_SUCCESS;
 }
 
-/* `right` and `down` span it from its top left corner. */
+/* Adds a quad, spanned by `right` and `down` from its top left corner. */
 static void add_quad(struct scene_data *scene, struct vec3 corner, struct vec3 right,
                      struct vec3 down, uint32_t image, float repeat_u, float repeat_v)
 {
@@ -130,7 +129,7 @@ static void add_quad(struct scene_data *scene, struct vec3 corner, struct vec3 r
         scene->indices[scene->index_count++] = first + corners[i];
 }
 
-/* As high or as wide as the wall allows. */
+/* Fits a panel to SIDE, keeping the proportions of its image. */
 static void fit_panel(const struct scene_data *scene, uint32_t image, float *width, float *height)
 {
     SluiceImageInfo info = {.structSize = sizeof info};
@@ -163,7 +162,7 @@ static void add_panel(struct scene_data *scene, uint32_t i, uint32_t image)
     scene->materials[scene->material_count - 1].missing = image == SCENE_NO_IMAGE;
 }
 
-/* The floor's and the walls' images are the last two. */
+/* Adds floor and walls. Their images are the last two. */
 static void add_walls(struct scene_data *scene, uint32_t panels)
 {
     const float length = STEP * (float)((panels + 1) / 2) + 3.0f, front = 3.5f;
@@ -180,7 +179,7 @@ static void add_walls(struct scene_data *scene, uint32_t panels)
              (struct vec3){0, -2.8f, 0}, walls, 2, 1);
 }
 
-/* Along the room with looks to both sides, and back. */
+/* Adds a tour along the room and back. The camera looks to both sides. */
 static bool add_tour(struct scene_data *scene)
 {
     static const float stops[][4] = {
@@ -201,7 +200,7 @@ static bool add_tour(struct scene_data *scene)
     return true;
 }
 
-/* Stands before each panel, and goes back. */
+/* Adds a tour that stops before each panel, and goes back. */
 static bool add_tour_of(struct scene_data *scene, uint32_t panels)
 {
     struct view_camera first = {0};

@@ -5,7 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Where a follower is sampled against its primary: scale and offset, in 4096ths at least. */
+/* Finds the scale and offset from a primary's UVs to its follower's UVs. False if the UVs rotate,
+ * or if a scale is not 1/4096 to 4096, or an offset exceeds 4096. */
 static bool find_transform(const struct scene_slot *primary, const struct scene_slot *follower,
                            SluiceUvTransform *to)
 {
@@ -38,7 +39,8 @@ static bool is_same(const SluiceUvTransform *t)
            fabsf(t->offsetU) < 1e-6f && fabsf(t->offsetV) < 1e-6f;
 }
 
-/* A map of the primary knows UVs of 0 to 1 only: what repeats must repeat whole (decision 117). */
+/* Returns true if the wrap modes allow following. The primary's map covers UVs 0 to 1 only, so a
+ * follower must repeat a whole number of times (decision 117). */
 static bool can_follow(const struct scene_image *primary, const struct scene_image *follower,
                        SluiceUvTransform *t)
 {
@@ -51,7 +53,7 @@ static bool can_follow(const struct scene_image *primary, const struct scene_ima
            follower->wrap_v == repeat && is_whole(t->scaleU) && is_whole(t->scaleV);
 }
 
-/* Whether all uses of an image are beside one color image, at the same place. */
+/* Returns true if all materials use an image with the same color image and the same transform. */
 static bool follows_one(const struct scene_data *scene, uint32_t image, uint32_t *primary,
                         SluiceUvTransform *transform)
 {

@@ -25,7 +25,7 @@ static const struct {
                                  [SCENE_FRAGMENT] = {"scene.frag", NULL},
                                  [SCENE_MASKED_FRAGMENT] = {"scene.frag", "-DMASKED"}};
 
-/** Lines of the file that Meson writes beside the program. */
+/** Paths: lines of the file that Meson writes beside the program. */
 struct places {
     char compiler[4096], shaders[4096], include[4096];
 };
@@ -74,11 +74,11 @@ static bool read_words(const char *path, struct shader_code *code)
         free(bytes);
         return false;
     }
-    code->words = (uint32_t *)(void *)bytes; /* of malloc */
+    code->words = (uint32_t *)(void *)bytes; /* aligned, since malloc allocated it */
     return true;
 }
 
-/* The compiler writes its messages to standard output. */
+/* Shows messages of the compiler, which writes them to standard output. */
 static void say_messages(const char *path)
 {
     char line[1024];

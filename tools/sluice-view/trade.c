@@ -52,7 +52,7 @@ static void fail(struct trade *t, const char *reason)
     t->state = TRADE_FAILED;
 }
 
-/* In the build tree, or installed beside this program. */
+/* Finds sluice-tradeoff in the build tree, or installed beside this program. */
 static char *find_program(void)
 {
     static const char *const places[] = {"../sluice-tradeoff/sluice-tradeoff", "sluice-tradeoff"};
@@ -80,8 +80,8 @@ static void add_bases(const struct view_settings *settings, struct text_list *li
     for (uint32_t i = 0; i < count; i++) {
         if (!control_is_of_sets(&controls[i]) || controls[i].flags & CONTROL_PASSING ||
             control_is_default(&controls[i], settings) ||
-            strcmp(controls[i].option.name, "threads") == 0) /* an argument of the runs */
-            continue; /* sizes and views are the sweep's own */
+            strcmp(controls[i].option.name, "threads") == 0) /* passed as an argument of the runs */
+            continue; /* the sweep sets sizes and views itself */
         char *base = memory_text("%s=%s", controls[i].option.name,
                                  control_write(&controls[i], settings, value, sizeof value));
         add(list, "--base", base);
@@ -154,7 +154,7 @@ void trade_begin(struct trade *t, const struct trade_request *request)
         t->error = memory_copy_text(TRADE_FOLDER "/messages.txt");
         const struct child_info info = {
             .arguments = t->arguments.items, .out = t->out, .error = t->error};
-        unlink(TRADE_FOLDER "/sweep.runs"); /* of the sweep before */
+        unlink(TRADE_FOLDER "/sweep.runs"); /* left by the previous sweep */
         t->state = TRADE_RUNS;
         if (!child_begin(&info, &t->child))
             fail(t, strerror(errno));
@@ -166,11 +166,12 @@ void trade_cancel(struct trade *t)
 {
     if (t->state != TRADE_RUNS)
         return;
-    kill(t->child.pid, SIGTERM); /* it ends its own children, whose groups are others */
+    kill(t->child.pid,
+         SIGTERM); /* sluice-tradeoff ends its children, which have groups of their own */
     t->state = TRADE_CANCELED;
 }
 
-/* Each line is a run. */
+/* Counts the lines of a file. Each line is a run. */
 static unsigned count_lines(const char *path)
 {
     unsigned count = 0;
@@ -182,7 +183,7 @@ static unsigned count_lines(const char *path)
     return count;
 }
 
-/* Folders of complete runs have a repeat and a key in their name, and no suffix. */
+/* Counts complete runs. Their folders have a repeat and a key in their name, and no suffix. */
 static unsigned count_runs(const char *path)
 {
     unsigned count = 0;
@@ -196,7 +197,7 @@ static unsigned count_runs(const char *path)
     return count;
 }
 
-/* "quality       budget 16" below the table. */
+/* Reads the advice: lines such as "quality       budget 16" below the table. */
 static void read_advice(struct trade *t)
 {
     static const char *const names[TRADE_ADVICE] = {"quality", "balanced", "small memory"};
@@ -250,7 +251,7 @@ void trade_wait(struct trade *t)
         take_end(t, child_wait(&t->child, &status), status);
 }
 
-/* A browser may be a child of xdg-open, or xdg-open itself. */
+/* xdg-open may become the browser, or start the browser as a child. */
 void trade_open_page(void)
 {
     struct text_list arguments = {0};
