@@ -18,15 +18,15 @@
 #include <string.h>
 
 #define LEAST_BUDGET (4ull << 20)
-#define FROZEN_SECONDS 1e9 /* frozen wants: feedback that is not written takes nothing back */
+#define FROZEN_SECONDS 1e9 /* feedback timeout while requests are frozen (L) */
 
 struct stage {
     const struct gpu *gpu;
     struct scene_data scene;
-    struct view_settings settings; ///< applied last
-    struct view_settings opened;   ///< those that it was created with
-    struct traced *traced; ///< scenes of pbrt: most of the rest is unused then; NULL: others
-    struct played *played; ///< a recording: all but textures is unused then; NULL: scenes
+    struct view_settings settings; ///< settings applied last
+    struct view_settings opened;   ///< settings at creation
+    struct traced *traced;         ///< traced scene, which leaves most other fields unused; or NULL
+    struct played *played; ///< recording, which leaves all fields but textures unused; or NULL
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     struct stage_drawing drawing;
@@ -34,10 +34,10 @@ struct stage {
     uint32_t *table_indices;
     struct tile_marks marks;
     uint32_t baking_count, heap_tiles;
-    struct frames_signal last;  ///< of the last frame that was recorded
-    uint32_t finest_level;      ///< of the controls of all textures
-    SluiceImageSource **slow;   ///< around the scene's sources; NULL without a slow line
-    SluiceImageSource **faulty; ///< around all these
+    struct frames_signal last;  ///< signal of the last recorded frame
+    uint32_t finest_level;      ///< finest level set for all textures
+    SluiceImageSource **slow;   ///< wrap the scene's sources; NULL without a slow line
+    SluiceImageSource **faulty; ///< wrap `slow`, or the scene's sources
     atomic_uint source_fails;
     struct slow_line line;
     bool is_slow;
@@ -92,7 +92,8 @@ static SluiceResidencyMode mode_of(const struct view_settings *settings)
     return modes[settings->residency];
 }
 
-/* Buffers of the streamer count, too: one heap as large as the budget fits beside none. */
+/* Chooses heaps of at most an eighth of the budget, down to STAGE_LEAST_HEAP_TILES. Buffers of the
+ * streamer count against the budget, too, so a heap as large as the budget would not fit. */
 static uint32_t choose_heap_tiles(uint64_t budget)
 {
     const uint64_t most = budget / 8 / SLUICE_DEFAULT_TILE_SIZE;
@@ -112,7 +113,7 @@ uint32_t stage_heap_tiles(const struct stage *s)
     return s->heap_tiles;
 }
 
-/* Maps per frame; the streamer has room for a texture more. */
+/* Returns the maps per frame. The streamer has room for one texture more than the scene. */
 static uint32_t maps_per_frame(const struct stage *s, uint32_t wanted)
 {
     const uint32_t all = s->scene.image_count + 1;
@@ -141,7 +142,7 @@ static bool create_streamer(struct stage *s, const struct stage_request *request
         .maxTextureCount = s->scene.image_count + 1,
         .maxTexturesPerFrame = s->scene.image_count + 1,
         .texturesPerFrame = maps_per_frame(s, s->settings.textures_per_frame),
-        .feedbackInTurns = true, /* as shaders choose in each frame */
+        .feedbackInTurns = true, /* shaders choose in each frame whether to use turns */
         .tilesPerFrame = s->settings.tiles_per_frame,
         .maxLoadsInFlight = s->settings.loads_in_flight,
         .heapTileCapacity = s->heap_tiles,
@@ -200,14 +201,14 @@ static bool describe_texture(struct stage *s, uint32_t i, const SluiceVulkanText
     return true;
 }
 
-/* Faults of a file or of its format; others end the scene. */
+/* Returns true for faults of a file or of its format. Other errors end the scene. */
 static bool can_be_replaced(SluiceResult result)
 {
     return result == SLUICE_ERROR_UNSUPPORTED || result == SLUICE_ERROR_INVALID_ARGUMENT ||
            result == SLUICE_ERROR_CORRUPT_DATA || result == SLUICE_ERROR_IO;
 }
 
-/* The wrappers of the image that was replaced hold a destroyed source. */
+/* Wraps the new source of a replaced image. Its old wrappers hold a destroyed source. */
 static SluiceResult wrap_replaced(struct stage *s, uint32_t i)
 {
     SluiceImageSource *source = s->scene.images[i].source;
@@ -248,7 +249,7 @@ static bool add_texture(struct stage *s, uint32_t i)
     return check(result, image->name) && describe_texture(s, i, &texture);
 }
 
-/* Primaries first, whose ids the others need. */
+/* Adds primaries first, since followers need their ids. */
 static bool add_textures(struct stage *s)
 {
     for (int follows = 0; follows < 2; follows++)
@@ -353,7 +354,8 @@ void stage_destroy(struct stage *s)
     free(s);
 }
 
-/* Textures that leave their set write feedback of their own from the next frame on. */
+/* Applies the setting of texture sets. A texture that leaves its set writes feedback of its own
+ * from the next frame on. */
 static void apply_sets(struct stage *s)
 {
     for (uint32_t i = 0; i < s->scene.image_count; i++) {
@@ -368,7 +370,8 @@ static void apply_sets(struct stage *s)
     }
 }
 
-/* Tiles of finer levels leave; shaders sample none of them at once. */
+/* Applies the finest level. Finer tiles become standby tiles. Shaders stop sampling them at once.
+ */
 static void apply_finest_level(struct stage *s)
 {
     s->finest_level = s->settings.finest_level;
@@ -421,7 +424,7 @@ void stage_apply(struct stage *s, const struct view_settings *settings)
     atomic_store(&s->source_fails, settings->source_fails);
 }
 
-/* Reads of a picture that is being made were not ready: they are tried again at once. */
+/* Retries reads that failed because their picture was still being baked. */
 static void look_at_bakes(struct stage *s)
 {
     const uint32_t before = s->baking_count;
@@ -462,8 +465,9 @@ bool stage_record(struct stage *s, const struct stage_draw *draw, VkCommandBuffe
            check(sluiceEndStreamingFrame(s->streamer, commands), "sluiceEndStreamingFrame");
 }
 
-/* The streamer reads the feedback of frames whose semaphore is signaled. Drivers may signal the
- * fence of a frame before its semaphore, so the fence alone does not tell that. */
+/* Waits for the semaphore of the last frame. The streamer reads feedback of frames whose semaphore
+ * is signaled. Drivers may signal the fence of a frame before its semaphore, so the fence is not
+ * enough. */
 static bool wait_for_last(const struct stage *s)
 {
     const VkSemaphoreWaitInfo wait = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,

@@ -17,7 +17,7 @@ static const float sky[4] = {0.0220f, 0.0272f, 0.0363f, 1}; /* linear: (41, 46, 
 #define FAR_PLANE 500.0f
 #define BOTH_SIDES 3u
 
-/* As in shaders/scene_push.glsl. */
+/* Same layout as in shaders/scene_push.glsl. */
 struct push {
     struct mat4 view_projection;
     struct vec3 eye;
@@ -27,7 +27,7 @@ struct push {
 };
 _Static_assert(sizeof(struct push) == 108, "as in scene_push.glsl");
 
-/** A part that blends, and how far away it is. */
+/** A part that blends, and its distance from the camera. */
 struct stage_order {
     float distance;
     uint32_t part;
@@ -62,7 +62,7 @@ static uint32_t pipeline_of(const struct scene_material *material)
     return (uint32_t)material->alpha + (material->double_sided ? BOTH_SIDES : 0u);
 }
 
-/* Those of the build. */
+/* Lists the shaders of the build. */
 static void list_shaders(struct shader_code code[SCENE_SHADER_COUNT])
 {
     code[SCENE_VERTEX] = (struct shader_code){(uint32_t *)scene_vert, sizeof scene_vert};
@@ -203,7 +203,7 @@ static bool fit_target(struct stage_drawing *d, struct target *target, uint32_t 
     return target_create_encoding(d->gpu, width, height, target);
 }
 
-/* Depth 0 at the camera. */
+/* Returns an orthographic projection with depth 0 at the camera. */
 static struct mat4 parallel_projection(const struct view_extent *extent, float far)
 {
     return (struct mat4){
@@ -231,7 +231,7 @@ static bool writes_feedback(const struct view_settings *s)
     return s->feedback == VIEW_FEEDBACK_ON && !s->pause && !s->freeze_wants;
 }
 
-/* FLAG_... of scene_push.glsl. */
+/* Returns the FLAG_... bits of scene_push.glsl. */
 static uint32_t flags_of(const struct view_settings *s)
 {
     const uint32_t borders = s->borders == VIEW_NUMBERED_BORDERS ? 3u
@@ -242,7 +242,7 @@ static uint32_t flags_of(const struct view_settings *s)
            s->finest_level << 12;
 }
 
-/* Of the pixels that the kind of feedback selects; 0: none writes. */
+/* Probability that a pixel selected by `feedback_by` writes feedback. 0: no pixel writes. */
 static float probability_of(const struct view_settings *s)
 {
     if (!writes_feedback(s))
@@ -283,7 +283,7 @@ static int compare_far_first(const void *a, const void *b)
     return left->part < right->part ? -1 : 1;
 }
 
-/* Returns how many. */
+/* Orders the parts that blend by distance. Returns their number. */
 static uint32_t order_blended(struct stage_drawing *d, const struct scene_data *scene,
                               const struct vec3 eye)
 {
@@ -297,7 +297,7 @@ static uint32_t order_blended(struct stage_drawing *d, const struct scene_data *
     return count;
 }
 
-/* Parts that blend come last. */
+/* Draws opaque and masked parts first, then parts that blend. */
 static void draw_parts(struct stage_drawing *d, const struct scene_data *scene,
                        const struct stage_draw *draw, VkCommandBuffer commands)
 {
@@ -338,7 +338,8 @@ static bool draw_lines(struct stage_drawing *d, const struct scene_data *scene,
     return true;
 }
 
-/* The render pass leaves it for a copy; the user interface samples it. */
+/* Records a barrier: the render pass leaves the target ready for a copy, and the user interface
+ * samples it. */
 static void record_layout(const struct target *target, VkCommandBuffer commands)
 {
     const VkImageMemoryBarrier barrier = {
@@ -356,7 +357,7 @@ static void record_layout(const struct target *target, VkCommandBuffer commands)
         VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
-/* Draws the scene where the camera will be, for its feedback alone. Sets and buffers are bound. */
+/* Draws the scene from the predicted camera, for its feedback alone. Sets and buffers are bound. */
 static bool record_ahead(struct stage_drawing *d, const struct scene_data *scene,
                          const struct stage_draw *draw, uint32_t slot, VkCommandBuffer commands)
 {
@@ -380,7 +381,7 @@ static bool record_ahead(struct stage_drawing *d, const struct scene_data *scene
     return true;
 }
 
-/* Pixels of this picture write no feedback: streaming goes on as if there were none. */
+/* Draws the large screenshot. Its pixels write no feedback, so streaming is not affected. */
 static bool record_large(struct stage_drawing *d, const struct scene_data *scene,
                          const struct stage_draw *draw, VkCommandBuffer commands)
 {

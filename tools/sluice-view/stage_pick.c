@@ -7,7 +7,8 @@ static struct vec3 position_of(const struct scene_vertex *vertex)
     return (struct vec3){vertex->position[0], vertex->position[1], vertex->position[2]};
 }
 
-/* Moeller and Trumbore: "Fast, Minimum Storage Ray/Triangle Intersection", 1997. */
+/* Intersects a ray and the plane of a triangle. Moeller and Trumbore: "Fast, Minimum Storage
+ * Ray/Triangle Intersection", 1997. */
 static bool meets_plane(struct vec3 eye, struct vec3 ray,
                         const struct scene_vertex *const corners[3], float *t, float *b, float *c)
 {
@@ -35,7 +36,7 @@ static float wrap(float x)
     return x - floorf(x);
 }
 
-/* Of the color image of a material, at a point of a triangle. Not wrapped. */
+/* Writes the UVs of a slot's image at a point of a triangle, not wrapped. */
 static void uv_at(const struct scene_slot *slot, const struct scene_vertex *const corners[3],
                   float b, float c, float to[2])
 {
@@ -135,7 +136,7 @@ bool scene_pick_pixel(const struct scene_data *scene, const struct stage_pick *p
     return true;
 }
 
-/* Wrapped copies of a texture that a triangle is looked for in, along each side. */
+/* Repetitions of a texture that are searched within a triangle, per axis. */
 #define MOST_WRAPS 8
 
 static bool inside(float uv[3][2], float u, float v, float *b, float *c)
@@ -151,7 +152,7 @@ static bool inside(float uv[3][2], float u, float v, float *b, float *c)
     return *b >= 0 && *c >= 0 && *b + *c <= 1;
 }
 
-/* A triangle has the texel several times if the texture is repeated. */
+/* Finds u, v in a triangle. A repeated texture may have this point several times; one is found. */
 static bool find_in_triangle(const struct scene_slot *slot,
                              const struct scene_vertex *const corners[3], float u, float v,
                              float *b, float *c)

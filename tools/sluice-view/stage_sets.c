@@ -8,7 +8,7 @@
 #define SLOT_IMAGE_SHIFT 8
 #define MATERIAL_MISSING 1u
 
-/* As in shaders/scene_material.glsl. */
+/* Same layout as in shaders/scene_material.glsl. */
 struct gpu_slot {
     float turn[4], offset[2];
     uint32_t table_index, flags;
@@ -21,7 +21,8 @@ struct gpu_material {
 };
 _Static_assert(sizeof(struct gpu_material) == 224, "as in scene_material.glsl");
 
-/* Slots that are sampled like an earlier one write no feedback; followers without sets alone. */
+/* Returns the feedback flag of a slot. A slot that equals an earlier one writes none. A follower
+ * writes only while sets are off. */
 static uint32_t writes(const struct scene_data *scene, const struct scene_material *material, int k)
 {
     const struct scene_slot *slot = &material->slots[k];

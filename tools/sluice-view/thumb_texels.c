@@ -82,8 +82,8 @@ bool thumb_texels_fit(const struct gpu *gpu, SluiceFormat format)
 struct conversion {
     struct gpu_image from, to;
     struct gpu_buffer upload, download;
-    uint32_t width, height; ///< of the texels
-    uint32_t columns, rows; ///< of the cell that they fill
+    uint32_t width, height; ///< size of the texels
+    uint32_t columns, rows; ///< size of the part of the cell that they fill
     VkFilter filter;
 };
 

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #define ROW (THUMBS_COLUMNS * THUMBS_CELL)
-#define MOST_SIDE 256u /* of a level that is read */
-#define TRIES 40       /* sources may still be baked */
+#define MOST_SIDE 256u /* longest side of a level that is read */
+#define TRIES 40       /* attempts to read, since a source may still be baking */
 #define TRY_SECONDS 0.5
 #define FRAMES_BETWEEN 20u
 
@@ -28,7 +28,7 @@ static uint32_t side_of(uint32_t size, uint32_t level)
     return size >> level > 0 ? size >> level : 1;
 }
 
-/* The nearest texel for each pixel, in the picture's proportions. */
+/* Fills a cell with the nearest texel per pixel, keeping the picture's proportions. */
 static void shrink(const uint8_t *texels, uint32_t width, uint32_t height, uint32_t bytes,
                    uint8_t cell[THUMBS_CELL][THUMBS_CELL][4])
 {
@@ -44,7 +44,7 @@ static void shrink(const uint8_t *texels, uint32_t width, uint32_t height, uint3
         }
 }
 
-/* The first level that fits a cell, or the last. */
+/* Returns the finest level that fits a cell, or the last level. */
 static uint32_t level_of(const SluiceImageInfo *info)
 {
     uint32_t level = 0;
@@ -75,7 +75,7 @@ static bool read_source(SluiceImageSource *source, struct thumb_texels *texels)
     return false;
 }
 
-/* False if the source cannot be shown, or is not ready. */
+/* Reads the texels of a texture. False if its source cannot be shown, or is not ready. */
 static bool read_texels(const struct stage *stage, uint32_t texture, struct thumb_texels *texels)
 {
     SluiceImageSource *source = stage_borrow_source(stage, texture);
@@ -105,7 +105,7 @@ static bool is_read(struct thumbs *t, uint32_t texture)
     return read;
 }
 
-/* Takes the texels. The device converts those of most formats, in thumbs_record. */
+/* Takes the texels. thumbs_record lets the device convert most formats. */
 static bool take(struct thumbs *t, uint32_t texture, struct thumb_texels *texels)
 {
     uint8_t cell[THUMBS_CELL][THUMBS_CELL][4] = {{{0}}};
@@ -124,7 +124,7 @@ static bool take(struct thumbs *t, uint32_t texture, struct thumb_texels *texels
     return bytes > 0;
 }
 
-/* Returns how many are not there. */
+/* Reads all pictures. Returns the number of pictures that are still missing. */
 static uint32_t read_all(struct thumbs *t)
 {
     uint32_t left = 0;
@@ -138,7 +138,7 @@ static uint32_t read_all(struct thumbs *t)
     return left;
 }
 
-/* Converts the texels of one texture. False if there are none. */
+/* Converts the texels of one texture. False if none wait. */
 static bool convert_next(struct thumbs *t)
 {
     uint8_t cell[THUMBS_CELL][THUMBS_CELL][4];
@@ -206,7 +206,7 @@ void thumbs_begin(struct thumbs *t, const struct gpu *gpu, const struct stage *s
 void thumbs_record(struct thumbs *t, uint64_t frame, VkCommandBuffer commands)
 {
     if (t->count > 0)
-        convert_next(t); /* one per frame, which it delays */
+        convert_next(t); /* one per frame, since it delays the frame */
     const unsigned changes = atomic_load(&t->changes);
     if (t->count == 0 || changes == t->shown || frame < t->next)
         return;

@@ -38,7 +38,8 @@ static bool create_pictures(struct traced *t)
     return t->pictures;
 }
 
-/* As main.c of demand-pbrt. Emitters are read in all modes, so that the mode can change. */
+/* Creates the scene like main.c of demand-pbrt. Reads emitters in all modes, so that the mode can
+ * change. */
 static bool create_scene(struct traced *t)
 {
     struct scene *scene = &t->pbrt->scene;
@@ -85,7 +86,7 @@ static bool begin_launches(struct traced *t)
     return launches_create(&t->launches);
 }
 
-/* Those that a thread has made, if settings have not changed since. */
+/* Returns parts that a thread has made, unless the threads changed since. Otherwise makes parts. */
 static struct traced_parts *take_parts(struct scene_pbrt *pbrt, const struct stage_request *request)
 {
     struct traced_parts *parts = pbrt->parts;
@@ -151,7 +152,7 @@ void traced_destroy(struct traced *t)
     free(t);
 }
 
-/* What pictures are gathered with. */
+/* Returns true if a setting changed that accumulated samples depend on. */
 static bool changes_picture(const struct view_settings *a, const struct view_settings *b)
 {
     return a->budget != b->budget || a->load != b->load || a->render_mode != b->render_mode ||
@@ -166,13 +167,13 @@ void traced_apply(struct traced *t, const struct view_settings *settings)
     budget = settings->load == VIEW_LOAD_EVERYTHING ? 0 : budget;
     check(sluiceSetVulkanMemoryBudget(t->context, budget), "sluiceSetVulkanMemoryBudget");
     if (check(sluiceGetDemandLoaderSettings(t->loader, &now), "sluiceGetDemandLoaderSettings")) {
-        /* The boxes and materials that rays asked for are pages, too: all must fit. */
+        /* Boxes and materials that rays requested are pages, too. All pages must fit. */
         now.forgetAfterLaunches = 0;
         check(sluiceSetDemandLoaderSettings(t->loader, &now), "sluiceSetDemandLoaderSettings");
     }
     t->restarts = t->restarts || changes_picture(&t->settings, settings);
     t->settings = *settings;
-    /* The truth does not depend on what was frozen before it was opened. */
+    /* The truth has everything, so a freeze of requests does not apply to it. */
     t->settings.freeze_wants = settings->freeze_wants && settings->load == VIEW_LOAD_WANTED;
 }
 

@@ -4,10 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What the host has of a pixel, which a ray for a pick changes. */
+/* Host copy of a pixel's state. The ray of a pick changes this state. */
 struct kept_pixel {
     float sum[4], latest[4];
-    uint32_t place; ///< of the list
+    uint32_t place; ///< first entry of the list of pixels
     uint32_t list_index, missing_count;
 };
 
@@ -80,7 +80,7 @@ static uint32_t texture_of_place(const struct traced *t, uint32_t place)
     return picture == UINT32_MAX ? STAGE_NO_TEXTURE : picture;
 }
 
-/* The center of a pixel, as startPixel in film.glsl has it for sample 0. */
+/* Writes the center of a pixel, like startPixel in film.glsl for sample 0. */
 static void point_of(const struct PbrtLaunch *c, uint32_t pixel, float distance, float point[3])
 {
     const float x = ((float)(pixel % c->width) + 0.5f) / (float)c->width;

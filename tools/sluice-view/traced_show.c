@@ -11,7 +11,7 @@
 #define IMAGE_BINDING 2u
 #define LEAST_TILES 64u
 #define LEAST_PICTURES 256u
-/* As view_colors.glsl has them. */
+/* Same values as in shaders/view_colors.glsl. */
 #define MARK_THRASHES 16u
 #define MARK_OLDEST 0xFFFFu
 
@@ -73,7 +73,7 @@ static bool create_set(struct traced_show *s)
                      "vkAllocateDescriptorSets");
 }
 
-/* Empties it, so that a search ends. */
+/* Grows the hash map, and empties it, so that a search ends. */
 static bool grow_tiles(struct traced_show *s, uint32_t count)
 {
     if (count <= s->tile_room)
@@ -169,7 +169,7 @@ bool traced_show_fit(struct traced_show *s, const struct film *film, const struc
     return true;
 }
 
-/* As MARK_THRASHES and markAge of the shaders have it. */
+/* Returns the word of a tile: MARK_THRASHES and age, in the layout of view_colors.glsl. */
 static uint32_t word_of(const struct traced_tile *tile, uint64_t now)
 {
     const uint64_t age = (now - tile->loaded[0]) / 62500u; /* 1/16 s */
@@ -232,14 +232,14 @@ static void record(void *user_data, VkCommandBuffer commands)
 bool traced_show_draw(struct traced_show *s, const struct traced_look *look)
 {
     s->look = *look;
-    write_set(s); /* nothing uses it: each picture is waited for */
+    write_set(s); /* not in use: each picture is waited for */
     if (!one_time_run(s->gpu, record, s))
         return false;
     s->drawn = true;
     return true;
 }
 
-/* The user interface samples the picture behind it. */
+/* Records a copy. Afterwards the user interface samples the picture. */
 void traced_show_copy(const struct traced_show *s, VkCommandBuffer commands, VkBuffer buffer)
 {
     VkImageMemoryBarrier image = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,

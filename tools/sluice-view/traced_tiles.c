@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define NO_PAGE UINT32_MAX
-#define SLOTS_PER_FRAME 16384u /* more are looked at in as many frames */
+#define SLOTS_PER_FRAME 16384u /* with more slots, looks become rarer in proportion */
 
 void traced_tiles_finish(struct traced_tiles *t)
 {
@@ -16,7 +16,7 @@ void traced_tiles_finish(struct traced_tiles *t)
     *t = (struct traced_tiles){0};
 }
 
-/* As traced_show.comp has it. */
+/* Finds the entry of a page. traced_show.comp has the same hash function. */
 static struct traced_tile *entry_of(struct traced_tile *entries, uint32_t capacity, uint32_t page)
 {
     uint32_t at = (page * 0x9e3779b1u) & (capacity - 1);
@@ -93,7 +93,7 @@ static uint32_t find_image(const struct traced_tiles *t, uint32_t image)
     return i;
 }
 
-/* Of tails that share a slot, the last one. */
+/* Enters the slots into `by_slot`. Mip tails may share a slot: the last one is entered. */
 static void place_slots(struct traced_tiles *t)
 {
     for (uint32_t i = 0, image = 0; i < t->slot_count; i++) {
@@ -112,7 +112,7 @@ const SluiceDemandSlot *traced_tiles_at(const struct traced_tiles *t, uint32_t i
     return at > 0 ? &t->slots[at - 1] : NULL;
 }
 
-/* A tile that stood by comes back without a load. */
+/* Notes a load, unless the tile was restored from standby. */
 static void note_slot(struct traced_tile *entry, const SluiceDemandSlot *slot, uint64_t now)
 {
     const bool was = entry->here && entry->slot.state != SLUICE_DEMAND_SLOT_LOADING;
@@ -127,7 +127,8 @@ static void note_slot(struct traced_tile *entry, const SluiceDemandSlot *slot, u
     entry->loads++;
 }
 
-/* Tiles that left are remembered for as long as they could count as thrashing. */
+/* Rebuilds the hash map. Keeps an evicted tile for TRACED_TILE_WINDOW after its last load, so that
+ * thrashing is noticed. */
 static bool rebuild(struct traced_tiles *t, uint64_t now)
 {
     uint32_t kept = t->slot_count, capacity = 64;
