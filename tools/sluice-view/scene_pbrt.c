@@ -12,7 +12,6 @@
 #include <string.h>
 
 #define CLUSTER_SIZE 1024u /* same value as in demand-pbrt */
-#define MAX_DEPTH 64u
 
 bool scene_pbrt_takes(const char *path)
 {
@@ -34,6 +33,30 @@ static void add_picture(struct scene_pbrt *p, const char *path)
         p->pictures[p->picture_count++] = (struct scene_pbrt_picture){path, end_of(path)};
 }
 
+static uint32_t find_picture(const struct scene_pbrt *p, const char *path)
+{
+    for (uint32_t i = 0; path && i < p->picture_count; i++)
+        if (strcmp(p->pictures[i].path, path) == 0)
+            return i;
+    return UINT32_MAX;
+}
+
+/* Textures follow their inputs. Many ways may lead to an input, so each texture is visited once. */
+static bool find_texture_pictures(struct scene_pbrt *p)
+{
+    const uint32_t count = p->scene.info.textureCount;
+    p->texture_pictures = malloc((count + 1u) * sizeof *p->texture_pictures);
+    for (uint32_t i = 0; p->texture_pictures && i < count; i++) {
+        const SluicePbrtTexture texture = scene_texture(&p->scene, i);
+        uint32_t found = find_picture(p, texture.pImagePath);
+        for (int k = 0; k < 2 && found == UINT32_MAX; k++)
+            if (texture.inputs[k].texture < i)
+                found = p->texture_pictures[texture.inputs[k].texture];
+        p->texture_pictures[i] = found;
+    }
+    return p->texture_pictures;
+}
+
 static bool list_pictures(struct scene_pbrt *p)
 {
     const SluicePbrtSceneInfo *info = &p->scene.info;
@@ -42,9 +65,10 @@ static bool list_pictures(struct scene_pbrt *p)
         add_picture(p, scene_texture(&p->scene, i).pImagePath);
     for (uint32_t i = 0; p->pictures && i < info->lightCount; i++)
         add_picture(p, scene_light(&p->scene, i).pImagePath);
-    if (!p->pictures)
-        text_say("sluice-view: out of memory");
-    return p->pictures;
+    if (p->pictures && find_texture_pictures(p))
+        return true;
+    text_say("sluice-view: out of memory");
+    return false;
 }
 
 /* Returns the vertical field of view, in radians. The scene has the field of view of the shorter
@@ -120,30 +144,13 @@ void scene_pbrt_close(struct scene_pbrt *p)
         return;
     traced_parts_destroy(p->parts);
     free(p->pictures);
+    free(p->texture_pictures);
     scene_finish(&p->scene);
     free(p);
 }
 
-static uint32_t find_picture(const struct scene_pbrt *p, const char *path)
-{
-    for (uint32_t i = 0; path && i < p->picture_count; i++)
-        if (strcmp(p->pictures[i].path, path) == 0)
-            return i;
-    return UINT32_MAX;
-}
-
-static uint32_t picture_of(const struct scene_pbrt *p, const SluicePbrtValue *value, uint32_t depth)
-{
-    if (value->texture == SLUICE_PBRT_NONE || depth > MAX_DEPTH)
-        return UINT32_MAX;
-    const SluicePbrtTexture texture = scene_texture(&p->scene, value->texture);
-    uint32_t found = find_picture(p, texture.pImagePath);
-    for (int i = 0; i < 2 && found == UINT32_MAX; i++)
-        found = picture_of(p, &texture.inputs[i], depth + 1);
-    return found;
-}
-
 uint32_t scene_pbrt_picture_of(const struct scene_pbrt *p, const SluicePbrtValue *value)
 {
-    return picture_of(p, value, 0);
+    return value->texture < p->scene.info.textureCount ? p->texture_pictures[value->texture]
+                                                       : UINT32_MAX;
 }

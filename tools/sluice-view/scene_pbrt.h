@@ -21,6 +21,7 @@ struct scene_pbrt {
     char cache[4096];                    ///< folder for baked pictures
     struct scene_pbrt_picture *pictures; ///< owned
     uint32_t picture_count;
+    uint32_t *texture_pictures; ///< owned; first picture of each texture; UINT32_MAX: none
     struct traced_parts *parts; ///< owned; made by the thread that opens the scene; or NULL
     uint32_t share_count;       ///< number of further owners
 };
