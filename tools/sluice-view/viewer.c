@@ -28,7 +28,7 @@
 #define EXIT_NO_DEVICE 77
 #define USUAL_FRAMES 120u
 #define MAX_STEP 0.1
-#define SWEEPING_FRAMES 10u /* per second, while a sweep measures times */
+#define SWEEPING_FRAMES 10u /* frames per second while a sweep measures times */
 
 static bool is_cpu(const struct viewer *v)
 {
@@ -70,7 +70,8 @@ static void drop(struct viewer *v, const char *path)
     files_finish(&paths);
 }
 
-/* The command line stands above files of settings. `kept`: B is that of the file. */
+/* Sets B from the command line, which overrides files of settings. `kept`: B has the settings of
+ * the file. */
 static void begin_b(struct viewer *v, bool kept)
 {
     const struct option_texts *texts = &v->options->b;
@@ -79,7 +80,8 @@ static void begin_b(struct viewer *v, bool kept)
     if (texts->count > 0)
         v->app.settings.compared = VIEW_WITH_B;
     for (size_t i = 0; i < texts->count; i++)
-        sets_read(&v->app.b, texts->items[i], "sluice-view: --b"); /* was read before */
+        sets_read(&v->app.b, texts->items[i],
+                  "sluice-view: --b"); /* cannot fail: options_read has checked the text */
 }
 
 static void go_to_frame(struct viewer *v, uint32_t frame)
@@ -117,7 +119,7 @@ static void take_script_step(struct viewer *v, const struct script_step *step)
     }
 }
 
-/* Esc has one meaning more while a scene is opened. */
+/* Handles Esc while a scene is being opened: cancels the load. */
 static void take_escape(struct viewer *v)
 {
     struct ui_input *in = &v->input;
@@ -185,7 +187,7 @@ static void answer_requests(struct viewer *v)
     struct view_app *app = &v->app;
     if (app->restart && v->stage && !stage_traced(v->stage))
         stage_restart(v->stage);
-    else if (app->restart) /* what is made of a scene of pbrt goes with its loader */
+    else if (app->restart) /* a traced scene is opened again, with a new loader */
         app->reload = true;
     viewer_reopen_if_needed(v);
     if (app->reload)
@@ -212,7 +214,7 @@ static void answer_requests(struct viewer *v)
     app->restart = app->reload = app->trace = app->step_tile = false;
 }
 
-/* Returns whether FLIP needs copies of this frame's pictures. */
+/* Returns true if FLIP needs copies of this frame's pictures. */
 static bool follow_flip(struct viewer *v, const struct stage_draw *draw, struct frames_end *end,
                         VkCommandBuffer commands)
 {
@@ -226,13 +228,14 @@ static bool follow_flip(struct viewer *v, const struct stage_draw *draw, struct 
     return copies;
 }
 
-/* Settings may change in any frame, so the motion is known in all. */
+/* Notes the motion in each frame, since --predict may be set at any time. */
 static void note_motion(struct viewer *v)
 {
     const struct view_camera *camera = &v->app.camera;
     float look[4][4];
     view_camera_matrix(camera, look);
-    (void)sluiceAddCameraFrame(&v->motion, &look[0][0], v->app.seconds); /* a bad one: no motion */
+    (void)sluiceAddCameraFrame(&v->motion, &look[0][0],
+                               v->app.seconds); /* on failure the motion is unknown */
 }
 
 static struct stage_ahead look_ahead(struct viewer *v, const struct stage_draw *draw)
@@ -249,7 +252,7 @@ static struct stage_ahead look_ahead(struct viewer *v, const struct stage_draw *
                                 ahead.width, ahead.height, ahead.lodBias};
 }
 
-/* Half 0 is A. Time stamps are written while both are drawn. */
+/* Records one picture. Half 0 is A. Writes time stamps while both halves are drawn. */
 static bool record_half(struct viewer *v, uint32_t half, struct stage_draw *draw, VkBuffer copy,
                         struct frames_end *end, VkCommandBuffer commands)
 {
@@ -269,7 +272,7 @@ static bool record_half(struct viewer *v, uint32_t half, struct stage_draw *draw
     return true;
 }
 
-/* In turns: neither is always behind the other. */
+/* Records both pictures. The order alternates, so that neither half is always last. */
 static bool record_halves(struct viewer *v, const struct stage_draw *draw, bool copies,
                           struct frames_end *end, VkCommandBuffer commands)
 {
@@ -340,7 +343,7 @@ static bool write_figures(struct viewer *v)
     return fprintf(file, "\n") > 0;
 }
 
-/* The swapchain's image is taken before anything is recorded: nothing has to be abandoned then. */
+/* Acquires an image before the frame records commands, so that none must be abandoned. */
 static enum swapchain_outcome acquire(struct viewer *v, struct frames_end *end)
 {
     uint32_t width, height;
@@ -422,7 +425,7 @@ static bool draw_frame(struct viewer *v, double step)
     return true;
 }
 
-/* Without a window a picture that is missing is a failure. */
+/* Notes the outcome of a screenshot. Without a window a failure ends the program. */
 static bool note_picture(struct viewer *v, const char *path, bool written)
 {
     if (written)
@@ -463,13 +466,13 @@ static uint32_t frame_count(const struct viewer *v)
     return v->script.count ? script_last_frame(&v->script) + 1 : USUAL_FRAMES;
 }
 
-/* Of all threads. */
+/* Processor time of all threads, in seconds. */
 static double processor_seconds(void)
 {
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-/* The one wait for a frame that is not needed: the picture is not there before. */
+/* Notes the time of the first picture. Waits once for its frame, to measure. */
 static bool note_first_picture(struct viewer *v)
 {
     if (!v->stage || v->first_picture > 0)
@@ -499,7 +502,7 @@ static bool run_frames(struct viewer *v)
     return true;
 }
 
-/* Of the last frames with the same settings. */
+/* Prints the times of A and B in the last frames with equal settings. */
 static void print_halves(const struct view_app *app)
 {
     static const char names[2] = {'a', 'b'};
@@ -589,7 +592,8 @@ static bool prepare(struct viewer *v, bool *unsupported)
     return frames_create(&v->gpu, width, height, &v->frames);
 }
 
-/* Files of settings stand between the defaults and the command line. The twin keeps none. */
+/* Reads files of settings, which override defaults; the command line overrides both. --headless
+ * reads none. */
 static void read_settings(struct viewer *v)
 {
     const struct view_options *o = v->options;
@@ -626,7 +630,7 @@ static bool begin(struct viewer *v)
         return false;
     if (o->play && !camera_path_read(o->play, &v->app.path))
         return false;
-    if (v->window && !draw_frame(v, 0.016)) /* "Opening the scene ..." */
+    if (v->window && !draw_frame(v, 0.016)) /* shows "Opening the scene ..." */
         return false;
     return viewer_open_scene(v);
 }
@@ -653,7 +657,7 @@ static void finish(struct viewer *v)
     messages_end();
 }
 
-/* Without words it is the hall, if there is one. */
+/* Adds the hall, if it is installed, to a command line without scenes. */
 static bool add_hall(struct viewer *v)
 {
     char path[4200];
@@ -670,7 +674,7 @@ int viewer_run(const struct view_options *options)
     v->options = options;
     v->begin = clock_seconds();
     messages_begin();
-    v->input.mouse_x = v->input.mouse_y = -1; /* over nothing */
+    v->input.mouse_x = v->input.mouse_y = -1; /* mouse outside of the picture */
     app_init(&v->app);
     for (size_t i = 0; i < options->words.count; i++)
         if (!files_add(options->words.items[i], &v->paths))
@@ -687,7 +691,7 @@ int viewer_run(const struct view_options *options)
     good = good && !v->recording_failed;
     if (good)
         print_summary(v);
-    if (v->stage && v->settings_path[0]) /* after a lost device, too */
+    if (v->stage && v->settings_path[0]) /* also after the device was lost */
         settings_file_write(v->settings_path, &v->app);
     if (v->csv)
         good = output_file_end(v->csv, good) && good;

@@ -57,7 +57,7 @@ struct scene_load *viewer_begin_load_again(const struct viewer *v, uint32_t thre
     return load;
 }
 
-/* "sluice-view PATH ..."; paths that do not fit are left out. */
+/* Writes v->command: "sluice-view PATH ...". Leaves out paths that do not fit. */
 static void name_command(struct viewer *v)
 {
     struct text_list words = {0};
@@ -89,7 +89,8 @@ void viewer_close_scene(struct viewer *v)
     v->stage = NULL;
 }
 
-/* Without a window nobody would see that it is another camera. */
+/* Chooses the camera of --camera. An unknown camera is an error without a window, since nobody
+ * would see that another camera is used. */
 static bool choose_camera(struct viewer *v)
 {
     const char *wanted = v->options->camera;
@@ -129,7 +130,7 @@ static bool begin_walk(struct viewer *v)
     return found;
 }
 
-/** What files of settings hold, while another scene is tried. */
+/** Settings of the shown scene, kept while another scene is tried. */
 struct kept_settings {
     struct view_settings settings, b;
     struct view_camera bookmarks[APP_BOOKMARKS];
@@ -137,7 +138,7 @@ struct kept_settings {
     char path[4096];
 };
 
-/* The window is not the scene's, and neither is what passes. */
+/* Keeps settings of the window and settings that no file keeps. They do not belong to a scene. */
 static void keep_window(const struct view_settings *before, struct view_settings *settings)
 {
     char value[64];
@@ -149,8 +150,8 @@ static void keep_window(const struct view_settings *before, struct view_settings
                          control_write(&controls[i], before, value, sizeof value), "sluice-view");
 }
 
-/* Keeps the settings of the scene that is shown, and takes those of the next one. Without a file of
- * its own, it begins with the present settings. */
+/* Keeps the settings of the shown scene, and takes the settings of the next one. A scene without a
+ * file begins with the present settings. */
 static void change_settings(struct viewer *v, const struct file_list *paths,
                             struct kept_settings *before)
 {
@@ -183,7 +184,8 @@ static void restore_settings(struct viewer *v, const struct kept_settings *befor
     memcpy(v->settings_path, before->path, sizeof before->path);
 }
 
-/* The browser begins at the scene. Another viewer may have changed the list meanwhile. */
+/* Adds the scene to the recent files. Reads the list again, since another viewer may have changed
+ * it. The browser begins at the scene. */
 static void note_recent(struct viewer *v, bool first)
 {
     struct browser *b = &v->app.browser;
@@ -197,14 +199,14 @@ static void note_recent(struct viewer *v, bool first)
         recent_write(v->recent_path, &b->recent);
 }
 
-/* A panel shows why, and what of a file that was opened is missing. */
+/* Opens the panel of files if a file could not be opened or has unsupported parts. */
 static void note_file(struct viewer *v, const struct file_list *paths, bool opened)
 {
     if (file_facts_note(&v->app.file, (const char *const *)paths->paths, paths->count, opened))
         app_set_panel(&v->app, PANEL_FILE, true);
 }
 
-/** What stays when a scene is opened again. */
+/** Camera and selection, kept when a scene is opened again. */
 struct kept_place {
     struct view_camera camera;
     struct vec3 center;
@@ -233,8 +235,8 @@ static void restore_place(struct view_app *app, const struct kept_place *place)
     app->inspect = place->inspect;
 }
 
-/* Shows a scene instead of the one that is shown, which stays if this fails. `paths`, if there are
- * any, are exchanged with those of the scene before. */
+/* Shows another scene. On failure the old scene stays. Exchanges `paths`, if not NULL, with the
+ * paths of the old scene. */
 static bool show(struct viewer *v, struct scene_data *scene, struct file_list *paths)
 {
     const bool first = !v->stage;
@@ -282,7 +284,7 @@ static void say_failed(struct viewer *v, const struct file_list *paths)
             paths->count > 0 ? paths->paths[0] : "the room");
 }
 
-/* Its thread may read a large file for long; frames go on. */
+/* Cancels the load without a wait. Its thread may read a large file for long. */
 static void park_load(struct viewer *v)
 {
     if (v->load)
@@ -290,7 +292,7 @@ static void park_load(struct viewer *v)
     v->load = NULL;
 }
 
-/* A second request takes the place of one that is not done. */
+/* Begins a load. Cancels a load that is not done. */
 static bool begin_load(struct viewer *v, struct file_list *paths)
 {
     park_load(v);
@@ -409,7 +411,7 @@ void viewer_end_load(struct viewer *v)
     v->other_parts = NULL;
 }
 
-/* Either all streamers draw with the code, or none; scenes that are opened later, too. */
+/* Uses shaders in all streamers, and in scenes that are opened later. On failure none changes. */
 static bool use_shaders(struct viewer *v, struct shader_code code[SCENE_SHADER_COUNT])
 {
     if (!frames_wait(&v->frames) || !stage_prepare_shaders(v->stage, code))

@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-/* Settings that wait for the scene of A to be opened again do not act on B either. */
+/* Settings of A that wait until the scene is opened again do not act on B either. */
 struct view_settings viewer_second_settings(const struct viewer *v)
 {
     struct view_settings a = v->app.settings;
@@ -29,7 +29,7 @@ static void close_other(struct viewer *v)
 {
     if (!v->other)
         return;
-    if (v->thumbs.stage == v->other) /* since a swap */
+    if (v->thumbs.stage == v->other) /* possible after a swap */
         thumbs_end(&v->thumbs);
     facts_destroy(&v->app.facts_b);
     stage_destroy(v->other);
@@ -99,8 +99,8 @@ static bool open_other(struct viewer *v, const struct view_settings *settings)
     return true;
 }
 
-/* A window draws the first picture while a thread reads the scene of the second one, or compiles
- * its programs for rays. */
+/* Returns true if the second stage can be created without a long wait. A window draws the first
+ * picture while a thread reads the second scene, or compiles its programs for rays. */
 static bool is_prepared(struct viewer *v, const struct view_settings *settings)
 {
     bool done;
@@ -120,8 +120,8 @@ static bool is_prepared(struct viewer *v, const struct view_settings *settings)
     return done;
 }
 
-/* The second streamer lives as long as its picture is wanted, and until the next one is prepared.
- * Sliders that are held, and numbers that are typed, do not open it again and again. */
+/* Keeps the second streamer while its picture is shown, and until its successor is prepared. Held
+ * sliders and numbers being typed do not open it again in each frame. */
 bool viewer_fit_other(struct viewer *v)
 {
     struct view_app *app = &v->app;
@@ -168,7 +168,7 @@ void viewer_apply(struct viewer *v)
     apply(v->other, &b, &v->applied_b, v);
 }
 
-/* Pointers and figures change places. No tile is loaded, evicted or copied. */
+/* Exchanges pointers and figures. No tile is loaded, evicted or copied. */
 void viewer_swap(struct viewer *v)
 {
     struct view_app *app = &v->app;

@@ -37,7 +37,7 @@ static void note_size(struct viewer *v, uint32_t width, uint32_t height)
     v->sized[1] = height;
 }
 
-/* Somebody who drags an edge wins over what was asked for. */
+/* Takes over the size of the window. A size that the user drags overrides the setting. */
 static void follow_window(struct viewer *v)
 {
     uint32_t width, height, *size = v->app.settings.size;
@@ -57,7 +57,7 @@ static void follow_window(struct viewer *v)
 bool viewer_follow_size(struct viewer *v)
 {
     const uint32_t *size = v->app.settings.size;
-    if (v->sized[0] == 0) /* as it was opened */
+    if (v->sized[0] == 0) /* first frame: the window has the size of the settings */
         note_size(v, size[0], size[1]);
     if (v->window) {
         follow_window(v);

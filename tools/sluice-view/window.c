@@ -14,7 +14,7 @@ _Static_assert(VIEW_KEY_ESCAPE == GLFW_KEY_ESCAPE && VIEW_KEY_END == GLFW_KEY_EN
                    VIEW_KEY_COUNT == GLFW_KEY_LAST + 1,
                "keys are numbered as GLFW numbers them");
 
-/* GLFW declares these only if its header includes Vulkan's before. */
+/* GLFW declares this function only if Vulkan's header was included before. */
 extern VkResult glfwCreateWindowSurface(VkInstance instance, GLFWwindow *window,
                                         const VkAllocationCallbacks *allocator,
                                         VkSurfaceKHR *surface);
@@ -22,11 +22,11 @@ extern VkResult glfwCreateWindowSurface(VkInstance instance, GLFWwindow *window,
 struct window {
     GLFWwindow *glfw;
     VkSurfaceKHR surface;
-    struct ui_input pending; ///< since the last poll
-    bool pressed[3];         ///< since the last poll: a click shorter than a frame is held for one
+    struct ui_input pending; ///< input since the last poll
+    bool pressed[3]; ///< pressed since the last poll; a click shorter than a frame lasts one frame
     struct file_list dropped;
     bool full;
-    int x, y, width, height; ///< before it was full screen
+    int x, y, width, height; ///< placement before full screen
 };
 
 void window_note_key(struct ui_input *input, int key, bool down)
@@ -78,7 +78,7 @@ static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int modi
         window_note_key(&of(glfw)->pending, key, action != GLFW_RELEASE);
 }
 
-/* As UTF-8. */
+/* Adds a character as UTF-8. */
 static void on_character(GLFWwindow *glfw, unsigned code)
 {
     static const unsigned char marks[] = {0, 0xC0, 0xE0, 0xF0};
@@ -92,7 +92,7 @@ static void on_character(GLFWwindow *glfw, unsigned code)
     window_note_text(&of(glfw)->pending, text);
 }
 
-/* From points of the screen to pixels. */
+/* Converts points of the screen to pixels. */
 static void on_move(GLFWwindow *glfw, double x, double y)
 {
     int width, height, pixel_width, pixel_height;
@@ -129,7 +129,7 @@ static void on_drop(GLFWwindow *glfw, int count, const char **paths)
 static void on_focus(GLFWwindow *glfw, int focused)
 {
     struct window *window = of(glfw);
-    if (!focused) /* keys that are released elsewhere send nothing here */
+    if (!focused) /* releases of keys elsewhere send no event here */
         for (int key = 0; key < VIEW_KEY_COUNT; key++)
             if (key >= VIEW_KEY_SPACE && glfwGetKey(glfw, key == GLFW_KEY_UNKNOWN ? 32 : key))
                 window_note_key(&window->pending, key, false);
@@ -222,7 +222,7 @@ void window_size(const struct window *window, uint32_t *width, uint32_t *height)
     *height = h > 0 ? (uint32_t)h : 0;
 }
 
-/* From pixels to points of the screen. */
+/* Converts pixels to points of the screen. */
 void window_set_size(struct window *window, uint32_t width, uint32_t height)
 {
     int points_x = 0, points_y = 0;
