@@ -9,7 +9,7 @@
 
 #define MB 1e6
 #define TILE_SIZE 65536u
-/* Maps of all textures are looked at in turns, so that a frame takes little time. */
+/* Limits per frame. Textures take turns, so that a frame takes little time. */
 #define TEXELS_PER_FRAME 16384u
 #define READS_PER_FRAME 16u
 
@@ -108,7 +108,7 @@ static void read_events(struct view_facts *f, const SluiceStreamedTextureManager
     } while (result == SLUICE_INCOMPLETE);
 }
 
-/* Compares what is requested with what is resident, tile by tile of level 0. */
+/* Compares requested and resident levels for each tile of level 0. */
 static size_t compare_maps(struct view_facts *f, const SluiceStreamedTextureManager *manager,
                            SluiceTextureId id, struct facts_texture *texture)
 {
@@ -191,7 +191,7 @@ void facts_look_at_all(struct view_facts *f, const struct stage *stage)
     f->sharp = f->sharp_known ? (double)f->sharp_count / (double)f->seen_count : 0.0;
 }
 
-/* In turns: each takes a lock of the loader. */
+/* Updates the figures of some sources per frame, since each takes a lock of the loader. */
 static void look_at_reads(struct view_facts *f, const struct stage *stage)
 {
     f->reads = (SluiceTileLoaderStatistics){.structSize = sizeof f->reads};

@@ -8,12 +8,12 @@
 #include <string.h>
 
 #define TILE_SIZE 65536u
-/* Tiles of pictures that a frame looks at. */
+/* Tiles of pictures that are read per frame. */
 #define TILES_PER_FRAME 16384u
 
 static uint32_t picture_of_id(const struct traced *t, uint64_t id)
 {
-    /* The low half is the index for shaders; variants share the picture of their base. */
+    /* The low half of an id is the index for shaders. Variants share the picture of their base. */
     for (uint32_t i = 0; i < t->textures.use_count; i++) {
         const struct picture_use *use = t->textures.uses[i];
         if (use->id != id)
@@ -43,7 +43,8 @@ static void add_event(struct traced *t, const SluiceDemandMiss *miss, uint32_t p
     t->event_count += t->event_count < TRACED_EVENTS;
 }
 
-/* A page is missed by launches until it is there: the first counts. */
+/* Notes the misses of the last launch. Launches miss a page until it is resident: the first miss
+ * counts. */
 void traced_note_misses(struct traced *t)
 {
     SluiceDemandMiss misses[TRACED_MISSES];
@@ -80,7 +81,8 @@ static const char *format_name(SluiceFormat format)
     }
 }
 
-/* Once it is open. A thread of the loader writes the info: the region's answer comes after it. */
+/* Describes an open picture. A thread of the loader writes the info before it answers the region.
+ */
 static void describe(struct traced_picture *p, const struct picture_image *image)
 {
     const SluiceImageInfo *info = &image->info;
@@ -101,7 +103,8 @@ static bool get_progress(const struct traced *t, const struct traced_picture *p,
            SLUICE_SUCCESS;
 }
 
-/* Counts are of a level and all coarser ones: the finest one with more than the next has tiles. */
+/* Finds the finest level with resident tiles. A count includes all coarser levels, so this is the
+ * finest level whose count exceeds the next one's. */
 static uint32_t find_finest(const struct traced *t, const struct traced_picture *p)
 {
     SluiceDemandRegionProgress progress;
@@ -230,7 +233,8 @@ void traced_facts_update(struct traced *t, struct view_facts *f)
     f->memory_size = t->now.tileMemorySize;
     f->sharp = traced_complete(t);
     f->sharp_known = true;
-    /* The host waits for launches, which are submissions of their own. */
+    /* Launches are separate submissions, which the host waits for: their time counts as GPU time.
+     */
     f->gpu_seconds += t->trace_seconds;
     f->host_seconds = fmax(0.0, f->host_seconds - t->trace_seconds);
 }

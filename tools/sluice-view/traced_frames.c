@@ -8,10 +8,12 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_VAIN_LAUNCHES 200u /* then the next sample begins: some pixels stay incomplete */
-#define BIAS_STEP 0.05f         /* a blurrier or sharper picture is gathered anew */
+#define MOST_VAIN_LAUNCHES 200u /* then the next sample begins, though some pixels are incomplete  \
+                                 */
+#define BIAS_STEP 0.05f         /* a larger change of the LOD bias starts a new picture */
 
-/* The whole film is seen: a wider window sees more at the sides, a narrower one above and below. */
+/* Fits the whole film into the window. A wider window shows more at the sides, a narrower one more
+ * above and below. */
 static void fit_window(struct PbrtLaunch *c)
 {
     const float wide =
@@ -74,7 +76,8 @@ static bool fit_film(struct traced *t, const struct stage_draw *draw)
     return true;
 }
 
-/* The sample is complete, or nothing completes it: as while rays request nothing. */
+/* Ends a sample that is complete, or that launches no longer complete: while requests are frozen,
+ * for example. */
 static void end_launch(struct traced *t, bool progress)
 {
     t->missing = t->film.missing_count;
@@ -100,7 +103,7 @@ static bool trace(struct traced *t)
     return true;
 }
 
-/* Frames that wait: all that the launch asked for is made. */
+/* Launches rays, and waits for all their requests (--deterministic). */
 static bool launch_and_wait(struct traced *t)
 {
     bool made;
@@ -113,7 +116,8 @@ static bool launch_and_wait(struct traced *t)
     return false;
 }
 
-/* Windows: work of threads is not waited for, and boxes that there is no time for stay. */
+/* Launches rays for a window, without waiting for threads. Boxes that do not fit the frame's time
+ * stay boxes. */
 static bool launch_in_time(struct traced *t)
 {
     frame_budget_begin(&t->flight.budget);
@@ -137,7 +141,7 @@ static bool launch(struct traced *t)
     return true;
 }
 
-/* The first sample takes as many launches as there is time for. */
+/* Launches rays. The first sample gets as many launches as the frame has time for. */
 static bool launch_some(struct traced *t)
 {
     const double start = clock_seconds();
@@ -157,7 +161,7 @@ static uint32_t sides_of(const struct traced *t, uint32_t picture)
     return (width & (width - 1)) != 0 || (height & (height - 1)) != 0;
 }
 
-/* Words of textures for view 6 and for slots; sizes are known later than textures. */
+/* Updates the words of textures for view 6. Sizes become known later than textures. */
 static bool name_textures(struct traced *t)
 {
     for (; t->use_count < t->textures.use_count; t->use_count++) {
@@ -224,7 +228,7 @@ bool traced_record(struct traced *t, const struct stage_draw *draw, VkCommandBuf
         restart(t, &constants);
     if ((!s->pause || !t->parts->show.drawn) && !launch_some(t))
         return false;
-    if (t->looks && !t->looked && !launches_idle(&t->launches)) /* a view was chosen in a pause */
+    if (t->looks && !t->looked && !launches_idle(&t->launches)) /* a view was chosen while paused */
         return false;
     traced_tiles_look(&t->tiles, t->loader, &t->now, draw->number, t->time);
     if (!name_textures(t) || !show(t, draw))

@@ -22,7 +22,7 @@ struct array {
     size_t size, capacity;
 };
 
-/* Lives from ui_create to ui_destroy, as ImGui's own context does. */
+/* State from ui_create to ui_destroy, like ImGui's own context. */
 struct state {
     float scale;
     ImFont *font, *large;
@@ -164,7 +164,7 @@ void add_draw(const ImDrawCmd &command, uint32_t first_index, uint32_t first_ver
         array_add(&ui->draws, &draw, sizeof draw);
 }
 
-/* Without memory a list is left out. */
+/* Adds a list of triangles. Leaves it out without memory. */
 void add_list(const ImDrawList *list)
 {
     const uint32_t first_index = (uint32_t)(ui->indices.size / sizeof(uint16_t));
@@ -313,7 +313,7 @@ bool ui_owns_mouse(void)
     return ImGui::GetIO().WantCaptureMouse;
 }
 
-/* Keys that move the focus of the keyboard belong to a panel while one has it. */
+/* Keys that move the focus belong to the user interface while a panel has the focus. */
 bool ui_owns_key(int key)
 {
     const ImGuiIO &io = ImGui::GetIO();

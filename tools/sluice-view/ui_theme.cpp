@@ -1,4 +1,4 @@
-/* Themes of ui.h. Texts keep their roles; canvases of graphs and maps are dark in each. */
+/* Themes of ui.h. A color of text keeps its role. Graphs and maps are dark in all themes. */
 #include "ui_theme.h"
 
 #include "ui.h"
@@ -9,11 +9,11 @@ namespace
 {
 
 struct palette {
-    uint32_t white, gray, orange, red, blue; ///< of texts
+    uint32_t white, gray, orange, red, blue; ///< colors of texts
     uint32_t background, field, pressed, active;
 };
 
-/* Orange, red and blue differ in brightness, too: tests/view/test_view_widgets.c. */
+/* Orange, red and blue also differ in brightness (tests/view/test_view_widgets.c). */
 const palette palettes[] = {
     {UI_WHITE, UI_GRAY, UI_ORANGE, UI_RED, UI_BLUE, UI_COLOR(18, 20, 26, 237),
      UI_COLOR(48, 56, 69, 255), UI_COLOR(40, 105, 180, 255), UI_COLOR(61, 97, 143, 255)},
@@ -33,7 +33,7 @@ ImVec4 color_of(uint32_t color)
 
 } // namespace
 
-/* Colors of lines that name them, on a light panel. */
+/* Returns a darker color for the name of a curve on a light panel. */
 static uint32_t darker(uint32_t color)
 {
     switch (color) {

@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* All rows are drawn in so many frames, for widths of columns that fit. */
+/* The first frames draw all rows, so that widths of columns fit. */
 #define FITTING_FRAMES 4
 
-/* Whether the next cell of the row is in sight. */
+/* True if the next cell of the row is visible. */
 static bool cell_shown;
 
 bool ui_begin_panel(const char *title, bool *open, const float placement[4], const float pivot[2],
@@ -266,8 +266,8 @@ bool ui_released(void)
 
 bool ui_double_clicked(void)
 {
-    /* The list of a choice that the first click opened may be in the way: the second one closed it.
-     */
+    /* ImGui::IsItemHovered would fail: the first click may have opened a list above the widget,
+     * which the second click closed. */
     return ImGui::IsMouseDoubleClicked(0) &&
            ImGui::IsMouseHoveringRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax()) &&
            ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByPopup |
@@ -306,7 +306,7 @@ void ui_hint(const char *format, ...)
     ui_show_hint(text);
 }
 
-/* Columns are at least as wide as the sample behind the '=' of their title. */
+/* Sets up columns, each at least as wide as the sample after '=' in its title. */
 static void set_up_columns(const char *columns, int count)
 {
     char title[64], sample[64];
@@ -384,7 +384,7 @@ void ui_table_image(uint32_t texture, float size, const float uv[4])
     ImGui::SameLine();
 }
 
-/* Texts that the column cuts are shown whole while they are hovered. */
+/* Draws a cell. A text that the column cuts is shown whole while it is hovered. */
 void ui_table_cell(uint32_t color, const char *format, ...)
 {
     char text[512];
