@@ -156,7 +156,7 @@ static uint64_t requested(void)
     return now.mappedTileCount;
 }
 
-/* One pixel in 64 reports less than all pixels in one frame, and as much in 64 frames. */
+/* The lattice reports less than every pixel in one frame, and the same tiles after 64 frames. */
 static void all_kinds_request_the_same_tiles_in_the_end(void **state)
 {
     (void)state;

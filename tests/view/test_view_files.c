@@ -274,7 +274,7 @@ static void thousands_of_files_are_listed(void **state)
     browser_move(&b, 4321);
     assert_string_equal(browser_selected(&b, path, sizeof path), path_of("many/4321.png"));
     browser_set_filter(&b, "99");
-    assert_int_equal(b.shown_count, 95); /* as Python counts */
+    assert_int_equal(b.shown_count, 95); /* expected count computed by Python */
     browser_finish(&b);
 }
 

@@ -49,7 +49,7 @@ static void points_of_all_spans_have_the_largest_of_their_frames(void **state)
     history_destroy(&history);
 }
 
-/* As a click in a graph keeps it. */
+/* A click in a graph keeps such a time. */
 static void a_time_names_the_same_point_while_frames_pass(void **state)
 {
     (void)state;

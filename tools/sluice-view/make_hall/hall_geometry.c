@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #define PAINTINGS HALL_FLOOR
-#define STEP 2.2f /* meters from a painting to the next one on its wall */
+#define STEP 2.2f /* meters between paintings on a wall */
 
 static const float wall = HALL_WALL, height = 3.0f, front = HALL_FRONT, back = HALL_BACK;
 
@@ -54,13 +54,13 @@ static void add_box(struct mesh *mesh, const float low[3], const float high[3], 
         float right[3] = {0}, down[3] = {0}, corner[3] = {low[0], low[1], low[2]};
         right[j] = high[j] - low[j];
         down[k] = high[k] - low[k];
-        hall_add_quad(mesh, corner, right, down); /* its front is below */
+        hall_add_quad(mesh, corner, right, down); /* face at `low` */
         corner[axis] = high[axis];
         hall_add_quad(mesh, corner, down, right);
     }
 }
 
-/* Frame of a painting on the wall x = side * wall, whose center is (y, z). */
+/* Adds the frame of a painting on the wall x = side * wall, with its center at (y, z). */
 static void add_frame(struct mesh *mesh, float side, float y, float z, float half_height,
                       float half_width)
 {
@@ -76,7 +76,7 @@ static void add_frame(struct mesh *mesh, float side, float y, float z, float hal
                 (float[]){x1, y + half_height, ends[i] + wide}, "xz");
 }
 
-/* As large as its place allows, in its proportions; thin ones are made wider. */
+/* Computes the largest size that fits, keeping proportions. Widens thin paintings. */
 static void painting_size(uint32_t number, float *half_height, float *half_width)
 {
     const struct hall_picture picture = hall_picture(number);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MADE_ELSEWHERE 4u ///< textures of normals and of roughness, which stand first
+#define MADE_ELSEWHERE 4u ///< textures of normals and of roughness, the first ones in the file
 #define MOST_INDICES (HALL_MOST_VERTICES / 4 * 6)
 
 enum { FLOATS = 5126, SHORTS = 5123 }; // component types of glTF
@@ -27,18 +27,18 @@ static const struct {
     {"trim", {0.62, 0.6, 0.56, 1}, {0}, 0, 0.7},
 };
 
-/* Places of the camera, and its turns to the left about the y axis in radians. */
+/* Positions of the camera, and its rotation to the left about the y axis, in radians. */
 static const struct {
     double seconds, x, y, z, turn;
 } walk[] = {{0, 0, 1.3, 3, 0},         {4, 0, 1.3, -7, 0},        {7, 0.4, 1.3, -14, -0.8},
             {10, -0.6, 1.3, -20, 0.6}, {14, 0.3, 1.3, -31, -0.5}, {18, 0, 1.3, -41, 0}};
 #define WALK_KEYS (sizeof walk / sizeof walk[0])
 
-/* The JSON under way, and the bytes that its accessors refer to. */
+/* The JSON being built, and the bytes of its accessors. */
 struct gltf {
     cJSON *root, *accessors, *materials, *meshes, *nodes, *children;
     struct mesh all;       ///< vertices of all meshes
-    uint32_t most_indices; ///< of a mesh
+    uint32_t most_indices; ///< largest number of indices in a mesh
 };
 
 static cJSON *add_array(cJSON *object, const char *name)
@@ -60,7 +60,7 @@ static void add_numbers(cJSON *object, const char *name, const double *numbers, 
     cJSON_AddItemToObject(object, name, cJSON_CreateDoubleArray(numbers, count));
 }
 
-/* Returns the number of the accessor. */
+/* Adds an accessor. Returns its index. */
 static int add_accessor(struct gltf *g, int view, size_t offset, int type, size_t count,
                         const char *shape)
 {
@@ -86,8 +86,8 @@ static void add_limits(cJSON *accessor, const struct mesh *mesh)
     add_numbers(accessor, "max", high, 3);
 }
 
-/* A mesh, and a node that shows it, with the material that is added next. View 0 has vertices,
- * view 1 the indices of as many quads as the largest mesh has. */
+/* Adds a mesh, and a node that shows it. Its material is the next one to be added. View 0 has the
+ * vertices. View 1 has indices for the quads of the largest mesh. */
 static void add_mesh(struct gltf *g, const char *name, const struct mesh *mesh)
 {
     const size_t first = g->all.count * sizeof(struct vertex);
@@ -116,7 +116,7 @@ static void add_mesh(struct gltf *g, const char *name, const struct mesh *mesh)
     cJSON_AddItemToArray(g->children, cJSON_CreateNumber(cJSON_GetArraySize(g->nodes) - 1));
 }
 
-/* Returns the entry. `repeat` is written if it is not {1, 1}. */
+/* Adds a texture, and returns its entry. Writes `repeat` unless it is {1, 1}. */
 static cJSON *add_texture(cJSON *object, const char *name, uint32_t texture, double repeat_u,
                           double repeat_v)
 {
@@ -130,8 +130,8 @@ static cJSON *add_texture(cJSON *object, const char *name, uint32_t texture, dou
     return entry;
 }
 
-/* Every third painting has a canvas of normals, every second one roughness, so that textures follow
- * others of another size. */
+/* Adds the material of a painting. Every third has normals of canvas, every second has roughness:
+ * textures follow primaries of another size. */
 static void add_picture_material(struct gltf *g, const char *name, uint32_t number)
 {
     cJSON *material = add_entry(g->materials);
@@ -207,7 +207,7 @@ static void add_meshes(struct gltf *g, struct mesh *groups, struct mesh *one)
     }
 }
 
-/* The camera and its walk, whose keys are views 2 to 4. */
+/* Adds the camera and its walk. Views 2 to 4 have the keys. */
 static void add_camera(struct gltf *g)
 {
     cJSON *camera = add_entry(add_array(g->root, "cameras")), *node = add_entry(g->nodes);
@@ -244,7 +244,7 @@ static void add_camera(struct gltf *g)
     }
 }
 
-/* Writes hall.bin: vertices, indices of quads, then times, places and turns of the walk. */
+/* Writes hall.bin: vertices, indices of quads, then times, positions and rotations of the walk. */
 static bool write_bytes(struct gltf *g, const char *path)
 {
     FILE *file = fopen(path, "wb");

@@ -15,7 +15,7 @@
 static const uint16_t font[11] = {075557, 026227, 071747, 071717, 055711, 074717,
                                   074757, 071111, 075757, 075717, 005250};
 
-/* Whether a dot of `text` is at column x, row y of its dots. */
+/* Returns true if `text` has a dot at column x, row y. */
 static int text_dot(const char *text, int x, int y)
 {
     for (; *text && x >= 4; text++)
@@ -26,7 +26,7 @@ static int text_dot(const char *text, int x, int y)
     return glyph >> (14 - 3 * y - x) & 1;
 }
 
-/* Number and size of a painting in its lower right corner, in dots of `dot` texels. */
+/* Writes number and size of a painting into its lower right corner. */
 static void write_label(uint8_t *indices, const struct hall_picture *picture)
 {
     char text[64];
@@ -51,7 +51,7 @@ static uint32_t color_at(const struct hall_picture *picture, const struct painti
     return painting_color(painting, (x + 0.5) / picture->height, (y + 0.5) / picture->height);
 }
 
-/* Large and oblong paintings are of kinds that suit them. */
+/* Chooses the kind of a painting. Large and oblong paintings have kinds that suit them. */
 static uint32_t kind_of(uint32_t number)
 {
     static const uint8_t kinds[14] = {1, 5, 0, 9, 2, 6, 0, 5, 2, 4, 7, 3, 0, 10};
@@ -70,7 +70,7 @@ static int make_picture(const char *folder, const struct hall_picture *picture)
     for (uint32_t y = 0; y < picture->height; y++)
         for (uint32_t x = 0; x < picture->width; x++) {
             uint32_t samples[4];
-            /* Four samples of the floor are one: mixtures along its grain would double the file. */
+            /* The floor uses one sample instead of four: mixed colors would double the file. */
             for (int i = 0; i < 4; i++)
                 samples[i] = color_at(picture, &painting, x + spread * (0.5 * (i & 1) - 0.25),
                                       y + spread * (0.5 * (i >> 1) - 0.25));

@@ -2,7 +2,8 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 
-/* Or else what is hidden would write feedback too. Masks decide later whether they are there. */
+/* Early tests keep hidden pixels from writing feedback. Masked pixels are discarded later, so they cannot use these
+ * tests. */
 #ifndef MASKED
 layout(early_fragment_tests) in;
 #endif
@@ -41,7 +42,7 @@ vec3 decode(vec3 color)
     return mix(pow((color + 0.055) / 1.055, vec3(2.4)), color / 12.92, lessThanEqual(color, vec3(0.04045)));
 }
 
-/* The picture in gray under a color, so that one sees both. */
+/* Mixes the gray picture with a color, so that both are visible. */
 vec3 cover(vec3 picture, vec3 color)
 {
     float gray = dot(picture, vec3(0.3, 0.6, 0.1));
@@ -54,10 +55,10 @@ bool onBorder(vec2 texels, vec2 perPixel, vec2 tileSize)
     return any(lessThan(away, perPixel * 0.75));
 }
 
-/* Texels of the slots, and how many levels are missing at most. */
+/* Texels of the slots, and the largest number of missing levels. */
 vec4 texels[SLOT_COUNT] = vec4[](vec4(1.0), vec4(1.0), vec4(0.5, 0.5, 1.0, 1.0), vec4(1.0), vec4(1.0));
 uint missingLevels = 0u, missingSlot = 0u;
-/* Of the coordinates, taken before masks end pixels. */
+/* Derivatives of the UVs, taken before masks discard pixels. */
 vec4 uvsDx, uvsDy;
 
 vec2 turnBySlot(Slot slot, vec4 sets)
@@ -66,7 +67,7 @@ vec2 turnBySlot(Slot slot, vec4 sets)
     return vec2(dot(slot.turn.xy, uv), dot(slot.turn.zw, uv));
 }
 
-/* LOD bias of a sample: no finer level than the finest allowed one, whatever the sampler rounds. */
+/* Returns the LOD bias of a sample. Rounding of the sampler never reaches a level finer than the finest allowed one. */
 float biasOf(uint tableIndex, vec2 dx, vec2 dy)
 {
     uint finest = push.flags >> FINEST_SHIFT & FINEST_MASK;
@@ -77,7 +78,7 @@ float biasOf(uint tableIndex, vec2 dx, vec2 dy)
     return max(push.lodBias, float(finest) - lod + sluiceLodMargin(push.anisotropy) + 1.0 / 64.0);
 }
 
-/* One texel of one level: the middle of it, where a bilinear sample has no part of others. */
+/* Samples the center of one texel of one level, where bilinear filtering mixes in no other texel. */
 vec4 sampleNearest(uint tableIndex, vec2 uv, float bias, out uint missing)
 {
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dFdx(uv), dFdy(uv), bias, 1.0);
@@ -90,7 +91,7 @@ vec4 sampleNearest(uint tableIndex, vec2 uv, float bias, out uint missing)
     return sluiceSampleAtLevel(tableIndex, tableIndex, level, (floor(s.uv * size) + 0.5) / size);
 }
 
-/* In loops, since compilers need long for what a sample is made of. */
+/* Samples all slots. The loop is not unrolled, since compilers take long for each sample. */
 void sampleSlots()
 {
     [[dont_unroll]] for (uint i = 0u; i < SLOT_COUNT; i++) {
@@ -133,7 +134,7 @@ bool anySlotWrites()
     return any;
 }
 
-/* Pixels of a quad share the work; others write alone. */
+/* Writes feedback of all slots. With BY_QUADS, the pixels of a quad share the work. */
 void writeSlots()
 {
     [[dont_unroll]] for (uint i = 0u; i < SLOT_COUNT; i++) {
@@ -150,7 +151,7 @@ void writeSlots()
     }
 }
 
-/* Without tangents in the vertices: Mikkelsen: "Bump Mapping Unparametrized Surfaces on the GPU", 2010. */
+/* Applies the normal map without tangents. Mikkelsen: "Bump Mapping Unparametrized Surfaces on the GPU", 2010. */
 vec3 bendNormal(vec3 straight)
 {
     Slot slot = materials[push.material].slots[SLOT_NORMAL];
@@ -190,9 +191,9 @@ vec3 lit(vec3 color)
                            toEye, open);
 }
 
-/* A place in the image of a slot. */
+/* A point of a slot's image, with derivatives. */
 struct Place {
-    vec2 uv, dx, dy, size; // size: of level 0, in texels
+    vec2 uv, dx, dy, size; // size: texels of level 0
 };
 
 Place placeOf(Slot slot)
@@ -206,7 +207,7 @@ uint markOf(Slot slot, Place at)
     return markAt(slot.flags >> SLOT_IMAGE_SHIFT, uvec2(fract(at.uv) * at.size));
 }
 
-/* Column and, below it, row of the tile, in its upper left corner: 28 points of the font are as wide as a tile. */
+/* Draws column and row of the tile into its upper left corner. 28 points of the font are as wide as a tile. */
 bool onNumber(vec2 texels, vec2 tileSize)
 {
     vec2 tile = floor(texels / tileSize), at = fract(texels / tileSize) * 28.0 - 1.5;
@@ -222,7 +223,7 @@ vec3 bordered(vec3 picture, vec3 color, Slot slot, Place at, float level)
         return picture;
     vec2 tileSize = vec2(markTileSize(slot.flags >> SLOT_IMAGE_SHIFT)) * exp2(level);
     vec2 perPixel = (abs(at.dx) + abs(at.dy)) * at.size, pixels = tileSize / perPixel;
-    if (min(pixels.x, pixels.y) < 4.0) /* nothing else would be seen */
+    if (min(pixels.x, pixels.y) < 4.0) /* borders would hide the picture */
         return picture;
     bool numbered = (push.flags & FLAG_NUMBERS) != 0u && min(pixels.x, pixels.y) >= 28.0;
     return onBorder(at.uv * at.size, perPixel, tileSize) ||
@@ -231,7 +232,7 @@ vec3 bordered(vec3 picture, vec3 color, Slot slot, Place at, float level)
                : picture;
 }
 
-/* Edges of images with a side that is no power of two. */
+/* Returns true on the edge of an image with a side that is not a power of two. */
 bool onOddEdge(Place at)
 {
     uvec2 size = uvec2(at.size + 0.5);
@@ -239,7 +240,7 @@ bool onOddEdge(Place at)
     return any(notEqual(size & (size - 1u), uvec2(0u))) && any(lessThan(away, perPixel * 1.5));
 }
 
-/* Texels of level 0 per pixel, along the shorter side of the pixel's footprint. */
+/* Returns texels of level 0 per pixel, along the shorter side of the pixel's footprint. */
 float densityOf(Place at)
 {
     vec2 x = at.dx * at.size, y = at.dy * at.size;
@@ -272,7 +273,7 @@ vec3 showAge(vec3 picture, Slot slot, Place at)
     return cover(picture, ageColor(markAge(word)));
 }
 
-/* Views show the color image of a material. They mix encoded colors, as legends show them. */
+/* Draws a view of the material's color image. Mixes encoded colors, like the legends. */
 vec3 show(vec3 picture, Slot slot, bool wrote)
 {
     if (push.view == VIEW_WRITTEN)

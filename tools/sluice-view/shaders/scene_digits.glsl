@@ -6,7 +6,7 @@ uint digitCount(uint number)
     return number < 10u ? 1u : number < 100u ? 2u : number < 1000u ? 3u : 4u;
 }
 
-/* Whether a point is dark in a number of at most 4 digits, which are 4 points apart. */
+/* Returns true if a point is dark in a number of at most 4 digits. Digits are 4 points apart. */
 bool numberAt(uint number, uvec2 at)
 {
     uint count = digitCount(number), place = at.x / 4u, column = at.x % 4u;

@@ -1,8 +1,8 @@
-// One light and a sky, without images. Metalness and roughness as in glTF 2.0, appendix B.
+// Shading by one light and a sky, without images. Metalness and roughness follow glTF 2.0, appendix B.
 const vec3 lightDirection = normalize(vec3(0.35, 0.8, 0.5));
 const vec3 lightColor = vec3(1.5), skyColor = vec3(0.62, 0.68, 0.76), groundColor = vec3(0.40, 0.38, 0.36);
 
-/* Light that comes from a direction; rough surfaces gather it from around. */
+/* Light of the sky from a direction. Rough surfaces average over directions. */
 vec3 skyLight(vec3 direction, float roughness)
 {
     float up = 0.5 + 0.5 * direction.y;
@@ -10,7 +10,7 @@ vec3 skyLight(vec3 direction, float roughness)
     return mix(groundColor, skyColor, smoothstep(0.5 - edge, 0.5 + edge, up));
 }
 
-/* Karis: "Physically Based Shading on Mobile", 2014. */
+/* Reflection of the sky. Karis: "Physically Based Shading on Mobile", 2014. */
 vec3 skyReflection(vec3 f0, float roughness, float facing)
 {
     vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);

@@ -4,7 +4,7 @@
 
 layout(location = 0) in vec3 position;
 
-/* A little nearer than the triangles, so that these do not hide their edges. */
+/* Moves lines slightly in front of the triangles, so that triangles do not hide their edges. */
 void main()
 {
     gl_Position = push.viewProjection * vec4(mix(position, push.eye, 0.003), 1.0);

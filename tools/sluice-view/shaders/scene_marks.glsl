@@ -1,4 +1,4 @@
-// Marks of tiles, as tile_marks.c writes them.
+// Marks of tiles, written by tile_marks.c.
 layout(set = 1, binding = 1, std430) readonly buffer Marks
 {
     uint marks[]; // 4 words per image: first word, columns, rows, size of tiles; then a word per tile of level 0
@@ -10,7 +10,7 @@ uvec2 markTileSize(uint image)
     return max(uvec2(size & 0xFFFFu, size >> 16), 1u);
 }
 
-/* Word of the tile of level 0 at a texel of level 0. */
+/* Returns the word of the level 0 tile at a texel of level 0. */
 uint markAt(uint image, uvec2 texel)
 {
     uvec2 size = uvec2(marks[4u * image + 1u], marks[4u * image + 2u]);

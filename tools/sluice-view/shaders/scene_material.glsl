@@ -1,8 +1,8 @@
-// Materials, as stage_draw.c writes them.
+// Materials, written by stage_sets.c.
 const uint NO_TEXTURE = 0xFFFFFFFFu;
 const uint SLOT_COLOR = 0, SLOT_ROUGHNESS = 1, SLOT_NORMAL = 2, SLOT_OCCLUSION = 3, SLOT_EMISSIVE = 4,
            SLOT_COUNT = 5;
-// Flags of slots. SLOT_WRITES_ALONE: writes feedback if there are no sets of textures.
+// Flags of slots. SLOT_WRITES_ALONE: the slot writes feedback only if texture sets are off.
 const uint SLOT_SECOND_UV = 1, SLOT_WRITES = 2, SLOT_WRITES_ALONE = 4, SLOT_IMAGE_SHIFT = 8;
 const uint MATERIAL_MISSING = 1;
 

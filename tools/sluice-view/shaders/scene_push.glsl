@@ -1,4 +1,4 @@
-// What all draws of a frame are given, and which material. 112 bytes; stage_draw.c has the same struct.
+// Push constants of a draw: values of the frame, and the material. 112 bytes; same struct as in stage_draw.c.
 layout(push_constant) uniform Push
 {
     mat4 viewProjection;

@@ -1,4 +1,4 @@
-/* Develops the film of a traced scene as demand-pbrt writes its PNG files, and covers it with a view. */
+/* Converts the film of a traced scene to a picture, like the PNG files of demand-pbrt, and draws a view over it. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430, set = 0, binding = 0) readonly buffer Sums
 {
-    vec4 sums[]; /* of complete samples, and how many they are */
+    vec4 sums[]; /* sums of complete samples; w: their number */
 };
 layout(std430, set = 0, binding = 1) readonly buffer Latest
 {
@@ -27,11 +27,11 @@ layout(std430, set = 0, binding = 4) readonly buffer Views
 };
 layout(std430, set = 0, binding = 5) readonly buffer Tiles
 {
-    uvec2 tiles[]; /* hash map: page, and seconds since it was loaded as marks have them */
+    uvec2 tiles[]; /* hash map: page, and age in the layout of marks */
 };
 layout(std430, set = 0, binding = 6) readonly buffer Pictures
 {
-    uint pictures[]; /* of each texture: 1 + picture << 1 | a side is no power of two; 0: unknown */
+    uint pictures[]; /* per texture: 1 + picture << 1, | 1 if a side is not a power of two; 0: unknown */
 };
 
 layout(push_constant) uniform Push
@@ -39,7 +39,7 @@ layout(push_constant) uniform Push
     uint width, height;
     float scale, tint;
     uint view;
-    uint launch;       /* of the last rays; 0: none in this frame */
+    uint launch;       /* last launch that traced rays; 0: none in this frame */
     uint tileMask;     /* entries of `tiles` - 1 */
     uint pictureCount; /* entries of `pictures` */
     uint isShort;      /* 1: memory is short, and the loader has a LOD bias */
@@ -51,13 +51,13 @@ vec3 encode(vec3 x)
     return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, greaterThan(x, vec3(0.0031308)));
 }
 
-/* Infinite and undefined numbers would spread in the window's filter. */
+/* Replaces infinite and undefined numbers, which would spread in the window's filter. */
 float clean(float x)
 {
     return isnan(x) ? 0.0 : clamp(x, 0.0, 1.0);
 }
 
-/* As cover in scene.frag. */
+/* Same function as cover in scene.frag. */
 vec3 cover(vec3 under, vec3 color)
 {
     float gray = dot(under, vec3(0.3, 0.6, 0.1));
@@ -69,7 +69,7 @@ vec3 patterned(vec3 color, uint reason, uvec2 at)
     return markPattern(reason, at) ? color * 0.12 : color;
 }
 
-/* Without texture, yellow: a shape or a material is missing. */
+/* Draws view 3. Yellow, at pixels without a texture: a shape or a material is missing. */
 vec3 showMissing(vec3 color, uint pixel, uvec2 at)
 {
     TracedView v = views[pixel];

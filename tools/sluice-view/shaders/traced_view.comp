@@ -1,4 +1,4 @@
-/* Finds which level of its picture each pixel has and wants. Requests no page, and marks none as used. */
+/* Finds resident and wanted level of each pixel. Requests no page, and marks none as used. */
 #version 460
 #extension GL_EXT_nonuniform_qualifier : require
 #extension GL_GOOGLE_include_directive : require
@@ -26,7 +26,7 @@ layout(push_constant) uniform Push
 }
 push;
 
-/* As sluiceFindDemandPage, which would keep the page from being evicted. */
+/* Returns true if a page is resident. Unlike sluiceFindDemandPage, does not keep the page from being evicted. */
 bool isResident(uint page)
 {
     uint block = SLUICE_DEMAND_DIRECTORY_WORD(page / SLUICE_DEMAND_BLOCK_PAGES);
@@ -53,7 +53,7 @@ uint pageAt(SluiceDemandTexture t, uint level, vec2 at)
     return SLUICE_DEMAND_LEVEL_WORD(t.levels + level) + tile.y * columns + tile.x;
 }
 
-/* The color of the last level has no page. */
+/* Finds the finest resident level. Without any page, the color of the last level is resident. */
 void findResident(SluiceDemandTexture t, vec2 at, inout TracedView view)
 {
     uint regular = sluiceDemandRegularCount(t.shape);

@@ -1,4 +1,4 @@
-// Colors and patterns of views. panels.c, panel_legend.c and memory_map.c have the same.
+// Colors and patterns of views. panels.c, panel_legend.c and memory_map.c have the same values.
 #ifndef VIEW_COLORS_GLSL
 #define VIEW_COLORS_GLSL
 
@@ -22,15 +22,15 @@ vec3 missingColor(uint missing)
     return missing == 1u ? vec3(240, 228, 66) / 255.0 : missing == 2u ? vec3(230, 159, 0) / 255.0 : vec3(213, 94, 0) / 255.0;
 }
 
-/* By the number of the image. memory_map.c has the same colors. */
+/* Color of an image, by its number. memory_map.c has the same colors. */
 vec3 identityColor(uint index)
 {
     float hue = fract(float(index) * 0.61803399);
     return 0.55 + 0.4 * cos(6.2831853 * (hue + vec3(0.0, 0.33, 0.67)));
 }
 
-/* Whether the pixel is dark in the pattern of a reason. Patterns differ in shape, not in color. panel_legend.c draws
- * them, too. */
+/* Returns true if the pixel is dark in the pattern of a reason. Patterns differ in shape, not in color. panel_legend.c
+ * draws the same patterns. */
 bool markPattern(uint reason, uvec2 at)
 {
     uvec2 cell = at % 12u;
@@ -45,7 +45,7 @@ bool markPattern(uint reason, uvec2 at)
     }
 }
 
-/* From new to old, colors that differ in brightness. */
+/* Color of an age. Colors from new to old differ in brightness. */
 vec3 ageColor(float seconds)
 {
     return (seconds < 0.5    ? vec3(253, 231, 37)
@@ -55,7 +55,7 @@ vec3 ageColor(float seconds)
                              : vec3(65, 68, 135)) / 255.0;
 }
 
-/* Texels of level 0 per pixel, in a direction of a pixel. */
+/* Color of texels of level 0 per pixel. */
 vec3 densityColor(float texels)
 {
     return (texels < 0.25  ? vec3(5, 48, 97)
@@ -63,7 +63,7 @@ vec3 densityColor(float texels)
             : texels < 1.5 ? vec3(247, 247, 247)
             : texels < 4.0 ? vec3(253, 174, 97)
             : texels < 16.0 ? vec3(215, 72, 39)
-                           : vec3(92, 58, 20)) / 255.0; // unlike magenta, also mixed with gray
+                           : vec3(92, 58, 20)) / 255.0; // differs from magenta, even when mixed with gray
 }
 
 #endif
