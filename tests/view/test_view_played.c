@@ -145,6 +145,32 @@ static void a_frame_has_the_state_of_a_player_that_never_jumped(void **state)
     }
 }
 
+/* Forward, calls need memory now and then. */
+static void frames_are_right_again_after_memory_was_short(void **state)
+{
+    (void)state;
+    uint32_t failed = 0;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        struct trace_buffer trace = record_run(seed);
+        struct played *p = open_copy(trace.data, trace.size, 0);
+        uint64_t *digests = play_naively(&trace, p);
+        for (uint32_t first = 0; first < p->frame_count; first += 50) {
+            assert_true(played_go(p, first));
+            const uint64_t left = p->memory_left;
+            p->memory_left = 0;
+            while (p->frame + 1 < p->frame_count && played_go(p, p->frame + 1))
+                continue;
+            failed += p->frame + 1 < p->frame_count;
+            p->memory_left += left;
+            check_state(p, digests, p->frame);
+        }
+        free(digests);
+        played_close(p);
+        trace_buffer_free(&trace);
+    }
+    assert_true(failed > 0);
+}
+
 static uint64_t sum_of(const struct played *p, enum played_figure figure)
 {
     uint64_t sum = 0;
@@ -403,6 +429,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_frame_has_the_state_of_a_player_that_never_jumped),
+        cmocka_unit_test(frames_are_right_again_after_memory_was_short),
         cmocka_unit_test(figures_of_frames_add_up_to_the_statistics_of_the_replay),
         cmocka_unit_test(maps_and_refused_heaps_are_those_of_the_dump),
         cmocka_unit_test(events_loads_and_waits_are_the_same_after_a_jump),

@@ -92,6 +92,7 @@ struct played {
 
     /* State at the cursor: after the last call of `frame`. */
     uint32_t frame;
+    bool is_partial; ///< some calls of the frame are not played: memory was short
     struct tile_log log;
     SluiceTileEvent *events; ///< owned; the last PLAYED_EVENTS, a ring. Marks: frames.
     uint32_t event_count, event_next;

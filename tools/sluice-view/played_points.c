@@ -179,7 +179,7 @@ bool played_go(struct played *p, uint32_t frame)
     if (frame >= p->frame_count)
         frame = p->frame_count - 1;
     const struct played_point *point = point_before(p, frame);
-    const bool back = frame < p->frame;
+    const bool back = frame < p->frame || p->is_partial;
     if (back || (point && point->frame > p->frame + 1)) {
         if (!point || !restore(p, point))
             return false;
@@ -191,7 +191,8 @@ bool played_go(struct played *p, uint32_t frame)
     if (sluiceGetTracePlayerState(p->player, &state) != SLUICE_SUCCESS)
         return false;
     for (;; p->frame++) {
-        if (!play_frame(p, &state.eventCount))
+        p->is_partial = !play_frame(p, &state.eventCount);
+        if (p->is_partial)
             return false;
         if (p->frame == frame)
             return true;
