@@ -427,6 +427,12 @@ static void configuration_of_the_manager_and_settings_are_one(void **state)
     CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &old));
     SluiceVulkanStreamerSettings kept = get(s);
     assert_true(are_same(&kept, &settings));
+    /* The old struct ends with padding where missesToExpire is now. */
+    old.structSize = offsetof(SluiceVulkanStreamerSettings, prefetchLevels);
+    old.missesToExpire = 77;
+    CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &old));
+    kept = get(s);
+    assert_true(are_same(&kept, &settings));
     stage_finish(s);
 }
 

@@ -81,7 +81,6 @@ static bool list_images(struct traced_tiles *t, const SluiceDemandLoader *loader
     t->first_slots = first;
     t->by_slot = by_slot;
     t->image_count = count;
-    t->by_slot_count = slots;
     return true;
 }
 

@@ -22,13 +22,13 @@ struct traced_tile {
 /** Zeroed is empty. */
 struct traced_tiles {
     struct traced_tile *entries; ///< owned; hash map by page
-    uint32_t capacity, count;    ///< a power of two, at least 2 * count; 0: no look so far
+    uint32_t capacity;           ///< a power of two, at least twice the entries; 0: no look so far
     SluiceDemandSlot *slots;     ///< owned; slots at the last look
     uint32_t slot_count, slot_room;
     SluiceDemandSlotImage *images; ///< owned, as the next two
     uint32_t *first_slots;         ///< first slot of each image, in `by_slot`
     uint32_t *by_slot;             ///< 1 + index into `slots`; 0: free, or not listed
-    uint32_t image_count, by_slot_count;
+    uint32_t image_count;
     uint64_t next_look; ///< frame of the next look
     uint64_t seen[4];   ///< figures of the loader at the last look
     bool is_cut;        ///< more tiles exist than are listed
